@@ -1,0 +1,1 @@
+//! Simulation of deformable bodies that never intersect.

@@ -1,0 +1,2 @@
+//! The `bowknot` command.
+fn main() {}

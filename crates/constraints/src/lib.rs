@@ -1,0 +1,1 @@
+//! Contact and edge-length constraints: values, Jacobians, colours.

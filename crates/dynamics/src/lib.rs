@@ -1,0 +1,1 @@
+//! Implicit Euler dynamics of deformable bodies: materials, Newton, block-Jacobi PCG.

@@ -1,0 +1,28 @@
+//! Geometry of simplices for collision handling.
+//!
+//! What it knows: points and simplices, closest points and distances of the pair kinds
+//! (vertex-vertex, vertex-edge, vertex-triangle, edge-edge, vertex-half-space), *certified* lower
+//! bounds of distances, exact intersection predicates, and the topology of triangle meshes,
+//! strands and particles. It does not know files, threads or time.
+//!
+//! Function names follow one pattern: `module::pair_kind`, for example [`distance::vertex_triangle`].
+
+pub mod bounds;
+pub mod distance;
+pub mod half_space;
+pub mod intersection;
+pub mod pair;
+pub mod separation;
+pub mod topology;
+
+/// A position [m].
+pub type Point = nalgebra::Point3<f64>;
+/// A displacement, direction or force; the unit stands where it is used.
+pub type Vector = nalgebra::Vector3<f64>;
+
+pub use bounds::Aabb;
+pub use distance::Closest;
+pub use half_space::HalfSpace;
+pub use pair::PairKind;
+pub use separation::Separation;
+pub use topology::{Topology, TopologyError};

@@ -1,0 +1,52 @@
+//! The kinds of primitive pairs, and how their vertices are laid out.
+
+use serde::{Deserialize, Serialize};
+
+/// The kinds of primitive pairs between which distances are measured.
+///
+/// Every pair kind lists its vertices in an array of four: first those of side *a*, then those of
+/// side *b*; unused places hold no meaning. Signs of gradients follow from that: moving a vertex of
+/// side *a* along the normal opens the gap, moving one of side *b* closes it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[repr(u8)]
+pub enum PairKind {
+    /// Two particles: `[a | b]`.
+    VertexVertex = 0,
+    /// A particle and a strand edge: `[a | b0, b1]`.
+    VertexEdge = 1,
+    /// A vertex and a triangle: `[a | b0, b1, b2]`.
+    VertexTriangle = 2,
+    /// Two edges: `[a0, a1 | b0, b1]`.
+    EdgeEdge = 3,
+    /// A vertex and an immovable analytic half-space: `[a |]`.
+    VertexHalfSpace = 4,
+}
+
+impl PairKind {
+    /// All kinds, in the order in which pair lists hold them.
+    pub const ALL: [PairKind; 5] = [
+        PairKind::VertexVertex,
+        PairKind::VertexEdge,
+        PairKind::VertexTriangle,
+        PairKind::EdgeEdge,
+        PairKind::VertexHalfSpace,
+    ];
+
+    /// Number of vertices on side *a*.
+    #[inline]
+    pub const fn side_a(self) -> usize {
+        if matches!(self, PairKind::EdgeEdge) { 2 } else { 1 }
+    }
+
+    /// Number of vertices on both sides together.
+    #[inline]
+    pub const fn vertex_count(self) -> usize {
+        match self {
+            PairKind::VertexHalfSpace => 1,
+            PairKind::VertexVertex => 2,
+            PairKind::VertexEdge => 3,
+            PairKind::VertexTriangle | PairKind::EdgeEdge => 4,
+        }
+    }
+}

@@ -1,0 +1,1 @@
+//! Linear complementarity problems over sparse rows, and their projected solvers.

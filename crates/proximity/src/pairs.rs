@@ -1,0 +1,71 @@
+//! Lists of pairs.
+
+use bowknot_geometry::PairKind;
+use std::ops::Range;
+
+/// A pair of primitives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Pair {
+    /// The primitives' indices: vertices, edges or triangles of the topology by the pair's kind
+    /// (for [`PairKind::VertexHalfSpace`] the vertex and the half-space). In edge-edge and
+    /// vertex-vertex pairs the smaller index comes first.
+    pub elements: [u32; 2],
+    /// Vertices in [`PairKind`] order; unused places repeat the first vertex.
+    pub vertices: [u32; 4],
+}
+
+/// Pairs grouped by kind in the order of [`PairKind::ALL`], sorted by `elements` within a kind.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PairList {
+    pairs: Vec<Pair>,
+    /// Start of each kind in `pairs`, and the end.
+    starts: [usize; 6],
+}
+
+impl PairList {
+    /// A list from the pairs of each kind in the order of [`PairKind::ALL`]; each is sorted.
+    pub fn from_kinds(kinds: [Vec<Pair>; 5]) -> Self {
+        let mut list = Self::default();
+        list.refill(kinds.iter().map(Vec::as_slice));
+        list
+    }
+
+    /// Replaces the content, keeping the allocation. `kinds` yields five slices, one a kind.
+    pub fn refill<'a>(&mut self, kinds: impl Iterator<Item = &'a [Pair]>) {
+        self.pairs.clear();
+        self.starts = [0; 6];
+        for (k, pairs) in kinds.enumerate() {
+            let start = self.pairs.len();
+            self.pairs.extend_from_slice(pairs);
+            self.pairs[start..].sort_unstable();
+            self.starts[k + 1] = self.pairs.len();
+        }
+    }
+
+    /// All pairs.
+    pub fn pairs(&self) -> &[Pair] {
+        &self.pairs
+    }
+
+    /// Where the pairs of a kind stand in [`Self::pairs`].
+    pub fn range(&self, kind: PairKind) -> Range<usize> {
+        self.starts[kind as usize]..self.starts[kind as usize + 1]
+    }
+
+    /// Kind of the pair at `index` of [`Self::pairs`].
+    #[inline]
+    pub fn kind(&self, index: usize) -> PairKind {
+        let k = self.starts[1..5].iter().filter(|&&start| start <= index).count();
+        PairKind::ALL[k]
+    }
+
+    /// Number of pairs.
+    pub fn len(&self) -> usize {
+        self.pairs.len()
+    }
+
+    /// Whether there is no pair.
+    pub fn is_empty(&self) -> bool {
+        self.pairs.is_empty()
+    }
+}

@@ -1,0 +1,1 @@
+//! Moves vertices toward a target along paths that are certified free of intersections.

@@ -1,0 +1,1 @@
+//! The two-way interior point method: resolve(x, y) without intersections.
