@@ -1,1 +1,5 @@
 //! Contact and edge-length constraints: values, Jacobians, colours.
+
+mod params;
+
+pub use params::{ConstraintParams, ContactForm, EdgeForm, EdgeReference};

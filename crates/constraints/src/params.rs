@@ -1,0 +1,119 @@
+//! Parameters of the contact and edge-length constraints.
+
+use serde::{Deserialize, Serialize};
+
+/// Parameters of the constraints.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ConstraintParams {
+    /// Distance [m] that contacts are separated to, delta. Default a tenth of the mean edge length.
+    /// Larger: faster, rounder contacts with a visible gap; smaller: tighter and slower.
+    pub delta: Option<f64>,
+    /// Distance within which a pair becomes a contact row, in `delta`. Default 4.
+    pub range: f64,
+    /// Predicted gap below which a row is swept, in `delta`. Default 1.5.
+    pub active: f64,
+    /// Speed [m/s] at which pairs that start nearer than `delta` are separated; the default is 20 `delta` a second.
+    /// Larger: tight starts open faster and fling the cloth.
+    pub separation_speed: Option<f64>,
+    /// Form of the contact constraint. Default gap.
+    pub form: ContactForm,
+    /// Whether edge lengths are limited at all. Default true.
+    pub edges: bool,
+    /// Largest ratio of an edge's length to its reference, sigma. Default 1.1.
+    pub stretch_limit: f64,
+    /// What an edge's reference is. Default rest.
+    pub edge_reference: EdgeReference,
+    /// How an edge's limit is solved. Default ball.
+    pub edge_form: EdgeForm,
+}
+
+/// Form of the contact constraint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ContactForm {
+    /// Signed distance along the normal: c = n . (p - q) - delta.
+    Gap,
+    /// Volume of the pair against that of the separated pair (paper, Eq. 14-16), in units of length;
+    /// falls back to the gap where the closest features are not the interiors.
+    Volume,
+}
+
+/// Reference length of an edge's limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum EdgeReference {
+    /// The length at the start of the call (paper, Eq. 17).
+    Start,
+    /// L = max(sigma * rest, 0.97 * length at the start).
+    Rest,
+}
+
+/// How an edge's limit is solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum EdgeForm {
+    /// A row linearised at the current state (paper, Eq. 17).
+    Linear,
+    /// The convex ball |y_a - y_b| <= L with a vector multiplier, nothing to linearise.
+    Ball,
+}
+
+impl Default for ConstraintParams {
+    fn default() -> Self {
+        Self {
+            delta: None,
+            range: 4.0,
+            active: 1.5,
+            separation_speed: None,
+            form: ContactForm::Gap,
+            edges: true,
+            stretch_limit: 1.1,
+            edge_reference: EdgeReference::Rest,
+            edge_form: EdgeForm::Ball,
+        }
+    }
+}
+
+impl ConstraintParams {
+    /// As the paper has it.
+    pub fn paper() -> Self {
+        Self {
+            form: ContactForm::Volume,
+            edge_reference: EdgeReference::Start,
+            edge_form: EdgeForm::Linear,
+            ..Self::default()
+        }
+    }
+
+    /// Appends a line for each field out of its range.
+    pub fn validate(&self, problems: &mut Vec<String>) {
+        let mut check = |ok: bool, message: String| {
+            if !ok {
+                problems.push(message);
+            }
+        };
+        for (key, value) in
+            [("constraints.delta", self.delta), ("constraints.separation_speed", self.separation_speed)]
+        {
+            if let Some(value) = value {
+                check(
+                    value.is_finite() && value > 0.0,
+                    format!("{key} = {value} must be finite and above 0"),
+                );
+            }
+        }
+        check(
+            self.range.is_finite() && self.range >= 1.0,
+            format!("constraints.range = {} must be finite and at least 1", self.range),
+        );
+        check(
+            self.active.is_finite() && self.active >= 1.0,
+            format!("constraints.active = {} must be finite and at least 1", self.active),
+        );
+        check(
+            self.stretch_limit.is_finite() && self.stretch_limit > 1.0,
+            format!("constraints.stretch_limit = {} must be finite and above 1", self.stretch_limit),
+        );
+    }
+}

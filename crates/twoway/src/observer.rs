@@ -1,0 +1,36 @@
+//! Watching, and stopping, the loop.
+
+use bowknot_geometry::Point;
+use std::ops::ControlFlow;
+
+/// What an observer is shown after every forward step.
+#[derive(Clone, Copy, Debug)]
+pub struct AcceptedState<'a> {
+    /// Index of the two-way step in the call, from 0.
+    pub step: usize,
+    /// Positions before the step [m].
+    pub previous: &'a [Point],
+    /// Positions after it [m]; the straight paths from `previous` are free of intersections.
+    pub positions: &'a [Point],
+    /// The modified target y that the step moved toward [m].
+    pub target: &'a [Point],
+}
+
+/// Receives each accepted state and may stop the loop.
+pub trait Observer {
+    /// Called after every forward step; `Break` ends the call with this state.
+    fn accepted(&mut self, state: &AcceptedState<'_>) -> ControlFlow<()>;
+}
+
+/// Watches nothing.
+impl Observer for () {
+    fn accepted(&mut self, _: &AcceptedState<'_>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}
+
+impl<F: FnMut(&AcceptedState<'_>) -> ControlFlow<()>> Observer for F {
+    fn accepted(&mut self, state: &AcceptedState<'_>) -> ControlFlow<()> {
+        self(state)
+    }
+}
