@@ -69,7 +69,12 @@ impl Topology {
         check_elements("strand edge", strands, vertex_count, &mut errors);
         for (index, &vertex) in particles.iter().enumerate() {
             if vertex as usize >= vertex_count {
-                errors.push(TopologyError::VertexOutOfRange { element: "particle", index, vertex, vertex_count });
+                errors.push(TopologyError::VertexOutOfRange {
+                    element: "particle",
+                    index,
+                    vertex,
+                    vertex_count,
+                });
             }
         }
         if !errors.is_empty() {

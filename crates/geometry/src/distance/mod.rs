@@ -1,6 +1,35 @@
 //! Closest points and distances of the pair kinds.
+//!
+//! Every function works with coordinate differences inside the pair, so a large common offset costs
+//! no accuracy beyond what the coordinates themselves have lost. The points that the weights name
+//! always lie on both sides, hence `distance` is never below the true distance by more than
+//! rounding; it exceeds it by at most some tens of rounding units (2^-53) times the largest
+//! coordinate difference within the pair, for every input: zero-length edges, collinear and sliver
+//! triangles, parallel edges and coincident points included (`tests/exact_distance.rs` compares
+//! with integers).
+//!
+//! The gradient of the distance by vertex i is `sign_i * weights[i] * offset / distance`, with sign
+//! +1 on side *a* and -1 on side *b* (the closest points move, but at a minimum that adds nothing).
+//! Where the closest points are not unique (parallel edges) or coincide it has no gradient; the
+//! weights are then those of one choice, the same for the same input.
+
+mod edge_edge;
+mod rescale;
+mod vertex_edge;
+mod vertex_triangle;
+mod vertex_vertex;
+
+#[cfg(test)]
+mod tests;
 
 use crate::{PairKind, Point, Vector};
+
+pub use edge_edge::edge_edge;
+pub use vertex_edge::vertex_edge;
+pub use vertex_triangle::vertex_triangle;
+pub use vertex_vertex::vertex_vertex;
+
+pub(crate) use rescale::{Local, MAX_SCALE, MIN_SCALE};
 
 /// The closest points of a pair: p on side *a*, q on side *b*.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,6 +44,40 @@ pub struct Closest {
 }
 
 /// Closest points of any pair kind but [`PairKind::VertexHalfSpace`]; unused points are ignored.
+///
+/// A half-space is no set of points: asked for [`PairKind::VertexHalfSpace`] the answer is that of
+/// the vertex with itself, distance zero; use [`crate::HalfSpace::signed_distance`].
+#[inline]
 pub fn closest(kind: PairKind, points: &[Point; 4]) -> Closest {
-    todo!("{kind:?} {points:?}")
+    let [p0, p1, p2, p3] = points;
+    match kind {
+        PairKind::VertexVertex => vertex_vertex(p0, p1),
+        PairKind::VertexEdge => vertex_edge(p0, [p1, p2]),
+        PairKind::VertexTriangle => vertex_triangle(p0, [p1, p2, p3]),
+        PairKind::EdgeEdge => edge_edge([p0, p1], [p2, p3]),
+        PairKind::VertexHalfSpace => {
+            Closest { weights: [1.0, 0.0, 0.0, 0.0], offset: Vector::zeros(), distance: 0.0 }
+        }
+    }
+}
+
+/// Clamps to [0, 1]; not-a-number (0/0 of a zero-length edge) becomes 0.
+#[inline(always)]
+fn clamp_unit(t: f64) -> f64 {
+    t.max(0.0).min(1.0)
+}
+
+/// Length of a vector whose squares may underflow.
+#[inline(always)]
+pub(crate) fn norm(v: &Vector, norm_squared: f64) -> f64 {
+    // Below this the smallest square may have lost bits to underflow.
+    const SAFE: f64 = 1e-280;
+    if norm_squared > SAFE { norm_squared.sqrt() } else { rescale::norm_of_tiny(v) }
+}
+
+/// Whether squares and fourth powers of a pair's differences stay clear of overflow and underflow,
+/// given the sum of some squares that bounds all of them within a small factor.
+#[inline(always)]
+fn in_range(squares: f64) -> bool {
+    squares > MIN_SCALE * MIN_SCALE && squares < MAX_SCALE * MAX_SCALE
 }

@@ -1,0 +1,57 @@
+use super::*;
+
+fn p(x: f64, y: f64, z: f64) -> Point {
+    Point::new(x, y, z)
+}
+
+fn check(kind: PairKind, points: [Point; 4], weights: [f64; 4], offset: [f64; 3]) {
+    let closest = closest(kind, &points);
+    assert_eq!(closest.weights, weights, "{kind:?} {points:?}");
+    assert_eq!(closest.offset, Vector::from(offset), "{kind:?} {points:?}");
+    assert_eq!(closest.distance, Vector::from(offset).norm(), "{kind:?} {points:?}");
+}
+
+#[test]
+fn each_kind_finds_the_closest_points_of_a_plain_pair() {
+    let o = Point::origin();
+    check(PairKind::VertexVertex, [p(3.0, 4.0, 0.0), o, o, o], [1.0, 1.0, 0.0, 0.0], [3.0, 4.0, 0.0]);
+    check(
+        PairKind::VertexEdge,
+        [p(0.25, 2.0, 0.0), o, p(1.0, 0.0, 0.0), o],
+        [1.0, 0.75, 0.25, 0.0],
+        [0.0, 2.0, 0.0],
+    );
+    check(
+        PairKind::VertexTriangle,
+        [p(0.25, 0.5, -2.0), o, p(1.0, 0.0, 0.0), p(0.0, 1.0, 0.0)],
+        [1.0, 0.25, 0.25, 0.5],
+        [0.0, 0.0, -2.0],
+    );
+    check(
+        PairKind::EdgeEdge,
+        [p(0.0, 0.0, 1.0), p(4.0, 0.0, 1.0), p(1.0, -1.0, 0.0), p(1.0, 1.0, 0.0)],
+        [0.75, 0.25, 0.5, 0.5],
+        [0.0, 0.0, 1.0],
+    );
+}
+
+#[test]
+fn degenerate_elements_are_what_they_span() {
+    let (o, x) = (Point::origin(), p(1.0, 0.0, 0.0));
+    let a = p(0.5, 1.0, 0.0);
+    check(PairKind::VertexEdge, [a, o, o, o], [1.0, 1.0, 0.0, 0.0], [0.5, 1.0, 0.0]);
+    // Collinear triangle.
+    check(PairKind::VertexTriangle, [a, o, p(2.0, 0.0, 0.0), x], [1.0, 0.75, 0.25, 0.0], [0.0, 1.0, 0.0]);
+    check(PairKind::VertexTriangle, [a, x, x, x], [1.0, 1.0, 0.0, 0.0], [-0.5, 1.0, 0.0]);
+    // Two points, a point and an edge, collinear edges apart, parallel edges side by side.
+    check(PairKind::EdgeEdge, [a, a, x, x], [1.0, 0.0, 1.0, 0.0], [-0.5, 1.0, 0.0]);
+    check(PairKind::EdgeEdge, [a, a, o, x], [1.0, 0.0, 0.5, 0.5], [0.0, 1.0, 0.0]);
+    check(
+        PairKind::EdgeEdge,
+        [o, x, p(3.0, 0.0, 0.0), p(2.0, 0.0, 0.0)],
+        [0.0, 1.0, 0.0, 1.0],
+        [-1.0, 0.0, 0.0],
+    );
+    let parallel = edge_edge([&o, &x], [&p(0.5, 1.0, 0.0), &p(1.5, 1.0, 0.0)]);
+    assert_eq!(parallel.offset, Vector::new(0.0, -1.0, 0.0));
+}

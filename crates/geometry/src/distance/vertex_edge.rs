@@ -1,0 +1,33 @@
+//! A vertex and an edge.
+
+use super::{Closest, clamp_unit, in_range, norm, rescale};
+use crate::{PairKind, Point, Vector};
+
+/// Closest points of a vertex and an edge, which may have zero length.
+#[inline]
+pub fn vertex_edge(a: &Point, b: [&Point; 2]) -> Closest {
+    let closest = core(a, b);
+    if in_range(closest.offset.norm_squared() + (b[1] - b[0]).norm_squared()) {
+        return closest;
+    }
+    let points = [*a, *b[0], *b[1], Point::origin()];
+    rescale::closest_rescaled(PairKind::VertexEdge, &points, |[a, b0, b1, _]| core(a, [b0, b1]))
+}
+
+#[inline(always)]
+fn core(a: &Point, b: [&Point; 2]) -> Closest {
+    let (t, offset) = foot_on_edge(a, b);
+    Closest { weights: [1.0, 1.0 - t, t, 0.0], offset, distance: norm(&offset, offset.norm_squared()) }
+}
+
+/// The place t in [0, 1] of the edge's point that is closest to p, and p minus that point.
+#[inline(always)]
+pub(super) fn foot_on_edge(p: &Point, edge: [&Point; 2]) -> (f64, Vector) {
+    let along = edge[1] - edge[0];
+    let from_start = p - edge[0];
+    let t = clamp_unit(from_start.dot(&along) / along.norm_squared());
+    // Measured from the nearer end, so that the distance from either end is that of two vertices to
+    // the last bit, however long the edge.
+    let offset = if t <= 0.5 { from_start - along * t } else { (p - edge[1]) + along * (1.0 - t) };
+    (t, offset)
+}
