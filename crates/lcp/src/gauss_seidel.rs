@@ -1,0 +1,247 @@
+//! Projected Gauss-Seidel: one row after the other, or colour by colour with the rows of a colour in
+//! parallel.
+//!
+//! Both visit the rows in the order of the schedule and compute each alike, so they give the same
+//! bits, whatever the number of threads: rows of a colour share no node that moves.
+
+use crate::kernels::{relax_ball, relax_friction, relax_row};
+use crate::params::{Info, Params};
+use crate::problem::{Problem, Schedule, State};
+use crate::slots::{Slots, atomics, cells};
+use crate::team::{self, Phases};
+use crate::{Error, Vector};
+use nalgebra::Vector2;
+
+/// Rows a thread takes at once: enough to drown the counter's cost (50 ns), few enough that
+/// a colour of some hundred is shared evenly.
+const ROW_CHUNK: usize = 64;
+/// Ball rows are cheaper than rows.
+const BALL_CHUNK: usize = 128;
+/// Below this many rows of all kinds a sweep takes less time than waking a thread.
+const PARALLEL_MIN: usize = 1024;
+
+/// One sweep in the order of the schedules, on this thread. Returns the residual, see [`Info`].
+///
+/// # Errors
+/// [`Error::Length`] if the state does not fit the problem.
+pub fn sweep_serial(problem: &Problem<'_>, state: &mut State<'_>, params: &Params) -> Result<f64, Error> {
+    state.check(problem)?;
+    Ok(serial(problem, state, params, 1))
+}
+
+/// Sweeps in the order of the schedules, on this thread.
+///
+/// # Errors
+/// [`Error::Length`] if the state does not fit the problem; [`Error::NotConverged`] if
+/// [`Params::tolerance`] asks for more than `max_sweeps` give.
+pub fn solve_serial(problem: &Problem<'_>, state: &mut State<'_>, params: &Params) -> Result<Info, Error> {
+    state.check(problem)?;
+    repeat(params, |sweeps| serial(problem, state, params, sweeps))
+}
+
+/// One sweep, the rows of a colour in parallel on the threads of the current rayon pool. The same
+/// bits as [`sweep_serial`] if the colours are valid ([`crate::validate_colours`]). Returns
+/// the residual, see [`Info`].
+///
+/// # Errors
+/// [`Error::Length`] if the state does not fit the problem.
+pub fn sweep_coloured(problem: &Problem<'_>, state: &mut State<'_>, params: &Params) -> Result<f64, Error> {
+    state.check(problem)?;
+    Ok(coloured(problem, state, params, 1))
+}
+
+/// Sweeps, the rows of a colour in parallel on the threads of the current rayon pool. The same bits as
+/// [`solve_serial`] if the colours are valid ([`crate::validate_colours`]).
+///
+/// # Errors
+/// As [`solve_serial`].
+pub fn solve_coloured(problem: &Problem<'_>, state: &mut State<'_>, params: &Params) -> Result<Info, Error> {
+    state.check(problem)?;
+    repeat(params, |sweeps| coloured(problem, state, params, sweeps))
+}
+
+/// Runs all sweeps at once where nobody asks between them, else one at a time.
+fn repeat(params: &Params, mut sweep: impl FnMut(u32) -> f64) -> Result<Info, Error> {
+    let Some(tolerance) = params.tolerance else {
+        return Ok(Info { sweeps: params.max_sweeps, residual: sweep(params.max_sweeps) });
+    };
+    let mut residual = f64::INFINITY;
+    for sweeps in 1..=params.max_sweeps {
+        residual = sweep(1);
+        if residual <= tolerance {
+            return Ok(Info { sweeps, residual });
+        }
+    }
+    Err(Error::NotConverged { sweeps: params.max_sweeps, residual })
+}
+
+fn serial(problem: &Problem<'_>, state: &mut State<'_>, params: &Params, sweeps: u32) -> f64 {
+    let sweep = Sweep {
+        problem,
+        params,
+        sweeps: sweeps as usize,
+        y: cells(state.y),
+        lambda: cells(state.lambda),
+        forces: cells(state.forces),
+        friction: cells(state.friction),
+    };
+    let mut residual = 0.0;
+    for _ in 0..sweeps {
+        residual = 0.0;
+        for kind in [Kind::Ball, Kind::Row, Kind::Friction] {
+            sweep.run(kind, 0, sweep.swept(kind), &mut residual);
+        }
+    }
+    residual
+}
+
+fn coloured(problem: &Problem<'_>, state: &mut State<'_>, params: &Params, sweeps: u32) -> f64 {
+    let rows = problem.balls().swept() + problem.rows().swept() + problem.friction().swept();
+    let threads = rayon::current_num_threads();
+    if threads == 1 || rows < PARALLEL_MIN {
+        return serial(problem, state, params, sweeps);
+    }
+    let mut residual = 0.0;
+    // The residual is that of the last sweep, so the last one is run by itself.
+    for batch in [sweeps.saturating_sub(1), sweeps.min(1)] {
+        let views = (atomics(state.y), atomics(state.lambda), atomics(state.forces), atomics(state.friction));
+        let (Some(y), Some(lambda), Some(forces), Some(friction)) = views else {
+            return serial(problem, state, params, sweeps);
+        };
+        if batch > 0 {
+            let sweep = Sweep { problem, params, sweeps: batch as usize, y, lambda, forces, friction };
+            residual = team::run(&sweep, threads);
+        }
+    }
+    residual
+}
+
+/// The families in the order of a sweep.
+#[derive(Clone, Copy)]
+enum Kind {
+    Ball,
+    Row,
+    Friction,
+}
+
+/// Sweeps over views of the state.
+struct Sweep<'a, Y, L, F, T> {
+    problem: &'a Problem<'a>,
+    params: &'a Params,
+    sweeps: usize,
+    y: Y,
+    lambda: L,
+    forces: F,
+    friction: T,
+}
+
+impl<Y: Slots<Vector>, L: Slots<f64>, F: Slots<Vector>, T: Slots<Vector2<f64>>> Sweep<'_, Y, L, F, T> {
+    fn schedule(&self, kind: Kind) -> Schedule<'_> {
+        match kind {
+            Kind::Ball => self.problem.balls().schedule,
+            Kind::Row => self.problem.rows().schedule,
+            Kind::Friction => self.problem.friction().schedule,
+        }
+    }
+
+    fn swept(&self, kind: Kind) -> usize {
+        match kind {
+            Kind::Ball => self.problem.balls().swept(),
+            Kind::Row => self.problem.rows().swept(),
+            Kind::Friction => self.problem.friction().swept(),
+        }
+    }
+
+    /// Visits places `begin..end` of a family's schedule.
+    fn run(&self, kind: Kind, begin: usize, end: usize, residual: &mut f64) {
+        let schedule = self.schedule(kind);
+        let (weights, relaxation) = (self.problem.weights(), self.params.relaxation);
+        let mut largest = *residual;
+        match kind {
+            Kind::Ball => {
+                let rows = self.problem.balls().rows;
+                for place in begin..end {
+                    let i = schedule.row(place);
+                    largest =
+                        largest.max(relax_ball(&rows[i], weights, relaxation, &self.y, &self.forces, i));
+                }
+            }
+            Kind::Row => {
+                let rows = self.problem.rows().rows;
+                for place in begin..end {
+                    let i = schedule.row(place);
+                    largest = largest.max(relax_row(&rows[i], weights, relaxation, &self.y, &self.lambda, i));
+                }
+            }
+            Kind::Friction => {
+                let rows = self.problem.friction().rows;
+                let bound = self.params.friction_bound;
+                for place in begin..end {
+                    let i = schedule.row(place);
+                    let (y, lambda, friction) = (&self.y, &self.lambda, &self.friction);
+                    let change = relax_friction(&rows[i], weights, relaxation, bound, y, lambda, friction, i);
+                    largest = largest.max(change);
+                }
+            }
+        }
+        *residual = largest;
+    }
+
+    /// Family of a phase, and its places.
+    fn phase(&self, phase: usize) -> (Kind, usize, usize) {
+        let mut phase = phase % self.phases_per_sweep();
+        for kind in [Kind::Ball, Kind::Row] {
+            let colours = self.colours(kind);
+            if phase < colours {
+                return self.colour(kind, phase);
+            }
+            phase -= colours;
+        }
+        self.colour(Kind::Friction, phase)
+    }
+
+    /// Number of phases of a family: without colours, it is one phase of one chunk.
+    fn colours(&self, kind: Kind) -> usize {
+        self.schedule(kind).starts.len().saturating_sub(1).max(1)
+    }
+
+    fn colour(&self, kind: Kind, colour: usize) -> (Kind, usize, usize) {
+        match self.schedule(kind).starts.get(colour..colour + 2) {
+            Some(ends) => (kind, ends[0] as usize, ends[1] as usize),
+            None => (kind, 0, self.swept(kind)),
+        }
+    }
+
+    fn phases_per_sweep(&self) -> usize {
+        self.colours(Kind::Ball) + self.colours(Kind::Row) + self.colours(Kind::Friction)
+    }
+}
+
+impl<Y, L, F, T> Phases for Sweep<'_, Y, L, F, T>
+where
+    Y: Slots<Vector> + Sync,
+    L: Slots<f64> + Sync,
+    F: Slots<Vector> + Sync,
+    T: Slots<Vector2<f64>> + Sync,
+{
+    fn count(&self) -> usize {
+        self.sweeps * self.phases_per_sweep()
+    }
+
+    fn size(&self, phase: usize) -> (usize, usize) {
+        let (kind, begin, end) = self.phase(phase);
+        let size = end - begin;
+        // Without colours rows depend on each other: all in one chunk.
+        let chunk = match kind {
+            _ if self.schedule(kind).starts.is_empty() => size,
+            Kind::Ball => BALL_CHUNK,
+            Kind::Row | Kind::Friction => ROW_CHUNK,
+        };
+        (size, chunk.max(1))
+    }
+
+    fn run(&self, phase: usize, begin: usize, end: usize, residual: &mut f64) {
+        let (kind, start, _) = self.phase(phase);
+        Sweep::run(self, kind, start + begin, start + end, residual);
+    }
+}

@@ -1,0 +1,48 @@
+//! What a solver may be told, and what it tells.
+
+use serde::{Deserialize, Serialize};
+
+/// Shape of the region that bounds a friction multiplier by mu times the normal multiplier.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FrictionBound {
+    /// A disc: isotropic friction, the same bound in every tangential direction.
+    #[default]
+    Disc,
+    /// A square along the two tangents: up to sqrt(2) more along its diagonals, but a plain box LCP.
+    Square,
+}
+
+/// Parameters of the iterative solvers.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Params {
+    /// Sweeps at most. Default 64. More come nearer to the solution at a cost linear in them.
+    pub max_sweeps: u32,
+    /// With `Some(t)` a solver stops as soon as a sweep changed no row value by more than t [unit of
+    /// the row values], and reaching `max_sweeps` is an error; with `None`, the default, it does
+    /// exactly `max_sweeps`. Smaller is more accurate and slower.
+    pub tolerance: Option<f64>,
+    /// Factor on each row's step, in (0, 2). Default 1: each row is solved exactly. Larger
+    /// over-relaxes, smaller damps.
+    pub relaxation: f64,
+    /// Region of the friction multipliers. Default: disc.
+    pub friction_bound: FrictionBound,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self { max_sweeps: 64, tolerance: None, relaxation: 1.0, friction_bound: FrictionBound::Disc }
+    }
+}
+
+/// What an iterative solver did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Info {
+    /// Sweeps done.
+    pub sweeps: u32,
+    /// Largest correction of a row value in the last sweep: |change of the multiplier| times the
+    /// row's diagonal [unit of the row values]. It is what the sweep found wrong as it passed, free
+    /// of charge; [`crate::residuals`] judges the state that it left.
+    pub residual: f64,
+}

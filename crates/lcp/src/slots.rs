@@ -1,0 +1,98 @@
+//! Arrays that several rows write through shared references, one element at a time.
+//!
+//! Rows of a colour write disjoint nodes, which safe Rust cannot see. Two views of a `&mut [T]` give
+//! kernels shared access, so that one kernel serves both ways of running it: `Cell`s on one thread,
+//! relaxed atomics on several. A relaxed load or store is a plain move on the machines at hand, and
+//! a wrong colouring can spoil a result but never memory safety: no check of the colours is needed
+//! for soundness, and none is paid for.
+#![allow(unsafe_code)]
+#![deny(clippy::undocumented_unsafe_blocks)]
+
+use nalgebra::SVector;
+use std::cell::Cell;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+/// An array with element-wise access through a shared reference.
+pub(crate) trait Slots<T> {
+    fn get(&self, index: usize) -> T;
+    fn set(&self, index: usize, value: T);
+}
+
+/// The view for one thread.
+pub(crate) fn cells<T>(values: &mut [T]) -> &[Cell<T>] {
+    Cell::from_mut(values).as_slice_of_cells()
+}
+
+impl<T: Copy> Slots<T> for &[Cell<T>] {
+    #[inline(always)]
+    fn get(&self, index: usize) -> T {
+        self[index].get()
+    }
+    #[inline(always)]
+    fn set(&self, index: usize, value: T) {
+        self[index].set(value);
+    }
+}
+
+/// A type of N `f64`s in a row and nothing else.
+///
+/// # Safety
+/// `Self` must have the layout of `[f64; N]`.
+pub(crate) unsafe trait Reals<const N: usize>: Copy {
+    fn to_array(self) -> [f64; N];
+    fn from_array(array: [f64; N]) -> Self;
+}
+
+// SAFETY: f64 and [f64; 1] have one layout.
+unsafe impl Reals<1> for f64 {
+    #[inline(always)]
+    fn to_array(self) -> [f64; 1] {
+        [self]
+    }
+    #[inline(always)]
+    fn from_array(array: [f64; 1]) -> Self {
+        array[0]
+    }
+}
+
+// SAFETY: nalgebra's matrix is repr(C) over its storage and a zero-sized marker, and array storage
+// is repr(transparent) over [[f64; N]; 1].
+unsafe impl<const N: usize> Reals<N> for SVector<f64, N> {
+    #[inline(always)]
+    fn to_array(self) -> [f64; N] {
+        self.data.0[0]
+    }
+    #[inline(always)]
+    fn from_array(array: [f64; N]) -> Self {
+        array.into()
+    }
+}
+
+/// The view for several threads; `None` on a target whose atomics are aligned more strictly than
+/// `f64` (32-bit x86), where callers stay on one thread.
+pub(crate) fn atomics<const N: usize, T: Reals<N>>(values: &mut [T]) -> Option<&[[AtomicU64; N]]> {
+    const { assert!(size_of::<T>() == size_of::<[AtomicU64; N]>()) };
+    if align_of::<T>() < align_of::<AtomicU64>() {
+        return None;
+    }
+    // SAFETY: T has the layout of [f64; N], the sizes agree (asserted), and T is aligned enough, so
+    // the memory holds as many [AtomicU64; N]; every bit pattern is valid for both types. The
+    // exclusive borrow of `values` lasts as long as the result: all access goes through the atomics.
+    Some(unsafe { std::slice::from_raw_parts(values.as_mut_ptr().cast(), values.len()) })
+}
+
+impl<const N: usize, T: Reals<N>> Slots<T> for &[[AtomicU64; N]] {
+    #[inline(always)]
+    fn get(&self, index: usize) -> T {
+        let slot = &self[index];
+        T::from_array(std::array::from_fn(|k| f64::from_bits(slot[k].load(Relaxed))))
+    }
+    #[inline(always)]
+    fn set(&self, index: usize, value: T) {
+        let slot = &self[index];
+        let array = value.to_array();
+        for k in 0..N {
+            slot[k].store(array[k].to_bits(), Relaxed);
+        }
+    }
+}
