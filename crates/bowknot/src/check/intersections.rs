@@ -1,0 +1,145 @@
+//! Intersections of a state, by exact predicates.
+
+use super::path::is_above;
+use super::primitives::{Scene, closest_points, gather};
+use super::{CheckError, Intersection, Judge, PairClass, StateOptions, StateReport};
+use bowknot_geometry::{Point, intersection};
+use rayon::prelude::*;
+
+/// A pair that intersects.
+type Found = (PairClass, [u32; 2]);
+
+impl Judge {
+    /// Judges the state `x` [m], one point a vertex.
+    ///
+    /// Intersections are decided exactly, but for half-spaces: a vertex that is not certainly above one,
+    /// given rounding, counts as touching it. So that one place is not counted several times, two edges
+    /// are listed only where no triangle at either edge intersects the other edge, and a vertex and a
+    /// triangle only where no edge at the vertex intersects the triangle. The result does not depend on
+    /// the number of threads.
+    ///
+    /// # Errors
+    /// A wrong number of points, or coordinates that are not finite.
+    pub fn check_state(&self, x: &[Point], options: &StateOptions) -> Result<StateReport, CheckError> {
+        self.check_positions("state", x)?;
+        let scene = Scene::new(self, [x], false);
+        let mut found = scene.pairs(
+            PairClass::EdgeTriangle,
+            &scene.edges,
+            &scene.triangles,
+            |a, b| a.meets(b),
+            |class, elements, [edge, triangle], found: &mut Vec<Found>| {
+                let point = |v: u32| &x[v as usize];
+                let (e, t) = ([edge[0], edge[1]], [triangle[0], triangle[1], triangle[2]]);
+                if intersection::edge_triangle(e.map(point), t.map(point)) {
+                    found.push((class, elements));
+                }
+            },
+        );
+        let edge_triangle_count = found.len();
+        let touching = scene.all_pairs(
+            |a, b| a.meets(b),
+            |class, elements, [a, b], found: &mut Vec<Found>| {
+                if touch(x, a, b) {
+                    found.push((class, elements));
+                }
+            },
+        );
+        found.extend(self.without_implied(touching, &found));
+        found.par_extend(self.vertices.par_iter().filter(|&&v| self.meets_half_spaces(v)).flat_map_iter(|&v| {
+            let below = move |h: &usize| !is_above(&self.half_spaces[*h], &x[v as usize]);
+            (0..self.half_spaces.len()).filter(below).map(move |h| (PairClass::VertexHalfSpace, [v, h as u32]))
+        }));
+        found.par_sort_unstable();
+
+        let intersections = found.iter().take(options.limit).map(|found| self.describe(x, found)).collect();
+        let nearest = if options.distance { self.nearest(x, &scene) } else { None };
+        Ok(StateReport { intersections, intersection_count: found.len(), edge_triangle_count, nearest })
+    }
+
+    /// The touching pairs that no intersecting edge and triangle stands for.
+    fn without_implied(&self, touching: Vec<Found>, edge_triangles: &[Found]) -> Vec<Found> {
+        // Nearly always nothing touches, and the tables below are not needed.
+        if touching.is_empty() {
+            return touching;
+        }
+        let mut known: Vec<[u32; 2]> = edge_triangles.iter().map(|found| found.1).collect();
+        known.sort_unstable();
+        let known = |edge: u32, triangle: u32| known.binary_search(&[edge, triangle]).is_ok();
+        let edge_number =
+            |i: u32, j: u32| self.edges.binary_search(&[i.min(j), i.max(j)]).map_or(u32::MAX, |e| e as u32);
+        let mut triangles_at_edge: Vec<(u32, u32)> = Vec::with_capacity(3 * self.triangles.len());
+        for (t, &[i, j, k]) in self.triangles.iter().enumerate() {
+            triangles_at_edge.extend([(i, j), (j, k), (k, i)].map(|(i, j)| (edge_number(i, j), t as u32)));
+        }
+        triangles_at_edge.sort_unstable();
+        let mut edges_at_vertex: Vec<(u32, u32)> = Vec::with_capacity(2 * self.edges.len());
+        for (e, edge) in self.edges.iter().enumerate() {
+            edges_at_vertex.extend(edge.map(|v| (v, e as u32)));
+        }
+        edges_at_vertex.sort_unstable();
+        let at = |table: &[(u32, u32)], key: u32| {
+            let start = table.partition_point(|entry| entry.0 < key);
+            table[start..].iter().take_while(|entry| entry.0 == key).map(|entry| entry.1).collect::<Vec<_>>()
+        };
+
+        let implied = |&(class, [a, b]): &Found| match class {
+            PairClass::EdgeEdge => {
+                at(&triangles_at_edge, a).into_iter().any(|t| known(b, t))
+                    || at(&triangles_at_edge, b).into_iter().any(|t| known(a, t))
+            }
+            PairClass::VertexTriangle => at(&edges_at_vertex, a).into_iter().any(|e| known(e, b)),
+            _ => false,
+        };
+        touching.into_iter().filter(|found| !implied(found)).collect()
+    }
+
+    fn describe(&self, x: &[Point], &(class, elements): &Found) -> Intersection {
+        let sides = self.sides(class, elements);
+        let place = match class {
+            PairClass::EdgeTriangle => {
+                let point = |v: u32| x[v as usize];
+                let [edge, triangle] = sides;
+                crossing([edge[0], edge[1]].map(point), [triangle[0], triangle[1], triangle[2]].map(point))
+            }
+            PairClass::VertexHalfSpace => x[elements[0] as usize],
+            _ => closest_points(class, &gather(x, sides)).0[0],
+        };
+        let vertices = sides.map(<[u32]>::to_vec);
+        Intersection { class, elements, vertices, bodies: self.side_bodies(sides), place }
+    }
+}
+
+/// Whether two closed primitives, other than an edge and a triangle, share a point: exact.
+fn touch(x: &[Point], a: &[u32], b: &[u32]) -> bool {
+    let point = |v: u32| &x[v as usize];
+    match (a, b) {
+        (&[p], &[i, j, k]) => intersection::point_on_triangle(point(p), [i, j, k].map(point)),
+        (&[i, j], &[k, l]) => intersection::edge_edge([i, j].map(point), [k, l].map(point)),
+        (&[p], &[i, j]) => intersection::point_on_edge(point(p), [i, j].map(point)),
+        (&[p], &[q]) => point(p) == point(q),
+        _ => false,
+    }
+}
+
+/// A point of the overlap of an edge and a triangle, to rounding: where the edge crosses the triangle's
+/// plane, or if it runs along that, the best of the closest points of the edge with the triangle's edges
+/// and of its ends with the triangle.
+fn crossing(edge: [Point; 2], triangle: [Point; 3]) -> Point {
+    let normal = (triangle[1] - triangle[0]).cross(&(triangle[2] - triangle[0]));
+    let heights = edge.map(|p| normal.dot(&(p - triangle[0])));
+    let [p, q] = edge;
+    if heights[0] * heights[1] < 0.0 {
+        return p + (q - p) * (heights[0] / (heights[0] - heights[1]));
+    }
+    let [a, b, c] = triangle;
+    let candidates = [
+        (PairClass::VertexTriangle, [p, a, b, c]),
+        (PairClass::VertexTriangle, [q, a, b, c]),
+        (PairClass::EdgeEdge, [p, q, a, b]),
+        (PairClass::EdgeEdge, [p, q, b, c]),
+        (PairClass::EdgeEdge, [p, q, c, a]),
+    ];
+    let measured = candidates.map(|(class, points)| closest_points(class, &points));
+    measured.iter().fold(&measured[0], |best, next| if next.1 < best.1 { next } else { best }).0[0]
+}

@@ -1,0 +1,44 @@
+//! The judge: are states, and straight paths between states, free of intersections?
+//!
+//! It shares no code with the stepper and none with the proximity search, so that a mistake there
+//! cannot hide itself here: its own broad phase (a tree over boxes that move on a common clock), exact
+//! predicates for states, and for paths a certificate of its own (see [`Judge::check_path`]).
+//!
+//! ```text
+//! Judge::new(&Parts) -> Result<Judge, CheckError>                       loose meshes
+//! Judge::from_model(&CollisionModel) -> Judge                           a scene
+//! judge.check_state(&x, &StateOptions)  -> Result<StateReport, CheckError>
+//! judge.check_path(&x0, &x1, &PathOptions) -> Result<PathReport, CheckError>
+//! judge.offending_mesh(&x, &[Intersection]) -> OffendingMesh            for a dump
+//! ```
+//!
+//! **What is judged.** In a state: every edge against every triangle (closed, so touching and coplanar
+//! overlap count), every two edges, every vertex against every triangle, every particle against every
+//! strand edge and particle, every vertex against every half-space. On a path: the same kinds but
+//! edge-triangle, at every time; a path that starts free of intersections cannot come to have an edge
+//! through a triangle without a vertex meeting a triangle or an edge an edge first. Left out are pairs
+//! that share a vertex, pairs of two obstacle primitives, and pairs that the bodies' filters exclude.
+//!
+//! **What is not judged:** two edges that share a vertex folded exactly onto each other, as no pair
+//! kind covers them; and which side of a surface a body is on.
+
+mod dump;
+mod error;
+mod intersections;
+mod judge;
+mod nearest;
+mod path;
+mod primitives;
+mod report;
+mod sweep;
+mod tree;
+
+#[cfg(test)]
+mod tests;
+
+pub use dump::OffendingMesh;
+pub use error::CheckError;
+pub use judge::{Judge, Parts};
+pub use report::{
+    Intersection, Nearest, PairClass, PathHit, PathOptions, PathReport, StateOptions, StateReport,
+};

@@ -1,0 +1,203 @@
+//! What the judge says.
+
+use bowknot_geometry::Point;
+use serde::Serialize;
+use std::fmt;
+
+/// The classes of pairs that are judged, in the order in which reports list them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PairClass {
+    /// An edge and a triangle (states only).
+    EdgeTriangle,
+    /// Two edges.
+    EdgeEdge,
+    /// A vertex and a triangle.
+    VertexTriangle,
+    /// A particle and a strand edge.
+    VertexEdge,
+    /// Two particles.
+    VertexVertex,
+    /// A vertex and a half-space.
+    VertexHalfSpace,
+}
+
+impl PairClass {
+    /// Names of the two sides.
+    pub const fn sides(self) -> [&'static str; 2] {
+        match self {
+            PairClass::EdgeTriangle => ["edge", "triangle"],
+            PairClass::EdgeEdge => ["edge", "edge"],
+            PairClass::VertexTriangle => ["vertex", "triangle"],
+            PairClass::VertexEdge => ["vertex", "edge"],
+            PairClass::VertexVertex => ["vertex", "vertex"],
+            PairClass::VertexHalfSpace => ["vertex", "half-space"],
+        }
+    }
+}
+
+/// Two primitives that intersect or touch.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Intersection {
+    /// What kind of primitives they are.
+    pub class: PairClass,
+    /// Indices of the primitives: vertices, triangles and half-spaces as given, edges as in
+    /// [`super::Judge::edges`].
+    pub elements: [u32; 2],
+    /// Vertices of either side; none for a half-space.
+    pub vertices: [Vec<u32>; 2],
+    /// Body of either side; `None` for a half-space.
+    pub bodies: [Option<u32>; 2],
+    /// A point of the overlap, to rounding [m].
+    pub place: Point,
+}
+
+/// The closest two primitives of a state.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Nearest {
+    /// What kind of primitives they are.
+    pub class: PairClass,
+    /// Indices of the primitives, see [`Intersection::elements`].
+    pub elements: [u32; 2],
+    /// Vertices of either side; none for a half-space.
+    pub vertices: [Vec<u32>; 2],
+    /// Body of either side; `None` for a half-space.
+    pub bodies: [Option<u32>; 2],
+    /// Closest points of either side [m].
+    pub places: [Point; 2],
+    /// Their distance, to rounding [m]; negative only below a half-space.
+    pub distance: f64,
+}
+
+/// What [`super::Judge::check_state`] computes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StateOptions {
+    /// How many intersections to list at most; all are counted.
+    pub limit: usize,
+    /// Whether to find the smallest distance, which costs about as much again.
+    pub distance: bool,
+}
+
+impl Default for StateOptions {
+    fn default() -> Self {
+        Self { limit: 100, distance: true }
+    }
+}
+
+/// Verdict on a state.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct StateReport {
+    /// The first intersections, ordered by class and elements.
+    pub intersections: Vec<Intersection>,
+    /// How many pairs intersect in all.
+    pub intersection_count: usize,
+    /// How many of them are an edge and a triangle.
+    pub edge_triangle_count: usize,
+    /// The closest pair, if asked for and if there is any pair.
+    pub nearest: Option<Nearest>,
+}
+
+impl StateReport {
+    /// Whether nothing intersects.
+    pub fn is_clear(&self) -> bool {
+        self.intersection_count == 0
+    }
+}
+
+/// What [`super::Judge::check_path`] computes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PathOptions {
+    /// How many hits to list at most; all are counted.
+    pub limit: usize,
+    /// Skip pairs of primitives that do not move. Right whenever the start is known to be clear.
+    pub skip_unmoved: bool,
+}
+
+impl Default for PathOptions {
+    fn default() -> Self {
+        Self { limit: 100, skip_unmoved: true }
+    }
+}
+
+/// Two primitives that meet on a path, or that could not be certified not to.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PathHit {
+    /// What kind of primitives they are.
+    pub class: PairClass,
+    /// Indices of the primitives, see [`Intersection::elements`].
+    pub elements: [u32; 2],
+    /// Vertices of either side; none for a half-space.
+    pub vertices: [Vec<u32>; 2],
+    /// Body of either side; `None` for a half-space.
+    pub bodies: [Option<u32>; 2],
+    /// Until when the pair is certified to be apart, as a fraction of the path.
+    pub time: f64,
+    /// Closest points of either side at that time [m].
+    pub places: [Point; 2],
+}
+
+/// Verdict on a straight path.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct PathReport {
+    /// The first hits, ordered by class and elements.
+    pub hits: Vec<PathHit>,
+    /// How many pairs are hits in all.
+    pub hit_count: usize,
+    /// How many pairs' moving boxes met, so that they were looked at one by one.
+    pub candidates: usize,
+}
+
+impl PathReport {
+    /// Whether the path is certified to be free of intersections.
+    pub fn is_clear(&self) -> bool {
+        self.hit_count == 0
+    }
+}
+
+impl fmt::Display for Intersection {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        describe(f, self.class, &self.elements, &self.vertices, &self.bodies)?;
+        write!(f, " intersect at {}", Place(&self.place))
+    }
+}
+
+impl fmt::Display for Nearest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        describe(f, self.class, &self.elements, &self.vertices, &self.bodies)?;
+        write!(f, " are {:.3e} m apart at {}", self.distance, Place(&self.places[0]))
+    }
+}
+
+impl fmt::Display for PathHit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        describe(f, self.class, &self.elements, &self.vertices, &self.bodies)?;
+        write!(f, " meet at {} after {:.9} of the path", Place(&self.places[0]), self.time)
+    }
+}
+
+struct Place<'a>(&'a Point);
+
+impl fmt::Display for Place<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "({:.6}, {:.6}, {:.6})", self.0.x, self.0.y, self.0.z)
+    }
+}
+
+fn describe(
+    f: &mut fmt::Formatter<'_>,
+    class: PairClass,
+    elements: &[u32; 2],
+    vertices: &[Vec<u32>; 2],
+    bodies: &[Option<u32>; 2],
+) -> fmt::Result {
+    for side in 0..2 {
+        let separator = if side == 0 { "" } else { " and " };
+        write!(f, "{separator}{} {}", class.sides()[side], elements[side])?;
+        let Some(body) = bodies[side] else { continue };
+        match vertices[side].as_slice() {
+            [_] => write!(f, " of body {body}")?,
+            list => write!(f, " (vertices {list:?}) of body {body}")?,
+        }
+    }
+    Ok(())
+}
