@@ -20,13 +20,14 @@ const BALL_CHUNK: usize = 128;
 /// Below this many rows of all kinds a sweep takes less time than waking a thread.
 const PARALLEL_MIN: usize = 1024;
 
-/// One sweep in the order of the schedules, on this thread. Returns the residual, see [`Info`].
+/// One sweep in the order of the schedules, on this thread.
 ///
 /// # Errors
 /// [`Error::Length`] if the state does not fit the problem.
-pub fn sweep_serial(problem: &Problem<'_>, state: &mut State<'_>, params: &Params) -> Result<f64, Error> {
+pub fn sweep_serial(problem: &Problem<'_>, state: &mut State<'_>, params: &Params) -> Result<(), Error> {
     state.check(problem)?;
-    Ok(serial(problem, state, params, 1))
+    serial::<false>(problem, state, params, 1);
+    Ok(())
 }
 
 /// Sweeps in the order of the schedules, on this thread.
@@ -36,18 +37,21 @@ pub fn sweep_serial(problem: &Problem<'_>, state: &mut State<'_>, params: &Param
 /// [`Params::tolerance`] asks for more than `max_sweeps` give.
 pub fn solve_serial(problem: &Problem<'_>, state: &mut State<'_>, params: &Params) -> Result<Info, Error> {
     state.check(problem)?;
-    repeat(params, |sweeps| serial(problem, state, params, sweeps))
+    repeat(params, |residual, sweeps| match residual {
+        true => serial::<true>(problem, state, params, sweeps),
+        false => serial::<false>(problem, state, params, sweeps),
+    })
 }
 
 /// One sweep, the rows of a colour in parallel on the threads of the current rayon pool. The same
-/// bits as [`sweep_serial`] if the colours are valid ([`crate::validate_colours`]). Returns
-/// the residual, see [`Info`].
+/// bits as [`sweep_serial`] if the colours are valid ([`crate::validate_colours`]).
 ///
 /// # Errors
 /// [`Error::Length`] if the state does not fit the problem.
-pub fn sweep_coloured(problem: &Problem<'_>, state: &mut State<'_>, params: &Params) -> Result<f64, Error> {
+pub fn sweep_coloured(problem: &Problem<'_>, state: &mut State<'_>, params: &Params) -> Result<(), Error> {
     state.check(problem)?;
-    Ok(coloured(problem, state, params, 1))
+    coloured::<false>(problem, state, params, 1);
+    Ok(())
 }
 
 /// Sweeps, the rows of a colour in parallel on the threads of the current rayon pool. The same bits as
@@ -57,26 +61,36 @@ pub fn sweep_coloured(problem: &Problem<'_>, state: &mut State<'_>, params: &Par
 /// As [`solve_serial`].
 pub fn solve_coloured(problem: &Problem<'_>, state: &mut State<'_>, params: &Params) -> Result<Info, Error> {
     state.check(problem)?;
-    repeat(params, |sweeps| coloured(problem, state, params, sweeps))
+    repeat(params, |residual, sweeps| match residual {
+        true => coloured::<true>(problem, state, params, sweeps),
+        false => coloured::<false>(problem, state, params, sweeps),
+    })
 }
 
-/// Runs all sweeps at once where nobody asks between them, else one at a time.
-fn repeat(params: &Params, mut sweep: impl FnMut(u32) -> f64) -> Result<Info, Error> {
+/// Runs sweeps with as few calls, and asking for as few residuals, as the tolerance allows.
+fn repeat(params: &Params, mut sweep: impl FnMut(bool, u32) -> f64) -> Result<Info, Error> {
+    let sweeps = params.max_sweeps;
     let Some(tolerance) = params.tolerance else {
-        return Ok(Info { sweeps: params.max_sweeps, residual: sweep(params.max_sweeps) });
+        sweep(false, sweeps.saturating_sub(1));
+        return Ok(Info { sweeps, residual: sweep(true, sweeps.min(1)) });
     };
     let mut residual = f64::INFINITY;
-    for sweeps in 1..=params.max_sweeps {
-        residual = sweep(1);
+    for sweeps in 1..=sweeps {
+        residual = sweep(true, 1);
         if residual <= tolerance {
             return Ok(Info { sweeps, residual });
         }
     }
-    Err(Error::NotConverged { sweeps: params.max_sweeps, residual })
+    Err(Error::NotConverged { sweeps, residual })
 }
 
-fn serial(problem: &Problem<'_>, state: &mut State<'_>, params: &Params, sweeps: u32) -> f64 {
-    let sweep = Sweep {
+fn serial<const RESIDUAL: bool>(
+    problem: &Problem<'_>,
+    state: &mut State<'_>,
+    params: &Params,
+    sweeps: u32,
+) -> f64 {
+    let sweep = Sweep::<_, _, _, _, RESIDUAL> {
         problem,
         params,
         sweeps: sweeps as usize,
@@ -87,7 +101,6 @@ fn serial(problem: &Problem<'_>, state: &mut State<'_>, params: &Params, sweeps:
     };
     let mut residual = 0.0;
     for _ in 0..sweeps {
-        residual = 0.0;
         for kind in [Kind::Ball, Kind::Row, Kind::Friction] {
             sweep.run(kind, 0, sweep.swept(kind), &mut residual);
         }
@@ -95,25 +108,37 @@ fn serial(problem: &Problem<'_>, state: &mut State<'_>, params: &Params, sweeps:
     residual
 }
 
-fn coloured(problem: &Problem<'_>, state: &mut State<'_>, params: &Params, sweeps: u32) -> f64 {
+fn coloured<const RESIDUAL: bool>(
+    problem: &Problem<'_>,
+    state: &mut State<'_>,
+    params: &Params,
+    sweeps: u32,
+) -> f64 {
     let rows = problem.balls().swept() + problem.rows().swept() + problem.friction().swept();
     let threads = rayon::current_num_threads();
-    if threads == 1 || rows < PARALLEL_MIN {
-        return serial(problem, state, params, sweeps);
+    if threads == 1 || rows < PARALLEL_MIN || sweeps == 0 {
+        return serial::<RESIDUAL>(problem, state, params, sweeps);
     }
-    let mut residual = 0.0;
-    // The residual is that of the last sweep, so the last one is run by itself.
-    for batch in [sweeps.saturating_sub(1), sweeps.min(1)] {
-        let views = (atomics(state.y), atomics(state.lambda), atomics(state.forces), atomics(state.friction));
-        let (Some(y), Some(lambda), Some(forces), Some(friction)) = views else {
-            return serial(problem, state, params, sweeps);
-        };
-        if batch > 0 {
-            let sweep = Sweep { problem, params, sweeps: batch as usize, y, lambda, forces, friction };
-            residual = team::run(&sweep, threads);
-        }
-    }
-    residual
+    let views = (atomics(state.y), atomics(state.lambda), atomics(state.forces), atomics(state.friction));
+    let (Some(y), Some(lambda), Some(forces), Some(friction)) = views else {
+        return serial::<RESIDUAL>(problem, state, params, sweeps);
+    };
+    let sweep = Sweep::<_, _, _, _, RESIDUAL> {
+        problem,
+        params,
+        sweeps: sweeps as usize,
+        y,
+        lambda,
+        forces,
+        friction,
+    };
+    team::run(&sweep, threads)
+}
+
+/// The larger of two numbers in one instruction; `f64::max` takes five, in a chain through all rows.
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if b > a { b } else { a }
 }
 
 /// The families in the order of a sweep.
@@ -125,7 +150,7 @@ enum Kind {
 }
 
 /// Sweeps over views of the state.
-struct Sweep<'a, Y, L, F, T> {
+struct Sweep<'a, Y, L, F, T, const RESIDUAL: bool> {
     problem: &'a Problem<'a>,
     params: &'a Params,
     sweeps: usize,
@@ -135,7 +160,13 @@ struct Sweep<'a, Y, L, F, T> {
     friction: T,
 }
 
-impl<Y: Slots<Vector>, L: Slots<f64>, F: Slots<Vector>, T: Slots<Vector2<f64>>> Sweep<'_, Y, L, F, T> {
+impl<Y, L, F, T, const RESIDUAL: bool> Sweep<'_, Y, L, F, T, RESIDUAL>
+where
+    Y: Slots<Vector>,
+    L: Slots<f64>,
+    F: Slots<Vector>,
+    T: Slots<Vector2<f64>>,
+{
     fn schedule(&self, kind: Kind) -> Schedule<'_> {
         match kind {
             Kind::Ball => self.problem.balls().schedule,
@@ -162,15 +193,20 @@ impl<Y: Slots<Vector>, L: Slots<f64>, F: Slots<Vector>, T: Slots<Vector2<f64>>> 
                 let rows = self.problem.balls().rows;
                 for place in begin..end {
                     let i = schedule.row(place);
-                    largest =
-                        largest.max(relax_ball(&rows[i], weights, relaxation, &self.y, &self.forces, i));
+                    largest = larger(
+                        largest,
+                        relax_ball::<RESIDUAL>(&rows[i], weights, relaxation, &self.y, &self.forces, i),
+                    );
                 }
             }
             Kind::Row => {
                 let rows = self.problem.rows().rows;
                 for place in begin..end {
                     let i = schedule.row(place);
-                    largest = largest.max(relax_row(&rows[i], weights, relaxation, &self.y, &self.lambda, i));
+                    largest = larger(
+                        largest,
+                        relax_row::<RESIDUAL>(&rows[i], weights, relaxation, &self.y, &self.lambda, i),
+                    );
                 }
             }
             Kind::Friction => {
@@ -179,8 +215,10 @@ impl<Y: Slots<Vector>, L: Slots<f64>, F: Slots<Vector>, T: Slots<Vector2<f64>>> 
                 for place in begin..end {
                     let i = schedule.row(place);
                     let (y, lambda, friction) = (&self.y, &self.lambda, &self.friction);
-                    let change = relax_friction(&rows[i], weights, relaxation, bound, y, lambda, friction, i);
-                    largest = largest.max(change);
+                    let change = relax_friction::<RESIDUAL>(
+                        &rows[i], weights, relaxation, bound, y, lambda, friction, i,
+                    );
+                    largest = larger(largest, change);
                 }
             }
         }
@@ -217,7 +255,7 @@ impl<Y: Slots<Vector>, L: Slots<f64>, F: Slots<Vector>, T: Slots<Vector2<f64>>> 
     }
 }
 
-impl<Y, L, F, T> Phases for Sweep<'_, Y, L, F, T>
+impl<Y, L, F, T, const RESIDUAL: bool> Phases for Sweep<'_, Y, L, F, T, RESIDUAL>
 where
     Y: Slots<Vector> + Sync,
     L: Slots<f64> + Sync,

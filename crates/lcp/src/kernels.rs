@@ -1,6 +1,7 @@
 //! One step of each kind of row: solve it alone, move its nodes.
 //!
-//! Each returns the correction of the row's value, |change of the multiplier| times its diagonal.
+//! Each returns the correction of the row's value, |change of the multiplier| times its diagonal, if
+//! `RESIDUAL` asks for it: keeping the largest costs a sweep a sixth.
 //! A node is written only if it can move and the multiplier changed: nodes that cannot move are
 //! shared by rows of one colour, and writing them would make threads fight for the cache line.
 //!
@@ -24,7 +25,7 @@ use nalgebra::Vector2;
 
 /// lambda <- clamp(lambda - relaxation s / diagonal, 0, upper).
 #[inline(always)]
-pub(crate) fn relax_row(
+pub(crate) fn relax_row<const RESIDUAL: bool>(
     row: &Row,
     weights: &[f64],
     relaxation: f64,
@@ -54,7 +55,7 @@ pub(crate) fn relax_row(
             y.set(node, y.get(node) + row.gradients[k] * step);
         }
     }
-    change.abs() / row.inverse_diagonal
+    if RESIDUAL { change.abs() / row.inverse_diagonal } else { 0.0 }
 }
 
 /// The projected multiplier of a row. `max` and `min` rather than `clamp`: they let a NaN value, of
@@ -66,7 +67,7 @@ pub(crate) fn row_multiplier(row: &Row, value: f64, old: f64, step: f64) -> f64 
 
 /// Dykstra's step of a ball row, see the module's documentation.
 #[inline(always)]
-pub(crate) fn relax_ball(
+pub(crate) fn relax_ball<const RESIDUAL: bool>(
     ball: &BallRow,
     weights: &[f64],
     relaxation: f64,
@@ -87,7 +88,10 @@ pub(crate) fn relax_ball(
     if total == 0.0 || a == b {
         return 0.0;
     }
-    let new = old + relaxation * (ball_multiplier(ball, difference, old, total) - old);
+    let mut new = ball_multiplier(ball, difference, old, total);
+    if relaxation != 1.0 {
+        new = old + relaxation * (new - old);
+    }
     let change = new - old;
     forces.set(index, new);
     if w_a != 0.0 {
@@ -96,7 +100,7 @@ pub(crate) fn relax_ball(
     if w_b != 0.0 {
         y.set(b, y.get(b) + w_b * change);
     }
-    change.norm() * total
+    if RESIDUAL { change.norm() * total } else { 0.0 }
 }
 
 /// The multiplier of a ball row whose difference y_a - y_b still contains `old`.
@@ -110,7 +114,7 @@ pub(crate) fn ball_multiplier(ball: &BallRow, difference: Vector, old: Vector, t
 
 /// The friction step: lambda_t <- projection of lambda_t - relaxation slip / diagonal onto the region.
 #[inline(always)]
-pub(crate) fn relax_friction(
+pub(crate) fn relax_friction<const RESIDUAL: bool>(
     row: &FrictionRow,
     weights: &[f64],
     relaxation: f64,
@@ -146,7 +150,7 @@ pub(crate) fn relax_friction(
             y.set(node, y.get(node) + direction * step);
         }
     }
-    change.norm() / row.inverse_diagonal
+    if RESIDUAL { change.norm() / row.inverse_diagonal } else { 0.0 }
 }
 
 /// The projected multiplier of a friction row whose slipping point is at `point`.
