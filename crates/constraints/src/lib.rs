@@ -1,5 +1,17 @@
 //! Contact and edge-length constraints: values, Jacobians, colours.
+//!
+//! It turns pairs and their contact geometry into the rows that `bowknot-lcp` solves; it knows no
+//! solver.
 
+mod colouring;
+mod contacts;
+mod desired;
+mod edges;
 mod params;
+mod volume;
 
+pub use colouring::Colouring;
+pub use contacts::{ContactRows, contact_row, predicted_gap};
+pub use desired::DesiredDistance;
+pub use edges::{EdgeLimits, Stretch};
 pub use params::{ConstraintParams, ContactForm, EdgeForm, EdgeReference};

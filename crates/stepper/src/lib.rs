@@ -1,6 +1,14 @@
 //! The forward step: moves vertices toward a target along paths that are certified free of
 //! intersections, by distances alone.
+//!
+//! It knows pairs and their slabs; it knows no constraint and does not care where targets come from.
 
+mod budgets;
 mod params;
+mod rounding;
+mod stepper;
 
+pub use budgets::Budgets;
 pub use params::{Bound, Budget, StepperParams};
+pub use rounding::Rounding;
+pub use stepper::{Contacts, StepReport, Stepper};

@@ -1,0 +1,108 @@
+//! Contact rows: one inequality a pair, linearised at the current positions x:
+//! s(y) = c(x) + J (y - x) >= 0 [m].
+
+use crate::{Colouring, ContactForm, volume};
+use bowknot_geometry::{PairKind, Point, Separation};
+use bowknot_lcp::Row;
+use bowknot_proximity::PairList;
+
+/// The row of one pair with desired distance `desired` [m].
+///
+/// Gap form: c = n . (sum_k s_k beta_k x_k) - desired, s_k = +1 on side a and -1 on side b, gradients
+/// s_k beta_k n. For half-spaces the plane is constant.
+pub fn contact_row(
+    form: ContactForm,
+    kind: PairKind,
+    vertices: [u32; 4],
+    positions: &[Point],
+    separation: &Separation,
+    desired: f64,
+) -> Row {
+    let points = vertices.map(|v| positions[v as usize]);
+    let (value, gradients) = match form {
+        ContactForm::Volume => volume::row(kind, &points, separation, desired),
+        ContactForm::Gap => None,
+    }
+    .unwrap_or_else(|| {
+        let gradients = separation.signed_weights(kind).map(|beta| separation.normal * beta);
+        // The slab is what the forward step has to open: where the normal is not that of the closest
+        // points, the computed distance would promise a gap that the step cannot use.
+        (separation.distance.min(separation.width.max(0.0)) - desired, gradients)
+    });
+    let linear: f64 = gradients.iter().zip(&points).map(|(g, x)| g.dot(&x.coords)).sum();
+    Row::new(vertices, gradients, value - linear)
+}
+
+/// Predicted gap [m] of a pair at `y` along its normal at the linearisation point: the gap-form value
+/// without the desired distance.
+#[inline]
+pub fn predicted_gap(
+    kind: PairKind,
+    vertices: &[u32; 4],
+    separation: &Separation,
+    positions: &[Point],
+    y: &[Point],
+) -> f64 {
+    let beta = separation.signed_weights(kind);
+    let mut change = 0.0;
+    for k in 0..kind.vertex_count() {
+        let v = vertices[k] as usize;
+        change += beta[k] * separation.normal.dot(&(y[v] - positions[v]));
+    }
+    separation.distance.min(separation.width.max(0.0)) + change
+}
+
+/// Contact rows in colour order; refilled in every backward step, keeping its buffers.
+#[derive(Clone, Debug, Default)]
+pub struct ContactRows {
+    /// Index of each row's pair in the pair list.
+    pub pair: Vec<u32>,
+    /// The rows.
+    pub rows: Vec<Row>,
+    colouring: Colouring,
+    selected: Vec<u32>,
+}
+
+impl ContactRows {
+    /// Fills rows for the pairs that `keep` accepts, ordered by colour. `movable[v]` says which vertices a
+    /// row may move; only they count for colours.
+    pub fn fill(
+        &mut self,
+        form: ContactForm,
+        pairs: &PairList,
+        separations: &[Separation],
+        desired: &[f64],
+        positions: &[Point],
+        movable: &[bool],
+        keep: impl Fn(usize, PairKind) -> bool,
+    ) {
+        self.selected.clear();
+        for kind in PairKind::ALL {
+            self.selected.extend(pairs.range(kind).filter(|&p| keep(p, kind)).map(|p| p as u32));
+        }
+        let all = pairs.pairs();
+        let selected = &self.selected;
+        self.colouring.first_fit(movable.len(), selected.len(), |r| {
+            let pair = selected[r] as usize;
+            let kind = pairs.kind(pair);
+            all[pair].vertices.into_iter().take(kind.vertex_count()).filter(|&v| movable[v as usize])
+        });
+        self.pair.clear();
+        self.pair.extend(self.colouring.order().iter().map(|&r| selected[r as usize]));
+        self.rows.clear();
+        self.rows.extend(self.pair.iter().map(|&p| {
+            let p = p as usize;
+            contact_row(form, pairs.kind(p), all[p].vertices, positions, &separations[p], desired[p])
+        }));
+    }
+
+    /// Where each colour starts, and the end.
+    pub fn colour_starts(&self) -> &[u32] {
+        self.colouring.starts()
+    }
+
+    /// Number of colours.
+    pub fn colour_count(&self) -> usize {
+        self.colouring.colour_count()
+    }
+}

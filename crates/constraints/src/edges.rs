@@ -1,0 +1,111 @@
+//! Edge-length limits (paper, Eq. 17): every edge with a movable vertex.
+
+use crate::{Colouring, EdgeReference};
+use bowknot_geometry::{Point, Topology, Vector};
+use bowknot_lcp::{BallRow, Row};
+
+/// Share of the length at the start of a call that an edge's limit never falls below: an edge that starts
+/// longer than its limit is brought back a little each call, because asking for the whole of it at
+/// once is infeasible and blows up.
+const START_SHARE: f64 = 0.97;
+
+/// Edge-length limits in colour order.
+#[derive(Clone, Debug, Default)]
+pub struct EdgeLimits {
+    /// Vertices of each edge and its largest length in this call, L [m].
+    pub balls: Vec<BallRow>,
+    /// Rest length of each edge [m].
+    pub rest_lengths: Vec<f64>,
+    /// Length of each edge at the start of the call [m].
+    pub start_lengths: Vec<f64>,
+    colour_starts: Vec<u32>,
+}
+
+impl EdgeLimits {
+    /// Collects and colours the edges with at least one movable vertex.
+    pub fn new(topology: &Topology, rest: &[Point], movable: &[bool]) -> Self {
+        let edges: Vec<[u32; 2]> =
+            topology.edges.iter().copied().filter(|e| e.iter().any(|&v| movable[v as usize])).collect();
+        let mut colouring = Colouring::default();
+        colouring.first_fit(movable.len(), edges.len(), |r| {
+            edges[r].into_iter().filter(|&v| movable[v as usize])
+        });
+        let vertices = colouring.order().iter().map(|&r| edges[r as usize]);
+        let balls: Vec<BallRow> = vertices.map(|e| BallRow { vertices: e, limit: length(&e, rest) }).collect();
+        let rest_lengths: Vec<f64> = balls.iter().map(|b| b.limit).collect();
+        Self {
+            start_lengths: rest_lengths.clone(),
+            rest_lengths,
+            balls,
+            colour_starts: colouring.starts().to_vec(),
+        }
+    }
+
+    /// Sets the limits of a call that starts at `positions`.
+    pub fn begin(&mut self, positions: &[Point], reference: EdgeReference, stretch_limit: f64) {
+        for k in 0..self.balls.len() {
+            let start = length(&self.balls[k].vertices, positions);
+            self.start_lengths[k] = start;
+            self.balls[k].limit = match reference {
+                EdgeReference::Start => stretch_limit * start,
+                EdgeReference::Rest => (stretch_limit * self.rest_lengths[k]).max(START_SHARE * start),
+            };
+        }
+    }
+
+    /// Appends the limits as rows linearised at `positions` (paper, Eq. 17, in units of length):
+    /// s(y) = L - |e| - e/|e| . ((y_a - y_b) - (x_a - x_b)), e = x_a - x_b. Same order and colours.
+    pub fn linearise(&self, positions: &[Point], rows: &mut Vec<Row>) {
+        rows.extend(self.balls.iter().map(|ball| {
+            let [a, b] = ball.vertices;
+            let edge = positions[a as usize] - positions[b as usize];
+            let length = edge.norm();
+            let direction = if length > 0.0 { edge / length } else { Vector::zeros() };
+            let gradients = [-direction, direction, Vector::zeros(), Vector::zeros()];
+            // L - |e| + e/|e| . e: the linear part at x cancels the length.
+            Row::new([a, b, a, a], gradients, ball.limit - length + direction.dot(&edge))
+        }));
+    }
+
+    /// Largest ratio of an edge's length at `positions` to its limit, to its length at the start, and to its
+    /// rest length; each 1 where there is no edge.
+    pub fn stretch(&self, positions: &[Point]) -> Stretch {
+        let mut stretch = Stretch { to_limit: 0.0, to_start: 0.0, to_rest: 0.0 };
+        for k in 0..self.balls.len() {
+            let now = length(&self.balls[k].vertices, positions);
+            stretch.to_limit = ratio(now, self.balls[k].limit).max(stretch.to_limit);
+            stretch.to_start = ratio(now, self.start_lengths[k]).max(stretch.to_start);
+            stretch.to_rest = ratio(now, self.rest_lengths[k]).max(stretch.to_rest);
+        }
+        if self.balls.is_empty() { Stretch { to_limit: 1.0, to_start: 1.0, to_rest: 1.0 } } else { stretch }
+    }
+
+    /// Where each colour starts, and the end.
+    pub fn colour_starts(&self) -> &[u32] {
+        &self.colour_starts
+    }
+
+    /// Number of colours.
+    pub fn colour_count(&self) -> usize {
+        self.colour_starts.len().saturating_sub(1)
+    }
+}
+
+/// Largest ratios of edge lengths, see [`EdgeLimits::stretch`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretch {
+    /// To the limit of the call.
+    pub to_limit: f64,
+    /// To the length at the start of the call.
+    pub to_start: f64,
+    /// To the rest length.
+    pub to_rest: f64,
+}
+
+fn length(edge: &[u32; 2], positions: &[Point]) -> f64 {
+    (positions[edge[0] as usize] - positions[edge[1] as usize]).norm()
+}
+
+fn ratio(now: f64, reference: f64) -> f64 {
+    if reference > 0.0 { now / reference } else { 1.0 }
+}

@@ -1,0 +1,179 @@
+//! Values and gradients of contact and edge rows against finite differences and closed forms.
+
+use bowknot_constraints::{ContactForm, DesiredDistance, EdgeLimits, EdgeReference, contact_row};
+use bowknot_geometry::{PairKind, Point, Topology, Vector, distance, separation};
+use bowknot_lcp::Row;
+use bowknot_proximity::{CollisionModel, Pair};
+
+/// Small deterministic generator: uniform in [-1, 1).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    fn vector(&mut self) -> Vector {
+        Vector::new(self.next(), self.next(), self.next())
+    }
+}
+
+fn row_at(form: ContactForm, kind: PairKind, x: &[Point; 4], desired: f64) -> Row {
+    contact_row(form, kind, [0, 1, 2, 3], x, &separation::separate(kind, x), desired)
+}
+
+fn value(row: &Row, x: &[Point; 4]) -> f64 {
+    row.value(&x.map(|p| p.coords))
+}
+
+/// Pairs whose closest points are interior, so that distance and volume agree to first order.
+fn interior_pair(kind: PairKind, random: &mut Random) -> [Point; 4] {
+    let jitter = |p: [f64; 3], r: &mut Random| Point::from(Vector::from(p) + 0.15 * r.vector());
+    let flat = match kind {
+        PairKind::VertexTriangle => [[0.3, 0.3, 0.6], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        PairKind::EdgeEdge => [[-1.0, 0.0, 0.6], [1.0, 0.0, 0.6], [0.0, -1.0, 0.0], [0.0, 1.0, 0.0]],
+        PairKind::VertexEdge => [[0.0, 0.0, 0.6], [-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [9.0, 9.0, 9.0]],
+        _ => [[0.0, 0.0, 0.6], [0.1, 0.2, 0.0], [9.0, 9.0, 9.0], [9.0, 9.0, 9.0]],
+    };
+    flat.map(|p| jitter(p, random))
+}
+
+const KINDS: [PairKind; 4] =
+    [PairKind::VertexVertex, PairKind::VertexEdge, PairKind::VertexTriangle, PairKind::EdgeEdge];
+
+/// The quantity that the volume form linearises: height over a base of constant size, minus a constant.
+fn height(kind: PairKind, x: &[Point; 4], base: f64) -> f64 {
+    match kind {
+        PairKind::VertexTriangle => ((x[0] - x[1]).dot(&(x[2] - x[1]).cross(&(x[3] - x[1]))) / base).abs(),
+        PairKind::EdgeEdge => ((x[0] - x[2]).dot(&(x[1] - x[0]).cross(&(x[3] - x[2]))) / base).abs(),
+        PairKind::VertexEdge => (x[0] - x[1]).cross(&(x[2] - x[1])).norm() / base,
+        _ => (x[0] - x[1]).norm(),
+    }
+}
+
+fn base(kind: PairKind, x: &[Point; 4]) -> f64 {
+    match kind {
+        PairKind::VertexTriangle => (x[2] - x[1]).cross(&(x[3] - x[1])).norm(),
+        PairKind::EdgeEdge => (x[1] - x[0]).cross(&(x[3] - x[2])).norm(),
+        PairKind::VertexEdge => (x[2] - x[1]).norm(),
+        _ => 1.0,
+    }
+}
+
+#[test]
+fn both_forms_have_the_value_and_gradient_of_what_they_linearise() {
+    let mut random = Random(7);
+    for kind in KINDS {
+        for _ in 0..200 {
+            let x = interior_pair(kind, &mut random);
+            let d = distance::closest(kind, &x).distance;
+            let desired = 0.1 + 0.05 * random.next();
+            let base = base(kind, &x);
+            for form in [ContactForm::Gap, ContactForm::Volume] {
+                let row = row_at(form, kind, &x, desired);
+                let quantity = |x: &[Point; 4]| match form {
+                    ContactForm::Gap => distance::closest(kind, x).distance,
+                    ContactForm::Volume => height(kind, x, base),
+                };
+                // DESIGN: gap c = d - delta; volume c = height (1 - delta/d), equal for interior points.
+                let expected = quantity(&x) * (1.0 - desired / d);
+                assert!((value(&row, &x) - expected).abs() < 1e-9, "{kind:?} {form:?}: {} {expected}", value(&row, &x));
+                for k in 0..kind.vertex_count() {
+                    for axis in 0..3 {
+                        let step = 1e-6;
+                        let (mut plus, mut minus) = (x, x);
+                        plus[k][axis] += step;
+                        minus[k][axis] -= step;
+                        let slope = (quantity(&plus) - quantity(&minus)) / (2.0 * step);
+                        let given = row.gradients[k][axis];
+                        assert!((slope - given).abs() < 1e-6, "{kind:?} {form:?} vertex {k}: {slope} {given}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn gradients_conserve_linear_momentum_and_unused_places_have_none() {
+    let mut random = Random(11);
+    for kind in KINDS {
+        for form in [ContactForm::Gap, ContactForm::Volume] {
+            for _ in 0..100 {
+                let x = [(); 4].map(|()| Point::from(random.vector()));
+                let row = row_at(form, kind, &x, 0.1);
+                let sum: Vector = row.gradients.iter().sum();
+                assert!(sum.norm() < 1e-10, "{kind:?} {form:?}: {sum:?}");
+                for k in kind.vertex_count()..4 {
+                    assert_eq!(row.gradients[k], Vector::zeros());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_volume_form_gives_way_to_the_gap_form_where_the_closest_feature_is_not_the_interior() {
+    // A vertex beside a triangle, in its plane: its volume is 0 at any distance, a false wall.
+    let x = [[2.0, 0.2, 0.001], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point::from);
+    let row = row_at(ContactForm::Volume, PairKind::VertexTriangle, &x, 0.1);
+    let d = distance::closest(PairKind::VertexTriangle, &x).distance;
+    assert!((value(&row, &x) - (d - 0.1)).abs() < 1e-9);
+    // Parallel edges have no volume either.
+    let x = [[0.0, 0.0, 0.5], [1.0, 0.0, 0.5], [0.2, 0.0, 0.0], [1.2, 0.0, 0.0]].map(Point::from);
+    let row = row_at(ContactForm::Volume, PairKind::EdgeEdge, &x, 0.1);
+    assert!((value(&row, &x) - 0.4).abs() < 1e-9);
+}
+
+#[test]
+fn linearised_edges_have_the_value_and_slope_of_their_length() {
+    let topology = Topology::new(3, vec![[0, 1, 2]], &[], &[]).unwrap();
+    let rest = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point::from);
+    let mut edges = EdgeLimits::new(&topology, &rest, &[true; 3]);
+    assert_eq!(edges.colour_count(), 3);
+    let x = [[0.0, 0.0, 0.0], [1.3, 0.2, 0.0], [0.1, 0.9, 0.4]].map(Point::from);
+    edges.begin(&x, EdgeReference::Start, 1.1);
+    let mut rows = Vec::new();
+    edges.linearise(&x, &mut rows);
+    for (row, ball) in rows.iter().zip(&edges.balls) {
+        let [a, b] = ball.vertices.map(|v| v as usize);
+        let length = |x: &[Point; 3]| (x[a] - x[b]).norm();
+        assert!((ball.limit - 1.1 * length(&x)).abs() < 1e-12);
+        assert!((row.value(&x.map(|p| p.coords)) - 0.1 * length(&x)).abs() < 1e-12);
+        for axis in 0..3 {
+            let mut plus = x;
+            plus[a][axis] += 1e-6;
+            let slope = -(length(&plus) - length(&x)) / 1e-6;
+            assert!((slope - row.gradients[0][axis]).abs() < 1e-5);
+        }
+    }
+}
+
+#[test]
+fn limits_from_rest_bring_a_stretched_start_back_without_asking_for_all_at_once() {
+    let topology = Topology::new(2, vec![], &[[0, 1]], &[]).unwrap();
+    let rest = [Point::origin(), Point::new(1.0, 0.0, 0.0)];
+    let mut edges = EdgeLimits::new(&topology, &rest, &[true; 2]);
+    let mut at = |length: f64| {
+        edges.begin(&[Point::origin(), Point::new(length, 0.0, 0.0)], EdgeReference::Rest, 1.1);
+        edges.balls[0].limit
+    };
+    assert_eq!(at(0.5), 1.1);
+    assert_eq!(at(1.0), 1.1);
+    assert!((at(2.0) - 0.97 * 2.0).abs() < 1e-15);
+}
+
+#[test]
+fn the_desired_distance_respects_fine_meshes_and_tight_starts() {
+    let topology = Topology::new(4, vec![[1, 2, 3]], &[], &[0]).unwrap();
+    let model = CollisionModel::single_body(topology);
+    let pair = Pair { elements: [0, 0], vertices: [0, 1, 2, 3] };
+    let rest = [[0.2, 0.2, 0.004], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point::from);
+    let free = DesiredDistance { delta: 0.01, growth: f64::INFINITY };
+    let (desired, lowered) = free.of(&model, PairKind::VertexTriangle, &pair, &rest, 0.004);
+    assert!(lowered && (desired - 0.002).abs() < 1e-15, "half of the rest distance: {desired}");
+    let slow = DesiredDistance { delta: 0.001, growth: 2e-4 };
+    let (desired, lowered) = slow.of(&model, PairKind::VertexTriangle, &pair, &rest, 1e-5);
+    assert!(!lowered && (desired - 2.1e-4).abs() < 1e-15, "present gap plus growth: {desired}");
+}

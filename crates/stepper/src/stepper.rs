@@ -1,0 +1,271 @@
+//! The forward step (paper, Eq. 3, 18-20), with separating planes in place of the isotropic bound.
+//!
+//! For a pair with unit normal n and certified slab width w, side *a* may close at most a share of
+//! G = gamma max(0, w - xi) and side *b* the rest. Each side then stays in its own half-space, and
+//! half-spaces are convex, so no straight path of any vertex crosses, whatever the speeds: a smaller
+//! alpha is always safe too. The isotropic bound is the paper's: no vertex moves by more than half of the
+//! smallest distance of its pairs.
+
+use crate::{Budgets, Rounding};
+use bowknot_geometry::{PairKind, Point, Separation, Vector};
+use bowknot_proximity::{CollisionModel, PairList};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+
+/// Elements that one parallel task handles at least.
+const CHUNK: usize = 2048;
+
+/// The listed pairs with their contact geometry at the current positions.
+#[derive(Clone, Copy, Debug)]
+pub struct Contacts<'a> {
+    /// The pairs.
+    pub pairs: &'a PairList,
+    /// Contact geometry of each.
+    pub separations: &'a [Separation],
+    /// Gap floor of each, xi [m].
+    pub floors: &'a [f64],
+}
+
+/// What a step did.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepReport {
+    /// Largest clock r.
+    pub remaining_r: f64,
+    /// Largest |(1 - alpha) (y - x)| [m].
+    pub remaining: f64,
+    /// Vertex that has it.
+    pub slowest: Option<u32>,
+    /// Largest |alpha (y - x)| [m].
+    pub largest_move: f64,
+}
+
+/// Workspace of the forward step: wanted displacements, step sizes, clocks.
+#[derive(Debug, Default)]
+pub struct Stepper {
+    /// d = y - x [m].
+    displacements: Vec<Vector>,
+    /// Bits of alpha; nonnegative floats are ordered as their bits are, so that an atomic minimum
+    /// of bits is one of numbers, and gives the same result in any order.
+    alphas: Vec<AtomicU64>,
+    /// The paper's r.
+    clocks: Vec<f64>,
+    rounding: Option<Rounding>,
+}
+
+impl Stepper {
+    /// Starts a call: all clocks are 1.
+    pub fn begin(&mut self, vertex_count: usize) {
+        self.clocks.clear();
+        self.clocks.resize(vertex_count, 1.0);
+        self.alphas.clear();
+        self.alphas.resize_with(vertex_count, || AtomicU64::new(1.0f64.to_bits()));
+    }
+
+    /// Starts a step from `positions` toward `target`. A vertex whose target is not finite stays where it
+    /// is; returns how many such there were.
+    pub fn aim(&mut self, positions: &[Point], target: &[Point]) -> usize {
+        self.displacements.resize(positions.len(), Vector::zeros());
+        let mut largest = 0.0f64;
+        let mut broken = 0;
+        for (d, (x, y)) in self.displacements.iter_mut().zip(positions.iter().zip(target)) {
+            *d = y - x;
+            if d.iter().all(|c| c.is_finite()) {
+                largest = largest.max(x.coords.amax()).max(y.coords.amax());
+            } else {
+                *d = Vector::zeros();
+                largest = largest.max(x.coords.amax());
+                broken += 1;
+            }
+        }
+        self.alphas.iter_mut().for_each(|a| *a.get_mut() = 1.0f64.to_bits());
+        self.rounding = Some(Rounding::new(largest));
+        broken
+    }
+
+    /// Wanted displacements d = y - x of this step [m].
+    pub fn displacements(&self) -> &[Vector] {
+        &self.displacements
+    }
+
+    /// Step size alpha of a vertex as limited so far.
+    #[inline]
+    pub fn alpha(&self, vertex: usize) -> f64 {
+        f64::from_bits(self.alphas[vertex].load(Ordering::Relaxed))
+    }
+
+    /// Lowers the step size of a vertex to at most `alpha`.
+    #[inline]
+    pub fn limit(&self, vertex: usize, alpha: f64) {
+        // NaN never gets in: it would compare as larger than every number and be lost without a trace.
+        let alpha = if alpha >= 0.0 { alpha } else { 0.0 };
+        let bits = alpha.to_bits();
+        if self.alphas[vertex].load(Ordering::Relaxed) > bits {
+            self.alphas[vertex].fetch_min(bits, Ordering::Relaxed);
+        }
+    }
+
+    fn rounding(&self) -> Rounding {
+        // Without `aim` nothing may move at all.
+        self.rounding.unwrap_or(Rounding { step: f64::INFINITY, frozen: f64::INFINITY })
+    }
+
+    /// Limits every pair's vertices by the pair's slab. Returns the number of pairs frozen because no
+    /// direction certifies a gap above rounding.
+    pub fn limit_by_planes(&self, contacts: &Contacts<'_>, damping: f64) -> usize {
+        let rounding = self.rounding();
+        let frozen = AtomicUsize::new(0);
+        for kind in PairKind::ALL {
+            contacts.pairs.range(kind).into_par_iter().with_min_len(CHUNK).for_each(|p| {
+                let vertices = &contacts.pairs.pairs()[p].vertices;
+                let separation = &contacts.separations[p];
+                if separation.width > rounding.frozen {
+                    self.limit_pair(kind, vertices, separation, contacts.floors[p], damping, rounding.step);
+                } else if self.freeze(kind, vertices) {
+                    frozen.fetch_add(1, Ordering::Relaxed);
+                }
+            });
+        }
+        frozen.into_inner()
+    }
+
+    #[inline]
+    fn limit_pair(
+        &self,
+        kind: PairKind,
+        vertices: &[u32; 4],
+        separation: &Separation,
+        floor: f64,
+        damping: f64,
+        step_rounding: f64,
+    ) {
+        let (count, side_a) = (kind.vertex_count(), kind.side_a());
+        let n = separation.normal;
+        let mut closing = [0.0f64; 4];
+        let mut speeds = [0.0f64; 2];
+        for k in 0..count {
+            let along = n.dot(&self.displacements[vertices[k] as usize]);
+            closing[k] = if k < side_a { -along } else { along };
+            let side = usize::from(k >= side_a);
+            speeds[side] = speeds[side].max(closing[k]);
+        }
+        let total = speeds[0] + speeds[1];
+        let budget = (damping * (separation.width - floor) - 2.0 * step_rounding).max(0.0);
+        if total <= budget {
+            return;
+        }
+        for k in 0..count {
+            if closing[k] > 0.0 {
+                let share = speeds[usize::from(k >= side_a)] / total;
+                self.limit(vertices[k] as usize, (budget * share / closing[k]).min(1.0));
+            }
+        }
+    }
+
+    /// Stops all vertices of a pair; whether any of them wanted to move.
+    fn freeze(&self, kind: PairKind, vertices: &[u32; 4]) -> bool {
+        let mut moving = false;
+        for &v in &vertices[..kind.vertex_count()] {
+            if self.displacements[v as usize] != Vector::zeros() {
+                moving = true;
+                self.limit(v as usize, 0.0);
+            }
+        }
+        moving
+    }
+
+    /// Limits every pair's vertices to half of the pair's certified distance, whatever the direction (paper, Eq.
+    /// 18-20). Returns the number of pairs frozen.
+    pub fn limit_by_distances(&self, contacts: &Contacts<'_>, damping: f64) -> usize {
+        let rounding = self.rounding();
+        let frozen = AtomicUsize::new(0);
+        for kind in PairKind::ALL {
+            contacts.pairs.range(kind).into_par_iter().with_min_len(CHUNK).for_each(|p| {
+                let vertices = &contacts.pairs.pairs()[p].vertices;
+                let width = contacts.separations[p].width;
+                if width <= rounding.touching() {
+                    if self.freeze(kind, vertices) {
+                        frozen.fetch_add(1, Ordering::Relaxed);
+                    }
+                    return;
+                }
+                let room = (0.5 * damping * (width - contacts.floors[p]) - rounding.step).max(0.0);
+                vertices[..kind.vertex_count()].iter().for_each(|&v| self.limit_length(v as usize, room));
+            });
+        }
+        frozen.into_inner()
+    }
+
+    /// Limits every vertex's move to half of the distance [m] that unlisted pairs are known to have at least, the
+    /// paper's D^(l).
+    pub fn limit_by_unlisted(&self, distance: f64, damping: f64) {
+        let room = (0.5 * damping * distance - self.rounding().step).max(0.0);
+        (0..self.displacements.len()).into_par_iter().with_min_len(CHUNK).for_each(|v| self.limit_length(v, room));
+    }
+
+    #[inline]
+    fn limit_length(&self, vertex: usize, room: f64) {
+        let length = self.displacements[vertex].norm();
+        if length > room {
+            self.limit(vertex, (room / length).min(1.0));
+        }
+    }
+
+    /// Keeps every vertex in its ball. Returns whether a ball, rather than a pair, limits some vertex: then the
+    /// pairs should be searched again.
+    pub fn limit_by_budgets(&self, positions: &[Point], budgets: &Budgets) -> bool {
+        (0..positions.len())
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .map(|v| {
+                let alpha = budgets.limit(v, &positions[v], &self.displacements[v]);
+                let limited = alpha < self.alpha(v);
+                self.limit(v, alpha);
+                limited
+            })
+            .reduce(|| false, |a, b| a | b)
+    }
+
+    /// Makes every obstacle move as one: all its vertices take the smallest step size among them. Returns
+    /// the smallest of all.
+    pub fn limit_by_bodies(&self, model: &CollisionModel, obstacle_vertices: &[u32]) -> f64 {
+        if obstacle_vertices.is_empty() {
+            return 1.0;
+        }
+        let mut smallest = vec![1.0f64; model.bodies().len()];
+        for &v in obstacle_vertices {
+            let body = model.vertex_body()[v as usize] as usize;
+            smallest[body] = smallest[body].min(self.alpha(v as usize));
+        }
+        for &v in obstacle_vertices {
+            self.limit(v as usize, smallest[model.vertex_body()[v as usize] as usize]);
+        }
+        smallest.into_iter().fold(1.0, f64::min)
+    }
+
+    /// Takes the step: x <- x + alpha d, to rounding y where alpha = 1 and exactly x where it is 0.
+    pub fn advance(&mut self, positions: &mut [Point]) -> StepReport {
+        let mut report = StepReport::default();
+        for v in 0..positions.len() {
+            let alpha = f64::from_bits(*self.alphas[v].get_mut());
+            let d = self.displacements[v];
+            if alpha > 0.0 {
+                positions[v] += alpha * d;
+            }
+            self.clocks[v] *= 1.0 - alpha;
+            let length = d.norm();
+            let remaining = (1.0 - alpha) * length;
+            report.remaining_r = report.remaining_r.max(self.clocks[v]);
+            report.largest_move = report.largest_move.max(alpha * length);
+            if remaining > report.remaining {
+                report.remaining = remaining;
+                report.slowest = Some(v as u32);
+            }
+        }
+        report
+    }
+
+    /// Clocks r of the vertices: the product of (1 - alpha) over the steps of a call (paper, Eq. 20).
+    pub fn clocks(&self) -> &[f64] {
+        &self.clocks
+    }
+}
