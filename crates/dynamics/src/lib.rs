@@ -1,1 +1,39 @@
-//! Implicit Euler dynamics of deformable bodies: materials, Newton, block-Jacobi PCG.
+//! Implicit Euler dynamics of deformable bodies.
+//!
+//! What it knows: materials in physical units, lumped masses, co-rotational triangles, quadratic
+//! bending, damping, gravity, prescribed vertices, and how to make **one Newton iteration**
+//! `x -> y` of the implicit Euler step. It does not know how contact is resolved: a collision stage
+//! moves x towards y as far as it can and asks for the next y.
+//!
+//! One step minimises the incremental potential
+//!
+//! ```text
+//! E(x) = |x - x~|^2_M / (2 dt^2) + V(x) + D(x; x0),   x~ = x0 + dt v0 + dt^2 (g + f/m)
+//! ```
+//!
+//! over the free vertices, V the elastic energy and D the dissipation ([`Dynamics`]).
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`material`] | [`ClothMaterial`] and the named fabrics |
+//! | [`model`] | [`Body`], [`DynamicsModel`]: masses, elements, patterns; fixed during a run |
+//! | [`params`] | [`DynamicsParams`] |
+//! | [`dynamics`] | [`Dynamics`]: the step, one Newton iteration, the line search |
+//! | [`observe`] | [`Energies`], momenta, stretch |
+
+pub mod dynamics;
+mod elements;
+mod error;
+mod linear;
+pub mod material;
+pub mod model;
+pub mod observe;
+pub mod params;
+
+pub use dynamics::{Dynamics, NewtonInfo};
+pub use error::{MaterialError, ModelError, ParamsError, StepError};
+pub use linear::cg::CgInfo;
+pub use material::ClothMaterial;
+pub use model::{Body, BodyShape, DynamicsModel};
+pub use observe::Energies;
+pub use params::{DynamicsParams, HessianFilter, Preconditioner};

@@ -1,0 +1,462 @@
+//! The implicit Euler step as a minimisation, one Newton iteration at a time.
+//!
+//! Over the free nodes, with the others at their keyframes,
+//!
+//! ```text
+//! E(x) = sum m/(2 dt^2) |x - x~|^2 + V(x) + D(x; x0),    x~ = x0 + dt v0 + dt^2 (g + f/m)
+//! D(x; x0) = a/(2 dt) |x - x0|^2_M + strain-rate damping of every element
+//! ```
+//!
+//! | stage of [`Dynamics::newton_target`] | reads | writes |
+//! |---|---|---|
+//! | linearise at x | x, x0 | energy, gradient, H (filtered) |
+//! | impose keyframes | H, prescribed | right-hand side b = -g - H p_prescribed |
+//! | solve H p = b by CG | warm start: inertia, previous target | p |
+//! | search along p | E | y = x + t p, prescribed vertices at their keyframes |
+
+use crate::elements::{CHUNK, Filter, Motion, Rows};
+use crate::linear::block::BlockValues;
+use crate::linear::cg::{self, CgInfo, CgWorkspace, Limits};
+use crate::linear::preconditioner::Preconditioner;
+use crate::linear::scalar::ScalarForm;
+use crate::linear::system::System;
+use crate::linear::vectors::{add_scaled, dot};
+use crate::model::NO_NODE;
+use crate::{DynamicsModel, DynamicsParams, ParamsError, StepError};
+use bowknot_geometry::{Point, Vector};
+use nalgebra::Matrix3;
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// Energies that differ by less than this share of their terms are equal: what rounding leaves of
+/// sums over 10^5 nodes, with room.
+const ENERGY_ROUNDING: f64 = 1e-12;
+
+/// What one Newton iteration did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct NewtonInfo {
+    /// The linear solve.
+    pub cg: CgInfo,
+    /// Share of the Newton step that the line search kept, in (0, 1].
+    pub step_length: f64,
+    /// Incremental potential [J] at x, prescribed vertices at their keyframes.
+    pub energy_before: f64,
+    /// Incremental potential [J] at y.
+    pub energy_after: f64,
+    /// Largest |y - x| over free vertices [m].
+    pub max_displacement: f64,
+}
+
+/// Model, parameters and workspace. Nothing in it outlives a time step: [`Self::begin_step`] forgets
+/// all but the external forces.
+#[derive(Debug)]
+pub struct Dynamics {
+    model: DynamicsModel,
+    params: DynamicsParams,
+    /// By node [N].
+    external_forces: Vec<Vector>,
+    step: Option<Step>,
+    work: Workspace,
+}
+
+/// The time step under way, by node.
+#[derive(Debug, Default)]
+struct Step {
+    dt: f64,
+    start: Vec<Vector>,
+    inertial: Vec<Vector>,
+    /// The last target, if there was one: the warm start of the next solve.
+    last_target: Option<Vec<Vector>>,
+    /// Bending plus its damping / dt.
+    scalar: ScalarForm,
+}
+
+/// Buffers; may be dropped at any time.
+#[derive(Debug, Default)]
+struct Workspace {
+    x: Vec<Vector>,
+    trial: Vec<Vector>,
+    free: Vec<bool>,
+    gradient: Vec<Vector>,
+    right_side: Vec<Vector>,
+    imposed: Vec<Vector>,
+    guesses: [Vec<Vector>; 2],
+    step: Vec<Vector>,
+    values: BlockValues,
+    preconditioner: Preconditioner,
+    cg: CgWorkspace,
+}
+
+impl Dynamics {
+    /// Checks the parameters and allocates the workspace.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the parameters.
+    pub fn new(model: DynamicsModel, params: DynamicsParams) -> Result<Self, Vec<ParamsError>> {
+        params.validate()?;
+        let nodes = model.node_vertex.len();
+        let zero = || vec![Vector::zeros(); nodes];
+        let work = Workspace {
+            x: zero(),
+            trial: zero(),
+            free: vec![true; nodes],
+            gradient: zero(),
+            right_side: zero(),
+            imposed: zero(),
+            guesses: [zero(), zero()],
+            step: zero(),
+            values: BlockValues::zeros(&model.pattern),
+            preconditioner: Preconditioner::default(),
+            cg: CgWorkspace::default(),
+        };
+        Ok(Self { external_forces: zero(), model, params, step: None, work })
+    }
+
+    /// What is fixed.
+    pub fn model(&self) -> &DynamicsModel {
+        &self.model
+    }
+
+    /// The parameters.
+    pub fn params(&self) -> &DynamicsParams {
+        &self.params
+    }
+
+    /// Sets the force on each vertex [N], kept until set again; 0 to begin with. It enters at the
+    /// next [`Self::begin_step`].
+    ///
+    /// # Errors
+    /// Wrong length, or an entry that is not finite.
+    pub fn set_external_forces(&mut self, forces: &[Vector]) -> Result<(), StepError> {
+        self.check_length("forces", forces.len())?;
+        self.check_finite("force", |vertex| forces[vertex])?;
+        self.gather(forces, |f| *f, |dynamics| &mut dynamics.external_forces);
+        Ok(())
+    }
+
+    /// Starts a time step of `dt` [s] from positions `x0` [m] and velocities `v0` [m/s].
+    ///
+    /// Velocities of vertices that will be prescribed are not used but must be finite.
+    ///
+    /// # Errors
+    /// Wrong lengths, entries that are not finite, a time step that is not positive.
+    pub fn begin_step(&mut self, x0: &[Point], v0: &[Vector], dt: f64) -> Result<(), StepError> {
+        if !(dt > 0.0 && dt.is_finite()) {
+            return Err(StepError::TimeStep { dt });
+        }
+        self.check_length("x0", x0.len())?;
+        self.check_length("v0", v0.len())?;
+        self.check_finite("x0", |vertex| x0[vertex].coords)?;
+        self.check_finite("v0", |vertex| v0[vertex])?;
+        let mut step = self.step.take().unwrap_or_default();
+        let model = &self.model;
+        step.start.clear();
+        step.start.extend(model.node_vertex.iter().map(|&v| x0[v as usize].coords));
+        step.inertial.clear();
+        step.inertial.extend(model.node_vertex.iter().enumerate().map(|(node, &v)| {
+            let acceleration = self.params.gravity + self.external_forces[node] / model.node_masses[node];
+            x0[v as usize].coords + v0[v as usize] * dt + acceleration * (dt * dt)
+        }));
+        if step.dt != dt {
+            step.scalar = model.bending.clone();
+            if let Some(damping) = &model.bending_damping {
+                let add = |sum: &mut f64, value: &f64| *sum += value / dt;
+                step.scalar.values.iter_mut().zip(&damping.values).for_each(|(s, v)| add(s, v));
+                step.scalar.diagonal.iter_mut().zip(&damping.diagonal).for_each(|(s, v)| add(s, v));
+            }
+        }
+        step.dt = dt;
+        step.last_target = None;
+        self.step = Some(step);
+        Ok(())
+    }
+
+    /// One Newton iteration of the step from the current iterate `x` [m] to the target `y` [m].
+    ///
+    /// `prescribed` says which vertices end the step at their `keyframes` [m] (read only there);
+    /// vertices of obstacles always do. `y` of a prescribed vertex is its keyframe exactly, whatever
+    /// the line search does. `x` may be anything that contact resolution left, and may differ from
+    /// one call to the next. All slices have one entry a vertex.
+    ///
+    /// # Errors
+    /// Wrong lengths, entries that are not finite, no step begun.
+    pub fn newton_target(
+        &mut self,
+        x: &[Point],
+        prescribed: &[bool],
+        keyframes: &[Point],
+        y: &mut [Point],
+    ) -> Result<NewtonInfo, StepError> {
+        for (array, given) in
+            [("x", x.len()), ("prescribed", prescribed.len()), ("keyframes", keyframes.len()), ("y", y.len())]
+        {
+            self.check_length(array, given)?;
+        }
+        self.check_finite("x", |vertex| x[vertex].coords)?;
+        let fixed = |vertex: usize| prescribed[vertex] || self.model.obstacle()[vertex];
+        self.check_finite("keyframe", |v| if fixed(v) { keyframes[v].coords } else { Vector::zeros() })?;
+        let Some(mut step) = self.step.take() else { return Err(StepError::NotBegun) };
+
+        let work = &mut self.work;
+        for (node, &vertex) in self.model.node_vertex.iter().enumerate() {
+            let vertex = vertex as usize;
+            work.x[node] = x[vertex].coords;
+            work.free[node] = !prescribed[vertex];
+            work.imposed[node] =
+                if prescribed[vertex] { keyframes[vertex] - x[vertex] } else { Vector::zeros() };
+        }
+        let info = iterate(&self.model, &self.params, &mut step, work);
+
+        // `trial` holds the target by node.
+        for (vertex, y) in y.iter_mut().enumerate() {
+            let node = self.model.vertex_node[vertex];
+            let free = node != NO_NODE && work.free[node as usize];
+            *y = if free { Point::from(work.trial[node as usize]) } else { keyframes[vertex] };
+        }
+        step.last_target = Some(work.trial.clone());
+        self.step = Some(step);
+        self.check_finite("target", |vertex| y[vertex].coords)?;
+        tracing::debug!(
+            iterations = info.cg.iterations,
+            residual = info.cg.residual,
+            step_length = info.step_length,
+            "newton target"
+        );
+        Ok(info)
+    }
+
+    /// A whole step without contact: `newton_iterations` targets, each accepted as it is; `x` and
+    /// `v` move on by `dt`. Prescribed vertices end at their `keyframes` and move at the velocity
+    /// that takes them there.
+    ///
+    /// # Errors
+    /// As [`Self::begin_step`] and [`Self::newton_target`]; `x` and `v` are then unchanged.
+    pub fn solve_step(
+        &mut self,
+        x: &mut [Point],
+        v: &mut [Vector],
+        dt: f64,
+        prescribed: &[bool],
+        keyframes: &[Point],
+        newton_iterations: usize,
+    ) -> Result<Vec<NewtonInfo>, StepError> {
+        self.begin_step(x, v, dt)?;
+        let mut iterate = x.to_vec();
+        let mut target = x.to_vec();
+        let mut infos = Vec::with_capacity(newton_iterations);
+        for _ in 0..newton_iterations {
+            infos.push(self.newton_target(&iterate, prescribed, keyframes, &mut target)?);
+            iterate.copy_from_slice(&target);
+        }
+        for ((x, v), end) in x.iter_mut().zip(v).zip(&iterate) {
+            *v = (end - *x) / dt;
+            *x = *end;
+        }
+        Ok(infos)
+    }
+
+    fn gather<T>(
+        &mut self,
+        from: &[T],
+        map: impl Fn(&T) -> Vector,
+        into: impl Fn(&mut Self) -> &mut Vec<Vector>,
+    ) {
+        let gathered = self.model.node_vertex.iter().map(|&v| map(&from[v as usize])).collect();
+        *into(self) = gathered;
+    }
+
+    fn check_length(&self, array: &'static str, given: usize) -> Result<(), StepError> {
+        let vertices = self.model.vertex_count();
+        if given == vertices { Ok(()) } else { Err(StepError::Length { array, given, vertices }) }
+    }
+
+    fn check_finite(&self, array: &'static str, entry: impl Fn(usize) -> Vector) -> Result<(), StepError> {
+        let wrong = (0..self.model.vertex_count()).find(|&v| !entry(v).iter().all(|c| c.is_finite()));
+        match wrong {
+            None => Ok(()),
+            Some(vertex) => {
+                Err(StepError::NonFinite { array, vertex, body: self.model.body_name(vertex).to_owned() })
+            }
+        }
+    }
+}
+
+/// The Newton iteration by node: from `work.x` to `work.trial`.
+fn iterate(
+    model: &DynamicsModel,
+    params: &DynamicsParams,
+    step: &mut Step,
+    work: &mut Workspace,
+) -> NewtonInfo {
+    linearise(model, params, step, work);
+
+    // b = -(g + H p) over free nodes, p the imposed displacement of the prescribed ones.
+    let system =
+        System { pattern: &model.pattern, values: &work.values, scalar: &step.scalar, free: &work.free };
+    system.multiply(&work.imposed, &mut work.right_side);
+    for ((b, g), &free) in work.right_side.iter_mut().zip(&work.gradient).zip(&work.free) {
+        *b = if free { -(*b + g) } else { Vector::zeros() };
+    }
+
+    // Guesses: to where inertia leads, and to where the last target was. Near the solution of a step
+    // the second is all but exact; in free flight the first is.
+    let mut guess_count = 1;
+    for node in 0..work.x.len() {
+        let to = |target: &[Vector]| if work.free[node] { target[node] - work.x[node] } else { Vector::zeros() };
+        work.guesses[0][node] = to(&step.inertial);
+        if let Some(last) = &step.last_target {
+            work.guesses[1][node] = to(last);
+            guess_count = 2;
+        }
+    }
+    let [inertia, last] = &work.guesses;
+    let guesses: &[&[Vector]] = &[last.as_slice(), inertia.as_slice()][2 - guess_count..];
+    work.preconditioner.build(params.preconditioner, &system);
+    let limits = Limits { tolerance: params.cg_tolerance, max_iterations: params.cg_max_iterations };
+    let mut info = NewtonInfo {
+        cg: cg::solve(
+            &system,
+            &work.preconditioner,
+            &work.right_side,
+            guesses,
+            limits,
+            &mut work.step,
+            &mut work.cg,
+        ),
+        ..NewtonInfo::default()
+    };
+    search_line(model, params, step, work, &mut info);
+    for ((y, x), &free) in work.trial.iter().zip(&work.x).zip(&work.free) {
+        if free {
+            info.max_displacement = info.max_displacement.max((y - x).norm());
+        }
+    }
+    info
+}
+
+/// Fills gradient and H at `work.x`.
+fn linearise(model: &DynamicsModel, params: &DynamicsParams, step: &Step, work: &mut Workspace) {
+    let motion = Motion { x: &work.x, start: &step.start, rate: 1.0 / step.dt };
+    let filter = Filter::from(params.hessian_filter);
+    let inertia = 1.0 / (step.dt * step.dt);
+    let drag = params.air_drag / step.dt;
+
+    // Every chunk gets the blocks of its own rows.
+    let mut blocks = work.values.blocks.as_mut_slice();
+    let mut rows = Vec::new();
+    let chunks = work.gradient.chunks_mut(CHUNK).zip(work.values.diagonal.chunks_mut(CHUNK));
+    for (chunk, (gradient, diagonal)) in chunks.enumerate() {
+        let nodes = chunk * CHUNK..chunk * CHUNK + gradient.len();
+        let first_block = model.pattern.starts[nodes.start] as usize;
+        let end_block = model.pattern.starts[nodes.end] as usize;
+        let (mine, rest) = blocks.split_at_mut(end_block - first_block);
+        blocks = rest;
+        rows.push(Rows { nodes, gradient, diagonal, blocks: mine, first_block });
+    }
+    rows.into_par_iter().enumerate().for_each(|(chunk, mut rows)| {
+        rows.blocks.fill(Matrix3::zeros());
+        for (row, node) in rows.nodes.clone().enumerate() {
+            let mass = model.node_masses[node];
+            let (x, start) = (motion.x[node], motion.start[node]);
+            rows.diagonal[row] = Matrix3::from_diagonal_element(mass * (inertia + drag));
+            rows.gradient[row] = (x - step.inertial[node]) * (mass * inertia)
+                + (x - start) * (mass * drag)
+                + model.bending.product(node, motion.x);
+            if let Some(damping) = &model.bending_damping {
+                rows.gradient[row] +=
+                    (damping.product(node, motion.x) - damping.product(node, motion.start)) * motion.rate;
+            }
+        }
+        for family in &model.families {
+            family.linearise(chunk, motion, filter, &mut rows);
+        }
+    });
+}
+
+/// Incremental potential at `x`, and the size of its largest term: what rounding is relative to.
+fn potential(
+    model: &DynamicsModel,
+    params: &DynamicsParams,
+    step: &Step,
+    free: &[bool],
+    x: &[Vector],
+) -> (f64, f64) {
+    let motion = Motion { x, start: &step.start, rate: 1.0 / step.dt };
+    let inertia = 0.5 / (step.dt * step.dt);
+    let drag = 0.5 * params.air_drag / step.dt;
+    let chunks = x.len().div_ceil(CHUNK);
+    let partial: Vec<[f64; 2]> = (0..chunks)
+        .into_par_iter()
+        .map(|chunk| {
+            let mut kinetic = 0.0;
+            for node in chunk * CHUNK..((chunk + 1) * CHUNK).min(x.len()) {
+                if free[node] {
+                    let share = inertia * (x[node] - step.inertial[node]).norm_squared()
+                        + drag * (x[node] - step.start[node]).norm_squared();
+                    kinetic += model.node_masses[node] * share;
+                }
+            }
+            let elements: f64 = model.families.iter().map(|family| family.energy(chunk, motion)).sum();
+            [kinetic, elements + model.bending.chunk_energy(chunk, x)]
+        })
+        .collect();
+    let (mut kinetic, mut internal) = (0.0, 0.0);
+    for [k, i] in partial {
+        kinetic += k;
+        internal += i;
+    }
+    if let Some(damping) = &model.bending_damping {
+        let moved: Vec<Vector> = x.iter().zip(&step.start).map(|(x, x0)| x - x0).collect();
+        internal += damping.energy(&moved) / step.dt;
+    }
+    (kinetic + internal, kinetic.abs() + internal.abs())
+}
+
+/// Backtracking from the full Newton step; leaves the target in `work.trial`.
+///
+/// Prescribed nodes are at their keyframes from the first trial on: the line runs over free nodes
+/// only, from the state with free nodes at x. The predicted decrease is that of the quadratic model
+/// from there, p.b. Should no trial pass (the keyframes jump far, so that the model is poor), the
+/// lowest is taken.
+fn search_line(
+    model: &DynamicsModel,
+    params: &DynamicsParams,
+    step: &Step,
+    work: &mut Workspace,
+    info: &mut NewtonInfo,
+) {
+    let place = |work: &mut Workspace, length: f64| {
+        work.trial.copy_from_slice(&work.x);
+        add_scaled(&mut work.trial, 1.0, &work.imposed);
+        add_scaled(&mut work.trial, length, &work.step);
+    };
+    place(work, 0.0);
+    let (before, scale) = potential(model, params, step, &work.free, &work.trial);
+    info.energy_before = before;
+    let predicted = dot(&work.step, &work.right_side);
+    let mut best = (f64::INFINITY, 1.0);
+    let mut length = 1.0;
+    for halving in 0..=params.line_search_halvings {
+        place(work, length);
+        let (energy, terms) = potential(model, params, step, &work.free, &work.trial);
+        if energy < best.0 {
+            best = (energy, length);
+        }
+        let slack = ENERGY_ROUNDING * scale.max(terms);
+        let passes = energy <= before - params.line_search_decrease * length * predicted + slack;
+        if passes || params.line_search_halvings == 0 {
+            (info.energy_after, info.step_length) = (energy, length);
+            return;
+        }
+        if halving < params.line_search_halvings {
+            length *= 0.5;
+        }
+    }
+    (info.energy_after, info.step_length) = best;
+    place(work, best.1);
+    tracing::debug!(step_length = best.1, "no trial of the line search decreased the energy enough");
+}
+
+#[cfg(test)]
+#[path = "dynamics_tests.rs"]
+mod tests;

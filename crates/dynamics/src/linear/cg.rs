@@ -1,0 +1,127 @@
+//! Preconditioned conjugate gradients.
+
+use super::preconditioner::Preconditioner;
+use super::system::System;
+use super::vectors::{add_scaled, dot};
+use crate::elements::CHUNK;
+use bowknot_geometry::Vector;
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// How a linear solve ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct CgInfo {
+    /// Iterations made, each with one product with the matrix.
+    pub iterations: usize,
+    /// Residual in the preconditioner's norm, relative to that of the right-hand side [1].
+    pub residual: f64,
+    /// Whether the residual fell below the tolerance. If not, the best iterate is used all the same:
+    /// it is a poorer target, not a failed step.
+    pub converged: bool,
+}
+
+/// When to stop.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Limits {
+    pub tolerance: f64,
+    pub max_iterations: usize,
+}
+
+/// Vectors that are kept between solves.
+#[derive(Debug, Default)]
+pub(crate) struct CgWorkspace {
+    residual: Vec<Vector>,
+    preconditioned: Vec<Vector>,
+    direction: Vec<Vector>,
+    image: Vec<Vector>,
+    guess_image: Vec<Vector>,
+}
+
+impl CgWorkspace {
+    fn resize(&mut self, count: usize) {
+        for vector in [
+            &mut self.residual,
+            &mut self.preconditioned,
+            &mut self.direction,
+            &mut self.image,
+            &mut self.guess_image,
+        ] {
+            vector.resize(count, Vector::zeros());
+        }
+    }
+}
+
+/// Solves H x = b over the free nodes; b and x are zero elsewhere.
+///
+/// Starts from the best combination of `guesses` (energy-minimal in their span; zero if empty).
+/// The tolerance is relative to b, not to the first residual, so that a good guess saves iterations
+/// instead of asking for more accuracy.
+pub(crate) fn solve(
+    system: &System<'_>,
+    preconditioner: &Preconditioner,
+    b: &[Vector],
+    guesses: &[&[Vector]],
+    limits: Limits,
+    x: &mut [Vector],
+    workspace: &mut CgWorkspace,
+) -> CgInfo {
+    workspace.resize(b.len());
+    let CgWorkspace { residual: r, preconditioned: z, direction: p, image: q, guess_image } = workspace;
+    x.fill(Vector::zeros());
+    r.copy_from_slice(b);
+    let scale = preconditioner.apply(b, z);
+    if scale <= 0.0 || !scale.is_finite() {
+        return CgInfo { iterations: 0, residual: 0.0, converged: scale == 0.0 };
+    }
+
+    // Conjugate the guesses one after the other: p is the guess made conjugate to those before.
+    let mut previous: Option<(Vec<Vector>, Vec<Vector>, f64)> = None;
+    for guess in guesses {
+        p.copy_from_slice(guess);
+        let mut curvature = system.multiply(p, guess_image);
+        if let Some((direction, image, previous_curvature)) = &previous {
+            let share = dot(p, image) / previous_curvature;
+            add_scaled(p, -share, direction);
+            add_scaled(guess_image, -share, image);
+            curvature = dot(p, guess_image);
+        }
+        if curvature > 0.0 && curvature.is_finite() {
+            let step = dot(p, r) / curvature;
+            add_scaled(x, step, p);
+            add_scaled(r, -step, guess_image);
+            previous = Some((p.clone(), guess_image.clone(), curvature));
+        }
+    }
+
+    let mut rz = preconditioner.apply(r, z);
+    p.copy_from_slice(z);
+    let goal = limits.tolerance * limits.tolerance * scale;
+    let mut info = CgInfo { iterations: 0, residual: (rz / scale).sqrt(), converged: rz <= goal };
+    while !info.converged && info.iterations < limits.max_iterations {
+        let curvature = system.multiply(p, q);
+        // H is positive definite; this ends the loop on non-finite numbers and on exhaustion.
+        if !(curvature > 0.0 && curvature.is_finite()) {
+            break;
+        }
+        let step = rz / curvature;
+        x.par_chunks_mut(CHUNK)
+            .zip(r.par_chunks_mut(CHUNK))
+            .zip(p.par_chunks(CHUNK).zip(q.par_chunks(CHUNK)))
+            .for_each(|((x, r), (p, q))| {
+                for k in 0..x.len() {
+                    x[k] += p[k] * step;
+                    r[k] -= q[k] * step;
+                }
+            });
+        let next = preconditioner.apply(r, z);
+        let ratio = next / rz;
+        rz = next;
+        p.par_chunks_mut(CHUNK).zip(z.par_chunks(CHUNK)).for_each(|(p, z)| {
+            p.iter_mut().zip(z).for_each(|(p, z)| *p = z + *p * ratio);
+        });
+        info.iterations += 1;
+        info.residual = (rz / scale).sqrt();
+        info.converged = rz <= goal;
+    }
+    info
+}

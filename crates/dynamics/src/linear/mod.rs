@@ -1,0 +1,9 @@
+//! The linear system of a Newton iteration: storage, products, preconditioners, conjugate gradients.
+
+pub(crate) mod block;
+pub(crate) mod cg;
+pub(crate) mod ordering;
+pub(crate) mod preconditioner;
+pub(crate) mod scalar;
+pub(crate) mod system;
+pub(crate) mod vectors;

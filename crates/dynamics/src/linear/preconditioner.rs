@@ -1,0 +1,52 @@
+//! Preconditioners: symmetric positive definite approximations of the inverse of H.
+
+use super::system::System;
+use super::vectors::chunk_dot;
+use crate::elements::CHUNK;
+use crate::params;
+use bowknot_geometry::Vector;
+use nalgebra::Matrix3;
+use rayon::prelude::*;
+
+/// A preconditioner with its storage, rebuilt for every system.
+#[derive(Debug, Default)]
+pub(crate) struct Preconditioner {
+    /// Inverses of the diagonal blocks, zero where the node is not free.
+    inverses: Vec<Matrix3<f64>>,
+}
+
+impl Preconditioner {
+    /// Prepares for `system`.
+    pub fn build(&mut self, _kind: params::Preconditioner, system: &System<'_>) {
+        self.inverses.resize(system.node_count(), Matrix3::zeros());
+        self.inverses.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, inverses)| {
+            for (k, inverse) in inverses.iter_mut().enumerate() {
+                let node = chunk * CHUNK + k;
+                *inverse = if system.free[node] { invert(system.diagonal(node)) } else { Matrix3::zeros() };
+            }
+        });
+    }
+
+    /// z = M^-1 r; r . z.
+    pub fn apply(&self, r: &[Vector], z: &mut [Vector]) -> f64 {
+        let partial: Vec<f64> = z
+            .par_chunks_mut(CHUNK)
+            .zip(r.par_chunks(CHUNK))
+            .zip(self.inverses.par_chunks(CHUNK))
+            .map(|((z, r), inverses)| {
+                for ((z, r), inverse) in z.iter_mut().zip(r).zip(inverses) {
+                    *z = inverse * r;
+                }
+                chunk_dot(r, z)
+            })
+            .collect();
+        partial.iter().sum()
+    }
+}
+
+/// The inverse of a symmetric positive definite block. Its smallest eigenvalue is at least the
+/// inertia of the node, so it is regular unless the input was not finite; then the identity lets CG
+/// notice.
+fn invert(block: Matrix3<f64>) -> Matrix3<f64> {
+    block.try_inverse().map_or_else(Matrix3::identity, |inverse| (inverse + inverse.transpose()) * 0.5)
+}

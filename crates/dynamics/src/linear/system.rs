@@ -1,0 +1,56 @@
+//! The operator of a Newton iteration: H = block matrix + scalar form x I, over the free nodes.
+
+use super::block::{BlockPattern, BlockValues};
+use super::scalar::ScalarForm;
+use super::vectors::chunk_dot;
+use crate::elements::CHUNK;
+use bowknot_geometry::Vector;
+use nalgebra::Matrix3;
+use rayon::prelude::*;
+
+/// H, borrowed. Rows of nodes that are not free act as zero.
+#[derive(Clone, Copy)]
+pub(crate) struct System<'a> {
+    pub pattern: &'a BlockPattern,
+    pub values: &'a BlockValues,
+    pub scalar: &'a ScalarForm,
+    pub free: &'a [bool],
+}
+
+impl System<'_> {
+    pub fn node_count(&self) -> usize {
+        self.free.len()
+    }
+
+    /// y = H x on free rows, 0 elsewhere; x . y.
+    pub fn multiply(&self, x: &[Vector], y: &mut [Vector]) -> f64 {
+        let partial: Vec<f64> = y
+            .par_chunks_mut(CHUNK)
+            .enumerate()
+            .map(|(chunk, y)| {
+                let first = chunk * CHUNK;
+                for (k, y) in y.iter_mut().enumerate() {
+                    *y = if self.free[first + k] { self.row_product(first + k, x) } else { Vector::zeros() };
+                }
+                chunk_dot(&x[first..first + y.len()], y)
+            })
+            .collect();
+        partial.iter().sum()
+    }
+
+    #[inline]
+    fn row_product(&self, row: usize, x: &[Vector]) -> Vector {
+        let range = self.pattern.row(row);
+        let mut sum = self.values.diagonal[row] * x[row];
+        for (block, &column) in self.values.blocks[range.clone()].iter().zip(&self.pattern.columns[range]) {
+            sum += block * x[column as usize];
+        }
+        sum + self.scalar.product(row, x)
+    }
+
+    /// The diagonal block of a node, scalar part included.
+    #[inline]
+    pub fn diagonal(&self, node: usize) -> Matrix3<f64> {
+        self.values.diagonal[node] + Matrix3::from_diagonal_element(self.scalar.diagonal[node])
+    }
+}

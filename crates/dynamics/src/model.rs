@@ -1,0 +1,333 @@
+//! What is fixed during a run: bodies, masses, elements, the pattern of the matrix.
+
+use crate::elements::bending::add_bending;
+use crate::elements::triangle::Triangle;
+use crate::elements::{ElementFamily, Family};
+use crate::linear::block::BlockPattern;
+use crate::linear::ordering::order_nodes;
+use crate::linear::scalar::{ScalarBuilder, ScalarForm};
+use crate::{ClothMaterial, ModelError};
+use bowknot_geometry::{Point, Vector};
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// A triangle whose area is below this share of its longest edge squared has no area.
+const ZERO_AREA: f64 = 1e-12;
+
+/// Nodes per leaf of the numbering, the aggregates of coarse corrections.
+const LEAF: usize = 32;
+
+/// "No node": the vertex has no freedom, ever.
+pub(crate) const NO_NODE: u32 = u32::MAX;
+
+/// A body of the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// Its name, for messages.
+    pub name: String,
+    /// What it is made of.
+    pub shape: BodyShape,
+}
+
+/// What a body is made of; vertices are those of the scene.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum BodyShape {
+    /// Cloth.
+    Cloth {
+        /// Its triangles.
+        triangles: Vec<[u32; 3]>,
+        /// Its material.
+        material: ClothMaterial,
+    },
+    /// An obstacle: its vertices have no mass and are prescribed always.
+    Obstacle {
+        /// Its vertices.
+        vertices: Vec<u32>,
+    },
+}
+
+impl Body {
+    /// A piece of cloth.
+    pub fn cloth(name: impl Into<String>, triangles: Vec<[u32; 3]>, material: ClothMaterial) -> Self {
+        Self { name: name.into(), shape: BodyShape::Cloth { triangles, material } }
+    }
+
+    /// An obstacle.
+    pub fn obstacle(name: impl Into<String>, vertices: Vec<u32>) -> Self {
+        Self { name: name.into(), shape: BodyShape::Obstacle { vertices } }
+    }
+}
+
+/// What is fixed during a run.
+///
+/// Internally the deformable vertices are *nodes*, numbered along the mesh; all slices of the public
+/// interface are in the order of the scene's vertices.
+pub struct DynamicsModel {
+    rest_positions: Vec<Point>,
+    bodies: Vec<Body>,
+    vertex_body: Vec<u32>,
+    masses: Vec<f64>,
+    obstacle: Vec<bool>,
+    pub(crate) node_vertex: Vec<u32>,
+    pub(crate) vertex_node: Vec<u32>,
+    pub(crate) node_masses: Vec<f64>,
+    pub(crate) families: Vec<Box<dyn ElementFamily>>,
+    pub(crate) pattern: BlockPattern,
+    /// Bending [N/m].
+    pub(crate) bending: ScalarForm,
+    /// Bending times each body's damping time [N s/m]; same pattern. None if no body has any.
+    pub(crate) bending_damping: Option<ScalarForm>,
+    /// Cloth edges with their rest lengths [m].
+    pub(crate) edges: Vec<([u32; 2], f64)>,
+    #[expect(dead_code, reason = "aggregates of the coarse correction, not used by block-Jacobi")]
+    pub(crate) leaves: Vec<Range<u32>>,
+}
+
+impl std::fmt::Debug for DynamicsModel {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("DynamicsModel")
+            .field("vertices", &self.rest_positions.len())
+            .field("nodes", &self.node_vertex.len())
+            .field("bodies", &self.bodies.iter().map(|b| &b.name).collect::<Vec<_>>())
+            .finish_non_exhaustive()
+    }
+}
+
+impl DynamicsModel {
+    /// Builds masses, elements and patterns from the rest positions [m] of all vertices.
+    ///
+    /// A vertex may be shared by several cloth bodies (they are sewn together there), never by cloth
+    /// and an obstacle.
+    ///
+    /// # Errors
+    /// Everything that is wrong, see [`ModelError`].
+    pub fn new(rest_positions: Vec<Point>, bodies: Vec<Body>) -> Result<Self, Vec<ModelError>> {
+        let mut errors = check(&rest_positions, &bodies);
+        if !errors.is_empty() {
+            return Err(errors);
+        }
+        let count = rest_positions.len();
+        let mut masses = vec![0.0; count];
+        let mut obstacle = vec![false; count];
+        let mut vertex_body = vec![u32::MAX; count];
+        for (index, body) in bodies.iter().enumerate() {
+            match &body.shape {
+                BodyShape::Obstacle { vertices } => vertices.iter().for_each(|&v| {
+                    obstacle[v as usize] = true;
+                    vertex_body[v as usize] = index as u32;
+                }),
+                BodyShape::Cloth { triangles, material } => {
+                    for (t, triangle) in triangles.iter().enumerate() {
+                        let area = area(&rest_positions, triangle);
+                        if area <= zero_area(&rest_positions, triangle) {
+                            errors.push(ModelError::ZeroArea { body: body.name.clone(), index: t, area });
+                        }
+                        for &v in triangle {
+                            masses[v as usize] += area * material.density / 3.0;
+                            vertex_body[v as usize] = index as u32;
+                        }
+                    }
+                }
+            }
+        }
+        for (vertex, mass) in masses.iter().enumerate() {
+            if *mass <= 0.0 && !obstacle[vertex] && errors.is_empty() {
+                errors.push(ModelError::NoMass { vertex });
+            }
+        }
+        if !errors.is_empty() {
+            return Err(errors);
+        }
+
+        let cloth = || {
+            bodies.iter().filter_map(|body| match &body.shape {
+                BodyShape::Cloth { triangles, material } => Some((triangles, material)),
+                BodyShape::Obstacle { .. } => None,
+            })
+        };
+        let deformable: Vec<u32> = (0..count as u32).filter(|&v| !obstacle[v as usize]).collect();
+        let mut compact = vec![NO_NODE; count];
+        deformable.iter().enumerate().for_each(|(k, &v)| compact[v as usize] = k as u32);
+        let positions: Vec<Vector> = deformable.iter().map(|&v| rest_positions[v as usize].coords).collect();
+        let ordering = order_nodes(&positions, LEAF, |link| {
+            for [i, j, k] in cloth().flat_map(|(triangles, _)| triangles) {
+                link(compact[*i as usize], compact[*j as usize]);
+                link(compact[*j as usize], compact[*k as usize]);
+            }
+        });
+        let node_vertex: Vec<u32> = ordering.order.iter().map(|&k| deformable[k as usize]).collect();
+        let mut vertex_node = vec![NO_NODE; count];
+        node_vertex.iter().enumerate().for_each(|(node, &v)| vertex_node[v as usize] = node as u32);
+
+        let rest: Vec<Vector> = node_vertex.iter().map(|&v| rest_positions[v as usize].coords).collect();
+        let mut triangles = Vec::new();
+        let mut edges = Vec::new();
+        let mut bending = ScalarBuilder::new(rest.len());
+        let mut bending_damping = ScalarBuilder::new(rest.len());
+        let mut damped = false;
+        for (body_triangles, material) in cloth() {
+            let local: Vec<[u32; 3]> =
+                body_triangles.iter().map(|t| t.map(|v| vertex_node[v as usize])).collect();
+            for nodes in &local {
+                let corners = nodes.map(|n| rest[n as usize]);
+                // Areas were checked above.
+                triangles.extend(Triangle::new(*nodes, &corners, material.lame(), material.stretch_damping));
+                for (a, b) in [(0, 1), (1, 2), (2, 0)] {
+                    edges.push([nodes[a].min(nodes[b]), nodes[a].max(nodes[b])]);
+                }
+            }
+            if material.bend_stiffness > 0.0 {
+                add_bending(&local, &rest, material.bend_stiffness, &mut bending);
+                // Also when 0, so that both forms have one pattern.
+                let damping = material.bend_stiffness * material.bend_damping;
+                add_bending(&local, &rest, damping, &mut bending_damping);
+                damped |= damping > 0.0;
+            }
+        }
+        // Elements of a chunk stand together, in the order of their nodes.
+        triangles.sort_by_key(|t| {
+            let mut nodes = crate::elements::Element::nodes(t);
+            nodes.sort_unstable();
+            nodes
+        });
+        edges.sort_unstable();
+        edges.dedup();
+        let edges = edges
+            .into_iter()
+            .map(|[a, b]| ([a, b], (rest[a as usize] - rest[b as usize]).norm()))
+            .collect();
+
+        let mut families: Vec<Box<dyn ElementFamily>> = vec![Box::new(Family::new(triangles))];
+        let pattern = BlockPattern::from_cliques(rest.len(), |visit| {
+            families.iter().for_each(|family| family.for_each_clique(visit));
+        });
+        families.iter_mut().for_each(|family| family.bind(rest.len(), &pattern));
+        Ok(Self {
+            bodies,
+            vertex_body,
+            obstacle,
+            node_masses: node_vertex.iter().map(|&v| masses[v as usize]).collect(),
+            masses,
+            rest_positions,
+            node_vertex,
+            vertex_node,
+            families,
+            pattern,
+            bending: bending.build(),
+            bending_damping: damped.then(|| bending_damping.build()),
+            edges,
+            leaves: ordering.leaves,
+        })
+    }
+
+    /// Number of vertices, obstacles included.
+    pub fn vertex_count(&self) -> usize {
+        self.rest_positions.len()
+    }
+
+    /// Rest positions [m].
+    pub fn rest_positions(&self) -> &[Point] {
+        &self.rest_positions
+    }
+
+    /// The bodies, as given.
+    pub fn bodies(&self) -> &[Body] {
+        &self.bodies
+    }
+
+    /// Mass of each vertex [kg]: a third of every triangle's; 0 for vertices of obstacles.
+    pub fn masses(&self) -> &[f64] {
+        &self.masses
+    }
+
+    /// Whether each vertex belongs to an obstacle.
+    pub fn obstacle(&self) -> &[bool] {
+        &self.obstacle
+    }
+
+    /// Mass of all deformable bodies [kg].
+    pub fn total_mass(&self) -> f64 {
+        self.masses.iter().sum()
+    }
+
+    /// Name of the body that a vertex belongs to; where several meet, the last.
+    pub fn body_name(&self, vertex: usize) -> &str {
+        self.vertex_body.get(vertex).and_then(|&b| self.bodies.get(b as usize)).map_or("", |b| &b.name)
+    }
+}
+
+fn area(positions: &[Point], &[i, j, k]: &[u32; 3]) -> f64 {
+    let corner = positions[i as usize];
+    0.5 * (positions[j as usize] - corner).cross(&(positions[k as usize] - corner)).norm()
+}
+
+fn zero_area(positions: &[Point], &[i, j, k]: &[u32; 3]) -> f64 {
+    let [a, b, c] = [positions[i as usize], positions[j as usize], positions[k as usize]];
+    ZERO_AREA * (b - a).norm_squared().max((c - b).norm_squared()).max((a - c).norm_squared())
+}
+
+/// Everything that must hold before areas are worth looking at.
+fn check(positions: &[Point], bodies: &[Body]) -> Vec<ModelError> {
+    let mut errors = Vec::new();
+    let vertex_count = positions.len();
+    if let Some(vertex) = positions.iter().position(|p| !p.coords.iter().all(|c| c.is_finite())) {
+        errors.push(ModelError::NonFinitePosition { vertex });
+    }
+    let mut obstacle_of: HashMap<u32, usize> = HashMap::new();
+    for (index, body) in bodies.iter().enumerate() {
+        let name = || body.name.clone();
+        let out_of_range = |element, index, vertex| ModelError::VertexOutOfRange {
+            body: body.name.clone(),
+            element,
+            index,
+            vertex,
+            vertex_count,
+        };
+        match &body.shape {
+            BodyShape::Obstacle { vertices } => {
+                for (k, &vertex) in vertices.iter().enumerate() {
+                    if vertex as usize >= vertex_count {
+                        errors.push(out_of_range("vertex", k, vertex));
+                    }
+                    obstacle_of.insert(vertex, index);
+                }
+            }
+            BodyShape::Cloth { triangles, material } => {
+                if let Err(wrong) = material.validate() {
+                    errors.extend(wrong.into_iter().map(|error| ModelError::Material { body: name(), error }));
+                }
+                let mut seen: HashMap<[u32; 3], usize> = HashMap::with_capacity(triangles.len());
+                for (t, triangle) in triangles.iter().enumerate() {
+                    for (k, &vertex) in triangle.iter().enumerate() {
+                        if vertex as usize >= vertex_count {
+                            errors.push(out_of_range("triangle", t, vertex));
+                        }
+                        if triangle[..k].contains(&vertex) {
+                            errors.push(ModelError::RepeatedVertex { body: name(), index: t, vertex });
+                        }
+                    }
+                    let mut sorted = *triangle;
+                    sorted.sort_unstable();
+                    if let Some(first) = seen.insert(sorted, t) {
+                        errors.push(ModelError::RepeatedTriangle { body: name(), first, second: t });
+                    }
+                }
+            }
+        }
+    }
+    for body in bodies {
+        if let BodyShape::Cloth { triangles, .. } = &body.shape {
+            let shared = triangles.iter().flatten().find_map(|v| Some((*v, *obstacle_of.get(v)?)));
+            if let Some((vertex, obstacle)) = shared {
+                let obstacle = bodies[obstacle].name.clone();
+                errors.push(ModelError::SharedVertex { obstacle, body: body.name.clone(), vertex });
+            }
+        }
+    }
+    errors
+}
+
+#[cfg(test)]
+#[path = "model_tests.rs"]
+mod tests;

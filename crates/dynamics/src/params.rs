@@ -1,0 +1,137 @@
+//! Parameters of the dynamics.
+
+use crate::ParamsError;
+use bowknot_geometry::Vector;
+use serde::{Deserialize, Serialize};
+
+/// How [`crate::Dynamics`] makes targets. The number of Newton iterations is the caller's.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct DynamicsParams {
+    /// Acceleration of gravity [m/s^2]. Default (0, 0, -9.81).
+    pub gravity: Vector,
+    /// Mass-proportional damping [1/s], a drag by still air: velocities decay as exp(-t * this). It
+    /// slows free flight and rotation too; for losses inside of the material see
+    /// [`crate::ClothMaterial::stretch_damping`]. Default 0.
+    pub air_drag: f64,
+    /// Residual at which the linear solve ends, in the preconditioner's norm and relative to that of
+    /// the right-hand side [1]. Smaller: more iterations; larger: the target stretches, see the table
+    /// in the README. Default 1e-5.
+    pub cg_tolerance: f64,
+    /// Most iterations of the linear solve [1]. Reached, it ends with the best so far and says so.
+    /// Default 10000.
+    pub cg_max_iterations: usize,
+    /// Preconditioner of the linear solve.
+    pub preconditioner: Preconditioner,
+    /// What becomes of the negative curvatures of the elastic energy.
+    pub hessian_filter: HessianFilter,
+    /// Most halvings of a Newton step by the line search [1]; 0 accepts every full step. Default 20.
+    pub line_search_halvings: usize,
+    /// Share of the predicted decrease of energy that a step must reach (Armijo) [1], in [0, 0.5).
+    /// Larger: more halvings. Default 1e-4.
+    pub line_search_decrease: f64,
+}
+
+/// Preconditioner of the linear solve.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Preconditioner {
+    /// The inverses of the 3 x 3 diagonal blocks.
+    #[default]
+    BlockJacobi,
+}
+
+/// What becomes of an element's negative curvatures, so that the system is positive definite.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum HessianFilter {
+    /// They become zero (the nearest positive semi-definite matrix): fastest near a solution.
+    #[default]
+    Clamp,
+    /// They change sign (Chen et al. 2024, "Stabler Neo-Hookean Simulation: Absolute Eigenvalue
+    /// Filtering for Projected Newton"): shorter, safer steps out of strong compression.
+    Absolute,
+}
+
+impl Default for DynamicsParams {
+    fn default() -> Self {
+        Self {
+            gravity: Vector::new(0.0, 0.0, -9.81),
+            air_drag: 0.0,
+            cg_tolerance: 1e-5,
+            cg_max_iterations: 10_000,
+            preconditioner: Preconditioner::default(),
+            hessian_filter: HessianFilter::default(),
+            line_search_halvings: 20,
+            line_search_decrease: 1e-4,
+        }
+    }
+}
+
+impl DynamicsParams {
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// All that is wrong, by field name.
+    pub fn validate(&self) -> Result<(), Vec<ParamsError>> {
+        let mut errors = Vec::new();
+        let mut check = |ok: bool, field, value, allowed| {
+            if !ok {
+                errors.push(ParamsError { field, value, allowed });
+            }
+        };
+        let gravity = self.gravity.norm();
+        check(gravity.is_finite(), "gravity", gravity, "its components must be finite");
+        let drag = self.air_drag;
+        check(drag >= 0.0 && drag.is_finite(), "air_drag", drag, "it must be a finite number, 0 or more");
+        let tolerance = self.cg_tolerance;
+        check(tolerance > 0.0 && tolerance < 1.0, "cg_tolerance", tolerance, "it must lie in (0, 1)");
+        let most = self.cg_max_iterations;
+        check(most > 0, "cg_max_iterations", most as f64, "it must be 1 or more");
+        let decrease = self.line_search_decrease;
+        check((0.0..0.5).contains(&decrease), "line_search_decrease", decrease, "it must lie in [0, 0.5)");
+        let halvings = self.line_search_halvings;
+        check(halvings <= 60, "line_search_halvings", halvings as f64, "it must be 60 or less");
+        if errors.is_empty() { Ok(()) } else { Err(errors) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn defaults_are_valid_and_survive_toml() {
+        let params = DynamicsParams::default();
+        params.validate().expect("defaults");
+        let text = toml::to_string(&params).expect("serialise");
+        assert_eq!(toml::from_str::<DynamicsParams>(&text).expect("parse"), params);
+        assert!(toml::from_str::<DynamicsParams>("cg_tolerence = 1e-3").is_err());
+    }
+
+    #[test]
+    fn all_bad_values_are_named() {
+        let params = DynamicsParams {
+            gravity: Vector::new(f64::NAN, 0.0, 0.0),
+            air_drag: -1.0,
+            cg_tolerance: 0.0,
+            cg_max_iterations: 0,
+            line_search_decrease: 0.5,
+            line_search_halvings: 61,
+            ..DynamicsParams::default()
+        };
+        let fields: Vec<_> = params.validate().expect_err("six").iter().map(|e| e.field).collect();
+        assert_eq!(
+            fields,
+            [
+                "gravity",
+                "air_drag",
+                "cg_tolerance",
+                "cg_max_iterations",
+                "line_search_decrease",
+                "line_search_halvings"
+            ]
+        );
+    }
+}
