@@ -181,15 +181,13 @@ fn try_other_directions(
     let [p0, p1, p2, p3] = points;
     match kind {
         PairKind::VertexTriangle => {
-            attempt((p2 - p1).cross(&(p3 - p1)));
-            attempt((p3 - p2).cross(&(p1 - p2)));
-            attempt((p1 - p3).cross(&(p2 - p3)));
+            attempt(common_normal(&(p2 - p1), &(p3 - p1)));
             attempt(across(p0, [p1, p2]));
             attempt(across(p0, [p2, p3]));
             attempt(across(p0, [p3, p1]));
         }
         PairKind::EdgeEdge => {
-            attempt((p1 - p0).cross(&(p3 - p2)));
+            attempt(common_normal(&(p1 - p0), &(p3 - p2)));
             attempt(across(p0, [p2, p3]));
             attempt(across(p1, [p2, p3]));
             attempt(across(p2, [p0, p1]));
@@ -203,6 +201,12 @@ fn try_other_directions(
     if separation.width == f64::NEG_INFINITY {
         separation.width = -slack;
     }
+}
+
+/// A vector perpendicular to both to rounding, however near parallel they are: the part of v along u
+/// would add nothing to the cross product but its rounding.
+fn common_normal(u: &Vector, v: &Vector) -> Vector {
+    u.cross(&(v - u * (u.dot(v) / u.norm_squared())))
 }
 
 /// The direction from an edge to a vertex, perpendicular to the edge to rounding even where the

@@ -1,6 +1,13 @@
 //! Topology of triangle meshes, strands and particles: vertices, edges, triangles, adjacency.
 
+mod adjacency;
+
+#[cfg(test)]
+mod tests;
+
 use serde::{Deserialize, Serialize};
+
+pub use adjacency::{Components, EdgeTriangles};
 
 /// What is wrong with the elements given to [`Topology::new`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -7,7 +7,7 @@ use crate::{PairKind, Point, Vector};
 /// Squared sine of the angle below which edges count as near parallel (also where one has zero
 /// length): the place of the closest points is then so ill determined that the edges' ends are
 /// tried as well.
-const NEAR_PARALLEL: f64 = 1e-6;
+const NEAR_PARALLEL: f64 = 1e-8;
 
 /// Closest points of two edges, which may have zero length or be parallel.
 #[inline]
@@ -24,18 +24,21 @@ pub fn edge_edge(a: [&Point; 2], b: [&Point; 2]) -> Closest {
 #[inline(always)]
 fn core(a: [&Point; 2], b: [&Point; 2]) -> (Closest, f64) {
     let (d1, d2, r) = (a[1] - a[0], b[1] - b[0], a[0] - b[0]);
-    let normal = d1.cross(&d2);
-    let (aa, bb, nn) = (d1.norm_squared(), d2.norm_squared(), normal.norm_squared());
-    // Closest points of the two lines, by areas along the common normal, clamped to edge a; then
-    // the best place on b for it, then the best on a for that: minimises over the square of both
-    // places exactly (Ericson 2004, "Real-Time Collision Detection", 5.1.9).
-    let s = clamp_unit(d2.cross(&r).dot(&normal) / nn);
-    let ab = d1.dot(&d2);
-    let t = clamp_unit((ab * s + d2.dot(&r)) / bb);
-    let s = clamp_unit((ab * t - d1.dot(&r)) / aa);
+    let (aa, bb, ab) = (d1.norm_squared(), d2.norm_squared(), d1.dot(&d2));
+    let (per_aa, per_bb, r_d2) = (1.0 / aa, 1.0 / bb, r.dot(&d2));
+    // The closest point of line a, from what of d1 and r is perpendicular to b: taking off the
+    // larger part first keeps the digits that determinants of near parallel edges would cancel.
+    let across = d1 - d2 * (ab * per_bb);
+    let from_line = r - d2 * (r_d2 * per_bb);
+    let cc = across.norm_squared();
+    let s = clamp_unit(-from_line.dot(&across) / cc);
+    // Clamped to edge a; then the best place on b for it, then the best on a for that: minimises
+    // over the square of both places (Ericson 2004, "Real-Time Collision Detection", 5.1.9).
+    let t = clamp_unit((ab * s + r_d2) * per_bb);
+    let s = clamp_unit((ab * t - r.dot(&d1)) * per_aa);
 
     let mut place = (s, t, offset_at(a, b, &d1, &d2, s, t));
-    if !(nn > NEAR_PARALLEL * aa * bb) {
+    if cc <= NEAR_PARALLEL * aa || bb == 0.0 {
         place = closest_end(a, b, place);
     }
     let (s, t, offset) = place;

@@ -63,6 +63,7 @@ pub fn closest(kind: PairKind, points: &[Point; 4]) -> Closest {
 
 /// Clamps to [0, 1]; not-a-number (0/0 of a zero-length edge) becomes 0.
 #[inline(always)]
+#[allow(clippy::manual_clamp)] // `clamp` would keep the not-a-number.
 fn clamp_unit(t: f64) -> f64 {
     t.max(0.0).min(1.0)
 }

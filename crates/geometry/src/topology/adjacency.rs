@@ -1,0 +1,109 @@
+//! Who is next to whom: triangles of edges, connected components, boundaries.
+
+use super::Topology;
+
+/// The triangles at each edge, in compressed rows: those of edge e stand at
+/// `starts[e]..starts[e + 1]`, by ascending triangle.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct EdgeTriangles {
+    /// Start of each edge's row, and the end: one more than there are edges.
+    pub starts: Vec<u32>,
+    /// Triangles.
+    pub triangles: Vec<u32>,
+    /// The vertex of the triangle at the same place that is not on the edge.
+    pub opposite_vertices: Vec<u32>,
+}
+
+impl EdgeTriangles {
+    /// The triangles at an edge, each with its vertex opposite to the edge.
+    pub fn of(&self, edge: u32) -> impl ExactSizeIterator<Item = (u32, u32)> + '_ {
+        let row = self.row(edge);
+        self.triangles[row.clone()].iter().copied().zip(self.opposite_vertices[row].iter().copied())
+    }
+
+    /// How many triangles there are at an edge: 0 on strands, 1 on a boundary, 2 inside a surface,
+    /// more where sheets branch.
+    pub fn count(&self, edge: u32) -> usize {
+        self.row(edge).len()
+    }
+
+    fn row(&self, edge: u32) -> std::ops::Range<usize> {
+        self.starts[edge as usize] as usize..self.starts[edge as usize + 1] as usize
+    }
+}
+
+/// Connected components of the graph of vertices and edges.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Components {
+    /// How many there are.
+    pub count: usize,
+    /// Component of each vertex, below `count`, numbered by their smallest vertices. A vertex
+    /// without edges is a component of its own.
+    pub of_vertex: Vec<u32>,
+}
+
+impl Topology {
+    /// The triangles at each edge with their opposite vertices, for bending and boundaries. O(n).
+    pub fn edge_triangles(&self) -> EdgeTriangles {
+        let mut starts = vec![0_u32; self.edges.len() + 1];
+        for &e in self.triangle_edges.iter().flatten() {
+            starts[e as usize + 1] += 1;
+        }
+        for e in 0..self.edges.len() {
+            starts[e + 1] += starts[e];
+        }
+        let mut next = starts.clone();
+        let total = 3 * self.triangles.len();
+        let (mut triangles, mut opposite_vertices) = (vec![0; total], vec![0; total]);
+        for (t, (vertices, edges)) in self.triangles.iter().zip(&self.triangle_edges).enumerate() {
+            for k in 0..3 {
+                // Edge k joins vertices k and k + 1.
+                let place = &mut next[edges[k] as usize];
+                triangles[*place as usize] = t as u32;
+                opposite_vertices[*place as usize] = vertices[(k + 2) % 3];
+                *place += 1;
+            }
+        }
+        EdgeTriangles { starts, triangles, opposite_vertices }
+    }
+
+    /// Edges of exactly one triangle, ascending. O(n).
+    pub fn boundary_edges(&self) -> Vec<u32> {
+        let mut counts = vec![0_u32; self.edges.len()];
+        for &e in self.triangle_edges.iter().flatten() {
+            counts[e as usize] += 1;
+        }
+        (0..self.edges.len() as u32).filter(|&e| counts[e as usize] == 1).collect()
+    }
+
+    /// Connected components of vertices along edges. Nearly O(n).
+    pub fn connected_components(&self) -> Components {
+        // Union-find in which every root is the smallest vertex of its tree.
+        let mut parent: Vec<u32> = (0..self.vertex_count as u32).collect();
+        for &[i, j] in &self.edges {
+            let (i, j) = (find(&mut parent, i), find(&mut parent, j));
+            parent[i.max(j) as usize] = i.min(j);
+        }
+        let mut of_vertex = vec![0; self.vertex_count];
+        let mut count = 0;
+        for v in 0..self.vertex_count as u32 {
+            let root = find(&mut parent, v);
+            of_vertex[v as usize] = if root == v {
+                count += 1;
+                count - 1
+            } else {
+                of_vertex[root as usize]
+            };
+        }
+        Components { count: count as usize, of_vertex }
+    }
+}
+
+/// Root of a vertex; halves the path on the way.
+fn find(parent: &mut [u32], mut v: u32) -> u32 {
+    while parent[v as usize] != v {
+        parent[v as usize] = parent[parent[v as usize] as usize];
+        v = parent[v as usize];
+    }
+    v
+}
