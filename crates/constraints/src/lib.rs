@@ -15,3 +15,8 @@ pub use contacts::{ContactRows, contact_row, predicted_gap};
 pub use desired::DesiredDistance;
 pub use edges::{EdgeLimits, Stretch};
 pub use params::{ConstraintParams, ContactForm, EdgeForm, EdgeReference};
+
+/// The README's example is tested with the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;

@@ -12,3 +12,8 @@ pub use budgets::Budgets;
 pub use params::{Bound, Budget, StepperParams};
 pub use rounding::Rounding;
 pub use stepper::{Contacts, StepReport, Stepper};
+
+/// The README's example is tested with the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;

@@ -1,13 +1,35 @@
 //! The two-way interior point method: `resolve(x, y)` without intersections.
+//!
+//! Given an intersection-free state x and a target y that some dynamics wants, [`Resolver::resolve`] moves x
+//! toward y. Each two-way step lists the pairs that could meet ([`Search`]), modifies the target so that
+//! it does not want to intersect ([`BackwardStep`]), and moves the vertices toward it along paths that are
+//! certified free of intersections ([`ForwardStep`]). The stages are traits; other methods plug in.
 
+mod backward;
 mod error;
+mod forward;
 mod observer;
 mod params;
+mod problem;
 mod resolver;
+mod search;
+mod stages;
+mod state;
 mod statistics;
 
+pub use backward::LcpBackward;
 pub use error::ResolveError;
+pub use forward::CertifiedForward;
 pub use observer::{AcceptedState, Observer};
 pub use params::{BackwardParams, Params, StopParams, StopRule};
+pub use problem::{Lengths, Problem};
 pub use resolver::{Call, Resolver};
+pub use search::BudgetedSearch;
+pub use stages::{BackwardStep, ForwardStep, Reach, Search};
+pub use state::{ContactSet, State};
 pub use statistics::{Skipped, StageSeconds, Statistics};
+
+/// The README's example is tested with the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;

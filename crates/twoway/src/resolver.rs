@@ -1,8 +1,17 @@
-//! Algorithm 1.
+//! Algorithm 1: the two-way loop, and its default composition.
 
-use crate::{Observer, Params, ResolveError, Statistics};
+use crate::backward::LcpBackward;
+use crate::forward::CertifiedForward;
+use crate::problem::check_finite;
+use crate::search::BudgetedSearch;
+use crate::{
+    AcceptedState, BackwardStep, ForwardStep, Observer, Params, Problem, ResolveError, Search, State, Statistics,
+    StopRule,
+};
 use bowknot_geometry::Point;
 use bowknot_proximity::CollisionModel;
+use bowknot_stepper::Rounding;
+use std::time::Instant;
 
 /// What changes from call to call.
 #[derive(Clone, Copy, Debug, Default)]
@@ -15,9 +24,13 @@ pub struct Call<'a> {
 }
 
 /// Resolves collisions between a state and a target; keeps its workspace between calls.
-pub struct Resolver {
-    model: CollisionModel,
-    params: Params,
+#[derive(Debug)]
+pub struct Resolver<S = BudgetedSearch, B = LcpBackward, F = CertifiedForward> {
+    problem: Problem,
+    state: State,
+    search: S,
+    backward: B,
+    forward: F,
 }
 
 impl Resolver {
@@ -33,19 +46,26 @@ impl Resolver {
         masses: &[f64],
         params: Params,
     ) -> Result<Self, ResolveError> {
-        let _ = (rest, masses);
-        params.validate().map_err(ResolveError::Params)?;
-        Ok(Self { model, params })
+        let problem = Problem::new(model, rest, masses, params)?;
+        let search = BudgetedSearch::new(&problem);
+        Ok(Self::with_stages(problem, search, LcpBackward::default(), CertifiedForward::default()))
+    }
+}
+
+impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
+    /// A resolver made of other stages.
+    pub fn with_stages(problem: Problem, search: S, backward: B, forward: F) -> Self {
+        Self { problem, state: State::default(), search, backward, forward }
     }
 
-    /// The parameters in use, every default length filled in.
-    pub fn params(&self) -> &Params {
-        &self.params
+    /// The scene, its parameters, and the lengths in force.
+    pub fn problem(&self) -> &Problem {
+        &self.problem
     }
 
-    /// The collision model.
-    pub fn model(&self) -> &CollisionModel {
-        &self.model
+    /// The moving state as the last call left it.
+    pub fn state(&self) -> &State {
+        &self.state
     }
 
     /// Moves `positions` from an intersection-free state toward `target`. Every accepted state and the straight
@@ -61,7 +81,118 @@ impl Resolver {
         call: &Call<'_>,
         observer: &mut dyn Observer,
     ) -> Result<Statistics, ResolveError> {
-        let _ = (positions, target, call, observer);
-        todo!()
+        let clock = Instant::now();
+        self.begin(positions, target, call)?;
+        let Self { problem, state, search, backward, forward } = self;
+        let mut statistics = Statistics::default();
+        let limits = &problem.params.stop;
+        let max_steps = limits.max_steps.unwrap_or_else(|| default_max_steps(call.time_step));
+
+        while state.step < max_steps {
+            search.update(problem, state, &mut statistics);
+            backward.project(problem, state, &mut statistics);
+            let report = forward.advance(problem, state, search, &mut statistics);
+
+            let accepted = AcceptedState {
+                step: state.step,
+                previous: &state.previous,
+                positions: &state.x,
+                target: &state.y,
+            };
+            let go_on = observer.accepted(&accepted);
+            state.step += 1;
+            state.remaining = report.remaining;
+            statistics.remaining_r = report.remaining_r;
+            statistics.slowest_body = report.slowest.map(|v| problem.model.vertex_body()[v as usize]);
+            statistics.converged = match limits.rule {
+                StopRule::Clock => report.remaining_r < limits.clock,
+                StopRule::Travel => {
+                    report.remaining < limits.distance * problem.lengths.edge
+                        && backward.stretch_to_limit(state) <= 1.0 + limits.stretch_tolerance
+                }
+            };
+            let out_of_time = limits.max_seconds.is_some_and(|s| clock.elapsed().as_secs_f64() > s);
+            if statistics.converged || go_on.is_break() || out_of_time {
+                break;
+            }
+        }
+
+        self.finish(&mut statistics);
+        positions.copy_from_slice(&self.state.x);
+        statistics.seconds.total = clock.elapsed().as_secs_f64();
+        Ok(statistics)
     }
+
+    fn begin(&mut self, positions: &[Point], target: &[Point], call: &Call<'_>) -> Result<(), ResolveError> {
+        let Self { problem, state, search, backward, forward } = self;
+        let vertices = problem.rest.len();
+        for (what, given) in [("positions", positions.len()), ("target", target.len())] {
+            if given != vertices {
+                return Err(ResolveError::Length { what, given, vertices });
+            }
+        }
+        if !call.prescribed.is_empty() && call.prescribed.len() != vertices {
+            return Err(ResolveError::Length { what: "prescribed", given: call.prescribed.len(), vertices });
+        }
+        check_finite("the position", &problem.model, positions)?;
+        check_finite("the target", &problem.model, target)?;
+        check_floor(problem, positions, target)?;
+        for v in 0..vertices {
+            problem.prescribed[v] =
+                problem.model.is_obstacle(v as u32) || call.prescribed.get(v).copied().unwrap_or(false);
+        }
+        state.begin(positions, target, call.time_step);
+        search.begin(problem, state);
+        backward.begin(problem, state);
+        forward.begin(problem, state);
+        Ok(())
+    }
+
+    /// Fills in what is known only at the end.
+    fn finish(&mut self, statistics: &mut Statistics) {
+        let Self { problem, state, search, backward, .. } = self;
+        // Contact geometry at the final x, for the smallest gap.
+        search.update(problem, state, statistics);
+        backward.finish(problem, state, statistics);
+        statistics.steps = state.step;
+        statistics.pairs = state.contacts.pairs.len();
+        statistics.min_gap_m = state.contacts.separations.iter().map(|s| s.distance).reduce(f64::min);
+        let (mut sum, mut free) = (0.0, 0usize);
+        for v in 0..state.x.len() {
+            let left = (state.y[v] - state.x[v]).norm();
+            if problem.movable(v) {
+                statistics.remaining_m = statistics.remaining_m.max(left);
+                sum += (state.x[v] - state.target[v]).norm_squared();
+                free += 1;
+            } else {
+                statistics.prescribed_behind_m = statistics.prescribed_behind_m.max(left);
+            }
+        }
+        statistics.distance_to_target_m = (sum / free.max(1) as f64).sqrt();
+        if statistics.converged {
+            statistics.slowest_body = None;
+        }
+    }
+}
+
+/// The paper's step limits: 512 up to dt = 1/100, 2048 from 1/20, in proportion between.
+fn default_max_steps(time_step: Option<f64>) -> usize {
+    let share = time_step.map_or(0.0, |dt| ((dt - 0.01) / 0.04).clamp(0.0, 1.0));
+    512 + (share * 1536.0).round() as usize
+}
+
+fn check_floor(problem: &Problem, positions: &[Point], target: &[Point]) -> Result<(), ResolveError> {
+    let floor = problem.lengths.floor;
+    let largest = |p: &Point| p.coords.amax();
+    let (vertex, coordinate) = positions
+        .iter()
+        .enumerate()
+        .chain(target.iter().enumerate())
+        .map(|(v, p)| (v, largest(p)))
+        .fold((0, 0.0), |best, next| if next.1 > best.1 { next } else { best });
+    let needed = Rounding::smallest_floor(coordinate);
+    if floor > 0.0 && floor < needed {
+        return Err(ResolveError::FloorBelowRounding { floor, coordinate, vertex, needed });
+    }
+    Ok(())
 }

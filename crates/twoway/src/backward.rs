@@ -1,0 +1,318 @@
+//! The default backward stage: the inexact LCP (paper, Eq. 9-13) with a proximal term.
+//!
+//! Linearised at x, the problem is min 1/2 sum m^ |y - y0|^2 + 1/2 sum mu |y - x|^2 subject to the rows. The
+//! proximal term mu keeps a curvature that linearising anew drops: moving an edge of length |e| that
+//! carries a multiplier lambda sideways costs lambda/|e|, and a contact's normal turns with the local
+//! edge length h. Without it y wanders for ever in hard contact; at y = x it vanishes, so the
+//! fixed point is unchanged. With w = 1/(m^ + mu):
+//!
+//! y = y' + W J^T lambda,   y' = w (m^ y0 + mu x).
+
+use crate::{BackwardStep, Problem, State, Statistics};
+use bowknot_constraints::{ContactRows, EdgeForm, EdgeLimits, predicted_gap};
+use bowknot_geometry::{PairKind, Vector};
+use bowknot_lcp::{self as lcp, Family, Row, Schedule};
+use std::time::Instant;
+
+/// Range of the coarse correction's factor: beyond it the linear model that it comes from says nothing.
+const COARSE_RANGE: (f64, f64) = (0.3, 2.0);
+/// Sweeps between two looks at the stretch while polishing.
+const POLISH_BATCH: usize = 8;
+
+/// The default [`BackwardStep`].
+#[derive(Debug, Default)]
+pub struct LcpBackward {
+    edges: EdgeLimits,
+    /// Which vertices `edges` was made for.
+    movable: Vec<bool>,
+    /// Vector multipliers of the edges (ball form).
+    forces: Vec<Vector>,
+    /// Scalar multipliers of the edges (linear form).
+    edge_multipliers: Vec<f64>,
+    contacts: ContactRows,
+    /// Contact rows, and in the linear form the edges' rows behind them.
+    rows: Vec<Row>,
+    row_starts: Vec<u32>,
+    lambda: Vec<f64>,
+    proximal: Vec<f64>,
+    weights: Vec<f64>,
+    /// y' [m].
+    free: Vec<Vector>,
+    /// y [m].
+    y: Vec<Vector>,
+}
+
+impl BackwardStep for LcpBackward {
+    fn begin(&mut self, problem: &Problem, state: &State) {
+        let changed = self.movable.len() != problem.prescribed.len()
+            || self.movable.iter().zip(&problem.prescribed).any(|(movable, prescribed)| movable == prescribed);
+        if changed {
+            self.movable = problem.prescribed.iter().map(|p| !p).collect();
+            let constraints = &problem.params.constraints;
+            self.edges = if constraints.edges {
+                EdgeLimits::new(problem.model.topology(), &problem.rest, &self.movable)
+            } else {
+                EdgeLimits::default()
+            };
+        }
+        let constraints = &problem.params.constraints;
+        self.edges.begin(&state.x, constraints.edge_reference, constraints.stretch_limit);
+        self.forces.clear();
+        self.forces.resize(self.edges.balls.len(), Vector::zeros());
+        self.edge_multipliers.clear();
+        self.edge_multipliers.resize(self.edges.balls.len(), 0.0);
+    }
+
+    fn project(&mut self, problem: &Problem, state: &mut State, statistics: &mut Statistics) {
+        let clock = Instant::now();
+        self.set_weights(problem, state);
+        self.fill_rows(problem, state, statistics);
+        self.sweep(problem, state.remaining, statistics);
+        self.store(problem, state);
+        statistics.seconds.backward += clock.elapsed().as_secs_f64();
+    }
+
+    fn stretch_to_limit(&self, state: &State) -> f64 {
+        self.edges.stretch(&state.x).to_limit
+    }
+
+    fn finish(&mut self, problem: &Problem, state: &State, statistics: &mut Statistics) {
+        let stretch = self.edges.stretch(&state.x);
+        statistics.max_step_stretch = stretch.to_start;
+        statistics.max_stretch = stretch.to_rest;
+        statistics.edge_colours = self.edges.colour_count();
+        statistics.stationarity_m = (0..self.y.len())
+            .filter(|&v| problem.movable(v))
+            .map(|v| {
+                // J^T lambda = (y - y')/w.
+                let pull = (self.y[v] - self.free[v]) / (self.weights[v] * problem.relative_mass[v]);
+                (state.target[v] + pull - state.x[v]).norm()
+            })
+            .fold(0.0, f64::max);
+        statistics.complementarity_m = self
+            .rows
+            .iter()
+            .zip(&self.lambda)
+            .map(|(row, lambda)| lambda.min(row.value(&self.y)).abs())
+            .fold(0.0, f64::max);
+    }
+}
+
+impl LcpBackward {
+    /// mu from the last multipliers, then w and y'.
+    fn set_weights(&mut self, problem: &Problem, state: &State) {
+        let params = &problem.params.backward;
+        self.proximal.clear();
+        self.proximal.resize(state.x.len(), 0.0);
+        if params.edge_proximal > 0.0 {
+            for (k, ball) in self.edges.balls.iter().enumerate() {
+                let lambda = match problem.params.constraints.edge_form {
+                    EdgeForm::Ball => self.forces[k].norm(),
+                    EdgeForm::Linear => self.edge_multipliers[k],
+                };
+                if lambda > 0.0 {
+                    let [a, b] = ball.vertices.map(|v| v as usize);
+                    let length = (state.x[a] - state.x[b]).norm().max(f64::MIN_POSITIVE);
+                    let mu = params.edge_proximal * lambda / length;
+                    self.proximal[a] += mu;
+                    self.proximal[b] += mu;
+                }
+            }
+        }
+        if params.contact_proximal > 0.0 {
+            let contacts = &state.contacts;
+            for kind in PairKind::ALL {
+                for p in contacts.pairs.range(kind) {
+                    let lambda = contacts.multipliers[p];
+                    if lambda > 0.0 {
+                        let vertices = &contacts.pairs.pairs()[p].vertices;
+                        for k in 0..kind.vertex_count() {
+                            let v = vertices[k] as usize;
+                            self.proximal[v] += params.contact_proximal * lambda * contacts.separations[p].weights[k]
+                                / problem.local_edge[v];
+                        }
+                    }
+                }
+            }
+        }
+        self.weights.clear();
+        self.free.clear();
+        for v in 0..state.x.len() {
+            let (mass, mu) = (problem.relative_mass[v], self.proximal[v]);
+            if problem.movable(v) {
+                let weight = 1.0 / (mass + mu);
+                self.weights.push(weight);
+                self.free.push(weight * (mass * state.target[v].coords + mu * state.x[v].coords));
+            } else {
+                self.weights.push(0.0);
+                self.free.push(state.target[v].coords);
+            }
+        }
+    }
+
+    /// Rows of the pairs in range, with the multipliers that they had.
+    fn fill_rows(&mut self, problem: &Problem, state: &State, statistics: &mut Statistics) {
+        let constraints = &problem.params.constraints;
+        let contacts = &state.contacts;
+        let (range, active) = (problem.lengths.contact_range, constraints.active);
+        let in_range = |p: usize| contacts.separations[p].distance <= range;
+        let only_active = problem.params.backward.active_rows;
+        self.contacts.fill(
+            constraints.form,
+            &contacts.pairs,
+            &contacts.separations,
+            &contacts.desired,
+            &state.x,
+            &self.movable,
+            |p, kind| {
+                in_range(p)
+                    && (!only_active || contacts.multipliers[p] > 0.0 || {
+                        let vertices = &contacts.pairs.pairs()[p].vertices;
+                        let gap = predicted_gap(kind, vertices, &contacts.separations[p], &state.x, &state.y);
+                        gap < active * contacts.desired[p]
+                    })
+            },
+        );
+        self.rows.clear();
+        self.rows.extend_from_slice(&self.contacts.rows);
+        self.row_starts.clear();
+        self.row_starts.extend_from_slice(self.contacts.colour_starts());
+        self.lambda.clear();
+        self.lambda.extend(self.contacts.pair.iter().map(|&p| contacts.multipliers[p as usize]));
+        let contact_rows = self.rows.len();
+        if constraints.edge_form == EdgeForm::Linear {
+            self.edges.linearise(&state.x, &mut self.rows);
+            self.lambda.extend_from_slice(&self.edge_multipliers);
+            let starts = self.edges.colour_starts().iter().skip(1);
+            if self.row_starts.is_empty() {
+                self.row_starts.push(0);
+            }
+            self.row_starts.extend(starts.map(|s| s + contact_rows as u32));
+        }
+        statistics.contact_rows = contact_rows;
+        statistics.contact_colours = self.contacts.colour_count();
+        statistics.edge_rows = self.edges.balls.len();
+        if only_active {
+            statistics.skipped.rows += (0..contacts.pairs.len()).filter(|&p| in_range(p)).count() - contact_rows;
+        }
+    }
+
+    /// Sweeps over the rows from the kept multipliers.
+    fn sweep(&mut self, problem: &Problem, remaining: f64, statistics: &mut Statistics) {
+        let params = &problem.params.backward;
+        let balls: &[lcp::BallRow] = match problem.params.constraints.edge_form {
+            EdgeForm::Ball => &self.edges.balls,
+            EdgeForm::Linear => &[],
+        };
+        let schedule = |starts| Schedule::coloured(starts);
+        let ball_starts = if balls.is_empty() { &[][..] } else { self.edges.colour_starts() };
+        self.y.clone_from(&self.free);
+        let solve = || -> Result<(), lcp::Error> {
+            lcp::prepare_rows(&mut self.rows, &self.weights)?;
+            let system = lcp::Problem::new(
+                &self.weights,
+                Family::new(&self.rows, schedule(&self.row_starts)),
+                Family::new(balls, schedule(ball_starts)),
+                Family::default(),
+            )?;
+            let forces = if balls.is_empty() { &mut [][..] } else { &mut self.forces[..] };
+            let mut state =
+                lcp::State { y: &mut self.y, lambda: &mut self.lambda, forces, friction: &mut [] };
+            lcp::apply_multipliers(&system, &mut state)?;
+            let one = lcp::Params { max_sweeps: 1, ..lcp::Params::default() };
+            let batch = |state: &mut lcp::State<'_>, sweeps: usize| -> Result<(), lcp::Error> {
+                if params.coarse_correction {
+                    for _ in 0..sweeps {
+                        scale_multipliers(&system, &self.free, state);
+                        lcp::solve_coloured(&system, state, &one)?;
+                    }
+                } else {
+                    let all = lcp::Params { max_sweeps: sweeps as u32, ..one };
+                    lcp::solve_coloured(&system, state, &all)?;
+                }
+                Ok(())
+            };
+            batch(&mut state, params.sweeps)?;
+            if remaining < params.polish_distance * problem.lengths.edge {
+                let allowed = 1.0 + 0.5 * problem.params.stop.stretch_tolerance;
+                let mut sweeps = params.sweeps;
+                while sweeps < params.polish_sweeps && stretch(&self.edges, state.y) > allowed {
+                    let more = POLISH_BATCH.min(params.polish_sweeps - sweeps);
+                    batch(&mut state, more)?;
+                    sweeps += more;
+                }
+            }
+            Ok(())
+        };
+        let solved = { solve }();
+        // Rows and schedules are built just above from checked parts; a refusal here is our own error.
+        debug_assert!(solved.is_ok(), "{solved:?}");
+        if let Err(error) = solved {
+            tracing::error!(%error, "the backward step refused its own rows; the target is used as it is");
+            self.y.clone_from(&self.free);
+        }
+        statistics.active_rows = self.lambda.iter().filter(|l| **l > 0.0).count()
+            + self.forces.iter().filter(|f| **f != Vector::zeros()).count();
+    }
+
+    fn store(&mut self, problem: &Problem, state: &mut State) {
+        for (target, y) in state.y.iter_mut().zip(&self.y) {
+            target.coords = *y;
+        }
+        state.contacts.multipliers.iter_mut().for_each(|m| *m = 0.0);
+        let contact_rows = self.contacts.pair.len();
+        for (&p, &lambda) in self.contacts.pair.iter().zip(&self.lambda) {
+            state.contacts.multipliers[p as usize] = lambda;
+        }
+        if problem.params.constraints.edge_form == EdgeForm::Linear {
+            self.edge_multipliers.copy_from_slice(&self.lambda[contact_rows..]);
+        }
+    }
+}
+
+fn stretch(edges: &EdgeLimits, y: &[Vector]) -> f64 {
+    edges
+        .balls
+        .iter()
+        .map(|ball| (y[ball.vertices[0] as usize] - y[ball.vertices[1] as usize]).norm() / ball.limit)
+        .fold(0.0, f64::max)
+}
+
+/// The coarse correction: one factor s for all multipliers, the maximiser of the dual along that ray.
+///
+/// With delta = y - y' = W J^T lambda, scaling by s moves y to y' + s delta and each row value linearly; the dual's
+/// derivative vanishes where sum lambda_p c_p(y) + sum (L |f| - f . (y_a - y_b)) = (1 - s) sum |delta|^2 / w.
+fn scale_multipliers(system: &lcp::Problem<'_>, free: &[Vector], state: &mut lcp::State<'_>) {
+    let mut slack = 0.0;
+    for (row, &lambda) in system.rows().rows.iter().zip(&*state.lambda) {
+        if lambda > 0.0 {
+            slack += lambda * row.value(state.y);
+        }
+    }
+    for (ball, force) in system.balls().rows.iter().zip(&*state.forces) {
+        if *force != Vector::zeros() {
+            let [a, b] = ball.vertices.map(|v| v as usize);
+            slack += ball.limit * force.norm() - force.dot(&(state.y[a] - state.y[b]));
+        }
+    }
+    let mut energy = 0.0;
+    for ((y, free), &weight) in state.y.iter().zip(free).zip(system.weights()) {
+        if weight > 0.0 {
+            energy += (y - free).norm_squared() / weight;
+        }
+    }
+    if !(energy > 0.0) {
+        return;
+    }
+    let s = (1.0 - slack / energy).clamp(COARSE_RANGE.0, COARSE_RANGE.1);
+    if !s.is_finite() {
+        return;
+    }
+    state.lambda.iter_mut().for_each(|l| *l *= s);
+    state.forces.iter_mut().for_each(|f| *f *= s);
+    for ((y, free), &weight) in state.y.iter_mut().zip(free).zip(system.weights()) {
+        if weight > 0.0 {
+            *y = free + s * (*y - free);
+        }
+    }
+}

@@ -1,0 +1,146 @@
+//! What is fixed about a scene, and every length that parameters leave to the mesh.
+
+use crate::{Params, ResolveError};
+use bowknot_geometry::Point;
+use bowknot_proximity::CollisionModel;
+
+/// Lengths in force: stated ones as they are, the others from the mesh [m].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lengths {
+    /// Mean rest length of the deformable edges, h.
+    pub edge: f64,
+    /// Desired distance of contacts, delta.
+    pub delta: f64,
+    /// Gap floor, xi.
+    pub floor: f64,
+    /// Distance within which pairs become rows.
+    pub contact_range: f64,
+    /// Speed at which tight pairs are separated [m/s].
+    pub separation_speed: f64,
+}
+
+/// What is fixed about a scene: collision model, rest positions, masses, lengths, parameters.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    /// Topology, bodies, filters, half-spaces.
+    pub model: CollisionModel,
+    /// Rest positions [m].
+    pub rest: Vec<Point>,
+    /// Mass of each vertex relative to the mean mass of deformable vertices; 0 for obstacles.
+    pub relative_mass: Vec<f64>,
+    /// Mean rest length of the edges at each vertex [m]; the mean edge length where there is none.
+    pub local_edge: Vec<f64>,
+    /// Vertices of obstacles, ascending.
+    pub obstacle_vertices: Vec<u32>,
+    /// Lengths in force.
+    pub lengths: Lengths,
+    /// Parameters as given.
+    pub params: Params,
+    /// Vertices that are prescribed in the present call: obstacles and pins.
+    pub prescribed: Vec<bool>,
+}
+
+impl Problem {
+    /// Checks the input and fills in the lengths.
+    ///
+    /// # Errors
+    /// See [`crate::Resolver::new`].
+    pub fn new(
+        model: CollisionModel,
+        rest: &[Point],
+        masses: &[f64],
+        params: Params,
+    ) -> Result<Self, ResolveError> {
+        params.validate().map_err(ResolveError::Params)?;
+        let vertices = model.topology().vertex_count;
+        for (what, given) in [("rest positions", rest.len()), ("masses", masses.len())] {
+            if given != vertices {
+                return Err(ResolveError::Length { what, given, vertices });
+            }
+        }
+        check_finite("the rest position", &model, rest)?;
+        let prescribed: Vec<bool> = (0..vertices as u32).map(|v| model.is_obstacle(v)).collect();
+        let mut total = 0.0;
+        for (vertex, &mass) in masses.iter().enumerate().filter(|(v, _)| !prescribed[*v]) {
+            if !(mass.is_finite() && mass > 0.0) {
+                return Err(ResolveError::Mass { vertex, body: model.vertex_body()[vertex], mass });
+            }
+            total += mass;
+        }
+        let deformable = prescribed.iter().filter(|p| !**p).count();
+        let mean = total / deformable.max(1) as f64;
+        let relative_mass =
+            masses.iter().zip(&prescribed).map(|(m, fixed)| if *fixed { 0.0 } else { m / mean }).collect();
+        let obstacle_vertices = (0..vertices as u32).filter(|&v| prescribed[v as usize]).collect();
+        let (edge, local_edge) = edge_lengths(&model, rest, &prescribed);
+        let lengths = lengths(&params, edge);
+        Ok(Self { model, rest: rest.to_vec(), relative_mass, local_edge, obstacle_vertices, lengths, params, prescribed })
+    }
+
+    /// Whether the present call may move a vertex on its own account.
+    #[inline]
+    pub fn movable(&self, vertex: usize) -> bool {
+        !self.prescribed[vertex]
+    }
+}
+
+/// Refuses positions that are not finite.
+pub(crate) fn check_finite(
+    what: &'static str,
+    model: &CollisionModel,
+    positions: &[Point],
+) -> Result<(), ResolveError> {
+    match positions.iter().position(|p| !p.iter().all(|c| c.is_finite())) {
+        Some(vertex) => Err(ResolveError::NonFinite { what, vertex, body: model.vertex_body()[vertex] }),
+        None => Ok(()),
+    }
+}
+
+/// Mean rest edge length of the deformable bodies, and of the edges at each vertex. A scene of particles alone
+/// takes a hundredth of its diagonal.
+fn edge_lengths(model: &CollisionModel, rest: &[Point], obstacle: &[bool]) -> (f64, Vec<f64>) {
+    let mut sums = vec![(0.0f64, 0u32); rest.len()];
+    let (mut total, mut count) = (0.0, 0u32);
+    for &[a, b] in &model.topology().edges {
+        let (a, b) = (a as usize, b as usize);
+        let length = (rest[a] - rest[b]).norm();
+        for v in [a, b] {
+            sums[v].0 += length;
+            sums[v].1 += 1;
+        }
+        if !obstacle[a] {
+            total += length;
+            count += 1;
+        }
+    }
+    let mean = if count > 0 && total > 0.0 {
+        total / f64::from(count)
+    } else {
+        let low = rest.iter().fold(Point::origin(), |m, p| m.inf(p));
+        let high = rest.iter().fold(Point::origin(), |m, p| m.sup(p));
+        let diagonal = (high - low).norm();
+        if diagonal > 0.0 { 0.01 * diagonal } else { 0.01 }
+    };
+    // An obstacle's own edges may be far larger than the cloth that it meets; its travel is budgeted by
+    // the finer of the two.
+    let local = sums
+        .iter()
+        .enumerate()
+        .map(|(v, &(sum, n))| {
+            let own = if n > 0 && sum > 0.0 { sum / f64::from(n) } else { mean };
+            if obstacle[v] { own.min(mean) } else { own }
+        })
+        .collect();
+    (mean, local)
+}
+
+fn lengths(params: &Params, edge: f64) -> Lengths {
+    let delta = params.constraints.delta.unwrap_or(0.1 * edge);
+    Lengths {
+        edge,
+        delta,
+        floor: params.stepper.floor.unwrap_or(0.1 * delta),
+        contact_range: params.constraints.range * delta,
+        separation_speed: params.constraints.separation_speed.unwrap_or(20.0 * delta),
+    }
+}
