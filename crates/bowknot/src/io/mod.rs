@@ -1,0 +1,28 @@
+//! Files in and out: meshes (OBJ, PLY), collision problems and frame stacks (NPZ), atomic writes.
+//!
+//! Everything in memory is in metres with z up; [`Import`] converts on the way in. Readers never panic and never
+//! allocate on the word of a header: a malformed file gives an [`IoError`] that names the file and the line, element
+//! or array. Elements are kept as they stand in the file, degenerate ones too; whether a triangle of zero area is an
+//! error or a warning depends on the body, which the scene knows and a file does not.
+//!
+//! The readers are our own because the crates at hand do not say where a file is wrong (`tobj`) or refuse numbers
+//! that exporters write, such as `1.` (`ply-rs-bw`); both serve as oracles in the tests.
+
+mod atomic;
+mod error;
+mod import;
+mod mesh;
+mod npz;
+mod obj;
+mod ply;
+
+pub use atomic::{create_folder, write_atomic, write_text};
+pub use error::{IoError, Place};
+pub use import::{Import, Up};
+pub use mesh::{Mesh, MeshView, natural_order, read_mesh};
+pub use npz::{FrameStack, States, write_result};
+pub use obj::{read_obj, write_obj};
+pub use ply::{read_ply, write_ply};
+
+#[cfg(test)]
+mod tests;

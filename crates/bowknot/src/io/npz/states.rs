@@ -1,0 +1,176 @@
+//! Collision problems: a state x, a target y, and what collides.
+
+use super::archive::{Archive, write_archive};
+use crate::io::IoError;
+use bowknot_geometry::{HalfSpace, Point, Vector};
+use ndarray::{Array0, Array1, Array2};
+use std::path::Path;
+
+/// One collision problem as `--record` writes it and `resolve` reads it.
+///
+/// In the archive: `x[n,3]`, `y[n,3]` [m], `F[m,3]`, and optionally `E[k,2]` (strands), `P[p]` (particles),
+/// `rest[n,3]` [m], `mass[n]` [kg], `fixed[n]`, `O[n]` (obstacle), `body[n]`, `planes[h,4]` (unit normal, offset [m]),
+/// `dt` [s]; stored or deflated, f32 or f64, integers of any width.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct States {
+    /// The state, free of intersections.
+    pub x: Vec<Point>,
+    /// The target.
+    pub y: Vec<Point>,
+    /// Triangles (`F`).
+    pub triangles: Vec<[u32; 3]>,
+    /// Strand edges (`E`).
+    pub strands: Vec<[u32; 2]>,
+    /// Particles (`P`).
+    pub particles: Vec<u32>,
+    /// Rest positions (`rest`); those of `x` if the archive has none.
+    pub rest: Vec<Point>,
+    /// Masses (`mass`); 1 if the archive has none.
+    pub masses: Vec<f64>,
+    /// Prescribed vertices (`fixed`); none if the archive has none.
+    pub fixed: Vec<bool>,
+    /// Obstacle vertices (`O`); none if the archive has none.
+    pub obstacle: Vec<bool>,
+    /// Body of each vertex (`body`); if the archive has none, 0 for deformable and 1 for obstacle vertices.
+    pub body: Vec<u32>,
+    /// Half-spaces (`planes`).
+    pub half_spaces: Vec<HalfSpace>,
+    /// Time step that the problem stands for (`dt`).
+    pub time_step: Option<f64>,
+}
+
+impl States {
+    /// Reads a problem.
+    ///
+    /// # Errors
+    /// A missing or malformed archive, a missing or misshapen array, numbers out of range; with the array.
+    pub fn read(path: &Path) -> Result<Self, IoError> {
+        let mut archive = Archive::open(path)?;
+        let missing = |archive: &Archive<'_>, name: &str| {
+            let names = archive.names().join(", ");
+            archive.file_fault(format!("array {name} is missing; the archive has: {names}"))
+        };
+        let x = archive.points("x", None)?.ok_or_else(|| missing(&archive, "x"))?;
+        let n = x.len();
+        if n == 0 {
+            return Err(archive.fault("x", "it has no vertices"));
+        }
+        if n > u32::MAX as usize {
+            return Err(archive.fault("x", format!("{n} vertices; at most {} are possible", u32::MAX)));
+        }
+        let y = archive.points("y", Some(n))?.ok_or_else(|| missing(&archive, "y"))?;
+        let rest = archive.points("rest", Some(n))?.unwrap_or_else(|| x.clone());
+        let masses = archive.column("mass", Some(n))?.unwrap_or_else(|| vec![1.0; n]);
+        let fixed = flags(&mut archive, "fixed", n)?;
+        let obstacle = flags(&mut archive, "O", n)?;
+        let body = bodies(&mut archive, &obstacle)?;
+        let particles = archive.elements::<1>("P", n)?.into_iter().flatten().collect();
+        Ok(Self {
+            triangles: archive.elements("F", n)?,
+            strands: archive.elements("E", n)?,
+            particles,
+            half_spaces: planes(&mut archive)?,
+            time_step: time_step(&mut archive)?,
+            x,
+            y,
+            rest,
+            masses,
+            fixed,
+            obstacle,
+            body,
+        })
+    }
+
+    /// Writes the problem, deflated and atomically; f64 and i32, so that it reads back to the same bits.
+    ///
+    /// # Errors
+    /// The system's refusal, with the path.
+    pub fn write(&self, path: &Path) -> Result<(), IoError> {
+        write_archive(path, true, |archive| {
+            archive.add_array("x", &points(&self.x))?;
+            archive.add_array("y", &points(&self.y))?;
+            archive.add_array("F", &elements(&self.triangles))?;
+            archive.add_array("E", &elements(&self.strands))?;
+            archive.add_array("P", &Array1::from_iter(self.particles.iter().map(|&p| p as i32)))?;
+            archive.add_array("rest", &points(&self.rest))?;
+            archive.add_array("mass", &Array1::from_iter(self.masses.iter().copied()))?;
+            archive.add_array("fixed", &Array1::from_iter(self.fixed.iter().copied()))?;
+            archive.add_array("O", &Array1::from_iter(self.obstacle.iter().copied()))?;
+            archive.add_array("body", &Array1::from_iter(self.body.iter().map(|&b| b as i32)))?;
+            let rows: Vec<[f64; 4]> =
+                self.half_spaces.iter().map(|h| [h.normal.x, h.normal.y, h.normal.z, h.offset]).collect();
+            archive.add_array("planes", &table(&rows, |v| v))?;
+            if let Some(dt) = self.time_step {
+                archive.add_array("dt", &Array0::from_elem((), dt))?;
+            }
+            Ok(())
+        })
+    }
+}
+
+/// Writes the answer of `resolve`: `x[n,3]` as f64, atomically.
+///
+/// # Errors
+/// The system's refusal, with the path.
+pub fn write_result(path: &Path, x: &[Point]) -> Result<(), IoError> {
+    write_archive(path, false, |archive| archive.add_array("x", &points(x)))
+}
+
+fn flags(archive: &mut Archive<'_>, name: &str, n: usize) -> Result<Vec<bool>, IoError> {
+    let values = archive.column(name, Some(n))?;
+    Ok(values.map_or_else(|| vec![false; n], |v| v.into_iter().map(|flag| flag != 0.0).collect()))
+}
+
+fn bodies(archive: &mut Archive<'_>, obstacle: &[bool]) -> Result<Vec<u32>, IoError> {
+    let Some(values) = archive.column("body", Some(obstacle.len()))? else {
+        return Ok(obstacle.iter().map(|&o| u32::from(o)).collect());
+    };
+    // Bodies are counted, so that a stray large number would cost memory; none has more bodies than vertices.
+    let limit = values.len() as f64;
+    if let Some(vertex) = values.iter().position(|&b| !(b >= 0.0 && b < limit && b.fract() == 0.0)) {
+        let body = values[vertex];
+        return Err(
+            archive.fault("body", format!("vertex {vertex} has body {body}; bodies are numbered from 0 up"))
+        );
+    }
+    Ok(values.into_iter().map(|b| b as u32).collect())
+}
+
+fn planes(archive: &mut Archive<'_>) -> Result<Vec<HalfSpace>, IoError> {
+    let mut half_spaces = Vec::new();
+    for (index, [x, y, z, offset]) in archive.rows::<4>("planes")?.unwrap_or_default().into_iter().enumerate()
+    {
+        let normal = Vector::new(x, y, z);
+        let length = normal.norm();
+        if !(length.is_finite() && length > 0.0 && offset.is_finite()) {
+            return Err(archive.fault(
+                "planes",
+                format!("row {index} needs a normal (not zero) and an offset, all finite"),
+            ));
+        }
+        // A normal that is a unit to rounding is kept bit by bit, so that a recorded problem is the one that was run.
+        let scale = if (length - 1.0).abs() < 1e-12 { 1.0 } else { length };
+        half_spaces.push(HalfSpace { normal: normal / scale, offset: offset / scale });
+    }
+    Ok(half_spaces)
+}
+
+fn time_step(archive: &mut Archive<'_>) -> Result<Option<f64>, IoError> {
+    let Some((values, _)) = archive.array("dt")? else { return Ok(None) };
+    match values.as_slice() {
+        [dt] if dt.is_finite() && *dt > 0.0 => Ok(Some(*dt)),
+        _ => Err(archive.fault("dt", format!("{values:?} must be one finite number above 0"))),
+    }
+}
+
+fn points(points: &[Point]) -> Array2<f64> {
+    Array2::from_shape_fn((points.len(), 3), |(i, k)| points[i][k])
+}
+
+fn elements<const N: usize>(rows: &[[u32; N]]) -> Array2<i32> {
+    table(rows, |v| v as i32)
+}
+
+fn table<A: Copy, B, const N: usize>(rows: &[[A; N]], convert: impl Fn(A) -> B) -> Array2<B> {
+    Array2::from_shape_fn((rows.len(), N), |(i, k)| convert(rows[i][k]))
+}

@@ -1,0 +1,194 @@
+//! Wavefront OBJ: `v`, `f`, `l` and `p`; every other statement is skipped.
+
+use super::{Import, IoError, Mesh, MeshView, Place, write_atomic};
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+
+/// Reads an OBJ file: vertices, faces (as fans around their first vertex), `l` polylines as strands, `p` points.
+///
+/// Indices count from 1, or backward from the last vertex read when negative; `v/vt/vn` triples are read for their
+/// first number; a `\` at the end of a line continues it.
+///
+/// # Errors
+/// A missing or malformed file, coordinates that are not finite, indices of vertices that do not exist; with the line.
+pub fn read_obj(path: &Path, import: &Import) -> Result<Mesh, IoError> {
+    import.validate().map_err(|message| IoError::content(path, Place::File, message))?;
+    let bytes = fs::read(path).map_err(|source| IoError::system("read", path, source))?;
+    // Names of groups and materials may be in any encoding; the numbers are ASCII.
+    let text = String::from_utf8_lossy(&bytes);
+    let mut reader = Reader { path, import, mesh: Mesh::default(), pending: Vec::new() };
+
+    let mut joined = String::new();
+    let mut first_line = 0;
+    for (index, line) in text.lines().enumerate() {
+        let number = index + 1;
+        let line = line.split('#').next().unwrap_or("").trim();
+        if joined.is_empty() {
+            first_line = number;
+        }
+        if let Some(start) = line.strip_suffix('\\') {
+            joined.push_str(start);
+            joined.push(' ');
+        } else if joined.is_empty() {
+            reader.statement(line, number)?;
+        } else {
+            joined.push_str(line);
+            reader.statement(&joined, first_line)?;
+            joined.clear();
+        }
+    }
+    reader.statement(&joined, first_line)?;
+    reader.finish()
+}
+
+/// Writes positions, faces, strands and particles as an OBJ file, atomically; coordinates round-trip exactly.
+///
+/// # Errors
+/// The system's refusal, with the path.
+pub fn write_obj(path: &Path, mesh: &MeshView<'_>) -> Result<(), IoError> {
+    write_atomic(path, |out| {
+        for p in mesh.positions {
+            writeln!(out, "v {:?} {:?} {:?}", p.x, p.y, p.z)?;
+        }
+        for [i, j, k] in mesh.triangles {
+            writeln!(out, "f {} {} {}", i + 1, j + 1, k + 1)?;
+        }
+        for [i, j, k, l] in mesh.quads {
+            writeln!(out, "f {} {} {} {}", i + 1, j + 1, k + 1, l + 1)?;
+        }
+        for [i, j] in mesh.strands {
+            writeln!(out, "l {} {}", i + 1, j + 1)?;
+        }
+        for i in mesh.particles {
+            writeln!(out, "p {}", i + 1)?;
+        }
+        Ok(())
+    })
+}
+
+struct Reader<'a> {
+    path: &'a Path,
+    import: &'a Import,
+    mesh: Mesh,
+    /// Indices that no vertex had when they were read, with their line: vertices may follow the faces.
+    pending: Vec<(u32, usize)>,
+}
+
+impl Reader<'_> {
+    fn statement(&mut self, line: &str, number: usize) -> Result<(), IoError> {
+        let mut words = line.split_ascii_whitespace();
+        match words.next() {
+            Some("v") => self.vertex(words, number),
+            Some("f") => {
+                let corners = self.indices(words, number, "a face", 3)?;
+                self.mesh
+                    .triangles
+                    .extend((2..corners.len()).map(|k| [corners[0], corners[k - 1], corners[k]]));
+                Ok(())
+            }
+            Some("l") => {
+                let line = self.indices(words, number, "a line", 2)?;
+                self.mesh.strands.extend(line.windows(2).map(|pair| [pair[0], pair[1]]));
+                Ok(())
+            }
+            Some("p") => {
+                let points = self.indices(words, number, "a point", 1)?;
+                self.mesh.particles.extend(points);
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn vertex<'w>(&mut self, words: impl Iterator<Item = &'w str>, number: usize) -> Result<(), IoError> {
+        let mut coordinates = [0.0; 3];
+        let mut count = 0;
+        // A weight or a colour may follow the three coordinates.
+        for (slot, word) in coordinates.iter_mut().zip(words) {
+            *slot =
+                word.parse::<f64>().map_err(|_| self.error(number, format!("'{word}' is not a number")))?;
+            if !slot.is_finite() {
+                return Err(self.error(number, format!("coordinate {word} is not finite")));
+            }
+            count += 1;
+        }
+        if count < 3 {
+            return Err(self.error(number, format!("a vertex needs 3 coordinates, this one has {count}")));
+        }
+        let point = self.import.point(coordinates);
+        if !point.iter().all(|c| c.is_finite()) {
+            return Err(
+                self.error(number, format!("a coordinate overflows when scaled by {}", self.import.scale))
+            );
+        }
+        if self.mesh.positions.len() >= u32::MAX as usize {
+            return Err(self.error(number, "more than 4294967295 vertices"));
+        }
+        self.mesh.positions.push(point);
+        Ok(())
+    }
+
+    fn indices<'w>(
+        &mut self,
+        words: impl Iterator<Item = &'w str>,
+        number: usize,
+        element: &str,
+        least: usize,
+    ) -> Result<Vec<u32>, IoError> {
+        let mut indices = Vec::new();
+        for word in words {
+            indices.push(self.index(word, number)?);
+        }
+        if indices.len() < least {
+            let plural = if least == 1 { "vertex" } else { "vertices" };
+            return Err(self
+                .error(number, format!("{element} needs {least} {plural}, this one has {}", indices.len())));
+        }
+        Ok(indices)
+    }
+
+    fn index(&mut self, word: &str, number: usize) -> Result<u32, IoError> {
+        let digits = word.split('/').next().unwrap_or(word);
+        let index: i64 =
+            digits.parse().map_err(|_| self.error(number, format!("'{word}' is not a vertex index")))?;
+        let count = self.mesh.positions.len() as i64;
+        let zero_based = match index {
+            0 => return Err(self.error(number, "vertex index 0: indices count from 1")),
+            i if i > 0 => i - 1,
+            i if -i <= count => count + i,
+            i => {
+                return Err(
+                    self.error(number, format!("vertex index {i}, but only {count} vertices precede it"))
+                );
+            }
+        };
+        let zero_based = u32::try_from(zero_based)
+            .map_err(|_| self.error(number, format!("vertex index {index} is larger than any mesh")))?;
+        if i64::from(zero_based) >= count {
+            self.pending.push((zero_based, number));
+        }
+        Ok(zero_based)
+    }
+
+    fn finish(self) -> Result<Mesh, IoError> {
+        let count = self.mesh.positions.len();
+        if let Some((index, line)) = self.pending.iter().find(|(index, _)| *index as usize >= count) {
+            let message =
+                format!("vertex index {}, but the file has {count} vertices", u64::from(*index) + 1);
+            return Err(self.error(*line, message));
+        }
+        if count == 0 {
+            return Err(IoError::content(
+                self.path,
+                Place::File,
+                "no vertices: not a Wavefront OBJ, or an empty one",
+            ));
+        }
+        Ok(self.mesh)
+    }
+
+    fn error(&self, line: usize, message: impl Into<String>) -> IoError {
+        IoError::content(self.path, Place::Line(line), message)
+    }
+}

@@ -1,0 +1,9 @@
+//! PLY: read in all three encodings, written as binary little-endian doubles.
+
+mod header;
+mod payload;
+mod read;
+mod write;
+
+pub use read::read_ply;
+pub use write::write_ply;
