@@ -1,0 +1,118 @@
+//! The steps of CI, each with its name and duration.
+//!
+//! All steps share one target folder and the release profile, so that what one compiles the next finds. The tests come
+//! last and nothing follows them: the log ends with the test runner's own lines.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+use std::time::Instant;
+
+/// Crates that must compile for the web: no clock, no files, no threads of their own.
+const WASM_CRATES: [&str; 5] =
+    ["bowknot-geometry", "bowknot-proximity", "bowknot-lcp", "bowknot-constraints", "bowknot-stepper"];
+const WASM_TARGET: &str = "wasm32-unknown-unknown";
+
+struct Step {
+    name: &'static str,
+    command: Command,
+}
+
+/// Runs the steps in order and stops at the first that fails.
+pub fn run(fast: bool) -> ExitCode {
+    let root = root();
+    let steps = if fast { fast_steps(&root) } else { all_steps(&root) };
+    let count = steps.len();
+    for (index, mut step) in steps.into_iter().enumerate() {
+        println!("\n==> [{}/{count}] {}: {}", index + 1, step.name, describe(&step.command));
+        let clock = Instant::now();
+        let passed = match step.command.status() {
+            Ok(status) => status.success(),
+            Err(error) => {
+                eprintln!("cannot start {}: {error}", describe(&step.command));
+                false
+            }
+        };
+        let seconds = clock.elapsed().as_secs_f64();
+        if !passed {
+            println!("<== {} failed after {seconds:.1} s", step.name);
+            return ExitCode::FAILURE;
+        }
+        if index + 1 < count {
+            println!("<== {} passed in {seconds:.1} s", step.name);
+        }
+    }
+    ExitCode::SUCCESS
+}
+
+fn fast_steps(root: &Path) -> Vec<Step> {
+    vec![
+        format(root),
+        clippy(root),
+        Step { name: "unit tests", command: cargo(root, "test --release --workspace --lib --bins") },
+    ]
+}
+
+fn all_steps(root: &Path) -> Vec<Step> {
+    let mut docs = cargo(root, "doc --release --workspace --no-deps");
+    docs.env("RUSTDOCFLAGS", "-D warnings");
+    let mut steps = vec![format(root), clippy(root), Step { name: "docs", command: docs }];
+    if wasm_is_installed() {
+        let mut wasm = cargo(root, "check --release --target");
+        wasm.arg(WASM_TARGET);
+        WASM_CRATES.iter().for_each(|name| {
+            wasm.args(["--package", name]);
+        });
+        steps.push(Step { name: "wasm", command: wasm });
+    } else {
+        println!("==> wasm: skipped, the target is missing: rustup target add {WASM_TARGET}");
+    }
+    steps.push(Step { name: "build tests", command: cargo(root, "test --release --workspace --no-run") });
+    // A fresh folder each time: `run` refuses one that holds a run.
+    let out = target_folder(root).join("xtask").join("drape");
+    if out.exists()
+        && let Err(error) = std::fs::remove_dir_all(&out)
+    {
+        eprintln!("cannot remove {}: {error}", out.display());
+    }
+    let mut drape = cargo(root, "run --release -- run drape --scale 0.4 --frames 40 --check --out");
+    drape.arg(out);
+    steps.push(Step { name: "run drape --check", command: drape });
+    steps.push(Step { name: "tests", command: cargo(root, "test --release --workspace") });
+    steps
+}
+
+fn format(root: &Path) -> Step {
+    Step { name: "format", command: cargo(root, "fmt --all --check") }
+}
+
+fn clippy(root: &Path) -> Step {
+    Step { name: "clippy", command: cargo(root, "clippy --release --workspace --all-targets -- -D warnings") }
+}
+
+/// The cargo that runs this, in the workspace's root.
+fn cargo(root: &Path, arguments: &str) -> Command {
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.args(arguments.split_whitespace()).current_dir(root);
+    command
+}
+
+fn describe(command: &Command) -> String {
+    let words = command.get_args().map(|word| word.to_string_lossy().into_owned());
+    std::iter::once("cargo".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
+}
+
+/// This crate lies two folders below the root.
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap_or(Path::new(".")).to_owned()
+}
+
+fn target_folder(root: &Path) -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from)
+}
+
+/// Whether the compiler has the standard library of the web target.
+fn wasm_is_installed() -> bool {
+    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let output = Command::new(rustc).args(["--print", "target-libdir", "--target", WASM_TARGET]).output();
+    output.is_ok_and(|o| o.status.success() && Path::new(String::from_utf8_lossy(&o.stdout).trim()).is_dir())
+}
