@@ -18,8 +18,7 @@ pub struct BodyFilter {
 
 impl BodyFilter {
     /// A deformable body that collides with everything, itself included.
-    pub const DEFORMABLE: Self =
-        Self { obstacle: false, groups: 1, mask: u32::MAX, self_collision: true };
+    pub const DEFORMABLE: Self = Self { obstacle: false, groups: 1, mask: u32::MAX, self_collision: true };
     /// An obstacle that collides with every deformable body.
     pub const OBSTACLE: Self = Self { obstacle: true, groups: 1, mask: u32::MAX, self_collision: false };
 }
@@ -83,7 +82,9 @@ impl CollisionModel {
         if vertex_body.len() != topology.vertex_count {
             return Err(ModelError::BodyCount { given: vertex_body.len(), vertices: topology.vertex_count });
         }
-        if let Some((vertex, &body)) = vertex_body.iter().enumerate().find(|(_, b)| **b as usize >= bodies.len()) {
+        if let Some((vertex, &body)) =
+            vertex_body.iter().enumerate().find(|(_, b)| **b as usize >= bodies.len())
+        {
             return Err(ModelError::UnknownBody { vertex, body, bodies: bodies.len() });
         }
         let mixed = |element: &'static str, index: usize, vertices: &[u32]| {

@@ -4,7 +4,7 @@ use bowknot_geometry::PairKind;
 use std::ops::Range;
 
 /// A pair of primitives.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Pair {
     /// The primitives' indices: vertices, edges or triangles of the topology by the pair's kind
     /// (for [`PairKind::VertexHalfSpace`] the vertex and the half-space). In edge-edge and
@@ -40,6 +40,37 @@ impl PairList {
             self.pairs[start..].sort_unstable();
             self.starts[k + 1] = self.pairs.len();
         }
+    }
+
+    /// Makes room for so many pairs of each kind, to be written by the caller in order.
+    pub(crate) fn resize_kinds(&mut self, counts: [usize; 5]) -> &mut [Pair] {
+        const BLANK: Pair = Pair { elements: [0; 2], vertices: [0; 4] };
+        self.starts = [0; 6];
+        for k in 0..5 {
+            self.starts[k + 1] = self.starts[k] + counts[k];
+        }
+        self.pairs.resize(self.starts[5], BLANK);
+        &mut self.pairs
+    }
+
+    /// For each pair the index of the same pair in another list, or `u32::MAX` where that lacks it.
+    ///
+    /// One pass over both lists, which are sorted: what belongs to pairs, as multipliers, is carried
+    /// from an old list to a new one.
+    pub fn match_with(&self, old: &PairList) -> Vec<u32> {
+        let mut matches = Vec::with_capacity(self.len());
+        for kind in PairKind::ALL {
+            let range = old.range(kind);
+            let mut next = range.start;
+            for pair in &self.pairs[self.range(kind)] {
+                while next < range.end && old.pairs[next].elements < pair.elements {
+                    next += 1;
+                }
+                let same = next < range.end && old.pairs[next].elements == pair.elements;
+                matches.push(if same { next as u32 } else { u32::MAX });
+            }
+        }
+        matches
     }
 
     /// All pairs.

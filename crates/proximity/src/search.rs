@@ -1,17 +1,82 @@
 //! The proximity search.
 
-use crate::{CollisionModel, PairList};
-use bowknot_geometry::{Point, Separation, Vector};
+use crate::assemble::{BLANK, Table};
+use crate::frame::{self, LocalVertex};
+use crate::half_spaces::near_half_spaces;
+use crate::kinds::{EdgeEdge, Kind, VertexEdge, VertexTriangle, VertexVertex};
+use crate::layer::Layer;
+use crate::obstacles::Watch;
+use crate::traverse::{Found, Query, Scene, TASK_LEAVES, leaves_meeting, search_leaves};
+use crate::tree::Tree;
+use crate::{CollisionModel, Pair, PairList, SearchStatistics};
+use bowknot_geometry::{PairKind, Point, Separation, Vector, separation};
+use rayon::prelude::*;
+
+/// Vertices that one task brings to the local frame.
+const LOCAL_CHUNK: usize = 4096;
+
+/// The layers: what belongs to them is kept up together.
+const DEFORMABLE: u8 = 0;
+const MOVING: u8 = 1;
+const RESTING: u8 = 2;
 
 /// Finds pairs; keeps its trees and buffers between calls.
 #[derive(Debug, Default)]
-pub struct ProximitySearch {}
+pub struct ProximitySearch {
+    /// Deformable surface vertices, ascending.
+    deformable: Vec<u32>,
+    /// Layer of each vertex.
+    layer_of_vertex: Vec<u8>,
+    watch: Watch,
+    /// Whether some pairs of bodies that meet in the trees may not collide.
+    filtered: bool,
+    /// Whether any pair of two deformable primitives may collide; with an obstacle.
+    meets_deformable: bool,
+    meets_obstacle: bool,
+
+    origin: Option<Point>,
+    local: Vec<LocalVertex>,
+    end: Vec<LocalVertex>,
+    layers: [Layer; 3],
+
+    leaves: Leaves,
+    tasks: [Vec<Found>; 4],
+    tables: [Table; 4],
+    half_space_pairs: Vec<Vec<Pair>>,
+    statistics: SearchStatistics,
+}
+
+/// Which leaves of which trees query others: all deformable ones, and the obstacles' ones that are
+/// near any deformable primitive.
+#[derive(Debug, Default)]
+struct Leaves {
+    all: Vec<u32>,
+    vertices: [Vec<u32>; 2],
+    edges: [Vec<u32>; 2],
+    particles: [Vec<u32>; 2],
+    particles_near_strands: [Vec<u32>; 2],
+}
 
 impl ProximitySearch {
     /// A search over the primitives of `model`; every call must pass the same model.
     pub fn new(model: &CollisionModel) -> Self {
-        let _ = model;
-        Self {}
+        let topology = model.topology();
+        let deformable: Vec<u32> =
+            topology.surface_vertices.iter().copied().filter(|&v| !model.is_obstacle(v)).collect();
+        let layer_of_vertex = (0..topology.vertex_count as u32)
+            .map(|v| if model.is_obstacle(v) { RESTING } else { DEFORMABLE })
+            .collect();
+        let encounters = Encounters::of(model);
+        Self {
+            deformable,
+            layer_of_vertex,
+            watch: Watch::new(model),
+            filtered: encounters.some_forbidden,
+            meets_deformable: encounters.deformable,
+            meets_obstacle: encounters.obstacle,
+            local: vec![[0.0; 4]; topology.vertex_count],
+            ..Self::default()
+        }
     }
 
     /// Lists every pair that may collide whose certified lower bound of the distance is at most
@@ -19,7 +84,13 @@ impl ProximitySearch {
     ///
     /// `radii` [m], one a vertex, finite and >= 0. `separations` gets each listed pair's contact
     /// geometry at `positions`, in the order of `pairs`. The result depends on the input alone,
-    /// never on the number of threads.
+    /// never on the number of threads nor on earlier searches.
+    ///
+    /// Vertices that are not finite or farther than 1e15 m from the others are in no pair, nor are
+    /// the elements that they belong to; all other pairs are listed as usual.
+    ///
+    /// # Panics
+    /// If a slice has another length than the model has vertices.
     pub fn search(
         &mut self,
         model: &CollisionModel,
@@ -28,13 +99,19 @@ impl ProximitySearch {
         pairs: &mut PairList,
         separations: &mut Vec<Separation>,
     ) {
-        let _ = (model, positions, radii, pairs, separations);
-        todo!()
+        self.run::<false>(model, positions, None, radii, pairs, separations);
     }
 
     /// As [`Self::search`], for vertices that move from x to x + u on a common clock: lists every
     /// pair whose boxes, moving linearly and inflated by their radii, meet at one and the same time
     /// in [0, 1]. Contact geometry is at the start, `positions`.
+    ///
+    /// Since the boxes contain the elements at any time, a pair that is not listed stays farther
+    /// apart than the sum of its radii all the way. Nothing else drops a pair: that the sides are
+    /// far apart at the start says nothing about later.
+    ///
+    /// # Panics
+    /// If a slice has another length than the model has vertices.
     pub fn search_swept(
         &mut self,
         model: &CollisionModel,
@@ -44,7 +121,285 @@ impl ProximitySearch {
         pairs: &mut PairList,
         separations: &mut Vec<Separation>,
     ) {
-        let _ = (model, positions, displacements, radii, pairs, separations);
-        todo!()
+        assert_eq!(displacements.len(), positions.len(), "one displacement a vertex");
+        self.run::<true>(model, positions, Some(displacements), radii, pairs, separations);
+    }
+
+    /// What the last search did.
+    pub fn statistics(&self) -> SearchStatistics {
+        self.statistics
+    }
+
+    fn run<const SWEPT: bool>(
+        &mut self,
+        model: &CollisionModel,
+        positions: &[Point],
+        displacements: Option<&[Vector]>,
+        radii: &[f64],
+        pairs: &mut PairList,
+        separations: &mut Vec<Separation>,
+    ) {
+        let count = model.topology().vertex_count;
+        assert_eq!(count, self.layer_of_vertex.len(), "the model must be the one given at first");
+        assert_eq!(positions.len(), count, "one position a vertex");
+        assert_eq!(radii.len(), count, "one radius a vertex");
+        self.statistics = SearchStatistics::default();
+
+        self.update_trees(model, positions, displacements, radii);
+
+        let scene = Scene { model, positions, radii, filtered: self.filtered };
+        self.search_kinds::<SWEPT>(&scene);
+        near_half_spaces(
+            model.half_spaces(),
+            &self.deformable,
+            positions,
+            displacements,
+            radii,
+            &mut self.half_space_pairs,
+        );
+        self.write(model, positions, pairs, separations);
+
+        for found in self.tasks.iter().flatten() {
+            self.statistics.candidates += found.candidates;
+            self.statistics.undecided += found.undecided;
+        }
+        self.statistics.pairs = pairs.len() as u64;
+    }
+
+    /// Brings local positions and trees to the state given.
+    fn update_trees(
+        &mut self,
+        model: &CollisionModel,
+        positions: &[Point],
+        displacements: Option<&[Vector]>,
+        radii: &[f64],
+    ) {
+        let first = self.origin.is_none();
+        let origin = frame::origin(positions, &self.deformable);
+        let everything = self.origin.replace(origin) != Some(origin);
+        let changes = self.watch.look(model, positions, displacements, radii);
+        if changes.layers {
+            for (v, layer) in self.layer_of_vertex.iter_mut().enumerate() {
+                let body = model.vertex_body()[v] as usize;
+                if model.bodies()[body].obstacle {
+                    *layer = if self.watch.moving[body] { MOVING } else { RESTING };
+                }
+            }
+        }
+        let refit = [true, everything || changes.moved || changes.layers, everything || changes.layers];
+
+        let layer_of_vertex = &self.layer_of_vertex;
+        let localize = |local: &mut [LocalVertex], displacements: Option<&[Vector]>| {
+            local.par_chunks_mut(LOCAL_CHUNK).enumerate().for_each(|(chunk, local)| {
+                let begin = chunk * LOCAL_CHUNK;
+                for (local, v) in local.iter_mut().zip(begin..) {
+                    if refit[layer_of_vertex[v] as usize] {
+                        let displacement = displacements.map_or(Vector::new(0.0, 0.0, 0.0), |u| u[v]);
+                        *local = frame::localize(&positions[v], &displacement, radii[v], &origin);
+                    }
+                }
+            });
+        };
+        localize(&mut self.local, None);
+        let end = displacements.map(|_| {
+            self.end.resize(self.local.len(), [0.0; 4]);
+            localize(&mut self.end, displacements);
+            self.end.as_slice()
+        });
+
+        for (layer, index) in self.layers.iter_mut().zip(0_u8..) {
+            let build = if index == DEFORMABLE { first } else { changes.layers };
+            if build {
+                self.statistics.rebuilds +=
+                    layer.build(model, &self.local, |v| layer_of_vertex[v as usize] == index);
+            }
+            if refit[index as usize] {
+                // An obstacle at rest has no sweep: its boxes hold for the whole motion.
+                let end = if index == RESTING { None } else { end };
+                self.statistics.refits += layer.refit(&self.local, end);
+                self.statistics.rebuilds += layer.freshen(&self.local, end);
+            }
+        }
+    }
+
+    fn search_kinds<const SWEPT: bool>(&mut self, scene: &Scene<'_>) {
+        let Self { layers: [deformable, moving, resting], leaves, tasks, .. } = self;
+        let obstacles = [&*moving, &*resting];
+        let all_leaves = deformable.edges.leaves.len().max(deformable.vertices.leaves.len());
+        let all_leaves = all_leaves.max(deformable.particles.leaves.len());
+        leaves.all.clear();
+        leaves.all.extend(0..all_leaves as u32);
+        for (k, obstacle) in obstacles.iter().enumerate() {
+            leaves_meeting(&obstacle.vertices, &deformable.triangles.bounds(), &mut leaves.vertices[k]);
+            leaves_meeting(&obstacle.edges, &deformable.edges.bounds(), &mut leaves.edges[k]);
+            leaves_meeting(&obstacle.particles, &deformable.particles.bounds(), &mut leaves.particles[k]);
+            leaves_meeting(
+                &obstacle.particles,
+                &deformable.strands.bounds(),
+                &mut leaves.particles_near_strands[k],
+            );
+        }
+        let meets = [self.meets_deformable, self.meets_obstacle];
+        let [vertex_vertex, vertex_edge, vertex_triangle, edge_edge] = tasks;
+        search_kind::<VertexVertex, 1, 1, SWEPT>(
+            scene,
+            meets,
+            &leaves.all,
+            (&deformable.particles, &deformable.particles),
+            obstacles.map(|o| (&o.particles, &o.particles)),
+            &leaves.particles,
+            vertex_vertex,
+        );
+        search_kind::<VertexEdge, 1, 2, SWEPT>(
+            scene,
+            meets,
+            &leaves.all,
+            (&deformable.particles, &deformable.strands),
+            obstacles.map(|o| (&o.particles, &o.strands)),
+            &leaves.particles_near_strands,
+            vertex_edge,
+        );
+        search_kind::<VertexTriangle, 1, 3, SWEPT>(
+            scene,
+            meets,
+            &leaves.all,
+            (&deformable.vertices, &deformable.triangles),
+            obstacles.map(|o| (&o.vertices, &o.triangles)),
+            &leaves.vertices,
+            vertex_triangle,
+        );
+        search_kind::<EdgeEdge, 2, 2, SWEPT>(
+            scene,
+            meets,
+            &leaves.all,
+            (&deformable.edges, &deformable.edges),
+            obstacles.map(|o| (&o.edges, &o.edges)),
+            &leaves.edges,
+            edge_edge,
+        );
+    }
+
+    /// Writes what the tasks found into the caller's lists.
+    fn write(
+        &mut self,
+        model: &CollisionModel,
+        positions: &[Point],
+        pairs: &mut PairList,
+        separations: &mut Vec<Separation>,
+    ) {
+        let topology = model.topology();
+        let elements =
+            [topology.vertex_count, topology.vertex_count, topology.vertex_count, topology.edges.len()];
+        let mut counts = [0; 5];
+        for k in 0..4 {
+            counts[k] = self.tables[k].fill(elements[k], &self.tasks[k]);
+        }
+        counts[4] = self.half_space_pairs.iter().map(Vec::len).sum();
+        let total: usize = counts.iter().sum();
+        let mut pairs = pairs.resize_kinds(counts);
+        separations.resize(total, BLANK);
+        let mut separations = separations.as_mut_slice();
+        for k in 0..4 {
+            let (head, tail) = pairs.split_at_mut(counts[k]);
+            pairs = tail;
+            let (geometry, tail) = separations.split_at_mut(counts[k]);
+            separations = tail;
+            self.tables[k].write(PairKind::ALL[k], &self.tasks[k], model, positions, head, geometry);
+        }
+        for ((pair, separation), found) in
+            pairs.iter_mut().zip(separations).zip(self.half_space_pairs.iter().flatten())
+        {
+            let [vertex, half_space] = found.elements;
+            *pair = *found;
+            *separation = separation::separate_half_space(
+                &positions[vertex as usize],
+                &model.half_spaces()[half_space as usize],
+            );
+        }
+    }
+}
+
+/// Searches for one kind of pair: deformable elements of side *a* against all of side *b*, and
+/// obstacles' elements of side *a* against deformable ones. Trees come as (side a, side b).
+fn search_kind<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT: bool>(
+    scene: &Scene<'_>,
+    [meets_deformable, meets_obstacle]: [bool; 2],
+    all_leaves: &[u32],
+    deformable: (&Tree<A>, &Tree<B>),
+    obstacles: [(&Tree<A>, &Tree<B>); 2],
+    obstacle_leaves: &[Vec<u32>; 2],
+    tasks: &mut Vec<Found>,
+) {
+    let mut targets = Vec::with_capacity(3);
+    if meets_deformable {
+        targets.push(deformable.1);
+    }
+    if meets_obstacle {
+        targets.extend(obstacles.iter().map(|o| o.1));
+    }
+    targets.retain(|tree| !tree.is_empty());
+    let near = [deformable.1];
+    let mut queries = Vec::with_capacity(3);
+    if !targets.is_empty() {
+        queries.push(Query {
+            tree: deformable.0,
+            leaves: &all_leaves[..deformable.0.leaves.len()],
+            targets: &targets,
+        });
+    }
+    if meets_obstacle && !deformable.1.is_empty() {
+        queries.extend((0..2).map(|k| Query {
+            tree: obstacles[k].0,
+            leaves: &obstacle_leaves[k],
+            targets: &near,
+        }));
+    }
+
+    let jobs: Vec<Query<'_, A, B>> = queries
+        .iter()
+        .flat_map(|query| {
+            query.leaves.chunks(TASK_LEAVES).map(|leaves| Query {
+                tree: query.tree,
+                leaves,
+                targets: query.targets,
+            })
+        })
+        .collect();
+    tasks.truncate(jobs.len());
+    tasks.resize_with(jobs.len(), Found::default);
+    jobs.par_iter()
+        .zip(tasks)
+        .for_each(|(query, found)| search_leaves::<K, A, B, SWEPT>(scene, query, found));
+}
+
+/// Which pairs of bodies may collide.
+struct Encounters {
+    deformable: bool,
+    obstacle: bool,
+    some_forbidden: bool,
+}
+
+impl Encounters {
+    fn of(model: &CollisionModel) -> Self {
+        let mut filters: Vec<_> =
+            model.bodies().iter().map(|b| (b.obstacle, b.groups, b.mask, b.self_collision)).collect();
+        filters.sort_unstable();
+        filters.dedup();
+        let mut encounters = Self { deformable: false, obstacle: false, some_forbidden: false };
+        for a in filters.iter().filter(|a| !a.0) {
+            encounters.deformable |= a.3;
+            encounters.some_forbidden |= !a.3;
+            // Two bodies with one and the same filter may not exist; then this only costs time.
+            for b in &filters {
+                let allowed = a.1 & b.2 != 0 && b.1 & a.2 != 0;
+                encounters.some_forbidden |= !allowed;
+                if b.0 {
+                    encounters.obstacle |= allowed;
+                } else {
+                    encounters.deformable |= allowed;
+                }
+            }
+        }
+        encounters
     }
 }

@@ -1,0 +1,104 @@
+//! The pairs in order, with their contact geometry.
+
+use crate::traverse::{Found, Run};
+use crate::{CollisionModel, Pair};
+use bowknot_geometry::{PairKind, Point, Separation, Vector, separation};
+use rayon::prelude::*;
+
+/// Elements whose pairs one task writes.
+const CHUNK: usize = 256;
+
+/// Where the partners of each element of a kind stand.
+#[derive(Debug, Default)]
+pub struct Table {
+    /// Task and run of each element of side *a*; count 0 where there is none.
+    entries: Vec<(u32, Run)>,
+    /// Pairs of each chunk of elements.
+    chunk_pairs: Vec<usize>,
+}
+
+impl Table {
+    /// Enters what the tasks found for elements `0..elements`; returns the number of pairs.
+    pub fn fill(&mut self, elements: usize, tasks: &[Found]) -> usize {
+        let none = (0, Run { element: 0, start: 0, count: 0 });
+        self.entries.clear();
+        self.entries.resize(elements, none);
+        self.chunk_pairs.clear();
+        self.chunk_pairs.resize(elements.div_ceil(CHUNK), 0);
+        for (found, task) in tasks.iter().zip(0..) {
+            for run in &found.runs {
+                self.entries[run.element as usize] = (task, *run);
+                self.chunk_pairs[run.element as usize / CHUNK] += run.count as usize;
+            }
+        }
+        self.chunk_pairs.iter().sum()
+    }
+
+    /// Writes the pairs of `kind` in order.
+    pub fn write(
+        &self,
+        kind: PairKind,
+        tasks: &[Found],
+        model: &CollisionModel,
+        positions: &[Point],
+        mut pairs: &mut [Pair],
+        mut separations: &mut [Separation],
+    ) {
+        let mut jobs = Vec::with_capacity(self.chunk_pairs.len());
+        for (entries, &count) in self.entries.chunks(CHUNK).zip(&self.chunk_pairs) {
+            let (head, tail) = std::mem::take(&mut pairs).split_at_mut(count);
+            pairs = tail;
+            let (geometry, tail) = std::mem::take(&mut separations).split_at_mut(count);
+            separations = tail;
+            if count > 0 {
+                jobs.push((entries, head, geometry));
+            }
+        }
+        jobs.into_par_iter().for_each(|(entries, pairs, separations)| {
+            let runs = entries.iter().flat_map(|(task, run)| {
+                let partners = &tasks[*task as usize].partners;
+                let partners =
+                    if run.count == 0 { &[] } else { &partners[run.start as usize..][..run.count as usize] };
+                partners.iter().map(|&partner| [run.element, partner])
+            });
+            for (elements, pair) in runs.zip(pairs.iter_mut()) {
+                *pair = Pair { elements, vertices: vertices_of(model, kind, elements) };
+            }
+            separate_all(kind, pairs, positions, separations);
+        });
+    }
+}
+
+/// Contact geometry of pairs of one kind.
+pub fn separate_all(kind: PairKind, pairs: &[Pair], positions: &[Point], separations: &mut [Separation]) {
+    for (pair, separation) in pairs.iter().zip(separations) {
+        let points = pair.vertices.map(|v| positions[v as usize]);
+        *separation = separation::separate(kind, &points);
+    }
+}
+
+/// What fills a list of separations before they are written.
+pub const BLANK: Separation =
+    Separation { normal: Vector::new(0.0, 0.0, 0.0), weights: [0.0; 4], distance: 0.0, width: 0.0 };
+
+/// Vertices of a pair that trees search for, in [`PairKind`] order.
+fn vertices_of(model: &CollisionModel, kind: PairKind, [a, b]: [u32; 2]) -> [u32; 4] {
+    let topology = model.topology();
+    match kind {
+        PairKind::VertexVertex => [a, b, a, a],
+        PairKind::VertexEdge => {
+            let [b0, b1] = topology.edges[b as usize];
+            [a, b0, b1, a]
+        }
+        PairKind::VertexTriangle => {
+            let [b0, b1, b2] = topology.triangles[b as usize];
+            [a, b0, b1, b2]
+        }
+        PairKind::EdgeEdge => {
+            let [a0, a1] = topology.edges[a as usize];
+            let [b0, b1] = topology.edges[b as usize];
+            [a0, a1, b0, b1]
+        }
+        PairKind::VertexHalfSpace => [a; 4],
+    }
+}

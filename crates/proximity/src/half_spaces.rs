@@ -1,0 +1,45 @@
+//! Vertices near analytic half-spaces: a linear pass.
+
+use crate::Pair;
+use bowknot_geometry::{HalfSpace, Point, Vector, separation};
+use rayon::prelude::*;
+
+/// Vertices that one task looks at.
+const CHUNK: usize = 4096;
+
+/// Lists the pairs of `vertices` (ascending) and half-spaces, in order. With `displacements`, those
+/// that come near at some time of the motion: the distance is linear in time, so at one of its ends.
+pub fn near_half_spaces(
+    half_spaces: &[HalfSpace],
+    vertices: &[u32],
+    positions: &[Point],
+    displacements: Option<&[Vector]>,
+    radii: &[f64],
+    chunks: &mut Vec<Vec<Pair>>,
+) {
+    chunks.resize_with(vertices.len().div_ceil(CHUNK), Vec::new);
+    vertices.par_chunks(CHUNK).zip(chunks.par_iter_mut()).for_each(|(vertices, found)| {
+        found.clear();
+        for &v in vertices {
+            let start = positions[v as usize];
+            let end = displacements.map(|u| start + u[v as usize]);
+            let radius = radii[v as usize];
+            for (half_space, index) in half_spaces.iter().zip(0..) {
+                // The end itself is rounded to half a unit in each coordinate.
+                let reaches =
+                    |end: Point| is_near(half_space, &end, radius + f64::EPSILON * end.coords.abs().sum());
+                if is_near(half_space, &start, radius) || end.is_some_and(reaches) {
+                    found.push(Pair { elements: [v, index], vertices: [v; 4] });
+                }
+            }
+        }
+    });
+}
+
+#[inline]
+fn is_near(half_space: &HalfSpace, point: &Point, radius: f64) -> bool {
+    // Far above what rounding can be: most vertices need no certificate.
+    let slack = 1e-9 * (1.0 + half_space.offset.abs() + point.coords.abs().sum());
+    let distance = half_space.signed_distance(point);
+    distance <= 2.0 * (radius + slack) && separation::separate_half_space(point, half_space).width <= radius
+}

@@ -1,0 +1,204 @@
+//! The kinds of pairs that trees search for, and the certified `f32` test of each.
+//!
+//! For any vector d, min over side a of d.x - max over side b of d.x <= |d| times the distance of
+//! the sides (weak duality), so a direction may be found carelessly: here d runs between closest
+//! points computed in `f32`. If the slab along d is wider than the radii by more than the rounding,
+//! the pair is farther apart for certain (`rejected`). If |d| is below the radii by more than the
+//! rounding, it is nearer for certain (`accepted`): d joins two points of the sides. The few pairs
+//! in between are left to `f64`.
+//!
+//! **Rounding.** With u = 2^-24 and m the largest local coordinate of both elements, stored
+//! coordinates are off by u m, and so each of the differences r = a0 - b0, a1 - a0, .. as computed by
+//! 2 u m + u 2 m = 4 u m a coordinate. A dot product of one with d (exact as stored) adds 3 u (2 m)
+//! |d|_1, so each of the up to three products is off by 10 u m |d|_1, and their sums round by another
+//! 12 u m |d|_1: altogether 42 u m |d|_1 <= 73 u m |d|. The leaf's `reject` holds the radius with a
+//! factor 1 + 16 u (for the radius' own rounding and that of |d|) plus 80 u m, each side its own m.
+//! The other way, the point of a side with weights in [0, 1] as computed is off by 4 u m for each
+//! difference and 6 u (6 m) for its operations, together below 60 u m a coordinate and 104 u m in
+//! length, which `accept` subtracts as 128 u m. Products of tiny numbers may underflow: below a
+//! length |d| of 1e-12 m nothing is rejected, and above it 1e-18 m of slack covers errors of 1e-44.
+
+use crate::frame::UNIT;
+use crate::tree::{LANES, Leaf, greatest, least};
+use bowknot_geometry::PairKind;
+
+/// A kind of pair with `A` vertices on side *a* and `B` on side *b*.
+pub trait Kind<const A: usize, const B: usize>: Sync {
+    /// Which kind it is.
+    const KIND: PairKind;
+    /// Whether both sides come from the same list, so that each pair would be met twice.
+    const SYMMETRIC: bool;
+
+    /// A vector from side *b* to side *a* between points of the sides, closest up to rounding.
+    fn direction(a: &[[f32; 3]; A], b: &[[f32; 3]; B]) -> [f32; 3];
+}
+
+/// Two particles.
+pub struct VertexVertex;
+/// A particle and a strand edge.
+pub struct VertexEdge;
+/// A vertex and a triangle.
+pub struct VertexTriangle;
+/// Two edges.
+pub struct EdgeEdge;
+
+/// What the `f32` test found for the elements of a leaf, one bit each.
+#[derive(Clone, Copy, Debug)]
+pub struct Verdicts {
+    /// Farther apart than their radii for certain.
+    pub rejected: u32,
+    /// Nearer than their radii for certain.
+    pub accepted: u32,
+}
+
+/// Tests an element against all elements of a leaf. `reject` and `accept` as in [`Leaf`].
+#[inline(always)]
+pub fn classify<K: Kind<A, B>, const A: usize, const B: usize>(
+    a: &[[f32; 3]; A],
+    [reject, accept]: [f32; 2],
+    leaf: &Leaf<B>,
+) -> Verdicts {
+    let mut rejected = [0_u8; LANES];
+    let mut accepted = [0_u8; LANES];
+    for lane in 0..LANES {
+        let mut b = [[0.0; 3]; B];
+        for j in 0..B {
+            for k in 0..3 {
+                b[j][k] = leaf.positions[j][k][lane];
+            }
+        }
+        let d = K::direction(a, &b);
+        let mut width = dot(d, sub(a[0], b[0]));
+        let mut below = 0.0;
+        for i in 1..A {
+            below = least(dot(d, sub(a[i], a[0])), below);
+        }
+        let mut above = 0.0;
+        for j in 1..B {
+            above = greatest(dot(d, sub(b[j], b[0])), above);
+        }
+        width = width + below - above;
+        let squared = dot(d, d);
+        let length = squared.sqrt();
+        let far = width > (reject + leaf.reject[lane]) * length * (1.0 + 16.0 * UNIT);
+        rejected[lane] = u8::from(far & (squared > 1e-24));
+        accepted[lane] = u8::from(length < accept + leaf.accept[lane]);
+    }
+    Verdicts { rejected: bits(&rejected), accepted: bits(&accepted) }
+}
+
+/// Packs sixteen flags (0 or 1) into bits, the first into the lowest.
+#[inline(always)]
+pub fn bits(flags: &[u8; LANES]) -> u32 {
+    // The multiplication moves flag i of a byte each to bit 56 + i without carries.
+    const GATHER: u64 = 0x0102_0408_1020_4080;
+    let word = u128::from_le_bytes(*flags);
+    let low = (word as u64).wrapping_mul(GATHER) >> 56;
+    let high = ((word >> 64) as u64).wrapping_mul(GATHER) >> 56;
+    (low | high << 8) as u32
+}
+
+impl Kind<1, 1> for VertexVertex {
+    const KIND: PairKind = PairKind::VertexVertex;
+    const SYMMETRIC: bool = true;
+
+    #[inline(always)]
+    fn direction([a]: &[[f32; 3]; 1], [b]: &[[f32; 3]; 1]) -> [f32; 3] {
+        sub(*a, *b)
+    }
+}
+
+impl Kind<1, 2> for VertexEdge {
+    const KIND: PairKind = PairKind::VertexEdge;
+    const SYMMETRIC: bool = false;
+
+    #[inline(always)]
+    fn direction([p]: &[[f32; 3]; 1], [b0, b1]: &[[f32; 3]; 2]) -> [f32; 3] {
+        from_segment(sub(*p, *b0), sub(*b1, *b0))
+    }
+}
+
+impl Kind<1, 3> for VertexTriangle {
+    const KIND: PairKind = PairKind::VertexTriangle;
+    const SYMMETRIC: bool = false;
+
+    /// The shortest of four: to the nearest point of each edge, and to the foot in the plane where
+    /// that is inside.
+    #[inline(always)]
+    fn direction([p]: &[[f32; 3]; 1], [b0, b1, b2]: &[[f32; 3]; 3]) -> [f32; 3] {
+        let (ab, ac, ap) = (sub(*b1, *b0), sub(*b2, *b0), sub(*p, *b0));
+        let (d1, d2) = (dot(ab, ap), dot(ac, ap));
+        let (g11, g12, g22) = (dot(ab, ab), dot(ab, ac), dot(ac, ac));
+        let determinant = g11 * g22 - g12 * g12;
+        let (v, w) = (g22 * d1 - g12 * d2, g11 * d2 - g12 * d1);
+        let inside = (v >= 0.0) & (w >= 0.0) & (v + w <= determinant) & (determinant > 0.0);
+        let inverse = 1.0 / determinant;
+        let foot = along(along(ap, ab, v * inverse), ac, w * inverse);
+
+        let first = along(ap, ab, fraction(d1, g11));
+        let second = along(ap, ac, fraction(d2, g22));
+        let third = from_segment(sub(*p, *b1), sub(*b2, *b1));
+        let best = shorter(first, shorter(second, third));
+        select(inside, foot, best)
+    }
+}
+
+impl Kind<2, 2> for EdgeEdge {
+    const KIND: PairKind = PairKind::EdgeEdge;
+    const SYMMETRIC: bool = true;
+
+    /// Closest points of two segments by clamping (Ericson 2005, section 5.1.9), without branches.
+    #[inline(always)]
+    fn direction([a0, a1]: &[[f32; 3]; 2], [b0, b1]: &[[f32; 3]; 2]) -> [f32; 3] {
+        let (e, f, r) = (sub(*a1, *a0), sub(*b1, *b0), sub(*a0, *b0));
+        let (ee, ef, ff) = (dot(e, e), dot(e, f), dot(f, f));
+        let (er, fr) = (dot(e, r), dot(f, r));
+        let determinant = ee * ff - ef * ef;
+        // Nearly parallel: any start will do, the clamped ends settle it.
+        let steep = determinant > 1e-6 * ee * ff;
+        let s = fraction(if steep { ef * fr - er * ff } else { 0.0 }, determinant);
+        let t = fraction(ef * s + fr, ff);
+        let s = fraction(ef * t - er, ee);
+        along(along(r, e, -s), f, t)
+    }
+}
+
+/// p - q for the point q nearest to p on a segment, given p and the segment from its start.
+#[inline(always)]
+fn from_segment(p: [f32; 3], segment: [f32; 3]) -> [f32; 3] {
+    along(p, segment, fraction(dot(p, segment), dot(segment, segment)))
+}
+
+/// numerator / denominator clamped to [0, 1]; 0 for 0 / 0.
+#[inline(always)]
+fn fraction(numerator: f32, denominator: f32) -> f32 {
+    // Not-a-number fails the comparison and becomes 0.
+    least(greatest(numerator / denominator, 0.0), 1.0)
+}
+
+#[inline(always)]
+fn shorter(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
+    select(dot(a, a) < dot(b, b), a, b)
+}
+
+#[inline(always)]
+fn select(first: bool, a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
+    let pick = |k: usize| if first { a[k] } else { b[k] };
+    [pick(0), pick(1), pick(2)]
+}
+
+/// p - t v.
+#[inline(always)]
+fn along(p: [f32; 3], v: [f32; 3], t: f32) -> [f32; 3] {
+    [p[0] - t * v[0], p[1] - t * v[1], p[2] - t * v[2]]
+}
+
+#[inline(always)]
+fn sub(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+#[inline(always)]
+fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}

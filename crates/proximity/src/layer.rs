@@ -1,0 +1,97 @@
+//! The trees of a part of the scene that is kept up together.
+
+use crate::CollisionModel;
+use crate::frame::LocalVertex;
+use crate::tree::Tree;
+
+/// The trees of some bodies. Trees that no pair kind needs stay empty.
+#[derive(Debug, Default)]
+pub struct Layer {
+    /// Surface vertices, particles included; empty in a scene without triangles.
+    pub vertices: Tree<1>,
+    /// Edges of triangles and strands.
+    pub edges: Tree<2>,
+    pub triangles: Tree<3>,
+    pub particles: Tree<1>,
+    /// Strand edges; empty in a scene without particles.
+    pub strands: Tree<2>,
+}
+
+impl Layer {
+    /// Takes up the primitives whose vertices `belongs` to it, in spatial order; returns how many
+    /// orders were made. [`Self::refit`] must follow.
+    pub fn build(
+        &mut self,
+        model: &CollisionModel,
+        local: &[LocalVertex],
+        belongs: impl Fn(u32) -> bool,
+    ) -> u32 {
+        let topology = model.topology();
+        let points = |list: &[u32]| -> Vec<(u32, [u32; 1])> {
+            list.iter().filter(|&&v| belongs(v)).map(|&v| (v, [v])).collect()
+        };
+        let edge = |e: u32| (e, topology.edges[e as usize]);
+        let mut built = 0;
+        if !topology.triangles.is_empty() {
+            built += build(&mut self.vertices, &points(&topology.surface_vertices), local);
+            let triangles: Vec<_> =
+                (0..).zip(topology.triangles.iter().copied()).filter(|(_, t)| belongs(t[0])).collect();
+            built += build(&mut self.triangles, &triangles, local);
+        }
+        let edges: Vec<_> =
+            (0..topology.edges.len() as u32).map(edge).filter(|(_, e)| belongs(e[0])).collect();
+        built += build(&mut self.edges, &edges, local);
+        if !topology.particles.is_empty() {
+            built += build(&mut self.particles, &points(&topology.particles), local);
+            let strands: Vec<_> =
+                topology.strand_edges.iter().map(|&e| edge(e)).filter(|(_, e)| belongs(e[0])).collect();
+            built += build(&mut self.strands, &strands, local);
+        }
+        built
+    }
+
+    /// Fits all boxes; returns how many trees that were.
+    pub fn refit(&mut self, local: &[LocalVertex], end: Option<&[LocalVertex]>) -> u32 {
+        self.vertices.refit(local, end);
+        self.edges.refit(local, end);
+        self.triangles.refit(local, end);
+        self.particles.refit(local, end);
+        self.strands.refit(local, end);
+        self.trees()
+    }
+
+    /// Makes the order of stale trees anew and fits their boxes; returns how many trees that were.
+    pub fn freshen(&mut self, local: &[LocalVertex], end: Option<&[LocalVertex]>) -> u32 {
+        freshen(&mut self.vertices, local, end)
+            + freshen(&mut self.edges, local, end)
+            + freshen(&mut self.triangles, local, end)
+            + freshen(&mut self.particles, local, end)
+            + freshen(&mut self.strands, local, end)
+    }
+
+    /// Trees that are not empty.
+    fn trees(&self) -> u32 {
+        let present = [
+            !self.vertices.is_empty(),
+            !self.edges.is_empty(),
+            !self.triangles.is_empty(),
+            !self.particles.is_empty(),
+            !self.strands.is_empty(),
+        ];
+        present.into_iter().map(u32::from).sum()
+    }
+}
+
+fn build<const V: usize>(tree: &mut Tree<V>, elements: &[(u32, [u32; V])], local: &[LocalVertex]) -> u32 {
+    tree.build(elements, local);
+    u32::from(!elements.is_empty())
+}
+
+fn freshen<const V: usize>(tree: &mut Tree<V>, local: &[LocalVertex], end: Option<&[LocalVertex]>) -> u32 {
+    let stale = tree.is_stale();
+    if stale {
+        tree.build(&tree.elements(), local);
+        tree.refit(local, end);
+    }
+    u32::from(stale)
+}
