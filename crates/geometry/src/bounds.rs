@@ -93,3 +93,6 @@ pub fn round_up_f32(x: f64) -> f32 {
     let nearest = x as f32;
     if f64::from(nearest) < x { nearest.next_up() } else { nearest }
 }
+
+#[cfg(test)]
+mod tests;

@@ -13,19 +13,43 @@ pub struct HalfSpace {
 }
 
 impl HalfSpace {
-    /// The half-space below the plane through `point` with outward `normal` (any length but zero).
+    /// The half-space below the plane through `point` with outward `normal`, of any length but zero;
+    /// `None` where the normal has no direction or something is not finite.
     pub fn new(point: Point, normal: Vector) -> Option<Self> {
         let length = normal.norm();
-        if !(length.is_finite() && length > 0.0) {
-            return None;
-        }
         let normal = normal / length;
-        Some(Self { normal, offset: normal.dot(&point.coords) })
+        let offset = normal.dot(&point.coords);
+        // The offset is not a number wherever the normal is not.
+        (length.is_finite() && length > 0.0 && offset.is_finite()).then_some(Self { normal, offset })
     }
 
     /// Signed distance of a point from the plane [m], positive outside.
     #[inline]
     pub fn signed_distance(&self, point: &Point) -> f64 {
         self.normal.dot(&point.coords) - self.offset
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_half_space_knows_its_plane_and_its_outside() {
+        let ground = HalfSpace::new(Point::new(3.0, -2.0, 0.5), Vector::new(0.0, 0.0, 4.0)).unwrap();
+        assert_eq!(ground, HalfSpace { normal: Vector::z(), offset: 0.5 });
+        assert_eq!(ground.signed_distance(&Point::new(7.0, 8.0, 2.0)), 1.5);
+        assert_eq!(ground.signed_distance(&Point::new(7.0, 8.0, 0.0)), -0.5);
+        let wall = HalfSpace::new(Point::new(1.0, 1.0, 1.0), Vector::new(1.0, 2.0, 2.0)).unwrap();
+        assert!((wall.signed_distance(&Point::new(2.0, 3.0, 3.0)) - 3.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_normal_without_direction_is_refused() {
+        let origin = Point::origin();
+        assert_eq!(HalfSpace::new(origin, Vector::zeros()), None);
+        assert_eq!(HalfSpace::new(origin, Vector::new(f64::NAN, 0.0, 1.0)), None);
+        assert_eq!(HalfSpace::new(origin, Vector::new(f64::INFINITY, 0.0, 1.0)), None);
+        assert_eq!(HalfSpace::new(Point::new(f64::NAN, 0.0, 0.0), Vector::z()), None);
     }
 }

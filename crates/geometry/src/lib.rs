@@ -5,6 +5,16 @@
 //! bounds of distances, exact intersection predicates, and the topology of triangle meshes,
 //! strands and particles. It does not know files, threads or time.
 //!
+//! ```
+//! use bowknot_geometry::{PairKind, Point, separation::separate};
+//!
+//! let vertex = Point::new(0.25, 0.25, 1e-3);
+//! let triangle = [Point::origin(), Point::new(1.0, 0.0, 0.0), Point::new(0.0, 1.0, 0.0)];
+//! let pair = separate(PairKind::VertexTriangle, &[vertex, triangle[0], triangle[1], triangle[2]]);
+//! assert_eq!(pair.weights, [1.0, 0.5, 0.25, 0.25]);
+//! assert!(pair.width <= 1e-3 && pair.width > 0.999e-3); // never above the true distance
+//! ```
+//!
 //! Function names follow one pattern: `module::pair_kind`, for example [`distance::vertex_triangle`].
 
 pub mod bounds;
@@ -15,6 +25,10 @@ pub mod mesh_check;
 pub mod pair;
 pub mod separation;
 pub mod topology;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
 
 /// A position [m].
 pub type Point = nalgebra::Point3<f64>;

@@ -50,3 +50,25 @@ impl PairKind {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kinds_are_numbered_in_order_and_know_their_vertices() {
+        for (i, kind) in PairKind::ALL.into_iter().enumerate() {
+            assert_eq!(kind as usize, i);
+            assert!((1..kind.vertex_count().max(2)).contains(&kind.side_a()));
+        }
+        assert_eq!(PairKind::ALL.map(PairKind::vertex_count), [2, 3, 4, 4, 1]);
+        assert_eq!(PairKind::ALL.map(PairKind::side_a), [1, 1, 1, 2, 1]);
+    }
+
+    #[test]
+    fn names_are_stable_in_files() {
+        let names = PairKind::ALL.map(|kind| serde_json::to_string(&kind).unwrap());
+        let expected = ["vertex-vertex", "vertex-edge", "vertex-triangle", "edge-edge", "vertex-half-space"];
+        assert_eq!(names, expected.map(|name| format!("{name:?}")));
+    }
+}

@@ -10,10 +10,10 @@
 //! factor 1 + e, |e| <= u, in each coordinate; the dot product with the vector n as it is stored adds
 //! three more such factors, so each n.(x_a - x_b) is off by at most
 //! 4u/(1 - 4u) * sum |n_j| |x_a - x_b|_j <= 4.01 u * sqrt(3) |n| m, and so is their minimum. Further,
-//! n = v / |v| as [`unit`] computes it has | |n| - 1 | <= 5u (sum of squares 3u, halved by the root,
+//! n = v / |v| as `unit` computes it has | |n| - 1 | <= 5u (sum of squares 3u, halved by the root,
 //! root u, reciprocal u, product u), and dividing by the true |n| moves the width by at most
 //! 5.01 u * sqrt(3) m. Subtracting the bound rounds by 1.8 u m. Altogether less than 17.5 u m;
-//! [`WIDTH_ROUNDING`] is 20 u. Differences beyond [1e-70, 1e70] m are scaled by a power of two, so
+//! `WIDTH_ROUNDING` is 20 u. Differences beyond [1e-70, 1e70] m are scaled by a power of two, so
 //! that underflow (errors of 2^-1074) stays far below that.
 
 use crate::distance::{self, Local, MAX_SCALE, MIN_SCALE};
@@ -61,7 +61,7 @@ impl Separation {
 /// Contact geometry of any pair kind but [`PairKind::VertexHalfSpace`]; unused points are ignored.
 ///
 /// The normal is the direction of the closest points, unless its slab is narrower than 0.9 times
-/// their distance (which happens when they are within about 1e-8 element sizes, where their
+/// their distance (which happens when they are nearer than about 1e-7 element sizes, where their
 /// difference is mostly rounding) and another direction certifies more: the face normal, the common
 /// normal of two edges, or that of some of the pair's vertices and edges. `weights` and `distance`
 /// are those of the closest points in any case. Touching and intersecting pairs have `width <= 0`
@@ -133,17 +133,22 @@ fn certify<const N: usize>(kind: PairKind, points: &[Point; 4], differences: [Ve
     separation
 }
 
-/// Largest absolute coordinate.
+/// Largest absolute coordinate. (Plain comparisons, here and below: `f64::max` and `min` spend
+/// instructions on not-a-number, which differences of finite numbers never are.)
 #[inline(always)]
 fn largest_coordinate(vectors: &[Vector]) -> f64 {
-    let largest = vectors.iter().fold(Vector::zeros(), |m, d| m.sup(&d.abs()));
-    largest.x.max(largest.y).max(largest.z)
+    let larger = |m: f64, x: f64| if m > x { m } else { x };
+    let largest = vectors.iter().fold(Vector::zeros(), |m, d| m.zip_map(&d.abs(), larger));
+    larger(larger(largest.x, largest.y), largest.z)
 }
 
 /// Smallest dot product.
 #[inline(always)]
 fn least(normal: &Vector, differences: &[Vector]) -> f64 {
-    differences.iter().fold(f64::INFINITY, |least, d| least.min(normal.dot(d)))
+    differences
+        .iter()
+        .map(|d| normal.dot(d))
+        .fold(f64::INFINITY, |least, x| if least < x { least } else { x })
 }
 
 /// v / |v| with a length within 5 u of 1, given |v| as [`distance::norm`] computes it.
@@ -196,7 +201,11 @@ fn try_other_directions(
         PairKind::VertexEdge => attempt(across(p0, [p1, p2])),
         PairKind::VertexVertex | PairKind::VertexHalfSpace => {}
     }
-    differences.iter().for_each(|d| attempt(*d));
+    for d in differences {
+        attempt(*d);
+        // Where everything is on one line, no other direction is across it.
+        attempt(d.cross(&Vector::ith(d.iamin(), 1.0)));
+    }
     // All differences are zero, or too short to normalise: nothing was tried.
     if separation.width == f64::NEG_INFINITY {
         separation.width = -slack;

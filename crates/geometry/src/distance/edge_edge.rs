@@ -1,8 +1,9 @@
 //! Two edges.
 
 use super::vertex_edge::foot_on_edge;
-use super::{Closest, clamp_unit, in_range, norm, rescale};
+use super::{Closest, clamp_unit, in_range, norm, rescale, select};
 use crate::{PairKind, Point, Vector};
+use std::hint::select_unpredictable;
 
 /// Squared sine of the angle below which edges count as near parallel (also where one has zero
 /// length): the place of the closest points is then so ill determined that the edges' ends are
@@ -38,7 +39,7 @@ fn core(a: [&Point; 2], b: [&Point; 2]) -> (Closest, f64) {
     let s = clamp_unit((ab * t - r.dot(&d1)) * per_aa);
 
     let mut place = (s, t, offset_at(a, b, &d1, &d2, s, t));
-    if cc <= NEAR_PARALLEL * aa || bb == 0.0 {
+    if cc <= NEAR_PARALLEL * aa {
         place = closest_end(a, b, place);
     }
     let (s, t, offset) = place;
@@ -51,8 +52,11 @@ fn core(a: [&Point; 2], b: [&Point; 2]) -> (Closest, f64) {
 /// Point at s of edge a minus point at t of edge b, each measured from its nearer end.
 #[inline(always)]
 fn offset_at(a: [&Point; 2], b: [&Point; 2], d1: &Vector, d2: &Vector, s: f64, t: f64) -> Vector {
-    let (near_a, ds) = if s <= 0.5 { (a[0], s) } else { (a[1], s - 1.0) };
-    let (near_b, dt) = if t <= 0.5 { (b[0], t) } else { (b[1], t - 1.0) };
+    let (start_of_a, start_of_b) = (s <= 0.5, t <= 0.5);
+    let near_a = select(start_of_a, a[0].coords, a[1].coords);
+    let near_b = select(start_of_b, b[0].coords, b[1].coords);
+    let ds = s - select_unpredictable(start_of_a, 0.0, 1.0);
+    let dt = t - select_unpredictable(start_of_b, 0.0, 1.0);
     (near_a - near_b) + d1 * ds - d2 * dt
 }
 

@@ -1,7 +1,8 @@
 //! A vertex and an edge.
 
-use super::{Closest, clamp_unit, in_range, norm, rescale};
+use super::{Closest, clamp_unit, in_range, norm, rescale, select};
 use crate::{PairKind, Point, Vector};
+use std::hint::select_unpredictable;
 
 /// Closest points of a vertex and an edge, which may have zero length.
 #[inline]
@@ -28,6 +29,8 @@ pub(super) fn foot_on_edge(p: &Point, edge: [&Point; 2]) -> (f64, Vector) {
     let t = clamp_unit(from_start.dot(&along) / along.norm_squared());
     // Measured from the nearer end, so that the distance from either end is that of two vertices to
     // the last bit, however long the edge.
-    let offset = if t <= 0.5 { from_start - along * t } else { (p - edge[1]) + along * (1.0 - t) };
+    let near_start = t <= 0.5;
+    let from_near = select(near_start, from_start, p - edge[1]);
+    let offset = from_near - along * (t - select_unpredictable(near_start, 0.0, 1.0));
     (t, offset)
 }

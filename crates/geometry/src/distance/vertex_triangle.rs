@@ -1,7 +1,7 @@
 //! A vertex and a triangle.
 
 use super::vertex_edge::foot_on_edge;
-use super::{Closest, in_range, norm, rescale};
+use super::{Closest, in_range, norm, rescale, select};
 use crate::{PairKind, Point, Vector};
 
 /// Square of a triangle's height over its first edge as a part of its second edge, below which it is
@@ -40,11 +40,12 @@ fn core(a: &Point, b: [&Point; 3]) -> (Closest, f64) {
     let inside = w0 > 0.0 && w1 > 0.0 && w2 > 0.0;
 
     let (weights, offset) = if inside {
-        let foot = ([1.0, w0, w1, w2], from_line - height * w2);
+        let foot = (Vector::new(w0, w1, w2), from_line - height * w2);
         if hh > SLIVER * e2e2 { foot } else { closer(foot, closest_edge(a, b)) }
     } else {
         closest_edge(a, b)
     };
+    let weights = [1.0, weights.x, weights.y, weights.z];
     let offset_squared = offset.norm_squared();
     let closest = Closest { weights, offset, distance: norm(&offset, offset_squared) };
     (closest, offset_squared + e1e1 + e2e2)
@@ -52,16 +53,18 @@ fn core(a: &Point, b: [&Point; 3]) -> (Closest, f64) {
 
 /// Weights and offset of the closer candidate, the first of equals.
 #[inline(always)]
-fn closer(first: ([f64; 4], Vector), second: ([f64; 4], Vector)) -> ([f64; 4], Vector) {
-    if second.1.norm_squared() < first.1.norm_squared() { second } else { first }
+fn closer(first: (Vector, Vector), second: (Vector, Vector)) -> (Vector, Vector) {
+    let is_second = second.1.norm_squared() < first.1.norm_squared();
+    (select(is_second, second.0, first.0), select(is_second, second.1, first.1))
 }
 
-/// The closest of the feet on the three edges, the first of equals.
+/// The closest of the feet on the three edges, the first of equals: the triangle's weights and the
+/// offset.
 #[inline(always)]
-fn closest_edge(a: &Point, b: [&Point; 3]) -> ([f64; 4], Vector) {
+fn closest_edge(a: &Point, b: [&Point; 3]) -> (Vector, Vector) {
     let (t01, o01) = foot_on_edge(a, [b[0], b[1]]);
     let (t12, o12) = foot_on_edge(a, [b[1], b[2]]);
     let (t20, o20) = foot_on_edge(a, [b[2], b[0]]);
-    let first = closer(([1.0, 1.0 - t01, t01, 0.0], o01), ([1.0, 0.0, 1.0 - t12, t12], o12));
-    closer(first, ([1.0, t20, 0.0, 1.0 - t20], o20))
+    let first = closer((Vector::new(1.0 - t01, t01, 0.0), o01), (Vector::new(0.0, 1.0 - t12, t12), o12));
+    closer(first, (Vector::new(t20, 0.0, 1.0 - t20), o20))
 }

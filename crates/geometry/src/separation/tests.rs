@@ -52,7 +52,10 @@ fn touching_and_coincident_pairs_have_no_width() {
     let (x, y) = (p(1.0, 0.0, 0.0), p(0.0, 1.0, 0.0));
     let inside = separate(PairKind::VertexTriangle, &[p(0.25, 0.25, 0.0), o, x, y]);
     let crossing = separate(PairKind::EdgeEdge, &[o, p(1.0, 1.0, 0.0), x, y]);
-    for separation in [inside, crossing] {
+    // Everything on one line: its direction would give a width of minus the overlap.
+    let on_edge = separate(PairKind::VertexEdge, &[p(0.5, 0.0, 0.0), o, x, o]);
+    let along = separate(PairKind::EdgeEdge, &[p(0.25, 0.0, 0.0), p(0.75, 0.0, 0.0), o, x]);
+    for separation in [inside, crossing, on_edge, along] {
         assert!(separation.width <= 0.0 && separation.width > -1e-14, "{separation:?}");
     }
 }

@@ -1,8 +1,8 @@
 //! Exact squared distances and intersections of simplices with small integer coordinates.
 //!
 //! Written from definitions, apart from the library's ways: a squared distance is the least over all
-//! features of the pair whose closest points lie inside them, as a fraction. Coordinates up to 2^8
-//! keep every number below 2^101.
+//! features of the pair whose closest points lie inside them, as a fraction. Coordinates up to 2^19
+//! keep every numerator below 2^127; up to 2^8, fractions are compared exactly as well.
 
 use bowknot_geometry::PairKind;
 
@@ -18,7 +18,12 @@ pub struct Fraction {
 
 impl Fraction {
     fn less(self, other: Self) -> bool {
-        self.numerator * other.denominator < other.numerator * self.denominator
+        let cross = |a: Self, b: Self| a.numerator.checked_mul(b.denominator);
+        match (cross(self, other), cross(other, self)) {
+            (Some(left), Some(right)) => left < right,
+            // To rounding: an error here is one of the same size in the least of the two.
+            _ => self.to_f64() < other.to_f64(),
+        }
     }
 
     pub fn to_f64(self) -> f64 {
@@ -54,7 +59,7 @@ pub fn distance_squared(kind: PairKind, [p0, p1, p2, p3]: [Int3; 4]) -> Fraction
 }
 
 fn least(fractions: &[Fraction]) -> Fraction {
-    fractions.iter().copied().reduce(|a, b| if b.less(a) { b } else { a }).unwrap()
+    fractions.iter().copied().reduce(|a, b| if b.less(a) { b } else { a }).expect("at least one candidate")
 }
 
 fn points(p: Int3, q: Int3) -> Fraction {

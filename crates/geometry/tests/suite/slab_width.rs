@@ -60,13 +60,13 @@ fn slab(kind: PairKind, points: &[Point; 4], n: &Vector) -> Double {
     a.iter()
         .flat_map(|p| b.iter().map(move |q| projection(n, p, q)))
         .reduce(|x, y| if x.is_at_most(y) { x } else { y })
-        .unwrap()
+        .expect("both sides have vertices")
 }
 
 #[test]
 fn a_million_widths_are_certified() {
     let mut random = Random(1);
-    let (mut lost, mut judged) = (0, 0);
+    let mut judged = 0;
     for _ in 0..1_000_000 {
         let points = near_degenerate_pair(&mut random);
         let kind = KINDS[random.below(4)];
@@ -81,15 +81,12 @@ fn a_million_widths_are_certified() {
         } else {
             assert!(separation.width <= 0.0);
         }
-        if separation.distance > 1e-12 * scale {
+        if separation.distance > 1e-13 * scale {
             judged += 1;
-            lost += usize::from(separation.width < 0.9 * separation.distance);
+            assert!(separation.width > 0.9 * separation.distance, "{kind:?} {points:?} {separation:?}");
         }
     }
     assert!(judged > 500_000, "{judged}");
-    // What a direction can lose to rounding is about 2^-53 times the square of the aspect ratio.
-    println!("{lost} of {judged} widths below 0.9 of the distance");
-    assert!(lost * 10_000 < judged, "{lost} of {judged}");
 }
 
 #[test]
