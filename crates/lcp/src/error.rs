@@ -84,6 +84,16 @@ pub enum Error {
         /// The node that they share.
         node: u32,
     },
+    /// A parameter is out of range.
+    #[error("{name} is {value}; it must be {allowed}")]
+    Parameter {
+        /// The parameter.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// The values that it may have.
+        allowed: &'static str,
+    },
     /// A solver stopped at its limit; the state holds the last iterate.
     #[error("not converged: after {sweeps} sweeps the residual is {residual:e}")]
     NotConverged {

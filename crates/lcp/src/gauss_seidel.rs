@@ -11,6 +11,7 @@ use crate::slots::{Slots, atomics, cells};
 use crate::team::{self, Phases};
 use crate::{Error, Vector};
 use nalgebra::Vector2;
+use std::ops::Range;
 
 /// Rows a thread takes at once: enough to drown the counter's cost (50 ns), few enough that
 /// a colour of some hundred is shared evenly.
@@ -23,8 +24,9 @@ const PARALLEL_MIN: usize = 1024;
 /// One sweep in the order of the schedules, on this thread.
 ///
 /// # Errors
-/// [`Error::Length`] if the state does not fit the problem.
+/// [`Error::Length`] if the state does not fit the problem; [`Error::Parameter`].
 pub fn sweep_serial(problem: &Problem<'_>, state: &mut State<'_>, params: &Params) -> Result<(), Error> {
+    params.validate()?;
     state.check(problem)?;
     serial::<false>(problem, state, params, 1);
     Ok(())
@@ -33,9 +35,10 @@ pub fn sweep_serial(problem: &Problem<'_>, state: &mut State<'_>, params: &Param
 /// Sweeps in the order of the schedules, on this thread.
 ///
 /// # Errors
-/// [`Error::Length`] if the state does not fit the problem; [`Error::NotConverged`] if
+/// [`Error::Length`] if the state does not fit the problem; [`Error::Parameter`]; [`Error::NotConverged`] if
 /// [`Params::tolerance`] asks for more than `max_sweeps` give.
 pub fn solve_serial(problem: &Problem<'_>, state: &mut State<'_>, params: &Params) -> Result<Info, Error> {
+    params.validate()?;
     state.check(problem)?;
     repeat(params, |residual, sweeps| match residual {
         true => serial::<true>(problem, state, params, sweeps),
@@ -47,8 +50,9 @@ pub fn solve_serial(problem: &Problem<'_>, state: &mut State<'_>, params: &Param
 /// bits as [`sweep_serial`] if the colours are valid ([`crate::validate_colours`]).
 ///
 /// # Errors
-/// [`Error::Length`] if the state does not fit the problem.
+/// [`Error::Length`] if the state does not fit the problem; [`Error::Parameter`].
 pub fn sweep_coloured(problem: &Problem<'_>, state: &mut State<'_>, params: &Params) -> Result<(), Error> {
+    params.validate()?;
     state.check(problem)?;
     coloured::<false>(problem, state, params, 1);
     Ok(())
@@ -60,6 +64,7 @@ pub fn sweep_coloured(problem: &Problem<'_>, state: &mut State<'_>, params: &Par
 /// # Errors
 /// As [`solve_serial`].
 pub fn solve_coloured(problem: &Problem<'_>, state: &mut State<'_>, params: &Params) -> Result<Info, Error> {
+    params.validate()?;
     state.check(problem)?;
     repeat(params, |residual, sweeps| match residual {
         true => coloured::<true>(problem, state, params, sweeps),
@@ -278,8 +283,8 @@ where
         (size, chunk.max(1))
     }
 
-    fn run(&self, phase: usize, begin: usize, end: usize, residual: &mut f64) {
+    fn run(&self, phase: usize, places: Range<usize>, residual: &mut f64) {
         let (kind, start, _) = self.phase(phase);
-        Sweep::run(self, kind, start + begin, start + end, residual);
+        Sweep::run(self, kind, start + places.start, start + places.end, residual);
     }
 }

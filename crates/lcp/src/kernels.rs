@@ -142,7 +142,7 @@ pub(crate) fn relax_friction<const RESIDUAL: bool>(
         return 0.0;
     }
     friction.set(index, new);
-    let direction = row.tangents[0] * change.x + row.tangents[1] * change.y;
+    let direction = row.direction(change);
     for k in 0..4 {
         let node = row.vertices[k] as usize;
         let step = weights[node] * row.coefficients[k];
@@ -167,13 +167,5 @@ pub(crate) fn friction_multiplier(
         row.offsets[0] + row.tangents[0].dot(&point),
         row.offsets[1] + row.tangents[1].dot(&point),
     );
-    let wanted = old - slip * step;
-    let radius = (row.friction * normal).max(0.0);
-    match bound {
-        FrictionBound::Disc => {
-            let norm = wanted.norm();
-            if norm > radius { wanted * (radius / norm) } else { wanted }
-        }
-        FrictionBound::Square => wanted.map(|c| c.max(-radius).min(radius)),
-    }
+    bound.project(old - slip * step, (row.friction * normal).max(0.0))
 }

@@ -26,7 +26,7 @@ pub fn apply_multipliers(problem: &Problem<'_>, state: &mut State<'_>) -> Result
         }
     }
     for (row, lambda) in problem.friction().rows.iter().zip(&*state.friction) {
-        let direction = row.tangents[0] * lambda.x + row.tangents[1] * lambda.y;
+        let direction = row.direction(*lambda);
         for (&node, &coefficient) in row.vertices.iter().zip(&row.coefficients) {
             y[node as usize] += direction * (weights[node as usize] * coefficient);
         }

@@ -1,5 +1,7 @@
 //! What a solver may be told, and what it tells.
 
+use crate::Error;
+use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 /// Shape of the region that bounds a friction multiplier by mu times the normal multiplier.
@@ -11,6 +13,20 @@ pub enum FrictionBound {
     Disc,
     /// A square along the two tangents: up to sqrt(2) more along its diagonals, but a plain box LCP.
     Square,
+}
+
+impl FrictionBound {
+    /// The point of the region of `radius` >= 0 that is nearest to `wanted`.
+    #[inline(always)]
+    pub(crate) fn project(self, wanted: Vector2<f64>, radius: f64) -> Vector2<f64> {
+        match self {
+            FrictionBound::Disc => {
+                let norm = wanted.norm();
+                if norm > radius { wanted * (radius / norm) } else { wanted }
+            }
+            FrictionBound::Square => wanted.map(|c| c.max(-radius).min(radius)),
+        }
+    }
 }
 
 /// Parameters of the iterative solvers.
@@ -26,13 +42,42 @@ pub struct Params {
     /// Factor on each row's step, in (0, 2). Default 1: each row is solved exactly. Larger
     /// over-relaxes, smaller damps.
     pub relaxation: f64,
+    /// Jacobi only: estimate of the spectral radius of its iteration, in [0, 1), for Chebyshev
+    /// acceleration (Golub and Varga 1961). Default 0: none. Nearer to 1 accelerates slow, smooth
+    /// errors more; where contacts open and close it may overshoot.
+    pub spectral_radius: f64,
     /// Region of the friction multipliers. Default: disc.
     pub friction_bound: FrictionBound,
 }
 
 impl Default for Params {
     fn default() -> Self {
-        Self { max_sweeps: 64, tolerance: None, relaxation: 1.0, friction_bound: FrictionBound::Disc }
+        Self {
+            max_sweeps: 64,
+            tolerance: None,
+            relaxation: 1.0,
+            spectral_radius: 0.0,
+            friction_bound: FrictionBound::Disc,
+        }
+    }
+}
+
+impl Params {
+    /// Refuses values out of range.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for the first.
+    pub fn validate(&self) -> Result<(), Error> {
+        let check = |name, value: f64, fits: bool, allowed| match fits {
+            true => Ok(()),
+            false => Err(Error::Parameter { name, value, allowed }),
+        };
+        if let Some(tolerance) = self.tolerance {
+            check("tolerance", tolerance, tolerance >= 0.0, "at least 0")?;
+        }
+        let (relaxation, radius) = (self.relaxation, self.spectral_radius);
+        check("relaxation", relaxation, relaxation > 0.0 && relaxation < 2.0, "between 0 and 2")?;
+        check("spectral_radius", radius, (0.0..1.0).contains(&radius), "at least 0 and below 1")
     }
 }
 

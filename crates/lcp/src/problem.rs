@@ -46,23 +46,26 @@ impl Row {
     /// [`Error::UnknownNode`], with row 0, if a node has no weight.
     #[inline]
     pub fn prepare(&mut self, weights: &[f64]) -> Result<(), Error> {
+        check_nodes(self, weights.len())?;
+        self.inverse_diagonal = invert(self.diagonal(|node| weights[node as usize]));
+        Ok(())
+    }
+
+    /// Sum over nodes of weight |gradient|^2.
+    #[inline]
+    pub(crate) fn diagonal(&self, weight: impl Fn(u32) -> f64) -> f64 {
         let mut diagonal = 0.0;
         for k in 0..4 {
-            let node = self.vertices[k];
-            let Some(&weight) = weights.get(node as usize) else {
-                return Err(Error::UnknownNode { family: Self::NAME, row: 0, node, nodes: weights.len() });
-            };
             // |sum of a node's gradients|^2 = sum over pairs of its places; most rows have none but k = j.
             let mut square = self.gradients[k].norm_squared();
             for j in 0..k {
-                if self.vertices[j] == node {
+                if self.vertices[j] == self.vertices[k] {
                     square += 2.0 * self.gradients[k].dot(&self.gradients[j]);
                 }
             }
-            diagonal += weight * square;
+            diagonal += weight(self.vertices[k]) * square;
         }
-        self.inverse_diagonal = invert(diagonal);
-        Ok(())
+        diagonal
     }
 
     /// The row's value s at the positions `y`.
@@ -116,28 +119,48 @@ impl FrictionRow {
     /// [`Error::UnknownNode`], with row 0, if a node has no weight.
     #[inline]
     pub fn prepare(&mut self, weights: &[f64]) -> Result<(), Error> {
+        check_nodes(self, weights.len())?;
+        self.inverse_diagonal = invert(self.diagonal(|node| weights[node as usize]));
+        Ok(())
+    }
+
+    /// Sum over nodes of weight coefficient^2.
+    pub(crate) fn diagonal(&self, weight: impl Fn(u32) -> f64) -> f64 {
         let mut diagonal = 0.0;
         for k in 0..4 {
-            let node = self.vertices[k];
-            let Some(&weight) = weights.get(node as usize) else {
-                return Err(Error::UnknownNode { family: Self::NAME, row: 0, node, nodes: weights.len() });
-            };
             let mut square = self.coefficients[k] * self.coefficients[k];
             for j in 0..k {
-                if self.vertices[j] == node {
+                if self.vertices[j] == self.vertices[k] {
                     square += 2.0 * self.coefficients[k] * self.coefficients[j];
                 }
             }
-            diagonal += weight * square;
+            diagonal += weight(self.vertices[k]) * square;
         }
-        self.inverse_diagonal = invert(diagonal);
-        Ok(())
+        diagonal
+    }
+
+    /// sum_k coefficients\[k\] y\[vertices\[k\]\], whose motion is the slip.
+    pub(crate) fn point(&self, y: &[Vector]) -> Vector {
+        (0..4).fold(Vector::zeros(), |sum, k| sum + self.coefficients[k] * y[self.vertices[k] as usize])
+    }
+
+    /// The multipliers as a vector.
+    #[inline(always)]
+    pub(crate) fn direction(&self, multipliers: Vector2<f64>) -> Vector {
+        self.tangents[0] * multipliers.x + self.tangents[1] * multipliers.y
+    }
+}
+
+fn check_nodes<T: AnyRow>(row: &T, nodes: usize) -> Result<(), Error> {
+    match row.nodes().iter().find(|&&v| v as usize >= nodes) {
+        Some(&node) => Err(Error::UnknownNode { family: T::NAME, row: 0, node, nodes }),
+        None => Ok(()),
     }
 }
 
 /// 1/x, and 0 for what cannot be inverted: such a row moves nothing. The smallest normal number
 /// keeps the result finite; a gradient that small is no direction.
-fn invert(diagonal: f64) -> f64 {
+pub(crate) fn invert(diagonal: f64) -> f64 {
     if diagonal >= f64::MIN_POSITIVE { 1.0 / diagonal } else { 0.0 }
 }
 
@@ -243,7 +266,7 @@ impl<T> Default for Family<'_, T> {
 }
 
 /// What the three kinds of rows have in common.
-pub(crate) trait AnyRow {
+pub(crate) trait AnyRow: Copy {
     const NAME: &'static str;
     fn nodes(&self) -> &[u32];
     fn prepared(&self) -> bool {

@@ -1,9 +1,9 @@
 //! How far a state is from solving its problem.
 
+use crate::Error;
 use crate::kernels::{ball_multiplier, friction_multiplier, row_multiplier};
 use crate::params::FrictionBound;
 use crate::problem::{Problem, State};
-use crate::{Error, Vector};
 use serde::{Deserialize, Serialize};
 
 /// What is violated, over all rows, scheduled or not; rows none of whose nodes can move are left out,
@@ -57,10 +57,9 @@ pub fn residuals(
     }
     for (row, &old) in problem.friction().rows.iter().zip(&*state.friction) {
         if row.inverse_diagonal != 0.0 {
-            let point = (0..4)
-                .fold(Vector::zeros(), |sum, k| sum + row.coefficients[k] * y[row.vertices[k] as usize]);
             let normal = state.lambda[row.normal as usize];
-            let new = friction_multiplier(row, point, old, normal, row.inverse_diagonal, friction_bound);
+            let new =
+                friction_multiplier(row, row.point(y), old, normal, row.inverse_diagonal, friction_bound);
             raise(&mut result.friction_correction, (new - old).norm() / row.inverse_diagonal);
         }
     }

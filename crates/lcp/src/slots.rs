@@ -96,3 +96,30 @@ impl<const N: usize, T: Reals<N>> Slots<T> for &[[AtomicU64; N]] {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Vector2, Vector3};
+
+    #[test]
+    fn both_views_read_and_write_the_elements_of_the_slice() {
+        let mut values: Vec<Vector3<f64>> = (0..5).map(|i| Vector3::new(f64::from(i), 0.5, -0.0)).collect();
+        let expected = Vector3::new(7.0, f64::NEG_INFINITY, 1e-320);
+        let view = atomics(&mut values).expect("64-bit alignment");
+        assert_eq!(Slots::<Vector3<f64>>::get(&view, 3), Vector3::new(3.0, 0.5, -0.0));
+        view.set(3, expected);
+        let view = cells(&mut values);
+        assert_eq!(Slots::<Vector3<f64>>::get(&view, 3), expected);
+        view.set(4, expected);
+        assert_eq!(values[3..], [expected, expected]);
+        assert_eq!(values[2], Vector3::new(2.0, 0.5, 0.0));
+
+        let mut pairs = [Vector2::new(1.0, 2.0), Vector2::new(3.0, 4.0)];
+        atomics(&mut pairs).expect("64-bit alignment").set(0, Vector2::new(5.0, 6.0));
+        assert_eq!(pairs, [Vector2::new(5.0, 6.0), Vector2::new(3.0, 4.0)]);
+        let mut scalars = [1.0, 2.0];
+        atomics(&mut scalars).expect("64-bit alignment").set(1, 9.0);
+        assert_eq!(scalars, [1.0, 9.0]);
+    }
+}

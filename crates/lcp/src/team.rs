@@ -1,64 +1,101 @@
 //! Several threads through one sequence of phases, each phase in parallel, with no fork between them.
 //!
-//! A sweep has dozens of colours of a few hundred rows, ten microseconds of work each; forking and
-//! joining anew for each would cost as much. So one fork covers all sweeps: each thread walks the
-//! same sequence of phases (colours), claims chunks by a counter and waits, spinning, until all
-//! chunks of the earlier phases are done. A chunk is only ever claimed by a thread that is running,
-//! and the earliest unfinished one never waits, so no thread waits in vain: if no other thread ever
-//! comes to help, the first does everything. Which thread runs a chunk has no influence on results.
+//! A sweep has dozens of colours of a few hundred rows, some microseconds of work each; forking and
+//! joining anew for each costs as much. So one fork covers all sweeps: each thread walks the
+//! same sequence of phases (colours) and waits, spinning, until all places of the earlier phases are
+//! done. Each thread has its own share of every phase, the same fraction of the places: where rows
+//! are stored in spatial order it meets the same nodes in every colour, in its own cache. A thread that
+//! is through takes chunks of the others' shares.
+//!
+//! No thread waits in vain: a chunk is only ever claimed by a thread that is running, which does it
+//! at once, and chunks that nobody claimed are taken by whoever arrives. If no other thread ever
+//! comes to help, the first does everything. Who runs a chunk has no influence on results.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A sequence of phases. Within a phase any places may run at the same time.
 pub(crate) trait Phases: Sync {
     /// How many phases there are.
     fn count(&self) -> usize;
-    /// How many places a phase has, and how many make a chunk (at least 1).
+    /// How many places a phase has, and how many make a chunk (at least 1). A phase whose chunk is
+    /// its size is run by one thread.
     fn size(&self, phase: usize) -> (usize, usize);
-    /// Runs places `begin..end` of a phase; returns a number of which the largest is kept a thread.
-    fn run(&self, phase: usize, begin: usize, end: usize, residual: &mut f64);
+    /// Runs places of a phase; raises `residual` to the largest seen.
+    fn run(&self, phase: usize, places: Range<usize>, residual: &mut f64);
 }
+
+/// More threads than this would find no work in a colour.
+const MAX_THREADS: usize = 32;
+
+/// Alone on its cache lines (pairs of 64 bytes, as neighbours are prefetched).
+#[derive(Default)]
+#[repr(align(128))]
+struct Counter(AtomicUsize);
 
 #[derive(Default)]
 struct Progress {
-    /// Chunks claimed, over all phases.
-    claimed: AtomicUsize,
-    /// Chunks done; since no chunk begins before the earlier phases are done, it tells which are.
-    done: AtomicUsize,
+    /// Chunks claimed of each thread's shares, over all phases.
+    claimed: [Counter; MAX_THREADS],
+    /// Chunks done, over all shares and phases. Since no chunk begins before the earlier phases are
+    /// done, it tells which these are.
+    done: Counter,
 }
 
 /// Runs all phases on up to `threads` threads of the current pool; returns the largest residual.
 pub(crate) fn run(phases: &impl Phases, threads: usize) -> f64 {
-    fork(threads, &|progress| work(phases, progress), &Progress::default())
+    let threads = threads.clamp(1, MAX_THREADS);
+    let progress = Progress::default();
+    fork(0..threads, &|own| work(phases, &progress, own, threads))
 }
 
-fn fork(threads: usize, task: &(impl Fn(&Progress) -> f64 + Sync), progress: &Progress) -> f64 {
-    if threads <= 1 {
-        return task(progress);
+fn fork(own: Range<usize>, task: &(impl Fn(usize) -> f64 + Sync)) -> f64 {
+    if own.len() <= 1 {
+        return task(own.start);
     }
-    let half = threads / 2;
-    let (a, b) = rayon::join(|| fork(half, task, progress), || fork(threads - half, task, progress));
+    let middle = own.start + own.len() / 2;
+    let (a, b) = rayon::join(|| fork(own.start..middle, task), || fork(middle..own.end, task));
     a.max(b)
 }
 
-fn work(phases: &impl Phases, progress: &Progress) -> f64 {
+fn work(phases: &impl Phases, progress: &Progress, own: usize, threads: usize) -> f64 {
     let mut residual = 0.0;
-    let mut claim = progress.claimed.fetch_add(1, Ordering::Relaxed);
-    // Chunks of the phases before this one.
-    let mut before = 0;
+    // Chunks of the phases before this one, of each share and of all.
+    let mut before = [0; MAX_THREADS];
+    let mut all_before = 0;
     for phase in 0..phases.count() {
         let (size, chunk) = phases.size(phase);
-        let chunks = size.div_ceil(chunk);
-        while claim < before + chunks {
-            wait(|| progress.done.load(Ordering::Acquire) >= before);
-            let begin = (claim - before) * chunk;
-            phases.run(phase, begin, size.min(begin + chunk), &mut residual);
-            progress.done.fetch_add(1, Ordering::Release);
-            claim = progress.claimed.fetch_add(1, Ordering::Relaxed);
+        // A phase that is one chunk goes to the first share, whole.
+        let shares = if size <= chunk { 1 } else { threads };
+        wait(|| progress.done.0.load(Ordering::Acquire) >= all_before);
+        let mut all = 0;
+        for turn in 0..shares {
+            let share = (own + turn) % shares;
+            let (start, end) = (size * share / shares, size * (share + 1) / shares);
+            let chunks = (end - start).div_ceil(chunk);
+            while let Some(claim) = claim(&progress.claimed[share].0, before[share] + chunks) {
+                let begin = start + (claim - before[share]) * chunk;
+                phases.run(phase, begin..end.min(begin + chunk), &mut residual);
+                progress.done.0.fetch_add(1, Ordering::Release);
+            }
+            before[share] += chunks;
+            all += chunks;
         }
-        before += chunks;
+        all_before += all;
     }
     residual
+}
+
+/// The next chunk of a share, unless its chunks up to `end` are all claimed.
+fn claim(claimed: &AtomicUsize, end: usize) -> Option<usize> {
+    let mut next = claimed.load(Ordering::Relaxed);
+    while next < end {
+        match claimed.compare_exchange_weak(next, next + 1, Ordering::Relaxed, Ordering::Relaxed) {
+            Ok(_) => return Some(next),
+            Err(seen) => next = seen,
+        }
+    }
+    None
 }
 
 /// Spins until `ready`; yields once that takes long, as when there are more threads than cores.
@@ -67,5 +104,73 @@ fn wait(ready: impl Fn() -> bool) {
     while !ready() {
         spins += 1;
         if spins < 256 { std::hint::spin_loop() } else { std::thread::yield_now() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Mutex;
+
+    /// Records, for each place, when it was run, and checks that earlier phases are done.
+    struct Recorder {
+        sizes: Vec<(usize, usize)>,
+        runs: Vec<Vec<AtomicUsize>>,
+        chunks: Mutex<Vec<(usize, usize)>>,
+    }
+
+    impl Recorder {
+        fn new(sizes: Vec<(usize, usize)>) -> Self {
+            let runs =
+                sizes.iter().map(|&(size, _)| (0..size).map(|_| AtomicUsize::new(0)).collect()).collect();
+            Self { sizes, runs, chunks: Mutex::default() }
+        }
+    }
+
+    impl Phases for Recorder {
+        fn count(&self) -> usize {
+            self.sizes.len()
+        }
+        fn size(&self, phase: usize) -> (usize, usize) {
+            self.sizes[phase]
+        }
+        fn run(&self, phase: usize, places: Range<usize>, residual: &mut f64) {
+            for earlier in &self.runs[..phase] {
+                assert!(
+                    earlier.iter().all(|run| run.load(Ordering::Relaxed) == 1),
+                    "phase {phase} began early"
+                );
+            }
+            self.chunks.lock().expect("no panic yet").push((phase, places.len()));
+            for place in places {
+                self.runs[phase][place].fetch_add(1, Ordering::Relaxed);
+                *residual = residual.max((phase * 1000 + place) as f64);
+            }
+        }
+    }
+
+    #[test]
+    fn every_place_runs_once_and_phases_in_order_on_any_number_of_threads() {
+        let sizes = vec![(100, 7), (0, 5), (3, 5), (64, 64), (65, 64), (1, 1), (200, 1), (90, 16)];
+        for threads in [1, 2, 3, 8, 40] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.min(8)).build().expect("a pool");
+            for _ in 0..20 {
+                let recorder = Recorder::new(sizes.clone());
+                assert_eq!(pool.install(|| run(&recorder, threads)), 7089.0);
+                assert!(recorder.runs.iter().flatten().all(|run| run.load(Ordering::Relaxed) == 1));
+                let chunks = recorder.chunks.into_inner().expect("no panic");
+                for (phase, size) in chunks {
+                    assert!(size > 0 && size <= sizes[phase].1);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn one_thread_finishes_alone_what_many_share() {
+        // The pool has one thread, so nobody ever comes to help.
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
+        let recorder = Recorder::new(vec![(1000, 10), (500, 10)]);
+        assert_eq!(pool.install(|| run(&recorder, 16)), 1499.0);
     }
 }

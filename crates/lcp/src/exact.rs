@@ -1,0 +1,305 @@
+//! An exact solver for small problems: the reference that the iterative ones are tested against.
+//!
+//! With the ball rows' and friction's multipliers held, the rows' multipliers minimise the convex
+//! quadratic lambda^T A lambda / 2 + q^T lambda over the box 0 <= lambda <= upper, where A = J W J^T
+//! is the Delassus matrix and q the row values at lambda = 0: its gradient A lambda + q is s. This is
+//! a primal active-set method in the manner of Lawson and Hanson (1974, ch. 23), with upper bounds
+//! as in Stark and Parker (1995), on normal equations that are given. They assume independent columns;
+//! redundant rows are the rule here (a vertex on a flat patch touches six triangles). So the set of
+//! free multipliers is kept independent: a row that depends on it enters along the direction that
+//! leaves J^T lambda as it is, which costs no curvature, until another multiplier reaches a bound
+//! and leaves. If none ever does, the rows contradict each other (Farkas).
+
+use crate::Error;
+use crate::params::Info;
+use crate::problem::{Problem, Row, State};
+use nalgebra::DMatrix;
+
+/// Share of a diagonal entry below which what is left of it after eliminating the free rows counts as
+/// rounding: some hundred rows lose about 1e-13 of it.
+const DEPENDENT: f64 = 1e-11;
+/// Rounding of a row value, relative to the sum of its terms' magnitudes.
+const ROUNDING: f64 = 1e-13;
+
+/// The Delassus matrix A = J W J^T of the rows, n x n for n rows; symmetric, positive semi-definite.
+pub fn delassus(problem: &Problem<'_>) -> DMatrix<f64> {
+    let (rows, weights) = (problem.rows().rows, problem.weights());
+    let entry = |a: &Row, b: &Row| {
+        let mut sum = 0.0;
+        for j in 0..4 {
+            for k in 0..4 {
+                if a.vertices[j] == b.vertices[k] {
+                    sum += weights[a.vertices[j] as usize] * a.gradients[j].dot(&b.gradients[k]);
+                }
+            }
+        }
+        sum
+    };
+    DMatrix::from_fn(rows.len(), rows.len(), |i, j| entry(&rows[i], &rows[j]))
+}
+
+/// Solves the rows (all, whatever their schedule) to rounding, holding ball forces and friction as they
+/// are. For up to a few hundred rows: memory n^2, time about n^4 at worst.
+///
+/// # Errors
+/// [`Error::Length`] if the state does not fit the problem; otherwise as [`solve_dense`], with the state
+/// untouched.
+pub fn solve_exact(problem: &Problem<'_>, state: &mut State<'_>) -> Result<Info, Error> {
+    state.check(problem)?;
+    let (rows, weights) = (problem.rows().rows, problem.weights());
+    let matrix = delassus(problem);
+    // s = A lambda + q
+    let mut values: Vec<f64> = rows.iter().map(|row| row.value(state.y)).collect();
+    for (i, value) in values.iter_mut().enumerate() {
+        *value -= (0..rows.len()).map(|j| matrix[(i, j)] * state.lambda[j]).sum::<f64>();
+    }
+    let upper: Vec<f64> = rows.iter().map(|row| row.upper).collect();
+    let (lambda, info) = solve_dense(&matrix, &values, &upper)?;
+    for (i, row) in rows.iter().enumerate() {
+        let change = lambda[i] - state.lambda[i];
+        if change != 0.0 && row.inverse_diagonal != 0.0 {
+            state.lambda[i] = lambda[i];
+            for (&node, gradient) in row.vertices.iter().zip(&row.gradients) {
+                state.y[node as usize] += gradient * (weights[node as usize] * change);
+            }
+        }
+    }
+    Ok(info)
+}
+
+/// Solves 0 <= lambda <= upper, s = A lambda + q: s >= 0 where lambda = 0, s = 0 between the bounds,
+/// s <= 0 where lambda = upper. A is n x n, symmetric and positive semi-definite; rows with a zero
+/// diagonal are left out (lambda = 0). `Info::sweeps` counts steps, `Info::residual` is the largest
+/// |lambda - clamp(lambda - s, 0, upper)|.
+///
+/// # Errors
+/// [`Error::Length`]; [`Error::NotFinite`]; [`Error::Infeasible`] if no finite lambda solves it;
+/// [`Error::NotConverged`] if rounding makes the method walk in circles.
+pub fn solve_dense(matrix: &DMatrix<f64>, q: &[f64], upper: &[f64]) -> Result<(Vec<f64>, Info), Error> {
+    let n = q.len();
+    for (what, given) in [
+        ("the matrix's rows", matrix.nrows()),
+        ("the matrix's columns", matrix.ncols()),
+        ("upper", upper.len()),
+    ] {
+        if given != n {
+            return Err(Error::Length { what, given, expected: n });
+        }
+    }
+    for i in 0..n {
+        if !q[i].is_finite() || upper[i].is_nan() || matrix.row(i).iter().any(|a| !a.is_finite()) {
+            return Err(Error::NotFinite { what: "row", index: i });
+        }
+    }
+    let upper = upper.iter().map(|u| u.max(0.0)).collect();
+    let mut solver = ActiveSet { matrix, q, upper, lambda: vec![0.0; n], free: Factor::default() };
+    let limit = 100 + 50 * n as u32;
+    // Entering rows of which none could move, in a row.
+    let mut stalled = 0;
+    for sweeps in 0..limit {
+        let values = solver.values();
+        // After many empty steps the lowest index rather than the worst row: it cannot cycle (Bland).
+        let Some(entering) = solver.violated(&values, stalled > 2 * n) else {
+            let residual = (0..n)
+                .filter(|&i| matrix[(i, i)] > 0.0)
+                .map(|i| {
+                    (solver.lambda[i] - (solver.lambda[i] - values[i]).max(0.0).min(solver.upper[i])).abs()
+                })
+                .fold(0.0, f64::max);
+            return Ok((solver.lambda, Info { sweeps, residual }));
+        };
+        let before = solver.lambda.clone();
+        solver.enter(entering, values[entering] < 0.0)?;
+        solver.minimise();
+        stalled = if solver.lambda == before { stalled + 1 } else { 0 };
+    }
+    let values = solver.values();
+    let residual = (0..n).map(|i| -values[i]).fold(0.0, f64::max);
+    Err(Error::NotConverged { sweeps: limit, residual })
+}
+
+struct ActiveSet<'a> {
+    matrix: &'a DMatrix<f64>,
+    q: &'a [f64],
+    upper: Vec<f64>,
+    lambda: Vec<f64>,
+    /// The multipliers that may lie between their bounds; the others are at one.
+    free: Factor,
+}
+
+impl ActiveSet<'_> {
+    /// s = A lambda + q.
+    fn values(&self) -> Vec<f64> {
+        (0..self.q.len()).map(|i| self.terms(i).sum()).collect()
+    }
+
+    fn terms(&self, i: usize) -> impl Iterator<Item = f64> + '_ {
+        let products = self.lambda.iter().enumerate().map(move |(j, l)| self.matrix[(i, j)] * l);
+        std::iter::once(self.q[i]).chain(products)
+    }
+
+    /// The row at a bound whose value has the wrong sign there by the most, or the first such.
+    fn violated(&self, values: &[f64], first: bool) -> Option<usize> {
+        let mut found = None;
+        let mut worst = 0.0;
+        for (i, &value) in values.iter().enumerate() {
+            let diagonal = self.matrix[(i, i)];
+            if diagonal <= 0.0 || self.free.members.contains(&i) {
+                continue;
+            }
+            let wrong = if self.lambda[i] > 0.0 { value } else { -value };
+            let movable = self.upper[i] > 0.0;
+            let rounding = ROUNDING * self.terms(i).map(f64::abs).sum::<f64>();
+            // The gain of solving this row alone is wrong^2 / diagonal / 2.
+            if movable && wrong > rounding && wrong / diagonal.sqrt() > worst {
+                found = Some(i);
+                if first {
+                    return found;
+                }
+                worst = wrong / diagonal.sqrt();
+            }
+        }
+        found
+    }
+
+    /// Frees a row at a bound, `rising` from 0 or falling from its upper bound.
+    fn enter(&mut self, row: usize, rising: bool) -> Result<(), Error> {
+        let (line, left) = self.free.eliminate(self.matrix, row);
+        if left > DEPENDENT * self.matrix[(row, row)] {
+            self.free.push(row, line, left);
+            return Ok(());
+        }
+        // A move of the row's multiplier that the free ones make up for: J^T lambda stays.
+        let sign = if rising { 1.0 } else { -1.0 };
+        let mut direction = self.free.back_substitute(line);
+        direction.iter_mut().for_each(|d| *d *= -sign);
+        let mut reach = if rising { self.upper[row] - self.lambda[row] } else { self.lambda[row] };
+        let mut blocking = None;
+        for (place, &member) in self.free.members.iter().enumerate() {
+            let reaches = self.reach(member, direction[place]);
+            if reaches < reach {
+                (reach, blocking) = (reaches, Some(place));
+            }
+        }
+        if reach == f64::INFINITY {
+            return Err(Error::Infeasible { row });
+        }
+        for (place, &member) in self.free.members.iter().enumerate() {
+            self.lambda[member] =
+                (self.lambda[member] + reach * direction[place]).clamp(0.0, self.upper[member]);
+        }
+        let Some(place) = blocking else {
+            self.lambda[row] = if rising { self.upper[row] } else { 0.0 };
+            return Ok(());
+        };
+        self.lambda[row] += sign * reach;
+        self.leave(place, direction[place] > 0.0);
+        let (line, left) = self.free.eliminate(self.matrix, row);
+        // It took the place of a row that it depended on, so it is independent now; the floor only
+        // guards the square root against rounding.
+        self.free.push(row, line, left.max(DEPENDENT * self.matrix[(row, row)]));
+        Ok(())
+    }
+
+    /// How far a multiplier may go along `direction` times.
+    fn reach(&self, row: usize, direction: f64) -> f64 {
+        if direction < 0.0 {
+            self.lambda[row] / -direction
+        } else if direction > 0.0 {
+            (self.upper[row] - self.lambda[row]) / direction
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// Puts a free multiplier onto a bound.
+    fn leave(&mut self, place: usize, at_upper: bool) {
+        let member = self.free.members[place];
+        self.lambda[member] = if at_upper { self.upper[member] } else { 0.0 };
+        self.free.remove(self.matrix, place);
+    }
+
+    /// Minimises over the free multipliers; those that reach a bound on the way leave.
+    fn minimise(&mut self) {
+        // Each blocked step removes a member; two full ones, of which the second refines, end it.
+        let mut full = 0;
+        while full < 2 && !self.free.members.is_empty() {
+            let downhill: Vec<f64> = self.free.members.iter().map(|&i| -self.terms(i).sum::<f64>()).collect();
+            let direction = self.free.solve(downhill);
+            let mut reach = 1.0;
+            let mut blocking = None;
+            for (place, &member) in self.free.members.iter().enumerate() {
+                let reaches = self.reach(member, direction[place]);
+                if reaches < reach {
+                    (reach, blocking) = (reaches, Some(place));
+                }
+            }
+            for (place, &member) in self.free.members.iter().enumerate() {
+                let moved = self.lambda[member] + reach * direction[place];
+                self.lambda[member] = moved.clamp(0.0, self.upper[member]);
+            }
+            match blocking {
+                Some(place) => self.leave(place, direction[place] > 0.0),
+                None => full += 1,
+            }
+        }
+    }
+}
+
+/// Cholesky factor of the free rows' block, grown row by row: A_FF = L L^T.
+#[derive(Default)]
+struct Factor {
+    members: Vec<usize>,
+    /// Row k of L, k + 1 entries.
+    lines: Vec<Vec<f64>>,
+}
+
+impl Factor {
+    /// The line of L that `row` would get, without its diagonal, and the square of that diagonal.
+    fn eliminate(&self, matrix: &DMatrix<f64>, row: usize) -> (Vec<f64>, f64) {
+        let mut line: Vec<f64> = self.members.iter().map(|&member| matrix[(row, member)]).collect();
+        self.forward_substitute(&mut line);
+        let left = matrix[(row, row)] - line.iter().map(|l| l * l).sum::<f64>();
+        (line, left)
+    }
+
+    fn push(&mut self, row: usize, mut line: Vec<f64>, left: f64) {
+        line.push(left.sqrt());
+        self.members.push(row);
+        self.lines.push(line);
+    }
+
+    fn remove(&mut self, matrix: &DMatrix<f64>, place: usize) {
+        let later = self.members.split_off(place);
+        self.lines.truncate(place);
+        for &row in &later[1..] {
+            let (line, left) = self.eliminate(matrix, row);
+            self.push(row, line, left.max(DEPENDENT * matrix[(row, row)]));
+        }
+    }
+
+    /// x <- L^-1 x.
+    fn forward_substitute(&self, x: &mut [f64]) {
+        for (i, line) in self.lines.iter().enumerate() {
+            let sum: f64 = (0..i).map(|j| line[j] * x[j]).sum();
+            x[i] = (x[i] - sum) / line[i];
+        }
+    }
+
+    /// L^-T x.
+    fn back_substitute(&self, mut x: Vec<f64>) -> Vec<f64> {
+        for i in (0..x.len()).rev() {
+            x[i] /= self.lines[i][i];
+            for j in 0..i {
+                x[j] -= self.lines[i][j] * x[i];
+            }
+        }
+        x
+    }
+
+    /// A_FF^-1 x.
+    fn solve(&self, mut x: Vec<f64>) -> Vec<f64> {
+        self.forward_substitute(&mut x);
+        self.back_substitute(x)
+    }
+}
