@@ -14,9 +14,8 @@ impl Judge {
     ///
     /// Intersections are decided exactly, but for half-spaces: a vertex that is not certainly above one,
     /// given rounding, counts as touching it. So that one place is not counted several times, two edges
-    /// are listed only where no triangle at either edge intersects the other edge, and a vertex and a
-    /// triangle only where no edge at the vertex intersects the triangle. The result does not depend on
-    /// the number of threads.
+    /// of a mesh, or a vertex of one and a triangle, are listed only where no edge-triangle pair stands
+    /// for them (all of those share a vertex). The result does not depend on the number of threads.
     ///
     /// # Errors
     /// A wrong number of points, or coordinates that are not finite.
@@ -37,61 +36,36 @@ impl Judge {
             },
         );
         let edge_triangle_count = found.len();
-        let touching = scene.all_pairs(
-            |a, b| a.meets(b),
-            |class, elements, [a, b], found: &mut Vec<Found>| {
-                if touch(x, a, b) {
-                    found.push((class, elements));
-                }
+        let test = |class: PairClass, elements: [u32; 2], [a, b]: [&[u32]; 2], found: &mut Vec<Found>| {
+            if touch(x, a, b) {
+                found.push((class, elements));
+            }
+        };
+        let Scene { particles, strands, triangles, .. } = &scene;
+        found.extend(scene.pairs(PairClass::EdgeEdge, strands, strands, |a, b| a.meets(b), test));
+        found.extend(scene.pairs(PairClass::VertexTriangle, particles, triangles, |a, b| a.meets(b), test));
+        found.extend(scene.pairs(PairClass::VertexEdge, particles, strands, |a, b| a.meets(b), test));
+        found.extend(scene.pairs(PairClass::VertexVertex, particles, particles, |a, b| a.meets(b), test));
+        for &(class, elements) in &self.uncovered {
+            let sides = self.sides(class, elements);
+            let obstacles = sides.iter().all(|side| side.iter().all(|&v| self.obstacle[v as usize]));
+            if !obstacles && self.may_meet(sides[0], sides[1]) {
+                test(class, elements, sides, &mut found);
+            }
+        }
+        found.par_extend(self.vertices.par_iter().filter(|&&v| self.meets_half_spaces(v)).flat_map_iter(
+            |&v| {
+                let below = move |h: &usize| !is_above(&self.half_spaces[*h], &x[v as usize]);
+                (0..self.half_spaces.len())
+                    .filter(below)
+                    .map(move |h| (PairClass::VertexHalfSpace, [v, h as u32]))
             },
-        );
-        found.extend(self.without_implied(touching, &found));
-        found.par_extend(self.vertices.par_iter().filter(|&&v| self.meets_half_spaces(v)).flat_map_iter(|&v| {
-            let below = move |h: &usize| !is_above(&self.half_spaces[*h], &x[v as usize]);
-            (0..self.half_spaces.len()).filter(below).map(move |h| (PairClass::VertexHalfSpace, [v, h as u32]))
-        }));
+        ));
         found.par_sort_unstable();
 
         let intersections = found.iter().take(options.limit).map(|found| self.describe(x, found)).collect();
         let nearest = if options.distance { self.nearest(x, &scene) } else { None };
         Ok(StateReport { intersections, intersection_count: found.len(), edge_triangle_count, nearest })
-    }
-
-    /// The touching pairs that no intersecting edge and triangle stands for.
-    fn without_implied(&self, touching: Vec<Found>, edge_triangles: &[Found]) -> Vec<Found> {
-        // Nearly always nothing touches, and the tables below are not needed.
-        if touching.is_empty() {
-            return touching;
-        }
-        let mut known: Vec<[u32; 2]> = edge_triangles.iter().map(|found| found.1).collect();
-        known.sort_unstable();
-        let known = |edge: u32, triangle: u32| known.binary_search(&[edge, triangle]).is_ok();
-        let edge_number =
-            |i: u32, j: u32| self.edges.binary_search(&[i.min(j), i.max(j)]).map_or(u32::MAX, |e| e as u32);
-        let mut triangles_at_edge: Vec<(u32, u32)> = Vec::with_capacity(3 * self.triangles.len());
-        for (t, &[i, j, k]) in self.triangles.iter().enumerate() {
-            triangles_at_edge.extend([(i, j), (j, k), (k, i)].map(|(i, j)| (edge_number(i, j), t as u32)));
-        }
-        triangles_at_edge.sort_unstable();
-        let mut edges_at_vertex: Vec<(u32, u32)> = Vec::with_capacity(2 * self.edges.len());
-        for (e, edge) in self.edges.iter().enumerate() {
-            edges_at_vertex.extend(edge.map(|v| (v, e as u32)));
-        }
-        edges_at_vertex.sort_unstable();
-        let at = |table: &[(u32, u32)], key: u32| {
-            let start = table.partition_point(|entry| entry.0 < key);
-            table[start..].iter().take_while(|entry| entry.0 == key).map(|entry| entry.1).collect::<Vec<_>>()
-        };
-
-        let implied = |&(class, [a, b]): &Found| match class {
-            PairClass::EdgeEdge => {
-                at(&triangles_at_edge, a).into_iter().any(|t| known(b, t))
-                    || at(&triangles_at_edge, b).into_iter().any(|t| known(a, t))
-            }
-            PairClass::VertexTriangle => at(&edges_at_vertex, a).into_iter().any(|e| known(e, b)),
-            _ => false,
-        };
-        touching.into_iter().filter(|found| !implied(found)).collect()
     }
 
     fn describe(&self, x: &[Point], &(class, elements): &Found) -> Intersection {

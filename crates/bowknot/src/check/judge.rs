@@ -1,5 +1,6 @@
 //! What is fixed about what is judged: elements, bodies, who is exempt.
 
+use super::exceptions::uncovered_pairs;
 use super::{CheckError, PairClass};
 use bowknot_geometry::{HalfSpace, Point};
 use bowknot_proximity::{BodyFilter, CollisionModel};
@@ -38,6 +39,8 @@ pub struct Judge {
     /// Vertices that are judged at all, ascending.
     pub(super) vertices: Vec<u32>,
     pub(super) half_spaces: Vec<HalfSpace>,
+    /// Touching pairs that no edge-triangle pair stands for.
+    pub(super) uncovered: Vec<(PairClass, [u32; 2])>,
     /// One entry a vertex.
     pub(super) obstacle: Vec<bool>,
     /// One entry a vertex.
@@ -87,11 +90,13 @@ impl Judge {
 
         let mut used = vec![false; vertex_count];
         edges.iter().flatten().for_each(|&v| used[v as usize] = true);
-        let mut particles: Vec<u32> = parts.particles.iter().copied().filter(|&v| !used[v as usize]).collect();
+        let mut particles: Vec<u32> =
+            parts.particles.iter().copied().filter(|&v| !used[v as usize]).collect();
         particles.sort_unstable();
         particles.dedup();
         particles.iter().for_each(|&v| used[v as usize] = true);
 
+        let uncovered = uncovered_pairs(vertex_count, parts.triangles, &edges);
         let or_default = |given: bool| if given { 0 } else { vertex_count };
         Ok(Self {
             vertex_count,
@@ -101,6 +106,7 @@ impl Judge {
             particles,
             vertices: (0..vertex_count as u32).filter(|&v| used[v as usize]).collect(),
             half_spaces: parts.half_spaces.to_vec(),
+            uncovered,
             obstacle: [parts.obstacle, &vec![false; or_default(!parts.obstacle.is_empty())]].concat(),
             body: [parts.body, &vec![0; or_default(!parts.body.is_empty())]].concat(),
             filters: Vec::new(),

@@ -24,6 +24,7 @@
 
 mod dump;
 mod error;
+mod exceptions;
 mod intersections;
 mod judge;
 mod nearest;

@@ -28,7 +28,12 @@ impl Judge {
     ///
     /// # Errors
     /// A wrong number of points, or coordinates that are not finite.
-    pub fn check_path(&self, x0: &[Point], x1: &[Point], options: &PathOptions) -> Result<PathReport, CheckError> {
+    pub fn check_path(
+        &self,
+        x0: &[Point],
+        x1: &[Point],
+        options: &PathOptions,
+    ) -> Result<PathReport, CheckError> {
         self.check_positions("start of the path", x0)?;
         self.check_positions("end of the path", x1)?;
         let scene = Scene::new(self, [x0, x1], options.skip_unmoved);
@@ -53,9 +58,10 @@ impl Judge {
     /// Vertices that are not certainly above a half-space at either end; between the ends a vertex
     /// cannot be lower than at both.
     fn half_space_looks(&self, x0: &[Point], x1: &[Point], skip_unmoved: bool) -> Vec<Look> {
-        let vertices = self.vertices.par_iter().filter(|&&v| {
-            self.meets_half_spaces(v) && !(skip_unmoved && x0[v as usize] == x1[v as usize])
-        });
+        let vertices = self
+            .vertices
+            .par_iter()
+            .filter(|&&v| self.meets_half_spaces(v) && !(skip_unmoved && x0[v as usize] == x1[v as usize]));
         let look = |v: u32, h: usize| {
             let above = |x: &[Point]| is_above(&self.half_spaces[h], &x[v as usize]);
             let hit = match (above(x0), above(x1)) {

@@ -68,7 +68,13 @@ impl<'j, const K: usize> Scene<'j, K> {
             edges: Primitives::new(judge, Cow::Borrowed(&judge.edges), None, instants, skip_unmoved),
             triangles: Primitives::new(judge, Cow::Borrowed(&judge.triangles), None, instants, skip_unmoved),
             particles: points(&judge.particles),
-            strands: Primitives::new(judge, Cow::Owned(strands), Some(&judge.strands), instants, skip_unmoved),
+            strands: Primitives::new(
+                judge,
+                Cow::Owned(strands),
+                Some(&judge.strands),
+                instants,
+                skip_unmoved,
+            ),
         }
     }
 

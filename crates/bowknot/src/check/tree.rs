@@ -219,7 +219,9 @@ pub(super) fn walk<const K: usize, R: Send>(
     let mut tasks = vec![(0u32, 0u32)];
     tasks.retain(alive);
     let mut children = Vec::new();
-    while !tasks.is_empty() && tasks.len() < TASKS && !tasks.iter().all(|&(i, j)| a.is_leaf(i) && b.is_leaf(j))
+    while !tasks.is_empty()
+        && tasks.len() < TASKS
+        && !tasks.iter().all(|&(i, j)| a.is_leaf(i) && b.is_leaf(j))
     {
         let mut next = Vec::new();
         for task in tasks {

@@ -1,0 +1,63 @@
+//! Tests of the judge: against an exact oracle, against all pairs, and one by one.
+
+mod oracle;
+mod paths;
+mod states;
+
+use super::{CheckError, Intersection, Judge, PairClass, Parts, PathOptions, StateOptions};
+use bowknot_geometry::{HalfSpace, Point, Vector};
+
+/// A small deterministic generator (splitmix64).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// Uniform in [-1, 1).
+    fn unit(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    fn integer(&mut self, low: i64, high: i64) -> i64 {
+        low + (self.next() % (high - low + 1) as u64) as i64
+    }
+
+    fn point(&mut self, scale: f64) -> Point {
+        Point::new(scale * self.unit(), scale * self.unit(), scale * self.unit())
+    }
+
+    fn vector(&mut self, scale: f64) -> Vector {
+        self.point(scale).coords
+    }
+}
+
+/// A sheet of n x n vertices with unit sides in the plane z = `height`, and its triangles from vertex
+/// number `first` on.
+fn sheet(n: u32, height: f64, first: u32) -> (Vec<Point>, Vec<[u32; 3]>) {
+    let step = 1.0 / (n - 1) as f64;
+    let points =
+        (0..n * n).map(|i| Point::new((i % n) as f64 * step, (i / n) as f64 * step, height)).collect();
+    let mut triangles = Vec::new();
+    for y in 0..n - 1 {
+        for x in 0..n - 1 {
+            let i = first + y * n + x;
+            triangles.extend([[i, i + 1, i + n + 1], [i, i + n + 1, i + n]]);
+        }
+    }
+    (points, triangles)
+}
+
+fn judge_of(vertex_count: usize, triangles: &[[u32; 3]], strands: &[[u32; 2]], particles: &[u32]) -> Judge {
+    Judge::new(&Parts { vertex_count, triangles, strands, particles, ..Parts::default() })
+        .expect("valid parts")
+}
+
+fn points(list: &[[f64; 3]]) -> Vec<Point> {
+    list.iter().map(|&p| Point::from(p)).collect()
+}
