@@ -1,0 +1,194 @@
+//! Whole runs: a scene in, a folder of frames and statistics out.
+
+mod checker;
+mod summary;
+mod writer;
+
+pub use checker::Checker;
+pub use summary::Summary;
+pub use writer::RunWriter;
+
+use crate::io::{IoError, write_text};
+use crate::scene::Scene;
+use crate::simulator::{
+    AcceptedStep, CollisionProblem, SimulationError, Simulator, StepStatistics, Watcher, peak_memory_bytes,
+};
+use crate::world::{SceneInfo, World};
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// How a scene is run; what is written is said by the scene's [`crate::scene::OutputParams`].
+#[derive(Clone, Debug, Default)]
+pub struct RunOptions {
+    /// Output folder.
+    pub out: PathBuf,
+    /// Whether to continue the run that the folder holds. `scene.simulation.frames` counts from the
+    /// start, not from the checkpoint.
+    pub resume: bool,
+    /// Whether every accepted state and path is judged.
+    pub check: bool,
+    /// When this becomes true the run stops as soon as it can, even within a time step, which is then
+    /// abandoned.
+    pub interrupt: Option<Arc<AtomicBool>>,
+}
+
+/// Where a run is.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress<'a> {
+    /// Time steps made, those before a resumption included.
+    pub step: usize,
+    /// Time steps to be made.
+    pub frames: usize,
+    /// Counts of the scene.
+    pub info: &'a SceneInfo,
+    /// The last time step; none before the first.
+    pub statistics: Option<&'a StepStatistics>,
+    /// Intersections found so far, if checked.
+    pub intersections: Option<usize>,
+}
+
+/// How a run ended.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The content of `summary.json`.
+    pub summary: Summary,
+    /// Whether it was stopped before its last frame; the checkpoint is valid.
+    pub interrupted: bool,
+    /// The first intersections found, in words; empty if not checked.
+    pub findings: Vec<String>,
+    /// What was repaired or left out of the scene's meshes, in words.
+    pub warnings: Vec<String>,
+}
+
+/// Runs a scene to its last frame. `progress` is called before the first time step and after each;
+/// `Break` ends the run there.
+///
+/// # Errors
+/// Whatever [`Simulator::new`] and [`Simulator::step`] refuse; a folder that cannot be written, holds a
+/// run already, or cannot be resumed. Frames written so far stay.
+pub fn run(
+    scene: &Scene,
+    options: &RunOptions,
+    progress: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Outcome, SimulationError> {
+    let mut simulator = Simulator::new(scene)?;
+    let mut writer = if options.resume {
+        RunWriter::resume(&options.out, scene, &mut simulator)?
+    } else {
+        RunWriter::create(&options.out, scene, &simulator)?
+    };
+    let info = simulator.world().info(scene.simulation.dt);
+    let world = Arc::clone(simulator.world());
+    let mut checker = options.check.then(|| Checker::new(&simulator));
+    let frames = scene.simulation.frames;
+    let mut report = |step: usize, statistics: Option<&StepStatistics>, checker: &Option<Checker>| {
+        let intersections = checker.as_ref().map(Checker::intersections);
+        progress(&Progress { step, frames, info: &info, statistics, intersections })
+    };
+
+    let stop_asked = || options.interrupt.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed));
+    let mut interrupted = report(simulator.step_index(), None, &checker).is_break();
+    while !interrupted && simulator.step_index() < frames {
+        let mut watcher = RunWatcher {
+            writer: &writer,
+            checker: checker.as_mut(),
+            world: &world,
+            trace: scene.output.trace,
+            record: scene.output.record,
+            stop_asked: &stop_asked,
+            error: None,
+        };
+        let result = simulator.step_watched(&mut watcher);
+        if let Some(error) = watcher.error {
+            return Err(error);
+        }
+        match result {
+            Ok(statistics) => {
+                writer.step(&statistics, &simulator)?;
+                interrupted = report(simulator.step_index(), Some(&statistics), &checker).is_break();
+            }
+            Err(SimulationError::Interrupted) => interrupted = true,
+            Err(error) => return Err(error),
+        }
+        interrupted |= stop_asked();
+    }
+    interrupted &= simulator.step_index() < frames;
+    writer.finish(&simulator)?;
+
+    let totals = writer.totals();
+    let summary = Summary {
+        scene: scene.name().to_owned(),
+        info,
+        frames: totals.steps(),
+        threads: rayon::current_num_threads(),
+        backend: "cpu".to_owned(),
+        mean: totals.mean(),
+        max: totals.max(),
+        min_gap_m: totals.min_gap(),
+        peak_memory_bytes: peak_memory_bytes(),
+        intersections: checker.as_ref().map(Checker::intersections),
+    };
+    let path = writer.folder().join("summary.json");
+    let text = serde_json::to_string_pretty(&summary)
+        .map_err(|error| IoError::system("write", &path, error.into()))?;
+    write_text(&path, &(text + "\n"))?;
+    let findings = checker.map_or_else(Vec::new, |checker| checker.findings().to_vec());
+    Ok(Outcome { summary, interrupted, findings, warnings: world.warnings.clone() })
+}
+
+/// What happens within the time steps of a run.
+struct RunWatcher<'a> {
+    writer: &'a RunWriter,
+    checker: Option<&'a mut Checker>,
+    world: &'a World,
+    trace: bool,
+    record: bool,
+    stop_asked: &'a dyn Fn() -> bool,
+    error: Option<SimulationError>,
+}
+
+impl RunWatcher<'_> {
+    fn go_on(&mut self, result: Result<(), SimulationError>) -> ControlFlow<()> {
+        match result {
+            Ok(()) if (self.stop_asked)() => ControlFlow::Break(()),
+            Ok(()) => ControlFlow::Continue(()),
+            Err(error) => {
+                self.error = Some(error);
+                ControlFlow::Break(())
+            }
+        }
+    }
+}
+
+impl Watcher for RunWatcher<'_> {
+    fn problem(&mut self, problem: &CollisionProblem<'_>) -> ControlFlow<()> {
+        let write = || -> Result<(), SimulationError> {
+            if self.record {
+                self.writer.write_problem(problem, self.world)?;
+            }
+            if self.trace {
+                self.writer.write_trace(problem.step, problem.iteration, 0, problem.positions)?;
+            }
+            Ok(())
+        };
+        let result = write();
+        self.go_on(result)
+    }
+
+    fn accepted(&mut self, accepted: &AcceptedStep<'_>) -> ControlFlow<()> {
+        let mut handle = || -> Result<(), SimulationError> {
+            if self.trace {
+                let l = accepted.state.step + 1;
+                self.writer.write_trace(accepted.step, accepted.iteration, l, accepted.state.positions)?;
+            }
+            if let Some(checker) = &mut self.checker {
+                checker.judge(accepted, self.world)?;
+            }
+            Ok(())
+        };
+        let result = handle();
+        self.go_on(result)
+    }
+}

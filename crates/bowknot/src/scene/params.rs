@@ -1,0 +1,127 @@
+//! The tables of a scene that belong to the facade itself; the others are the crates' own parameters.
+
+use serde::{Deserialize, Serialize};
+
+/// Time and the order of work within a time step; with the gravity and drag of
+/// [`bowknot_dynamics::DynamicsParams`] this is the table `[simulation]`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SimulationParams {
+    /// Name of the scene in reports. Default: the file's name without its ending.
+    pub name: String,
+    /// Time step [s]; one frame is one time step. Larger: fewer, harder collision problems, and more
+    /// damping by implicit Euler. Default 0.01.
+    pub dt: f64,
+    /// Number of time steps of a run [1]. Default 100.
+    pub frames: usize,
+    /// Newton iterations per time step [1]. More: stiffer, livelier motion at proportional cost.
+    /// Default 1.
+    pub newton_iterations: usize,
+    /// When collisions are resolved: after each Newton iteration, `newton`, or once at the end of the
+    /// time step, `step`. Default `newton`.
+    pub collision_every: CollisionEvery,
+}
+
+/// When collisions are resolved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CollisionEvery {
+    /// After each Newton iteration: the next one starts from a state without intersections.
+    #[default]
+    Newton,
+    /// Once per time step, after the last Newton iteration.
+    Step,
+}
+
+/// A set of defaults for the tables `[contact]` and `[solver]`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Preset {
+    /// Everything that measurements showed to pay, [`bowknot_twoway::Params::fast`].
+    #[default]
+    Fast,
+    /// The method as the paper describes it, [`bowknot_twoway::Params::paper`].
+    Paper,
+}
+
+impl Preset {
+    /// The parameters of the preset.
+    pub fn params(self) -> bowknot_twoway::Params {
+        match self {
+            Self::Fast => bowknot_twoway::Params::fast(),
+            Self::Paper => bowknot_twoway::Params::paper(),
+        }
+    }
+}
+
+/// What a run writes, the table `[output]`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct OutputParams {
+    /// Formats of the frames: `ply` and `obj` write one file a frame, `npz` one stack of all frames at
+    /// the end. Default `["ply"]`.
+    pub formats: Vec<Format>,
+    /// Time steps between checkpoints [1]; 0 writes one at the end only. Smaller: less is repeated after
+    /// an interruption. Default 10.
+    pub checkpoint_every: usize,
+    /// Whether every accepted state x^(l) is written to `trace/`: hundreds of files a time step. Default
+    /// false.
+    pub trace: bool,
+    /// Whether the collision problems are written to `states/`, for `bowknot resolve`. Default false.
+    pub record: bool,
+}
+
+/// Format of the frames.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Format {
+    /// Binary PLY with double coordinates.
+    Ply,
+    /// Wavefront OBJ.
+    Obj,
+    /// NumPy archive of all frames.
+    Npz,
+}
+
+impl Default for SimulationParams {
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            dt: 0.01,
+            frames: 100,
+            newton_iterations: 1,
+            collision_every: CollisionEvery::default(),
+        }
+    }
+}
+
+impl Default for OutputParams {
+    fn default() -> Self {
+        Self { formats: vec![Format::Ply], checkpoint_every: 10, trace: false, record: false }
+    }
+}
+
+impl SimulationParams {
+    /// Appends the field and what is wrong with it, for each field out of its range.
+    pub(crate) fn validate(&self, problems: &mut Vec<(&'static str, String)>) {
+        if !(self.dt.is_finite() && (1e-6..=1.0).contains(&self.dt)) {
+            problems.push(("dt", format!("{} must be a number of seconds from 1e-6 to 1", self.dt)));
+        }
+        if self.frames > 1_000_000 {
+            problems.push(("frames", format!("{} must be at most 1000000", self.frames)));
+        }
+        if !(1..=1000).contains(&self.newton_iterations) {
+            problems
+                .push(("newton_iterations", format!("{} must lie from 1 to 1000", self.newton_iterations)));
+        }
+    }
+}
+
+impl OutputParams {
+    /// As [`SimulationParams::validate`].
+    pub(crate) fn validate(&self, problems: &mut Vec<(&'static str, String)>) {
+        if self.formats.is_empty() {
+            problems.push(("formats", "must name at least one of ply, obj, npz".to_owned()));
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! Generated meshes: deterministic, in metres, z up, about the origin.
+
+mod ball;
+mod cone;
+mod cuboid;
+mod sheet;
+mod tube;
+
+pub use ball::Ball;
+pub use cone::Cone;
+pub use cuboid::Cuboid;
+pub use sheet::{Diagonals, Sheet};
+pub use tube::Tube;
+
+use bowknot_geometry::{Point, Vector};
+use serde::{Deserialize, Serialize};
+
+/// A generated mesh, or the analytic half-space; the key `type` tells which.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "type", rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Shape {
+    /// A flat rectangle.
+    Sheet(Sheet),
+    /// An open cylinder.
+    Tube(Tube),
+    /// A closed sphere.
+    Ball(Ball),
+    /// A closed cone, such as a needle.
+    Cone(Cone),
+    /// A closed box.
+    Box(Cuboid),
+    /// Everything below a plane, such as the ground. For obstacles only.
+    HalfSpace(HalfSpaceShape),
+}
+
+/// Everything below the plane through the obstacle's `translate`: an analytic obstacle without mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct HalfSpaceShape {
+    /// Direction out of the solid [1], of any length but zero. Default (0, 0, 1).
+    pub normal: Vector,
+}
+
+impl Default for HalfSpaceShape {
+    fn default() -> Self {
+        Self { normal: Vector::z() }
+    }
+}
+
+/// Vertices and triangles of a generated mesh.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TriangleMesh {
+    /// Vertices [m].
+    pub positions: Vec<Point>,
+    /// Triangles; on closed meshes counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// More vertices than this in one shape are refused: a mistyped edge length rather than a wish.
+const MOST_VERTICES: f64 = 2e7;
+
+impl Shape {
+    /// Names that the key `type` may have.
+    pub const NAMES: [&'static str; 6] = ["sheet", "tube", "ball", "cone", "box", "half-space"];
+
+    /// The mesh; none for a half-space.
+    pub fn mesh(&self) -> Option<TriangleMesh> {
+        match self {
+            Self::Sheet(sheet) => Some(sheet.mesh()),
+            Self::Tube(tube) => Some(tube.mesh()),
+            Self::Ball(ball) => Some(ball.mesh()),
+            Self::Cone(cone) => Some(cone.mesh()),
+            Self::Box(cuboid) => Some(cuboid.mesh()),
+            Self::HalfSpace(_) => None,
+        }
+    }
+
+    /// Appends the field and what is wrong with it.
+    pub(crate) fn validate(&self, problems: &mut Vec<(&'static str, String)>) {
+        let (lengths, area, edge): (Vec<(&'static str, f64)>, f64, f64) = match self {
+            Self::Sheet(s) => (vec![("size", s.size[0]), ("size", s.size[1])], s.size[0] * s.size[1], s.edge),
+            Self::Tube(t) => {
+                (vec![("radius", t.radius), ("length", t.length)], 7.0 * t.radius * t.length, t.edge)
+            }
+            Self::Ball(b) => (vec![("radius", b.radius)], 13.0 * b.radius * b.radius, b.edge),
+            Self::Cone(c) => (
+                vec![("radius", c.radius), ("height", c.height)],
+                4.0 * c.radius * (c.radius + c.height),
+                c.edge,
+            ),
+            Self::Box(b) => (
+                b.size.iter().map(|&s| ("size", s)).collect(),
+                2.0 * (b.size[0] * b.size[1] + b.size[1] * b.size[2] + b.size[2] * b.size[0]),
+                b.edge,
+            ),
+            Self::HalfSpace(h) => {
+                if !(h.normal.iter().all(|c| c.is_finite()) && h.normal.norm() > 0.0) {
+                    problems.push(("normal", "must be finite and not zero".to_owned()));
+                }
+                return;
+            }
+        };
+        let before = problems.len();
+        for (key, value) in lengths.into_iter().chain([("edge", edge)]) {
+            if !(value.is_finite() && value > 0.0) {
+                problems.push((key, format!("{value} must be a length in metres above 0")));
+            }
+        }
+        if problems.len() == before && area / (edge * edge) > MOST_VERTICES {
+            problems.push((
+                "edge",
+                format!("{edge} m would make more than {MOST_VERTICES:e} vertices; it must be larger"),
+            ));
+        }
+    }
+}
+
+/// Number of segments of about `edge` that a length is divided into, at least 1.
+fn segments(length: f64, edge: f64) -> u32 {
+    (length / edge).round().clamp(1.0, 1e6) as u32
+}
+
+#[cfg(test)]
+mod tests;

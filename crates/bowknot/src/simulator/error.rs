@@ -1,0 +1,126 @@
+//! Why a simulation cannot begin or go on.
+
+use crate::check::{CheckError, Intersection};
+use crate::io::IoError;
+use crate::scene::SceneError;
+use crate::world::World;
+use bowknot_dynamics::{ParamsError, StepError};
+use bowknot_twoway::ResolveError;
+use std::path::PathBuf;
+
+/// Why a simulation cannot begin or go on. All but [`SimulationError::Interrupted`] are the user's input
+/// or an unwritable output (exit code 2 of the command); that a check found an intersection is no
+/// error but a result, see [`crate::run::Summary::intersections`].
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SimulationError {
+    /// The scene is refused.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// Parameters of the dynamics are refused.
+    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
+    Dynamics(Vec<ParamsError>),
+    /// The state cannot be judged.
+    #[error(transparent)]
+    Check(#[from] CheckError),
+    /// Bodies intersect at the start.
+    #[error("{}", start_message(.lines, .count))]
+    StartIntersects {
+        /// The first intersecting pairs, in words.
+        lines: Vec<String>,
+        /// How many pairs intersect in all.
+        count: usize,
+    },
+    /// The dynamics has no finite target.
+    #[error("time step {step}: {source}; a smaller dt, or softer materials, may help")]
+    Target {
+        /// The time step, from 1.
+        step: usize,
+        /// What is not finite, of which body.
+        source: StepError,
+    },
+    /// The collision stage refuses the state or the target.
+    #[error("time step {step}: {}", resolve_message(.source, .body))]
+    Resolve {
+        /// The time step, from 1; 0 before the first.
+        step: usize,
+        /// Name of the body that it is about, if any.
+        body: String,
+        /// Why.
+        source: ResolveError,
+    },
+    /// A file cannot be read or written.
+    #[error(transparent)]
+    Io(#[from] IoError),
+    /// The output folder holds a run already.
+    #[error(
+        "{} already holds a run: continue it with --resume, choose another folder with --out, or remove it",
+        path.display()
+    )]
+    RunExists {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A run cannot be resumed.
+    #[error("cannot resume {}: {message}", path.display())]
+    Resume {
+        /// The output folder.
+        path: PathBuf,
+        /// Why not.
+        message: String,
+    },
+    /// A watcher stopped the time step; the simulator is as it was before the step.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// The first intersections of a state in words: bodies by name, vertices by index in their body's mesh.
+pub fn describe_intersections(world: &World, intersections: &[Intersection]) -> Vec<String> {
+    let side = |intersection: &Intersection, side: usize| {
+        let kind = intersection.class.sides()[side];
+        let Some(body) = intersection.bodies[side] else {
+            let plane = intersection.elements[side] as usize;
+            let name = world.half_space_names.get(plane).map_or("", String::as_str);
+            return format!("half-space {name}");
+        };
+        let first = world.bodies.get(body as usize).map_or(0, |b| b.vertices.start);
+        let vertices: Vec<String> =
+            intersection.vertices[side].iter().map(|v| (v - first).to_string()).collect();
+        let element = match vertices.as_slice() {
+            [vertex] => format!("{kind} {vertex}"),
+            list => format!("{kind} (vertices {})", list.join(", ")),
+        };
+        format!("{element} of {}", world.name_of(body))
+    };
+    intersections
+        .iter()
+        .map(|i| {
+            let p = i.place;
+            format!("{} and {} at ({:.6}, {:.6}, {:.6})", side(i, 0), side(i, 1), p.x, p.y, p.z)
+        })
+        .collect()
+}
+
+fn start_message(lines: &[String], count: &usize) -> String {
+    let more = count - lines.len();
+    let more = if more > 0 { format!("\n  and {more} more pairs") } else { String::new() };
+    format!(
+        "the start already intersects; a simulation needs a start without intersections:\n  {}{more}\n\
+         `bowknot run .. --dump FILE.ply` writes the offending triangles as a mesh",
+        lines.join("\n  ")
+    )
+}
+
+/// The messages of the collision stage, with the keys of a scene and the names of bodies.
+fn resolve_message(error: &ResolveError, body: &str) -> String {
+    match error {
+        ResolveError::FloorBelowRounding { floor, coordinate, needed, .. } => format!(
+            "the gap floor of {floor:.3e} m is below 16 ulp of the largest coordinate ({coordinate:.3e} m, body \
+             {body}): move the scene nearer to the origin, or set contact.floor above {needed:.3e} m"
+        ),
+        ResolveError::NonFinite { what, vertex, .. } => {
+            format!("{what} of vertex {vertex} (body {body}) is not finite")
+        }
+        other => other.to_string(),
+    }
+}

@@ -1,0 +1,416 @@
+//! The time-step loop.
+//!
+//! For each Newton iteration the dynamics makes a target y from x, prescribed vertices (pins, obstacles)
+//! get their keyframe at t + dt, and the two-way method moves x towards y without intersections; at the
+//! end v = (x_end - x_start) / dt. With [`CollisionEvery::Step`] the iterations run freely and the
+//! two-way method resolves once, from the start of the step to the last target.
+
+mod checkpoint;
+mod error;
+mod process;
+mod statistics;
+
+pub use checkpoint::Checkpoint;
+pub use error::{SimulationError, describe_intersections};
+pub use process::{cpu_seconds, peak_memory_bytes};
+pub use statistics::{Energy, StepSeconds, StepStatistics};
+
+use crate::check::{Judge, StateOptions, StateReport};
+use crate::scene::{CollisionEvery, Scene};
+use crate::world::World;
+use bowknot_dynamics::{Dynamics, DynamicsModel};
+use bowknot_geometry::{Point, Vector};
+use bowknot_twoway::{AcceptedState, Call, Observer, ResolveError, Resolver};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// How many intersecting pairs of a refused start are named.
+const NAMED_PAIRS: usize = 5;
+
+/// A running simulation.
+#[derive(Debug)]
+pub struct Simulator {
+    world: Arc<World>,
+    dt: f64,
+    newton_iterations: usize,
+    collision_every: CollisionEvery,
+    dynamics: Dynamics,
+    resolver: Resolver,
+    step: usize,
+    positions: Vec<Point>,
+    velocities: Vec<Vector>,
+    anchors: Vec<Vec<Point>>,
+    scratch: Scratch,
+}
+
+/// Buffers of a time step; nothing in them outlives it.
+#[derive(Debug, Default)]
+struct Scratch {
+    start: Vec<Point>,
+    x: Vec<Point>,
+    y: Vec<Point>,
+    prescribed: Vec<bool>,
+    keyframes: Vec<Point>,
+}
+
+/// A collision problem on its way to the two-way method.
+#[derive(Clone, Copy, Debug)]
+pub struct CollisionProblem<'a> {
+    /// The time step, from 1.
+    pub step: usize,
+    /// The Newton iteration in it, from 0.
+    pub iteration: usize,
+    /// The state, free of intersections [m].
+    pub positions: &'a [Point],
+    /// Where the dynamics wants to be [m].
+    pub target: &'a [Point],
+    /// Prescribed vertices: those of obstacles, and pinned ones.
+    pub prescribed: &'a [bool],
+    /// Time step that the problem stands for [s].
+    pub time_step: f64,
+}
+
+/// A state that the two-way method has accepted.
+#[derive(Clone, Copy, Debug)]
+pub struct AcceptedStep<'a> {
+    /// The time step, from 1.
+    pub step: usize,
+    /// The Newton iteration in it, from 0.
+    pub iteration: usize,
+    /// The two-way step and its states.
+    pub state: AcceptedState<'a>,
+}
+
+/// Sees what happens within a time step, and may stop it.
+pub trait Watcher {
+    /// Called before each collision problem is resolved; `Break` abandons the time step.
+    fn problem(&mut self, problem: &CollisionProblem<'_>) -> ControlFlow<()> {
+        let _ = problem;
+        ControlFlow::Continue(())
+    }
+
+    /// Called after each two-way step; `Break` abandons the time step.
+    fn accepted(&mut self, accepted: &AcceptedStep<'_>) -> ControlFlow<()> {
+        let _ = accepted;
+        ControlFlow::Continue(())
+    }
+}
+
+/// Watches nothing.
+impl Watcher for () {}
+
+impl Simulator {
+    /// Loads the scene's meshes and prepares the first time step.
+    ///
+    /// # Errors
+    /// Whatever is wrong with the scene or its meshes; a start that already intersects, with the first
+    /// pairs.
+    pub fn new(scene: &Scene) -> Result<Self, SimulationError> {
+        let simulator = Self::without_start_check(scene)?;
+        let options = StateOptions { limit: NAMED_PAIRS, distance: false };
+        let report = simulator.judge().check_state(&simulator.positions, &options)?;
+        if report.is_clear() {
+            return Ok(simulator);
+        }
+        let lines = describe_intersections(&simulator.world, &report.intersections);
+        Err(SimulationError::StartIntersects { lines, count: report.intersection_count })
+    }
+
+    /// The scene's world and all intersections of its start, for a dump.
+    ///
+    /// # Errors
+    /// Whatever is wrong with the scene or its meshes.
+    pub fn start_intersections(scene: &Scene) -> Result<(World, StateReport), SimulationError> {
+        let world = World::new(scene)?;
+        let options = StateOptions { limit: usize::MAX, distance: false };
+        let report = Judge::from_model(&world.collision).check_state(&world.positions, &options)?;
+        Ok((world, report))
+    }
+
+    fn without_start_check(scene: &Scene) -> Result<Self, SimulationError> {
+        let world = World::new(scene)?;
+        let model = world.dynamics_model()?;
+        let (rest, masses) = (model.rest_positions(), model.masses());
+        let resolver = Resolver::new(world.collision.clone(), rest, masses, scene.twoway.clone())
+            .map_err(|source| resolve_error(&world, 0, source))?;
+        let dynamics = Dynamics::new(model, scene.dynamics).map_err(SimulationError::Dynamics)?;
+        let anchors = vec![Vec::new(); world.pins.len()];
+        Ok(Self {
+            dt: scene.simulation.dt,
+            newton_iterations: scene.simulation.newton_iterations,
+            collision_every: scene.simulation.collision_every,
+            dynamics,
+            resolver,
+            step: 0,
+            positions: world.positions.clone(),
+            velocities: world.velocities.clone(),
+            anchors,
+            scratch: Scratch::default(),
+            world: Arc::new(world),
+        })
+    }
+
+    /// Makes one time step.
+    ///
+    /// # Errors
+    /// A target that is not finite, with its body; coordinates too large for the gap floor. The
+    /// simulator is then as it was before the step.
+    pub fn step(&mut self) -> Result<StepStatistics, SimulationError> {
+        self.step_watched(&mut ())
+    }
+
+    /// Makes one time step under the eyes of a watcher.
+    ///
+    /// # Errors
+    /// As [`Self::step`]; [`SimulationError::Interrupted`] if the watcher stopped it. The simulator is
+    /// then as it was before the step.
+    pub fn step_watched(&mut self, watcher: &mut dyn Watcher) -> Result<StepStatistics, SimulationError> {
+        let (clock, cpu_clock) = (Instant::now(), cpu_seconds());
+        let step = self.step + 1;
+        let time = step as f64 * self.dt;
+        let mut statistics = StepStatistics { step, time, converged: true, ..StepStatistics::default() };
+
+        let mut scratch = std::mem::take(&mut self.scratch);
+        scratch.start.clone_from(&self.positions);
+        let anchors = self.anchors.clone();
+        self.prescribe(time, &mut scratch);
+        let result = self.iterate(step, &mut scratch, watcher, &mut statistics);
+        if let Err(error) = result {
+            self.positions.clone_from(&scratch.start);
+            self.anchors = anchors;
+            self.scratch = scratch;
+            return Err(error);
+        }
+
+        let dt = self.dt;
+        let moved = self.positions.iter().zip(&scratch.start);
+        self.velocities.iter_mut().zip(moved).for_each(|(v, (x, x0))| *v = (x - x0) / dt);
+        self.scratch = scratch;
+        self.step = step;
+
+        let model = self.dynamics.model();
+        statistics.max_stretch = model.max_stretch(&self.positions);
+        let deformable = &self.velocities[..self.world.deformable_vertices];
+        statistics.max_speed = deformable.iter().map(Vector::norm).fold(0.0, f64::max);
+        statistics.finish(
+            &self.dynamics.energies(&self.positions, &self.velocities),
+            &model.momentum(&self.velocities),
+            &model.center_of_mass(&self.positions),
+        );
+        statistics.close(clock.elapsed().as_secs_f64(), cpu_seconds() - cpu_clock);
+        if let Some(body) = &statistics.slowest_body {
+            tracing::debug!(step, %body, remaining_m = statistics.remaining_m, "collisions did not converge");
+        }
+        Ok(statistics)
+    }
+
+    /// The Newton iterations of a time step, with their collision problems; moves `self.positions`.
+    fn iterate(
+        &mut self,
+        step: usize,
+        scratch: &mut Scratch,
+        watcher: &mut dyn Watcher,
+        statistics: &mut StepStatistics,
+    ) -> Result<(), SimulationError> {
+        let Self { world, dynamics, resolver, positions, velocities, dt, .. } = self;
+        let Scratch { start, x, y, prescribed, keyframes } = scratch;
+        let target_error = |source| SimulationError::Target { step, source };
+
+        let clock = Instant::now();
+        dynamics.begin_step(start, velocities, *dt).map_err(target_error)?;
+        statistics.seconds.dynamics += clock.elapsed().as_secs_f64();
+        y.clone_from(start);
+        x.clone_from(start);
+        for iteration in 0..self.newton_iterations {
+            let last = iteration + 1 == self.newton_iterations;
+            let clock = Instant::now();
+            let info = dynamics.newton_target(x, prescribed, keyframes, y).map_err(target_error)?;
+            statistics.add_newton(&info, clock.elapsed().as_secs_f64());
+            if !info.cg.converged {
+                tracing::debug!(
+                    step,
+                    iteration,
+                    residual = info.cg.residual,
+                    "the linear solve did not converge"
+                );
+            }
+            match self.collision_every {
+                CollisionEvery::Step if !last => {
+                    x.clone_from(y);
+                    continue;
+                }
+                CollisionEvery::Step => x.clone_from(start),
+                CollisionEvery::Newton => {}
+            }
+
+            let problem =
+                CollisionProblem { step, iteration, positions: x, target: y, prescribed, time_step: *dt };
+            if watcher.problem(&problem).is_break() {
+                return Err(SimulationError::Interrupted);
+            }
+            let mut relay = Relay { watcher: &mut *watcher, step, iteration, stopped: false };
+            let call = Call { prescribed, time_step: Some(*dt) };
+            let resolved = resolver.resolve(x, y, &call, &mut relay);
+            if relay.stopped {
+                return Err(SimulationError::Interrupted);
+            }
+            let resolved = resolved.map_err(|source| resolve_error(world, step, source))?;
+            statistics.add_collision(&resolved, |body| world.name_of(body).to_owned());
+        }
+        positions.clone_from(x);
+        Ok(())
+    }
+
+    /// Fills in who is prescribed at `time`, the end of the time step, and where.
+    fn prescribe(&mut self, time: f64, scratch: &mut Scratch) {
+        let Self { world, anchors, positions, dt, .. } = self;
+        let Scratch { prescribed, keyframes, .. } = scratch;
+        prescribed.clear();
+        prescribed.resize(positions.len(), false);
+        keyframes.clone_from(positions);
+        for body in world.bodies.iter().filter(|body| body.kind.is_none()) {
+            let range = body.vertices.start as usize..body.vertices.end as usize;
+            prescribed[range.clone()].fill(true);
+            match &body.motion {
+                None => keyframes[range.clone()].copy_from_slice(&world.base[range]),
+                Some(motion) => {
+                    let place = motion.at(time);
+                    for v in range {
+                        keyframes[v] = place.apply(&world.base[v]);
+                    }
+                }
+            }
+        }
+        // Times are multiples of dt, rounded.
+        let tolerance = 1e-9 * *dt;
+        for (pin, anchor) in world.pins.iter().zip(anchors) {
+            if pin.start >= time - tolerance || time > pin.end + tolerance {
+                continue;
+            }
+            if anchor.is_empty() && pin.start > 0.0 {
+                let place = pin.motion.as_ref().map(|motion| motion.at(pin.start));
+                let undo = |v: &u32| {
+                    let x = &positions[*v as usize];
+                    place.map_or(*x, |place| place.undo(x))
+                };
+                *anchor = pin.vertices.iter().map(undo).collect();
+            }
+            let place = pin.motion.as_ref().map(|motion| motion.at(time));
+            for (k, &v) in pin.vertices.iter().enumerate() {
+                let v = v as usize;
+                let home = anchor.get(k).unwrap_or(&world.positions[v]);
+                prescribed[v] = true;
+                keyframes[v] = place.map_or(*home, |place| place.apply(home));
+            }
+        }
+    }
+
+    /// Positions of all vertices, deformable ones first [m].
+    pub fn positions(&self) -> &[Point] {
+        &self.positions
+    }
+
+    /// Velocities of all vertices [m/s].
+    pub fn velocities(&self) -> &[Vector] {
+        &self.velocities
+    }
+
+    /// Time of the state [s].
+    pub fn time(&self) -> f64 {
+        self.step as f64 * self.dt
+    }
+
+    /// Time steps made.
+    pub fn step_index(&self) -> usize {
+        self.step
+    }
+
+    /// Bodies, topology, pins: what is fixed.
+    pub fn world(&self) -> &Arc<World> {
+        &self.world
+    }
+
+    /// Masses, elements, and what can be measured of a state.
+    pub fn dynamics_model(&self) -> &DynamicsModel {
+        self.dynamics.model()
+    }
+
+    /// The collision stage: its parameters and the lengths in force.
+    pub fn resolver(&self) -> &Resolver {
+        &self.resolver
+    }
+
+    /// A judge of the simulation's states and paths.
+    pub fn judge(&self) -> Judge {
+        Judge::from_model(&self.world.collision)
+    }
+
+    /// The state, in full.
+    pub fn checkpoint(&self) -> Checkpoint {
+        Checkpoint {
+            step: self.step,
+            positions: self.positions.clone(),
+            velocities: self.velocities.clone(),
+            anchors: self.anchors.clone(),
+        }
+    }
+
+    /// Goes on from a state of the same scene.
+    ///
+    /// # Errors
+    /// What does not fit, in words; the simulator is then as it was.
+    pub fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), String> {
+        let vertices = self.positions.len();
+        for (what, given) in
+            [("positions", checkpoint.positions.len()), ("velocities", checkpoint.velocities.len())]
+        {
+            if given != vertices {
+                return Err(format!("it has {given} {what}, but the scene has {vertices} vertices"));
+            }
+        }
+        let fits = checkpoint.anchors.len() == self.world.pins.len()
+            && checkpoint
+                .anchors
+                .iter()
+                .zip(&self.world.pins)
+                .all(|(a, p)| a.is_empty() || a.len() == p.vertices.len());
+        if !fits {
+            return Err("its pins are not those of the scene".to_owned());
+        }
+        self.step = checkpoint.step;
+        self.positions.clone_from(&checkpoint.positions);
+        self.velocities.clone_from(&checkpoint.velocities);
+        self.anchors.clone_from(&checkpoint.anchors);
+        Ok(())
+    }
+}
+
+fn resolve_error(world: &World, step: usize, source: ResolveError) -> SimulationError {
+    let body = match &source {
+        ResolveError::NonFinite { body, .. } | ResolveError::Mass { body, .. } => world.name_of(*body),
+        ResolveError::FloorBelowRounding { vertex, .. } => world.body_name(*vertex),
+        _ => "",
+    };
+    SimulationError::Resolve { step, body: body.to_owned(), source }
+}
+
+/// Passes accepted states on, with the place in the simulation that they belong to.
+struct Relay<'a> {
+    watcher: &'a mut dyn Watcher,
+    step: usize,
+    iteration: usize,
+    stopped: bool,
+}
+
+impl Observer for Relay<'_> {
+    fn accepted(&mut self, state: &AcceptedState<'_>) -> ControlFlow<()> {
+        let flow = self.watcher.accepted(&AcceptedStep {
+            step: self.step,
+            iteration: self.iteration,
+            state: *state,
+        });
+        self.stopped |= flow.is_break();
+        flow
+    }
+}

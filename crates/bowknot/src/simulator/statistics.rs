@@ -1,0 +1,150 @@
+//! What a time step reports: one line of `stats.jsonl`.
+
+use bowknot_dynamics::{Energies, NewtonInfo};
+use bowknot_geometry::{Point, Vector};
+use bowknot_twoway::{Skipped, Statistics};
+use serde::{Deserialize, Serialize};
+
+/// What a time step did and how it ended; it serialises to one line of `stats.jsonl`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StepStatistics {
+    /// Index of the time step, from 1: the frame that it made.
+    pub step: usize,
+    /// Time at its end [s].
+    pub time: f64,
+    /// Newton iterations.
+    pub newton_iterations: usize,
+    /// Iterations of the linear solves, over all Newton iterations.
+    pub cg_iterations: usize,
+    /// Two-way steps, over all collision problems.
+    pub two_way_steps: usize,
+    /// Proximity searches, likewise.
+    pub searches: usize,
+    /// Pairs listed after the last search.
+    pub pairs: usize,
+    /// Contact rows of the last backward step.
+    pub contact_rows: usize,
+    /// Edge rows of the last backward step.
+    pub edge_rows: usize,
+    /// Rows swept in the last backward step.
+    pub active_rows: usize,
+    /// Pairs frozen for want of a certificate, over all two-way steps.
+    pub frozen_pairs: usize,
+    /// Largest clock r at the end of any collision problem.
+    pub remaining_r: f64,
+    /// Largest distance not travelled at the end of any collision problem [m].
+    pub remaining_m: f64,
+    /// Largest stationarity residual, likewise [m].
+    pub stationarity_m: f64,
+    /// Whether all collision problems met the stopping rule.
+    pub converged: bool,
+    /// Smallest distance over the listed pairs at the end [m]; none if no pair is listed.
+    pub min_gap_m: Option<f64>,
+    /// Largest ratio of an edge's length to its rest length at the end.
+    pub max_stretch: f64,
+    /// Largest ratio of an edge's length to its length at the start, over the collision problems.
+    pub max_step_stretch: f64,
+    /// Largest speed of a deformable vertex at the end [m/s].
+    pub max_speed: f64,
+    /// Energies at the end [J].
+    pub energy: Energy,
+    /// Momentum at the end [kg m/s].
+    pub momentum: [f64; 3],
+    /// Centre of mass at the end [m].
+    pub center_of_mass: [f64; 3],
+    /// Wall seconds by stage.
+    pub seconds: StepSeconds,
+    /// CPU seconds of the process, all threads; 0 where the system does not tell.
+    pub cpu_seconds: f64,
+    /// Work that was skipped because nothing needed it.
+    pub skipped: Skipped,
+    /// Name of the body that has travelled least of its way, if a collision problem did not converge.
+    #[serde(skip)]
+    pub slowest_body: Option<String>,
+    /// Largest distance by which an obstacle or pin is behind its keyframe at the end [m].
+    #[serde(skip)]
+    pub prescribed_behind_m: f64,
+}
+
+/// Energies [J].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Energy {
+    /// 1/2 sum m |v|^2.
+    pub kinetic: f64,
+    /// Stretching and bending.
+    pub elastic: f64,
+    /// - sum m g . x.
+    pub potential: f64,
+}
+
+/// Wall seconds by stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StepSeconds {
+    /// The whole time step.
+    pub total: f64,
+    /// Making targets.
+    pub dynamics: f64,
+    /// Proximity search.
+    pub search: f64,
+    /// Contact geometry of the listed pairs.
+    pub evaluate: f64,
+    /// Backward steps.
+    pub backward: f64,
+    /// Forward steps.
+    pub forward: f64,
+    /// Everything else: observers such as `--check` and `--trace`, and the loop itself.
+    pub other: f64,
+}
+
+impl StepStatistics {
+    /// Adds a Newton iteration.
+    pub(super) fn add_newton(&mut self, info: &NewtonInfo, seconds: f64) {
+        self.newton_iterations += 1;
+        self.cg_iterations += info.cg.iterations;
+        self.seconds.dynamics += seconds;
+    }
+
+    /// Adds a collision problem. `converged` begins as true.
+    pub(super) fn add_collision(&mut self, call: &Statistics, name_of: impl Fn(u32) -> String) {
+        self.two_way_steps += call.steps;
+        self.searches += call.searches;
+        self.pairs = call.pairs;
+        self.contact_rows = call.contact_rows;
+        self.edge_rows = call.edge_rows;
+        self.active_rows = call.active_rows;
+        self.frozen_pairs += call.frozen_pairs;
+        self.remaining_r = self.remaining_r.max(call.remaining_r);
+        self.remaining_m = self.remaining_m.max(call.remaining_m);
+        self.stationarity_m = self.stationarity_m.max(call.stationarity_m);
+        self.converged &= call.converged;
+        self.min_gap_m = call.min_gap_m;
+        self.max_step_stretch = self.max_step_stretch.max(call.max_step_stretch);
+        self.seconds.search += call.seconds.search;
+        self.seconds.evaluate += call.seconds.evaluate;
+        self.seconds.backward += call.seconds.backward;
+        self.seconds.forward += call.seconds.forward;
+        self.skipped.searches += call.skipped.searches;
+        self.skipped.evaluations += call.skipped.evaluations;
+        self.skipped.rows += call.skipped.rows;
+        self.prescribed_behind_m = call.prescribed_behind_m;
+        if !call.converged {
+            self.slowest_body = call.slowest_body.map(name_of).or(self.slowest_body.take());
+        }
+    }
+
+    /// Fills in what is measured at the end.
+    pub(super) fn finish(&mut self, energies: &Energies, momentum: &Vector, center: &Point) {
+        let Energies { kinetic, elastic, potential } = *energies;
+        self.energy = Energy { kinetic, elastic, potential };
+        self.momentum = (*momentum).into();
+        self.center_of_mass = center.coords.into();
+    }
+
+    /// Closes the account of wall time.
+    pub(super) fn close(&mut self, total: f64, cpu_seconds: f64) {
+        let s = &mut self.seconds;
+        s.total = total;
+        s.other = (total - s.dynamics - s.search - s.evaluate - s.backward - s.forward).max(0.0);
+        self.cpu_seconds = cpu_seconds;
+    }
+}
