@@ -1,0 +1,235 @@
+use super::*;
+use crate::{Body, ClothMaterial, HessianFilter};
+use nalgebra::{DMatrix, DVector};
+
+/// A crumpled 5 x 4 sheet with damping of every kind, one corner prescribed.
+fn crumpled() -> (Dynamics, Vec<Point>, Vec<Vector>, Vec<bool>) {
+    let (columns, rows) = (5, 4);
+    let index = |i: usize, j: usize| (i + j * columns) as u32;
+    let mut rest = Vec::new();
+    let mut triangles = Vec::new();
+    for j in 0..rows {
+        for i in 0..columns {
+            rest.push(Point::new(0.1 * i as f64, 0.1 * j as f64, 0.0));
+            if i + 1 < columns && j + 1 < rows {
+                triangles.push([index(i, j), index(i + 1, j), index(i + 1, j + 1)]);
+                triangles.push([index(i, j), index(i + 1, j + 1), index(i, j + 1)]);
+            }
+        }
+    }
+    let material = ClothMaterial {
+        bend_stiffness: 1e-3,
+        stretch_damping: 0.01,
+        bend_damping: 0.02,
+        ..ClothMaterial::cotton()
+    };
+    let model =
+        DynamicsModel::new(rest.clone(), vec![Body::cloth("sheet", triangles, material)]).expect("valid");
+    let params = DynamicsParams { air_drag: 0.5, ..DynamicsParams::default() };
+    let wave = |k: usize, phase: f64| (k as f64 * 1.7 + phase).sin();
+    let x: Vec<Point> = rest
+        .iter()
+        .enumerate()
+        .map(|(k, p)| p + Vector::new(wave(k, 0.0), wave(k, 1.0), 2.0 * wave(k, 2.0)) * 0.02)
+        .collect();
+    let v = (0..rest.len()).map(|k| Vector::new(wave(k, 3.0), wave(k, 4.0), wave(k, 5.0))).collect();
+    let prescribed = (0..rest.len()).map(|k| k == 0).collect();
+    (Dynamics::new(model, params).expect("valid"), x, v, prescribed)
+}
+
+/// The state of an iteration from `x`, linearised.
+fn linearised(dynamics: &mut Dynamics, x: &[Vector]) -> Step {
+    let step = dynamics.step.take().expect("begun");
+    dynamics.work.x.copy_from_slice(x);
+    linearise(&dynamics.model, &dynamics.params, &step, &mut dynamics.work);
+    step
+}
+
+fn dense(dynamics: &Dynamics, step: &Step) -> DMatrix<f64> {
+    let nodes = dynamics.work.x.len();
+    let mut matrix = DMatrix::zeros(3 * nodes, 3 * nodes);
+    let pattern = &dynamics.model.pattern;
+    for row in 0..nodes {
+        let mut set = |column: usize, block: Matrix3<f64>| {
+            let mut view = matrix.fixed_view_mut::<3, 3>(3 * row, 3 * column);
+            view += block;
+        };
+        set(
+            row,
+            dynamics.work.values.diagonal[row] + Matrix3::from_diagonal_element(step.scalar.diagonal[row]),
+        );
+        for k in pattern.row(row) {
+            set(pattern.columns[k] as usize, dynamics.work.values.blocks[k]);
+        }
+        let (columns, values) = step.scalar.row(row);
+        columns
+            .iter()
+            .zip(values)
+            .for_each(|(&column, &value)| set(column as usize, Matrix3::from_diagonal_element(value)));
+    }
+    matrix
+}
+
+#[test]
+fn the_gradient_matches_differences_of_the_incremental_potential() {
+    let (mut dynamics, x0, v0, _) = crumpled();
+    dynamics.begin_step(&x0, &v0, 0.02).expect("begins");
+    let nodes = dynamics.model.node_vertex.clone();
+    // Away from the start, so that damping acts.
+    let mut x: Vec<Vector> = nodes.iter().map(|&v| x0[v as usize].coords + v0[v as usize] * 0.01).collect();
+    let step = linearised(&mut dynamics, &x);
+    let gradient = dynamics.work.gradient.clone();
+    let free = vec![true; x.len()];
+    let h = 1e-6;
+    let scale = gradient.iter().map(|g| g.norm()).fold(0.0, f64::max);
+    for node in 0..x.len() {
+        for axis in 0..3 {
+            let here = x[node][axis];
+            let mut energy = |value: f64| {
+                x[node][axis] = value;
+                potential(&dynamics.model, &dynamics.params, &step, &free, &x).0
+            };
+            let slope = (energy(here + h) - energy(here - h)) / (2.0 * h);
+            x[node][axis] = here;
+            // Third derivatives are about stiffness / length = 3e4 N/m^2; h^2 of that, and rounding.
+            assert!((slope - gradient[node][axis]).abs() < 1e-6 * scale, "{slope} {}", gradient[node][axis]);
+        }
+    }
+}
+
+#[test]
+fn the_matrix_is_symmetric_positive_definite_and_matches_differences_under_tension() {
+    let (mut dynamics, x0, v0, _) = crumpled();
+    dynamics.begin_step(&x0, &v0, 0.02).expect("begins");
+    let nodes = dynamics.model.node_vertex.clone();
+    let crumple: Vec<Vector> = nodes.iter().map(|&v| x0[v as usize].coords).collect();
+    let step = linearised(&mut dynamics, &crumple);
+    let matrix = dense(&dynamics, &step);
+    assert!((&matrix - matrix.transpose()).abs().max() < 1e-12 * matrix.abs().max());
+    let least = matrix.symmetric_eigenvalues().min();
+    let inertia = dynamics.model.node_masses.iter().copied().fold(f64::INFINITY, f64::min) / (0.02 * 0.02);
+    assert!(least > 0.9 * inertia, "least eigenvalue {least}, inertia {inertia}");
+
+    // Every triangle stretched: nothing is filtered, H is the derivative of the gradient.
+    dynamics.step = Some(step);
+    let stretched: Vec<Vector> = crumple.iter().map(|x| x * 1.6).collect();
+    let step = linearised(&mut dynamics, &stretched);
+    let matrix = dense(&dynamics, &step);
+    dynamics.step = Some(step);
+    let h = 1e-6;
+    for column in [0, 7, 20, 41] {
+        let mut at = |offset: f64| {
+            let mut x = stretched.clone();
+            x[column / 3][column % 3] += offset;
+            let step = linearised(&mut dynamics, &x);
+            dynamics.step = Some(step);
+            dynamics.work.gradient.clone()
+        };
+        let (plus, minus) = (at(h), at(-h));
+        for row in 0..3 * stretched.len() {
+            let curvature = (plus[row / 3][row % 3] - minus[row / 3][row % 3]) / (2.0 * h);
+            let difference = (curvature - matrix[(row, column)]).abs();
+            assert!(difference < 1e-6 * matrix.abs().max(), "({row}, {column}): off by {difference:e}");
+        }
+    }
+}
+
+#[test]
+fn the_newton_step_is_that_of_a_dense_solve() {
+    let (mut dynamics, x0, v0, prescribed) = crumpled();
+    dynamics.params.cg_tolerance = 1e-12;
+    dynamics.params.line_search_halvings = 0;
+    dynamics.begin_step(&x0, &v0, 0.02).expect("begins");
+    let mut keyframes = x0.clone();
+    keyframes[0] += Vector::new(0.001, 0.002, -0.001);
+    let mut y = x0.clone();
+    let info = dynamics.newton_target(&x0, &prescribed, &keyframes, &mut y).expect("solves");
+    assert!(info.cg.converged && info.cg.residual <= 1e-12, "{info:?}");
+
+    let step = dynamics.step.take().expect("begun");
+    let matrix = dense(&dynamics, &step);
+    let unknowns: Vec<usize> = (0..3 * x0.len()).filter(|&k| dynamics.work.free[k / 3]).collect();
+    let imposed =
+        DVector::from_iterator(3 * x0.len(), dynamics.work.imposed.iter().flat_map(|v| [v.x, v.y, v.z]));
+    let gradient =
+        DVector::from_iterator(3 * x0.len(), dynamics.work.gradient.iter().flat_map(|v| [v.x, v.y, v.z]));
+    let right_side = -(gradient + &matrix * imposed);
+    let reduced = DMatrix::from_fn(unknowns.len(), unknowns.len(), |i, j| matrix[(unknowns[i], unknowns[j])]);
+    let reduced_side = DVector::from_fn(unknowns.len(), |i, _| right_side[unknowns[i]]);
+    let exact = reduced.cholesky().expect("positive definite").solve(&reduced_side);
+    for (k, &unknown) in unknowns.iter().enumerate() {
+        let vertex = dynamics.model.node_vertex[unknown / 3] as usize;
+        let found = (y[vertex] - x0[vertex])[unknown % 3];
+        assert!((found - exact[k]).abs() < 1e-9 * exact.amax(), "{found} {}", exact[k]);
+    }
+    assert_eq!(y[0], keyframes[0]);
+}
+
+#[test]
+fn bad_input_is_refused_by_name() {
+    let (mut dynamics, x, v, prescribed) = crumpled();
+    let mut y = x.clone();
+    assert_eq!(dynamics.newton_target(&x, &prescribed, &x, &mut y), Err(StepError::NotBegun));
+    assert_eq!(dynamics.begin_step(&x, &v, 0.0), Err(StepError::TimeStep { dt: 0.0 }));
+    assert!(matches!(dynamics.begin_step(&x, &v, f64::NAN), Err(StepError::TimeStep { .. })));
+    assert_eq!(
+        dynamics.begin_step(&x[1..], &v, 0.1),
+        Err(StepError::Length { array: "x0", given: x.len() - 1, vertices: x.len() })
+    );
+    let mut broken = v.clone();
+    broken[3].y = f64::INFINITY;
+    assert_eq!(
+        dynamics.begin_step(&x, &broken, 0.1),
+        Err(StepError::NonFinite { array: "v0", vertex: 3, body: "sheet".into() })
+    );
+    assert!(dynamics.set_external_forces(&broken).is_err());
+    dynamics.begin_step(&x, &v, 0.1).expect("begins");
+    // A keyframe matters only where a vertex is prescribed.
+    let mut keyframes = vec![Point::new(f64::NAN, 0.0, 0.0); x.len()];
+    keyframes[0] = x[0];
+    dynamics.newton_target(&x, &prescribed, &keyframes, &mut y).expect("only vertex 0 is prescribed");
+    keyframes[0].z = f64::NAN;
+    let error = dynamics.newton_target(&x, &prescribed, &keyframes, &mut y).expect_err("not finite");
+    assert_eq!(error.to_string(), "keyframe of vertex 0 (body \"sheet\") is not finite");
+}
+
+#[test]
+fn newton_converges_from_a_crumpled_state_with_either_filter() {
+    for hessian_filter in [HessianFilter::Clamp, HessianFilter::Absolute] {
+        let (mut dynamics, x0, v0, prescribed) = crumpled();
+        dynamics.params.hessian_filter = hessian_filter;
+        dynamics.params.cg_tolerance = 1e-10;
+        dynamics.begin_step(&x0, &v0, 0.02).expect("begins");
+        let (mut x, mut y) = (x0.clone(), x0.clone());
+        let mut energy = f64::INFINITY;
+        let mut displacement = f64::INFINITY;
+        for _ in 0..40 {
+            let info = dynamics.newton_target(&x, &prescribed, &x0, &mut y).expect("solves");
+            // Rounding, at the end.
+            assert!(info.energy_after <= energy * (1.0 + 1e-13), "{info:?} after {energy}");
+            (energy, displacement) = (info.energy_after, info.max_displacement);
+            x.copy_from_slice(&y);
+        }
+        assert!(displacement < 1e-9, "{hessian_filter:?}: still moves by {displacement:e}");
+    }
+}
+
+#[test]
+fn newton_converges_quadratically_under_tension() {
+    // A drum: the rim of the 5 x 4 vertices is held, pulled apart by 60 %.
+    let (mut dynamics, x0, v0, _) = crumpled();
+    dynamics.params.cg_tolerance = 1e-12;
+    let x0: Vec<Point> = x0.iter().map(|p| p * 1.6).collect();
+    let prescribed: Vec<bool> =
+        (0..20).map(|k| !(1..4).contains(&(k % 5)) || !(1..3).contains(&(k / 5))).collect();
+    dynamics.begin_step(&x0, &v0, 0.02).expect("begins");
+    let (mut x, mut y) = (x0.clone(), x0.clone());
+    let mut moves = Vec::new();
+    for _ in 0..8 {
+        let info = dynamics.newton_target(&x, &prescribed, &x0, &mut y).expect("solves");
+        moves.push(info.max_displacement);
+        x.copy_from_slice(&y);
+    }
+    let quadratic = moves.windows(2).all(|m| m[1] <= 100.0 * m[0] * m[0] + 1e-11);
+    assert!(quadratic && moves[7] < 1e-11, "{moves:?}");
+}

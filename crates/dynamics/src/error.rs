@@ -43,7 +43,9 @@ pub enum ModelError {
         vertex: usize,
     },
     /// An element names a vertex that does not exist.
-    #[error("body \"{body}\": {element} {index} names vertex {vertex}, but there are only {vertex_count} vertices")]
+    #[error(
+        "body \"{body}\": {element} {index} names vertex {vertex}, but there are only {vertex_count} vertices"
+    )]
     VertexOutOfRange {
         /// Name of the body.
         body: String,

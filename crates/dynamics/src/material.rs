@@ -49,7 +49,8 @@ impl ClothMaterial {
             density,
             stretch_stiffness: young_modulus * thickness,
             poisson_ratio,
-            bend_stiffness: young_modulus * thickness.powi(3) / (12.0 * (1.0 - poisson_ratio * poisson_ratio)),
+            bend_stiffness: young_modulus * thickness.powi(3)
+                / (12.0 * (1.0 - poisson_ratio * poisson_ratio)),
             thickness,
             stretch_damping: 0.0,
             bend_damping: 0.0,

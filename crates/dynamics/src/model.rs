@@ -82,6 +82,8 @@ pub struct DynamicsModel {
     pub(crate) edges: Vec<([u32; 2], f64)>,
     #[expect(dead_code, reason = "aggregates of the coarse correction, not used by block-Jacobi")]
     pub(crate) leaves: Vec<Range<u32>>,
+    /// Ranges of nodes that elements join.
+    pub(crate) components: Vec<Range<u32>>,
 }
 
 impl std::fmt::Debug for DynamicsModel {
@@ -193,10 +195,8 @@ impl DynamicsModel {
         });
         edges.sort_unstable();
         edges.dedup();
-        let edges = edges
-            .into_iter()
-            .map(|[a, b]| ([a, b], (rest[a as usize] - rest[b as usize]).norm()))
-            .collect();
+        let edges =
+            edges.into_iter().map(|[a, b]| ([a, b], (rest[a as usize] - rest[b as usize]).norm())).collect();
 
         let mut families: Vec<Box<dyn ElementFamily>> = vec![Box::new(Family::new(triangles))];
         let pattern = BlockPattern::from_cliques(rest.len(), |visit| {
@@ -218,6 +218,7 @@ impl DynamicsModel {
             bending_damping: damped.then(|| bending_damping.build()),
             edges,
             leaves: ordering.leaves,
+            components: ordering.components,
         })
     }
 
@@ -295,7 +296,8 @@ fn check(positions: &[Point], bodies: &[Body]) -> Vec<ModelError> {
             }
             BodyShape::Cloth { triangles, material } => {
                 if let Err(wrong) = material.validate() {
-                    errors.extend(wrong.into_iter().map(|error| ModelError::Material { body: name(), error }));
+                    errors
+                        .extend(wrong.into_iter().map(|error| ModelError::Material { body: name(), error }));
                 }
                 let mut seen: HashMap<[u32; 3], usize> = HashMap::with_capacity(triangles.len());
                 for (t, triangle) in triangles.iter().enumerate() {

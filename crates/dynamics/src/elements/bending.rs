@@ -111,3 +111,7 @@ fn free_edges_condensed(corners: &[Vector; 3], inner: [bool; 3]) -> [[f64; 3]; 3
     }
     gram
 }
+
+#[cfg(test)]
+#[path = "bending_tests.rs"]
+mod tests;

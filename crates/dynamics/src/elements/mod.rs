@@ -218,7 +218,8 @@ impl<E: Element<N>, const N: usize> ElementFamily for Family<E, N> {
                     if a < b {
                         rows.blocks[slots[a][b] as usize - rows.first_block] += part.hessian[a][b];
                     } else if b < a {
-                        rows.blocks[slots[a][b] as usize - rows.first_block] += part.hessian[b][a].transpose();
+                        rows.blocks[slots[a][b] as usize - rows.first_block] +=
+                            part.hessian[b][a].transpose();
                     }
                 }
             }

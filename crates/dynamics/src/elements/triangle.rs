@@ -26,11 +26,11 @@
 //! Damping is a potential of the Green strain increment since the start of the step,
 //! `beta/dt (mu |dE|^2 + lambda/2 tr(dE)^2)`, dE = (F^T F - F0^T F0)/2. It does not see rotations,
 //! so it takes neither linear nor angular momentum; its gradient is the viscous force of implicit
-//! Euler.
+//! Euler. A damped element's curvatures are those of both potentials together, filtered together.
 
 use super::{Element, Filter, Linearisation, Start};
 use bowknot_geometry::Vector;
-use nalgebra::Matrix3;
+use nalgebra::{Matrix2, Matrix3, Matrix4, Vector2};
 
 /// Singular values below this count as this where something is divided by them. It only limits
 /// curvatures normal to triangles crushed to less than a twentieth; forces do not use it.
@@ -108,48 +108,132 @@ impl Triangle {
 
     #[inline]
     fn dissipation_density(&self, [e00, e11, shear]: [f64; 3]) -> f64 {
-        self.mu * (e00 * e00 + e11 * e11 + 0.5 * shear * shear) + 0.5 * self.lambda * (e00 + e11) * (e00 + e11)
+        self.mu * (e00 * e00 + e11 * e11 + 0.5 * shear * shear)
+            + 0.5 * self.lambda * (e00 + e11) * (e00 + e11)
     }
 
-    /// Adds damping with potential `scale` times the dissipation density.
-    fn add_damping(
-        &self,
-        f: &[Vector; 2],
-        f0: &[Vector; 2],
-        scale: f64,
-        filter: Filter,
-        out: &mut Linearisation<3>,
-    ) {
-        let strain = Self::strain_increment(f, f0);
-        let [e00, e11, shear] = strain;
-        out.energy += scale * self.dissipation_density(strain);
-        // Stress S = 2 mu dE + lambda tr(dE) I.
-        let pressure = self.lambda * (e00 + e11);
-        let (s00, s11, s01) = (2.0 * self.mu * e00 + pressure, 2.0 * self.mu * e11 + pressure, self.mu * shear);
-        let stress = [f[0] * s00 + f[1] * s01, f[0] * s01 + f[1] * s11];
-        // The geometric part of the Hessian is S itself: filter its two eigenvalues.
-        let [c, s] = first_axis(s00, s11, s01);
-        let along = c * c * s00 + 2.0 * c * s * s01 + s * s * s11;
-        let across = s * s * s00 - 2.0 * c * s * s01 + c * c * s11;
-        let (along, across) = (filter.apply(along), filter.apply(across));
-
-        let g = &self.gradients;
-        let strains = g.map(|g| (f[0] * g[0], f[1] * g[1], f[0] * g[1] + f[1] * g[0]));
-        for a in 0..3 {
-            out.gradient[a] += (stress[0] * g[a][0] + stress[1] * g[a][1]) * scale;
-            for b in a..3 {
-                let ((a00, a11, a01), (b00, b11, b01)) = (&strains[a], &strains[b]);
-                let axial = 2.0 * self.mu + self.lambda;
-                let geometric = along * (c * g[a][0] + s * g[a][1]) * (c * g[b][0] + s * g[b][1])
-                    + across * (c * g[a][1] - s * g[a][0]) * (c * g[b][1] - s * g[b][0]);
-                let block = (a00 * b00.transpose() + a11 * b11.transpose()) * axial
-                    + (a00 * b11.transpose() + a11 * b00.transpose()) * self.lambda
-                    + a01 * b01.transpose() * self.mu
-                    + Matrix3::from_diagonal_element(geometric);
-                out.hessian[a][b] += block * scale;
-            }
+    /// Energy density, stress and unfiltered curvatures in the frames u and v, damping left out.
+    #[inline]
+    fn elastic(&self, [s1, s2]: [f64; 2]) -> Local {
+        let trace = self.lambda * (s1 + s2 - 2.0);
+        let (p1, p2) = (2.0 * self.mu * (s1 - 1.0) + trace, 2.0 * self.mu * (s2 - 1.0) + trace);
+        Local {
+            energy: self.elastic_density([s1, s2]),
+            stress: [[p1, 0.0], [0.0, p2]],
+            axial: Matrix2::new(
+                2.0 * self.mu + self.lambda,
+                self.lambda,
+                self.lambda,
+                2.0 * self.mu + self.lambda,
+            ),
+            flip: 2.0 * self.mu,
+            twist: (p1 + p2) / (s1 + s2).max(SINGULAR_FLOOR),
+            normal: Matrix2::new(p1 / s1.max(SINGULAR_FLOOR), 0.0, 0.0, p2 / s2.max(SINGULAR_FLOOR)),
         }
     }
+
+    /// Adds damping to the elastic part and filters the sum: filtered apart, the two would not
+    /// cancel where they do, and Newton would crawl.
+    fn damped(
+        &self,
+        local: &mut Local,
+        decomposition: &Decomposition,
+        strain: [f64; 3],
+        factor: f64,
+        filter: Filter,
+    ) -> Matrix4<f64> {
+        let [e00, e11, shear] = strain;
+        let ([s1, s2], [c, s]) = (decomposition.s, decomposition.v1);
+        local.energy += factor * self.dissipation_density(strain);
+        // Stress S = 2 mu dE + lambda tr(dE) I, in the frame v1, v2.
+        let pressure = self.lambda * (e00 + e11);
+        let (s00, s11, s01) =
+            (2.0 * self.mu * e00 + pressure, 2.0 * self.mu * e11 + pressure, self.mu * shear);
+        let stress = Matrix2::new(s00, s01, s01, s11) * factor;
+        let turn = Matrix2::new(c, -s, s, c);
+        let stress = turn.transpose() * stress * turn;
+        // P = F S.
+        local.stress[0][0] += s1 * stress[(0, 0)];
+        local.stress[0][1] += s1 * stress[(0, 1)];
+        local.stress[1][0] += s2 * stress[(1, 0)];
+        local.stress[1][1] += s2 * stress[(1, 1)];
+        local.normal = filter_2(local.normal + stress, filter);
+
+        // dE = (s1 d11, s2 d22, s1 d12 + s2 d21) for the in-plane increments d_ij along u_i v_j^T.
+        let mut plane = local.plane();
+        let axial = factor * (2.0 * self.mu + self.lambda);
+        let (couple, mix) = (factor * self.lambda * s1 * s2, factor * self.mu);
+        plane[(0, 0)] += axial * s1 * s1;
+        plane[(3, 3)] += axial * s2 * s2;
+        plane[(0, 3)] += couple;
+        plane[(3, 0)] += couple;
+        plane[(1, 1)] += mix * s1 * s1;
+        plane[(2, 2)] += mix * s2 * s2;
+        plane[(1, 2)] += mix * s1 * s2;
+        plane[(2, 1)] += mix * s1 * s2;
+        for side in [0, 2] {
+            let mut view = plane.fixed_view_mut::<2, 2>(side, side);
+            view += stress;
+        }
+        filter_4(plane, filter)
+    }
+}
+
+/// A state in the frames u1, u2, n and v1, v2: increments of F are d_ij along u_i v_j^T.
+struct Local {
+    energy: f64,
+    /// P, component (i, j) along u_i v_j^T.
+    stress: [[f64; 2]; 2],
+    /// Curvatures of the modes, see the table above.
+    axial: Matrix2<f64>,
+    flip: f64,
+    twist: f64,
+    /// Over n v1^T, n v2^T.
+    normal: Matrix2<f64>,
+}
+
+impl Local {
+    /// In-plane curvatures over d11, d12, d21, d22.
+    #[inline]
+    fn plane(&self) -> Matrix4<f64> {
+        let (even, odd) = (0.5 * (self.flip + self.twist), 0.5 * (self.flip - self.twist));
+        let axial = &self.axial;
+        Matrix4::new(
+            axial[(0, 0)],
+            0.0,
+            0.0,
+            axial[(0, 1)],
+            0.0,
+            even,
+            odd,
+            0.0,
+            0.0,
+            odd,
+            even,
+            0.0,
+            axial[(1, 0)],
+            0.0,
+            0.0,
+            axial[(1, 1)],
+        )
+    }
+}
+
+fn filter_2(matrix: Matrix2<f64>, filter: Filter) -> Matrix2<f64> {
+    let [c, s] = first_axis(matrix[(0, 0)], matrix[(1, 1)], matrix[(0, 1)]);
+    let turn = Matrix2::new(c, -s, s, c);
+    let diagonal = turn.transpose() * matrix * turn;
+    let (along, across) = (filter.apply(diagonal[(0, 0)]), filter.apply(diagonal[(1, 1)]));
+    turn * Matrix2::new(along, 0.0, 0.0, across) * turn.transpose()
+}
+
+fn filter_4(matrix: Matrix4<f64>, filter: Filter) -> Matrix4<f64> {
+    if matrix.cholesky().is_some() {
+        return matrix;
+    }
+    let mut eigen = matrix.symmetric_eigen();
+    eigen.eigenvalues.apply(|value| *value = filter.apply(*value));
+    eigen.recompose()
 }
 
 impl Element<3> for Triangle {
@@ -170,47 +254,54 @@ impl Element<3> for Triangle {
 
     fn linearise(&self, x: &[Vector; 3], start: Option<Start<'_, 3>>, filter: Filter) -> Linearisation<3> {
         let f = self.deformation(x);
-        let Decomposition { s: [s1, s2], u: [u1, u2], v1: [c, s] } = decompose(&f);
-        let trace = self.lambda * (s1 + s2 - 2.0);
-        let (p1, p2) = (2.0 * self.mu * (s1 - 1.0) + trace, 2.0 * self.mu * (s2 - 1.0) + trace);
-        let axial = 2.0 * self.mu + self.lambda;
-        let flip = 2.0 * self.mu;
-        let twist = filter.apply((p1 + p2) / (s1 + s2).max(SINGULAR_FLOOR));
-        let normal_1 = filter.apply(p1 / s1.max(SINGULAR_FLOOR));
-        let normal_2 = filter.apply(p2 / s2.max(SINGULAR_FLOOR));
-        let (even, odd) = (0.5 * (flip + twist), 0.5 * (flip - twist));
+        let decomposition = decompose(&f);
+        let Decomposition { s, u: [u1, u2], v1: [cosine, sine] } = decomposition;
+        let mut local = self.elastic(s);
+        let plane = match start.filter(|_| self.damping > 0.0) {
+            Some(start) => {
+                let strain = Self::strain_increment(&f, &self.deformation(start.x));
+                self.damped(&mut local, &decomposition, strain, self.damping * start.rate, filter)
+            }
+            None => {
+                local.twist = filter.apply(local.twist);
+                local.normal[(0, 0)] = filter.apply(local.normal[(0, 0)]);
+                local.normal[(1, 1)] = filter.apply(local.normal[(1, 1)]);
+                local.plane()
+            }
+        };
 
         // Shape function gradients along v1 and v2.
-        let along = self.gradients.map(|g| c * g[0] + s * g[1]);
-        let across = self.gradients.map(|g| c * g[1] - s * g[0]);
+        let shape =
+            self.gradients.map(|[g0, g1]| Vector2::new(cosine * g0 + sine * g1, cosine * g1 - sine * g0));
+        let corner = |i: usize, j: usize| plane.fixed_view::<2, 2>(2 * i, 2 * j).into_owned();
+        let (k11, k12, k22) = (corner(0, 0), corner(0, 1), corner(1, 1));
         let basis = Matrix3::from_columns(&[u1, u2, u1.cross(&u2)]);
+        let [[p11, p12], [p21, p22]] = local.stress;
         let mut out = Linearisation {
-            energy: self.area * self.elastic_density([s1, s2]),
+            energy: self.area * local.energy,
             gradient: [Vector::zeros(); 3],
             hessian: [[Matrix3::zeros(); 3]; 3],
         };
         for k in 0..3 {
-            out.gradient[k] = (u1 * (p1 * along[k]) + u2 * (p2 * across[k])) * self.area;
+            let g = shape[k];
+            out.gradient[k] = (u1 * (p11 * g.x + p12 * g.y) + u2 * (p21 * g.x + p22 * g.y)) * self.area;
+            let (g11, g12, g21, g22) = (k11 * g, k12.transpose() * g, k12 * g, k22 * g);
+            let gn = local.normal * g;
             for l in k..3 {
-                let (ak, al, bk, bl) = (along[k], along[l], across[k], across[l]);
-                // The block in the frame u1, u2, n.
-                let local = Matrix3::new(
-                    axial * ak * al + even * bk * bl,
-                    self.lambda * ak * bl + odd * bk * al,
+                let h = shape[l];
+                let block = Matrix3::new(
+                    g11.dot(&h),
+                    g12.dot(&h),
                     0.0,
-                    self.lambda * bk * al + odd * ak * bl,
-                    axial * bk * bl + even * ak * al,
-                    0.0,
+                    g21.dot(&h),
+                    g22.dot(&h),
                     0.0,
                     0.0,
-                    normal_1 * ak * al + normal_2 * bk * bl,
+                    0.0,
+                    gn.dot(&h),
                 );
-                out.hessian[k][l] = basis * (local * self.area) * basis.transpose();
+                out.hessian[k][l] = basis * (block * self.area) * basis.transpose();
             }
-        }
-        if let Some(start) = start.filter(|_| self.damping > 0.0) {
-            let scale = self.area * self.damping * start.rate;
-            self.add_damping(&f, &self.deformation(start.x), scale, filter, &mut out);
         }
         out
     }

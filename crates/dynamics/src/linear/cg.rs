@@ -38,6 +38,11 @@ pub(crate) struct CgWorkspace {
 }
 
 impl CgWorkspace {
+    /// b - H x at the end of the last solve.
+    pub fn residual(&self) -> &[Vector] {
+        &self.residual
+    }
+
     fn resize(&mut self, count: usize) {
         for vector in [
             &mut self.residual,

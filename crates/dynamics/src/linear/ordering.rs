@@ -12,6 +12,8 @@ pub(crate) struct Ordering {
     pub order: Vec<u32>,
     /// Consecutive ranges of new indices, each at most `leaf` long and within one component.
     pub leaves: Vec<Range<u32>>,
+    /// Consecutive ranges of new indices, one a connected component.
+    pub components: Vec<Range<u32>>,
 }
 
 /// Orders nodes at `positions` that `for_each_link` joins.
@@ -38,15 +40,16 @@ pub(crate) fn order_nodes(
     let component: Vec<u32> = (0..count as u32).map(|n| root(&mut parent, n)).collect();
     order.sort_by_key(|&n| component[n as usize]);
 
-    let mut leaves = Vec::new();
+    let (mut leaves, mut components) = (Vec::new(), Vec::new());
     let mut begin = 0;
     while begin < count {
         let this = component[order[begin] as usize];
         let length = order[begin..].iter().take_while(|&&n| component[n as usize] == this).count();
         bisect(&mut order[begin..begin + length], begin as u32, positions, leaf, &mut leaves);
+        components.push(begin as u32..(begin + length) as u32);
         begin += length;
     }
-    Ordering { order, leaves }
+    Ordering { order, leaves, components }
 }
 
 fn bisect(nodes: &mut [u32], first: u32, positions: &[Vector], leaf: usize, leaves: &mut Vec<Range<u32>>) {
@@ -93,5 +96,6 @@ mod tests {
             assert!(nodes.iter().all(|n| n % 2 == nodes[0] % 2), "{nodes:?} mixes components");
         }
         assert_eq!(end, 200);
+        assert_eq!(ordering.components, [0..100, 100..200]);
     }
 }

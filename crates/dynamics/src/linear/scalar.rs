@@ -33,7 +33,8 @@ impl ScalarBuilder {
     }
 
     pub fn build(mut self) -> ScalarForm {
-        let mut form = ScalarForm { starts: vec![0], columns: Vec::new(), values: Vec::new(), diagonal: Vec::new() };
+        let mut form =
+            ScalarForm { starts: vec![0], columns: Vec::new(), values: Vec::new(), diagonal: Vec::new() };
         for row in &mut self.rows {
             row.sort_unstable_by_key(|&(column, _)| column);
             form.columns.extend(row.iter().map(|&(column, _)| column));

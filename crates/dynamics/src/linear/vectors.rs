@@ -8,7 +8,8 @@ use rayon::prelude::*;
 
 /// sum a_i . b_i.
 pub(crate) fn dot(a: &[Vector], b: &[Vector]) -> f64 {
-    let partial: Vec<f64> = a.par_chunks(CHUNK).zip(b.par_chunks(CHUNK)).map(|(a, b)| chunk_dot(a, b)).collect();
+    let partial: Vec<f64> =
+        a.par_chunks(CHUNK).zip(b.par_chunks(CHUNK)).map(|(a, b)| chunk_dot(a, b)).collect();
     partial.iter().sum()
 }
 
