@@ -1,2 +1,45 @@
-//! The `bowknot` command.
-fn main() {}
+//! The `bowknot` command: arguments, messages and exit codes around the facade.
+//!
+//! Results go to stdout; progress, warnings and errors to stderr.
+// A command: printing is what it does.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
+mod args;
+mod check;
+mod failure;
+mod info;
+mod interrupt;
+mod loose;
+mod output;
+mod progress;
+mod resolve;
+mod run;
+mod scenes;
+mod setup;
+
+use args::{Arguments, Command};
+use clap::Parser;
+use failure::{Done, Failure};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    // A wrong option ends here, with clap's own message and code 2.
+    let arguments = Arguments::parse();
+    setup::logging();
+    let done = match arguments.command {
+        Command::Scenes(options) => scenes::scenes(&options),
+        Command::Run(options) => run::run(&options),
+        Command::Resolve(options) => resolve::resolve(&options),
+        Command::Check(options) => check::check(&options),
+        Command::Info(options) => info::info(&options),
+    };
+    match done {
+        Ok(Done::Fine) => ExitCode::SUCCESS,
+        Ok(Done::Found) => ExitCode::from(1),
+        Ok(Done::Interrupted) => ExitCode::from(130),
+        Err(Failure { code, message }) => {
+            eprintln!("error: {message}");
+            ExitCode::from(code)
+        }
+    }
+}

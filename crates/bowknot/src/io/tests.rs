@@ -428,6 +428,11 @@ fn frames_stack_and_resume() {
     assert_eq!(read.mesh().triangles.len(), 4);
     read.truncate(1);
     assert_eq!(read.len(), 1);
+
+    let mut unsized_stack = FrameStack::new(&MeshView { positions: &[], ..mesh.view() }, &[]);
+    assert!(unsized_stack.push(&mesh.positions) && !unsized_stack.push(&mesh.positions[1..]));
+    unsized_stack.write(path).unwrap();
+    assert_eq!(FrameStack::read(path).unwrap().frame(0), Some(mesh.positions));
 }
 
 #[test]

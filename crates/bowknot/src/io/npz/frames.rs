@@ -22,12 +22,11 @@ pub struct FrameStack {
 }
 
 impl FrameStack {
-    /// An empty stack over the elements of `mesh`, quads as two triangles each; its positions are not taken.
+    /// An empty stack over the elements of `mesh`, quads as two triangles each. Its positions are not taken and may
+    /// be left out: the first frame then says how many vertices there are.
     pub fn new(mesh: &MeshView<'_>, tetrahedra: &[[u32; 4]]) -> Self {
         let vertices = mesh.positions.len();
         let quads = mesh.quads.iter().flat_map(|&[i, j, k, l]| [[i, j, k], [i, k, l]]);
-        let mut obstacle = mesh.obstacle.to_vec();
-        obstacle.resize(vertices, false);
         Self {
             vertices,
             positions: Vec::new(),
@@ -35,7 +34,7 @@ impl FrameStack {
             strands: mesh.strands.to_vec(),
             tetrahedra: tetrahedra.to_vec(),
             particles: mesh.particles.to_vec(),
-            obstacle,
+            obstacle: mesh.obstacle.to_vec(),
         }
     }
 
@@ -69,6 +68,10 @@ impl FrameStack {
     /// Appends a frame; one of another number of vertices is refused.
     #[must_use]
     pub fn push(&mut self, positions: &[Point]) -> bool {
+        if self.vertices == 0 {
+            self.vertices = positions.len();
+            self.obstacle.resize(self.vertices, false);
+        }
         if positions.len() != self.vertices {
             return false;
         }

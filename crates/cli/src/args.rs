@@ -1,0 +1,195 @@
+//! The command line.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// Simulates deformable bodies that never intersect.
+///
+/// Exit codes: 0 done; 1 a check found an intersection or too small a distance; 2 bad input; 3 no such backend or
+/// device; 130 interrupted, with a valid checkpoint.
+#[derive(Debug, Parser)]
+#[command(name = "bowknot", version, arg_required_else_help = true)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// List the built-in scenes with their sizes
+    Scenes(ScenesOptions),
+    /// Simulate a scene, or a mesh as cloth
+    Run(RunOptions),
+    /// Resolve a recorded collision problem
+    Resolve(ResolveOptions),
+    /// Judge states, and the paths of a trace: exit code 1 if anything intersects
+    Check(CheckOptions),
+    /// Say what a scene or a mesh holds
+    Info(InfoOptions),
+}
+
+#[derive(Debug, Args)]
+pub struct ScenesOptions {
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct RunOptions {
+    /// A built-in scene (see `bowknot scenes`), a scene file (.toml), or a mesh (.obj, .ply) to drop on a ball as cloth
+    pub scene: String,
+    /// Number of time steps; the scene has a default
+    #[arg(long, value_name = "N")]
+    pub frames: Option<usize>,
+    /// Folder of the run [default: out/SCENE]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Time step [s]; the scene has a default
+    #[arg(long, value_name = "S", value_parser = positive)]
+    pub dt: Option<f64>,
+    /// Factor on a built-in scene's resolution: vertices of sheets grow with its square
+    #[arg(long, value_name = "F", value_parser = positive)]
+    pub scale: Option<f64>,
+    #[command(flatten)]
+    pub machine: Machine,
+    #[command(flatten)]
+    pub method: Method,
+    /// Formats of the frames
+    #[arg(long, value_name = "FORMATS", value_delimiter = ',')]
+    pub format: Vec<Format>,
+    /// Write every accepted state of every time step to trace/
+    #[arg(long)]
+    pub trace: bool,
+    /// Write the collision problems to states/, for `bowknot resolve`
+    #[arg(long)]
+    pub record: bool,
+    /// Judge every accepted state and path by exact tests: exit code 1 if anything intersects
+    #[arg(long)]
+    pub check: bool,
+    /// If the start intersects, write the offending triangles to this file (.ply or .obj)
+    #[arg(long, value_name = "FILE")]
+    pub dump: Option<PathBuf>,
+    /// Continue the run in the folder from its checkpoint
+    #[arg(long)]
+    pub resume: bool,
+    /// Print the summary as JSON to stdout, and nothing else
+    #[arg(long)]
+    pub json: bool,
+    /// Print errors only
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct ResolveOptions {
+    /// The problem: an NPZ archive with x, y, F and optionally E, P, rest, mass, fixed, O, body, planes, dt
+    pub states: PathBuf,
+    /// Archive for the resolved positions x
+    #[arg(long, value_name = "RESULT.npz")]
+    pub out: PathBuf,
+    #[command(flatten)]
+    pub machine: Machine,
+    #[command(flatten)]
+    pub method: Method,
+    /// Stop after this many seconds, with a valid state
+    #[arg(long, value_name = "S", value_parser = positive)]
+    pub max_seconds: Option<f64>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct CheckOptions {
+    /// Frames (.ply, .obj, .npz), folders of frames, or folders of runs; files of a folder `trace` are joined by paths
+    #[arg(required = true, value_name = "PATH")]
+    pub paths: Vec<PathBuf>,
+    /// Fail as well if any two primitives are nearer than this [m]
+    #[arg(long, value_name = "D", value_parser = positive)]
+    pub min_distance: Option<f64>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct InfoOptions {
+    /// A built-in scene, a scene file (.toml), or a mesh (.obj, .ply)
+    #[arg(required_unless_present = "gpus")]
+    pub scene: Option<String>,
+    /// List the GPUs
+    #[arg(long, conflicts_with = "scene")]
+    pub gpus: bool,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Where the work is done.
+#[derive(Debug, Args)]
+pub struct Machine {
+    /// Number of threads [default: all cores]; results do not depend on it
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub threads: Option<usize>,
+    /// Where to compute
+    #[arg(long, value_enum, default_value_t = Backend::Auto)]
+    pub backend: Backend,
+}
+
+/// How collisions are resolved.
+#[derive(Debug, Args)]
+pub struct Method {
+    /// Set of defaults for the tables [contact] and [solver]
+    #[arg(long, value_enum)]
+    pub preset: Option<Preset>,
+    /// Set one key of the scene, as in a scene file: contact.delta=0.001
+    #[arg(long = "set", value_name = "KEY.PATH=VALUE")]
+    pub sets: Vec<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Backend {
+    /// The CPU
+    Cpu,
+    /// A GPU; none is built in yet
+    Gpu,
+    /// The fastest there is
+    Auto,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Preset {
+    /// Everything that measurements showed to pay
+    Fast,
+    /// The method as the paper describes it
+    Paper,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// Binary PLY, one file a frame
+    Ply,
+    /// Wavefront OBJ, one file a frame
+    Obj,
+    /// One NPZ archive of all frames
+    Npz,
+}
+
+/// A finite number above 0.
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
+        Ok(_) => Err("must be finite and above 0".to_owned()),
+        Err(_) => Err("must be a number".to_owned()),
+    }
+}
+
+/// A number of threads that a machine can have.
+fn threads(text: &str) -> Result<usize, String> {
+    const MOST: usize = 4096;
+    match text.parse::<usize>() {
+        Ok(value) if (1..=MOST).contains(&value) => Ok(value),
+        _ => Err(format!("must be a whole number from 1 to {MOST}")),
+    }
+}
