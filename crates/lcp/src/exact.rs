@@ -17,7 +17,7 @@ use nalgebra::DMatrix;
 
 /// Share of a diagonal entry below which what is left of it after eliminating the free rows counts as
 /// rounding: some hundred rows lose about 1e-13 of it.
-const DEPENDENT: f64 = 1e-11;
+const DEPENDENT: f64 = 1e-12;
 /// Rounding of a row value, relative to the sum of its terms' magnitudes.
 const ROUNDING: f64 = 1e-13;
 
@@ -92,7 +92,14 @@ pub fn solve_dense(matrix: &DMatrix<f64>, q: &[f64], upper: &[f64]) -> Result<(V
         }
     }
     let upper = upper.iter().map(|u| u.max(0.0)).collect();
-    let mut solver = ActiveSet { matrix, q, upper, lambda: vec![0.0; n], free: Factor::default() };
+    let mut solver = ActiveSet {
+        matrix,
+        q,
+        upper,
+        lambda: vec![0.0; n],
+        free: Factor::default(),
+        settled: vec![false; n],
+    };
     let limit = 100 + 50 * n as u32;
     // Entering rows of which none could move, in a row.
     let mut stalled = 0;
@@ -109,9 +116,17 @@ pub fn solve_dense(matrix: &DMatrix<f64>, q: &[f64], upper: &[f64]) -> Result<(V
             return Ok((solver.lambda, Info { sweeps, residual }));
         };
         let before = solver.lambda.clone();
-        solver.enter(entering, values[entering] < 0.0)?;
+        if !solver.enter(entering, &values)? {
+            solver.settled[entering] = true;
+            continue;
+        }
         solver.minimise();
-        stalled = if solver.lambda == before { stalled + 1 } else { 0 };
+        if solver.lambda == before {
+            stalled += 1;
+        } else {
+            stalled = 0;
+            solver.settled.fill(false);
+        }
     }
     let values = solver.values();
     let residual = (0..n).map(|i| -values[i]).fold(0.0, f64::max);
@@ -125,6 +140,8 @@ struct ActiveSet<'a> {
     lambda: Vec<f64>,
     /// The multipliers that may lie between their bounds; the others are at one.
     free: Factor,
+    /// Rows at a bound whose value is wrong by no more than the rounding of those that they depend on.
+    settled: Vec<bool>,
 }
 
 impl ActiveSet<'_> {
@@ -138,18 +155,22 @@ impl ActiveSet<'_> {
         std::iter::once(self.q[i]).chain(products)
     }
 
+    fn rounding(&self, i: usize) -> f64 {
+        ROUNDING * self.terms(i).map(f64::abs).sum::<f64>()
+    }
+
     /// The row at a bound whose value has the wrong sign there by the most, or the first such.
     fn violated(&self, values: &[f64], first: bool) -> Option<usize> {
         let mut found = None;
         let mut worst = 0.0;
         for (i, &value) in values.iter().enumerate() {
             let diagonal = self.matrix[(i, i)];
-            if diagonal <= 0.0 || self.free.members.contains(&i) {
+            if diagonal <= 0.0 || self.settled[i] || self.free.members.contains(&i) {
                 continue;
             }
             let wrong = if self.lambda[i] > 0.0 { value } else { -value };
             let movable = self.upper[i] > 0.0;
-            let rounding = ROUNDING * self.terms(i).map(f64::abs).sum::<f64>();
+            let rounding = self.rounding(i);
             // The gain of solving this row alone is wrong^2 / diagonal / 2.
             if movable && wrong > rounding && wrong / diagonal.sqrt() > worst {
                 found = Some(i);
@@ -162,17 +183,27 @@ impl ActiveSet<'_> {
         found
     }
 
-    /// Frees a row at a bound, `rising` from 0 or falling from its upper bound.
-    fn enter(&mut self, row: usize, rising: bool) -> Result<(), Error> {
+    /// Frees a row at a bound; says false, and does nothing, if only rounding asks for it.
+    fn enter(&mut self, row: usize, values: &[f64]) -> Result<bool, Error> {
+        let rising = values[row] < 0.0;
         let (line, left) = self.free.eliminate(self.matrix, row);
         if left > DEPENDENT * self.matrix[(row, row)] {
             self.free.push(row, line, left);
-            return Ok(());
+            return Ok(true);
         }
         // A move of the row's multiplier that the free ones make up for: J^T lambda stays.
         let sign = if rising { 1.0 } else { -1.0 };
         let mut direction = self.free.back_substitute(line);
         direction.iter_mut().for_each(|d| *d *= -sign);
+        // The slope along it, which is s of the entering row but for what is left of the free rows' values.
+        let (mut slope, mut rounding) = (sign * values[row], self.rounding(row));
+        for (&member, d) in self.free.members.iter().zip(&direction) {
+            slope += d * values[member];
+            rounding += d.abs() * self.rounding(member);
+        }
+        if slope >= -rounding {
+            return Ok(false);
+        }
         let mut reach = if rising { self.upper[row] - self.lambda[row] } else { self.lambda[row] };
         let mut blocking = None;
         for (place, &member) in self.free.members.iter().enumerate() {
@@ -190,7 +221,7 @@ impl ActiveSet<'_> {
         }
         let Some(place) = blocking else {
             self.lambda[row] = if rising { self.upper[row] } else { 0.0 };
-            return Ok(());
+            return Ok(true);
         };
         self.lambda[row] += sign * reach;
         self.leave(place, direction[place] > 0.0);
@@ -198,7 +229,7 @@ impl ActiveSet<'_> {
         // It took the place of a row that it depended on, so it is independent now; the floor only
         // guards the square root against rounding.
         self.free.push(row, line, left.max(DEPENDENT * self.matrix[(row, row)]));
-        Ok(())
+        Ok(true)
     }
 
     /// How far a multiplier may go along `direction` times.
