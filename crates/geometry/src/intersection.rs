@@ -28,10 +28,10 @@ pub fn edge_triangle(edge: [&Point; 2], triangle: [&Point; 3]) -> bool {
         return same_sign([side(p, q, a, b), side(p, q, b, c), side(p, q, c, a)]);
     }
     match projection([a, b, c]) {
-        // All five points lie in the triangle's plane, on which the projection is one-to-one.
+        // All five points lie in the triangle's plane, on which the projection is one-to-one. With
+        // one end outside, the edge can only enter across a side.
         Some(axis) => {
             in_triangle(axis, p, triangle)
-                || in_triangle(axis, q, triangle)
                 || [[a, b], [b, c], [c, a]].iter().any(|&side| edges_cross(axis, edge, side))
         }
         None => [[a, b], [b, c], [c, a]].iter().any(|&side| edge_edge(edge, side)),

@@ -222,9 +222,7 @@ fn common_normal(u: &Vector, v: &Vector) -> Vector {
 /// vertex is all but on the edge.
 fn across(p: &Point, edge: [&Point; 2]) -> Vector {
     let along = edge[1] - edge[0];
-    let (from_start, from_end) = (p - edge[0], p - edge[1]);
-    let arm = if from_start.norm_squared() < from_end.norm_squared() { from_start } else { from_end };
-    along.cross(&arm.cross(&along))
+    along.cross(&(p - edge[0]).cross(&along))
 }
 
 /// [`separate`] for differences that are very small, very large or all zero.

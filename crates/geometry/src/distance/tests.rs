@@ -55,3 +55,16 @@ fn degenerate_elements_are_what_they_span() {
     let parallel = edge_edge([&o, &x], [&p(0.5, 1.0, 0.0), &p(1.5, 1.0, 0.0)]);
     assert_eq!(parallel.offset, Vector::new(0.0, -1.0, 0.0));
 }
+
+#[test]
+fn distances_whose_squares_underflow_are_kept() {
+    let (o, x) = (Point::origin(), p(1.0, 0.0, 0.0));
+    for tiny in [1e-150, 1e-170, 1e-310, f64::from_bits(1)] {
+        let beyond = p(-tiny, 0.0, 0.0);
+        assert_eq!(vertex_vertex(&beyond, &o).distance, tiny);
+        assert_eq!(vertex_edge(&beyond, [&o, &x]).distance, tiny);
+        assert_eq!(vertex_edge(&beyond, [&x, &o]).distance, tiny);
+        assert_eq!(vertex_triangle(&beyond, [&x, &p(1.0, 1.0, 0.0), &o]).distance, tiny);
+        assert_eq!(edge_edge([&beyond, &p(-1.0, 0.0, 0.0)], [&o, &x]).distance, tiny);
+    }
+}

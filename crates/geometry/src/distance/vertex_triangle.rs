@@ -4,11 +4,6 @@ use super::vertex_edge::foot_on_edge;
 use super::{Closest, in_range, norm, rescale, select};
 use crate::{PairKind, Point, Vector};
 
-/// Square of a triangle's height over its first edge as a part of its second edge, below which it is
-/// a sliver: the foot in its plane is then one candidate among others instead of the answer. (The
-/// plane's direction is off by u / sqrt(SLIVER), and the distance by half the square of that.)
-const SLIVER: f64 = 1e-6;
-
 /// Closest points of a vertex and a triangle, which may have zero area.
 #[inline]
 pub fn vertex_triangle(a: &Point, b: [&Point; 3]) -> Closest {
@@ -27,7 +22,9 @@ fn core(a: &Point, b: [&Point; 3]) -> (Closest, f64) {
     // The foot in the plane by orthogonalising: along e1, then along what of e2 is perpendicular to
     // e1. Each step takes off the larger part before the smaller one is measured, so the foot is off
     // by rounding of the lengths even in slivers, where ratios of areas or of Gram determinants
-    // cancel many digits. Not-a-number where e1 or the area is zero.
+    // cancel many digits. In a sliver of height h the plane's direction is off by u L/h, hence the
+    // distance d by (u L/h)^2 d; but whatever the foot inside, also by at most h^2/d, and the smaller
+    // of both is below u L: no separate case. Not-a-number where e1 or the area is zero.
     let (e1e1, e2e2) = (e1.norm_squared(), e2.norm_squared());
     let shear = e1.dot(&e2) / e1e1;
     let height = e2 - e1 * shear;
@@ -39,12 +36,8 @@ fn core(a: &Point, b: [&Point; 3]) -> (Closest, f64) {
     let w0 = 1.0 - w1 - w2;
     let inside = w0 > 0.0 && w1 > 0.0 && w2 > 0.0;
 
-    let (weights, offset) = if inside {
-        let foot = (Vector::new(w0, w1, w2), from_line - height * w2);
-        if hh > SLIVER * e2e2 { foot } else { closer(foot, closest_edge(a, b)) }
-    } else {
-        closest_edge(a, b)
-    };
+    let (weights, offset) =
+        if inside { (Vector::new(w0, w1, w2), from_line - height * w2) } else { closest_edge(a, b) };
     let weights = [1.0, weights.x, weights.y, weights.z];
     let offset_squared = offset.norm_squared();
     let closest = Closest { weights, offset, distance: norm(&offset, offset_squared) };

@@ -24,6 +24,12 @@ fn grid_pair(random: &mut Random, finest: usize) -> [Int3; 4] {
             p[k] = [0, 1, 2].map(|c| p[i][c] / 4 + step(n + 1)[c]);
             p[l] = [0, 1, 2].map(|c| (p[j][c] + p[k][c]) / 2);
             p[i] = [0, 1, 2].map(|c| p[i][c] / 4);
+            // One edge as a whole, or two corners of the triangle, any way off.
+            let reach = [0, 1, 1 << 9, 1 << 18][random.below(4)];
+            let shift = [0; 3].map(|_: i32| random.below(2 * reach + 1) as i128 - reach as i128);
+            for corner in &mut p[2..] {
+                *corner = [0, 1, 2].map(|c| corner[c] + shift[c]);
+            }
         }
         _ => {}
     }
