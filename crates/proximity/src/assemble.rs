@@ -1,8 +1,9 @@
 //! The pairs in order, with their contact geometry.
 
+use crate::narrow::separate_all;
 use crate::traverse::{Found, Run};
 use crate::{CollisionModel, Pair};
-use bowknot_geometry::{PairKind, Point, Separation, Vector, separation};
+use bowknot_geometry::{PairKind, Point, Separation};
 use rayon::prelude::*;
 
 /// Elements whose pairs one task writes.
@@ -68,18 +69,6 @@ impl Table {
         });
     }
 }
-
-/// Contact geometry of pairs of one kind.
-pub fn separate_all(kind: PairKind, pairs: &[Pair], positions: &[Point], separations: &mut [Separation]) {
-    for (pair, separation) in pairs.iter().zip(separations) {
-        let points = pair.vertices.map(|v| positions[v as usize]);
-        *separation = separation::separate(kind, &points);
-    }
-}
-
-/// What fills a list of separations before they are written.
-pub const BLANK: Separation =
-    Separation { normal: Vector::new(0.0, 0.0, 0.0), weights: [0.0; 4], distance: 0.0, width: 0.0 };
 
 /// Vertices of a pair that trees search for, in [`PairKind`] order.
 fn vertices_of(model: &CollisionModel, kind: PairKind, [a, b]: [u32; 2]) -> [u32; 4] {

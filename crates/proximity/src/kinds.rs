@@ -19,7 +19,7 @@
 //! length |d| of 1e-12 m nothing is rejected, and above it 1e-18 m of slack covers errors of 1e-44.
 
 use crate::frame::UNIT;
-use crate::tree::{LANES, Leaf, greatest, least};
+use crate::tree::{LANES, greatest, least};
 use bowknot_geometry::PairKind;
 
 /// A kind of pair with `A` vertices on side *a* and `B` on side *b*.
@@ -51,23 +51,33 @@ pub struct Verdicts {
     pub accepted: u32,
 }
 
-/// Tests an element against all elements of a leaf. `reject` and `accept` as in [`Leaf`].
+/// Sixteen pairs side by side: local coordinates of both sides' vertices [m], and the sums of the
+/// sides' `reject` and `accept` of [`crate::tree::Leaf`] [m].
+#[repr(C, align(64))]
+pub struct Batch<const A: usize, const B: usize> {
+    pub a: [[[f32; LANES]; 3]; A],
+    pub b: [[[f32; LANES]; 3]; B],
+    pub reject: [f32; LANES],
+    pub accept: [f32; LANES],
+}
+
+/// Tests sixteen pairs.
 #[inline(always)]
-pub fn classify<K: Kind<A, B>, const A: usize, const B: usize>(
-    a: &[[f32; 3]; A],
-    [reject, accept]: [f32; 2],
-    leaf: &Leaf<B>,
-) -> Verdicts {
+pub fn classify<K: Kind<A, B>, const A: usize, const B: usize>(batch: &Batch<A, B>) -> Verdicts {
     let mut rejected = [0_u8; LANES];
     let mut accepted = [0_u8; LANES];
     for lane in 0..LANES {
+        let mut a = [[0.0; 3]; A];
         let mut b = [[0.0; 3]; B];
-        for j in 0..B {
-            for k in 0..3 {
-                b[j][k] = leaf.positions[j][k][lane];
+        for k in 0..3 {
+            for i in 0..A {
+                a[i][k] = batch.a[i][k][lane];
+            }
+            for j in 0..B {
+                b[j][k] = batch.b[j][k][lane];
             }
         }
-        let d = K::direction(a, &b);
+        let d = K::direction(&a, &b);
         let mut width = dot(d, sub(a[0], b[0]));
         let mut below = 0.0;
         for i in 1..A {
@@ -80,9 +90,9 @@ pub fn classify<K: Kind<A, B>, const A: usize, const B: usize>(
         width = width + below - above;
         let squared = dot(d, d);
         let length = squared.sqrt();
-        let far = width > (reject + leaf.reject[lane]) * length * (1.0 + 16.0 * UNIT);
+        let far = width > batch.reject[lane] * length * (1.0 + 16.0 * UNIT);
         rejected[lane] = u8::from(far & (squared > 1e-24));
-        accepted[lane] = u8::from(length < accept + leaf.accept[lane]);
+        accepted[lane] = u8::from(length < batch.accept[lane]);
     }
     Verdicts { rejected: bits(&rejected), accepted: bits(&accepted) }
 }

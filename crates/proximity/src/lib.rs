@@ -16,6 +16,7 @@ mod half_spaces;
 mod kinds;
 mod layer;
 mod model;
+mod narrow;
 mod obstacles;
 mod order;
 mod pairs;

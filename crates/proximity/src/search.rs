@@ -1,10 +1,11 @@
 //! The proximity search.
 
-use crate::assemble::{BLANK, Table};
+use crate::assemble::Table;
 use crate::frame::{self, LocalVertex};
 use crate::half_spaces::near_half_spaces;
 use crate::kinds::{EdgeEdge, Kind, VertexEdge, VertexTriangle, VertexVertex};
 use crate::layer::Layer;
+use crate::narrow::BLANK;
 use crate::obstacles::Watch;
 use crate::traverse::{Found, Query, Scene, TASK_LEAVES, leaves_meeting, search_leaves};
 use crate::tree::Tree;

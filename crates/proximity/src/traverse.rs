@@ -2,9 +2,10 @@
 
 use crate::CollisionModel;
 use crate::frame::UNIT;
-use crate::kinds::{Kind, bits, classify};
+use crate::kinds::{Batch, Kind, bits, classify};
+use crate::narrow::separate_one;
 use crate::tree::{LANES, Leaf, Node, Tree};
-use bowknot_geometry::{Point, separation};
+use bowknot_geometry::Point;
 
 /// Leaves of querying elements that one task handles.
 pub const TASK_LEAVES: usize = 8;
@@ -44,6 +45,17 @@ pub struct Found {
     pub candidates: u64,
     pub undecided: u64,
     lists: [Vec<u32>; LANES],
+    queue: Vec<Candidate>,
+}
+
+/// A pair whose boxes meet.
+#[derive(Clone, Copy, Debug, Default)]
+struct Candidate {
+    /// Lane of the element in its leaf.
+    lane: u32,
+    /// Leaf and lane of the other element in its tree.
+    other_leaf: u32,
+    other_lane: u32,
 }
 
 /// Leaves of `tree` whose boxes meet `bounds`, ascending.
@@ -91,6 +103,7 @@ fn search_leaf<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT: bool>
     found: &mut Found,
 ) {
     let bounds = query.tree.leaf_bounds(index);
+    let first_element = query.tree.leaves[index].elements.iter().fold(u32::MAX, |first, &e| first.min(e));
     for target in query.targets {
         let Some(top) = target.levels.len().checked_sub(1) else { continue };
         let mut stack = [(0_u32, 0_u32); LANES * 8];
@@ -104,12 +117,19 @@ fn search_leaf<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT: bool>
                 let child = node * LANES as u32 + mask.trailing_zeros();
                 mask &= mask - 1;
                 if level == 1 {
+                    // Nothing there comes after any of these elements.
+                    if K::SYMMETRIC && target.leaves[child as usize].last_element <= first_element {
+                        continue;
+                    }
                     meet::<K, A, B, SWEPT>(scene, query.tree, index, target, child as usize, found);
                 } else {
                     stack[depth] = (level - 1, child);
                     depth += 1;
                 }
             }
+        }
+        if !SWEPT {
+            decide::<K, A, B>(scene, &query.tree.leaves[index], target, found);
         }
     }
 
@@ -149,6 +169,9 @@ fn meet<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT: bool>(
         let lane = lanes.trailing_zeros() as usize;
         lanes &= lanes - 1;
         let element = leaf.elements[lane];
+        if K::SYMMETRIC && other_leaf.last_element <= element {
+            continue;
+        }
         let vertices: [u32; A] = std::array::from_fn(|i| leaf.vertices[i][lane]);
         let mut mask = overlap(other_boxes, &boxes.lane(lane));
         if mask == 0 {
@@ -171,28 +194,69 @@ fn meet<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT: bool>(
             push(&mut found.lists[lane], mask, other_leaf);
             continue;
         }
-        found.candidates += u64::from(mask.count_ones());
-        let mut a = [[0.0; 3]; A];
-        for i in 0..A {
-            for k in 0..3 {
-                a[i][k] = leaf.positions[i][k][lane];
-            }
+        while mask != 0 {
+            let other_lane = mask.trailing_zeros();
+            mask &= mask - 1;
+            found.queue.push(Candidate { lane: lane as u32, other_leaf: other as u32, other_lane });
         }
-        let verdicts = classify::<K, A, B>(&a, [leaf.reject[lane], leaf.accept[lane]], other_leaf);
-        let mut near = mask & verdicts.accepted;
-        let mut undecided = mask & !(verdicts.accepted | verdicts.rejected);
-        while undecided != 0 {
-            let bit = undecided & undecided.wrapping_neg();
-            let other_lane = undecided.trailing_zeros() as usize;
-            undecided ^= bit;
-            found.undecided += 1;
-            let other_vertices = std::array::from_fn(|j| other_leaf.vertices[j][other_lane]);
-            if is_near::<K, A, B>(scene, vertices, other_vertices) {
-                near |= bit;
-            }
-        }
-        push(&mut found.lists[lane], near, other_leaf);
     }
+}
+
+/// Decides the queued pairs and empties the queue.
+#[inline(always)]
+fn decide<K: Kind<A, B>, const A: usize, const B: usize>(
+    scene: &Scene<'_>,
+    leaf: &Leaf<A>,
+    target: &Tree<B>,
+    found: &mut Found,
+) {
+    found.candidates += found.queue.len() as u64;
+    let mut batch = Batch {
+        a: [[[0.0; LANES]; 3]; A],
+        b: [[[0.0; LANES]; 3]; B],
+        reject: [0.0; LANES],
+        accept: [0.0; LANES],
+    };
+    for candidates in found.queue.chunks(LANES) {
+        for (slot, candidate) in candidates.iter().enumerate() {
+            let lane = candidate.lane as usize % LANES;
+            let other = &target.leaves[candidate.other_leaf as usize];
+            let other_lane = candidate.other_lane as usize % LANES;
+            for k in 0..3 {
+                for i in 0..A {
+                    batch.a[i][k][slot] = leaf.positions[i][k][lane];
+                }
+                for j in 0..B {
+                    batch.b[j][k][slot] = other.positions[j][k][other_lane];
+                }
+            }
+            batch.reject[slot] = leaf.reject[lane] + other.reject[other_lane];
+            batch.accept[slot] = leaf.accept[lane] + other.accept[other_lane];
+        }
+        let verdicts = classify::<K, A, B>(&batch);
+        // Slots beyond the candidates hold something old.
+        let present = (1_u32 << candidates.len()) - 1;
+        let mut near = present & verdicts.accepted;
+        let mut undecided = present & !(verdicts.accepted | verdicts.rejected);
+        while undecided != 0 {
+            let slot = undecided.trailing_zeros() as usize;
+            undecided &= undecided - 1;
+            found.undecided += 1;
+            let candidate = candidates[slot];
+            let other = &target.leaves[candidate.other_leaf as usize];
+            let a = std::array::from_fn(|i| leaf.vertices[i][candidate.lane as usize % LANES]);
+            let b = std::array::from_fn(|j| other.vertices[j][candidate.other_lane as usize % LANES]);
+            near |= u32::from(is_near::<K, A, B>(scene, a, b)) << slot;
+        }
+        while near != 0 {
+            let candidate = candidates[near.trailing_zeros() as usize % LANES];
+            near &= near - 1;
+            let other = &target.leaves[candidate.other_leaf as usize];
+            found.lists[candidate.lane as usize % LANES]
+                .push(other.elements[candidate.other_lane as usize % LANES]);
+        }
+    }
+    found.queue.clear();
 }
 
 #[inline(always)]
@@ -255,12 +319,11 @@ fn is_near<K: Kind<A, B>, const A: usize, const B: usize>(
     a: [u32; A],
     b: [u32; B],
 ) -> bool {
-    let at = |v: u32| scene.positions[v as usize];
-    let mut points = [at(a[0]); 4];
-    a.iter().chain(&b).zip(&mut points).for_each(|(&v, point)| *point = at(v));
+    let mut vertices = [a[0]; 4];
+    a.iter().chain(&b).zip(&mut vertices).for_each(|(&v, vertex)| *vertex = v);
     let largest = |side: &[u32]| side.iter().map(|&v| scene.radii[v as usize]).fold(0.0, f64::max);
     // Rounded up: a pair exactly at the radii must not be lost.
-    separation::separate(K::KIND, &points).width <= (largest(&a) + largest(&b)).next_up()
+    separate_one(K::KIND, vertices, scene.positions).width <= (largest(&a) + largest(&b)).next_up()
 }
 
 /// The boxes of an element at the start and at the end of the sweep.

@@ -78,6 +78,8 @@ pub struct Leaf<const V: usize> {
     pub reject: [f32; LANES],
     /// Radius less the slack that certifies a pair's nearness [m].
     pub accept: [f32; LANES],
+    /// Largest index of an element.
+    pub last_element: u32,
     /// Sum of the sides of the box of all vertices, radii left out [m].
     extent: f32,
 }
@@ -89,6 +91,7 @@ impl<const V: usize> Leaf<V> {
         positions: [[[0.0; LANES]; 3]; V],
         reject: [0.0; LANES],
         accept: [0.0; LANES],
+        last_element: 0,
         extent: 0.0,
     };
 }
@@ -148,6 +151,7 @@ impl<const V: usize> Tree<V> {
             for (lane, centre) in group.iter().enumerate() {
                 let (element, vertices) = &elements[centre.index as usize];
                 leaf.elements[lane] = *element;
+                leaf.last_element = leaf.last_element.max(*element);
                 for j in 0..V {
                     leaf.vertices[j][lane] = vertices[j];
                 }
