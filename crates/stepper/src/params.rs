@@ -16,10 +16,11 @@ pub struct StepperParams {
     pub floor: Option<f64>,
     /// How far vertices may travel between searches.
     pub budget: Budget,
-    /// Smallest search radius: in edge lengths for `per-vertex` (default 0.2), in `delta` for `uniform`
+    /// Smallest search radius: in edge lengths for `per-vertex` (default 0.1; smaller
+    /// ones make contacts flicker), in `delta` for `uniform`
     /// (D_min/2; paper: 2 delta / 2).
     pub budget_min: f64,
-    /// Largest search radius, likewise (default 0.4; paper: D_max/2 = 4 delta / 2).
+    /// Largest search radius, likewise (default 0.25; larger ones multiply pairs; paper: D_max/2 = 4 delta / 2).
     pub budget_max: f64,
     /// Travel of a call, in mean edge lengths, above which the search follows the vertices along their
     /// paths on a common clock. Larger: fewer, dearer searches in free flight. `inf` switches it off. Default 2.
@@ -53,8 +54,8 @@ impl Default for StepperParams {
             damping: 0.9,
             floor: None,
             budget: Budget::PerVertex,
-            budget_min: 0.2,
-            budget_max: 0.4,
+            budget_min: 0.1,
+            budget_max: 0.25,
             swept_travel: 2.0,
         }
     }

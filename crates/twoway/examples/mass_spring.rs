@@ -9,7 +9,8 @@ const DT: f64 = 0.01;
 const SUBSTEPS: usize = 20;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let argument = |k: usize, default: usize| std::env::args().nth(k).and_then(|a| a.parse().ok()).unwrap_or(default);
+    let argument =
+        |k: usize, default: usize| std::env::args().nth(k).and_then(|a| a.parse().ok()).unwrap_or(default);
     let (cells, frames) = (argument(1, 40), argument(2, 60));
     let mut args = std::env::args().skip(3);
     let preset = args.next().unwrap_or_default();

@@ -40,12 +40,20 @@ pub struct LcpBackward {
     free: Vec<Vector>,
     /// y [m].
     y: Vec<Vector>,
+    /// Common motion c of each body [m], and the weight that it is the mean over.
+    common_motion: Vec<(Vector, f64)>,
+    /// Residual and mass of each body.
+    body_residuals: Vec<(Vector, f64)>,
 }
 
 impl BackwardStep for LcpBackward {
     fn begin(&mut self, problem: &Problem, state: &State) {
         let changed = self.movable.len() != problem.prescribed.len()
-            || self.movable.iter().zip(&problem.prescribed).any(|(movable, prescribed)| movable == prescribed);
+            || self
+                .movable
+                .iter()
+                .zip(&problem.prescribed)
+                .any(|(movable, prescribed)| movable == prescribed);
         if changed {
             self.movable = problem.prescribed.iter().map(|p| !p).collect();
             let constraints = &problem.params.constraints;
@@ -76,18 +84,32 @@ impl BackwardStep for LcpBackward {
         self.edges.stretch(&state.x).to_limit
     }
 
+    fn imbalance(&mut self, problem: &Problem, state: &State) -> f64 {
+        self.body_residuals.clear();
+        self.body_residuals.resize(problem.model.bodies().len(), (Vector::zeros(), 0.0));
+        for v in (0..self.y.len()).filter(|&v| problem.movable(v)) {
+            let mass = problem.relative_mass[v];
+            let residual = self.residual(problem, state, v);
+            let (sum, total) = &mut self.body_residuals[problem.model.vertex_body()[v] as usize];
+            *sum += mass * residual;
+            *total += mass;
+        }
+        self.body_residuals
+            .iter()
+            .filter(|(_, mass)| *mass > 0.0)
+            .map(|(r, mass)| r.norm() / mass)
+            .fold(0.0, f64::max)
+    }
+
     fn finish(&mut self, problem: &Problem, state: &State, statistics: &mut Statistics) {
+        statistics.imbalance_m = self.imbalance(problem, state);
         let stretch = self.edges.stretch(&state.x);
         statistics.max_step_stretch = stretch.to_start;
         statistics.max_stretch = stretch.to_rest;
         statistics.edge_colours = self.edges.colour_count();
         statistics.stationarity_m = (0..self.y.len())
             .filter(|&v| problem.movable(v))
-            .map(|v| {
-                // J^T lambda = (y - y')/w.
-                let pull = (self.y[v] - self.free[v]) / (self.weights[v] * problem.relative_mass[v]);
-                (state.target[v] + pull - state.x[v]).norm()
-            })
+            .map(|v| self.residual(problem, state, v).norm())
             .fold(0.0, f64::max);
         statistics.complementarity_m = self
             .rows
@@ -99,6 +121,12 @@ impl BackwardStep for LcpBackward {
 }
 
 impl LcpBackward {
+    /// y0 + m^-1 J^T lambda - x of a movable vertex, by J^T lambda = (y - y')/w.
+    fn residual(&self, problem: &Problem, state: &State, v: usize) -> Vector {
+        let pull = (self.y[v] - self.free[v]) / (self.weights[v] * problem.relative_mass[v]);
+        state.target[v] + pull - state.x[v]
+    }
+
     /// mu from the last multipliers, then w and y'.
     fn set_weights(&mut self, problem: &Problem, state: &State) {
         let params = &problem.params.backward;
@@ -128,13 +156,15 @@ impl LcpBackward {
                         let vertices = &contacts.pairs.pairs()[p].vertices;
                         for k in 0..kind.vertex_count() {
                             let v = vertices[k] as usize;
-                            self.proximal[v] += params.contact_proximal * lambda * contacts.separations[p].weights[k]
-                                / problem.local_edge[v];
+                            self.proximal[v] +=
+                                params.contact_proximal * lambda * contacts.separations[p].weights[k]
+                                    / problem.local_edge[v];
                         }
                     }
                 }
             }
         }
+        self.set_common_motion(problem, state);
         self.weights.clear();
         self.free.clear();
         for v in 0..state.x.len() {
@@ -142,11 +172,32 @@ impl LcpBackward {
             if problem.movable(v) {
                 let weight = 1.0 / (mass + mu);
                 self.weights.push(weight);
-                self.free.push(weight * (mass * state.target[v].coords + mu * state.x[v].coords));
+                let centre =
+                    state.x[v].coords + self.common_motion[problem.model.vertex_body()[v] as usize].0;
+                self.free.push(weight * (mass * state.target[v].coords + mu * centre));
             } else {
                 self.weights.push(0.0);
                 self.free.push(state.target[v].coords);
             }
+        }
+    }
+
+    /// c of each body: a share of its last mean move, weighted by mu.
+    fn set_common_motion(&mut self, problem: &Problem, state: &State) {
+        let share = problem.params.backward.common_motion;
+        self.common_motion.clear();
+        self.common_motion.resize(problem.model.bodies().len(), (Vector::zeros(), 0.0));
+        if share == 0.0 || state.step == 0 {
+            return;
+        }
+        for v in (0..state.x.len()).filter(|&v| problem.movable(v)) {
+            let mu = self.proximal[v];
+            let (sum, total) = &mut self.common_motion[problem.model.vertex_body()[v] as usize];
+            *sum += mu * (state.x[v] - state.previous[v]);
+            *total += mu;
+        }
+        for (sum, total) in self.common_motion.iter_mut().filter(|(_, total)| *total > 0.0) {
+            *sum *= share / *total;
         }
     }
 
@@ -193,7 +244,8 @@ impl LcpBackward {
         statistics.contact_colours = self.contacts.colour_count();
         statistics.edge_rows = self.edges.balls.len();
         if only_active {
-            statistics.skipped.rows += (0..contacts.pairs.len()).filter(|&p| in_range(p)).count() - contact_rows;
+            statistics.skipped.rows +=
+                (0..contacts.pairs.len()).filter(|&p| in_range(p)).count() - contact_rows;
         }
     }
 

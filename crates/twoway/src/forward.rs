@@ -113,7 +113,8 @@ impl CertifiedForward {
             let worst = (0..count)
                 .filter(|&v| self.tubes[v] > 0.0)
                 .map(|v| {
-                    let strayed = (self.assumed[v] - self.stepper.alpha(v)) * self.stepper.displacements()[v].norm();
+                    let strayed =
+                        (self.assumed[v] - self.stepper.alpha(v)) * self.stepper.displacements()[v].norm();
                     strayed / (SWEPT_USABLE * self.tubes[v])
                 })
                 .fold(0.0, f64::max);

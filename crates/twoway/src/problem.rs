@@ -74,7 +74,16 @@ impl Problem {
         let obstacle_vertices = (0..vertices as u32).filter(|&v| prescribed[v as usize]).collect();
         let (edge, local_edge) = edge_lengths(&model, rest, &prescribed);
         let lengths = lengths(&params, edge);
-        Ok(Self { model, rest: rest.to_vec(), relative_mass, local_edge, obstacle_vertices, lengths, params, prescribed })
+        Ok(Self {
+            model,
+            rest: rest.to_vec(),
+            relative_mass,
+            local_edge,
+            obstacle_vertices,
+            lengths,
+            params,
+            prescribed,
+        })
     }
 
     /// Whether the present call may move a vertex on its own account.

@@ -5,8 +5,8 @@ use crate::forward::CertifiedForward;
 use crate::problem::check_finite;
 use crate::search::BudgetedSearch;
 use crate::{
-    AcceptedState, BackwardStep, ForwardStep, Observer, Params, Problem, ResolveError, Search, State, Statistics,
-    StopRule,
+    AcceptedState, BackwardStep, ForwardStep, Observer, Params, Problem, ResolveError, Search, State,
+    Statistics, StopRule,
 };
 use bowknot_geometry::Point;
 use bowknot_proximity::CollisionModel;
@@ -107,7 +107,9 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
             statistics.converged = match limits.rule {
                 StopRule::Clock => report.remaining_r < limits.clock,
                 StopRule::Travel => {
-                    report.remaining < limits.distance * problem.lengths.edge
+                    let edge = problem.lengths.edge;
+                    report.remaining < limits.distance * edge
+                        && backward.imbalance(problem, state) < limits.imbalance * edge
                         && backward.stretch_to_limit(state) <= 1.0 + limits.stretch_tolerance
                 }
             };

@@ -54,17 +54,19 @@ impl BudgetedSearch {
         match params.budget {
             Budget::PerVertex => {
                 let (low, high) = (params.budget_min, params.budget_max);
-                self.budgets.radii.extend(state.x.iter().zip(&state.y).zip(&problem.local_edge).enumerate().map(
-                    |(v, ((x, y), h))| {
-                        let wanted = (y - x).norm();
-                        // A prescribed vertex with nowhere to go, such as an obstacle at rest, stays put.
-                        if wanted == 0.0 && problem.prescribed[v] {
-                            0.0
-                        } else {
-                            wanted.clamp(low * h, high * h)
-                        }
-                    },
-                ));
+                self.budgets.radii.extend(
+                    state.x.iter().zip(&state.y).zip(&problem.local_edge).enumerate().map(
+                        |(v, ((x, y), h))| {
+                            let wanted = (y - x).norm();
+                            // A prescribed vertex with nowhere to go, such as an obstacle at rest, stays put.
+                            if wanted == 0.0 && problem.prescribed[v] {
+                                0.0
+                            } else {
+                                wanted.clamp(low * h, high * h)
+                            }
+                        },
+                    ),
+                );
                 let margin = Self::margin(problem);
                 self.radii.clear();
                 self.radii.extend(self.budgets.radii.iter().map(|r| r + margin));
@@ -96,7 +98,8 @@ impl BudgetedSearch {
                 Some(&desired) => (desired, old_multipliers[old as usize], false),
                 None => {
                     let gap = separations[p].distance;
-                    let (desired, lowered) = rule.of(model, pairs.kind(p), &pairs.pairs()[p], &problem.rest, gap);
+                    let (desired, lowered) =
+                        rule.of(model, pairs.kind(p), &pairs.pairs()[p], &problem.rest, gap);
                     (desired, 0.0, lowered)
                 }
             })
@@ -179,7 +182,13 @@ impl Search for BudgetedSearch {
         self.set_budgets(problem, state);
         std::mem::swap(&mut self.old, &mut state.contacts.pairs);
         let contacts = &mut state.contacts;
-        self.search.search(&problem.model, &state.x, &self.radii, &mut contacts.pairs, &mut contacts.separations);
+        self.search.search(
+            &problem.model,
+            &state.x,
+            &self.radii,
+            &mut contacts.pairs,
+            &mut contacts.separations,
+        );
         self.inherit(problem, state, statistics);
         self.requested = false;
         statistics.searches += 1;

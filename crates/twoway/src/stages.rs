@@ -51,6 +51,10 @@ pub trait BackwardStep {
     /// Largest ratio of an edge's length to its limit at `state.x`; 1 or less: the limits hold.
     fn stretch_to_limit(&self, state: &State) -> f64;
 
+    /// Largest over bodies of the mean stationarity residual at `state.x` [m]: how far a body as a whole is from where
+    /// the forces on it balance.
+    fn imbalance(&mut self, problem: &Problem, state: &State) -> f64;
+
     /// Fills in what the stage knows at the end of a call: residuals and stretch.
     fn finish(&mut self, problem: &Problem, state: &State, statistics: &mut Statistics);
 }

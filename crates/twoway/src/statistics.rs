@@ -33,6 +33,9 @@ pub struct Statistics {
     pub remaining_m: f64,
     /// Stationarity residual max |y0 + m^-1 J^T lambda - x| [m].
     pub stationarity_m: f64,
+    /// Largest over bodies of |mean of m^ (y0 + m^-1 J^T lambda - x)| [m]: how far a body as a whole is from where the
+    /// forces that act on it would balance.
+    pub imbalance_m: f64,
     /// Complementarity max |min(lambda, s)| over the rows [m].
     pub complementarity_m: f64,
     /// Root mean square over free vertices of |x - y0| [m].
