@@ -106,7 +106,10 @@ impl Dynamics {
             guesses: [zero(), zero()],
             step: zero(),
             values: BlockValues::zeros(&model.pattern),
-            preconditioner: Preconditioner::default(),
+            preconditioner: Preconditioner::new(match params.preconditioner {
+                crate::Preconditioner::BlockJacobi => None,
+                crate::Preconditioner::TwoLevel => Some(model.coarse()),
+            }),
             cg: CgWorkspace::default(),
         };
         Ok(Self { external_forces: zero(), model, params, step: None, work })
@@ -315,12 +318,12 @@ fn iterate(
     }
     let [inertia, last] = &work.guesses;
     let guesses: &[&[Vector]] = &[last.as_slice(), inertia.as_slice()][2 - guess_count..];
-    work.preconditioner.build(params.preconditioner, &system);
+    work.preconditioner.build(&system, &work.x);
     let limits = Limits { tolerance: params.cg_tolerance, max_iterations: params.cg_max_iterations };
     let mut info = NewtonInfo {
         cg: cg::solve(
             &system,
-            &work.preconditioner,
+            &mut work.preconditioner,
             &work.right_side,
             guesses,
             limits,

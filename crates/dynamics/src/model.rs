@@ -4,6 +4,7 @@ use crate::elements::bending::add_bending;
 use crate::elements::triangle::Triangle;
 use crate::elements::{ElementFamily, Family};
 use crate::linear::block::BlockPattern;
+use crate::linear::coarse::Coarse;
 use crate::linear::ordering::order_nodes;
 use crate::linear::scalar::{ScalarBuilder, ScalarForm};
 use crate::{ClothMaterial, ModelError};
@@ -14,8 +15,13 @@ use std::ops::Range;
 /// A triangle whose area is below this share of its longest edge squared has no area.
 const ZERO_AREA: f64 = 1e-12;
 
-/// Nodes per leaf of the numbering, the aggregates of coarse corrections.
-const LEAF: usize = 32;
+/// Most nodes of a leaf of the numbering, the aggregates of the coarse correction. Halving makes
+/// them 32 to 64 nodes large.
+const LEAF: usize = 64;
+
+/// Most aggregates: beyond, they grow, so that the coarse factor, whose cost rises with their number
+/// to the power 1.5, stays a small part of a step.
+const MAX_AGGREGATES: usize = 4096;
 
 /// "No node": the vertex has no freedom, ever.
 pub(crate) const NO_NODE: u32 = u32::MAX;
@@ -80,7 +86,7 @@ pub struct DynamicsModel {
     pub(crate) bending_damping: Option<ScalarForm>,
     /// Cloth edges with their rest lengths [m].
     pub(crate) edges: Vec<([u32; 2], f64)>,
-    #[expect(dead_code, reason = "aggregates of the coarse correction, not used by block-Jacobi")]
+    /// Ranges of nodes that are compact patches.
     pub(crate) leaves: Vec<Range<u32>>,
     /// Ranges of nodes that elements join.
     pub(crate) components: Vec<Range<u32>>,
@@ -152,7 +158,8 @@ impl DynamicsModel {
         let mut compact = vec![NO_NODE; count];
         deformable.iter().enumerate().for_each(|(k, &v)| compact[v as usize] = k as u32);
         let positions: Vec<Vector> = deformable.iter().map(|&v| rest_positions[v as usize].coords).collect();
-        let ordering = order_nodes(&positions, LEAF, |link| {
+        let leaf = LEAF.max(positions.len().div_ceil(MAX_AGGREGATES));
+        let ordering = order_nodes(&positions, leaf, |link| {
             for [i, j, k] in cloth().flat_map(|(triangles, _)| triangles) {
                 link(compact[*i as usize], compact[*j as usize]);
                 link(compact[*j as usize], compact[*k as usize]);
@@ -219,6 +226,16 @@ impl DynamicsModel {
             edges,
             leaves: ordering.leaves,
             components: ordering.components,
+        })
+    }
+
+    /// The coarse space of this model.
+    pub(crate) fn coarse(&self) -> Coarse {
+        let rest: Vec<Vector> =
+            self.node_vertex.iter().map(|&v| self.rest_positions[v as usize].coords).collect();
+        Coarse::new(&self.leaves, &rest, |row, visit| {
+            self.pattern.columns[self.pattern.row(row)].iter().for_each(|&column| visit(column));
+            self.bending.row(row).0.iter().for_each(|&column| visit(column));
         })
     }
 

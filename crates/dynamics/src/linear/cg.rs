@@ -63,7 +63,7 @@ impl CgWorkspace {
 /// instead of asking for more accuracy.
 pub(crate) fn solve(
     system: &System<'_>,
-    preconditioner: &Preconditioner,
+    preconditioner: &mut Preconditioner,
     b: &[Vector],
     guesses: &[&[Vector]],
     limits: Limits,

@@ -2,6 +2,8 @@
 
 pub(crate) mod block;
 pub(crate) mod cg;
+pub(crate) mod cholesky;
+pub(crate) mod coarse;
 pub(crate) mod ordering;
 pub(crate) mod preconditioner;
 pub(crate) mod scalar;

@@ -1,23 +1,29 @@
 //! Preconditioners: symmetric positive definite approximations of the inverse of H.
 
+use super::coarse::Coarse;
 use super::system::System;
 use super::vectors::chunk_dot;
 use crate::elements::CHUNK;
-use crate::params;
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
-/// A preconditioner with its storage, rebuilt for every system.
+/// Block-Jacobi, alone or with a coarse correction added; rebuilt for every system.
 #[derive(Debug, Default)]
 pub(crate) struct Preconditioner {
     /// Inverses of the diagonal blocks, zero where the node is not free.
     inverses: Vec<Matrix3<f64>>,
+    coarse: Option<Coarse>,
 }
 
 impl Preconditioner {
-    /// Prepares for `system`.
-    pub fn build(&mut self, _kind: params::Preconditioner, system: &System<'_>) {
+    /// Block-Jacobi plus `coarse`, if any.
+    pub fn new(coarse: Option<Coarse>) -> Self {
+        Self { inverses: Vec::new(), coarse }
+    }
+
+    /// Prepares for `system`, linearised at positions `x`.
+    pub fn build(&mut self, system: &System<'_>, x: &[Vector]) {
         self.inverses.resize(system.node_count(), Matrix3::zeros());
         self.inverses.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, inverses)| {
             for (k, inverse) in inverses.iter_mut().enumerate() {
@@ -25,17 +31,28 @@ impl Preconditioner {
                 *inverse = if system.free[node] { invert(system.diagonal(node)) } else { Matrix3::zeros() };
             }
         });
+        if let Some(coarse) = &mut self.coarse {
+            coarse.build(system, x);
+        }
     }
 
     /// z = M^-1 r; r . z.
-    pub fn apply(&self, r: &[Vector], z: &mut [Vector]) -> f64 {
+    pub fn apply(&mut self, r: &[Vector], z: &mut [Vector]) -> f64 {
+        if let Some(coarse) = &mut self.coarse {
+            coarse.solve(r);
+        }
+        let coarse = self.coarse.as_ref();
         let partial: Vec<f64> = z
             .par_chunks_mut(CHUNK)
             .zip(r.par_chunks(CHUNK))
             .zip(self.inverses.par_chunks(CHUNK))
-            .map(|((z, r), inverses)| {
+            .enumerate()
+            .map(|(chunk, ((z, r), inverses))| {
                 for ((z, r), inverse) in z.iter_mut().zip(r).zip(inverses) {
                     *z = inverse * r;
+                }
+                if let Some(coarse) = coarse {
+                    z.iter_mut().enumerate().for_each(|(k, z)| *z += coarse.displacement(chunk * CHUNK + k));
                 }
                 chunk_dot(r, z)
             })
