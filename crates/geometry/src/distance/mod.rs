@@ -6,7 +6,7 @@
 //! rounding; it is off by at most 8 rounding units (2^-53) times the largest coordinate difference
 //! within the pair, for every input: zero-length edges, collinear and sliver triangles, parallel
 //! edges and coincident points included (`tests/suite/exact_distance.rs` compares with integers and
-//! sees 3.1).
+//! sees less than 4).
 //!
 //! The gradient of the distance by vertex i is `sign_i * weights[i] * offset / distance`, with sign
 //! +1 on side *a* and -1 on side *b* (the closest points move, but at a minimum that adds nothing).

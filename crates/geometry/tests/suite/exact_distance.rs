@@ -54,7 +54,7 @@ fn for_each_pair(count: usize, finest: usize, mut check: impl FnMut(PairKind, [I
 fn distances_and_weights_are_those_of_integer_arithmetic() {
     for_each_pair(1_000_000, 1 << 19, |kind, grid, spacing, points| {
         let closest = distance::closest(kind, &points);
-        // The largest error seen is 3.1 U.
+        // The largest error seen is below 4 U.
         let tolerance = 8.0 * U * extent(kind, &points);
         let expected = distance_squared(kind, grid).to_f64().sqrt() * spacing;
         assert!((closest.distance - expected).abs() <= tolerance, "{kind:?} {grid:?} {closest:?} {expected}");
