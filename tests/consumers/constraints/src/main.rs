@@ -1,0 +1,37 @@
+//! A vertex that wants to go through a triangle: one contact row, solved.
+#![allow(clippy::print_stdout, reason = "a command")]
+
+use bowknot_constraints::{ContactForm, contact_row, predicted_gap};
+use bowknot_geometry::{PairKind, Point, Vector, separation};
+use bowknot_lcp::{Error, Family, Params, Problem, State, prepare_rows, solve_serial};
+
+fn main() -> Result<(), Error> {
+    let x = [[0.2, 0.2, 0.1], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point::from);
+    let target = [x[0] - 0.3 * Vector::z(), x[1], x[2], x[3]];
+    let (kind, vertices, delta) = (PairKind::VertexTriangle, [0, 1, 2, 3], 0.01);
+    let separation = separation::separate(kind, &x);
+    assert!(predicted_gap(kind, &vertices, &separation, &x, &target) < 0.0, "the target is through");
+
+    for form in [ContactForm::Gap, ContactForm::Volume] {
+        let weights = [1.0; 4];
+        let mut rows = [contact_row(form, kind, vertices, &x, &separation, delta)];
+        prepare_rows(&mut rows, &weights)?;
+        let problem = Problem::new(&weights, Family::serial(&rows), Family::default(), Family::default())?;
+        let mut y = target.map(|p| p.coords);
+        let mut lambda = [0.0];
+        let mut state = State { y: &mut y, lambda: &mut lambda, forces: &mut [], friction: &mut [] };
+        let params = Params { tolerance: Some(1e-12), max_sweeps: 100, ..Params::default() };
+        solve_serial(&problem, &mut state, &params)?;
+        let after = y.map(Point::from);
+        let gap = predicted_gap(kind, &vertices, &separation, &x, &after);
+        println!("{form:?}: gap {gap:.6} m, multiplier {:.4}", lambda[0]);
+        assert!(lambda[0] > 0.0);
+        assert!(gap > 0.0, "the modified target no longer goes through");
+    }
+    Ok(())
+}
+
+#[test]
+fn runs() {
+    main().unwrap();
+}

@@ -1,0 +1,35 @@
+//! Two triangles whose targets swap them: they end up close, and still in order.
+#![allow(clippy::print_stdout, reason = "a command")]
+
+use bowknot_geometry::{Point, Topology, Vector};
+use bowknot_proximity::CollisionModel;
+use bowknot_twoway::{AcceptedState, Call, Params, ResolveError, Resolver};
+use std::ops::ControlFlow;
+
+fn main() -> Result<(), ResolveError> {
+    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let at = |z: f64| corners.map(|p| Point::from(p) + z * Vector::z());
+    let mut x = [at(0.0), at(0.1)].concat();
+    let y = [at(0.1), at(0.0)].concat();
+
+    let Ok(topology) = Topology::new(6, vec![[0, 1, 2], [3, 4, 5]], &[], &[]) else {
+        panic!("the triangles are sound")
+    };
+    let mut resolver = Resolver::new(CollisionModel::single_body(topology), &x, &[1.0; 6], Params::fast())?;
+    let mut seen = 0;
+    let mut observer = |state: &AcceptedState<'_>| {
+        seen += 1;
+        assert!((0..3).all(|i| state.positions[i].z < state.positions[i + 3].z), "in order after every step");
+        ControlFlow::Continue(())
+    };
+    let report = resolver.resolve(&mut x, &y, &Call::default(), &mut observer)?;
+    println!("{} steps, gap {:?} m", report.steps, report.min_gap_m);
+    assert_eq!(seen, report.steps);
+    assert!(report.min_gap_m.is_some_and(|gap| gap > 0.0));
+    Ok(())
+}
+
+#[test]
+fn runs() {
+    main().unwrap();
+}

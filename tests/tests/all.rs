@@ -1,0 +1,9 @@
+//! Integration tests that span several crates, in one binary.
+
+// Manifests keep to the layers, and named paths exist.
+mod layers;
+mod paths;
+// The generators of hard states do what they say.
+mod generators;
+// No step of the forward step, alone or within the two-way loop, ever intersects.
+mod safety;

@@ -1,0 +1,164 @@
+//! The manifests keep to the layers: arrows point one way.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use toml::Table;
+
+/// What each crate may depend on, of ours. A crate that is not listed fails the test.
+const ALLOWED: &[(&str, &[&str])] = &[
+    ("bowknot-geometry", &[]),
+    ("bowknot-proximity", &["bowknot-geometry"]),
+    ("bowknot-lcp", &[]),
+    ("bowknot-constraints", &["bowknot-geometry", "bowknot-lcp", "bowknot-proximity"]),
+    ("bowknot-stepper", &["bowknot-geometry", "bowknot-proximity"]),
+    (
+        "bowknot-twoway",
+        &["bowknot-constraints", "bowknot-geometry", "bowknot-lcp", "bowknot-proximity", "bowknot-stepper"],
+    ),
+    ("bowknot-dynamics", &["bowknot-geometry", "bowknot-proximity"]),
+    (
+        "bowknot",
+        &[
+            "bowknot-constraints",
+            "bowknot-dynamics",
+            "bowknot-geometry",
+            "bowknot-lcp",
+            "bowknot-proximity",
+            "bowknot-stepper",
+            "bowknot-twoway",
+        ],
+    ),
+    ("bowknot-cli", &["bowknot"]),
+    ("xtask", &[]),
+];
+
+pub fn root() -> PathBuf {
+    let tests = Path::new(env!("CARGO_MANIFEST_DIR"));
+    tests.parent().unwrap_or(tests).to_path_buf()
+}
+
+fn manifest(folder: &Path) -> Table {
+    let path = folder.join("Cargo.toml");
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    text.parse().unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+fn name(manifest: &Table) -> &str {
+    manifest["package"]["name"].as_str().expect("a package has a name")
+}
+
+/// Folders of a folder, sorted.
+fn folders(parent: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(parent).unwrap_or_else(|error| panic!("{}: {error}", parent.display()));
+    let mut folders: Vec<PathBuf> = entries
+        .flatten()
+        .map(|entry| entry.path())
+        .filter(|path| path.join("Cargo.toml").is_file())
+        .collect();
+    folders.sort();
+    folders
+}
+
+/// Names of our packages on which a package depends in any way: for building, testing, on some target,
+/// under another name.
+fn our_dependencies(manifest: &Table) -> Vec<String> {
+    let mut tables = vec![manifest];
+    if let Some(targets) = manifest.get("target").and_then(|value| value.as_table()) {
+        tables.extend(targets.values().filter_map(|value| value.as_table()));
+    }
+    let mut found = Vec::new();
+    for table in tables {
+        for key in ["dependencies", "dev-dependencies", "build-dependencies"] {
+            let Some(dependencies) = table.get(key).and_then(|value| value.as_table()) else { continue };
+            for (key, value) in dependencies {
+                let package = value.get("package").and_then(|value| value.as_str()).unwrap_or(key);
+                // What is named by a path is ours whatever it is called.
+                if package.starts_with("bowknot") || package == "xtask" || value.get("path").is_some() {
+                    found.push(package.to_owned());
+                }
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn dependencies_point_down() {
+    let allowed: BTreeMap<&str, &[&str]> = ALLOWED.iter().copied().collect();
+    let mut faults = Vec::new();
+    let mut seen = Vec::new();
+    for folder in folders(&root().join("crates")) {
+        let manifest = manifest(&folder);
+        let package = name(&manifest);
+        let short = folder.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+        let expected = match short {
+            "bowknot" | "xtask" => short.to_owned(),
+            _ => format!("bowknot-{short}"),
+        };
+        if package != expected {
+            faults.push(format!("crates/{short} holds package {package}, not {expected}"));
+        }
+        let Some(may) = allowed.get(package) else {
+            faults.push(format!("{package} has no place in the layers: add it to ALLOWED"));
+            continue;
+        };
+        for dependency in our_dependencies(&manifest) {
+            if !may.contains(&dependency.as_str()) {
+                faults.push(format!("{package} must not depend on {dependency}"));
+            }
+        }
+        seen.push(package.to_owned());
+    }
+    faults.extend(
+        ALLOWED.iter().filter(|(p, _)| !seen.iter().any(|s| s == p)).map(|(p, _)| format!("{p} is gone")),
+    );
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// Each library has a consumer that needs it and what it stands on, and nothing else of ours.
+#[test]
+fn every_library_is_usable_alone() {
+    let allowed: BTreeMap<&str, &[&str]> = ALLOWED.iter().copied().collect();
+    let consumers = root().join("tests/consumers");
+    let mut faults = Vec::new();
+    for folder in folders(&root().join("crates")) {
+        let short = folder.file_name().and_then(|name| name.to_str()).unwrap_or_default().to_owned();
+        if matches!(short.as_str(), "cli" | "xtask") {
+            continue;
+        }
+        let library = name(&manifest(&folder)).to_owned();
+        let consumer = consumers.join(&short);
+        if !consumer.join("Cargo.toml").is_file() {
+            faults.push(format!("{library} has no consumer in tests/consumers/{short}"));
+            continue;
+        }
+        let used = our_dependencies(&manifest(&consumer));
+        if !used.contains(&library) {
+            faults.push(format!("tests/consumers/{short} does not use {library}"));
+        }
+        let may = allowed.get(library.as_str()).copied().unwrap_or_default();
+        for other in used.iter().filter(|other| **other != library && !may.contains(&other.as_str())) {
+            faults.push(format!("tests/consumers/{short} must not need {other}"));
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// The rule itself can fail.
+#[test]
+fn forbidden_edges_are_seen() {
+    let manifest: Table = r#"
+        [dependencies]
+        bowknot-geometry.workspace = true
+        alias = { package = "bowknot-twoway", version = "0.1" }
+        elsewhere = { path = "../elsewhere" }
+        serde = "1"
+        [target.'cfg(unix)'.dev-dependencies]
+        bowknot-lcp.workspace = true
+    "#
+    .parse()
+    .expect("valid TOML");
+    let mut found = our_dependencies(&manifest);
+    found.sort();
+    assert_eq!(found, ["bowknot-geometry", "bowknot-lcp", "bowknot-twoway", "elsewhere"]);
+}
