@@ -104,7 +104,11 @@ fn read_twoway(reader: &mut Reader<'_>, root: &Table) -> (Preset, Params) {
     let dynamics = solver_dynamics();
     let known = [field_names::<BackwardParams>(), &dynamics, &["stop"]].concat();
     reader.check_keys(&solver, "solver", &known);
-    let backward = reader.fields(&base.backward, &solver, "solver", &[]);
+    let mut backward = reader.fields(&base.backward, &solver, "solver", &[]);
+    // Who asks for more sweeps than a preset polishes with does not want fewer at the end.
+    if !solver.contains_key("polish_sweeps") {
+        backward.polish_sweeps = backward.polish_sweeps.max(backward.sweeps);
+    }
     let stop = reader.table(&solver, "solver", "stop");
     reader.check_keys(&stop, "solver.stop", field_names::<StopParams>());
     let stop = reader.fields(&base.stop, &stop, "solver.stop", &[]);
@@ -263,8 +267,12 @@ fn validate_twoway(params: &Params, source: &Source, problems: &mut Vec<Problem>
         let end = message.find([' ', '=']).unwrap_or(message.len());
         let (field, rest) = message.split_at(end);
         let key = scene_key(field);
-        let rest = rest.trim_start_matches([' ', '=']);
-        problems.push(source.problem(&key, rest.to_owned()));
+        let rest = rest
+            .trim_start_matches([' ', '='])
+            .replace("constraints.", "contact.")
+            .replace("stepper.", "contact.")
+            .replace("backward.", "solver.");
+        problems.push(source.problem(&key, rest));
     }
 }
 

@@ -16,7 +16,7 @@ pub struct Cone {
     /// Length of the edges along the side and across the base [m], rounded so that whole numbers fit.
     /// Default 0.02.
     pub edge: f64,
-    /// Number of corners of the cross-section [1], from 3 to 1000. Default 12.
+    /// Number of corners of the cross-section [1], from 3 to 1000. Larger: rounder. Default 12.
     pub sides: u32,
 }
 

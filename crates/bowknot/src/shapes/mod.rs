@@ -101,6 +101,11 @@ impl Shape {
                 return;
             }
         };
+        if let Self::Cone(Cone { sides, .. }) = self
+            && !(3..=1000).contains(sides)
+        {
+            problems.push(("sides", format!("{sides} must lie from 3 to 1000")));
+        }
         let before = problems.len();
         for (key, value) in lengths.into_iter().chain([("edge", edge)]) {
             if !(value.is_finite() && value > 0.0) {

@@ -1,0 +1,17 @@
+//! Integration tests of the facade, in one binary.
+
+/// What users get wrong, and what they are told.
+mod bad_input;
+/// `docs/scene-reference.md` follows the structs.
+mod reference;
+/// Output folders: what they hold, resuming, failing.
+mod runs;
+/// The time-step loop: free motion, pins, obstacles, restarts, threads.
+mod simulation;
+
+use bowknot::Scene;
+
+/// A scene from TOML without mesh files.
+fn scene(text: &str) -> Scene {
+    Scene::from_toml(text, "").unwrap_or_else(|error| panic!("{error}"))
+}

@@ -1,0 +1,390 @@
+//! Makes `docs/scene-reference.md` from the structs' documentation and defaults, and fails when the file
+//! differs. `BOWKNOT_ACCEPT=1 cargo test --release -p bowknot reference` writes it anew.
+
+use bowknot::constraints::ConstraintParams;
+use bowknot::dynamics::{ClothMaterial, DynamicsParams};
+use bowknot::scene::{
+    BodySpec, Keyframe, Motion, ObstacleSpec, OutputParams, PinSpec, Region, SimulationParams,
+};
+use bowknot::shapes::{Ball, Cone, Cuboid, HalfSpaceShape, Sheet, Tube};
+use bowknot::stepper::StepperParams;
+use bowknot::twoway::{BackwardParams, Params, StopParams};
+use serde::Serialize;
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+use toml::{Table, Value};
+
+/// Where the structs and enums are, relative to `crates`.
+const SOURCES: [&str; 17] = [
+    "bowknot/src/scene/params.rs",
+    "bowknot/src/scene/body.rs",
+    "bowknot/src/scene/motion.rs",
+    "bowknot/src/io/import.rs",
+    "bowknot/src/shapes/mod.rs",
+    "bowknot/src/shapes/sheet.rs",
+    "bowknot/src/shapes/tube.rs",
+    "bowknot/src/shapes/ball.rs",
+    "bowknot/src/shapes/cone.rs",
+    "bowknot/src/shapes/cuboid.rs",
+    "constraints/src/params.rs",
+    "stepper/src/params.rs",
+    "twoway/src/params.rs",
+    "dynamics/src/params.rs",
+    "dynamics/src/material.rs",
+    "lcp/src/params.rs",
+    "geometry/src/lib.rs",
+];
+
+const HEAD: &str = "\
+# Scene reference
+
+A scene is a TOML file. Every key has a default but the meshes; unknown keys are refused. Units stand in their own
+column: 1 is a plain number. Lengths are in metres, z is up. `--set KEY.PATH=VALUE` overrides a key of a file or of a
+built-in scene; an entry of `body`, `obstacle` or `pin` is named by its index from 0 or by its `name`:
+`--set body.sheet.material=silk`.
+
+This page is made from the documentation of the structs; `BOWKNOT_ACCEPT=1 cargo test --release -p bowknot reference`
+writes it anew.
+";
+
+struct Field {
+    key: String,
+    kind: String,
+    doc: String,
+}
+
+struct Sources(String);
+
+impl Sources {
+    fn read() -> Self {
+        let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let text = |source: &&str| fs::read_to_string(crates.join(source)).unwrap_or_default();
+        Self(SOURCES.iter().map(text).collect())
+    }
+
+    /// The lines between the braces of `pub struct NAME {` or `pub enum NAME {`.
+    fn body(&self, keyword: &str, name: &str) -> Option<&str> {
+        let start = self.0.find(&format!("pub {keyword} {name} {{\n"))?;
+        let rest = &self.0[start..];
+        Some(&rest[..rest.find("\n}")?])
+    }
+
+    fn fields(&self, name: &str) -> Vec<Field> {
+        let body = self.body("struct", name).unwrap_or_else(|| panic!("struct {name} is in none of SOURCES"));
+        let (mut fields, mut doc, mut rename) = (Vec::new(), String::new(), None);
+        for line in body.lines().skip(1).map(str::trim) {
+            if let Some(text) = line.strip_prefix("///") {
+                doc.push_str(text.trim());
+                doc.push(' ');
+            } else if let Some(rest) = line.split_once("rename = \"").map(|(_, rest)| rest) {
+                rename = rest.split('"').next().map(str::to_owned);
+            } else if let Some((key, kind)) = line.strip_prefix("pub ").and_then(|line| line.split_once(": "))
+            {
+                let key = rename.take().unwrap_or_else(|| key.to_owned());
+                let kind = kind.trim_end_matches(',').to_owned();
+                fields.push(Field { key, kind, doc: std::mem::take(&mut doc).trim().to_owned() });
+            }
+        }
+        fields
+    }
+
+    /// Names of an enum's variants as serde has them, if `name` is an enum without data.
+    fn variants(&self, name: &str) -> Option<Vec<String>> {
+        let lower = |name: &str| {
+            let mut kebab = String::new();
+            for c in name.chars() {
+                if c.is_uppercase() && !kebab.is_empty() {
+                    kebab.push('-');
+                }
+                kebab.extend(c.to_lowercase());
+            }
+            kebab
+        };
+        let lines = self.body("enum", name)?.lines().skip(1).map(str::trim);
+        let names = lines.filter_map(|line| line.strip_suffix(',')).filter(|line| !line.starts_with('/'));
+        let names: Vec<String> = names.map(lower).collect();
+        names.iter().all(|name| name.chars().all(|c| c.is_lowercase() || c == '-')).then_some(names)
+    }
+}
+
+struct Page {
+    sources: Sources,
+    text: String,
+}
+
+impl Page {
+    fn section(&mut self, heading: &str, about: &str) {
+        let _ = write!(self.text, "\n## {heading}\n\n{about}\n");
+    }
+
+    fn head(&mut self, paper: bool) {
+        let columns = if paper {
+            "| key | type | unit | default | `paper` | meaning |\n|---|---|---|---|---|---|"
+        } else {
+            "| key | type | unit | default | meaning |\n|---|---|---|---|---|"
+        };
+        let _ = write!(self.text, "\n{columns}\n");
+    }
+
+    /// The rows of a struct's fields that `keep` keeps; `paper` has the other preset's values.
+    fn rows<T: Serialize>(
+        &mut self,
+        name: &str,
+        defaults: &T,
+        paper: Option<&T>,
+        keep: impl Fn(&str) -> bool,
+    ) {
+        let table = |value: &T| Table::try_from(value).expect("a table");
+        let defaults = table(defaults);
+        let paper_values = paper.map(table);
+        for field in self.sources.fields(name).iter().filter(|field| keep(&field.key)) {
+            let (unit, meaning) = split_unit(&plain(&field.doc), &field.kind);
+            let (kind, values) = self.describe(&field.kind);
+            let default = show(defaults.get(&field.key));
+            // Where the text names the values already, a list of them adds nothing.
+            let named =
+                values.split('`').skip(1).step_by(2).all(|value| meaning.contains(&format!("`{value}`")));
+            let values = if named { "" } else { &values };
+            let paper = paper_values.as_ref().map(|values| {
+                let value = show(values.get(&field.key));
+                if value == default { String::new() } else { value }
+            });
+            let paper = paper.map_or_else(String::new, |value| format!(" {value} |"));
+            assert!(!meaning.is_empty(), "{name}.{} has no documentation", field.key);
+            let _ = writeln!(
+                self.text,
+                "| `{}` | {kind} | {unit} | {default} |{paper} {meaning}{values} |",
+                field.key
+            );
+        }
+    }
+
+    /// The type of a field in words, and the values that it may have if they are few.
+    fn describe(&self, kind: &str) -> (String, String) {
+        let inner = kind.strip_prefix("Option<").and_then(|k| k.strip_suffix('>')).unwrap_or(kind);
+        if let Some(element) = inner.strip_prefix("Vec<").and_then(|k| k.strip_suffix('>')) {
+            let (element, values) = self.describe(element);
+            return (format!("array of {element}"), values);
+        }
+        let word = match inner {
+            "f64" => "number",
+            "usize" | "u32" => "integer",
+            "bool" => "boolean",
+            "String" => "string",
+            "PathBuf" => "path",
+            "Vector" | "Point" | "[f64; 3]" => "[x, y, z]",
+            "[f64; 2]" => "[x, y]",
+            "Material" => "name or table",
+            _ => match self.sources.variants(inner) {
+                Some(variants) => {
+                    let list: Vec<String> = variants.iter().map(|v| format!("`{v}`")).collect();
+                    return ("name".to_owned(), format!(" One of {}.", list.join(", ")));
+                }
+                None => "table",
+            },
+        };
+        (word.to_owned(), String::new())
+    }
+}
+
+/// A default as TOML; nothing for tables, which have their own section, and for what is derived.
+fn show(value: Option<&Value>) -> String {
+    match value {
+        Some(Value::Float(number)) if number.is_infinite() => format!("`{number}`"),
+        Some(Value::Float(number)) if *number != 0.0 && number.abs() < 1e-3 => format!("`{number:e}`"),
+        Some(Value::String(text)) if text.is_empty() => String::new(),
+        Some(Value::Array(list)) if list.is_empty() => "`[]`".to_owned(),
+        Some(Value::Array(list)) => {
+            let list: Vec<String> = list.iter().map(|v| show(Some(v)).trim_matches('`').to_owned()).collect();
+            format!("`[{}]`", list.join(", "))
+        }
+        None | Some(Value::Table(_)) => String::new(),
+        Some(other) => format!("`{other}`"),
+    }
+}
+
+/// Rustdoc links become plain code.
+fn plain(doc: &str) -> String {
+    let mut text = doc.replace("|", "\\|");
+    while let Some(start) = text.find("[`") {
+        let Some(length) = text[start..].find("`]") else { break };
+        let end = start + length;
+        let code = text[start + 2..end].rsplit("::").next().unwrap_or_default().to_owned();
+        let mut rest = end + 2;
+        if text[rest..].starts_with('(') {
+            rest += text[rest..].find(')').map_or(0, |close| close + 1);
+        }
+        text.replace_range(start..rest, &format!("`{code}`"));
+    }
+    text
+}
+
+/// The unit in the first brackets, and the text without it. Numbers without brackets have unit 1.
+fn split_unit(doc: &str, kind: &str) -> (String, String) {
+    if let Some((before, rest)) = doc.split_once(" [") {
+        if let Some((unit, after)) = rest.split_once(']') {
+            let is_unit = unit.len() < 10 && !unit.contains(',');
+            if is_unit && !before.ends_with('`') {
+                return (unit.to_owned(), format!("{before}{after}"));
+            }
+        }
+    }
+    let number = ["f64", "usize", "u32"].iter().any(|word| kind.contains(word));
+    (if number { "1".to_owned() } else { String::new() }, doc.to_owned())
+}
+
+fn page() -> String {
+    let mut page = Page { sources: Sources::read(), text: HEAD.to_owned() };
+    let all = |_: &str| true;
+    let in_simulation = |key: &str| ["gravity", "air_drag"].contains(&key);
+
+    page.section("[simulation]", "Time and the order of work.");
+    page.head(false);
+    page.rows("SimulationParams", &SimulationParams::default(), None, all);
+    page.rows("DynamicsParams", &DynamicsParams::default(), None, in_simulation);
+
+    page.section(
+        "[contact]",
+        "Contact and stretch limits, the forward step, the search radii. `preset` sets the defaults of this table and \
+         of `[solver]`: `fast`, the default, or `paper`, the method as the paper describes it; the column `paper` has \
+         its values where they differ.",
+    );
+    page.head(true);
+    let _ = writeln!(
+        page.text,
+        "| `preset` | name |  | `\"fast\"` | `\"paper\"` | Set of defaults. One of `fast`, `paper`. |"
+    );
+    let (fast, paper) = (Params::fast(), Params::paper());
+    page.rows("ConstraintParams", &fast.constraints, Some(&paper.constraints), all);
+    page.rows("StepperParams", &fast.stepper, Some(&paper.stepper), all);
+    let _: (&ConstraintParams, &StepperParams) = (&fast.constraints, &fast.stepper);
+
+    page.section(
+        "[solver]",
+        "The backward step of the two-way method, Newton's method and its linear solve.",
+    );
+    page.head(true);
+    page.rows::<BackwardParams>("BackwardParams", &fast.backward, Some(&paper.backward), all);
+    let dynamics = DynamicsParams::default();
+    page.rows("DynamicsParams", &dynamics, Some(&dynamics), |key| !in_simulation(key));
+    page.section("[solver.stop]", "When a collision problem counts as solved.");
+    page.head(true);
+    page.rows::<StopParams>("StopParams", &fast.stop, Some(&paper.stop), all);
+
+    page.section("[output]", "What a run writes.");
+    page.head(false);
+    page.rows("OutputParams", &OutputParams::default(), None, all);
+
+    page.section("[[body]]", "A deformable body; at least one.");
+    page.head(false);
+    page.rows("BodySpec", &BodySpec::default(), None, all);
+    let fabrics: Vec<String> = ClothMaterial::NAMES.iter().map(|name| format!("`{name}`")).collect();
+    page.section(
+        "body.material",
+        &format!(
+            "A fabric by name ({}), or a table: `fabric` names the one that the numbers left out come from. The \
+             defaults are those of `cotton`.",
+            fabrics.join(", ")
+        ),
+    );
+    page.head(false);
+    page.rows("ClothMaterial", &ClothMaterial::default(), None, all);
+
+    page.section("[[obstacle]]", "Something that bodies collide with and that moves only as prescribed.");
+    page.head(false);
+    page.rows("ObstacleSpec", &ObstacleSpec::default(), None, all);
+
+    page.section("[[pin]]", "Held or led vertices: those of all selectors given.");
+    page.head(false);
+    page.rows("PinSpec", &PinSpec::default(), None, all);
+    page.section("pin.box", "An axis-aligned box of the scene.");
+    page.head(false);
+    page.rows("Region", &Region::default(), None, all);
+
+    page.section(
+        "motion of obstacles and pins",
+        "x -> center + R (x - center) + translate, R the rotation about `axis` by `spin` times the time plus the \
+         keyframes' `angle`. Without a motion things stay where they are.",
+    );
+    page.head(false);
+    page.rows("Motion", &Motion::default(), None, all);
+    page.section("motion.keyframes", "Places to be at given times.");
+    page.head(false);
+    page.rows("Keyframe", &Keyframe::default(), None, all);
+
+    page.section(
+        "shape of bodies and obstacles",
+        "A table with the key `type`, or the type's name alone for its defaults. Shapes are about the origin, z up; \
+         `scale`, `rotate` and `translate` place them.",
+    );
+    let _ = write!(page.text, "\n`type = \"sheet\"`: a flat rectangle in the xy plane.\n");
+    page.head(false);
+    page.rows("Sheet", &Sheet::default(), None, all);
+    let _ = write!(page.text, "\n`type = \"tube\"`: an open cylinder along the x axis.\n");
+    page.head(false);
+    page.rows("Tube", &Tube::default(), None, all);
+    let _ = write!(page.text, "\n`type = \"ball\"`: a closed sphere.\n");
+    page.head(false);
+    page.rows("Ball", &Ball::default(), None, all);
+    let _ =
+        write!(page.text, "\n`type = \"cone\"`: a closed cone on the xy plane, its tip a single vertex.\n");
+    page.head(false);
+    page.rows("Cone", &Cone::default(), None, all);
+    let _ = write!(page.text, "\n`type = \"box\"`: a closed box.\n");
+    page.head(false);
+    page.rows("Cuboid", &Cuboid::default(), None, all);
+    let _ = write!(
+        page.text,
+        "\n`type = \"half-space\"`: everything below the plane through `translate`; for obstacles only.\n"
+    );
+    page.head(false);
+    page.rows("HalfSpaceShape", &HalfSpaceShape::default(), None, all);
+    page.text
+}
+
+fn path() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/scene-reference.md")
+}
+
+#[test]
+fn the_reference_page_is_up_to_date() {
+    let page = page();
+    if std::env::var_os("BOWKNOT_ACCEPT").is_some() {
+        fs::write(path(), &page).expect("docs/scene-reference.md");
+    }
+    let stored = fs::read_to_string(path()).unwrap_or_default();
+    let first = stored.lines().zip(page.lines()).find(|(a, b)| a != b);
+    assert!(
+        stored == page,
+        "docs/scene-reference.md is stale, first at {first:?}: BOWKNOT_ACCEPT=1 cargo test --release -p bowknot reference"
+    );
+}
+
+#[test]
+fn every_key_that_a_scene_has_is_on_the_page() {
+    let page = page();
+    let scene = bowknot::Scene::builtin("tube", 0.1).expect("a scene");
+    let table: Table = scene.to_toml().parse().expect("TOML");
+    fn keys(value: &Value, found: &mut Vec<String>) {
+        match value {
+            Value::Table(table) => {
+                for (key, value) in table {
+                    found.push(key.clone());
+                    keys(value, found);
+                }
+            }
+            Value::Array(list) => list.iter().for_each(|value| keys(value, found)),
+            _ => {}
+        }
+    }
+    let mut found = Vec::new();
+    keys(&Value::Table(table), &mut found);
+    assert!(found.len() > 60);
+    for key in found {
+        let heading = ["simulation", "contact", "solver", "output", "body", "obstacle", "pin", "stop"];
+        let known =
+            heading.contains(&key.as_str()) || page.contains(&format!("| `{key}` |")) || key == "type";
+        assert!(known, "{key} is not documented");
+    }
+}

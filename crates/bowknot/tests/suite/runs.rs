@@ -1,0 +1,297 @@
+use bowknot::check::{Judge, PathOptions, StateOptions};
+use bowknot::io::{FrameStack, Import, States, read_mesh};
+use bowknot::run::{Outcome, Progress, RunOptions, run};
+use bowknot::simulator::SimulationError;
+use bowknot::{Scene, World};
+use serde_json::Value;
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// A small sheet about to meet the ball, for a few frames.
+fn falling(frames: usize, sets: &[&str]) -> Scene {
+    let frames = format!("simulation.frames={frames}");
+    let fall = ["body.0.velocity=[0, 0, -3]", "body.0.translate=[0.013, 0.007, 0.53]", &frames];
+    Scene::builtin("drape", 0.2).and_then(|s| s.with_sets(&[&fall, sets].concat())).expect("a scene")
+}
+
+fn options(out: &Path) -> RunOptions {
+    RunOptions { out: out.to_owned(), ..RunOptions::default() }
+}
+
+fn go(scene: &Scene, options: &RunOptions) -> Result<Outcome, SimulationError> {
+    run(scene, options, &mut |_: &Progress<'_>| ControlFlow::Continue(()))
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("a folder");
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+fn lines(folder: &Path) -> Vec<Value> {
+    let text = fs::read_to_string(folder.join("stats.jsonl")).expect("statistics");
+    text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect()
+}
+
+fn keys(value: &Value) -> Vec<&str> {
+    value.as_object().expect("an object").keys().map(String::as_str).collect()
+}
+
+#[test]
+fn a_run_leaves_the_folder_that_other_tools_rely_on() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("deep/er/out");
+    let scene = falling(6, &["output.checkpoint_every=4"]);
+    let outcome = go(&scene, &RunOptions { check: true, ..options(&out) }).expect("a run");
+    assert!(!outcome.interrupted && outcome.findings.is_empty());
+    assert_eq!(names(&out), ["checkpoint", "frames", "scene.toml", "stats.jsonl", "summary.json"]);
+    let frames: Vec<String> = (0..7).map(|frame| format!("{frame:06}.ply")).collect();
+    assert_eq!(names(&out.join("frames")), frames);
+    assert_eq!(names(&out.join("checkpoint")), ["state.npz"]);
+
+    let lines = lines(&out);
+    assert_eq!(lines.len(), 6);
+    let mut expected = vec![
+        "step",
+        "time",
+        "newton_iterations",
+        "cg_iterations",
+        "two_way_steps",
+        "searches",
+        "pairs",
+        "contact_rows",
+        "edge_rows",
+        "active_rows",
+        "frozen_pairs",
+        "remaining_r",
+        "remaining_m",
+        "stationarity_m",
+        "converged",
+        "min_gap_m",
+        "max_stretch",
+        "max_step_stretch",
+        "max_speed",
+        "energy",
+        "momentum",
+        "center_of_mass",
+        "seconds",
+        "cpu_seconds",
+        "skipped",
+    ];
+    expected.sort_unstable();
+    for (index, line) in lines.iter().enumerate() {
+        let mut found = keys(line);
+        found.sort_unstable();
+        assert_eq!(found, expected);
+        assert_eq!(line["step"], index as u64 + 1);
+        let parts = line["seconds"].as_object().expect("seconds");
+        let total = parts["total"].as_f64().expect("a number");
+        let sum: f64 = parts.iter().filter(|p| p.0 != "total").filter_map(|p| p.1.as_f64()).sum();
+        assert!((sum - total).abs() <= 1e-3 * total + 1e-6, "{sum} of {total}");
+    }
+    assert!(lines.iter().any(|line| line["contact_rows"].as_u64() > Some(0)));
+
+    let summary: Value =
+        serde_json::from_str(&fs::read_to_string(out.join("summary.json")).expect("summary")).expect("JSON");
+    assert_eq!(summary["scene"], "drape");
+    assert_eq!(summary["frames"], 6);
+    assert_eq!(summary["intersections"], 0);
+    assert_eq!(summary["backend"], "cpu");
+    let vertices = outcome.summary.info.vertices;
+    assert_eq!(summary["vertices"], vertices as u64);
+    let steps: f64 = lines.iter().filter_map(|line| line["two_way_steps"].as_f64()).sum();
+    assert!((summary["mean"]["two_way_steps"].as_f64().expect("a mean") - steps / 6.0).abs() < 1e-12);
+    assert_eq!(
+        fs::read_to_string(out.join("summary.json")).expect("summary"),
+        serde_json::to_string_pretty(&outcome.summary).expect("JSON") + "\n"
+    );
+
+    // The frame's vertices: deformable, obstacle, then the corners of the ground's square.
+    let frame = read_mesh(&out.join("frames/000006.ply"), &Import::default()).expect("a frame");
+    let obstacle = frame.obstacle.expect("flags");
+    assert_eq!(obstacle.iter().position(|o| *o), Some(vertices));
+    let total = vertices + outcome.summary.info.obstacle_vertices;
+    assert_eq!(frame.positions.len(), total + 4);
+    assert!(frame.positions[total..].iter().all(|p| p.z == 0.0));
+    assert_eq!(frame.body.expect("bodies")[total - 1..], [1, 2, 2, 2, 2]);
+    let none: &[&str] = &[];
+    assert_eq!(Scene::load(out.join("scene.toml"), none).expect("resolved").to_toml(), scene.to_toml());
+}
+
+#[test]
+fn a_folder_with_a_run_is_refused_and_stays() {
+    let folder = tempfile::tempdir().expect("a folder");
+    go(&falling(1, &[]), &options(folder.path())).expect("a run");
+    let before = fs::read(folder.path().join("frames/000001.ply")).expect("a frame");
+    let error = go(&falling(3, &[]), &options(folder.path())).expect_err("refused");
+    assert!(error.to_string().contains("already holds a run: continue it with --resume"), "{error}");
+    assert_eq!(fs::read(folder.path().join("frames/000001.ply")).expect("a frame"), before);
+}
+
+#[test]
+fn a_resumed_run_is_the_run_that_was_never_stopped() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (whole, parts) = (folder.path().join("whole"), folder.path().join("parts"));
+    let formats = "output.formats=[\"ply\", \"npz\", \"obj\"]";
+    go(&falling(10, &[formats]), &options(&whole)).expect("a run");
+    // Killed after time step 7, when the last checkpoint was that of 4, with half a line written.
+    let scene = falling(10, &[formats, "output.checkpoint_every=4"]);
+    let mut kept = Vec::new();
+    run(&scene, &options(&parts), &mut |progress: &Progress<'_>| {
+        if progress.step == 4 {
+            return ControlFlow::Continue(());
+        }
+        if progress.step == 5 {
+            kept = fs::read(parts.join("checkpoint/state.npz")).expect("a checkpoint");
+        }
+        if progress.step == 7 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    })
+    .expect("the first part");
+    fs::write(parts.join("checkpoint/state.npz"), kept).expect("the earlier checkpoint");
+    let mut text = fs::read_to_string(parts.join("stats.jsonl")).expect("statistics");
+    text.push_str("{\"step\":8,\"ti");
+    fs::write(parts.join("stats.jsonl"), text).expect("statistics");
+
+    let outcome = go(&scene, &RunOptions { resume: true, ..options(&parts) }).expect("the rest");
+    assert_eq!(outcome.summary.frames, 10);
+    assert_eq!(names(&parts.join("frames")), names(&whole.join("frames")));
+    for name in names(&whole.join("frames")) {
+        let of = |folder: &Path| fs::read(folder.join("frames").join(&name)).expect("a frame");
+        assert!(of(&whole) == of(&parts), "{name} differs");
+    }
+    let stack = |folder: &Path| FrameStack::read(&folder.join("frames.npz")).expect("a stack");
+    assert_eq!(stack(&whole).len(), 11);
+    assert_eq!(stack(&whole), stack(&parts));
+    let strip = |mut line: Value| {
+        let fields = line.as_object_mut().expect("an object");
+        fields.remove("seconds");
+        fields.remove("cpu_seconds");
+        line
+    };
+    let stripped = |folder: &Path| lines(folder).into_iter().map(strip).collect::<Vec<_>>();
+    assert_eq!(stripped(&whole), stripped(&parts));
+}
+
+#[test]
+fn a_run_is_lengthened_but_not_changed_by_resuming() {
+    let folder = tempfile::tempdir().expect("a folder");
+    go(&falling(2, &[]), &options(folder.path())).expect("a run");
+    let resume = RunOptions { resume: true, ..options(folder.path()) };
+    let error = go(&falling(4, &["body.0.material=silk"]), &resume).expect_err("another scene");
+    assert!(error.to_string().contains("its scene differs in body[0].material."), "{error}");
+    let outcome = go(&falling(4, &[]), &resume).expect("longer");
+    assert_eq!(outcome.summary.frames, 4);
+    assert_eq!(lines(folder.path()).len(), 4);
+    let empty = folder.path().join("empty");
+    let error = go(&falling(4, &[]), &RunOptions { resume: true, ..options(&empty) }).expect_err("no run");
+    assert!(error.to_string().ends_with("it holds no run"), "{error}");
+}
+
+#[test]
+fn only_the_archive_can_be_resumed_too() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let sets = ["output.formats=[\"npz\"]", "output.checkpoint_every=2"];
+    let scene = falling(5, &sets);
+    let stop = AtomicBool::new(false);
+    run(&scene, &options(folder.path()), &mut |progress: &Progress<'_>| {
+        stop.store(progress.step == 3, Ordering::Relaxed);
+        if progress.step == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    })
+    .expect("the first part");
+    go(&scene, &RunOptions { resume: true, ..options(folder.path()) }).expect("the rest");
+    assert_eq!(FrameStack::read(&folder.path().join("frames.npz")).expect("a stack").len(), 6);
+    assert!(names(&folder.path().join("frames")).is_empty());
+}
+
+#[test]
+fn traces_and_records_hold_the_collision_problems() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = falling(5, &["output.trace=true", "output.record=true"]);
+    go(&scene, &options(folder.path())).expect("a run");
+    let lines = lines(folder.path());
+    let traces = names(&folder.path().join("trace"));
+    let steps: u64 = lines.iter().filter_map(|line| line["two_way_steps"].as_u64()).sum();
+    assert_eq!(traces.len() as u64, steps + 5);
+    assert_eq!(traces[0], "000001_00_00000.ply");
+
+    // Consecutive states are joined by straight paths without intersections.
+    let read = |name: &String| {
+        read_mesh(&folder.path().join("trace").join(name), &Import::default()).expect("a state").positions
+    };
+    let world = World::new(&scene).expect("a world");
+    let judge = Judge::from_model(&world.collision);
+    let vertices = world.positions.len();
+    for pair in traces.windows(2) {
+        let [a, b] = [read(&pair[0]), read(&pair[1])];
+        let path = judge.check_path(&a[..vertices], &b[..vertices], &PathOptions::default()).expect("judged");
+        assert!(path.is_clear(), "{pair:?}");
+        let options = StateOptions { distance: false, ..StateOptions::default() };
+        assert!(judge.check_state(&b[..vertices], &options).expect("judged").is_clear());
+    }
+
+    let records = names(&folder.path().join("states"));
+    assert_eq!(records, (1..=5).map(|step| format!("{step:06}_00.npz")).collect::<Vec<_>>());
+    let problem = States::read(&folder.path().join("states/000003_00.npz")).expect("a problem");
+    assert_eq!(problem.x, read(&"000003_00_00000.ply".to_owned())[..vertices]);
+    assert_eq!((problem.y.len(), problem.masses.len(), problem.fixed.len()), (vertices, vertices, vertices));
+    assert_eq!(problem.half_spaces.len(), 1);
+    assert_eq!(problem.time_step, Some(0.01));
+    assert_eq!(problem.rest, world.positions);
+}
+
+#[test]
+fn an_unwritable_folder_is_an_error() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("file");
+    fs::write(&file, "x").expect("a file");
+    let error = go(&falling(1, &[]), &options(&file.join("out"))).expect_err("not a folder");
+    assert!(error.to_string().starts_with("cannot create "), "{error}");
+}
+
+#[test]
+fn a_failing_write_leaves_the_frames_so_far_whole() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out");
+    let error = run(&falling(6, &[]), &options(&out), &mut |progress: &Progress<'_>| {
+        if progress.step == 3 {
+            // Stands in the way of frame 4, as a full disk would.
+            fs::create_dir(out.join("frames/000004.ply")).expect("a folder");
+        }
+        ControlFlow::Continue(())
+    })
+    .expect_err("frame 4 cannot be written");
+    assert!(matches!(error, SimulationError::Io(_)), "{error}");
+    assert_eq!(
+        names(&out.join("frames")),
+        ["000000.ply", "000001.ply", "000002.ply", "000003.ply", "000004.ply"]
+    );
+    for frame in 0..4 {
+        read_mesh(&out.join(format!("frames/{frame:06}.ply")), &Import::default()).expect("a whole frame");
+    }
+    assert_eq!(lines(&out).len(), 3);
+}
+
+#[test]
+fn an_interrupt_stops_within_a_step_and_the_run_can_go_on() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let flag = Arc::new(AtomicBool::new(false));
+    let scene = falling(4, &[]);
+    let interruptible = RunOptions { interrupt: Some(Arc::clone(&flag)), ..options(folder.path()) };
+    let outcome = run(&scene, &interruptible, &mut |progress: &Progress<'_>| {
+        // The loop asks again only within the next time step.
+        flag.store(progress.step == 2, Ordering::Relaxed);
+        ControlFlow::Continue(())
+    })
+    .expect("a run");
+    assert!(outcome.interrupted);
+    assert_eq!(outcome.summary.frames, 2);
+    assert_eq!(names(&folder.path().join("frames")).len(), 3);
+    let resumed = go(&scene, &RunOptions { resume: true, ..options(folder.path()) }).expect("the rest");
+    assert!(!resumed.interrupted);
+    assert_eq!(names(&folder.path().join("frames")).len(), 5);
+}
