@@ -79,19 +79,14 @@ fn expand(path: &Path) -> Result<Vec<Group>, Failure> {
     if !path.is_dir() {
         return Ok(vec![Group { files: vec![path.to_owned()], trace: false }]);
     }
-    let named = |name: &str| path.join(name);
-    let mut groups: Vec<Group> = group_of(path)?.into_iter().collect();
-    if groups.is_empty() {
-        for folder in [named("frames"), named("trace")] {
-            if folder.is_dir() {
-                groups.extend(group_of(&folder)?);
-            }
-        }
-        let stack = named("frames.npz");
-        if stack.is_file() {
-            groups.push(Group { files: vec![stack], trace: false });
+    let mut groups = Vec::new();
+    for folder in [path.join("frames"), path.join("trace")] {
+        if folder.is_dir() {
+            groups.extend(group_of(&folder)?);
         }
     }
+    // Of a run this is `frames.npz`; of any other folder its frames.
+    groups.extend(group_of(path)?);
     if groups.is_empty() {
         let message = "no frames (.ply, .obj, .npz) in it, nor in frames/ or trace/ below it";
         return Err(Failure::input(format!("{}: {message}", path.display())));

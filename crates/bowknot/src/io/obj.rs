@@ -1,14 +1,21 @@
 //! Wavefront OBJ: `v`, `f`, `l` and `p`; every other statement is skipped.
+//!
+//! The format has no word for obstacles, without which nobody could tell a ball that rests on the ground from one that
+//! intersects it; a comment says from which vertex on there are obstacles only.
 
 use super::{Import, IoError, Mesh, MeshView, Place, write_atomic};
 use std::fs;
 use std::io::Write;
 use std::path::Path;
 
+/// Begins the comment that names the first vertex, from 0, of those that all belong to obstacles.
+const OBSTACLE_FROM: &str = "# obstacle-from ";
+
 /// Reads an OBJ file: vertices, faces (as fans around their first vertex), `l` polylines as strands, `p` points.
 ///
 /// Indices count from 1, or backward from the last vertex read when negative; `v/vt/vn` triples are read for their
-/// first number; a `\` at the end of a line continues it.
+/// first number; a `\` at the end of a line continues it. The comment `# obstacle-from N`, as [`write_obj`] writes it,
+/// makes obstacles of the vertices from N on, counted from 0.
 ///
 /// # Errors
 /// A missing or malformed file, coordinates that are not finite, indices of vertices that do not exist; with the line.
@@ -17,12 +24,19 @@ pub fn read_obj(path: &Path, import: &Import) -> Result<Mesh, IoError> {
     let bytes = fs::read(path).map_err(|source| IoError::system("read", path, source))?;
     // Names of groups and materials may be in any encoding; the numbers are ASCII.
     let text = String::from_utf8_lossy(&bytes);
-    let mut reader = Reader { path, import, mesh: Mesh::default(), pending: Vec::new() };
+    let mut reader = Reader { path, import, mesh: Mesh::default(), pending: Vec::new(), obstacle_from: None };
 
     let mut joined = String::new();
     let mut first_line = 0;
     for (index, line) in text.lines().enumerate() {
         let number = index + 1;
+        if let Some(count) = line.strip_prefix(OBSTACLE_FROM) {
+            let count = count
+                .trim()
+                .parse()
+                .map_err(|_| reader.error(number, "the comment needs a vertex, from 0"))?;
+            reader.obstacle_from = Some(count);
+        }
         let line = line.split('#').next().unwrap_or("").trim();
         if joined.is_empty() {
             first_line = number;
@@ -42,12 +56,18 @@ pub fn read_obj(path: &Path, import: &Import) -> Result<Mesh, IoError> {
     reader.finish()
 }
 
-/// Writes positions, faces, strands and particles as an OBJ file, atomically; coordinates round-trip exactly.
+/// Writes positions, faces, strands and particles as an OBJ file, atomically; coordinates round-trip exactly. If the
+/// last vertices, and only they, belong to obstacles, a comment says so for [`read_obj`]; bodies are not written.
 ///
 /// # Errors
 /// The system's refusal, with the path.
 pub fn write_obj(path: &Path, mesh: &MeshView<'_>) -> Result<(), IoError> {
+    let deformable = mesh.obstacle.iter().take_while(|flag| !**flag).count();
+    let suffix = deformable < mesh.obstacle.len() && mesh.obstacle[deformable..].iter().all(|&flag| flag);
     write_atomic(path, |out| {
+        if suffix {
+            writeln!(out, "{OBSTACLE_FROM}{deformable}")?;
+        }
         for p in mesh.positions {
             writeln!(out, "v {:?} {:?} {:?}", p.x, p.y, p.z)?;
         }
@@ -73,6 +93,8 @@ struct Reader<'a> {
     mesh: Mesh,
     /// Indices that no vertex had when they were read, with their line: vertices may follow the faces.
     pending: Vec<(u32, usize)>,
+    /// The first of the vertices that belong to obstacles.
+    obstacle_from: Option<usize>,
 }
 
 impl Reader<'_> {
@@ -171,7 +193,7 @@ impl Reader<'_> {
         Ok(zero_based)
     }
 
-    fn finish(self) -> Result<Mesh, IoError> {
+    fn finish(mut self) -> Result<Mesh, IoError> {
         let count = self.mesh.positions.len();
         if let Some((index, line)) = self.pending.iter().find(|(index, _)| *index as usize >= count) {
             let message =
@@ -185,6 +207,7 @@ impl Reader<'_> {
                 "no vertices: not a Wavefront OBJ, or an empty one",
             ));
         }
+        self.mesh.obstacle = self.obstacle_from.map(|first| (0..count).map(|v| v >= first).collect());
         Ok(self.mesh)
     }
 

@@ -54,7 +54,7 @@ fn obj_round_trips_to_the_same_bits() {
     let folder = folder();
     let path = folder.path().join("mesh.obj");
     write_obj(&path, &sample().view()).unwrap();
-    let expected = Mesh { obstacle: None, body: None, ..sample() };
+    let expected = Mesh { body: None, ..sample() };
     assert_eq!(read_mesh(&path, &Import::default()).unwrap(), expected);
 }
 
@@ -132,6 +132,7 @@ fn obj_faults_name_the_line() {
         ("f 1 2 x\n", ":4", "'x' is not a vertex index"),
         ("l 1\n", ":4", "a line needs 2 vertices"),
         ("p\n", ":4", "a point needs 1 vertex"),
+        ("# obstacle-from x\n", ":4", "needs a vertex"),
         ("f 1 2 99999999999\n", ":4", "larger than any mesh"),
     ] {
         let path = write(&folder, "bad.obj", format!("{three}{tail}"));

@@ -1,0 +1,99 @@
+use crate::{Place, SMALL, tetrahedron};
+
+/// Two unit triangles, one above the other by `gap`.
+fn layers(gap: f64) -> String {
+    format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 {gap}\nv 1 0 {gap}\nv 0 1 {gap}\nf 1 2 3\nf 4 5 6\n")
+}
+
+/// A triangle and one that its edge pierces.
+const PIERCED: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.2 0.2 -1\nv 0.3 0.2 1\nv 5 5 0\nf 1 2 3\nf 4 5 6\n";
+
+#[test]
+fn clear_states() {
+    let place = Place::new();
+    place.write("a.obj", layers(0.5));
+    tetrahedron(&place.path("b.obj"));
+    let ended = place.run("check a.obj b.obj").ok();
+    assert!(ended.stdout.contains("2 states: no intersection; smallest distance 5.000e-1 m"), "{ended:#?}");
+    let report = place.run("check a.obj b.obj --json").ok().json();
+    assert_eq!((&report["clear"], &report["states"]), (&true.into(), &2.into()));
+    assert_eq!(report["files"][0]["min_distance_m"], 0.5);
+}
+
+#[test]
+fn an_intersection_is_found() {
+    let place = Place::new();
+    place.write("a.obj", layers(0.5));
+    place.write("b.obj", PIERCED);
+    let ended = place.run("check a.obj b.obj");
+    assert_eq!(ended.code, 1, "{ended:#?}");
+    assert!(ended.stdout.contains("b.obj: edge") && ended.stdout.contains("intersect at ("), "{ended:#?}");
+    let ended = place.run("check a.obj b.obj --json");
+    assert_eq!((ended.code, &ended.json()["clear"]), (1, &false.into()));
+    assert_eq!(ended.json()["files"][0]["intersections"], 0);
+}
+
+#[test]
+fn a_distance_below_the_least() {
+    let place = Place::new();
+    place.write("a.obj", layers(0.01));
+    place.run("check a.obj --min-distance 0.0099").ok();
+    let ended = place.run("check a.obj --min-distance 0.0101");
+    assert_eq!(ended.code, 1, "{ended:#?}");
+    assert!(ended.stdout.contains("apart") && ended.stdout.contains("below 1.010e-2 m"), "{ended:#?}");
+    place.run("check a.obj --min-distance 0").refused(2, &["--min-distance", "above 0"]);
+}
+
+/// The upper layer passes through the lower one between two states that are clear by themselves.
+#[test]
+fn paths_are_judged_within_a_trace_only() {
+    let place = Place::new();
+    for folder in ["frames", "trace"] {
+        std::fs::create_dir(place.path(folder)).unwrap();
+        // In natural order 10 comes last.
+        for (name, gap) in [("2", 0.5), ("9", 0.25), ("10", -0.25)] {
+            place.write(&format!("{folder}/{name}.obj"), layers(gap));
+        }
+    }
+    let ended = place.run("check frames").ok();
+    assert!(ended.stdout.starts_with("3 states: no intersection"), "{ended:#?}");
+    let ended = place.run("check trace --json");
+    assert_eq!(ended.code, 1, "{ended:#?}");
+    let report = ended.json();
+    assert_eq!((&report["paths"], &report["intersections"]), (&2.into(), &0.into()));
+    assert!(report["path_hits"].as_u64().unwrap() > 0);
+    assert_eq!(
+        (&report["files"][1]["path_hits"], report["files"][2]["file"].as_str().unwrap()),
+        (&0.into(), "trace/10.obj")
+    );
+    let ended = place.run("check trace");
+    assert!(ended.stdout.contains("trace/10.obj: ") && ended.stdout.contains("of the path"), "{ended:#?}");
+
+    place.write("trace/11.obj", layers(0.5).replace("f 4 5 6", "f 4 6 5"));
+    place.run("check trace").refused(2, &["trace/11.obj", "differ"]);
+}
+
+#[test]
+fn a_whole_run_with_its_trace() {
+    let place = Place::new();
+    place.run(&format!("{SMALL} --trace --out run --format ply,npz")).ok();
+    let report = place.run("check run --json").ok().json();
+    let files = place.files("run/trace").len();
+    assert_eq!(report["paths"].as_u64().unwrap() as usize, files - 1);
+    assert_eq!(report["states"].as_u64().unwrap() as usize, files + 4 + 4, "trace, frames, frames.npz");
+}
+
+#[test]
+fn what_cannot_be_judged() {
+    let place = Place::new();
+    std::fs::create_dir(place.path("empty")).unwrap();
+    place.run("check empty").refused(2, &["empty", "no frames"]);
+    place.run("check none").refused(2, &["none"]);
+    place.run("check").refused(2, &["PATH"]);
+    place.write("bad.ply", "ply\nformat ascii 1.0\nend_header\n");
+    place.run("check bad.ply").refused(2, &["bad.ply", "no vertices"]);
+    place.write("bad.npz", "PK");
+    place.run("check bad.npz").refused(2, &["bad.npz", "not an NPZ archive"]);
+    place.write("twice.obj", "v 0 0 0\nv 1 0 0\nf 1 2 2\n");
+    place.run("check twice.obj").refused(2, &["twice.obj", "triangle 0 names vertex 1 twice"]);
+}

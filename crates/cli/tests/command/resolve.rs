@@ -1,0 +1,124 @@
+use crate::Place;
+use ndarray::{Array2, array};
+use ndarray_npy::{NpzReader, NpzWriter};
+use std::fs::File;
+
+/// Two layers, 1 cm apart; the target moves the upper one 5 cm below the lower.
+fn problem(place: &Place, name: &str) {
+    let sheet = |z: f64| array![[0.0, 0.0, z], [0.1, 0.0, z], [0.0, 0.1, z], [0.1, 0.1, z]];
+    let stack = |z: f64| ndarray::concatenate![ndarray::Axis(0), sheet(0.0), sheet(z)];
+    let mut npz = NpzWriter::new_compressed(File::create(place.path(name)).unwrap());
+    npz.add_array("x", &stack(0.01).mapv(|v| v as f32)).unwrap();
+    npz.add_array("y", &stack(-0.05)).unwrap();
+    npz.add_array("F", &array![[0_u16, 1, 2], [1, 3, 2], [4, 5, 6], [5, 7, 6]]).unwrap();
+    npz.finish().unwrap();
+}
+
+fn heights(place: &Place, name: &str) -> (f64, f64) {
+    let mut npz = NpzReader::new(File::open(place.path(name)).unwrap()).unwrap();
+    let x: Array2<f64> = npz.by_name("x").unwrap();
+    let column = x.column(2);
+    let mean = |range: std::ops::Range<usize>| range.map(|i| column[i]).sum::<f64>() / 4.0;
+    (mean(0..4), mean(4..8))
+}
+
+#[test]
+fn layers_stay_in_order() {
+    let place = Place::new();
+    problem(&place, "in.npz");
+    for preset in ["fast", "paper"] {
+        let out = format!("{preset}.npz");
+        let ended = place.run(&format!("resolve in.npz --out {out} --preset {preset} --json")).ok();
+        let summary = ended.json();
+        for key in ["steps", "searches"] {
+            assert!(summary[key].as_u64().unwrap() >= 1, "{key}: {summary}");
+        }
+        for key in ["seconds", "cpu_seconds", "distance_to_target", "remaining_m", "stationarity_m"] {
+            assert!(summary[key].as_f64().unwrap() >= 0.0, "{key}: {summary}");
+        }
+        assert!(summary["min_gap_m"].as_f64().unwrap() > 0.0, "{summary}");
+        assert!(summary["max_step_stretch"].as_f64().unwrap() > 0.5, "{summary}");
+        assert!(summary["converged"].is_boolean());
+        let (lower, upper) = heights(&place, &out);
+        assert!(upper > lower, "{preset}: {upper} is below {lower}");
+        // Equal masses meet half-way between their targets.
+        assert!((lower + upper + 0.05).abs() < 0.005, "{preset}: {lower} and {upper}");
+    }
+    let ended = place.run("resolve in.npz --out again.npz").ok();
+    assert!(
+        ended.stdout.contains("converged after") && ended.stdout.contains("wrote again.npz"),
+        "{ended:#?}"
+    );
+}
+
+#[test]
+fn a_limit_leaves_a_valid_state() {
+    let place = Place::new();
+    problem(&place, "in.npz");
+    let ended =
+        place.run("resolve in.npz --out out.npz --set solver.stop.max_steps=1 --max-seconds 100 --json").ok();
+    assert_eq!(ended.json()["steps"], 1);
+    let (lower, upper) = heights(&place, "out.npz");
+    assert!(upper > lower);
+}
+
+#[test]
+fn recorded_problems_resolve_to_the_same_steps() {
+    let place = Place::new();
+    let run = place.run("run drape --scale 0.3 --frames 35 --record --out run --json").ok();
+    assert!(run.json()["frames"].as_u64() == Some(35));
+    let states = place.files("run/states");
+    assert_eq!(states.len(), 35);
+    let steps = place.run(&format!("resolve run/states/{} --out out.npz --json", states[34])).ok().json();
+    let stats: Vec<serde_json::Value> =
+        place.read("run/stats.jsonl").lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!(steps["steps"], stats[34]["two_way_steps"]);
+    assert_eq!(steps["min_gap_m"], stats[34]["min_gap_m"]);
+}
+
+#[test]
+fn what_is_refused() {
+    let place = Place::new();
+    problem(&place, "in.npz");
+    place.run("resolve none.npz --out out.npz").refused(2, &["none.npz", "no such file"]);
+    place.write("bad.npz", "PK\x03\x04");
+    place.run("resolve bad.npz --out out.npz").refused(2, &["bad.npz", "not an NPZ archive"]);
+    place.run("resolve in.npz").refused(2, &["--out"]);
+    place.run("resolve in.npz --out none/out.npz").refused(2, &["none/out.npz", "no such"]);
+    place.run("resolve in.npz --out out.npz --max-seconds 0").refused(2, &["--max-seconds"]);
+    place.run("resolve in.npz --out out.npz --set contact.gama=1").refused(2, &["contact.gama"]);
+    place.run("resolve in.npz --out out.npz --backend gpu").refused(3, &["no GPU backend"]);
+    assert!(!place.path("out.npz").exists());
+
+    let start = |name: &str, x: Array2<f64>, extra: Option<(&str, Array2<f64>)>| {
+        let mut npz = NpzWriter::new(File::create(place.path(name)).unwrap());
+        npz.add_array("y", &x).unwrap();
+        npz.add_array("x", &x).unwrap();
+        npz.add_array("F", &array![[0_i64, 1, 2], [3, 4, 5]]).unwrap();
+        if let Some((key, values)) = extra {
+            npz.add_array(key, &values).unwrap();
+        }
+        npz.finish().unwrap();
+    };
+    let pierced = array![
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.2, 0.2, -1.0],
+        [0.3, 0.2, 1.0],
+        [5.0, 5.0, 0.0]
+    ];
+    start("pierced.npz", pierced.clone(), None);
+    place
+        .run("resolve pierced.npz --out out.npz")
+        .refused(2, &["pierced.npz", "intersect at the start", "edge", "triangle", "at ("]);
+    let mut apart = pierced;
+    apart.row_mut(3)[2] = 2.0;
+    let column = |values: [f64; 6]| Array2::from_shape_vec((6, 1), values.to_vec()).unwrap();
+    start("mass.npz", apart.clone(), Some(("mass", column([1.0, 1.0, 0.0, 1.0, 1.0, 1.0]))));
+    place.run("resolve mass.npz --out out.npz").refused(2, &["mass.npz", "vertex 2", "above 0"]);
+    start("mixed.npz", apart.clone(), Some(("O", column([0.0, 0.0, 0.0, 0.0, 0.0, 1.0]))));
+    place.run("resolve mixed.npz --out out.npz").refused(2, &["mixed.npz"]);
+    start("far.npz", apart + 1e13, None);
+    place.run("resolve far.npz --out out.npz").refused(2, &["far.npz", "16 ulp"]);
+}

@@ -1,0 +1,118 @@
+use crate::{Place, SMALL, tetrahedron};
+
+#[test]
+fn a_run_writes_its_folder() {
+    let place = Place::new();
+    let ended = place.run(&format!("{SMALL} --check")).ok();
+    assert!(ended.stdout.contains("drape: done after 3 of 3 frames"), "{ended:#?}");
+    assert!(ended.stdout.contains("checked every accepted state and path: no intersection"), "{ended:#?}");
+    assert!(ended.stdout.contains("wrote out/drape"), "{ended:#?}");
+    assert_eq!(place.files("out/drape/frames"), ["000000.ply", "000001.ply", "000002.ply", "000003.ply"]);
+    for name in ["scene.toml", "summary.json", "checkpoint/state.npz"] {
+        assert!(place.path(&format!("out/drape/{name}")).exists(), "{name}");
+    }
+    for line in place.read("out/drape/stats.jsonl").lines() {
+        let step: serde_json::Value = serde_json::from_str(line).unwrap();
+        for key in "step time newton_iterations cg_iterations two_way_steps searches pairs contact_rows edge_rows \
+                    active_rows frozen_pairs remaining_r remaining_m stationarity_m converged min_gap_m max_stretch \
+                    max_step_stretch max_speed energy momentum center_of_mass seconds cpu_seconds skipped"
+            .split_whitespace()
+        {
+            assert!(step.get(key).is_some(), "{key} is missing: {line}");
+        }
+    }
+    // The resolved scene is a scene: the same frames come of it.
+    place.run("run out/drape/scene.toml --out again").ok();
+    let frame = |run: &str| std::fs::read(place.path(&format!("{run}/frames/000003.ply"))).unwrap();
+    assert!(frame("again") == frame("out/drape"), "scene.toml makes other frames");
+}
+
+#[test]
+fn json_is_all_that_stdout_holds() {
+    let place = Place::new();
+    let ended = place.run(&format!("{SMALL} --json --check --threads 1")).ok();
+    let summary = ended.json();
+    assert_eq!((&summary["scene"], &summary["frames"]), (&"drape".into(), &3.into()));
+    assert_eq!((&summary["threads"], &summary["backend"]), (&1.into(), &"cpu".into()));
+    assert_eq!(summary["intersections"], 0);
+    assert_eq!(
+        summary["vertices"],
+        place.run("info out/drape/frames/000000.ply --json").ok().json()["vertices"]
+    );
+    assert!(summary["peak_memory_bytes"].as_u64().is_none_or(|bytes| bytes > 100_000), "{summary}");
+    let file: serde_json::Value = serde_json::from_str(&place.read("out/drape/summary.json")).unwrap();
+    assert_eq!(file, summary);
+    let quiet = place.run(&format!("{SMALL} --quiet --out quiet")).ok();
+    assert_eq!((quiet.stdout.as_str(), quiet.stderr.as_str()), ("", ""));
+}
+
+#[test]
+fn formats_of_frames() {
+    let place = Place::new();
+    place.run(&format!("{SMALL} --format obj,npz --out run")).ok();
+    assert_eq!(place.files("run/frames").len(), 4);
+    assert!(place.files("run/frames").iter().all(|name| name.ends_with(".obj")));
+    let report = place.run("check run/frames.npz --json").ok().json();
+    assert_eq!(report["states"], 4);
+    let distance = |path: &str| {
+        place.run(&format!("check {path} --json")).ok().json()["files"][3]["min_distance_m"].clone()
+    };
+    assert!(
+        (distance("run/frames").as_f64().unwrap() - distance("run/frames.npz").as_f64().unwrap()).abs()
+            < 1e-15
+    );
+}
+
+#[test]
+fn threads_do_not_change_the_bits() {
+    let place = Place::new();
+    for threads in [1, 2] {
+        place.run(&format!("run drape --scale 0.3 --frames 40 --threads {threads} --out t{threads}")).ok();
+    }
+    for frame in 0..=40 {
+        let read = |t: u32| std::fs::read(place.path(&format!("t{t}/frames/{frame:06}.ply"))).unwrap();
+        assert!(read(1) == read(2), "frame {frame} differs");
+    }
+}
+
+#[test]
+fn options_reach_the_scene() {
+    let place = Place::new();
+    place.run(&format!("{SMALL} --dt 0.002 --preset paper --set solver.sweeps=3 --out run")).ok();
+    let scene = place.read("run/scene.toml");
+    for line in ["dt = 0.002", "frames = 3", "preset = \"paper\"", "sweeps = 3"] {
+        assert!(scene.lines().any(|l| l.trim() == line), "{line:?} is not in\n{scene}");
+    }
+}
+
+/// The README's promise: any OBJ or PLY runs as cloth.
+#[test]
+fn a_loose_mesh_falls_on_a_ball() {
+    let place = Place::new();
+    let vertices: String =
+        (0..49).map(|i| format!("v {} {} {}\n", 100 * (i % 7), 40, 100 * (i / 7))).collect();
+    let faces: String = (0..36)
+        .map(|q| q / 6 * 7 + q % 6 + 1)
+        .map(|a| format!("f {} {} {} {}\n", a, a + 1, a + 8, a + 7))
+        .collect();
+    place.write("cloth.obj", vertices + &faces);
+    let words = "run cloth.obj --set body.0.up=y --set body.0.scale=0.001 --frames 30 --check --json";
+    let summary = place.run(words).ok().json();
+    assert_eq!((&summary["scene"], &summary["vertices"]), (&"cloth".into(), &49.into()));
+    assert_eq!(summary["intersections"], 0);
+    assert!(summary["min_gap_m"].as_f64().is_some_and(|gap| gap < 0.03), "it met the ball: {summary}");
+    place.run("run cloth.obj --scale 2").refused(2, &["--scale", "body.0.scale"]);
+    let again = place.run("run out/cloth/scene.toml --frames 1 --out again --json").ok().json();
+    assert_eq!(again["vertices"], 49);
+}
+
+/// The README's scene, but for the size of its mesh.
+#[test]
+fn the_scene_of_the_readme() {
+    let readme = include_str!("../../../../README.md");
+    let toml = readme.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+    let place = Place::new();
+    place.write("scene.toml", toml);
+    tetrahedron(&place.path("skirt.obj"));
+    place.run("run scene.toml --frames 1").ok();
+}

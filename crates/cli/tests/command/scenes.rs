@@ -1,0 +1,45 @@
+use crate::{Place, tetrahedron};
+
+#[test]
+fn scenes_are_listed_with_their_sizes() {
+    let place = Place::new();
+    let listed = place.run("scenes").ok().stdout;
+    let scenes = place.run("scenes --json").ok().json();
+    for (name, least, most) in [
+        ("drape", 2000, 3000),
+        ("needle", 9000, 11000),
+        ("stack", 8000, 10000),
+        ("sphere", 45000, 55000),
+        ("tube", 22000, 28000),
+    ] {
+        assert!(listed.contains(name), "{listed}");
+        let scene = scenes.as_array().unwrap().iter().find(|s| s["name"] == name).unwrap();
+        let vertices = scene["vertices"].as_u64().unwrap();
+        assert!((least..=most).contains(&vertices), "{name} has {vertices} vertices");
+        assert!(scene["frames"].as_u64().unwrap() > 0);
+    }
+}
+
+#[test]
+fn info_counts_a_scene() {
+    let place = Place::new();
+    let info = place.run("info drape --json").ok().json();
+    let number = |key: &str| info[key].as_f64().unwrap_or_else(|| panic!("{key} of {info}"));
+    // Euler's formula for a disc.
+    assert_eq!(number("vertices") - number("edges") + number("triangles"), 1.0);
+    assert_eq!((number("tets"), number("strand_edges"), number("particles")), (0.0, 0.0, 0.0));
+    assert!(number("obstacle_vertices") > 100.0 && number("time_step") > 0.0);
+    assert_eq!(info["extent"].as_array().unwrap().len(), 3);
+}
+
+#[test]
+fn info_counts_a_mesh() {
+    let place = Place::new();
+    tetrahedron(&place.path("t.obj"));
+    let info = place.run("info t.obj --json").ok().json();
+    assert_eq!((&info["vertices"], &info["edges"], &info["triangles"]), (&4.into(), &6.into(), &4.into()));
+    assert_eq!(info["extent"], serde_json::json!([1.0, 1.0, 1.0]));
+    let ended = place.run("info t.obj").ok();
+    assert!(ended.stdout.contains("triangles          4"), "{ended:#?}");
+    place.run("info").refused(2, &["SCENE"]);
+}
