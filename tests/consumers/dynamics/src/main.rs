@@ -24,7 +24,7 @@ fn main() -> Result<(), StepError> {
     let Ok(mut dynamics) = Dynamics::new(model, DynamicsParams::default()) else {
         panic!("the defaults are in range")
     };
-    let held: Vec<bool> = (0..rest.len()).map(|v| v as u32 % nx == 0).collect();
+    let held: Vec<bool> = (0..rest.len()).map(|v| (v as u32).is_multiple_of(nx)).collect();
     let (mut x, mut v) = (rest.clone(), vec![Vector::zeros(); rest.len()]);
     for _ in 0..10 {
         dynamics.solve_step(&mut x, &mut v, 0.01, &held, &rest, 3)?;
