@@ -2,9 +2,15 @@
 //!
 //! Rows of a colour write disjoint nodes, which safe Rust cannot see. Two views of a `&mut [T]` give
 //! kernels shared access, so that one kernel serves both ways of running it: `Cell`s on one thread,
-//! relaxed atomics on several. A relaxed load or store is a plain move on the machines at hand, and
-//! a wrong colouring can spoil a result but never memory safety: no check of the colours is needed
-//! for soundness, and none is paid for.
+//! relaxed atomics on several. A wrong colouring can then spoil a result but never memory safety:
+//! soundness needs no check of the colours, and the only unsafe line is a change of type.
+//!
+//! Weighed against it, on 30k ball rows and 20k rows over 10k nodes (8 sweeps, one thread of a 2-core
+//! x86-64): 3.7 ms with cells, 4.7 ms with atomics, whose loads the compiler does not combine. Raw
+//! pointers behind checked colours would save that quarter, but the proof that no two threads meet would
+//! spread over the check, the kernels and the schedules, and the check costs 0.1 ms a problem.
+//! Computing changes in parallel and scattering them serially, in safe code alone, took 2.7 ms on two
+//! threads and cannot scale beyond: the serial half is a third of the work.
 #![allow(unsafe_code)]
 #![deny(clippy::undocumented_unsafe_blocks)]
 

@@ -224,3 +224,61 @@ fn a_node_in_two_places_of_a_row_counts_with_its_summed_gradient() {
     assert_near(results[0].1, results[1].1);
     assert!((results[0].2 - results[1].2).abs() < 1e-14);
 }
+
+/// Solves by `solve`, with the state of a node dragged over two others that form an edge, all free.
+fn rub(friction: FrictionRow, solve: impl Fn(&Problem<'_>, &mut State<'_>)) -> ([Vector; 3], Vector2<f64>) {
+    let weights = [1.0, 0.5, 2.0];
+    let z = Vector::z();
+    let mut rows = [Row::new([0, 1, 2, 0], [z, z * -0.5, z * -0.5, Vector::zeros()], -0.1)];
+    prepare_rows(&mut rows, &weights).unwrap();
+    let mut friction = [friction];
+    prepare_friction(&mut friction, &weights).unwrap();
+    let problem =
+        Problem::new(&weights, Family::serial(&rows), Family::default(), Family::serial(&friction)).unwrap();
+    let mut y = [Vector::new(0.3, 0.1, -1.0), Vector::zeros(), Vector::zeros()];
+    let (mut lambda, mut multipliers) = ([0.0], [Vector2::zeros()]);
+    let mut state = State { y: &mut y, lambda: &mut lambda, forces: &mut [], friction: &mut multipliers };
+    solve(&problem, &mut state);
+    let judged = residuals(&problem, &state, FrictionBound::Disc).unwrap();
+    assert!(judged.complementarity < 1e-12 && judged.friction_correction < 1e-12, "{judged:?}");
+    // The free positions and the multipliers alone give the same state.
+    let mut again = [Vector::new(0.3, 0.1, -1.0), Vector::zeros(), Vector::zeros()];
+    let mut replay = State { y: &mut again, lambda: state.lambda, forces: &mut [], friction: state.friction };
+    apply_multipliers(&problem, &mut replay).unwrap();
+    again.iter().zip(&y).for_each(|(a, b)| assert_near(*a, *b));
+    (y, multipliers[0])
+}
+
+#[test]
+fn friction_between_free_nodes_agrees_over_solvers_and_spellings_and_keeps_momentum() {
+    let friction = FrictionRow {
+        tangents: [Vector::x(), Vector::y()],
+        coefficients: [1.0, -0.5, -0.5, 0.0],
+        offsets: [0.0; 2],
+        vertices: [0, 1, 2, 0],
+        friction: 0.1,
+        inverse_diagonal: f64::NAN,
+        normal: 0,
+    };
+    let serial = |problem: &Problem<'_>, state: &mut State<'_>| {
+        solve_serial(problem, state, &TIGHT).unwrap();
+    };
+    let (y, multiplier) = rub(friction, serial);
+    // 1 + (0.5 + 2) / 4 = 1.625 is the diagonal of both: lambda = 1.1 / 1.625, slip 0.316 - 0.11 along the drag.
+    let (lambda, drag) = (1.1 / 1.625, Vector2::new(0.3, 0.1));
+    assert!((multiplier + drag.normalize() * (0.1 * lambda)).norm() < 1e-12, "{multiplier:?}");
+    let slip = (y[0] - 0.5 * (y[1] + y[2])).xy();
+    assert!((slip - drag * (1.0 - 0.11 / drag.norm())).norm() < 1e-12, "{slip:?}");
+    let momentum = y[0] + y[1] / 0.5 + y[2] / 2.0;
+    assert_near(momentum, Vector::new(0.3, 0.1, -1.0));
+
+    // Node 2 in two places.
+    let split = FrictionRow { coefficients: [1.0, -0.5, -0.7, 0.2], vertices: [0, 1, 2, 2], ..friction };
+    let (again, _) = rub(split, serial);
+    again.iter().zip(&y).for_each(|(a, b)| assert_near(*a, *b));
+    let (again, _) = rub(split, |problem, state| {
+        let params = Params { relaxation: 1.5, max_sweeps: 100_000, ..TIGHT };
+        Jacobi::new().solve(problem, state, &params).unwrap();
+    });
+    again.iter().zip(&y).for_each(|(a, b)| assert!((a - b).norm() < 1e-10));
+}

@@ -44,6 +44,9 @@ fn problems_with_faults_are_refused() {
     bad[1].vertices[3] = 3;
     assert_eq!(new(&weights, Family::serial(&bad)), unknown("row", 1, 3));
     assert_eq!(prepare_rows(&mut bad, &weights), unknown("row", 1, 3));
+    let mut many = vec![good[0]; 3000];
+    many[2500].vertices[0] = 7;
+    assert_eq!(prepare_rows(&mut many, &weights), unknown("row", 2500, 7));
     let balls = [BallRow { vertices: [0, 9], limit: 1.0 }];
     let result = Problem::new(&weights, Family::serial(&good), Family::serial(&balls), Family::default());
     assert_eq!(result.map(|_| ()), unknown("ball row", 0, 9));
