@@ -23,8 +23,11 @@ impl Table {
     pub fn fill(&mut self, elements: usize, tasks: &[Found]) -> usize {
         let none = (0, Run { element: 0, start: 0, count: 0 });
         self.entries.clear();
-        self.entries.resize(elements, none);
         self.chunk_pairs.clear();
+        if tasks.is_empty() {
+            return 0;
+        }
+        self.entries.resize(elements, none);
         self.chunk_pairs.resize(elements.div_ceil(CHUNK), 0);
         for (found, task) in tasks.iter().zip(0..) {
             for run in &found.runs {
@@ -56,38 +59,42 @@ impl Table {
             }
         }
         jobs.into_par_iter().for_each(|(entries, pairs, separations)| {
-            let runs = entries.iter().flat_map(|(task, run)| {
-                let partners = &tasks[*task as usize].partners;
-                let partners =
-                    if run.count == 0 { &[] } else { &partners[run.start as usize..][..run.count as usize] };
-                partners.iter().map(|&partner| [run.element, partner])
-            });
-            for (elements, pair) in runs.zip(pairs.iter_mut()) {
-                *pair = Pair { elements, vertices: vertices_of(model, kind, elements) };
+            let mut rest = &mut *pairs;
+            for (task, run) in entries.iter().filter(|(_, run)| run.count > 0) {
+                let (head, tail) = std::mem::take(&mut rest).split_at_mut(run.count as usize);
+                rest = tail;
+                let partners = &tasks[*task as usize].partners[run.start as usize..][..head.len()];
+                write_pairs(kind, model, run.element, partners, head);
             }
             separate_all(kind, pairs, positions, separations);
         });
     }
 }
 
-/// Vertices of a pair that trees search for, in [`PairKind`] order.
-fn vertices_of(model: &CollisionModel, kind: PairKind, [a, b]: [u32; 2]) -> [u32; 4] {
+/// Writes the pairs of one element `a`.
+fn write_pairs(kind: PairKind, model: &CollisionModel, a: u32, partners: &[u32], pairs: &mut [Pair]) {
     let topology = model.topology();
+    let places = partners.iter().zip(pairs);
     match kind {
-        PairKind::VertexVertex => [a, b, a, a],
-        PairKind::VertexEdge => {
+        PairKind::VertexVertex => places.for_each(|(&b, pair)| {
+            *pair = Pair { elements: [a, b], vertices: [a, b, a, a] };
+        }),
+        PairKind::VertexEdge => places.for_each(|(&b, pair)| {
             let [b0, b1] = topology.edges[b as usize];
-            [a, b0, b1, a]
-        }
-        PairKind::VertexTriangle => {
+            *pair = Pair { elements: [a, b], vertices: [a, b0, b1, a] };
+        }),
+        PairKind::VertexTriangle => places.for_each(|(&b, pair)| {
             let [b0, b1, b2] = topology.triangles[b as usize];
-            [a, b0, b1, b2]
-        }
+            *pair = Pair { elements: [a, b], vertices: [a, b0, b1, b2] };
+        }),
         PairKind::EdgeEdge => {
             let [a0, a1] = topology.edges[a as usize];
-            let [b0, b1] = topology.edges[b as usize];
-            [a0, a1, b0, b1]
+            places.for_each(|(&b, pair)| {
+                let [b0, b1] = topology.edges[b as usize];
+                *pair = Pair { elements: [a, b], vertices: [a0, a1, b0, b1] };
+            });
         }
-        PairKind::VertexHalfSpace => [a; 4],
+        // No tree searches for these.
+        PairKind::VertexHalfSpace => {}
     }
 }

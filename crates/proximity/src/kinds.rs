@@ -18,6 +18,7 @@
 //! length, which `accept` subtracts as 128 u m. Products of tiny numbers may underflow: below a
 //! length |d| of 1e-12 m nothing is rejected, and above it 1e-18 m of slack covers errors of 1e-44.
 
+use crate::bits::{bits, flag};
 use crate::frame::UNIT;
 use crate::tree::{LANES, greatest, least};
 use bowknot_geometry::PairKind;
@@ -91,21 +92,10 @@ pub fn classify<K: Kind<A, B>, const A: usize, const B: usize>(batch: &Batch<A, 
         let squared = dot(d, d);
         let length = squared.sqrt();
         let far = width > batch.reject[lane] * length * (1.0 + 16.0 * UNIT);
-        rejected[lane] = u8::from(far & (squared > 1e-24));
-        accepted[lane] = u8::from(length < batch.accept[lane]);
+        rejected[lane] = flag(far & (squared > 1e-24));
+        accepted[lane] = flag(length < batch.accept[lane]);
     }
     Verdicts { rejected: bits(&rejected), accepted: bits(&accepted) }
-}
-
-/// Packs sixteen flags (0 or 1) into bits, the first into the lowest.
-#[inline(always)]
-pub fn bits(flags: &[u8; LANES]) -> u32 {
-    // The multiplication moves flag i of a byte each to bit 56 + i without carries.
-    const GATHER: u64 = 0x0102_0408_1020_4080;
-    let word = u128::from_le_bytes(*flags);
-    let low = (word as u64).wrapping_mul(GATHER) >> 56;
-    let high = ((word >> 64) as u64).wrapping_mul(GATHER) >> 56;
-    (low | high << 8) as u32
 }
 
 impl Kind<1, 1> for VertexVertex {

@@ -11,6 +11,7 @@
 //! 4. `assemble`: the pairs in order, with their contact geometry.
 
 mod assemble;
+mod bits;
 mod frame;
 mod half_spaces;
 mod kinds;

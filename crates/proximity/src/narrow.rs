@@ -120,17 +120,26 @@ fn separate_kind<K: Kind<A, B> + Nearby, const A: usize, const B: usize>(
             measures.0[0][lane] = distance;
             measures.0[1][lane] = width;
         }
-        for (lane, (pair, separation)) in pairs.iter().zip(separations).enumerate() {
-            *separation = if trusted[lane] == 0 {
-                separate_with_care(K::KIND, pair, positions)
-            } else {
-                Separation {
-                    normal: Vector::new(normal.0[0][lane], normal.0[1][lane], normal.0[2][lane]),
-                    weights: [weights.0[0][lane], weights.0[1][lane], weights.0[2][lane], weights.0[3][lane]],
-                    distance: measures.0[0][lane],
-                    width: measures.0[1][lane],
+        let mut doubtful = false;
+        for (lane, separation) in separations.iter_mut().enumerate() {
+            // Field by field: a value put together on the stack would be copied by wider loads than
+            // it was stored by, which stalls.
+            for k in 0..3 {
+                separation.normal[k] = normal.0[k][lane];
+            }
+            for j in 0..4 {
+                separation.weights[j] = weights.0[j][lane];
+            }
+            separation.distance = measures.0[0][lane];
+            separation.width = measures.0[1][lane];
+            doubtful |= trusted[lane] == 0;
+        }
+        if doubtful {
+            for (lane, (pair, separation)) in pairs.iter().zip(separations).enumerate() {
+                if trusted[lane] == 0 {
+                    *separation = separate_with_care(K::KIND, pair, positions);
                 }
-            };
+            }
         }
     }
 }

@@ -7,7 +7,7 @@ use crate::kinds::{EdgeEdge, Kind, VertexEdge, VertexTriangle, VertexVertex};
 use crate::layer::Layer;
 use crate::narrow::BLANK;
 use crate::obstacles::Watch;
-use crate::traverse::{Found, Query, Scene, TASK_LEAVES, leaves_meeting, search_leaves};
+use crate::traverse::{Found, Query, Scene, Scratch, TASK_LEAVES, leaves_meeting, search_leaves};
 use crate::tree::Tree;
 use crate::{CollisionModel, Pair, PairList, SearchStatistics};
 use bowknot_geometry::{PairKind, Point, Separation, Vector, separation};
@@ -368,9 +368,9 @@ fn search_kind<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT: bool>
         .collect();
     tasks.truncate(jobs.len());
     tasks.resize_with(jobs.len(), Found::default);
-    jobs.par_iter()
-        .zip(tasks)
-        .for_each(|(query, found)| search_leaves::<K, A, B, SWEPT>(scene, query, found));
+    jobs.par_iter().zip(tasks).for_each_init(Scratch::default, |scratch, (query, found)| {
+        search_leaves::<K, A, B, SWEPT>(scene, query, scratch, found);
+    });
 }
 
 /// Which pairs of bodies may collide.

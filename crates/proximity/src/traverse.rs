@@ -1,8 +1,9 @@
 //! Elements against trees: which pairs are listed.
 
 use crate::CollisionModel;
+use crate::bits::{append_places, append_sorted, bits, flag};
 use crate::frame::UNIT;
-use crate::kinds::{Batch, Kind, bits, classify};
+use crate::kinds::{Batch, Kind, classify};
 use crate::narrow::separate_one;
 use crate::tree::{LANES, Leaf, Node, Tree};
 use bowknot_geometry::Point;
@@ -44,33 +45,40 @@ pub struct Found {
     pub partners: Vec<u32>,
     pub candidates: u64,
     pub undecided: u64,
-    lists: [Vec<u32>; LANES],
-    queue: Vec<Candidate>,
 }
 
-/// A pair whose boxes meet.
-#[derive(Clone, Copy, Debug, Default)]
-struct Candidate {
-    /// Lane of the element in its leaf.
-    lane: u32,
-    /// Leaf and lane of the other element in its tree.
-    other_leaf: u32,
-    other_lane: u32,
+/// What a thread needs for the leaf at work.
+#[derive(Debug, Default)]
+pub struct Scratch {
+    /// Leaves of a target tree that it meets.
+    near_leaves: Vec<u32>,
+    /// Pairs whose boxes meet, as [`code`]s; only the first so many are valid.
+    queue: Vec<u32>,
+    /// Partners of each lane; only the first so many of each are valid.
+    lists: [Vec<u32>; LANES],
+    lengths: [usize; LANES],
+}
+
+/// Queued pairs beyond which they are decided, and the room that two leaves may need beyond that.
+const QUEUE: usize = 2048;
+const QUEUE_ROOM: usize = LANES * LANES + LANES;
+
+/// A pair of an element of the leaf at work (its lane) and one of another leaf.
+#[inline(always)]
+const fn code(other_leaf: u32, lane: u32, other_lane: u32) -> u32 {
+    // Leaves are numbered below 2^24, for elements are below 2^28 (as many as memory holds).
+    other_leaf << 8 | lane << 4 | other_lane
+}
+
+/// Leaf, lane and other lane of a [`code`].
+#[inline(always)]
+const fn decode(code: u32) -> (usize, usize, usize) {
+    ((code >> 8) as usize, (code >> 4) as usize % LANES, code as usize % LANES)
 }
 
 /// Leaves of `tree` whose boxes meet `bounds`, ascending.
 pub fn leaves_meeting<const V: usize>(tree: &Tree<V>, bounds: &[[f32; 3]; 2], out: &mut Vec<u32>) {
-    out.clear();
-    let Some(top) = tree.levels.len().checked_sub(1) else { return };
-    let mut stack = vec![(top, 0)];
-    while let Some((level, index)) = stack.pop() {
-        let mut mask = overlap(&tree.levels[level][index], bounds);
-        while mask != 0 {
-            let child = index * LANES + mask.trailing_zeros() as usize;
-            mask &= mask - 1;
-            if level == 1 { out.push(child as u32) } else { stack.push((level - 1, child)) }
-        }
-    }
+    gather_leaves(tree, bounds, out, |_| true);
     out.sort_unstable();
 }
 
@@ -84,6 +92,7 @@ pub fn leaves_meeting<const V: usize>(tree: &Tree<V>, bounds: &[[f32; 3]; 2], ou
 pub fn search_leaves<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT: bool>(
     scene: &Scene<'_>,
     query: &Query<'_, A, B>,
+    scratch: &mut Scratch,
     found: &mut Found,
 ) {
     found.runs.clear();
@@ -91,7 +100,7 @@ pub fn search_leaves<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT:
     found.candidates = 0;
     found.undecided = 0;
     for &index in query.leaves {
-        search_leaf::<K, A, B, SWEPT>(scene, query, index as usize, found);
+        search_leaf::<K, A, B, SWEPT>(scene, query, index as usize, scratch, found);
     }
 }
 
@@ -100,57 +109,79 @@ fn search_leaf<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT: bool>
     scene: &Scene<'_>,
     query: &Query<'_, A, B>,
     index: usize,
+    scratch: &mut Scratch,
     found: &mut Found,
 ) {
-    let bounds = query.tree.leaf_bounds(index);
-    let first_element = query.tree.leaves[index].elements.iter().fold(u32::MAX, |first, &e| first.min(e));
+    let leaf = &query.tree.leaves[index];
     for target in query.targets {
-        let Some(top) = target.levels.len().checked_sub(1) else { continue };
-        let mut stack = [(0_u32, 0_u32); LANES * 8];
-        stack[0] = (top as u32, 0);
-        let mut depth = 1;
-        while depth > 0 {
-            depth -= 1;
-            let (level, node) = stack[depth];
-            let mut mask = overlap(&target.levels[level as usize][node as usize], &bounds);
-            while mask != 0 {
-                let child = node * LANES as u32 + mask.trailing_zeros();
-                mask &= mask - 1;
-                if level == 1 {
-                    // Nothing there comes after any of these elements.
-                    if K::SYMMETRIC && target.leaves[child as usize].last_element <= first_element {
-                        continue;
-                    }
-                    meet::<K, A, B, SWEPT>(scene, query.tree, index, target, child as usize, found);
-                } else {
-                    stack[depth] = (level - 1, child);
-                    depth += 1;
-                }
+        let mut near_leaves = std::mem::take(&mut scratch.near_leaves);
+        let first_element = leaf.elements.iter().fold(u32::MAX, |first, &e| first.min(e));
+        gather_leaves(target, &query.tree.leaf_bounds(index), &mut near_leaves, |leaf| {
+            // Where each pair would be met twice the larger index is the partner.
+            !K::SYMMETRIC || leaf.last_element > first_element
+        });
+        scratch.queue.resize(QUEUE + QUEUE_ROOM, 0);
+        let mut queued = 0;
+        for (done, &other) in near_leaves.iter().enumerate() {
+            queued = meet::<K, A, B, SWEPT>(
+                scene,
+                query.tree,
+                index,
+                target,
+                other as usize,
+                &mut scratch.queue,
+                queued,
+            );
+            if queued >= QUEUE || done + 1 == near_leaves.len() {
+                decide::<K, A, B, SWEPT>(scene, leaf, target, queued, scratch, found);
+                queued = 0;
             }
         }
-        if !SWEPT {
-            decide::<K, A, B>(scene, &query.tree.leaves[index], target, found);
-        }
+        scratch.near_leaves = near_leaves;
     }
 
-    let leaf = &query.tree.leaves[index];
     for lane in 0..LANES {
-        let list = &mut found.lists[lane];
-        if list.is_empty() {
-            continue;
+        let count = std::mem::take(&mut scratch.lengths[lane]);
+        if count > 0 {
+            let start = found.partners.len() as u32;
+            found.runs.push(Run { element: leaf.elements[lane], start, count: count as u32 });
+            append_sorted(&scratch.lists[lane][..count], &mut found.partners);
         }
-        list.sort_unstable();
-        found.runs.push(Run {
-            element: leaf.elements[lane],
-            start: found.partners.len() as u32,
-            count: list.len() as u32,
-        });
-        found.partners.extend_from_slice(list);
-        list.clear();
     }
 }
 
-/// The elements of one leaf against those of another.
+/// Leaves whose boxes meet `bounds` and that are `wanted`.
+#[inline(always)]
+fn gather_leaves<const V: usize>(
+    tree: &Tree<V>,
+    bounds: &[[f32; 3]; 2],
+    leaves: &mut Vec<u32>,
+    wanted: impl Fn(&Leaf<V>) -> bool,
+) {
+    leaves.clear();
+    let Some(top) = tree.levels.len().checked_sub(1) else { return };
+    // Each level leaves at most 15 siblings behind, and there are at most 7 levels.
+    let mut stack = [(0_u32, 0_u32); LANES * 8];
+    stack[0] = (top as u32, 0);
+    let mut depth = 1;
+    while depth > 0 {
+        depth -= 1;
+        let (level, node) = stack[depth];
+        let mut mask = overlap(&tree.levels[level as usize][node as usize], bounds);
+        while mask != 0 {
+            let child = node * LANES as u32 + mask.trailing_zeros();
+            mask &= mask - 1;
+            if level > 1 {
+                stack[depth] = (level - 1, child);
+                depth += 1;
+            } else if wanted(&tree.leaves[child as usize]) {
+                leaves.push(child);
+            }
+        }
+    }
+}
+
+/// Queues the pairs of elements of two leaves whose boxes meet; returns the new end of the queue.
 #[inline(always)]
 fn meet<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT: bool>(
     scene: &Scene<'_>,
@@ -158,8 +189,9 @@ fn meet<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT: bool>(
     index: usize,
     target: &Tree<B>,
     other: usize,
-    found: &mut Found,
-) {
+    queue: &mut [u32],
+    mut queued: usize,
+) -> usize {
     let leaf = &query.leaves[index];
     let boxes = &query.levels[0][index];
     let other_leaf = &target.leaves[other];
@@ -173,131 +205,127 @@ fn meet<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT: bool>(
             continue;
         }
         let vertices: [u32; A] = std::array::from_fn(|i| leaf.vertices[i][lane]);
-        let mut mask = overlap(other_boxes, &boxes.lane(lane));
-        if mask == 0 {
-            continue;
-        }
-        mask &= partners::<A, B>(K::SYMMETRIC, element, &vertices, other_leaf);
-        if scene.filtered {
+        let mut mask = candidates::<K, A, B>(other_boxes, other_leaf, &boxes.lane(lane), element, &vertices);
+        if scene.filtered && mask != 0 {
             mask = filter(scene.model, vertices[0], &other_leaf.vertices[0], mask);
         }
-        if mask == 0 {
-            continue;
-        }
-        if SWEPT {
+        if SWEPT && mask != 0 {
             let own = moving_box(query, index, lane);
             mask &= match target.sweep.get(other) {
                 Some([first, last]) => sweeps_meet(first, last, &own),
                 None => sweeps_meet(other_boxes, other_boxes, &own),
             };
-            found.candidates += u64::from(mask.count_ones());
-            push(&mut found.lists[lane], mask, other_leaf);
-            continue;
         }
-        while mask != 0 {
-            let other_lane = mask.trailing_zeros();
-            mask &= mask - 1;
-            found.queue.push(Candidate { lane: lane as u32, other_leaf: other as u32, other_lane });
-        }
+        queued = append_places(queue, queued, mask, code(other as u32, lane as u32, 0));
     }
+    queued
 }
 
-/// Decides the queued pairs and empties the queue.
+/// Decides the first `queued` pairs of the queue.
 #[inline(always)]
-fn decide<K: Kind<A, B>, const A: usize, const B: usize>(
+fn decide<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT: bool>(
     scene: &Scene<'_>,
     leaf: &Leaf<A>,
     target: &Tree<B>,
+    queued: usize,
+    scratch: &mut Scratch,
     found: &mut Found,
 ) {
-    found.candidates += found.queue.len() as u64;
+    found.candidates += queued as u64;
+    // The last batch is filled up with a valid pair.
+    let filler = scratch.queue[0];
+    scratch.queue[queued..queued.next_multiple_of(LANES)].fill(filler);
     let mut batch = Batch {
         a: [[[0.0; LANES]; 3]; A],
         b: [[[0.0; LANES]; 3]; B],
         reject: [0.0; LANES],
         accept: [0.0; LANES],
     };
-    for candidates in found.queue.chunks(LANES) {
-        for (slot, candidate) in candidates.iter().enumerate() {
-            let lane = candidate.lane as usize % LANES;
-            let other = &target.leaves[candidate.other_leaf as usize];
-            let other_lane = candidate.other_lane as usize % LANES;
-            for k in 0..3 {
-                for i in 0..A {
-                    batch.a[i][k][slot] = leaf.positions[i][k][lane];
+    let mut remaining = queued;
+    for codes in scratch.queue.as_chunks::<LANES>().0.iter().take(queued.div_ceil(LANES)) {
+        let present = ((1_u64 << remaining.min(LANES)) - 1) as u32;
+        remaining = remaining.saturating_sub(LANES);
+        let mut near = present;
+        if !SWEPT {
+            for slot in 0..LANES {
+                let (other_leaf, lane, other_lane) = decode(codes[slot]);
+                let other = &target.leaves[other_leaf];
+                for k in 0..3 {
+                    for i in 0..A {
+                        batch.a[i][k][slot] = leaf.positions[i][k][lane];
+                    }
+                    for j in 0..B {
+                        batch.b[j][k][slot] = other.positions[j][k][other_lane];
+                    }
                 }
-                for j in 0..B {
-                    batch.b[j][k][slot] = other.positions[j][k][other_lane];
-                }
+                batch.reject[slot] = leaf.reject[lane] + other.reject[other_lane];
+                batch.accept[slot] = leaf.accept[lane] + other.accept[other_lane];
             }
-            batch.reject[slot] = leaf.reject[lane] + other.reject[other_lane];
-            batch.accept[slot] = leaf.accept[lane] + other.accept[other_lane];
+            let verdicts = classify::<K, A, B>(&batch);
+            near &= verdicts.accepted;
+            let mut undecided = present & !(verdicts.accepted | verdicts.rejected);
+            while undecided != 0 {
+                let slot = undecided.trailing_zeros() as usize % LANES;
+                undecided &= undecided - 1;
+                found.undecided += 1;
+                let (other_leaf, lane, other_lane) = decode(codes[slot]);
+                let other = &target.leaves[other_leaf];
+                let a = std::array::from_fn(|i| leaf.vertices[i][lane]);
+                let b = std::array::from_fn(|j| other.vertices[j][other_lane]);
+                near |= u32::from(is_near::<K, A, B>(scene, a, b)) << slot;
+            }
         }
-        let verdicts = classify::<K, A, B>(&batch);
-        // Slots beyond the candidates hold something old.
-        let present = (1_u32 << candidates.len()) - 1;
-        let mut near = present & verdicts.accepted;
-        let mut undecided = present & !(verdicts.accepted | verdicts.rejected);
-        while undecided != 0 {
-            let slot = undecided.trailing_zeros() as usize;
-            undecided &= undecided - 1;
-            found.undecided += 1;
-            let candidate = candidates[slot];
-            let other = &target.leaves[candidate.other_leaf as usize];
-            let a = std::array::from_fn(|i| leaf.vertices[i][candidate.lane as usize % LANES]);
-            let b = std::array::from_fn(|j| other.vertices[j][candidate.other_lane as usize % LANES]);
-            near |= u32::from(is_near::<K, A, B>(scene, a, b)) << slot;
+        // Every pair is written, those that are not near to be overwritten by the next.
+        for slot in 0..LANES {
+            let (other_leaf, lane, other_lane) = decode(codes[slot]);
+            let (list, length) = (&mut scratch.lists[lane], &mut scratch.lengths[lane]);
+            if list.len() <= *length {
+                list.resize(2 * *length + LANES, 0);
+            }
+            list[*length] = target.leaves[other_leaf].elements[other_lane];
+            *length += (near >> slot & 1) as usize;
         }
-        while near != 0 {
-            let candidate = candidates[near.trailing_zeros() as usize % LANES];
-            near &= near - 1;
-            let other = &target.leaves[candidate.other_leaf as usize];
-            found.lists[candidate.lane as usize % LANES]
-                .push(other.elements[candidate.other_lane as usize % LANES]);
-        }
-    }
-    found.queue.clear();
-}
-
-#[inline(always)]
-fn push<const B: usize>(list: &mut Vec<u32>, mut mask: u32, leaf: &Leaf<B>) {
-    while mask != 0 {
-        list.push(leaf.elements[mask.trailing_zeros() as usize % LANES]);
-        mask &= mask - 1;
     }
 }
 
 /// The boxes of a node that meet a box, one bit each.
 #[inline(always)]
-fn overlap(node: &Node, [low, high]: &[[f32; 3]; 2]) -> u32 {
+fn overlap(node: &Node, bounds: &[[f32; 3]; 2]) -> u32 {
     let mut flags = [0_u8; LANES];
     for lane in 0..LANES {
-        let x = (node.low[0][lane] <= high[0]) & (low[0] <= node.high[0][lane]);
-        let y = (node.low[1][lane] <= high[1]) & (low[1] <= node.high[1][lane]);
-        let z = (node.low[2][lane] <= high[2]) & (low[2] <= node.high[2][lane]);
-        flags[lane] = u8::from(x & y & z);
+        flags[lane] = flag(lane_meets(node, lane, bounds));
     }
     bits(&flags)
 }
 
-/// Elements of a leaf that share no vertex with another element, and, where each pair would be met
-/// twice, have the larger index.
 #[inline(always)]
-fn partners<const A: usize, const B: usize>(
-    symmetric: bool,
+fn lane_meets(node: &Node, lane: usize, [low, high]: &[[f32; 3]; 2]) -> bool {
+    let x = (node.low[0][lane] <= high[0]) & (low[0] <= node.high[0][lane]);
+    let y = (node.low[1][lane] <= high[1]) & (low[1] <= node.high[1][lane]);
+    let z = (node.low[2][lane] <= high[2]) & (low[2] <= node.high[2][lane]);
+    x & y & z
+}
+
+/// Elements of a leaf whose boxes meet that of another element, that share no vertex with it, and,
+/// where each pair would be met twice, have the larger index.
+#[inline(always)]
+fn candidates<K: Kind<A, B>, const A: usize, const B: usize>(
+    node: &Node,
+    leaf: &Leaf<B>,
+    bounds: &[[f32; 3]; 2],
     element: u32,
     vertices: &[u32; A],
-    leaf: &Leaf<B>,
 ) -> u32 {
     let mut flags = [0_u8; LANES];
     for lane in 0..LANES {
-        let mut apart = !symmetric | (leaf.elements[lane] > element);
+        let mut candidate = lane_meets(node, lane, bounds);
+        candidate &= !K::SYMMETRIC | (leaf.elements[lane] > element);
         for i in 0..A {
             for j in 0..B {
-                apart &= vertices[i] != leaf.vertices[j][lane];
+                candidate &= vertices[i] != leaf.vertices[j][lane];
             }
         }
-        flags[lane] = u8::from(apart);
+        flags[lane] = flag(candidate);
     }
     bits(&flags)
 }
@@ -371,7 +399,7 @@ fn sweeps_meet(first: &Node, last: &Node, [own_first, own_last]: &[[[f32; 3]; 2]
                 enter = if from > enter { from } else { enter };
             }
         }
-        flags[lane] = u8::from(!apart & (enter <= leave));
+        flags[lane] = flag(!apart & (enter <= leave));
     }
     bits(&flags)
 }
