@@ -30,3 +30,7 @@ pub use model::{BodyFilter, CollisionModel, ModelError};
 pub use pairs::{Pair, PairList};
 pub use search::ProximitySearch;
 pub use statistics::SearchStatistics;
+
+#[doc = include_str!("../README.md")]
+#[cfg(doctest)]
+struct Readme;

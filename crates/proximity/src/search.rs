@@ -87,8 +87,8 @@ impl ProximitySearch {
     /// geometry at `positions`, in the order of `pairs`. The result depends on the input alone,
     /// never on the number of threads nor on earlier searches.
     ///
-    /// Vertices that are not finite or farther than 1e15 m from the others are in no pair, nor are
-    /// the elements that they belong to; all other pairs are listed as usual.
+    /// Vertices whose position or radius is not finite or beyond 1e15 m are in no pair, nor are the
+    /// elements that they belong to; all other pairs are listed as usual.
     ///
     /// # Panics
     /// If a slice has another length than the model has vertices.
