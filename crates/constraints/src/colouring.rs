@@ -121,7 +121,10 @@ mod tests {
                 let mut used = vec![false; vertex_count];
                 for &row in &colouring.order()[range] {
                     for &v in &rows[row as usize] {
-                        assert!(!std::mem::replace(&mut used[v as usize], true), "two rows of a colour share {v}");
+                        assert!(
+                            !std::mem::replace(&mut used[v as usize], true),
+                            "two rows of a colour share {v}"
+                        );
                     }
                 }
             }

@@ -18,7 +18,14 @@ impl DesiredDistance {
     ///
     /// Neighbours keep at most half of their rest distance, or a fine mesh would be torn apart by its own
     /// `delta`; and a tight start opens by `growth` a call instead of exploding.
-    pub fn of(&self, model: &CollisionModel, kind: PairKind, pair: &Pair, rest: &[Point], gap: f64) -> (f64, bool) {
+    pub fn of(
+        &self,
+        model: &CollisionModel,
+        kind: PairKind,
+        pair: &Pair,
+        rest: &[Point],
+        gap: f64,
+    ) -> (f64, bool) {
         let mut desired = self.delta;
         let mut lowered = false;
         if kind != PairKind::VertexHalfSpace {

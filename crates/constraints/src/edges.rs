@@ -27,11 +27,11 @@ impl EdgeLimits {
         let edges: Vec<[u32; 2]> =
             topology.edges.iter().copied().filter(|e| e.iter().any(|&v| movable[v as usize])).collect();
         let mut colouring = Colouring::default();
-        colouring.first_fit(movable.len(), edges.len(), |r| {
-            edges[r].into_iter().filter(|&v| movable[v as usize])
-        });
+        colouring
+            .first_fit(movable.len(), edges.len(), |r| edges[r].into_iter().filter(|&v| movable[v as usize]));
         let vertices = colouring.order().iter().map(|&r| edges[r as usize]);
-        let balls: Vec<BallRow> = vertices.map(|e| BallRow { vertices: e, limit: length(&e, rest) }).collect();
+        let balls: Vec<BallRow> =
+            vertices.map(|e| BallRow { vertices: e, limit: length(&e, rest) }).collect();
         let rest_lengths: Vec<f64> = balls.iter().map(|b| b.limit).collect();
         Self {
             start_lengths: rest_lengths.clone(),

@@ -30,7 +30,7 @@ pub(crate) fn row(
     desired: f64,
 ) -> Option<(f64, [Vector; 4])> {
     let d = separation.distance;
-    if !(d > 0.0) {
+    if d <= 0.0 {
         return None;
     }
     let (volume, base, mut gradients, normal) = match kind {
@@ -65,7 +65,7 @@ pub(crate) fn row(
         }
         PairKind::VertexVertex | PairKind::VertexHalfSpace => return None,
     };
-    if !(base > 0.0) || separation.normal.dot(&normal).abs() < SMALLEST_ALIGNMENT * normal.norm() {
+    if base <= 0.0 || separation.normal.dot(&normal).abs() < SMALLEST_ALIGNMENT * normal.norm() {
         return None;
     }
     let scale = volume.signum() / base;

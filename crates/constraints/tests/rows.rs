@@ -78,7 +78,11 @@ fn both_forms_have_the_value_and_gradient_of_what_they_linearise() {
                 };
                 // DESIGN: gap c = d - delta; volume c = height (1 - delta/d), equal for interior points.
                 let expected = quantity(&x) * (1.0 - desired / d);
-                assert!((value(&row, &x) - expected).abs() < 1e-9, "{kind:?} {form:?}: {} {expected}", value(&row, &x));
+                assert!(
+                    (value(&row, &x) - expected).abs() < 1e-9,
+                    "{kind:?} {form:?}: {} {expected}",
+                    value(&row, &x)
+                );
                 for k in 0..kind.vertex_count() {
                     for axis in 0..3 {
                         let step = 1e-6;
@@ -87,7 +91,10 @@ fn both_forms_have_the_value_and_gradient_of_what_they_linearise() {
                         minus[k][axis] -= step;
                         let slope = (quantity(&plus) - quantity(&minus)) / (2.0 * step);
                         let given = row.gradients[k][axis];
-                        assert!((slope - given).abs() < 1e-6, "{kind:?} {form:?} vertex {k}: {slope} {given}");
+                        assert!(
+                            (slope - given).abs() < 1e-6,
+                            "{kind:?} {form:?} vertex {k}: {slope} {given}"
+                        );
                     }
                 }
             }

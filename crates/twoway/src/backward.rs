@@ -40,8 +40,6 @@ pub struct LcpBackward {
     free: Vec<Vector>,
     /// y [m].
     y: Vec<Vector>,
-    /// Common motion c of each body [m], and the weight that it is the mean over.
-    common_motion: Vec<(Vector, f64)>,
     /// Residual and mass of each body.
     body_residuals: Vec<(Vector, f64)>,
 }
@@ -164,7 +162,6 @@ impl LcpBackward {
                 }
             }
         }
-        self.set_common_motion(problem, state);
         self.weights.clear();
         self.free.clear();
         for v in 0..state.x.len() {
@@ -172,32 +169,11 @@ impl LcpBackward {
             if problem.movable(v) {
                 let weight = 1.0 / (mass + mu);
                 self.weights.push(weight);
-                let centre =
-                    state.x[v].coords + self.common_motion[problem.model.vertex_body()[v] as usize].0;
-                self.free.push(weight * (mass * state.target[v].coords + mu * centre));
+                self.free.push(weight * (mass * state.target[v].coords + mu * state.x[v].coords));
             } else {
                 self.weights.push(0.0);
                 self.free.push(state.target[v].coords);
             }
-        }
-    }
-
-    /// c of each body: a share of its last mean move, weighted by mu.
-    fn set_common_motion(&mut self, problem: &Problem, state: &State) {
-        let share = problem.params.backward.common_motion;
-        self.common_motion.clear();
-        self.common_motion.resize(problem.model.bodies().len(), (Vector::zeros(), 0.0));
-        if share == 0.0 || state.step == 0 {
-            return;
-        }
-        for v in (0..state.x.len()).filter(|&v| problem.movable(v)) {
-            let mu = self.proximal[v];
-            let (sum, total) = &mut self.common_motion[problem.model.vertex_body()[v] as usize];
-            *sum += mu * (state.x[v] - state.previous[v]);
-            *total += mu;
-        }
-        for (sum, total) in self.common_motion.iter_mut().filter(|(_, total)| *total > 0.0) {
-            *sum *= share / *total;
         }
     }
 
@@ -353,7 +329,7 @@ fn scale_multipliers(system: &lcp::Problem<'_>, free: &[Vector], state: &mut lcp
             energy += (y - free).norm_squared() / weight;
         }
     }
-    if !(energy > 0.0) {
+    if energy <= 0.0 {
         return;
     }
     let s = (1.0 - slack / energy).clamp(COARSE_RANGE.0, COARSE_RANGE.1);

@@ -33,9 +33,6 @@ pub struct BackwardParams {
     pub edge_proximal: f64,
     /// Strength of the proximal term on contacts: mu_i += contact_proximal * sum lambda_p |g| / h. Default 0.5.
     pub contact_proximal: f64,
-    /// Share of a body's last mean move by which the proximal term's centre is moved ahead, so that it does not hold back
-    /// motion common to a body. Nearer to 1: long common motion arrives sooner, and overshoots. Default 0.8.
-    pub common_motion: f64,
     /// Whether one scalar for all multipliers is solved for before each sweep. Default true.
     pub coarse_correction: bool,
     /// Whether rows that are neither pushing nor predicted to close are left out of the sweeps. Default true.
@@ -56,7 +53,7 @@ pub struct StopParams {
     /// `StopRule::Travel`: largest distance not travelled, in mean edge lengths. Default 0.03.
     pub distance: f64,
     /// `StopRule::Travel`: largest distance, in mean edge lengths, of a body as a whole from where the forces on it
-    /// balance. Default 0.05.
+    /// balance. Default 0.1.
     pub imbalance: f64,
     /// `StopRule::Travel`: how far the stretch limits may be exceeded, relative. Default 0.02.
     pub stretch_tolerance: f64,
@@ -89,7 +86,6 @@ impl Default for BackwardParams {
             polish_distance: 1.0,
             edge_proximal: 1.0,
             contact_proximal: 0.5,
-            common_motion: 0.8,
             coarse_correction: true,
             active_rows: true,
         }
@@ -103,7 +99,7 @@ impl Default for StopParams {
             max_seconds: None,
             rule: StopRule::Travel,
             distance: 0.03,
-            imbalance: 0.05,
+            imbalance: 0.1,
             stretch_tolerance: 0.02,
             clock: 1e-4,
         }
@@ -130,7 +126,6 @@ impl Params {
                 polish_sweeps: 1,
                 edge_proximal: 0.0,
                 contact_proximal: 0.0,
-                common_motion: 0.0,
                 coarse_correction: false,
                 active_rows: false,
                 ..BackwardParams::default()
@@ -160,10 +155,6 @@ impl Params {
             format!("backward.polish_sweeps = {} must be at least backward.sweeps", b.polish_sweeps),
         );
         let s = &self.stop;
-        check(
-            (0.0..=1.0).contains(&b.common_motion),
-            format!("backward.common_motion = {} must lie between 0 and 1", b.common_motion),
-        );
         for (key, value) in [
             ("backward.polish_distance", b.polish_distance),
             ("backward.edge_proximal", b.edge_proximal),
