@@ -272,8 +272,10 @@ fn friction_between_free_nodes_agrees_over_solvers_and_spellings_and_keeps_momen
     let momentum = y[0] + y[1] / 0.5 + y[2] / 2.0;
     assert_near(momentum, Vector::new(0.3, 0.1, -1.0));
 
-    // Node 2 in two places.
-    let split = FrictionRow { coefficients: [1.0, -0.5, -0.7, 0.2], vertices: [0, 1, 2, 2], ..friction };
+    // Node 2 in two places: the same diagonal.
+    let mut split = FrictionRow { coefficients: [1.0, -0.5, -0.7, 0.2], vertices: [0, 1, 2, 2], ..friction };
+    split.prepare(&[1.0, 0.5, 2.0]).unwrap();
+    assert!((split.inverse_diagonal - 1.0 / 1.625).abs() < 1e-15);
     let (again, _) = rub(split, serial);
     again.iter().zip(&y).for_each(|(a, b)| assert_near(*a, *b));
     let (again, _) = rub(split, |problem, state| {
@@ -281,4 +283,23 @@ fn friction_between_free_nodes_agrees_over_solvers_and_spellings_and_keeps_momen
         Jacobi::new().solve(problem, state, &params).unwrap();
     });
     again.iter().zip(&y).for_each(|(a, b)| assert!((a - b).norm() < 1e-10));
+}
+
+#[test]
+fn relaxation_scales_the_first_step_of_every_kind_of_row() {
+    let weights = [1.0, 1.0];
+    let zero = Vector::zeros();
+    let mut rows = [Row::new([0; 4], [Vector::z(), zero, zero, zero], 0.0)];
+    prepare_rows(&mut rows, &weights).unwrap();
+    let balls = [ball(0, 1, 1.0)];
+    let problem =
+        Problem::new(&weights, Family::serial(&rows), Family::serial(&balls), Family::default()).unwrap();
+    for relaxation in [0.5, 1.0, 1.5] {
+        let (mut y, mut lambda, mut forces) =
+            ([Vector::new(3.0, 0.0, -2.0), Vector::z() * -2.0], [0.0], [zero]);
+        let mut state = State { y: &mut y, lambda: &mut lambda, forces: &mut forces, friction: &mut [] };
+        sweep_serial(&problem, &mut state, &Params { relaxation, ..TIGHT }).unwrap();
+        assert_near(forces[0], Vector::x() * relaxation);
+        assert!((lambda[0] - 2.0 * relaxation).abs() < 1e-15);
+    }
 }

@@ -292,6 +292,14 @@ fn two_hundred_redundant_rows_are_solved_exactly() {
 }
 
 #[test]
+fn rounding_at_a_degenerate_corner_is_no_contradiction() {
+    // Half of 27 rows meet in one point of six dimensions; one was called infeasible for 1e-15 of value.
+    let case = small(15_948_984_401_421_849_885, 2, 27, false);
+    let (y, lambda) = case.solve(solve_exact);
+    case.check(&y, &lambda, 1e-10).unwrap();
+}
+
+#[test]
 fn rows_that_contradict_each_other_are_named_or_bounded_and_never_nan() {
     let zero = Vector::zeros();
     let weights = [1.0];
