@@ -29,7 +29,8 @@ pub struct BackwardParams {
     pub polish_sweeps: usize,
     /// Remaining distance below which `polish_sweeps` applies, in local edge lengths. Default 1.
     pub polish_distance: f64,
-    /// Strength of the proximal term on edges: mu_i += edge_proximal * sum lambda_e / |e|. 0 switches it off. Default 1.
+    /// Strength of the proximal term on edges: mu_i += edge_proximal * sum lambda_e / |e|. 0 switches it off; smaller
+    /// ones come nearer to the true projection until edges wander (linear form: 2). Default 0.5.
     pub edge_proximal: f64,
     /// Strength of the proximal term on contacts: mu_i += contact_proximal * sum lambda_p |g| / h. Default 0.5.
     pub contact_proximal: f64,
@@ -84,7 +85,7 @@ impl Default for BackwardParams {
             sweeps: 8,
             polish_sweeps: 64,
             polish_distance: 1.0,
-            edge_proximal: 1.0,
+            edge_proximal: 0.5,
             contact_proximal: 0.5,
             coarse_correction: true,
             active_rows: true,
