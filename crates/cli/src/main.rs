@@ -25,7 +25,7 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     // A wrong option ends here, with clap's own message and code 2.
     let arguments = Arguments::parse();
-    setup::logging();
+    setup::logging(matches!(&arguments.command, Command::Run(options) if options.quiet));
     let done = match arguments.command {
         Command::Scenes(options) => scenes::scenes(&options),
         Command::Run(options) => run::run(&options),

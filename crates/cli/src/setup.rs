@@ -4,9 +4,10 @@ use crate::args::{Backend, Machine};
 use crate::failure::Failure;
 use tracing_subscriber::EnvFilter;
 
-/// Shows the libraries' warnings on stderr; `BOWKNOT_LOG=debug` shows more.
-pub fn logging() {
-    let filter = EnvFilter::try_from_env("BOWKNOT_LOG").unwrap_or_else(|_| EnvFilter::new("warn"));
+/// Shows the libraries' warnings on stderr, unless `quiet`; `BOWKNOT_LOG=debug` shows more.
+pub fn logging(quiet: bool) {
+    let default = if quiet { "error" } else { "warn" };
+    let filter = EnvFilter::try_from_env("BOWKNOT_LOG").unwrap_or_else(|_| EnvFilter::new(default));
     tracing_subscriber::fmt()
         .with_env_filter(filter)
         .with_writer(std::io::stderr)

@@ -3,6 +3,7 @@
 //! All steps share one target folder and the release profile, so that what one compiles the next finds. The tests come
 //! last and nothing follows them: the log ends with the test runner's own lines.
 
+use crate::docs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::time::Instant;
@@ -15,6 +16,15 @@ const WASM_TARGET: &str = "wasm32-unknown-unknown";
 struct Step {
     name: &'static str,
     command: Command,
+    /// Runs the command and says whether it passed.
+    run: fn(&mut Command) -> std::io::Result<bool>,
+}
+
+impl Step {
+    /// A step that passes if its command does.
+    fn new(name: &'static str, command: Command) -> Self {
+        Self { name, command, run: |command| Ok(command.status()?.success()) }
+    }
 }
 
 /// Runs the steps in order and stops at the first that fails.
@@ -25,13 +35,10 @@ pub fn run(fast: bool) -> ExitCode {
     for (index, mut step) in steps.into_iter().enumerate() {
         println!("\n==> [{}/{count}] {}: {}", index + 1, step.name, describe(&step.command));
         let clock = Instant::now();
-        let passed = match step.command.status() {
-            Ok(status) => status.success(),
-            Err(error) => {
-                eprintln!("cannot start {}: {error}", describe(&step.command));
-                false
-            }
-        };
+        let passed = (step.run)(&mut step.command).unwrap_or_else(|error| {
+            eprintln!("cannot start {}: {error}", describe(&step.command));
+            false
+        });
         let seconds = clock.elapsed().as_secs_f64();
         if !passed {
             println!("<== {} failed after {seconds:.1} s", step.name);
@@ -48,25 +55,26 @@ fn fast_steps(root: &Path) -> Vec<Step> {
     vec![
         format(root),
         clippy(root),
-        Step { name: "unit tests", command: cargo(root, "test --release --workspace --lib --bins") },
+        Step::new("unit tests", cargo(root, "test --release --workspace --lib --bins")),
     ]
 }
 
 fn all_steps(root: &Path) -> Vec<Step> {
     let mut docs = cargo(root, "doc --release --workspace --no-deps");
-    docs.env("RUSTDOCFLAGS", "-D warnings");
-    let mut steps = vec![format(root), clippy(root), Step { name: "docs", command: docs }];
+    docs.env("RUSTDOCFLAGS", docs::FLAGS);
+    let docs = Step { run: docs::run, ..Step::new("docs", docs) };
+    let mut steps = vec![format(root), clippy(root), docs];
     if wasm_is_installed() {
         let mut wasm = cargo(root, "check --release --target");
         wasm.arg(WASM_TARGET);
         WASM_CRATES.iter().for_each(|name| {
             wasm.args(["--package", name]);
         });
-        steps.push(Step { name: "wasm", command: wasm });
+        steps.push(Step::new("wasm", wasm));
     } else {
         println!("==> wasm: skipped, the target is missing: rustup target add {WASM_TARGET}");
     }
-    steps.push(Step { name: "build tests", command: cargo(root, "test --release --workspace --no-run") });
+    steps.push(Step::new("build tests", cargo(root, "test --release --workspace --no-run")));
     // A fresh folder each time: `run` refuses one that holds a run.
     let out = target_folder(root).join("xtask").join("drape");
     if out.exists()
@@ -76,17 +84,17 @@ fn all_steps(root: &Path) -> Vec<Step> {
     }
     let mut drape = cargo(root, "run --release -- run drape --scale 0.4 --frames 40 --check --out");
     drape.arg(out);
-    steps.push(Step { name: "run drape --check", command: drape });
-    steps.push(Step { name: "tests", command: cargo(root, "test --release --workspace") });
+    steps.push(Step::new("run drape --check", drape));
+    steps.push(Step::new("tests", cargo(root, "test --release --workspace")));
     steps
 }
 
 fn format(root: &Path) -> Step {
-    Step { name: "format", command: cargo(root, "fmt --all --check") }
+    Step::new("format", cargo(root, "fmt --all --check"))
 }
 
 fn clippy(root: &Path) -> Step {
-    Step { name: "clippy", command: cargo(root, "clippy --release --workspace --all-targets -- -D warnings") }
+    Step::new("clippy", cargo(root, "clippy --release --workspace --all-targets -- -D warnings"))
 }
 
 /// The cargo that runs this, in the workspace's root.

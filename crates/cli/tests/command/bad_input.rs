@@ -176,6 +176,8 @@ fn degenerate_triangles_of_an_obstacle_are_dropped() {
     with_mesh(&place, "obstacle", "mesh.obj", format!("{SQUARE}v 0.5 0 0\nf 1 5 2\nf 3 1 2\nf 1 2 2\n"));
     let ended = place.run("run scene.toml --frames 1").ok();
     assert!(ended.stderr.contains("WARN") && ended.stderr.contains("obstacle it"), "{ended:#?}");
+    let quiet = place.run("run scene.toml --frames 1 --out quiet --quiet").ok();
+    assert_eq!(quiet.stderr, "");
 }
 
 #[test]

@@ -78,8 +78,9 @@ fn a_full_disk_leaves_whole_frames() {
     run("64", "some").refused(2, &["cannot write some/stats.jsonl"]);
     let lines = place.read("some/stats.jsonl");
     assert!(lines.ends_with('\n'));
-    let steps = lines.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap()).count();
-    assert!(steps > 5, "only {steps} steps before the limit");
+    let steps: Vec<serde_json::Value> =
+        lines.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert!(steps.len() > 5, "only {} steps before the limit", steps.len());
     assert!(place.files("some/frames").iter().all(|name| name.ends_with(".ply")), "no half-written file");
     place.run("check some/frames").ok();
     // With room again the run goes on to its end.

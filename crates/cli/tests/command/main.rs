@@ -1,4 +1,6 @@
 //! The command from outside: exit codes, messages, files.
+// The helpers belong to the tests, where a panic is a failure.
+#![allow(clippy::unwrap_used)]
 
 /// Everything that can be wrong with what a user gives.
 mod bad_input;

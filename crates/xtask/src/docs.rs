@@ -1,0 +1,43 @@
+//! The documentation without warnings, but for units in square brackets.
+//!
+//! Rustdoc takes `[m]` for a link to an item `m`. The workspace therefore allows unresolved links, which would hide those
+//! that are broken; here they are warned of regardless and the units are let through.
+
+use std::process::{Command, Stdio};
+
+/// Everything else is an error.
+pub const FLAGS: &str = "-D warnings --force-warn rustdoc::broken-intra-doc-links";
+
+/// What stands in brackets and is no link.
+const UNITS: [&str; 12] = ["m", "s", "kg", "N", "J", "Pa", "Hz", "deg", "rad", "bytes", "m2", "1"];
+
+/// Builds the documentation and shows what the compiler says, unless it is about units.
+pub fn run(command: &mut Command) -> std::io::Result<bool> {
+    let output = command.stderr(Stdio::piped()).output()?;
+    let text = String::from_utf8_lossy(&output.stderr);
+    let broken: Vec<&str> = text.split("\n\n").filter(|block| is_broken_link(block)).collect();
+    if !output.status.success() {
+        eprint!("{text}");
+    } else if !broken.is_empty() {
+        eprintln!("{}", broken.join("\n\n"));
+    }
+    Ok(output.status.success() && broken.is_empty())
+}
+
+/// Whether a paragraph of the compiler's output is about a link that is not a unit.
+fn is_broken_link(block: &str) -> bool {
+    let target = block.split("unresolved link to `").nth(1).and_then(|rest| rest.split('`').next());
+    target.is_some_and(|name| !UNITS.contains(&name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_broken_link;
+
+    #[test]
+    fn units_are_no_links() {
+        assert!(!is_broken_link("warning: unresolved link to `m`\n  --> a.rs:1:2"));
+        assert!(is_broken_link("warning: unresolved link to `Mesh`\n  --> a.rs:1:2"));
+        assert!(!is_broken_link("   Compiling m v0.1.0"));
+    }
+}
