@@ -18,7 +18,7 @@ use crate::elements::{CHUNK, Filter, Motion, Rows};
 use crate::linear::block::BlockValues;
 use crate::linear::cg::{self, CgInfo, CgWorkspace, Limits};
 use crate::linear::preconditioner::Preconditioner;
-use crate::linear::scalar::ScalarForm;
+use crate::linear::scalar::SplitForm;
 use crate::linear::system::System;
 use crate::linear::vectors::{add_scaled, dot};
 use crate::model::NO_NODE;
@@ -31,6 +31,10 @@ use serde::Serialize;
 /// Energies that differ by less than this share of their terms are equal: what rounding leaves of
 /// sums over 10^5 nodes, with room.
 const ENERGY_ROUNDING: f64 = 1e-12;
+
+/// Steps shorter than this share of the largest coordinate are rounding: not worth a line search,
+/// whose energies would differ by noise.
+const NEGLIGIBLE_STEP: f64 = 1e-12;
 
 /// What one Newton iteration did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -67,8 +71,8 @@ struct Step {
     inertial: Vec<Vector>,
     /// The last target, if there was one: the warm start of the next solve.
     last_target: Option<Vec<Vector>>,
-    /// Bending plus its damping / dt.
-    scalar: ScalarForm,
+    /// Bending plus its damping / dt, as a matrix.
+    scalar: SplitForm,
 }
 
 /// Buffers; may be dropped at any time.
@@ -161,11 +165,9 @@ impl Dynamics {
             x0[v as usize].coords + v0[v as usize] * dt + acceleration * (dt * dt)
         }));
         if step.dt != dt {
-            step.scalar = model.bending.clone();
+            step.scalar = model.bending.split(&model.pattern);
             if let Some(damping) = &model.bending_damping {
-                let add = |sum: &mut f64, value: &f64| *sum += value / dt;
-                step.scalar.values.iter_mut().zip(&damping.values).for_each(|(s, v)| add(s, v));
-                step.scalar.diagonal.iter_mut().zip(&damping.diagonal).for_each(|(s, v)| add(s, v));
+                step.scalar.add_scaled(1.0 / dt, &damping.split(&model.pattern));
             }
         }
         step.dt = dt;
@@ -362,11 +364,15 @@ fn linearise(model: &DynamicsModel, params: &DynamicsParams, step: &Step, work: 
         rows.push(Rows { nodes, gradient, diagonal, blocks: mine, first_block });
     }
     rows.into_par_iter().enumerate().for_each(|(chunk, mut rows)| {
-        rows.blocks.fill(Matrix3::zeros());
+        let near = &step.scalar.near[rows.first_block..];
+        for (block, &value) in rows.blocks.iter_mut().zip(near) {
+            *block = Matrix3::from_diagonal_element(value);
+        }
         for (row, node) in rows.nodes.clone().enumerate() {
             let mass = model.node_masses[node];
             let (x, start) = (motion.x[node], motion.start[node]);
-            rows.diagonal[row] = Matrix3::from_diagonal_element(mass * (inertia + drag));
+            rows.diagonal[row] =
+                Matrix3::from_diagonal_element(mass * (inertia + drag) + step.scalar.diagonal[node]);
             rows.gradient[row] = (x - step.inertial[node]) * (mass * inertia)
                 + (x - start) * (mass * drag)
                 + model.bending.product(node, motion.x);
@@ -459,6 +465,10 @@ fn search_line(
     let (before, scale) = potential(model, params, step, &work.free, &work.trial);
     info.energy_before = before;
     let predicted = dot(&work.step, &work.right_side);
+    // Maxima are the same in any order.
+    let largest = |values: &[Vector]| values.iter().map(|v| v.amax()).fold(0.0, f64::max);
+    let accept =
+        params.line_search_halvings == 0 || largest(&work.step) <= NEGLIGIBLE_STEP * largest(&work.x);
     let mut best = (f64::INFINITY, 1.0);
     let mut length = 1.0;
     for halving in 0..=params.line_search_halvings {
@@ -469,7 +479,7 @@ fn search_line(
         }
         let slack = ENERGY_ROUNDING * scale.max(terms);
         let passes = energy <= before - params.line_search_decrease * length * predicted + slack;
-        if passes || params.line_search_halvings == 0 {
+        if passes || accept {
             (info.energy_after, info.step_length) = (energy, length);
             return;
         }

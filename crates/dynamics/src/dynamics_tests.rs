@@ -54,14 +54,11 @@ fn dense(dynamics: &Dynamics, step: &Step) -> DMatrix<f64> {
             let mut view = matrix.fixed_view_mut::<3, 3>(3 * row, 3 * column);
             view += block;
         };
-        set(
-            row,
-            dynamics.work.values.diagonal[row] + Matrix3::from_diagonal_element(step.scalar.diagonal[row]),
-        );
+        set(row, dynamics.work.values.diagonal[row]);
         for k in pattern.row(row) {
             set(pattern.columns[k] as usize, dynamics.work.values.blocks[k]);
         }
-        let (columns, values) = step.scalar.row(row);
+        let (columns, values) = step.scalar.far(row);
         columns
             .iter()
             .zip(values)
@@ -136,7 +133,15 @@ fn the_matrix_is_symmetric_positive_definite_and_matches_differences_under_tensi
 
 #[test]
 fn the_newton_step_is_that_of_a_dense_solve() {
-    let (mut dynamics, x0, v0, prescribed) = crumpled();
+    for two_level in [false, true] {
+        let (mut dynamics, x0, v0, prescribed) = crumpled();
+        let coarse = two_level.then(|| dynamics.model.coarse());
+        dynamics.work.preconditioner = Preconditioner::new(coarse);
+        check_newton_step(dynamics, x0, v0, prescribed);
+    }
+}
+
+fn check_newton_step(mut dynamics: Dynamics, x0: Vec<Point>, v0: Vec<Vector>, prescribed: Vec<bool>) {
     dynamics.params.cg_tolerance = 1e-12;
     dynamics.params.line_search_halvings = 0;
     dynamics.begin_step(&x0, &v0, 0.02).expect("begins");

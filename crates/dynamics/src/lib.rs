@@ -37,3 +37,8 @@ pub use material::ClothMaterial;
 pub use model::{Body, BodyShape, DynamicsModel};
 pub use observe::Energies;
 pub use params::{DynamicsParams, HessianFilter, Preconditioner};
+
+/// The README's example runs as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

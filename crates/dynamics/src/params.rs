@@ -49,11 +49,14 @@ pub enum Preconditioner {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum HessianFilter {
-    /// They become zero (the nearest positive semi-definite matrix): fastest near a solution.
-    #[default]
+    /// They become zero, which makes the nearest positive semi-definite matrix: a little faster near a
+    /// solution, once many iterations are made.
     Clamp,
     /// They change sign (Chen et al. 2024, "Stabler Neo-Hookean Simulation: Absolute Eigenvalue
-    /// Filtering for Projected Newton"): shorter, safer steps out of strong compression.
+    /// Filtering for Projected Newton"): as good or better in the first iteration, which is often the
+    /// only one, and far safer out of strong compression, where a clamped direction has nothing but
+    /// inertia to hold it.
+    #[default]
     Absolute,
 }
 

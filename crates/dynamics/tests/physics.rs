@@ -2,7 +2,7 @@
 
 mod common;
 
-use bowknot_dynamics::{Body, ClothMaterial, Dynamics, DynamicsModel, DynamicsParams};
+use bowknot_dynamics::{Body, ClothMaterial, Dynamics, DynamicsModel, DynamicsParams, HessianFilter};
 use bowknot_geometry::{Point, Vector};
 use common::{Diagonals, cloth_model, sheet, staggered_sheet};
 
@@ -39,9 +39,9 @@ fn free_fall_is_exact() {
     let (n, g) = (steps as f64, dynamics.params().gravity);
     for k in 0..rest.len() {
         let expected = rest[k] + velocity * (n * dt) + g * (0.5 * n * (n + 1.0) * dt * dt);
-        assert!((x[k] - expected).norm() < 1e-11, "vertex {k}: {} {expected}", x[k]);
-        // (x1 - x0) / dt: rounding of positions of 50 m, over dt.
-        assert!((v[k] - (velocity + g * (n * dt))).norm() < 1e-11 / dt);
+        // Each step rounds positions, 1e-15, and v = (x1 - x0) / dt carries that on: some 1e-11 in all.
+        assert!((x[k] - expected).norm() < 1e-10, "vertex {k}: {} {expected}", x[k]);
+        assert!((v[k] - (velocity + g * (n * dt))).norm() < 1e-10 / dt);
     }
 }
 
@@ -70,7 +70,8 @@ fn angular_momentum_changes_as_implicit_euler_says() {
     // L1 = sum m x1 x v0 = L0 + dt sum m v1 x v0 exactly, with strain-rate damping too (bending
     // damping, which sees rotations, is left out). The step must be solved to the end for that.
     let material = ClothMaterial { stretch_damping: 0.01, ..ClothMaterial::cotton() };
-    let params = DynamicsParams { cg_tolerance: 1e-12, ..SPACE() };
+    // Clamping is the filter that ends sooner, over many iterations.
+    let params = DynamicsParams { cg_tolerance: 1e-12, hessian_filter: HessianFilter::Clamp, ..SPACE() };
     let (mut dynamics, mut x, mut v) = floating(params, material);
     let none = vec![false; x.len()];
     let dt = 0.002;

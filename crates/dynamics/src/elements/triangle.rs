@@ -36,6 +36,9 @@ use nalgebra::{Matrix2, Matrix3, Matrix4, Vector2};
 /// curvatures normal to triangles crushed to less than a twentieth; forces do not use it.
 const SINGULAR_FLOOR: f64 = 0.05;
 
+/// Singular values up to this are zero: their reciprocals, and the squares on the way, must be finite.
+const SINGULAR_ZERO: f64 = 1e-150;
+
 /// A triangle of cloth.
 #[derive(Clone, Debug)]
 pub(crate) struct Triangle {
@@ -95,6 +98,19 @@ impl Triangle {
     fn elastic_density(&self, [s1, s2]: [f64; 2]) -> f64 {
         let (d1, d2) = (s1 - 1.0, s2 - 1.0);
         self.mu * (d1 * d1 + d2 * d2) + 0.5 * self.lambda * (d1 + d2) * (d1 + d2)
+    }
+
+    /// [`Self::elastic_density`] without the singular vectors, for line searches: with C = F^T F and
+    /// J = |f0 x f1| = s1 s2, (s1 + s2)^2 = tr C + 2 J and (s1 - s2)^2 = tr C - 2 J, the latter from
+    /// (s1^2 - s2^2)^2 = (c00 - c11)^2 + 4 c01^2 without cancellation.
+    #[inline]
+    fn elastic_density_of(&self, f: &[Vector; 2]) -> f64 {
+        let (c00, c11, c01) = (f[0].norm_squared(), f[1].norm_squared(), f[0].dot(&f[1]));
+        let sum_squared = c00 + c11 + 2.0 * f[0].cross(&f[1]).norm();
+        let sum = (sum_squared - 4.0) / (sum_squared.sqrt() + 2.0);
+        let spread = (c00 - c11) * (c00 - c11) + 4.0 * c01 * c01;
+        let difference_squared = if spread > 0.0 { spread / sum_squared } else { 0.0 };
+        0.5 * self.mu * (sum * sum + difference_squared) + 0.5 * self.lambda * sum * sum
     }
 
     /// Green strain increment (00, 11, 2 * 01).
@@ -244,7 +260,7 @@ impl Element<3> for Triangle {
 
     fn energy(&self, x: &[Vector; 3], start: Option<Start<'_, 3>>) -> f64 {
         let f = self.deformation(x);
-        let mut density = self.elastic_density(decompose(&f).s);
+        let mut density = self.elastic_density_of(&f);
         if let Some(start) = start.filter(|_| self.damping > 0.0) {
             let strain = Self::strain_increment(&f, &self.deformation(start.x));
             density += self.damping * start.rate * self.dissipation_density(strain);
@@ -331,11 +347,11 @@ fn decompose(f: &[Vector; 2]) -> Decomposition {
     let [c, s] = first_axis(f[0].norm_squared(), f[1].norm_squared(), f[0].dot(&f[1]));
     let (w1, w2) = (f[0] * c + f[1] * s, f[1] * c - f[0] * s);
     let s1 = w1.norm();
-    let u1 = if s1 > f64::MIN_POSITIVE { w1 / s1 } else { Vector::x() };
+    let u1 = if s1 > SINGULAR_ZERO { w1 * (1.0 / s1) } else { Vector::x() };
     // What rounding left of w1 in w2 is taken out, so that u stays orthonormal near rank one.
     let w2 = w2 - u1 * u1.dot(&w2);
     let s2 = w2.norm();
-    let u2 = if s2 > 1e-14 * s1 && s2 > f64::MIN_POSITIVE { w2 / s2 } else { any_normal(&u1) };
+    let u2 = if s2 > 1e-14 * s1 && s2 > SINGULAR_ZERO { w2 * (1.0 / s2) } else { any_normal(&u1) };
     Decomposition { s: [s1, s2], u: [u1, u2], v1: [c, s] }
 }
 

@@ -48,6 +48,7 @@ fn moved(x: &[Vector; 3], coordinate: usize, by: f64) -> [Vector; 3] {
 fn check_derivatives(triangle: &Triangle, x: &[Vector; 3], start: Option<Start<'_, 3>>) {
     let h = 1e-5;
     let here = triangle.linearise(x, start, Filter::Exact);
+    // Two formulas.
     assert!((here.energy - triangle.energy(x, start)).abs() <= 1e-13 * here.energy.abs().max(1.0));
     let hessian = dense(&here.hessian);
     let (mut gradient_error, mut hessian_error) = (0.0f64, 0.0f64);
@@ -194,7 +195,9 @@ fn crushed_triangles_give_finite_numbers() {
     for x in [point, line, edge, tiny] {
         for filter in [Filter::Clamp, Filter::Absolute] {
             let part = triangle(0.1).linearise(&x, Some(Start { x: &rest(), rate: 20.0 }), filter);
+            let start = Start { x: &rest(), rate: 20.0 };
             assert!(part.energy.is_finite());
+            assert!((part.energy - triangle(0.1).energy(&x, Some(start))).abs() < 1e-12 * part.energy);
             assert!(part.gradient.iter().flat_map(|g| g.iter()).all(|g| g.is_finite()));
             let hessian = dense(&part.hessian);
             assert!(hessian.iter().all(|h| h.is_finite()));

@@ -205,7 +205,7 @@ fn inverse_factor<const B: usize>(block: &SMatrix<f64, B, B>, scale: &SVector<f6
     for k in 0..B {
         let mut pivot = block[(k, k)];
         (0..k).for_each(|m| pivot -= factor[(k, m)] * factor[(k, m)]);
-        if !(pivot > ZERO_PIVOT * scale[k]) {
+        if pivot.is_nan() || pivot <= ZERO_PIVOT * scale[k] {
             continue;
         }
         let reciprocal = 1.0 / pivot.sqrt();
@@ -230,8 +230,17 @@ mod tests {
     use super::*;
     use nalgebra::{DMatrix, DVector};
 
-    /// A grid graph with random symmetric positive definite blocks.
-    fn grid(n: usize) -> (Vec<Vector>, Vec<Vec<u32>>, Vec<Vec<SMatrix<f64, 2, 2>>>, DMatrix<f64>) {
+    type Block = SMatrix<f64, 2, 2>;
+
+    struct Grid {
+        positions: Vec<Vector>,
+        rows: Vec<Vec<u32>>,
+        blocks: Vec<Vec<Block>>,
+        dense: DMatrix<f64>,
+    }
+
+    /// A grid graph with symmetric positive definite blocks.
+    fn grid(n: usize) -> Grid {
         let count = n * n;
         let mut positions = Vec::new();
         let mut rows = vec![Vec::new(); count];
@@ -274,12 +283,12 @@ mod tests {
                 row.iter().map(|&j| dense.fixed_view::<2, 2>(2 * i, 2 * j as usize).into_owned()).collect()
             })
             .collect();
-        (positions, rows, blocks, dense)
+        Grid { positions, rows, blocks, dense }
     }
 
     #[test]
     fn it_solves_what_a_dense_factorisation_solves() {
-        let (positions, rows, blocks, dense) = grid(9);
+        let Grid { positions, rows, blocks, dense } = grid(9);
         let symbolic = Symbolic::new(&positions, |i| &rows[i]);
         let mut factor = Cholesky::<2>::default();
         factor.factorise(&symbolic, |i| (&rows[i], &blocks[i]));
@@ -295,7 +304,7 @@ mod tests {
 
     #[test]
     fn nested_dissection_fills_less_than_a_band() {
-        let (positions, rows, _, _) = grid(32);
+        let Grid { positions, rows, .. } = grid(32);
         let symbolic = Symbolic::new(&positions, |i| &rows[i]);
         // A band of 32 would hold 32 * 1024.
         assert!(symbolic.fill() < 32 * 1024 / 2, "{}", symbolic.fill());

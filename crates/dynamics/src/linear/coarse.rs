@@ -87,7 +87,7 @@ impl Coarse {
                         sum.add_to(&arms[node], block);
                     }
                 };
-                sum.add(&system.diagonal(node), &arms[node]);
+                sum.add(&system.values.diagonal[node], &arms[node]);
                 let row = system.pattern.row(node);
                 for (block, &column) in
                     system.values.blocks[row.clone()].iter().zip(&system.pattern.columns[row])
@@ -95,7 +95,7 @@ impl Coarse {
                     sum.turn_to(aggregate_of[column as usize], &mut flush);
                     sum.add(block, &arms[column as usize]);
                 }
-                let (columns, values) = system.scalar.row(node);
+                let (columns, values) = system.scalar.far(node);
                 for (&column, &value) in columns.iter().zip(values) {
                     sum.turn_to(aggregate_of[column as usize], &mut flush);
                     sum.add_scalar(value, &arms[column as usize]);

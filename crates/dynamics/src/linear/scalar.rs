@@ -4,6 +4,7 @@
 //! Rows sum to zero, so the diagonal is implied, `q_ii = - sum q_ij`, and products run over
 //! differences x_j - x_i: exact invariance under translation however far the origin.
 
+use super::block::BlockPattern;
 use crate::elements::CHUNK;
 use bowknot_geometry::Vector;
 use rayon::prelude::*;
@@ -74,6 +75,32 @@ impl ScalarForm {
         sum
     }
 
+    /// Takes the form apart for a matrix with `pattern`: what falls on its off-diagonal blocks, by
+    /// slot, and the far entries. The diagonal stays here.
+    pub fn split(&self, pattern: &BlockPattern) -> SplitForm {
+        let mut split = SplitForm {
+            diagonal: self.diagonal.clone(),
+            near: vec![0.0; pattern.columns.len()],
+            far_starts: vec![0],
+            ..SplitForm::default()
+        };
+        for row in 0..self.diagonal.len() {
+            let slots = pattern.row(row);
+            let (columns, values) = self.row(row);
+            for (&column, &value) in columns.iter().zip(values) {
+                match pattern.columns[slots.clone()].binary_search(&column) {
+                    Ok(k) => split.near[slots.start + k] = value,
+                    Err(_) => {
+                        split.far_columns.push(column);
+                        split.far_values.push(value);
+                    }
+                }
+            }
+            split.far_starts.push(split.far_columns.len() as u32);
+        }
+        split
+    }
+
     /// `E(x) = -1/4 sum q_ij |x_i - x_j|^2`.
     pub fn energy(&self, x: &[Vector]) -> f64 {
         let chunks = x.len().div_ceil(CHUNK);
@@ -92,5 +119,33 @@ impl ScalarForm {
             }
         }
         0.25 * sum
+    }
+}
+
+/// A form as a matrix beside a block pattern: fewer entries to read in products.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SplitForm {
+    pub diagonal: Vec<f64>,
+    /// By slot of the pattern.
+    pub near: Vec<f64>,
+    far_starts: Vec<u32>,
+    far_columns: Vec<u32>,
+    far_values: Vec<f64>,
+}
+
+impl SplitForm {
+    /// Columns and values of a row that are not in the block pattern.
+    #[inline]
+    pub fn far(&self, row: usize) -> (&[u32], &[f64]) {
+        let range = self.far_starts[row] as usize..self.far_starts[row + 1] as usize;
+        (&self.far_columns[range.clone()], &self.far_values[range])
+    }
+
+    /// Adds `factor` times another form, of the same pattern.
+    pub fn add_scaled(&mut self, factor: f64, other: &SplitForm) {
+        let add = |to: &mut [f64], from: &[f64]| to.iter_mut().zip(from).for_each(|(t, f)| *t += factor * f);
+        add(&mut self.diagonal, &other.diagonal);
+        add(&mut self.near, &other.near);
+        add(&mut self.far_values, &other.far_values);
     }
 }

@@ -1,11 +1,11 @@
-//! The operator of a Newton iteration: H = block matrix + scalar form x I, over the free nodes.
+//! The operator of a Newton iteration: H = block matrix + far entries of a scalar form, over the
+//! free nodes.
 
 use super::block::{BlockPattern, BlockValues};
-use super::scalar::ScalarForm;
+use super::scalar::SplitForm;
 use super::vectors::chunk_dot;
 use crate::elements::CHUNK;
 use bowknot_geometry::Vector;
-use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 /// H, borrowed. Rows of nodes that are not free act as zero.
@@ -13,7 +13,8 @@ use rayon::prelude::*;
 pub(crate) struct System<'a> {
     pub pattern: &'a BlockPattern,
     pub values: &'a BlockValues,
-    pub scalar: &'a ScalarForm,
+    /// Its diagonal and near entries are part of `values`.
+    pub scalar: &'a SplitForm,
     pub free: &'a [bool],
 }
 
@@ -45,12 +46,10 @@ impl System<'_> {
         for (block, &column) in self.values.blocks[range.clone()].iter().zip(&self.pattern.columns[range]) {
             sum += block * x[column as usize];
         }
-        sum + self.scalar.product(row, x)
-    }
-
-    /// The diagonal block of a node, scalar part included.
-    #[inline]
-    pub fn diagonal(&self, node: usize) -> Matrix3<f64> {
-        self.values.diagonal[node] + Matrix3::from_diagonal_element(self.scalar.diagonal[node])
+        let (columns, values) = self.scalar.far(row);
+        for (&column, &value) in columns.iter().zip(values) {
+            sum += x[column as usize] * value;
+        }
+        sum
     }
 }
