@@ -11,7 +11,7 @@
 //! coordinates are off by u m, and so each of the differences r = a0 - b0, a1 - a0, .. as computed by
 //! 2 u m + u 2 m = 4 u m a coordinate. A dot product of one with d (exact as stored) adds 3 u (2 m)
 //! |d|_1, so each of the up to three products is off by 10 u m |d|_1, and their sums round by another
-//! 12 u m |d|_1: altogether 42 u m |d|_1 <= 73 u m |d|. The leaf's `reject` holds the radius with a
+//! 12 u m |d|_1: altogether 42 u m |d|_1 <= 73 u m |d|. The row's `reject` holds the radius with a
 //! factor 1 + 16 u (for the radius' own rounding and that of |d|) plus 80 u m, each side its own m.
 //! The other way, the point of a side with weights in [0, 1] as computed is off by 4 u m for each
 //! difference and 6 u (6 m) for its operations, together below 60 u m a coordinate and 104 u m in
@@ -53,7 +53,7 @@ pub struct Verdicts {
 }
 
 /// Sixteen pairs side by side: local coordinates of both sides' vertices [m], and the sums of the
-/// sides' `reject` and `accept` of [`crate::tree::Leaf`] [m].
+/// sides' `reject` and `accept` of [`crate::tree::Row`] [m].
 #[repr(C, align(64))]
 pub struct Batch<const A: usize, const B: usize> {
     pub a: [[[f32; LANES]; 3]; A],

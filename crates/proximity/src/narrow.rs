@@ -12,7 +12,7 @@ use crate::kinds::{EdgeEdge, Kind, VertexEdge, VertexTriangle, VertexVertex};
 use bowknot_geometry::{PairKind, Point, Separation, Vector, separation};
 
 /// Pairs that go side by side.
-const BATCH: usize = 16;
+const BATCH: usize = 8;
 
 /// Bound of the rounding of a width per largest coordinate difference, see
 /// `bowknot_geometry::separation`.

@@ -249,17 +249,17 @@ fn decide<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT: bool>(
         if !SWEPT {
             for slot in 0..LANES {
                 let (other_leaf, lane, other_lane) = decode(codes[slot]);
-                let other = &target.leaves[other_leaf];
+                let (own, other) = (&leaf.rows[lane], &target.leaves[other_leaf].rows[other_lane]);
                 for k in 0..3 {
                     for i in 0..A {
-                        batch.a[i][k][slot] = leaf.positions[i][k][lane];
+                        batch.a[i][k][slot] = own.positions[i][k];
                     }
                     for j in 0..B {
-                        batch.b[j][k][slot] = other.positions[j][k][other_lane];
+                        batch.b[j][k][slot] = other.positions[j][k];
                     }
                 }
-                batch.reject[slot] = leaf.reject[lane] + other.reject[other_lane];
-                batch.accept[slot] = leaf.accept[lane] + other.accept[other_lane];
+                batch.reject[slot] = own.reject + other.reject;
+                batch.accept[slot] = own.accept + other.accept;
             }
             let verdicts = classify::<K, A, B>(&batch);
             near &= verdicts.accepted;

@@ -64,6 +64,18 @@ impl Node {
     }
 }
 
+/// What the distance test needs of an element. In one place each, not side by side as the boxes are:
+/// the test picks single elements of many leaves.
+#[derive(Clone, Copy, Debug)]
+pub struct Row<const V: usize> {
+    /// Local coordinates of the vertices [m].
+    pub positions: [[f32; 3]; V],
+    /// Radius plus the slack that certifies a rejection [m], see [`crate::kinds`].
+    pub reject: f32,
+    /// Radius less the slack that certifies a pair's nearness [m].
+    pub accept: f32,
+}
+
 /// What is known of the sixteen elements of a leaf, beside their boxes.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
@@ -72,12 +84,7 @@ pub struct Leaf<const V: usize> {
     pub elements: [u32; LANES],
     /// Their vertices; `u32::MAX` in lanes without an element.
     pub vertices: [[u32; LANES]; V],
-    /// Local coordinates of their vertices [m].
-    pub positions: [[[f32; LANES]; 3]; V],
-    /// Radius plus the slack that certifies a rejection [m], see [`crate::kinds`].
-    pub reject: [f32; LANES],
-    /// Radius less the slack that certifies a pair's nearness [m].
-    pub accept: [f32; LANES],
+    pub rows: [Row<V>; LANES],
     /// Largest index of an element.
     pub last_element: u32,
     /// Sum of the sides of the box of all vertices, radii left out [m].
@@ -88,9 +95,7 @@ impl<const V: usize> Leaf<V> {
     const EMPTY: Self = Self {
         elements: [u32::MAX; LANES],
         vertices: [[u32::MAX; LANES]; V],
-        positions: [[[0.0; LANES]; 3]; V],
-        reject: [0.0; LANES],
-        accept: [0.0; LANES],
+        rows: [Row { positions: [[0.0; 3]; V], reject: 0.0, accept: 0.0 }; LANES],
         last_element: 0,
         extent: 0.0,
     };
@@ -258,7 +263,7 @@ fn refit_leaf<const V: usize>(local: &[LocalVertex], node: &mut Node, leaf: &mut
                 high[k] = greatest(high[k], vertex[k]);
             }
             for k in 0..3 {
-                leaf.positions[j][k][lane] = vertex[k];
+                leaf.rows[lane].positions[j][k] = vertex[k];
             }
             check += vertex[3];
         }
@@ -279,8 +284,8 @@ fn refit_leaf<const V: usize>(local: &[LocalVertex], node: &mut Node, leaf: &mut
             node.low[k][lane] = (low[k] - radius) - margin;
             node.high[k][lane] = (high[k] + radius) + margin;
         }
-        leaf.reject[lane] = radius * (1.0 + 16.0 * UNIT) + (80.0 * UNIT * largest + 1e-18);
-        leaf.accept[lane] = radius * (1.0 - 16.0 * UNIT) - (128.0 * UNIT * largest + 1e-18);
+        leaf.rows[lane].reject = radius * (1.0 + 16.0 * UNIT) + (80.0 * UNIT * largest + 1e-18);
+        leaf.rows[lane].accept = radius * (1.0 - 16.0 * UNIT) - (128.0 * UNIT * largest + 1e-18);
     }
     leaf.extent = greatest(0.0, (0..3).map(|k| all[1][k] - all[0][k]).sum());
 }

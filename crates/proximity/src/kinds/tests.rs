@@ -50,12 +50,12 @@ fn check<K: Kind<A, B>, const A: usize, const B: usize>(place: f64) {
         b.build(&[(0, std::array::from_fn(|i| (A + i) as u32))], &local);
         a.refit(&local, None);
         b.refit(&local, None);
-        let (a, b) = (&a.leaves[0], &b.leaves[0]);
+        let (a, b) = (&a.leaves[0].rows[0], &b.leaves[0].rows[0]);
         let batch = Batch {
-            a: a.positions,
-            b: b.positions,
-            reject: std::array::from_fn(|lane| a.reject[lane] + b.reject[lane]),
-            accept: std::array::from_fn(|lane| a.accept[lane] + b.accept[lane]),
+            a: a.positions.map(|p| p.map(|x| [x; LANES])),
+            b: b.positions.map(|p| p.map(|x| [x; LANES])),
+            reject: [a.reject + b.reject; LANES],
+            accept: [a.accept + b.accept; LANES],
         };
         let verdicts = classify::<K, A, B>(&batch);
         // The oracle is right to 8 units of the pair's size.
