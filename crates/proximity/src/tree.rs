@@ -262,9 +262,7 @@ fn refit_leaf<const V: usize>(local: &[LocalVertex], node: &mut Node, leaf: &mut
                 low[k] = least(low[k], vertex[k]);
                 high[k] = greatest(high[k], vertex[k]);
             }
-            for k in 0..3 {
-                leaf.rows[lane].positions[j][k] = vertex[k];
-            }
+            leaf.rows[lane].positions[j].copy_from_slice(&vertex[..3]);
             check += vertex[3];
         }
         if check.is_nan() {
