@@ -2,6 +2,8 @@
 //!
 //! `cargo run --release -p bowknot --example falling_sheet`
 
+#![allow(clippy::print_stdout)]
+
 use bowknot::{Scene, Simulator};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -374,7 +374,7 @@ fn validate_pin(scene: &Scene, pin: &PinSpec, source: &Source, path: &str, probl
     if !(pin.start.is_finite() && pin.start >= 0.0) {
         faults.push(("start", format!("{} must be finite and at least 0", pin.start)));
     }
-    if !(pin.end > pin.start) {
+    if pin.end.is_nan() || pin.end <= pin.start {
         faults.push(("end", format!("{} must be later than start", pin.end)));
     }
     report(problems, source, path, &mut faults);
