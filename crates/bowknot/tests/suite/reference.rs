@@ -222,12 +222,12 @@ fn plain(doc: &str) -> String {
 
 /// The unit in the first brackets, and the text without it. Numbers without brackets have unit 1.
 fn split_unit(doc: &str, kind: &str) -> (String, String) {
-    if let Some((before, rest)) = doc.split_once(" [") {
-        if let Some((unit, after)) = rest.split_once(']') {
-            let is_unit = unit.len() < 10 && !unit.contains(',');
-            if is_unit && !before.ends_with('`') {
-                return (unit.to_owned(), format!("{before}{after}"));
-            }
+    if let Some((before, rest)) = doc.split_once(" [")
+        && let Some((unit, after)) = rest.split_once(']')
+    {
+        let is_unit = unit.len() < 10 && !unit.contains(',');
+        if is_unit && !before.ends_with('`') {
+            return (unit.to_owned(), format!("{before}{after}"));
         }
     }
     let number = ["f64", "usize", "u32"].iter().any(|word| kind.contains(word));
