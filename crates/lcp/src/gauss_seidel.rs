@@ -98,6 +98,7 @@ fn serial<const RESIDUAL: bool>(
     let sweep = Sweep::<_, _, _, _, RESIDUAL> {
         problem,
         params,
+        phases: Vec::new(),
         sweeps: sweeps as usize,
         y: cells(state.y),
         lambda: cells(state.lambda),
@@ -131,6 +132,7 @@ fn coloured<const RESIDUAL: bool>(
     let sweep = Sweep::<_, _, _, _, RESIDUAL> {
         problem,
         params,
+        phases: phases(problem),
         sweeps: sweeps as usize,
         y,
         lambda,
@@ -158,6 +160,8 @@ enum Kind {
 struct Sweep<'a, Y, L, F, T, const RESIDUAL: bool> {
     problem: &'a Problem<'a>,
     params: &'a Params,
+    /// The phases of one sweep, where threads share it.
+    phases: Vec<Phase>,
     sweeps: usize,
     y: Y,
     lambda: L,
@@ -229,35 +233,46 @@ where
         }
         *residual = largest;
     }
+}
 
-    /// Family of a phase, and its places.
-    fn phase(&self, phase: usize) -> (Kind, usize, usize) {
-        let mut phase = phase % self.phases_per_sweep();
-        for kind in [Kind::Ball, Kind::Row] {
-            let colours = self.colours(kind);
-            if phase < colours {
-                return self.colour(kind, phase);
+/// Places of one family's schedule between two waits of all threads.
+#[derive(Clone, Copy)]
+struct Phase {
+    kind: Kind,
+    begin: usize,
+    end: usize,
+    /// Places that a thread takes at once; all of them where they depend on each other.
+    chunk: usize,
+}
+
+/// The phases of one sweep: a colour each, but colours so small that one thread takes them whole are joined with
+/// their like. Contacts have a long tail of such colours, and waiting for the others costs as much as a dozen rows.
+fn phases(problem: &Problem<'_>) -> Vec<Phase> {
+    let mut phases = Vec::new();
+    let families = [
+        (Kind::Ball, problem.balls().schedule, problem.balls().swept(), BALL_CHUNK),
+        (Kind::Row, problem.rows().schedule, problem.rows().swept(), ROW_CHUNK),
+        (Kind::Friction, problem.friction().schedule, problem.friction().swept(), ROW_CHUNK),
+    ];
+    for (kind, schedule, swept, chunk) in families {
+        if schedule.starts.is_empty() {
+            phases.push(Phase { kind, begin: 0, end: swept, chunk: swept.max(1) });
+            continue;
+        }
+        let mut joined: Option<Phase> = None;
+        for ends in schedule.starts.windows(2) {
+            let (begin, end) = (ends[0] as usize, ends[1] as usize);
+            if end - begin > chunk {
+                phases.extend(joined.take());
+                phases.push(Phase { kind, begin, end, chunk });
+            } else {
+                let begin = joined.map_or(begin, |phase| phase.begin);
+                joined = Some(Phase { kind, begin, end, chunk: (end - begin).max(1) });
             }
-            phase -= colours;
         }
-        self.colour(Kind::Friction, phase)
+        phases.extend(joined);
     }
-
-    /// Number of phases of a family: without colours, it is one phase of one chunk.
-    fn colours(&self, kind: Kind) -> usize {
-        self.schedule(kind).starts.len().saturating_sub(1).max(1)
-    }
-
-    fn colour(&self, kind: Kind, colour: usize) -> (Kind, usize, usize) {
-        match self.schedule(kind).starts.get(colour..colour + 2) {
-            Some(ends) => (kind, ends[0] as usize, ends[1] as usize),
-            None => (kind, 0, self.swept(kind)),
-        }
-    }
-
-    fn phases_per_sweep(&self) -> usize {
-        self.colours(Kind::Ball) + self.colours(Kind::Row) + self.colours(Kind::Friction)
-    }
+    phases
 }
 
 impl<Y, L, F, T, const RESIDUAL: bool> Phases for Sweep<'_, Y, L, F, T, RESIDUAL>
@@ -268,23 +283,16 @@ where
     T: Slots<Vector2<f64>> + Sync,
 {
     fn count(&self) -> usize {
-        self.sweeps * self.phases_per_sweep()
+        self.sweeps * self.phases.len()
     }
 
     fn size(&self, phase: usize) -> (usize, usize) {
-        let (kind, begin, end) = self.phase(phase);
-        let size = end - begin;
-        // Without colours rows depend on each other: all in one chunk.
-        let chunk = match kind {
-            _ if self.schedule(kind).starts.is_empty() => size,
-            Kind::Ball => BALL_CHUNK,
-            Kind::Row | Kind::Friction => ROW_CHUNK,
-        };
-        (size, chunk.max(1))
+        let phase = self.phases[phase % self.phases.len()];
+        (phase.end - phase.begin, phase.chunk)
     }
 
     fn run(&self, phase: usize, places: Range<usize>, residual: &mut f64) {
-        let (kind, start, _) = self.phase(phase);
-        Sweep::run(self, kind, start + places.start, start + places.end, residual);
+        let phase = self.phases[phase % self.phases.len()];
+        Sweep::run(self, phase.kind, phase.begin + places.start, phase.begin + places.end, residual);
     }
 }

@@ -11,7 +11,7 @@
 use crate::{BackwardStep, Problem, State, Statistics};
 use bowknot_constraints::{ContactRows, EdgeForm, EdgeLimits, predicted_gap};
 use bowknot_geometry::{PairKind, Vector};
-use bowknot_lcp::{self as lcp, Family, Row, Schedule};
+use bowknot_lcp::{self as lcp, Family, Schedule};
 use std::time::Instant;
 
 /// Range of the coarse correction's factor: beyond it the linear model that it comes from says nothing.
@@ -29,9 +29,8 @@ pub struct LcpBackward {
     forces: Vec<Vector>,
     /// Scalar multipliers of the edges (linear form).
     edge_multipliers: Vec<f64>,
-    contacts: ContactRows,
     /// Contact rows, and in the linear form the edges' rows behind them.
-    rows: Vec<Row>,
+    contacts: ContactRows,
     row_starts: Vec<u32>,
     lambda: Vec<f64>,
     proximal: Vec<f64>,
@@ -110,6 +109,7 @@ impl BackwardStep for LcpBackward {
             .map(|v| self.residual(problem, state, v).norm())
             .fold(0.0, f64::max);
         statistics.complementarity_m = self
+            .contacts
             .rows
             .iter()
             .zip(&self.lambda)
@@ -200,15 +200,13 @@ impl LcpBackward {
                     })
             },
         );
-        self.rows.clear();
-        self.rows.extend_from_slice(&self.contacts.rows);
         self.row_starts.clear();
         self.row_starts.extend_from_slice(self.contacts.colour_starts());
         self.lambda.clear();
         self.lambda.extend(self.contacts.pair.iter().map(|&p| contacts.multipliers[p as usize]));
-        let contact_rows = self.rows.len();
+        let contact_rows = self.contacts.rows.len();
         if constraints.edge_form == EdgeForm::Linear {
-            self.edges.linearise(&state.x, &mut self.rows);
+            self.edges.linearise(&state.x, &mut self.contacts.rows);
             self.lambda.extend_from_slice(&self.edge_multipliers);
             let starts = self.edges.colour_starts().iter().skip(1);
             if self.row_starts.is_empty() {
@@ -236,10 +234,10 @@ impl LcpBackward {
         let ball_starts = if balls.is_empty() { &[][..] } else { self.edges.colour_starts() };
         self.y.clone_from(&self.free);
         let solve = || -> Result<(), lcp::Error> {
-            lcp::prepare_rows(&mut self.rows, &self.weights)?;
+            lcp::prepare_rows(&mut self.contacts.rows, &self.weights)?;
             let system = lcp::Problem::new(
                 &self.weights,
-                Family::new(&self.rows, schedule(&self.row_starts)),
+                Family::new(&self.contacts.rows, schedule(&self.row_starts)),
                 Family::new(balls, schedule(ball_starts)),
                 Family::default(),
             )?;

@@ -87,11 +87,15 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
         let mut statistics = Statistics::default();
         let limits = &problem.params.stop;
         let max_steps = limits.max_steps.unwrap_or_else(|| default_max_steps(call.time_step));
+        let mut waiting = Waiting::default();
 
         while state.step < max_steps {
-            search.update(problem, state, &mut statistics);
-            backward.project(problem, state, &mut statistics);
-            let report = forward.advance(problem, state, search, &mut statistics);
+            // In the pool from here on: parallel loops that are called from outside it pay for each crossing.
+            let report = rayon::scope(|_| {
+                search.update(problem, state, &mut statistics);
+                backward.project(problem, state, &mut statistics);
+                forward.advance(problem, state, search, &mut statistics)
+            });
 
             let accepted = AcceptedState {
                 step: state.step,
@@ -114,7 +118,8 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
                 }
             };
             let out_of_time = limits.max_seconds.is_some_and(|s| clock.elapsed().as_secs_f64() > s);
-            if statistics.converged || go_on.is_break() || out_of_time {
+            let stuck = waiting.update(problem, state);
+            if statistics.converged || go_on.is_break() || out_of_time || stuck {
                 break;
             }
         }
@@ -174,6 +179,46 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
         if statistics.converged {
             statistics.slowest_body = None;
         }
+    }
+}
+
+/// Notices when nothing goes on any more but obstacles or pins that are blocked for good: waiting for them would
+/// use up all steps of the call, and of every call after it.
+#[derive(Debug, Default)]
+struct Waiting {
+    /// Smallest distance so far by which the prescribed vertices are behind [m].
+    behind: Option<f64>,
+    /// Steps since that shrank noticeably.
+    steps: usize,
+}
+
+impl Waiting {
+    /// Steps without progress after which the call gives up.
+    const PATIENCE: usize = 16;
+    /// Progress that counts, in mean edge lengths.
+    const PROGRESS: f64 = 1e-3;
+
+    /// Whether the free vertices have arrived and the prescribed ones are stuck.
+    fn update(&mut self, problem: &Problem, state: &State) -> bool {
+        let left = |v: usize| (state.y[v] - state.x[v]).norm();
+        let farthest = |prescribed: bool| {
+            let vertices = (0..state.x.len()).filter(|&v| problem.prescribed[v] == prescribed);
+            vertices.map(left).fold(0.0, f64::max)
+        };
+        let edge = problem.lengths.edge;
+        let behind = farthest(true);
+        if self.behind.is_none_or(|best| behind < best - Self::PROGRESS * edge) {
+            self.behind = Some(behind);
+            self.steps = 0;
+            return false;
+        }
+        let tolerance = problem.params.stop.distance * edge;
+        if behind < tolerance || farthest(false) > tolerance {
+            self.steps = 0;
+            return false;
+        }
+        self.steps += 1;
+        self.steps >= Self::PATIENCE
     }
 }
 

@@ -5,7 +5,7 @@ use bowknot_geometry::Vector;
 use bowknot_stepper::StepReport;
 
 /// Lists the pairs that the other stages work on.
-pub trait Search {
+pub trait Search: Send {
     /// Starts a call.
     fn begin(&mut self, problem: &Problem, state: &mut State);
 
@@ -41,7 +41,7 @@ pub enum Reach<'a> {
 }
 
 /// Brings the target y toward the intersection-free region.
-pub trait BackwardStep {
+pub trait BackwardStep: Send {
     /// Starts a call.
     fn begin(&mut self, problem: &Problem, state: &State);
 
@@ -60,7 +60,7 @@ pub trait BackwardStep {
 }
 
 /// Moves x toward y without meeting anything on the way.
-pub trait ForwardStep {
+pub trait ForwardStep: Send {
     /// Starts a call.
     fn begin(&mut self, problem: &Problem, state: &State);
 

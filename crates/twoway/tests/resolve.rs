@@ -178,6 +178,7 @@ fn pins_go_to_their_target_and_wait_where_they_would_cut_through() {
     assert!((0..n).all(|i| x[i + n].z > x[i].z + 1e-3));
     let (x, report) = run(vec![true; 2 * n]);
     assert!(!report.converged && report.prescribed_behind_m > 0.1, "{report:?}");
+    assert!(report.steps < 60, "waiting for what cannot move uses up the steps: {}", report.steps);
     assert!((0..n).all(|i| x[i + n].z > x[i].z));
 }
 
