@@ -199,7 +199,10 @@ impl Stepper {
     /// paper's D^(l).
     pub fn limit_by_unlisted(&self, distance: f64, damping: f64) {
         let room = (0.5 * damping * distance - self.rounding().step).max(0.0);
-        (0..self.displacements.len()).into_par_iter().with_min_len(CHUNK).for_each(|v| self.limit_length(v, room));
+        (0..self.displacements.len())
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .for_each(|v| self.limit_length(v, room));
     }
 
     #[inline]

@@ -23,8 +23,11 @@ fn step(x: &[Point], d: &[Vector], floor: f64, planes: bool) -> (Vec<Point>, usi
     let mut stepper = Stepper::default();
     stepper.begin(x.len());
     stepper.aim(x, &y);
-    let frozen =
-        if planes { stepper.limit_by_planes(&contacts, 0.9) } else { stepper.limit_by_distances(&contacts, 0.9) };
+    let frozen = if planes {
+        stepper.limit_by_planes(&contacts, 0.9)
+    } else {
+        stepper.limit_by_distances(&contacts, 0.9)
+    };
     let mut next = x.to_vec();
     stepper.advance(&mut next);
     (next, frozen)
@@ -80,7 +83,11 @@ fn no_number_of_steps_closes_the_gap_without_a_floor() {
         (x, _) = step(&x, &d, 0.0, true);
         assert!(x[0].z > x[1].z, "crossed at {:?}", x[0]);
     }
-    assert!(x[0].z - x[1].z <= 40.0 * Rounding::new(1e4).frozen, "it should have come near: {}", x[0].z - x[1].z);
+    assert!(
+        x[0].z - x[1].z <= 40.0 * Rounding::new(1e4).frozen,
+        "it should have come near: {}",
+        x[0].z - x[1].z
+    );
 }
 
 #[test]
