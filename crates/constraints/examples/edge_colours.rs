@@ -1,0 +1,57 @@
+//! Colours of a sheet's edges: how many there are, how large, and that edges of one colour share no vertex that
+//! can move.
+//!
+//! `cargo run --release -p bowknot-constraints --example edge_colours`
+#![allow(clippy::print_stdout)]
+
+use bowknot_constraints::{EdgeLimits, EdgeReference};
+use bowknot_geometry::{Point, Topology};
+use std::error::Error;
+
+/// Vertices along each side.
+const SIDE: u32 = 40;
+/// Largest length of an edge against its rest length.
+const STRETCH: f64 = 1.1;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let rest: Vec<Point> = (0..SIDE * SIDE)
+        .map(|v| Point::new(0.01 * f64::from(v % SIDE), 0.01 * f64::from(v / SIDE), 0.0))
+        .collect();
+    let mut triangles = Vec::new();
+    for j in 0..SIDE - 1 {
+        for i in 0..SIDE - 1 {
+            let a = j * SIDE + i;
+            triangles.extend([[a, a + 1, a + SIDE + 1], [a, a + SIDE + 1, a + SIDE]]);
+        }
+    }
+    let topology = Topology::new(rest.len(), triangles, &[], &[]).map_err(|errors| errors[0].clone())?;
+    // One side is held: edges between held vertices need no limit, and held vertices cause no conflict.
+    let movable: Vec<bool> = (0..SIDE * SIDE).map(|v| v >= SIDE).collect();
+
+    let mut limits = EdgeLimits::new(&topology, &rest, &movable);
+    let (edges, rows) = (topology.edges.len(), limits.balls.len());
+    println!("{edges} edges, {rows} of them with a vertex that can move, {} colours", limits.colour_count());
+    for (colour, range) in limits.colour_starts().windows(2).enumerate() {
+        let (start, end) = (range[0] as usize, range[1] as usize);
+        println!("  colour {colour:2}: {:5} edges", end - start);
+        let mut taken = vec![false; rest.len()];
+        for ball in &limits.balls[start..end] {
+            for v in ball.vertices.map(|v| v as usize).into_iter().filter(|&v| movable[v]) {
+                assert!(
+                    !std::mem::replace(&mut taken[v], true),
+                    "vertex {v} is in two edges of colour {colour}"
+                );
+            }
+        }
+    }
+
+    // A call that starts from the sheet drawn out by a twentieth, and would draw it out by a fifth.
+    let drawn = |factor: f64| rest.iter().map(|p| Point::new(factor * p.x, p.y, p.z)).collect::<Vec<_>>();
+    limits.begin(&drawn(1.05), EdgeReference::Rest, STRETCH);
+    let stretch = limits.stretch(&drawn(1.2));
+    println!(
+        "drawn out by a fifth: {:.3} of the limit, {:.3} of the start, {:.3} of the rest length",
+        stretch.to_limit, stretch.to_start, stretch.to_rest
+    );
+    Ok(())
+}
