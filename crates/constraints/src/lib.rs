@@ -10,6 +10,13 @@ mod edges;
 mod params;
 mod volume;
 
+/// Points, pair kinds and separations, from which rows are made.
+pub use bowknot_geometry as geometry;
+/// The rows that are made, and the solvers that take them.
+pub use bowknot_lcp as lcp;
+/// Lists of pairs, from which rows are made.
+pub use bowknot_proximity as proximity;
+
 pub use colouring::Colouring;
 pub use contacts::{ContactRows, contact_row, predicted_gap};
 pub use desired::DesiredDistance;

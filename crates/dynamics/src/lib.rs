@@ -30,6 +30,9 @@ pub mod model;
 pub mod observe;
 pub mod params;
 
+/// Points and vectors: the types of states.
+pub use bowknot_geometry as geometry;
+
 pub use dynamics::{Dynamics, NewtonInfo};
 pub use error::{MaterialError, ModelError, ParamsError, StepError};
 pub use linear::cg::CgInfo;

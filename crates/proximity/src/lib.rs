@@ -26,6 +26,9 @@ mod statistics;
 mod traverse;
 mod tree;
 
+/// Points, topology and separations: the types of this crate's arguments and results.
+pub use bowknot_geometry as geometry;
+
 pub use model::{BodyFilter, CollisionModel, ModelError};
 pub use pairs::{Pair, PairList};
 pub use search::ProximitySearch;

@@ -8,6 +8,11 @@ mod params;
 mod rounding;
 mod stepper;
 
+/// Points and the separations of pairs, by which steps are limited.
+pub use bowknot_geometry as geometry;
+/// Lists of pairs, and the bodies that they belong to.
+pub use bowknot_proximity as proximity;
+
 pub use budgets::Budgets;
 pub use params::{Bound, Budget, StepperParams};
 pub use rounding::Rounding;

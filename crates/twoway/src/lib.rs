@@ -17,6 +17,17 @@ mod stages;
 mod state;
 mod statistics;
 
+/// Contact rows and edge limits, and their part of the parameters.
+pub use bowknot_constraints as constraints;
+/// Points, topology and separations.
+pub use bowknot_geometry as geometry;
+/// Rows and solvers, for backward steps of one's own.
+pub use bowknot_lcp as lcp;
+/// Pairs and the model of who collides with whom.
+pub use bowknot_proximity as proximity;
+/// The certified forward step, and its part of the parameters.
+pub use bowknot_stepper as stepper;
+
 pub use backward::LcpBackward;
 pub use error::ResolveError;
 pub use forward::CertifiedForward;

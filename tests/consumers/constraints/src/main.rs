@@ -1,9 +1,9 @@
 //! A vertex that wants to go through a triangle: one contact row, solved.
 #![allow(clippy::print_stdout, reason = "a command")]
 
+use bowknot_constraints::geometry::{PairKind, Point, Vector, separation};
+use bowknot_constraints::lcp::{Error, Family, Params, Problem, State, prepare_rows, solve_serial};
 use bowknot_constraints::{ContactForm, contact_row, predicted_gap};
-use bowknot_geometry::{PairKind, Point, Vector, separation};
-use bowknot_lcp::{Error, Family, Params, Problem, State, prepare_rows, solve_serial};
 
 fn main() -> Result<(), Error> {
     let x = [[0.2, 0.2, 0.1], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point::from);

@@ -1,8 +1,8 @@
 //! A strip of cotton held at one end swings down, a tenth of a second of it, and loses no mass.
 #![allow(clippy::print_stdout, reason = "a command")]
 
+use bowknot_dynamics::geometry::{Point, Vector};
 use bowknot_dynamics::{Body, ClothMaterial, Dynamics, DynamicsModel, DynamicsParams, StepError};
-use bowknot_geometry::{Point, Vector};
 
 fn main() -> Result<(), StepError> {
     // 30 cm x 6 cm, cells of 3 cm.

@@ -1,7 +1,7 @@
 //! All pairs nearer than 2 cm between two strips.
 #![allow(clippy::print_stdout, reason = "a command")]
 
-use bowknot_geometry::{PairKind, Point, Topology};
+use bowknot_proximity::geometry::{PairKind, Point, Topology};
 use bowknot_proximity::{CollisionModel, PairList, ProximitySearch};
 
 fn main() {

@@ -1,8 +1,8 @@
 //! A vertex is asked to go 10 km below a triangle; step by step it comes near, and never through.
 #![allow(clippy::print_stdout, reason = "a command")]
 
-use bowknot_geometry::{PairKind, Point, Vector, separation};
-use bowknot_proximity::{Pair, PairList};
+use bowknot_stepper::geometry::{PairKind, Point, Vector, separation};
+use bowknot_stepper::proximity::{Pair, PairList};
 use bowknot_stepper::{Contacts, Stepper};
 
 fn main() {

@@ -1,8 +1,8 @@
 //! Two triangles whose targets swap them: they end up close, and still in order.
 #![allow(clippy::print_stdout, reason = "a command")]
 
-use bowknot_geometry::{Point, Topology, Vector};
-use bowknot_proximity::CollisionModel;
+use bowknot_twoway::geometry::{Point, Topology, Vector};
+use bowknot_twoway::proximity::CollisionModel;
 use bowknot_twoway::{AcceptedState, Call, Params, ResolveError, Resolver};
 use std::ops::ControlFlow;
 
