@@ -22,8 +22,8 @@ pub struct StepperParams {
     pub budget_min: f64,
     /// Largest search radius, likewise (default 0.25; larger ones multiply pairs; paper: D_max/2 = 4 delta / 2).
     pub budget_max: f64,
-    /// Travel of a call, in mean edge lengths, above which the search follows the vertices along their
-    /// paths on a common clock. Larger: fewer, dearer searches in free flight. `inf` switches it off. Default 2.
+    /// Travel wanted, in mean edge lengths, above which the search follows the vertices along their
+    /// paths on a common clock, until a contact cuts such a step short. Larger: more steps in free flight. `inf` switches it off. Default 0.6.
     pub swept_travel: f64,
 }
 
@@ -56,7 +56,7 @@ impl Default for StepperParams {
             budget: Budget::PerVertex,
             budget_min: 0.1,
             budget_max: 0.25,
-            swept_travel: 2.0,
+            swept_travel: 0.6,
         }
     }
 }

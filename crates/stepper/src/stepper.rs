@@ -128,6 +128,54 @@ impl Stepper {
         frozen.into_inner()
     }
 
+    /// As [`Self::limit_by_planes`], for vertices that move along `paths` [m] on a clock common to all, straying from
+    /// there by at most their `tubes` [m]: pairs whose slab, carried along, stays open are left alone, so that motion
+    /// common to both sides is free.
+    ///
+    /// With a slab that moves by t f, side *a* closes it by at most t max over a of -n.(u_i - f) plus its tube, side
+    /// *b* by t max over b of n.(u_j - f) plus its own; f cancels in the sum, which is linear in t and so largest at an end.
+    pub fn limit_by_carried_planes(
+        &self,
+        contacts: &Contacts<'_>,
+        paths: &[Vector],
+        tubes: &[f64],
+        damping: f64,
+    ) -> usize {
+        let rounding = self.rounding();
+        let frozen = AtomicUsize::new(0);
+        for kind in PairKind::ALL {
+            let (count, side_a) = (kind.vertex_count(), kind.side_a());
+            contacts.pairs.range(kind).into_par_iter().with_min_len(CHUNK).for_each(|p| {
+                let vertices = &contacts.pairs.pairs()[p].vertices;
+                let separation = &contacts.separations[p];
+                if separation.width <= rounding.frozen {
+                    if self.freeze(kind, vertices) {
+                        frozen.fetch_add(1, Ordering::Relaxed);
+                    }
+                    return;
+                }
+                let side = |places: std::ops::Range<usize>, sign: f64| {
+                    let mut closing = f64::NEG_INFINITY;
+                    let mut tube = 0.0f64;
+                    for &v in &vertices[places] {
+                        closing = closing.max(sign * separation.normal.dot(&paths[v as usize]));
+                        tube = tube.max(tubes[v as usize]);
+                    }
+                    (closing, tube)
+                };
+                let (closing_a, tube_a) = side(0..side_a, -1.0);
+                // A half-space rests.
+                let (closing_b, tube_b) = if side_a < count { side(side_a..count, 1.0) } else { (0.0, 0.0) };
+                let closing = (closing_a + closing_b).max(0.0) + tube_a + tube_b;
+                let budget = damping * (separation.width - contacts.floors[p]) - 2.0 * rounding.step;
+                if closing > budget {
+                    self.limit_pair(kind, vertices, separation, contacts.floors[p], damping, rounding.step);
+                }
+            });
+        }
+        frozen.into_inner()
+    }
+
     #[inline]
     fn limit_pair(
         &self,

@@ -7,8 +7,9 @@ use std::time::Instant;
 
 /// Longest step of a swept search, in local edge lengths.
 const SWEPT_REACH: f64 = 4.0;
-/// Radius of the tube around a swept path that a vertex may stray in, in local edge lengths.
-const SWEPT_TUBE: f64 = 0.3;
+/// Radius of the tube around a swept path that a vertex may stray in, in local edge lengths. Small enough that
+/// neighbours in the mesh, some third of an edge apart, stay clear of each other.
+const SWEPT_TUBE: f64 = 0.1;
 /// Share of that radius that may really be used; the rest covers rounding.
 const SWEPT_USABLE: f64 = 1.0 - 1e-3;
 /// Searches along one step before it is shortened instead.
@@ -20,13 +21,16 @@ pub struct CertifiedForward {
     stepper: Stepper,
     /// Step sizes that the swept search assumed.
     assumed: Vec<f64>,
-    path: Vec<Vector>,
+    paths: Vec<Vector>,
     tubes: Vec<f64>,
+    /// Whether a long step of this call had to be cut short: hard contact, where looking far ahead does not pay.
+    crowded: bool,
 }
 
 impl ForwardStep for CertifiedForward {
     fn begin(&mut self, problem: &Problem, _: &State) {
         self.stepper.begin(problem.rest.len());
+        self.crowded = false;
     }
 
     fn advance(
@@ -39,20 +43,19 @@ impl ForwardStep for CertifiedForward {
         let clock = Instant::now();
         let searching = statistics.seconds.search;
         self.stepper.aim(&state.x, &state.y);
-        let damping = problem.params.stepper.damping;
-        let contacts = state.contacts.as_contacts();
-        statistics.frozen_pairs += match problem.params.stepper.bound {
-            Bound::Planes => self.stepper.limit_by_planes(&contacts, damping),
-            Bound::Isotropic => self.stepper.limit_by_distances(&contacts, damping),
-        };
-        match search.reach() {
-            Reach::Distance(unlisted) => self.stepper.limit_by_unlisted(unlisted, damping),
-            Reach::Balls(_) if self.wants_far(problem) => {
-                self.limit_by_sweep(problem, state, search, statistics);
-            }
-            Reach::Balls(budgets) => {
-                if self.stepper.limit_by_budgets(&state.x, budgets) {
-                    search.request();
+        if !self.sweep(problem, state, search, statistics) {
+            let damping = problem.params.stepper.damping;
+            let contacts = state.contacts.as_contacts();
+            statistics.frozen_pairs += match problem.params.stepper.bound {
+                Bound::Planes => self.stepper.limit_by_planes(&contacts, damping),
+                Bound::Isotropic => self.stepper.limit_by_distances(&contacts, damping),
+            };
+            match search.reach() {
+                Reach::Distance(unlisted) => self.stepper.limit_by_unlisted(unlisted, damping),
+                Reach::Balls(budgets) => {
+                    if self.stepper.limit_by_budgets(&state.x, budgets) {
+                        search.request();
+                    }
                 }
             }
         }
@@ -65,33 +68,35 @@ impl ForwardStep for CertifiedForward {
 }
 
 impl CertifiedForward {
-    /// Whether the known pairs would let some vertex travel so far that following it pays.
-    fn wants_far(&self, problem: &Problem) -> bool {
-        let far = problem.params.stepper.swept_travel * problem.lengths.edge;
-        far.is_finite()
-            && self.stepper.displacements().iter().enumerate().any(|(v, d)| {
-                let length = d.norm();
-                length > far && self.stepper.alpha(v) * length > far
-            })
-    }
-
-    /// Limits the step by every pair that could meet along it, on a clock common to all vertices.
+    /// Takes a long step where one pays: limits it by every pair that could meet along it, on a clock common to
+    /// all vertices. Returns whether it did; if not, the step sizes so far are valid limits, not yet all.
     ///
     /// Vertices are assumed to move along u = alpha_0 d; the search lists every pair whose boxes, moving so and
-    /// inflated by the tubes, meet at one and the same time. The planes of the new pairs lower alpha. Where
-    /// (alpha_0 - alpha) |d| stays within the tube for all vertices, an unlisted pair cannot meet at any common
+    /// inflated by the tubes, meet at one and the same time. A listed pair whose slab stays open when it is carried
+    /// along is as safe as an unlisted one while every vertex stays in its tube; the others' planes lower alpha. Where
+    /// (alpha_0 - alpha) |d| stays within the tube for all vertices, the first two kinds cannot meet at any common
     /// time; otherwise alpha_0 is lowered to alpha and the search repeated, and at last the whole step is
     /// scaled: with tau = tube / worst and alpha <- min(alpha, tau alpha_0) the vertices follow the assumed paths
     /// on the clock tau t, and stray by at most tau (alpha_0 - alpha) |d| <= tube, since alpha >= tau alpha.
-    fn limit_by_sweep(
+    fn sweep(
         &mut self,
         problem: &Problem,
         state: &mut State,
         search: &mut dyn Search,
         statistics: &mut Statistics,
-    ) {
+    ) -> bool {
+        let params = &problem.params.stepper;
+        let far = params.swept_travel * problem.lengths.edge;
+        let longest = |stepper: &Stepper| {
+            let displacements = stepper.displacements().iter().enumerate();
+            displacements.map(|(v, d)| stepper.alpha(v) * d.norm()).fold(0.0, f64::max)
+        };
+        let usable = params.bound == Bound::Planes && matches!(search.reach(), Reach::Balls(_));
+        if !usable || self.crowded || !far.is_finite() || longest(&self.stepper) <= far {
+            return false;
+        }
         let count = state.x.len();
-        let damping = problem.params.stepper.damping;
+        let damping = params.damping;
         self.tubes.clear();
         for v in 0..count {
             let (length, h) = (self.stepper.displacements()[v].norm(), problem.local_edge[v]);
@@ -100,16 +105,16 @@ impl CertifiedForward {
                 self.stepper.limit(v, SWEPT_REACH * h / length);
             }
         }
-        self.stepper.limit_by_bodies(&problem.model, &problem.obstacle_vertices);
+        // The pairs known so far tell whether anything can go far at all, before any search is paid for.
+        self.assume();
+        self.limit_beside(problem, state, damping, statistics);
+        if longest(&self.stepper) <= far {
+            return false;
+        }
         for round in 1..=SWEPT_ROUNDS {
-            self.assumed.clear();
-            self.assumed.extend((0..count).map(|v| self.stepper.alpha(v)));
-            self.path.clear();
-            self.path.extend(self.stepper.displacements().iter().zip(&self.assumed).map(|(d, a)| *a * *d));
-            search.update_swept(problem, state, &self.path, &self.tubes, statistics);
-            let contacts = state.contacts.as_contacts();
-            statistics.frozen_pairs += self.stepper.limit_by_planes(&contacts, damping);
-            self.stepper.limit_by_bodies(&problem.model, &problem.obstacle_vertices);
+            self.assume();
+            search.update_swept(problem, state, &self.paths, &self.tubes, statistics);
+            self.limit_beside(problem, state, damping, statistics);
             let worst = (0..count)
                 .filter(|&v| self.tubes[v] > 0.0)
                 .map(|v| {
@@ -119,13 +124,32 @@ impl CertifiedForward {
                 })
                 .fold(0.0, f64::max);
             if worst <= 1.0 {
-                return;
+                break;
             }
             if round == SWEPT_ROUNDS {
+                self.crowded = true;
                 for v in 0..count {
                     self.stepper.limit(v, self.assumed[v] / worst);
                 }
             }
         }
+        true
+    }
+
+    /// Takes the present step sizes as what vertices are assumed to do.
+    fn assume(&mut self) {
+        let displacements = self.stepper.displacements();
+        self.assumed.clear();
+        self.assumed.extend((0..displacements.len()).map(|v| self.stepper.alpha(v)));
+        self.paths.clear();
+        self.paths.extend(displacements.iter().zip(&self.assumed).map(|(d, a)| *a * *d));
+    }
+
+    /// Limits the step by the listed pairs that would not stay clear along the assumed paths.
+    fn limit_beside(&self, problem: &Problem, state: &State, damping: f64, statistics: &mut Statistics) {
+        let contacts = state.contacts.as_contacts();
+        statistics.frozen_pairs +=
+            self.stepper.limit_by_carried_planes(&contacts, &self.paths, &self.tubes, damping);
+        self.stepper.limit_by_bodies(&problem.model, &problem.obstacle_vertices);
     }
 }

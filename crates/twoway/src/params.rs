@@ -30,7 +30,7 @@ pub struct BackwardParams {
     /// Remaining distance below which `polish_sweeps` applies, in local edge lengths. Default 1.
     pub polish_distance: f64,
     /// Strength of the proximal term on edges: mu_i += edge_proximal * sum lambda_e / |e|. 0 switches it off; smaller
-    /// ones come nearer to the true projection until edges wander (linear form: 2). Default 0.5.
+    /// ones come nearer to the true projection until edges wander (linear form: 2). Default 0.35.
     pub edge_proximal: f64,
     /// Strength of the proximal term on contacts: mu_i += contact_proximal * sum lambda_p |g| / h. Default 0.5.
     pub contact_proximal: f64,
@@ -54,7 +54,7 @@ pub struct StopParams {
     /// `StopRule::Travel`: largest distance not travelled, in mean edge lengths. Default 0.03.
     pub distance: f64,
     /// `StopRule::Travel`: largest distance, in mean edge lengths, of a body as a whole from where the forces on it
-    /// balance. Default 0.1.
+    /// balance. Default 0.2.
     pub imbalance: f64,
     /// `StopRule::Travel`: how far the stretch limits may be exceeded, relative. Default 0.02.
     pub stretch_tolerance: f64,
@@ -85,7 +85,7 @@ impl Default for BackwardParams {
             sweeps: 8,
             polish_sweeps: 64,
             polish_distance: 1.0,
-            edge_proximal: 0.5,
+            edge_proximal: 0.35,
             contact_proximal: 0.5,
             coarse_correction: true,
             active_rows: true,
@@ -100,7 +100,7 @@ impl Default for StopParams {
             max_seconds: None,
             rule: StopRule::Travel,
             distance: 0.03,
-            imbalance: 0.1,
+            imbalance: 0.2,
             stretch_tolerance: 0.02,
             clock: 1e-4,
         }

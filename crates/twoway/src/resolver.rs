@@ -159,7 +159,7 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
     fn finish(&mut self, statistics: &mut Statistics) {
         let Self { problem, state, search, backward, .. } = self;
         // Contact geometry at the final x, for the smallest gap.
-        search.update(problem, state, statistics);
+        search.refresh(problem, state, statistics);
         backward.finish(problem, state, statistics);
         statistics.steps = state.step;
         statistics.pairs = state.contacts.pairs.len();

@@ -172,13 +172,11 @@ impl Search for BudgetedSearch {
             self.unlisted -= 2.0 * moved * (1.0 + 1e-12);
             self.requested = self.unlisted < 2.0 * params.budget_min * problem.lengths.delta;
         }
-        let clock = Instant::now();
         if !self.requested {
-            self.evaluate_moved(problem, state, statistics);
             statistics.skipped.searches += 1;
-            statistics.seconds.evaluate += clock.elapsed().as_secs_f64();
-            return;
+            return self.refresh(problem, state, statistics);
         }
+        let clock = Instant::now();
         self.set_budgets(problem, state);
         std::mem::swap(&mut self.old, &mut state.contacts.pairs);
         let contacts = &mut state.contacts;
@@ -204,9 +202,9 @@ impl Search for BudgetedSearch {
         statistics: &mut Statistics,
     ) {
         let clock = Instant::now();
-        let margin = Self::margin(problem);
+        // No margin for contacts to come: the next update searches again, and lists them.
         self.radii.clear();
-        self.radii.extend(deviations.iter().map(|r| r + margin));
+        self.radii.extend_from_slice(deviations);
         std::mem::swap(&mut self.old, &mut state.contacts.pairs);
         let contacts = &mut state.contacts;
         self.search.search_swept(
@@ -221,6 +219,12 @@ impl Search for BudgetedSearch {
         self.requested = true;
         statistics.searches += 1;
         statistics.seconds.search += clock.elapsed().as_secs_f64();
+    }
+
+    fn refresh(&mut self, problem: &Problem, state: &mut State, statistics: &mut Statistics) {
+        let clock = Instant::now();
+        self.evaluate_moved(problem, state, statistics);
+        statistics.seconds.evaluate += clock.elapsed().as_secs_f64();
     }
 
     fn request(&mut self) {

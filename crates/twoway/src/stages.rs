@@ -24,6 +24,9 @@ pub trait Search: Send {
         statistics: &mut Statistics,
     );
 
+    /// Brings the contact geometry of the listed pairs up to date with `state.x`, without listing others.
+    fn refresh(&mut self, problem: &Problem, state: &mut State, statistics: &mut Statistics);
+
     /// Asks for a fresh search in the next update.
     fn request(&mut self);
 

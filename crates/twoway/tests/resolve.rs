@@ -174,7 +174,7 @@ fn pins_go_to_their_target_and_wait_where_they_would_cut_through() {
         (x, report)
     };
     let (x, report) = run((0..2 * n).map(|i| i < n).collect());
-    assert!(report.converged && report.prescribed_behind_m < 1e-3, "{report:?}");
+    assert!(report.converged && report.prescribed_behind_m < 0.03 * mean_edge(), "{report:?}");
     assert!((0..n).all(|i| x[i + n].z > x[i].z + 1e-3));
     let (x, report) = run(vec![true; 2 * n]);
     assert!(!report.converged && report.prescribed_behind_m > 0.1, "{report:?}");
