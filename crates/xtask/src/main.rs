@@ -1,17 +1,22 @@
-//! Developer commands: `cargo xtask check` runs everything that CI runs.
+//! Developer commands: `cargo xtask check` runs everything that CI runs, `cargo xtask figures` measures.
 // A command for people and CI logs: printing is what it does.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod check;
 mod docs;
+mod figures;
 
 use std::process::ExitCode;
 
 const USAGE: &str = "\
 Usage: cargo xtask check [--fast]
+       cargo xtask figures [--quick] [--out DIR]
 
 check   run what CI runs, in named steps: format, clippy, docs, wasm, a small run, tests
-        --fast   format, clippy and unit tests only";
+        --fast   format, clippy and unit tests only
+figures measure and rewrite docs/figures.md: some ten minutes, best on an idle machine
+        --quick  smaller scenes, the page goes to DIR
+        --out    folder for runs and single measurements [default: target/xtask/figures]";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -19,6 +24,7 @@ fn main() -> ExitCode {
     match arguments.as_slice() {
         ["check"] => check::run(false),
         ["check", "--fast"] => check::run(true),
+        ["figures", rest @ ..] if let Some(options) = figures::Options::parse(rest) => figures::run(&options),
         ["help" | "--help" | "-h"] => {
             println!("{USAGE}");
             ExitCode::SUCCESS
