@@ -1,6 +1,8 @@
 //! A mass-spring cloth of a few lines that never intersects: the resolver behind somebody's own dynamics.
 //!
 //! `cargo run --release -p bowknot-twoway --example mass_spring -- [cells] [frames]`
+#![allow(clippy::print_stdout)] // an example's purpose is to print
+
 use bowknot_geometry::{HalfSpace, Point, Topology, Vector};
 use bowknot_proximity::{BodyFilter, CollisionModel};
 use bowknot_twoway::{Call, Params, Resolver};

@@ -1,4 +1,5 @@
 //! Calls of the resolver against closed forms, limits, and the promises of the README.
+#![allow(clippy::unwrap_used)] // helpers of tests are outside the functions that the lint knows as tests
 
 use bowknot_geometry::{HalfSpace, Point, Topology, Vector};
 use bowknot_proximity::{BodyFilter, CollisionModel};
