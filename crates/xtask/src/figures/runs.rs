@@ -1,6 +1,7 @@
 //! Figures of whole runs: the large needle, time by stage, memory, free flight, threads.
 
 use super::command::{Bench, Run};
+use super::machine::Machine;
 use super::scenes::{Lengths, drape, needle as needle_spec, recorded, sphere, tiny};
 use super::table::{Table, largest, mean, mean_max, percent, short, smallest, verdict};
 
@@ -152,6 +153,7 @@ pub fn free_flight(bench: &Bench) -> Result<String, String> {
 /// Wall time of two threads against one.
 pub fn threads(bench: &Bench) -> Result<String, String> {
     let (one, two) = (sphere(bench.size, 1), sphere(bench.size, 2));
+    let load = Machine::load();
     // In turns, and of each time step the faster of two: another process may have been in the way.
     let mut runs: [Vec<Run>; 2] = [vec![bench.run(&one)?], vec![bench.run(&two)?]];
     runs[0].push(bench.run_again(&one)?);
@@ -181,7 +183,8 @@ pub fn threads(bench: &Bench) -> Result<String, String> {
     let counted = rows.iter().filter(|&&count| count > 0.0).count();
     Ok(format!(
         "`bowknot run sphere`, {} vertices: wall seconds of {counted} time steps in contact, of each the faster of two runs. Goal for whole\n\
-         steps: 1.6, aim 1.9. {}\n\n{}\n{}: {}.\n",
+         steps: 1.6, aim 1.9. {}\n\n{}\n{}: {}. The load average was {load} at the start of these runs; above 1 or so, two\n\
+         threads find no second core and the ratio says little.\n",
         short(runs[0][0].of("vertices")),
         if same { "Energies agree to the last bit." } else { "**Energies differ between the runs.**" },
         table.markdown(),
