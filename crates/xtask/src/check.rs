@@ -75,18 +75,19 @@ fn all_steps(root: &Path) -> Vec<Step> {
         println!("==> wasm: skipped, the target is missing: rustup target add {WASM_TARGET}");
     }
     steps.push(Step::new("build tests", cargo(root, "test --release --workspace --no-run")));
-    // A fresh folder each time: `run` refuses one that holds a run.
-    let out = target_folder(root).join("xtask").join("drape");
-    if out.exists()
-        && let Err(error) = std::fs::remove_dir_all(&out)
-    {
-        eprintln!("cannot remove {}: {error}", out.display());
-    }
     let mut drape = cargo(root, "run --release -- run drape --scale 0.4 --frames 40 --check --out");
-    drape.arg(out);
-    steps.push(Step::new("run drape --check", drape));
+    drape.arg(target_folder(root).join("xtask").join("drape"));
+    steps.push(Step { run: run_afresh, ..Step::new("run drape --check", drape) });
     steps.push(Step::new("tests", cargo(root, "test --release --workspace")));
     steps
+}
+
+/// Runs a command whose last argument is its output folder, which must not exist: `run` refuses one that holds a run.
+fn run_afresh(command: &mut Command) -> std::io::Result<bool> {
+    if let Some(out) = command.get_args().last().map(Path::new).filter(|out| out.exists()) {
+        std::fs::remove_dir_all(out)?;
+    }
+    Ok(command.status()?.success())
 }
 
 fn format(root: &Path) -> Step {
