@@ -7,3 +7,5 @@ mod paths;
 mod generators;
 // No step of the forward step, alone or within the two-way loop, ever intersects.
 mod safety;
+// What the fuzz targets check holds for seeded random bytes.
+mod fuzz_bodies;

@@ -15,7 +15,7 @@ use std::ops::ControlFlow;
 /// Distances of targets [m].
 const MAGNITUDES: [f64; 10] = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0, 1000.0];
 
-fn seeds() -> u64 {
+pub fn seeds() -> u64 {
     std::env::var("BOWKNOT_SEEDS").ok().and_then(|text| text.parse().ok()).unwrap_or(2)
 }
 

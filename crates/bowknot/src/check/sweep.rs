@@ -13,7 +13,7 @@
 //! product with n three more per term: 6u to first order, against m = max(|D0|, |D1|) per coordinate.
 //! [`ROUNDING`] = 8u covers the terms of higher order and the rounding of the bound itself.
 
-use bowknot_geometry::{PairKind, Point, Vector, distance};
+use bowknot_geometry::{PairKind, Point, Vector, distance, separation};
 
 /// Number of times the path is halved at most.
 const HALVINGS: i32 = 40;
@@ -54,7 +54,9 @@ impl<'a> Sweep<'a> {
     pub fn hit(&self) -> Option<f64> {
         let shortest = 0.5f64.powi(HALVINGS);
         let (mut start, mut length) = (0.0, 1.0);
-        let mut direction = None;
+        // What separates the sides at the start often does so all the way; and from a gap that is tiny against the
+        // elements or the path, hardly any other guess does.
+        let mut direction = Some(separation::separate(self.kind, self.ends[0]).normal);
         for _ in 0..MAX_INTERVALS {
             let end = f64::min(start + length, 1.0);
             if self.certify(start, end, &mut direction) {

@@ -245,3 +245,23 @@ fn reports_do_not_depend_on_threads() {
     assert_eq!(one, run(2));
     assert_eq!(one, run(7));
 }
+
+/// Two edges 4e8 m long, 4 cm apart, on a path of 1e8 m along which they keep 7 mm (by rational arithmetic: all
+/// differences of their ends are positive along one direction, at both ends of the path). The direction of closest points as
+/// `f64` has them is too rough to see it.
+#[test]
+fn narrow_gaps_of_huge_edges_are_certified() {
+    let x0 = [
+        [-1000000.0315868761, 0.11427178862742784, -0.07224481686574157],
+        [-338611411.3229854, -324319623.4983467, 220643678.2807948],
+        [-41666578.168637924, -39065531.70004228, 26577369.9443615],
+        [-56386489.55521001, -193719254.70931104, 14914700.923483405],
+    ];
+    let x1 = [
+        [-1000000.029712478, 0.11816476926486423, -0.07719515026890142],
+        [-386808574.64544976, -370619260.69867826, 252142611.78713953],
+        [-134288907.64783743, -128041312.77454889, 87110073.46226354],
+        [-56382338.34993558, -193721133.8840941, 14908894.621463442],
+    ];
+    assert_eq!(hits(&pair_judge(true), &x0.map(Point::from), &x1.map(Point::from)), 0);
+}

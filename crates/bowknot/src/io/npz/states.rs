@@ -125,8 +125,9 @@ fn bodies(archive: &mut Archive<'_>, obstacle: &[bool]) -> Result<Vec<u32>, IoEr
     let Some(values) = archive.column("body", Some(obstacle.len()))? else {
         return Ok(obstacle.iter().map(|&o| u32::from(o)).collect());
     };
-    // Bodies are counted, so that a stray large number would cost memory; none has more bodies than vertices.
-    let limit = values.len() as f64;
+    // Bodies are counted, so that a stray large number would cost memory; none has more bodies than vertices, but that
+    // of obstacles is 1 by default even where there is no deformable vertex.
+    let limit = values.len().max(2) as f64;
     if let Some(vertex) = values.iter().position(|&b| !(b >= 0.0 && b < limit && b.fract() == 0.0)) {
         let body = values[vertex];
         return Err(

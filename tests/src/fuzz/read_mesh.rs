@@ -1,0 +1,178 @@
+//! No file makes a reader panic, and what was read can be written and read again.
+
+use super::Draw;
+use bowknot::check::{Judge, Parts, StateOptions};
+use bowknot::io::{
+    FrameStack, Import, IoError, Mesh, States, read_mesh as read, read_obj, read_ply, write_obj, write_ply,
+};
+use bowknot_geometry::{Topology, check_mesh};
+use ndarray::ArrayD;
+use ndarray_npy::{NpzWriter, WriteNpzError};
+use std::fs::{self, File};
+use std::path::Path;
+
+/// Arrays of a collision problem and of a stack of frames, with their columns.
+const ARRAYS: [(&str, usize); 14] = [
+    ("x", 3),
+    ("y", 3),
+    ("F", 3),
+    ("E", 2),
+    ("P", 1),
+    ("rest", 3),
+    ("mass", 1),
+    ("fixed", 1),
+    ("O", 1),
+    ("body", 1),
+    ("planes", 4),
+    ("dt", 0),
+    ("X", 3),
+    ("T", 4),
+];
+
+/// The bytes as an OBJ, PLY or NPZ file, by the first of them, or as the arrays of an NPZ file: readers give a sound
+/// mesh or an error that says something, and do not panic.
+pub fn read_mesh(data: &[u8]) -> bool {
+    let Some((&choice, bytes)) = data.split_first() else { return false };
+    let Ok(folder) = tempfile::tempdir() else { return false };
+    let file = |ending: &str| folder.path().join(format!("mesh.{ending}"));
+    let write = |path: &Path| fs::write(path, bytes).is_ok();
+    match choice % 4 {
+        0 => write(&file("obj")) && mesh(&file("obj"), |path, mesh| write_obj(path, &mesh.view()), read_obj),
+        1 => write(&file("ply")) && mesh(&file("ply"), |path, mesh| write_ply(path, &mesh.view()), read_ply),
+        2 => write(&file("npz")) && archive(&file("npz")),
+        _ => write_arrays(&file("npz"), &mut Draw::new(bytes)).is_ok() && archive(&file("npz")),
+    }
+}
+
+fn check_error(error: &IoError) -> bool {
+    assert!(error.to_string().contains("mesh."), "an error names its file: {error}");
+    false
+}
+
+fn mesh(
+    path: &Path,
+    write: impl Fn(&Path, &Mesh) -> Result<(), IoError>,
+    read_again: impl Fn(&Path, &Import) -> Result<Mesh, IoError>,
+) -> bool {
+    let import = Import::default();
+    let mut mesh = match read(path, &import) {
+        Ok(mesh) => mesh,
+        Err(error) => return check_error(&error),
+    };
+    check_sound(&mesh);
+    let again = write(path, &mesh).and_then(|()| read_again(path, &import));
+    let again = again.unwrap_or_else(|error| panic!("what was written is refused: {error}"));
+    assert_eq!(again.positions, mesh.positions);
+    assert_eq!(again.triangles, mesh.triangles);
+    assert_eq!(again.strands, mesh.strands);
+    assert_eq!(again.particles, mesh.particles);
+    mesh.drop_unused_vertices();
+    check_sound(&mesh);
+    true
+}
+
+/// Indices are in range, numbers finite, and neither the topology nor the judge panics.
+fn check_sound(mesh: &Mesh) {
+    let Mesh { positions, triangles, strands, particles, obstacle, body } = mesh;
+    let count = positions.len();
+    let named = triangles.iter().flatten().chain(strands.iter().flatten()).chain(particles);
+    assert!(named.into_iter().all(|&v| (v as usize) < count), "an index is out of range");
+    assert!(positions.iter().all(|p| p.iter().all(|c| c.is_finite())), "a coordinate is not finite");
+    assert!(obstacle.as_ref().is_none_or(|flags| flags.len() == count), "obstacle flags of some vertices");
+    assert!(body.as_ref().is_none_or(|bodies| bodies.len() == count), "bodies of some vertices");
+
+    check_mesh(positions, triangles);
+    let is_simple = Topology::new(count, triangles.clone(), strands, particles).is_ok();
+    let parts = Parts { triangles, strands, particles, vertex_count: count, ..Parts::default() };
+    match Judge::new(&parts) {
+        Ok(judge) => {
+            // Coordinates beyond the judge's range are refused, which is no panic.
+            drop(judge.check_state(positions, &StateOptions::default()));
+        }
+        Err(error) => assert!(!is_simple, "the judge refuses what the topology takes: {error}"),
+    }
+}
+
+/// As a collision problem and as a stack of frames.
+fn archive(path: &Path) -> bool {
+    let frames = match FrameStack::read(path) {
+        Ok(frames) => {
+            let again = frames.write(path).and_then(|()| FrameStack::read(path));
+            assert_eq!(again.unwrap_or_else(|e| panic!("what was written is refused: {e}")), frames);
+            true
+        }
+        Err(error) => check_error(&error),
+    };
+    // What wrote the frames left nothing else in the archive.
+    if frames {
+        return true;
+    }
+    match States::read(path) {
+        Ok(states) => {
+            check_states(&states);
+            let again = states.write(path).and_then(|()| States::read(path));
+            let again = again.unwrap_or_else(|error| panic!("what was written is refused: {error}"));
+            if states.masses.iter().all(|mass| !mass.is_nan()) {
+                assert_eq!(again, states);
+            }
+            true
+        }
+        Err(error) => check_error(&error),
+    }
+}
+
+fn check_states(states: &States) {
+    let n = states.x.len();
+    let lengths = [
+        states.y.len(),
+        states.rest.len(),
+        states.masses.len(),
+        states.fixed.len(),
+        states.obstacle.len(),
+        states.body.len(),
+    ];
+    assert!(n > 0 && lengths.iter().all(|&length| length == n), "{n} vertices, {lengths:?}");
+    for half_space in &states.half_spaces {
+        assert!((half_space.normal.norm() - 1.0).abs() < 1e-12, "{half_space:?}");
+    }
+}
+
+/// An archive with some of the arrays, mostly of the right shape.
+fn write_arrays(path: &Path, draw: &mut Draw<'_>) -> Result<(), WriteNpzError> {
+    let file = File::create(path).map_err(ndarray_npy::WriteNpyError::Io)?;
+    let mut archive = if draw.below(2) == 0 { NpzWriter::new(file) } else { NpzWriter::new_compressed(file) };
+    let vertices = 1 + draw.below(6);
+    let is_stack = draw.below(4) == 0;
+    for (name, columns) in ARRAYS {
+        let (needed, foreign): (&[&str], _) = if is_stack { (&["X"], "x") } else { (&["x", "y"], "X") };
+        if name == foreign || !needed.contains(&name) && draw.below(3) == 0 {
+            continue;
+        }
+        let is_element = matches!(name, "F" | "E" | "P" | "T" | "planes");
+        let rows = if draw.rarely(4) || is_element { draw.below(4) } else { vertices };
+        let columns = if draw.rarely(4) { draw.below(5) } else { columns };
+        let shape = match columns {
+            0 => vec![],
+            1 => vec![rows],
+            _ if name == "X" && draw.below(2) == 0 => vec![1 + draw.below(2), rows, columns],
+            _ => vec![rows, columns],
+        };
+        let is_index = is_element && name != "planes" || matches!(name, "fixed" | "O" | "body");
+        let mut number = || match draw.byte() {
+            0..4 => draw.any(),
+            _ if is_index => draw.below(vertices) as f64,
+            4..16 => draw.finite(),
+            _ => draw.grid(),
+        };
+        let values = ArrayD::from_shape_simple_fn(shape, &mut number);
+        match draw.below(8) {
+            0 => archive.add_array(name, &values.mapv(|v| v as f32))?,
+            1 => archive.add_array(name, &values.mapv(|v| v as i64))?,
+            2 => archive.add_array(name, &values.mapv(|v| v as i32))?,
+            3 => archive.add_array(name, &values.mapv(|v| v as u8))?,
+            4 => archive.add_array(name, &values.mapv(|v| v > 0.0))?,
+            _ => archive.add_array(name, &values)?,
+        }
+    }
+    archive.finish().map(drop)
+}

@@ -1,0 +1,171 @@
+//! No accepted state of `resolve` intersects, nor any path between two, whatever the meshes and targets.
+
+use super::Draw;
+use crate::{Case, Watch};
+use bowknot::check::{Judge, StateOptions};
+use bowknot_geometry::{HalfSpace, Point, Topology, Vector};
+use bowknot_proximity::{BodyFilter, CollisionModel};
+use bowknot_twoway::{AcceptedState, Call, Params, ResolveError, Resolver};
+use std::ops::ControlFlow;
+
+/// Bodies at most.
+const BODIES: usize = 4;
+/// Vertices of a body at most.
+const VERTICES: usize = 7;
+/// Largest coordinate and rest length up to which nothing may intersect [m]: the search takes what is beyond 1e15 m for
+/// not finite. Farther away it is enough not to panic.
+const JUDGED: f64 = 1e14;
+/// Two-way steps at most.
+const STEPS: usize = 8;
+
+/// Up to four small bodies of triangles, strands and particles, obstacles among them, and any targets: `resolve` does
+/// not panic, every state and path that it accepts is judged free of intersections, and a refused call leaves the
+/// positions alone.
+pub fn resolve(data: &[u8]) -> bool {
+    let mut draw = Draw::new(data);
+    let mut params = if draw.below(3) == 0 { Params::paper() } else { Params::fast() };
+    params.stop.max_steps = Some(1 + draw.below(STEPS));
+    if draw.below(2) == 0 {
+        params.stepper.floor = draw.pick(&[0.0, 1e-9, 1e-6, 1e-3]);
+    }
+    let Some(case) = case(&mut draw) else { return false };
+    let start = &case.positions;
+    let report =
+        Judge::from_model(&case.model).check_state(start, &StateOptions { limit: 1, distance: false });
+    if !report.is_ok_and(|report| report.is_clear()) {
+        return false;
+    }
+    let targets = targets(&mut draw, start);
+    let rest = if draw.below(4) == 0 { targets.clone() } else { start.clone() };
+    let masses: Vec<f64> = start.iter().map(|_| mass(&mut draw)).collect();
+    let pinned: Vec<bool> = start.iter().map(|_| draw.rarely(40)).collect();
+    let call = Call { prescribed: &pinned, time_step: draw.pick(&[None, Some(0.05), Some(1e-4)]).flatten() };
+
+    let mut x = start.clone();
+    match run(&case, params, &rest, &masses, &call, &mut x, &targets) {
+        Ok(()) => true,
+        Err(_) => {
+            assert!(x == *start, "a refused call has moved the positions");
+            false
+        }
+    }
+}
+
+fn run(
+    case: &Case,
+    params: Params,
+    rest: &[Point],
+    masses: &[f64],
+    call: &Call<'_>,
+    x: &mut [Point],
+    targets: &[Point],
+) -> Result<(), ResolveError> {
+    let mut resolver = Resolver::new(case.model.clone(), rest, masses, params)?;
+    let mut watch = Watch::new(case);
+    let is_judged = targets.iter().chain(rest).all(|p| p.coords.amax() < JUDGED);
+    let mut last = x.to_vec();
+    let mut observer = |state: &AcceptedState<'_>| {
+        assert!(state.previous == last, "step {} does not start where the last one ended", state.step);
+        last.copy_from_slice(state.positions);
+        assert!(state.positions.iter().all(|p| p.iter().all(|c| c.is_finite())), "a position is not finite");
+        if !is_judged || watch.step(state.previous, state.positions) {
+            ControlFlow::Continue(())
+        } else {
+            ControlFlow::Break(())
+        }
+    };
+    let statistics = resolver.resolve(x, targets, call, &mut observer)?;
+    assert!(watch.fault.is_none(), "{:?}", watch.fault);
+    assert!(x == last, "the result is not the last accepted state");
+    assert!(statistics.remaining_m >= 0.0 && statistics.remaining_r >= 0.0, "{statistics:?}");
+    Ok(())
+}
+
+/// Small bodies on a coarse grid, mostly apart from each other; `None` where the elements are refused.
+fn case(draw: &mut Draw<'_>) -> Option<Case> {
+    let (scale, origin) = (draw.power(12), draw.pick(&[0.0, 0.0, 1e3, -1e6])?);
+    let mut positions = Vec::new();
+    let (mut triangles, mut strands, mut particles) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut vertex_body, mut bodies) = (Vec::new(), Vec::new());
+    for body in 0..1 + draw.below(BODIES) as u32 {
+        bodies.push(filter(draw));
+        let first = positions.len() as u32;
+        let count = 1 + draw.below(VERTICES) as u32;
+        // Bodies at heights of their own start apart more often than not.
+        let height = draw.pick(&[0.0, 0.01, 0.25, 1.0])? * f64::from(body);
+        let flatness = draw.pick(&[0.0, 0.05, 1.0])?;
+        for _ in 0..count {
+            let p = Vector::new(draw.grid(), draw.grid(), height + flatness * draw.grid());
+            positions.push(Point::from(scale * p + origin * Vector::x()));
+            vertex_body.push(body);
+        }
+        let shape = draw.below(4);
+        let mut vertex = || first + draw.below(count as usize) as u32;
+        match shape {
+            // Consecutive vertices make a strip, which seldom crosses itself at so few.
+            0 | 1 => triangles.extend((2..count).map(|v| [first + v - 2, first + v - 1, first + v])),
+            2 => strands.extend((1..count).map(|v| [first + v - 1, first + v])),
+            _ => triangles.push([vertex(), vertex(), vertex()]),
+        }
+        particles.extend((0..count).map(|v| first + v));
+    }
+    let half_spaces = match draw.below(3) {
+        0 => HalfSpace::new(Point::new(0.0, 0.0, -2.5 * scale), Vector::z()).into_iter().collect(),
+        1 => {
+            let normal = Vector::new(draw.grid(), draw.grid(), draw.grid());
+            HalfSpace::new(Point::from(origin * Vector::x() - 4.0 * scale * normal), normal)
+                .into_iter()
+                .collect()
+        }
+        _ => Vec::new(),
+    };
+    let topology = Topology::new(positions.len(), triangles, &strands, &particles).ok()?;
+    let model = CollisionModel::new(topology, vertex_body, bodies, half_spaces).ok()?;
+    Some(Case { name: "fuzz".to_owned(), model, positions })
+}
+
+fn filter(draw: &mut Draw<'_>) -> BodyFilter {
+    match draw.byte() {
+        0..160 => BodyFilter::DEFORMABLE,
+        160..224 => BodyFilter::OBSTACLE,
+        _ => BodyFilter {
+            obstacle: draw.below(2) == 0,
+            groups: u32::from(draw.byte()),
+            mask: u32::from(draw.byte()),
+            self_collision: draw.below(2) == 0,
+        },
+    }
+}
+
+fn targets(draw: &mut Draw<'_>, start: &[Point]) -> Vec<Point> {
+    let (style, magnitude) = (draw.below(6), draw.power(40));
+    let way = Vector::new(draw.grid(), draw.grid(), draw.grid());
+    let center = start.iter().map(|p| p.coords).sum::<Vector>() / start.len().max(1) as f64;
+    start
+        .iter()
+        .map(|p| match style {
+            0 => p + magnitude * Vector::new(draw.grid(), draw.grid(), draw.grid()),
+            1 => Point::from(2.0 * center - p.coords),
+            2 => start[draw.below(start.len())],
+            3 => p + magnitude * way,
+            4 if draw.rarely(2) => Point::new(draw.any(), draw.any(), draw.any()),
+            4 => Point::new(p.x, p.y, height(draw)),
+            _ => Point::new(p.x, p.y, 0.0),
+        })
+        .collect()
+}
+
+/// Any finite number, but none so small that the judge's exact predicates underflow.
+fn height(draw: &mut Draw<'_>) -> f64 {
+    let height = draw.finite();
+    if height.abs() < 1e-60 { 0.0 } else { height }
+}
+
+/// A mass: rarely one that must be refused or is extreme, but not so that ratios of masses overflow.
+fn mass(draw: &mut Draw<'_>) -> f64 {
+    if !draw.rarely(1) {
+        return draw.power(20);
+    }
+    let mass = draw.any();
+    if mass > 0.0 && mass.is_finite() { mass.clamp(1e-100, 1e100) } else { mass }
+}
