@@ -1,0 +1,84 @@
+//! The built-in scenes, a file each. Dimensions are fixed; `scale` multiplies the resolution.
+
+mod drape;
+mod needle;
+mod sphere;
+mod stack;
+mod tube;
+
+use super::{BodySpec, ObstacleSpec, Scene, SceneError, error::nearest};
+use crate::shapes::{Ball, HalfSpaceShape, Shape, Sheet};
+use bowknot_geometry::Vector;
+
+/// A scene that needs no file.
+#[derive(Clone, Copy, Debug)]
+pub struct Builtin {
+    /// Its name on the command line.
+    pub name: &'static str,
+    /// What happens in it, one line.
+    pub summary: &'static str,
+    make: fn(f64) -> Scene,
+}
+
+/// All built-in scenes.
+pub const BUILTIN: &[Builtin] = &[
+    Builtin { name: "drape", summary: "a sheet over a ball on the ground", make: drape::scene },
+    Builtin {
+        name: "needle",
+        summary: "a sheet falls onto a sharp needle, dt = 1/20 s",
+        make: needle::scene,
+    },
+    Builtin { name: "stack", summary: "four sheets fall onto a ball and the ground", make: stack::scene },
+    Builtin { name: "sphere", summary: "a large sheet falls onto a rotating ball", make: sphere::scene },
+    Builtin {
+        name: "tube",
+        summary: "a tube is twisted by its ends, then squeezed along its axis",
+        make: tube::scene,
+    },
+];
+
+/// Smallest scale: sheets still have a few edges.
+const MIN_SCALE: f64 = 0.05;
+/// Largest scale: millions of vertices.
+const MAX_SCALE: f64 = 20.0;
+
+pub(super) fn scene(name: &str, scale: f64) -> Result<Scene, SceneError> {
+    let Some(builtin) = BUILTIN.iter().find(|b| b.name == name) else {
+        let nearest = nearest(name, BUILTIN.iter().map(|b| b.name));
+        return Err(SceneError::Unknown { name: name.to_owned(), nearest });
+    };
+    if !(scale.is_finite() && (MIN_SCALE..=MAX_SCALE).contains(&scale)) {
+        return Err(SceneError::Scale { scale, min: MIN_SCALE, max: MAX_SCALE });
+    }
+    let mut scene = (builtin.make)(scale);
+    scene.simulation.name = name.to_owned();
+    scene.validate()?;
+    Ok(scene)
+}
+
+fn sheet(name: &str, size: f64, edge: f64, [x, y, z]: [f64; 3], turn: f64) -> BodySpec {
+    BodySpec {
+        name: name.to_owned(),
+        shape: Some(Shape::Sheet(Sheet { size: [size; 2], edge, ..Sheet::default() })),
+        translate: Vector::new(x, y, z),
+        rotate: Vector::new(0.0, 0.0, turn),
+        ..BodySpec::default()
+    }
+}
+
+fn ball(radius: f64, height: f64, edge: f64) -> ObstacleSpec {
+    ObstacleSpec {
+        name: "ball".to_owned(),
+        shape: Some(Shape::Ball(Ball { radius, edge })),
+        translate: Vector::new(0.0, 0.0, height),
+        ..ObstacleSpec::default()
+    }
+}
+
+fn ground() -> ObstacleSpec {
+    ObstacleSpec {
+        name: "ground".to_owned(),
+        shape: Some(Shape::HalfSpace(HalfSpaceShape::default())),
+        ..ObstacleSpec::default()
+    }
+}
