@@ -75,8 +75,13 @@ fn all_steps(root: &Path) -> Vec<Step> {
         println!("==> wasm: skipped, the target is missing: rustup target add {WASM_TARGET}");
     }
     steps.push(Step::new("build tests", cargo(root, "test --release --workspace --no-run")));
-    let mut drape = cargo(root, "run --release -- run drape --scale 0.4 --frames 40 --check --out");
-    drape.arg(target_folder(root).join("xtask").join("drape"));
+    // The tests' build has made the command; `cargo run` would make it again, with the features of its own package alone.
+    let target = target_folder(root);
+    let mut drape = Command::new(target.join("release").join("bowknot"));
+    drape
+        .args("run drape --scale 0.4 --frames 40 --check --out".split(' '))
+        .arg(target.join("xtask").join("drape"));
+    drape.current_dir(root);
     steps.push(Step { run: run_afresh, ..Step::new("run drape --check", drape) });
     steps.push(Step::new("tests", cargo(root, "test --release --workspace")));
     steps
@@ -107,7 +112,8 @@ fn cargo(root: &Path, arguments: &str) -> Command {
 
 fn describe(command: &Command) -> String {
     let words = command.get_args().map(|word| word.to_string_lossy().into_owned());
-    std::iter::once("cargo".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
+    let program = Path::new(command.get_program()).file_stem().unwrap_or_default().to_string_lossy();
+    std::iter::once(program.into_owned()).chain(words).collect::<Vec<_>>().join(" ")
 }
 
 /// This crate lies two folders below the root.
