@@ -41,4 +41,4 @@ pub use half_space::HalfSpace;
 pub use mesh_check::{MeshProblem, check_mesh};
 pub use pair::PairKind;
 pub use separation::Separation;
-pub use topology::{Components, EdgeTriangles, Topology, TopologyError};
+pub use topology::{Components, EdgeTriangles, Topology, TopologyError, boundary_triangles};

@@ -1,6 +1,7 @@
 //! Topology of triangle meshes, strands and particles: vertices, edges, triangles, adjacency.
 
 mod adjacency;
+mod tets;
 
 #[cfg(test)]
 mod tests;
@@ -8,6 +9,7 @@ mod tests;
 use serde::{Deserialize, Serialize};
 
 pub use adjacency::{Components, EdgeTriangles};
+pub use tets::boundary_triangles;
 
 /// What is wrong with the elements given to [`Topology::new`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
