@@ -161,7 +161,8 @@ impl Dynamics {
         step.start.extend(model.node_vertex.iter().map(|&v| x0[v as usize].coords));
         step.inertial.clear();
         step.inertial.extend(model.node_vertex.iter().enumerate().map(|(node, &v)| {
-            let acceleration = self.params.gravity + self.external_forces[node] / model.node_masses[node];
+            let gravity = model.gravity(v as usize, self.params.gravity);
+            let acceleration = gravity + self.external_forces[node] / model.node_masses[node];
             x0[v as usize].coords + v0[v as usize] * dt + acceleration * (dt * dt)
         }));
         if step.dt != dt {

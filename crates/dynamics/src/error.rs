@@ -7,7 +7,7 @@ pub enum MaterialError {
     /// A value must be finite and greater than zero.
     #[error("{field} = {value} {unit}: it must be a finite number greater than 0")]
     NotPositive {
-        /// The field of [`crate::ClothMaterial`].
+        /// The field of the material.
         field: &'static str,
         /// Its value.
         value: f64,
@@ -17,7 +17,7 @@ pub enum MaterialError {
     /// A value must be finite and not negative.
     #[error("{field} = {value} {unit}: it must be a finite number, 0 or more")]
     Negative {
-        /// The field of [`crate::ClothMaterial`].
+        /// The field of the material.
         field: &'static str,
         /// Its value.
         value: f64,
@@ -25,10 +25,12 @@ pub enum MaterialError {
         unit: &'static str,
     },
     /// Poisson's ratio is outside of its stable range.
-    #[error("poisson_ratio = {value}: it must lie in (-1, 1)")]
+    #[error("poisson_ratio = {value}: it must lie in {range}")]
     PoissonRatio {
         /// Its value.
         value: f64,
+        /// Where it must lie.
+        range: &'static str,
     },
 }
 
@@ -49,7 +51,7 @@ pub enum ModelError {
     VertexOutOfRange {
         /// Name of the body.
         body: String,
-        /// "triangle" or "vertex".
+        /// "triangle", "tet", "edge", "particle" or "vertex".
         element: &'static str,
         /// Which of them.
         index: usize,
@@ -58,15 +60,29 @@ pub enum ModelError {
         /// How many vertices there are.
         vertex_count: usize,
     },
-    /// A triangle names a vertex twice.
-    #[error("body \"{body}\": triangle {index} names vertex {vertex} twice")]
+    /// An element names a vertex twice.
+    #[error("body \"{body}\": {element} {index} names vertex {vertex} twice")]
     RepeatedVertex {
         /// Name of the body.
         body: String,
-        /// The triangle.
+        /// "triangle", "tet" or "edge".
+        element: &'static str,
+        /// Which of them.
         index: usize,
         /// The vertex that it repeats.
         vertex: u32,
+    },
+    /// Two elements of a body have the same vertices.
+    #[error("body \"{body}\": {element}s {first} and {second} have the same vertices")]
+    RepeatedElement {
+        /// Name of the body.
+        body: String,
+        /// "triangle", "tet", "edge" or "particle".
+        element: &'static str,
+        /// The one.
+        first: usize,
+        /// The other.
+        second: usize,
     },
     /// A triangle has no area at rest, so it has neither mass nor a rest shape.
     #[error("body \"{body}\": triangle {index} has no area at rest ({area:e} m2)")]
@@ -78,15 +94,41 @@ pub enum ModelError {
         /// Its area [m^2].
         area: f64,
     },
-    /// Two triangles of a body have the same vertices.
-    #[error("body \"{body}\": triangles {first} and {second} have the same vertices")]
-    RepeatedTriangle {
+    /// A strand edge has no length at rest: its points coincide.
+    #[error(
+        "body \"{body}\": edge {index} has no length at rest, vertices {a} and {b} are at one place: merge them"
+    )]
+    ZeroLength {
         /// Name of the body.
         body: String,
-        /// The one.
-        first: usize,
-        /// The other.
-        second: usize,
+        /// The edge.
+        index: usize,
+        /// Its one vertex.
+        a: u32,
+        /// Its other vertex.
+        b: u32,
+    },
+    /// Tets are inverted or flat at rest.
+    #[error(
+        "body \"{body}\": {} of its {tets} tets are inverted at rest{} and {} are flat{}: mend the mesh \
+         (of a mesh that is inverted throughout, swap two vertices of every tet)",
+        inverted.len(), first_ten(inverted), flat.len(), first_ten(flat)
+    )]
+    BadTets {
+        /// Name of the body.
+        body: String,
+        /// How many tets it has.
+        tets: usize,
+        /// Tets of negative volume.
+        inverted: Vec<usize>,
+        /// Tets of no volume.
+        flat: Vec<usize>,
+    },
+    /// Gravity of a body is not finite.
+    #[error("body \"{body}\": the components of its gravity must be finite")]
+    Gravity {
+        /// Name of the body.
+        body: String,
     },
     /// A vertex belongs to no body, so it has no mass.
     #[error("vertex {vertex} belongs to no body, so it has no mass")]
@@ -112,6 +154,16 @@ pub enum ModelError {
         /// What is wrong with it.
         error: MaterialError,
     },
+}
+
+/// " (3, 17, ..)", or nothing.
+fn first_ten(indices: &[usize]) -> String {
+    if indices.is_empty() {
+        return String::new();
+    }
+    let shown: Vec<String> = indices.iter().take(10).map(ToString::to_string).collect();
+    let more = if indices.len() > shown.len() { ", .." } else { "" };
+    format!(" ({}{more})", shown.join(", "))
 }
 
 /// Why [`crate::DynamicsParams`] are refused.

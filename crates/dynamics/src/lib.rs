@@ -15,12 +15,14 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | [`material`] | [`ClothMaterial`] and the named fabrics |
-//! | [`model`] | [`Body`], [`DynamicsModel`]: masses, elements, patterns; fixed during a run |
+//! | [`material`] | [`ClothMaterial`], [`SolidMaterial`], [`StrandMaterial`], [`ParticleMaterial`] with named presets |
+//! | [`body`] | [`Body`]: elements, material and gravity of a body |
+//! | [`model`] | [`DynamicsModel`]: masses, elements, patterns; fixed during a run |
 //! | [`params`] | [`DynamicsParams`] |
 //! | [`dynamics`] | [`Dynamics`]: the step, one Newton iteration, the line search |
 //! | [`observe`] | [`Energies`], momenta, stretch |
 
+pub mod body;
 pub mod dynamics;
 mod elements;
 mod error;
@@ -33,11 +35,12 @@ pub mod params;
 /// Points and vectors: the types of states.
 pub use bowknot_geometry as geometry;
 
+pub use body::{Body, BodyShape};
 pub use dynamics::{Dynamics, NewtonInfo};
 pub use error::{MaterialError, ModelError, ParamsError, StepError};
 pub use linear::cg::CgInfo;
-pub use material::ClothMaterial;
-pub use model::{Body, BodyShape, DynamicsModel};
+pub use material::{ClothMaterial, ParticleMaterial, SolidMaterial, SolidModel, StrandMaterial};
+pub use model::DynamicsModel;
 pub use observe::Energies;
 pub use params::{DynamicsParams, HessianFilter, Preconditioner};
 

@@ -80,7 +80,9 @@ impl Dynamics {
         Energies {
             kinetic: model.masses().iter().zip(v).map(|(&m, v)| 0.5 * m * v.norm_squared()).sum(),
             elastic: model.elastic_energy(x),
-            potential: -model.masses().iter().zip(x).map(|(&m, x)| m * gravity.dot(&x.coords)).sum::<f64>(),
+            potential: -(model.masses().iter().zip(x).enumerate())
+                .map(|(vertex, (&m, x))| m * model.gravity(vertex, gravity).dot(&x.coords))
+                .sum::<f64>(),
         }
     }
 

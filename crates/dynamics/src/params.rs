@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct DynamicsParams {
-    /// Acceleration of gravity [m/s^2]. Default (0, 0, -9.81).
+    /// Acceleration of gravity [m/s^2], unless a body has its own. Default (0, 0, -9.81).
     pub gravity: Vector,
     /// Mass-proportional damping [1/s], a drag by still air: velocities decay as exp(-t * this). It
     /// slows free flight and rotation too; for losses inside of the material see

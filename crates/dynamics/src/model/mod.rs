@@ -1,5 +1,7 @@
 //! What is fixed during a run: bodies, masses, elements, the pattern of the matrix.
 
+mod check;
+
 use crate::elements::bending::add_bending;
 use crate::elements::triangle::Triangle;
 use crate::elements::{ElementFamily, Family};
@@ -7,13 +9,10 @@ use crate::linear::block::BlockPattern;
 use crate::linear::coarse::Coarse;
 use crate::linear::ordering::order_nodes;
 use crate::linear::scalar::{ScalarBuilder, ScalarForm};
-use crate::{ClothMaterial, ModelError};
+use crate::{Body, BodyShape, ModelError};
 use bowknot_geometry::{Point, Vector};
-use std::collections::HashMap;
+use check::{area, check, volume};
 use std::ops::Range;
-
-/// A triangle whose area is below this share of its longest edge squared has no area.
-const ZERO_AREA: f64 = 1e-12;
 
 /// Most nodes of a leaf of the numbering, the aggregates of the coarse correction. Halving makes
 /// them 32 to 64 nodes large.
@@ -25,45 +24,6 @@ const MAX_AGGREGATES: usize = 4096;
 
 /// "No node": the vertex has no freedom, ever.
 pub(crate) const NO_NODE: u32 = u32::MAX;
-
-/// A body of the scene.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Body {
-    /// Its name, for messages.
-    pub name: String,
-    /// What it is made of.
-    pub shape: BodyShape,
-}
-
-/// What a body is made of; vertices are those of the scene.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum BodyShape {
-    /// Cloth.
-    Cloth {
-        /// Its triangles.
-        triangles: Vec<[u32; 3]>,
-        /// Its material.
-        material: ClothMaterial,
-    },
-    /// An obstacle: its vertices have no mass and are prescribed always.
-    Obstacle {
-        /// Its vertices.
-        vertices: Vec<u32>,
-    },
-}
-
-impl Body {
-    /// A piece of cloth.
-    pub fn cloth(name: impl Into<String>, triangles: Vec<[u32; 3]>, material: ClothMaterial) -> Self {
-        Self { name: name.into(), shape: BodyShape::Cloth { triangles, material } }
-    }
-
-    /// An obstacle.
-    pub fn obstacle(name: impl Into<String>, vertices: Vec<u32>) -> Self {
-        Self { name: name.into(), shape: BodyShape::Obstacle { vertices } }
-    }
-}
 
 /// What is fixed during a run.
 ///
@@ -105,53 +65,36 @@ impl std::fmt::Debug for DynamicsModel {
 impl DynamicsModel {
     /// Builds masses, elements and patterns from the rest positions [m] of all vertices.
     ///
-    /// A vertex may be shared by several cloth bodies (they are sewn together there), never by cloth
+    /// A vertex may be shared by several deformable bodies (they are sewn together there), never by one
     /// and an obstacle.
     ///
     /// # Errors
     /// Everything that is wrong, see [`ModelError`].
     pub fn new(rest_positions: Vec<Point>, bodies: Vec<Body>) -> Result<Self, Vec<ModelError>> {
-        let mut errors = check(&rest_positions, &bodies);
+        let errors = check(&rest_positions, &bodies);
         if !errors.is_empty() {
             return Err(errors);
         }
         let count = rest_positions.len();
-        let mut masses = vec![0.0; count];
         let mut obstacle = vec![false; count];
         let mut vertex_body = vec![u32::MAX; count];
         for (index, body) in bodies.iter().enumerate() {
-            match &body.shape {
-                BodyShape::Obstacle { vertices } => vertices.iter().for_each(|&v| {
-                    obstacle[v as usize] = true;
+            body.shape.for_each_element(|vertices| {
+                for &v in vertices {
+                    obstacle[v as usize] = body.shape.is_obstacle();
                     vertex_body[v as usize] = index as u32;
-                }),
-                BodyShape::Cloth { triangles, material } => {
-                    for (t, triangle) in triangles.iter().enumerate() {
-                        let area = area(&rest_positions, triangle);
-                        if area <= zero_area(&rest_positions, triangle) {
-                            errors.push(ModelError::ZeroArea { body: body.name.clone(), index: t, area });
-                        }
-                        for &v in triangle {
-                            masses[v as usize] += area * material.density / 3.0;
-                            vertex_body[v as usize] = index as u32;
-                        }
-                    }
                 }
-            }
+            });
         }
-        for (vertex, mass) in masses.iter().enumerate() {
-            if *mass <= 0.0 && !obstacle[vertex] && errors.is_empty() {
-                errors.push(ModelError::NoMass { vertex });
-            }
+        if let Some(vertex) = vertex_body.iter().position(|body| *body == u32::MAX) {
+            return Err(vec![ModelError::NoMass { vertex }]);
         }
-        if !errors.is_empty() {
-            return Err(errors);
-        }
+        let masses = masses(&rest_positions, &bodies);
 
         let cloth = || {
             bodies.iter().filter_map(|body| match &body.shape {
                 BodyShape::Cloth { triangles, material } => Some((triangles, material)),
-                BodyShape::Obstacle { .. } => None,
+                _ => None,
             })
         };
         let deformable: Vec<u32> = (0..count as u32).filter(|&v| !obstacle[v as usize]).collect();
@@ -160,9 +103,12 @@ impl DynamicsModel {
         let positions: Vec<Vector> = deformable.iter().map(|&v| rest_positions[v as usize].coords).collect();
         let leaf = LEAF.max(positions.len().div_ceil(MAX_AGGREGATES));
         let ordering = order_nodes(&positions, leaf, |link| {
-            for [i, j, k] in cloth().flat_map(|(triangles, _)| triangles) {
-                link(compact[*i as usize], compact[*j as usize]);
-                link(compact[*j as usize], compact[*k as usize]);
+            for body in bodies.iter().filter(|body| !body.shape.is_obstacle()) {
+                body.shape.for_each_element(|vertices| {
+                    for pair in vertices.windows(2) {
+                        link(compact[pair[0] as usize], compact[pair[1] as usize]);
+                    }
+                });
             }
         });
         let node_vertex: Vec<u32> = ordering.order.iter().map(|&k| deformable[k as usize]).collect();
@@ -254,7 +200,8 @@ impl DynamicsModel {
         &self.bodies
     }
 
-    /// Mass of each vertex [kg]: a third of every triangle's; 0 for vertices of obstacles.
+    /// Mass of each vertex [kg]: a third of every triangle's, a quarter of every tet's, half of every strand
+    /// edge's, all of a grain's; 0 for vertices of obstacles.
     pub fn masses(&self) -> &[f64] {
         &self.masses
     }
@@ -269,84 +216,44 @@ impl DynamicsModel {
         self.masses.iter().sum()
     }
 
+    /// Gravity on a vertex [m/s^2]: that of its body (where several meet, the last), else the `scene`'s.
+    pub fn gravity(&self, vertex: usize, scene: Vector) -> Vector {
+        let body = self.vertex_body.get(vertex).and_then(|&b| self.bodies.get(b as usize));
+        body.and_then(|b| b.gravity).unwrap_or(scene)
+    }
+
     /// Name of the body that a vertex belongs to; where several meet, the last.
     pub fn body_name(&self, vertex: usize) -> &str {
         self.vertex_body.get(vertex).and_then(|&b| self.bodies.get(b as usize)).map_or("", |b| &b.name)
     }
 }
 
-fn area(positions: &[Point], &[i, j, k]: &[u32; 3]) -> f64 {
-    let corner = positions[i as usize];
-    0.5 * (positions[j as usize] - corner).cross(&(positions[k as usize] - corner)).norm()
-}
-
-fn zero_area(positions: &[Point], &[i, j, k]: &[u32; 3]) -> f64 {
-    let [a, b, c] = [positions[i as usize], positions[j as usize], positions[k as usize]];
-    ZERO_AREA * (b - a).norm_squared().max((c - b).norm_squared()).max((a - c).norm_squared())
-}
-
-/// Everything that must hold before areas are worth looking at.
-fn check(positions: &[Point], bodies: &[Body]) -> Vec<ModelError> {
-    let mut errors = Vec::new();
-    let vertex_count = positions.len();
-    if let Some(vertex) = positions.iter().position(|p| !p.coords.iter().all(|c| c.is_finite())) {
-        errors.push(ModelError::NonFinitePosition { vertex });
-    }
-    let mut obstacle_of: HashMap<u32, usize> = HashMap::new();
-    for (index, body) in bodies.iter().enumerate() {
-        let name = || body.name.clone();
-        let out_of_range = |element, index, vertex| ModelError::VertexOutOfRange {
-            body: body.name.clone(),
-            element,
-            index,
-            vertex,
-            vertex_count,
+/// Lumped masses [kg].
+fn masses(positions: &[Point], bodies: &[Body]) -> Vec<f64> {
+    let mut masses = vec![0.0; positions.len()];
+    let at = |v: u32| positions[v as usize].coords;
+    for body in bodies {
+        let mut share = |vertices: &[u32], mass: f64| {
+            vertices.iter().for_each(|&v| masses[v as usize] += mass / vertices.len() as f64);
         };
         match &body.shape {
-            BodyShape::Obstacle { vertices } => {
-                for (k, &vertex) in vertices.iter().enumerate() {
-                    if vertex as usize >= vertex_count {
-                        errors.push(out_of_range("vertex", k, vertex));
-                    }
-                    obstacle_of.insert(vertex, index);
-                }
-            }
             BodyShape::Cloth { triangles, material } => {
-                if let Err(wrong) = material.validate() {
-                    errors
-                        .extend(wrong.into_iter().map(|error| ModelError::Material { body: name(), error }));
-                }
-                let mut seen: HashMap<[u32; 3], usize> = HashMap::with_capacity(triangles.len());
-                for (t, triangle) in triangles.iter().enumerate() {
-                    for (k, &vertex) in triangle.iter().enumerate() {
-                        if vertex as usize >= vertex_count {
-                            errors.push(out_of_range("triangle", t, vertex));
-                        }
-                        if triangle[..k].contains(&vertex) {
-                            errors.push(ModelError::RepeatedVertex { body: name(), index: t, vertex });
-                        }
-                    }
-                    let mut sorted = *triangle;
-                    sorted.sort_unstable();
-                    if let Some(first) = seen.insert(sorted, t) {
-                        errors.push(ModelError::RepeatedTriangle { body: name(), first, second: t });
-                    }
-                }
+                triangles.iter().for_each(|t| share(t, area(&t.map(at)) * material.density));
             }
+            BodyShape::Solid { tets, material } => {
+                tets.iter().for_each(|t| share(t, volume(&t.map(at)) * material.density));
+            }
+            BodyShape::Strands { edges, material } => {
+                edges.iter().for_each(|e| share(e, (at(e[0]) - at(e[1])).norm() * material.density));
+            }
+            BodyShape::Particles { vertices, material } => {
+                vertices.iter().for_each(|v| share(&[*v], material.mass()));
+            }
+            BodyShape::Obstacle { .. } => {}
         }
     }
-    for body in bodies {
-        if let BodyShape::Cloth { triangles, .. } = &body.shape {
-            let shared = triangles.iter().flatten().find_map(|v| Some((*v, *obstacle_of.get(v)?)));
-            if let Some((vertex, obstacle)) = shared {
-                let obstacle = bodies[obstacle].name.clone();
-                errors.push(ModelError::SharedVertex { obstacle, body: body.name.clone(), vertex });
-            }
-        }
-    }
-    errors
+    masses
 }
 
 #[cfg(test)]
-#[path = "model_tests.rs"]
 mod tests;

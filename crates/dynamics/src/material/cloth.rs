@@ -1,5 +1,6 @@
-//! Materials in physical units, and fabrics by name.
+//! Fabrics.
 
+use super::check;
 use crate::MaterialError;
 use serde::{Deserialize, Serialize};
 
@@ -132,27 +133,20 @@ impl ClothMaterial {
     /// # Errors
     /// All that is wrong, by field name.
     pub fn validate(&self) -> Result<(), Vec<MaterialError>> {
-        let mut errors = Vec::new();
-        for (field, value, unit) in [
-            ("density", self.density, "kg/m2"),
-            ("stretch_stiffness", self.stretch_stiffness, "N/m"),
-            ("thickness", self.thickness, "m"),
-        ] {
-            if !(value > 0.0 && value.is_finite()) {
-                errors.push(MaterialError::NotPositive { field, value, unit });
-            }
-        }
-        for (field, value, unit) in [
-            ("bend_stiffness", self.bend_stiffness, "N m"),
-            ("stretch_damping", self.stretch_damping, "s"),
-            ("bend_damping", self.bend_damping, "s"),
-        ] {
-            if !(value >= 0.0 && value.is_finite()) {
-                errors.push(MaterialError::Negative { field, value, unit });
-            }
-        }
+        let mut errors = check(
+            &[
+                ("density", self.density, "kg/m2"),
+                ("stretch_stiffness", self.stretch_stiffness, "N/m"),
+                ("thickness", self.thickness, "m"),
+            ],
+            &[
+                ("bend_stiffness", self.bend_stiffness, "N m"),
+                ("stretch_damping", self.stretch_damping, "s"),
+                ("bend_damping", self.bend_damping, "s"),
+            ],
+        );
         if !(self.poisson_ratio > -1.0 && self.poisson_ratio < 1.0) {
-            errors.push(MaterialError::PoissonRatio { value: self.poisson_ratio });
+            errors.push(MaterialError::PoissonRatio { value: self.poisson_ratio, range: "(-1, 1)" });
         }
         if errors.is_empty() { Ok(()) } else { Err(errors) }
     }

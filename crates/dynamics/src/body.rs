@@ -1,0 +1,112 @@
+//! Bodies as the caller describes them.
+
+use crate::{ClothMaterial, ParticleMaterial, SolidMaterial, StrandMaterial};
+use bowknot_geometry::Vector;
+
+/// A body of the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// Its name, for messages.
+    pub name: String,
+    /// What it is made of.
+    pub shape: BodyShape,
+    /// Acceleration of gravity on it [m/s^2]; None: [`crate::DynamicsParams::gravity`].
+    pub gravity: Option<Vector>,
+}
+
+/// What a body is made of; vertices are those of the scene.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum BodyShape {
+    /// Cloth.
+    Cloth {
+        /// Its triangles.
+        triangles: Vec<[u32; 3]>,
+        /// Its material.
+        material: ClothMaterial,
+    },
+    /// A solid.
+    Solid {
+        /// Its tets, positive: from vertex 0, the vertices 1, 2, 3 turn right-handedly about their normal,
+        /// (x1 - x0) x (x2 - x0) . (x3 - x0) > 0.
+        tets: Vec<[u32; 4]>,
+        /// Its material.
+        material: SolidMaterial,
+    },
+    /// Hair, yarns: paths of edges, which may branch.
+    Strands {
+        /// Their edges.
+        edges: Vec<[u32; 2]>,
+        /// Their material.
+        material: StrandMaterial,
+    },
+    /// Grains.
+    Particles {
+        /// The vertices, one a grain.
+        vertices: Vec<u32>,
+        /// Their material.
+        material: ParticleMaterial,
+    },
+    /// An obstacle: its vertices have no mass and are prescribed always.
+    Obstacle {
+        /// Its vertices.
+        vertices: Vec<u32>,
+    },
+}
+
+impl Body {
+    /// A body with the gravity of the scene.
+    pub fn new(name: impl Into<String>, shape: BodyShape) -> Self {
+        Self { name: name.into(), shape, gravity: None }
+    }
+
+    /// A piece of cloth.
+    pub fn cloth(name: impl Into<String>, triangles: Vec<[u32; 3]>, material: ClothMaterial) -> Self {
+        Self::new(name, BodyShape::Cloth { triangles, material })
+    }
+
+    /// A solid of tets.
+    pub fn solid(name: impl Into<String>, tets: Vec<[u32; 4]>, material: SolidMaterial) -> Self {
+        Self::new(name, BodyShape::Solid { tets, material })
+    }
+
+    /// Strands of edges.
+    pub fn strands(name: impl Into<String>, edges: Vec<[u32; 2]>, material: StrandMaterial) -> Self {
+        Self::new(name, BodyShape::Strands { edges, material })
+    }
+
+    /// Grains, one a vertex.
+    pub fn particles(name: impl Into<String>, vertices: Vec<u32>, material: ParticleMaterial) -> Self {
+        Self::new(name, BodyShape::Particles { vertices, material })
+    }
+
+    /// An obstacle.
+    pub fn obstacle(name: impl Into<String>, vertices: Vec<u32>) -> Self {
+        Self::new(name, BodyShape::Obstacle { vertices })
+    }
+
+    /// The same body with a gravity of its own [m/s^2].
+    pub fn with_gravity(mut self, gravity: Vector) -> Self {
+        self.gravity = Some(gravity);
+        self
+    }
+}
+
+impl BodyShape {
+    /// Calls `visit` with the vertices of every element.
+    pub fn for_each_element(&self, mut visit: impl FnMut(&[u32])) {
+        match self {
+            Self::Cloth { triangles, .. } => triangles.iter().for_each(|t| visit(t)),
+            Self::Solid { tets, .. } => tets.iter().for_each(|t| visit(t)),
+            Self::Strands { edges, .. } => edges.iter().for_each(|e| visit(e)),
+            Self::Particles { vertices, .. } | Self::Obstacle { vertices } => {
+                vertices.iter().for_each(|v| visit(&[*v]));
+            }
+        }
+    }
+
+    /// Whether its vertices have no mass and are prescribed always.
+    pub fn is_obstacle(&self) -> bool {
+        matches!(self, Self::Obstacle { .. })
+    }
+}

@@ -1,0 +1,164 @@
+//! What must hold before a model is built.
+
+use crate::{Body, BodyShape, MaterialError, ModelError};
+use bowknot_geometry::{Point, Vector};
+use std::collections::HashMap;
+
+/// An area (volume, length) below this share of the longest edge squared (cubed; of the largest coordinate)
+/// is none.
+const ZERO: f64 = 1e-12;
+
+/// Everything that is wrong: indices first, then, if they are sound, sizes.
+pub(super) fn check(positions: &[Point], bodies: &[Body]) -> Vec<ModelError> {
+    let mut errors = Vec::new();
+    if let Some(vertex) = positions.iter().position(|p| !p.coords.iter().all(|c| c.is_finite())) {
+        errors.push(ModelError::NonFinitePosition { vertex });
+    }
+    for body in bodies {
+        if body.gravity.is_some_and(|g| !g.iter().all(|c| c.is_finite())) {
+            errors.push(ModelError::Gravity { body: body.name.clone() });
+        }
+        let mut wrong = |material: Result<(), Vec<MaterialError>>| {
+            for error in material.err().into_iter().flatten() {
+                errors.push(ModelError::Material { body: body.name.clone(), error });
+            }
+        };
+        match &body.shape {
+            BodyShape::Cloth { material, .. } => wrong(material.validate()),
+            BodyShape::Solid { material, .. } => wrong(material.validate()),
+            BodyShape::Strands { material, .. } => wrong(material.validate()),
+            BodyShape::Particles { material, .. } => wrong(material.validate()),
+            BodyShape::Obstacle { .. } => {}
+        }
+        check_indices(body, positions.len(), &mut errors);
+    }
+    check_shared(bodies, &mut errors);
+    if errors.is_empty() {
+        bodies.iter().for_each(|body| check_sizes(positions, body, &mut errors));
+    }
+    errors
+}
+
+fn element_name(shape: &BodyShape) -> &'static str {
+    match shape {
+        BodyShape::Cloth { .. } => "triangle",
+        BodyShape::Solid { .. } => "tet",
+        BodyShape::Strands { .. } => "edge",
+        BodyShape::Particles { .. } => "particle",
+        BodyShape::Obstacle { .. } => "vertex",
+    }
+}
+
+fn check_indices(body: &Body, vertex_count: usize, errors: &mut Vec<ModelError>) {
+    let element = element_name(&body.shape);
+    let name = || body.name.clone();
+    let mut seen: HashMap<[u32; 4], usize> = HashMap::new();
+    let mut index = 0;
+    body.shape.for_each_element(|vertices| {
+        for (k, &vertex) in vertices.iter().enumerate() {
+            if vertex as usize >= vertex_count {
+                errors.push(ModelError::VertexOutOfRange {
+                    body: name(),
+                    element,
+                    index,
+                    vertex,
+                    vertex_count,
+                });
+            }
+            if vertices[..k].contains(&vertex) {
+                errors.push(ModelError::RepeatedVertex { body: name(), element, index, vertex });
+            }
+        }
+        let mut sorted = [u32::MAX; 4];
+        sorted[..vertices.len()].copy_from_slice(vertices);
+        sorted.sort_unstable();
+        // An obstacle may name a vertex as often as it likes.
+        if !body.shape.is_obstacle()
+            && let Some(first) = seen.insert(sorted, index)
+        {
+            errors.push(ModelError::RepeatedElement { body: name(), element, first, second: index });
+        }
+        index += 1;
+    });
+}
+
+/// Obstacles share no vertex with deformable bodies.
+fn check_shared(bodies: &[Body], errors: &mut Vec<ModelError>) {
+    let mut obstacle_of: HashMap<u32, usize> = HashMap::new();
+    for (index, body) in bodies.iter().enumerate() {
+        if let BodyShape::Obstacle { vertices } = &body.shape {
+            obstacle_of.extend(vertices.iter().map(|v| (*v, index)));
+        }
+    }
+    for body in bodies.iter().filter(|body| !body.shape.is_obstacle()) {
+        let mut shared = None;
+        body.shape.for_each_element(|vertices| {
+            shared = shared.or_else(|| vertices.iter().find_map(|v| Some((*v, *obstacle_of.get(v)?))));
+        });
+        if let Some((vertex, obstacle)) = shared {
+            let obstacle = bodies[obstacle].name.clone();
+            errors.push(ModelError::SharedVertex { obstacle, body: body.name.clone(), vertex });
+        }
+    }
+}
+
+/// Elements without a rest shape.
+fn check_sizes(positions: &[Point], body: &Body, errors: &mut Vec<ModelError>) {
+    let at = |v: u32| positions[v as usize].coords;
+    match &body.shape {
+        BodyShape::Cloth { triangles, .. } => {
+            for (index, t) in triangles.iter().enumerate() {
+                let corners = t.map(at);
+                let area = area(&corners);
+                if area <= ZERO * longest(&corners).powi(2) {
+                    errors.push(ModelError::ZeroArea { body: body.name.clone(), index, area });
+                }
+            }
+        }
+        BodyShape::Solid { tets, .. } => {
+            let (mut inverted, mut flat) = (Vec::new(), Vec::new());
+            for (index, t) in tets.iter().enumerate() {
+                let corners = t.map(at);
+                let volume = volume(&corners);
+                let zero = ZERO * longest(&corners).powi(3);
+                if volume.abs() <= zero {
+                    flat.push(index);
+                } else if volume < 0.0 {
+                    inverted.push(index);
+                }
+            }
+            if !inverted.is_empty() || !flat.is_empty() {
+                errors.push(ModelError::BadTets {
+                    body: body.name.clone(),
+                    tets: tets.len(),
+                    inverted,
+                    flat,
+                });
+            }
+        }
+        BodyShape::Strands { edges, .. } => {
+            for (index, &[a, b]) in edges.iter().enumerate() {
+                if (at(a) - at(b)).norm() <= ZERO * at(a).amax().max(at(b).amax()) {
+                    errors.push(ModelError::ZeroLength { body: body.name.clone(), index, a, b });
+                }
+            }
+        }
+        BodyShape::Particles { .. } | BodyShape::Obstacle { .. } => {}
+    }
+}
+
+pub(super) fn area(corners: &[Vector; 3]) -> f64 {
+    0.5 * (corners[1] - corners[0]).cross(&(corners[2] - corners[0])).norm()
+}
+
+/// Signed volume.
+pub(crate) fn volume(corners: &[Vector; 4]) -> f64 {
+    let edge = |k: usize| corners[k] - corners[0];
+    edge(1).cross(&edge(2)).dot(&edge(3)) / 6.0
+}
+
+fn longest(corners: &[Vector]) -> f64 {
+    let lengths =
+        corners.iter().enumerate().flat_map(|(k, a)| corners[..k].iter().map(move |b| (a - b).norm()));
+    lengths.fold(0.0, f64::max)
+}
