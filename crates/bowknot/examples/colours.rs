@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             // The colours of the first backward step; later ones have like rows.
             let mut resolver = Resolver::new(model(&states)?, &states.rest, &states.masses, params)?;
             let mut x = states.x.clone();
-            let call = Call { prescribed: &states.fixed, time_step: states.time_step };
+            let call = Call { prescribed: &states.fixed, time_step: states.time_step, ..Call::default() };
             let mut stop = |_: &AcceptedState<'_>| ControlFlow::Break(());
             let s = resolver.resolve(&mut x, &states.y, &call, &mut stop)?;
             println!(

@@ -52,7 +52,7 @@ pub fn resolve(options: &ResolveOptions) -> Result<Done, Failure> {
     let mut watch = |_: &AcceptedState<'_>| {
         if interrupt.is_set() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    let call = Call { prescribed: &states.fixed, time_step: states.time_step };
+    let call = Call { prescribed: &states.fixed, time_step: states.time_step, ..Call::default() };
     let mut x = states.x.clone();
     let cpu = bowknot::simulator::cpu_seconds();
     let statistics =

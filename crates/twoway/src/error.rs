@@ -36,6 +36,9 @@ pub enum ResolveError {
         /// The mass given [kg].
         mass: f64,
     },
+    /// Contact data of bodies, half-spaces or pairs out of their range.
+    #[error("contact data out of range: {}", .0.join("; "))]
+    Contact(Vec<String>),
     /// Parameters out of their range.
     #[error("parameters out of range: {}", .0.join("; "))]
     Params(Vec<String>),

@@ -6,6 +6,7 @@
 //! certified free of intersections ([`ForwardStep`]). The stages are traits; other methods plug in.
 
 mod backward;
+mod bodies;
 mod error;
 mod forward;
 mod observer;
@@ -29,6 +30,7 @@ pub use bowknot_proximity as proximity;
 pub use bowknot_stepper as stepper;
 
 pub use backward::LcpBackward;
+pub use bodies::{BodyContact, ContactSide, ContactTable, HalfSpaceContact, PairFriction};
 pub use error::ResolveError;
 pub use forward::CertifiedForward;
 pub use observer::{AcceptedState, Observer};

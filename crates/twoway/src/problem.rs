@@ -1,6 +1,6 @@
 //! What is fixed about a scene, and every length that parameters leave to the mesh.
 
-use crate::{Params, ResolveError};
+use crate::{ContactTable, Params, ResolveError};
 use bowknot_geometry::Point;
 use bowknot_proximity::CollisionModel;
 
@@ -32,6 +32,8 @@ pub struct Problem {
     pub local_edge: Vec<f64>,
     /// Vertices of obstacles, ascending.
     pub obstacle_vertices: Vec<u32>,
+    /// What bodies and half-spaces bring into their contacts.
+    pub contact: ContactTable,
     /// Lengths in force.
     pub lengths: Lengths,
     /// Parameters as given.
@@ -74,8 +76,10 @@ impl Problem {
         let obstacle_vertices = (0..vertices as u32).filter(|&v| prescribed[v as usize]).collect();
         let (edge, local_edge) = edge_lengths(&model, rest, &prescribed);
         let lengths = lengths(&params, edge);
+        let contact = ContactTable::new(&model);
         Ok(Self {
             model,
+            contact,
             rest: rest.to_vec(),
             relative_mass,
             local_edge,

@@ -5,8 +5,8 @@ use crate::forward::CertifiedForward;
 use crate::problem::check_finite;
 use crate::search::BudgetedSearch;
 use crate::{
-    AcceptedState, BackwardStep, ForwardStep, Observer, Params, Problem, ResolveError, Search, State,
-    Statistics, StopRule,
+    AcceptedState, BackwardStep, BodyContact, ForwardStep, HalfSpaceContact, Observer, PairFriction, Params,
+    Problem, ResolveError, Search, State, Statistics, StopRule,
 };
 use bowknot_geometry::Point;
 use bowknot_proximity::CollisionModel;
@@ -21,6 +21,17 @@ pub struct Call<'a> {
     pub prescribed: &'a [bool],
     /// Time step that the call stands for [s]; scales the separation speed and the default step limit.
     pub time_step: Option<f64>,
+    /// Positions at the start of the time step [m]: what friction measures slip from, where a time step makes
+    /// several calls. None: the positions that the call starts from.
+    pub start: Option<&'a [Point]>,
+    /// Group of each vertex: prescribed vertices of one group go and wait as one, by one fraction of their way.
+    /// [`Self::NO_GROUP`] is none. Every obstacle is a group of its own anyway. Empty: no groups.
+    pub groups: &'a [u32],
+}
+
+impl Call<'_> {
+    /// The entry of [`Self::groups`] for vertices in no group.
+    pub const NO_GROUP: u32 = u32::MAX;
 }
 
 /// Resolves collisions between a state and a target; keeps its workspace between calls.
@@ -56,6 +67,33 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
     /// A resolver made of other stages.
     pub fn with_stages(problem: Problem, search: S, backward: B, forward: F) -> Self {
         Self { problem, state: State::default(), search, backward, forward }
+    }
+
+    /// Says what each body brings into its contacts; one entry a body of the collision model, obstacles included.
+    ///
+    /// # Errors
+    /// [`ResolveError::Contact`] with every entry out of its range, or a wrong number of entries.
+    pub fn with_bodies(mut self, bodies: Vec<BodyContact>) -> Result<Self, ResolveError> {
+        self.problem.contact.set_bodies(bodies)?;
+        Ok(self)
+    }
+
+    /// Says what each half-space of the collision model brings into its contacts.
+    ///
+    /// # Errors
+    /// As [`Self::with_bodies`].
+    pub fn with_half_spaces(mut self, half_spaces: Vec<HalfSpaceContact>) -> Result<Self, ResolveError> {
+        self.problem.contact.set_half_spaces(half_spaces)?;
+        Ok(self)
+    }
+
+    /// Gives pairs of bodies coefficients of friction of their own, in place of the means of both sides'.
+    ///
+    /// # Errors
+    /// As [`Self::with_bodies`]; a side that does not exist, a pair that is named twice.
+    pub fn with_pair_friction(mut self, pairs: &[PairFriction]) -> Result<Self, ResolveError> {
+        self.problem.contact.set_pairs(pairs)?;
+        Ok(self)
     }
 
     /// The scene, its parameters, and the lengths in force.
@@ -138,8 +176,16 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
                 return Err(ResolveError::Length { what, given, vertices });
             }
         }
-        if !call.prescribed.is_empty() && call.prescribed.len() != vertices {
-            return Err(ResolveError::Length { what: "prescribed", given: call.prescribed.len(), vertices });
+        for (what, given) in [("prescribed", call.prescribed.len()), ("groups", call.groups.len())] {
+            if given != 0 && given != vertices {
+                return Err(ResolveError::Length { what, given, vertices });
+            }
+        }
+        if let Some(start) = call.start {
+            if start.len() != vertices {
+                return Err(ResolveError::Length { what: "start", given: start.len(), vertices });
+            }
+            check_finite("the start", &problem.model, start)?;
         }
         check_finite("the position", &problem.model, positions)?;
         check_finite("the target", &problem.model, target)?;

@@ -39,7 +39,8 @@ pub fn resolve(data: &[u8]) -> bool {
     let rest = if draw.below(4) == 0 { targets.clone() } else { start.clone() };
     let masses: Vec<f64> = start.iter().map(|_| mass(&mut draw)).collect();
     let pinned: Vec<bool> = start.iter().map(|_| draw.rarely(40)).collect();
-    let call = Call { prescribed: &pinned, time_step: draw.pick(&[None, Some(0.05), Some(1e-4)]).flatten() };
+    let time_step = draw.pick(&[None, Some(0.05), Some(1e-4)]).flatten();
+    let call = Call { prescribed: &pinned, time_step, ..Call::default() };
 
     let mut x = start.clone();
     match run(&case, params, &rest, &masses, &call, &mut x, &targets) {

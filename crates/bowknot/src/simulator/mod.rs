@@ -250,7 +250,7 @@ impl Simulator {
                 return Err(SimulationError::Interrupted);
             }
             let mut relay = Relay { watcher: &mut *watcher, step, iteration, stopped: false };
-            let call = Call { prescribed, time_step: Some(*dt) };
+            let call = Call { prescribed, time_step: Some(*dt), start: Some(start), ..Call::default() };
             let resolved = resolver.resolve(x, y, &call, &mut relay);
             if relay.stopped {
                 return Err(SimulationError::Interrupted);
