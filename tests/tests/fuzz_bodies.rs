@@ -20,6 +20,34 @@ fn share(body: fn(&[u8]) -> bool, cases: u64, length: usize) -> f64 {
     reached as f64 / cases as f64
 }
 
+/// One tetrahedron in files of kinds that are only read, behind the byte that chooses the kind.
+const SOLID: &[u8] =
+    b"\x04$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n9 0 0 1\n\
+    $EndNodes\n$Elements\n3\n1 15 2 0 1 1\n2 2 2 0 1 1 2 3\n3 4 2 0 1 1 2 3 9\n$EndElements\n";
+const TETS: &[u8] = b"\x05Vertex 0 0 0 0\nVertex 1 1 0 0\nVertex 2 0 1 0\nVertex 3 0 0 1\nTet 0 0 1 2 3\n";
+const SEGMENTS: &[u8] = b"\x06v 0 0 0\nv 1 0 0\nv 0 1 0\ns 1 2\ns 2 3\n";
+
+/// The same as a binary file of version 4.1 with counts of `size` bytes.
+fn binary_solid(size: usize) -> Vec<u8> {
+    let mut file = format!("\x04$MeshFormat\n4.1 1 {size}\n").into_bytes();
+    file.extend(1_i32.to_le_bytes());
+    file.extend(b"\n$EndMeshFormat\n$Nodes\n");
+    let count = |file: &mut Vec<u8>, n: u64| file.extend(&n.to_le_bytes()[..size]);
+    let int = |file: &mut Vec<u8>, n: i32| file.extend(n.to_le_bytes());
+    [1, 4, 1, 4].iter().for_each(|&n| count(&mut file, n));
+    [3, 1, 0].iter().for_each(|&n| int(&mut file, n));
+    [4, 1, 2, 3, 4].iter().for_each(|&n| count(&mut file, n));
+    for k in 0..4 {
+        (1..4).for_each(|axis| file.extend(f64::from(u8::from(k == axis)).to_le_bytes()));
+    }
+    file.extend(b"\n$EndNodes\n$Elements\n");
+    [1, 1, 1, 1].iter().for_each(|&n| count(&mut file, n));
+    [3, 1, 4].iter().for_each(|&n| int(&mut file, n));
+    [1, 1, 1, 2, 3, 4].iter().for_each(|&n| count(&mut file, n));
+    file.extend(b"\n$EndElements\n");
+    file
+}
+
 #[test]
 fn certified_widths_hold_for_any_points() {
     assert_eq!(share(fuzz::separate, 50_000 * seeds(), 104), 1.0);
@@ -81,6 +109,8 @@ fn damaged_files_are_read_or_refused() {
             files.push([vec![choice], fs::read(&path).expect("just written")].concat());
         }
     }
+    files.extend([SOLID, TETS, SEGMENTS].map(<[u8]>::to_vec));
+    files.extend([binary_solid(8), binary_solid(4)]);
     let mut random = Random::new(1);
     for file in &files {
         assert!(fuzz::read_mesh(file), "a sound file is refused");

@@ -102,7 +102,7 @@ pub struct ResolveOptions {
 
 #[derive(Debug, Args)]
 pub struct CheckOptions {
-    /// Frames (.ply, .obj, .npz), folders of frames, or folders of runs; files of a folder `trace` are joined by paths
+    /// States (.ply, .obj, .npz, .msh, .t, .seg), folders of frames, or folders of runs; files of a folder `trace` are joined by paths
     #[arg(required = true, value_name = "PATH")]
     pub paths: Vec<PathBuf>,
     /// Fail as well if any two primitives are nearer than this [m]
@@ -115,7 +115,7 @@ pub struct CheckOptions {
 
 #[derive(Debug, Args)]
 pub struct InfoOptions {
-    /// A built-in scene, a scene file (.toml), or a mesh (.obj, .ply)
+    /// A built-in scene, a scene file (.toml), or a mesh (.obj, .ply, .msh, .t, .seg)
     #[arg(required_unless_present = "gpus")]
     pub scene: Option<String>,
     /// List the GPUs

@@ -138,7 +138,7 @@ impl Checker {
                 self.archive(file)?;
                 joined = false;
             } else {
-                let mesh = read_mesh(file, &Import::default())?;
+                let mesh = read_mesh(file, &Import::default())?.into_surface();
                 self.state(file, file.display().to_string(), mesh, joined)?;
                 joined = group.trace;
             }
@@ -174,7 +174,7 @@ impl Checker {
                 strands: view.strands.to_vec(),
                 particles: view.particles.to_vec(),
                 obstacle: Some(view.obstacle.to_vec()),
-                body: None,
+                ..Mesh::default()
             };
             self.state(file, format!("{}[{index}]", file.display()), mesh, false)?;
         }

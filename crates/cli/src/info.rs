@@ -29,7 +29,7 @@ pub fn info(options: &InfoOptions) -> Result<Done, Failure> {
         return Err(setup::no_gpu());
     };
     let info = if is_mesh(name) {
-        of_mesh(&read_mesh(Path::new(name), &Import::default())?)
+        of_mesh(read_mesh(Path::new(name), &Import::default())?)
     } else {
         let sets: [&str; 0] = [];
         of_scene(Scene::open(name, None, &sets).and_then(|scene| scene.info()).map_err(Failure::input)?)
@@ -56,8 +56,11 @@ fn of_scene(info: SceneInfo) -> Info {
     }
 }
 
-/// Counts of a mesh as it stands in its file; elements with an obstacle vertex, of a frame, are not counted.
-fn of_mesh(mesh: &Mesh) -> Info {
+/// Counts of a mesh as it stands in its file, with the surface of its tetrahedra; elements with an obstacle vertex, of a
+/// frame, are not counted.
+fn of_mesh(mesh: Mesh) -> Info {
+    let tets = mesh.tets.len();
+    let mesh = mesh.into_surface();
     let obstacle = |v: &u32| mesh.obstacle.as_ref().is_some_and(|o| o[*v as usize]);
     let deformable = |vertices: &[u32]| !vertices.iter().any(obstacle);
     let triangles: Vec<&[u32; 3]> = mesh.triangles.iter().filter(|t| deformable(*t)).collect();
@@ -78,7 +81,7 @@ fn of_mesh(mesh: &Mesh) -> Info {
         vertices: mesh.positions.len() - obstacle_vertices,
         edges: edges.len(),
         triangles: triangles.len(),
-        tets: 0,
+        tets,
         strand_edges: strands.len(),
         particles: mesh.particles.iter().filter(|v| !obstacle(v)).count(),
         obstacle_vertices,

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use bowknot::geometry::{Point, Vector};
-use bowknot::io::{Import, read_mesh};
+use bowknot::io::{Import, MESH_ENDINGS, read_mesh};
 use bowknot::scene::{BodySpec, ObstacleSpec, Scene};
 use bowknot::shapes::{Ball, HalfSpaceShape, Shape};
 use std::path::Path;
@@ -15,7 +15,7 @@ const GAP: f64 = 0.05;
 /// Whether a SCENE argument is a mesh rather than a scene.
 pub fn is_mesh(name: &str) -> bool {
     let ending = Path::new(name).extension().unwrap_or_default().to_ascii_lowercase();
-    ending == "obj" || ending == "ply"
+    MESH_ENDINGS.iter().any(|known| ending == *known)
 }
 
 /// The scene of a loose mesh. `sets` may say how to import it (`body.0.up=y`), so the size is taken after them.

@@ -29,17 +29,20 @@ const ARRAYS: [(&str, usize); 14] = [
     ("T", 4),
 ];
 
-/// The bytes as an OBJ, PLY or NPZ file, by the first of them, or as the arrays of an NPZ file: readers give a sound
-/// mesh or an error that says something, and do not panic.
+/// The bytes as a file of any kind, by the first of them, or as the arrays of an NPZ file: readers give a sound mesh or
+/// an error that says something, and do not panic.
 pub fn read_mesh(data: &[u8]) -> bool {
     let Some((&choice, bytes)) = data.split_first() else { return false };
     let Ok(folder) = tempfile::tempdir() else { return false };
     let file = |ending: &str| folder.path().join(format!("mesh.{ending}"));
     let write = |path: &Path| fs::write(path, bytes).is_ok();
-    match choice % 4 {
+    match choice % 7 {
         0 => write(&file("obj")) && mesh(&file("obj"), |path, mesh| write_obj(path, &mesh.view()), read_obj),
         1 => write(&file("ply")) && mesh(&file("ply"), |path, mesh| write_ply(path, &mesh.view()), read_ply),
         2 => write(&file("npz")) && archive(&file("npz")),
+        4 => write(&file("msh")) && solid(&file("msh")),
+        5 => write(&file("t")) && solid(&file("t")),
+        6 => write(&file("seg")) && mesh(&file("seg"), |path, mesh| write_obj(path, &mesh.view()), read_obj),
         _ => write_arrays(&file("npz"), &mut Draw::new(bytes)).is_ok() && archive(&file("npz")),
     }
 }
@@ -71,11 +74,26 @@ fn mesh(
     true
 }
 
+/// Formats that are only read, and what becomes of their tetrahedra.
+fn solid(path: &Path) -> bool {
+    match read(path, &Import::default()) {
+        Ok(mut mesh) => {
+            check_sound(&mesh);
+            check_sound(&mesh.clone().into_surface());
+            mesh.drop_unused_vertices();
+            check_sound(&mesh);
+            true
+        }
+        Err(error) => check_error(&error),
+    }
+}
+
 /// Indices are in range, numbers finite, and neither the topology nor the judge panics.
 fn check_sound(mesh: &Mesh) {
-    let Mesh { positions, triangles, strands, particles, obstacle, body } = mesh;
+    let Mesh { positions, triangles, tets, strands, particles, obstacle, body } = mesh;
     let count = positions.len();
     let named = triangles.iter().flatten().chain(strands.iter().flatten()).chain(particles);
+    let named = named.chain(tets.iter().flatten());
     assert!(named.into_iter().all(|&v| (v as usize) < count), "an index is out of range");
     assert!(positions.iter().all(|p| p.iter().all(|c| c.is_finite())), "a coordinate is not finite");
     assert!(obstacle.as_ref().is_none_or(|flags| flags.len() == count), "obstacle flags of some vertices");

@@ -37,6 +37,8 @@ pub enum Place {
     File,
     /// A line, counted from 1.
     Line(usize),
+    /// A byte of a binary file, counted from 0.
+    Byte(usize),
     /// An element of a binary file, counted from 0, such as vertex 17.
     Element(String, usize),
     /// An array of an archive.
@@ -48,6 +50,7 @@ impl fmt::Display for Place {
         match self {
             Self::File => Ok(()),
             Self::Line(line) => write!(f, ":{line}"),
+            Self::Byte(byte) => write!(f, ": byte {byte}"),
             Self::Element(name, index) => write!(f, ": {name} {index}"),
             Self::Array(name) => write!(f, ": array {name}"),
         }

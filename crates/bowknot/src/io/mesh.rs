@@ -1,7 +1,7 @@
 //! A mesh as files hold it, whatever their format.
 
-use super::{Import, IoError, Place, read_obj, read_ply};
-use bowknot_geometry::Point;
+use super::{Import, IoError, Place, read_msh, read_obj, read_ply, read_segments, read_tet_list};
+use bowknot_geometry::{Point, boundary_triangles};
 use std::cmp::Ordering;
 use std::path::Path;
 
@@ -12,9 +12,12 @@ pub struct Mesh {
     pub positions: Vec<Point>,
     /// Triangles; larger polygons come as fans around their first vertex.
     pub triangles: Vec<[u32; 3]>,
-    /// Strand edges: `l` of an OBJ, `edge` of a PLY.
+    /// Tetrahedra, with a positive volume if (x1 - x0) x (x2 - x0) . (x3 - x0) is; as the file orders them. Their
+    /// faces are not among the triangles.
+    pub tets: Vec<[u32; 4]>,
+    /// Strand edges: `l` of an OBJ, `edge` of a PLY, `s` of a SEG, lines of a MSH.
     pub strands: Vec<[u32; 2]>,
-    /// Loose points that the file means: `p` of an OBJ; in a PLY every vertex of no face and no edge.
+    /// Loose points that the file means: `p` of an OBJ, points of a MSH; in a PLY every vertex of no face and no edge.
     pub particles: Vec<u32>,
     /// Whether each vertex belongs to an obstacle, if the file says so.
     pub obstacle: Option<Vec<bool>>,
@@ -55,7 +58,15 @@ impl Mesh {
         }
     }
 
-    /// Vertices that no triangle, strand edge or particle names, ascending.
+    /// The mesh with the surface of its tetrahedra in their place, pointing outward where they have a positive volume,
+    /// before the other triangles. Vertices keep their numbers; those inside are then named by nothing.
+    pub fn into_surface(mut self) -> Self {
+        let mut triangles = boundary_triangles(&self.tets);
+        triangles.append(&mut self.triangles);
+        Self { triangles, tets: Vec::new(), ..self }
+    }
+
+    /// Vertices that no triangle, tetrahedron, strand edge or particle names, ascending.
     pub fn unused_vertices(&self) -> Vec<u32> {
         let mut used = self.used_by_elements();
         self.particles.iter().for_each(|&v| used[v as usize] = true);
@@ -81,6 +92,7 @@ impl Mesh {
             .collect();
         let renumber = |v: &mut u32| *v = renumbered[*v as usize];
         self.triangles.iter_mut().flatten().for_each(renumber);
+        self.tets.iter_mut().flatten().for_each(renumber);
         self.strands.iter_mut().flatten().for_each(renumber);
         self.particles.iter_mut().for_each(renumber);
         retain(&mut self.positions, &keep);
@@ -96,6 +108,7 @@ impl Mesh {
     pub(super) fn used_by_elements(&self) -> Vec<bool> {
         let mut used = vec![false; self.positions.len()];
         self.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
+        self.tets.iter().flatten().for_each(|&v| used[v as usize] = true);
         self.strands.iter().flatten().for_each(|&v| used[v as usize] = true);
         used
     }
@@ -109,7 +122,11 @@ fn retain<T>(values: &mut Vec<T>, keep: &[bool]) {
     });
 }
 
-/// Reads an OBJ or PLY file, told apart by the ending of its name.
+/// Endings of the files that [`read_mesh`] reads, in lower case.
+pub const MESH_ENDINGS: [&str; 5] = ["obj", "ply", "msh", "t", "seg"];
+
+/// Reads a mesh file, told apart by the ending of its name: OBJ, PLY, Gmsh's MSH, lists of tetrahedra (`.t`), strand
+/// segments (`.seg`).
 ///
 /// # Errors
 /// A missing, malformed or truncated file, numbers that are not finite, indices out of range, an unknown ending.
@@ -118,7 +135,13 @@ pub fn read_mesh(path: &Path, import: &Import) -> Result<Mesh, IoError> {
     match ending.as_str() {
         "obj" => read_obj(path, import),
         "ply" => read_ply(path, import),
-        _ => Err(IoError::content(path, Place::File, "not a mesh: only .obj and .ply files are read")),
+        "msh" => read_msh(path, import),
+        "t" => read_tet_list(path, import),
+        "seg" => read_segments(path, import),
+        _ => {
+            let endings = MESH_ENDINGS.map(|ending| format!(".{ending}")).join(", ");
+            Err(IoError::content(path, Place::File, format!("not a mesh: only {endings} files are read")))
+        }
     }
 }
 

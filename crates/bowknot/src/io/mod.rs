@@ -1,4 +1,5 @@
-//! Files in and out: meshes (OBJ, PLY), collision problems and frame stacks (NPZ), atomic writes.
+//! Files in and out: meshes (OBJ, PLY; MSH, lists of tetrahedra and segments in only), collision problems and frame
+//! stacks (NPZ), atomic writes.
 //!
 //! Everything in memory is in metres with z up; [`Import`] converts on the way in. Readers never panic and never
 //! allocate on the word of a header: a malformed file gives an [`IoError`] that names the file and the line, element
@@ -6,23 +7,30 @@
 //! error or a warning depends on the body, which the scene knows and a file does not.
 //!
 //! The readers are our own because the crates at hand do not say where a file is wrong (`tobj`) or refuse numbers
-//! that exporters write, such as `1.` (`ply-rs-bw`); both serve as oracles in the tests.
+//! that exporters write, such as `1.` (`ply-rs-bw`); both serve as oracles in the tests. `mshio` is not kept up.
 
 mod atomic;
 mod error;
 mod import;
 mod mesh;
+mod msh;
 mod npz;
+mod numbering;
 mod obj;
 mod ply;
+mod tet_list;
 
 pub use atomic::{create_folder, write_atomic, write_text};
 pub use error::{IoError, Place};
 pub use import::{Import, Up};
-pub use mesh::{Mesh, MeshView, natural_order, read_mesh};
+pub use mesh::{MESH_ENDINGS, Mesh, MeshView, natural_order, read_mesh};
+pub use msh::read_msh;
 pub use npz::{FrameStack, States, write_result};
-pub use obj::{read_obj, write_obj};
+pub use obj::{read_obj, read_segments, write_obj};
 pub use ply::{read_ply, write_ply};
+pub use tet_list::read_tet_list;
+
+use numbering::Numbering;
 
 #[cfg(test)]
 mod tests;

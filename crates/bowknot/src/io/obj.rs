@@ -1,4 +1,5 @@
-//! Wavefront OBJ: `v`, `f`, `l` and `p`; every other statement is skipped.
+//! Wavefront OBJ: `v`, `f`, `l` and `p`; every other statement is skipped. And `.seg`, of the same manner, with strand
+//! segments as `s`.
 //!
 //! The format has no word for obstacles, without which nobody could tell a ball that rests on the ground from one that
 //! intersects it; a comment says from which vertex on there are obstacles only.
@@ -20,11 +21,24 @@ const OBSTACLE_FROM: &str = "# obstacle-from ";
 /// # Errors
 /// A missing or malformed file, coordinates that are not finite, indices of vertices that do not exist; with the line.
 pub fn read_obj(path: &Path, import: &Import) -> Result<Mesh, IoError> {
+    read(path, import, false)
+}
+
+/// Reads a `.seg` file: as an OBJ, but `s a b ..` is a strand through these vertices, not a smoothing group.
+///
+/// # Errors
+/// As [`read_obj`].
+pub fn read_segments(path: &Path, import: &Import) -> Result<Mesh, IoError> {
+    read(path, import, true)
+}
+
+fn read(path: &Path, import: &Import, segments: bool) -> Result<Mesh, IoError> {
     import.validate().map_err(|message| IoError::content(path, Place::File, message))?;
     let bytes = fs::read(path).map_err(|source| IoError::system("read", path, source))?;
     // Names of groups and materials may be in any encoding; the numbers are ASCII.
     let text = String::from_utf8_lossy(&bytes);
-    let mut reader = Reader { path, import, mesh: Mesh::default(), pending: Vec::new(), obstacle_from: None };
+    let mut reader =
+        Reader { path, import, segments, mesh: Mesh::default(), pending: Vec::new(), obstacle_from: None };
 
     let mut joined = String::new();
     let mut first_line = 0;
@@ -90,6 +104,8 @@ pub fn write_obj(path: &Path, mesh: &MeshView<'_>) -> Result<(), IoError> {
 struct Reader<'a> {
     path: &'a Path,
     import: &'a Import,
+    /// Whether `s` is a strand.
+    segments: bool,
     mesh: Mesh,
     /// Indices that no vertex had when they were read, with their line: vertices may follow the faces.
     pending: Vec<(u32, usize)>,
@@ -109,7 +125,7 @@ impl Reader<'_> {
                     .extend((2..corners.len()).map(|k| [corners[0], corners[k - 1], corners[k]]));
                 Ok(())
             }
-            Some("l") => {
+            Some(word) if word == "l" || self.segments && word == "s" => {
                 let line = self.indices(words, number, "a line", 2)?;
                 self.mesh.strands.extend(line.windows(2).map(|pair| [pair[0], pair[1]]));
                 Ok(())
@@ -204,7 +220,7 @@ impl Reader<'_> {
             return Err(IoError::content(
                 self.path,
                 Place::File,
-                "no vertices: not a Wavefront OBJ, or an empty one",
+                "no vertices: not of the OBJ manner, or empty",
             ));
         }
         self.mesh.obstacle = self.obstacle_from.map(|first| (0..count).map(|v| v >= first).collect());

@@ -155,7 +155,7 @@ fn meshes_that_cannot_be_read() {
     with_mesh(&place, "body", "mesh.ply", ply);
     place.run("run scene.toml").refused(2, &["mesh.ply", "truncated"]);
     with_mesh(&place, "body", "mesh.stl", "solid");
-    place.run("run scene.toml").refused(2, &["mesh.stl", ".obj and .ply"]);
+    place.run("run scene.toml").refused(2, &["mesh.stl", "only .obj, .ply"]);
 }
 
 #[test]

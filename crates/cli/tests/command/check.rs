@@ -97,3 +97,34 @@ fn what_cannot_be_judged() {
     place.write("twice.obj", "v 0 0 0\nv 1 0 0\nf 1 2 2\n");
     place.run("check twice.obj").refused(2, &["twice.obj", "triangle 0 names vertex 1 twice"]);
 }
+
+/// One tetrahedron, in Gmsh's text.
+const SOLID: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 0.2 0.2 0.2\n\
+                     $EndNodes\n$Elements\n4\n1 4 0 1 2 3 5\n2 4 0 1 4 2 5\n3 4 0 2 4 3 5\n4 4 0 1 3 4 5\n$EndElements\n";
+
+#[test]
+fn the_surface_of_a_solid_is_judged() {
+    let place = Place::new();
+    place.write("solid.msh", SOLID);
+    let ended = place.run("check solid.msh").ok();
+    assert!(ended.stdout.contains("no intersection; smallest distance 5.774e-1 m"), "{ended:#?}");
+    // Inside, the vertex belongs to no surface; a second solid around it does intersect.
+    let pierced = "Vertex 0 0 0 0\nVertex 1 1 0 0\nVertex 2 0 1 0\nVertex 3 0 0 1\nVertex 4 -1 0.2 0.2\n\
+                   Vertex 5 3 0.2 0.2\nVertex 6 3 0.3 0.2\nVertex 7 3 0.2 0.3\nTet 0 0 1 2 3\nTet 1 4 5 6 7\n";
+    place.write("pierced.t", pierced);
+    let ended = place.run("check pierced.t");
+    assert_eq!(ended.code, 1, "{ended:#?}");
+    place.write("bad.msh", SOLID.replace("1 2 3 5", "1 2 3 6"));
+    place.run("check bad.msh").refused(2, &["bad.msh:14", "node 6"]);
+}
+
+#[test]
+fn solids_and_strands_are_counted() {
+    let place = Place::new();
+    place.write("solid.msh", SOLID);
+    place.write("strand.seg", "v 0 0 0\nv 1 0 0\nv 2 0 0\ns 1 2\ns 2 3\n");
+    let info = place.run("info solid.msh --json").ok().json();
+    assert_eq!((&info["vertices"], &info["tets"], &info["triangles"]), (&5.into(), &4.into(), &4.into()));
+    let info = place.run("info strand.seg").ok();
+    assert!(info.stdout.contains("strand edges       2"), "{info:#?}");
+}
