@@ -39,9 +39,9 @@ pub use body::{Body, BodyShape};
 pub use dynamics::{Dynamics, NewtonInfo};
 pub use error::{MaterialError, ModelError, ParamsError, StepError};
 pub use linear::cg::CgInfo;
-pub use material::{ClothMaterial, ParticleMaterial, SolidMaterial, SolidModel, StrandMaterial};
+pub use material::{ClothMaterial, ParticleMaterial, RestShape, SolidMaterial, SolidModel, StrandMaterial};
 pub use model::DynamicsModel;
-pub use observe::Energies;
+pub use observe::{ElasticEnergies, Energies};
 pub use params::{DynamicsParams, HessianFilter, Preconditioner};
 
 /// The README's example runs as a test.

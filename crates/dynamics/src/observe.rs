@@ -2,18 +2,40 @@
 //!
 //! Sums run serially in vertex order: the same bits for any number of threads.
 
-use crate::elements::{CHUNK, Motion};
+use crate::elements::{CHUNK, Kind, Motion};
 use crate::{Dynamics, DynamicsModel};
 use bowknot_geometry::{Point, Vector};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+
+/// Elastic energy of all deformable bodies [J] by what stores it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ElasticEnergies {
+    /// Stretching and shearing of cloth.
+    pub membrane: f64,
+    /// Bending of cloth.
+    pub bending: f64,
+    /// Strain of solids.
+    pub solid: f64,
+    /// Stretching of strands.
+    pub strand_stretching: f64,
+    /// Bending of strands.
+    pub strand_bending: f64,
+}
+
+impl ElasticEnergies {
+    /// Their sum.
+    pub fn total(&self) -> f64 {
+        self.membrane + self.bending + self.solid + self.strand_stretching + self.strand_bending
+    }
+}
 
 /// Energies of all deformable bodies [J].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energies {
     /// 1/2 sum m |v|^2.
     pub kinetic: f64,
-    /// Stretching and bending.
+    /// That of strain and bending, see [`DynamicsModel::elastic_energies`].
     pub elastic: f64,
     /// Gravity's, - sum m g.x: zero at the origin.
     pub potential: f64,
@@ -44,7 +66,7 @@ impl DynamicsModel {
         if total > 0.0 { Point::from(moment / total) } else { Point::origin() }
     }
 
-    /// Largest length / rest length over all cloth edges; 0 if there is none.
+    /// Largest length / rest length over all edges of cloth and strands; 0 if there is none.
     pub fn max_stretch(&self, x: &[Point]) -> f64 {
         let position = |node: u32| x[self.node_vertex[node as usize] as usize];
         // A maximum is the same in any order.
@@ -55,20 +77,29 @@ impl DynamicsModel {
             .reduce(|| 0.0, f64::max)
     }
 
-    /// Elastic energy [J] at `x`: membrane and bending.
+    /// Elastic energy [J] at `x`, of strain and bending.
     pub fn elastic_energy(&self, x: &[Point]) -> f64 {
-        let x: Vec<Vector> = self.node_vertex.iter().map(|&v| x[v as usize].coords).collect();
-        self.membrane_energy(Motion { x: &x, start: &x, rate: 0.0 }) + self.bending.energy(&x)
+        self.elastic_energies(x).total()
     }
 
-    /// Energy of all element families, with dissipation if `motion` has a rate.
-    pub(crate) fn membrane_energy(&self, motion: Motion<'_>) -> f64 {
-        let chunks = motion.x.len().div_ceil(CHUNK);
-        let partial: Vec<f64> = (0..chunks)
-            .into_par_iter()
-            .map(|chunk| self.families.iter().map(|family| family.energy(chunk, motion)).sum())
-            .collect();
-        partial.iter().sum()
+    /// Elastic energy [J] at `x` by kind.
+    pub fn elastic_energies(&self, x: &[Point]) -> ElasticEnergies {
+        let x: Vec<Vector> = self.node_vertex.iter().map(|&v| x[v as usize].coords).collect();
+        let motion = Motion { x: &x, start: &x, rate: 0.0 };
+        let mut energies = ElasticEnergies { bending: self.bending.energy(&x), ..Default::default() };
+        for family in &self.families {
+            let sum = match family.kind() {
+                Kind::Membrane => &mut energies.membrane,
+                Kind::Solid => &mut energies.solid,
+                Kind::StrandStretching => &mut energies.strand_stretching,
+                Kind::StrandBending => &mut energies.strand_bending,
+            };
+            let chunks = x.len().div_ceil(CHUNK);
+            let partial: Vec<f64> =
+                (0..chunks).into_par_iter().map(|chunk| family.energy(chunk, motion)).collect();
+            *sum += partial.iter().sum::<f64>();
+        }
+        energies
     }
 }
 

@@ -1,8 +1,7 @@
 //! Families of elements: what each kind of deformable body adds to energy, forces and stiffness.
 //!
-//! A family is a list of elements of one kind ([`Element`]), each over N nodes. Triangles are the
-//! first; tetrahedra, strands or springs are further implementations of the same trait, and nothing
-//! else changes: [`ElementFamily`] scatters any of them into the block matrix.
+//! A family is a list of elements of one kind ([`Element`]), each over N nodes: triangles, tetrahedra,
+//! edges and turnings of strands. [`ElementFamily`] scatters any of them into the block matrix.
 //!
 //! Scattering is by owner of the row: nodes are numbered along the mesh and cut into chunks, and a
 //! chunk visits every element that touches one of its nodes, adding to its own rows only. Elements
@@ -11,6 +10,12 @@
 //! same bits for any number of threads.
 
 pub(crate) mod bending;
+mod solid_law;
+pub(crate) mod strand;
+mod svd;
+#[cfg(test)]
+mod test_support;
+pub(crate) mod tetrahedron;
 pub(crate) mod triangle;
 
 use crate::linear::block::BlockPattern;
@@ -101,6 +106,9 @@ pub(crate) struct Rows<'a> {
 
 /// Elements of one kind, behind a common face.
 pub(crate) trait ElementFamily: Send + Sync {
+    /// What its energy belongs to.
+    fn kind(&self) -> Kind;
+
     /// Nodes of every element, for the pattern of the matrix.
     fn for_each_clique(&self, visit: &mut dyn FnMut(&[u32]));
 
@@ -119,8 +127,24 @@ pub(crate) trait ElementFamily: Send + Sync {
     fn len(&self) -> usize;
 }
 
+/// What an energy belongs to, for reports.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Membrane,
+    Solid,
+    StrandStretching,
+    StrandBending,
+}
+
+/// Some unit vector orthogonal to the unit vector `u`.
+fn any_normal(u: &Vector) -> Vector {
+    let axis = if u.x.abs() < 0.6 { Vector::x() } else { Vector::y() };
+    u.cross(&axis).normalize()
+}
+
 /// Elements of type `E` with their scatter maps.
 pub(crate) struct Family<E, const N: usize> {
+    kind: Kind,
     elements: Vec<E>,
     /// Where the block of nodes (a, b) stands in the pattern, for a != b.
     slots: Vec<[[u32; N]; N]>,
@@ -130,8 +154,14 @@ pub(crate) struct Family<E, const N: usize> {
 }
 
 impl<E: Element<N>, const N: usize> Family<E, N> {
-    pub fn new(elements: Vec<E>) -> Self {
-        Self { elements, slots: Vec::new(), touching: Vec::new(), starts: vec![0] }
+    /// The elements, sorted by their nodes: those of a chunk then stand together.
+    pub fn new(kind: Kind, mut elements: Vec<E>) -> Self {
+        elements.sort_by_key(|e| {
+            let mut nodes = e.nodes();
+            nodes.sort_unstable();
+            nodes
+        });
+        Self { kind, elements, slots: Vec::new(), touching: Vec::new(), starts: vec![0] }
     }
 
     fn chunk(&self, chunk: usize) -> &[u32] {
@@ -145,6 +175,10 @@ impl<E: Element<N>, const N: usize> Family<E, N> {
 }
 
 impl<E: Element<N>, const N: usize> ElementFamily for Family<E, N> {
+    fn kind(&self) -> Kind {
+        self.kind
+    }
+
     fn for_each_clique(&self, visit: &mut dyn FnMut(&[u32])) {
         self.elements.iter().for_each(|e| visit(&e.nodes()));
     }

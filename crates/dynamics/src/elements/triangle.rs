@@ -28,7 +28,7 @@
 //! so it takes neither linear nor angular momentum; its gradient is the viscous force of implicit
 //! Euler. A damped element's curvatures are those of both potentials together, filtered together.
 
-use super::{Element, Filter, Linearisation, Start};
+use super::{Element, Filter, Linearisation, Start, any_normal};
 use bowknot_geometry::Vector;
 use nalgebra::{Matrix2, Matrix3, Matrix4, Vector2};
 
@@ -353,12 +353,6 @@ fn decompose(f: &[Vector; 2]) -> Decomposition {
     let s2 = w2.norm();
     let u2 = if s2 > 1e-14 * s1 && s2 > SINGULAR_ZERO { w2 * (1.0 / s2) } else { any_normal(&u1) };
     Decomposition { s: [s1, s2], u: [u1, u2], v1: [c, s] }
-}
-
-/// Some unit vector orthogonal to the unit vector `u`.
-fn any_normal(u: &Vector) -> Vector {
-    let axis = if u.x.abs() < 0.6 { Vector::x() } else { Vector::y() };
-    u.cross(&axis).normalize()
 }
 
 #[cfg(test)]

@@ -1,21 +1,8 @@
 use super::*;
-use nalgebra::{DMatrix, Rotation3};
+use crate::elements::test_support::{Stream, check_derivatives, dense};
+use nalgebra::Rotation3;
 
 const NONE: Option<Start<'static, 3>> = None;
-
-/// A repeatable stream of numbers in [-1, 1).
-struct Stream(u64);
-
-impl Stream {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(&mut self) -> Vector {
-        Vector::new(self.next(), self.next(), self.next())
-    }
-}
 
 fn rest() -> [Vector; 3] {
     [Vector::new(0.1, 0.2, 0.3), Vector::new(1.2, 0.1, 0.2), Vector::new(0.4, 0.9, 0.6)]
@@ -25,49 +12,8 @@ fn triangle(damping: f64) -> Triangle {
     Triangle::new([0, 1, 2], &rest(), (30.0, 50.0), damping).expect("it has an area")
 }
 
-/// `rest()` stretched by about `amount` in random ways, scaled and turned.
 fn deformed(stream: &mut Stream, scale: f64, amount: f64) -> [Vector; 3] {
-    let turn = Rotation3::new(stream.vector() * 3.0);
-    rest().map(|x| turn * (x * scale + stream.vector() * amount) + Vector::new(3.0, -2.0, 1.0))
-}
-
-fn dense(hessian: &[[Matrix3<f64>; 3]; 3]) -> DMatrix<f64> {
-    DMatrix::from_fn(9, 9, |i, j| {
-        let (a, b) = (i / 3, j / 3);
-        if a <= b { hessian[a][b][(i % 3, j % 3)] } else { hessian[b][a][(j % 3, i % 3)] }
-    })
-}
-
-fn moved(x: &[Vector; 3], coordinate: usize, by: f64) -> [Vector; 3] {
-    let mut x = *x;
-    x[coordinate / 3][coordinate % 3] += by;
-    x
-}
-
-/// Gradient against differences of the energy, exact Hessian against differences of the gradient.
-fn check_derivatives(triangle: &Triangle, x: &[Vector; 3], start: Option<Start<'_, 3>>) {
-    let h = 1e-5;
-    let here = triangle.linearise(x, start, Filter::Exact);
-    // Two formulas.
-    assert!((here.energy - triangle.energy(x, start)).abs() <= 1e-13 * here.energy.abs().max(1.0));
-    let hessian = dense(&here.hessian);
-    let (mut gradient_error, mut hessian_error) = (0.0f64, 0.0f64);
-    for k in 0..9 {
-        let (plus, minus) = (moved(x, k, h), moved(x, k, -h));
-        let slope = (triangle.energy(&plus, start) - triangle.energy(&minus, start)) / (2.0 * h);
-        gradient_error = gradient_error.max((slope - here.gradient[k / 3][k % 3]).abs());
-        let plus = triangle.linearise(&plus, start, Filter::Exact).gradient;
-        let minus = triangle.linearise(&minus, start, Filter::Exact).gradient;
-        for l in 0..9 {
-            let curvature = (plus[l / 3][l % 3] - minus[l / 3][l % 3]) / (2.0 * h);
-            hessian_error = hessian_error.max((curvature - hessian[(l, k)]).abs());
-        }
-    }
-    // Central differences err by about h^2 times third derivatives, here some hundred times the
-    // stiffness over a length of 1.
-    let scale = hessian.abs().max();
-    assert!(gradient_error < 1e-7 * scale, "gradient off by {gradient_error:e} of {scale:e}");
-    assert!(hessian_error < 1e-6 * scale, "Hessian off by {hessian_error:e} of {scale:e}");
+    stream.deformed(&rest(), scale, amount)
 }
 
 #[test]

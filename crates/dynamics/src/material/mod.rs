@@ -13,6 +13,17 @@ pub use solid::{SolidMaterial, SolidModel};
 pub use strand::StrandMaterial;
 
 use crate::MaterialError;
+use serde::{Deserialize, Serialize};
+
+/// Shape in which a body is free of bending.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RestShape {
+    /// Flat, straight: whatever the initial shape.
+    Flat,
+    /// The initial shape, with its curvature.
+    Initial,
+}
 
 /// A field with its value and its unit.
 type Field = (&'static str, f64, &'static str);

@@ -1,6 +1,6 @@
 //! Hair and yarn.
 
-use super::check;
+use super::{RestShape, check};
 use crate::MaterialError;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -24,6 +24,9 @@ pub struct StrandMaterial {
     /// Bending-rate damping [s]: viscous moment = this times stiffness times curvature rate. It
     /// conserves linear momentum; a bent strand that spins as a whole is slowed, slightly. Default 0.
     pub bend_damping: f64,
+    /// Shape free of bending: `initial` keeps how much the strand turns at each vertex (not in which plane:
+    /// there is no twist, and a curl may roll over); `flat` is straight. Default `initial`.
+    pub rest_shape: RestShape,
 }
 
 impl Default for StrandMaterial {
@@ -48,6 +51,7 @@ impl StrandMaterial {
             radius,
             stretch_damping: 0.0,
             bend_damping: 0.0,
+            rest_shape: RestShape::Initial,
         }
     }
 
@@ -80,6 +84,7 @@ impl StrandMaterial {
             radius: 0.5e-3,
             stretch_damping: 0.0,
             bend_damping: 0.0,
+            rest_shape: RestShape::Initial,
         }
     }
 
@@ -93,6 +98,7 @@ impl StrandMaterial {
             radius: 5e-3,
             stretch_damping: 0.0,
             bend_damping: 0.0,
+            rest_shape: RestShape::Initial,
         }
     }
 
@@ -167,6 +173,7 @@ mod tests {
             bend_stiffness: -1.0,
             stretch_damping: -1.0,
             bend_damping: -1.0,
+            ..StrandMaterial::hair()
         };
         assert_eq!(bad.validate().expect_err("six").len(), 6);
     }

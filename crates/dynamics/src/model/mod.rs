@@ -1,15 +1,15 @@
 //! What is fixed during a run: bodies, masses, elements, the pattern of the matrix.
 
+mod assembly;
 mod check;
 
-use crate::elements::bending::add_bending;
-use crate::elements::triangle::Triangle;
-use crate::elements::{ElementFamily, Family};
+use crate::elements::ElementFamily;
 use crate::linear::block::BlockPattern;
 use crate::linear::coarse::Coarse;
 use crate::linear::ordering::order_nodes;
-use crate::linear::scalar::{ScalarBuilder, ScalarForm};
+use crate::linear::scalar::ScalarForm;
 use crate::{Body, BodyShape, ModelError};
+use assembly::{Assembly, Elements};
 use bowknot_geometry::{Point, Vector};
 use check::{area, check, volume};
 use std::ops::Range;
@@ -44,7 +44,7 @@ pub struct DynamicsModel {
     pub(crate) bending: ScalarForm,
     /// Bending times each body's damping time [N s/m]; same pattern. None if no body has any.
     pub(crate) bending_damping: Option<ScalarForm>,
-    /// Cloth edges with their rest lengths [m].
+    /// Edges of cloth and strands with their rest lengths [m].
     pub(crate) edges: Vec<([u32; 2], f64)>,
     /// Ranges of nodes that are compact patches.
     pub(crate) leaves: Vec<Range<u32>>,
@@ -91,12 +91,6 @@ impl DynamicsModel {
         }
         let masses = masses(&rest_positions, &bodies);
 
-        let cloth = || {
-            bodies.iter().filter_map(|body| match &body.shape {
-                BodyShape::Cloth { triangles, material } => Some((triangles, material)),
-                _ => None,
-            })
-        };
         let deformable: Vec<u32> = (0..count as u32).filter(|&v| !obstacle[v as usize]).collect();
         let mut compact = vec![NO_NODE; count];
         deformable.iter().enumerate().for_each(|(k, &v)| compact[v as usize] = k as u32);
@@ -116,42 +110,9 @@ impl DynamicsModel {
         node_vertex.iter().enumerate().for_each(|(node, &v)| vertex_node[v as usize] = node as u32);
 
         let rest: Vec<Vector> = node_vertex.iter().map(|&v| rest_positions[v as usize].coords).collect();
-        let mut triangles = Vec::new();
-        let mut edges = Vec::new();
-        let mut bending = ScalarBuilder::new(rest.len());
-        let mut bending_damping = ScalarBuilder::new(rest.len());
-        let mut damped = false;
-        for (body_triangles, material) in cloth() {
-            let local: Vec<[u32; 3]> =
-                body_triangles.iter().map(|t| t.map(|v| vertex_node[v as usize])).collect();
-            for nodes in &local {
-                let corners = nodes.map(|n| rest[n as usize]);
-                // Areas were checked above.
-                triangles.extend(Triangle::new(*nodes, &corners, material.lame(), material.stretch_damping));
-                for (a, b) in [(0, 1), (1, 2), (2, 0)] {
-                    edges.push([nodes[a].min(nodes[b]), nodes[a].max(nodes[b])]);
-                }
-            }
-            if material.bend_stiffness > 0.0 {
-                add_bending(&local, &rest, material.bend_stiffness, &mut bending);
-                // Also when 0, so that both forms have one pattern.
-                let damping = material.bend_stiffness * material.bend_damping;
-                add_bending(&local, &rest, damping, &mut bending_damping);
-                damped |= damping > 0.0;
-            }
-        }
-        // Elements of a chunk stand together, in the order of their nodes.
-        triangles.sort_by_key(|t| {
-            let mut nodes = crate::elements::Element::nodes(t);
-            nodes.sort_unstable();
-            nodes
-        });
-        edges.sort_unstable();
-        edges.dedup();
-        let edges =
-            edges.into_iter().map(|[a, b]| ([a, b], (rest[a as usize] - rest[b as usize]).norm())).collect();
-
-        let mut families: Vec<Box<dyn ElementFamily>> = vec![Box::new(Family::new(triangles))];
+        let mut assembly = Assembly::new(&rest);
+        bodies.iter().for_each(|body| assembly.add(&body.shape, &vertex_node));
+        let Elements { mut families, edges, bending, bending_damping } = assembly.finish();
         let pattern = BlockPattern::from_cliques(rest.len(), |visit| {
             families.iter().for_each(|family| family.for_each_clique(visit));
         });
@@ -167,8 +128,8 @@ impl DynamicsModel {
             vertex_node,
             families,
             pattern,
-            bending: bending.build(),
-            bending_damping: damped.then(|| bending_damping.build()),
+            bending,
+            bending_damping,
             edges,
             leaves: ordering.leaves,
             components: ordering.components,

@@ -1,0 +1,107 @@
+//! Signed singular values of 3 x 3 matrices.
+
+use bowknot_geometry::Vector;
+use nalgebra::Matrix3;
+
+/// Rotations of a column pair whose cosine is below this change nothing: a few ulp.
+const ORTHOGONAL: f64 = 1e-15;
+
+/// Singular values up to this are zero: their squares and reciprocals must be finite. Columns shorter than
+/// 1e-77 are not made orthogonal, as their products vanish.
+const ZERO: f64 = 1e-150;
+
+/// Most sweeps; from random matrices four do.
+const SWEEPS: usize = 12;
+
+/// F = u diag(s) v^T with rotations u and v (no reflections), s1 >= s2 >= |s3|: the last is negative
+/// where F inverts.
+pub(crate) struct Svd {
+    pub u: Matrix3<f64>,
+    pub s: Vector,
+    pub v: Matrix3<f64>,
+}
+
+/// One-sided Jacobi rotations: columns of F V made orthogonal, small singular values to full relative
+/// accuracy (Demmel and Veselic 1992). Algebraic, so that no trigonometric function of the platform
+/// enters; finite whatever the rank.
+#[inline]
+pub(crate) fn signed_svd(f: &Matrix3<f64>) -> Svd {
+    let mut b: [Vector; 3] = std::array::from_fn(|k| f.column(k).into_owned());
+    let mut v: [Vector; 3] = [Vector::x(), Vector::y(), Vector::z()];
+    for _ in 0..SWEEPS {
+        let mut rotated = false;
+        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
+            let (pp, qq, pq) = (b[p].norm_squared(), b[q].norm_squared(), b[p].dot(&b[q]));
+            if pq * pq <= ORTHOGONAL * ORTHOGONAL * pp * qq {
+                continue;
+            }
+            let tau = (qq - pp) / (2.0 * pq);
+            let t = 1.0f64.copysign(tau) / (tau.abs() + (1.0 + tau * tau).sqrt());
+            let c = 1.0 / (1.0 + t * t).sqrt();
+            let s = t * c;
+            (b[p], b[q]) = (b[p] * c - b[q] * s, b[p] * s + b[q] * c);
+            (v[p], v[q]) = (v[p] * c - v[q] * s, v[p] * s + v[q] * c);
+            rotated = true;
+        }
+        if !rotated {
+            break;
+        }
+    }
+    // Descending; a swap with a sign keeps v a rotation.
+    for (p, q) in [(0, 1), (1, 2), (0, 1)] {
+        if b[p].norm_squared() < b[q].norm_squared() {
+            (b[p], b[q]) = (b[q], -b[p]);
+            (v[p], v[q]) = (v[q], -v[p]);
+        }
+    }
+    let s1 = b[0].norm();
+    let u1 = if s1 > ZERO { b[0] * (1.0 / s1) } else { Vector::x() };
+    // What rounding left of b1 in b2 is taken out, so that u stays orthonormal near rank one.
+    let w = b[1] - u1 * u1.dot(&b[1]);
+    let s2 = w.norm();
+    let u2 = if s2 > 1e-14 * s1 && s2 > ZERO { w * (1.0 / s2) } else { super::any_normal(&u1) };
+    let u3 = u1.cross(&u2);
+    Svd {
+        u: Matrix3::from_columns(&[u1, u2, u3]),
+        s: Vector::new(s1, u2.dot(&b[1]), u3.dot(&b[2])),
+        v: Matrix3::from_columns(&v),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::elements::test_support::Stream;
+
+    fn check(f: &Matrix3<f64>) {
+        let Svd { u, s, v } = signed_svd(f);
+        let back = u * Matrix3::from_diagonal(&s) * v.transpose();
+        let size = f.abs().max();
+        assert!((back - f).abs().max() <= 4e-15 * size, "{f} {back}");
+        for turn in [u, v] {
+            assert!((turn.transpose() * turn - Matrix3::identity()).abs().max() < 4e-15);
+            assert!((turn.determinant() - 1.0).abs() < 1e-14);
+        }
+        assert!(s[0] >= s[1] - 1e-15 * size && s[1] >= s[2].abs() - 1e-15 * size, "{s}");
+    }
+
+    #[test]
+    fn any_matrix_is_taken_apart_into_rotations() {
+        let mut stream = Stream(1);
+        for k in 0..1000 {
+            let mut f = Matrix3::from_fn(|_, _| stream.next());
+            match k % 8 {
+                0 => f.set_column(2, &(f.column(0) * 2.0 - f.column(1))),
+                1 => f = f.column(0) * f.row(1),
+                2 => f = Matrix3::identity() + f * 1e-9,
+                3 => f *= 1e-60,
+                4 => f.set_column(1, &(f.column(1) * 1e-9)),
+                _ => {}
+            }
+            check(&f);
+        }
+        check(&Matrix3::zeros());
+        check(&-Matrix3::identity());
+        check(&Matrix3::identity());
+    }
+}

@@ -1,0 +1,99 @@
+//! What tests of elements share.
+
+use super::{Element, Filter, Start};
+use bowknot_geometry::Vector;
+use nalgebra::{DMatrix, Matrix3, Rotation3};
+
+/// A repeatable stream of numbers in [-1, 1).
+pub(crate) struct Stream(pub u64);
+
+impl Stream {
+    pub fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    pub fn vector(&mut self) -> Vector {
+        Vector::new(self.next(), self.next(), self.next())
+    }
+
+    /// `rest` stretched by about `amount` in random ways, scaled, turned and shifted.
+    pub fn deformed<const N: usize>(&mut self, rest: &[Vector; N], scale: f64, amount: f64) -> [Vector; N] {
+        let turn = Rotation3::new(self.vector() * 3.0);
+        rest.map(|x| turn * (x * scale + self.vector() * amount) + Vector::new(3.0, -2.0, 1.0))
+    }
+}
+
+/// The full matrix of an element's upper blocks.
+pub(crate) fn dense<const N: usize>(hessian: &[[Matrix3<f64>; N]; N]) -> DMatrix<f64> {
+    DMatrix::from_fn(3 * N, 3 * N, |i, j| {
+        let (a, b) = (i / 3, j / 3);
+        if a <= b { hessian[a][b][(i % 3, j % 3)] } else { hessian[b][a][(j % 3, i % 3)] }
+    })
+}
+
+fn moved<const N: usize>(x: &[Vector; N], coordinate: usize, by: f64) -> [Vector; N] {
+    let mut x = *x;
+    x[coordinate / 3][coordinate % 3] += by;
+    x
+}
+
+/// Gradient against differences of the energy.
+pub(crate) fn check_gradient<E: Element<N>, const N: usize>(
+    element: &E,
+    x: &[Vector; N],
+    start: Option<Start<'_, N>>,
+) {
+    let h = 1e-5;
+    let here = element.linearise(x, start, Filter::Exact);
+    // Two formulas.
+    let size = here.energy.abs().max(1.0);
+    let energy = element.energy(x, start);
+    assert!((here.energy - energy).abs() <= 1e-13 * size, "{} {energy}", here.energy);
+    let scale = dense(&here.hessian).abs().max();
+    for k in 0..3 * N {
+        let (plus, minus) = (moved(x, k, h), moved(x, k, -h));
+        let slope = (element.energy(&plus, start) - element.energy(&minus, start)) / (2.0 * h);
+        let error = (slope - here.gradient[k / 3][k % 3]).abs();
+        // Central differences err by about h^2 times third derivatives: a hundred times the stiffness.
+        assert!(error < 1e-7 * scale, "gradient {k} off by {error:e} of {scale:e}");
+    }
+}
+
+/// [`check_gradient`], and the exact Hessian against differences of the gradient.
+pub(crate) fn check_derivatives<E: Element<N>, const N: usize>(
+    element: &E,
+    x: &[Vector; N],
+    start: Option<Start<'_, N>>,
+) {
+    check_gradient(element, x, start);
+    let h = 1e-5;
+    let hessian = dense(&element.linearise(x, start, Filter::Exact).hessian);
+    let scale = hessian.abs().max();
+    for k in 0..3 * N {
+        let plus = element.linearise(&moved(x, k, h), start, Filter::Exact).gradient;
+        let minus = element.linearise(&moved(x, k, -h), start, Filter::Exact).gradient;
+        for l in 0..3 * N {
+            let curvature = (plus[l / 3][l % 3] - minus[l / 3][l % 3]) / (2.0 * h);
+            let error = (curvature - hessian[(l, k)]).abs();
+            assert!(error < 1e-6 * scale, "Hessian ({l}, {k}) off by {error:e} of {scale:e}");
+        }
+    }
+}
+
+/// No negative curvature, up to rounding.
+pub(crate) fn check_positive<const N: usize>(hessian: &[[Matrix3<f64>; N]; N], what: &str) {
+    let hessian = dense(hessian);
+    assert!(hessian.iter().all(|h| h.is_finite()), "{what}");
+    let (least, most) = (hessian.clone().symmetric_eigenvalues().min(), hessian.abs().max());
+    assert!(least >= -1e-10 * most, "{what}: {least:e} of {most:e}");
+}
+
+/// Forces sum to zero and have no torque, up to rounding.
+pub(crate) fn check_balance<const N: usize>(x: &[Vector; N], gradient: &[Vector; N]) {
+    let size =
+        gradient.iter().map(|g| g.norm()).sum::<f64>() * x.iter().map(|x| x.norm()).fold(1.0, f64::max);
+    let force: Vector = gradient.iter().sum();
+    let torque: Vector = x.iter().zip(gradient).map(|(x, g)| x.cross(g)).sum();
+    assert!(force.norm() <= 1e-13 * size && torque.norm() <= 1e-13 * size, "{force} {torque} of {size:e}");
+}
