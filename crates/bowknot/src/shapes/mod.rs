@@ -14,6 +14,8 @@ pub use tube::Tube;
 
 use bowknot_geometry::{Point, Vector};
 use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::sync::Arc;
 
 /// A generated mesh, or the analytic half-space; the key `type` tells which.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -57,6 +59,15 @@ pub struct TriangleMesh {
     pub triangles: Vec<[u32; 3]>,
 }
 
+/// A generated shape whose vertices move: what an obstacle of that shape follows.
+///
+/// The vertices are those of [`Shape::mesh`], in its order and in the shape's own axes; their places must be
+/// continuous in time, and the same at every call.
+pub trait Animated: fmt::Debug + Send + Sync {
+    /// Where all vertices are at a time [s], from 0 [m].
+    fn positions(&self, time: f64) -> Vec<Point>;
+}
+
 /// More vertices than this in one shape are refused: a mistyped edge length rather than a wish.
 const MOST_VERTICES: f64 = 2e7;
 
@@ -74,6 +85,11 @@ impl Shape {
             Self::Box(cuboid) => Some(cuboid.mesh()),
             Self::HalfSpace(_) => None,
         }
+    }
+
+    /// The shape as one that moves by itself; none for those that do not. Its mesh is that at time 0.
+    pub fn animated(&self) -> Option<Arc<dyn Animated>> {
+        None
     }
 
     /// Appends the field and what is wrong with it.

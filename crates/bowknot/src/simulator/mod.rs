@@ -272,15 +272,7 @@ impl Simulator {
         for body in world.bodies.iter().filter(|body| body.kind.is_none()) {
             let range = body.vertices.start as usize..body.vertices.end as usize;
             prescribed[range.clone()].fill(true);
-            match &body.motion {
-                None => keyframes[range.clone()].copy_from_slice(&world.base[range]),
-                Some(motion) => {
-                    let place = motion.at(time);
-                    for v in range {
-                        keyframes[v] = place.apply(&world.base[v]);
-                    }
-                }
-            }
+            body.motion.positions(&world.base[range.clone()], time, &mut keyframes[range]);
         }
         // Times are multiples of dt, rounded.
         let tolerance = 1e-9 * *dt;

@@ -1,12 +1,15 @@
 //! A scene's meshes, loaded and put together: deformable vertices first, then obstacles.
 
+mod motion;
+
+pub use motion::{ObstacleMotion, Placing, Procedural, Sequence};
+
 use crate::io::{self, Import};
-use crate::scene::{BodyKind, Material, Motion, PinSpec, Scene, SceneError};
+use crate::scene::{BodyKind, Material, Motion, ObstacleSpec, PinSpec, Scene, SceneError};
 use crate::shapes::Shape;
 use bowknot_dynamics::{Body, DynamicsModel};
 use bowknot_geometry::{HalfSpace, MeshProblem, Point, Topology, Vector, check_mesh};
 use bowknot_proximity::{BodyFilter, CollisionModel};
-use nalgebra::Rotation3;
 use serde::Serialize;
 use std::ops::Range;
 use std::path::Path;
@@ -45,8 +48,8 @@ pub struct WorldBody {
     pub kind: Option<BodyKind>,
     /// Its vertices.
     pub vertices: Range<u32>,
-    /// How it moves, if it is an obstacle that does.
-    pub motion: Option<Motion>,
+    /// How it moves, if it is an obstacle.
+    pub motion: ObstacleMotion,
 }
 
 /// Held or led vertices of a body.
@@ -122,7 +125,8 @@ impl World {
             match body.kind {
                 BodyKind::Cloth => clean_cloth(&mut part, &body.name, &mut assembly.warnings)?,
             }
-            place(&mut part.positions, &body.rotate, &body.translate);
+            let placing = Placing { import, rotate: body.rotate, translate: body.translate };
+            placing.place(&mut part.positions);
             let Material::Cloth(material) = body.material;
             assembly.drops.push(part.dropped.clone());
             let filter = filter(&body.groups, body.collides_with.as_deref(), false, body.self_collision);
@@ -130,31 +134,39 @@ impl World {
             assembly.velocities.resize(vertices.end as usize, body.velocity);
             assembly.models.push(Body::cloth(&*body.name, triangles, material));
             let name = body.name.clone();
-            assembly.bodies.push(WorldBody { name, kind: Some(body.kind), vertices, motion: None });
+            assembly.bodies.push(WorldBody {
+                name,
+                kind: Some(body.kind),
+                vertices,
+                motion: ObstacleMotion::Rest,
+            });
         }
         let deformable_vertices = assembly.base.len();
         assembly.positions.clone_from(&assembly.base);
         for obstacle in &scene.obstacles {
+            let import = Import { up: obstacle.up, scale: obstacle.scale };
+            let placing = Placing { import, rotate: obstacle.rotate, translate: obstacle.translate };
             if let Some(Shape::HalfSpace(shape)) = &obstacle.shape {
-                let normal = rotation(&obstacle.rotate) * shape.normal;
+                let normal = placing.rotation() * shape.normal;
                 // Validation has refused a normal of no length.
                 assembly.half_spaces.extend(HalfSpace::new(Point::from(obstacle.translate), normal));
                 assembly.half_space_names.push(obstacle.name.clone());
                 continue;
             }
             let owner = format!("obstacle {}", obstacle.name);
-            let import = Import { up: obstacle.up, scale: obstacle.scale };
             let (mesh, shape) = (obstacle.mesh.as_deref(), obstacle.shape.as_ref());
             let mut part = load(&scene.folder, mesh, shape, &import, &owner)?;
             clean_obstacle(&mut part, &owner, &mut assembly.warnings)?;
-            place(&mut part.positions, &obstacle.rotate, &obstacle.translate);
+            placing.place(&mut part.positions);
             let filter = filter(&obstacle.groups, obstacle.collides_with.as_deref(), true, false);
-            let start = obstacle.motion.as_ref().map(|motion| motion.at(0.0));
-            assembly.positions.extend(part.positions.iter().map(|p| start.map_or(*p, |s| s.apply(p))));
+            let motion = obstacle_motion(obstacle, placing);
+            let mut start = part.positions.clone();
+            motion.positions(&part.positions, 0.0, &mut start);
+            assembly.positions.extend(start);
             let (vertices, _) = assembly.append(part, filter);
             assembly.velocities.resize(vertices.end as usize, Vector::zeros());
             assembly.models.push(Body::obstacle(&*obstacle.name, vertices.clone().collect()));
-            let (name, motion) = (obstacle.name.clone(), obstacle.motion.clone());
+            let name = obstacle.name.clone();
             assembly.bodies.push(WorldBody { name, kind: None, vertices, motion });
         }
         let pins = pins(scene, &assembly)?;
@@ -387,18 +399,13 @@ fn clean_obstacle(part: &mut Part, owner: &str, warnings: &mut Vec<String>) -> R
     Ok(())
 }
 
-fn rotation(degrees: &Vector) -> Rotation3<f64> {
-    let [x, y, z] = [degrees.x, degrees.y, degrees.z].map(f64::to_radians);
-    Rotation3::from_euler_angles(x, y, z)
-}
-
-fn place(positions: &mut [Point], rotate: &Vector, translate: &Vector) {
-    // Without a rotation no rounding by a product: a grid stays a grid.
-    if *rotate != Vector::zeros() {
-        let rotation = rotation(rotate);
-        positions.iter_mut().for_each(|p| *p = rotation * *p);
+fn obstacle_motion(obstacle: &ObstacleSpec, placing: Placing) -> ObstacleMotion {
+    let animated = obstacle.shape.as_ref().and_then(Shape::animated);
+    match (animated, &obstacle.motion) {
+        (Some(shape), _) => ObstacleMotion::Procedural(Procedural { shape, placing }),
+        (None, Some(motion)) => ObstacleMotion::Rigid(motion.clone()),
+        (None, None) => ObstacleMotion::Rest,
     }
-    positions.iter_mut().for_each(|p| *p += translate);
 }
 
 fn filter(groups: &[u32], collides_with: Option<&[u32]>, obstacle: bool, self_collision: bool) -> BodyFilter {
