@@ -110,10 +110,10 @@ impl Dynamics {
             guesses: [zero(), zero()],
             step: zero(),
             values: BlockValues::zeros(&model.pattern),
-            preconditioner: Preconditioner::new(match params.preconditioner {
-                crate::Preconditioner::BlockJacobi => None,
-                crate::Preconditioner::TwoLevel => Some(model.coarse()),
-            }),
+            preconditioner: match params.preconditioner {
+                crate::Preconditioner::BlockJacobi => Preconditioner::default(),
+                crate::Preconditioner::TwoLevel => model.two_level(),
+            },
             cg: CgWorkspace::default(),
         };
         Ok(Self { external_forces: zero(), model, params, step: None, work })

@@ -135,8 +135,8 @@ fn the_matrix_is_symmetric_positive_definite_and_matches_differences_under_tensi
 fn the_newton_step_is_that_of_a_dense_solve() {
     for two_level in [false, true] {
         let (mut dynamics, x0, v0, prescribed) = crumpled();
-        let coarse = two_level.then(|| dynamics.model.coarse());
-        dynamics.work.preconditioner = Preconditioner::new(coarse);
+        dynamics.work.preconditioner =
+            if two_level { dynamics.model.two_level() } else { Preconditioner::default() };
         check_newton_step(dynamics, x0, v0, prescribed);
     }
 }

@@ -31,6 +31,7 @@ pub mod material;
 pub mod model;
 pub mod observe;
 pub mod params;
+mod volume;
 
 /// Points and vectors: the types of states.
 pub use bowknot_geometry as geometry;

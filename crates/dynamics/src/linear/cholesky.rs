@@ -11,6 +11,18 @@ use nalgebra::{SMatrix, SVector};
 /// a few dozen terms, with room.
 const ZERO_PIVOT: f64 = 1e-11;
 
+/// The least share of its diagonal entry that a pivot counts as where it must not vanish.
+const LEAST_PIVOT: f64 = 1e-15;
+
+/// What becomes of pivots that vanish.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Vanished {
+    /// Their unknowns are dropped: for semi-definite systems.
+    Dropped,
+    /// They are raised to the rounding: for systems that are definite, however barely.
+    Floored,
+}
+
 /// What depends on the graph alone.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Symbolic {
@@ -32,6 +44,12 @@ impl Symbolic {
         let mut order: Vec<u32> = (0..count as u32).collect();
         let mut side = vec![0u8; count];
         dissect(&mut order, positions, &neighbours, &mut side);
+        Self::in_order(order, neighbours)
+    }
+
+    /// Analyses the graph with `neighbours(i)` for elimination in the given order.
+    pub fn in_order<'a>(order: Vec<u32>, neighbours: impl Fn(usize) -> &'a [u32]) -> Self {
+        let count = order.len();
         let mut place = vec![0; count];
         order.iter().enumerate().for_each(|(new, &old)| place[old as usize] = new as u32);
 
@@ -134,6 +152,7 @@ impl<const B: usize> Cholesky<B> {
     pub fn factorise<'a>(
         &mut self,
         symbolic: &Symbolic,
+        vanished: Vanished,
         row: impl Fn(usize) -> (&'a [u32], &'a [SMatrix<f64, B, B>]),
     ) {
         let count = symbolic.order.len();
@@ -170,7 +189,7 @@ impl<const B: usize> Cholesky<B> {
                     self.blocks[target] -= update;
                 }
             }
-            let inverse = inverse_factor(&diagonal, &scale);
+            let inverse = inverse_factor(&diagonal, &scale, vanished);
             let transposed = inverse.transpose();
             for slot in column {
                 self.blocks[slot] *= transposed;
@@ -199,13 +218,21 @@ impl<const B: usize> Cholesky<B> {
 }
 
 /// Inverse of the Cholesky factor of a block; rows and columns of vanished pivots are zero.
-fn inverse_factor<const B: usize>(block: &SMatrix<f64, B, B>, scale: &SVector<f64, B>) -> SMatrix<f64, B, B> {
+fn inverse_factor<const B: usize>(
+    block: &SMatrix<f64, B, B>,
+    scale: &SVector<f64, B>,
+    vanished: Vanished,
+) -> SMatrix<f64, B, B> {
     let mut factor = SMatrix::<f64, B, B>::zeros();
     let mut inverse = SMatrix::<f64, B, B>::zeros();
     for k in 0..B {
         let mut pivot = block[(k, k)];
         (0..k).for_each(|m| pivot -= factor[(k, m)] * factor[(k, m)]);
-        if pivot.is_nan() || pivot <= ZERO_PIVOT * scale[k] {
+        if vanished == Vanished::Floored {
+            pivot = pivot.max(LEAST_PIVOT * scale[k]);
+        }
+        let least = if vanished == Vanished::Dropped { ZERO_PIVOT * scale[k] } else { 0.0 };
+        if pivot.is_nan() || pivot <= least {
             continue;
         }
         let reciprocal = 1.0 / pivot.sqrt();
@@ -291,7 +318,7 @@ mod tests {
         let Grid { positions, rows, blocks, dense } = grid(9);
         let symbolic = Symbolic::new(&positions, |i| &rows[i]);
         let mut factor = Cholesky::<2>::default();
-        factor.factorise(&symbolic, |i| (&rows[i], &blocks[i]));
+        factor.factorise(&symbolic, Vanished::Dropped, |i| (&rows[i], &blocks[i]));
         let right = DVector::from_fn(dense.nrows(), |i, _| (i as f64 * 0.7).cos());
         let exact = dense.cholesky().expect("diagonally dominant").solve(&right);
         let mut x: Vec<SVector<f64, 2>> =
@@ -318,7 +345,7 @@ mod tests {
         let symbolic = Symbolic::new(&[Vector::zeros()], |_| &rows);
         let mut factor = Cholesky::<2>::default();
         let blocks = [block];
-        factor.factorise(&symbolic, |_| (&rows, &blocks));
+        factor.factorise(&symbolic, Vanished::Dropped, |_| (&rows, &blocks));
         let mut x = [SVector::<f64, 2>::new(8.0, 8.0)];
         factor.solve(&symbolic, &mut x);
         assert!((block * x[0] - SVector::<f64, 2>::new(8.0, 8.0)).norm() < 1e-14);

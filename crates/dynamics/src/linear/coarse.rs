@@ -5,7 +5,7 @@
 //! its centre at the current x, P; the Galerkin matrix P^T H P is factorised, and
 //! `P (P^T H P)^-1 P^T` is added to the fine preconditioner.
 
-use super::cholesky::{Cholesky, Symbolic};
+use super::cholesky::{Cholesky, Symbolic, Vanished};
 use super::system::System;
 use bowknot_geometry::Vector;
 use nalgebra::{Matrix3, Matrix6, Vector6};
@@ -30,8 +30,9 @@ pub(crate) struct Coarse {
 }
 
 impl Coarse {
-    /// Prepares the graph of `aggregates`, consecutive ranges that cover all nodes; `rest` are the
-    /// nodes' rest positions, `row` visits the off-diagonal columns of a row of H.
+    /// Prepares the graph of `aggregates`, at least one, ranges that cover what H joins with them; other
+    /// nodes are left out. `rest` are the nodes' rest positions, `row` visits the off-diagonal columns of a
+    /// row of H.
     pub fn new(aggregates: &[Range<u32>], rest: &[Vector], row: impl Fn(usize, &mut dyn FnMut(u32))) -> Self {
         let mut aggregate_of = vec![0u32; rest.len()];
         for (a, range) in aggregates.iter().enumerate() {
@@ -104,7 +105,7 @@ impl Coarse {
             }
         });
         let blocks = &self.blocks;
-        self.factor.factorise(&self.symbolic, |a| {
+        self.factor.factorise(&self.symbolic, Vanished::Dropped, |a| {
             let range = starts[a] as usize..starts[a + 1] as usize;
             (&neighbours[range.clone()], &blocks[range])
         });

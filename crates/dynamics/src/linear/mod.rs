@@ -4,6 +4,7 @@ pub(crate) mod block;
 pub(crate) mod cg;
 pub(crate) mod cholesky;
 pub(crate) mod coarse;
+pub(crate) mod direct;
 pub(crate) mod ordering;
 pub(crate) mod preconditioner;
 pub(crate) mod scalar;

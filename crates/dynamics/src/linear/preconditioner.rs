@@ -1,6 +1,7 @@
 //! Preconditioners: symmetric positive definite approximations of the inverse of H.
 
 use super::coarse::Coarse;
+use super::direct::Direct;
 use super::system::System;
 use super::vectors::chunk_dot;
 use crate::elements::CHUNK;
@@ -8,18 +9,20 @@ use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
-/// Block-Jacobi, alone or with a coarse correction added; rebuilt for every system.
+/// Block-Jacobi, with strands solved exactly and a coarse correction added where there are any; rebuilt for
+/// every system.
 #[derive(Debug, Default)]
 pub(crate) struct Preconditioner {
     /// Inverses of the diagonal blocks, zero where the node is not free.
     inverses: Vec<Matrix3<f64>>,
+    direct: Option<Direct>,
     coarse: Option<Coarse>,
 }
 
 impl Preconditioner {
-    /// Block-Jacobi plus `coarse`, if any.
-    pub fn new(coarse: Option<Coarse>) -> Self {
-        Self { inverses: Vec::new(), coarse }
+    /// Block-Jacobi, replaced by `direct` at its nodes, plus `coarse`.
+    pub fn new(direct: Option<Direct>, coarse: Option<Coarse>) -> Self {
+        Self { inverses: Vec::new(), direct, coarse }
     }
 
     /// Prepares for `system`, linearised at positions `x`.
@@ -32,6 +35,9 @@ impl Preconditioner {
                     if system.free[node] { invert(system.values.diagonal[node]) } else { Matrix3::zeros() };
             }
         });
+        if let Some(direct) = &mut self.direct {
+            direct.build(system);
+        }
         if let Some(coarse) = &mut self.coarse {
             coarse.build(system, x);
         }
@@ -39,10 +45,13 @@ impl Preconditioner {
 
     /// z = M^-1 r; r . z.
     pub fn apply(&mut self, r: &[Vector], z: &mut [Vector]) -> f64 {
+        if let Some(direct) = &mut self.direct {
+            direct.solve(r);
+        }
         if let Some(coarse) = &mut self.coarse {
             coarse.solve(r);
         }
-        let coarse = self.coarse.as_ref();
+        let (direct, coarse) = (self.direct.as_ref(), self.coarse.as_ref());
         let partial: Vec<f64> = z
             .par_chunks_mut(CHUNK)
             .zip(r.par_chunks(CHUNK))
@@ -51,6 +60,11 @@ impl Preconditioner {
             .map(|(chunk, ((z, r), inverses))| {
                 for ((z, r), inverse) in z.iter_mut().zip(r).zip(inverses) {
                     *z = inverse * r;
+                }
+                if let Some(direct) = direct {
+                    for (k, z) in z.iter_mut().enumerate() {
+                        *z = direct.displacement(chunk * CHUNK + k).unwrap_or(*z);
+                    }
                 }
                 if let Some(coarse) = coarse {
                     z.iter_mut().enumerate().for_each(|(k, z)| *z += coarse.displacement(chunk * CHUNK + k));

@@ -3,15 +3,18 @@
 mod assembly;
 mod check;
 
-use crate::elements::ElementFamily;
+use crate::elements::{ElementFamily, Kind};
 use crate::linear::block::BlockPattern;
 use crate::linear::coarse::Coarse;
+use crate::linear::direct::Direct;
 use crate::linear::ordering::order_nodes;
+use crate::linear::preconditioner::Preconditioner;
 use crate::linear::scalar::ScalarForm;
 use crate::{Body, BodyShape, ModelError};
 use assembly::{Assembly, Elements};
 use bowknot_geometry::{Point, Vector};
-use check::{area, check, volume};
+pub(crate) use check::volume;
+use check::{area, check};
 use std::ops::Range;
 
 /// Most nodes of a leaf of the numbering, the aggregates of the coarse correction. Halving makes
@@ -136,14 +139,38 @@ impl DynamicsModel {
         })
     }
 
-    /// The coarse space of this model.
-    pub(crate) fn coarse(&self) -> Coarse {
+    /// The two-level preconditioner of this model: strands are solved exactly, other components that elements
+    /// join get a coarse correction, single nodes need neither.
+    pub(crate) fn two_level(&self) -> Preconditioner {
+        let nodes = self.node_vertex.len();
+        let (mut strands, mut others) = (vec![false; nodes], vec![false; nodes]);
+        for family in &self.families {
+            let mark = match family.kind() {
+                Kind::StrandStretching | Kind::StrandBending => &mut strands,
+                _ => &mut others,
+            };
+            family.for_each_clique(&mut |clique| clique.iter().for_each(|&n| mark[n as usize] = true));
+        }
+        strands.iter_mut().zip(&others).for_each(|(strand, other)| *strand &= !other);
+        // A component is all of one kind or, where strands are fixed to other bodies, in the coarse space.
+        let mut leaves = Vec::new();
+        let mut next = 0;
+        for component in &self.components {
+            let coarse = (component.start..component.end).any(|n| others[n as usize]);
+            while next < self.leaves.len() && self.leaves[next].start < component.end {
+                leaves.extend(coarse.then(|| self.leaves[next].clone()));
+                next += 1;
+            }
+        }
         let rest: Vec<Vector> =
             self.node_vertex.iter().map(|&v| self.rest_positions[v as usize].coords).collect();
-        Coarse::new(&self.leaves, &rest, |row, visit| {
-            self.pattern.columns[self.pattern.row(row)].iter().for_each(|&column| visit(column));
-            self.bending.row(row).0.iter().for_each(|&column| visit(column));
-        })
+        let coarse = (!leaves.is_empty()).then(|| {
+            Coarse::new(&leaves, &rest, |row, visit| {
+                self.pattern.columns[self.pattern.row(row)].iter().for_each(|&column| visit(column));
+                self.bending.row(row).0.iter().for_each(|&column| visit(column));
+            })
+        });
+        Preconditioner::new(Direct::new(&self.pattern, &strands), coarse)
     }
 
     /// Number of vertices, obstacles included.

@@ -1,0 +1,67 @@
+//! Times of time steps for bodies of the size of the paper's Table 2: a mat of 33,000 vertices and 86,000 tets,
+//! hair of 63,000 vertices, 30,000 grains, each at dt = 1/100 s with two Newton iterations.
+//!
+//! ```text
+//! cargo run --release -p bowknot-dynamics --example step_times [STEPS]
+//! ```
+
+#![expect(clippy::print_stdout, reason = "an example")]
+
+#[path = "../tests/common/mod.rs"]
+mod common;
+
+use bowknot_dynamics::{Body, DynamicsModel, ParticleMaterial, SolidMaterial, SolidModel, StrandMaterial};
+use bowknot_dynamics::{Dynamics, DynamicsParams};
+use bowknot_geometry::{Point, Vector};
+use std::time::Instant;
+
+fn main() {
+    let steps = std::env::args().nth(1).and_then(|text| text.parse().ok()).unwrap_or(5);
+    println!("body, vertices, elements, model s, seconds a step, Newton iterations x CG iterations");
+    for model in [SolidModel::Stvk, SolidModel::StableNeoHookean] {
+        // A slab of 1 m x 1 m x 2 cm, bent by its own velocity, held at one side.
+        let (rest, tets) = common::block([1.0, 1.0, 0.02], [120, 120, 1]);
+        let count = tets.len();
+        let material = SolidMaterial { model, ..SolidMaterial::rubber() };
+        let body = Body::solid("mat", tets, material);
+        let held: Vec<bool> = rest.iter().map(|p| p.x < 1e-9).collect();
+        measure(&format!("slab of rubber, {model:?}"), &rest, body, count, &held, steps);
+    }
+    let (rest, tets) = common::block([0.4, 0.4, 0.4], [31, 31, 31]);
+    let count = tets.len();
+    let held: Vec<bool> = rest.iter().map(|p| p.z < 1e-9).collect();
+    measure("cube of rubber", &rest, Body::solid("cube", tets, SolidMaterial::rubber()), count, &held, steps);
+
+    let (rest, edges) = common::strands(1575, 40, 0.3, 0.003);
+    let count = edges.len();
+    let held: Vec<bool> = (0..rest.len()).map(|v| v % 40 < 2).collect();
+    let body = Body::strands("hair", edges, StrandMaterial::hair());
+    measure("hair", &rest, body, count, &held, steps);
+
+    let rest: Vec<Point> = (0..30_000)
+        .map(|k| Point::new(0.001 * f64::from(k % 173), 0.001 * f64::from(k / 173), 0.0))
+        .collect();
+    let body = Body::particles("sand", (0..30_000).collect(), ParticleMaterial::sand());
+    measure("sand", &rest, body, rest.len(), &vec![false; rest.len()], steps);
+}
+
+fn measure(name: &str, rest: &[Point], body: Body, elements: usize, held: &[bool], steps: usize) {
+    let clock = Instant::now();
+    let Ok(model) = DynamicsModel::new(rest.to_vec(), vec![body]) else { return };
+    let Ok(mut dynamics) = Dynamics::new(model, DynamicsParams::default()) else { return };
+    let built = clock.elapsed().as_secs_f64();
+    let mut x = rest.to_vec();
+    let mut v: Vec<Vector> = rest
+        .iter()
+        .map(|p| Vector::new((9.0 * p.y).sin(), (8.0 * p.x).cos(), (7.0 * p.x).sin()) * 0.5)
+        .collect();
+    let clock = Instant::now();
+    let mut iterations = Vec::new();
+    for _ in 0..steps {
+        let keyframes = x.clone();
+        let Ok(infos) = dynamics.solve_step(&mut x, &mut v, 0.01, held, &keyframes, 2) else { return };
+        iterations.push(infos.iter().map(|i| i.cg.iterations.to_string()).collect::<Vec<_>>().join("+"));
+    }
+    let each = clock.elapsed().as_secs_f64() / steps as f64;
+    println!("{name}, {}, {elements}, {built:.2}, {each:.3}, {}", rest.len(), iterations.join(" "));
+}
