@@ -1,9 +1,9 @@
 //! Contact rows: one inequality a pair, linearised at the current positions x:
 //! s(y) = c(x) + J (y - x) >= 0 [m].
 
-use crate::{Colouring, ContactForm, volume};
+use crate::{Colouring, ContactForm, friction_row, volume};
 use bowknot_geometry::{PairKind, Point, Separation};
-use bowknot_lcp::Row;
+use bowknot_lcp::{FrictionRow, Problem, Row};
 use bowknot_proximity::PairList;
 
 /// The row of one pair with desired distance `desired` [m].
@@ -59,6 +59,10 @@ pub struct ContactRows {
     pub pair: Vec<u32>,
     /// The rows.
     pub rows: Vec<Row>,
+    /// Friction rows of the contacts that have friction, in the order of their normals' rows.
+    pub friction: Vec<FrictionRow>,
+    /// Friction row of each row, or [`Problem::NO_FRICTION`]; empty: no contact has friction.
+    pub friction_of: Vec<u32>,
     colouring: Colouring,
     selected: Vec<u32>,
 }
@@ -94,6 +98,37 @@ impl ContactRows {
             let p = p as usize;
             contact_row(form, pairs.kind(p), all[p].vertices, positions, &separations[p], desired[p])
         }));
+    }
+
+    /// Adds friction rows to the rows just filled, where a pair's `coefficients` entry is above 0; `start` are the
+    /// positions that slip is measured from. Without entries, and where all are 0, there are none.
+    pub fn fill_friction(
+        &mut self,
+        pairs: &PairList,
+        separations: &[Separation],
+        start: &[Point],
+        coefficients: &[f64],
+    ) {
+        self.friction.clear();
+        self.friction_of.clear();
+        if coefficients.is_empty() {
+            return;
+        }
+        for (row, &p) in self.pair.iter().enumerate() {
+            let p = p as usize;
+            if coefficients[p] > 0.0 {
+                self.friction_of.push(self.friction.len() as u32);
+                let vertices = self.rows[row].vertices;
+                let (kind, separation) = (pairs.kind(p), &separations[p]);
+                let friction = friction_row(kind, vertices, start, separation, coefficients[p], row as u32);
+                self.friction.push(friction);
+            } else {
+                self.friction_of.push(Problem::NO_FRICTION);
+            }
+        }
+        if self.friction.is_empty() {
+            self.friction_of.clear();
+        }
     }
 
     /// Where each colour starts, and the end.

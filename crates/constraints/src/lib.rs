@@ -7,6 +7,7 @@ mod colouring;
 mod contacts;
 mod desired;
 mod edges;
+mod friction;
 mod params;
 mod volume;
 
@@ -21,7 +22,8 @@ pub use colouring::Colouring;
 pub use contacts::{ContactRows, contact_row, predicted_gap};
 pub use desired::DesiredDistance;
 pub use edges::{EdgeLimits, Stretch};
-pub use params::{ConstraintParams, ContactForm, EdgeForm, EdgeReference};
+pub use friction::{friction_row, tangents};
+pub use params::{ConstraintParams, ContactForm, EdgeForm, EdgeReference, FrictionModel};
 
 /// The README's example is tested with the documentation.
 #[cfg(doctest)]

@@ -19,6 +19,10 @@ pub struct ConstraintParams {
     pub separation_speed: Option<f64>,
     /// Form of the contact constraint. Default gap.
     pub form: ContactForm,
+    /// How friction acts where bodies have it: `coulomb`, within the backward step; `filter`, on the target before each
+    /// call as in the paper, cheaper and coarser; or `none`. Without coefficients of friction all three cost nothing.
+    /// Default coulomb.
+    pub friction_model: FrictionModel,
     /// Whether edge lengths are limited at all. Default true.
     pub edges: bool,
     /// Largest ratio of an edge's length to its reference, sigma. Default 1.1.
@@ -38,6 +42,19 @@ pub enum ContactForm {
     /// Volume of the pair against that of the separated pair (paper, Eq. 14-16), in units of length;
     /// falls back to the gap where the closest features are not the interiors.
     Volume,
+}
+
+/// How friction acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FrictionModel {
+    /// Coulomb's law in every backward step: tangential multipliers bounded by mu times the normal's, solved with it.
+    Coulomb,
+    /// The velocity filter of Bridson et al. 2002 (paper, section 6.3): penetration depths at the target estimate the
+    /// normal impulses, and the target's slip is reduced by mu times them before collisions are handled.
+    Filter,
+    /// None.
+    None,
 }
 
 /// Reference length of an edge's limit.
@@ -68,6 +85,7 @@ impl Default for ConstraintParams {
             active: 1.1,
             separation_speed: None,
             form: ContactForm::Gap,
+            friction_model: FrictionModel::Coulomb,
             edges: true,
             stretch_limit: 1.1,
             edge_reference: EdgeReference::Rest,
@@ -82,6 +100,7 @@ impl ConstraintParams {
         Self {
             range: 4.0,
             form: ContactForm::Volume,
+            friction_model: FrictionModel::Filter,
             edge_reference: EdgeReference::Start,
             edge_form: EdgeForm::Linear,
             ..Self::default()

@@ -36,6 +36,16 @@ pub enum Error {
         /// How many rows there are.
         rows: usize,
     },
+    /// A friction row cannot be swept with a row that is not its normal's.
+    #[error(
+        "friction row {friction} cannot be swept with row {row}: it does not exist, has another normal or other nodes"
+    )]
+    Attached {
+        /// The row.
+        row: usize,
+        /// The friction row named for it.
+        friction: u32,
+    },
     /// An inverse weight is negative, infinite or NaN.
     #[error("the inverse weight of node {node} is {value}; it must be finite and at least 0")]
     Weight {

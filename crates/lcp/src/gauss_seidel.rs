@@ -188,7 +188,7 @@ where
         match kind {
             Kind::Ball => self.problem.balls().swept(),
             Kind::Row => self.problem.rows().swept(),
-            Kind::Friction => self.problem.friction().swept(),
+            Kind::Friction => friction_swept(self.problem),
         }
     }
 
@@ -209,30 +209,47 @@ where
                 }
             }
             Kind::Row => {
-                let rows = self.problem.rows().rows;
+                let (rows, attached) = (self.problem.rows().rows, self.problem.attached());
                 for place in begin..end {
                     let i = schedule.row(place);
                     largest = larger(
                         largest,
                         relax_row::<RESIDUAL>(&rows[i], weights, relaxation, &self.y, &self.lambda, i),
                     );
+                    if let Some(&friction) = attached.get(i)
+                        && friction != Problem::NO_FRICTION
+                    {
+                        largest = larger(largest, self.relax_friction(friction as usize));
+                    }
                 }
             }
             Kind::Friction => {
-                let rows = self.problem.friction().rows;
-                let bound = self.params.friction_bound;
                 for place in begin..end {
-                    let i = schedule.row(place);
-                    let (y, lambda, friction) = (&self.y, &self.lambda, &self.friction);
-                    let change = relax_friction::<RESIDUAL>(
-                        &rows[i], weights, relaxation, bound, y, lambda, friction, i,
-                    );
-                    largest = larger(largest, change);
+                    largest = larger(largest, self.relax_friction(schedule.row(place)));
                 }
             }
         }
         *residual = largest;
     }
+
+    #[inline(always)]
+    fn relax_friction(&self, index: usize) -> f64 {
+        relax_friction::<RESIDUAL>(
+            &self.problem.friction().rows[index],
+            self.problem.weights(),
+            self.params.relaxation,
+            self.params.friction_bound,
+            &self.y,
+            &self.lambda,
+            &self.friction,
+            index,
+        )
+    }
+}
+
+/// Friction rows that have a turn of their own, rather than one with their normals.
+fn friction_swept(problem: &Problem<'_>) -> usize {
+    if problem.attached().is_empty() { problem.friction().swept() } else { 0 }
 }
 
 /// Places of one family's schedule between two waits of all threads.
@@ -252,9 +269,9 @@ fn phases(problem: &Problem<'_>) -> Vec<Phase> {
     let families = [
         (Kind::Ball, problem.balls().schedule, problem.balls().swept(), BALL_CHUNK),
         (Kind::Row, problem.rows().schedule, problem.rows().swept(), ROW_CHUNK),
-        (Kind::Friction, problem.friction().schedule, problem.friction().swept(), ROW_CHUNK),
+        (Kind::Friction, problem.friction().schedule, friction_swept(problem), ROW_CHUNK),
     ];
-    for (kind, schedule, swept, chunk) in families {
+    for (kind, schedule, swept, chunk) in families.into_iter().filter(|family| family.2 > 0) {
         if schedule.starts.is_empty() {
             phases.push(Phase { kind, begin: 0, end: swept, chunk: swept.max(1) });
             continue;

@@ -28,6 +28,8 @@ mod team;
 
 /// A node's position or displacement, or a gradient.
 pub type Vector = nalgebra::Vector3<f64>;
+/// A friction multiplier or slip along two tangents.
+pub type TangentVector = nalgebra::Vector2<f64>;
 
 pub use colours::validate_colours;
 pub use error::Error;

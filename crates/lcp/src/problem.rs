@@ -143,6 +143,19 @@ impl FrictionRow {
         diagonal
     }
 
+    /// The slip along both tangents at the positions `y`.
+    ///
+    /// # Panics
+    /// If a node is out of range.
+    #[inline]
+    pub fn slip(&self, y: &[Vector]) -> Vector2<f64> {
+        let point = self.point(y);
+        Vector2::new(
+            self.offsets[0] + self.tangents[0].dot(&point),
+            self.offsets[1] + self.tangents[1].dot(&point),
+        )
+    }
+
     /// sum_k coefficients\[k\] y\[vertices\[k\]\], whose motion is the slip.
     pub(crate) fn point(&self, y: &[Vector]) -> Vector {
         (0..4).fold(Vector::zeros(), |sum, k| sum + self.coefficients[k] * y[self.vertices[k] as usize])
@@ -150,7 +163,7 @@ impl FrictionRow {
 
     /// The multipliers as a vector.
     #[inline(always)]
-    pub(crate) fn direction(&self, multipliers: Vector2<f64>) -> Vector {
+    pub fn direction(&self, multipliers: Vector2<f64>) -> Vector {
         self.tangents[0] * multipliers.x + self.tangents[1] * multipliers.y
     }
 }
@@ -313,16 +326,21 @@ impl AnyRow for FrictionRow {
 /// A checked problem: every index is in range, every row prepared, every weight finite.
 ///
 /// A sweep visits the ball rows first, then the rows, then friction, so that the rows (contacts)
-/// are those left least violated.
+/// are those left least violated. [`Problem::attach_friction`] brings each friction row to its normal's row.
 #[derive(Clone, Copy, Debug)]
 pub struct Problem<'a> {
     weights: &'a [f64],
     rows: Family<'a, Row>,
     balls: Family<'a, BallRow>,
     friction: Family<'a, FrictionRow>,
+    /// Friction row of each row, or nothing.
+    attached: &'a [u32],
 }
 
 impl<'a> Problem<'a> {
+    /// The entry of [`Self::attach_friction`] for a row without friction.
+    pub const NO_FRICTION: u32 = u32::MAX;
+
     /// Checks and keeps the parts. `weights[i]` >= 0 is the inverse weight of node i. Cost: one pass
     /// over the indices; colours are not checked, see [`crate::validate_colours`].
     ///
@@ -346,8 +364,44 @@ impl<'a> Problem<'a> {
                 let normal = friction.rows[row].normal;
                 Err(Error::UnknownNormal { row, normal, rows: rows.rows.len() })
             }
-            None => Ok(Self { weights, rows, balls, friction }),
+            None => Ok(Self { weights, rows, balls, friction, attached: &[] }),
         }
+    }
+
+    /// Makes Gauss-Seidel sweeps visit each friction row right after its normal's row, in place of all friction rows
+    /// after all rows: the rows of one contact are solved together. `friction_of` names the friction row of each row, or
+    /// [`Self::NO_FRICTION`]; the schedule of the friction rows is then that of their normals. Colours stay valid,
+    /// because a friction row has the nodes of its normal's row.
+    ///
+    /// # Errors
+    /// [`Error::Length`]; [`Error::Attached`] for a friction row that does not exist, has another normal, or moves a node
+    /// that its normal's row does not have.
+    pub fn attach_friction(mut self, friction_of: &'a [u32]) -> Result<Self, Error> {
+        let rows = self.rows.rows;
+        if friction_of.len() != rows.len() {
+            return Err(Error::Length {
+                what: "friction_of",
+                given: friction_of.len(),
+                expected: rows.len(),
+            });
+        }
+        for (row, &friction) in friction_of.iter().enumerate().filter(|(_, f)| **f != Self::NO_FRICTION) {
+            let fits = self.friction.rows.get(friction as usize).is_some_and(|f| {
+                let nodes = &rows[row].vertices;
+                let moved = |v: &&u32| self.weights[**v as usize] != 0.0;
+                f.normal as usize == row && f.vertices.iter().filter(moved).all(|v| nodes.contains(v))
+            });
+            if !fits {
+                return Err(Error::Attached { row, friction });
+            }
+        }
+        self.attached = friction_of;
+        Ok(self)
+    }
+
+    /// What [`Self::attach_friction`] was given; empty: friction rows have their own schedule.
+    pub fn attached(&self) -> &'a [u32] {
+        self.attached
     }
 
     /// Inverse weights, one a node.

@@ -11,7 +11,7 @@
 use crate::{BackwardStep, Problem, State, Statistics};
 use bowknot_constraints::{ContactRows, EdgeForm, EdgeLimits, predicted_gap};
 use bowknot_geometry::{PairKind, Vector};
-use bowknot_lcp::{self as lcp, Family, Schedule};
+use bowknot_lcp::{self as lcp, Family, Schedule, TangentVector};
 use std::time::Instant;
 
 /// Range of the coarse correction's factor: beyond it the linear model that it comes from says nothing.
@@ -33,6 +33,8 @@ pub struct LcpBackward {
     contacts: ContactRows,
     row_starts: Vec<u32>,
     lambda: Vec<f64>,
+    /// Multipliers of the friction rows along their tangents.
+    friction: Vec<TangentVector>,
     proximal: Vec<f64>,
     weights: Vec<f64>,
     /// y' [m].
@@ -81,6 +83,17 @@ impl BackwardStep for LcpBackward {
         self.edges.stretch(&state.x).to_limit
     }
 
+    fn unrest(&mut self, problem: &Problem, state: &State) -> f64 {
+        let mut bodies = vec![(0.0, 0.0); problem.model.bodies().len()];
+        for v in (0..self.y.len()).filter(|&v| problem.movable(v)) {
+            let mass = problem.relative_mass[v];
+            let (sum, total) = &mut bodies[problem.model.vertex_body()[v] as usize];
+            *sum += mass * self.residual(problem, state, v).norm();
+            *total += mass;
+        }
+        bodies.iter().filter(|(_, mass)| *mass > 0.0).map(|(sum, mass)| sum / mass).fold(0.0, f64::max)
+    }
+
     fn imbalance(&mut self, problem: &Problem, state: &State) -> f64 {
         self.body_residuals.clear();
         self.body_residuals.resize(problem.model.bodies().len(), (Vector::zeros(), 0.0));
@@ -115,10 +128,30 @@ impl BackwardStep for LcpBackward {
             .zip(&self.lambda)
             .map(|(row, lambda)| lambda.min(row.value(&self.y)).abs())
             .fold(0.0, f64::max);
+        self.report_friction(state, statistics);
     }
 }
 
 impl LcpBackward {
+    /// How many contacts slide, and how far those that should stick have crept by `state.x`.
+    fn report_friction(&self, state: &State, statistics: &mut Statistics) {
+        if self.contacts.friction.is_empty() {
+            return;
+        }
+        let x: Vec<Vector> = state.x.iter().map(|x| x.coords).collect();
+        for (row, &multiplier) in self.contacts.friction.iter().zip(&self.friction) {
+            let normal = self.lambda[row.normal as usize];
+            if normal > 0.0 {
+                if is_sliding(row, normal, multiplier) {
+                    statistics.sliding_contacts += 1;
+                } else {
+                    statistics.sticking_contacts += 1;
+                    statistics.creep_m = statistics.creep_m.max(row.slip(&x).norm());
+                }
+            }
+        }
+    }
+
     /// y0 + m^-1 J^T lambda - x of a movable vertex, by J^T lambda = (y - y')/w.
     fn residual(&self, problem: &Problem, state: &State, v: usize) -> Vector {
         let pull = (self.y[v] - self.free[v]) / (self.weights[v] * problem.relative_mass[v]);
@@ -204,9 +237,23 @@ impl LcpBackward {
         self.row_starts.extend_from_slice(self.contacts.colour_starts());
         self.lambda.clear();
         self.lambda.extend(self.contacts.pair.iter().map(|&p| contacts.multipliers[p as usize]));
+        self.contacts.fill_friction(
+            &contacts.pairs,
+            &contacts.separations,
+            &state.slip_start,
+            &contacts.frictions,
+        );
+        self.friction.clear();
+        self.friction.extend(self.contacts.friction.iter().map(|row| {
+            let kept = contacts.friction_multipliers[self.contacts.pair[row.normal as usize] as usize];
+            TangentVector::new(row.tangents[0].dot(&kept), row.tangents[1].dot(&kept))
+        }));
         let contact_rows = self.contacts.rows.len();
         if constraints.edge_form == EdgeForm::Linear {
             self.edges.linearise(&state.x, &mut self.contacts.rows);
+            if !self.contacts.friction_of.is_empty() {
+                self.contacts.friction_of.resize(self.contacts.rows.len(), lcp::Problem::NO_FRICTION);
+            }
             self.lambda.extend_from_slice(&self.edge_multipliers);
             let starts = self.edges.colour_starts().iter().skip(1);
             if self.row_starts.is_empty() {
@@ -215,6 +262,7 @@ impl LcpBackward {
             self.row_starts.extend(starts.map(|s| s + contact_rows as u32));
         }
         statistics.contact_rows = contact_rows;
+        statistics.friction_rows = self.contacts.friction.len();
         statistics.contact_colours = self.contacts.colour_count();
         statistics.edge_rows = self.edges.balls.len();
         if only_active {
@@ -235,15 +283,19 @@ impl LcpBackward {
         self.y.clone_from(&self.free);
         let solve = || -> Result<(), lcp::Error> {
             lcp::prepare_rows(&mut self.contacts.rows, &self.weights)?;
-            let system = lcp::Problem::new(
+            lcp::prepare_friction(&mut self.contacts.friction, &self.weights)?;
+            let mut system = lcp::Problem::new(
                 &self.weights,
                 Family::new(&self.contacts.rows, schedule(&self.row_starts)),
                 Family::new(balls, schedule(ball_starts)),
-                Family::default(),
+                Family::serial(&self.contacts.friction),
             )?;
+            if !self.contacts.friction.is_empty() {
+                system = system.attach_friction(&self.contacts.friction_of)?;
+            }
             let forces = if balls.is_empty() { &mut [][..] } else { &mut self.forces[..] };
             let mut state =
-                lcp::State { y: &mut self.y, lambda: &mut self.lambda, forces, friction: &mut [] };
+                lcp::State { y: &mut self.y, lambda: &mut self.lambda, forces, friction: &mut self.friction };
             lcp::apply_multipliers(&system, &mut state)?;
             let one = lcp::Params { max_sweeps: 1, ..lcp::Params::default() };
             let batch = |state: &mut lcp::State<'_>, sweeps: usize| -> Result<(), lcp::Error> {
@@ -290,6 +342,13 @@ impl LcpBackward {
         for (&p, &lambda) in self.contacts.pair.iter().zip(&self.lambda) {
             state.contacts.multipliers[p as usize] = lambda;
         }
+        if !state.contacts.friction_multipliers.is_empty() {
+            state.contacts.friction_multipliers.iter_mut().for_each(|m| *m = Vector::zeros());
+            for (row, &multiplier) in self.contacts.friction.iter().zip(&self.friction) {
+                let pair = self.contacts.pair[row.normal as usize] as usize;
+                state.contacts.friction_multipliers[pair] = row.direction(multiplier);
+            }
+        }
         if problem.params.constraints.edge_form == EdgeForm::Linear {
             self.edge_multipliers.copy_from_slice(&self.lambda[contact_rows..]);
         }
@@ -304,15 +363,31 @@ fn stretch(edges: &EdgeLimits, y: &[Vector]) -> f64 {
         .fold(0.0, f64::max)
 }
 
+/// Whether a friction multiplier is at its bound: the contact slides.
+fn is_sliding(row: &lcp::FrictionRow, normal: f64, multiplier: TangentVector) -> bool {
+    multiplier.norm() >= (1.0 - 1e-9) * row.friction * normal
+}
+
 /// The coarse correction: one factor s for all multipliers, the maximiser of the dual along that ray.
 ///
 /// With delta = y - y' = W J^T lambda, scaling by s moves y to y' + s delta and each row value linearly; the dual's
 /// derivative vanishes where sum lambda_p c_p(y) + sum (L |f| - f . (y_a - y_b)) = (1 - s) sum |delta|^2 / w.
+///
+/// Friction scales with its normals, which keeps it inside of its cone. A contact that sticks is an equation, slip = 0,
+/// and counts with lambda_t . slip; one that slides is at rest with any slip against its multiplier (in De
+/// Saxce's form, lambda (c + mu |slip|) + lambda_t . slip = 0 whatever the slip) and counts nothing.
 fn scale_multipliers(system: &lcp::Problem<'_>, free: &[Vector], state: &mut lcp::State<'_>) {
     let mut slack = 0.0;
     for (row, &lambda) in system.rows().rows.iter().zip(&*state.lambda) {
         if lambda > 0.0 {
             slack += lambda * row.value(state.y);
+        }
+    }
+    for (row, &multiplier) in system.friction().rows.iter().zip(&*state.friction) {
+        if multiplier != TangentVector::zeros()
+            && !is_sliding(row, state.lambda[row.normal as usize], multiplier)
+        {
+            slack += multiplier.dot(&row.slip(state.y));
         }
     }
     for (ball, force) in system.balls().rows.iter().zip(&*state.forces) {
@@ -336,6 +411,7 @@ fn scale_multipliers(system: &lcp::Problem<'_>, free: &[Vector], state: &mut lcp
     }
     state.lambda.iter_mut().for_each(|l| *l *= s);
     state.forces.iter_mut().for_each(|f| *f *= s);
+    state.friction.iter_mut().for_each(|f| *f *= s);
     for ((y, free), &weight) in state.y.iter_mut().zip(free).zip(system.weights()) {
         if weight > 0.0 {
             *y = free + s * (*y - free);

@@ -9,7 +9,8 @@
 //! - *friction* mu: the geometric mean of both coefficients, unless the pair of bodies has its own.
 
 use crate::ResolveError;
-use bowknot_proximity::CollisionModel;
+use bowknot_geometry::PairKind;
+use bowknot_proximity::{CollisionModel, Pair};
 use serde::{Deserialize, Serialize};
 
 /// What one body brings into its contacts.
@@ -108,6 +109,19 @@ impl ContactTable {
         }
     }
 
+    /// Coefficient of friction of a pair [1].
+    pub fn friction_of_pair(&self, model: &CollisionModel, kind: PairKind, pair: &Pair) -> f64 {
+        if !self.frictional {
+            return 0.0;
+        }
+        let body = |place: usize| ContactSide::Body(model.vertex_body()[pair.vertices[place] as usize]);
+        let other = match kind {
+            PairKind::VertexHalfSpace => ContactSide::HalfSpace(pair.elements[1]),
+            _ => body(kind.side_a()),
+        };
+        self.friction(body(0), other)
+    }
+
     fn friction_of(&self, side: ContactSide) -> f64 {
         match side {
             ContactSide::Body(b) => self.bodies[b as usize].friction,
@@ -170,7 +184,7 @@ impl ContactTable {
             }
             entries.push((sides, pair.friction));
         }
-        entries.sort_by(|a, b| a.0.cmp(&b.0));
+        entries.sort_by_key(|entry| entry.0);
         self.accept(problems, |table| table.pairs = entries)
     }
 

@@ -3,11 +3,13 @@
 //! Given an intersection-free state x and a target y that some dynamics wants, [`Resolver::resolve`] moves x
 //! toward y. Each two-way step lists the pairs that could meet ([`Search`]), modifies the target so that
 //! it does not want to intersect ([`BackwardStep`]), and moves the vertices toward it along paths that are
-//! certified free of intersections ([`ForwardStep`]). The stages are traits; other methods plug in.
+//! certified free of intersections ([`ForwardStep`]). Friction changes the target alone, so it cannot touch that
+//! certificate. The stages are traits; other methods plug in.
 
 mod backward;
 mod bodies;
 mod error;
+mod filter;
 mod forward;
 mod observer;
 mod params;

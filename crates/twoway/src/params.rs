@@ -56,6 +56,11 @@ pub struct StopParams {
     /// `StopRule::Travel`: largest distance, in mean edge lengths, of a body as a whole from where the forces on it
     /// balance. Default 0.2.
     pub imbalance: f64,
+    /// `StopRule::Travel`: largest mean over a body's vertices of how far each is from where the forces on it balance, in
+    /// mean edge lengths, for as long as each step still takes off half of it. What the proximal term holds
+    /// back acts like a drag on all that slides; this bounds it. Smaller: one or two steps more a call. The
+    /// default is 1e-4 where bodies have Coulomb friction, and none elsewhere.
+    pub drag: Option<f64>,
     /// `StopRule::Travel`: how far the stretch limits may be exceeded, relative. Default 0.02.
     pub stretch_tolerance: f64,
     /// `StopRule::Clock`: the paper's epsilon. Default 1e-4.
@@ -101,6 +106,7 @@ impl Default for StopParams {
             rule: StopRule::Travel,
             distance: 0.03,
             imbalance: 0.2,
+            drag: None,
             stretch_tolerance: 0.02,
             clock: 1e-4,
         }
@@ -168,6 +174,7 @@ impl Params {
         }
         for (key, value) in [
             ("stop.distance", s.distance),
+            ("stop.drag", s.drag.unwrap_or(1.0)),
             ("stop.stretch_tolerance", s.stretch_tolerance),
             ("stop.clock", s.clock),
         ] {

@@ -1,6 +1,7 @@
 //! What is fixed about a scene, and every length that parameters leave to the mesh.
 
 use crate::{ContactTable, Params, ResolveError};
+use bowknot_constraints::FrictionModel;
 use bowknot_geometry::Point;
 use bowknot_proximity::CollisionModel;
 
@@ -88,6 +89,14 @@ impl Problem {
             params,
             prescribed,
         })
+    }
+
+    /// How friction acts; none where no body has any.
+    pub fn friction_model(&self) -> FrictionModel {
+        match self.contact.frictional() {
+            true => self.params.constraints.friction_model,
+            false => FrictionModel::None,
+        }
     }
 
     /// Whether the present call may move a vertex on its own account.

@@ -1,6 +1,7 @@
 //! Algorithm 1: the two-way loop, and its default composition.
 
 use crate::backward::LcpBackward;
+use crate::filter::filter_slip;
 use crate::forward::CertifiedForward;
 use crate::problem::check_finite;
 use crate::search::BudgetedSearch;
@@ -8,10 +9,14 @@ use crate::{
     AcceptedState, BackwardStep, BodyContact, ForwardStep, HalfSpaceContact, Observer, PairFriction, Params,
     Problem, ResolveError, Search, State, Statistics, StopRule,
 };
+use bowknot_constraints::FrictionModel;
 use bowknot_geometry::Point;
 use bowknot_proximity::CollisionModel;
 use bowknot_stepper::Rounding;
 use std::time::Instant;
+
+/// Default of [`crate::StopParams::drag`] with friction.
+const DEFAULT_DRAG: f64 = 1e-4;
 
 /// What changes from call to call.
 #[derive(Clone, Copy, Debug, Default)]
@@ -126,11 +131,17 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
         let limits = &problem.params.stop;
         let max_steps = limits.max_steps.unwrap_or_else(|| default_max_steps(call.time_step));
         let mut waiting = Waiting::default();
+        let mut unrest = f64::INFINITY;
+        let coulomb = problem.friction_model() == FrictionModel::Coulomb;
+        let drag = limits.drag.or(coulomb.then_some(DEFAULT_DRAG));
 
         while state.step < max_steps {
             // In the pool from here on: parallel loops that are called from outside it pay for each crossing.
             let report = rayon::scope(|_| {
                 search.update(problem, state, &mut statistics);
+                if state.step == 0 && problem.friction_model() == FrictionModel::Filter {
+                    filter_slip(problem, state);
+                }
                 backward.project(problem, state, &mut statistics);
                 forward.advance(problem, state, search, &mut statistics)
             });
@@ -153,6 +164,10 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
                     report.remaining < limits.distance * edge
                         && backward.imbalance(problem, state) < limits.imbalance * edge
                         && backward.stretch_to_limit(state) <= 1.0 + limits.stretch_tolerance
+                        && drag.is_none_or(|drag| {
+                            let before = std::mem::replace(&mut unrest, backward.unrest(problem, state));
+                            unrest < drag * edge || unrest > 0.5 * before
+                        })
                 }
             };
             let out_of_time = limits.max_seconds.is_some_and(|s| clock.elapsed().as_secs_f64() > s);
@@ -195,6 +210,10 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
                 problem.model.is_obstacle(v as u32) || call.prescribed.get(v).copied().unwrap_or(false);
         }
         state.begin(positions, target, call.time_step);
+        state.slip_start.clear();
+        if problem.friction_model() != FrictionModel::None {
+            state.slip_start.extend_from_slice(call.start.unwrap_or(positions));
+        }
         search.begin(problem, state);
         backward.begin(problem, state);
         forward.begin(problem, state);

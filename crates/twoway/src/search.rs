@@ -1,7 +1,7 @@
 //! The default search stage: searches when budgets are used up, and only refreshes contact geometry otherwise.
 
 use crate::{Problem, Reach, Search, State, Statistics};
-use bowknot_constraints::DesiredDistance;
+use bowknot_constraints::{DesiredDistance, FrictionModel};
 use bowknot_geometry::{PairKind, Separation, Vector, separation};
 use bowknot_proximity::{PairList, ProximitySearch};
 use bowknot_stepper::{Budget, Budgets};
@@ -109,6 +109,18 @@ impl BudgetedSearch {
         contacts.desired.extend(values.iter().map(|v| v.0));
         contacts.multipliers.clear();
         contacts.multipliers.extend(values.iter().map(|v| v.1));
+        if problem.friction_model() == FrictionModel::Coulomb {
+            let old = std::mem::take(&mut contacts.friction_multipliers);
+            contacts.friction_multipliers.extend(
+                inherited.iter().map(|&p| old.get(p as usize).copied().unwrap_or_else(Vector::zeros)),
+            );
+            contacts.frictions.clear();
+            for kind in PairKind::ALL {
+                let list = &contacts.pairs.pairs()[contacts.pairs.range(kind)];
+                let friction = |pair| problem.contact.friction_of_pair(model, kind, pair);
+                contacts.frictions.extend(list.iter().map(friction));
+            }
+        }
         contacts.floors.clear();
         contacts.floors.extend(values.iter().map(|v| problem.lengths.floor.min(0.1 * v.0)));
     }
@@ -163,6 +175,8 @@ impl Search for BudgetedSearch {
         state.contacts.pairs = PairList::default();
         state.contacts.desired.clear();
         state.contacts.multipliers.clear();
+        state.contacts.frictions.clear();
+        state.contacts.friction_multipliers.clear();
     }
 
     fn update(&mut self, problem: &Problem, state: &mut State, statistics: &mut Statistics) {

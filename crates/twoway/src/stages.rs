@@ -58,6 +58,9 @@ pub trait BackwardStep: Send {
     /// the forces on it balance.
     fn imbalance(&mut self, problem: &Problem, state: &State) -> f64;
 
+    /// Largest over bodies of the mean of the vertices' stationarity residuals at `state.x` [m].
+    fn unrest(&mut self, problem: &Problem, state: &State) -> f64;
+
     /// Fills in what the stage knows at the end of a call: residuals and stretch.
     fn finish(&mut self, problem: &Problem, state: &State, statistics: &mut Statistics);
 }

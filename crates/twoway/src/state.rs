@@ -1,6 +1,6 @@
 //! What moves during a call.
 
-use bowknot_geometry::{Point, Separation};
+use bowknot_geometry::{Point, Separation, Vector};
 use bowknot_proximity::PairList;
 use bowknot_stepper::Contacts;
 
@@ -25,6 +25,8 @@ pub struct State {
     pub remaining: f64,
     /// Time step that the call stands for [s].
     pub time_step: Option<f64>,
+    /// Positions at the start of the time step, which friction measures slip from [m]; empty without friction.
+    pub slip_start: Vec<Point>,
 }
 
 /// The listed pairs and what belongs to each of them, in the list's order.
@@ -40,6 +42,10 @@ pub struct ContactSet {
     pub floors: Vec<f64>,
     /// Multiplier lambda_p of the pair's contact row [m, in units of relative mass].
     pub multipliers: Vec<f64>,
+    /// Coefficient of friction mu of each pair [1]; empty without Coulomb friction.
+    pub frictions: Vec<f64>,
+    /// Friction multiplier of each pair, in space [m, in units of relative mass]; empty likewise.
+    pub friction_multipliers: Vec<Vector>,
 }
 
 impl ContactSet {

@@ -13,6 +13,14 @@ pub struct Statistics {
     pub pairs: usize,
     /// Contact rows of the last backward step.
     pub contact_rows: usize,
+    /// Friction rows of the last backward step: contacts between bodies with friction.
+    pub friction_rows: usize,
+    /// Contacts that pressed and stuck in the last backward step.
+    pub sticking_contacts: usize,
+    /// Contacts that pressed and slid in the last backward step.
+    pub sliding_contacts: usize,
+    /// Largest slip of a sticking contact since the start of the time step [m]: 0 for a solved problem.
+    pub creep_m: f64,
     /// Edge rows of the last backward step.
     pub edge_rows: usize,
     /// Rows swept in the last backward step, contacts and edges that push.

@@ -1,0 +1,61 @@
+//! The velocity filter for friction (Bridson, Fedkiw and Anderson 2002; paper, section 6.3).
+//!
+//! The target comes from dynamics without friction. Where it would bring a listed pair nearer than its desired
+//! distance, the depth stands for the normal impulse that collision handling is going to apply, and the slip since the start of
+//! the time step shrinks by mu times that depth, at most to nothing. Normal motion is left to collision handling.
+//!
+//! It stands here rather than with the dynamics because only the resolver has the pairs, their closest points and
+//! normals; a filter of the dynamics would have to search them again. It costs one pass over the pairs a call, and is
+//! as coarse as the depths are: a vertex that several pairs catch takes the mean of what they ask for, impulses that
+//! contacts pass on to each other are not seen.
+
+use crate::{Problem, State};
+use bowknot_constraints::predicted_gap;
+use bowknot_geometry::{PairKind, Vector};
+
+/// Changes `state.target`, and `state.y` with it. Needs the pairs at `state.x`.
+pub(crate) fn filter_slip(problem: &Problem, state: &mut State) {
+    let contacts = &state.contacts;
+    let mut changes = vec![(Vector::zeros(), 0u32); state.x.len()];
+    for kind in PairKind::ALL {
+        for p in contacts.pairs.range(kind) {
+            let pair = &contacts.pairs.pairs()[p];
+            let separation = &contacts.separations[p];
+            let gap = predicted_gap(kind, &pair.vertices, separation, &state.x, &state.target);
+            let depth = contacts.desired[p] - gap;
+            if depth <= 0.0 {
+                continue;
+            }
+            let friction = problem.contact.friction_of_pair(&problem.model, kind, pair);
+            let beta = separation.signed_weights(kind);
+            let mut motion = Vector::zeros();
+            let mut diagonal = 0.0;
+            for (&v, beta) in pair.vertices[..kind.vertex_count()].iter().zip(beta) {
+                let v = v as usize;
+                motion += beta * (state.target[v] - state.slip_start[v]);
+                diagonal += beta * beta * inverse_mass(problem, v);
+            }
+            let slip = motion - separation.normal * separation.normal.dot(&motion);
+            let length = slip.norm();
+            if friction == 0.0 || diagonal == 0.0 || length == 0.0 {
+                continue;
+            }
+            let kept = (1.0 - friction * depth / length).max(0.0);
+            let impulse = -(1.0 - kept) / diagonal * slip;
+            for (&v, beta) in pair.vertices[..kind.vertex_count()].iter().zip(beta) {
+                let (sum, count) = &mut changes[v as usize];
+                *sum += beta * inverse_mass(problem, v as usize) * impulse;
+                *count += u32::from(beta != 0.0);
+            }
+        }
+    }
+    for (v, (sum, count)) in changes.into_iter().enumerate().filter(|(_, (_, count))| *count > 0) {
+        let change = sum / f64::from(count);
+        state.target[v] += change;
+        state.y[v] += change;
+    }
+}
+
+fn inverse_mass(problem: &Problem, vertex: usize) -> f64 {
+    if problem.movable(vertex) { 1.0 / problem.relative_mass[vertex] } else { 0.0 }
+}
