@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // One side is held: edges between held vertices need no limit, and held vertices cause no conflict.
     let movable: Vec<bool> = (0..SIDE * SIDE).map(|v| v >= SIDE).collect();
 
-    let mut limits = EdgeLimits::new(&topology, &rest, &movable);
+    let mut limits = EdgeLimits::new(&topology, &rest, &movable, |_| STRETCH);
     let (edges, rows) = (topology.edges.len(), limits.balls.len());
     println!("{edges} edges, {rows} of them with a vertex that can move, {} colours", limits.colour_count());
     for (colour, range) in limits.colour_starts().windows(2).enumerate() {
@@ -47,7 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // A call that starts from the sheet drawn out by a twentieth, and would draw it out by a fifth.
     let drawn = |factor: f64| rest.iter().map(|p| Point::new(factor * p.x, p.y, p.z)).collect::<Vec<_>>();
-    limits.begin(&drawn(1.05), EdgeReference::Rest, STRETCH);
+    limits.begin(&drawn(1.05), EdgeReference::Rest);
     let stretch = limits.stretch(&drawn(1.2));
     println!(
         "drawn out by a fifth: {:.3} of the limit, {:.3} of the start, {:.3} of the rest length",

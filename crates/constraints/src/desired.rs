@@ -26,6 +26,19 @@ impl DesiredDistance {
         rest: &[Point],
         gap: f64,
     ) -> (f64, bool) {
+        let (desired, lowered) = self.at_ease(model, kind, pair, rest);
+        (desired.min(gap.max(0.0) + self.growth), lowered)
+    }
+
+    /// The desired distance [m] that a pair comes to in the end, however tight it starts; and whether it was lowered
+    /// because the pair are neighbours in a fine mesh.
+    pub fn at_ease(
+        &self,
+        model: &CollisionModel,
+        kind: PairKind,
+        pair: &Pair,
+        rest: &[Point],
+    ) -> (f64, bool) {
         let mut desired = self.delta;
         let mut lowered = false;
         if kind != PairKind::VertexHalfSpace {
@@ -38,6 +51,6 @@ impl DesiredDistance {
                 }
             }
         }
-        (desired.min(gap.max(0.0) + self.growth), lowered)
+        (desired, lowered)
     }
 }

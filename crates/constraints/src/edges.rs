@@ -18,14 +18,23 @@ pub struct EdgeLimits {
     pub rest_lengths: Vec<f64>,
     /// Length of each edge at the start of the call [m].
     pub start_lengths: Vec<f64>,
+    /// Largest ratio of each edge's length to its reference, sigma [1].
+    pub stretch_limits: Vec<f64>,
     colour_starts: Vec<u32>,
 }
 
 impl EdgeLimits {
-    /// Collects and colours the edges with at least one movable vertex.
-    pub fn new(topology: &Topology, rest: &[Point], movable: &[bool]) -> Self {
-        let edges: Vec<[u32; 2]> =
-            topology.edges.iter().copied().filter(|e| e.iter().any(|&v| movable[v as usize])).collect();
+    /// Collects and colours the edges with at least one movable vertex and a finite `stretch_limit`, the largest ratio
+    /// of an edge's length to its reference; the others have no row.
+    pub fn new(
+        topology: &Topology,
+        rest: &[Point],
+        movable: &[bool],
+        stretch_limit: impl Fn(&[u32; 2]) -> f64,
+    ) -> Self {
+        let limited =
+            |e: &[u32; 2]| e.iter().any(|&v| movable[v as usize]) && stretch_limit(e) < f64::INFINITY;
+        let edges: Vec<[u32; 2]> = topology.edges.iter().copied().filter(limited).collect();
         let mut colouring = Colouring::default();
         colouring
             .first_fit(movable.len(), edges.len(), |r| edges[r].into_iter().filter(|&v| movable[v as usize]));
@@ -34,6 +43,7 @@ impl EdgeLimits {
             vertices.map(|e| BallRow { vertices: e, limit: length(&e, rest) }).collect();
         let rest_lengths: Vec<f64> = balls.iter().map(|b| b.limit).collect();
         Self {
+            stretch_limits: balls.iter().map(|b| stretch_limit(&b.vertices)).collect(),
             start_lengths: rest_lengths.clone(),
             rest_lengths,
             balls,
@@ -42,8 +52,9 @@ impl EdgeLimits {
     }
 
     /// Sets the limits of a call that starts at `positions`.
-    pub fn begin(&mut self, positions: &[Point], reference: EdgeReference, stretch_limit: f64) {
+    pub fn begin(&mut self, positions: &[Point], reference: EdgeReference) {
         for k in 0..self.balls.len() {
+            let stretch_limit = self.stretch_limits[k];
             let start = length(&self.balls[k].vertices, positions);
             self.start_lengths[k] = start;
             self.balls[k].limit = match reference {

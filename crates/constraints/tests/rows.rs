@@ -137,10 +137,10 @@ fn the_volume_form_gives_way_to_the_gap_form_where_the_closest_feature_is_not_th
 fn linearised_edges_have_the_value_and_slope_of_their_length() {
     let topology = Topology::new(3, vec![[0, 1, 2]], &[], &[]).unwrap();
     let rest = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point::from);
-    let mut edges = EdgeLimits::new(&topology, &rest, &[true; 3]);
+    let mut edges = EdgeLimits::new(&topology, &rest, &[true; 3], |_| 1.1);
     assert_eq!(edges.colour_count(), 3);
     let x = [[0.0, 0.0, 0.0], [1.3, 0.2, 0.0], [0.1, 0.9, 0.4]].map(Point::from);
-    edges.begin(&x, EdgeReference::Start, 1.1);
+    edges.begin(&x, EdgeReference::Start);
     let mut rows = Vec::new();
     edges.linearise(&x, &mut rows);
     for (row, ball) in rows.iter().zip(&edges.balls) {
@@ -161,9 +161,9 @@ fn linearised_edges_have_the_value_and_slope_of_their_length() {
 fn limits_from_rest_bring_a_stretched_start_back_without_asking_for_all_at_once() {
     let topology = Topology::new(2, vec![], &[[0, 1]], &[]).unwrap();
     let rest = [Point::origin(), Point::new(1.0, 0.0, 0.0)];
-    let mut edges = EdgeLimits::new(&topology, &rest, &[true; 2]);
+    let mut edges = EdgeLimits::new(&topology, &rest, &[true; 2], |_| 1.1);
     let mut at = |length: f64| {
-        edges.begin(&[Point::origin(), Point::new(length, 0.0, 0.0)], EdgeReference::Rest, 1.1);
+        edges.begin(&[Point::origin(), Point::new(length, 0.0, 0.0)], EdgeReference::Rest);
         edges.balls[0].limit
     };
     assert_eq!(at(0.5), 1.1);

@@ -49,16 +49,29 @@ pub struct Stepper {
     alphas: Vec<AtomicU64>,
     /// The paper's r.
     clocks: Vec<f64>,
+    /// Group of each vertex, [`Self::NO_GROUP`] for none; empty: no groups.
+    groups: Vec<u32>,
     rounding: Option<Rounding>,
 }
 
 impl Stepper {
-    /// Starts a call: all clocks are 1.
+    /// Group of a vertex that is in none.
+    pub const NO_GROUP: u32 = u32::MAX;
+
+    /// Starts a call: all clocks are 1, and there are no groups.
     pub fn begin(&mut self, vertex_count: usize) {
+        self.groups.clear();
         self.clocks.clear();
         self.clocks.resize(vertex_count, 1.0);
         self.alphas.clear();
         self.alphas.resize_with(vertex_count, || AtomicU64::new(1.0f64.to_bits()));
+    }
+
+    /// Makes the vertices of a group move by one fraction of their ways, see [`Self::limit_by_groups`]; one entry a
+    /// vertex, [`Self::NO_GROUP`] for none. Pairs within a group are then limited by their relative motion alone.
+    pub fn set_groups(&mut self, groups: &[u32]) {
+        self.groups.clear();
+        self.groups.extend_from_slice(groups);
     }
 
     /// Starts a step from `positions` toward `target`. A vertex whose target is not finite stays where it
@@ -188,6 +201,13 @@ impl Stepper {
     ) {
         let (count, side_a) = (kind.vertex_count(), kind.side_a());
         let n = separation.normal;
+        let budget = (damping * (separation.width - floor) - 2.0 * step_rounding).max(0.0);
+        if let Some(&group) = self.groups.get(vertices[0] as usize)
+            && group != Self::NO_GROUP
+            && vertices[..count].iter().all(|&v| self.groups[v as usize] == group)
+        {
+            return self.limit_within_group(&vertices[..count], side_a, &n, budget);
+        }
         let mut closing = [0.0f64; 4];
         let mut speeds = [0.0f64; 2];
         for k in 0..count {
@@ -197,7 +217,6 @@ impl Stepper {
             speeds[side] = speeds[side].max(closing[k]);
         }
         let total = speeds[0] + speeds[1];
-        let budget = (damping * (separation.width - floor) - 2.0 * step_rounding).max(0.0);
         if total <= budget {
             return;
         }
@@ -206,6 +225,21 @@ impl Stepper {
                 let share = speeds[usize::from(k >= side_a)] / total;
                 self.limit(vertices[k] as usize, (budget * share / closing[k]).min(1.0));
             }
+        }
+    }
+
+    /// Limits a pair whose vertices share one clock: with the slab carried along, what closes it is the difference of both
+    /// sides' motion, linear in the clock (see [`Self::limit_by_carried_planes`]). Motion in common is free.
+    fn limit_within_group(&self, vertices: &[u32], side_a: usize, n: &Vector, budget: f64) {
+        let most = |side: &[u32], sign: f64| {
+            let along = side.iter().map(|&v| sign * n.dot(&self.displacements[v as usize]));
+            along.fold(f64::NEG_INFINITY, f64::max)
+        };
+        // A half-space rests.
+        let other = if side_a < vertices.len() { most(&vertices[side_a..], 1.0) } else { 0.0 };
+        let closing = most(&vertices[..side_a], -1.0) + other;
+        if closing > budget {
+            vertices.iter().for_each(|&v| self.limit(v as usize, budget / closing));
         }
     }
 
@@ -291,6 +325,21 @@ impl Stepper {
             self.limit(v as usize, smallest[model.vertex_body()[v as usize] as usize]);
         }
         smallest.into_iter().fold(1.0, f64::min)
+    }
+
+    /// Makes every group move as one, as [`Self::limit_by_bodies`] does with obstacles; `group_count` is one more than the
+    /// largest group.
+    pub fn limit_by_groups(&self, group_count: usize) {
+        if self.groups.is_empty() {
+            return;
+        }
+        let mut smallest = vec![1.0f64; group_count];
+        let members = || (0..self.groups.len()).filter(|&v| self.groups[v] != Self::NO_GROUP);
+        for v in members() {
+            let alpha = &mut smallest[self.groups[v] as usize];
+            *alpha = alpha.min(self.alpha(v));
+        }
+        members().for_each(|v| self.limit(v, smallest[self.groups[v] as usize]));
     }
 
     /// Takes the step: x <- x + alpha d, to rounding y where alpha = 1 and exactly x where it is 0.

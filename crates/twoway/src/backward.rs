@@ -8,14 +8,13 @@
 //!
 //! y = y' + W J^T lambda,   y' = w (m^ y0 + mu x).
 
+use crate::coarse::{is_sliding, scale_multipliers};
 use crate::{BackwardStep, Problem, State, Statistics};
 use bowknot_constraints::{ContactRows, EdgeForm, EdgeLimits, predicted_gap};
 use bowknot_geometry::{PairKind, Vector};
 use bowknot_lcp::{self as lcp, Family, Schedule, TangentVector};
 use std::time::Instant;
 
-/// Range of the coarse correction's factor: beyond it the linear model that it comes from says nothing.
-const COARSE_RANGE: (f64, f64) = (0.3, 2.0);
 /// Sweeps between two looks at the stretch while polishing.
 const POLISH_BATCH: usize = 8;
 
@@ -23,8 +22,9 @@ const POLISH_BATCH: usize = 8;
 #[derive(Debug, Default)]
 pub struct LcpBackward {
     edges: EdgeLimits,
-    /// Which vertices `edges` was made for.
+    /// Which vertices, and which stretch limits of bodies, `edges` was made for.
     movable: Vec<bool>,
+    stretch_limits: Vec<f64>,
     /// Vector multipliers of the edges (ball form).
     forces: Vec<Vector>,
     /// Scalar multipliers of the edges (linear form).
@@ -47,7 +47,10 @@ pub struct LcpBackward {
 
 impl BackwardStep for LcpBackward {
     fn begin(&mut self, problem: &Problem, state: &State) {
-        let changed = self.movable.len() != problem.prescribed.len()
+        let limits: Vec<f64> =
+            (0..problem.model.bodies().len() as u32).map(|body| problem.stretch_limit(body)).collect();
+        let changed = self.stretch_limits != limits
+            || self.movable.len() != problem.prescribed.len()
             || self
                 .movable
                 .iter()
@@ -57,13 +60,15 @@ impl BackwardStep for LcpBackward {
             self.movable = problem.prescribed.iter().map(|p| !p).collect();
             let constraints = &problem.params.constraints;
             self.edges = if constraints.edges {
-                EdgeLimits::new(problem.model.topology(), &problem.rest, &self.movable)
+                let limit = |edge: &[u32; 2]| limits[problem.model.vertex_body()[edge[0] as usize] as usize];
+                EdgeLimits::new(problem.model.topology(), &problem.rest, &self.movable, limit)
             } else {
                 EdgeLimits::default()
             };
+            self.stretch_limits = limits;
         }
         let constraints = &problem.params.constraints;
-        self.edges.begin(&state.x, constraints.edge_reference, constraints.stretch_limit);
+        self.edges.begin(&state.x, constraints.edge_reference);
         self.forces.clear();
         self.forces.resize(self.edges.balls.len(), Vector::zeros());
         self.edge_multipliers.clear();
@@ -214,8 +219,18 @@ impl LcpBackward {
     fn fill_rows(&mut self, problem: &Problem, state: &State, statistics: &mut Statistics) {
         let constraints = &problem.params.constraints;
         let contacts = &state.contacts;
-        let (range, active) = (problem.lengths.contact_range, constraints.active);
-        let in_range = |p: usize| contacts.separations[p].distance <= range;
+        let active = constraints.active;
+        let (uniform, range) = (problem.spacing.is_uniform(), problem.lengths.contact_range);
+        let in_range = |p: usize| {
+            let range = match uniform {
+                true => range,
+                false => {
+                    let pair = &contacts.pairs.pairs()[p];
+                    problem.spacing.contact_range(&problem.model, contacts.pairs.kind(p), pair)
+                }
+            };
+            contacts.separations[p].distance <= range
+        };
         let only_active = problem.params.backward.active_rows;
         self.contacts.fill(
             constraints.form,
@@ -361,60 +376,4 @@ fn stretch(edges: &EdgeLimits, y: &[Vector]) -> f64 {
         .iter()
         .map(|ball| (y[ball.vertices[0] as usize] - y[ball.vertices[1] as usize]).norm() / ball.limit)
         .fold(0.0, f64::max)
-}
-
-/// Whether a friction multiplier is at its bound: the contact slides.
-fn is_sliding(row: &lcp::FrictionRow, normal: f64, multiplier: TangentVector) -> bool {
-    multiplier.norm() >= (1.0 - 1e-9) * row.friction * normal
-}
-
-/// The coarse correction: one factor s for all multipliers, the maximiser of the dual along that ray.
-///
-/// With delta = y - y' = W J^T lambda, scaling by s moves y to y' + s delta and each row value linearly; the dual's
-/// derivative vanishes where sum lambda_p c_p(y) + sum (L |f| - f . (y_a - y_b)) = (1 - s) sum |delta|^2 / w.
-///
-/// Friction scales with its normals, which keeps it inside of its cone. A contact that sticks is an equation, slip = 0,
-/// and counts with lambda_t . slip; one that slides is at rest with any slip against its multiplier (in De
-/// Saxce's form, lambda (c + mu |slip|) + lambda_t . slip = 0 whatever the slip) and counts nothing.
-fn scale_multipliers(system: &lcp::Problem<'_>, free: &[Vector], state: &mut lcp::State<'_>) {
-    let mut slack = 0.0;
-    for (row, &lambda) in system.rows().rows.iter().zip(&*state.lambda) {
-        if lambda > 0.0 {
-            slack += lambda * row.value(state.y);
-        }
-    }
-    for (row, &multiplier) in system.friction().rows.iter().zip(&*state.friction) {
-        if multiplier != TangentVector::zeros()
-            && !is_sliding(row, state.lambda[row.normal as usize], multiplier)
-        {
-            slack += multiplier.dot(&row.slip(state.y));
-        }
-    }
-    for (ball, force) in system.balls().rows.iter().zip(&*state.forces) {
-        if *force != Vector::zeros() {
-            let [a, b] = ball.vertices.map(|v| v as usize);
-            slack += ball.limit * force.norm() - force.dot(&(state.y[a] - state.y[b]));
-        }
-    }
-    let mut energy = 0.0;
-    for ((y, free), &weight) in state.y.iter().zip(free).zip(system.weights()) {
-        if weight > 0.0 {
-            energy += (y - free).norm_squared() / weight;
-        }
-    }
-    if energy <= 0.0 {
-        return;
-    }
-    let s = (1.0 - slack / energy).clamp(COARSE_RANGE.0, COARSE_RANGE.1);
-    if !s.is_finite() {
-        return;
-    }
-    state.lambda.iter_mut().for_each(|l| *l *= s);
-    state.forces.iter_mut().for_each(|f| *f *= s);
-    state.friction.iter_mut().for_each(|f| *f *= s);
-    for ((y, free), &weight) in state.y.iter_mut().zip(free).zip(system.weights()) {
-        if weight > 0.0 {
-            *y = free + s * (*y - free);
-        }
-    }
 }

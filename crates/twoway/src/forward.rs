@@ -30,6 +30,7 @@ pub struct CertifiedForward {
 impl ForwardStep for CertifiedForward {
     fn begin(&mut self, problem: &Problem, _: &State) {
         self.stepper.begin(problem.rest.len());
+        self.stepper.set_groups(&problem.groups);
         self.crowded = false;
     }
 
@@ -51,7 +52,10 @@ impl ForwardStep for CertifiedForward {
                 Bound::Isotropic => self.stepper.limit_by_distances(&contacts, damping),
             };
             match search.reach() {
-                Reach::Distance(unlisted) => self.stepper.limit_by_unlisted(unlisted, damping),
+                Reach::Distance(unlisted) => {
+                    let room = unlisted - problem.spacing.largest_floor();
+                    self.stepper.limit_by_unlisted(room, damping);
+                }
                 Reach::Balls(budgets) => {
                     if self.stepper.limit_by_budgets(&state.x, budgets) {
                         search.request();
@@ -59,7 +63,7 @@ impl ForwardStep for CertifiedForward {
                 }
             }
         }
-        self.stepper.limit_by_bodies(&problem.model, &problem.obstacle_vertices);
+        self.limit_bodies(problem);
         state.previous.clone_from(&state.x);
         let report = self.stepper.advance(&mut state.x);
         statistics.seconds.forward += clock.elapsed().as_secs_f64() - (statistics.seconds.search - searching);
@@ -150,6 +154,12 @@ impl CertifiedForward {
         let contacts = state.contacts.as_contacts();
         statistics.frozen_pairs +=
             self.stepper.limit_by_carried_planes(&contacts, &self.paths, &self.tubes, damping);
+        self.limit_bodies(problem);
+    }
+
+    /// Makes obstacles and groups of pinned vertices go as one.
+    fn limit_bodies(&self, problem: &Problem) {
         self.stepper.limit_by_bodies(&problem.model, &problem.obstacle_vertices);
+        self.stepper.limit_by_groups(problem.group_count);
     }
 }

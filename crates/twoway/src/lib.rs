@@ -8,17 +8,21 @@
 
 mod backward;
 mod bodies;
+mod coarse;
 mod error;
 mod filter;
 mod forward;
+mod injection;
 mod observer;
 mod params;
 mod problem;
 mod resolver;
 mod search;
+mod spacing;
 mod stages;
 mod state;
 mod statistics;
+mod waiting;
 
 /// Contact rows and edge limits, and their part of the parameters.
 pub use bowknot_constraints as constraints;
@@ -40,9 +44,10 @@ pub use params::{BackwardParams, Params, StopParams, StopRule};
 pub use problem::{Lengths, Problem};
 pub use resolver::{Call, Resolver};
 pub use search::BudgetedSearch;
+pub use spacing::{FLOOR_MARGIN, PairSpacing, Spacing};
 pub use stages::{BackwardStep, ForwardStep, Reach, Search};
 pub use state::{ContactSet, State};
-pub use statistics::{Skipped, StageSeconds, Statistics};
+pub use statistics::{Behind, Follower, Skipped, StageSeconds, Statistics};
 
 /// The README's example is tested with the documentation.
 #[cfg(doctest)]

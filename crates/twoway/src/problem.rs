@@ -1,6 +1,6 @@
 //! What is fixed about a scene, and every length that parameters leave to the mesh.
 
-use crate::{ContactTable, Params, ResolveError};
+use crate::{ContactTable, Params, ResolveError, Spacing};
 use bowknot_constraints::FrictionModel;
 use bowknot_geometry::Point;
 use bowknot_proximity::CollisionModel;
@@ -35,12 +35,21 @@ pub struct Problem {
     pub obstacle_vertices: Vec<u32>,
     /// What bodies and half-spaces bring into their contacts.
     pub contact: ContactTable,
+    /// Mean mass of the deformable vertices [kg]: the unit of relative masses.
+    pub mean_mass: f64,
     /// Lengths in force.
     pub lengths: Lengths,
+    /// Desired distances and floors of the pairs.
+    pub spacing: Spacing,
     /// Parameters as given.
     pub params: Params,
     /// Vertices that are prescribed in the present call: obstacles and pins.
     pub prescribed: Vec<bool>,
+    /// Groups of pinned vertices that go as one in the present call: group of each vertex, counted from 0;
+    /// [`crate::Call::NO_GROUP`] for none. Empty: no groups.
+    pub groups: Vec<u32>,
+    /// How many groups there are.
+    pub group_count: usize,
 }
 
 impl Problem {
@@ -75,10 +84,15 @@ impl Problem {
         let relative_mass =
             masses.iter().zip(&prescribed).map(|(m, fixed)| if *fixed { 0.0 } else { m / mean }).collect();
         let obstacle_vertices = (0..vertices as u32).filter(|&v| prescribed[v as usize]).collect();
-        let (edge, local_edge) = edge_lengths(&model, rest, &prescribed);
-        let lengths = lengths(&params, edge);
         let contact = ContactTable::new(&model);
+        let (edge, local_edge) = edge_lengths(&model, &contact, &params, rest, &prescribed);
+        let lengths = lengths(&params, edge);
+        let spacing = Spacing::new(&model, &contact, &params, lengths.delta, lengths.floor);
         Ok(Self {
+            mean_mass: mean,
+            spacing,
+            groups: Vec::new(),
+            group_count: 0,
             model,
             contact,
             rest: rest.to_vec(),
@@ -89,6 +103,22 @@ impl Problem {
             params,
             prescribed,
         })
+    }
+
+    /// Derives the lengths anew from the contact data.
+    pub(crate) fn contact_changed(&mut self) {
+        let obstacle: Vec<bool> = (0..self.rest.len() as u32).map(|v| self.model.is_obstacle(v)).collect();
+        let (edge, local_edge) =
+            edge_lengths(&self.model, &self.contact, &self.params, &self.rest, &obstacle);
+        self.local_edge = local_edge;
+        self.lengths = lengths(&self.params, edge);
+        let Lengths { delta, floor, .. } = self.lengths;
+        self.spacing = Spacing::new(&self.model, &self.contact, &self.params, delta, floor);
+    }
+
+    /// Largest ratio of an edge's length to its reference; infinite for no limit.
+    pub fn stretch_limit(&self, body: u32) -> f64 {
+        self.contact.bodies()[body as usize].stretch_limit.unwrap_or(self.params.constraints.stretch_limit)
     }
 
     /// How friction acts; none where no body has any.
@@ -118,9 +148,18 @@ pub(crate) fn check_finite(
     }
 }
 
-/// Mean rest edge length of the deformable bodies, and of the edges at each vertex. A scene of particles alone
-/// takes a hundredth of its diagonal.
-fn edge_lengths(model: &CollisionModel, rest: &[Point], obstacle: &[bool]) -> (f64, Vec<f64>) {
+/// What a particle has for an edge length, in its body's delta: one that grains roll over each other within.
+const PARTICLE_EDGE: f64 = 2.5;
+
+/// Mean rest edge length of the deformable bodies, and of the edges at each vertex. Particles count by their body's
+/// delta, or the scene's where it is stated; a scene of particles without either takes a hundredth of its diagonal.
+fn edge_lengths(
+    model: &CollisionModel,
+    contact: &ContactTable,
+    params: &Params,
+    rest: &[Point],
+    obstacle: &[bool],
+) -> (f64, Vec<f64>) {
     let mut sums = vec![(0.0f64, 0u32); rest.len()];
     let (mut total, mut count) = (0.0, 0u32);
     for &[a, b] in &model.topology().edges {
@@ -132,6 +171,14 @@ fn edge_lengths(model: &CollisionModel, rest: &[Point], obstacle: &[bool]) -> (f
         }
         if !obstacle[a] {
             total += length;
+            count += 1;
+        }
+    }
+    for &v in model.topology().particles.iter().filter(|v| !obstacle[**v as usize]) {
+        let body = model.vertex_body()[v as usize] as usize;
+        if let Some(delta) = contact.bodies()[body].delta.or(params.constraints.delta) {
+            sums[v as usize] = (PARTICLE_EDGE * delta, 1);
+            total += PARTICLE_EDGE * delta;
             count += 1;
         }
     }

@@ -3,8 +3,10 @@
 use crate::backward::LcpBackward;
 use crate::filter::filter_slip;
 use crate::forward::CertifiedForward;
+use crate::injection::injected_energy;
 use crate::problem::check_finite;
 use crate::search::BudgetedSearch;
+use crate::waiting::{Patience, behind, set_groups};
 use crate::{
     AcceptedState, BackwardStep, BodyContact, ForwardStep, HalfSpaceContact, Observer, PairFriction, Params,
     Problem, ResolveError, Search, State, Statistics, StopRule,
@@ -47,6 +49,8 @@ pub struct Resolver<S = BudgetedSearch, B = LcpBackward, F = CertifiedForward> {
     search: S,
     backward: B,
     forward: F,
+    /// The caller's names of the groups in the present call.
+    group_names: Vec<u32>,
 }
 
 impl Resolver {
@@ -71,7 +75,7 @@ impl Resolver {
 impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
     /// A resolver made of other stages.
     pub fn with_stages(problem: Problem, search: S, backward: B, forward: F) -> Self {
-        Self { problem, state: State::default(), search, backward, forward }
+        Self { problem, state: State::default(), search, backward, forward, group_names: Vec::new() }
     }
 
     /// Says what each body brings into its contacts; one entry a body of the collision model, obstacles included.
@@ -80,6 +84,7 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
     /// [`ResolveError::Contact`] with every entry out of its range, or a wrong number of entries.
     pub fn with_bodies(mut self, bodies: Vec<BodyContact>) -> Result<Self, ResolveError> {
         self.problem.contact.set_bodies(bodies)?;
+        self.problem.contact_changed();
         Ok(self)
     }
 
@@ -89,6 +94,7 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
     /// As [`Self::with_bodies`].
     pub fn with_half_spaces(mut self, half_spaces: Vec<HalfSpaceContact>) -> Result<Self, ResolveError> {
         self.problem.contact.set_half_spaces(half_spaces)?;
+        self.problem.contact_changed();
         Ok(self)
     }
 
@@ -126,11 +132,11 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
     ) -> Result<Statistics, ResolveError> {
         let clock = Instant::now();
         self.begin(positions, target, call)?;
-        let Self { problem, state, search, backward, forward } = self;
+        let Self { problem, state, search, backward, forward, .. } = self;
         let mut statistics = Statistics::default();
         let limits = &problem.params.stop;
         let max_steps = limits.max_steps.unwrap_or_else(|| default_max_steps(call.time_step));
-        let mut waiting = Waiting::default();
+        let mut waiting = Patience::default();
         let mut unrest = f64::INFINITY;
         let coulomb = problem.friction_model() == FrictionModel::Coulomb;
         let drag = limits.drag.or(coulomb.then_some(DEFAULT_DRAG));
@@ -184,7 +190,7 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
     }
 
     fn begin(&mut self, positions: &[Point], target: &[Point], call: &Call<'_>) -> Result<(), ResolveError> {
-        let Self { problem, state, search, backward, forward } = self;
+        let Self { problem, state, search, backward, forward, group_names } = self;
         let vertices = problem.rest.len();
         for (what, given) in [("positions", positions.len()), ("target", target.len())] {
             if given != vertices {
@@ -209,6 +215,7 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
             problem.prescribed[v] =
                 problem.model.is_obstacle(v as u32) || call.prescribed.get(v).copied().unwrap_or(false);
         }
+        set_groups(problem, call.groups, group_names);
         state.begin(positions, target, call.time_step);
         state.slip_start.clear();
         if problem.friction_model() != FrictionModel::None {
@@ -222,7 +229,7 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
 
     /// Fills in what is known only at the end.
     fn finish(&mut self, statistics: &mut Statistics) {
-        let Self { problem, state, search, backward, .. } = self;
+        let Self { problem, state, search, backward, group_names, .. } = self;
         // Contact geometry at the final x, for the smallest gap.
         search.refresh(problem, state, statistics);
         backward.finish(problem, state, statistics);
@@ -240,50 +247,12 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
                 statistics.prescribed_behind_m = statistics.prescribed_behind_m.max(left);
             }
         }
+        statistics.behind = behind(problem, state, group_names);
+        statistics.injected_j = injected_energy(problem, state);
         statistics.distance_to_target_m = (sum / free.max(1) as f64).sqrt();
         if statistics.converged {
             statistics.slowest_body = None;
         }
-    }
-}
-
-/// Notices when nothing goes on any more but obstacles or pins that are blocked for good: waiting for them would
-/// use up all steps of the call, and of every call after it.
-#[derive(Debug, Default)]
-struct Waiting {
-    /// Smallest distance so far by which the prescribed vertices are behind [m].
-    behind: Option<f64>,
-    /// Steps since that shrank noticeably.
-    steps: usize,
-}
-
-impl Waiting {
-    /// Steps without progress after which the call gives up.
-    const PATIENCE: usize = 16;
-    /// Progress that counts, in mean edge lengths.
-    const PROGRESS: f64 = 1e-3;
-
-    /// Whether the free vertices have arrived and the prescribed ones are stuck.
-    fn update(&mut self, problem: &Problem, state: &State) -> bool {
-        let left = |v: usize| (state.y[v] - state.x[v]).norm();
-        let farthest = |prescribed: bool| {
-            let vertices = (0..state.x.len()).filter(|&v| problem.prescribed[v] == prescribed);
-            vertices.map(left).fold(0.0, f64::max)
-        };
-        let edge = problem.lengths.edge;
-        let behind = farthest(true);
-        if self.behind.is_none_or(|best| behind < best - Self::PROGRESS * edge) {
-            self.behind = Some(behind);
-            self.steps = 0;
-            return false;
-        }
-        let tolerance = problem.params.stop.distance * edge;
-        if behind < tolerance || farthest(false) > tolerance {
-            self.steps = 0;
-            return false;
-        }
-        self.steps += 1;
-        self.steps >= Self::PATIENCE
     }
 }
 
@@ -294,7 +263,10 @@ fn default_max_steps(time_step: Option<f64>) -> usize {
 }
 
 fn check_floor(problem: &Problem, positions: &[Point], target: &[Point]) -> Result<(), ResolveError> {
-    let floor = problem.lengths.floor;
+    let thicknesses = problem.contact.bodies().iter().filter_map(|b| b.thickness).filter(|t| *t > 0.0);
+    let scene = problem.lengths.floor;
+    let floor = thicknesses.fold(if scene > 0.0 { scene } else { f64::INFINITY }, f64::min);
+    let floor = if floor.is_finite() { floor } else { 0.0 };
     let largest = |p: &Point| p.coords.amax();
     let (vertex, coordinate) = positions
         .iter()

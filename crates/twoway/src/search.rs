@@ -1,6 +1,6 @@
 //! The default search stage: searches when budgets are used up, and only refreshes contact geometry otherwise.
 
-use crate::{Problem, Reach, Search, State, Statistics};
+use crate::{FLOOR_MARGIN, Problem, Reach, Search, State, Statistics};
 use bowknot_constraints::{DesiredDistance, FrictionModel};
 use bowknot_geometry::{PairKind, Separation, Vector, separation};
 use bowknot_proximity::{PairList, ProximitySearch};
@@ -42,11 +42,6 @@ impl BudgetedSearch {
         }
     }
 
-    /// Half of the distance that pairs are listed within beyond the budgets: range of the rows, or the floor.
-    fn margin(problem: &Problem) -> f64 {
-        0.5 * problem.lengths.contact_range.max(problem.lengths.floor)
-    }
-
     fn set_budgets(&mut self, problem: &Problem, state: &State) {
         let params = &problem.params.stepper;
         self.budgets.anchors.clone_from(&state.x);
@@ -67,12 +62,13 @@ impl BudgetedSearch {
                         },
                     ),
                 );
-                let margin = Self::margin(problem);
+                let bodies = problem.model.vertex_body();
+                let margin = |body: &u32| problem.spacing.margin(*body);
                 self.radii.clear();
-                self.radii.extend(self.budgets.radii.iter().map(|r| r + margin));
+                self.radii.extend(self.budgets.radii.iter().zip(bodies).map(|(r, body)| r + margin(body)));
             }
             Budget::Uniform => {
-                let radius = params.budget_max * problem.lengths.delta;
+                let radius = params.budget_max * problem.spacing.largest_delta();
                 self.unlisted = 2.0 * radius;
                 self.budgets.radii.resize(state.x.len(), radius);
                 self.radii.clear();
@@ -86,29 +82,45 @@ impl BudgetedSearch {
         let contacts = &mut state.contacts;
         let inherited = contacts.pairs.match_with(&self.old);
         let growth = state.time_step.map_or(f64::INFINITY, |dt| problem.lengths.separation_speed * dt);
-        let rule = DesiredDistance { delta: problem.lengths.delta, growth };
         let model = &problem.model;
         let (pairs, separations) = (&contacts.pairs, &contacts.separations);
         let (old_desired, old_multipliers) = (&contacts.desired, &contacts.multipliers);
-        let values: Vec<(f64, f64, bool)> = inherited
+        let old_floors = &contacts.floors;
+        let values: Vec<Inherited> = inherited
             .par_iter()
             .enumerate()
             .with_min_len(CHUNK)
             .map(|(p, &old)| match old_desired.get(old as usize) {
-                Some(&desired) => (desired, old_multipliers[old as usize], false),
+                Some(&desired) => Inherited {
+                    desired,
+                    floor: old_floors[old as usize],
+                    multiplier: old_multipliers[old as usize],
+                    lowered: false,
+                },
                 None => {
-                    let gap = separations[p].distance;
-                    let (desired, lowered) =
-                        rule.of(model, pairs.kind(p), &pairs.pairs()[p], &problem.rest, gap);
-                    (desired, 0.0, lowered)
+                    let (kind, pair) = (pairs.kind(p), &pairs.pairs()[p]);
+                    let spacing = problem.spacing.of(model, kind, pair);
+                    let rule = DesiredDistance { delta: spacing.delta, growth };
+                    let separation = &separations[p];
+                    let (desired, lowered) = rule.of(model, kind, pair, &problem.rest, separation.distance);
+                    let floor = match spacing.floor {
+                        None => problem.lengths.floor.min(0.1 * desired),
+                        Some(floor) => {
+                            // Neighbours have the floor that their rest distance has room for; a tighter start
+                            // has its own gap for a floor, from which it grows call by call.
+                            let (at_ease, _) = rule.at_ease(model, kind, pair, &problem.rest);
+                            floor.min(at_ease / FLOOR_MARGIN).min(separation.width.max(0.0))
+                        }
+                    };
+                    Inherited { desired, floor, multiplier: 0.0, lowered }
                 }
             })
             .collect();
-        statistics.lowered_pairs += values.iter().filter(|v| v.2).count();
+        statistics.lowered_pairs += values.iter().filter(|v| v.lowered).count();
         contacts.desired.clear();
-        contacts.desired.extend(values.iter().map(|v| v.0));
+        contacts.desired.extend(values.iter().map(|v| v.desired));
         contacts.multipliers.clear();
-        contacts.multipliers.extend(values.iter().map(|v| v.1));
+        contacts.multipliers.extend(values.iter().map(|v| v.multiplier));
         if problem.friction_model() == FrictionModel::Coulomb {
             let old = std::mem::take(&mut contacts.friction_multipliers);
             contacts.friction_multipliers.extend(
@@ -122,7 +134,7 @@ impl BudgetedSearch {
             }
         }
         contacts.floors.clear();
-        contacts.floors.extend(values.iter().map(|v| problem.lengths.floor.min(0.1 * v.0)));
+        contacts.floors.extend(values.iter().map(|v| v.floor));
     }
 
     fn evaluate_moved(&mut self, problem: &Problem, state: &mut State, statistics: &mut Statistics) {
@@ -153,7 +165,16 @@ impl BudgetedSearch {
     }
 }
 
-fn evaluate(
+/// What belongs to a pair from search to search.
+struct Inherited {
+    desired: f64,
+    floor: f64,
+    multiplier: f64,
+    lowered: bool,
+}
+
+/// Contact geometry of a pair at `x`.
+pub(crate) fn evaluate(
     kind: PairKind,
     vertices: &[u32; 4],
     half_space: u32,
@@ -184,7 +205,7 @@ impl Search for BudgetedSearch {
         if params.budget == Budget::Uniform && !self.requested {
             let moved = state.x.iter().zip(&state.previous).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
             self.unlisted -= 2.0 * moved * (1.0 + 1e-12);
-            self.requested = self.unlisted < 2.0 * params.budget_min * problem.lengths.delta;
+            self.requested = self.unlisted < 2.0 * params.budget_min * problem.spacing.largest_delta();
         }
         if !self.requested {
             statistics.skipped.searches += 1;
@@ -218,7 +239,10 @@ impl Search for BudgetedSearch {
         let clock = Instant::now();
         // No margin for contacts to come: the next update searches again, and lists them.
         self.radii.clear();
-        self.radii.extend_from_slice(deviations);
+        // But for floors: what is not listed must not fall below them.
+        let bodies = problem.model.vertex_body();
+        let margin = |body: &u32| problem.spacing.floor_margin(*body);
+        self.radii.extend(deviations.iter().zip(bodies).map(|(d, body)| d + margin(body)));
         std::mem::swap(&mut self.old, &mut state.contacts.pairs);
         let contacts = &mut state.contacts;
         self.search.search_swept(

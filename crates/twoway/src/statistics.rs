@@ -56,12 +56,40 @@ pub struct Statistics {
     pub max_stretch: f64,
     /// Largest distance by which an obstacle or pin is behind its keyframe [m].
     pub prescribed_behind_m: f64,
+    /// Obstacles and groups of pinned vertices that wait because going on would cut through something, or for want of
+    /// steps: those behind by more than the stopping rule's distance.
+    pub behind: Vec<Behind>,
+    /// Largest kinetic energy that separating contacts to their desired distance can have injected [J]: the sum over
+    /// vertices of 1/2 m (s/dt)^2, s the largest way that a pressing contact of the vertex asks its gap to grow
+    /// in this call, at most the separation speed times dt. 0 for a call without a time step.
+    pub injected_j: f64,
     /// Body with the vertex that has travelled least of its way, if the call did not converge.
     pub slowest_body: Option<u32>,
     /// Wall seconds by stage.
     pub seconds: StageSeconds,
     /// Work that was skipped.
     pub skipped: Skipped,
+}
+
+/// Something prescribed that waits.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Behind {
+    /// Who waits.
+    pub who: Follower,
+    /// How far it is behind its keyframe, at its farthest vertex [m].
+    pub distance_m: f64,
+}
+
+/// Who follows keyframes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Follower {
+    /// An obstacle: its body.
+    Obstacle(u32),
+    /// A group of pinned vertices, as named in [`crate::Call::groups`].
+    Group(u32),
+    /// The pinned vertices of a body that are in no group.
+    Pins(u32),
 }
 
 /// Wall seconds by stage.
