@@ -3,12 +3,17 @@
 mod ball;
 mod cone;
 mod cuboid;
+mod figure;
+mod garment;
+mod isosurface;
 mod sheet;
 mod tube;
 
 pub use ball::Ball;
 pub use cone::Cone;
 pub use cuboid::Cuboid;
+pub use figure::{AnimatedFigure, Figure};
+pub use garment::Garment;
 pub use sheet::{Diagonals, Sheet};
 pub use tube::Tube;
 
@@ -32,6 +37,10 @@ pub enum Shape {
     Cone(Cone),
     /// A closed box.
     Box(Cuboid),
+    /// A human figure that walks. For obstacles only.
+    Figure(Figure),
+    /// A tube of cloth around the figure.
+    Garment(Garment),
     /// Everything below a plane, such as the ground. For obstacles only.
     HalfSpace(HalfSpaceShape),
 }
@@ -73,7 +82,8 @@ const MOST_VERTICES: f64 = 2e7;
 
 impl Shape {
     /// Names that the key `type` may have.
-    pub const NAMES: [&'static str; 6] = ["sheet", "tube", "ball", "cone", "box", "half-space"];
+    pub const NAMES: [&'static str; 8] =
+        ["sheet", "tube", "ball", "cone", "box", "figure", "garment", "half-space"];
 
     /// The mesh; none for a half-space.
     pub fn mesh(&self) -> Option<TriangleMesh> {
@@ -83,13 +93,18 @@ impl Shape {
             Self::Ball(ball) => Some(ball.mesh()),
             Self::Cone(cone) => Some(cone.mesh()),
             Self::Box(cuboid) => Some(cuboid.mesh()),
+            Self::Figure(figure) => Some(figure.mesh()),
+            Self::Garment(garment) => Some(garment.mesh()),
             Self::HalfSpace(_) => None,
         }
     }
 
     /// The shape as one that moves by itself; none for those that do not. Its mesh is that at time 0.
     pub fn animated(&self) -> Option<Arc<dyn Animated>> {
-        None
+        match self {
+            Self::Figure(figure) => Some(Arc::new(AnimatedFigure::new(*figure))),
+            _ => None,
+        }
     }
 
     /// Appends the field and what is wrong with it.
@@ -110,6 +125,14 @@ impl Shape {
                 2.0 * (b.size[0] * b.size[1] + b.size[1] * b.size[2] + b.size[2] * b.size[0]),
                 b.edge,
             ),
+            Self::Figure(figure) => {
+                figure.validate(problems);
+                (Vec::new(), 2.0, figure.edge)
+            }
+            Self::Garment(garment) => {
+                garment.validate(problems);
+                (Vec::new(), garment.area(), garment.edge)
+            }
             Self::HalfSpace(h) => {
                 if !(h.normal.iter().all(|c| c.is_finite()) && h.normal.norm() > 0.0) {
                     problems.push(("normal", "must be finite and not zero".to_owned()));
@@ -123,12 +146,14 @@ impl Shape {
             problems.push(("sides", format!("{sides} must lie from 3 to 1000")));
         }
         let before = problems.len();
-        for (key, value) in lengths.into_iter().chain([("edge", edge)]) {
+        let reported = problems.iter().any(|problem| problem.0 == "edge");
+        let edges = [("edge", edge)].into_iter().filter(|_| !reported);
+        for (key, value) in lengths.into_iter().chain(edges) {
             if !(value.is_finite() && value > 0.0) {
                 problems.push((key, format!("{value} must be a length in metres above 0")));
             }
         }
-        if problems.len() == before && area / (edge * edge) > MOST_VERTICES {
+        if problems.len() == before && !reported && area / (edge * edge) > MOST_VERTICES {
             problems.push((
                 "edge",
                 format!("{edge} m would make more than {MOST_VERTICES:e} vertices; it must be larger"),

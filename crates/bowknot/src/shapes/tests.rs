@@ -14,12 +14,14 @@ fn volume(mesh: &TriangleMesh) -> f64 {
 
 #[test]
 fn shapes_have_the_right_topology_and_no_faults() {
-    let cases: [(Shape, i64); 5] = [
+    let cases: [(Shape, i64); 7] = [
         (Shape::Sheet(Sheet::default()), 1),
         (Shape::Tube(Tube::default()), 0),
         (Shape::Ball(Ball::default()), 2),
         (Shape::Cone(Cone::default()), 2),
         (Shape::Box(Cuboid::default()), 2),
+        (Shape::Figure(Figure::default()), 2),
+        (Shape::Garment(Garment::default()), 0),
     ];
     for (shape, expected) in cases {
         let mesh = shape.mesh().expect("a mesh");
@@ -61,4 +63,21 @@ fn lengths_out_of_range_are_named() {
     problems.clear();
     Shape::Sheet(Sheet { edge: 1e-6, ..Sheet::default() }).validate(&mut problems);
     assert!(problems[0].1.contains("must be larger"));
+}
+
+#[test]
+fn figures_and_garments_out_of_range_are_named() {
+    let fields = |shape: Shape| {
+        let mut problems = Vec::new();
+        shape.validate(&mut problems);
+        problems.into_iter().map(|p| p.0).collect::<Vec<_>>()
+    };
+    assert!(fields(Shape::Figure(Figure::default())).is_empty());
+    let figure = Figure { edge: 0.05, cadence: f64::NAN, end: 0.1, ..Figure::default() };
+    assert_eq!(fields(Shape::Figure(figure)), ["edge", "cadence", "end"]);
+    assert_eq!(fields(Shape::Figure(Figure { edge: 1e-5, ..Figure::default() })), ["edge"]);
+    assert!(fields(Shape::Garment(Garment::default())).is_empty());
+    let garment = Garment { edge: 0.0, top: 1.4, waist: 0.3, ..Garment::default() };
+    assert_eq!(fields(Shape::Garment(garment)), ["edge", "top", "waist"]);
+    assert_eq!(fields(Shape::Garment(Garment { edge: 1e-5, ..Garment::default() })), ["edge"]);
 }
