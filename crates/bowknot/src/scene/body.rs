@@ -115,6 +115,10 @@ pub struct PinSpec {
     /// Rigid motion over time, see the motions. Default: held where they are.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub motion: Option<Motion>,
+    /// Name of an obstacle with a mesh that they follow instead: each keeps its place relative to the
+    /// triangle that is nearest to it when the pin takes hold, as if sewn on. Default none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub follow: Option<String>,
     /// When the pin takes hold [s]; it takes the vertices from where they are then. Default 0.
     pub start: f64,
     /// When it lets go [s]. Default inf.
@@ -226,6 +230,7 @@ impl Default for PinSpec {
             region: None,
             side: None,
             motion: None,
+            follow: None,
             start: 0.0,
             end: f64::INFINITY,
         }

@@ -9,7 +9,7 @@ use super::params::{OutputParams, Preset, SimulationParams};
 use super::reader::{Reader, describe, join};
 use super::source::Source;
 use crate::io::Import;
-use crate::shapes::{Ball, Cone, Cuboid, HalfSpaceShape, Shape, Sheet, Tube};
+use crate::shapes::{Ball, Cone, Cuboid, Figure, Garment, HalfSpaceShape, Shape, Sheet, Tube};
 use bowknot_constraints::ConstraintParams;
 use bowknot_dynamics::{ClothMaterial, DynamicsParams};
 use bowknot_geometry::Vector;
@@ -191,6 +191,8 @@ fn shape(reader: &mut Reader<'_>, table: &Table, path: &str) -> Option<Shape> {
         "ball" => Shape::Ball(reader.structure::<Ball>(&rest, &path, &[])),
         "cone" => Shape::Cone(reader.structure::<Cone>(&rest, &path, &[])),
         "box" => Shape::Box(reader.structure::<Cuboid>(&rest, &path, &[])),
+        "figure" => Shape::Figure(reader.structure::<Figure>(&rest, &path, &[])),
+        "garment" => Shape::Garment(reader.structure::<Garment>(&rest, &path, &[])),
         "half-space" => Shape::HalfSpace(reader.structure::<HalfSpaceShape>(&rest, &path, &[])),
         unknown => {
             let hint = nearest(unknown, Shape::NAMES.into_iter());
@@ -307,6 +309,9 @@ fn validate_bodies(scene: &Scene, source: &Source, problems: &mut Vec<Problem>) 
         if let Some(Shape::HalfSpace(_)) = body.shape {
             faults.push(("shape", "a half-space can only be an obstacle".to_owned()));
         }
+        if let Some(Shape::Figure(_)) = body.shape {
+            faults.push(("shape", "a figure can only be an obstacle".to_owned()));
+        }
         report(problems, source, &path, &mut faults);
         validate_shape(body.shape.as_ref(), source, &path, problems);
         let Material::Cloth(material) = &body.material;
@@ -364,6 +369,19 @@ fn validate_pin(scene: &Scene, pin: &PinSpec, source: &Source, path: &str, probl
     }
     if pin.vertices.is_empty() && pin.region.is_none() && pin.side.is_none() {
         faults.push(("vertices", "a pin needs vertices, a box or a side".to_owned()));
+    }
+    if let Some(name) = &pin.follow {
+        let with_mesh = |o: &&ObstacleSpec| !matches!(o.shape, Some(Shape::HalfSpace(_)));
+        let names: Vec<&str> = scene.obstacles.iter().filter(with_mesh).map(|o| o.name.as_str()).collect();
+        if !names.contains(&name.as_str()) {
+            let hint = nearest(name, names.iter().copied());
+            let hint = hint.map_or_else(String::new, |name| format!("; did you mean {name}?"));
+            let message = format!("no obstacle {name:?} with a mesh; there are: {}{hint}", names.join(", "));
+            faults.push(("follow", message));
+        }
+        if pin.motion.is_some() {
+            faults.push(("follow", "stands beside motion; only one of them may be given".to_owned()));
+        }
     }
     if let Some(region) = pin.region {
         // Not by `<`, which is false for NaN.

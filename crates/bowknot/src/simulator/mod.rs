@@ -17,7 +17,7 @@ pub use statistics::{Energy, StepSeconds, StepStatistics};
 
 use crate::check::{Judge, StateOptions, StateReport};
 use crate::scene::{CollisionEvery, Scene};
-use crate::world::World;
+use crate::world::{Attachment, World};
 use bowknot_dynamics::{Dynamics, DynamicsModel};
 use bowknot_geometry::{Point, Vector};
 use bowknot_twoway::{AcceptedState, Call, Observer, ResolveError, Resolver};
@@ -41,6 +41,8 @@ pub struct Simulator {
     positions: Vec<Point>,
     velocities: Vec<Vector>,
     anchors: Vec<Vec<Point>>,
+    /// Of pins that follow an obstacle, by pin and vertex; made from the anchors when first needed.
+    attachments: Vec<Vec<Option<Attachment>>>,
     scratch: Scratch,
 }
 
@@ -145,6 +147,7 @@ impl Simulator {
             step: 0,
             positions: world.positions.clone(),
             velocities: world.velocities.clone(),
+            attachments: vec![Vec::new(); anchors.len()],
             anchors,
             scratch: Scratch::default(),
             world: Arc::new(world),
@@ -179,6 +182,7 @@ impl Simulator {
         if let Err(error) = result {
             self.positions.clone_from(&scratch.start);
             self.anchors = anchors;
+            self.attachments.iter_mut().for_each(Vec::clear);
             self.scratch = scratch;
             return Err(error);
         }
@@ -264,7 +268,7 @@ impl Simulator {
 
     /// Fills in who is prescribed at `time`, the end of the time step, and where.
     fn prescribe(&mut self, time: f64, scratch: &mut Scratch) {
-        let Self { world, anchors, positions, dt, .. } = self;
+        let Self { world, anchors, attachments, positions, dt, .. } = self;
         let Scratch { prescribed, keyframes, .. } = scratch;
         prescribed.clear();
         prescribed.resize(positions.len(), false);
@@ -276,7 +280,7 @@ impl Simulator {
         }
         // Times are multiples of dt, rounded.
         let tolerance = 1e-9 * *dt;
-        for (pin, anchor) in world.pins.iter().zip(anchors) {
+        for ((pin, anchor), attachments) in world.pins.iter().zip(anchors).zip(attachments) {
             if pin.start >= time - tolerance || time > pin.end + tolerance {
                 continue;
             }
@@ -288,12 +292,19 @@ impl Simulator {
                 };
                 *anchor = pin.vertices.iter().map(undo).collect();
             }
+            if pin.follow.is_some() && attachments.is_empty() {
+                let home = |v: &u32| world.positions[*v as usize];
+                let homes: Vec<Point> = pin.vertices.iter().map(home).collect();
+                *attachments = world.attach(pin, if anchor.is_empty() { &homes } else { anchor });
+            }
             let place = pin.motion.as_ref().map(|motion| motion.at(time));
             for (k, &v) in pin.vertices.iter().enumerate() {
                 let v = v as usize;
                 let home = anchor.get(k).unwrap_or(&world.positions[v]);
                 prescribed[v] = true;
-                keyframes[v] = place.map_or(*home, |place| place.apply(home));
+                let followed = attachments.get(k).and_then(|a| a.as_ref()?.place(keyframes));
+                let led = || place.map_or(*home, |place| place.apply(home));
+                keyframes[v] = followed.unwrap_or_else(led);
             }
         }
     }
@@ -374,6 +385,7 @@ impl Simulator {
         self.positions.clone_from(&checkpoint.positions);
         self.velocities.clone_from(&checkpoint.velocities);
         self.anchors.clone_from(&checkpoint.anchors);
+        self.attachments.iter_mut().for_each(Vec::clear);
         Ok(())
     }
 }

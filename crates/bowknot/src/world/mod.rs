@@ -1,7 +1,9 @@
 //! A scene's meshes, loaded and put together: deformable vertices first, then obstacles.
 
+mod follow;
 mod motion;
 
+pub(crate) use follow::Attachment;
 pub use motion::{ObstacleMotion, Placing, Procedural, Sequence};
 
 use crate::io::{self, Import};
@@ -10,6 +12,7 @@ use crate::shapes::Shape;
 use bowknot_dynamics::{Body, DynamicsModel};
 use bowknot_geometry::{HalfSpace, MeshProblem, Point, Topology, Vector, check_mesh};
 use bowknot_proximity::{BodyFilter, CollisionModel};
+use rayon::prelude::*;
 use serde::Serialize;
 use std::ops::Range;
 use std::path::Path;
@@ -59,6 +62,8 @@ pub struct Pin {
     pub vertices: Vec<u32>,
     /// How they move.
     pub motion: Option<Motion>,
+    /// The body, an obstacle, whose surface they follow; then there is no motion.
+    pub follow: Option<u32>,
     /// When the pin takes hold [s].
     pub start: f64,
     /// When it lets go [s].
@@ -206,6 +211,21 @@ impl World {
     /// What the dynamics refuses, in words.
     pub fn dynamics_model(&self) -> Result<DynamicsModel, SceneError> {
         DynamicsModel::new(self.positions.clone(), self.materials.clone()).map_err(joined)
+    }
+
+    /// Ties the vertices of a pin that follows an obstacle, when they are at `homes`, to it: one entry
+    /// a vertex, none where the obstacle has no triangle with an area.
+    pub(crate) fn attach(&self, pin: &Pin, homes: &[Point]) -> Vec<Option<Attachment>> {
+        let Some(body) = pin.follow.and_then(|body| self.bodies.get(body as usize)) else {
+            return vec![None; homes.len()];
+        };
+        let range = body.vertices.start as usize..body.vertices.end as usize;
+        let mut positions = self.positions.clone();
+        body.motion.positions(&self.base[range.clone()], pin.start, &mut positions[range]);
+        let triangles = &self.collision.topology().triangles;
+        let own: Vec<[u32; 3]> =
+            triangles.iter().filter(|t| body.vertices.contains(&t[0])).copied().collect();
+        homes.par_iter().map(|x| Attachment::new(x, &own, &positions)).collect()
     }
 
     /// Name of the body of a vertex.
@@ -443,7 +463,10 @@ fn pins(scene: &Scene, assembly: &Assembly) -> Result<Vec<Pin>, SceneError> {
             }
         }
         let (motion, start, end) = (spec.motion.clone(), spec.start, spec.end);
-        pins.push(Pin { vertices, motion, start, end });
+        // Names of bodies and obstacles differ.
+        let obstacle = |name: &String| assembly.bodies.iter().position(|b| b.name == *name);
+        let follow = spec.follow.as_ref().and_then(obstacle).map(|body| body as u32);
+        pins.push(Pin { vertices, motion, follow, start, end });
     }
     Ok(pins)
 }

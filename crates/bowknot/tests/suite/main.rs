@@ -2,6 +2,8 @@
 
 /// What users get wrong, and what they are told.
 mod bad_input;
+/// The walking figure, what follows it, and its dresses.
+mod figure;
 /// `docs/scene-reference.md` follows the structs.
 mod reference;
 /// Output folders: what they hold, resuming, failing.

@@ -6,7 +6,7 @@ use bowknot::dynamics::{ClothMaterial, DynamicsParams};
 use bowknot::scene::{
     BodySpec, Keyframe, Motion, ObstacleSpec, OutputParams, PinSpec, Region, SimulationParams,
 };
-use bowknot::shapes::{Ball, Cone, Cuboid, HalfSpaceShape, Sheet, Tube};
+use bowknot::shapes::{Ball, Cone, Cuboid, Figure, Garment, HalfSpaceShape, Sheet, Tube};
 use bowknot::stepper::StepperParams;
 use bowknot::twoway::{BackwardParams, Params, StopParams};
 use serde::Serialize;
@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 /// Where the structs and enums are, relative to `crates`.
-const SOURCES: [&str; 17] = [
+const SOURCES: [&str; 19] = [
     "bowknot/src/scene/params.rs",
     "bowknot/src/scene/body.rs",
     "bowknot/src/scene/motion.rs",
@@ -27,11 +27,13 @@ const SOURCES: [&str; 17] = [
     "bowknot/src/shapes/ball.rs",
     "bowknot/src/shapes/cone.rs",
     "bowknot/src/shapes/cuboid.rs",
+    "bowknot/src/shapes/figure/mod.rs",
+    "bowknot/src/shapes/garment.rs",
     "constraints/src/params.rs",
     "stepper/src/params.rs",
     "twoway/src/params.rs",
     "dynamics/src/params.rs",
-    "dynamics/src/material.rs",
+    "dynamics/src/material/cloth.rs",
     "lcp/src/params.rs",
     "geometry/src/lib.rs",
 ];
@@ -334,6 +336,20 @@ fn page() -> String {
     let _ = write!(page.text, "\n`type = \"box\"`: a closed box.\n");
     page.head(false);
     page.rows("Cuboid", &Cuboid::default(), None, all);
+    let _ = write!(
+        page.text,
+        "\n`type = \"figure\"`: a human figure, 1.7 m tall, that stands at the origin, looks along x, and walks and \
+         turns as its keys say; for obstacles only.\n"
+    );
+    page.head(false);
+    page.rows("Figure", &Figure::default(), None, all);
+    let _ = write!(
+        page.text,
+        "\n`type = \"garment\"`: a tube of cloth around the figure as it stands at the start; `scale`, `rotate` and \
+         `translate` as those of the figure.\n"
+    );
+    page.head(false);
+    page.rows("Garment", &Garment::default(), None, all);
     let _ = write!(
         page.text,
         "\n`type = \"half-space\"`: everything below the plane through `translate`; for obstacles only.\n"

@@ -1,6 +1,9 @@
 //! The built-in scenes, a file each. Dimensions are fixed; `scale` multiplies the resolution.
 
 mod drape;
+mod dress;
+mod figure;
+mod gown;
 mod needle;
 mod sphere;
 mod stack;
@@ -34,6 +37,16 @@ pub const BUILTIN: &[Builtin] = &[
         name: "tube",
         summary: "a tube is twisted by its ends, then squeezed along its axis",
         make: tube::scene,
+    },
+    Builtin {
+        name: "dress",
+        summary: "a dress and two skirts over it on a walking figure that turns",
+        make: dress::scene,
+    },
+    Builtin {
+        name: "gown",
+        summary: "a long gown of four layers on a figure that walks in a curve",
+        make: gown::scene,
     },
 ];
 
