@@ -4,8 +4,10 @@
 //!
 //! ```text
 //! E(x) = sum m/(2 dt^2) |x - x~|^2 + V(x) + D(x; x0),    x~ = x0 + dt v0 + dt^2 (g + f/m)
-//! D(x; x0) = a/(2 dt) |x - x0|^2_M + strain-rate damping of every element
+//! D(x; x0) = a/(2 dt) |x - x0|^2_M + strain-rate damping of every element + drag of the air
 //! ```
+//!
+//! plus repulsion ([`RepulsionSpring`]), if there is any.
 //!
 //! | stage of [`Dynamics::newton_target`] | reads | writes |
 //! |---|---|---|
@@ -14,6 +16,7 @@
 //! | solve H p = b by CG | warm start: inertia, previous target | p |
 //! | search along p | E | y = x + t p, prescribed vertices at their keyframes |
 
+use crate::drag::{Drag, DragSurfaces};
 use crate::elements::{CHUNK, Filter, Motion, Rows};
 use crate::linear::block::BlockValues;
 use crate::linear::cg::{self, CgInfo, CgWorkspace, Limits};
@@ -22,7 +25,9 @@ use crate::linear::scalar::SplitForm;
 use crate::linear::system::System;
 use crate::linear::vectors::{add_scaled, dot};
 use crate::model::NO_NODE;
-use crate::{DynamicsModel, DynamicsParams, ParamsError, StepError};
+use crate::momentum::{Inertia, restore_momentum};
+use crate::repulsion::Repulsion;
+use crate::{DynamicsModel, DynamicsParams, ParamsError, RepulsionSpring, StepError};
 use bowknot_geometry::{Point, Vector};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
@@ -52,13 +57,16 @@ pub struct NewtonInfo {
 }
 
 /// Model, parameters and workspace. Nothing in it outlives a time step: [`Self::begin_step`] forgets
-/// all but the external forces.
+/// all but the external forces, the wind and the repulsion, which are kept until set again.
 #[derive(Debug)]
 pub struct Dynamics {
     model: DynamicsModel,
     params: DynamicsParams,
     /// By node [N].
     external_forces: Vec<Vector>,
+    /// None in a vacuum.
+    surfaces: Option<DragSurfaces>,
+    repulsion: Repulsion,
     step: Option<Step>,
     work: Workspace,
 }
@@ -73,6 +81,8 @@ struct Step {
     last_target: Option<Vec<Vector>>,
     /// Bending plus its damping / dt, as a matrix.
     scalar: SplitForm,
+    /// None in a vacuum.
+    drag: Option<Drag>,
 }
 
 /// Buffers; may be dropped at any time.
@@ -116,7 +126,9 @@ impl Dynamics {
             },
             cg: CgWorkspace::default(),
         };
-        Ok(Self { external_forces: zero(), model, params, step: None, work })
+        let surfaces = (params.air_density > 0.0).then(|| DragSurfaces::new(&model));
+        let repulsion = Repulsion::default();
+        Ok(Self { external_forces: zero(), surfaces, repulsion, model, params, step: None, work })
     }
 
     /// What is fixed.
@@ -141,9 +153,35 @@ impl Dynamics {
         Ok(())
     }
 
+    /// Sets the wind [m/s], [`DynamicsParams::wind`] until then. It enters at the next [`Self::begin_step`].
+    ///
+    /// # Errors
+    /// A component that is not finite.
+    pub fn set_wind(&mut self, wind: Vector) -> Result<(), Vec<ParamsError>> {
+        DynamicsParams { wind, ..self.params }.validate()?;
+        self.params.wind = wind;
+        Ok(())
+    }
+
+    /// Sets the springs that push close pairs apart, kept until set again; none to begin with. They enter at the
+    /// next [`Self::newton_target`]; none costs nothing and changes no bit.
+    ///
+    /// # Errors
+    /// The first spring that is wrong, and why; the springs set before then stay.
+    pub fn set_repulsion(&mut self, springs: &[RepulsionSpring]) -> Result<(), StepError> {
+        self.repulsion =
+            if springs.is_empty() { Repulsion::default() } else { Repulsion::new(&self.model, springs)? };
+        Ok(())
+    }
+
+    /// Energy [J] of the repulsion at positions `x` [m] of all vertices.
+    pub fn repulsion_energy(&self, x: &[Point]) -> f64 {
+        self.repulsion.springs().iter().map(|spring| spring.energy(spring.gap(x))).sum()
+    }
+
     /// Starts a time step of `dt` [s] from positions `x0` [m] and velocities `v0` [m/s].
     ///
-    /// Velocities of vertices that will be prescribed are not used but must be finite.
+    /// Velocities of vertices that will be prescribed matter for the drag of air alone, but must be finite.
     ///
     /// # Errors
     /// Wrong lengths, entries that are not finite, a time step that is not positive.
@@ -171,6 +209,10 @@ impl Dynamics {
                 step.scalar.add_scaled(1.0 / dt, &damping.split(&model.pattern));
             }
         }
+        if let Some(surfaces) = &self.surfaces {
+            let v: Vec<Vector> = model.node_vertex.iter().map(|&v| v0[v as usize]).collect();
+            surfaces.fill(&self.params, &step.start, &v, step.drag.get_or_insert_default());
+        }
         step.dt = dt;
         step.last_target = None;
         self.step = Some(step);
@@ -183,6 +225,10 @@ impl Dynamics {
     /// vertices of obstacles always do. `y` of a prescribed vertex is its keyframe exactly, whatever
     /// the line search does. `x` may be anything that contact resolution left, and may differ from
     /// one call to the next. All slices have one entry a vertex.
+    ///
+    /// To bring the inside of solids along with a surface that contact moved elsewhere than to `y`, call it once
+    /// or twice more in the same step, with the surface prescribed and its place as keyframe: the inside then
+    /// solves the step with the surface held, inertia included.
     ///
     /// # Errors
     /// Wrong lengths, entries that are not finite, no step begun.
@@ -214,7 +260,9 @@ impl Dynamics {
         // From inside of the thread pool a parallel loop is a push on a local queue; from outside every
         // one of the thousands to come would put this thread to sleep and wake it (20 times the CPU
         // time on a busy machine, at 1,700 nodes).
-        let info = rayon::scope(|_| iterate(&self.model, &self.params, &mut step, work));
+        self.repulsion.place_obstacles(keyframes);
+        let repulsion = &mut self.repulsion;
+        let info = rayon::scope(|_| iterate(&self.model, &self.params, repulsion, &mut step, work));
 
         // `trial` holds the target by node.
         for (vertex, y) in y.iter_mut().enumerate() {
@@ -294,14 +342,22 @@ impl Dynamics {
 fn iterate(
     model: &DynamicsModel,
     params: &DynamicsParams,
+    repulsion: &mut Repulsion,
     step: &mut Step,
     work: &mut Workspace,
 ) -> NewtonInfo {
-    linearise(model, params, step, work);
+    repulsion.linearise(&work.x, &work.imposed);
+    let repulsion = &*repulsion;
+    linearise(model, params, repulsion, step, work);
 
     // b = -(g + H p) over free nodes, p the imposed displacement of the prescribed ones.
-    let system =
-        System { pattern: &model.pattern, values: &work.values, scalar: &step.scalar, free: &work.free };
+    let system = System {
+        pattern: &model.pattern,
+        values: &work.values,
+        scalar: &step.scalar,
+        repulsion: (!repulsion.is_empty()).then_some(repulsion),
+        free: &work.free,
+    };
     system.multiply(&work.imposed, &mut work.right_side);
     for ((b, g), &free) in work.right_side.iter_mut().zip(&work.gradient).zip(&work.free) {
         *b = if free { -(*b + g) } else { Vector::zeros() };
@@ -335,8 +391,13 @@ fn iterate(
         ),
         ..NewtonInfo::default()
     };
-    restore_momentum(model, params, step.dt, work);
-    search_line(model, params, step, work, &mut info);
+    let inertia = Inertia {
+        per_mass: 1.0 / (step.dt * step.dt) + params.air_drag / step.dt,
+        drag: step.drag.as_ref(),
+        rate: 1.0 / step.dt,
+    };
+    restore_momentum(model, repulsion, &inertia, &work.free, work.cg.residual(), &mut work.step);
+    search_line(model, params, repulsion, step, work, &mut info);
     for ((y, x), &free) in work.trial.iter().zip(&work.x).zip(&work.free) {
         if free {
             info.max_displacement = info.max_displacement.max((y - x).norm());
@@ -346,7 +407,13 @@ fn iterate(
 }
 
 /// Fills gradient and H at `work.x`.
-fn linearise(model: &DynamicsModel, params: &DynamicsParams, step: &Step, work: &mut Workspace) {
+fn linearise(
+    model: &DynamicsModel,
+    params: &DynamicsParams,
+    repulsion: &Repulsion,
+    step: &Step,
+    work: &mut Workspace,
+) {
     let motion = Motion { x: &work.x, start: &step.start, rate: 1.0 / step.dt };
     let filter = Filter::from(params.hessian_filter);
     let inertia = 1.0 / (step.dt * step.dt);
@@ -381,6 +448,13 @@ fn linearise(model: &DynamicsModel, params: &DynamicsParams, step: &Step, work: 
                 rows.gradient[row] +=
                     (damping.product(node, motion.x) - damping.product(node, motion.start)) * motion.rate;
             }
+            if let Some(drag) = &step.drag {
+                rows.diagonal[row] += drag.matrix[node] * motion.rate;
+                rows.gradient[row] += drag.matrix[node] * (x - start) * motion.rate - drag.push[node];
+            }
+            if !repulsion.is_empty() {
+                repulsion.add_node(node, &mut rows.diagonal[row], &mut rows.gradient[row]);
+            }
         }
         for family in &model.families {
             family.linearise(chunk, motion, filter, &mut rows);
@@ -388,27 +462,11 @@ fn linearise(model: &DynamicsModel, params: &DynamicsParams, step: &Step, work: 
     });
 }
 
-/// Moves every free-flying component as a whole so that the residual of the linear solve sums to zero
-/// over it: inner forces then cancel, and its linear momentum is conserved to rounding however
-/// loose the tolerance. H sums to the inertia alone in translations, so the move is the sum of
-/// residuals over it.
-fn restore_momentum(model: &DynamicsModel, params: &DynamicsParams, dt: f64, work: &mut Workspace) {
-    let inertia = 1.0 / (dt * dt) + params.air_drag / dt;
-    for component in &model.components {
-        let nodes = component.start as usize..component.end as usize;
-        if work.free[nodes.clone()].iter().all(|&free| free) {
-            let residual: Vector = work.cg.residual()[nodes.clone()].iter().sum();
-            let mass: f64 = model.node_masses[nodes.clone()].iter().sum();
-            let shift = residual / (mass * inertia);
-            work.step[nodes].iter_mut().for_each(|p| *p += shift);
-        }
-    }
-}
-
 /// Incremental potential at `x`, and the size of its largest term: what rounding is relative to.
 fn potential(
     model: &DynamicsModel,
     params: &DynamicsParams,
+    repulsion: &Repulsion,
     step: &Step,
     free: &[bool],
     x: &[Vector],
@@ -426,6 +484,11 @@ fn potential(
                     let share = inertia * (x[node] - step.inertial[node]).norm_squared()
                         + drag * (x[node] - step.start[node]).norm_squared();
                     kinetic += model.node_masses[node] * share;
+                    if let Some(drag) = &step.drag {
+                        let moved = x[node] - step.start[node];
+                        kinetic +=
+                            moved.dot(&(drag.matrix[node] * moved * (0.5 * motion.rate) - drag.push[node]));
+                    }
                 }
             }
             let elements: f64 = model.families.iter().map(|family| family.energy(chunk, motion)).sum();
@@ -441,6 +504,7 @@ fn potential(
         let moved: Vec<Vector> = x.iter().zip(&step.start).map(|(x, x0)| x - x0).collect();
         internal += damping.energy(&moved) / step.dt;
     }
+    internal += repulsion.energy(x);
     (kinetic + internal, kinetic.abs() + internal.abs())
 }
 
@@ -453,6 +517,7 @@ fn potential(
 fn search_line(
     model: &DynamicsModel,
     params: &DynamicsParams,
+    repulsion: &Repulsion,
     step: &Step,
     work: &mut Workspace,
     info: &mut NewtonInfo,
@@ -463,7 +528,7 @@ fn search_line(
         add_scaled(&mut work.trial, length, &work.step);
     };
     place(work, 0.0);
-    let (before, scale) = potential(model, params, step, &work.free, &work.trial);
+    let (before, scale) = potential(model, params, repulsion, step, &work.free, &work.trial);
     info.energy_before = before;
     let predicted = dot(&work.step, &work.right_side);
     // Maxima are the same in any order.
@@ -474,7 +539,7 @@ fn search_line(
     let mut length = 1.0;
     for halving in 0..=params.line_search_halvings {
         place(work, length);
-        let (energy, terms) = potential(model, params, step, &work.free, &work.trial);
+        let (energy, terms) = potential(model, params, repulsion, step, &work.free, &work.trial);
         if energy < best.0 {
             best = (energy, length);
         }

@@ -41,7 +41,9 @@ fn crumpled() -> (Dynamics, Vec<Point>, Vec<Vector>, Vec<bool>) {
 fn linearised(dynamics: &mut Dynamics, x: &[Vector]) -> Step {
     let step = dynamics.step.take().expect("begun");
     dynamics.work.x.copy_from_slice(x);
-    linearise(&dynamics.model, &dynamics.params, &step, &mut dynamics.work);
+    dynamics.work.imposed.fill(Vector::zeros());
+    dynamics.repulsion.linearise(&dynamics.work.x, &dynamics.work.imposed);
+    linearise(&dynamics.model, &dynamics.params, &dynamics.repulsion, &step, &mut dynamics.work);
     step
 }
 
@@ -84,7 +86,7 @@ fn the_gradient_matches_differences_of_the_incremental_potential() {
             let here = x[node][axis];
             let mut energy = |value: f64| {
                 x[node][axis] = value;
-                potential(&dynamics.model, &dynamics.params, &step, &free, &x).0
+                potential(&dynamics.model, &dynamics.params, &dynamics.repulsion, &step, &free, &x).0
             };
             let slope = (energy(here + h) - energy(here - h)) / (2.0 * h);
             x[node][axis] = here;
@@ -237,4 +239,105 @@ fn newton_converges_quadratically_under_tension() {
     }
     let quadratic = moves.windows(2).all(|m| m[1] <= 100.0 * m[0] * m[0] + 1e-11);
     assert!(quadratic && moves[7] < 1e-11, "{moves:?}");
+}
+
+/// [`crumpled`] in the wind, with springs of two to four vertices, most of which push.
+fn crumpled_with_everything() -> (Dynamics, Vec<Point>, Vec<Vector>, Vec<bool>) {
+    let (dynamics, x, v, prescribed) = crumpled();
+    let Dynamics { model, params, .. } = dynamics;
+    let wind = Vector::new(2.0, -1.0, 3.0);
+    let mut dynamics =
+        Dynamics::new(model, DynamicsParams { air_density: 1.2, wind, ..params }).expect("valid");
+    let spring = |k: u32| crate::RepulsionSpring {
+        vertices: [k, (k + 7) % 20, (k + 12) % 20, (k + 3) % 20],
+        weights: if k.is_multiple_of(3) { [1.0, -1.0, 0.0, 0.0] } else { [1.0, -0.5, -0.2, -0.3] },
+        normal: Vector::new(f64::from(k).sin(), f64::from(k).cos(), 0.5).normalize(),
+        offset: 0.0,
+        desired: 0.1,
+        stiffness: 30.0 + f64::from(k),
+    };
+    dynamics.set_repulsion(&(0..20).map(spring).collect::<Vec<_>>()).expect("valid");
+    (dynamics, x, v, prescribed)
+}
+
+#[test]
+fn wind_and_repulsion_have_exact_gradients_and_matrices() {
+    let (mut dynamics, x0, v0, _) = crumpled_with_everything();
+    dynamics.begin_step(&x0, &v0, 0.02).expect("begins");
+    let nodes = dynamics.model.node_vertex.clone();
+    let stretched: Vec<Vector> =
+        nodes.iter().map(|&v| x0[v as usize].coords * 1.6 + v0[v as usize] * 0.002).collect();
+    let step = linearised(&mut dynamics, &stretched);
+    let gradient = dynamics.work.gradient.clone();
+    let pushing =
+        (0..stretched.len()).filter(|&n| dynamics.repulsion.row_product(n, &stretched) != Vector::zeros());
+    assert!(pushing.count() > 10);
+    let free = vec![true; stretched.len()];
+    let scale = gradient.iter().map(|g| g.norm()).fold(0.0, f64::max);
+    let largest = dynamics.work.values.diagonal.iter().map(|d| d.abs().max()).fold(0.0, f64::max);
+    let mut image = vec![Vector::zeros(); stretched.len()];
+    let mut moved = stretched.clone();
+    dynamics.step = Some(step);
+    for node in 0..moved.len() {
+        for axis in 0..3 {
+            let here = moved[node][axis];
+            let step = dynamics.step.take().expect("begun");
+            let mut energy = |offset: f64| {
+                moved[node][axis] = here + offset;
+                potential(&dynamics.model, &dynamics.params, &dynamics.repulsion, &step, &free, &moved).0
+            };
+            let slope = (energy(1e-6) - energy(-1e-6)) / 2e-6;
+            moved[node][axis] = here;
+            assert!((slope - gradient[node][axis]).abs() < 1e-6 * scale, "{slope} {}", gradient[node][axis]);
+
+            // A column of H, as products see it, against differences of the gradient.
+            let step = linearised_at(&mut dynamics, step, &stretched);
+            let mut unit = vec![Vector::zeros(); moved.len()];
+            unit[node][axis] = 1.0;
+            let system = System {
+                pattern: &dynamics.model.pattern,
+                values: &dynamics.work.values,
+                scalar: &step.scalar,
+                repulsion: Some(&dynamics.repulsion),
+                free: &free,
+            };
+            system.multiply(&unit, &mut image);
+            let mut gradient_at = |dynamics: &mut Dynamics, step: Step, offset: f64| {
+                moved[node][axis] = here + offset;
+                let step = linearised_at(dynamics, step, &moved);
+                moved[node][axis] = here;
+                (dynamics.work.gradient.clone(), step)
+            };
+            let (plus, step) = gradient_at(&mut dynamics, step, 1e-6);
+            let (minus, step) = gradient_at(&mut dynamics, step, -1e-6);
+            for row in 0..plus.len() {
+                let difference = (plus[row] - minus[row]) / 2e-6 - image[row];
+                assert!(difference.norm() < 1e-6 * largest, "({row}, {node}): {difference}");
+            }
+            dynamics.step = Some(step);
+        }
+    }
+}
+
+fn linearised_at(dynamics: &mut Dynamics, step: Step, x: &[Vector]) -> Step {
+    dynamics.step = Some(step);
+    linearised(dynamics, x)
+}
+
+#[test]
+fn newton_converges_with_wind_and_repulsion() {
+    let (mut dynamics, x0, v0, prescribed) = crumpled_with_everything();
+    dynamics.params.cg_tolerance = 1e-10;
+    // The filter that ends sooner, over many iterations.
+    dynamics.params.hessian_filter = HessianFilter::Clamp;
+    dynamics.begin_step(&x0, &v0, 0.02).expect("begins");
+    let (mut x, mut y) = (x0.clone(), x0.clone());
+    let (mut energy, mut displacement) = (f64::INFINITY, f64::INFINITY);
+    for _ in 0..40 {
+        let info = dynamics.newton_target(&x, &prescribed, &x0, &mut y).expect("solves");
+        assert!(info.energy_after <= energy + 1e-13 * energy.abs(), "{info:?} after {energy}");
+        (energy, displacement) = (info.energy_after, info.max_displacement);
+        x.copy_from_slice(&y);
+    }
+    assert!(displacement < 1e-9, "still moves by {displacement:e}");
 }

@@ -124,6 +124,17 @@ pub enum ModelError {
         /// Tets of no volume.
         flat: Vec<usize>,
     },
+    /// The warp direction is normal to triangles, so that it has no projection there.
+    #[error(
+        "body \"{body}\": warp_direction is normal to {} of its triangles{}: choose a direction along the cloth",
+        triangles.len(), first_ten(triangles)
+    )]
+    WarpDirection {
+        /// Name of the body.
+        body: String,
+        /// The triangles.
+        triangles: Vec<usize>,
+    },
     /// Gravity of a body is not finite.
     #[error("body \"{body}\": the components of its gravity must be finite")]
     Gravity {
@@ -207,6 +218,14 @@ pub enum StepError {
         vertex: usize,
         /// Name of its body.
         body: String,
+    },
+    /// A repulsion spring is refused.
+    #[error("repulsion spring {spring}: {problem}")]
+    Repulsion {
+        /// The spring.
+        spring: usize,
+        /// What is wrong with it.
+        problem: &'static str,
     },
     /// A Newton iteration was asked for before [`crate::Dynamics::begin_step`].
     #[error("newton_target was called before begin_step")]

@@ -1,7 +1,7 @@
 //! Implicit Euler dynamics of deformable bodies.
 //!
-//! What it knows: materials in physical units, lumped masses, co-rotational triangles, quadratic
-//! bending, damping, gravity, prescribed vertices, and how to make **one Newton iteration**
+//! What it knows: materials in physical units, lumped masses, cloth, solids, strands and particles,
+//! damping, wind, gravity, prescribed vertices, and how to make **one Newton iteration**
 //! `x -> y` of the implicit Euler step. It does not know how contact is resolved: a collision stage
 //! moves x towards y as far as it can and asks for the next y.
 //!
@@ -20,17 +20,21 @@
 //! | [`model`] | [`DynamicsModel`]: masses, elements, patterns; fixed during a run |
 //! | [`params`] | [`DynamicsParams`] |
 //! | [`dynamics`] | [`Dynamics`]: the step, one Newton iteration, the line search |
+//! | [`repulsion`] | [`RepulsionSpring`] |
 //! | [`observe`] | [`Energies`], momenta, stretch |
 
 pub mod body;
+mod drag;
 pub mod dynamics;
 mod elements;
 mod error;
 mod linear;
 pub mod material;
 pub mod model;
+mod momentum;
 pub mod observe;
 pub mod params;
+pub mod repulsion;
 mod volume;
 
 /// Points and vectors: the types of states.
@@ -44,6 +48,7 @@ pub use material::{ClothMaterial, ParticleMaterial, RestShape, SolidMaterial, So
 pub use model::DynamicsModel;
 pub use observe::{ElasticEnergies, Energies};
 pub use params::{DynamicsParams, HessianFilter, Preconditioner};
+pub use repulsion::RepulsionSpring;
 
 /// The README's example runs as a test.
 #[cfg(doctest)]

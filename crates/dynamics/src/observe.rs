@@ -90,6 +90,7 @@ impl DynamicsModel {
         for family in &self.families {
             let sum = match family.kind() {
                 Kind::Membrane => &mut energies.membrane,
+                Kind::Bending => &mut energies.bending,
                 Kind::Solid => &mut energies.solid,
                 Kind::StrandStretching => &mut energies.strand_stretching,
                 Kind::StrandBending => &mut energies.strand_bending,

@@ -10,10 +10,20 @@ use serde::{Deserialize, Serialize};
 pub struct DynamicsParams {
     /// Acceleration of gravity [m/s^2], unless a body has its own. Default (0, 0, -9.81).
     pub gravity: Vector,
-    /// Mass-proportional damping [1/s], a drag by still air: velocities decay as exp(-t * this). It
-    /// slows free flight and rotation too; for losses inside of the material see
+    /// Mass-proportional damping [1/s]: velocities decay as exp(-t * this), in a vacuum too. It
+    /// slows free flight and rotation; for losses inside of the material see
     /// [`crate::ClothMaterial::stretch_damping`]. Default 0.
     pub air_drag: f64,
+    /// Velocity of the air [m/s]; it matters with an `air_density`. Default (0, 0, 0).
+    pub wind: Vector,
+    /// Density of the air [kg/m^3]: 1.2 at room temperature. Surfaces, strands and grains then feel drag
+    /// against the wind, in the square of the relative velocity. Default 0, a vacuum.
+    pub air_density: f64,
+    /// Drag coefficient across surfaces and strands [1]. Default 1.2: a plate across the flow has 1.1 to 1.3.
+    pub drag_normal: f64,
+    /// Drag coefficient along surfaces and strands, both sides together [1]. Default 0.02: the friction of rough
+    /// skin.
+    pub drag_tangential: f64,
     /// Residual at which the linear solve ends, in the preconditioner's norm and relative to that of
     /// the right-hand side [1]. Smaller: more iterations; larger: the target stretches, see the table
     /// in the README. Default 1e-4: some 0.1 mm at 10,000 vertices and dt = 1/20 s.
@@ -66,6 +76,10 @@ impl Default for DynamicsParams {
         Self {
             gravity: Vector::new(0.0, 0.0, -9.81),
             air_drag: 0.0,
+            wind: Vector::zeros(),
+            air_density: 0.0,
+            drag_normal: 1.2,
+            drag_tangential: 0.02,
             cg_tolerance: 1e-4,
             cg_max_iterations: 10_000,
             preconditioner: Preconditioner::default(),
@@ -90,8 +104,16 @@ impl DynamicsParams {
         };
         let gravity = self.gravity.norm();
         check(gravity.is_finite(), "gravity", gravity, "its components must be finite");
-        let drag = self.air_drag;
-        check(drag >= 0.0 && drag.is_finite(), "air_drag", drag, "it must be a finite number, 0 or more");
+        let wind = self.wind.norm();
+        check(wind.is_finite(), "wind", wind, "its components must be finite");
+        for (field, value) in [
+            ("air_drag", self.air_drag),
+            ("air_density", self.air_density),
+            ("drag_normal", self.drag_normal),
+            ("drag_tangential", self.drag_tangential),
+        ] {
+            check(value >= 0.0 && value.is_finite(), field, value, "it must be a finite number, 0 or more");
+        }
         let tolerance = self.cg_tolerance;
         check(tolerance > 0.0 && tolerance < 1.0, "cg_tolerance", tolerance, "it must lie in (0, 1)");
         let most = self.cg_max_iterations;
@@ -122,18 +144,26 @@ mod tests {
         let params = DynamicsParams {
             gravity: Vector::new(f64::NAN, 0.0, 0.0),
             air_drag: -1.0,
+            wind: Vector::repeat(f64::INFINITY),
+            air_density: -1.0,
+            drag_normal: f64::NAN,
+            drag_tangential: -1.0,
             cg_tolerance: 0.0,
             cg_max_iterations: 0,
             line_search_decrease: 0.5,
             line_search_halvings: 61,
             ..DynamicsParams::default()
         };
-        let fields: Vec<_> = params.validate().expect_err("six").iter().map(|e| e.field).collect();
+        let fields: Vec<_> = params.validate().expect_err("ten").iter().map(|e| e.field).collect();
         assert_eq!(
             fields,
             [
                 "gravity",
+                "wind",
                 "air_drag",
+                "air_density",
+                "drag_normal",
+                "drag_tangential",
                 "cg_tolerance",
                 "cg_max_iterations",
                 "line_search_decrease",

@@ -20,7 +20,8 @@ use std::path::Path;
 use toml::{Table, Value};
 
 /// Fields of [`DynamicsParams`] that stand in `[simulation]`; the others stand in `[solver]`.
-pub(super) const SIMULATION_DYNAMICS: [&str; 2] = ["gravity", "air_drag"];
+pub(super) const SIMULATION_DYNAMICS: [&str; 6] =
+    ["gravity", "air_drag", "wind", "air_density", "drag_normal", "drag_tangential"];
 
 /// Top-level keys.
 const TABLES: [&str; 7] = ["simulation", "contact", "solver", "output", "body", "obstacle", "pin"];

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 /// Where the structs and enums are, relative to `crates`.
-const SOURCES: [&str; 19] = [
+const SOURCES: [&str; 20] = [
     "bowknot/src/scene/params.rs",
     "bowknot/src/scene/body.rs",
     "bowknot/src/scene/motion.rs",
@@ -33,6 +33,7 @@ const SOURCES: [&str; 19] = [
     "stepper/src/params.rs",
     "twoway/src/params.rs",
     "dynamics/src/params.rs",
+    "dynamics/src/material/mod.rs",
     "dynamics/src/material/cloth.rs",
     "lcp/src/params.rs",
     "geometry/src/lib.rs",

@@ -20,17 +20,50 @@
 //! Across a free edge the jump is whatever costs least (a Schur complement), as the moment vanishes
 //! there. D is the stiffness of a strip with free sides: Poisson's ratio of bending is taken as 0.
 //!
-//! The rest state is flat: rest angles are not kept.
+//! The rest state is flat; [`super::shell`] bends sheets that are curved at rest.
 
 use crate::linear::scalar::ScalarBuilder;
 use bowknot_geometry::Vector;
 use std::collections::BTreeMap;
+
+/// Jumps around one triangle.
+pub(crate) struct Stencil {
+    /// The corners, then the far vertex across the edge opposite of each corner: u32::MAX if that is free. Far
+    /// vertices may coincide on small closed surfaces.
+    local: [u32; 6],
+    /// K_e over them, by the corner opposite of e.
+    jumps: [[f64; 6]; 3],
+    /// (n_e.n_f)^2, free edges condensed.
+    gram: [[f64; 3]; 3],
+    /// Area at rest [m^2].
+    area: f64,
+}
 
 /// Adds the bending energy of one sheet, with stiffness `stiffness` [N m], to the quadratic form.
 ///
 /// `triangles` over nodes with rest positions `rest`. An edge of more than two triangles has no
 /// jump to speak of and counts as free.
 pub(crate) fn add_bending(triangles: &[[u32; 3]], rest: &[Vector], stiffness: f64, form: &mut ScalarBuilder) {
+    for_each_stencil(triangles, rest, |Stencil { local, jumps, gram, area }| {
+        for p in 0..6 {
+            for q in p + 1..6 {
+                // The diagonal follows from the rows' sums, which are zero.
+                let mut value = 0.0;
+                for e in 0..3 {
+                    for f in 0..3 {
+                        value += gram[e][f] * jumps[e][p] * jumps[f][q];
+                    }
+                }
+                if value != 0.0 {
+                    form.add(local[p], local[q], stiffness / (4.0 * area) * value);
+                }
+            }
+        }
+    });
+}
+
+/// Calls `visit` with the stencil of every triangle.
+pub(crate) fn for_each_stencil(triangles: &[[u32; 3]], rest: &[Vector], mut visit: impl FnMut(&Stencil)) {
     // Edge -> (triangle, corner opposite of it), in a deterministic order.
     let mut edges: BTreeMap<[u32; 2], Vec<(u32, u8)>> = BTreeMap::new();
     for (t, nodes) in triangles.iter().enumerate() {
@@ -42,7 +75,6 @@ pub(crate) fn add_bending(triangles: &[[u32; 3]], rest: &[Vector], stiffness: f6
     for (t, nodes) in triangles.iter().enumerate() {
         let corners = nodes.map(|n| rest[n as usize]);
         let area = 0.5 * (corners[1] - corners[0]).cross(&(corners[2] - corners[0])).norm();
-        // Local nodes: the corners, then the far vertex across each edge (or the corner itself).
         let mut local = [nodes[0], nodes[1], nodes[2], u32::MAX, u32::MAX, u32::MAX];
         let mut jumps = [[0.0; 6]; 3];
         let mut inner = [false; 3];
@@ -64,21 +96,36 @@ pub(crate) fn add_bending(triangles: &[[u32; 3]], rest: &[Vector], stiffness: f6
             jumps[corner][3 + corner] = beyond[2];
         }
         let gram = free_edges_condensed(&corners, inner);
-        for p in 0..6 {
-            for q in p + 1..6 {
-                // The diagonal follows from the rows' sums, which are zero.
-                let mut value = 0.0;
-                for e in 0..3 {
-                    for f in 0..3 {
-                        value += gram[e][f] * jumps[e][p] * jumps[f][q];
-                    }
-                }
-                if value != 0.0 {
-                    form.add(local[p], local[q], stiffness / (4.0 * area) * value);
-                }
-            }
-        }
+        visit(&Stencil { local, jumps, gram, area });
     }
+}
+
+impl Stencil {
+    /// The same over distinct nodes, corners first: nodes, jumps by node, weights, area.
+    pub fn merged(&self) -> Merged {
+        let mut merged =
+            Merged { nodes: Vec::new(), jumps: Default::default(), gram: self.gram, area: self.area };
+        for (p, &node) in self.local.iter().enumerate().filter(|(_, node)| **node != u32::MAX) {
+            let place = merged.nodes.iter().position(|n| *n == node).unwrap_or_else(|| {
+                merged.nodes.push(node);
+                merged.jumps.iter_mut().for_each(|jump| jump.push(0.0));
+                merged.nodes.len() - 1
+            });
+            (0..3).for_each(|e| merged.jumps[e][place] += self.jumps[e][p]);
+        }
+        merged
+    }
+}
+
+/// A stencil over distinct nodes.
+pub(crate) struct Merged {
+    pub nodes: Vec<u32>,
+    /// K_e over the nodes.
+    pub jumps: [Vec<f64>; 3],
+    /// (n_e.n_f)^2, free edges condensed.
+    pub gram: [[f64; 3]; 3],
+    /// Area at rest [m^2].
+    pub area: f64,
 }
 
 /// Weights of x_a, x_b, x_o in |e| times the outward derivative across edge ab of the linear function

@@ -10,6 +10,7 @@
 //! same bits for any number of threads.
 
 pub(crate) mod bending;
+pub(crate) mod shell;
 mod solid_law;
 pub(crate) mod strand;
 mod svd;
@@ -17,6 +18,7 @@ mod svd;
 mod test_support;
 pub(crate) mod tetrahedron;
 pub(crate) mod triangle;
+pub(crate) mod woven;
 
 use crate::linear::block::BlockPattern;
 use crate::params::HessianFilter;
@@ -131,6 +133,7 @@ pub(crate) trait ElementFamily: Send + Sync {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Membrane,
+    Bending,
     Solid,
     StrandStretching,
     StrandBending,

@@ -34,7 +34,7 @@ use nalgebra::{Matrix2, Matrix3, Matrix4, Vector2};
 
 /// Singular values below this count as this where something is divided by them. It only limits
 /// curvatures normal to triangles crushed to less than a twentieth; forces do not use it.
-const SINGULAR_FLOOR: f64 = 0.05;
+pub(super) const SINGULAR_FLOOR: f64 = 0.05;
 
 /// Singular values up to this are zero: their reciprocals, and the squares on the way, must be finite.
 const SINGULAR_ZERO: f64 = 1e-150;
@@ -55,43 +55,23 @@ pub(crate) struct Triangle {
 }
 
 /// F = s1 u1 v1^T + s2 u2 v2^T; `v1` is (c, s) and v2 is (-s, c).
-struct Decomposition {
-    s: [f64; 2],
-    u: [Vector; 2],
-    v1: [f64; 2],
+pub(super) struct Decomposition {
+    pub s: [f64; 2],
+    pub u: [Vector; 2],
+    pub v1: [f64; 2],
 }
 
 impl Triangle {
     /// A triangle over `nodes` with rest positions `rest`; None if it has no area there.
     pub fn new(nodes: [u32; 3], rest: &[Vector; 3], (lambda, mu): (f64, f64), damping: f64) -> Option<Self> {
-        let (e1, e2) = (rest[1] - rest[0], rest[2] - rest[0]);
-        let length = e1.norm();
-        // Rest plane coordinates: vertex 1 on the first axis.
-        let (x1, x2) = (length, e1.dot(&e2) / length);
-        let y2 = e1.cross(&e2).norm() / length;
-        let determinant = x1 * y2;
-        // The inverse of [[x1, x2], [0, y2]]: its rows are the gradients of vertices 1 and 2.
-        let g1 = [1.0 / x1, -x2 / determinant];
-        let g2 = [0.0, 1.0 / y2];
-        let g0 = [-g1[0] - g2[0], -g1[1] - g2[1]];
-        let finite = [g0, g1, g2].iter().flatten().all(|g: &f64| g.is_finite());
-        (finite && determinant > 0.0).then_some(Self {
-            nodes,
-            gradients: [g0, g1, g2],
-            area: 0.5 * determinant,
-            lambda,
-            mu,
-            damping,
-        })
+        let (gradients, area) = rest_gradients(rest, None)?;
+        Some(Self { nodes, gradients, area, lambda, mu, damping })
     }
 
     /// Columns of F.
     #[inline]
     fn deformation(&self, x: &[Vector; 3]) -> [Vector; 2] {
-        let [_, g1, g2] = &self.gradients;
-        // Differences first: F does not depend on where the origin is.
-        let (e1, e2) = (x[1] - x[0], x[2] - x[0]);
-        [e1 * g1[0] + e2 * g2[0], e1 * g1[1] + e2 * g2[1]]
+        deformation(&self.gradients, x)
     }
 
     #[inline]
@@ -111,15 +91,6 @@ impl Triangle {
         let spread = (c00 - c11) * (c00 - c11) + 4.0 * c01 * c01;
         let difference_squared = if spread > 0.0 { spread / sum_squared } else { 0.0 };
         0.5 * self.mu * (sum * sum + difference_squared) + 0.5 * self.lambda * sum * sum
-    }
-
-    /// Green strain increment (00, 11, 2 * 01).
-    #[inline]
-    fn strain_increment(f: &[Vector; 2], f0: &[Vector; 2]) -> [f64; 3] {
-        // a.a - b.b = (a - b).(a + b), without cancellation.
-        let difference = |a: &Vector, b: &Vector| (a - b).dot(&(a + b));
-        let shear = (f[0] - f0[0]).dot(&f[1]) + f0[0].dot(&(f[1] - f0[1]));
-        [0.5 * difference(&f[0], &f0[0]), 0.5 * difference(&f[1], &f0[1]), shear]
     }
 
     #[inline]
@@ -235,7 +206,7 @@ impl Local {
     }
 }
 
-fn filter_2(matrix: Matrix2<f64>, filter: Filter) -> Matrix2<f64> {
+pub(super) fn filter_2(matrix: Matrix2<f64>, filter: Filter) -> Matrix2<f64> {
     let [c, s] = first_axis(matrix[(0, 0)], matrix[(1, 1)], matrix[(0, 1)]);
     let turn = Matrix2::new(c, -s, s, c);
     let diagonal = turn.transpose() * matrix * turn;
@@ -243,7 +214,7 @@ fn filter_2(matrix: Matrix2<f64>, filter: Filter) -> Matrix2<f64> {
     turn * Matrix2::new(along, 0.0, 0.0, across) * turn.transpose()
 }
 
-fn filter_4(matrix: Matrix4<f64>, filter: Filter) -> Matrix4<f64> {
+pub(super) fn filter_4(matrix: Matrix4<f64>, filter: Filter) -> Matrix4<f64> {
     if matrix.cholesky().is_some() {
         return matrix;
     }
@@ -262,7 +233,7 @@ impl Element<3> for Triangle {
         let f = self.deformation(x);
         let mut density = self.elastic_density_of(&f);
         if let Some(start) = start.filter(|_| self.damping > 0.0) {
-            let strain = Self::strain_increment(&f, &self.deformation(start.x));
+            let strain = strain_increment(&f, &self.deformation(start.x));
             density += self.damping * start.rate * self.dissipation_density(strain);
         }
         self.area * density
@@ -271,11 +242,10 @@ impl Element<3> for Triangle {
     fn linearise(&self, x: &[Vector; 3], start: Option<Start<'_, 3>>, filter: Filter) -> Linearisation<3> {
         let f = self.deformation(x);
         let decomposition = decompose(&f);
-        let Decomposition { s, u: [u1, u2], v1: [cosine, sine] } = decomposition;
-        let mut local = self.elastic(s);
+        let mut local = self.elastic(decomposition.s);
         let plane = match start.filter(|_| self.damping > 0.0) {
             Some(start) => {
-                let strain = Self::strain_increment(&f, &self.deformation(start.x));
+                let strain = strain_increment(&f, &self.deformation(start.x));
                 self.damped(&mut local, &decomposition, strain, self.damping * start.rate, filter)
             }
             None => {
@@ -286,41 +256,108 @@ impl Element<3> for Triangle {
             }
         };
 
-        // Shape function gradients along v1 and v2.
-        let shape =
-            self.gradients.map(|[g0, g1]| Vector2::new(cosine * g0 + sine * g1, cosine * g1 - sine * g0));
-        let corner = |i: usize, j: usize| plane.fixed_view::<2, 2>(2 * i, 2 * j).into_owned();
-        let (k11, k12, k22) = (corner(0, 0), corner(0, 1), corner(1, 1));
-        let basis = Matrix3::from_columns(&[u1, u2, u1.cross(&u2)]);
-        let [[p11, p12], [p21, p22]] = local.stress;
-        let mut out = Linearisation {
-            energy: self.area * local.energy,
-            gradient: [Vector::zeros(); 3],
-            hessian: [[Matrix3::zeros(); 3]; 3],
-        };
-        for k in 0..3 {
-            let g = shape[k];
-            out.gradient[k] = (u1 * (p11 * g.x + p12 * g.y) + u2 * (p21 * g.x + p22 * g.y)) * self.area;
-            let (g11, g12, g21, g22) = (k11 * g, k12.transpose() * g, k12 * g, k22 * g);
-            let gn = local.normal * g;
-            for l in k..3 {
-                let h = shape[l];
-                let block = Matrix3::new(
-                    g11.dot(&h),
-                    g12.dot(&h),
-                    0.0,
-                    g21.dot(&h),
-                    g22.dot(&h),
-                    0.0,
-                    0.0,
-                    0.0,
-                    gn.dot(&h),
-                );
-                out.hessian[k][l] = basis * (block * self.area) * basis.transpose();
-            }
-        }
-        out
+        let curvatures = Curvatures { plane, normal: local.normal };
+        assemble(&self.gradients, self.area, &decomposition, local.energy, local.stress, &curvatures)
     }
+}
+
+/// Filtered curvatures in the frames u1, u2, n and v1, v2.
+pub(super) struct Curvatures {
+    /// Over d11, d12, d21, d22.
+    pub plane: Matrix4<f64>,
+    /// Over n v1^T, n v2^T.
+    pub normal: Matrix2<f64>,
+}
+
+/// Energy, forces and Hessian of a triangle from a state in the frames: `stress` [i][j] belongs to u_i v_j^T.
+#[inline]
+pub(super) fn assemble(
+    gradients: &[[f64; 2]; 3],
+    area: f64,
+    decomposition: &Decomposition,
+    energy: f64,
+    stress: [[f64; 2]; 2],
+    curvatures: &Curvatures,
+) -> Linearisation<3> {
+    let Decomposition { u: [u1, u2], v1: [cosine, sine], .. } = *decomposition;
+    // Shape function gradients along v1 and v2.
+    let shape = gradients.map(|[g0, g1]| Vector2::new(cosine * g0 + sine * g1, cosine * g1 - sine * g0));
+    let corner = |i: usize, j: usize| curvatures.plane.fixed_view::<2, 2>(2 * i, 2 * j).into_owned();
+    let (k11, k12, k22) = (corner(0, 0), corner(0, 1), corner(1, 1));
+    let basis = Matrix3::from_columns(&[u1, u2, u1.cross(&u2)]);
+    let [[p11, p12], [p21, p22]] = stress;
+    let mut out = Linearisation {
+        energy: area * energy,
+        gradient: [Vector::zeros(); 3],
+        hessian: [[Matrix3::zeros(); 3]; 3],
+    };
+    for k in 0..3 {
+        let g = shape[k];
+        out.gradient[k] = (u1 * (p11 * g.x + p12 * g.y) + u2 * (p21 * g.x + p22 * g.y)) * area;
+        let (g11, g12, g21, g22) = (k11 * g, k12.transpose() * g, k12 * g, k22 * g);
+        let gn = curvatures.normal * g;
+        for l in k..3 {
+            let h = shape[l];
+            let block = Matrix3::new(
+                g11.dot(&h),
+                g12.dot(&h),
+                0.0,
+                g21.dot(&h),
+                g22.dot(&h),
+                0.0,
+                0.0,
+                0.0,
+                gn.dot(&h),
+            );
+            out.hessian[k][l] = basis * (block * area) * basis.transpose();
+        }
+    }
+    out
+}
+
+/// Gradients of the shape functions [1/m] in the rest plane, and the area [m^2]; None if there is none. The first
+/// axis runs along the projection of `axis`, or to vertex 1.
+pub(super) fn rest_gradients(rest: &[Vector; 3], axis: Option<&Vector>) -> Option<([[f64; 2]; 3], f64)> {
+    let (e1, e2) = (rest[1] - rest[0], rest[2] - rest[0]);
+    let (g1, g2, determinant) = match axis {
+        None => {
+            let length = e1.norm();
+            let (x1, x2) = (length, e1.dot(&e2) / length);
+            let y2 = e1.cross(&e2).norm() / length;
+            let determinant = x1 * y2;
+            // The inverse of [[x1, x2], [0, y2]]: its rows are the gradients of vertices 1 and 2.
+            ([1.0 / x1, -x2 / determinant], [0.0, 1.0 / y2], determinant)
+        }
+        Some(axis) => {
+            let normal = e1.cross(&e2).try_normalize(0.0)?;
+            let first = (axis - normal * normal.dot(axis)).try_normalize(0.0)?;
+            let second = normal.cross(&first);
+            let (x1, y1, x2, y2) = (e1.dot(&first), e1.dot(&second), e2.dot(&first), e2.dot(&second));
+            let determinant = x1 * y2 - x2 * y1;
+            ([y2 / determinant, -x2 / determinant], [-y1 / determinant, x1 / determinant], determinant)
+        }
+    };
+    let g0 = [-g1[0] - g2[0], -g1[1] - g2[1]];
+    let finite = [g0, g1, g2].iter().flatten().all(|g: &f64| g.is_finite());
+    (finite && determinant > 0.0).then_some(([g0, g1, g2], 0.5 * determinant))
+}
+
+/// Columns of F.
+#[inline]
+pub(super) fn deformation(gradients: &[[f64; 2]; 3], x: &[Vector; 3]) -> [Vector; 2] {
+    let [_, g1, g2] = gradients;
+    // Differences first: F does not depend on where the origin is.
+    let (e1, e2) = (x[1] - x[0], x[2] - x[0]);
+    [e1 * g1[0] + e2 * g2[0], e1 * g1[1] + e2 * g2[1]]
+}
+
+/// Green strain increment (00, 11, 2 * 01).
+#[inline]
+pub(super) fn strain_increment(f: &[Vector; 2], f0: &[Vector; 2]) -> [f64; 3] {
+    // a.a - b.b = (a - b).(a + b), without cancellation.
+    let difference = |a: &Vector, b: &Vector| (a - b).dot(&(a + b));
+    let shear = (f[0] - f0[0]).dot(&f[1]) + f0[0].dot(&(f[1] - f0[1]));
+    [0.5 * difference(&f[0], &f0[0]), 0.5 * difference(&f[1], &f0[1]), shear]
 }
 
 /// The unit eigenvector (c, s) of the larger eigenvalue of [[a, b], [b, d]].
@@ -343,7 +380,7 @@ fn first_axis(a: f64, d: f64, b: f64) -> [f64; 2] {
 
 /// Singular values and vectors of the 3 x 2 matrix with columns `f`, finite whatever its rank.
 #[inline]
-fn decompose(f: &[Vector; 2]) -> Decomposition {
+pub(super) fn decompose(f: &[Vector; 2]) -> Decomposition {
     let [c, s] = first_axis(f[0].norm_squared(), f[1].norm_squared(), f[0].dot(&f[1]));
     let (w1, w2) = (f[0] * c + f[1] * s, f[1] * c - f[0] * s);
     let s1 = w1.norm();

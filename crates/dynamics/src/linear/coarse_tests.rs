@@ -30,7 +30,7 @@ fn chain() -> (Vec<Vector>, BlockPattern, BlockValues, SplitForm, Vec<bool>) {
 #[test]
 fn the_correction_is_the_galerkin_projection() {
     let (x, pattern, values, scalar, free) = chain();
-    let system = System { pattern: &pattern, values: &values, scalar: &scalar, free: &free };
+    let system = System { pattern: &pattern, values: &values, scalar: &scalar, repulsion: None, free: &free };
     let aggregates = [0..4u32, 4..7, 7..12];
     let mut coarse = Coarse::new(&aggregates, &x, |row, visit| {
         pattern.columns[pattern.row(row)].iter().for_each(|&c| visit(c));
@@ -83,7 +83,7 @@ fn aggregates_without_six_motions_are_no_harm() {
     // One free node, two free nodes, none: spins and shifts that move nothing are dropped.
     let (x, pattern, values, scalar, _) = chain();
     let free: Vec<bool> = (0..12).map(|k| [0, 4, 5].contains(&k)).collect();
-    let system = System { pattern: &pattern, values: &values, scalar: &scalar, free: &free };
+    let system = System { pattern: &pattern, values: &values, scalar: &scalar, repulsion: None, free: &free };
     let mut coarse = Coarse::new(&[0..4, 4..7, 7..12], &x, |row, visit| {
         pattern.columns[pattern.row(row)].iter().for_each(|&c| visit(c));
         scalar.far(row).0.iter().for_each(|&c| visit(c));

@@ -189,7 +189,8 @@ mod tests {
         }
         let scalar = ScalarBuilder::new(count as usize).build().split(&pattern);
         let free: Vec<bool> = (0..count).map(|k| k != 0 && k != 45).collect();
-        let system = System { pattern: &pattern, values: &values, scalar: &scalar, free: &free };
+        let system =
+            System { pattern: &pattern, values: &values, scalar: &scalar, repulsion: None, free: &free };
         let members: Vec<bool> = (0..count).map(|k| k != 65).collect();
         let mut direct = Direct::new(&pattern, &members).expect("strands");
         assert_eq!(direct.groups.len(), 1);

@@ -1,10 +1,11 @@
-//! The operator of a Newton iteration: H = block matrix + far entries of a scalar form, over the
-//! free nodes.
+//! The operator of a Newton iteration: H = block matrix + far entries of a scalar form + repulsion,
+//! over the free nodes.
 
 use super::block::{BlockPattern, BlockValues};
 use super::scalar::SplitForm;
 use super::vectors::chunk_dot;
 use crate::elements::CHUNK;
+use crate::repulsion::Repulsion;
 use bowknot_geometry::Vector;
 use rayon::prelude::*;
 
@@ -15,6 +16,8 @@ pub(crate) struct System<'a> {
     pub values: &'a BlockValues,
     /// Its diagonal and near entries are part of `values`.
     pub scalar: &'a SplitForm,
+    /// Its diagonal blocks are part of `values`.
+    pub repulsion: Option<&'a Repulsion>,
     pub free: &'a [bool],
 }
 
@@ -49,6 +52,9 @@ impl System<'_> {
         let (columns, values) = self.scalar.far(row);
         for (&column, &value) in columns.iter().zip(values) {
             sum += x[column as usize] * value;
+        }
+        if let Some(repulsion) = self.repulsion {
+            sum += repulsion.row_product(row, x);
         }
         sum
     }

@@ -1,12 +1,14 @@
 //! Elements of all bodies, by family.
 
 use crate::elements::bending::add_bending;
+use crate::elements::shell::CurvedBends;
 use crate::elements::strand::{StrandEdge, StrandTurn, strand_elements};
 use crate::elements::tetrahedron::Tetrahedron;
 use crate::elements::triangle::Triangle;
+use crate::elements::woven::WovenTriangle;
 use crate::elements::{Element, ElementFamily, Family, Kind};
 use crate::linear::scalar::{ScalarBuilder, ScalarForm};
-use crate::{BodyShape, ClothMaterial};
+use crate::{BodyShape, ClothMaterial, RestShape};
 use bowknot_geometry::Vector;
 
 /// Elements over nodes, body by body.
@@ -14,6 +16,8 @@ pub(super) struct Assembly<'a> {
     /// Rest positions by node.
     rest: &'a [Vector],
     triangles: Vec<Triangle>,
+    woven: Vec<WovenTriangle>,
+    curved: CurvedBends,
     tets: Vec<Tetrahedron>,
     strand_edges: Vec<StrandEdge>,
     strand_turns: Vec<StrandTurn>,
@@ -38,6 +42,8 @@ impl<'a> Assembly<'a> {
         Self {
             rest,
             triangles: Vec::new(),
+            woven: Vec::new(),
+            curved: CurvedBends::default(),
             tets: Vec::new(),
             strand_edges: Vec::new(),
             strand_turns: Vec::new(),
@@ -76,14 +82,28 @@ impl<'a> Assembly<'a> {
     fn add_cloth(&mut self, triangles: &[[u32; 3]], material: &ClothMaterial) {
         for nodes in triangles {
             let corners = nodes.map(|n| self.rest[n as usize]);
-            self.triangles.extend(Triangle::new(*nodes, &corners, material.lame(), material.stretch_damping));
+            let damping = material.stretch_damping;
+            if material.is_woven() {
+                let (warp, weave) = (material.warp_direction.normalize(), material.weave());
+                self.woven.extend(WovenTriangle::new(*nodes, &corners, &warp, weave, damping));
+            } else {
+                self.triangles.extend(Triangle::new(*nodes, &corners, material.lame(), damping));
+            }
             for (a, b) in [(0, 1), (1, 2), (2, 0)] {
                 self.edges.push([nodes[a].min(nodes[b]), nodes[a].max(nodes[b])]);
             }
         }
         if material.bend_stiffness > 0.0 {
-            add_bending(triangles, self.rest, material.bend_stiffness, &mut self.bending);
-            // Also when 0, so that both forms have one pattern.
+            // Damping of curvature rates does not see the rest shape. Both forms have one pattern, so each is
+            // added also when its stiffness is 0.
+            let flat = match material.rest_shape {
+                RestShape::Flat => material.bend_stiffness,
+                RestShape::Initial => {
+                    self.curved.add(triangles, self.rest, material.bend_stiffness);
+                    0.0
+                }
+            };
+            add_bending(triangles, self.rest, flat, &mut self.bending);
             let damping = material.bend_stiffness * material.bend_damping;
             add_bending(triangles, self.rest, damping, &mut self.bending_damping);
             self.damped |= damping > 0.0;
@@ -93,6 +113,10 @@ impl<'a> Assembly<'a> {
     pub fn finish(mut self) -> Elements {
         let mut families: Vec<Box<dyn ElementFamily>> = Vec::new();
         push(&mut families, Kind::Membrane, self.triangles);
+        push(&mut families, Kind::Membrane, self.woven);
+        push(&mut families, Kind::Bending, self.curved.one);
+        push(&mut families, Kind::Bending, self.curved.two);
+        push(&mut families, Kind::Bending, self.curved.three);
         push(&mut families, Kind::Solid, self.tets);
         push(&mut families, Kind::StrandStretching, self.strand_edges);
         push(&mut families, Kind::StrandBending, self.strand_turns);

@@ -8,6 +8,9 @@ use std::collections::HashMap;
 /// is none.
 const ZERO: f64 = 1e-12;
 
+/// A warp closer than this to a triangle's normal [rad] has no direction in it.
+const NORMAL: f64 = 1e-6;
+
 /// Everything that is wrong: indices first, then, if they are sound, sizes.
 pub(super) fn check(positions: &[Point], bodies: &[Body]) -> Vec<ModelError> {
     let mut errors = Vec::new();
@@ -106,13 +109,22 @@ fn check_shared(bodies: &[Body], errors: &mut Vec<ModelError>) {
 fn check_sizes(positions: &[Point], body: &Body, errors: &mut Vec<ModelError>) {
     let at = |v: u32| positions[v as usize].coords;
     match &body.shape {
-        BodyShape::Cloth { triangles, .. } => {
+        BodyShape::Cloth { triangles, material } => {
+            let warp = material.warp_direction.normalize();
+            let mut normal = Vec::new();
             for (index, t) in triangles.iter().enumerate() {
                 let corners = t.map(at);
                 let area = area(&corners);
+                let across = warp.cross(&(corners[1] - corners[0]).cross(&(corners[2] - corners[0]))).norm();
+                if material.is_woven() && area > 0.0 && across < 2.0 * area * NORMAL {
+                    normal.push(index);
+                }
                 if area <= ZERO * longest(&corners).powi(2) {
                     errors.push(ModelError::ZeroArea { body: body.name.clone(), index, area });
                 }
+            }
+            if !normal.is_empty() {
+                errors.push(ModelError::WarpDirection { body: body.name.clone(), triangles: normal });
             }
         }
         BodyShape::Solid { tets, .. } => {
