@@ -22,12 +22,14 @@
 //! | [`run`] | whole runs: the output folder, resuming, checking as it goes |
 //! | [`check`] | the exact judge of states and paths |
 //! | [`io`] | mesh files, archives, atomic writes |
+//! | [`repair`] | cleaning of meshes whose seams intersect |
 //!
 //! The crates below are re-exported under short names. This crate does not know terminals: it never
 //! prints, it logs through `tracing`.
 
 pub mod check;
 pub mod io;
+pub mod repair;
 pub mod run;
 pub mod scene;
 pub mod shapes;

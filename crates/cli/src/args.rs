@@ -24,6 +24,10 @@ pub enum Command {
     Resolve(ResolveOptions),
     /// Judge states, and the paths of a trace: exit code 1 if anything intersects
     Check(CheckOptions),
+    /// Weld the seams of a mesh and drop elements that stand for nothing: exit code 1 if intersections remain
+    Repair(RepairOptions),
+    /// Write the frames of a run in other formats
+    Export(ExportOptions),
     /// Say what a scene or a mesh holds
     Info(InfoOptions),
 }
@@ -108,9 +112,46 @@ pub struct CheckOptions {
     /// Fail as well if any two primitives are nearer than this [m]
     #[arg(long, value_name = "D", value_parser = positive)]
     pub min_distance: Option<f64>,
+    /// Write out at most this many intersections of each state and path; all are counted
+    #[arg(long, value_name = "N", default_value_t = 5)]
+    pub list: usize,
+    /// Write the triangles and strands that intersect, of the first state where any do, to this file (.ply or .obj)
+    #[arg(long, value_name = "FILE")]
+    pub dump: Option<PathBuf>,
     /// Print JSON
     #[arg(long)]
     pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct RepairOptions {
+    /// A mesh (.obj, .ply)
+    pub mesh: PathBuf,
+    /// File for the repaired mesh (.obj, .ply)
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+    /// Weld border vertices nearer than this [m]; by default a hundredth of the mean border edge
+    #[arg(long, value_name = "D", value_parser = positive)]
+    pub weld_distance: Option<f64>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct ExportOptions {
+    /// The folder of a run, a folder of frames (.ply, .obj), or an archive of frames (.npz)
+    #[arg(value_name = "DIR")]
+    pub source: PathBuf,
+    /// Formats to write
+    #[arg(long, value_name = "FORMATS", value_delimiter = ',', required = true)]
+    pub format: Vec<Format>,
+    /// Folder to write to [default: DIR]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Time from frame to frame [s]; that of the run, if DIR is the folder of one
+    #[arg(long, value_name = "S", value_parser = positive)]
+    pub dt: Option<f64>,
 }
 
 #[derive(Debug, Args)]
@@ -174,6 +215,39 @@ pub enum Format {
     Obj,
     /// One NPZ archive of all frames
     Npz,
+    /// Point caches, one a body, for Blender's Mesh Cache modifier and others
+    Pc2,
+    /// One USD stage of all frames, as text
+    Usd,
+    /// VTK XML, one file a frame, for ParaView
+    Vtu,
+}
+
+impl Format {
+    /// As scenes call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ply => "ply",
+            Self::Obj => "obj",
+            Self::Npz => "npz",
+            Self::Pc2 => "pc2",
+            Self::Usd => "usd",
+            Self::Vtu => "vtu",
+        }
+    }
+
+    /// As the facade calls it.
+    pub fn of_scene(self) -> bowknot::scene::Format {
+        use bowknot::scene::Format;
+        match self {
+            Self::Ply => Format::Ply,
+            Self::Obj => Format::Obj,
+            Self::Npz => Format::Npz,
+            Self::Pc2 => Format::Pc2,
+            Self::Usd => Format::Usd,
+            Self::Vtu => Format::Vtu,
+        }
+    }
 }
 
 /// A finite number above 0.

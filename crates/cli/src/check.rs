@@ -11,9 +11,6 @@ use serde::Serialize;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Intersections and hits that are written out for a state or path; all are counted.
-const LISTED: usize = 5;
-
 /// The verdict, as `--json` prints it.
 #[derive(Debug, Default, Serialize)]
 struct Report {
@@ -48,6 +45,9 @@ pub fn check(options: &CheckOptions) -> Result<Done, Failure> {
     let groups = options.paths.iter().map(|path| expand(path)).collect::<Result<Vec<_>, _>>()?.concat();
     let mut checker = Checker {
         min_distance: options.min_distance,
+        list: options.list,
+        dump: options.dump.as_deref(),
+        dumped: None,
         judged: None,
         report: Report::default(),
         bar: Bar::new(groups.iter().map(|g| g.files.len()).sum(), "files", false),
@@ -55,6 +55,7 @@ pub fn check(options: &CheckOptions) -> Result<Done, Failure> {
     for group in &groups {
         checker.group(group)?;
     }
+    let dumped = checker.dumped;
     let mut report = checker.report;
     report.clear = report.intersections == 0 && report.path_hits == 0 && !report.too_near;
     checker.bar.finish();
@@ -63,6 +64,9 @@ pub fn check(options: &CheckOptions) -> Result<Done, Failure> {
         output::print_json(&report)?;
     } else {
         output::print(&in_words(&report, options.min_distance))?;
+        if let (Some(triangles), Some(path)) = (dumped, &options.dump) {
+            output::print(&format!("wrote {triangles} triangles to {}", path.display()))?;
+        }
     }
     Ok(if report.clear { Done::Fine } else { Done::Found })
 }
@@ -123,14 +127,20 @@ struct Judged {
     last: Vec<Point>,
 }
 
-struct Checker {
+struct Checker<'a> {
     min_distance: Option<f64>,
+    /// Most findings that are written out for a state or path.
+    list: usize,
+    /// Where the offending elements go.
+    dump: Option<&'a Path>,
+    /// Triangles written there.
+    dumped: Option<usize>,
     judged: Option<Judged>,
     report: Report,
     bar: Bar,
 }
 
-impl Checker {
+impl Checker<'_> {
     fn group(&mut self, group: &Group) -> Result<(), Failure> {
         let mut joined = false;
         for file in &group.files {
@@ -207,10 +217,25 @@ impl Checker {
             }
         };
 
-        let state =
-            judge.check_state(&positions, &StateOptions { limit: LISTED, distance: true }).map_err(fault)?;
-        let mut findings: Vec<String> = state.intersections.iter().map(ToString::to_string).collect();
-        findings.extend(more(state.intersection_count, state.intersections.len()));
+        let dump = self.dump.filter(|_| self.dumped.is_none());
+        let limit = if dump.is_some() { usize::MAX } else { self.list };
+        let state = judge.check_state(&positions, &StateOptions { limit, distance: true }).map_err(fault)?;
+        let listed = state.intersections.iter().take(self.list);
+        let mut findings: Vec<String> = listed.map(ToString::to_string).collect();
+        findings.extend(more(state.intersection_count, findings.len()));
+        if let Some(path) = dump.filter(|_| !state.is_clear()) {
+            let offending = judge.offending_mesh(&positions, &state.intersections);
+            let of = |v: &u32| *v as usize;
+            let obstacle: Vec<bool> = offending
+                .vertices
+                .iter()
+                .filter_map(|v| mesh.obstacle.as_ref()?.get(of(v)).copied())
+                .collect();
+            let body: Vec<u32> =
+                offending.vertices.iter().filter_map(|v| mesh.body.as_ref()?.get(of(v)).copied()).collect();
+            crate::dump::write(path, &offending, &obstacle, &body)?;
+            self.dumped = Some(offending.triangles.len());
+        }
         let distance = state.nearest.as_ref().map(|nearest| nearest.distance);
         if let (Some(least), Some(nearest)) = (self.min_distance, &state.nearest)
             && nearest.distance < least
@@ -222,7 +247,7 @@ impl Checker {
 
         let mut path_hits = None;
         if let Some(last) = last.filter(|_| joined) {
-            let options = PathOptions { limit: LISTED, ..PathOptions::default() };
+            let options = PathOptions { limit: self.list, ..PathOptions::default() };
             let path = judge.check_path(&last, &positions, &options).map_err(fault)?;
             findings.extend(path.hits.iter().map(ToString::to_string));
             findings.extend(more(path.hit_count, path.hits.len()));

@@ -6,12 +6,15 @@
 
 mod args;
 mod check;
+mod dump;
+mod export;
 mod failure;
 mod info;
 mod interrupt;
 mod loose;
 mod output;
 mod progress;
+mod repair;
 mod resolve;
 mod run;
 mod scenes;
@@ -31,6 +34,8 @@ fn main() -> ExitCode {
         Command::Run(options) => run::run(&options),
         Command::Resolve(options) => resolve::resolve(&options),
         Command::Check(options) => check::check(&options),
+        Command::Repair(options) => repair::repair(&options),
+        Command::Export(options) => export::export(&options),
         Command::Info(options) => info::info(&options),
     };
     match done {

@@ -1,12 +1,11 @@
 //! `bowknot run`: simulate a scene.
 
-use crate::args::{Format, Method, Preset, RunOptions};
+use crate::args::{Method, Preset, RunOptions};
 use crate::failure::{Done, Failure};
 use crate::interrupt::Interrupt;
 use crate::progress::Bar;
 use crate::{loose, output, setup};
 use bowknot::check::{Judge, StateReport};
-use bowknot::io::{MeshView, write_obj, write_ply};
 use bowknot::run::{Outcome, Progress};
 use bowknot::{Scene, SimulationError, Simulator, World};
 use std::ops::ControlFlow;
@@ -61,7 +60,7 @@ fn open(options: &RunOptions) -> Result<Scene, Failure> {
         sets.push(format!("simulation.dt={dt:?}"));
     }
     if !options.format.is_empty() {
-        let names: Vec<&str> = options.format.iter().map(|&format| name_of(format)).collect();
+        let names: Vec<&str> = options.format.iter().map(|format| format.name()).collect();
         sets.push(format!("output.formats={names:?}"));
     }
     for (asked, key) in [(options.trace, "output.trace"), (options.record, "output.record")] {
@@ -90,14 +89,6 @@ pub fn method_sets(method: &Method) -> Vec<String> {
     preset.into_iter().chain(method.sets.iter().cloned()).collect()
 }
 
-fn name_of(format: Format) -> &'static str {
-    match format {
-        Format::Ply => "ply",
-        Format::Obj => "obj",
-        Format::Npz => "npz",
-    }
-}
-
 /// The message of a run that did not begin or could not go on; writes the dump if one is asked for.
 fn refused(scene: &Scene, error: SimulationError, dump: Option<&Path>) -> Failure {
     let failure = Failure::input(&error);
@@ -117,19 +108,7 @@ fn write_dump(scene: &Scene, path: &Path) -> Result<usize, Failure> {
     let mesh = Judge::from_model(&world.collision).offending_mesh(&world.positions, &report.intersections);
     let obstacle: Vec<bool> = mesh.vertices.iter().map(|&v| world.collision.is_obstacle(v)).collect();
     let body: Vec<u32> = mesh.vertices.iter().map(|&v| world.collision.vertex_body()[v as usize]).collect();
-    let view = MeshView {
-        positions: &mesh.positions,
-        triangles: &mesh.triangles,
-        strands: &mesh.edges,
-        obstacle: &obstacle,
-        body: &body,
-        ..MeshView::default()
-    };
-    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj")) {
-        write_obj(path, &view)?;
-    } else {
-        write_ply(path, &view)?;
-    }
+    crate::dump::write(path, &mesh, &obstacle, &body)?;
     Ok(mesh.triangles.len())
 }
 

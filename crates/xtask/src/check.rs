@@ -3,7 +3,7 @@
 //! All steps share one target folder and the release profile, so that what one compiles the next finds. The tests come
 //! last and nothing follows them: the log ends with the test runner's own lines.
 
-use crate::docs;
+use crate::{docs, readers};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::time::Instant;
@@ -83,6 +83,13 @@ fn all_steps(root: &Path) -> Vec<Step> {
         .arg(target.join("xtask").join("drape"));
     drape.current_dir(root);
     steps.push(Step { run: run_afresh, ..Step::new("run drape --check", drape) });
+    if readers::wanted() {
+        steps.push(Step { run: run_afresh, ..Step::new("export", readers::export(&target)) });
+        let read = readers::read(root, &target);
+        steps.push(Step { run: readers::run, ..Step::new("read exports", read) });
+    } else {
+        println!("==> read exports: skipped, Python 3.11 with venv is missing: apt-get install python3-venv");
+    }
     steps.push(Step::new("tests", cargo(root, "test --release --workspace")));
     steps
 }

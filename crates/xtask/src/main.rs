@@ -5,6 +5,7 @@
 mod check;
 mod docs;
 mod figures;
+mod readers;
 
 use std::process::ExitCode;
 
@@ -12,7 +13,7 @@ const USAGE: &str = "\
 Usage: cargo xtask check [--fast]
        cargo xtask figures [--quick] [--out DIR]
 
-check   run what CI runs, in named steps: format, clippy, docs, wasm, a small run, tests
+check   run what CI runs, in named steps: format, clippy, docs, wasm, a small run, its exports read back, tests
         --fast   format, clippy and unit tests only
 figures measure and rewrite docs/figures.md: some ten minutes, best on an idle machine
         --quick  smaller scenes, the page goes to DIR

@@ -1,5 +1,5 @@
 //! Files in and out: meshes (OBJ, PLY; MSH, lists of tetrahedra and segments in only), collision problems and frame
-//! stacks (NPZ), atomic writes.
+//! stacks (NPZ), what other programs play (PC2, USD, VTU), atomic writes.
 //!
 //! Everything in memory is in metres with z up; [`Import`] converts on the way in. Readers never panic and never
 //! allocate on the word of a header: a malformed file gives an [`IoError`] that names the file and the line, element
@@ -17,18 +17,24 @@ mod msh;
 mod npz;
 mod numbering;
 mod obj;
+mod pc2;
 mod ply;
 mod tet_list;
+mod usd;
+mod vtu;
 
 pub use atomic::{create_folder, write_atomic, write_text};
 pub use error::{IoError, Place};
 pub use import::{Import, Up};
 pub use mesh::{MESH_ENDINGS, Mesh, MeshView, natural_order, read_mesh};
 pub use msh::read_msh;
-pub use npz::{FrameStack, States, write_result};
+pub use npz::{FrameStack, States, write_frame_stack, write_result};
 pub use obj::{read_obj, read_segments, write_obj};
+pub use pc2::{truncate_pc2, write_pc2_frame};
 pub use ply::{read_ply, write_ply};
 pub use tet_list::read_tet_list;
+pub use usd::{UsdBody, write_usda};
+pub use vtu::{write_pvd, write_vtu};
 
 use numbering::Numbering;
 

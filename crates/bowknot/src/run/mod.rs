@@ -1,10 +1,15 @@
 //! Whole runs: a scene in, a folder of frames and statistics out.
 
 mod checker;
+mod export;
+mod frames;
+mod layout;
+mod spool;
 mod summary;
 mod writer;
 
 pub use checker::Checker;
+pub use export::{ExportOptions, Exported, export};
 pub use summary::Summary;
 pub use writer::RunWriter;
 

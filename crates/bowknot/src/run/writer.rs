@@ -2,10 +2,11 @@
 //!
 //! ```text
 //! scene.toml                resolved scene
-//! frames/000000.ply ..      one file a frame and format; frames.npz beside it for the format npz
+//! frames/000000.ply ..      one file a frame and format; other formats beside it, see `frames.rs`
 //! stats.jsonl               one line a time step
 //! summary.json              written at the end
 //! checkpoint/state.npz      the state to resume from
+//! checkpoint/frames.f64     the positions so far, for formats that are one file in the end
 //! trace/STEP_ITER_L.ply     every x^(l), if asked for; L = 0 is where the problem starts
 //! states/STEP_ITER.npz      the collision problems, if asked for
 //! ```
@@ -14,45 +15,42 @@
 //! time step writes its frame, then its line of statistics, then the checkpoint: all that a checkpoint
 //! builds on is there.
 
+use super::frames::FrameWriter;
+use super::layout::Layout;
 use super::summary::Totals;
-use crate::io::{self, FrameStack, Import, IoError, MeshView, States, create_folder, write_obj, write_ply};
-use crate::scene::{Format, Scene};
+use crate::io::{self, IoError, States, create_folder, write_ply};
+use crate::scene::Scene;
 use crate::simulator::{Checkpoint, CollisionProblem, SimulationError, Simulator, StepStatistics};
 use crate::world::World;
-use bowknot_geometry::{HalfSpace, Point, Vector};
+use bowknot_geometry::Point;
 use std::fs::{self, File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// What tells that a folder holds a run.
-const PARTS: [&str; 6] = ["scene.toml", "frames", "frames.npz", "stats.jsonl", "summary.json", "checkpoint"];
+const PARTS: [&str; 9] = [
+    "scene.toml",
+    "frames",
+    "frames.npz",
+    "frames.pvd",
+    "scene.usda",
+    "pc2",
+    "stats.jsonl",
+    "summary.json",
+    "checkpoint",
+];
 
 /// Writes the files of a run.
 #[derive(Debug)]
 pub struct RunWriter {
     folder: PathBuf,
-    formats: Vec<Format>,
     checkpoint_every: usize,
-    layout: Layout,
+    frames: FrameWriter,
     masses: Vec<f64>,
     statistics: File,
     /// Length of `stats.jsonl` up to its last whole line [bytes].
     statistics_length: u64,
-    stack: Option<FrameStack>,
     totals: Totals,
-}
-
-/// What is the same in all frames.
-#[derive(Clone, Debug)]
-struct Layout {
-    triangles: Vec<[u32; 3]>,
-    strands: Vec<[u32; 2]>,
-    particles: Vec<u32>,
-    quads: Vec<[u32; 4]>,
-    /// Corners of the quads, which follow the world's vertices [m].
-    corners: Vec<Point>,
-    obstacle: Vec<bool>,
-    body: Vec<u32>,
 }
 
 impl RunWriter {
@@ -68,7 +66,7 @@ impl RunWriter {
         io::write_text(&folder.join("scene.toml"), &scene.to_toml())?;
         let path = folder.join("stats.jsonl");
         let statistics = File::create(&path).map_err(|source| IoError::system("create", &path, source))?;
-        let mut writer = Self::new(folder, scene, simulator, statistics);
+        let writer = Self::new(folder, scene, simulator, statistics)?;
         writer.write_frame(simulator)?;
         Ok(writer)
     }
@@ -109,35 +107,30 @@ impl RunWriter {
         let statistics = OpenOptions::new().create(true).append(true).open(&path).map_err(system)?;
         statistics.set_len(length).map_err(system)?;
 
-        let mut writer = Self::new(folder, scene, simulator, statistics);
+        let mut writer = Self::new(folder, scene, simulator, statistics)?;
         writer.statistics_length = length;
         kept.iter().for_each(|statistics| writer.totals.add(statistics));
-        if writer.stack.is_some() {
-            let frames = simulator.step_index() + 1;
-            let stack = writer.read_stack(frames)?;
-            writer.stack = Some(stack);
-        }
         if simulator.step_index() == 0 {
-            writer.stack = writer.stack.map(|_| FrameStack::new(&writer.layout.view(&[]), &[]));
             writer.write_frame(simulator)?;
         }
+        writer.frames.restore(simulator.step_index() + 1)?;
         Ok(writer)
     }
 
-    fn new(folder: &Path, scene: &Scene, simulator: &Simulator, statistics: File) -> Self {
+    fn new(folder: &Path, scene: &Scene, simulator: &Simulator, statistics: File) -> Result<Self, IoError> {
+        let spool = folder.join("checkpoint").join("frames.f64");
+        let width = scene.twoway.constraints.delta;
         let layout = Layout::new(simulator.world());
-        let stack = scene.output.formats.contains(&Format::Npz);
-        Self {
+        let dt = scene.simulation.dt;
+        Ok(Self {
             folder: folder.to_owned(),
-            formats: scene.output.formats.clone(),
             checkpoint_every: scene.output.checkpoint_every,
-            stack: stack.then(|| FrameStack::new(&layout.view(&[]), &[])),
-            layout,
+            frames: FrameWriter::new(folder, &scene.output.formats, layout, spool, dt, width)?,
             masses: simulator.dynamics_model().masses().to_vec(),
             statistics,
             statistics_length: 0,
             totals: Totals::default(),
-        }
+        })
     }
 
     /// Writes the frame and the statistics of a time step, and a checkpoint if one is due.
@@ -164,7 +157,7 @@ impl RunWriter {
     /// The system's refusal.
     pub fn finish(&mut self, simulator: &Simulator) -> Result<(), SimulationError> {
         self.write_checkpoint(simulator)?;
-        self.write_stack()
+        Ok(self.frames.finish(simulator.step_index() + 1)?)
     }
 
     /// Records a collision problem in `states/`.
@@ -172,16 +165,17 @@ impl RunWriter {
     /// # Errors
     /// The system's refusal.
     pub fn write_problem(&self, problem: &CollisionProblem<'_>, world: &World) -> Result<(), IoError> {
+        let layout = &self.frames.layout;
         let states = States {
             x: problem.positions.to_vec(),
             y: problem.target.to_vec(),
-            triangles: self.layout.triangles.clone(),
-            strands: self.layout.strands.clone(),
-            particles: self.layout.particles.clone(),
+            triangles: layout.triangles.clone(),
+            strands: layout.strands.clone(),
+            particles: layout.particles.clone(),
             rest: world.positions.clone(),
             masses: self.masses.clone(),
             fixed: problem.prescribed.to_vec(),
-            obstacle: self.layout.obstacle[..world.positions.len()].to_vec(),
+            obstacle: layout.obstacle[..world.positions.len()].to_vec(),
             body: world.collision.vertex_body().to_vec(),
             half_spaces: world.collision.half_spaces().to_vec(),
             time_step: Some(problem.time_step),
@@ -195,7 +189,8 @@ impl RunWriter {
     /// The system's refusal.
     pub fn write_trace(&self, step: usize, iteration: usize, l: usize, x: &[Point]) -> Result<(), IoError> {
         let path = self.folder.join(format!("trace/{step:06}_{iteration:02}_{l:05}.ply"));
-        write_ply(&path, &self.layout.view(&self.layout.with_corners(x)))
+        let layout = &self.frames.layout;
+        write_ply(&path, &layout.view(&layout.with_corners(x)))
     }
 
     /// What the statistics so far add up to.
@@ -208,26 +203,9 @@ impl RunWriter {
         &self.folder
     }
 
-    fn frame_path(&self, frame: usize, ending: &str) -> PathBuf {
-        self.folder.join(format!("frames/{frame:06}.{ending}"))
-    }
-
-    fn write_frame(&mut self, simulator: &Simulator) -> Result<(), SimulationError> {
-        let positions = self.layout.with_corners(simulator.positions());
-        let view = self.layout.view(&positions);
-        let frame = simulator.step_index();
-        for format in &self.formats {
-            match format {
-                Format::Ply => write_ply(&self.frame_path(frame, "ply"), &view)?,
-                Format::Obj => write_obj(&self.frame_path(frame, "obj"), &view)?,
-                Format::Npz => {}
-            }
-        }
-        if let Some(stack) = &mut self.stack {
-            // The stack was made for this layout, so the frame fits.
-            let _ = stack.push(&positions);
-        }
-        Ok(())
+    fn write_frame(&self, simulator: &Simulator) -> Result<(), IoError> {
+        let positions = self.frames.layout.with_corners(simulator.positions());
+        self.frames.write(simulator.step_index(), &positions)
     }
 
     fn append(&mut self, statistics: &StepStatistics) -> Result<(), IoError> {
@@ -245,96 +223,9 @@ impl RunWriter {
     }
 
     fn write_checkpoint(&self, simulator: &Simulator) -> Result<(), SimulationError> {
-        // The stack is all that there is of the frames if no other format is written.
-        if self.formats.iter().all(|format| *format == Format::Npz) {
-            self.write_stack()?;
-        }
         simulator.checkpoint().write(&checkpoint_path(&self.folder))?;
         Ok(())
     }
-
-    fn write_stack(&self) -> Result<(), SimulationError> {
-        if let Some(stack) = &self.stack {
-            stack.write(&self.folder.join("frames.npz"))?;
-        }
-        Ok(())
-    }
-
-    /// The first `frames` frames, from `frames.npz` or from the frames of another format.
-    fn read_stack(&self, frames: usize) -> Result<FrameStack, SimulationError> {
-        let path = self.folder.join("frames.npz");
-        if path.exists() {
-            let mut stack = FrameStack::read(&path)?;
-            if stack.len() >= frames {
-                stack.truncate(frames);
-                return Ok(stack);
-            }
-        }
-        let mut stack = FrameStack::new(&self.layout.view(&[]), &[]);
-        for frame in 0..frames {
-            let ply = self.frame_path(frame, "ply");
-            let path = if ply.exists() { ply } else { self.frame_path(frame, "obj") };
-            let mesh = io::read_mesh(&path, &Import::default())?;
-            if !stack.push(&mesh.positions) {
-                let message = format!("{} has another number of vertices", path.display());
-                return Err(SimulationError::Resume { path: self.folder.clone(), message });
-            }
-        }
-        Ok(stack)
-    }
-}
-
-impl Layout {
-    fn new(world: &World) -> Self {
-        let topology = world.collision.topology();
-        let mut layout = Self {
-            triangles: topology.triangles.clone(),
-            strands: topology.strand_edges.iter().map(|&e| topology.edges[e as usize]).collect(),
-            particles: topology.particles.clone(),
-            quads: Vec::new(),
-            corners: Vec::new(),
-            obstacle: (0..topology.vertex_count as u32).map(|v| world.collision.is_obstacle(v)).collect(),
-            body: world.collision.vertex_body().to_vec(),
-        };
-        let (low, high) = world.bounds();
-        let center = nalgebra::center(&low, &high);
-        // Wide enough that what happens in a run happens above it.
-        let half_size = 2.0 * (high - low).norm().max(0.5);
-        for (index, half_space) in world.collision.half_spaces().iter().enumerate() {
-            let first = (world.positions.len() + layout.corners.len()) as u32;
-            layout.quads.push([first, first + 1, first + 2, first + 3]);
-            layout.corners.extend(quad(half_space, &center, half_size));
-            layout.obstacle.extend([true; 4]);
-            layout.body.extend([(world.bodies.len() + index) as u32; 4]);
-        }
-        layout
-    }
-
-    fn with_corners(&self, positions: &[Point]) -> Vec<Point> {
-        [positions, &self.corners].concat()
-    }
-
-    fn view<'a>(&'a self, positions: &'a [Point]) -> MeshView<'a> {
-        MeshView {
-            positions,
-            triangles: &self.triangles,
-            quads: &self.quads,
-            strands: &self.strands,
-            particles: &self.particles,
-            obstacle: &self.obstacle,
-            body: &self.body,
-        }
-    }
-}
-
-/// A square of the plane around the foot of `center`, counter-clockwise seen from outside.
-fn quad(half_space: &HalfSpace, center: &Point, half_size: f64) -> [Point; 4] {
-    let n = half_space.normal;
-    let foot = center - n * half_space.signed_distance(center);
-    let axis = if n.x.abs() < 0.6 { Vector::x() } else { Vector::y() };
-    let u = (axis - n * n.dot(&axis)).normalize() * half_size;
-    let v = n.cross(&u);
-    [foot - u - v, foot + u - v, foot + u + v, foot - u + v]
 }
 
 fn checkpoint_path(folder: &Path) -> PathBuf {

@@ -58,8 +58,8 @@ impl Preset {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct OutputParams {
-    /// Formats of the frames: `ply` and `obj` write one file a frame, `npz` one stack of all frames at
-    /// the end. Default `["ply"]`.
+    /// Formats of the frames: `ply`, `obj` and `vtu` write one file a frame, `pc2` one point cache a body,
+    /// `npz` and `usd` one file of all frames at the end. Default `["ply"]`.
     pub formats: Vec<Format>,
     /// Time steps between checkpoints [1]; 0 writes one at the end only. Smaller: less is repeated after
     /// an interruption. Default 10.
@@ -81,6 +81,12 @@ pub enum Format {
     Obj,
     /// NumPy archive of all frames.
     Npz,
+    /// Point caches, one a body.
+    Pc2,
+    /// Universal Scene Description of all frames, as text.
+    Usd,
+    /// VTK XML for ParaView.
+    Vtu,
 }
 
 impl Default for SimulationParams {
@@ -121,7 +127,7 @@ impl OutputParams {
     /// As [`SimulationParams::validate`].
     pub(crate) fn validate(&self, problems: &mut Vec<(&'static str, String)>) {
         if self.formats.is_empty() {
-            problems.push(("formats", "must name at least one of ply, obj, npz".to_owned()));
+            problems.push(("formats", "must name at least one of ply, obj, npz, pc2, usd, vtu".to_owned()));
         }
     }
 }

@@ -106,7 +106,7 @@ fn start_message(lines: &[String], count: &usize) -> String {
     let more = if more > 0 { format!("\n  and {more} more pairs") } else { String::new() };
     format!(
         "the start already intersects; a simulation needs a start without intersections:\n  {}{more}\n\
-         `bowknot run .. --dump FILE.ply` writes the offending triangles as a mesh",
+         `bowknot run .. --dump FILE.ply` writes the offending triangles as a mesh; `bowknot repair MESH --out FILE` welds\n     seams whose panels only lie together",
         lines.join("\n  ")
     )
 }

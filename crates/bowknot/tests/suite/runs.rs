@@ -137,7 +137,7 @@ fn a_folder_with_a_run_is_refused_and_stays() {
 fn a_resumed_run_is_the_run_that_was_never_stopped() {
     let folder = tempfile::tempdir().expect("a folder");
     let (whole, parts) = (folder.path().join("whole"), folder.path().join("parts"));
-    let formats = "output.formats=[\"ply\", \"npz\", \"obj\"]";
+    let formats = "output.formats=[\"ply\", \"npz\", \"obj\", \"vtu\", \"pc2\", \"usd\"]";
     go(&falling(10, &[formats]), &options(&whole)).expect("a run");
     // Killed after time step 7, when the last checkpoint was that of 4, with half a line written.
     let scene = falling(10, &[formats, "output.checkpoint_every=4"]);
@@ -162,6 +162,22 @@ fn a_resumed_run_is_the_run_that_was_never_stopped() {
     assert_eq!(names(&parts.join("frames")), names(&whole.join("frames")));
     for name in names(&whole.join("frames")) {
         let of = |folder: &Path| fs::read(folder.join("frames").join(&name)).expect("a frame");
+        assert!(of(&whole) == of(&parts), "{name} differs");
+    }
+    assert_eq!(
+        names(&parts.join("pc2")),
+        ["ball.obj", "ball.pc2", "ground.obj", "ground.pc2", "sheet.obj", "sheet.pc2"]
+    );
+    for name in [
+        "pc2/sheet.pc2",
+        "pc2/sheet.obj",
+        "pc2/ball.pc2",
+        "pc2/ground.pc2",
+        "frames.pvd",
+        "frames.npz",
+        "scene.usda",
+    ] {
+        let of = |folder: &Path| fs::read(folder.join(name)).expect("a file of all frames");
         assert!(of(&whole) == of(&parts), "{name} differs");
     }
     let stack = |folder: &Path| FrameStack::read(&folder.join("frames.npz")).expect("a stack");
@@ -294,4 +310,22 @@ fn an_interrupt_stops_within_a_step_and_the_run_can_go_on() {
     let resumed = go(&scene, &RunOptions { resume: true, ..options(folder.path()) }).expect("the rest");
     assert!(!resumed.interrupted);
     assert_eq!(names(&folder.path().join("frames")).len(), 5);
+}
+
+/// Point caches end at the last frame also where a longer run had written more, and are filled up where it had none.
+#[test]
+fn formats_may_change_when_a_run_is_resumed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (whole, parts) = (folder.path().join("whole"), folder.path().join("parts"));
+    let formats = |list: &str| format!("output.formats={list}");
+    go(&falling(6, &[&formats("[\"pc2\", \"usd\"]")]), &options(&whole)).expect("a run");
+    go(&falling(4, &[&formats("[\"ply\"]")]), &options(&parts)).expect("the first part");
+    let resume = RunOptions { resume: true, ..options(&parts) };
+    go(&falling(6, &[&formats("[\"pc2\", \"usd\", \"vtu\"]")]), &resume).expect("the rest");
+    for name in ["pc2/sheet.pc2", "scene.usda"] {
+        let of = |folder: &Path| fs::read(folder.join(name)).expect("a file of all frames");
+        assert!(of(&whole) == of(&parts), "{name} differs");
+    }
+    let grids = fs::read_to_string(parts.join("frames.pvd")).expect("a collection");
+    assert_eq!(grids.matches("<DataSet").count(), 2, "only frames 5 and 6 are there as VTU: {grids}");
 }

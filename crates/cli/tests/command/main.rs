@@ -8,6 +8,10 @@ mod bad_input;
 mod check;
 /// Runs that are interrupted, resumed, or meet a full disk.
 mod endings;
+/// `export` of runs and loose frames.
+mod export;
+/// `repair` of seams.
+mod repair;
 /// `resolve` on recorded problems.
 mod resolve;
 /// What a run writes and prints.

@@ -8,8 +8,8 @@ use std::path::Path;
 
 /// A stack of frames over one topology: `X[f,n,3]`, `F[m,3]`, `E[k,2]`, `T[t,4]`, `P[p]`, `O[n]`.
 ///
-/// Frames are kept in memory (24 bytes a vertex and frame) and written as one archive, whenever asked; an archive of
-/// an earlier part of the run is read back by [`FrameStack::read`] and appended to.
+/// Frames are kept in memory (24 bytes a vertex and frame) and written as one archive, whenever asked; runs write with
+/// [`super::write_frame_stack`], which keeps one frame only.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrameStack {
     vertices: usize,
@@ -117,18 +117,20 @@ impl FrameStack {
     /// # Errors
     /// The system's refusal, with the path.
     pub fn write(&self, path: &Path) -> Result<(), IoError> {
-        fn table<const N: usize>(rows: &[[u32; N]]) -> Array2<i32> {
-            Array2::from_shape_fn((rows.len(), N), |(i, k)| rows[i][k] as i32)
-        }
         write_archive(path, false, |archive| {
             if let Ok(frames) = ArrayView3::from_shape((self.len(), self.vertices, 3), &self.positions) {
                 archive.add_array("X", &frames)?;
             }
-            archive.add_array("F", &table(&self.triangles))?;
-            archive.add_array("E", &table(&self.strands))?;
-            archive.add_array("T", &table(&self.tetrahedra))?;
+            archive.add_array("F", &element_table(&self.triangles))?;
+            archive.add_array("E", &element_table(&self.strands))?;
+            archive.add_array("T", &element_table(&self.tetrahedra))?;
             archive.add_array("P", &Array1::from_iter(self.particles.iter().map(|&p| p as i32)))?;
             archive.add_array("O", &Array1::from_iter(self.obstacle.iter().copied()))
         })
     }
+}
+
+/// Elements as an array of one row each.
+pub(super) fn element_table<const N: usize>(rows: &[[u32; N]]) -> Array2<i32> {
+    Array2::from_shape_fn((rows.len(), N), |(i, k)| rows[i][k] as i32)
 }

@@ -2,7 +2,9 @@
 
 mod archive;
 mod frames;
+mod stack;
 mod states;
 
 pub use frames::FrameStack;
+pub use stack::write_frame_stack;
 pub use states::{States, write_result};

@@ -1,0 +1,219 @@
+//! Frames in every format.
+//!
+//! ```text
+//! frames/000000.ply  .obj  .vtu     one file a frame
+//! frames.pvd                        the .vtu files with their times
+//! frames.npz                        all frames
+//! scene.usda                        all frames
+//! pc2/BODY.pc2, pc2/BODY.obj        the motion of a body, and the body at the first frame
+//! ```
+//!
+//! The archive and the USD stage come into being when a run ends, from a spool of bare positions on disk.
+
+use super::layout::{Layout, Part};
+use super::spool::Spool;
+use crate::io::{
+    self, Import, IoError, MeshView, Place, UsdBody, create_folder, write_frame_stack, write_obj, write_ply,
+    write_usda, write_vtu,
+};
+use crate::scene::Format;
+use bowknot_geometry::Point;
+use std::path::{Path, PathBuf};
+
+/// Formats that are made from the spool.
+fn needs_spool(format: &Format) -> bool {
+    matches!(format, Format::Npz | Format::Usd)
+}
+
+/// Writes frames, one after the other.
+#[derive(Debug)]
+pub(super) struct FrameWriter {
+    folder: PathBuf,
+    formats: Vec<Format>,
+    pub layout: Layout,
+    parts: Vec<Part>,
+    /// File names of the parts, without endings.
+    part_files: Vec<String>,
+    spool: Option<Spool>,
+    /// Time from frame to frame [s].
+    time_step: f64,
+    /// Thickness of strands and particles where it is shown [m]; none: from their size at the first frame.
+    width: Option<f64>,
+}
+
+impl FrameWriter {
+    /// Prepares the folders. The spool is a file of this path, which stays until someone removes it.
+    pub fn new(
+        folder: &Path,
+        formats: &[Format],
+        layout: Layout,
+        spool: PathBuf,
+        time_step: f64,
+        width: Option<f64>,
+    ) -> Result<Self, IoError> {
+        let mut formats = formats.to_vec();
+        formats.dedup();
+        if formats.iter().any(|f| matches!(f, Format::Ply | Format::Obj | Format::Vtu)) {
+            create_folder(&folder.join("frames"))?;
+        }
+        if formats.contains(&Format::Pc2) {
+            create_folder(&folder.join("pc2"))?;
+        }
+        let parts = layout.parts();
+        let spool = formats.iter().any(needs_spool).then(|| Spool::new(spool, layout.vertices()));
+        let part_files = file_names(&parts);
+        Ok(Self { folder: folder.to_owned(), formats, layout, parts, part_files, spool, time_step, width })
+    }
+
+    /// Writes a frame, counted from 0, of as many positions as the layout has vertices.
+    pub fn write(&self, frame: usize, positions: &[Point]) -> Result<(), IoError> {
+        let view = self.layout.view(positions);
+        for format in &self.formats {
+            match format {
+                Format::Ply => write_ply(&self.frame_path(frame, "ply"), &view)?,
+                Format::Obj => write_obj(&self.frame_path(frame, "obj"), &view)?,
+                Format::Vtu => write_vtu(&self.frame_path(frame, "vtu"), &view)?,
+                Format::Pc2 => self.write_caches(frame, positions)?,
+                Format::Npz | Format::Usd => {}
+            }
+        }
+        self.spool.as_ref().map_or(Ok(()), |spool| spool.write(frame, positions))
+    }
+
+    fn write_caches(&self, frame: usize, positions: &[Point]) -> Result<(), IoError> {
+        for (part, name) in self.parts.iter().zip(&self.part_files) {
+            let positions = part.positions(positions);
+            if frame == 0 {
+                let view = MeshView { positions: &positions, ..part.elements() };
+                write_obj(&self.folder.join(format!("pc2/{name}.obj")), &view)?;
+            }
+            io::write_pc2_frame(&self.cache_path(name), frame, &positions)?;
+        }
+        Ok(())
+    }
+
+    /// Makes files of many frames hold the first `frames`, as a run that is resumed needs them; what they lack comes
+    /// from the other formats.
+    pub fn restore(&self, frames: usize) -> Result<(), IoError> {
+        let caches = self.formats.contains(&Format::Pc2)
+            && self.parts.iter().zip(&self.part_files).any(|(part, name)| {
+                io::truncate_pc2(&self.cache_path(name), frames, part.vertices.len()).is_err()
+            });
+        let spool = self.spool.as_ref().filter(|spool| spool.frames() < frames);
+        if !caches && spool.is_none() {
+            return Ok(());
+        }
+        for frame in 0..frames {
+            let positions = self.past(frame, spool.is_none())?;
+            if let Some(spool) = spool {
+                spool.write(frame, &positions)?;
+            }
+            if caches {
+                self.write_caches(frame, &positions)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// A frame that was written before.
+    fn past(&self, frame: usize, from_spool: bool) -> Result<Vec<Point>, IoError> {
+        if let Some(spool) = self.spool.as_ref().filter(|_| from_spool) {
+            return spool.read(frame).map_err(|source| IoError::system("read", spool.path(), source));
+        }
+        let paths = ["ply", "obj"].map(|ending| self.frame_path(frame, ending));
+        let path = paths.iter().find(|path| path.exists()).unwrap_or(&paths[0]);
+        let positions = io::read_mesh(path, &Import::default())?.positions;
+        if positions.len() == self.layout.vertices() {
+            return Ok(positions);
+        }
+        let message = format!("it has {} vertices, not {}", positions.len(), self.layout.vertices());
+        Err(IoError::content(path, Place::File, message))
+    }
+
+    /// Writes what is written once, of `frames` frames.
+    pub fn finish(&self, frames: usize) -> Result<(), IoError> {
+        if self.formats.contains(&Format::Vtu) {
+            // A run resumed with this format has no such files of its first part.
+            let grids = (0..frames).filter(|&f| self.frame_path(f, "vtu").exists());
+            let grids = grids.map(|f| (f as f64 * self.time_step, format!("frames/{f:06}.vtu")));
+            io::write_pvd(&self.folder.join("frames.pvd"), grids)?;
+        }
+        let Some(spool) = &self.spool else { return Ok(()) };
+        if self.formats.contains(&Format::Npz) {
+            let path = self.folder.join("frames.npz");
+            write_frame_stack(&path, &self.layout.view(&[]), frames, |f, bytes| spool.read_bytes(f, bytes))?;
+        }
+        if self.formats.contains(&Format::Usd) {
+            self.write_stage(spool, frames)?;
+        }
+        Ok(())
+    }
+
+    fn write_stage(&self, spool: &Spool, frames: usize) -> Result<(), IoError> {
+        let start = spool.read(0).map_err(|source| IoError::system("read", spool.path(), source))?;
+        let bodies: Vec<UsdBody<'_>> = self
+            .parts
+            .iter()
+            .map(|part| UsdBody {
+                name: &part.name,
+                elements: part.elements(),
+                obstacle: part.obstacle,
+                width: self.width.unwrap_or_else(|| typical_width(part, &start)),
+            })
+            .collect();
+        let path = self.folder.join("scene.usda");
+        write_usda(&path, &bodies, frames, 1.0 / self.time_step, |body, frame| {
+            Ok(self.parts[body].positions(&spool.read(frame)?))
+        })
+    }
+
+    /// Removes the spool.
+    pub fn remove_spool(&self) {
+        if let Some(spool) = &self.spool {
+            spool.remove();
+        }
+    }
+
+    fn frame_path(&self, frame: usize, ending: &str) -> PathBuf {
+        self.folder.join(format!("frames/{frame:06}.{ending}"))
+    }
+
+    fn cache_path(&self, name: &str) -> PathBuf {
+        self.folder.join(format!("pc2/{name}.pc2"))
+    }
+}
+
+/// A tenth of the mean strand edge; without strands, the edge of the cube that each vertex has to itself [m].
+fn typical_width(part: &Part, start: &[Point]) -> f64 {
+    /// Where there is nothing to go by [m].
+    const FALLBACK: f64 = 1e-3;
+    let positions = part.positions(start);
+    let strands = part.elements().strands;
+    let width = if strands.is_empty() {
+        let first = positions.first().copied().unwrap_or_default();
+        let bounds = positions.iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)));
+        ((bounds.1 - bounds.0).product() / positions.len() as f64).cbrt()
+    } else {
+        let length = |&[i, j]: &[u32; 2]| (positions[i as usize] - positions[j as usize]).norm();
+        0.1 * strands.iter().map(length).sum::<f64>() / strands.len() as f64
+    };
+    if width > 0.0 && width.is_finite() { width } else { FALLBACK }
+}
+
+/// Names of the parts as file names: what a system may not like becomes an underscore, names given twice get a number.
+fn file_names(parts: &[Part]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for part in parts {
+        let plain = |c: char| if c.is_alphanumeric() || "-_".contains(c) { c } else { '_' };
+        let name: String = part.name.chars().map(plain).collect();
+        let mut unique = name.clone();
+        let mut number = 2;
+        // Some systems do not tell capitals from small letters.
+        while names.iter().any(|other| other.to_lowercase() == unique.to_lowercase()) {
+            unique = format!("{name}_{number}");
+            number += 1;
+        }
+        names.push(unique);
+    }
+    names
+}

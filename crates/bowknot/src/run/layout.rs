@@ -1,0 +1,150 @@
+//! What is the same in all frames of a run.
+
+use crate::io::{Mesh, MeshView};
+use crate::world::World;
+use bowknot_geometry::{HalfSpace, Point, Vector};
+
+/// Elements, bodies and their names; half-spaces as quads.
+#[derive(Clone, Debug)]
+pub(super) struct Layout {
+    pub triangles: Vec<[u32; 3]>,
+    pub strands: Vec<[u32; 2]>,
+    pub particles: Vec<u32>,
+    quads: Vec<[u32; 4]>,
+    /// Corners of the quads, which follow the world's vertices [m].
+    corners: Vec<Point>,
+    pub obstacle: Vec<bool>,
+    pub body: Vec<u32>,
+    /// Names of the bodies, in the order of their numbers; there may be fewer than bodies.
+    names: Vec<String>,
+}
+
+/// The elements of one body over its own vertices.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Part {
+    pub name: String,
+    pub obstacle: bool,
+    /// The body's vertices, ascending.
+    pub vertices: Vec<u32>,
+    triangles: Vec<[u32; 3]>,
+    quads: Vec<[u32; 4]>,
+    strands: Vec<[u32; 2]>,
+    particles: Vec<u32>,
+}
+
+impl Layout {
+    pub fn new(world: &World) -> Self {
+        let topology = world.collision.topology();
+        let names = world.bodies.iter().map(|b| b.name.clone()).chain(world.half_space_names.iter().cloned());
+        let mut layout = Self {
+            triangles: topology.triangles.clone(),
+            strands: topology.strand_edges.iter().map(|&e| topology.edges[e as usize]).collect(),
+            particles: topology.particles.clone(),
+            quads: Vec::new(),
+            corners: Vec::new(),
+            obstacle: (0..topology.vertex_count as u32).map(|v| world.collision.is_obstacle(v)).collect(),
+            body: world.collision.vertex_body().to_vec(),
+            names: names.collect(),
+        };
+        let (low, high) = world.bounds();
+        let center = nalgebra::center(&low, &high);
+        // Wide enough that what happens in a run happens above it.
+        let half_size = 2.0 * (high - low).norm().max(0.5);
+        for (index, half_space) in world.collision.half_spaces().iter().enumerate() {
+            let first = layout.vertices() as u32;
+            layout.quads.push([first, first + 1, first + 2, first + 3]);
+            layout.corners.extend(quad(half_space, &center, half_size));
+            layout.obstacle.extend([true; 4]);
+            layout.body.extend([(world.bodies.len() + index) as u32; 4]);
+        }
+        layout
+    }
+
+    /// The layout of frames that are like this one.
+    pub fn of_mesh(mesh: &Mesh, names: Vec<String>) -> Self {
+        let count = mesh.positions.len();
+        Self {
+            triangles: mesh.triangles.clone(),
+            strands: mesh.strands.clone(),
+            particles: mesh.particles.clone(),
+            quads: Vec::new(),
+            corners: Vec::new(),
+            obstacle: mesh.obstacle.clone().unwrap_or_else(|| vec![false; count]),
+            body: mesh.body.clone().unwrap_or_else(|| vec![0; count]),
+            names,
+        }
+    }
+
+    /// Vertices of a frame.
+    pub fn vertices(&self) -> usize {
+        self.obstacle.len()
+    }
+
+    /// The world's positions and the corners of the quads.
+    pub fn with_corners(&self, positions: &[Point]) -> Vec<Point> {
+        [positions, &self.corners].concat()
+    }
+
+    pub fn view<'a>(&'a self, positions: &'a [Point]) -> MeshView<'a> {
+        MeshView {
+            positions,
+            triangles: &self.triangles,
+            quads: &self.quads,
+            strands: &self.strands,
+            particles: &self.particles,
+            obstacle: &self.obstacle,
+            body: &self.body,
+        }
+    }
+
+    /// The bodies that have vertices, by their numbers. An element belongs to the body of its first vertex.
+    pub fn parts(&self) -> Vec<Part> {
+        let bodies = self.body.iter().max().map_or(0, |most| *most as usize + 1);
+        let mut parts = vec![Part::default(); bodies];
+        let mut local = Vec::with_capacity(self.body.len());
+        for (vertex, body) in self.body.iter().enumerate() {
+            let part = &mut parts[*body as usize];
+            local.push(part.vertices.len() as u32);
+            part.vertices.push(vertex as u32);
+            part.obstacle = self.obstacle[vertex];
+        }
+        let owner = |element: &[u32]| self.body[element[0] as usize];
+        let local = |v: u32| local[v as usize];
+        self.triangles.iter().for_each(|t| parts[owner(t) as usize].triangles.push(t.map(local)));
+        self.quads.iter().for_each(|q| parts[owner(q) as usize].quads.push(q.map(local)));
+        self.strands.iter().for_each(|e| parts[owner(e) as usize].strands.push(e.map(local)));
+        self.particles.iter().for_each(|&p| parts[owner(&[p]) as usize].particles.push(local(p)));
+        for (index, part) in parts.iter_mut().enumerate() {
+            part.name = self.names.get(index).cloned().unwrap_or_else(|| format!("body_{index}"));
+        }
+        parts.retain(|part| !part.vertices.is_empty());
+        parts
+    }
+}
+
+impl Part {
+    pub fn elements(&self) -> MeshView<'_> {
+        MeshView {
+            triangles: &self.triangles,
+            quads: &self.quads,
+            strands: &self.strands,
+            particles: &self.particles,
+            ..MeshView::default()
+        }
+    }
+
+    /// The body's positions among those of all.
+    pub fn positions(&self, all: &[Point]) -> Vec<Point> {
+        self.vertices.iter().map(|&v| all[v as usize]).collect()
+    }
+}
+
+/// A square of the plane around the foot of `center`, counter-clockwise seen from outside.
+fn quad(half_space: &HalfSpace, center: &Point, half_size: f64) -> [Point; 4] {
+    let n = half_space.normal;
+    let foot = center - n * half_space.signed_distance(center);
+    let axis = if n.x.abs() < 0.6 { Vector::x() } else { Vector::y() };
+    let u = (axis - n * n.dot(&axis)).normalize() * half_size;
+    let v = n.cross(&u);
+    [foot - u - v, foot + u - v, foot + u + v, foot - u + v]
+}

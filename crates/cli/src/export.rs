@@ -1,0 +1,40 @@
+//! `bowknot export`: the frames of a run in other formats.
+
+use crate::args::ExportOptions;
+use crate::failure::{Done, Failure};
+use crate::output;
+use crate::progress::Bar;
+
+pub fn export(options: &ExportOptions) -> Result<Done, Failure> {
+    let out = match &options.out {
+        Some(out) => out.clone(),
+        // An archive has no inside: what is made of it stands beside it.
+        None if options.source.is_file() => {
+            options.source.parent().map(ToOwned::to_owned).unwrap_or_default()
+        }
+        None => options.source.clone(),
+    };
+    let out = if out.as_os_str().is_empty() { ".".into() } else { out };
+    let export_options = bowknot::run::ExportOptions {
+        formats: options.format.iter().map(|format| format.of_scene()).collect(),
+        out: out.clone(),
+        time_step: options.dt,
+    };
+    let mut bar: Option<Bar> = None;
+    let result = bowknot::run::export(&options.source, &export_options, &mut |done, frames| {
+        bar.get_or_insert_with(|| Bar::new(frames, "frames", false)).at(done, "");
+    });
+    if let Some(bar) = bar {
+        bar.finish();
+    }
+    let exported = result?;
+    let names: Vec<&str> = options.format.iter().map(|format| format.name()).collect();
+    output::print(&format!(
+        "exported {} frames of {} vertices as {} to {}",
+        exported.frames,
+        exported.vertices,
+        names.join(", "),
+        out.display()
+    ))?;
+    Ok(Done::Fine)
+}

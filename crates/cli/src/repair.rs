@@ -1,0 +1,77 @@
+//! `bowknot repair`: weld the seams of a mesh.
+
+use crate::args::RepairOptions;
+use crate::failure::{Done, Failure};
+use crate::{dump, output};
+use bowknot::io::{Import, read_mesh};
+use bowknot::repair::{RepairParams, RepairReport, Verdict};
+use std::path::Path;
+
+pub fn repair(options: &RepairOptions) -> Result<Done, Failure> {
+    let ending = options.out.extension().unwrap_or_default().to_ascii_lowercase();
+    if ending != "obj" && ending != "ply" {
+        return Err(Failure::input(format!("{}: name a file .obj or .ply", options.out.display())));
+    }
+    let mesh = read_mesh(&options.mesh, &Import::default())?;
+    let params = RepairParams { weld_distance: options.weld_distance };
+    let (clean, report) = bowknot::repair::repair(&mesh, &params)
+        .map_err(|error| Failure::input(format!("{}: {error}", options.mesh.display())))?;
+    dump::write_view(&options.out, &clean.view())?;
+    if options.json {
+        output::print_json(&report)?;
+    } else {
+        output::print(&in_words(&report, &options.out))?;
+    }
+    Ok(if report.after.intersections == 0 { Done::Fine } else { Done::Found })
+}
+
+fn in_words(report: &RepairReport, out: &Path) -> String {
+    let mut lines = Vec::new();
+    lines.push(match &report.before {
+        Some(before) => format!("before: {}", counts(before)),
+        None => "before: cannot be judged, a triangle or strand names a vertex twice".to_owned(),
+    });
+    let mut welds = format!(
+        "welded {} border vertices nearer than {:.3e} m, moving none by more than {:.3e} m",
+        report.welded_vertices, report.weld_distance, report.largest_move
+    );
+    if let Some([x, y, z]) = report.weld_places.first() {
+        welds += &format!("; the first at ({x:.6}, {y:.6}, {z:.6})");
+    }
+    lines.push(welds);
+    for (count, what) in [
+        (report.split_triangles, "split triangles at vertices of T-seams"),
+        (report.zero_area_triangles, "dropped triangles without area"),
+        (report.repeated_triangles, "dropped triangles given twice"),
+        (report.dropped_strands, "dropped strand edges given twice or without length"),
+        (report.unused_vertices, "dropped vertices that nothing used"),
+    ] {
+        if count > 0 {
+            lines.push(format!("{what}: {count}"));
+        }
+    }
+    lines.push(format!("after: {}", counts(&report.after)));
+    for entry in &report.after.by_parts {
+        let ([a, b], [n, m]) = (entry.parts, entry.vertices);
+        lines.push(if a == b {
+            format!("  part {a} ({n} vertices) with itself: {}", entry.count)
+        } else {
+            format!("  part {a} ({n} vertices) with part {b} ({m} vertices): {}", entry.count)
+        });
+    }
+    lines.extend(report.after.findings.iter().map(|finding| format!("  {finding}")));
+    lines.push(format!("wrote {}", out.display()));
+    if report.after.intersections > 0 {
+        let remedy = "a larger --weld-distance closes wider seams; `bowknot check --dump FILE` shows what remains; what is \
+                      no cloth may stay as it is: obstacles may intersect themselves";
+        lines.push(remedy.to_owned());
+    }
+    lines.join("\n")
+}
+
+fn counts(verdict: &Verdict) -> String {
+    format!(
+        "{} vertices, {} triangles in {} parts, {} border vertices, {} intersections",
+        verdict.vertices, verdict.triangles, verdict.parts, verdict.border_vertices, verdict.intersections
+    )
+}

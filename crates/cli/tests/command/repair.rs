@@ -1,0 +1,70 @@
+use crate::Place;
+
+/// Two squares that meet along x = 1 without being joined, one of them with a triangle given twice.
+const SEAM: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 4\nf 1 4 3\n\
+                    v 1 0 0\nv 2 0 0\nv 1 1 0\nv 2 1 0\nf 5 6 8\nf 5 8 7\nf 8 5 6\n";
+
+#[test]
+fn a_seam_is_welded_and_the_mesh_runs() {
+    let place = Place::new();
+    place.write("seam.obj", SEAM);
+    let ended = place.run("check seam.obj --list 1 --dump bad.ply");
+    assert_eq!(ended.code, 1, "{ended:#?}");
+    assert!(ended.stdout.contains("wrote 5 triangles to bad.ply"), "{ended:#?}");
+    assert_eq!(ended.stdout.matches(" intersect at ").count(), 1, "{ended:#?}");
+    place.run("info bad.ply").ok();
+
+    let ended = place.run("repair seam.obj --out clean.obj").ok();
+    for words in
+        ["welded 2 border vertices", "given twice: 1", "in 1 parts", " 0 intersections", "wrote clean.obj"]
+    {
+        assert!(ended.stdout.contains(words), "{words:?}: {ended:#?}");
+    }
+    let report = place.run("repair seam.obj --out clean.ply --json").ok().json();
+    assert_eq!((&report["welded_vertices"], &report["repeated_triangles"]), (&2.into(), &1.into()));
+    assert_eq!((&report["after"]["intersections"], &report["after"]["vertices"]), (&0.into(), &6.into()));
+    assert!(report["before"]["intersections"].as_u64().unwrap() > 0);
+    place.run("check clean.obj clean.ply").ok();
+    place.run("run clean.obj --frames 1").ok();
+}
+
+/// Without the triangle given twice, it is the seam that keeps the mesh from running.
+#[test]
+fn the_remedy_names_repair() {
+    let place = Place::new();
+    place.write("seam.obj", SEAM.replace("f 8 5 6\n", ""));
+    place.run("run seam.obj --frames 1").refused(2, &["intersect", "bowknot repair"]);
+}
+
+#[test]
+fn what_remains_is_said() {
+    let place = Place::new();
+    place.write(
+        "cross.obj",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.2 0.2 -1\nv 0.3 0.2 1\nv 5 5 0\nf 1 2 3\nf 4 5 6\n",
+    );
+    let ended = place.run("repair cross.obj --out out.ply");
+    assert_eq!(ended.code, 1, "{ended:#?}");
+    assert!(ended.stdout.contains("part 0 (3 vertices) with part 1 (3 vertices)"), "{ended:#?}");
+    assert!(ended.stdout.contains("--weld-distance"), "{ended:#?}");
+}
+
+#[test]
+fn what_cannot_be_repaired() {
+    let place = Place::new();
+    place.write("seam.obj", SEAM);
+    place.run("repair seam.obj").refused(2, &["--out"]);
+    place.run("repair seam.obj --out clean.stl").refused(2, &["clean.stl", ".obj or .ply"]);
+    place.run("repair none.obj --out clean.obj").refused(2, &["none.obj", "no such file"]);
+    place.run("repair seam.obj --out none/clean.obj").refused(2, &["none/clean.obj"]);
+    for distance in ["0", "-1", "nan", "x"] {
+        place
+            .run(&format!("repair seam.obj --out a.obj --weld-distance={distance}"))
+            .refused(2, &["--weld-distance"]);
+    }
+    place.write("points.obj", "v 0 0 0\np 1\n");
+    place.run("repair points.obj --out a.obj").refused(2, &["points.obj", "no triangles"]);
+    place.write("solid.t", "Vertex 0 0 0 0\nVertex 1 1 0 0\nVertex 2 0 1 0\nVertex 3 0 0 1\nTet 0 0 1 2 3\n");
+    place.run("repair solid.t --out a.obj").refused(2, &["solid.t", "1 tetrahedra"]);
+    assert!(!place.path("a.obj").exists());
+}
