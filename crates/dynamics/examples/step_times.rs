@@ -5,7 +5,7 @@
 //! cargo run --release -p bowknot-dynamics --example step_times [STEPS]
 //! ```
 
-#![expect(clippy::print_stdout, reason = "an example")]
+#![expect(clippy::print_stdout, reason = "an example reports what it measured")]
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -17,7 +17,9 @@ use std::time::Instant;
 
 fn main() {
     let steps = std::env::args().nth(1).and_then(|text| text.parse().ok()).unwrap_or(5);
-    println!("body, vertices, elements, model s, seconds a step, Newton iterations x CG iterations");
+    println!(
+        "body, vertices, elements, seconds to build, seconds a step, CPU seconds a step, CG iterations of both targets"
+    );
     for model in [SolidModel::Stvk, SolidModel::StableNeoHookean] {
         // A slab of 1 m x 1 m x 2 cm, bent by its own velocity, held at one side.
         let (rest, tets) = common::block([1.0, 1.0, 0.02], [120, 120, 1]);
@@ -55,7 +57,7 @@ fn measure(name: &str, rest: &[Point], body: Body, elements: usize, held: &[bool
         .iter()
         .map(|p| Vector::new((9.0 * p.y).sin(), (8.0 * p.x).cos(), (7.0 * p.x).sin()) * 0.5)
         .collect();
-    let clock = Instant::now();
+    let (clock, cpu) = (Instant::now(), cpu_seconds());
     let mut iterations = Vec::new();
     for _ in 0..steps {
         let keyframes = x.clone();
@@ -63,5 +65,14 @@ fn measure(name: &str, rest: &[Point], body: Body, elements: usize, held: &[bool
         iterations.push(infos.iter().map(|i| i.cg.iterations.to_string()).collect::<Vec<_>>().join("+"));
     }
     let each = clock.elapsed().as_secs_f64() / steps as f64;
-    println!("{name}, {}, {elements}, {built:.2}, {each:.3}, {}", rest.len(), iterations.join(" "));
+    let cpu = (cpu_seconds() - cpu) / steps as f64;
+    println!("{name}, {}, {elements}, {built:.2}, {each:.3}, {cpu:.3}, {}", rest.len(), iterations.join(" "));
+}
+
+/// CPU seconds of this process so far, where Linux tells (in ticks of 10 ms): what is comparable on a busy machine.
+fn cpu_seconds() -> f64 {
+    let text = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let fields = text.rsplit(')').next().unwrap_or_default().split_whitespace();
+    let ticks: Vec<f64> = fields.skip(11).take(2).filter_map(|field| field.parse().ok()).collect();
+    if ticks.len() == 2 { (ticks[0] + ticks[1]) / 100.0 } else { f64::NAN }
 }

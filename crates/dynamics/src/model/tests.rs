@@ -180,3 +180,20 @@ fn refusals_of_tets_strands_and_grains_name_what_is_wrong() {
         .with_gravity(Vector::repeat(f64::NAN));
     assert_eq!(refuse(line, heavy), ["body \"sand\": the components of its gravity must be finite"]);
 }
+
+#[test]
+fn a_warp_normal_to_triangles_is_refused_where_it_matters() {
+    let (positions, triangles) = square();
+    let upright = ClothMaterial { warp_direction: Vector::z() * 2.0, ..ClothMaterial::cotton() };
+    let body = |material| vec![Body::cloth("flag", triangles.clone(), material)];
+    DynamicsModel::new(positions.clone(), body(upright)).expect("isotropic: no direction");
+    let woven = ClothMaterial { shear_stiffness: Some(5.0), ..upright };
+    let errors = DynamicsModel::new(positions.clone(), body(woven)).expect_err("no projection");
+    assert_eq!(
+        errors[0].to_string(),
+        "body \"flag\": warp_direction is normal to 2 of its triangles (0, 1): choose a direction along the cloth"
+    );
+    let along = ClothMaterial { warp_direction: Vector::new(0.0, 1.0, 9.0), ..woven };
+    let model = DynamicsModel::new(positions, body(along)).expect("projected");
+    assert_eq!(model.families.iter().map(|f| f.len()).sum::<usize>(), 2);
+}
