@@ -20,6 +20,7 @@
 //! | [`world`] | a scene's meshes, loaded and put together |
 //! | [`simulator`] | the time-step loop, its statistics, checkpoints |
 //! | [`run`] | whole runs: the output folder, resuming, checking as it goes |
+//! | [`report`] | one HTML page of a run |
 //! | [`check`] | the exact judge of states and paths |
 //! | [`io`] | mesh files, archives, atomic writes |
 //! | [`repair`] | cleaning of meshes whose seams intersect |
@@ -30,6 +31,7 @@
 pub mod check;
 pub mod io;
 pub mod repair;
+pub mod report;
 pub mod run;
 pub mod scene;
 pub mod shapes;

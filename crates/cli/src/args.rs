@@ -28,6 +28,8 @@ pub enum Command {
     Repair(RepairOptions),
     /// Write the frames of a run in other formats
     Export(ExportOptions),
+    /// Write one HTML page that plays a run beside plots of its statistics
+    Report(ReportOptions),
     /// Say what a scene or a mesh holds
     Info(InfoOptions),
 }
@@ -155,6 +157,22 @@ pub struct ExportOptions {
 }
 
 #[derive(Debug, Args)]
+pub struct ReportOptions {
+    /// Folder of a run
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+    /// The page [default: DIR/report.html]
+    #[arg(long, value_name = "FILE.html")]
+    pub out: Option<PathBuf>,
+    /// Show every N-th frame, and the last [default: as many as --max-megabytes takes]
+    #[arg(long, value_name = "N", value_parser = stride)]
+    pub stride: Option<usize>,
+    /// Largest size of the page [default: 30]
+    #[arg(long, value_name = "MB", value_parser = positive)]
+    pub max_megabytes: Option<f64>,
+}
+
+#[derive(Debug, Args)]
 pub struct InfoOptions {
     /// A built-in scene, a scene file (.toml), or a mesh (.obj, .ply, .msh, .t, .seg)
     #[arg(required_unless_present = "gpus")]
@@ -256,6 +274,14 @@ fn positive(text: &str) -> Result<f64, String> {
         Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
         Ok(_) => Err("must be finite and above 0".to_owned()),
         Err(_) => Err("must be a number".to_owned()),
+    }
+}
+
+/// A whole number from 1.
+fn stride(text: &str) -> Result<usize, String> {
+    match text.parse::<usize>() {
+        Ok(value) if value >= 1 => Ok(value),
+        _ => Err("must be a whole number, at least 1".to_owned()),
     }
 }
 

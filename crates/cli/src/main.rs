@@ -15,6 +15,7 @@ mod loose;
 mod output;
 mod progress;
 mod repair;
+mod report;
 mod resolve;
 mod run;
 mod scenes;
@@ -36,6 +37,7 @@ fn main() -> ExitCode {
         Command::Check(options) => check::check(&options),
         Command::Repair(options) => repair::repair(&options),
         Command::Export(options) => export::export(&options),
+        Command::Report(options) => report::report(&options),
         Command::Info(options) => info::info(&options),
     };
     match done {

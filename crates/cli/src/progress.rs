@@ -35,6 +35,11 @@ impl Bar {
         Self { bar, plain: !terminal && !quiet, what, started: now, last_line: Some(now) }
     }
 
+    /// There are `total` things after all.
+    pub fn of(&self, total: usize) {
+        self.bar.set_length(total as u64);
+    }
+
     /// `count` more are done.
     pub fn advance(&mut self, count: usize) {
         self.at(self.bar.position() as usize + count, "");

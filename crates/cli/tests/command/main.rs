@@ -12,6 +12,8 @@ mod endings;
 mod export;
 /// `repair` of seams.
 mod repair;
+/// `report`, and its page in a browser.
+mod report;
 /// `resolve` on recorded problems.
 mod resolve;
 /// What a run writes and prints.

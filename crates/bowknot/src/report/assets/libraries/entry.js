@@ -1,0 +1,30 @@
+// What the page uses of its libraries, as the global `Libraries`: nothing else gets into the bundle.
+export {
+    BufferAttribute,
+    BufferGeometry,
+    Color,
+    CylinderGeometry,
+    DirectionalLight,
+    DoubleSide,
+    DynamicDrawUsage,
+    FrontSide,
+    Group,
+    HemisphereLight,
+    IcosahedronGeometry,
+    InstancedBufferAttribute,
+    InstancedMesh,
+    LineBasicMaterial,
+    LineSegments,
+    Mesh,
+    MeshStandardMaterial,
+    OctahedronGeometry,
+    PCFShadowMap,
+    PerspectiveCamera,
+    Raycaster,
+    Scene,
+    Vector2,
+    Vector3,
+    WebGLRenderer,
+} from "three";
+export { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+export { default as uPlot } from "uplot";

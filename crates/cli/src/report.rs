@@ -1,0 +1,42 @@
+//! `bowknot report`: one HTML page of a run.
+
+use crate::args::ReportOptions;
+use crate::failure::{Done, Failure};
+use crate::output;
+use crate::progress::Bar;
+use bowknot::report::{ReportInfo, write_report};
+
+pub fn report(options: &ReportOptions) -> Result<Done, Failure> {
+    let out = options.out.clone().unwrap_or_else(|| options.folder.join("report.html"));
+    let defaults = bowknot::report::ReportOptions::default();
+    let report = bowknot::report::ReportOptions {
+        stride: options.stride,
+        max_bytes: options.max_megabytes.map_or(defaults.max_bytes, |megabytes| (megabytes * 1e6) as u64),
+    };
+    let mut bar: Option<Bar> = None;
+    let mut show = |read: usize, planned: usize| {
+        let bar = bar.get_or_insert_with(|| Bar::new(planned, "frames read", false));
+        bar.of(planned);
+        bar.at(read, "");
+    };
+    let result = write_report(&options.folder, &out, &report, &mut show);
+    if let Some(bar) = bar {
+        bar.finish();
+    }
+    let info = result.map_err(Failure::input)?;
+    output::print(&in_words(&info))?;
+    Ok(Done::Fine)
+}
+
+fn in_words(info: &ReportInfo) -> String {
+    let mut lines = vec![format!(
+        "wrote {}: {} of {} frames, {:.1} MB, positions within {:.1e} m; open it in a browser",
+        info.path.display(),
+        info.frames,
+        info.frames_found,
+        info.bytes as f64 / 1e6,
+        info.position_error_m
+    )];
+    lines.extend(info.left_out.iter().map(|what| format!("left out: {what}")));
+    lines.join("\n")
+}
