@@ -72,6 +72,8 @@ class Shape {
         const mesh = new L.InstancedMesh(geometry, material, count);
         mesh.instanceColor = new L.InstancedBufferAttribute(new Float32Array(3 * count), 3);
         mesh.instanceMatrix.setUsage(L.DynamicDrawUsage);
+        // Until the first frame arrives: spheres of a metre, all in one place, would keep a GPU busy for long.
+        mesh.instanceMatrix.array.fill(0);
         return mesh;
     }
 
