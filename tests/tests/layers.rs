@@ -28,7 +28,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "bowknot-twoway",
         ],
     ),
-    ("bowknot-cli", &["bowknot"]),
+    ("bowknot-render", &["bowknot-geometry"]),
+    ("bowknot-cli", &["bowknot", "bowknot-render"]),
     ("xtask", &[]),
 ];
 

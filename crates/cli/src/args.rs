@@ -30,6 +30,9 @@ pub enum Command {
     Export(ExportOptions),
     /// Write one HTML page that plays a run beside plots of its statistics
     Report(ReportOptions),
+    /// Draw the frames of a run: a picture, an animation, or a folder of pictures
+    #[cfg(feature = "render")]
+    Render(RenderOptions),
     /// Say what a scene or a mesh holds
     Info(InfoOptions),
 }
@@ -123,6 +126,92 @@ pub struct CheckOptions {
     /// Print JSON
     #[arg(long)]
     pub json: bool,
+}
+
+#[cfg(feature = "render")]
+#[derive(Debug, Args)]
+pub struct RenderOptions {
+    /// Folder of a run
+    pub run: PathBuf,
+    /// A picture (.png), an animation (.gif), or a folder for numbered pictures
+    #[arg(long, value_name = "FILE.png|FILE.gif|DIR")]
+    pub out: PathBuf,
+    /// The frame to draw [default for a picture: the last]
+    #[arg(long, value_name = "K", conflicts_with = "frames")]
+    pub frame: Option<usize>,
+    /// Frames to draw, both ends included; an end that is left out is the first or last [default: all, an animation as
+    /// many of them as play at the speed of the simulation with at most 30 a second]
+    #[arg(long, value_name = "A..B[:STEP]", value_parser = frames)]
+    pub frames: Option<FrameRange>,
+    /// Frames a second of an animation [default: the speed of the simulation]
+    #[arg(long, value_name = "N", value_parser = positive)]
+    pub fps: Option<f64>,
+    /// Width and height [pixels; default: 960x720, of an animation 640x480]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<[u32; 2]>,
+    /// What to show by colours, with a legend; without it bodies have colours of their own
+    #[arg(long, value_enum)]
+    pub color: Option<Color>,
+    /// Ends of the colours' scale, in the legend's unit [default: what the frames hold]
+    #[arg(long, value_name = "LOW..HIGH", value_parser = range, allow_hyphen_values = true)]
+    pub range: Option<[f64; 2]>,
+    /// Direction to look from; the camera stands where it sees the whole run
+    #[arg(long, value_enum, default_value_t = Direction::ThreeQuarter, conflicts_with = "camera")]
+    pub view: Direction,
+    /// Where the camera stands [m]
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    pub camera: Option<[f64; 3]>,
+    /// What the camera looks at [m; default: the middle of the run]
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, requires = "camera", allow_hyphen_values = true)]
+    pub target: Option<[f64; 3]>,
+    /// Vertical field of view [deg]
+    #[arg(long, value_name = "DEG", value_parser = angle, default_value_t = 26.0)]
+    pub fov: f64,
+    /// Reduce a picture to 256 colours: a third of the size
+    #[arg(long)]
+    pub indexed: bool,
+    /// Print errors only
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// What colours show.
+#[cfg(feature = "render")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Color {
+    /// Largest ratio of the length of an edge at a vertex to its length in the first frame
+    Stretch,
+    /// Distance of the elements at a vertex to the nearest that they share no vertex with
+    Gap,
+    /// Speed between frames
+    Speed,
+    /// Distance to what was asked for: of each vertex after `run --record`, else the largest of each time step
+    Remaining,
+    /// Bodies, by name
+    Body,
+}
+
+/// Where to look from.
+#[cfg(feature = "render")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Direction {
+    /// From -y
+    Front,
+    /// From +x
+    Side,
+    /// From above
+    Top,
+    /// From above the left corner in front
+    ThreeQuarter,
+}
+
+/// Every `step`-th frame from `first` to `last`, both included.
+#[cfg(feature = "render")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrameRange {
+    pub first: usize,
+    pub last: Option<usize>,
+    pub step: usize,
 }
 
 #[derive(Debug, Args)]
@@ -291,5 +380,56 @@ fn threads(text: &str) -> Result<usize, String> {
     match text.parse::<usize>() {
         Ok(value) if (1..=MOST).contains(&value) => Ok(value),
         _ => Err(format!("must be a whole number from 1 to {MOST}")),
+    }
+}
+
+/// A range of frames: `10..60`, `..60:5`, `10..`.
+#[cfg(feature = "render")]
+fn frames(text: &str) -> Result<FrameRange, String> {
+    let fault = || "must be A..B or A..B:STEP, whole numbers".to_owned();
+    let (ends, step) = text.split_once(':').unwrap_or((text, "1"));
+    let (first, last) = ends.split_once("..").ok_or_else(fault)?;
+    let number = |text: &str| text.parse::<usize>().map_err(|_| fault());
+    let first = if first.is_empty() { 0 } else { number(first)? };
+    let last = if last.is_empty() { None } else { Some(number(last)?) };
+    match number(step)? {
+        0 => Err("its step must be at least 1".to_owned()),
+        _ if last.is_some_and(|last| last < first) => Err("it ends before it begins".to_owned()),
+        step => Ok(FrameRange { first, last, step }),
+    }
+}
+
+#[cfg(feature = "render")]
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let side = |text: &str| text.parse::<u32>().ok().filter(|side| (16..=16384).contains(side));
+    let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some([side(w)?, side(h)?]));
+    sides.ok_or_else(|| "must be WIDTHxHEIGHT, each from 16 to 16384".to_owned())
+}
+
+#[cfg(feature = "render")]
+fn point(text: &str) -> Result<[f64; 3], String> {
+    let numbers: Vec<f64> = text.split(',').filter_map(|word| word.trim().parse().ok()).collect();
+    match numbers[..] {
+        [x, y, z] if text.split(',').count() == 3 && [x, y, z].iter().all(|c| c.abs() < 1e9) => Ok([x, y, z]),
+        _ => Err("must be three finite numbers with commas between".to_owned()),
+    }
+}
+
+#[cfg(feature = "render")]
+fn range(text: &str) -> Result<[f64; 2], String> {
+    let number = |text: &str| text.parse::<f64>().ok().filter(|value| value.is_finite());
+    let ends = text.split_once("..").and_then(|(low, high)| Some([number(low)?, number(high)?]));
+    match ends {
+        Some([low, high]) if low < high => Ok([low, high]),
+        Some(_) => Err("its low end must be below its high end".to_owned()),
+        None => Err("must be LOW..HIGH, finite numbers".to_owned()),
+    }
+}
+
+#[cfg(feature = "render")]
+fn angle(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (1.0..=150.0).contains(&value) => Ok(value),
+        _ => Err("must be a number of degrees from 1 to 150".to_owned()),
     }
 }

@@ -14,6 +14,8 @@ mod interrupt;
 mod loose;
 mod output;
 mod progress;
+#[cfg(feature = "render")]
+mod render;
 mod repair;
 mod report;
 mod resolve;
@@ -38,6 +40,8 @@ fn main() -> ExitCode {
         Command::Repair(options) => repair::repair(&options),
         Command::Export(options) => export::export(&options),
         Command::Report(options) => report::report(&options),
+        #[cfg(feature = "render")]
+        Command::Render(options) => render::render(&options),
         Command::Info(options) => info::info(&options),
     };
     match done {

@@ -10,6 +10,9 @@ mod check;
 mod endings;
 /// `export` of runs and loose frames.
 mod export;
+/// Pictures of runs.
+#[cfg(feature = "render")]
+mod render;
 /// `repair` of seams.
 mod repair;
 /// `report`, and its page in a browser.

@@ -1,0 +1,222 @@
+//! `bowknot render`: pictures of a run.
+
+mod colors;
+mod folder;
+mod gaps;
+
+use crate::args::{Color, Direction, FrameRange, RenderOptions};
+use crate::failure::{Done, Failure};
+use crate::output;
+use crate::progress::Bar;
+use bowknot::geometry::Point;
+use bowknot::io::{create_folder, write_atomic};
+use bowknot_render::{
+    Camera, Elements, Fit, Frame, Legend, Model, Picture, Quality, RenderError, Renderer, Shot, Style, View,
+    write_gif, write_png, write_small_png,
+};
+use colors::Coloring;
+use folder::RunFolder;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Most frames a second of an animation, if not asked otherwise.
+const MAX_FPS: f64 = 30.0;
+/// Frames of a run that the camera is fitted to, about, besides those that are drawn.
+const FITTED_FRAMES: usize = 24;
+
+impl From<RenderError> for Failure {
+    fn from(error: RenderError) -> Self {
+        match error {
+            RenderError::NoDriver { .. } | RenderError::Device { .. } => Self::backend(error),
+            _ => Self::input(error),
+        }
+    }
+}
+
+/// What is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Output {
+    Png,
+    Gif,
+    Folder,
+}
+
+impl Output {
+    fn of(path: &Path) -> Result<Self, Failure> {
+        match path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).as_deref() {
+            Some("png") => Ok(Self::Png),
+            Some("gif") => Ok(Self::Gif),
+            None => Ok(Self::Folder),
+            // A folder may well be called run.2.
+            Some(_) if path.is_dir() => Ok(Self::Folder),
+            Some(other) => Err(Failure::input(format!(
+                "{}: pictures are .png, animations .gif, a name without an ending is a folder of pictures; not .{other}",
+                path.display()
+            ))),
+        }
+    }
+}
+
+pub fn render(options: &RenderOptions) -> Result<Done, Failure> {
+    let output = Output::of(&options.out)?;
+    let run = RunFolder::open(&options.run)?;
+    let (frames, fps) = select(options, output, &run)?;
+    let started = Instant::now();
+
+    // The device first: without one nothing else is worth the wait.
+    let mut renderer = Renderer::new(if frames.len() > 1 { Quality::FAST } else { Quality::FINE })?;
+    let mut bar = Bar::new(2 * frames.len(), "passes over frames", options.quiet);
+    let coloring = Coloring::new(options, &run, &frames, &mut bar)?;
+    let size = options.size.unwrap_or(if output == Output::Gif { [640, 480] } else { [960, 720] });
+    let shot = shot(options, &run, &frames, size, coloring.legend())?;
+    let model = model(&run)?;
+
+    let mut pictures = Vec::new();
+    if output == Output::Folder {
+        create_folder(&options.out)?;
+    }
+    for (index, &frame) in frames.iter().enumerate() {
+        let positions = run.positions(frame)?;
+        let values = coloring.shares(index);
+        let mut picture = renderer.render(&model, &Frame { positions: &positions, values }, &shot)?;
+        if let Some(legend) = coloring.legend() {
+            legend.draw(&mut picture);
+        }
+        match output {
+            Output::Png => write(&options.out, options.indexed, &picture)?,
+            Output::Folder => {
+                write(&options.out.join(format!("{frame:06}.png")), options.indexed, &picture)?;
+            }
+            Output::Gif => pictures.push(picture),
+        }
+        bar.advance(1);
+    }
+    if output == Output::Gif {
+        encode(&options.out, |out| write_gif(out, &pictures, fps))?;
+    }
+    bar.finish();
+    if !options.quiet {
+        let [width, height] = size;
+        let what = match frames[..] {
+            [frame] => format!("frame {frame}"),
+            _ => format!("{} frames", frames.len()),
+        };
+        let (name, seconds) = (renderer.device_name(), started.elapsed().as_secs_f64());
+        let out = options.out.display();
+        output::print(&format!("{out}: {what}, {width} x {height} pixels, {seconds:.1} s on {name}"))?;
+    }
+    Ok(Done::Fine)
+}
+
+/// Which frames are drawn, and how many a second an animation shows.
+fn select(options: &RenderOptions, output: Output, run: &RunFolder) -> Result<(Vec<usize>, f64), Failure> {
+    let last = run.last_frame();
+    if let Some(frame) = options.frame {
+        run.check_frame(frame)?;
+        return Ok((vec![frame], options.fps.unwrap_or(1.0)));
+    }
+    if output == Output::Png && options.frames.is_some() {
+        return Err(Failure::input("a picture shows one frame: use --frame, or --out FILE.gif or a folder"));
+    }
+    let dt = run.time_step();
+    // As many frames are left out as it takes to play at the speed of the simulation.
+    let fitting = (1.0 / (options.fps.unwrap_or(MAX_FPS) * dt)).ceil().max(1.0) as usize;
+    let default = match output {
+        Output::Png => FrameRange { first: last, last: None, step: 1 },
+        Output::Gif => FrameRange { first: 0, last: None, step: fitting },
+        Output::Folder => FrameRange { first: 0, last: None, step: 1 },
+    };
+    let range = options.frames.unwrap_or(default);
+    if let Some(end) = range.last {
+        run.check_frame(end)?;
+    }
+    run.check_frame(range.first)?;
+    let frames: Vec<usize> = (range.first..=range.last.unwrap_or(last)).step_by(range.step).collect();
+    for &frame in &frames {
+        run.check_frame(frame)?;
+    }
+    Ok((frames, options.fps.unwrap_or(1.0 / (dt * range.step as f64))))
+}
+
+/// The camera, fitted to the whole run unless given, and the ground.
+fn shot(
+    options: &RenderOptions,
+    run: &RunFolder,
+    frames: &[usize],
+    size: [u32; 2],
+    legend: Option<&Legend>,
+) -> Result<Shot, Failure> {
+    let free = legend.map_or(0, |legend| legend.width(size[1])).min(size[0] / 2);
+    let view = match options.view {
+        Direction::Front => View::Front,
+        Direction::Side => View::Side,
+        Direction::Top => View::Top,
+        Direction::ThreeQuarter => View::ThreeQuarter,
+    };
+    let camera = match (options.camera, options.target) {
+        (Some(eye), Some(target)) => Camera { eye: eye.into(), target: target.into(), fov: options.fov },
+        (eye, _) => {
+            let mut fit = Fit::new(view, options.fov, f64::from(size[0] - free) / f64::from(size[1]));
+            let every = (run.last_frame() / FITTED_FRAMES).max(1);
+            let spread = run.frames().filter(|frame| frame % every == 0 || *frame == run.last_frame());
+            let radius = run.radius();
+            for frame in spread.chain(frames.iter().copied()) {
+                run.positions(frame)?.iter().for_each(|p| fit.add(p, radius));
+            }
+            let camera = fit.camera();
+            match eye {
+                Some(eye) => Camera { eye: eye.into(), ..camera },
+                None => camera,
+            }
+        }
+    };
+    Ok(Shot { free, ground: run.ground().to_vec(), ..Shot::new(camera, size) })
+}
+
+fn model(run: &RunFolder) -> Result<Model, Failure> {
+    let mesh = run.elements();
+    let elements = Elements {
+        triangles: &mesh.triangles,
+        strands: &mesh.strands,
+        particles: &mesh.particles,
+        obstacle: mesh.obstacle.as_deref().unwrap_or(&[]),
+        body: mesh.body.as_deref().unwrap_or(&[]),
+    };
+    // Strands and grains keep a contact distance between them: so thick they touch in the picture when they do.
+    let style = Style { strand_radius: run.radius(), particle_radius: run.radius() };
+    Ok(Model::new(&elements, &mesh.positions, &style)?)
+}
+
+fn write(path: &Path, indexed: bool, picture: &Picture) -> Result<(), Failure> {
+    encode(path, |out| if indexed { write_small_png(out, picture) } else { write_png(out, picture) })
+}
+
+/// Writes a file atomically. A fault of the encoder passes through as one of the system.
+fn encode(path: &Path, fill: impl FnOnce(&mut dyn Write) -> Result<(), RenderError>) -> Result<(), Failure> {
+    let folder: PathBuf = path.parent().unwrap_or(Path::new("")).to_owned();
+    if !folder.as_os_str().is_empty() {
+        create_folder(&folder)?;
+    }
+    Ok(write_atomic(path, |out| {
+        fill(out).map_err(|error| match error {
+            RenderError::Encode(error) => error,
+            other => std::io::Error::other(other),
+        })
+    })?)
+}
+
+/// Mean length of the edges of triangles and strands [m], as far as there are any.
+fn mean_edge(mesh: &bowknot::io::Mesh, positions: &[Point]) -> Option<f64> {
+    let sides = mesh.triangles.iter().flat_map(|&[i, j, k]| [[i, j], [j, k], [k, i]]);
+    let lengths = sides
+        .chain(mesh.strands.iter().copied())
+        .map(|[i, j]| (positions[i as usize] - positions[j as usize]).norm());
+    let (sum, count) = lengths.fold((0.0, 0_usize), |(sum, count), length| (sum + length, count + 1));
+    (count > 0).then(|| sum / count as f64)
+}
+
+/// Whether a colour shows numbers.
+fn is_scale(color: Option<Color>) -> bool {
+    color.is_some_and(|color| color != Color::Body)
+}

@@ -1,0 +1,102 @@
+//! The light of a picture: a soft key light and a sky, both as many small lights.
+//!
+//! Each small light casts hard shadows by a shadow map; together they make soft shadows and ambient occlusion: an area
+//! light and a dome, sampled. This is the many-light view of global illumination (Keller, "Instant Radiosity", SIGGRAPH
+//! 1997) with one bounce of sky light only.
+
+use bowknot_geometry::Vector;
+use std::f64::consts::{PI, TAU};
+
+/// Share of the light on a level ground that comes from the key light.
+const KEY_SHARE: f64 = 0.55;
+/// Half angle under which the key light is seen [deg]: the width of its penumbras.
+const KEY_HALF_ANGLE: f64 = 7.0;
+/// Height of the key light above the horizon [deg].
+const KEY_HEIGHT: f64 = 48.0;
+/// How far to the left of the camera the key light stands [deg].
+const KEY_TURN: f64 = 56.0;
+/// Angle by which one point of a spiral is turned against the one before: the golden angle.
+const GOLDEN: f64 = 2.399_963_229_728_653;
+
+/// A small light, infinitely far away.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Light {
+    /// Toward it, a unit vector.
+    pub direction: Vector,
+    /// What a surface that faces it gets; over all lights a level ground gets 1.
+    pub weight: f64,
+    /// Whether it belongs to the key light.
+    pub key: bool,
+}
+
+/// Lights for a camera whose axis back, from the target to the eye, is given: the key light stands to its left.
+pub fn lights(back: &Vector, key_count: usize, sky_count: usize) -> Vec<Light> {
+    let around = if back.x.hypot(back.y) > 1e-3 { back.y.atan2(back.x) } else { -PI / 2.0 };
+    let (azimuth, height) = (around - KEY_TURN.to_radians(), KEY_HEIGHT.to_radians());
+    let center = Vector::new(azimuth.cos() * height.cos(), azimuth.sin() * height.cos(), height.sin());
+    let [right, up, _] = crate::camera::axes(&center);
+
+    let mut lights = Vec::with_capacity(key_count + sky_count);
+    // A spiral of points evenly over a disc.
+    for k in 0..key_count {
+        let radius = KEY_HALF_ANGLE.to_radians().tan() * ((k as f64 + 0.5) / key_count as f64).sqrt();
+        let (s, c) = (k as f64 * GOLDEN).sin_cos();
+        let direction = (center + (right * c + up * s) * radius).normalize();
+        lights.push(Light { direction, weight: 1.0, key: true });
+    }
+    normalise(&mut lights, KEY_SHARE);
+
+    // The same over a hemisphere by equal area (Archimedes: equal bands of z), brighter toward the zenith as an overcast
+    // sky is (Moon and Spencer, "Illumination from a nonuniform sky", 1942).
+    let mut sky = Vec::with_capacity(sky_count);
+    for k in 0..sky_count {
+        let z = 0.06 + 0.94 * (k as f64 + 0.5) / sky_count as f64;
+        let (s, c) = (k as f64 * GOLDEN + TAU / 8.0).sin_cos();
+        let level = (1.0 - z * z).sqrt();
+        let direction = Vector::new(level * c, level * s, z);
+        sky.push(Light { direction, weight: (1.0 + 2.0 * z) / 3.0, key: false });
+    }
+    normalise(&mut sky, if key_count > 0 { 1.0 - KEY_SHARE } else { 1.0 });
+    lights.extend(sky);
+    lights
+}
+
+/// Scales the weights so that a level ground gets `total`.
+fn normalise(lights: &mut [Light], total: f64) {
+    let sum: f64 = lights.iter().map(|l| l.weight * l.direction.z).sum();
+    lights.iter_mut().for_each(|l| l.weight *= total / sum);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_level_ground_gets_one() {
+        for back in [Vector::new(-0.5, -1.0, 0.5), Vector::z(), Vector::y()] {
+            let lights = lights(&back.normalize(), 12, 40);
+            assert_eq!(lights.len(), 52);
+            let ground: f64 = lights.iter().map(|l| l.weight * l.direction.z).sum();
+            assert!((ground - 1.0).abs() < 1e-12);
+            assert!(lights.iter().all(|l| (l.direction.norm() - 1.0).abs() < 1e-12 && l.direction.z > 0.0));
+        }
+    }
+
+    #[test]
+    fn the_key_light_stands_to_the_left_of_the_camera() {
+        let back = Vector::new(0.3, -1.0, 0.4).normalize();
+        let [right, ..] = crate::camera::axes(&back);
+        let lights = lights(&back, 8, 8);
+        let key: Vec<&Light> = lights.iter().filter(|l| l.key).collect();
+        assert_eq!(key.len(), 8);
+        assert!(key.iter().all(|l| l.direction.dot(&right) < 0.0 && l.direction.dot(&back) > 0.0));
+    }
+
+    /// A dome of lights has no side: the sky's mean direction is up.
+    #[test]
+    fn the_sky_is_even() {
+        let sky: Vec<Light> = lights(&Vector::y(), 4, 64).into_iter().filter(|l| !l.key).collect();
+        let mean = sky.iter().fold(Vector::zeros(), |sum, l| sum + l.direction * l.weight);
+        assert!(mean.x.hypot(mean.y) < 0.05 * mean.z, "{mean}");
+    }
+}

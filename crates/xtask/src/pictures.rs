@@ -1,0 +1,99 @@
+//! `cargo xtask pictures`: a small picture of each built-in scene, in `docs/pictures`.
+//!
+//! A scene that is added to the facade is added to [`PICTURES`] as well; `cargo xtask pictures NAME` then draws it.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+
+/// What is drawn of a scene.
+struct Scene {
+    name: &'static str,
+    /// `--scale` of the run.
+    scale: &'static str,
+    /// Frames that are drawn; the run ends with the last.
+    frames: &'static [u32],
+    /// Further options of `bowknot render`, such as a camera.
+    options: &'static str,
+}
+
+/// The scenes in the order of `bowknot scenes`.
+const PICTURES: &[Scene] = &[
+    Scene { name: "drape", scale: "1", frames: &[80], options: "" },
+    Scene { name: "needle", scale: "0.5", frames: &[24], options: "" },
+    Scene { name: "stack", scale: "0.7", frames: &[70], options: "" },
+    Scene { name: "sphere", scale: "0.5", frames: &[60], options: "" },
+    Scene { name: "tube", scale: "0.6", frames: &[150], options: "" },
+];
+
+/// Largest size of a picture [bytes]: the repository keeps them.
+const LARGEST: u64 = 60_000;
+/// Sizes that are tried in turn until one is small enough.
+const SIZES: [&str; 3] = ["480x360", "420x315", "360x270"];
+
+/// Runs the scenes that are named, all if none is, and draws them.
+pub fn run(root: &Path, names: &[&str]) -> ExitCode {
+    let known = || PICTURES.iter().map(|scene| scene.name).collect::<Vec<_>>().join(", ");
+    if let Some(unknown) = names.iter().find(|name| PICTURES.iter().all(|scene| scene.name != **name)) {
+        eprintln!(
+            "no picture is planned of {unknown}, only of {}: add it to crates/xtask/src/pictures.rs",
+            known()
+        );
+        return ExitCode::from(2);
+    }
+    let chosen = PICTURES.iter().filter(|scene| names.is_empty() || names.contains(&scene.name));
+    for scene in chosen {
+        if let Err(message) = draw(root, scene) {
+            eprintln!("{}: {message}", scene.name);
+            return ExitCode::FAILURE;
+        }
+    }
+    ExitCode::SUCCESS
+}
+
+fn draw(root: &Path, scene: &Scene) -> Result<(), String> {
+    let folder = crate::check::target_folder(root).join("xtask").join("pictures").join(scene.name);
+    if folder.exists() {
+        std::fs::remove_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    }
+    let last = scene.frames.iter().max().copied().unwrap_or(0).to_string();
+    bowknot(root, &["run", scene.name, "--scale", scene.scale, "--frames", &last], &folder)?;
+    for (index, frame) in scene.frames.iter().enumerate() {
+        let number = if scene.frames.len() > 1 { format!("-{}", index + 1) } else { String::new() };
+        let out = root.join("docs").join("pictures").join(format!("{}{number}.png", scene.name));
+        let frame = frame.to_string();
+        let mut bytes = 0;
+        for size in SIZES {
+            let run = folder.to_string_lossy();
+            let mut words = vec!["render", &*run, "--frame", &frame, "--size", size, "--indexed", "--quiet"];
+            words.extend(scene.options.split_whitespace());
+            bowknot(root, &words, &out)?;
+            bytes = std::fs::metadata(&out).map_err(|error| format!("{}: {error}", out.display()))?.len();
+            if bytes <= LARGEST {
+                break;
+            }
+        }
+        println!("{}: {bytes} bytes", relative(root, &out).display());
+        if bytes > LARGEST {
+            return Err(format!("the picture is larger than {LARGEST} bytes"));
+        }
+    }
+    Ok(())
+}
+
+/// Runs the command, built if it must be, with its output folder or file.
+fn bowknot(root: &Path, words: &[&str], out: &Path) -> Result<(), String> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let status = Command::new(cargo)
+        .args(["run", "--quiet", "--release", "--package", "bowknot-cli", "--"])
+        .args(words)
+        .arg("--out")
+        .arg(out)
+        .current_dir(root)
+        .status()
+        .map_err(|error| format!("cannot start cargo: {error}"))?;
+    if status.success() { Ok(()) } else { Err(format!("bowknot {} failed", words.join(" "))) }
+}
+
+fn relative(root: &Path, path: &Path) -> PathBuf {
+    path.strip_prefix(root).unwrap_or(path).to_owned()
+}
