@@ -21,7 +21,7 @@ const PICTURES: &[Scene] = &[
     Scene { name: "drape", scale: "1", frames: &[80], options: "" },
     Scene { name: "needle", scale: "0.5", frames: &[24], options: "" },
     Scene { name: "stack", scale: "0.7", frames: &[70], options: "" },
-    Scene { name: "sphere", scale: "0.5", frames: &[60], options: "" },
+    Scene { name: "sphere", scale: "0.3", frames: &[60], options: "" },
     Scene { name: "tube", scale: "0.6", frames: &[150], options: "" },
 ];
 
