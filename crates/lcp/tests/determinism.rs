@@ -111,3 +111,55 @@ fn single_sweeps_add_up_to_a_solve() {
     });
     assert!(solved == swept && solved == stopped);
 }
+
+#[test]
+fn friction_attached_to_its_normals_has_the_same_bits_and_the_same_solution() {
+    let case = cloth(60, 6000, 5);
+    let mut friction = rubbing(&case);
+    // Every other contact is rough; rows stay in order.
+    friction.retain(|f| f.normal % 2 == 0);
+    let mut friction_of = vec![Problem::NO_FRICTION; case.rows.len()];
+    friction.iter().enumerate().for_each(|(f, row)| friction_of[row.normal as usize] = f as u32);
+    let problem = Problem::new(
+        &case.weights,
+        Family::new(&case.rows, Schedule::coloured(&case.row_starts)),
+        Family::new(&case.balls, Schedule::coloured(&case.ball_starts)),
+        Family::serial(&friction),
+    )
+    .unwrap();
+    let attached = problem.attach_friction(&friction_of).unwrap();
+    let params = Params { max_sweeps: 5, ..Params::default() };
+    let serial = bits(&attached, &case, |state| solve_serial(&attached, state, &params).unwrap());
+    for threads in [1, 2, 3] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let coloured = pool
+            .install(|| bits(&attached, &case, |state| solve_coloured(&attached, state, &params).unwrap()));
+        assert!(coloured == serial, "{threads} threads");
+    }
+    let after_all = bits(&problem, &case, |state| solve_serial(&problem, state, &params).unwrap());
+    assert!(after_all != serial, "attached rows are swept in another order");
+    // Each friction row was swept: its multiplier is inside of its cone, and many are not 0.
+    let (mut y, mut lambda, mut forces) = case.start();
+    let mut multipliers = vec![Vector2::zeros(); friction.len()];
+    let mut state = State { y: &mut y, lambda: &mut lambda, forces: &mut forces, friction: &mut multipliers };
+    sweep_coloured(&attached, &mut state, &params).unwrap();
+    assert!(multipliers.iter().filter(|m| **m != Vector2::zeros()).count() > 100);
+}
+
+#[test]
+fn friction_that_does_not_belong_to_its_row_is_refused() {
+    let case = cloth(8, 20, 1);
+    let friction = rubbing(&case);
+    let family = Family::serial(&friction[..]);
+    let problem = Problem::new(&case.weights, Family::serial(&case.rows), Family::default(), family).unwrap();
+    let mut friction_of: Vec<u32> = (0..case.rows.len() as u32).collect();
+    assert!(problem.attach_friction(&friction_of).is_ok());
+    assert!(matches!(problem.attach_friction(&friction_of[1..]), Err(Error::Length { .. })));
+    friction_of.swap(0, 1);
+    assert_eq!(problem.attach_friction(&friction_of).unwrap_err(), Error::Attached { row: 0, friction: 1 });
+    friction_of[0] = 1000;
+    assert_eq!(
+        problem.attach_friction(&friction_of).unwrap_err(),
+        Error::Attached { row: 0, friction: 1000 }
+    );
+}

@@ -6,6 +6,7 @@ use bowknot_proximity::{CollisionModel, Pair};
 
 /// Smallest ratio of a pair's desired distance to its floor, where bodies have thickness. The gap above the floor is
 /// the room in which contacts move: a step uses up at most 0.9 of it, so little room means small steps.
+/// Chosen, not tuned: a body of thickness t rests at 1.5 t where delta is smaller.
 pub const FLOOR_MARGIN: f64 = 1.5;
 
 /// Desired distances and guaranteed floors of all pairs of bodies.

@@ -142,6 +142,29 @@ fn however_violent_the_targets_bodies_of_all_kinds_keep_their_thickness() {
 }
 
 #[test]
+fn a_long_step_without_contacts_in_sight_keeps_floors_too() {
+    // Two grains fly to places side by side, nearer than their thickness, from where neither sees the other: their
+    // paths would be clear.
+    let side_by_side = 0.025;
+    let mut x = vec![Point::new(-0.2, 0.0, 0.0), Point::new(0.2, side_by_side, 0.0)];
+    let y = [Point::new(0.0, 0.0, 0.0), Point::new(0.0, side_by_side, 0.0)];
+    let topology = Topology::new(2, Vec::new(), &[], &[0, 1]).unwrap();
+    let mut resolver = Resolver::new(CollisionModel::single_body(topology), &x, &[1.0; 2], Params::fast())
+        .unwrap()
+        .with_bodies(vec![BodyContact { delta: Some(0.04), ..thick(0.03) }])
+        .unwrap();
+    let mut observer = |state: &AcceptedState<'_>| {
+        let distance = (state.positions[0] - state.positions[1]).norm();
+        assert!(distance >= 0.03 * (1.0 - 1e-9), "{distance} m in step {}", state.step);
+        ControlFlow::Continue(())
+    };
+    let report = resolver.resolve(&mut x, &y, &Call::default(), &mut observer).unwrap();
+    assert!(report.converged, "{report:?}");
+    let distance = (x[0] - x[1]).norm();
+    assert!(distance > 0.04 && distance < 0.055, "desired: 0.045 m; found: {distance} m");
+}
+
+#[test]
 fn a_start_tighter_than_the_thickness_grows_to_it_and_never_shrinks() {
     let (mut x, mut triangles) = (Vec::new(), Vec::new());
     let (thickness, gap) = (0.01, 0.001);
