@@ -107,7 +107,10 @@ impl Sources {
         let lines = self.body("enum", name)?.lines().skip(1).map(str::trim);
         let names = lines.filter_map(|line| line.strip_suffix(',')).filter(|line| !line.starts_with('/'));
         let names: Vec<String> = names.map(lower).collect();
-        names.iter().all(|name| name.chars().all(|c| c.is_lowercase() || c == '-')).then_some(names)
+        names
+            .iter()
+            .all(|name| name.chars().all(|c| c.is_lowercase() || c.is_ascii_digit() || c == '-'))
+            .then_some(names)
     }
 }
 
@@ -240,7 +243,9 @@ fn split_unit(doc: &str, kind: &str) -> (String, String) {
 fn page() -> String {
     let mut page = Page { sources: Sources::read(), text: HEAD.to_owned() };
     let all = |_: &str| true;
-    let in_simulation = |key: &str| ["gravity", "air_drag"].contains(&key);
+    let in_simulation = |key: &str| {
+        ["gravity", "air_drag", "wind", "air_density", "drag_normal", "drag_tangential"].contains(&key)
+    };
 
     page.section("[simulation]", "Time and the order of work.");
     page.head(false);

@@ -21,7 +21,7 @@ pub struct ClothMaterial {
     /// Young's modulus times thickness [N/m], along the warp if the weft has its own. Larger: stretches
     /// less, and the linear solve takes more iterations, about as its square root.
     pub stretch_stiffness: f64,
-    /// Young's modulus times thickness along the weft, across `warp_direction` [N/m]. Default: as along the warp.
+    /// Young's modulus times thickness along the weft [N/m], across `warp_direction`. Default: as along the warp.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub weft_stiffness: Option<f64>,
     /// Shear modulus times thickness [N/m]: force per width and angle between warp and weft. Woven cloth
