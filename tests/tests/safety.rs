@@ -9,7 +9,7 @@ use bowknot_stepper::{Budgets, Contacts, Stepper};
 use bowknot_tests::states::GENERATORS;
 use bowknot_tests::targets::Rule;
 use bowknot_tests::{Case, Random, Watch};
-use bowknot_twoway::{AcceptedState, Call, Params, Resolver};
+use bowknot_twoway::{AcceptedState, BodyContact, Call, Params, Resolver};
 use std::ops::ControlFlow;
 
 /// Distances of targets [m].
@@ -146,7 +146,7 @@ fn greedy_steps_are_caught() {
     }
 }
 
-fn whole_method(params: &Params) {
+fn whole_method(params: &Params, contact: impl Fn(f64) -> BodyContact + Sync) {
     let outcome = Outcome::of(seeds(), |case, targets| {
         let mut watch = Watch::new(case);
         let mut x = case.positions.clone();
@@ -159,6 +159,8 @@ fn whole_method(params: &Params) {
         let masses = vec![1.0; x.len()];
         let mut resolver = Resolver::new(case.model.clone(), &case.positions, &masses, params)
             .map_err(|error| format!("refused: {error}"))?;
+        let bodies = vec![contact(resolver.problem().lengths.edge); case.model.bodies().len()];
+        resolver = resolver.with_bodies(bodies).map_err(|error| format!("refused: {error}"))?;
         let mut last = x.clone();
         let mut observe = |state: &AcceptedState<'_>| {
             let joined = state.previous == last.as_slice();
@@ -187,10 +189,25 @@ fn whole_method(params: &Params) {
 
 #[test]
 fn no_step_of_the_fast_preset_intersects() {
-    whole_method(&Params::fast());
+    whole_method(&Params::fast(), |_| BodyContact::default());
 }
 
 #[test]
 fn no_step_of_the_paper_preset_intersects() {
-    whole_method(&Params::paper());
+    whole_method(&Params::paper(), |_| BodyContact::default());
+}
+
+#[test]
+fn no_step_with_friction_and_thickness_intersects() {
+    let rough = BodyContact { friction: 0.7, ..BodyContact::default() };
+    // Thin beside the mesh: where all gaps were below the thickness, nothing would move.
+    let thick = |edge: f64| BodyContact {
+        thickness: Some((1e-3 * edge).max(1e-8)),
+        stretch_limit: Some(f64::INFINITY),
+        ..rough
+    };
+    for params in [Params::fast(), Params::paper()] {
+        whole_method(&params, |_| rough);
+        whole_method(&params, thick);
+    }
 }
