@@ -10,7 +10,10 @@
 #[path = "../tests/common/mod.rs"]
 mod common;
 
-use bowknot_dynamics::{Body, DynamicsModel, ParticleMaterial, SolidMaterial, SolidModel, StrandMaterial};
+use bowknot_dynamics::geometry::boundary_triangles;
+use bowknot_dynamics::{
+    Body, BodyShape, DynamicsModel, ParticleMaterial, SolidMaterial, SolidModel, StrandMaterial,
+};
 use bowknot_dynamics::{Dynamics, DynamicsParams};
 use bowknot_geometry::{Point, Vector};
 use std::time::Instant;
@@ -32,7 +35,9 @@ fn main() {
     let (rest, tets) = common::block([0.4, 0.4, 0.4], [31, 31, 31]);
     let count = tets.len();
     let held: Vec<bool> = rest.iter().map(|p| p.z < 1e-9).collect();
-    measure("cube of rubber", &rest, Body::solid("cube", tets, SolidMaterial::rubber()), count, &held, steps);
+    let cube = Body::solid("cube", tets, SolidMaterial::rubber());
+    measure("cube of rubber", &rest, cube.clone(), count, &held, steps);
+    bring_inside(&rest, cube);
 
     let (rest, edges) = common::strands(1575, 40, 0.3, 0.003);
     let count = edges.len();
@@ -67,6 +72,47 @@ fn measure(name: &str, rest: &[Point], body: Body, elements: usize, held: &[bool
     let each = clock.elapsed().as_secs_f64() / steps as f64;
     let cpu = (cpu_seconds() - cpu) / steps as f64;
     println!("{name}, {}, {elements}, {built:.2}, {each:.3}, {cpu:.3}, {}", rest.len(), iterations.join(" "));
+}
+
+/// The inside of a solid whose surface contact stopped half-way to the target and shoved aside by 2 cm, more than a
+/// cell.
+fn bring_inside(rest: &[Point], cube: Body) {
+    let BodyShape::Solid { tets, .. } = &cube.shape else { return };
+    let mut surface = vec![false; rest.len()];
+    boundary_triangles(tets).iter().flatten().for_each(|v| surface[*v as usize] = true);
+    let Ok(model) = DynamicsModel::new(rest.to_vec(), vec![cube]) else { return };
+    let Ok(mut dynamics) = Dynamics::new(model, DynamicsParams::default()) else { return };
+    // Squeezed by its own speed, top against bottom.
+    let v: Vec<Vector> = rest.iter().map(|p| Vector::new(0.0, 0.0, 4.0 - 20.0 * p.z)).collect();
+    let shove = Vector::new(0.02, 0.0, 0.0);
+    let (mut x, mut y, none) = (rest.to_vec(), rest.to_vec(), vec![false; rest.len()]);
+    let targets = dynamics
+        .begin_step(rest, &v, 0.01)
+        .and_then(|()| dynamics.newton_target(rest, &none, rest, &mut y))
+        .and_then(|_| {
+            (0..rest.len())
+                .filter(|k| surface[*k])
+                .for_each(|k| x[k] = rest[k] + (y[k] - rest[k]) * 0.5 + shove);
+            let left = dynamics.model().inverted_tets(&x).len();
+            let mut inside = Vec::new();
+            for _ in 0..2 {
+                let (held, cpu) = (x.clone(), cpu_seconds());
+                let info = dynamics.newton_target(&x, &surface, &held, &mut y)?;
+                x.copy_from_slice(&y);
+                inside.push((
+                    cpu_seconds() - cpu,
+                    info.cg.iterations,
+                    dynamics.model().inverted_tets(&y).len(),
+                ));
+            }
+            Ok((left, inside))
+        });
+    if let Ok((left, inside)) = targets {
+        println!("inside of the cube: {left} inverted tets where contact left it, then by target");
+        for (cpu, iterations, inverted) in inside {
+            println!("    {inverted} inverted tets, {cpu:.3} CPU seconds, {iterations} CG iterations");
+        }
+    }
 }
 
 /// CPU seconds of this process so far, where Linux tells (in ticks of 10 ms): what is comparable on a busy machine.
