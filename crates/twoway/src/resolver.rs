@@ -8,8 +8,8 @@ use crate::problem::check_finite;
 use crate::search::BudgetedSearch;
 use crate::waiting::{Patience, behind, set_groups};
 use crate::{
-    AcceptedState, BackwardStep, BodyContact, ForwardStep, HalfSpaceContact, Observer, PairFriction, Params,
-    Problem, ResolveError, Search, State, Statistics, StopRule,
+    AcceptedState, BackwardStep, BodyContact, ContactSet, ForwardStep, HalfSpaceContact, Observer,
+    PairFriction, Params, Problem, ResolveError, Search, State, Statistics, StopRule,
 };
 use bowknot_constraints::FrictionModel;
 use bowknot_geometry::Point;
@@ -115,6 +115,17 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
     /// The moving state as the last call left it.
     pub fn state(&self) -> &State {
         &self.state
+    }
+
+    /// Lists the pairs near each other at intersection-free positions, with their contact geometry, as the first step of
+    /// a call would find them: every pair that is nearer than its contact range is among them.
+    ///
+    /// # Errors
+    /// As [`Self::resolve`].
+    pub fn survey(&mut self, positions: &[Point], call: &Call<'_>) -> Result<&ContactSet, ResolveError> {
+        self.begin(positions, positions, call)?;
+        self.search.update(&self.problem, &mut self.state, &mut Statistics::default());
+        Ok(&self.state.contacts)
     }
 
     /// Moves `positions` from an intersection-free state toward `target`. Every accepted state and the straight

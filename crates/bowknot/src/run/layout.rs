@@ -80,9 +80,10 @@ impl Layout {
         self.obstacle.len()
     }
 
-    /// The world's positions and the corners of the quads.
+    /// The world's positions, those inside of solids left out, and the corners of the quads.
     pub fn with_corners(&self, positions: &[Point]) -> Vec<Point> {
-        [positions, &self.corners].concat()
+        let collide = self.obstacle.len() - self.corners.len();
+        [&positions[..collide], &self.corners].concat()
     }
 
     pub fn view<'a>(&'a self, positions: &'a [Point]) -> MeshView<'a> {

@@ -49,6 +49,7 @@ impl Totals {
         let Ok(Value::Object(mut values)) = serde_json::to_value(statistics) else { return };
         values.remove("step");
         values.remove("time");
+        values.remove("slowest_body");
         let values = Value::Object(values);
         self.steps += 1;
         merge(&mut self.sum, &values, &|sum, x| sum + x);

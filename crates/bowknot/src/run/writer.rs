@@ -165,6 +165,7 @@ impl RunWriter {
     /// # Errors
     /// The system's refusal.
     pub fn write_problem(&self, problem: &CollisionProblem<'_>, world: &World) -> Result<(), IoError> {
+        let count = world.collision_vertices();
         let layout = &self.frames.layout;
         let states = States {
             x: problem.positions.to_vec(),
@@ -172,10 +173,10 @@ impl RunWriter {
             triangles: layout.triangles.clone(),
             strands: layout.strands.clone(),
             particles: layout.particles.clone(),
-            rest: world.positions.clone(),
-            masses: self.masses.clone(),
+            rest: world.positions[..count].to_vec(),
+            masses: self.masses[..count].to_vec(),
             fixed: problem.prescribed.to_vec(),
-            obstacle: layout.obstacle[..world.positions.len()].to_vec(),
+            obstacle: layout.obstacle[..count].to_vec(),
             body: world.collision.vertex_body().to_vec(),
             half_spaces: world.collision.half_spaces().to_vec(),
             time_step: Some(problem.time_step),

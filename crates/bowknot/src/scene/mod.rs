@@ -3,8 +3,8 @@
 //! | table | fields of |
 //! |---|---|
 //! | `[simulation]` | [`SimulationParams`], gravity and drag of [`DynamicsParams`] |
-//! | `[contact]` | `preset`, [`ConstraintParams`](bowknot_constraints::ConstraintParams), [`StepperParams`](bowknot_stepper::StepperParams) |
-//! | `[solver]` | [`BackwardParams`](bowknot_twoway::BackwardParams), the rest of [`DynamicsParams`]; `[solver.stop]`: [`StopParams`](bowknot_twoway::StopParams) |
+//! | `[contact]` | `preset`, [`ConstraintParams`](bowknot_constraints::ConstraintParams), [`StepperParams`](bowknot_stepper::StepperParams), [`FrictionPair`]s |
+//! | `[solver]` | [`BackwardParams`](bowknot_twoway::BackwardParams), the rest of [`DynamicsParams`]; `[solver.stop]`: [`StopParams`](bowknot_twoway::StopParams); `[solver.repulsion]`: [`RepulsionParams`] |
 //! | `[output]` | [`OutputParams`] |
 //! | `[[body]]`, `[[obstacle]]`, `[[pin]]` | [`BodySpec`], [`ObstacleSpec`], [`PinSpec`] |
 //!
@@ -12,8 +12,10 @@
 
 mod body;
 mod builtin;
+mod contact;
 mod error;
 mod fields;
+mod material;
 mod motion;
 mod params;
 mod read;
@@ -23,11 +25,15 @@ mod source;
 mod tests;
 mod write;
 
-pub use body::{BodyKind, BodySpec, Material, ObstacleSpec, PinSpec, Region, Side};
+pub use body::{BodySpec, ObstacleSpec, PinSpec, Region, Side};
 pub use builtin::{BUILTIN, Builtin};
+pub use contact::FrictionPair;
 pub use error::{Origin, Problem, SceneError};
+pub use material::{BodyKind, Material};
 pub use motion::{Keyframe, Motion, Placement};
-pub use params::{CollisionEvery, Format, OutputParams, Preset, SimulationParams};
+pub use params::{
+    CollisionEvery, Format, InteriorFollows, OutputParams, Preset, RepulsionParams, SimulationParams,
+};
 
 use crate::io::IoError;
 use bowknot_dynamics::DynamicsParams;
@@ -47,6 +53,10 @@ pub struct Scene {
     pub preset: Preset,
     /// Contact, backward step, forward step, stopping rule.
     pub twoway: bowknot_twoway::Params,
+    /// Friction of pairs of bodies.
+    pub friction_pairs: Vec<FrictionPair>,
+    /// Repulsion of near surfaces by the dynamics.
+    pub repulsion: RepulsionParams,
     /// What a run writes.
     pub output: OutputParams,
     /// Deformable bodies.

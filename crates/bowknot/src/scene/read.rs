@@ -1,17 +1,21 @@
 //! From a parsed description to a [`Scene`].
 
 use super::Scene;
-use super::body::{BodyKind, BodySpec, Material, ObstacleSpec, PinSpec, Region};
+use super::body::{BodySpec, ObstacleSpec, PinSpec, Region};
+use super::contact::{self, FrictionPair};
 use super::error::{Problem, SceneError, nearest};
 use super::fields::field_names;
+use super::material::{self, BodyKind};
 use super::motion::Motion;
-use super::params::{OutputParams, Preset, SimulationParams};
+use super::params::{OutputParams, Preset, RepulsionParams, SimulationParams};
 use super::reader::{Reader, describe, join};
 use super::source::Source;
 use crate::io::Import;
-use crate::shapes::{Ball, Cone, Cuboid, Figure, Garment, HalfSpaceShape, Shape, Sheet, Tube};
+use crate::shapes::{
+    Ball, Block, Cone, Cuboid, Figure, Garment, Grains, HalfSpaceShape, Shape, Sheet, Strands, TetBall, Tube,
+};
 use bowknot_constraints::ConstraintParams;
-use bowknot_dynamics::{ClothMaterial, DynamicsParams};
+use bowknot_dynamics::DynamicsParams;
 use bowknot_geometry::Vector;
 use bowknot_stepper::StepperParams;
 use bowknot_twoway::{BackwardParams, Params, StopParams};
@@ -61,6 +65,13 @@ pub(super) fn scene(source: &Source, folder: &Path, name: &str) -> Result<Scene,
         let pin = pin(&mut reader, &table, &path, &scene.bodies);
         scene.pins.push(pin);
     }
+    let table = reader.table(root, "", "contact");
+    for (table, path) in reader.tables(&table, "contact", "friction_pairs") {
+        scene.friction_pairs.push(reader.structure::<FrictionPair>(&table, &path, &[]));
+    }
+    let table = reader.table(root, "", "solver");
+    let table = reader.table(&table, "solver", "repulsion");
+    scene.repulsion = reader.structure::<RepulsionParams>(&table, "solver.repulsion", &[]);
     if !reader.problems.is_empty() {
         return Err(SceneError::Invalid(reader.problems));
     }
@@ -87,7 +98,9 @@ fn solver_dynamics() -> Vec<&'static str> {
 
 fn read_twoway(reader: &mut Reader<'_>, root: &Table) -> (Preset, Params) {
     let contact = reader.table(root, "", "contact");
-    let known = [&["preset"], field_names::<ConstraintParams>(), field_names::<StepperParams>()].concat();
+    let known =
+        [&["preset", "friction_pairs"], field_names::<ConstraintParams>(), field_names::<StepperParams>()]
+            .concat();
     reader.check_keys(&contact, "contact", &known);
     let preset = match contact.get("preset").map(|value| value.clone().try_into::<Preset>()) {
         None => Preset::default(),
@@ -103,7 +116,7 @@ fn read_twoway(reader: &mut Reader<'_>, root: &Table) -> (Preset, Params) {
 
     let solver = reader.table(root, "", "solver");
     let dynamics = solver_dynamics();
-    let known = [field_names::<BackwardParams>(), &dynamics, &["stop"]].concat();
+    let known = [field_names::<BackwardParams>(), &dynamics, &["stop", "repulsion"]].concat();
     reader.check_keys(&solver, "solver", &known);
     let mut backward = reader.fields(&base.backward, &solver, "solver", &[]);
     // Who asks for more sweeps than a preset polishes with does not want fewer at the end.
@@ -122,8 +135,9 @@ fn body(reader: &mut Reader<'_>, table: &Table, path: &str, index: usize) -> Bod
         body.name = format!("body{index}");
     }
     body.shape = shape(reader, table, path);
-    match body.kind {
-        BodyKind::Cloth => body.material = Material::Cloth(cloth(reader, table, path)),
+    // Of what an unknown kind is made nobody knows.
+    if table.get("kind").is_none_or(|kind| kind.as_str() == Some(body.kind.name())) {
+        body.material = material::read(reader, table, path, body.kind);
     }
     body
 }
@@ -195,6 +209,10 @@ fn shape(reader: &mut Reader<'_>, table: &Table, path: &str) -> Option<Shape> {
         "figure" => Shape::Figure(reader.structure::<Figure>(&rest, &path, &[])),
         "garment" => Shape::Garment(reader.structure::<Garment>(&rest, &path, &[])),
         "half-space" => Shape::HalfSpace(reader.structure::<HalfSpaceShape>(&rest, &path, &[])),
+        "block" => Shape::Block(reader.structure::<Block>(&rest, &path, &[])),
+        "tet-ball" => Shape::TetBall(reader.structure::<TetBall>(&rest, &path, &[])),
+        "strands" => Shape::Strands(reader.structure::<Strands>(&rest, &path, &[])),
+        "grains" => Shape::Grains(reader.structure::<Grains>(&rest, &path, &[])),
         unknown => {
             let hint = nearest(unknown, Shape::NAMES.into_iter());
             let hint = hint.map_or_else(String::new, |name| format!("; did you mean {name}?"));
@@ -202,33 +220,6 @@ fn shape(reader: &mut Reader<'_>, table: &Table, path: &str) -> Option<Shape> {
             return None;
         }
     })
-}
-
-fn cloth(reader: &mut Reader<'_>, table: &Table, path: &str) -> ClothMaterial {
-    let path = join(path, "material");
-    let names = ClothMaterial::NAMES;
-    let named = |reader: &mut Reader<'_>, key: &str, value: &Value| {
-        let found = value.as_str().and_then(ClothMaterial::named);
-        if found.is_none() {
-            let hint = value.as_str().and_then(|name| nearest(name, names.into_iter()));
-            let hint = hint.map_or_else(String::new, |name| format!("; did you mean {name}?"));
-            let message = format!("{} must be one of {}{hint}", describe(value), names.join(", "));
-            reader.fail(key, message);
-        }
-        found.unwrap_or_default()
-    };
-    match table.get("material") {
-        None => ClothMaterial::default(),
-        Some(Value::Table(numbers)) => {
-            let known = [&["fabric"], field_names::<ClothMaterial>()].concat();
-            reader.check_keys(numbers, &path, &known);
-            let base = numbers
-                .get("fabric")
-                .map_or_else(ClothMaterial::default, |name| named(reader, &join(&path, "fabric"), name));
-            reader.fields(&base, numbers, &path, &[])
-        }
-        Some(name) => named(reader, &path, name),
-    }
 }
 
 /// Checks the values of a scene that has been read or made in code.
@@ -246,6 +237,9 @@ pub(super) fn validate(scene: &Scene, source: &Source) -> Result<(), SceneError>
     }
     validate_twoway(&scene.twoway, source, &mut problems);
     validate_bodies(scene, source, &mut problems);
+    contact::validate_pairs(scene, source, &mut problems);
+    scene.repulsion.validate(&mut faults);
+    report(&mut problems, source, "solver.repulsion", &mut faults);
     for (index, pin) in scene.pins.iter().enumerate() {
         validate_pin(scene, pin, source, &format!("pin[{index}]"), &mut problems);
     }
@@ -306,17 +300,33 @@ fn validate_bodies(scene: &Scene, source: &Source, problems: &mut Vec<Problem>) 
         let path = format!("body[{index}]");
         placement(&mut faults, body.scale, [&body.rotate, &body.translate, &body.velocity]);
         groups(&mut faults, &body.groups, body.collides_with.as_deref());
-        geometry(&mut faults, body.mesh.is_some(), body.shape.as_ref());
+        geometry(&mut faults, body.mesh.is_some(), body.shape.as_ref(), false);
+        contact::validate_body(body, &mut faults);
+        for (key, value) in
+            [("angular_velocity", Some(&body.angular_velocity)), ("gravity", body.gravity.as_ref())]
+        {
+            if value.is_some_and(|value| !value.iter().all(|c| c.is_finite())) {
+                faults.push((key, "must be finite".to_owned()));
+            }
+        }
+        if body.material.kind() != body.kind {
+            let (own, kind) = (body.material.kind().name(), body.kind.name());
+            faults.push(("material", format!("is one of kind {own}, but the body is of kind {kind}")));
+        }
         if let Some(Shape::HalfSpace(_)) = body.shape {
             faults.push(("shape", "a half-space can only be an obstacle".to_owned()));
+        } else if let Some(shape) = &body.shape
+            && shape.kind() != body.kind
+        {
+            let (own, kind) = (shape.kind().name(), body.kind.name());
+            faults.push(("shape", format!("makes a body of kind {own}, but this one is of kind {kind}")));
         }
         if let Some(Shape::Figure(_)) = body.shape {
             faults.push(("shape", "a figure can only be an obstacle".to_owned()));
         }
         report(problems, source, &path, &mut faults);
         validate_shape(body.shape.as_ref(), source, &path, problems);
-        let Material::Cloth(material) = &body.material;
-        for error in material.validate().err().into_iter().flatten() {
+        for error in body.material.validate().err().into_iter().flatten() {
             // The messages have the form "field = value: what is allowed".
             let message = error.to_string();
             let (field, rest) = message.split_once(" = ").unwrap_or(("", &message));
@@ -328,7 +338,27 @@ fn validate_bodies(scene: &Scene, source: &Source, problems: &mut Vec<Problem>) 
         let path = format!("obstacle[{index}]");
         placement(&mut faults, obstacle.scale, [&obstacle.rotate, &obstacle.translate, &Vector::zeros()]);
         groups(&mut faults, &obstacle.groups, obstacle.collides_with.as_deref());
-        geometry(&mut faults, obstacle.mesh.is_some(), obstacle.shape.as_ref());
+        let sequence = obstacle.sequence.is_some();
+        geometry(&mut faults, obstacle.mesh.is_some(), obstacle.shape.as_ref(), sequence);
+        contact::validate_obstacle(obstacle, &mut faults);
+        if !(obstacle.sequence_rate.is_finite() && obstacle.sequence_rate > 0.0) {
+            let message = format!("{} must be a number of frames a second above 0", obstacle.sequence_rate);
+            faults.push(("sequence_rate", message));
+        }
+        if !obstacle.sequence_start.is_finite() {
+            faults.push(("sequence_start", format!("{} must be finite", obstacle.sequence_start)));
+        }
+        let moves = sequence || obstacle.shape.as_ref().is_some_and(|shape| shape.animated().is_some());
+        if moves && obstacle.motion.is_some() {
+            faults.push((
+                "motion",
+                "the obstacle moves by itself already; only one of them may be given".to_owned(),
+            ));
+        }
+        if let Some(shape @ (Shape::Strands(_) | Shape::Grains(_))) = &obstacle.shape {
+            let kind = shape.kind().name();
+            faults.push(("shape", format!("makes a body of kind {kind}, which is no obstacle")));
+        }
         if let Some(Shape::HalfSpace(_)) = obstacle.shape {
             if obstacle.motion.is_some() {
                 faults.push(("motion", "a half-space does not move; use a box".to_owned()));
@@ -368,8 +398,12 @@ fn validate_pin(scene: &Scene, pin: &PinSpec, source: &Source, path: &str, probl
         let message = format!("no body {:?}; there are: {}{hint}", pin.body, names.join(", "));
         faults.push(("body", message));
     }
-    if pin.vertices.is_empty() && pin.region.is_none() && pin.side.is_none() {
-        faults.push(("vertices", "a pin needs vertices, a box or a side".to_owned()));
+    if pin.vertices.is_empty() && pin.region.is_none() && pin.side.is_none() && pin.roots == 0 {
+        faults.push(("vertices", "a pin needs vertices, a box, a side or roots".to_owned()));
+    }
+    let strands = |name: &String| scene.bodies.iter().any(|b| b.name == *name && b.kind == BodyKind::Strands);
+    if pin.roots > 0 && !strands(&pin.body) {
+        faults.push(("roots", "only strands have roots; the body is of another kind".to_owned()));
     }
     if let Some(name) = &pin.follow {
         let with_mesh = |o: &&ObstacleSpec| !matches!(o.shape, Some(Shape::HalfSpace(_)));
@@ -426,12 +460,15 @@ fn groups(faults: &mut Vec<(&'static str, String)>, groups: &[u32], collides_wit
     }
 }
 
-fn geometry(faults: &mut Vec<(&'static str, String)>, mesh: bool, shape: Option<&Shape>) {
-    match (mesh, shape) {
-        (true, Some(_)) => {
+fn geometry(faults: &mut Vec<(&'static str, String)>, mesh: bool, shape: Option<&Shape>, sequence: bool) {
+    match (mesh, shape, sequence) {
+        (true, Some(_), _) => {
             faults.push(("shape", "stands beside mesh; only one of them may be given".to_owned()))
         }
-        (false, None) => faults.push(("mesh", "needs a mesh file, or a shape".to_owned())),
+        (true, None, true) | (false, Some(_), true) => {
+            faults.push(("sequence", "stands beside a mesh or a shape; only one may be given".to_owned()));
+        }
+        (false, None, false) => faults.push(("mesh", "needs a mesh file, or a shape".to_owned())),
         _ => {}
     }
 }

@@ -113,7 +113,7 @@ impl Source {
                 // A value such as `material = "cotton"` becomes a table, which keeps what it said.
                 other => {
                     let kept = match (*part, &*other) {
-                        ("material", Value::String(_)) => Some("fabric"),
+                        ("material", Value::String(_)) => Some("base"),
                         ("shape", Value::String(_)) => Some("type"),
                         _ => None,
                     };

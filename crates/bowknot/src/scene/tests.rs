@@ -58,7 +58,7 @@ fn values_reach_their_structs() {
     assert_eq!(scene.twoway.constraints.delta, Some(0.002));
     assert_eq!(scene.twoway.backward.sweeps, 4);
     assert_eq!(scene.twoway.stop.max_steps, Some(100));
-    let Material::Cloth(material) = scene.bodies[0].material;
+    let Material::Cloth(material) = scene.bodies[0].material else { panic!("no cloth") };
     assert_eq!(material, ClothMaterial { density: 0.1, ..ClothMaterial::silk() });
     assert!(matches!(scene.obstacles[0].shape, Some(Shape::HalfSpace(_))));
     assert_eq!(scene.obstacles[1].name, "obstacle1");
@@ -129,7 +129,7 @@ fn problems_name_file_line_key_and_what_is_allowed() {
             "type = \"sheet\"",
             "type = \"shet\"",
             "scene.toml:16: body[0].shape.type: \"shet\" must be one of sheet, tube, ball, cone, box, \
-             half-space; did you mean sheet?",
+             figure, garment, half-space, block, tet-ball, strands, grains; did you mean sheet?",
         ),
         (
             "radius = 0.3",
@@ -192,7 +192,7 @@ fn sets_override_before_anything_is_interpreted() {
     assert_eq!((scene.simulation.dt, scene.twoway.stop.max_steps), (0.05, Some(7)));
     assert_eq!(scene.twoway.constraints.form, bowknot_constraints::ContactForm::Volume);
     let scene = set(&["body.sheet.material.density=2", "obstacle.0.shape.radius=0.2"]).expect("sets");
-    let Material::Cloth(material) = scene.bodies[0].material;
+    let Material::Cloth(material) = scene.bodies[0].material else { panic!("no cloth") };
     assert_eq!(material, ClothMaterial { density: 2.0, ..ClothMaterial::cotton() });
     assert!(matches!(&scene.obstacles[0].shape, Some(Shape::Ball(ball)) if ball.radius == 0.2));
     let scene = set(&["body.0.material=silk"]).expect("sets");

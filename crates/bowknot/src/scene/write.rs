@@ -1,9 +1,7 @@
 //! From a [`Scene`] to TOML.
 
 use super::Scene;
-use super::body::Material;
 use super::read::SIMULATION_DYNAMICS;
-use bowknot_dynamics::ClothMaterial;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
@@ -17,10 +15,12 @@ pub(super) fn table(scene: &Scene) -> Table {
         table.insert(key, value);
     }
     solver.insert("stop".to_owned(), Value::Table(fields(&scene.twoway.stop)));
+    solver.insert("repulsion".to_owned(), Value::Table(fields(&scene.repulsion)));
     let mut contact = Table::new();
     insert(&mut contact, "preset", &scene.preset);
     contact.extend(fields(&scene.twoway.constraints));
     contact.extend(fields(&scene.twoway.stepper));
+    insert(&mut contact, "friction_pairs", &scene.friction_pairs);
 
     let mut root = Table::new();
     root.insert("simulation".to_owned(), Value::Table(simulation));
@@ -33,16 +33,14 @@ pub(super) fn table(scene: &Scene) -> Table {
     root
 }
 
-/// As [`table`], with fabrics by name where all numbers are theirs, so that a change of one number, or of
-/// the fabric, does what it would do in a file.
+/// As [`table`], with materials by name where all numbers are theirs, so that a change of one number, or of
+/// the name, does what it would do in a file.
 pub(super) fn table_of_names(scene: &Scene) -> Table {
     let mut root = table(scene);
     if let Some(Value::Array(bodies)) = root.get_mut("body") {
         for (spec, body) in scene.bodies.iter().zip(bodies) {
-            let Material::Cloth(material) = &spec.material;
-            let named = |name: &&&str| ClothMaterial::named(name).as_ref() == Some(material);
-            if let (Value::Table(body), Some(name)) = (body, ClothMaterial::NAMES.iter().find(named)) {
-                body.insert("material".to_owned(), Value::String((*name).to_owned()));
+            if let (Value::Table(body), Some(name)) = (body, spec.material.name()) {
+                body.insert("material".to_owned(), Value::String(name.to_owned()));
             }
         }
     }
@@ -52,16 +50,12 @@ pub(super) fn table_of_names(scene: &Scene) -> Table {
 /// The scene as text, mesh paths made absolute.
 pub(super) fn text(scene: &Scene) -> String {
     let mut scene = scene.clone();
-    let absolute = |mesh: &mut PathBuf| {
-        let path = scene.folder.join(&*mesh);
-        *mesh = std::path::absolute(&path).unwrap_or(path);
+    let absolute = |file: &mut PathBuf| {
+        let path = scene.folder.join(&*file);
+        *file = std::path::absolute(&path).unwrap_or(path);
     };
     scene.bodies.iter_mut().filter_map(|b| b.mesh.as_mut()).for_each(absolute);
-    let absolute = |mesh: &mut PathBuf| {
-        let path = scene.folder.join(&*mesh);
-        *mesh = std::path::absolute(&path).unwrap_or(path);
-    };
-    scene.obstacles.iter_mut().filter_map(|o| o.mesh.as_mut()).for_each(absolute);
+    scene.obstacles.iter_mut().flat_map(|o| o.mesh.iter_mut().chain(&mut o.sequence)).for_each(absolute);
     scene.folder = Path::new("").to_owned();
     toml::to_string(&table(&scene)).unwrap_or_default()
 }

@@ -1,22 +1,32 @@
 //! Generated meshes: deterministic, in metres, z up, about the origin.
 
 mod ball;
+mod block;
 mod cone;
 mod cuboid;
 mod figure;
 mod garment;
+mod grains;
 mod isosurface;
 mod sheet;
+mod strands;
+mod tet_ball;
 mod tube;
 
 pub use ball::Ball;
+pub use block::Block;
 pub use cone::Cone;
 pub use cuboid::Cuboid;
 pub use figure::{AnimatedFigure, Figure};
 pub use garment::Garment;
+pub use grains::Grains;
 pub use sheet::{Diagonals, Sheet};
+pub use strands::{Root, Strands};
+pub use tet_ball::TetBall;
 pub use tube::Tube;
 
+use crate::io::Mesh;
+use crate::scene::BodyKind;
 use bowknot_geometry::{Point, Vector};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -43,6 +53,14 @@ pub enum Shape {
     Garment(Garment),
     /// Everything below a plane, such as the ground. For obstacles only.
     HalfSpace(HalfSpaceShape),
+    /// A box of tetrahedra.
+    Block(Block),
+    /// A ball of tetrahedra.
+    TetBall(TetBall),
+    /// A bundle of strands. For deformable bodies only.
+    Strands(Strands),
+    /// Particles in a box. For deformable bodies only.
+    Grains(Grains),
 }
 
 /// Everything below the plane through the obstacle's `translate`: an analytic obstacle without mesh.
@@ -82,10 +100,47 @@ const MOST_VERTICES: f64 = 2e7;
 
 impl Shape {
     /// Names that the key `type` may have.
-    pub const NAMES: [&'static str; 8] =
-        ["sheet", "tube", "ball", "cone", "box", "figure", "garment", "half-space"];
+    pub const NAMES: [&'static str; 12] = [
+        "sheet",
+        "tube",
+        "ball",
+        "cone",
+        "box",
+        "figure",
+        "garment",
+        "half-space",
+        "block",
+        "tet-ball",
+        "strands",
+        "grains",
+    ];
 
-    /// The mesh; none for a half-space.
+    /// The kind of body that the shape makes; a half-space makes none, and counts as a surface.
+    pub fn kind(&self) -> BodyKind {
+        match self {
+            Self::Block(_) | Self::TetBall(_) => BodyKind::Solid,
+            Self::Strands(_) => BodyKind::Strands,
+            Self::Grains(_) => BodyKind::Particles,
+            _ => BodyKind::Cloth,
+        }
+    }
+
+    /// What the shape is made of; none for a half-space.
+    pub fn elements(&self) -> Option<Mesh> {
+        match self {
+            Self::Block(block) => Some(block.mesh()),
+            Self::TetBall(ball) => Some(ball.mesh()),
+            Self::Strands(strands) => Some(strands.mesh()),
+            Self::Grains(grains) => Some(grains.mesh()),
+            surface => surface.mesh().map(|TriangleMesh { positions, triangles }| Mesh {
+                positions,
+                triangles,
+                ..Mesh::default()
+            }),
+        }
+    }
+
+    /// The mesh of a surface; none for a half-space, and for shapes of other elements.
     pub fn mesh(&self) -> Option<TriangleMesh> {
         match self {
             Self::Sheet(sheet) => Some(sheet.mesh()),
@@ -95,7 +150,9 @@ impl Shape {
             Self::Box(cuboid) => Some(cuboid.mesh()),
             Self::Figure(figure) => Some(figure.mesh()),
             Self::Garment(garment) => Some(garment.mesh()),
-            Self::HalfSpace(_) => None,
+            Self::HalfSpace(_) | Self::Block(_) | Self::TetBall(_) | Self::Strands(_) | Self::Grains(_) => {
+                None
+            }
         }
     }
 
@@ -139,6 +196,10 @@ impl Shape {
                 }
                 return;
             }
+            Self::Block(block) => return block.validate(problems),
+            Self::TetBall(ball) => return ball.validate(problems),
+            Self::Strands(strands) => return strands.validate(problems),
+            Self::Grains(grains) => return grains.validate(problems),
         };
         if let Self::Cone(Cone { sides, .. }) = self
             && !(3..=1000).contains(sides)
@@ -162,10 +223,34 @@ impl Shape {
     }
 }
 
+/// Reports lengths that are none; whether all are.
+fn above_0(
+    lengths: impl Iterator<Item = (&'static str, f64)>,
+    problems: &mut Vec<(&'static str, String)>,
+) -> bool {
+    let before = problems.len();
+    for (key, value) in lengths {
+        if !(value.is_finite() && value > 0.0) {
+            problems.push((key, format!("{value} must be a length in metres above 0")));
+        }
+    }
+    problems.len() == before
+}
+
+/// Reports an edge length that makes too many vertices.
+fn too_many(vertices: f64, edge: f64, problems: &mut Vec<(&'static str, String)>) {
+    if vertices > MOST_VERTICES {
+        let message = format!("{edge} m would make more than {MOST_VERTICES:e} vertices; it must be larger");
+        problems.push(("edge", message));
+    }
+}
+
 /// Number of segments of about `edge` that a length is divided into, at least 1.
 fn segments(length: f64, edge: f64) -> u32 {
     (length / edge).round().clamp(1.0, 1e6) as u32
 }
 
+#[cfg(test)]
+mod elements_tests;
 #[cfg(test)]
 mod tests;

@@ -83,9 +83,9 @@ pub fn describe_intersections(world: &World, intersections: &[Intersection]) -> 
             let name = world.half_space_names.get(plane).map_or("", String::as_str);
             return format!("half-space {name}");
         };
-        let first = world.bodies.get(body as usize).map_or(0, |b| b.vertices.start);
+        let number = |v: &u32| world.bodies.get(body as usize).map_or(*v, |b| b.mesh_number(*v));
         let vertices: Vec<String> =
-            intersection.vertices[side].iter().map(|v| (v - first).to_string()).collect();
+            intersection.vertices[side].iter().map(|v| number(v).to_string()).collect();
         let element = match vertices.as_slice() {
             [vertex] => format!("{kind} {vertex}"),
             list => format!("{kind} (vertices {})", list.join(", ")),

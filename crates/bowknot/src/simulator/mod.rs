@@ -1,13 +1,17 @@
 //! The time-step loop.
 //!
 //! For each Newton iteration the dynamics makes a target y from x, prescribed vertices (pins, obstacles)
-//! get their keyframe at t + dt, and the two-way method moves x towards y without intersections; at the
-//! end v = (x_end - x_start) / dt. With [`CollisionEvery::Step`] the iterations run freely and the
+//! get their keyframe at t + dt, and the two-way method moves x towards y without intersections; the
+//! vertices inside of solids, which it does not know, are then brought along. At the end
+//! v = (x_end - x_start) / dt. With [`CollisionEvery::Step`] the iterations run freely and the
 //! two-way method resolves once, from the start of the step to the last target.
 
 mod checkpoint;
 mod error;
+mod interior;
+mod prescribed;
 mod process;
+mod repulsion;
 mod statistics;
 
 pub use checkpoint::Checkpoint;
@@ -21,6 +25,8 @@ use crate::world::{Attachment, World};
 use bowknot_dynamics::{Dynamics, DynamicsModel};
 use bowknot_geometry::{Point, Vector};
 use bowknot_twoway::{AcceptedState, Call, Observer, ResolveError, Resolver};
+use interior::Interior;
+use repulsion::Repulsion;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Instant;
@@ -43,6 +49,8 @@ pub struct Simulator {
     anchors: Vec<Vec<Point>>,
     /// Of pins that follow an obstacle, by pin and vertex; made from the anchors when first needed.
     attachments: Vec<Vec<Option<Attachment>>>,
+    interior: Interior,
+    repulsion: Repulsion,
     scratch: Scratch,
 }
 
@@ -54,9 +62,10 @@ struct Scratch {
     y: Vec<Point>,
     prescribed: Vec<bool>,
     keyframes: Vec<Point>,
+    groups: Vec<u32>,
 }
 
-/// A collision problem on its way to the two-way method.
+/// A collision problem on its way to the two-way method. Slices have one entry a vertex that collides.
 #[derive(Clone, Copy, Debug)]
 pub struct CollisionProblem<'a> {
     /// The time step, from 1.
@@ -109,10 +118,12 @@ impl Simulator {
     /// Whatever is wrong with the scene or its meshes; a start that already intersects, with the first
     /// pairs.
     pub fn new(scene: &Scene) -> Result<Self, SimulationError> {
-        let simulator = Self::without_start_check(scene)?;
+        let mut simulator = Self::without_start_check(scene)?;
         let options = StateOptions { limit: NAMED_PAIRS, distance: false };
-        let report = simulator.judge().check_state(&simulator.positions, &options)?;
+        let count = simulator.world.collision_vertices();
+        let report = simulator.judge().check_state(&simulator.positions[..count], &options)?;
         if report.is_clear() {
+            simulator.survey()?;
             return Ok(simulator);
         }
         let lines = describe_intersections(&simulator.world, &report.intersections);
@@ -126,16 +137,23 @@ impl Simulator {
     pub fn start_intersections(scene: &Scene) -> Result<(World, StateReport), SimulationError> {
         let world = World::new(scene)?;
         let options = StateOptions { limit: usize::MAX, distance: false };
-        let report = Judge::from_model(&world.collision).check_state(&world.positions, &options)?;
+        let positions = &world.positions[..world.collision_vertices()];
+        let report = Judge::from_model(&world.collision).check_state(positions, &options)?;
         Ok((world, report))
     }
 
     fn without_start_check(scene: &Scene) -> Result<Self, SimulationError> {
         let world = World::new(scene)?;
         let model = world.dynamics_model()?;
-        let (rest, masses) = (model.rest_positions(), model.masses());
+        let count = world.collision_vertices();
+        let (rest, masses) = (&model.rest_positions()[..count], &model.masses()[..count]);
+        let contact = world.contact.clone();
         let resolver = Resolver::new(world.collision.clone(), rest, masses, scene.twoway.clone())
+            .and_then(|resolver| resolver.with_bodies(contact.bodies))
+            .and_then(|resolver| resolver.with_half_spaces(contact.half_spaces))
+            .and_then(|resolver| resolver.with_pair_friction(&contact.pairs))
             .map_err(|source| resolve_error(&world, 0, source))?;
+        let repulsion = Repulsion::new(&scene.repulsion, &resolver)?;
         let dynamics = Dynamics::new(model, scene.dynamics).map_err(SimulationError::Dynamics)?;
         let anchors = vec![Vec::new(); world.pins.len()];
         Ok(Self {
@@ -149,9 +167,23 @@ impl Simulator {
             velocities: world.velocities.clone(),
             attachments: vec![Vec::new(); anchors.len()],
             anchors,
+            interior: Interior::new(&world, scene.simulation.interior),
+            repulsion,
             scratch: Scratch::default(),
             world: Arc::new(world),
         })
+    }
+
+    /// Looks for what is near at the present state: refuses coordinates too large for the gap floor, and finds who
+    /// repels whom.
+    fn survey(&mut self) -> Result<(), SimulationError> {
+        let Self { world, resolver, repulsion, positions, step, dt, .. } = self;
+        let call = Call { time_step: Some(*dt), ..Call::default() };
+        let contacts = resolver
+            .survey(&positions[..world.collision_vertices()], &call)
+            .map_err(|source| resolve_error(world, *step, source))?;
+        repulsion.find(contacts);
+        Ok(())
     }
 
     /// Makes one time step.
@@ -178,6 +210,7 @@ impl Simulator {
         scratch.start.clone_from(&self.positions);
         let anchors = self.anchors.clone();
         self.prescribe(time, &mut scratch);
+        statistics.repulsion_springs = self.repulsion.springs().len();
         let result = self.iterate(step, &mut scratch, watcher, &mut statistics);
         if let Err(error) = result {
             self.positions.clone_from(&scratch.start);
@@ -190,13 +223,17 @@ impl Simulator {
         let dt = self.dt;
         let moved = self.positions.iter().zip(&scratch.start);
         self.velocities.iter_mut().zip(moved).for_each(|(v, (x, x0))| *v = (x - x0) / dt);
+        self.repulsion.find(&self.resolver.state().contacts);
+        statistics.waiting = self.waiting(time, &scratch);
+        statistics.inverted_tets = interior::inverted(&self.world, &self.positions);
         self.scratch = scratch;
         self.step = step;
 
         let model = self.dynamics.model();
         statistics.max_stretch = model.max_stretch(&self.positions);
-        let deformable = &self.velocities[..self.world.deformable_vertices];
-        statistics.max_speed = deformable.iter().map(Vector::norm).fold(0.0, f64::max);
+        let (collide, inside) = self.velocities.split_at(self.world.collision_vertices());
+        let deformable = collide[..self.world.deformable_vertices].iter().chain(inside);
+        statistics.max_speed = deformable.map(Vector::norm).fold(0.0, f64::max);
         statistics.finish(
             &self.dynamics.energies(&self.positions, &self.velocities),
             &model.momentum(&self.velocities),
@@ -217,11 +254,13 @@ impl Simulator {
         watcher: &mut dyn Watcher,
         statistics: &mut StepStatistics,
     ) -> Result<(), SimulationError> {
-        let Self { world, dynamics, resolver, positions, velocities, dt, .. } = self;
-        let Scratch { start, x, y, prescribed, keyframes } = scratch;
+        let Self { world, dynamics, resolver, positions, velocities, dt, interior, repulsion, .. } = self;
+        let Scratch { start, x, y, prescribed, keyframes, groups } = scratch;
         let target_error = |source| SimulationError::Target { step, source };
+        let count = world.collision_vertices();
 
         let clock = Instant::now();
+        repulsion.apply(dynamics).map_err(target_error)?;
         dynamics.begin_step(start, velocities, *dt).map_err(target_error)?;
         statistics.seconds.dynamics += clock.elapsed().as_secs_f64();
         y.clone_from(start);
@@ -248,68 +287,46 @@ impl Simulator {
                 CollisionEvery::Newton => {}
             }
 
-            let problem =
-                CollisionProblem { step, iteration, positions: x, target: y, prescribed, time_step: *dt };
+            let problem = CollisionProblem {
+                step,
+                iteration,
+                positions: &x[..count],
+                target: &y[..count],
+                prescribed: &prescribed[..count],
+                time_step: *dt,
+            };
             if watcher.problem(&problem).is_break() {
                 return Err(SimulationError::Interrupted);
             }
             let mut relay = Relay { watcher: &mut *watcher, step, iteration, stopped: false };
-            let call = Call { prescribed, time_step: Some(*dt), start: Some(start), ..Call::default() };
-            let resolved = resolver.resolve(x, y, &call, &mut relay);
+            let call = Call {
+                prescribed: &prescribed[..count],
+                time_step: Some(*dt),
+                start: Some(&start[..count]),
+                groups,
+            };
+            let resolved = resolver.resolve(&mut x[..count], &y[..count], &call, &mut relay);
             if relay.stopped {
                 return Err(SimulationError::Interrupted);
             }
             let resolved = resolved.map_err(|source| resolve_error(world, step, source))?;
             statistics.add_collision(&resolved, |body| world.name_of(body).to_owned());
+
+            x[count..].copy_from_slice(&y[count..]);
+            if x[..count] == y[..count] {
+                continue;
+            }
+            let clock = Instant::now();
+            statistics.interior_solves +=
+                interior.follow(dynamics, prescribed, y, x).map_err(target_error)?;
+            statistics.collision_energy_j += energy_put_in(dynamics, start, y, x, *dt);
+            statistics.seconds.dynamics += clock.elapsed().as_secs_f64();
         }
         positions.clone_from(x);
         Ok(())
     }
 
-    /// Fills in who is prescribed at `time`, the end of the time step, and where.
-    fn prescribe(&mut self, time: f64, scratch: &mut Scratch) {
-        let Self { world, anchors, attachments, positions, dt, .. } = self;
-        let Scratch { prescribed, keyframes, .. } = scratch;
-        prescribed.clear();
-        prescribed.resize(positions.len(), false);
-        keyframes.clone_from(positions);
-        for body in world.bodies.iter().filter(|body| body.kind.is_none()) {
-            let range = body.vertices.start as usize..body.vertices.end as usize;
-            prescribed[range.clone()].fill(true);
-            body.motion.positions(&world.base[range.clone()], time, &mut keyframes[range]);
-        }
-        // Times are multiples of dt, rounded.
-        let tolerance = 1e-9 * *dt;
-        for ((pin, anchor), attachments) in world.pins.iter().zip(anchors).zip(attachments) {
-            if pin.start >= time - tolerance || time > pin.end + tolerance {
-                continue;
-            }
-            if anchor.is_empty() && pin.start > 0.0 {
-                let place = pin.motion.as_ref().map(|motion| motion.at(pin.start));
-                let undo = |v: &u32| {
-                    let x = &positions[*v as usize];
-                    place.map_or(*x, |place| place.undo(x))
-                };
-                *anchor = pin.vertices.iter().map(undo).collect();
-            }
-            if pin.follow.is_some() && attachments.is_empty() {
-                let home = |v: &u32| world.positions[*v as usize];
-                let homes: Vec<Point> = pin.vertices.iter().map(home).collect();
-                *attachments = world.attach(pin, if anchor.is_empty() { &homes } else { anchor });
-            }
-            let place = pin.motion.as_ref().map(|motion| motion.at(time));
-            for (k, &v) in pin.vertices.iter().enumerate() {
-                let v = v as usize;
-                let home = anchor.get(k).unwrap_or(&world.positions[v]);
-                prescribed[v] = true;
-                let followed = attachments.get(k).and_then(|a| a.as_ref()?.place(keyframes));
-                let led = || place.map_or(*home, |place| place.apply(home));
-                keyframes[v] = followed.unwrap_or_else(led);
-            }
-        }
-    }
-
-    /// Positions of all vertices, deformable ones first [m].
+    /// Positions of all vertices, in the order of the [world](crate::world) [m].
     pub fn positions(&self) -> &[Point] {
         &self.positions
     }
@@ -386,8 +403,17 @@ impl Simulator {
         self.velocities.clone_from(&checkpoint.velocities);
         self.anchors.clone_from(&checkpoint.anchors);
         self.attachments.iter_mut().for_each(Vec::clear);
-        Ok(())
+        self.survey().map_err(|error| error.to_string())
     }
+}
+
+/// Energy of where the collision stage left x, less that of its target y, if positive [J].
+fn energy_put_in(dynamics: &Dynamics, start: &[Point], y: &[Point], x: &[Point], dt: f64) -> f64 {
+    let energy = |end: &[Point]| {
+        let velocities: Vec<Vector> = end.iter().zip(start).map(|(x, x0)| (x - x0) / dt).collect();
+        dynamics.energies(end, &velocities).total()
+    };
+    (energy(x) - energy(y)).max(0.0)
 }
 
 fn resolve_error(world: &World, step: usize, source: ResolveError) -> SimulationError {

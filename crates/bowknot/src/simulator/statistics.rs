@@ -4,6 +4,7 @@ use bowknot_dynamics::{Energies, NewtonInfo};
 use bowknot_geometry::{Point, Vector};
 use bowknot_twoway::{Skipped, Statistics};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// What a time step did and how it ended; it serialises to one line of `stats.jsonl`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -59,11 +60,36 @@ pub struct StepStatistics {
     /// Work that was skipped because nothing needed it.
     pub skipped: Skipped,
     /// Name of the body that has travelled least of its way, if a collision problem did not converge.
-    #[serde(skip)]
+    #[serde(default)]
     pub slowest_body: Option<String>,
     /// Largest distance by which an obstacle or pin is behind its keyframe at the end [m].
-    #[serde(skip)]
+    #[serde(default)]
     pub prescribed_behind_m: f64,
+    /// The obstacles and pins that wait for what is in their way, by name, and how far they are behind their
+    /// keyframes at the end [m].
+    #[serde(default)]
+    pub waiting: BTreeMap<String, f64>,
+    /// Bound on the kinetic energy that separation to the desired distance injected [J], the sum over all collision
+    /// problems, see [`Statistics::injected_j`].
+    #[serde(default)]
+    pub injected_energy_j: f64,
+    /// Energy that the collision stage put in, as measured [J]: kinetic, elastic and potential energy after it, less
+    /// that of the target of the dynamics, where that is positive; the sum over all collision problems. Separation
+    /// shows here, and the work of moving obstacles; what the dynamics itself loses does not.
+    #[serde(default)]
+    pub collision_energy_j: f64,
+    /// Friction rows of the last backward step.
+    #[serde(default)]
+    pub friction_rows: usize,
+    /// Springs of the repulsion.
+    #[serde(default)]
+    pub repulsion_springs: usize,
+    /// Tetrahedra without a positive volume at the end.
+    #[serde(default)]
+    pub inverted_tets: usize,
+    /// Elastic solves by which vertices inside of solids were brought along with their surfaces.
+    #[serde(default)]
+    pub interior_solves: usize,
 }
 
 /// Energies [J].
@@ -112,6 +138,8 @@ impl StepStatistics {
         self.contact_rows = call.contact_rows;
         self.edge_rows = call.edge_rows;
         self.active_rows = call.active_rows;
+        self.friction_rows = call.friction_rows;
+        self.injected_energy_j += call.injected_j;
         self.frozen_pairs += call.frozen_pairs;
         self.remaining_r = self.remaining_r.max(call.remaining_r);
         self.remaining_m = self.remaining_m.max(call.remaining_m);

@@ -1,7 +1,11 @@
 //! Integration tests of the facade, in one binary.
 
+/// What users get wrong about kinds, materials, friction and sequences.
+mod bad_bodies;
 /// What users get wrong, and what they are told.
 mod bad_input;
+/// Solids, strands, particles, friction and sequences, from scene to motion.
+mod bodies;
 /// The walking figure, what follows it, and its dresses.
 mod figure;
 /// `docs/scene-reference.md` follows the structs.

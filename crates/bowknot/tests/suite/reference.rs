@@ -2,11 +2,13 @@
 //! differs. `BOWKNOT_ACCEPT=1 cargo test --release -p bowknot reference` writes it anew.
 
 use bowknot::constraints::ConstraintParams;
-use bowknot::dynamics::{ClothMaterial, DynamicsParams};
+use bowknot::dynamics::{ClothMaterial, DynamicsParams, ParticleMaterial, SolidMaterial, StrandMaterial};
 use bowknot::scene::{
-    BodySpec, Keyframe, Motion, ObstacleSpec, OutputParams, PinSpec, Region, SimulationParams,
+    BodyKind, BodySpec, FrictionPair, Keyframe, Motion, ObstacleSpec, OutputParams, PinSpec, Region,
+    RepulsionParams, SimulationParams,
 };
 use bowknot::shapes::{Ball, Cone, Cuboid, Figure, Garment, HalfSpaceShape, Sheet, Tube};
+use bowknot::shapes::{Block, Grains, Strands, TetBall};
 use bowknot::stepper::StepperParams;
 use bowknot::twoway::{BackwardParams, Params, StopParams};
 use serde::Serialize;
@@ -16,9 +18,11 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 /// Where the structs and enums are, relative to `crates`.
-const SOURCES: [&str; 20] = [
+const SOURCES: [&str; 29] = [
     "bowknot/src/scene/params.rs",
     "bowknot/src/scene/body.rs",
+    "bowknot/src/scene/material.rs",
+    "bowknot/src/scene/contact.rs",
     "bowknot/src/scene/motion.rs",
     "bowknot/src/io/import.rs",
     "bowknot/src/shapes/mod.rs",
@@ -29,12 +33,19 @@ const SOURCES: [&str; 20] = [
     "bowknot/src/shapes/cuboid.rs",
     "bowknot/src/shapes/figure/mod.rs",
     "bowknot/src/shapes/garment.rs",
+    "bowknot/src/shapes/block.rs",
+    "bowknot/src/shapes/tet_ball.rs",
+    "bowknot/src/shapes/strands.rs",
+    "bowknot/src/shapes/grains.rs",
     "constraints/src/params.rs",
     "stepper/src/params.rs",
     "twoway/src/params.rs",
     "dynamics/src/params.rs",
     "dynamics/src/material/mod.rs",
     "dynamics/src/material/cloth.rs",
+    "dynamics/src/material/solid.rs",
+    "dynamics/src/material/strand.rs",
+    "dynamics/src/material/particle.rs",
     "lcp/src/params.rs",
     "geometry/src/lib.rs",
 ];
@@ -175,12 +186,14 @@ impl Page {
         }
         let word = match inner {
             "f64" => "number",
-            "usize" | "u32" => "integer",
+            "usize" | "u32" | "u64" => "integer",
             "bool" => "boolean",
             "String" => "string",
             "PathBuf" => "path",
             "Vector" | "Point" | "[f64; 3]" => "[x, y, z]",
             "[f64; 2]" => "[x, y]",
+            "[usize; 3]" => "[nx, ny, nz]",
+            "[String; 2]" => "[name, name]",
             "Material" => "name or table",
             _ => match self.sources.variants(inner) {
                 Some(variants) => {
@@ -236,7 +249,7 @@ fn split_unit(doc: &str, kind: &str) -> (String, String) {
             return (unit.to_owned(), format!("{before}{after}"));
         }
     }
-    let number = ["f64", "usize", "u32"].iter().any(|word| kind.contains(word));
+    let number = ["f64", "usize", "u32", "u64"].iter().any(|word| kind.contains(word));
     (if number { "1".to_owned() } else { String::new() }, doc.to_owned())
 }
 
@@ -269,6 +282,13 @@ fn page() -> String {
     let _: (&ConstraintParams, &StepperParams) = (&fast.constraints, &fast.stepper);
 
     page.section(
+        "[[contact.friction_pairs]]",
+        "Friction between two bodies, in place of the mean of their own.",
+    );
+    page.head(false);
+    page.rows("FrictionPair", &FrictionPair::default(), None, all);
+
+    page.section(
         "[solver]",
         "The backward step of the two-way method, Newton's method and its linear solve.",
     );
@@ -280,6 +300,13 @@ fn page() -> String {
     page.head(true);
     page.rows::<StopParams>("StopParams", &fast.stop, Some(&paper.stop), all);
 
+    page.section(
+        "[solver.repulsion]",
+        "Springs between surfaces that are near at the start of a time step, in the system of the dynamics.",
+    );
+    page.head(false);
+    page.rows("RepulsionParams", &RepulsionParams::default(), None, all);
+
     page.section("[output]", "What a run writes.");
     page.head(false);
     page.rows("OutputParams", &OutputParams::default(), None, all);
@@ -287,17 +314,27 @@ fn page() -> String {
     page.section("[[body]]", "A deformable body; at least one.");
     page.head(false);
     page.rows("BodySpec", &BodySpec::default(), None, all);
-    let fabrics: Vec<String> = ClothMaterial::NAMES.iter().map(|name| format!("`{name}`")).collect();
     page.section(
         "body.material",
-        &format!(
-            "A fabric by name ({}), or a table: `fabric` names the one that the numbers left out come from. The \
-             defaults are those of `cotton`.",
-            fabrics.join(", ")
-        ),
+        "A material of the body's kind by name, or a table: `base` names the one that the numbers left out come from \
+         (for a cloth `fabric` does as well). The defaults are those of the kind's first material.",
     );
+    let names = |kind: BodyKind| {
+        let names: Vec<String> = kind.materials().iter().map(|name| format!("`{name}`")).collect();
+        format!("\n`kind = \"{}\"`: {}.\n", kind.name(), names.join(", "))
+    };
+    page.text += &names(BodyKind::Cloth);
     page.head(false);
     page.rows("ClothMaterial", &ClothMaterial::default(), None, all);
+    page.text += &names(BodyKind::Solid);
+    page.head(false);
+    page.rows("SolidMaterial", &SolidMaterial::default(), None, all);
+    page.text += &names(BodyKind::Strands);
+    page.head(false);
+    page.rows("StrandMaterial", &StrandMaterial::default(), None, all);
+    page.text += &names(BodyKind::Particles);
+    page.head(false);
+    page.rows("ParticleMaterial", &ParticleMaterial::default(), None, all);
 
     page.section("[[obstacle]]", "Something that bodies collide with and that moves only as prescribed.");
     page.head(false);
@@ -362,6 +399,18 @@ fn page() -> String {
     );
     page.head(false);
     page.rows("HalfSpaceShape", &HalfSpaceShape::default(), None, all);
+    let _ = write!(page.text, "\n`type = \"block\"`: a box of tetrahedra, a solid.\n");
+    page.head(false);
+    page.rows("Block", &Block::default(), None, all);
+    let _ = write!(page.text, "\n`type = \"tet-ball\"`: a ball of tetrahedra, a solid.\n");
+    page.head(false);
+    page.rows("TetBall", &TetBall::default(), None, all);
+    let _ = write!(page.text, "\n`type = \"strands\"`: a bundle of strands.\n");
+    page.head(false);
+    page.rows("Strands", &Strands::default(), None, all);
+    let _ = write!(page.text, "\n`type = \"grains\"`: particles in a box.\n");
+    page.head(false);
+    page.rows("Grains", &Grains::default(), None, all);
     page.text
 }
 
@@ -404,7 +453,18 @@ fn every_key_that_a_scene_has_is_on_the_page() {
     keys(&Value::Table(table), &mut found);
     assert!(found.len() > 60);
     for key in found {
-        let heading = ["simulation", "contact", "solver", "output", "body", "obstacle", "pin", "stop"];
+        let heading = [
+            "simulation",
+            "contact",
+            "friction_pairs",
+            "solver",
+            "repulsion",
+            "output",
+            "body",
+            "obstacle",
+            "pin",
+            "stop",
+        ];
         let known =
             heading.contains(&key.as_str()) || page.contains(&format!("| `{key}` |")) || key == "type";
         assert!(known, "{key} is not documented");

@@ -82,6 +82,15 @@ fn a_run_leaves_the_folder_that_other_tools_rely_on() {
         "seconds",
         "cpu_seconds",
         "skipped",
+        "slowest_body",
+        "prescribed_behind_m",
+        "waiting",
+        "injected_energy_j",
+        "collision_energy_j",
+        "friction_rows",
+        "repulsion_springs",
+        "inverted_tets",
+        "interior_solves",
     ];
     expected.sort_unstable();
     for (index, line) in lines.iter().enumerate() {
