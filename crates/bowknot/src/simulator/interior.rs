@@ -123,6 +123,7 @@ fn count_inverted(tets: &[[u32; 4]], x: &[Point]) -> usize {
         let [a, b, c, d] = tet.map(|v| x[v as usize]);
         (b - a).cross(&(c - a)).dot(&(d - a))
     };
-    // A tetrahedron of NaN is inverted too.
-    tets.iter().filter(|tet| !(volume(tet) > 0.0)).count()
+    // One of a volume that is no number does not count as sound.
+    let sound = |tet: &&[u32; 4]| volume(tet) > 0.0;
+    tets.len() - tets.iter().filter(sound).count()
 }

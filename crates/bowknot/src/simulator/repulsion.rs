@@ -48,8 +48,9 @@ impl Repulsion {
         for kind in PairKind::ALL {
             for index in contacts.pairs.range(kind) {
                 let separation = &contacts.separations[index];
-                // Not by `>`: a distance that is no number repels nothing.
-                if !(separation.distance < self.range) {
+                // A distance that is no number repels nothing.
+                let near = separation.distance < self.range;
+                if !near {
                     continue;
                 }
                 let pair = &contacts.pairs.pairs()[index];
