@@ -16,7 +16,7 @@ pub(super) fn scene(scale: f64) -> Scene {
         ..Garment::default()
     };
     let mut scene = figure(Figure {
-        edge: (0.016 / scale).min(0.03),
+        edge: (0.016 / scale).min(0.02),
         turn_rate: 150.0,
         turn_start: 1.3,
         turn_end: 2.5,

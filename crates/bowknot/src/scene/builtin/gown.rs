@@ -17,7 +17,7 @@ pub(super) fn scene(scale: f64) -> Scene {
         ..Garment::default()
     };
     let mut scene = figure(Figure {
-        edge: (0.016 / scale).min(0.03),
+        edge: (0.016 / scale).min(0.02),
         walk_speed: 0.75,
         cadence: 1.6,
         leg_swing: 17.0,
