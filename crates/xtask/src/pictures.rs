@@ -23,6 +23,18 @@ const PICTURES: &[Scene] = &[
     Scene { name: "stack", scale: "0.7", frames: &[70], options: "" },
     Scene { name: "sphere", scale: "0.3", frames: &[60], options: "" },
     Scene { name: "tube", scale: "0.6", frames: &[150], options: "" },
+    Scene {
+        name: "dress",
+        scale: "0.3",
+        frames: &[90, 170],
+        options: "--camera 5.0,2.9,1.3 --target 0.7,0.03,0.83 --fov 22",
+    },
+    Scene {
+        name: "gown",
+        scale: "0.3",
+        frames: &[80, 180],
+        options: "--camera 4.9,2.7,1.3 --target 0.55,-0.09,0.83 --fov 22",
+    },
 ];
 
 /// Largest size of a picture [bytes]: the repository keeps them.
