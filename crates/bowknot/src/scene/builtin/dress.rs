@@ -2,7 +2,7 @@ use super::figure::{figure, sew, spacing};
 use crate::scene::Scene;
 use crate::shapes::{Figure, Garment};
 
-/// 30,100 vertices and 59,300 triangles, after Fig. 21a of the paper: a dress to the knees and two wider
+/// 30,057 vertices and 59,204 triangles, after Fig. 21a of the paper: a dress to the knees and two wider
 /// skirts over it, 3.5 s of walking with a half turn on the way.
 pub(super) fn scene(scale: f64) -> Scene {
     let edge = (0.0129 / scale).min(0.06);
