@@ -12,7 +12,8 @@ use super::reader::{Reader, describe, join};
 use super::source::Source;
 use crate::io::Import;
 use crate::shapes::{
-    Ball, Block, Cone, Cuboid, Figure, Garment, Grains, HalfSpaceShape, Shape, Sheet, Strands, TetBall, Tube,
+    Ball, Block, Cone, Cuboid, Figure, Garment, Grains, HalfSpaceShape, Lathe, Ribbon, Shape, Sheet, Strands,
+    TetBall, Tube, Wedge,
 };
 use bowknot_constraints::ConstraintParams;
 use bowknot_dynamics::DynamicsParams;
@@ -208,6 +209,9 @@ fn shape(reader: &mut Reader<'_>, table: &Table, path: &str) -> Option<Shape> {
         "box" => Shape::Box(reader.structure::<Cuboid>(&rest, &path, &[])),
         "figure" => Shape::Figure(reader.structure::<Figure>(&rest, &path, &[])),
         "garment" => Shape::Garment(reader.structure::<Garment>(&rest, &path, &[])),
+        "wedge" => Shape::Wedge(reader.structure::<Wedge>(&rest, &path, &[])),
+        "lathe" => Shape::Lathe(reader.structure::<Lathe>(&rest, &path, &[])),
+        "ribbon" => Shape::Ribbon(reader.structure::<Ribbon>(&rest, &path, &[])),
         "half-space" => Shape::HalfSpace(reader.structure::<HalfSpaceShape>(&rest, &path, &[])),
         "block" => Shape::Block(reader.structure::<Block>(&rest, &path, &[])),
         "tet-ball" => Shape::TetBall(reader.structure::<TetBall>(&rest, &path, &[])),

@@ -129,7 +129,8 @@ fn problems_name_file_line_key_and_what_is_allowed() {
             "type = \"sheet\"",
             "type = \"shet\"",
             "scene.toml:16: body[0].shape.type: \"shet\" must be one of sheet, tube, ball, cone, box, \
-             figure, garment, half-space, block, tet-ball, strands, grains; did you mean sheet?",
+             figure, garment, wedge, lathe, ribbon, half-space, block, tet-ball, strands, grains; did you \
+             mean sheet?",
         ),
         (
             "radius = 0.3",
@@ -252,6 +253,10 @@ fn builtin_scenes_have_the_sizes_that_they_claim() {
         ("stack", 8836, 16928),
         ("sphere", 50176, 99458),
         ("tube", 25600, 50880),
+        ("blade", 59405, 116_640),
+        ("funnel", 49284, 97_682),
+        ("bow-knot", 71778, 136_640),
+        ("reef-knot", 36432, 69_468),
     ] {
         let info = Scene::builtin(name, 1.0).expect("a scene").info().expect("meshes");
         assert_eq!((info.vertices, info.triangles), (vertices, triangles), "{name}");

@@ -8,10 +8,13 @@ mod figure;
 mod garment;
 mod grains;
 mod isosurface;
+mod lathe;
+mod ribbon;
 mod sheet;
 mod strands;
 mod tet_ball;
 mod tube;
+mod wedge;
 
 pub use ball::Ball;
 pub use block::Block;
@@ -20,10 +23,13 @@ pub use cuboid::Cuboid;
 pub use figure::{AnimatedFigure, Figure};
 pub use garment::Garment;
 pub use grains::Grains;
+pub use lathe::Lathe;
+pub use ribbon::Ribbon;
 pub use sheet::{Diagonals, Sheet};
 pub use strands::{Root, Strands};
 pub use tet_ball::TetBall;
 pub use tube::Tube;
+pub use wedge::Wedge;
 
 use crate::io::Mesh;
 use crate::scene::BodyKind;
@@ -51,6 +57,12 @@ pub enum Shape {
     Figure(Figure),
     /// A tube of cloth around the figure.
     Garment(Garment),
+    /// A closed, sharp wedge, such as a blade.
+    Wedge(Wedge),
+    /// A surface of revolution, such as a funnel.
+    Lathe(Lathe),
+    /// A strip along a curve.
+    Ribbon(Ribbon),
     /// Everything below a plane, such as the ground. For obstacles only.
     HalfSpace(HalfSpaceShape),
     /// A box of tetrahedra.
@@ -100,7 +112,7 @@ const MOST_VERTICES: f64 = 2e7;
 
 impl Shape {
     /// Names that the key `type` may have.
-    pub const NAMES: [&'static str; 12] = [
+    pub const NAMES: [&'static str; 15] = [
         "sheet",
         "tube",
         "ball",
@@ -108,6 +120,9 @@ impl Shape {
         "box",
         "figure",
         "garment",
+        "wedge",
+        "lathe",
+        "ribbon",
         "half-space",
         "block",
         "tet-ball",
@@ -150,6 +165,9 @@ impl Shape {
             Self::Box(cuboid) => Some(cuboid.mesh()),
             Self::Figure(figure) => Some(figure.mesh()),
             Self::Garment(garment) => Some(garment.mesh()),
+            Self::Wedge(wedge) => Some(wedge.mesh()),
+            Self::Lathe(lathe) => Some(lathe.mesh()),
+            Self::Ribbon(ribbon) => Some(ribbon.mesh()),
             Self::HalfSpace(_) | Self::Block(_) | Self::TetBall(_) | Self::Strands(_) | Self::Grains(_) => {
                 None
             }
@@ -189,6 +207,24 @@ impl Shape {
             Self::Garment(garment) => {
                 garment.validate(problems);
                 (Vec::new(), garment.area(), garment.edge)
+            }
+            Self::Wedge(w) => (
+                vec![("length", w.length), ("thickness", w.thickness), ("height", w.height)],
+                2.0 * w.length * (w.height + w.thickness),
+                w.edge,
+            ),
+            Self::Lathe(l) => {
+                let before = problems.len();
+                l.validate(problems);
+                let widest = l.profile.iter().fold(0.0f64, |m, p| m.max(p[0]));
+                let area = if problems.len() == before { 7.0 * widest * l.profile_length() } else { 0.0 };
+                (Vec::new(), area, l.edge)
+            }
+            Self::Ribbon(r) => {
+                let before = problems.len();
+                r.validate(problems);
+                let area = if problems.len() == before { r.width * r.length() } else { 0.0 };
+                (vec![("width", r.width)], area, r.edge)
             }
             Self::HalfSpace(h) => {
                 if !(h.normal.iter().all(|c| c.is_finite()) && h.normal.norm() > 0.0) {

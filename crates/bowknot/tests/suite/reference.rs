@@ -7,7 +7,9 @@ use bowknot::scene::{
     BodyKind, BodySpec, FrictionPair, Keyframe, Motion, ObstacleSpec, OutputParams, PinSpec, Region,
     RepulsionParams, SimulationParams,
 };
-use bowknot::shapes::{Ball, Cone, Cuboid, Figure, Garment, HalfSpaceShape, Sheet, Tube};
+use bowknot::shapes::{
+    Ball, Cone, Cuboid, Figure, Garment, HalfSpaceShape, Lathe, Ribbon, Sheet, Tube, Wedge,
+};
 use bowknot::shapes::{Block, Grains, Strands, TetBall};
 use bowknot::stepper::StepperParams;
 use bowknot::twoway::{BackwardParams, Params, StopParams};
@@ -18,7 +20,7 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 /// Where the structs and enums are, relative to `crates`.
-const SOURCES: [&str; 29] = [
+const SOURCES: [&str; 32] = [
     "bowknot/src/scene/params.rs",
     "bowknot/src/scene/body.rs",
     "bowknot/src/scene/material.rs",
@@ -33,6 +35,9 @@ const SOURCES: [&str; 29] = [
     "bowknot/src/shapes/cuboid.rs",
     "bowknot/src/shapes/figure/mod.rs",
     "bowknot/src/shapes/garment.rs",
+    "bowknot/src/shapes/wedge.rs",
+    "bowknot/src/shapes/lathe.rs",
+    "bowknot/src/shapes/ribbon.rs",
     "bowknot/src/shapes/block.rs",
     "bowknot/src/shapes/tet_ball.rs",
     "bowknot/src/shapes/strands.rs",
@@ -393,6 +398,16 @@ fn page() -> String {
     );
     page.head(false);
     page.rows("Garment", &Garment::default(), None, all);
+    let _ =
+        write!(page.text, "\n`type = \"wedge\"`: a closed prism with a sharp upper edge, such as a blade.\n");
+    page.head(false);
+    page.rows("Wedge", &Wedge::default(), None, all);
+    let _ = write!(page.text, "\n`type = \"lathe\"`: a surface of revolution about the z axis.\n");
+    page.head(false);
+    page.rows("Lathe", &Lathe::default(), None, all);
+    let _ = write!(page.text, "\n`type = \"ribbon\"`: a strip along a smooth curve.\n");
+    page.head(false);
+    page.rows("Ribbon", &Ribbon::default(), None, all);
     let _ = write!(
         page.text,
         "\n`type = \"half-space\"`: everything below the plane through `translate`; for obstacles only.\n"

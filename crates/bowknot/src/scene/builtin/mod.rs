@@ -1,10 +1,15 @@
 //! The built-in scenes, a file each. Dimensions are fixed; `scale` multiplies the resolution.
 
+mod blade;
+mod bow_knot;
 mod drape;
 mod dress;
 mod figure;
+mod funnel;
 mod gown;
+mod knot;
 mod needle;
+mod reef_knot;
 mod sphere;
 mod stack;
 mod tube;
@@ -47,6 +52,26 @@ pub const BUILTIN: &[Builtin] = &[
         name: "gown",
         summary: "a long gown of four layers on a figure that walks in a curve",
         make: gown::scene,
+    },
+    Builtin {
+        name: "blade",
+        summary: "five sheets drop onto a sharp blade, dt = 1/20 s",
+        make: blade::scene,
+    },
+    Builtin {
+        name: "funnel",
+        summary: "a sheet is drawn through a funnel by its middle, dt = 1/20 s",
+        make: funnel::scene,
+    },
+    Builtin {
+        name: "bow-knot",
+        summary: "two ribbons, loosely tied in a bow, are pulled tight",
+        make: bow_knot::scene,
+    },
+    Builtin {
+        name: "reef-knot",
+        summary: "two ribbons, loosely tied in a reef knot, are pulled tight",
+        make: reef_knot::scene,
     },
 ];
 
