@@ -11,7 +11,7 @@ pub(super) fn scene(scale: f64) -> Scene {
     let layer = |k: u32| {
         let n = f64::from(k);
         // To alternate sides, so that some sheets slide off to the left and some to the right.
-        let side = if k % 2 == 0 { 1.0 } else { -1.0 };
+        let side = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
         let place = [side * (0.03 + 0.02 * n), 0.013 * n - 0.02, 0.55 + 0.04 * n];
         sheet(&format!("sheet{k}"), 1.0, edge, place, 3.0 + 17.0 * n)
     };
