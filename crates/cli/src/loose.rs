@@ -1,9 +1,9 @@
-//! A loose mesh as a scene: cloth that falls on a ball on the ground, in proportion to its size.
+//! A loose mesh as a scene: it falls on a ball on the ground, in proportion to its size.
 
 use crate::failure::Failure;
 use bowknot::geometry::{Point, Vector};
-use bowknot::io::{Import, MESH_ENDINGS, read_mesh};
-use bowknot::scene::{BodySpec, ObstacleSpec, Scene};
+use bowknot::io::{Import, MESH_ENDINGS, Mesh, read_mesh};
+use bowknot::scene::{BodyKind, BodySpec, Material, ObstacleSpec, Scene};
 use bowknot::shapes::{Ball, HalfSpaceShape, Shape};
 use std::path::Path;
 
@@ -24,7 +24,7 @@ pub fn scene(name: &str, sets: &[String]) -> Result<Scene, Failure> {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let mut scene = Scene {
         bodies: vec![BodySpec {
-            name: "cloth".to_owned(),
+            name: "body".to_owned(),
             mesh: Some(path.to_owned()),
             ..BodySpec::default()
         }],
@@ -35,6 +35,12 @@ pub fn scene(name: &str, sets: &[String]) -> Result<Scene, Failure> {
     let imported = scene.clone().with_sets(sets).map_err(Failure::input)?;
     let body = &imported.bodies[0];
     let mesh = read_mesh(path, &Import { up: body.up, scale: body.scale })?;
+    let body = &mut scene.bodies[0];
+    body.kind = kind(&mesh);
+    body.material = Material::of(body.kind);
+    if body.kind == BodyKind::Solid {
+        body.stretch_limit = Some(f64::INFINITY);
+    }
     let (low, high) = extent(&mesh.positions);
     let size = (high.x - low.x).max(high.y - low.y).max((high.z - low.z) * 0.1);
 
@@ -54,6 +60,19 @@ pub fn scene(name: &str, sets: &[String]) -> Result<Scene, Failure> {
     };
     scene.obstacles = vec![ball, ground];
     scene.with_sets(sets).map_err(Failure::input)
+}
+
+/// What a mesh is of by its elements.
+fn kind(mesh: &Mesh) -> BodyKind {
+    if !mesh.tets.is_empty() {
+        BodyKind::Solid
+    } else if !mesh.triangles.is_empty() {
+        BodyKind::Cloth
+    } else if !mesh.strands.is_empty() {
+        BodyKind::Strands
+    } else {
+        BodyKind::Particles
+    }
 }
 
 fn extent(positions: &[Point]) -> (Point, Point) {

@@ -130,6 +130,35 @@ fn cloth_lies_on_a_solid() {
     assert!(x.iter().any(|p| p.z < 0.08), "no edge of it hangs down");
 }
 
+/// Displacement and speed along a slope after a second's half, of a body that begins at rest on it.
+fn on_slope(body: &str, tangent: f64, friction: f64) -> (f64, f64) {
+    let cosine = 1.0 / (1.0 + tangent * tangent).sqrt();
+    let (along, down) = (9.81 * tangent * cosine, 9.81 * cosine);
+    let text = format!(
+        "[simulation]\ngravity = [{along:?}, 0, {:?}]\n[[body]]\nname = \"patch\"\nfriction = 0.5\n{body}\n\
+         {GROUND}[[contact.friction_pairs]]\nbodies = [\"patch\", \"ground\"]\nfriction = {friction}\n",
+        -down
+    );
+    let mut simulator = simulator(&text);
+    let start = center(simulator.positions());
+    run(&mut simulator, 50);
+    let speed = center(&simulator.velocities().iter().map(|v| Point::from(*v)).collect::<Vec<_>>()).x;
+    (center(simulator.positions()).x - start.x, speed)
+}
+
+#[test]
+fn a_patch_sticks_below_the_angle_of_friction_and_slides_above_it() {
+    let sheet = "shape = { type = \"sheet\", size = [0.2, 0.2], edge = 0.05 }\ntranslate = [0, 0, 0.005]";
+    let (moved, speed) = on_slope(sheet, 0.4, 0.5);
+    assert!(moved.abs() < 2e-3 && speed.abs() < 1e-9, "it creeps: {moved} m, {speed} m/s");
+    let (_, speed) = on_slope(sheet, 0.8, 0.5);
+    let expected = 9.81 * (0.8 - 0.5) / (1.0f64 + 0.64).sqrt() * 0.5;
+    assert!((speed / expected - 1.0).abs() < 0.05, "{speed} m/s, not {expected}");
+    let (_, speed) = on_slope(sheet, 0.4, 0.0);
+    let expected = 9.81 * 0.4 / (1.0f64 + 0.16).sqrt() * 0.5;
+    assert!((speed / expected - 1.0).abs() < 0.02, "{speed} m/s, not {expected}");
+}
+
 const BOX: [[u32; 3]; 12] = [
     [0, 2, 1],
     [0, 3, 2],

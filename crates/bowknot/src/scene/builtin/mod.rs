@@ -7,9 +7,12 @@ mod dress;
 mod figure;
 mod funnel;
 mod gown;
+mod hair;
 mod knot;
+mod mat;
 mod needle;
 mod reef_knot;
+mod sand;
 mod sphere;
 mod stack;
 mod tube;
@@ -73,6 +76,9 @@ pub const BUILTIN: &[Builtin] = &[
         summary: "two ribbons, loosely tied in a reef knot, are pulled tight",
         make: reef_knot::scene,
     },
+    Builtin { name: "mat", summary: "an elastic mat is wound up by its ends, tetrahedra", make: mat::scene },
+    Builtin { name: "hair", summary: "strands on a head that shakes", make: hair::scene },
+    Builtin { name: "sand", summary: "grains pour out of a funnel and heap", make: sand::scene },
 ];
 
 /// Smallest scale: sheets still have a few edges.

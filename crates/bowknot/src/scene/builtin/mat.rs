@@ -1,0 +1,44 @@
+use crate::scene::{BodyKind, BodySpec, Keyframe, Material, Motion, PinSpec, Scene, Side};
+use crate::shapes::{Block, Shape};
+use bowknot_dynamics::{SolidMaterial, SolidModel};
+use bowknot_geometry::Vector;
+
+/// 31,570 vertices and 92,160 tetrahedra, after Fig. 7a of the paper. The mat is 1.2 m long, 12.5 cm wide and 4 mm thick,
+/// of the paper's St. Venant-Kirchhoff material; each end is turned by two turns, against each other, within 2 s while
+/// they approach by 30 cm, so that it winds up into a rope and buckles. No gravity.
+pub(super) fn scene(scale: f64) -> Scene {
+    let (length, width, thickness) = (1.2, 0.125, 0.004);
+    let edge = length / 384.0 / scale;
+    let block = Block { size: [length, width, thickness], edge };
+    let material = SolidMaterial { model: SolidModel::Stvk, ..SolidMaterial::silicone() };
+    let body = BodySpec {
+        name: "mat".to_owned(),
+        kind: BodyKind::Solid,
+        shape: Some(Shape::Block(block)),
+        material: Material::Solid(material),
+        stretch_limit: Some(f64::INFINITY),
+        ..BodySpec::default()
+    };
+    let end = |side: Side, sign: f64| {
+        let at = |time: f64, turns: f64, approach: f64| Keyframe {
+            time,
+            translate: Vector::new(-0.5 * sign * approach, 0.0, 0.0),
+            angle: 360.0 * sign * turns,
+        };
+        let keyframes = vec![at(0.0, 0.0, 0.0), at(0.5, 0.5, 0.03), at(1.0, 1.0, 0.1), at(2.0, 2.0, 0.3)];
+        PinSpec {
+            body: "mat".to_owned(),
+            side: Some(side),
+            motion: Some(Motion { axis: Vector::x(), keyframes, ..Motion::default() }),
+            ..PinSpec::default()
+        }
+    };
+    let mut scene = Scene {
+        bodies: vec![body],
+        pins: vec![end(Side::XMin, -1.0), end(Side::XMax, 1.0)],
+        ..Scene::default()
+    };
+    scene.simulation.frames = 220;
+    scene.dynamics.gravity = Vector::zeros();
+    scene
+}
