@@ -33,6 +33,13 @@ use nalgebra::Matrix3;
 use rayon::prelude::*;
 use serde::Serialize;
 
+/// Share of the promised decrease at which a Newton step counts as arrived. The quadratic model then errs by some tenth of
+/// the decrease, the next iteration by about its square.
+const AGREEMENT: f64 = 0.9;
+
+/// Share of the whole displacement below which a correction is the last.
+const SMALL_CORRECTION: f64 = 0.1;
+
 /// Energies that differ by less than this share of their terms are equal: what rounding leaves of
 /// sums over 10^5 nodes, with room.
 const ENERGY_ROUNDING: f64 = 1e-12;
@@ -46,14 +53,32 @@ const NEGLIGIBLE_STEP: f64 = 1e-12;
 pub struct NewtonInfo {
     /// The linear solve.
     pub cg: CgInfo,
-    /// Share of the Newton step that the line search kept, in (0, 1].
+    /// Newton iterations made: 1, and the correcting ones.
+    pub iterations: usize,
+    /// Share of the last Newton step that the line search kept, in (0, 1].
     pub step_length: f64,
+    /// Ratio of the last step's decrease of the potential to that of the quadratic model, the smaller one over the larger,
+    /// or `step_length` if that is less [1].
+    pub agreement: f64,
     /// Incremental potential [J] at x, prescribed vertices at their keyframes.
     pub energy_before: f64,
     /// Incremental potential [J] at y.
     pub energy_after: f64,
     /// Largest |y - x| over free vertices [m].
     pub max_displacement: f64,
+}
+
+impl NewtonInfo {
+    /// Takes in the next iteration of the same target.
+    fn add(&mut self, next: &Self) {
+        self.cg.iterations += next.cg.iterations;
+        self.cg.residual = next.cg.residual;
+        self.cg.converged &= next.cg.converged;
+        self.iterations += next.iterations;
+        self.step_length = next.step_length;
+        self.agreement = next.agreement;
+        self.energy_after = next.energy_after;
+    }
 }
 
 /// Model, parameters and workspace. Nothing in it outlives a time step: [`Self::begin_step`] forgets
@@ -99,6 +124,23 @@ struct Workspace {
     values: BlockValues,
     preconditioner: Preconditioner,
     cg: CgWorkspace,
+}
+
+impl Workspace {
+    /// Makes the whole Newton step the trial, whatever it does to the potential: the watchdog technique (Chamberlain,
+    /// Powell, Lemarechal and Pedersen 1982). A stiff rod that turns stretches along its straight step, a line search would
+    /// stop it there for good, and the next step restores its length.
+    fn take_full_step(&mut self) {
+        self.trial.copy_from_slice(&self.x);
+        add_scaled(&mut self.trial, 1.0, &self.imposed);
+        add_scaled(&mut self.trial, 1.0, &self.step);
+    }
+
+    /// Makes the trial the state that the next iteration starts from; prescribed nodes are at their keyframes there.
+    fn start_from_trial(&mut self) {
+        self.x.copy_from_slice(&self.trial);
+        self.imposed.fill(Vector::zeros());
+    }
 }
 
 impl Dynamics {
@@ -262,7 +304,36 @@ impl Dynamics {
         // time on a busy machine, at 1,700 nodes).
         self.repulsion.place_obstacles(keyframes);
         let repulsion = &mut self.repulsion;
-        let info = rayon::scope(|_| iterate(&self.model, &self.params, repulsion, &mut step, work));
+        let info = rayon::scope(|_| {
+            let mut info = iterate(&self.model, &self.params, repulsion, &mut step, work);
+            // Where the quadratic model is poor, its minimum is far from that of the potential: left there, stiff bodies
+            // that turn lose most of their motion. A good step after a poor one may only have restored lengths.
+            // What a straw gains by turning is little beside the stretch that a step restores, so that the promise says
+            // nothing about it: strands look at the next step.
+            let mut arrived = info.agreement >= AGREEMENT && !self.model.has_strands();
+            while !arrived && info.iterations <= self.params.correcting_iterations {
+                let shortened = (info.step_length < 1.0).then(|| (work.trial.clone(), info));
+                if shortened.is_some() {
+                    work.take_full_step();
+                }
+                work.start_from_trial();
+                let mut next = iterate(&self.model, &self.params, repulsion, &mut step, work);
+                match shortened {
+                    Some((trial, before)) if next.energy_after >= before.energy_after => {
+                        work.trial.copy_from_slice(&trial);
+                        work.start_from_trial();
+                        info.add(&next);
+                        next = iterate(&self.model, &self.params, repulsion, &mut step, work);
+                    }
+                    _ => {}
+                }
+                info.add(&next);
+                info.max_displacement = displacement(&self.model, &work.trial, &work.free, x);
+                arrived = info.agreement >= AGREEMENT
+                    && next.max_displacement <= SMALL_CORRECTION * info.max_displacement;
+            }
+            info
+        });
 
         // `trial` holds the target by node.
         for (vertex, y) in y.iter_mut().enumerate() {
@@ -380,6 +451,7 @@ fn iterate(
     work.preconditioner.build(&system, &work.x);
     let limits = Limits { tolerance: params.cg_tolerance, max_iterations: params.cg_max_iterations };
     let mut info = NewtonInfo {
+        iterations: 1,
         cg: cg::solve(
             &system,
             &mut work.preconditioner,
@@ -398,12 +470,21 @@ fn iterate(
     };
     restore_momentum(model, repulsion, &inertia, &work.free, work.cg.residual(), &mut work.step);
     search_line(model, params, repulsion, step, work, &mut info);
-    for ((y, x), &free) in work.trial.iter().zip(&work.x).zip(&work.free) {
-        if free {
-            info.max_displacement = info.max_displacement.max((y - x).norm());
-        }
-    }
+    info.max_displacement = work
+        .trial
+        .iter()
+        .zip(&work.x)
+        .zip(&work.free)
+        .filter(|(_, free)| **free)
+        .map(|((y, x), _)| (y - x).norm())
+        .fold(0.0, f64::max);
     info
+}
+
+/// Largest |y - x| over free nodes, x by vertex [m].
+fn displacement(model: &DynamicsModel, y: &[Vector], free: &[bool], x: &[Point]) -> f64 {
+    let distance = |node: usize| (y[node] - x[model.node_vertex[node] as usize].coords).norm();
+    (0..y.len()).filter(|&node| free[node]).map(distance).fold(0.0, f64::max)
 }
 
 /// Fills gradient and H at `work.x`.
@@ -547,6 +628,9 @@ fn search_line(
         let passes = energy <= before - params.line_search_decrease * length * predicted + slack;
         if passes || accept {
             (info.energy_after, info.step_length) = (energy, length);
+            let model = predicted * length * (1.0 - 0.5 * length);
+            let kept = (before - energy) / model;
+            info.agreement = if accept || model <= slack { 1.0 } else { length.min(kept).min(1.0 / kept) };
             return;
         }
         if halving < params.line_search_halvings {

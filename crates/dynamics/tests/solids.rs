@@ -200,7 +200,7 @@ fn the_inside_follows_a_surface_that_contact_moved() {
     let mut x = moved.clone();
     for _ in 0..2 {
         let info = dynamics.newton_target(&x, &surface, &moved, &mut y).expect("solves");
-        assert!(info.cg.converged && info.cg.iterations < 60, "{info:?}");
+        assert!(info.cg.converged && info.cg.iterations < 60 * info.iterations, "{info:?}");
         x.copy_from_slice(&y);
     }
     assert!(x.iter().zip(&moved).zip(&surface).all(|((x, m), held)| !held || x == m));

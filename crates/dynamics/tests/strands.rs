@@ -140,10 +140,40 @@ fn hair_is_solved_in_a_few_iterations_however_stiff() {
     v.iter_mut().zip(&rest).for_each(|(v, p)| v.x = -2.0 * p.z);
     for _ in 0..10 {
         for info in dynamics.solve_step(&mut x, &mut v, 0.01, &held, &rest, 2).expect("solves") {
-            assert!(info.cg.converged && info.cg.iterations <= 3, "{info:?}");
+            assert!(info.cg.converged && info.cg.iterations <= 3 * info.iterations, "{info:?}");
         }
     }
     assert!(dynamics.max_stretch(&x) < 1.01, "{}", dynamics.max_stretch(&x));
+}
+
+/// Angle below the horizontal of a straw that is hinged at one end and falls for 0.2 s from level [rad].
+fn fallen(correcting_iterations: usize) -> f64 {
+    let (length, nodes) = (0.3, 13);
+    let rest: Vec<Point> =
+        (0..nodes).map(|k| Point::new(length * k as f64 / (nodes - 1) as f64, 0.0, 0.0)).collect();
+    let edges = (1..nodes as u32).map(|k| [k - 1, k]).collect();
+    let params = DynamicsParams { correcting_iterations, ..DynamicsParams::default() };
+    let mut dynamics = dynamics(&rest, vec![Body::strands("straw", edges, StrandMaterial::straw())], params);
+    let held: Vec<bool> = (0..nodes).map(|k| k == 0).collect();
+    let (mut x, mut v) = (rest.clone(), vec![Vector::zeros(); nodes]);
+    for _ in 0..40 {
+        dynamics.solve_step(&mut x, &mut v, 0.005, &held, &rest, 1).expect("solves");
+    }
+    (-x[nodes - 1].z).atan2(x[nodes - 1].x)
+}
+
+#[test]
+fn a_stiff_straw_falls_as_a_rigid_rod_does() {
+    // theta'' = (3 g / 2 L) cos theta, by small explicit steps.
+    let (mut angle, mut rate, dt) = (0.0f64, 0.0f64, 1e-5);
+    for _ in 0..20_000 {
+        rate += dt * 1.5 * 9.81 / 0.3 * angle.cos();
+        angle += dt * rate;
+    }
+    let corrected = fallen(DynamicsParams::default().correcting_iterations);
+    assert!((corrected / angle - 1.0).abs() < 0.05, "{corrected}, not {angle}");
+    // One Newton step alone is cut short by the stretch that a straight move of a turning rod means.
+    assert!(fallen(0) < 0.5 * angle, "{}", fallen(0));
 }
 
 /// Cloth on a solid with hair rooted in both, and grains, some with a gravity of their own.

@@ -199,6 +199,11 @@ impl DynamicsModel {
         &self.obstacle
     }
 
+    /// Whether strands are among the bodies.
+    pub(crate) fn has_strands(&self) -> bool {
+        self.bodies.iter().any(|body| matches!(body.shape, BodyShape::Strands { .. }))
+    }
+
     /// Mass of all deformable bodies [kg].
     pub fn total_mass(&self) -> f64 {
         self.masses.iter().sum()
