@@ -35,6 +35,8 @@ const PICTURES: &[Scene] = &[
         frames: &[80, 180],
         options: "--camera 4.9,2.7,1.3 --target 0.55,-0.09,0.83 --fov 22",
     },
+    Scene { name: "trampoline", scale: "1", frames: &[40], options: "" },
+    Scene { name: "cards", scale: "1", frames: &[2500], options: "" },
 ];
 
 /// Largest size of a picture [bytes]: the repository keeps them.

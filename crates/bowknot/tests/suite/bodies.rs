@@ -92,6 +92,27 @@ fn strands_hang_from_their_roots_and_yield_to_a_ball() {
     assert!(statistics.iter().all(|s| s.max_stretch < 1.15));
 }
 
+#[test]
+fn a_house_of_cards_stands_by_friction_and_falls_without() {
+    let height = |friction: f64| {
+        let sets = [
+            format!("obstacle.ground.friction={friction}"),
+            format!("body.left.friction={friction}"),
+            format!("body.right.friction={friction}"),
+            format!("body.third.friction={friction}"),
+        ];
+        let scene = Scene::builtin("cards", 1.0).and_then(|scene| scene.with_sets(&sets)).expect("a scene");
+        let mut simulator = Simulator::new(&scene).unwrap_or_else(|error| panic!("{error}"));
+        let start = center(simulator.positions()).z;
+        let speed = run(&mut simulator, 500).last().map_or(f64::NAN, |last| last.max_speed);
+        (center(simulator.positions()).z / start, speed)
+    };
+    let (standing, speed) = height(0.5);
+    assert!(standing > 0.97 && speed < 1e-3, "{standing} of its height, {speed} m/s");
+    let (fallen, _) = height(0.1);
+    assert!(fallen < 0.1, "{fallen} of its height");
+}
+
 /// Grains let go above the ground: how high they lie in the end, and how wide.
 fn poured(friction: f64) -> (f64, f64) {
     let mut simulator = simulator(&format!(

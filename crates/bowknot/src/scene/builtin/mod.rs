@@ -2,6 +2,7 @@
 
 mod blade;
 mod bow_knot;
+mod cards;
 mod drape;
 mod dress;
 mod figure;
@@ -15,6 +16,7 @@ mod reef_knot;
 mod sand;
 mod sphere;
 mod stack;
+mod trampoline;
 mod tube;
 
 use super::{BodySpec, ObstacleSpec, Scene, SceneError, error::nearest};
@@ -79,6 +81,12 @@ pub const BUILTIN: &[Builtin] = &[
     Builtin { name: "mat", summary: "an elastic mat is wound up by its ends, tetrahedra", make: mat::scene },
     Builtin { name: "hair", summary: "strands on a head that shakes", make: hair::scene },
     Builtin { name: "sand", summary: "grains pour out of a funnel and heap", make: sand::scene },
+    Builtin {
+        name: "trampoline",
+        summary: "a cube and two balls of jelly bounce on a sheet held along its sides",
+        make: trampoline::scene,
+    },
+    Builtin { name: "cards", summary: "a house of three cards stands by friction", make: cards::scene },
 ];
 
 /// Smallest scale: sheets still have a few edges.
