@@ -9,8 +9,8 @@ use std::process::{Command, Stdio};
 pub const FLAGS: &str = "-D warnings --force-warn rustdoc::broken-intra-doc-links";
 
 /// What stands in brackets and is no link: units, and the superscript of x^[k].
-const UNITS: [&str; 14] =
-    ["pixels", "k", "m", "s", "kg", "N", "J", "Pa", "Hz", "deg", "rad", "bytes", "m2", "1"];
+const UNITS: [&str; 15] =
+    ["pixels", "texels", "k", "m", "s", "kg", "N", "J", "Pa", "Hz", "deg", "rad", "bytes", "m2", "1"];
 
 /// Builds the documentation and shows what the compiler says, unless it is about units.
 pub fn run(command: &mut Command) -> std::io::Result<bool> {
