@@ -4,7 +4,7 @@ use super::mean_edge;
 use crate::failure::Failure;
 use bowknot::geometry::{HalfSpace, Point};
 use bowknot::io::{Import, Mesh, read_mesh};
-use bowknot::scene::Scene;
+use bowknot::scene::{Material, Scene};
 use bowknot::shapes::Shape;
 use std::collections::BTreeMap;
 use std::fs;
@@ -159,13 +159,19 @@ fn plane(corners: &[Point; 4]) -> Option<HalfSpace> {
     HalfSpace::new(corners[0], (corners[1] - corners[0]).cross(&(corners[3] - corners[0])))
 }
 
-/// Half the distance that contacts keep: so thick, strands and grains touch when they do.
+/// Radius of the thinnest strands and grains by their material, or half the distance that contacts keep: so thick, they
+/// touch when they do.
 fn radius(scene: &Scene, mesh: &Mesh) -> f64 {
     if mesh.strands.is_empty() && mesh.particles.is_empty() {
         return 0.0;
     }
     let positions = &mesh.positions;
-    let given = scene.twoway.constraints.delta;
+    let own = scene.bodies.iter().filter_map(|body| match body.material {
+        Material::Particles(grain) => Some(body.delta.unwrap_or(2.0 * grain.radius)),
+        Material::Strands(strand) => Some(2.0 * strand.radius),
+        _ => None,
+    });
+    let given = own.min_by(f64::total_cmp).or(scene.twoway.constraints.delta);
     let of_edges = || mean_edge(mesh, positions).map(|length| DELTA * length);
     let delta = given.or_else(of_edges).unwrap_or_else(|| spacing(mesh));
     let (low, high) = positions.iter().fold((positions[0], positions[0]), |(l, h), p| (l.inf(p), h.sup(p)));

@@ -4,7 +4,7 @@ use crate::shapes::{Grains, Lathe, Shape};
 use bowknot_dynamics::ParticleMaterial;
 use bowknot_geometry::Vector;
 
-/// 30,000 grains, after Fig. 7e and 7f of the paper. They fill a funnel, pour out of its neck of 7 cm width onto the
+/// 30,000 grains, after Fig. 7e and 7f of the paper. They fill a funnel, pour out of its neck of 10 cm width onto the
 /// ground 12 cm below, and heap. A grain is 4 mm across at scale 1; coarser scales have fewer and larger ones in the
 /// same volume.
 pub(super) fn scene(scale: f64) -> Scene {
@@ -26,7 +26,7 @@ pub(super) fn scene(scale: f64) -> Scene {
         friction: 0.5,
         ..BodySpec::default()
     };
-    let (neck, mouth) = (0.035, 0.16);
+    let (neck, mouth) = (0.05, 0.16);
     let wall = 0.006;
     let profile = vec![
         [neck, 0.12],
