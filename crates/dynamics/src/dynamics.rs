@@ -37,6 +37,9 @@ use serde::Serialize;
 /// the decrease, the next iteration by about its square.
 const AGREEMENT: f64 = 0.9;
 
+/// Share of the potential below which a correction's decrease is not worth another.
+const VAIN_DECREASE: f64 = 1e-6;
+
 /// Share of the whole displacement below which a correction is the last.
 const SMALL_CORRECTION: f64 = 0.1;
 
@@ -329,8 +332,9 @@ impl Dynamics {
                 }
                 info.add(&next);
                 info.max_displacement = displacement(&self.model, &work.trial, &work.free, x);
-                arrived = info.agreement >= AGREEMENT
-                    && next.max_displacement <= SMALL_CORRECTION * info.max_displacement;
+                let small = next.max_displacement <= SMALL_CORRECTION * info.max_displacement;
+                let vain = next.energy_before - next.energy_after <= VAIN_DECREASE * next.energy_before.abs();
+                arrived = info.agreement >= AGREEMENT && small || vain;
             }
             info
         });

@@ -220,7 +220,7 @@ fn mixed_scenes_converge_and_every_body_falls_as_it_must() {
     for _ in 0..5 {
         let keyframes = x.clone();
         for info in dynamics.solve_step(&mut x, &mut v, 0.01, &none, &keyframes, 2).expect("solves") {
-            assert!(info.cg.converged && info.cg.iterations < 300, "{info:?}");
+            assert!(info.cg.converged && info.cg.iterations < 300 * info.iterations, "{info:?}");
         }
     }
     let count = x.len();
