@@ -6,9 +6,8 @@ use crate::output;
 use crate::progress::Bar;
 use bowknot::check::{Judge, Parts, PathOptions, StateOptions};
 use bowknot::geometry::Point;
-use bowknot::io::{FrameStack, Import, Mesh, MeshView, States, natural_order, read_mesh};
+use bowknot::io::{FrameStack, Import, Mesh, MeshView, States, files_in, read_mesh};
 use serde::Serialize;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The verdict, as `--json` prints it.
@@ -100,16 +99,7 @@ fn expand(path: &Path) -> Result<Vec<Group>, Failure> {
 
 /// The frames that lie directly in a folder, in natural order.
 fn group_of(folder: &Path) -> Result<Option<Group>, Failure> {
-    let unreadable = |error| Failure::input(format!("cannot read {}: {error}", folder.display()));
-    let mut files = Vec::new();
-    for entry in fs::read_dir(folder).map_err(unreadable)? {
-        let path = entry.map_err(unreadable)?.path();
-        if path.is_file() && matches!(ending(&path).as_str(), "ply" | "obj" | "npz") {
-            files.push(path);
-        }
-    }
-    let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    files.sort_by(|a, b| natural_order(&name(a), &name(b)));
+    let files = files_in(folder, &["ply", "obj", "npz"])?;
     // `trace/.` names the folder as well.
     let real = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     let trace = real.file_name().is_some_and(|n| n == "trace");

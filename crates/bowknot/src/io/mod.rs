@@ -11,6 +11,7 @@
 
 mod atomic;
 mod error;
+mod frame_source;
 mod import;
 mod mesh;
 mod msh;
@@ -25,6 +26,7 @@ mod vtu;
 
 pub use atomic::{create_folder, write_atomic, write_text};
 pub use error::{IoError, Place};
+pub use frame_source::{FrameSource, files_in};
 pub use import::{Import, Up};
 pub use mesh::{MESH_ENDINGS, Mesh, MeshView, natural_order, read_mesh};
 pub use msh::read_msh;

@@ -2,7 +2,7 @@
 //! network.
 //!
 //! ```text
-//! frames.rs    the frames of a run's folder, read one at a time
+//! frames.rs    where the frames of a run's folder are
 //! bodies.rs    the first frame split into bodies, with names from scene.toml
 //! codec.rs     quantised positions, predicted, deflated, base64
 //! pack.rs      which frames go in: two passes over the folder, the budget kept by a stride
@@ -119,7 +119,7 @@ pub fn write_report(
     if options.stride == Some(0) {
         return Err(ReportError::Option("the stride must be at least 1"));
     }
-    let frames = frames::Frames::find(folder)?;
+    let frames = frames::find(folder)?;
     let facts = facts::Facts::read(folder);
     let columns = columns::Columns::read(&folder.join("stats.jsonl"))?;
     let bodies = bodies::split(&frames.read(0)?, &facts.bodies);

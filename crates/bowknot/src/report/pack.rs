@@ -2,8 +2,8 @@
 
 use super::bodies::Body;
 use super::codec::{Grid, Predictor, encode_indices, pack as deflate};
-use super::frames::Frames;
 use super::{ReportError, ReportOptions};
+use crate::io::FrameSource;
 use crate::io::Mesh;
 
 /// Largest size of all positions once unpacked in the browser [bytes]: what compresses well still needs memory there.
@@ -43,7 +43,7 @@ impl Elements {
 
 /// Packs as many frames as the budget takes. `fixed` is what the rest of the page needs [bytes].
 pub(super) fn pack(
-    frames: &Frames,
+    frames: &FrameSource,
     mut bodies: Vec<Body>,
     options: &ReportOptions,
     fixed: u64,
@@ -66,7 +66,7 @@ pub(super) fn pack(
         let positions = reading(index, planned)?.positions;
         if positions.len() != first.len() {
             let (found, expected) = (positions.len(), first.len());
-            return Err(ReportError::Mismatch { path: frames.path(index), found, expected });
+            return Err(ReportError::Mismatch { path: frames.path(index).to_owned(), found, expected });
         }
         bodies.iter_mut().for_each(|body| body.take(&positions, &first));
     }

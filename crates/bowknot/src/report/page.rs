@@ -2,9 +2,9 @@
 
 use super::columns::Columns;
 use super::facts::Facts;
-use super::frames::Frames;
 use super::pack::Pack;
 use super::{ReportError, ReportInfo};
+use crate::io::FrameSource;
 use crate::io::write_atomic;
 use serde_json::{Value, json};
 use std::io::Write;
@@ -34,7 +34,7 @@ const APP: [&str; 10] = [
 ];
 
 /// What the page needs beside frames and elements [bytes], rather too much than too little.
-pub(super) fn fixed_bytes(frames: &Frames, facts: &Facts, columns: &Columns) -> u64 {
+pub(super) fn fixed_bytes(frames: &FrameSource, facts: &Facts, columns: &Columns) -> u64 {
     let assets = TEMPLATE.len() + STYLE.len() + PLOT_STYLE.len() + LIBRARIES.len();
     let licences: usize = LICENCES.iter().map(|(_, text)| 2 * text.len()).sum();
     let app: usize = APP.iter().map(|text| text.len()).sum();
@@ -49,7 +49,7 @@ pub(super) fn fixed_bytes(frames: &Frames, facts: &Facts, columns: &Columns) -> 
 pub(super) fn write(
     out: &Path,
     folder: &Path,
-    frames: &Frames,
+    frames: &FrameSource,
     facts: &Facts,
     columns: &Columns,
     pack: &Pack,
@@ -106,7 +106,7 @@ fn folder_name(folder: &Path) -> String {
     real.file_name().map_or_else(|| "run".to_owned(), |name| name.to_string_lossy().into_owned())
 }
 
-fn left_out(frames: &Frames, facts: &Facts, columns: &Columns, pack: &Pack) -> Vec<String> {
+fn left_out(frames: &FrameSource, facts: &Facts, columns: &Columns, pack: &Pack) -> Vec<String> {
     let mut left_out = Vec::new();
     let (shown, found) = (pack.shown.len(), frames.len());
     if shown < found {
@@ -129,7 +129,7 @@ fn left_out(frames: &Frames, facts: &Facts, columns: &Columns, pack: &Pack) -> V
 fn meta(
     title: &str,
     folder: &str,
-    frames: &Frames,
+    frames: &FrameSource,
     facts: &Facts,
     columns: &Columns,
     pack: &Pack,
@@ -155,7 +155,8 @@ fn meta(
             })
         })
         .collect();
-    let numbers: Vec<usize> = pack.shown.iter().map(|&index| frames.number(index)).collect();
+    let all_numbers = frames.numbers();
+    let numbers: Vec<usize> = pack.shown.iter().map(|&index| all_numbers[index]).collect();
     let time = |number: usize| match (number, facts.dt) {
         (0, _) => Some(0.0),
         (_, Some(dt)) => columns.time(number).or(Some(dt * number as f64)),
@@ -173,7 +174,7 @@ fn meta(
         "delta": facts.delta,
         "frames_asked": facts.frames,
         "frames_found": frames.len(),
-        "last_frame": frames.number(frames.len() - 1),
+        "last_frame": all_numbers.last(),
         "stride": pack.stride,
         "position_error": pack.error,
         "summary": facts.summary,

@@ -2,7 +2,7 @@
 
 use super::frames::FrameWriter;
 use super::layout::Layout;
-use crate::io::{FrameStack, Import, IoError, Mesh, Place, create_folder, natural_order, read_mesh};
+use crate::io::{FrameSource, IoError, Mesh, Place, create_folder};
 use crate::scene::{Format, Scene};
 use crate::shapes::Shape;
 use bowknot_geometry::Point;
@@ -50,10 +50,13 @@ pub fn export(
         options.time_step.or(scene.as_ref().map(|scene| scene.simulation.dt)).ok_or_else(|| {
             fault("no scene.toml in it that says the time from frame to frame: give it with --dt".to_owned())
         })?;
-    let frames = Frames::open(source)?;
-    if let Some(format) = frames.format().filter(|format| options.formats.contains(format))
-        && same_folder(&options.out, source)
-    {
+    let frames = open(source)?;
+    let format = match frames.ending().as_str() {
+        "ply" => Format::Ply,
+        "obj" => Format::Obj,
+        _ => Format::Npz,
+    };
+    if options.formats.contains(&format) && same_folder(&options.out, source) {
         let message = format!("its frames are {format:?} files already: name another folder with --out");
         return Err(fault(message));
     }
@@ -85,101 +88,27 @@ pub fn export(
     Ok(Exported { frames: frames.len(), vertices: first.positions.len() })
 }
 
-/// Where the frames are.
-enum Frames {
-    Files(Vec<PathBuf>, Format),
-    Archive(PathBuf, FrameStack),
-}
-
-impl Frames {
-    fn open(source: &Path) -> Result<Self, IoError> {
-        let is_npz = |path: &Path| path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("npz"));
-        if source.is_file() && is_npz(source) {
-            return Ok(Self::Archive(source.to_owned(), FrameStack::read(source)?)).and_then(Self::not_empty);
-        }
-        for folder in [source.join("frames"), source.to_owned()] {
-            if !folder.is_dir() {
-                continue;
-            }
-            for (ending, format) in [("ply", Format::Ply), ("obj", Format::Obj)] {
-                let files = files(&folder, ending)?;
-                if !files.is_empty() {
-                    return Ok(Self::Files(files, format));
-                }
-            }
-        }
-        let archive = source.join("frames.npz");
-        if archive.exists() {
-            return FrameStack::read(&archive)
-                .map(|stack| Self::Archive(archive, stack))
-                .and_then(Self::not_empty);
-        }
-        // The system's reason, if it has one, says more.
-        std::fs::metadata(source).map_err(|error| IoError::system("read", source, error))?;
-        let message = "no frames (.ply, .obj) in it nor in frames/ below it, and no frames.npz";
-        Err(IoError::content(source, Place::File, message))
+/// The frames of a folder, of `frames/` or `frames.npz` in it, or of an archive.
+fn open(source: &Path) -> Result<FrameSource, IoError> {
+    let no_frames = |path: &Path| IoError::content(path, Place::File, "it has no frames");
+    let of_archive = |path: &Path| FrameSource::of_archive(path)?.ok_or_else(|| no_frames(path));
+    let is_npz = |path: &Path| path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("npz"));
+    if source.is_file() && is_npz(source) {
+        return of_archive(source);
     }
-
-    fn not_empty(self) -> Result<Self, IoError> {
-        if self.len() > 0 {
-            Ok(self)
-        } else {
-            Err(IoError::content(self.path(0), Place::File, "it has no frames"))
+    for folder in [source.join("frames"), source.to_owned()] {
+        if let Some(frames) = FrameSource::of_folder(&folder)? {
+            return Ok(frames);
         }
     }
-
-    fn len(&self) -> usize {
-        match self {
-            Self::Files(files, _) => files.len(),
-            Self::Archive(_, stack) => stack.len(),
-        }
+    let archive = source.join("frames.npz");
+    if archive.exists() {
+        return of_archive(&archive);
     }
-
-    fn format(&self) -> Option<Format> {
-        Some(match self {
-            Self::Files(_, format) => *format,
-            Self::Archive(..) => Format::Npz,
-        })
-    }
-
-    fn path(&self, index: usize) -> &Path {
-        match self {
-            Self::Files(files, _) => &files[index],
-            Self::Archive(path, _) => path,
-        }
-    }
-
-    fn read(&self, index: usize) -> Result<Mesh, IoError> {
-        match self {
-            Self::Files(files, _) => read_mesh(&files[index], &Import::default()),
-            Self::Archive(_, stack) => {
-                let view = stack.mesh();
-                Ok(Mesh {
-                    positions: stack.frame(index).unwrap_or_default(),
-                    triangles: view.triangles.to_vec(),
-                    strands: view.strands.to_vec(),
-                    particles: view.particles.to_vec(),
-                    obstacle: Some(view.obstacle.to_vec()),
-                    ..Mesh::default()
-                })
-            }
-        }
-    }
-}
-
-/// Files of a folder with this ending, in natural order.
-fn files(folder: &Path, ending: &str) -> Result<Vec<PathBuf>, IoError> {
-    let system = |error| IoError::system("read", folder, error);
-    let mut files = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(system)? {
-        let path = entry.map_err(system)?.path();
-        if path.is_file() && path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending)) {
-            files.push(path);
-        }
-    }
-    let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    files.sort_by(|a, b| natural_order(&name(a), &name(b)));
-    Ok(files)
+    // The system's reason, if it has one, says more.
+    std::fs::metadata(source).map_err(|error| IoError::system("read", source, error))?;
+    let message = "no frames (.ply, .obj) in it nor in frames/ below it, and no frames.npz";
+    Err(IoError::content(source, Place::File, message))
 }
 
 /// Names by the numbers that bodies have in frames: deformable ones, obstacles with a mesh, half-spaces.

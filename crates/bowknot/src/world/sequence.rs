@@ -2,11 +2,10 @@
 
 use super::part::Part;
 use super::{Placing, Sequence};
-use crate::io::{self, FrameStack, IoError, MESH_ENDINGS, Mesh, Place, natural_order};
+use crate::io::{self, FrameStack, IoError, MESH_ENDINGS, Mesh, Place, files_in};
 use crate::scene::{ObstacleSpec, SceneError};
 use bowknot_geometry::Point;
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Frames over one topology, as files hold them.
 struct Frames {
@@ -40,17 +39,7 @@ pub(super) fn load(
 
 /// The meshes of a folder in natural order of their names.
 fn of_folder(folder: &Path, placing: &Placing) -> Result<Frames, IoError> {
-    let refused = |source| IoError::system("read", folder, source);
-    let mut files: Vec<PathBuf> = Vec::new();
-    for entry in fs::read_dir(folder).map_err(refused)? {
-        let path = entry.map_err(refused)?.path();
-        let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-        if MESH_ENDINGS.contains(&ending.as_str()) {
-            files.push(path);
-        }
-    }
-    let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    files.sort_by(|a, b| natural_order(&name(a), &name(b)));
+    let files = files_in(folder, &MESH_ENDINGS)?;
     let Some(first) = files.first() else {
         return Err(IoError::content(folder, Place::File, "no meshes in it, so no sequence"));
     };

@@ -8,7 +8,7 @@ use crate::failure::Failure;
 use crate::progress::Bar;
 use bowknot::StepStatistics;
 use bowknot::geometry::Point;
-use bowknot::io::{IoError, States, natural_order};
+use bowknot::io::{IoError, States, files_in};
 use bowknot_render::{Legend, Scale, body_color};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -202,17 +202,9 @@ fn recorded(run: &RunFolder) -> Result<Vec<(usize, PathBuf)>, Failure> {
     if !folder.is_dir() {
         return Ok(Vec::new());
     }
-    let unreadable = |error| Failure::input(format!("cannot read {}: {error}", folder.display()));
-    let mut names = Vec::new();
-    for entry in fs::read_dir(&folder).map_err(unreadable)? {
-        names.push(entry.map_err(unreadable)?.file_name().to_string_lossy().into_owned());
-    }
-    names.sort_by(|a, b| natural_order(a, b));
-    let numbered = names.iter().filter_map(|name| {
-        let step = name.strip_suffix(".npz")?.split('_').next()?.parse().ok()?;
-        Some((step, folder.join(name)))
-    });
-    Ok(numbered.collect())
+    let step = |file: &PathBuf| file.file_stem()?.to_str()?.split('_').next()?.parse().ok();
+    let files = files_in(&folder, &["npz"])?;
+    Ok(files.into_iter().filter_map(|file| Some((step(&file)?, file))).collect())
 }
 
 /// Distance between where each vertex is and where the last collision problem of the time step wanted it [mm].
