@@ -73,7 +73,8 @@ pub struct RunOptions {
     /// Write the collision problems to states/, for `bowknot resolve`
     #[arg(long)]
     pub record: bool,
-    /// Judge every accepted state and path by exact tests: exit code 1 if anything intersects
+    /// Judge the path to every accepted state by a certificate, and the state that each time step ends
+    /// with by exact tests: exit code 1 if anything intersects
     #[arg(long)]
     pub check: bool,
     /// If the start intersects, write the offending triangles to this file (.ply or .obj)

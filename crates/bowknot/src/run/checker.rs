@@ -1,17 +1,43 @@
 //! Judging a run as it goes, `--check`.
+//!
+//! **Every accepted state and path is shown to be free of intersections, but not every state needs exact
+//! predicates for that.** The first state, and the one that each time step ends with, are judged by
+//! themselves; of every two-way step the straight path is, both its ends included. Let the start of a
+//! path be clear and the path certified. Then so is its end, class by class of what
+//! [`Judge::check_state`] looks at:
+//!
+//! - half-spaces, two particles, a particle and a strand edge or triangle, two strand edges, and the few
+//!   touching pairs of meshes that no edge-triangle pair stands for are classes that a path is judged
+//!   for, at its end as at any other time;
+//! - an edge and a triangle that share no vertex. Were they to meet at the end, there would be a first
+//!   time at which they do, later than the start, as meeting is a closed condition. An edge that meets a
+//!   triangle in its inside only, and crosses its plane there, did so a moment before as well; so at that
+//!   first time an end of the edge is on the triangle, or the edge meets an edge of the triangle
+//!   (a degenerate triangle consists of its edges). Either is a vertex-triangle or an edge-edge pair
+//!   that shares no vertex, of the same two bodies, and the path is certified to be free of those.
+//!
+//! Pairs that do not move on the path, and are skipped there, are as they were at its start. What the
+//! argument needs is asked for: a path must start, to the bit, where the last one ended, or its start is
+//! judged by itself; and after a finding, states are judged one by one until one is clear.
 
 use crate::check::{CheckError, Judge, PathOptions, StateOptions};
 use crate::simulator::{AcceptedStep, Simulator, describe_intersections};
 use crate::world::World;
+use bowknot_geometry::Point;
 
 /// How many findings are kept in words.
 const KEPT: usize = 10;
 
-/// Judges every accepted state, and the straight path to it.
+/// Judges the straight path to every accepted state, and the state at the end of every time step.
 #[derive(Debug)]
 pub struct Checker {
     judge: Judge,
+    /// The state that was judged last, by itself or as the end of a path.
+    last: Vec<Point>,
+    /// Whether that state is known to be clear.
+    clear: bool,
     states: usize,
+    paths: usize,
     intersections: usize,
     findings: Vec<String>,
 }
@@ -19,10 +45,18 @@ pub struct Checker {
 impl Checker {
     /// A checker of a simulation's states.
     pub fn new(simulator: &Simulator) -> Self {
-        Self { judge: simulator.judge(), states: 0, intersections: 0, findings: Vec::new() }
+        Self {
+            judge: simulator.judge(),
+            last: Vec::new(),
+            clear: false,
+            states: 0,
+            paths: 0,
+            intersections: 0,
+            findings: Vec::new(),
+        }
     }
 
-    /// Judges an accepted state and the path to it.
+    /// Judges the path to an accepted state, and where that does not tell, the states at its ends.
     ///
     /// # Errors
     /// Positions that are not finite, or beyond what exact arithmetic can take.
@@ -31,18 +65,53 @@ impl Checker {
             "time step {}, iteration {}, two-way step {}",
             accepted.step, accepted.iteration, accepted.state.step
         );
+        if self.last != accepted.state.previous {
+            self.judge_state(accepted.state.previous, &format!("{place}, at its start"), world)?;
+        }
+        self.judge_path(accepted.state.previous, accepted.state.positions, &place)?;
+        if !self.clear {
+            self.judge_state(accepted.state.positions, &place, world)?;
+        }
+        Ok(())
+    }
+
+    /// Judges the state that a time step ends with, by itself.
+    ///
+    /// # Errors
+    /// As [`Self::judge`].
+    pub fn judge_end(&mut self, step: usize, positions: &[Point], world: &World) -> Result<(), CheckError> {
+        if !self.clear && self.last == positions {
+            // Judged by itself already, and counted.
+            return Ok(());
+        }
+        self.judge_state(positions, &format!("end of time step {step}"), world)
+    }
+
+    fn judge_state(&mut self, x: &[Point], place: &str, world: &World) -> Result<(), CheckError> {
         let options = StateOptions { limit: KEPT, distance: false };
-        let state = self.judge.check_state(accepted.state.positions, &options)?;
-        for line in describe_intersections(world, &state.intersections) {
+        let report = self.judge.check_state(x, &options)?;
+        for line in describe_intersections(world, &report.intersections) {
             self.find(format!("{place}: {line} intersect"));
         }
+        self.clear = report.is_clear();
+        self.last.clear();
+        self.last.extend_from_slice(x);
+        self.states += 1;
+        self.intersections += report.intersection_count;
+        Ok(())
+    }
+
+    fn judge_path(&mut self, x0: &[Point], x1: &[Point], place: &str) -> Result<(), CheckError> {
         let options = PathOptions { limit: KEPT, ..PathOptions::default() };
-        let path = self.judge.check_path(accepted.state.previous, accepted.state.positions, &options)?;
-        for hit in &path.hits {
+        let report = self.judge.check_path(x0, x1, &options)?;
+        for hit in &report.hits {
             self.find(format!("{place}, on the way: {hit}"));
         }
-        self.states += 1;
-        self.intersections += state.intersection_count + path.hit_count;
+        self.clear &= report.is_clear();
+        self.last.clear();
+        self.last.extend_from_slice(x1);
+        self.paths += 1;
+        self.intersections += report.hit_count;
         Ok(())
     }
 
@@ -53,9 +122,14 @@ impl Checker {
         }
     }
 
-    /// States judged.
+    /// States judged by themselves.
     pub fn states(&self) -> usize {
         self.states
+    }
+
+    /// Paths judged, one each two-way step.
+    pub fn paths(&self) -> usize {
+        self.paths
     }
 
     /// Intersections found so far, in states and on paths.

@@ -32,7 +32,8 @@ pub struct RunOptions {
     /// Whether to continue the run that the folder holds. `scene.simulation.frames` counts from the
     /// start, not from the checkpoint.
     pub resume: bool,
-    /// Whether every accepted state and path is judged.
+    /// Whether the path to every accepted state is judged, and the state that each time step ends with;
+    /// see [`Checker`] for why no accepted state can then intersect.
     pub check: bool,
     /// When this becomes true the run stops as soon as it can, even within a time step, which is then
     /// abandoned.
@@ -111,6 +112,10 @@ pub fn run(
         }
         match result {
             Ok(statistics) => {
+                if let Some(checker) = &mut checker {
+                    let positions = &simulator.positions()[..world.collision_vertices()];
+                    checker.judge_end(statistics.step, positions, &world)?;
+                }
                 writer.step(&statistics, &simulator)?;
                 interrupted = report(simulator.step_index(), Some(&statistics), &checker).is_break();
             }
