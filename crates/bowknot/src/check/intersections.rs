@@ -1,7 +1,8 @@
 //! Intersections of a state, by exact predicates.
 
 use super::path::is_above;
-use super::primitives::{Scene, closest_points, gather};
+use super::primitives::{Scene, closest_points, gather, pairs};
+use super::walk::Meeting;
 use super::{CheckError, Intersection, Judge, PairClass, StateOptions, StateReport};
 use bowknot_geometry::{Point, intersection};
 use rayon::prelude::*;
@@ -21,12 +22,16 @@ impl Judge {
     /// A wrong number of points, or coordinates that are not finite.
     pub fn check_state(&self, x: &[Point], options: &StateOptions) -> Result<StateReport, CheckError> {
         self.check_positions("state", x)?;
-        let scene = Scene::new(self, [x], false);
-        let mut found = scene.pairs(
+        let mut scene = Scene::new(self);
+        scene.arrange([x]);
+        scene.fit([x], false);
+        let Scene { edges, particles, strands, triangles, .. } = &scene;
+        let mut found = pairs(
+            self,
             PairClass::EdgeTriangle,
-            &scene.edges,
-            &scene.triangles,
-            |a, b| a.meets(b),
+            edges,
+            triangles,
+            &Meeting,
             |class, elements, [edge, triangle], found: &mut Vec<Found>| {
                 let point = |v: u32| &x[v as usize];
                 let (e, t) = ([edge[0], edge[1]], [triangle[0], triangle[1], triangle[2]]);
@@ -34,18 +39,21 @@ impl Judge {
                     found.push((class, elements));
                 }
             },
-        );
+        )
+        .concat();
         let edge_triangle_count = found.len();
         let test = |class: PairClass, elements: [u32; 2], [a, b]: [&[u32]; 2], found: &mut Vec<Found>| {
             if touch(x, a, b) {
                 found.push((class, elements));
             }
         };
-        let Scene { particles, strands, triangles, .. } = &scene;
-        found.extend(scene.pairs(PairClass::EdgeEdge, strands, strands, |a, b| a.meets(b), test));
-        found.extend(scene.pairs(PairClass::VertexTriangle, particles, triangles, |a, b| a.meets(b), test));
-        found.extend(scene.pairs(PairClass::VertexEdge, particles, strands, |a, b| a.meets(b), test));
-        found.extend(scene.pairs(PairClass::VertexVertex, particles, particles, |a, b| a.meets(b), test));
+        let others = [
+            pairs(self, PairClass::EdgeEdge, strands, strands, &Meeting, test),
+            pairs(self, PairClass::VertexTriangle, particles, triangles, &Meeting, test),
+            pairs(self, PairClass::VertexEdge, particles, strands, &Meeting, test),
+            pairs(self, PairClass::VertexVertex, particles, particles, &Meeting, test),
+        ];
+        found.extend(others.into_iter().flatten().flatten());
         for &(class, elements) in &self.uncovered {
             let sides = self.sides(class, elements);
             let obstacles = sides.iter().all(|side| side.iter().all(|&v| self.obstacle[v as usize]));

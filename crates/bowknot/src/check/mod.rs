@@ -9,6 +9,7 @@
 //! Judge::from_model(&CollisionModel) -> Judge                           a scene
 //! judge.check_state(&x, &StateOptions)  -> Result<StateReport, CheckError>
 //! judge.check_path(&x0, &x1, &PathOptions) -> Result<PathReport, CheckError>
+//! MotionJudge::new(judge)                                               many paths, one after another
 //! judge.offending_mesh(&x, &[Intersection]) -> OffendingMesh            for a dump
 //! ```
 //!
@@ -27,12 +28,14 @@ mod error;
 mod exceptions;
 mod intersections;
 mod judge;
+mod motion;
 mod nearest;
 mod path;
 mod primitives;
 mod report;
 mod sweep;
 mod tree;
+mod walk;
 
 #[cfg(test)]
 mod tests;
@@ -40,6 +43,7 @@ mod tests;
 pub use dump::OffendingMesh;
 pub use error::CheckError;
 pub use judge::{Judge, Parts};
+pub use motion::MotionJudge;
 pub use report::{
     Intersection, Nearest, PairClass, PathHit, PathOptions, PathReport, StateOptions, StateReport,
 };

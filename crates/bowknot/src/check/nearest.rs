@@ -1,6 +1,8 @@
 //! The smallest distance of a state, by branch and bound.
 
 use super::primitives::{Scene, closest_points, gather};
+use super::tree::MovingBox;
+use super::walk::Keep;
 use super::{Judge, Nearest, PairClass};
 use bowknot_geometry::Point;
 use rayon::prelude::*;
@@ -13,24 +15,32 @@ const SLACK: f64 = 1.0 - 1e-9;
 /// A distance, and whose it is; ordered by distance, then by class and elements.
 type Measured = (f64, PairClass, [u32; 2]);
 
+/// Boxes that may hold a pair as near as the nearest so far, whose distance is given by its bits: those
+/// of non-negative floats are ordered as the floats are.
+struct AsNear(AtomicU64);
+
+impl Keep<1> for AsNear {
+    const NARROWS: bool = true;
+
+    #[inline]
+    fn keep(&self, a: &MovingBox<1>, b: &MovingBox<1>) -> bool {
+        a.distance_squared(b).sqrt() * SLACK <= f64::from_bits(self.0.load(Ordering::Relaxed))
+    }
+}
+
 impl Judge {
     /// The closest pair; of equally close ones the first by class and elements.
-    pub(super) fn nearest(&self, x: &[Point], scene: &Scene<'_, 1>) -> Option<Nearest> {
-        // Bits of non-negative floats are ordered as the floats are.
-        let best = AtomicU64::new(f64::INFINITY.to_bits());
-        let read_best = || f64::from_bits(best.load(Ordering::Relaxed));
-        let best_now = &read_best;
-        let best_ref = &best;
-        let pairs = scene.all_pairs(
-            |a, b| a.distance_squared(b).sqrt() * SLACK <= best_now(),
-            |class, elements, sides, found: &mut Vec<Measured>| {
-                let distance = closest_points(class, &gather(x, sides)).1;
-                let old = best_ref.fetch_min(distance.to_bits(), Ordering::Relaxed);
-                if distance <= f64::from_bits(old) {
-                    found.push((distance, class, elements));
-                }
-            },
-        );
+    pub(super) fn nearest(&self, x: &[Point], scene: &Scene<1>) -> Option<Nearest> {
+        let best = AsNear(AtomicU64::new(f64::INFINITY.to_bits()));
+        let best_now = &best.0;
+        let pairs = scene.all_pairs(self, &best, |class, elements, sides, found: &mut Vec<Measured>| {
+            let distance = closest_points(class, &gather(x, sides)).1;
+            let old = best_now.fetch_min(distance.to_bits(), Ordering::Relaxed);
+            if distance <= f64::from_bits(old) {
+                found.push((distance, class, elements));
+            }
+        });
+        let pairs = pairs.into_par_iter().flatten_iter();
         let heights = self.vertices.par_iter().filter(|&&v| self.meets_half_spaces(v)).flat_map_iter(|&v| {
             let height = move |h| self.half_space_places([v, h as u32], &x[v as usize]).1;
             (0..self.half_spaces.len()).map(move |h| (height(h), PairClass::VertexHalfSpace, [v, h as u32]))
@@ -39,7 +49,7 @@ impl Judge {
             std::cmp::Ordering::Greater => b,
             _ => a,
         };
-        let (_, class, elements) = heights.chain(pairs.into_par_iter()).reduce_with(smaller)?;
+        let (_, class, elements) = heights.chain(pairs).reduce_with(smaller)?;
 
         let sides = self.sides(class, elements);
         let (places, distance) = match class {

@@ -5,6 +5,7 @@
 
 use super::primitives::{Scene, closest_points, gather, pair_kind};
 use super::sweep::Sweep;
+use super::walk::Meeting;
 use super::{CheckError, Judge, PairClass, PathHit, PathOptions, PathReport};
 use bowknot_geometry::{HalfSpace, Point};
 use rayon::prelude::*;
@@ -12,11 +13,18 @@ use rayon::prelude::*;
 /// Relative bound of the rounding of n . x - o: at most four roundings a term, doubled.
 const PLANE_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// A pair that was looked at; `hit` is `None` if it is certified.
-struct Look {
+/// A pair that is not certified to stay apart, and until when it is.
+struct Hit {
     class: PairClass,
     elements: [u32; 2],
-    hit: Option<f64>,
+    time: f64,
+}
+
+/// The pairs that were looked at.
+#[derive(Default)]
+struct Looks {
+    count: usize,
+    hits: Vec<Hit>,
 }
 
 impl Judge {
@@ -34,37 +42,51 @@ impl Judge {
         x1: &[Point],
         options: &PathOptions,
     ) -> Result<PathReport, CheckError> {
+        self.check_path_with(&mut Scene::new(self), true, x0, x1, options)
+    }
+
+    /// [`Self::check_path`] with trees that are arranged anew, or kept in the order that they have.
+    pub(super) fn check_path_with(
+        &self,
+        scene: &mut Scene<2>,
+        arrange: bool,
+        x0: &[Point],
+        x1: &[Point],
+        options: &PathOptions,
+    ) -> Result<PathReport, CheckError> {
         self.check_positions("start of the path", x0)?;
         self.check_positions("end of the path", x1)?;
-        let scene = Scene::new(self, [x0, x1], options.skip_unmoved);
-        let mut looks = scene.all_pairs(
-            |a, b| a.meets(b),
-            |class, elements, sides, looks| {
-                let (start, end) = (gather(x0, sides), gather(x1, sides));
-                let hit = Sweep::new(pair_kind(class), &start, &end).hit();
-                looks.push(Look { class, elements, hit });
-            },
-        );
-        looks.par_extend(self.half_space_looks(x0, x1, options.skip_unmoved));
+        if arrange {
+            scene.arrange([x0, x1]);
+        }
+        scene.fit([x0, x1], options.skip_unmoved);
+        let looks = scene.all_pairs(self, &Meeting, |class, elements, sides, looks: &mut Looks| {
+            let (start, end) = (gather(x0, sides), gather(x1, sides));
+            looks.count += 1;
+            if let Some(time) = Sweep::new(pair_kind(class), &start, &end).hit() {
+                looks.hits.push(Hit { class, elements, time });
+            }
+        });
+        let below = self.half_space_hits(x0, x1, options.skip_unmoved);
 
-        let candidates = looks.len();
-        looks.retain(|look| look.hit.is_some());
-        looks.par_sort_unstable_by_key(|look| (look.class, look.elements));
-        let hit_count = looks.len();
-        let hits = looks.iter().take(options.limit).map(|look| self.describe_hit(x0, x1, look)).collect();
+        let candidates = looks.iter().map(|looks| looks.count).sum::<usize>() + below.len();
+        let mut hits: Vec<Hit> = looks.into_iter().flat_map(|looks| looks.hits).chain(below).collect();
+        hits.par_sort_unstable_by_key(|hit| (hit.class, hit.elements));
+        let hit_count = hits.len();
+        let hits = hits.iter().take(options.limit).map(|hit| self.describe_hit(x0, x1, hit)).collect();
         Ok(PathReport { hits, hit_count, candidates })
     }
 
     /// Vertices that are not certainly above a half-space at either end; between the ends a vertex
     /// cannot be lower than at both.
-    fn half_space_looks(&self, x0: &[Point], x1: &[Point], skip_unmoved: bool) -> Vec<Look> {
+    fn half_space_hits(&self, x0: &[Point], x1: &[Point], skip_unmoved: bool) -> Vec<Hit> {
         let vertices = self
             .vertices
             .par_iter()
             .filter(|&&v| self.meets_half_spaces(v) && !(skip_unmoved && x0[v as usize] == x1[v as usize]));
         let look = |v: u32, h: usize| {
             let above = |x: &[Point]| is_above(&self.half_spaces[h], &x[v as usize]);
-            let hit = match (above(x0), above(x1)) {
+            let time = match (above(x0), above(x1)) {
                 (true, true) => return None,
                 (true, false) => {
                     let height = |x: &[Point]| self.half_spaces[h].signed_distance(&x[v as usize]);
@@ -73,14 +95,13 @@ impl Judge {
                 }
                 (false, _) => 0.0,
             };
-            Some(Look { class: PairClass::VertexHalfSpace, elements: [v, h as u32], hit: Some(hit) })
+            Some(Hit { class: PairClass::VertexHalfSpace, elements: [v, h as u32], time })
         };
         vertices.flat_map_iter(|&v| (0..self.half_spaces.len()).filter_map(move |h| look(v, h))).collect()
     }
 
-    fn describe_hit(&self, x0: &[Point], x1: &[Point], look: &Look) -> PathHit {
-        let &Look { class, elements, hit } = look;
-        let time = hit.unwrap_or(0.0);
+    fn describe_hit(&self, x0: &[Point], x1: &[Point], hit: &Hit) -> PathHit {
+        let &Hit { class, elements, time } = hit;
         let sides = self.sides(class, elements);
         let (start, end) = (gather(x0, sides), gather(x1, sides));
         let at_time = Sweep::new(pair_kind(class), &start, &end).points(time);

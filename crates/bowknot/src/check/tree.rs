@@ -3,9 +3,17 @@
 //! A box is given at `K` instants: one for a state; two, start and end, for a path. Between the two,
 //! all vertices move linearly on one clock, so a vertex stays within the linear interpolation of its
 //! boxes, and two boxes that are apart along one axis, on the same side, at both instants are apart
-//! along it all the way. Common motion hence costs nothing, however fast. Boxes are minima and maxima
-//! of coordinates, so there is nothing to round.
+//! along it all the way. Common motion hence costs nothing, however fast.
+//!
+//! **A tree is an order of primitives, and boxes fitted to it.** Boxes are computed from the positions
+//! at hand whenever these change, so the pairs that a walk comes to are right with any order; a good one
+//! ([`arrange`]) only makes the walk short. An order may hence be kept while things move.
+//!
+//! **Rounding.** Boxes are minima and maxima of coordinates rounded to `f32`: half the memory to move,
+//! four lanes to a register. Rounding to nearest and clamping are monotone, so of two coordinates whose
+//! images differ, the order is that of the images: boxes that are apart as stored are apart.
 
+use bowknot_geometry::Point;
 use rayon::prelude::*;
 
 /// Flag of primitives that belong to an obstacle; two flagged primitives form no pair.
@@ -15,30 +23,38 @@ pub(super) const STILL: u8 = 2;
 
 /// Primitives a leaf holds at most.
 const LEAF_SIZE: usize = 4;
-/// Pairs of nodes that a walk is cut into, so that threads have enough to share out. Fixed, so that
-/// nothing depends on the number of threads.
-const TASKS: usize = 2048;
 /// Slices longer than this are split by two threads.
 const PARALLEL_SPLIT: usize = 8192;
+/// Boxes that one thread fits at least.
+const PARALLEL_FIT: usize = 1024;
+/// Coordinates are clamped to this, so that no difference of two overflows [m].
+const LARGEST: f64 = 1e37;
+/// Relative bound of the rounding of a coordinate to `f32`, doubled, and an absolute one for those that
+/// underflow.
+const COORDINATE_ROUNDING: [f64; 2] = [f32::EPSILON as f64, 1e-44];
 
-/// An axis-aligned box at `K` instants.
+/// An axis-aligned box at `K` instants; the fourth lane is zero.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MovingBox<const K: usize> {
-    pub min: [[f64; 3]; K],
-    pub max: [[f64; 3]; K],
+    min: [[f32; 4]; K],
+    max: [[f32; 4]; K],
 }
 
 impl<const K: usize> MovingBox<K> {
-    const EMPTY: Self = Self { min: [[f64::INFINITY; 3]; K], max: [[f64::NEG_INFINITY; 3]; K] };
+    const EMPTY: Self = {
+        let (low, high) = (-(LARGEST as f32), LARGEST as f32);
+        Self { min: [[high, high, high, 0.0]; K], max: [[low, low, low, 0.0]; K] }
+    };
 
     /// The box of some points, each given at every instant.
-    pub fn of_points<'a>(points: impl Iterator<Item = [&'a bowknot_geometry::Point; K]>) -> Self {
+    pub fn of_points<'a>(points: impl Iterator<Item = [&'a Point; K]>) -> Self {
         let mut hull = Self::EMPTY;
         for point in points {
             for k in 0..K {
                 for c in 0..3 {
-                    hull.min[k][c] = hull.min[k][c].min(point[k][c]);
-                    hull.max[k][c] = hull.max[k][c].max(point[k][c]);
+                    let coordinate = point[k][c].clamp(-LARGEST, LARGEST) as f32;
+                    hull.min[k][c] = smaller(hull.min[k][c], coordinate);
+                    hull.max[k][c] = larger(hull.max[k][c], coordinate);
                 }
             }
         }
@@ -47,9 +63,9 @@ impl<const K: usize> MovingBox<K> {
 
     fn join(&mut self, other: &Self) {
         for k in 0..K {
-            for c in 0..3 {
-                self.min[k][c] = self.min[k][c].min(other.min[k][c]);
-                self.max[k][c] = self.max[k][c].max(other.max[k][c]);
+            for c in 0..4 {
+                self.min[k][c] = smaller(self.min[k][c], other.min[k][c]);
+                self.max[k][c] = larger(self.max[k][c], other.max[k][c]);
             }
         }
     }
@@ -57,112 +73,154 @@ impl<const K: usize> MovingBox<K> {
     /// Whether the boxes may share a point at some time. Touching boxes do.
     #[inline]
     pub fn meets(&self, other: &Self) -> bool {
-        for c in 0..3 {
-            let mut below = true;
-            let mut above = true;
-            for k in 0..K {
-                below &= self.max[k][c] < other.min[k][c];
-                above &= other.max[k][c] < self.min[k][c];
-            }
-            if below | above {
-                return false;
+        // By lanes: how far self reaches into other from below and from above, at the instant at which
+        // it does so most. Negative: apart on that side all the way. A difference of floats has the sign
+        // of what it rounds.
+        let mut below = [f32::MIN; 4];
+        let mut above = [f32::MIN; 4];
+        for k in 0..K {
+            for c in 0..4 {
+                below[c] = larger(below[c], self.max[k][c] - other.min[k][c]);
+                above[c] = larger(above[c], other.max[k][c] - self.min[k][c]);
             }
         }
-        true
+        let mut least = [0.0; 4];
+        for c in 0..4 {
+            least[c] = smaller(below[c], above[c]);
+        }
+        smaller(smaller(least[0], least[1]), smaller(least[2], least[3])) >= 0.0
     }
 
-    /// Squared distance of the boxes at the first instant, to rounding.
+    /// A lower bound of the squared distance, at the first instant, of what the boxes hold.
     #[inline]
     pub fn distance_squared(&self, other: &Self) -> f64 {
         let mut sum = 0.0;
         for c in 0..3 {
-            let gap = (other.min[0][c] - self.max[0][c]).max(self.min[0][c] - other.max[0][c]).max(0.0);
-            sum += gap * gap;
+            let gap = |low: f32, high: f32| {
+                let (low, high) = (f64::from(low), f64::from(high));
+                let [relative, absolute] = COORDINATE_ROUNDING;
+                high - low - relative * (high.abs() + low.abs()) - absolute
+            };
+            let apart = gap(self.max[0][c], other.min[0][c]).max(gap(other.max[0][c], self.min[0][c]));
+            sum += apart.max(0.0).powi(2);
         }
         sum
     }
+}
+
+/// Minimum and maximum of numbers: one instruction each, where `f32::min` cares for NaN as well.
+#[inline]
+fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+#[inline]
+fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
 }
 
 /// A tree over the boxes of primitives.
 #[derive(Debug)]
 pub(super) struct Tree<const K: usize> {
     /// Nodes in heap order: the children of node i are 2i + 1 and 2i + 2.
-    nodes: Vec<MovingBox<K>>,
+    pub nodes: Vec<MovingBox<K>>,
     /// Flags that all primitives below a node have.
-    node_flags: Vec<u8>,
+    pub node_flags: Vec<u8>,
     /// Number of levels above the leaves.
     depth: u32,
-    /// Primitives in leaf order.
-    pub primitives: Vec<u32>,
-    /// Their boxes.
+    /// Boxes of the primitives, in their order.
     pub boxes: Vec<MovingBox<K>>,
     /// Their flags.
     pub flags: Vec<u8>,
 }
 
-struct Item {
-    center: [f64; 3],
-    primitive: u32,
-}
-
 impl<const K: usize> Tree<K> {
-    /// A tree over the primitives `0..boxes.len()`; `flags` has one entry each.
-    pub fn new(boxes: &[MovingBox<K>], flags: &[u8]) -> Self {
-        let count = boxes.len();
-        let mut depth = 0;
-        while count > LEAF_SIZE << depth {
-            depth += 1;
+    /// A tree over so many primitives, all of them empty.
+    pub fn new(count: usize) -> Self {
+        let depth = depth(count);
+        let nodes = (2usize << depth) - 1;
+        Self {
+            nodes: vec![MovingBox::EMPTY; nodes],
+            node_flags: vec![0; nodes],
+            depth,
+            boxes: vec![MovingBox::EMPTY; count],
+            flags: vec![0; count],
         }
-        let mut items: Vec<Item> = boxes
-            .iter()
-            .enumerate()
-            .map(|(primitive, b)| Item {
-                center: std::array::from_fn(|c| (0..K).map(|k| 0.5 * b.min[k][c] + 0.5 * b.max[k][c]).sum()),
-                primitive: primitive as u32,
-            })
-            .collect();
-        split(&mut items, 0, count, 0, 0, depth);
-
-        let primitives: Vec<u32> = items.iter().map(|item| item.primitive).collect();
-        let boxes: Vec<_> = primitives.par_iter().map(|&p| boxes[p as usize]).collect();
-        let flags: Vec<u8> = primitives.iter().map(|&p| flags[p as usize]).collect();
-
-        let leaves = 1usize << depth;
-        let mut nodes = vec![MovingBox::EMPTY; 2 * leaves - 1];
-        let mut node_flags = vec![u8::MAX; 2 * leaves - 1];
-        for leaf in 0..leaves {
-            for slot in leaf_start(count, leaf, depth)..leaf_start(count, leaf + 1, depth) {
-                nodes[leaves - 1 + leaf].join(&boxes[slot]);
-                node_flags[leaves - 1 + leaf] &= flags[slot];
-            }
-        }
-        for node in (0..leaves - 1).rev() {
-            let (left, right) = (nodes[2 * node + 1], nodes[2 * node + 2]);
-            nodes[node].join(&left);
-            nodes[node].join(&right);
-            node_flags[node] = node_flags[2 * node + 1] & node_flags[2 * node + 2];
-        }
-        Self { nodes, node_flags, depth, primitives, boxes, flags }
     }
 
-    fn is_leaf(&self, node: u32) -> bool {
+    /// Fits the boxes: `primitive(slot)` says box and flags of the primitive at each place of the order.
+    pub fn fit(&mut self, primitive: impl Fn(usize) -> (MovingBox<K>, u8) + Sync) {
+        let Self { nodes, node_flags, depth, boxes, flags } = self;
+        let slots = boxes.par_iter_mut().zip(flags.par_iter_mut()).with_min_len(PARALLEL_FIT);
+        slots.enumerate().for_each(|(slot, (place, flag))| (*place, *flag) = primitive(slot));
+
+        let first_leaf = (1usize << *depth) - 1;
+        let leaves = nodes[first_leaf..].par_iter_mut().zip(&mut node_flags[first_leaf..]);
+        leaves.with_min_len(PARALLEL_FIT).enumerate().for_each(|(leaf, (node, flag))| {
+            (*node, *flag) = (MovingBox::EMPTY, u8::MAX);
+            for slot in leaf_slots(boxes.len(), leaf, *depth) {
+                node.join(&boxes[slot]);
+                *flag &= flags[slot];
+            }
+        });
+        for level in (0..*depth).rev() {
+            let first = (1usize << level) - 1;
+            let (upper, lower) = nodes.split_at_mut(2 * first + 1);
+            let (upper_flags, lower_flags) = node_flags.split_at_mut(2 * first + 1);
+            let parents = upper[first..].par_iter_mut().zip(&mut upper_flags[first..]);
+            parents.with_min_len(PARALLEL_FIT).enumerate().for_each(|(i, (node, flag))| {
+                *node = lower[2 * i];
+                node.join(&lower[2 * i + 1]);
+                *flag = lower_flags[2 * i] & lower_flags[2 * i + 1];
+            });
+        }
+    }
+
+    pub fn is_leaf(&self, node: u32) -> bool {
         node as usize >= (1 << self.depth) - 1
     }
 
-    fn slots(&self, node: u32) -> std::ops::Range<usize> {
-        let leaf = node as usize - ((1 << self.depth) - 1);
-        leaf_start(self.boxes.len(), leaf, self.depth)..leaf_start(self.boxes.len(), leaf + 1, self.depth)
+    pub fn slots(&self, node: u32) -> std::ops::Range<usize> {
+        leaf_slots(self.boxes.len(), node as usize - ((1 << self.depth) - 1), self.depth)
     }
+}
+
+/// Levels above the leaves of a tree over so many primitives.
+fn depth(count: usize) -> u32 {
+    let mut depth = 0;
+    while count > LEAF_SIZE << depth {
+        depth += 1;
+    }
+    depth
 }
 
 /// First slot of a leaf: the slots are shared out evenly.
 fn leaf_start(count: usize, leaf: usize, depth: u32) -> usize {
-    ((count as u128 * leaf as u128) >> depth) as usize
+    // Both are below 2^32.
+    ((count as u64 * leaf as u64) >> depth) as usize
+}
+
+fn leaf_slots(count: usize, leaf: usize, depth: u32) -> std::ops::Range<usize> {
+    leaf_start(count, leaf, depth)..leaf_start(count, leaf + 1, depth)
+}
+
+/// What is put in order: where it is, and a number of its own that decides between equals.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Item<T> {
+    pub center: [f64; 3],
+    pub number: u32,
+    pub content: T,
+}
+
+/// Sorts items so that a [`Tree`] over them, in this order, has small boxes.
+pub(super) fn arrange<T: Send>(items: &mut [Item<T>]) {
+    let count = items.len();
+    split(items, 0, count, 0, 0, depth(count));
 }
 
 /// Sorts `items`, which start at slot `start` of `count`, into the leaves below the node at `index`
 /// of `level`, halving along the axis along which their centers spread most.
-fn split(items: &mut [Item], start: usize, count: usize, level: u32, index: usize, depth: u32) {
+fn split<T: Send>(items: &mut [Item<T>], start: usize, count: usize, level: u32, index: usize, depth: u32) {
     if level == depth {
         return;
     }
@@ -178,7 +236,7 @@ fn split(items: &mut [Item], start: usize, count: usize, level: u32, index: usiz
     let middle = leaf_start(count, 2 * index + 1, level + 1) - start;
     if middle < items.len() {
         items.select_nth_unstable_by(middle, |a, b| {
-            a.center[axis].total_cmp(&b.center[axis]).then(a.primitive.cmp(&b.primitive))
+            a.center[axis].total_cmp(&b.center[axis]).then(a.number.cmp(&b.number))
         });
     }
     let (left, right) = items.split_at_mut(middle);
@@ -191,97 +249,5 @@ fn split(items: &mut [Item], start: usize, count: usize, level: u32, index: usiz
     } else {
         split(left, start, count, level, left_index, depth);
         split(right, right_start, count, level, left_index + 1, depth);
-    }
-}
-
-/// A walk over pairs of nodes, cut into tasks that run in parallel.
-///
-/// `keep(box_a, box_b)` says whether two boxes may hold a pair of interest; `visit(slot_a, slot_b,
-/// found)` is called with the slots of each pair of primitives whose boxes are kept, each pair once
-/// when both trees are the same. Nearer children are walked first. What the tasks found is joined in
-/// the order of the tasks.
-pub(super) fn walk<const K: usize, R: Send>(
-    a: &Tree<K>,
-    b: &Tree<K>,
-    keep: impl Fn(&MovingBox<K>, &MovingBox<K>) -> bool + Sync,
-    visit: impl Fn(usize, usize, &mut Vec<R>) + Sync,
-) -> Vec<R> {
-    if a.boxes.is_empty() || b.boxes.is_empty() {
-        return Vec::new();
-    }
-    let same = std::ptr::eq(a, b);
-    let alive = |&(i, j): &(u32, u32)| {
-        a.node_flags[i as usize] & b.node_flags[j as usize] == 0
-            && keep(&a.nodes[i as usize], &b.nodes[j as usize])
-    };
-
-    // Breadth first until there are enough tasks.
-    let mut tasks = vec![(0u32, 0u32)];
-    tasks.retain(alive);
-    let mut children = Vec::new();
-    while !tasks.is_empty()
-        && tasks.len() < TASKS
-        && !tasks.iter().all(|&(i, j)| a.is_leaf(i) && b.is_leaf(j))
-    {
-        let mut next = Vec::new();
-        for task in tasks {
-            descend(a, b, same, task, &mut children);
-            next.extend(children.drain(..).filter(|pair| alive(pair)));
-        }
-        tasks = next;
-    }
-
-    let found: Vec<Vec<R>> = tasks
-        .into_par_iter()
-        .map(|task| {
-            let mut found = Vec::new();
-            let mut stack = vec![task];
-            let mut children = Vec::with_capacity(4);
-            while let Some(pair) = stack.pop() {
-                // Asked again because `keep` may have become stricter since.
-                if !alive(&pair) {
-                    continue;
-                }
-                let (i, j) = pair;
-                if a.is_leaf(i) && b.is_leaf(j) {
-                    for s in a.slots(i) {
-                        let first = if same && i == j { s + 1 } else { b.slots(j).start };
-                        for t in first..b.slots(j).end {
-                            if a.flags[s] & b.flags[t] == 0 && keep(&a.boxes[s], &b.boxes[t]) {
-                                visit(s, t, &mut found);
-                            }
-                        }
-                    }
-                    continue;
-                }
-                descend(a, b, same, pair, &mut children);
-                children.sort_by(|x, y| {
-                    let far = |p: &(u32, u32)| a.nodes[p.0 as usize].distance_squared(&b.nodes[p.1 as usize]);
-                    far(y).total_cmp(&far(x))
-                });
-                stack.append(&mut children);
-            }
-            found
-        })
-        .collect();
-    found.into_iter().flatten().collect()
-}
-
-/// The pairs of nodes below a pair of nodes.
-fn descend<const K: usize>(
-    a: &Tree<K>,
-    b: &Tree<K>,
-    same: bool,
-    (i, j): (u32, u32),
-    children: &mut Vec<(u32, u32)>,
-) {
-    let (i1, i2, j1, j2) = (2 * i + 1, 2 * i + 2, 2 * j + 1, 2 * j + 2);
-    match (a.is_leaf(i), b.is_leaf(j)) {
-        (true, true) => children.push((i, j)),
-        (true, false) => children.extend([(i, j1), (i, j2)]),
-        (false, true) => children.extend([(i1, j), (i2, j)]),
-        // Each unordered pair of two different nodes comes up once.
-        (false, false) if same && i == j => children.extend([(i1, i1), (i1, i2), (i2, i2)]),
-        (false, false) => children.extend([(i1, j1), (i1, j2), (i2, j1), (i2, j2)]),
     }
 }

@@ -4,7 +4,7 @@
 //! predicates for that.** The first state, and the one that each time step ends with, are judged by
 //! themselves; of every two-way step the straight path is, both its ends included. Let the start of a
 //! path be clear and the path certified. Then so is its end, class by class of what
-//! [`Judge::check_state`] looks at:
+//! [`crate::check::Judge::check_state`] looks at:
 //!
 //! - half-spaces, two particles, a particle and a strand edge or triangle, two strand edges, and the few
 //!   touching pairs of meshes that no edge-triangle pair stands for are classes that a path is judged
@@ -20,7 +20,7 @@
 //! argument needs is asked for: a path must start, to the bit, where the last one ended, or its start is
 //! judged by itself; and after a finding, states are judged one by one until one is clear.
 
-use crate::check::{CheckError, Judge, PathOptions, StateOptions};
+use crate::check::{CheckError, MotionJudge, PathOptions, StateOptions};
 use crate::simulator::{AcceptedStep, Simulator, describe_intersections};
 use crate::world::World;
 use bowknot_geometry::Point;
@@ -31,7 +31,7 @@ const KEPT: usize = 10;
 /// Judges the straight path to every accepted state, and the state at the end of every time step.
 #[derive(Debug)]
 pub struct Checker {
-    judge: Judge,
+    judge: MotionJudge,
     /// The state that was judged last, by itself or as the end of a path.
     last: Vec<Point>,
     /// Whether that state is known to be clear.
@@ -46,7 +46,7 @@ impl Checker {
     /// A checker of a simulation's states.
     pub fn new(simulator: &Simulator) -> Self {
         Self {
-            judge: simulator.judge(),
+            judge: MotionJudge::new(simulator.judge()),
             last: Vec::new(),
             clear: false,
             states: 0,
@@ -89,7 +89,7 @@ impl Checker {
 
     fn judge_state(&mut self, x: &[Point], place: &str, world: &World) -> Result<(), CheckError> {
         let options = StateOptions { limit: KEPT, distance: false };
-        let report = self.judge.check_state(x, &options)?;
+        let report = self.judge.judge().check_state(x, &options)?;
         for line in describe_intersections(world, &report.intersections) {
             self.find(format!("{place}: {line} intersect"));
         }
@@ -140,5 +140,99 @@ impl Checker {
     /// The first findings, in words.
     pub fn findings(&self) -> &[String] {
         &self.findings
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Scene;
+    use bowknot_geometry::Vector;
+    use bowknot_twoway::AcceptedState;
+
+    /// A sheet above a ball, clear of it, and a checker.
+    struct Case {
+        simulator: Simulator,
+        checker: Checker,
+        /// Where the sheet is, ever lower.
+        states: Vec<Vec<Point>>,
+    }
+
+    impl Case {
+        fn new(drops: &[f64]) -> Self {
+            let scene = Scene::builtin("drape", 0.2).expect("a scene");
+            let simulator = Simulator::new(&scene).expect("a simulator");
+            let world = simulator.world();
+            let start = &simulator.positions()[..world.collision_vertices()];
+            let dropped = |by: f64| {
+                let mut x = start.to_vec();
+                x[..world.deformable_vertices].iter_mut().for_each(|p| *p -= Vector::z() * by);
+                x
+            };
+            let states = drops.iter().map(|&by| dropped(by)).collect();
+            Self { checker: Checker::new(&simulator), states, simulator }
+        }
+
+        fn step(&mut self, from: usize, to: usize) {
+            let (previous, positions) = (&self.states[from][..], &self.states[to][..]);
+            let state = AcceptedState { step: 0, previous, positions, target: positions };
+            let accepted = AcceptedStep { step: 1, iteration: 0, state };
+            self.checker.judge(&accepted, self.simulator.world()).expect("valid points");
+        }
+
+        fn end(&mut self, at: usize) {
+            let world = self.simulator.world();
+            self.checker.judge_end(1, &self.states[at], world).expect("valid points");
+        }
+
+        /// States judged by themselves, and paths.
+        fn judged(&self) -> [usize; 2] {
+            [self.checker.states(), self.checker.paths()]
+        }
+    }
+
+    #[test]
+    fn states_along_certified_paths_are_not_judged_again() {
+        let mut case = Case::new(&[0.0, 1e-4, 2e-4, 3e-4]);
+        case.step(0, 1);
+        case.step(1, 2);
+        assert_eq!(case.judged(), [1, 2]);
+        case.end(2);
+        assert_eq!(case.judged(), [2, 2]);
+        case.step(2, 3);
+        assert_eq!(case.judged(), [2, 3]);
+        // A path that starts elsewhere than where the last one ended.
+        case.step(0, 1);
+        assert_eq!(case.judged(), [3, 4]);
+        assert_eq!((case.checker.intersections(), case.checker.findings().len()), (0, 0));
+    }
+
+    #[test]
+    fn after_a_finding_states_are_judged_until_one_is_clear() {
+        // The second state has the ball through the sheet.
+        let mut case = Case::new(&[0.0, 0.1, 0.1 + 1e-9, -0.1]);
+        case.step(0, 1);
+        assert_eq!(case.judged(), [2, 1]);
+        let found = case.checker.intersections();
+        assert!(found > 0);
+        assert!(case.checker.findings().iter().any(|line| line.contains("on the way")));
+        case.end(1);
+        assert_eq!((case.judged(), case.checker.intersections()), ([2, 1], found), "counted twice");
+        case.step(1, 2);
+        assert_eq!(case.judged(), [3, 2]);
+        assert!(case.checker.intersections() > found);
+        // Back above it, and clear again: the next state is so by its path.
+        case.step(2, 3);
+        assert_eq!(case.judged(), [4, 3]);
+        case.step(3, 3);
+        assert_eq!(case.judged(), [4, 4]);
+    }
+
+    #[test]
+    fn a_start_that_intersects_is_found_though_nothing_moves() {
+        let mut case = Case::new(&[0.1]);
+        case.step(0, 0);
+        assert!(case.checker.intersections() > 0);
+        assert_eq!(case.judged(), [2, 1]);
     }
 }

@@ -1,5 +1,6 @@
 //! Tests of the judge: against an exact oracle, against all pairs, and one by one.
 
+mod motion;
 mod oracle;
 mod paths;
 mod states;
