@@ -22,7 +22,7 @@ pub(super) const OBSTACLE: u8 = 1;
 pub(super) const STILL: u8 = 2;
 
 /// Primitives a leaf holds at most.
-const LEAF_SIZE: usize = 4;
+const LEAF_SIZE: usize = 8;
 /// Slices longer than this are split by two threads.
 const PARALLEL_SPLIT: usize = 8192;
 /// Boxes that one thread fits at least.
