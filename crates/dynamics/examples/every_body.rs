@@ -54,7 +54,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             root || (v < cube && p.x < 1.0 + 1e-9) || (v >= cube && v < hair && p.z > 1.2 - 1e-9)
         })
         .collect();
-    // Grains above the plane z = 0: 1 mm above it a spring of 2 N/m starts to push.
+    // Grains above the plane z = 0: 1 mm above it a spring starts to push.
     let springs: Vec<RepulsionSpring> = (grains..grains + 100)
         .map(|v| RepulsionSpring {
             vertices: [v, 0, 0, 0],
@@ -62,27 +62,21 @@ fn main() -> Result<(), Box<dyn Error>> {
             normal: Vector::z(),
             offset: 0.0,
             desired: 1e-3,
-            stiffness: 2.0,
+            stiffness: 10.0,
+            friction: 0.3,
         })
         .collect();
     dynamics.set_repulsion(&springs)?;
 
     let (mut x, mut v) = (rest.clone(), vec![Vector::zeros(); rest.len()]);
     println!(
-        "time s, membrane, bending, solid, strand stretching, strand bending, repulsion [mJ], volume [l], iterations"
+        "time s, membrane, bending, solid, strand stretching, strand bending [mJ], volume [l], iterations"
     );
     for step in 1..=100 {
         let infos = dynamics.solve_step(&mut x, &mut v, 0.01, &held, &rest, 2)?;
         if step % 20 == 0 {
             let e = dynamics.model().elastic_energies(&x);
-            let parts = [
-                e.membrane,
-                e.bending,
-                e.solid,
-                e.strand_stretching,
-                e.strand_bending,
-                dynamics.repulsion_energy(&x),
-            ];
+            let parts = [e.membrane, e.bending, e.solid, e.strand_stretching, e.strand_bending];
             let parts: Vec<String> = parts.iter().map(|joule| format!("{:.1e}", joule * 1e3)).collect();
             let iterations: Vec<usize> = infos.iter().map(|info| info.cg.iterations).collect();
             let volume = dynamics.model().volume(&x) * 1e3;

@@ -43,6 +43,16 @@ const VAIN_DECREASE: f64 = 1e-6;
 /// Share of the whole displacement below which a correction is the last.
 const SMALL_CORRECTION: f64 = 0.1;
 
+/// Share of the contact forces that may be wrong, by springs that pull, are missing, or rub too much or too little.
+const SETTLED: f64 = 0.05;
+
+/// Newton iterations made for them at most. In a heap of cloth thousands of contacts come and go; they need not be
+/// right, as the collision stage decides.
+const SETTLING_ITERATIONS: usize = 2;
+
+/// Share of the potential's terms below which a gain by springs is one of the linear solve's tolerance.
+const NO_GAIN: f64 = 1e-6;
+
 /// Energies that differ by less than this share of their terms are equal: what rounding leaves of
 /// sums over 10^5 nodes, with room.
 const ENERGY_ROUNDING: f64 = 1e-12;
@@ -111,6 +121,8 @@ struct Step {
     scalar: SplitForm,
     /// None in a vacuum.
     drag: Option<Drag>,
+    /// Whether no Newton iteration has been made yet.
+    fresh: bool,
 }
 
 /// Buffers; may be dropped at any time.
@@ -219,11 +231,6 @@ impl Dynamics {
         Ok(())
     }
 
-    /// Energy [J] of the repulsion at positions `x` [m] of all vertices.
-    pub fn repulsion_energy(&self, x: &[Point]) -> f64 {
-        self.repulsion.springs().iter().map(|spring| spring.energy(spring.gap(x))).sum()
-    }
-
     /// Starts a time step of `dt` [s] from positions `x0` [m] and velocities `v0` [m/s].
     ///
     /// Velocities of vertices that will be prescribed matter for the drag of air alone, but must be finite.
@@ -260,6 +267,8 @@ impl Dynamics {
         }
         step.dt = dt;
         step.last_target = None;
+        step.fresh = true;
+        self.repulsion.begin_step(x0);
         self.step = Some(step);
         Ok(())
     }
@@ -307,38 +316,15 @@ impl Dynamics {
         // time on a busy machine, at 1,700 nodes).
         self.repulsion.place_obstacles(keyframes);
         let repulsion = &mut self.repulsion;
-        let info = rayon::scope(|_| {
-            let mut info = iterate(&self.model, &self.params, repulsion, &mut step, work);
-            // Where the quadratic model is poor, its minimum is far from that of the potential: left there, stiff bodies
-            // that turn lose most of their motion. A good step after a poor one may only have restored lengths.
-            // What a straw gains by turning is little beside the stretch that a step restores, so that the promise says
-            // nothing about it: strands look at the next step.
-            let mut arrived = info.agreement >= AGREEMENT && !self.model.has_strands();
-            while !arrived && info.iterations <= self.params.correcting_iterations {
-                let shortened = (info.step_length < 1.0).then(|| (work.trial.clone(), info));
-                if shortened.is_some() {
-                    work.take_full_step();
-                }
-                work.start_from_trial();
-                let mut next = iterate(&self.model, &self.params, repulsion, &mut step, work);
-                match shortened {
-                    Some((trial, before)) if next.energy_after >= before.energy_after => {
-                        work.trial.copy_from_slice(&trial);
-                        work.start_from_trial();
-                        info.add(&next);
-                        next = iterate(&self.model, &self.params, repulsion, &mut step, work);
-                    }
-                    _ => {}
-                }
-                info.add(&next);
-                info.max_displacement = displacement(&self.model, &work.trial, &work.free, x);
-                let small = next.max_displacement <= SMALL_CORRECTION * info.max_displacement;
-                let vain = next.energy_before - next.energy_after <= VAIN_DECREASE * next.energy_before.abs();
-                arrived = info.agreement >= AGREEMENT && small || vain;
+        let mut info = rayon::scope(|_| {
+            if repulsion.is_empty() {
+                approach(&self.model, &self.params, repulsion, &mut step, work)
+            } else {
+                approach_contacts(&self.model, &self.params, repulsion, &mut step, work)
             }
-            info
         });
 
+        info.max_displacement = displacement(&self.model, &work.trial, &work.free, x);
         // `trial` holds the target by node.
         for (vertex, y) in y.iter_mut().enumerate() {
             let node = self.model.vertex_node[vertex];
@@ -413,6 +399,86 @@ impl Dynamics {
     }
 }
 
+/// A Newton iteration from `work.x` to `work.trial`, and as many to correct it as it takes.
+///
+/// Where the quadratic model is poor, its minimum is far from that of the potential: left there, stiff bodies
+/// that turn lose most of their motion. A good step after a poor one may only have restored lengths.
+/// What a straw gains by turning is little beside the stretch that a step restores, so that the promise says
+/// nothing about it: strands look at the next step.
+fn approach(
+    model: &DynamicsModel,
+    params: &DynamicsParams,
+    repulsion: &mut Repulsion,
+    step: &mut Step,
+    work: &mut Workspace,
+) -> NewtonInfo {
+    let mut info = iterate(model, params, repulsion, step, work);
+    let mut arrived = info.agreement >= AGREEMENT && !model.has_strands();
+    let start = if arrived { Vec::new() } else { work.x.clone() };
+    while !arrived && info.iterations <= params.correcting_iterations {
+        let shortened = (info.step_length < 1.0).then(|| (work.trial.clone(), info));
+        if shortened.is_some() {
+            work.take_full_step();
+        }
+        work.start_from_trial();
+        let mut next = iterate(model, params, repulsion, step, work);
+        match shortened {
+            Some((trial, before)) if next.energy_after >= before.energy_after => {
+                work.trial.copy_from_slice(&trial);
+                work.start_from_trial();
+                info.add(&next);
+                next = iterate(model, params, repulsion, step, work);
+            }
+            _ => {}
+        }
+        info.add(&next);
+        let moved = largest_distance(&work.trial, &start, &work.free);
+        let small = next.max_displacement <= SMALL_CORRECTION * moved;
+        let vain = next.energy_before - next.energy_after <= VAIN_DECREASE * next.energy_before.abs();
+        arrived = info.agreement >= AGREEMENT && small || vain;
+    }
+    info
+}
+
+/// The same with springs: contacts are guessed, and the guess is improved by what it led to.
+///
+/// A spring that pulls, wrongly, can only do so within this bound: the potential without springs must not be above where it
+/// started, but by what pressed springs had stored, so that no energy comes from them (a target of implicit Euler keeps V + kinetic energy below those before).
+/// Where it is, the target is made without them.
+fn approach_contacts(
+    model: &DynamicsModel,
+    params: &DynamicsParams,
+    repulsion: &mut Repulsion,
+    step: &mut Step,
+    work: &mut Workspace,
+) -> NewtonInfo {
+    let (start, imposed) = (work.x.clone(), work.imposed.clone());
+    let without = |step: &Step, free: &[bool], x: &[Vector]| {
+        potential(model, params, &Repulsion::default(), step, free, x)
+    };
+    let mut placed = start.clone();
+    add_scaled(&mut placed, 1.0, &imposed);
+    let (before, scale) = without(step, &work.free, &placed);
+
+    let mut info = approach(model, params, repulsion, step, work);
+    for _ in 0..SETTLING_ITERATIONS {
+        if repulsion.settle(&work.trial) <= SETTLED {
+            break;
+        }
+        work.start_from_trial();
+        info.add(&iterate(model, params, repulsion, step, work));
+    }
+    let after = without(step, &work.free, &work.trial).0;
+    let gains_nothing = after <= before + repulsion.stored_energy(&placed) + NO_GAIN * scale;
+    if !gains_nothing {
+        work.x.copy_from_slice(&start);
+        work.imposed.copy_from_slice(&imposed);
+        repulsion.let_go();
+        info.add(&approach(model, params, repulsion, step, work));
+    }
+    info
+}
+
 /// The Newton iteration by node: from `work.x` to `work.trial`.
 fn iterate(
     model: &DynamicsModel,
@@ -421,9 +487,19 @@ fn iterate(
     step: &mut Step,
     work: &mut Workspace,
 ) -> NewtonInfo {
-    repulsion.linearise(&work.x, &work.imposed);
+    linearise(model, params, step, work);
+    if !repulsion.is_empty() {
+        if std::mem::take(&mut step.fresh) {
+            let end = |n: usize| if work.free[n] { step.inertial[n] } else { work.x[n] + work.imposed[n] };
+            let predicted: Vec<Vector> = (0..work.x.len()).map(end).collect();
+            repulsion.stiffen(&work.values.diagonal, &work.free, &predicted);
+        }
+        repulsion.linearise(&work.x);
+        let rows = work.values.diagonal.par_iter_mut().zip(&mut work.gradient).enumerate();
+        rows.with_min_len(CHUNK)
+            .for_each(|(node, (diagonal, gradient))| repulsion.add_node(node, diagonal, gradient));
+    }
     let repulsion = &*repulsion;
-    linearise(model, params, repulsion, step, work);
 
     // b = -(g + H p) over free nodes, p the imposed displacement of the prescribed ones.
     let system = System {
@@ -474,15 +550,14 @@ fn iterate(
     };
     restore_momentum(model, repulsion, &inertia, &work.free, work.cg.residual(), &mut work.step);
     search_line(model, params, repulsion, step, work, &mut info);
-    info.max_displacement = work
-        .trial
-        .iter()
-        .zip(&work.x)
-        .zip(&work.free)
-        .filter(|(_, free)| **free)
-        .map(|((y, x), _)| (y - x).norm())
-        .fold(0.0, f64::max);
+    info.max_displacement = largest_distance(&work.trial, &work.x, &work.free);
     info
+}
+
+/// Largest |y - x| over free nodes [m].
+fn largest_distance(y: &[Vector], x: &[Vector], free: &[bool]) -> f64 {
+    let distance = |((y, x), _): ((&Vector, &Vector), &bool)| (y - x).norm();
+    y.iter().zip(x).zip(free).filter(|(_, free)| **free).map(distance).fold(0.0, f64::max)
 }
 
 /// Largest |y - x| over free nodes, x by vertex [m].
@@ -491,14 +566,8 @@ fn displacement(model: &DynamicsModel, y: &[Vector], free: &[bool], x: &[Point])
     (0..y.len()).filter(|&node| free[node]).map(distance).fold(0.0, f64::max)
 }
 
-/// Fills gradient and H at `work.x`.
-fn linearise(
-    model: &DynamicsModel,
-    params: &DynamicsParams,
-    repulsion: &Repulsion,
-    step: &Step,
-    work: &mut Workspace,
-) {
+/// Fills gradient and H at `work.x`, but for repulsion.
+fn linearise(model: &DynamicsModel, params: &DynamicsParams, step: &Step, work: &mut Workspace) {
     let motion = Motion { x: &work.x, start: &step.start, rate: 1.0 / step.dt };
     let filter = Filter::from(params.hessian_filter);
     let inertia = 1.0 / (step.dt * step.dt);
@@ -536,9 +605,6 @@ fn linearise(
             if let Some(drag) = &step.drag {
                 rows.diagonal[row] += drag.matrix[node] * motion.rate;
                 rows.gradient[row] += drag.matrix[node] * (x - start) * motion.rate - drag.push[node];
-            }
-            if !repulsion.is_empty() {
-                repulsion.add_node(node, &mut rows.diagonal[row], &mut rows.gradient[row]);
             }
         }
         for family in &model.families {

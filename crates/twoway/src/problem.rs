@@ -1,9 +1,9 @@
 //! What is fixed about a scene, and every length that parameters leave to the mesh.
 
 use crate::{ContactTable, Params, ResolveError, Spacing};
-use bowknot_constraints::FrictionModel;
-use bowknot_geometry::Point;
-use bowknot_proximity::CollisionModel;
+use bowknot_constraints::{DesiredDistance, FrictionModel};
+use bowknot_geometry::{PairKind, Point};
+use bowknot_proximity::{CollisionModel, Pair};
 
 /// Lengths in force: stated ones as they are, the others from the mesh [m].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,6 +119,18 @@ impl Problem {
     /// Largest ratio of an edge's length to its reference; infinite for no limit.
     pub fn stretch_limit(&self, body: u32) -> f64 {
         self.contact.bodies()[body as usize].stretch_limit.unwrap_or(self.params.constraints.stretch_limit)
+    }
+
+    /// The distance that a pair is separated to in the end, however tight it starts [m].
+    pub fn desired_distance(&self, kind: PairKind, pair: &Pair) -> f64 {
+        let delta = self.spacing.of(&self.model, kind, pair).delta;
+        let rule = DesiredDistance { delta, growth: f64::INFINITY };
+        rule.at_ease(&self.model, kind, pair, &self.rest).0
+    }
+
+    /// Distance within which a pair is listed, whatever moves [m].
+    pub fn contact_range(&self, kind: PairKind, pair: &Pair) -> f64 {
+        self.spacing.contact_range(&self.model, kind, pair)
     }
 
     /// How friction acts; none where no body has any.

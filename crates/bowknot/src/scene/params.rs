@@ -69,19 +69,22 @@ impl Preset {
     }
 }
 
-/// Quadratic repulsion between surfaces that are near at the start of a time step, `[solver.repulsion]` (paper,
-/// section 6.2): springs in the linear system of the dynamics, of energy `stiffness` / 2 (`range` - distance)^2, which
-/// push before the collision stage has to. They save its steps and cost a little energy exchange; the guarantee does
-/// not rest on them.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+/// Quadratic repulsion, `[solver.repulsion]` (paper, section 6.2): springs between surfaces that are near at the start of a
+/// time step, in the linear system of the dynamics, by which it knows of contacts and their friction. Without them what
+/// rests on something is deformed within each time step, as if it fell on. The guarantee does not rest on them. Pairs with
+/// a strand have none, nor have grains among themselves.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RepulsionParams {
-    /// Stiffness of the springs [N/m]; 0 switches them off. Larger: wider gaps, livelier contacts. Default 0.
+    /// Stiffness of the springs in units of the bodies' own at the contact [1]; 0 switches them off. Larger: contacts give
+    /// way less in the dynamics, its linear system takes longer. Default 10.
     pub stiffness: f64,
-    /// Distance below which surfaces repel each other [m]. Default 1.5 times the distance that contacts are separated
-    /// to.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub range: Option<f64>,
+}
+
+impl Default for RepulsionParams {
+    fn default() -> Self {
+        Self { stiffness: 10.0 }
+    }
 }
 
 /// What a run writes, the table `[output]`.
@@ -159,11 +162,6 @@ impl RepulsionParams {
     pub(crate) fn validate(&self, problems: &mut Vec<(&'static str, String)>) {
         if !(self.stiffness.is_finite() && self.stiffness >= 0.0) {
             problems.push(("stiffness", format!("{} must be finite and at least 0", self.stiffness)));
-        }
-        if let Some(range) = self.range
-            && !(range.is_finite() && range > 0.0)
-        {
-            problems.push(("range", format!("{range} must be a length in metres above 0")));
         }
     }
 }

@@ -153,7 +153,7 @@ impl Simulator {
             .and_then(|resolver| resolver.with_half_spaces(contact.half_spaces))
             .and_then(|resolver| resolver.with_pair_friction(&contact.pairs))
             .map_err(|source| resolve_error(&world, 0, source))?;
-        let repulsion = Repulsion::new(&scene.repulsion, &resolver)?;
+        let repulsion = Repulsion::new(&scene.repulsion, &world, &resolver);
         let dynamics = Dynamics::new(model, scene.dynamics).map_err(SimulationError::Dynamics)?;
         let anchors = vec![Vec::new(); world.pins.len()];
         Ok(Self {
@@ -179,10 +179,10 @@ impl Simulator {
     fn survey(&mut self) -> Result<(), SimulationError> {
         let Self { world, resolver, repulsion, positions, step, dt, .. } = self;
         let call = Call { time_step: Some(*dt), ..Call::default() };
-        let contacts = resolver
+        resolver
             .survey(&positions[..world.collision_vertices()], &call)
             .map_err(|source| resolve_error(world, *step, source))?;
-        repulsion.find(contacts);
+        repulsion.find(resolver, &resolver.state().contacts);
         Ok(())
     }
 
@@ -223,7 +223,7 @@ impl Simulator {
         let dt = self.dt;
         let moved = self.positions.iter().zip(&scratch.start);
         self.velocities.iter_mut().zip(moved).for_each(|(v, (x, x0))| *v = (x - x0) / dt);
-        self.repulsion.find(&self.resolver.state().contacts);
+        self.repulsion.find(&self.resolver, &self.resolver.state().contacts);
         statistics.waiting = self.waiting(time, &scratch);
         statistics.inverted_tets = interior::inverted(&self.world, &self.positions);
         self.scratch = scratch;

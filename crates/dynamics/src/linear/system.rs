@@ -28,13 +28,18 @@ impl System<'_> {
 
     /// y = H x on free rows, 0 elsewhere; x . y.
     pub fn multiply(&self, x: &[Vector], y: &mut [Vector]) -> f64 {
+        let reactions = self.repulsion.map(|repulsion| repulsion.reactions(x)).unwrap_or_default();
         let partial: Vec<f64> = y
             .par_chunks_mut(CHUNK)
             .enumerate()
             .map(|(chunk, y)| {
                 let first = chunk * CHUNK;
                 for (k, y) in y.iter_mut().enumerate() {
-                    *y = if self.free[first + k] { self.row_product(first + k, x) } else { Vector::zeros() };
+                    *y = if self.free[first + k] {
+                        self.row_product(first + k, x, &reactions)
+                    } else {
+                        Vector::zeros()
+                    };
                 }
                 chunk_dot(&x[first..first + y.len()], y)
             })
@@ -43,7 +48,7 @@ impl System<'_> {
     }
 
     #[inline]
-    fn row_product(&self, row: usize, x: &[Vector]) -> Vector {
+    fn row_product(&self, row: usize, x: &[Vector], reactions: &[Vector]) -> Vector {
         let range = self.pattern.row(row);
         let mut sum = self.values.diagonal[row] * x[row];
         for (block, &column) in self.values.blocks[range.clone()].iter().zip(&self.pattern.columns[range]) {
@@ -54,7 +59,7 @@ impl System<'_> {
             sum += x[column as usize] * value;
         }
         if let Some(repulsion) = self.repulsion {
-            sum += repulsion.row_product(row, x);
+            sum += repulsion.row_product(row, x, reactions);
         }
         sum
     }
