@@ -37,6 +37,7 @@ const PICTURES: &[Scene] = &[
     },
     Scene { name: "trampoline", scale: "1", frames: &[40], options: "" },
     Scene { name: "cards", scale: "1", frames: &[2500], options: "" },
+    Scene { name: "woven", scale: "1", frames: &[200], options: "--camera 0.5,-0.5,0.25 --target 0,0,0" },
 ];
 
 /// Largest size of a picture [bytes]: the repository keeps them.

@@ -13,7 +13,7 @@ use super::source::Source;
 use crate::io::Import;
 use crate::shapes::{
     Ball, Block, Cone, Cuboid, Figure, Garment, Grains, HalfSpaceShape, Lathe, Ribbon, Shape, Sheet, Strands,
-    TetBall, Tube, Wedge,
+    TetBall, Tube, Wedge, Woven,
 };
 use bowknot_constraints::ConstraintParams;
 use bowknot_dynamics::DynamicsParams;
@@ -216,6 +216,7 @@ fn shape(reader: &mut Reader<'_>, table: &Table, path: &str) -> Option<Shape> {
         "block" => Shape::Block(reader.structure::<Block>(&rest, &path, &[])),
         "tet-ball" => Shape::TetBall(reader.structure::<TetBall>(&rest, &path, &[])),
         "strands" => Shape::Strands(reader.structure::<Strands>(&rest, &path, &[])),
+        "woven" => Shape::Woven(reader.structure::<Woven>(&rest, &path, &[])),
         "grains" => Shape::Grains(reader.structure::<Grains>(&rest, &path, &[])),
         unknown => {
             let hint = nearest(unknown, Shape::NAMES.into_iter());
@@ -359,7 +360,7 @@ fn validate_bodies(scene: &Scene, source: &Source, problems: &mut Vec<Problem>) 
                 "the obstacle moves by itself already; only one of them may be given".to_owned(),
             ));
         }
-        if let Some(shape @ (Shape::Strands(_) | Shape::Grains(_))) = &obstacle.shape {
+        if let Some(shape @ (Shape::Strands(_) | Shape::Woven(_) | Shape::Grains(_))) = &obstacle.shape {
             let kind = shape.kind().name();
             faults.push(("shape", format!("makes a body of kind {kind}, which is no obstacle")));
         }

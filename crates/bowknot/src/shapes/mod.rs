@@ -15,6 +15,7 @@ mod strands;
 mod tet_ball;
 mod tube;
 mod wedge;
+mod woven;
 
 pub use ball::Ball;
 pub use block::Block;
@@ -30,6 +31,7 @@ pub use strands::{Root, Strands};
 pub use tet_ball::TetBall;
 pub use tube::Tube;
 pub use wedge::Wedge;
+pub use woven::Woven;
 
 use crate::io::Mesh;
 use crate::scene::BodyKind;
@@ -71,6 +73,8 @@ pub enum Shape {
     TetBall(TetBall),
     /// A bundle of strands. For deformable bodies only.
     Strands(Strands),
+    /// A plain weave of strands. For deformable bodies only.
+    Woven(Woven),
     /// Particles in a box. For deformable bodies only.
     Grains(Grains),
 }
@@ -112,7 +116,7 @@ const MOST_VERTICES: f64 = 2e7;
 
 impl Shape {
     /// Names that the key `type` may have.
-    pub const NAMES: [&'static str; 15] = [
+    pub const NAMES: [&'static str; 16] = [
         "sheet",
         "tube",
         "ball",
@@ -127,6 +131,7 @@ impl Shape {
         "block",
         "tet-ball",
         "strands",
+        "woven",
         "grains",
     ];
 
@@ -134,7 +139,7 @@ impl Shape {
     pub fn kind(&self) -> BodyKind {
         match self {
             Self::Block(_) | Self::TetBall(_) => BodyKind::Solid,
-            Self::Strands(_) => BodyKind::Strands,
+            Self::Strands(_) | Self::Woven(_) => BodyKind::Strands,
             Self::Grains(_) => BodyKind::Particles,
             _ => BodyKind::Cloth,
         }
@@ -146,6 +151,7 @@ impl Shape {
             Self::Block(block) => Some(block.mesh()),
             Self::TetBall(ball) => Some(ball.mesh()),
             Self::Strands(strands) => Some(strands.mesh()),
+            Self::Woven(woven) => Some(woven.mesh()),
             Self::Grains(grains) => Some(grains.mesh()),
             surface => surface.mesh().map(|TriangleMesh { positions, triangles }| Mesh {
                 positions,
@@ -168,9 +174,12 @@ impl Shape {
             Self::Wedge(wedge) => Some(wedge.mesh()),
             Self::Lathe(lathe) => Some(lathe.mesh()),
             Self::Ribbon(ribbon) => Some(ribbon.mesh()),
-            Self::HalfSpace(_) | Self::Block(_) | Self::TetBall(_) | Self::Strands(_) | Self::Grains(_) => {
-                None
-            }
+            Self::HalfSpace(_)
+            | Self::Block(_)
+            | Self::TetBall(_)
+            | Self::Strands(_)
+            | Self::Woven(_)
+            | Self::Grains(_) => None,
         }
     }
 
@@ -235,6 +244,7 @@ impl Shape {
             Self::Block(block) => return block.validate(problems),
             Self::TetBall(ball) => return ball.validate(problems),
             Self::Strands(strands) => return strands.validate(problems),
+            Self::Woven(woven) => return woven.validate(problems),
             Self::Grains(grains) => return grains.validate(problems),
         };
         if let Self::Cone(Cone { sides, .. }) = self

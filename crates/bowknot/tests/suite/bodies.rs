@@ -2,6 +2,7 @@ use super::scene;
 use bowknot::check::{Judge, PathOptions, StateOptions};
 use bowknot::geometry::{Point, Vector};
 use bowknot::io::{FrameStack, MeshView, write_obj};
+use bowknot::shapes::Woven;
 use bowknot::simulator::AcceptedStep;
 use bowknot::{Scene, Simulator, StepStatistics, Watcher, World};
 use std::ops::{ControlFlow, Range};
@@ -453,4 +454,43 @@ fn the_inside_of_a_pressed_solid_is_brought_along_by_an_elastic_solve() {
         "elastic: {elastic} inverted, {elastic_seconds:.3} s; average: {average}, {average_seconds:.3} s"
     );
     assert!(elastic <= average, "{elastic} inverted tetrahedra against {average}");
+}
+
+#[test]
+fn a_weave_starts_clear_and_its_strands_take_turns_above() {
+    for scale in [0.3, 1.0] {
+        let scene = Scene::builtin("woven", scale).expect("a scene");
+        let (_, report) = Simulator::start_intersections(&scene).expect("a report");
+        assert_eq!(report.intersection_count, 0, "at {scale}");
+    }
+    let woven = Woven { count: [3, 4], ..Woven::default() };
+    let mesh = woven.mesh();
+    // Each vertex at a crossing has one of the other direction straight above or below.
+    let warp = 3 * (4 * (3 + 2) + 1);
+    let mut crossings = Vec::new();
+    for a in &mesh.positions[..warp] {
+        for b in &mesh.positions[warp..] {
+            if (a - b).xy().norm() < 1e-9 {
+                assert!(((a.z - b.z).abs() - 2.0 * woven.amplitude).abs() < 1e-12);
+                let index = |x: f64, middle: f64| (x / woven.spacing + middle).round() as i64;
+                crossings.push((index(a.x, 1.5) + index(a.y, 1.0), a.z > b.z));
+            }
+        }
+    }
+    assert_eq!(crossings.len(), 12);
+    assert!(crossings.iter().all(|(sum, above)| *above == (sum % 2 == 0)), "{crossings:?}");
+}
+
+#[test]
+fn a_woven_mat_hangs_over_a_ball_by_contact_alone() {
+    let scene = Scene::builtin("woven", 0.3).expect("a scene");
+    let mut simulator = Simulator::new(&scene).unwrap_or_else(|error| panic!("{error}"));
+    let statistics = run(&mut simulator, 80);
+    assert!(statistics.iter().all(|s| s.converged && s.max_stretch < 1.05));
+    assert!(statistics.iter().any(|s| s.contact_rows > 50), "nothing touched");
+    // In free fall it would have gone to -10 cm.
+    let x = simulator.positions();
+    let mat = of_body(&simulator, 0);
+    let highest = mat.map(|v| x[v].z).fold(f64::MIN, f64::max);
+    assert!(highest > 0.07, "{highest}");
 }

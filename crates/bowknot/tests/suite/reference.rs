@@ -10,7 +10,7 @@ use bowknot::scene::{
 use bowknot::shapes::{
     Ball, Cone, Cuboid, Figure, Garment, HalfSpaceShape, Lathe, Ribbon, Sheet, Tube, Wedge,
 };
-use bowknot::shapes::{Block, Grains, Strands, TetBall};
+use bowknot::shapes::{Block, Grains, Strands, TetBall, Woven};
 use bowknot::stepper::StepperParams;
 use bowknot::twoway::{BackwardParams, Params, StopParams};
 use serde::Serialize;
@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 /// Where the structs and enums are, relative to `crates`.
-const SOURCES: [&str; 32] = [
+const SOURCES: [&str; 33] = [
     "bowknot/src/scene/params.rs",
     "bowknot/src/scene/body.rs",
     "bowknot/src/scene/material.rs",
@@ -41,6 +41,7 @@ const SOURCES: [&str; 32] = [
     "bowknot/src/shapes/block.rs",
     "bowknot/src/shapes/tet_ball.rs",
     "bowknot/src/shapes/strands.rs",
+    "bowknot/src/shapes/woven.rs",
     "bowknot/src/shapes/grains.rs",
     "constraints/src/params.rs",
     "stepper/src/params.rs",
@@ -423,6 +424,9 @@ fn page() -> String {
     let _ = write!(page.text, "\n`type = \"strands\"`: a bundle of strands.\n");
     page.head(false);
     page.rows("Strands", &Strands::default(), None, all);
+    let _ = write!(page.text, "\n`type = \"woven\"`: a plain weave of strands.\n");
+    page.head(false);
+    page.rows("Woven", &Woven::default(), None, all);
     let _ = write!(page.text, "\n`type = \"grains\"`: particles in a box.\n");
     page.head(false);
     page.rows("Grains", &Grains::default(), None, all);

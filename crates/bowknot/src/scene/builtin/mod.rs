@@ -18,6 +18,7 @@ mod sphere;
 mod stack;
 mod trampoline;
 mod tube;
+mod woven;
 
 use super::{BodySpec, ObstacleSpec, Scene, SceneError, error::nearest};
 use crate::shapes::{Ball, HalfSpaceShape, Shape, Sheet};
@@ -87,6 +88,7 @@ pub const BUILTIN: &[Builtin] = &[
         make: trampoline::scene,
     },
     Builtin { name: "cards", summary: "a house of three cards stands by friction", make: cards::scene },
+    Builtin { name: "woven", summary: "a mat woven of strands falls on a ball", make: woven::scene },
 ];
 
 /// Smallest scale: sheets still have a few edges.
