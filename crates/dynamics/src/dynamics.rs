@@ -139,6 +139,8 @@ struct Workspace {
     values: BlockValues,
     preconditioner: Preconditioner,
     cg: CgWorkspace,
+    /// See [`Limits::least_scale`]; 0 but in corrections.
+    least_scale: f64,
 }
 
 impl Workspace {
@@ -182,6 +184,7 @@ impl Dynamics {
                 crate::Preconditioner::TwoLevel => model.two_level(),
             },
             cg: CgWorkspace::default(),
+            least_scale: 0.0,
         };
         let surfaces = (params.air_density > 0.0).then(|| DragSurfaces::new(&model));
         let repulsion = Repulsion::default();
@@ -461,6 +464,7 @@ fn approach_contacts(
     let (before, scale) = without(step, &work.free, &placed);
 
     let mut info = approach(model, params, repulsion, step, work);
+    work.least_scale = work.cg.scale();
     for _ in 0..SETTLING_ITERATIONS {
         if repulsion.settle(&work.trial) <= SETTLED {
             break;
@@ -468,6 +472,7 @@ fn approach_contacts(
         work.start_from_trial();
         info.add(&iterate(model, params, repulsion, step, work));
     }
+    work.least_scale = 0.0;
     let after = without(step, &work.free, &work.trial).0;
     let gains_nothing = after <= before + repulsion.stored_energy(&placed) + NO_GAIN * scale;
     if !gains_nothing {
@@ -529,7 +534,11 @@ fn iterate(
     let [inertia, last] = &work.guesses;
     let guesses: &[&[Vector]] = &[last.as_slice(), inertia.as_slice()][2 - guess_count..];
     work.preconditioner.build(&system, &work.x);
-    let limits = Limits { tolerance: params.cg_tolerance, max_iterations: params.cg_max_iterations };
+    let limits = Limits {
+        tolerance: params.cg_tolerance,
+        least_scale: work.least_scale,
+        max_iterations: params.cg_max_iterations,
+    };
     let mut info = NewtonInfo {
         iterations: 1,
         cg: cg::solve(

