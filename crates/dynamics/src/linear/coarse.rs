@@ -4,7 +4,7 @@
 //! Each aggregate (a leaf of the numbering, [`super::ordering`]) gets the six rigid motions about
 //! its centre at the current x, P; the Galerkin matrix P^T H P is factorised, and
 //! `P (P^T H P)^-1 P^T` is added to the fine preconditioner. Repulsion joins aggregates that the mesh does not:
-//! where there is any, the matrix's graph is made anew.
+//! where there is any, the matrix's graph is made anew, unless that fills the factor.
 
 use super::cholesky::{Cholesky, Symbolic, Vanished};
 use super::system::System;
@@ -13,6 +13,10 @@ use bowknot_geometry::Vector;
 use nalgebra::{Matrix3, Matrix6, Vector6};
 use rayon::prelude::*;
 use std::ops::Range;
+
+/// Most fill of a factor with repulsion, in that of the mesh's: a heap of many layers is no surface, and its factor costs
+/// more than it saves. Without, springs count with their diagonal blocks.
+const MOST_FILL: usize = 4;
 
 /// Rigid motions of aggregates.
 #[derive(Clone, Debug, Default)]
@@ -85,7 +89,11 @@ impl Coarse {
     /// Builds and factorises the Galerkin matrix for `system` at positions `x`.
     pub fn build(&mut self, system: &System<'_>, x: &[Vector]) {
         self.place_arms(system, x);
-        self.joined = system.repulsion.map(|repulsion| self.join(repulsion, x));
+        self.joined = system
+            .repulsion
+            .map(|repulsion| self.join(repulsion, x))
+            .filter(|graph| graph.symbolic.fill() <= MOST_FILL * self.mesh.symbolic.fill().max(1));
+        let couplings = system.repulsion.filter(|_| self.joined.is_some());
         let graph = self.joined.as_ref().unwrap_or(&self.mesh);
         self.blocks.resize(graph.neighbours.len(), Matrix6::zeros());
         let (starts, arms, aggregate_of) = (&graph.starts, &self.arms, &self.aggregate_of);
@@ -125,7 +133,7 @@ impl Coarse {
                     sum.turn_to(aggregate_of[column as usize], &mut flush);
                     sum.add_scalar(value, &arms[column as usize]);
                 }
-                if let Some(repulsion) = system.repulsion {
+                if let Some(repulsion) = couplings {
                     repulsion.for_each_coupling(node, |other, block| {
                         if arms[other].free > 0.0 {
                             sum.turn_to(aggregate_of[other], &mut flush);

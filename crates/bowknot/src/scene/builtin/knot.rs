@@ -28,12 +28,9 @@ pub(super) fn ribbons(curve: &Curve, width: f64, edge: f64) -> Vec<BodySpec> {
     vec![ribbon("left", 0.0), ribbon("right", 180.0)]
 }
 
-/// A jersey ribbon: it stretches easily and bends like stiff satin. Contact is no part of the Newton system, so the
-/// dynamics would rather straighten a taut strand through its neighbour than slide it around, and contact then crushes
-/// what it may not stretch. The less a ribbon resists stretching, the less the two are at odds: at 1000 N/m strands lock
-/// at the first crossing and the knot ends crushed to a point, at 10 N/m they slide into place.
+/// A ribbon that stretches like loosely woven cotton and bends like stiff satin.
 fn material() -> ClothMaterial {
-    ClothMaterial { density: 0.2, stretch_stiffness: 10.0, bend_stiffness: 5e-5, ..ClothMaterial::cotton() }
+    ClothMaterial { density: 0.2, stretch_stiffness: 250.0, bend_stiffness: 5e-5, ..ClothMaterial::cotton() }
 }
 
 /// A hand: it takes the vertices of a ribbon in a box and carries them along a straight line.
