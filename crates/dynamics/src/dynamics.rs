@@ -500,9 +500,8 @@ fn iterate(
             repulsion.stiffen(&work.values.diagonal, &work.free, &predicted);
         }
         repulsion.linearise(&work.x);
-        let rows = work.values.diagonal.par_iter_mut().zip(&mut work.gradient).enumerate();
-        rows.with_min_len(CHUNK)
-            .for_each(|(node, (diagonal, gradient))| repulsion.add_node(node, diagonal, gradient));
+        let gradient = work.gradient.par_iter_mut().enumerate().with_min_len(CHUNK);
+        gradient.for_each(|(node, gradient)| *gradient += repulsion.gradient(node));
     }
     let repulsion = &*repulsion;
 

@@ -51,7 +51,7 @@ fn linearised(dynamics: &mut Dynamics, x: &[Vector]) -> Step {
         }
         repulsion.linearise(x);
         for node in 0..x.len() {
-            repulsion.add_node(node, &mut work.values.diagonal[node], &mut work.gradient[node]);
+            work.gradient[node] += repulsion.gradient(node);
         }
     }
     step
@@ -281,7 +281,7 @@ fn wind_and_repulsion_have_exact_gradients_and_matrices() {
     let step = linearised(&mut dynamics, &stretched);
     let gradient = dynamics.work.gradient.clone();
     let reactions = dynamics.repulsion.reactions(&stretched);
-    let pushed = |n: &usize| dynamics.repulsion.row_product(*n, &stretched, &reactions) != Vector::zeros();
+    let pushed = |n: &usize| dynamics.repulsion.row_product(*n, &reactions) != Vector::zeros();
     assert!((0..stretched.len()).filter(pushed).count() > 10);
     let free = vec![true; stretched.len()];
     let scale = gradient.iter().map(|g| g.norm()).fold(0.0, f64::max);

@@ -13,8 +13,8 @@
 //! f (|slip| - f / 2k); smooth and convex, as in Li et al. 2020 (IPC), section 5, but for the lag of f and of what pushes.
 //! [`Repulsion::settle`] brings both up to date after a solve.
 //!
-//! The Hessian is applied without being stored; its diagonal blocks stand in the diagonal, where preconditioners see
-//! them.
+//! The Hessian is applied without being stored: each spring's reaction first, then the nodes gather them. Preconditioners
+//! ask for its blocks.
 
 use crate::elements::CHUNK;
 use crate::model::NO_NODE;
@@ -220,14 +220,18 @@ impl Repulsion {
         Pushing { nodes: self.nodes[spring], weights: self.springs[spring].weights, hessian, force }
     }
 
-    /// The diagonal block of a node, and its share of the gradient.
-    #[inline]
-    pub fn add_node(&self, node: usize, diagonal: &mut Matrix3<f64>, gradient: &mut Vector) {
-        for &(spring, weight) in self.entries(node) {
-            let spring = &self.pushing[spring as usize];
-            *diagonal += spring.hessian * (weight * weight);
-            *gradient -= spring.force * weight;
-        }
+    /// The diagonal block of a node.
+    pub fn block(&self, node: usize) -> Matrix3<f64> {
+        self.entries(node).iter().fold(Matrix3::zeros(), |sum, &(spring, weight)| {
+            sum + self.pushing[spring as usize].hessian * (weight * weight)
+        })
+    }
+
+    /// A node's share of the gradient.
+    pub fn gradient(&self, node: usize) -> Vector {
+        self.entries(node).iter().fold(Vector::zeros(), |sum, &(spring, weight)| {
+            sum - self.pushing[spring as usize].force * weight
+        })
     }
 
     /// What each pushing spring makes of motions `x` of the nodes: Hessian times sum beta_i x_i.
@@ -244,15 +248,12 @@ impl Repulsion {
         self.pushing.par_iter().with_min_len(CHUNK).map(reaction).collect()
     }
 
-    /// A row of the off-diagonal part times `x`, whose [`Self::reactions`] are given.
+    /// A row of the Hessian times what the [`Self::reactions`] were made of.
     #[inline]
-    pub fn row_product(&self, node: usize, x: &[Vector], reactions: &[Vector]) -> Vector {
-        let mut sum = Vector::zeros();
-        for &(spring, weight) in self.entries(node) {
-            let own = self.pushing[spring as usize].hessian * x[node] * weight;
-            sum += (reactions[spring as usize] - own) * weight;
-        }
-        sum
+    pub fn row_product(&self, node: usize, reactions: &[Vector]) -> Vector {
+        self.entries(node)
+            .iter()
+            .fold(Vector::zeros(), |sum, &(spring, weight)| sum + reactions[spring as usize] * weight)
     }
 
     /// Blocks of the off-diagonal part in a row, with the nodes that they belong to.

@@ -120,7 +120,7 @@ impl Coarse {
                         sum.add_to(&arms[node], block);
                     }
                 };
-                sum.add(&system.values.diagonal[node], &arms[node]);
+                sum.add(&system.diagonal(node), &arms[node]);
                 let row = system.pattern.row(node);
                 for (block, &column) in
                     system.values.blocks[row.clone()].iter().zip(&system.pattern.columns[row])

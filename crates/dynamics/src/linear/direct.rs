@@ -114,7 +114,7 @@ impl Group {
             for k in self.range(place) {
                 let other = self.nodes[self.columns[k] as usize];
                 self.blocks[k] = match self.slots[k] {
-                    u32::MAX if free => system.values.diagonal[node as usize],
+                    u32::MAX if free => system.diagonal(node as usize),
                     u32::MAX => Matrix3::identity(),
                     slot if free && system.free[other as usize] => system.values.blocks[slot as usize],
                     _ => Matrix3::zeros(),

@@ -31,8 +31,7 @@ impl Preconditioner {
         self.inverses.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, inverses)| {
             for (k, inverse) in inverses.iter_mut().enumerate() {
                 let node = chunk * CHUNK + k;
-                *inverse =
-                    if system.free[node] { invert(system.values.diagonal[node]) } else { Matrix3::zeros() };
+                *inverse = if system.free[node] { invert(system.diagonal(node)) } else { Matrix3::zeros() };
             }
         });
         if let Some(direct) = &mut self.direct {

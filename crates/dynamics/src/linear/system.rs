@@ -7,6 +7,7 @@ use super::vectors::chunk_dot;
 use crate::elements::CHUNK;
 use crate::repulsion::Repulsion;
 use bowknot_geometry::Vector;
+use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 /// H, borrowed. Rows of nodes that are not free act as zero.
@@ -16,7 +17,7 @@ pub(crate) struct System<'a> {
     pub values: &'a BlockValues,
     /// Its diagonal and near entries are part of `values`.
     pub scalar: &'a SplitForm,
-    /// Its diagonal blocks are part of `values`.
+    /// No part of `values`.
     pub repulsion: Option<&'a Repulsion>,
     pub free: &'a [bool],
 }
@@ -24,6 +25,12 @@ pub(crate) struct System<'a> {
 impl System<'_> {
     pub fn node_count(&self) -> usize {
         self.free.len()
+    }
+
+    /// A diagonal block of H.
+    pub fn diagonal(&self, row: usize) -> Matrix3<f64> {
+        let own = self.values.diagonal[row];
+        self.repulsion.map_or(own, |repulsion| own + repulsion.block(row))
     }
 
     /// y = H x on free rows, 0 elsewhere; x . y.
@@ -59,7 +66,7 @@ impl System<'_> {
             sum += x[column as usize] * value;
         }
         if let Some(repulsion) = self.repulsion {
-            sum += repulsion.row_product(row, x, reactions);
+            sum += repulsion.row_product(row, reactions);
         }
         sum
     }
