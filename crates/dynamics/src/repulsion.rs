@@ -11,7 +11,7 @@
 //! with weights beta (positive on one side, negative on the other) and normal n kept for the step, s0 = s at its start.
 //! F is friction with the lagged bound f = mu k (desired - gap): k/2 |slip|^2 while k |slip| <= f, from there on
 //! f (|slip| - f / 2k); smooth and convex, as in Li et al. 2020 (IPC), section 5, but for the lag of f and of what pushes.
-//! [`Repulsion::settle`] brings both up to date after a solve.
+//! Both are brought up to date after a solve, by `settle`.
 //!
 //! The Hessian is applied without being stored: each spring's reaction first, then the nodes gather them. Preconditioners
 //! ask for its blocks.
