@@ -398,12 +398,20 @@ impl Simulator {
         if !fits {
             return Err("its pins are not those of the scene".to_owned());
         }
+        let before = self.checkpoint();
+        self.adopt(checkpoint);
+        self.survey().map_err(|error| {
+            self.adopt(&before);
+            error.to_string()
+        })
+    }
+
+    fn adopt(&mut self, checkpoint: &Checkpoint) {
         self.step = checkpoint.step;
         self.positions.clone_from(&checkpoint.positions);
         self.velocities.clone_from(&checkpoint.velocities);
         self.anchors.clone_from(&checkpoint.anchors);
         self.attachments.iter_mut().for_each(Vec::clear);
-        self.survey().map_err(|error| error.to_string())
     }
 }
 

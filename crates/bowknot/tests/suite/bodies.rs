@@ -345,6 +345,18 @@ fn a_restart_of_all_kinds_of_bodies_gives_the_same_bits() {
 }
 
 #[test]
+fn a_checkpoint_that_is_no_state_is_refused_and_changes_nothing() {
+    let (mut whole, mut other) = (simulator(MIXED), simulator(MIXED));
+    run(&mut whole, 6);
+    run(&mut other, 3);
+    let mut broken = whole.checkpoint();
+    broken.positions[5].x = f64::NAN;
+    other.restore(&broken).expect_err("a position that is no number");
+    run(&mut other, 3);
+    assert_eq!(bits(&other), bits(&whole));
+}
+
+#[test]
 fn threads_do_not_change_a_bit_of_any_kind_of_body() {
     let with_threads = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
