@@ -117,6 +117,11 @@ impl Repulsion {
         self.springs.is_empty()
     }
 
+    /// Whether any pushed at the last linearisation.
+    pub fn any_pushes(&self) -> bool {
+        !self.pushing.is_empty()
+    }
+
     /// Starts a time step at positions `x` of all vertices.
     pub fn begin_step(&mut self, x: &[Point]) {
         for (anchor, s) in self.anchors.iter_mut().zip(&self.springs) {

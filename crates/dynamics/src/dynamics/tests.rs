@@ -1,6 +1,7 @@
 use super::*;
+use crate::linear::system::System;
 use crate::{Body, ClothMaterial, HessianFilter};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Matrix3};
 
 /// A crumpled 5 x 4 sheet with damping of every kind, one corner prescribed.
 fn crumpled() -> (Dynamics, Vec<Point>, Vec<Vector>, Vec<bool>) {
@@ -37,23 +38,17 @@ fn crumpled() -> (Dynamics, Vec<Point>, Vec<Vector>, Vec<bool>) {
     (Dynamics::new(model, params).expect("valid"), x, v, prescribed)
 }
 
+fn newton<'a>(dynamics: &'a mut Dynamics, step: &'a mut Step) -> Newton<'a> {
+    let Dynamics { model, params, repulsion, work, .. } = dynamics;
+    Newton { model, params, repulsion, step, work }
+}
+
 /// The state of an iteration from `x`, linearised.
 fn linearised(dynamics: &mut Dynamics, x: &[Vector]) -> Step {
     let mut step = dynamics.step.take().expect("begun");
     dynamics.work.x.copy_from_slice(x);
     dynamics.work.imposed.fill(Vector::zeros());
-    let Dynamics { model, params, repulsion, work, .. } = dynamics;
-    linearise(model, params, &step, work);
-    if !repulsion.is_empty() {
-        if std::mem::take(&mut step.fresh) {
-            repulsion.stiffen(&work.values.diagonal, &work.free, x);
-            repulsion.settle(x);
-        }
-        repulsion.linearise(x);
-        for node in 0..x.len() {
-            work.gradient[node] += repulsion.gradient(node);
-        }
-    }
+    newton(dynamics, &mut step).linearise();
     step
 }
 
@@ -86,9 +81,8 @@ fn the_gradient_matches_differences_of_the_incremental_potential() {
     let nodes = dynamics.model.node_vertex.clone();
     // Away from the start, so that damping acts.
     let mut x: Vec<Vector> = nodes.iter().map(|&v| x0[v as usize].coords + v0[v as usize] * 0.01).collect();
-    let step = linearised(&mut dynamics, &x);
+    let mut step = linearised(&mut dynamics, &x);
     let gradient = dynamics.work.gradient.clone();
-    let free = vec![true; x.len()];
     let h = 1e-6;
     let scale = gradient.iter().map(|g| g.norm()).fold(0.0, f64::max);
     for node in 0..x.len() {
@@ -96,7 +90,7 @@ fn the_gradient_matches_differences_of_the_incremental_potential() {
             let here = x[node][axis];
             let mut energy = |value: f64| {
                 x[node][axis] = value;
-                potential(&dynamics.model, &dynamics.params, &dynamics.repulsion, &step, &free, &x).0
+                newton(&mut dynamics, &mut step).potential(&x).0
             };
             let slope = (energy(here + h) - energy(here - h)) / (2.0 * h);
             x[node][axis] = here;
@@ -278,12 +272,14 @@ fn wind_and_repulsion_have_exact_gradients_and_matrices() {
     let nodes = dynamics.model.node_vertex.clone();
     let stretched: Vec<Vector> =
         nodes.iter().map(|&v| x0[v as usize].coords * 1.6 + v0[v as usize] * 0.002).collect();
+    // Which springs push, and the bounds of their friction, as they are there.
     let step = linearised(&mut dynamics, &stretched);
+    dynamics.repulsion.settle(&stretched);
+    let step = linearised_at(&mut dynamics, step, &stretched);
     let gradient = dynamics.work.gradient.clone();
     let reactions = dynamics.repulsion.reactions(&stretched);
     let pushed = |n: &usize| dynamics.repulsion.row_product(*n, &reactions) != Vector::zeros();
     assert!((0..stretched.len()).filter(pushed).count() > 10);
-    let free = vec![true; stretched.len()];
     let scale = gradient.iter().map(|g| g.norm()).fold(0.0, f64::max);
     let largest = dynamics.work.values.diagonal.iter().map(|d| d.abs().max()).fold(0.0, f64::max);
     let mut image = vec![Vector::zeros(); stretched.len()];
@@ -292,10 +288,10 @@ fn wind_and_repulsion_have_exact_gradients_and_matrices() {
     for node in 0..moved.len() {
         for axis in 0..3 {
             let here = moved[node][axis];
-            let step = dynamics.step.take().expect("begun");
+            let mut step = dynamics.step.take().expect("begun");
             let mut energy = |offset: f64| {
                 moved[node][axis] = here + offset;
-                potential(&dynamics.model, &dynamics.params, &dynamics.repulsion, &step, &free, &moved).0
+                newton(&mut dynamics, &mut step).potential(&moved).0
             };
             let slope = (energy(1e-6) - energy(-1e-6)) / 2e-6;
             moved[node][axis] = here;
@@ -310,7 +306,7 @@ fn wind_and_repulsion_have_exact_gradients_and_matrices() {
                 values: &dynamics.work.values,
                 scalar: &step.scalar,
                 repulsion: Some(&dynamics.repulsion),
-                free: &free,
+                free: &dynamics.work.free,
             };
             system.multiply(&unit, &mut image);
             let mut gradient_at = |dynamics: &mut Dynamics, step: Step, offset: f64| {

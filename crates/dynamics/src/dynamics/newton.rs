@@ -1,0 +1,406 @@
+//! The way from a state to the target: Newton iterations, those that correct them, the line search.
+
+use crate::drag::Drag;
+use crate::elements::{CHUNK, Filter, Motion, Rows};
+use crate::linear::block::BlockValues;
+use crate::linear::cg::{self, CgWorkspace, Limits};
+use crate::linear::preconditioner::Preconditioner;
+use crate::linear::scalar::SplitForm;
+use crate::linear::system::System;
+use crate::linear::vectors::{add_scaled, dot};
+use crate::momentum::{Inertia, restore_momentum};
+use crate::repulsion::Repulsion;
+use crate::{DynamicsModel, DynamicsParams, NewtonInfo};
+use bowknot_geometry::Vector;
+use nalgebra::Matrix3;
+use rayon::prelude::*;
+
+/// Share of the promised decrease at which a Newton step counts as arrived. The quadratic model then errs by some tenth of
+/// the decrease, the next iteration by about its square.
+const AGREEMENT: f64 = 0.9;
+
+/// Share of the potential below which a correction's decrease is not worth another.
+const VAIN_DECREASE: f64 = 1e-6;
+
+/// Share of the whole displacement below which a correction is the last.
+const SMALL_CORRECTION: f64 = 0.1;
+
+/// Share of the contact forces that may be wrong, by springs that pull, are missing, or rub too much or too little.
+const SETTLED: f64 = 0.05;
+
+/// Newton iterations made for them at most. In a heap of cloth thousands of contacts come and go; they need not be
+/// right, as the collision stage decides.
+const SETTLING_ITERATIONS: usize = 2;
+
+/// Share of the potential's terms below which a gain by springs is one of the linear solve's tolerance.
+const NO_GAIN: f64 = 1e-6;
+
+/// Energies that differ by less than this share of their terms are equal: what rounding leaves of
+/// sums over 10^5 nodes, with room.
+const ENERGY_ROUNDING: f64 = 1e-12;
+
+/// Steps shorter than this share of the largest coordinate are rounding: not worth a line search,
+/// whose energies would differ by noise.
+const NEGLIGIBLE_STEP: f64 = 1e-12;
+
+/// The time step under way, by node.
+#[derive(Debug, Default)]
+pub struct Step {
+    pub dt: f64,
+    pub start: Vec<Vector>,
+    pub inertial: Vec<Vector>,
+    /// The last target, if there was one: the warm start of the next solve.
+    pub last_target: Option<Vec<Vector>>,
+    /// Bending plus its damping / dt, as a matrix.
+    pub scalar: SplitForm,
+    /// None in a vacuum.
+    pub drag: Option<Drag>,
+    /// Whether no Newton iteration has been made yet.
+    pub fresh: bool,
+}
+
+/// Buffers; may be dropped at any time.
+#[derive(Debug, Default)]
+pub struct Workspace {
+    pub x: Vec<Vector>,
+    pub trial: Vec<Vector>,
+    pub free: Vec<bool>,
+    pub gradient: Vec<Vector>,
+    pub right_side: Vec<Vector>,
+    pub imposed: Vec<Vector>,
+    pub guesses: [Vec<Vector>; 2],
+    pub step: Vec<Vector>,
+    pub values: BlockValues,
+    pub preconditioner: Preconditioner,
+    pub cg: CgWorkspace,
+    /// See [`Limits::least_scale`]; 0 but in corrections.
+    pub least_scale: f64,
+}
+
+impl Workspace {
+    /// Makes the Newton step times `length` the trial, prescribed nodes at their keyframes.
+    fn place(&mut self, length: f64) {
+        self.trial.copy_from_slice(&self.x);
+        add_scaled(&mut self.trial, 1.0, &self.imposed);
+        add_scaled(&mut self.trial, length, &self.step);
+    }
+
+    /// Makes the trial the state that the next iteration starts from; prescribed nodes are at their keyframes there.
+    fn start_from_trial(&mut self) {
+        self.x.copy_from_slice(&self.trial);
+        self.imposed.fill(Vector::zeros());
+    }
+}
+
+/// What an iteration works on: from `work.x` to `work.trial`, by node.
+pub struct Newton<'a> {
+    pub model: &'a DynamicsModel,
+    pub params: &'a DynamicsParams,
+    pub repulsion: &'a mut Repulsion,
+    pub step: &'a mut Step,
+    pub work: &'a mut Workspace,
+}
+
+impl Newton<'_> {
+    /// Makes the target.
+    pub fn reach(&mut self) -> NewtonInfo {
+        if self.repulsion.is_empty() { self.approach() } else { self.approach_contacts() }
+    }
+
+    /// A Newton iteration, and as many to correct it as it takes.
+    ///
+    /// Where the quadratic model is poor, its minimum is far from that of the potential: left there, stiff bodies
+    /// that turn lose most of their motion. A good step after a poor one may only have restored lengths.
+    /// What a straw gains by turning is little beside the stretch that a step restores, so that the promise says
+    /// nothing about it: strands look at the next step.
+    ///
+    /// A step that would be cut is tried whole first, whatever it does to the potential: the watchdog technique
+    /// (Chamberlain, Powell, Lemarechal and Pedersen 1982). A stiff rod that turns stretches along its straight step, a
+    /// line search would stop it there for good, and the next step restores its length.
+    fn approach(&mut self) -> NewtonInfo {
+        let mut info = self.iterate();
+        let mut arrived = info.agreement >= AGREEMENT && !self.model.has_strands();
+        let start = if arrived { Vec::new() } else { self.work.x.clone() };
+        while !arrived && info.iterations <= self.params.correcting_iterations {
+            let shortened = (info.step_length < 1.0).then(|| (self.work.trial.clone(), info));
+            if shortened.is_some() {
+                self.work.place(1.0);
+            }
+            self.work.start_from_trial();
+            let mut next = self.iterate();
+            match shortened {
+                Some((trial, before)) if next.energy_after >= before.energy_after => {
+                    self.work.trial.copy_from_slice(&trial);
+                    self.work.start_from_trial();
+                    info.add(&next);
+                    next = self.iterate();
+                }
+                _ => {}
+            }
+            info.add(&next);
+            let moved = largest_distance(&self.work.trial, &start, &self.work.free);
+            let small = next.max_displacement <= SMALL_CORRECTION * moved;
+            let vain = next.energy_before - next.energy_after <= VAIN_DECREASE * next.energy_before.abs();
+            arrived = info.agreement >= AGREEMENT && small || vain;
+        }
+        info
+    }
+
+    /// The same with springs: contacts are guessed, and the guess is improved by what it led to.
+    ///
+    /// A spring that pulls, wrongly, can only do so within this bound: the potential without springs must not end above
+    /// where it started, but by what pressed springs had stored, so that no energy comes from them (a target of implicit
+    /// Euler keeps elastic and kinetic energy below those before). Where it does, the target is made without them.
+    fn approach_contacts(&mut self) -> NewtonInfo {
+        let (start, imposed) = (self.work.x.clone(), self.work.imposed.clone());
+        let mut placed = start.clone();
+        add_scaled(&mut placed, 1.0, &imposed);
+        let [kinetic, internal] = self.energies(&placed);
+        let (before, scale) = (kinetic + internal, kinetic.abs() + internal.abs());
+
+        let mut info = self.approach();
+        self.work.least_scale = self.work.cg.scale();
+        for _ in 0..SETTLING_ITERATIONS {
+            if self.repulsion.settle(&self.work.trial) <= SETTLED {
+                break;
+            }
+            self.work.start_from_trial();
+            info.add(&self.iterate());
+        }
+        self.work.least_scale = 0.0;
+
+        let after: f64 = self.energies(&self.work.trial).iter().sum();
+        let gains_nothing = after <= before + self.repulsion.stored_energy(&placed) + NO_GAIN * scale;
+        if !gains_nothing {
+            self.work.x.copy_from_slice(&start);
+            self.work.imposed.copy_from_slice(&imposed);
+            self.repulsion.let_go();
+            info.add(&self.approach());
+        }
+        info
+    }
+
+    /// One iteration.
+    fn iterate(&mut self) -> NewtonInfo {
+        self.linearise();
+        let Self { model, params, repulsion, step, work } = self;
+
+        // b = -(g + H p) over free nodes, p the imposed displacement of the prescribed ones.
+        let system = System {
+            pattern: &model.pattern,
+            values: &work.values,
+            scalar: &step.scalar,
+            repulsion: repulsion.any_pushes().then_some(&**repulsion),
+            free: &work.free,
+        };
+        system.multiply(&work.imposed, &mut work.right_side);
+        for ((b, g), &free) in work.right_side.iter_mut().zip(&work.gradient).zip(&work.free) {
+            *b = if free { -(*b + g) } else { Vector::zeros() };
+        }
+
+        // Guesses: to where inertia leads, and to where the last target was. Near the solution of a step
+        // the second is all but exact; in free flight the first is.
+        let mut guess_count = 1;
+        for node in 0..work.x.len() {
+            let to = |target: &[Vector]| {
+                if work.free[node] { target[node] - work.x[node] } else { Vector::zeros() }
+            };
+            work.guesses[0][node] = to(&step.inertial);
+            if let Some(last) = &step.last_target {
+                work.guesses[1][node] = to(last);
+                guess_count = 2;
+            }
+        }
+        let [inertia, last] = &work.guesses;
+        let guesses: &[&[Vector]] = &[last.as_slice(), inertia.as_slice()][2 - guess_count..];
+        work.preconditioner.build(&system, &work.x);
+        let limits = Limits {
+            tolerance: params.cg_tolerance,
+            least_scale: work.least_scale,
+            max_iterations: params.cg_max_iterations,
+        };
+        let mut info = NewtonInfo {
+            iterations: 1,
+            cg: cg::solve(
+                &system,
+                &mut work.preconditioner,
+                &work.right_side,
+                guesses,
+                limits,
+                &mut work.step,
+                &mut work.cg,
+            ),
+            ..NewtonInfo::default()
+        };
+        let inertia = Inertia {
+            per_mass: 1.0 / (step.dt * step.dt) + params.air_drag / step.dt,
+            drag: step.drag.as_ref(),
+            rate: 1.0 / step.dt,
+        };
+        restore_momentum(model, repulsion, &inertia, &work.free, work.cg.residual(), &mut work.step);
+        self.search_line(&mut info);
+        info.max_displacement = largest_distance(&self.work.trial, &self.work.x, &self.work.free);
+        info
+    }
+
+    /// Fills gradient and H at `work.x`. The first time in a time step, springs get their stiffness, and the guess which of
+    /// them push.
+    pub fn linearise(&mut self) {
+        self.linearise_bodies();
+        let Self { repulsion, step, work, .. } = self;
+        if repulsion.is_empty() {
+            return;
+        }
+        if std::mem::take(&mut step.fresh) {
+            let end = |n: usize| if work.free[n] { step.inertial[n] } else { work.x[n] + work.imposed[n] };
+            let predicted: Vec<Vector> = (0..work.x.len()).map(end).collect();
+            repulsion.stiffen(&work.values.diagonal, &work.free, &predicted);
+        }
+        repulsion.linearise(&work.x);
+        let gradient = work.gradient.par_iter_mut().enumerate().with_min_len(CHUNK);
+        gradient.for_each(|(node, gradient)| *gradient += repulsion.gradient(node));
+    }
+
+    /// All but repulsion.
+    fn linearise_bodies(&mut self) {
+        let Self { model, params, step, work, .. } = self;
+        let motion = Motion { x: &work.x, start: &step.start, rate: 1.0 / step.dt };
+        let filter = Filter::from(params.hessian_filter);
+        let inertia = 1.0 / (step.dt * step.dt);
+        let drag = params.air_drag / step.dt;
+
+        // Every chunk gets the blocks of its own rows.
+        let mut blocks = work.values.blocks.as_mut_slice();
+        let mut rows = Vec::new();
+        let chunks = work.gradient.chunks_mut(CHUNK).zip(work.values.diagonal.chunks_mut(CHUNK));
+        for (chunk, (gradient, diagonal)) in chunks.enumerate() {
+            let nodes = chunk * CHUNK..chunk * CHUNK + gradient.len();
+            let first_block = model.pattern.starts[nodes.start] as usize;
+            let end_block = model.pattern.starts[nodes.end] as usize;
+            let (mine, rest) = blocks.split_at_mut(end_block - first_block);
+            blocks = rest;
+            rows.push(Rows { nodes, gradient, diagonal, blocks: mine, first_block });
+        }
+        rows.into_par_iter().enumerate().for_each(|(chunk, mut rows)| {
+            let near = &step.scalar.near[rows.first_block..];
+            for (block, &value) in rows.blocks.iter_mut().zip(near) {
+                *block = Matrix3::from_diagonal_element(value);
+            }
+            for (row, node) in rows.nodes.clone().enumerate() {
+                let mass = model.node_masses[node];
+                let (x, start) = (motion.x[node], motion.start[node]);
+                rows.diagonal[row] =
+                    Matrix3::from_diagonal_element(mass * (inertia + drag) + step.scalar.diagonal[node]);
+                rows.gradient[row] = (x - step.inertial[node]) * (mass * inertia)
+                    + (x - start) * (mass * drag)
+                    + model.bending.product(node, motion.x);
+                if let Some(damping) = &model.bending_damping {
+                    rows.gradient[row] +=
+                        (damping.product(node, motion.x) - damping.product(node, motion.start)) * motion.rate;
+                }
+                if let Some(drag) = &step.drag {
+                    rows.diagonal[row] += drag.matrix[node] * motion.rate;
+                    rows.gradient[row] += drag.matrix[node] * (x - start) * motion.rate - drag.push[node];
+                }
+            }
+            for family in &model.families {
+                family.linearise(chunk, motion, filter, &mut rows);
+            }
+        });
+    }
+
+    /// Inertial and inner part of the incremental potential at `x` without repulsion [J].
+    fn energies(&self, x: &[Vector]) -> [f64; 2] {
+        let Self { model, params, step, .. } = self;
+        let free = &self.work.free;
+        let motion = Motion { x, start: &step.start, rate: 1.0 / step.dt };
+        let inertia = 0.5 / (step.dt * step.dt);
+        let drag = 0.5 * params.air_drag / step.dt;
+        let chunks = x.len().div_ceil(CHUNK);
+        let partial: Vec<[f64; 2]> = (0..chunks)
+            .into_par_iter()
+            .map(|chunk| {
+                let mut kinetic = 0.0;
+                for node in chunk * CHUNK..((chunk + 1) * CHUNK).min(x.len()) {
+                    if free[node] {
+                        let share = inertia * (x[node] - step.inertial[node]).norm_squared()
+                            + drag * (x[node] - step.start[node]).norm_squared();
+                        kinetic += model.node_masses[node] * share;
+                        if let Some(drag) = &step.drag {
+                            let moved = x[node] - step.start[node];
+                            kinetic += moved
+                                .dot(&(drag.matrix[node] * moved * (0.5 * motion.rate) - drag.push[node]));
+                        }
+                    }
+                }
+                let elements: f64 = model.families.iter().map(|family| family.energy(chunk, motion)).sum();
+                [kinetic, elements + model.bending.chunk_energy(chunk, x)]
+            })
+            .collect();
+        let (mut kinetic, mut internal) = (0.0, 0.0);
+        for [k, i] in partial {
+            kinetic += k;
+            internal += i;
+        }
+        if let Some(damping) = &model.bending_damping {
+            let moved: Vec<Vector> = x.iter().zip(&step.start).map(|(x, x0)| x - x0).collect();
+            internal += damping.energy(&moved) / step.dt;
+        }
+        [kinetic, internal]
+    }
+
+    /// Incremental potential at `x`, and the size of its largest term: what rounding is relative to [J].
+    pub fn potential(&self, x: &[Vector]) -> (f64, f64) {
+        let [kinetic, mut internal] = self.energies(x);
+        internal += self.repulsion.energy(x);
+        (kinetic + internal, kinetic.abs() + internal.abs())
+    }
+
+    /// Backtracking from the full Newton step; leaves the target in `work.trial`.
+    ///
+    /// Prescribed nodes are at their keyframes from the first trial on: the line runs over free nodes
+    /// only, from the state with free nodes at x. The predicted decrease is that of the quadratic model
+    /// from there, p.b. Should no trial pass (the keyframes jump far, so that the model is poor), the
+    /// lowest is taken.
+    fn search_line(&mut self, info: &mut NewtonInfo) {
+        self.work.place(0.0);
+        let (before, scale) = self.potential(&self.work.trial);
+        info.energy_before = before;
+        let predicted = dot(&self.work.step, &self.work.right_side);
+        // Maxima are the same in any order.
+        let largest = |values: &[Vector]| values.iter().map(|v| v.amax()).fold(0.0, f64::max);
+        let halvings = self.params.line_search_halvings;
+        let accept = halvings == 0 || largest(&self.work.step) <= NEGLIGIBLE_STEP * largest(&self.work.x);
+        let mut best = (f64::INFINITY, 1.0);
+        let mut length = 1.0;
+        for halving in 0..=halvings {
+            self.work.place(length);
+            let (energy, terms) = self.potential(&self.work.trial);
+            if energy < best.0 {
+                best = (energy, length);
+            }
+            let slack = ENERGY_ROUNDING * scale.max(terms);
+            let passes = energy <= before - self.params.line_search_decrease * length * predicted + slack;
+            if passes || accept {
+                (info.energy_after, info.step_length) = (energy, length);
+                let model = predicted * length * (1.0 - 0.5 * length);
+                let kept = (before - energy) / model;
+                info.agreement =
+                    if accept || model <= slack { 1.0 } else { length.min(kept).min(1.0 / kept) };
+                return;
+            }
+            if halving < halvings {
+                length *= 0.5;
+            }
+        }
+        (info.energy_after, info.step_length) = best;
+        self.work.place(best.1);
+        tracing::debug!(step_length = best.1, "no trial of the line search decreased the energy enough");
+    }
+}
+
+/// Largest |y - x| over free nodes [m].
+fn largest_distance(y: &[Vector], x: &[Vector], free: &[bool]) -> f64 {
+    let distance = |((y, x), _): ((&Vector, &Vector), &bool)| (y - x).norm();
+    y.iter().zip(x).zip(free).filter(|(_, free)| **free).map(distance).fold(0.0, f64::max)
+}
