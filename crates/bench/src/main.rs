@@ -1,0 +1,3 @@
+//! The `bowknot-bench` command.
+
+fn main() {}
