@@ -208,21 +208,8 @@ where
                     );
                 }
             }
-            Kind::Row => {
-                let (rows, attached) = (self.problem.rows().rows, self.problem.attached());
-                for place in begin..end {
-                    let i = schedule.row(place);
-                    largest = larger(
-                        largest,
-                        relax_row::<RESIDUAL>(&rows[i], weights, relaxation, &self.y, &self.lambda, i),
-                    );
-                    if let Some(&friction) = attached.get(i)
-                        && friction != Problem::NO_FRICTION
-                    {
-                        largest = larger(largest, self.relax_friction(friction as usize));
-                    }
-                }
-            }
+            Kind::Row if self.params.equations => self.run_rows::<true>(begin, end, &mut largest),
+            Kind::Row => self.run_rows::<false>(begin, end, &mut largest),
             Kind::Friction => {
                 for place in begin..end {
                     largest = larger(largest, self.relax_friction(schedule.row(place)));
@@ -230,6 +217,26 @@ where
             }
         }
         *residual = largest;
+    }
+
+    #[inline(always)]
+    fn run_rows<const EQUATION: bool>(&self, begin: usize, end: usize, largest: &mut f64) {
+        let schedule = self.schedule(Kind::Row);
+        let (weights, relaxation) = (self.problem.weights(), self.params.relaxation);
+        let (rows, attached) = (self.problem.rows().rows, self.problem.attached());
+        for place in begin..end {
+            let i = schedule.row(place);
+            let row = &rows[i];
+            *largest = larger(
+                *largest,
+                relax_row::<RESIDUAL, EQUATION>(row, weights, relaxation, &self.y, &self.lambda, i),
+            );
+            if let Some(&friction) = attached.get(i)
+                && friction != Problem::NO_FRICTION
+            {
+                *largest = larger(*largest, self.relax_friction(friction as usize));
+            }
+        }
     }
 
     #[inline(always)]

@@ -14,7 +14,7 @@
 //! with the normal multiplier, has no such proof in any of the solvers.) Moves are gathered by node,
 //! in the order of the rows, so that results do not depend on the number of threads.
 
-use crate::kernels::{ball_multiplier, friction_multiplier, row_multiplier};
+use crate::kernels::{ball_multiplier, equation_multiplier, friction_multiplier, row_multiplier};
 use crate::params::{Info, Params};
 use crate::problem::{AnyRow, Family, Problem, State, invert};
 use crate::{Error, Vector};
@@ -149,7 +149,12 @@ impl Jacobi {
         let y = &*state.y;
         let rows = problem.rows().rows;
         let propose = |r: usize, old: f64, previous: f64, inverse: f64| {
-            let new = row_multiplier(&rows[r], rows[r].value(y), old, relaxation * inverse);
+            let (value, step) = (rows[r].value(y), relaxation * inverse);
+            if params.equations {
+                let new = equation_multiplier(value, old, step);
+                return if omega == 1.0 { new } else { previous + omega * (new - previous) };
+            }
+            let new = row_multiplier(&rows[r], value, old, step);
             if omega == 1.0 { new } else { (previous + omega * (new - previous)).max(0.0).min(rows[r].upper) }
         };
         let of_rows = self.rows.update(state.lambda, propose, f64::abs);

@@ -23,9 +23,9 @@ use crate::problem::{BallRow, FrictionRow, Row};
 use crate::slots::Slots;
 use nalgebra::Vector2;
 
-/// lambda <- clamp(lambda - relaxation s / diagonal, 0, upper).
+/// lambda <- clamp(lambda - relaxation s / diagonal, 0, upper), without the bounds if `EQUATION`.
 #[inline(always)]
-pub(crate) fn relax_row<const RESIDUAL: bool>(
+pub(crate) fn relax_row<const RESIDUAL: bool, const EQUATION: bool>(
     row: &Row,
     weights: &[f64],
     relaxation: f64,
@@ -41,7 +41,9 @@ pub(crate) fn relax_row<const RESIDUAL: bool>(
         value += row.gradients[k].dot(&y.get(row.vertices[k] as usize));
     }
     let old = lambda.get(index);
-    let new = row_multiplier(row, value, old, relaxation * row.inverse_diagonal);
+    let step = relaxation * row.inverse_diagonal;
+    let new =
+        if EQUATION { equation_multiplier(value, old, step) } else { row_multiplier(row, value, old, step) };
     let change = new - old;
     if change == 0.0 {
         return 0.0;
@@ -63,6 +65,13 @@ pub(crate) fn relax_row<const RESIDUAL: bool>(
 #[inline(always)]
 pub(crate) fn row_multiplier(row: &Row, value: f64, old: f64, step: f64) -> f64 {
     (old - value * step).max(0.0).min(row.upper)
+}
+
+/// The multiplier of a row that is taken for an equation; a NaN value drops its force likewise.
+#[inline(always)]
+pub(crate) fn equation_multiplier(value: f64, old: f64, step: f64) -> f64 {
+    let new = old - value * step;
+    if new.is_nan() { 0.0 } else { new }
 }
 
 /// Dykstra's step of a ball row, see the module's documentation.

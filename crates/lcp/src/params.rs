@@ -46,6 +46,10 @@ pub struct Params {
     /// acceleration (Golub and Varga 1961). Default 0: none. Nearer to 1 accelerates slow, smooth
     /// errors more; where contacts open and close it may overshoot.
     pub spectral_radius: f64,
+    /// Whether rows are taken for equations, s = 0, with multipliers of either sign: a linear system in place of the
+    /// complementarity problem, for comparison (Harmon et al. 2008 solve it). Default false. Rows that should
+    /// let go then pull; [`crate::residuals`] still judges the complementarity problem.
+    pub equations: bool,
     /// Region of the friction multipliers. Default: disc.
     pub friction_bound: FrictionBound,
 }
@@ -57,6 +61,7 @@ impl Default for Params {
             tolerance: None,
             relaxation: 1.0,
             spectral_radius: 0.0,
+            equations: false,
             friction_bound: FrictionBound::Disc,
         }
     }

@@ -9,6 +9,7 @@ const TIGHT: Params = Params {
     tolerance: Some(1e-14),
     relaxation: 1.0,
     spectral_radius: 0.0,
+    equations: false,
     friction_bound: FrictionBound::Disc,
 };
 
@@ -302,4 +303,41 @@ fn relaxation_scales_the_first_step_of_every_kind_of_row() {
         assert_near(forces[0], Vector::x() * relaxation);
         assert!((lambda[0] - 2.0 * relaxation).abs() < 1e-15);
     }
+}
+
+#[test]
+fn equations_pull_where_complementarity_lets_go() {
+    // Two nodes of weight 1 over the floor x >= 0: one has sunk, the other would leave; a third row ties them.
+    let zero = Vector::zeros();
+    let x = Vector::x();
+    let mut rows = vec![
+        Row::new([0; 4], [x, zero, zero, zero], 0.0),
+        Row::new([1; 4], [x, zero, zero, zero], 0.0),
+        Row::new([0, 1, 0, 0], [x * 0.5, x * -0.5, zero, zero], 0.25),
+    ];
+    rows[2].upper = 0.125;
+    let weights = vec![1.0; 2];
+    prepare_rows(&mut rows, &weights).unwrap();
+    let problem =
+        Problem::new(&weights, Family::serial(&rows[..2]), Family::default(), Family::default()).unwrap();
+    type Solve = fn(&Problem<'_>, &mut State<'_>, &Params) -> Result<Info, Error>;
+    let jacobi: Solve = |problem, state, params| Jacobi::new().solve(problem, state, params);
+    for solve in [solve_serial as Solve, solve_coloured, jacobi] {
+        for (equations, expected) in [(false, [3.0, 0.0]), (true, [3.0, -2.0])] {
+            let params = Params { equations, ..TIGHT };
+            let (mut y, mut lambda) = (vec![x * -3.0, x * 2.0], vec![0.0; 2]);
+            solve(&problem, &mut State { y: &mut y, lambda: &mut lambda, ..State::default() }, &params)
+                .unwrap();
+            assert_eq!(lambda, expected);
+        }
+    }
+    // With the third row the system is redundant, but what it asks of y contradicts the first two: x0 = x1 = 0 leaves
+    // 1/4. No bound holds its multiplier, which grows from sweep to sweep, and never to NaN.
+    let problem =
+        Problem::new(&weights, Family::serial(&rows), Family::default(), Family::default()).unwrap();
+    let (mut y, mut lambda) = (vec![x * -3.0, x * 2.0], vec![0.0; 3]);
+    let params = Params { equations: true, max_sweeps: 1000, ..Params::default() };
+    solve_serial(&problem, &mut State { y: &mut y, lambda: &mut lambda, ..State::default() }, &params)
+        .unwrap();
+    assert!(lambda[2] < -100.0 && lambda.iter().all(|l| l.is_finite()), "{lambda:?}");
 }

@@ -120,6 +120,7 @@ const PATIENT: Params = Params {
     tolerance: Some(1e-13),
     relaxation: 1.0,
     spectral_radius: 0.0,
+    equations: false,
     friction_bound: FrictionBound::Disc,
 };
 

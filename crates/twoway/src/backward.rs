@@ -8,19 +8,18 @@
 //!
 //! y = y' + W J^T lambda,   y' = w (m^ y0 + mu x).
 
-use crate::coarse::{is_sliding, scale_multipliers};
+use crate::coarse::is_sliding;
+use crate::row_solver::{ColouredSweeps, RowSolver, RowSystem};
 use crate::{BackwardStep, Problem, State, Statistics};
 use bowknot_constraints::{ContactRows, EdgeForm, EdgeLimits, predicted_gap};
 use bowknot_geometry::{PairKind, Vector};
 use bowknot_lcp::{self as lcp, Family, Schedule, TangentVector};
 use std::time::Instant;
 
-/// Sweeps between two looks at the stretch while polishing.
-const POLISH_BATCH: usize = 8;
-
-/// The default [`BackwardStep`].
+/// The default [`BackwardStep`]. Its rows are solved by `K`, projected Gauss-Seidel by default.
 #[derive(Debug, Default)]
-pub struct LcpBackward {
+pub struct LcpBackward<K = ColouredSweeps> {
+    solver: K,
     edges: EdgeLimits,
     /// Which vertices, and which stretch limits of bodies, `edges` was made for.
     movable: Vec<bool>,
@@ -45,7 +44,7 @@ pub struct LcpBackward {
     body_residuals: Vec<(Vector, f64)>,
 }
 
-impl BackwardStep for LcpBackward {
+impl<K: RowSolver> BackwardStep for LcpBackward<K> {
     fn begin(&mut self, problem: &Problem, state: &State) {
         let limits: Vec<f64> =
             (0..problem.model.bodies().len() as u32).map(|body| problem.stretch_limit(body)).collect();
@@ -79,7 +78,7 @@ impl BackwardStep for LcpBackward {
         let clock = Instant::now();
         self.set_weights(problem, state);
         self.fill_rows(problem, state, statistics);
-        self.sweep(problem, state.remaining, statistics);
+        self.solve(problem, state, statistics);
         self.store(problem, state);
         statistics.seconds.backward += clock.elapsed().as_secs_f64();
     }
@@ -137,7 +136,14 @@ impl BackwardStep for LcpBackward {
     }
 }
 
-impl LcpBackward {
+impl<K: Default> LcpBackward<K> {
+    /// A backward step whose rows another solver solves.
+    pub fn with_solver(solver: K) -> Self {
+        Self { solver, ..Self::default() }
+    }
+}
+
+impl<K: RowSolver> LcpBackward<K> {
     /// How many contacts slide, and how far those that should stick have crept by `state.x`.
     fn report_friction(&self, state: &State, statistics: &mut Statistics) {
         if self.contacts.friction.is_empty() {
@@ -286,14 +292,12 @@ impl LcpBackward {
         }
     }
 
-    /// Sweeps over the rows from the kept multipliers.
-    fn sweep(&mut self, problem: &Problem, remaining: f64, statistics: &mut Statistics) {
-        let params = &problem.params.backward;
+    /// Improves the kept multipliers, and y with them.
+    fn solve(&mut self, problem: &Problem, state: &State, statistics: &mut Statistics) {
         let balls: &[lcp::BallRow] = match problem.params.constraints.edge_form {
             EdgeForm::Ball => &self.edges.balls,
             EdgeForm::Linear => &[],
         };
-        let schedule = |starts| Schedule::coloured(starts);
         let ball_starts = if balls.is_empty() { &[][..] } else { self.edges.colour_starts() };
         self.y.clone_from(&self.free);
         let solve = || -> Result<(), lcp::Error> {
@@ -301,41 +305,19 @@ impl LcpBackward {
             lcp::prepare_friction(&mut self.contacts.friction, &self.weights)?;
             let mut system = lcp::Problem::new(
                 &self.weights,
-                Family::new(&self.contacts.rows, schedule(&self.row_starts)),
-                Family::new(balls, schedule(ball_starts)),
+                Family::new(&self.contacts.rows, Schedule::coloured(&self.row_starts)),
+                Family::new(balls, Schedule::coloured(ball_starts)),
                 Family::serial(&self.contacts.friction),
             )?;
             if !self.contacts.friction.is_empty() {
                 system = system.attach_friction(&self.contacts.friction_of)?;
             }
             let forces = if balls.is_empty() { &mut [][..] } else { &mut self.forces[..] };
-            let mut state =
+            let mut multipliers =
                 lcp::State { y: &mut self.y, lambda: &mut self.lambda, forces, friction: &mut self.friction };
-            lcp::apply_multipliers(&system, &mut state)?;
-            let one = lcp::Params { max_sweeps: 1, ..lcp::Params::default() };
-            let batch = |state: &mut lcp::State<'_>, sweeps: usize| -> Result<(), lcp::Error> {
-                if params.coarse_correction {
-                    for _ in 0..sweeps {
-                        scale_multipliers(&system, &self.free, state);
-                        lcp::solve_coloured(&system, state, &one)?;
-                    }
-                } else {
-                    let all = lcp::Params { max_sweeps: sweeps as u32, ..one };
-                    lcp::solve_coloured(&system, state, &all)?;
-                }
-                Ok(())
-            };
-            batch(&mut state, params.sweeps)?;
-            if remaining < params.polish_distance * problem.lengths.edge {
-                let allowed = 1.0 + 0.5 * problem.params.stop.stretch_tolerance;
-                let mut sweeps = params.sweeps;
-                while sweeps < params.polish_sweeps && stretch(&self.edges, state.y) > allowed {
-                    let more = POLISH_BATCH.min(params.polish_sweeps - sweeps);
-                    batch(&mut state, more)?;
-                    sweeps += more;
-                }
-            }
-            Ok(())
+            lcp::apply_multipliers(&system, &mut multipliers)?;
+            let rows = RowSystem { system, free: &self.free, edges: &self.edges, problem, state };
+            self.solver.solve(&rows, &mut multipliers)
         };
         let solved = { solve }();
         // Rows and schedules are built just above from checked parts; a refusal here is our own error.
@@ -368,12 +350,4 @@ impl LcpBackward {
             self.edge_multipliers.copy_from_slice(&self.lambda[contact_rows..]);
         }
     }
-}
-
-fn stretch(edges: &EdgeLimits, y: &[Vector]) -> f64 {
-    edges
-        .balls
-        .iter()
-        .map(|ball| (y[ball.vertices[0] as usize] - y[ball.vertices[1] as usize]).norm() / ball.limit)
-        .fold(0.0, f64::max)
 }
