@@ -4,6 +4,7 @@
 //! two-way method in one stage are its loop with another stage ([`Composed`]), so that a comparison tells what that stage
 //! makes of it.
 
+pub mod barrier;
 mod method;
 
 pub use method::{Composed, Method, Outcome};

@@ -174,7 +174,9 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
             state.remaining = report.remaining;
             statistics.remaining_r = report.remaining_r;
             statistics.slowest_body = report.slowest.map(|v| problem.model.vertex_body()[v as usize]);
+            let settled = backward.settled(problem, state);
             statistics.converged = match limits.rule {
+                _ if settled.is_some() => settled == Some(true),
                 StopRule::Clock => report.remaining_r < limits.clock,
                 StopRule::Travel => {
                     let edge = problem.lengths.edge;

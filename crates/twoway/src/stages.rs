@@ -61,6 +61,12 @@ pub trait BackwardStep: Send {
     /// Largest over bodies of the mean of the vertices' stationarity residuals at `state.x` [m].
     fn unrest(&mut self, problem: &Problem, state: &State) -> f64;
 
+    /// Whether the loop may stop by the stage's own rule; None: by that of [`crate::StopParams`]. For descent methods, whose
+    /// y is where one step should end rather than a target: having reached it says nothing about being done.
+    fn settled(&self, _problem: &Problem, _state: &State) -> Option<bool> {
+        None
+    }
+
     /// Fills in what the stage knows at the end of a call: residuals and stretch.
     fn finish(&mut self, problem: &Problem, state: &State, statistics: &mut Statistics);
 }

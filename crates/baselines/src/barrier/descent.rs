@@ -1,0 +1,133 @@
+//! The log barrier by gradient descent (paper, section 3.4), as a backward step: y is where the descent step ends, and the
+//! forward step bounds how far each vertex goes there, as in the two-way method.
+//!
+//! y = x - s D^-1 dE/dx, with D by [`Scaling`] and one factor s <= 1 for all vertices: halved after a step that raised the
+//! energy, raised by a tenth after one that lowered it (the rule of Wang and Yang 2016, applied each step). Vertices go
+//! different fractions of their way, so that no line search along one line could tell more.
+
+use super::{BarrierParams, Derivatives, Objective, Scaling};
+use bowknot_twoway::geometry::Vector;
+use bowknot_twoway::{
+    BackwardStep, BudgetedSearch, CertifiedForward, Problem, ResolveError, Resolver, State, Statistics,
+};
+use nalgebra::Matrix3;
+use std::time::Instant;
+
+/// Smallest step factor.
+const SMALLEST_FACTOR: f64 = 1e-6;
+
+/// A descent step as [`BackwardStep`].
+#[derive(Debug, Default)]
+pub struct DescentStep {
+    objective: Objective,
+    derivatives: Derivatives,
+    factor: f64,
+    /// Energy at the last x [J].
+    energy: f64,
+    /// Largest |D^-1 dE/dx| of the last step, by blocks [m].
+    wanted: f64,
+}
+
+/// Gradient descent with the forward step and the search of the two-way method: what bounds its steps is
+/// `params.stepper` of the problem.
+///
+/// # Errors
+/// Parameters out of their range.
+pub fn by_descent(
+    problem: Problem,
+    params: BarrierParams,
+) -> Result<Resolver<BudgetedSearch, DescentStep, CertifiedForward>, ResolveError> {
+    let step = DescentStep::new(&problem, params)?;
+    let search = BudgetedSearch::new(&problem);
+    Ok(Resolver::with_stages(problem, search, step, CertifiedForward::default()))
+}
+
+impl DescentStep {
+    /// Descent steps for the problem's pairs.
+    ///
+    /// # Errors
+    /// Parameters out of their range.
+    pub fn new(problem: &Problem, params: BarrierParams) -> Result<Self, ResolveError> {
+        Ok(Self { objective: Objective::new(problem, params)?, ..Self::default() })
+    }
+
+    /// E at the x that the last step started from [J].
+    pub fn energy(&self) -> f64 {
+        self.energy
+    }
+}
+
+impl BackwardStep for DescentStep {
+    fn begin(&mut self, problem: &Problem, state: &State) {
+        self.objective.begin(problem, state);
+        self.factor = 1.0;
+        self.energy = f64::INFINITY;
+        self.wanted = f64::INFINITY;
+    }
+
+    fn project(&mut self, problem: &Problem, state: &mut State, statistics: &mut Statistics) {
+        let clock = Instant::now();
+        let contacts = self.objective.contacts(problem, state);
+        let energy = self.objective.value(problem, state, &state.x, &contacts);
+        self.factor = if energy > self.energy {
+            (0.5 * self.factor).max(SMALLEST_FACTOR)
+        } else {
+            (1.1 * self.factor).min(1.0)
+        };
+        self.energy = energy;
+        self.objective.derivatives(problem, state, &state.x, &contacts, &mut self.derivatives);
+        self.wanted = 0.0;
+        for v in 0..state.x.len() {
+            if !problem.movable(v) {
+                state.y[v] = state.target[v];
+                continue;
+            }
+            let gradient = &self.derivatives.gradient[v];
+            let newton = solve(&self.derivatives.blocks[v], gradient);
+            self.wanted = self.wanted.max(newton.norm());
+            let step = match self.objective.params().scaling {
+                Scaling::Blocks => newton,
+                Scaling::Mass => gradient / self.objective.inertia(problem, state, v),
+            };
+            state.y[v] = state.x[v] - self.factor * step;
+        }
+        statistics.contact_rows = contacts.len();
+        statistics.active_rows = contacts.len();
+        statistics.seconds.backward += clock.elapsed().as_secs_f64();
+    }
+
+    fn stretch_to_limit(&self, _: &State) -> f64 {
+        1.0
+    }
+
+    fn imbalance(&mut self, _: &Problem, _: &State) -> f64 {
+        self.wanted
+    }
+
+    fn unrest(&mut self, _: &Problem, _: &State) -> f64 {
+        self.wanted
+    }
+
+    fn settled(&self, problem: &Problem, state: &State) -> Option<bool> {
+        let tolerance = self.objective.params().tolerance * problem.lengths.edge;
+        Some(self.wanted <= tolerance && state.remaining <= tolerance)
+    }
+
+    fn finish(&mut self, problem: &Problem, state: &State, statistics: &mut Statistics) {
+        let contacts = self.objective.contacts(problem, state);
+        self.objective.derivatives(problem, state, &state.x, &contacts, &mut self.derivatives);
+        let movable = (0..state.x.len()).filter(|&v| problem.movable(v));
+        statistics.stationarity_m = movable
+            .map(|v| self.derivatives.gradient[v].norm() / self.objective.inertia(problem, state, v))
+            .fold(0.0, f64::max);
+        (statistics.max_step_stretch, statistics.max_stretch) = self.objective.stretch(&state.x);
+    }
+}
+
+/// block^-1 gradient. Blocks are the inertia times the identity plus positive semidefinite matrices.
+pub(super) fn solve(block: &Matrix3<f64>, gradient: &Vector) -> Vector {
+    match block.cholesky() {
+        Some(factor) => factor.solve(gradient),
+        None => gradient / block.trace(),
+    }
+}

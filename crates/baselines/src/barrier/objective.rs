@@ -1,0 +1,214 @@
+//! What the log-barrier methods minimise (paper, Eq. 7-8, with the inertia term in units of energy).
+//!
+//! E(x) = sum 1/2 m/dt^2 |x - y0|^2 + sum B(d_p(x) - xi_p) + sum 1/2 k_e max(|e| - L, 0)^2  [J]
+//!
+//! over the vertices that are not prescribed, the pairs nearer than the barrier's range and the edges beyond their limit.
+//! Gaps are measured from the floor xi_p that the forward step keeps (as Codim-IPC does with thickness; Li et al. 2021): a
+//! barrier that lets a pair come down to its floor would no longer be what holds it. Without floors this is Eq. 8.
+
+use super::function::{Jet, barrier};
+use super::{BarrierParams, element};
+use bowknot_twoway::constraints::EdgeLimits;
+use bowknot_twoway::geometry::{PairKind, Point, Separation, Vector};
+use bowknot_twoway::lcp::BallRow;
+use bowknot_twoway::{Problem, ResolveError, State};
+use rayon::prelude::*;
+
+/// Pairs that one parallel task handles at least.
+const CHUNK: usize = 512;
+
+/// A pair within the barrier's range.
+#[derive(Clone, Copy, Debug)]
+pub struct Contact {
+    /// Kind of pair.
+    pub kind: PairKind,
+    /// Its vertices in [`PairKind`] order.
+    pub vertices: [u32; 4],
+    /// Contact geometry.
+    pub separation: Separation,
+    /// Barrier of its gap.
+    pub jet: Jet,
+}
+
+/// Gradient of the objective, and a block-diagonal matrix that majorises the convex part of its Hessian.
+#[derive(Clone, Debug, Default)]
+pub struct Derivatives {
+    /// dE/dx of each vertex [N]; 0 for prescribed ones.
+    pub gradient: Vec<Vector>,
+    /// A 3x3 block of each vertex [N/m].
+    pub blocks: Vec<nalgebra::Matrix3<f64>>,
+}
+
+/// The objective of a call.
+#[derive(Debug, Default)]
+pub struct Objective {
+    params: BarrierParams,
+    /// Range of the barrier in the pair's desired distance.
+    range_share: f64,
+    edges: EdgeLimits,
+}
+
+impl Objective {
+    /// An objective for the problem's pairs.
+    ///
+    /// # Errors
+    /// Parameters out of their range, see [`BarrierParams::validate`].
+    pub fn new(problem: &Problem, params: BarrierParams) -> Result<Self, ResolveError> {
+        params.validate(problem)?;
+        Ok(Self { params, ..Self::default() })
+    }
+
+    /// The parameters.
+    pub fn params(&self) -> &BarrierParams {
+        &self.params
+    }
+
+    /// Starts a call from `state.x`: takes down the edges' limits (paper, Eq. 17).
+    pub fn begin(&mut self, problem: &Problem, state: &State) {
+        self.range_share = self.params.range.map_or(1.0, |range| range / problem.lengths.delta);
+        let constraints = &problem.params.constraints;
+        self.edges = EdgeLimits::default();
+        if self.params.edge_stiffness > 0.0 && constraints.edges {
+            let movable: Vec<bool> = problem.prescribed.iter().map(|p| !p).collect();
+            let limit =
+                |edge: &[u32; 2]| problem.stretch_limit(problem.model.vertex_body()[edge[0] as usize]);
+            self.edges = EdgeLimits::new(problem.model.topology(), &problem.rest, &movable, limit);
+            self.edges.begin(&state.x, constraints.edge_reference);
+        }
+    }
+
+    /// m/dt^2 of a vertex [kg/s^2].
+    #[inline]
+    pub fn inertia(&self, problem: &Problem, state: &State, vertex: usize) -> f64 {
+        let dt = state.time_step.unwrap_or(self.params.time_step);
+        problem.mean_mass * problem.relative_mass[vertex] / (dt * dt)
+    }
+
+    /// The pairs within range at `state.x`, in the order of the list.
+    pub fn contacts(&self, problem: &Problem, state: &State) -> Vec<Contact> {
+        self.gather(problem, state, |_, p| state.contacts.separations[p])
+    }
+
+    /// The listed pairs within range at `x`: all that there are, where x is on a way that the list was made for.
+    pub fn contacts_at(&self, problem: &Problem, state: &State, x: &[Point]) -> Vec<Contact> {
+        let half_spaces = problem.model.half_spaces();
+        self.gather(problem, state, |kind, p| {
+            let pair = &state.contacts.pairs.pairs()[p];
+            element::separation(kind, &pair.vertices, pair.elements[1], x, half_spaces)
+        })
+    }
+
+    fn gather(
+        &self,
+        problem: &Problem,
+        state: &State,
+        separation: impl Fn(PairKind, usize) -> Separation + Sync,
+    ) -> Vec<Contact> {
+        let listed = &state.contacts;
+        let contact = |p: usize| -> Option<Contact> {
+            let (kind, pair) = (listed.pairs.kind(p), &listed.pairs.pairs()[p]);
+            let vertices = pair.vertices;
+            if !vertices[..kind.vertex_count()].iter().any(|&v| problem.movable(v as usize)) {
+                return None;
+            }
+            let separation = separation(kind, p);
+            // Before neighbours' ranges are lowered, which takes longer to find out: almost all pairs are farther apart.
+            let largest = self.range_share * problem.spacing.of(&problem.model, kind, pair).delta;
+            if separation.distance >= largest {
+                return None;
+            }
+            let range = self.range_share * problem.desired_distance(kind, pair);
+            let floor = listed.floors[p].min(0.9 * range);
+            let jet = barrier(self.params.strength, separation.distance - floor, range - floor);
+            (jet.value > 0.0).then_some(Contact { kind, vertices, separation, jet })
+        };
+        (0..listed.pairs.len()).into_par_iter().with_min_len(CHUNK).filter_map(contact).collect()
+    }
+
+    /// E at `x` [J], given the pairs within range there.
+    pub fn value(&self, problem: &Problem, state: &State, x: &[Point], contacts: &[Contact]) -> f64 {
+        let mut energy = 0.0;
+        for v in (0..x.len()).filter(|&v| problem.movable(v)) {
+            energy += 0.5 * self.inertia(problem, state, v) * (x[v] - state.target[v]).norm_squared();
+        }
+        energy += contacts.iter().map(|contact| contact.jet.value).sum::<f64>();
+        let stretched = |ball: &BallRow| self.overlong(ball, x).map_or(0.0, |(over, _, _)| over * over);
+        energy + 0.5 * self.params.edge_stiffness * self.edges.balls.iter().map(stretched).sum::<f64>()
+    }
+
+    /// Gradient at `x` and blocks, given the pairs within range there.
+    ///
+    /// A pair adds B'' g g^T with g the gradient of its distance, s_k beta_k n by vertex k. With weights that sum to 1 on
+    /// either side, (sum_k beta_k n.u_k)^2 <= 2 sum_k beta_k (n.u_k)^2: blocks 2 B'' beta_k n n^T majorise it, beta_k
+    /// against half-spaces. The rest, B' times the distance's own Hessian, is left out: it only lowers the energy where
+    /// that is positive semidefinite, as for two vertices.
+    pub fn derivatives(
+        &self,
+        problem: &Problem,
+        state: &State,
+        x: &[Point],
+        contacts: &[Contact],
+        derivatives: &mut Derivatives,
+    ) {
+        let Derivatives { gradient, blocks } = derivatives;
+        gradient.clear();
+        blocks.clear();
+        for v in 0..x.len() {
+            let inertia = self.inertia(problem, state, v);
+            gradient.push(inertia * (x[v] - state.target[v]));
+            blocks.push(nalgebra::Matrix3::from_diagonal_element(inertia));
+        }
+        for contact in contacts {
+            let (n, count) = (contact.separation.normal, contact.kind.vertex_count());
+            let signed = contact.separation.signed_weights(contact.kind);
+            let sides = if contact.kind == PairKind::VertexHalfSpace { 1.0 } else { 2.0 };
+            let outer = n * n.transpose();
+            for k in 0..count {
+                let v = contact.vertices[k] as usize;
+                gradient[v] += contact.jet.slope * signed[k] * n;
+                blocks[v] += sides * contact.jet.curvature * signed[k].abs() * outer;
+            }
+        }
+        for ball in &self.edges.balls {
+            if let Some((over, _, direction)) = self.overlong(ball, x) {
+                let k = self.params.edge_stiffness;
+                let [a, b] = ball.vertices.map(|v| v as usize);
+                gradient[a] += k * over * direction;
+                gradient[b] -= k * over * direction;
+                // |e| turns with its direction as well: (1 - L/|e|)(I - n n^T) + n n^T <= I.
+                for v in [a, b] {
+                    blocks[v] += nalgebra::Matrix3::from_diagonal_element(2.0 * k);
+                }
+            }
+        }
+        for v in (0..x.len()).filter(|&v| !problem.movable(v)) {
+            gradient[v] = Vector::zeros();
+            blocks[v] = nalgebra::Matrix3::identity();
+        }
+    }
+
+    /// The edges beyond their limits at `x`: how far [m], 1 - L/|e|, and the direction from the second vertex to the first.
+    pub fn long_edges<'a>(
+        &'a self,
+        x: &'a [Point],
+    ) -> impl Iterator<Item = ([u32; 2], f64, f64, Vector)> + 'a {
+        self.edges.balls.iter().filter_map(|ball| {
+            self.overlong(ball, x).map(|(over, share, direction)| (ball.vertices, over, share, direction))
+        })
+    }
+
+    /// Largest ratio of an edge's length to its length at the start of the call, and to its rest length; 0 where edges
+    /// have no penalty.
+    pub fn stretch(&self, x: &[Point]) -> (f64, f64) {
+        let stretch = self.edges.stretch(x);
+        (stretch.to_start, stretch.to_rest)
+    }
+
+    fn overlong(&self, ball: &BallRow, x: &[Point]) -> Option<(f64, f64, Vector)> {
+        let [a, b] = ball.vertices;
+        let edge = x[a as usize] - x[b as usize];
+        let length = edge.norm();
+        let over = length - ball.limit;
+        (over > 0.0).then(|| (over, over / length, edge / length))
+    }
+}

@@ -1,0 +1,83 @@
+//! Parameters of the log barrier.
+
+use bowknot_twoway::{Problem, ResolveError};
+use serde::{Deserialize, Serialize};
+
+/// Parameters of [`super::Objective`] and of the methods that minimise it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct BarrierParams {
+    /// Strength k of the barrier [kg/s^2] (paper, Eq. 8). Larger: wider gaps, and a barrier that outweighs the way to the
+    /// target; smaller: tighter gaps and shorter steps. Default 20, the paper's.
+    pub strength: f64,
+    /// Distance d at which the barrier sets in [m]. Default delta; the paper has 1 mm for both. Like delta it is lowered for
+    /// neighbours in fine meshes, and scaled by the bodies' own contact distances.
+    pub range: Option<f64>,
+    /// Time step of the inertia term [s] for calls that state none. Default 1/100.
+    pub time_step: f64,
+    /// Stiffness [kg/s^2] of a penalty 1/2 k_e max(|e| - L, 0)^2 on edges longer than their limit L in a call. The paper's
+    /// Eq. 7 has nothing of the kind, so that edges stretch: default 0, which switches it off.
+    pub edge_stiffness: f64,
+    /// What a descent step is scaled by. Default blocks.
+    pub scaling: Scaling,
+    /// A method stops once its step would move no vertex further than this, in mean edge lengths; Newton's method, once the
+    /// decrement is below it. Default 1e-3.
+    pub tolerance: f64,
+}
+
+/// What the gradient is multiplied by to make a descent step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Scaling {
+    /// dt^2/m of each vertex, the inverse of the inertia term: gradient descent in the metric of the objective (paper,
+    /// section 3.4), y = x - (x - y0) - dt^2/m dB/dx.
+    Mass,
+    /// The inverse of each vertex's 3x3 block of a matrix that majorises the Hessian's convex part.
+    Blocks,
+}
+
+impl Default for BarrierParams {
+    fn default() -> Self {
+        Self {
+            strength: 20.0,
+            range: None,
+            time_step: 0.01,
+            edge_stiffness: 0.0,
+            scaling: Scaling::Blocks,
+            tolerance: 1e-3,
+        }
+    }
+}
+
+impl BarrierParams {
+    /// Checks every field, also against the problem: pairs within the barrier's range must be listed.
+    ///
+    /// # Errors
+    /// [`ResolveError::Params`] with a line for each field out of its range.
+    pub fn validate(&self, problem: &Problem) -> Result<(), ResolveError> {
+        let mut problems = Vec::new();
+        for (key, value) in [
+            ("strength", self.strength),
+            ("range", self.range.unwrap_or(1.0)),
+            ("time_step", self.time_step),
+            ("tolerance", self.tolerance),
+        ] {
+            if !(value.is_finite() && value > 0.0) {
+                problems.push(format!("barrier.{key} = {value} must be finite and above 0"));
+            }
+        }
+        if !(self.edge_stiffness.is_finite() && self.edge_stiffness >= 0.0) {
+            problems.push(format!(
+                "barrier.edge_stiffness = {} must be finite and at least 0",
+                self.edge_stiffness
+            ));
+        }
+        let listed = problem.lengths.contact_range;
+        if let Some(range) = self.range.filter(|range| *range > listed) {
+            problems.push(format!(
+                "barrier.range = {range} m must be at most constraints.range times delta = {listed} m, or pairs are missed"
+            ));
+        }
+        if problems.is_empty() { Ok(()) } else { Err(ResolveError::Params(problems)) }
+    }
+}

@@ -1,0 +1,187 @@
+//! Scenes, and an oracle for intersections.
+
+use bowknot_baselines::twoway::geometry::{HalfSpace, Point, Topology, Vector, intersection};
+use bowknot_baselines::twoway::proximity::{BodyFilter, CollisionModel};
+use bowknot_baselines::twoway::{
+    AcceptedState, BackwardStep, Call, ForwardStep, Params, Problem, Resolver, Search, State, Statistics,
+};
+use std::ops::ControlFlow;
+
+/// Vertices, what they make, and the bodies that they belong to.
+#[derive(Clone)]
+pub struct Scene {
+    pub x: Vec<Point>,
+    pub model: CollisionModel,
+}
+
+/// Appends a square sheet of `cells` x `cells` squares of side `h` in the plane z = `height`.
+pub fn sheet(cells: usize, h: f64, height: f64, x: &mut Vec<Point>, triangles: &mut Vec<[u32; 3]>) {
+    let (base, n) = (x.len(), cells + 1);
+    for k in 0..n * n {
+        // A little warp, so that nothing is degenerate by accident.
+        let warp = 1e-3 * h * ((k * 37 % 11) as f64 - 5.0);
+        x.push(Point::new((k % n) as f64 * h, (k / n) as f64 * h, height + warp));
+    }
+    let id = |i: usize, j: usize| (base + j * n + i) as u32;
+    for j in 0..cells {
+        for i in 0..cells {
+            let [a, b, c, d] = [id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)];
+            triangles.extend(if (i + j) % 2 == 0 { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] });
+        }
+    }
+}
+
+impl Scene {
+    /// A fixed triangle in the plane z = 0, and a particle at `height` above its inside.
+    pub fn vertex_above_triangle(height: f64) -> Self {
+        let mut x = [[-1.0, -1.0, 0.0], [2.0, -1.0, 0.0], [-1.0, 2.0, 0.0]].map(Point::from).to_vec();
+        x.push(Point::new(0.1, 0.2, height));
+        let topology = Topology::new(4, vec![[0, 1, 2]], &[], &[3]).unwrap();
+        let bodies = vec![BodyFilter::OBSTACLE, BodyFilter::DEFORMABLE];
+        Self { x, model: CollisionModel::new(topology, vec![0, 0, 0, 1], bodies, vec![]).unwrap() }
+    }
+
+    /// Two sheets `gap` apart, two strands across them, particles on top, ground below, an obstacle beside it: every
+    /// kind of pair, nearest neighbours `gap` apart.
+    pub fn heap(gap: f64) -> Self {
+        let (mut x, mut triangles, mut bodies) = (Vec::new(), Vec::new(), Vec::new());
+        let h = 0.1;
+        sheet(3, h, gap, &mut x, &mut triangles);
+        bodies.resize(x.len(), 0);
+        let first = x.len();
+        sheet(3, h, 2.0 * gap, &mut x, &mut triangles);
+        x[first..].iter_mut().for_each(|p| *p += Vector::new(0.031, 0.022, 0.0));
+        bodies.resize(x.len(), 1);
+        let mut strands = Vec::new();
+        for k in 0..2 {
+            let first = x.len() as u32;
+            for i in 0..5 {
+                let (along, across) = (0.08 * f64::from(i), 0.13 + 0.05 * k as f64);
+                let (u, v) = if k == 0 { (along, across) } else { (across, along) };
+                x.push(Point::new(u, v, (3.0 + k as f64) * gap));
+            }
+            strands.extend((0..4).map(|i| [first + i, first + i + 1]));
+        }
+        bodies.resize(x.len(), 2);
+        let first = x.len() as u32;
+        for i in 0..4 {
+            x.push(Point::new(0.1 + 0.04 * f64::from(i), 0.131, 4.1 * gap));
+        }
+        x.push(Point::new(0.1, 0.131, 5.1 * gap));
+        let particles: Vec<u32> = (first..x.len() as u32).collect();
+        bodies.resize(x.len(), 3);
+        let first = x.len() as u32;
+        for p in [[0.05, 0.05, 3.0 * gap], [0.1, 0.03, 3.2 * gap], [0.06, 0.1, 3.1 * gap]] {
+            x.push(Point::from(p));
+        }
+        triangles.push([first, first + 1, first + 2]);
+        bodies.resize(x.len(), 4);
+        let topology = Topology::new(x.len(), triangles, &strands, &particles).unwrap();
+        let mut filters = vec![BodyFilter::DEFORMABLE; 5];
+        filters[4] = BodyFilter::OBSTACLE;
+        let ground = HalfSpace::new(Point::origin(), Vector::z()).unwrap();
+        Self { x, model: CollisionModel::new(topology, bodies, filters, vec![ground]).unwrap() }
+    }
+
+    /// Two sheets of `cells` x `cells`, 0.1 m a cell, `gap` apart.
+    pub fn two_sheets(cells: usize, gap: f64) -> Self {
+        let (mut x, mut triangles) = (Vec::new(), Vec::new());
+        sheet(cells, 0.1, 0.0, &mut x, &mut triangles);
+        let n = x.len();
+        sheet(cells, 0.1, gap, &mut x, &mut triangles);
+        let bodies = (0..2 * n).map(|i| u32::from(i >= n)).collect();
+        let topology = Topology::new(2 * n, triangles, &[], &[]).unwrap();
+        Self {
+            x,
+            model: CollisionModel::new(topology, bodies, vec![BodyFilter::DEFORMABLE; 2], vec![]).unwrap(),
+        }
+    }
+
+    /// Where two sheets want to be that change places, and crumple on the way.
+    pub fn swapped(&self) -> Vec<Point> {
+        let n = self.x.len() / 2;
+        let mut draw = Draw(5);
+        (0..2 * n)
+            .map(|v| {
+                let other = self.x[(v + n) % (2 * n)];
+                self.x[v] + 1.5 * (other.z - self.x[v].z) * Vector::z() + 0.02 * draw.vector()
+            })
+            .collect()
+    }
+
+    pub fn problem(&self, params: Params) -> Problem {
+        Problem::new(self.model.clone(), &self.x, &vec![0.01; self.x.len()], params).unwrap()
+    }
+}
+
+/// The state that a call starts from, with the pairs that its first search lists.
+pub fn listed(problem: &Problem, search: &mut dyn Search, x: &[Point], target: &[Point]) -> State {
+    let mut state = State {
+        start: x.to_vec(),
+        target: target.to_vec(),
+        x: x.to_vec(),
+        previous: x.to_vec(),
+        y: target.to_vec(),
+        time_step: Some(0.01),
+        ..State::default()
+    };
+    search.begin(problem, &mut state);
+    search.update(problem, &mut state, &mut Statistics::default());
+    state
+}
+
+/// Resolves, and asserts that no accepted state nor any of 64 states between two of them intersects.
+pub fn resolve_watched<S: Search, B: BackwardStep, F: ForwardStep>(
+    resolver: &mut Resolver<S, B, F>,
+    scene: &Scene,
+    target: &[Point],
+    what: &str,
+) -> (Vec<Point>, Statistics) {
+    let mut x = scene.x.clone();
+    assert_clear(&scene.model, &x, what);
+    let mut watch = |state: &AcceptedState<'_>| {
+        for k in 1..=64 {
+            let t = f64::from(k) / 64.0;
+            let between: Vec<Point> =
+                state.previous.iter().zip(state.positions).map(|(a, b)| a + t * (b - a)).collect();
+            assert_clear(&scene.model, &between, &format!("{what}, step {}, {t}", state.step));
+        }
+        ControlFlow::Continue(())
+    };
+    let call = Call { time_step: Some(0.01), ..Call::default() };
+    let statistics = resolver.resolve(&mut x, target, &call, &mut watch).unwrap();
+    (x, statistics)
+}
+
+/// Asserts by exact predicates, one pair after another, that no edge meets a triangle and nothing is below the ground.
+pub fn assert_clear(model: &CollisionModel, x: &[Point], what: &str) {
+    let topology = model.topology();
+    let at = |v: u32| &x[v as usize];
+    for triangle in &topology.triangles {
+        let corners = triangle.map(at);
+        let low = corners.iter().fold(*corners[0], |m, p| m.inf(p));
+        let high = corners.iter().fold(*corners[0], |m, p| m.sup(p));
+        for edge in topology.edges.iter().filter(|e| !e.iter().any(|v| triangle.contains(v))) {
+            let [a, b] = edge.map(at);
+            let apart = (0..3).any(|k| a[k].max(b[k]) < low[k] || a[k].min(b[k]) > high[k]);
+            assert!(apart || !intersection::edge_triangle([a, b], corners), "{what}: {edge:?} {triangle:?}");
+        }
+    }
+    for (v, p) in x.iter().enumerate().filter(|(v, _)| !model.is_obstacle(*v as u32)) {
+        assert!(model.half_spaces().iter().all(|h| h.signed_distance(p) > 0.0), "{what}: {v} below ground");
+    }
+}
+
+/// Numbers that look random, from -1 to 1, the same in every run.
+pub struct Draw(pub u64);
+
+impl Draw {
+    pub fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    pub fn vector(&mut self) -> Vector {
+        Vector::new(self.next(), self.next(), self.next())
+    }
+}
