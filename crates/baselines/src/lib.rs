@@ -6,6 +6,7 @@
 
 pub mod barrier;
 mod method;
+pub mod rows;
 
 pub use method::{Composed, Method, Outcome};
 

@@ -1,0 +1,70 @@
+//! Chebyshev acceleration from step to step (Wang 2015), around any backward step.
+
+use bowknot_twoway::geometry::Point;
+use bowknot_twoway::{BackwardStep, Problem, State, Statistics};
+
+/// Accelerates the targets of another backward step over the two-way steps of a call (Wang 2015, "A Chebyshev
+/// semi-iterative approach for accelerating projective and position-based dynamics"; paper, section 4.2.2, which finds it
+/// ineffective because contacts come and go): y^(l+1) <- y^(l-1) + omega (y^(l+1) - y^(l-1)), with
+/// omega_1 = 2/(2 - rho^2) and omega_(k+1) = 4/(4 - rho^2 omega_k) after `delay` plain steps.
+///
+/// Multipliers are left to the inner step, and so are residuals.
+#[derive(Clone, Debug)]
+pub struct InterStepChebyshev<B> {
+    inner: B,
+    spectral_radius: f64,
+    delay: usize,
+    omega: f64,
+    /// y^(l-1) and y^(l) [m].
+    before: Vec<Point>,
+    last: Vec<Point>,
+}
+
+impl<B> InterStepChebyshev<B> {
+    /// Around `inner`, for an estimate of the spectral radius in [0, 1), after `delay` plain steps (Wang 2015: 10).
+    pub fn new(inner: B, spectral_radius: f64, delay: usize) -> Self {
+        Self { inner, spectral_radius, delay, omega: 1.0, before: Vec::new(), last: Vec::new() }
+    }
+}
+
+impl<B: BackwardStep> BackwardStep for InterStepChebyshev<B> {
+    fn begin(&mut self, problem: &Problem, state: &State) {
+        self.omega = 1.0;
+        self.before.clone_from(&state.y);
+        self.last.clone_from(&state.y);
+        self.inner.begin(problem, state);
+    }
+
+    fn project(&mut self, problem: &Problem, state: &mut State, statistics: &mut Statistics) {
+        self.inner.project(problem, state, statistics);
+        let square = self.spectral_radius * self.spectral_radius;
+        if state.step >= self.delay {
+            self.omega = match state.step == self.delay {
+                true => 2.0 / (2.0 - square),
+                false => 4.0 / (4.0 - square * self.omega),
+            };
+            for v in (0..state.y.len()).filter(|&v| problem.movable(v)) {
+                let before = self.before[v];
+                state.y[v] = before + self.omega * (state.y[v] - before);
+            }
+        }
+        std::mem::swap(&mut self.before, &mut self.last);
+        self.last.clone_from(&state.y);
+    }
+
+    fn stretch_to_limit(&self, state: &State) -> f64 {
+        self.inner.stretch_to_limit(state)
+    }
+
+    fn imbalance(&mut self, problem: &Problem, state: &State) -> f64 {
+        self.inner.imbalance(problem, state)
+    }
+
+    fn unrest(&mut self, problem: &Problem, state: &State) -> f64 {
+        self.inner.unrest(problem, state)
+    }
+
+    fn finish(&mut self, problem: &Problem, state: &State, statistics: &mut Statistics) {
+        self.inner.finish(problem, state, statistics);
+    }
+}

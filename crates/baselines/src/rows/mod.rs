@@ -1,0 +1,42 @@
+//! Other solvers of the backward step's rows (paper, sections 4.2.2 and 4.3): the two-way method with them differs from
+//! ours in nothing else, since rows, multipliers kept from step to step, search and forward step are shared.
+//!
+//! - [`LinearSystem`]: Harmon et al. 2008, without and with the projection lambda >= 0 (Fig. 13, 14);
+//! - [`AugmentedLagrangian`]: Tang et al. 2018, by gradient descent (Fig. 15);
+//! - [`ProjectedJacobi`]: with Chebyshev weights within the step (Fig. 11, 12), or between steps ([`InterStepChebyshev`]).
+//!
+//! The yardsticks are projected Gauss-Seidel ([`bowknot_twoway::ColouredSweeps`]) and, for small problems, the exact
+//! [`bowknot_twoway::lcp::solve_exact`].
+
+mod augmented_lagrangian;
+mod incidence;
+mod inter_step;
+mod jacobi;
+mod linear_system;
+
+pub use augmented_lagrangian::AugmentedLagrangian;
+pub use inter_step::InterStepChebyshev;
+pub use jacobi::ProjectedJacobi;
+pub use linear_system::LinearSystem;
+
+use bowknot_twoway::{
+    BackwardStep, BudgetedSearch, CertifiedForward, LcpBackward, Problem, Resolver, RowSolver,
+};
+
+/// The two-way method with another solver of its rows; `problem` has the parameters, as a rule those of
+/// [`bowknot_twoway::Params::paper`].
+pub fn two_way_with<K: RowSolver + Default>(
+    problem: Problem,
+    solver: K,
+) -> Resolver<BudgetedSearch, LcpBackward<K>, CertifiedForward> {
+    two_way_with_stage(problem, LcpBackward::with_solver(solver))
+}
+
+/// The two-way method with another backward step.
+pub fn two_way_with_stage<B: BackwardStep>(
+    problem: Problem,
+    backward: B,
+) -> Resolver<BudgetedSearch, B, CertifiedForward> {
+    let search = BudgetedSearch::new(&problem);
+    Resolver::with_stages(problem, search, backward, CertifiedForward::default())
+}

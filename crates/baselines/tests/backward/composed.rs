@@ -1,0 +1,128 @@
+use crate::common::{Scene, resolve_watched};
+use bowknot_baselines::rows::{
+    AugmentedLagrangian, InterStepChebyshev, LinearSystem, ProjectedJacobi, two_way_with, two_way_with_stage,
+};
+use bowknot_baselines::twoway::geometry::{Point, Vector};
+use bowknot_baselines::twoway::{
+    BackwardStep, BudgetedSearch, CertifiedForward, ColouredSweeps, LcpBackward, Params, Resolver, RowSolver,
+    Statistics,
+};
+use bowknot_baselines::{Composed, Method};
+
+/// The paper's parameters without edges, so many steps at most.
+fn params(steps: usize) -> Params {
+    let mut params = Params::paper();
+    params.constraints.edges = false;
+    params.stop.max_steps = Some(steps);
+    params
+}
+
+fn run<B: BackwardStep>(
+    scene: &Scene,
+    mut resolver: Resolver<BudgetedSearch, B, CertifiedForward>,
+    target: &[Point],
+) -> (Vec<Point>, Statistics) {
+    resolve_watched(&mut resolver, scene, target, std::any::type_name::<B>())
+}
+
+fn solve<K: RowSolver + Default>(
+    scene: &Scene,
+    solver: K,
+    steps: usize,
+    target: &[Point],
+) -> (Vec<Point>, Statistics) {
+    run(scene, two_way_with(scene.problem(params(steps)), solver), target)
+}
+
+/// Pinned, because a step more or less is a change of the method.
+#[test]
+fn sheets_that_change_places_stay_apart_whatever_solves_the_rows() {
+    let scene = Scene::two_sheets(4, 0.02);
+    let target = scene.swapped();
+    let count = |(_, statistics): (Vec<Point>, Statistics)| {
+        assert!(statistics.converged);
+        (statistics.steps, statistics.searches)
+    };
+    let steps = 400;
+    let chebyshev = InterStepChebyshev::new(LcpBackward::with_solver(ProjectedJacobi::new(1, 0.0)), 0.9, 10);
+    let counts = [
+        ("Gauss-Seidel", count(solve(&scene, ColouredSweeps, steps, &target))),
+        ("linear system", count(solve(&scene, LinearSystem::default(), steps, &target))),
+        ("projected", count(solve(&scene, LinearSystem::projected(), steps, &target))),
+        ("augmented, 20", count(solve(&scene, AugmentedLagrangian::new(20), steps, &target))),
+        ("augmented, 100", count(solve(&scene, AugmentedLagrangian::new(100), steps, &target))),
+        ("Jacobi, 1", count(solve(&scene, ProjectedJacobi::new(1, 0.0), steps, &target))),
+        ("Jacobi, 50", count(solve(&scene, ProjectedJacobi::new(50, 0.0), steps, &target))),
+        ("Chebyshev, 50", count(solve(&scene, ProjectedJacobi::new(50, 0.95), steps, &target))),
+        ("Chebyshev between steps", {
+            count(run(&scene, two_way_with_stage(scene.problem(params(steps)), chebyshev), &target))
+        }),
+    ];
+    let expected = [
+        ("Gauss-Seidel", (7, 3)),
+        ("linear system", (5, 2)),
+        ("projected", (7, 3)),
+        ("augmented, 20", (5, 3)),
+        ("augmented, 100", (6, 3)),
+        ("Jacobi, 1", (128, 33)),
+        ("Jacobi, 50", (8, 3)),
+        ("Chebyshev, 50", (7, 3)),
+        ("Chebyshev between steps", (130, 22)),
+    ];
+    assert_eq!(counts, expected);
+}
+
+#[test]
+fn sheets_that_want_apart_stick_to_the_linear_system_alone() {
+    let scene = Scene::two_sheets(4, 0.015);
+    let n = scene.x.len() / 2;
+    let target: Vec<Point> =
+        scene.x.iter().enumerate().map(|(v, x)| if v < n { *x } else { x + 0.1 * Vector::z() }).collect();
+    let left = |(x, _): (Vec<Point>, Statistics)| {
+        x.iter().zip(&target).map(|(x, y)| (x - y).norm()).fold(0.0, f64::max)
+    };
+    assert!(left(solve(&scene, ColouredSweeps, 200, &target)) < 1e-4);
+    assert!(left(solve(&scene, LinearSystem::projected(), 200, &target)) < 1e-4);
+    assert!(left(solve(&scene, AugmentedLagrangian::new(20), 200, &target)) < 1e-4);
+    assert!(left(solve(&scene, LinearSystem::default(), 200, &target)) > 0.04);
+}
+
+#[test]
+fn the_default_with_gauss_seidel_named_is_the_default() {
+    let scene = Scene::two_sheets(4, 0.02);
+    let target = scene.swapped();
+    let mut plain =
+        Resolver::new(scene.model.clone(), &scene.x, &vec![0.01; scene.x.len()], Params::fast()).unwrap();
+    let (x, _) = resolve_watched(&mut plain, &scene, &target, "plain");
+    let (same, _) = run(&scene, two_way_with(scene.problem(Params::fast()), ColouredSweeps), &target);
+    assert_eq!(x, same);
+}
+
+#[test]
+fn results_have_the_same_bits_on_any_number_of_threads() {
+    // Large enough for loops to be shared out.
+    let scene = Scene::two_sheets(24, 0.02);
+    let target = scene.swapped();
+    let solve = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let problem = || scene.problem(params(6));
+            let chebyshev = InterStepChebyshev::new(LcpBackward::<ColouredSweeps>::default(), 0.9, 2);
+            let methods: [Box<dyn Method>; 4] = [
+                Box::new(Composed::new("Harmon", two_way_with(problem(), LinearSystem::default()))),
+                Box::new(Composed::new("Tang", two_way_with(problem(), AugmentedLagrangian::new(20)))),
+                Box::new(Composed::new("Jacobi", two_way_with(problem(), ProjectedJacobi::new(20, 0.9)))),
+                Box::new(Composed::new("Chebyshev", two_way_with_stage(problem(), chebyshev))),
+            ];
+            methods.map(|mut method| {
+                let mut x = scene.x.clone();
+                method.solve(&mut x, &target, &Default::default()).unwrap();
+                x
+            })
+        })
+    };
+    let one = solve(1);
+    for threads in [2, 5] {
+        assert!(solve(threads) == one, "{threads} threads");
+    }
+}
