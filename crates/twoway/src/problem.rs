@@ -1,9 +1,11 @@
 //! What is fixed about a scene, and every length that parameters leave to the mesh.
 
-use crate::{ContactTable, Params, ResolveError, Spacing};
+use crate::waiting::set_groups;
+use crate::{Call, ContactTable, Params, ResolveError, Spacing};
 use bowknot_constraints::{DesiredDistance, FrictionModel};
 use bowknot_geometry::{PairKind, Point};
 use bowknot_proximity::{CollisionModel, Pair};
+use bowknot_stepper::Rounding;
 
 /// Lengths in force: stated ones as they are, the others from the mesh [m].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,6 +52,8 @@ pub struct Problem {
     pub groups: Vec<u32>,
     /// How many groups there are.
     pub group_count: usize,
+    /// The caller's names of the groups, ascending.
+    pub group_names: Vec<u32>,
 }
 
 impl Problem {
@@ -93,6 +97,7 @@ impl Problem {
             spacing,
             groups: Vec::new(),
             group_count: 0,
+            group_names: Vec::new(),
             model,
             contact,
             rest: rest.to_vec(),
@@ -103,6 +108,44 @@ impl Problem {
             params,
             prescribed,
         })
+    }
+
+    /// Starts a call: checks its input, and takes over what it prescribes.
+    ///
+    /// # Errors
+    /// Wrong lengths, non-finite numbers and coordinates too large for the floor.
+    pub fn begin(
+        &mut self,
+        positions: &[Point],
+        target: &[Point],
+        call: &Call<'_>,
+    ) -> Result<(), ResolveError> {
+        let vertices = self.rest.len();
+        for (what, given) in [("positions", positions.len()), ("target", target.len())] {
+            if given != vertices {
+                return Err(ResolveError::Length { what, given, vertices });
+            }
+        }
+        for (what, given) in [("prescribed", call.prescribed.len()), ("groups", call.groups.len())] {
+            if given != 0 && given != vertices {
+                return Err(ResolveError::Length { what, given, vertices });
+            }
+        }
+        if let Some(start) = call.start {
+            if start.len() != vertices {
+                return Err(ResolveError::Length { what: "start", given: start.len(), vertices });
+            }
+            check_finite("the start", &self.model, start)?;
+        }
+        check_finite("the position", &self.model, positions)?;
+        check_finite("the target", &self.model, target)?;
+        check_floor(self, positions, target)?;
+        for v in 0..vertices {
+            self.prescribed[v] =
+                self.model.is_obstacle(v as u32) || call.prescribed.get(v).copied().unwrap_or(false);
+        }
+        set_groups(self, call.groups);
+        Ok(())
     }
 
     /// Derives the lengths anew from the contact data.
@@ -149,15 +192,30 @@ impl Problem {
 }
 
 /// Refuses positions that are not finite.
-pub(crate) fn check_finite(
-    what: &'static str,
-    model: &CollisionModel,
-    positions: &[Point],
-) -> Result<(), ResolveError> {
+fn check_finite(what: &'static str, model: &CollisionModel, positions: &[Point]) -> Result<(), ResolveError> {
     match positions.iter().position(|p| !p.iter().all(|c| c.is_finite())) {
         Some(vertex) => Err(ResolveError::NonFinite { what, vertex, body: model.vertex_body()[vertex] }),
         None => Ok(()),
     }
+}
+
+fn check_floor(problem: &Problem, positions: &[Point], target: &[Point]) -> Result<(), ResolveError> {
+    let thicknesses = problem.contact.bodies().iter().filter_map(|b| b.thickness).filter(|t| *t > 0.0);
+    let scene = problem.lengths.floor;
+    let floor = thicknesses.fold(if scene > 0.0 { scene } else { f64::INFINITY }, f64::min);
+    let floor = if floor.is_finite() { floor } else { 0.0 };
+    let largest = |p: &Point| p.coords.amax();
+    let (vertex, coordinate) = positions
+        .iter()
+        .enumerate()
+        .chain(target.iter().enumerate())
+        .map(|(v, p)| (v, largest(p)))
+        .fold((0, 0.0), |best, next| if next.1 > best.1 { next } else { best });
+    let needed = Rounding::smallest_floor(coordinate);
+    if floor > 0.0 && floor < needed {
+        return Err(ResolveError::FloorBelowRounding { floor, coordinate, vertex, needed });
+    }
+    Ok(())
 }
 
 /// What a particle has for an edge length, in its body's delta: one that grains roll over each other within.

@@ -4,9 +4,8 @@ use crate::backward::LcpBackward;
 use crate::filter::filter_slip;
 use crate::forward::CertifiedForward;
 use crate::injection::injected_energy;
-use crate::problem::check_finite;
 use crate::search::BudgetedSearch;
-use crate::waiting::{Patience, behind, set_groups};
+use crate::waiting::{Patience, behind};
 use crate::{
     AcceptedState, BackwardStep, BodyContact, ContactSet, ForwardStep, HalfSpaceContact, Observer,
     PairFriction, Params, Problem, ResolveError, Search, State, Statistics, StopRule,
@@ -14,7 +13,6 @@ use crate::{
 use bowknot_constraints::FrictionModel;
 use bowknot_geometry::Point;
 use bowknot_proximity::CollisionModel;
-use bowknot_stepper::Rounding;
 use std::time::Instant;
 
 /// Default of [`crate::StopParams::drag`] with friction.
@@ -49,8 +47,6 @@ pub struct Resolver<S = BudgetedSearch, B = LcpBackward, F = CertifiedForward> {
     search: S,
     backward: B,
     forward: F,
-    /// The caller's names of the groups in the present call.
-    group_names: Vec<u32>,
 }
 
 impl Resolver {
@@ -75,7 +71,7 @@ impl Resolver {
 impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
     /// A resolver made of other stages.
     pub fn with_stages(problem: Problem, search: S, backward: B, forward: F) -> Self {
-        Self { problem, state: State::default(), search, backward, forward, group_names: Vec::new() }
+        Self { problem, state: State::default(), search, backward, forward }
     }
 
     /// Says what each body brings into its contacts; one entry a body of the collision model, obstacles included.
@@ -203,32 +199,8 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
     }
 
     fn begin(&mut self, positions: &[Point], target: &[Point], call: &Call<'_>) -> Result<(), ResolveError> {
-        let Self { problem, state, search, backward, forward, group_names } = self;
-        let vertices = problem.rest.len();
-        for (what, given) in [("positions", positions.len()), ("target", target.len())] {
-            if given != vertices {
-                return Err(ResolveError::Length { what, given, vertices });
-            }
-        }
-        for (what, given) in [("prescribed", call.prescribed.len()), ("groups", call.groups.len())] {
-            if given != 0 && given != vertices {
-                return Err(ResolveError::Length { what, given, vertices });
-            }
-        }
-        if let Some(start) = call.start {
-            if start.len() != vertices {
-                return Err(ResolveError::Length { what: "start", given: start.len(), vertices });
-            }
-            check_finite("the start", &problem.model, start)?;
-        }
-        check_finite("the position", &problem.model, positions)?;
-        check_finite("the target", &problem.model, target)?;
-        check_floor(problem, positions, target)?;
-        for v in 0..vertices {
-            problem.prescribed[v] =
-                problem.model.is_obstacle(v as u32) || call.prescribed.get(v).copied().unwrap_or(false);
-        }
-        set_groups(problem, call.groups, group_names);
+        let Self { problem, state, search, backward, forward } = self;
+        problem.begin(positions, target, call)?;
         state.begin(positions, target, call.time_step);
         state.slip_start.clear();
         if problem.friction_model() != FrictionModel::None {
@@ -242,7 +214,7 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
 
     /// Fills in what is known only at the end.
     fn finish(&mut self, statistics: &mut Statistics) {
-        let Self { problem, state, search, backward, group_names, .. } = self;
+        let Self { problem, state, search, backward, .. } = self;
         // Contact geometry at the final x, for the smallest gap.
         search.refresh(problem, state, statistics);
         backward.finish(problem, state, statistics);
@@ -260,7 +232,7 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
                 statistics.prescribed_behind_m = statistics.prescribed_behind_m.max(left);
             }
         }
-        statistics.behind = behind(problem, state, group_names);
+        statistics.behind = behind(problem, state);
         statistics.injected_j = injected_energy(problem, state);
         statistics.distance_to_target_m = (sum / free.max(1) as f64).sqrt();
         if statistics.converged {
@@ -273,23 +245,4 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
 fn default_max_steps(time_step: Option<f64>) -> usize {
     let share = time_step.map_or(0.0, |dt| ((dt - 0.01) / 0.04).clamp(0.0, 1.0));
     512 + (share * 1536.0).round() as usize
-}
-
-fn check_floor(problem: &Problem, positions: &[Point], target: &[Point]) -> Result<(), ResolveError> {
-    let thicknesses = problem.contact.bodies().iter().filter_map(|b| b.thickness).filter(|t| *t > 0.0);
-    let scene = problem.lengths.floor;
-    let floor = thicknesses.fold(if scene > 0.0 { scene } else { f64::INFINITY }, f64::min);
-    let floor = if floor.is_finite() { floor } else { 0.0 };
-    let largest = |p: &Point| p.coords.amax();
-    let (vertex, coordinate) = positions
-        .iter()
-        .enumerate()
-        .chain(target.iter().enumerate())
-        .map(|(v, p)| (v, largest(p)))
-        .fold((0, 0.0), |best, next| if next.1 > best.1 { next } else { best });
-    let needed = Rounding::smallest_floor(coordinate);
-    if floor > 0.0 && floor < needed {
-        return Err(ResolveError::FloorBelowRounding { floor, coordinate, vertex, needed });
-    }
-    Ok(())
 }

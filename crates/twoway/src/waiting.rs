@@ -3,8 +3,9 @@
 use crate::{Behind, Call, Follower, Problem, State};
 
 /// Numbers the groups of pinned vertices from 0; obstacles go as one anyway.
-pub(crate) fn set_groups(problem: &mut Problem, groups: &[u32], names: &mut Vec<u32>) {
+pub(crate) fn set_groups(problem: &mut Problem, groups: &[u32]) {
     problem.groups.clear();
+    let mut names = std::mem::take(&mut problem.group_names);
     names.clear();
     let grouped = |v: usize| groups[v] != Call::NO_GROUP && problem.prescribed[v];
     names.extend((0..groups.len()).filter(|&v| grouped(v)).map(|v| groups[v]));
@@ -18,17 +19,18 @@ pub(crate) fn set_groups(problem: &mut Problem, groups: &[u32], names: &mut Vec<
         };
         problem.groups = (0..groups.len()).map(number).collect();
     }
+    problem.group_names = names;
 }
 
 /// Who waits, and how far behind, in the order of [`Follower`].
-pub(crate) fn behind(problem: &Problem, state: &State, group_names: &[u32]) -> Vec<Behind> {
+pub(crate) fn behind(problem: &Problem, state: &State) -> Vec<Behind> {
     let tolerance = problem.params.stop.distance * problem.lengths.edge;
     let mut waiting = std::collections::BTreeMap::new();
     for v in (0..state.x.len()).filter(|&v| problem.prescribed[v]) {
         let left = (state.y[v] - state.x[v]).norm();
         if left > tolerance {
             let body = problem.model.vertex_body()[v];
-            let group = problem.groups.get(v).and_then(|&g| group_names.get(g as usize));
+            let group = problem.groups.get(v).and_then(|&g| problem.group_names.get(g as usize));
             let who = match group {
                 _ if problem.model.is_obstacle(v as u32) => Follower::Obstacle(body),
                 Some(&name) => Follower::Group(name),
