@@ -65,8 +65,9 @@ impl Watch {
         self.moved.fill(false);
         for (&v, seen) in self.vertices.iter().zip(&mut self.seen) {
             let now = state(v);
-            // A vertex that is not a number always differs: safe, though never at rest.
-            if *seen != now || (first_look && now.1 != Vector::new(0.0, 0.0, 0.0)) {
+            // A vertex that is not a number always differs: safe, though never at rest. One that is swept moves, and
+            // if along the same path as last time: boxes of obstacles at rest have no sweep.
+            if *seen != now || now.1 != Vector::new(0.0, 0.0, 0.0) {
                 *seen = now;
                 self.moved[model.vertex_body()[v as usize] as usize] = true;
             }

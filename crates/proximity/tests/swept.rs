@@ -150,3 +150,20 @@ fn a_bullet_is_seen_wherever_it_passes() {
     displacements[3].z = -99.0;
     assert!(sweep(&scene, &displacements, &mut ProximitySearch::new(&scene.model)).is_empty());
 }
+
+#[test]
+fn an_obstacle_that_is_swept_along_the_same_path_again_and_again_never_counts_as_resting() {
+    let mut builder = Builder::default();
+    builder.body(BodyFilter::DEFORMABLE);
+    builder.particle(Point::new(0.25, 0.25, 1.0), 0.0);
+    builder.body(BodyFilter::OBSTACLE);
+    builder.triangle([Point::origin(), Point::new(1.0, 0.0, 0.0), Point::new(0.0, 1.0, 0.0)], 0.0);
+    let scene = builder.build();
+    let upward: Vec<Vector> = (0..4)
+        .map(|v| if scene.model.is_obstacle(v) { Vector::new(0.0, 0.0, 2.0) } else { Vector::zeros() })
+        .collect();
+    let mut kept = ProximitySearch::new(&scene.model);
+    for search in 0..50 {
+        assert_eq!(sweep(&scene, &upward, &mut kept).len(), 1, "search {search}");
+    }
+}
