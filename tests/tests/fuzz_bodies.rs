@@ -97,6 +97,7 @@ fn damaged_files_are_read_or_refused() {
             body: case.model.vertex_body().to_vec(),
             half_spaces: case.model.half_spaces().to_vec(),
             time_step: Some(0.01),
+            ..States::default()
         };
         for choice in 0..3 {
             let path = folder.path().join("file");

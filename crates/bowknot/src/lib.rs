@@ -20,6 +20,7 @@
 //! | [`world`] | a scene's meshes, loaded and put together |
 //! | [`simulator`] | the time-step loop, its statistics, checkpoints |
 //! | [`run`] | whole runs: the output folder, resuming, checking as it goes |
+//! | [`recording`] | collision problems, recorded and solved again |
 //! | [`report`] | one HTML page of a run |
 //! | [`check`] | the exact judge of states and paths |
 //! | [`io`] | mesh files, archives, atomic writes |
@@ -30,6 +31,7 @@
 
 pub mod check;
 pub mod io;
+pub mod recording;
 pub mod repair;
 pub mod report;
 pub mod run;

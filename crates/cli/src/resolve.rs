@@ -6,12 +6,10 @@ use crate::interrupt::Interrupt;
 use crate::run::method_sets;
 use crate::{output, setup};
 use bowknot::check::{Judge, StateOptions};
-use bowknot::geometry::Topology;
 use bowknot::io::{States, write_result};
-use bowknot::proximity::{BodyFilter, CollisionModel};
-use bowknot::twoway::{AcceptedState, Call, Resolver, Statistics};
+use bowknot::proximity::CollisionModel;
+use bowknot::twoway::{AcceptedState, Statistics};
 use serde::Serialize;
-use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
 /// Intersections of a refused start that are written out.
@@ -43,20 +41,19 @@ pub fn resolve(options: &ResolveOptions) -> Result<Done, Failure> {
     }
     let states = States::read(&options.states)?;
     let fault = |message: String| Failure::input(format!("{}: {message}", options.states.display()));
-    let model = model(&states).map_err(fault)?;
+    let model = states.collision_model().map_err(fault)?;
     refuse_intersections(&model, &states).map_err(fault)?;
 
-    let mut resolver = Resolver::new(model, &states.rest, &states.masses, params)
-        .map_err(|error| fault(error.to_string()))?;
+    let mut resolver = states.resolver(model, params).map_err(|error| fault(error.to_string()))?;
     let interrupt = Interrupt::listen();
     let mut watch = |_: &AcceptedState<'_>| {
         if interrupt.is_set() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    let call = Call { prescribed: &states.fixed, time_step: states.time_step, ..Call::default() };
     let mut x = states.x.clone();
     let cpu = bowknot::simulator::cpu_seconds();
-    let statistics =
-        resolver.resolve(&mut x, &states.y, &call, &mut watch).map_err(|error| fault(error.to_string()))?;
+    let statistics = resolver
+        .resolve(&mut x, &states.y, &states.call(), &mut watch)
+        .map_err(|error| fault(error.to_string()))?;
     let summary = summarise(&statistics, bowknot::simulator::cpu_seconds() - cpu);
     write_result(&options.out, &x)?;
 
@@ -66,34 +63,6 @@ pub fn resolve(options: &ResolveOptions) -> Result<Done, Failure> {
         output::print(&in_words(&summary, options))?;
     }
     Ok(if interrupt.is_set() { Done::Interrupted } else { Done::Fine })
-}
-
-/// The collision model of a problem: a body is an obstacle if all its vertices are.
-fn model(states: &States) -> Result<CollisionModel, String> {
-    let topology =
-        Topology::new(states.x.len(), states.triangles.clone(), &states.strands, &states.particles)
-            .map_err(|errors| first_of(&errors))?;
-    let mut obstacle: BTreeMap<u32, bool> = BTreeMap::new();
-    for (vertex, (&body, &flag)) in states.body.iter().zip(&states.obstacle).enumerate() {
-        if *obstacle.entry(body).or_insert(flag) != flag {
-            return Err(format!(
-                "array O: body {body} has obstacle and deformable vertices (vertex {vertex} differs from its first)"
-            ));
-        }
-    }
-    let count = obstacle.keys().next_back().map_or(0, |&body| body as usize + 1);
-    let filter = |body: u32| match obstacle.get(&body) {
-        Some(true) => BodyFilter::OBSTACLE,
-        _ => BodyFilter::DEFORMABLE,
-    };
-    let filters = (0..count as u32).map(filter).collect();
-    CollisionModel::new(topology, states.body.clone(), filters, states.half_spaces.clone())
-        .map_err(|error| error.to_string())
-}
-
-fn first_of(errors: &[impl ToString]) -> String {
-    let first = errors.first().map(ToString::to_string).unwrap_or_default();
-    if errors.len() > 1 { format!("{first}; and {} more", errors.len() - 1) } else { first }
 }
 
 fn refuse_intersections(model: &CollisionModel, states: &States) -> Result<(), String> {

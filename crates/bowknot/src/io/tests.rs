@@ -2,6 +2,7 @@
 
 use super::*;
 use bowknot_geometry::{HalfSpace, Point, Vector};
+use bowknot_twoway::{BodyContact, Call, ContactSide, HalfSpaceContact, PairFriction};
 use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -348,6 +349,18 @@ fn states() -> States {
         body: vec![0, 0, 0, 0, 1, 2],
         half_spaces: vec![HalfSpace { normal: Vector::new(0.6, 0.0, 0.8), offset: -0.25 }],
         time_step: Some(0.01),
+        body_contacts: vec![
+            BodyContact { thickness: Some(1e-3), friction: 0.25, ..BodyContact::default() },
+            BodyContact { stretch_limit: Some(f64::INFINITY), ..BodyContact::default() },
+            BodyContact { delta: Some(4e-3), ..BodyContact::default() },
+        ],
+        half_space_contacts: vec![HalfSpaceContact { thickness: Some(2e-3), friction: 0.5 }],
+        pair_frictions: vec![PairFriction {
+            sides: [ContactSide::Body(1), ContactSide::HalfSpace(0)],
+            friction: 0.75,
+        }],
+        groups: vec![3, 3, Call::NO_GROUP, 0, Call::NO_GROUP, Call::NO_GROUP],
+        start: sample().positions.iter().map(|p| p * 0.75).collect(),
     }
 }
 
@@ -409,6 +422,11 @@ fn states_of_any_number_type_with_defaults() {
         ("body", row(&[0.0, 0.0, 0.0, 9.0]), "vertex 3 has body 9"),
         ("planes", row(&[0.0, 0.0, 0.0, 1.0]), "array planes: row 0 needs a normal"),
         ("dt", row(&[-1.0]), "array dt"),
+        ("thickness", row(&[0.0, 0.0, 0.0]), "array thickness: it has 3 entries for 2 bodies"),
+        ("plane_friction", row(&[0.5]), "array plane_friction: it has 1 entries for 0 planes"),
+        ("pair_friction", row(&[0.0, 2.0, 0.5]), "names side 2, but there are 2 bodies and 0 planes"),
+        ("group", row(&[-2.0, 0.0, 0.0, 0.0]), "vertex 0 has group -2"),
+        ("start", row(&[0.0, 0.0, 0.0]), "array start: it has 1 rows for 4 vertices"),
     ] {
         let text = message(States::read(&write_with("bad.npz", true, Some((name, array)))));
         assert!(text.contains("bad.npz") && text.contains(words), "{name}: {text}");

@@ -176,7 +176,7 @@ impl Watcher for RunWatcher<'_> {
     fn problem(&mut self, problem: &CollisionProblem<'_>) -> ControlFlow<()> {
         let write = || -> Result<(), SimulationError> {
             if self.record {
-                self.writer.write_problem(problem, self.world)?;
+                self.writer.write_problem(problem)?;
             }
             if self.trace {
                 self.writer.write_trace(problem.step, problem.iteration, 0, problem.positions)?;

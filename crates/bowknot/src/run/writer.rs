@@ -18,10 +18,10 @@
 use super::frames::FrameWriter;
 use super::layout::Layout;
 use super::summary::Totals;
-use crate::io::{self, IoError, States, create_folder, write_ply};
+use crate::io::{self, IoError, create_folder, write_ply};
+use crate::recording::Recorder;
 use crate::scene::Scene;
 use crate::simulator::{Checkpoint, CollisionProblem, SimulationError, Simulator, StepStatistics};
-use crate::world::World;
 use bowknot_geometry::Point;
 use std::fs::{self, File, OpenOptions};
 use std::io::Write;
@@ -46,7 +46,7 @@ pub struct RunWriter {
     folder: PathBuf,
     checkpoint_every: usize,
     frames: FrameWriter,
-    masses: Vec<f64>,
+    recorder: Recorder,
     statistics: File,
     /// Length of `stats.jsonl` up to its last whole line [bytes].
     statistics_length: u64,
@@ -126,7 +126,7 @@ impl RunWriter {
             folder: folder.to_owned(),
             checkpoint_every: scene.output.checkpoint_every,
             frames: FrameWriter::new(folder, &scene.output.formats, layout, spool, dt, width)?,
-            masses: simulator.dynamics_model().masses().to_vec(),
+            recorder: Recorder::new(simulator),
             statistics,
             statistics_length: 0,
             totals: Totals::default(),
@@ -164,24 +164,9 @@ impl RunWriter {
     ///
     /// # Errors
     /// The system's refusal.
-    pub fn write_problem(&self, problem: &CollisionProblem<'_>, world: &World) -> Result<(), IoError> {
-        let count = world.collision_vertices();
-        let layout = &self.frames.layout;
-        let states = States {
-            x: problem.positions.to_vec(),
-            y: problem.target.to_vec(),
-            triangles: layout.triangles.clone(),
-            strands: layout.strands.clone(),
-            particles: layout.particles.clone(),
-            rest: world.positions[..count].to_vec(),
-            masses: self.masses[..count].to_vec(),
-            fixed: problem.prescribed.to_vec(),
-            obstacle: layout.obstacle[..count].to_vec(),
-            body: world.collision.vertex_body().to_vec(),
-            half_spaces: world.collision.half_spaces().to_vec(),
-            time_step: Some(problem.time_step),
-        };
-        states.write(&self.folder.join(format!("states/{:06}_{:02}.npz", problem.step, problem.iteration)))
+    pub fn write_problem(&self, problem: &CollisionProblem<'_>) -> Result<(), IoError> {
+        let name = format!("states/{:06}_{:02}.npz", problem.step, problem.iteration);
+        self.recorder.states(problem).write(&self.folder.join(name))
     }
 
     /// Writes a state to `trace/`; `l` is 0 for the start of a problem and l + 1 after two-way step l.

@@ -80,6 +80,10 @@ pub struct CollisionProblem<'a> {
     pub prescribed: &'a [bool],
     /// Time step that the problem stands for [s].
     pub time_step: f64,
+    /// Positions at the start of the time step, which friction measures slip from [m].
+    pub start: &'a [Point],
+    /// Pinned vertices that go as one, see [`Call::groups`].
+    pub groups: &'a [u32],
 }
 
 /// A state that the two-way method has accepted.
@@ -294,6 +298,8 @@ impl Simulator {
                 target: &y[..count],
                 prescribed: &prescribed[..count],
                 time_step: *dt,
+                start: &start[..count],
+                groups,
             };
             if watcher.problem(&problem).is_break() {
                 return Err(SimulationError::Interrupted);

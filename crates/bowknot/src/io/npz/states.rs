@@ -3,7 +3,10 @@
 use super::archive::{Archive, write_archive};
 use crate::io::IoError;
 use bowknot_geometry::{HalfSpace, Point, Vector};
+use bowknot_twoway::{BodyContact, Call, ContactSide, HalfSpaceContact, PairFriction};
 use ndarray::{Array0, Array1, Array2};
+use ndarray_npy::{NpzWriter, WriteNpzError};
+use std::io::{Seek, Write};
 use std::path::Path;
 
 /// One collision problem as `--record` writes it and `resolve` reads it.
@@ -11,6 +14,11 @@ use std::path::Path;
 /// In the archive: `x[n,3]`, `y[n,3]` [m], `F[m,3]`, and optionally `E[k,2]` (strands), `P[p]` (particles),
 /// `rest[n,3]` [m], `mass[n]` [kg], `fixed[n]`, `O[n]` (obstacle), `body[n]`, `planes[h,4]` (unit normal, offset [m]),
 /// `dt` [s]; stored or deflated, f32 or f64, integers of any width.
+///
+/// What bodies bring into their contacts, optional as well, with one entry a body of `body`: `thickness`, `delta` [m],
+/// `friction`, `stretch_limit` [1], each nan where the body leaves it open; `plane_thickness[h]` [m] and
+/// `plane_friction[h]` likewise; `pair_friction[k,3]`: two bodies, half-spaces numbered after the bodies, and their
+/// coefficient. `group[n]`: pins that go as one, -1 for none. `start[n,3]` [m]: what friction measures slip from.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct States {
     /// The state, free of intersections.
@@ -37,6 +45,16 @@ pub struct States {
     pub half_spaces: Vec<HalfSpace>,
     /// Time step that the problem stands for (`dt`).
     pub time_step: Option<f64>,
+    /// What each body brings into its contacts; empty: nothing.
+    pub body_contacts: Vec<BodyContact>,
+    /// What each half-space brings into its contacts; empty: nothing.
+    pub half_space_contacts: Vec<HalfSpaceContact>,
+    /// Friction of pairs of bodies and half-spaces.
+    pub pair_frictions: Vec<PairFriction>,
+    /// Group of each vertex, [`Call::NO_GROUP`] for none; empty: no groups.
+    pub groups: Vec<u32>,
+    /// Positions at the start of the time step; empty: those of `x`.
+    pub start: Vec<Point>,
 }
 
 impl States {
@@ -65,11 +83,18 @@ impl States {
         let obstacle = flags(&mut archive, "O", n)?;
         let body = bodies(&mut archive, &obstacle)?;
         let particles = archive.elements::<1>("P", n)?.into_iter().flatten().collect();
+        let half_spaces = planes(&mut archive)?;
+        let count = body.iter().max().map_or(0, |&b| b as usize + 1);
         Ok(Self {
+            body_contacts: body_contacts(&mut archive, count)?,
+            half_space_contacts: half_space_contacts(&mut archive, half_spaces.len())?,
+            pair_frictions: pair_frictions(&mut archive, count, half_spaces.len())?,
+            groups: groups(&mut archive, n)?,
+            start: archive.points("start", Some(n))?.unwrap_or_default(),
             triangles: archive.elements("F", n)?,
             strands: archive.elements("E", n)?,
             particles,
-            half_spaces: planes(&mut archive)?,
+            half_spaces,
             time_step: time_step(&mut archive)?,
             x,
             y,
@@ -103,8 +128,43 @@ impl States {
             if let Some(dt) = self.time_step {
                 archive.add_array("dt", &Array0::from_elem((), dt))?;
             }
-            Ok(())
+            self.write_contacts(archive)
         })
+    }
+
+    /// What the problem has beyond geometry, each array only where it says something.
+    fn write_contacts<W: Write + Seek>(&self, archive: &mut NpzWriter<W>) -> Result<(), WriteNpzError> {
+        let mut column =
+            |name: &str, values: Vec<f64>, open: fn(f64) -> bool| match values.iter().all(|&v| open(v)) {
+                true => Ok(()),
+                false => archive.add_array(name, &Array1::from(values)),
+            };
+        let given = |value: Option<f64>| value.unwrap_or(f64::NAN);
+        let (bodies, planes) = (&self.body_contacts, &self.half_space_contacts);
+        column("thickness", bodies.iter().map(|b| given(b.thickness)).collect(), f64::is_nan)?;
+        column("delta", bodies.iter().map(|b| given(b.delta)).collect(), f64::is_nan)?;
+        column("friction", bodies.iter().map(|b| b.friction).collect(), |f| f == 0.0)?;
+        column("stretch_limit", bodies.iter().map(|b| given(b.stretch_limit)).collect(), f64::is_nan)?;
+        column("plane_thickness", planes.iter().map(|h| given(h.thickness)).collect(), f64::is_nan)?;
+        column("plane_friction", planes.iter().map(|h| h.friction).collect(), |f| f == 0.0)?;
+        if !self.pair_frictions.is_empty() {
+            let count = self.body.iter().max().map_or(0, |&b| b + 1);
+            let number = |side| match side {
+                ContactSide::Body(body) => f64::from(body),
+                ContactSide::HalfSpace(plane) => f64::from(count + plane),
+            };
+            let row = |pair: &PairFriction| [number(pair.sides[0]), number(pair.sides[1]), pair.friction];
+            let rows: Vec<[f64; 3]> = self.pair_frictions.iter().map(row).collect();
+            archive.add_array("pair_friction", &table(&rows, |v| v))?;
+        }
+        if self.groups.iter().any(|&g| g != Call::NO_GROUP) {
+            let number = |&g: &u32| if g == Call::NO_GROUP { -1 } else { g as i32 };
+            archive.add_array("group", &Array1::from_iter(self.groups.iter().map(number)))?;
+        }
+        if !self.start.is_empty() && self.start != self.x {
+            archive.add_array("start", &points(&self.start))?;
+        }
+        Ok(())
     }
 }
 
@@ -162,6 +222,81 @@ fn time_step(archive: &mut Archive<'_>) -> Result<Option<f64>, IoError> {
         [dt] if dt.is_finite() && *dt > 0.0 => Ok(Some(*dt)),
         _ => Err(archive.fault("dt", format!("{values:?} must be one finite number above 0"))),
     }
+}
+
+/// A column of one number for each of `count` things; nan for all if the archive has none.
+fn per(archive: &mut Archive<'_>, name: &str, count: usize, what: &str) -> Result<Vec<Option<f64>>, IoError> {
+    let Some(values) = archive.column(name, None)? else { return Ok(vec![None; count]) };
+    if values.len() != count {
+        return Err(archive.fault(name, format!("it has {} entries for {count} {what}", values.len())));
+    }
+    Ok(values.into_iter().map(|v| Some(v).filter(|v| !v.is_nan())).collect())
+}
+
+/// Ranges are checked where the numbers are used, by [`bowknot_twoway::Resolver::with_bodies`].
+fn body_contacts(archive: &mut Archive<'_>, count: usize) -> Result<Vec<BodyContact>, IoError> {
+    let mut column = |name| per(archive, name, count, "bodies");
+    let (thickness, delta) = (column("thickness")?, column("delta")?);
+    let (friction, stretch_limit) = (column("friction")?, column("stretch_limit")?);
+    let body = |b: usize| BodyContact {
+        thickness: thickness[b],
+        delta: delta[b],
+        friction: friction[b].unwrap_or(0.0),
+        stretch_limit: stretch_limit[b],
+    };
+    let contacts: Vec<BodyContact> = (0..count).map(body).collect();
+    let given = contacts.iter().any(|c| *c != BodyContact::default());
+    Ok(if given { contacts } else { Vec::new() })
+}
+
+fn half_space_contacts(archive: &mut Archive<'_>, count: usize) -> Result<Vec<HalfSpaceContact>, IoError> {
+    let thickness = per(archive, "plane_thickness", count, "planes")?;
+    let friction = per(archive, "plane_friction", count, "planes")?;
+    let plane = |h: usize| HalfSpaceContact { thickness: thickness[h], friction: friction[h].unwrap_or(0.0) };
+    let contacts: Vec<HalfSpaceContact> = (0..count).map(plane).collect();
+    let given = contacts.iter().any(|c| *c != HalfSpaceContact::default());
+    Ok(if given { contacts } else { Vec::new() })
+}
+
+fn pair_frictions(
+    archive: &mut Archive<'_>,
+    bodies: usize,
+    planes: usize,
+) -> Result<Vec<PairFriction>, IoError> {
+    let mut pairs = Vec::new();
+    for (index, row) in archive.rows::<3>("pair_friction")?.unwrap_or_default().into_iter().enumerate() {
+        let count = (bodies + planes) as f64;
+        if let Some(side) = row[..2].iter().find(|&&s| !(s >= 0.0 && s < count && s.fract() == 0.0)) {
+            let message =
+                format!("row {index} names side {side}, but there are {bodies} bodies and {planes} planes");
+            return Err(archive.fault("pair_friction", message));
+        }
+        if !row[2].is_finite() {
+            let friction = row[2];
+            return Err(archive.fault("pair_friction", format!("row {index} has coefficient {friction}")));
+        }
+        let side = |number: f64| match (number as usize).checked_sub(bodies) {
+            None => ContactSide::Body(number as u32),
+            Some(plane) => ContactSide::HalfSpace(plane as u32),
+        };
+        pairs.push(PairFriction { sides: [side(row[0]), side(row[1])], friction: row[2] });
+    }
+    Ok(pairs)
+}
+
+fn groups(archive: &mut Archive<'_>, n: usize) -> Result<Vec<u32>, IoError> {
+    let Some(values) = archive.column("group", Some(n))? else { return Ok(Vec::new()) };
+    let allowed = |g: f64| g == -1.0 || (g >= 0.0 && g < f64::from(u32::MAX) && g.fract() == 0.0);
+    if let Some(vertex) = values.iter().position(|&g| !allowed(g)) {
+        let group = values[vertex];
+        return Err(archive.fault(
+            "group",
+            format!("vertex {vertex} has group {group}; groups are numbered from 0 up, -1 is none"),
+        ));
+    }
+    let groups: Vec<u32> =
+        values.into_iter().map(|g| if g < 0.0 { Call::NO_GROUP } else { g as u32 }).collect();
+    Ok(if groups.iter().any(|&g| g != Call::NO_GROUP) { groups } else { Vec::new() })
 }
 
 fn points(points: &[Point]) -> Array2<f64> {
