@@ -1,3 +1,92 @@
-//! The `bowknot-bench` command.
+//! The `bowknot-bench` command: measures figures and tables, run time against error, methods against each other.
+//!
+//! | module | holds |
+//! |---|---|
+//! | `figures` | a file for each figure or table |
+//! | `bench` | what all of them use: size, output folder, what has been measured already |
+//! | `record`, `case` | collision problems: recorded from scenes, loaded to be solved |
+//! | `methods`, `solve` | the methods that are compared; timing one on one problem |
+//! | `summary` | what settings did with the problems of scenes |
+//! | `measures` | how good a result is, alike for every method |
+//! | `chart`, `table`, `page` | SVG, CSV and Markdown |
 
-fn main() {}
+// A command's output is what it is for.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
+mod bench;
+mod case;
+mod chart;
+mod figures;
+mod machine;
+mod measures;
+mod methods;
+mod page;
+mod record;
+mod solve;
+mod store;
+mod summary;
+mod table;
+
+use anyhow::{Result, bail};
+use bench::{Bench, Size};
+use clap::Parser;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Measures figures and tables; full runs rewrite their section of docs/benchmarks.md.
+#[derive(Debug, Parser)]
+#[command(name = "bowknot-bench")]
+struct Arguments {
+    /// A figure, `all`, `record` (collision problems for anyone's solver), or `list`.
+    name: String,
+    /// Smaller scenes; writes to DIR alone, and leaves docs/benchmarks.md as it is.
+    #[arg(long)]
+    quick: bool,
+    /// Smallest scenes, for tests of the command itself; as --quick otherwise.
+    #[arg(long, hide = true)]
+    tiny: bool,
+    /// Where problems, measurements and results stay; what is measured there already is not measured again.
+    #[arg(long, default_value = "out/bench")]
+    out: PathBuf,
+    /// Threads; with one, CPU seconds hold no waiting for others.
+    #[arg(long, default_value_t = 1)]
+    threads: usize,
+}
+
+fn main() -> ExitCode {
+    match run(&Arguments::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<()> {
+    if arguments.name == "list" {
+        for figure in figures::ALL {
+            println!("{:<20} {}", figure.name(), figure.title());
+        }
+        println!("{:<20} collision problems of {} scenes, as NPZ files", "record", record::SPECS.len());
+        return Ok(());
+    }
+    rayon::ThreadPoolBuilder::new().num_threads(arguments.threads).build_global()?;
+    let size = match (arguments.tiny, arguments.quick) {
+        (true, _) => Size::Tiny,
+        (false, true) => Size::Quick,
+        (false, false) => Size::Full,
+    };
+    let bench = Bench::new(size, &arguments.out)?;
+    match arguments.name.as_str() {
+        "record" => record::all(&bench),
+        "all" => figures::ALL.iter().try_for_each(|figure| bench.figure(*figure)),
+        name => match figures::ALL.iter().find(|figure| figure.name() == name) {
+            Some(figure) => bench.figure(*figure),
+            None => {
+                let names: Vec<&str> = figures::ALL.iter().map(|figure| figure.name()).collect();
+                bail!("no figure {name:?}; there are all, record, list, {}", names.join(", "))
+            }
+        },
+    }
+}

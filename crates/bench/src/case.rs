@@ -1,0 +1,61 @@
+//! Collision problems, loaded to be solved.
+
+use crate::bench::Bench;
+use crate::record::Spec;
+use anyhow::{Context, Result, anyhow};
+use bowknot::io::States;
+use bowknot::proximity::CollisionModel;
+use bowknot::twoway::{Params, Problem};
+use std::path::Path;
+
+/// A collision problem. Friction is left out: few of the methods that are compared have any, and what it adds to the
+/// target is no projection, so that an error would be of something else.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// `scene/step`.
+    pub name: String,
+    /// What it is made of, without friction.
+    pub states: States,
+    pub model: CollisionModel,
+}
+
+impl Case {
+    pub fn read(name: &str, path: &Path) -> Result<Self> {
+        Self::new(name, States::read(path)?).with_context(|| path.display().to_string())
+    }
+
+    pub fn new(name: &str, mut states: States) -> Result<Self> {
+        states.body_contacts.iter_mut().for_each(|body| body.friction = 0.0);
+        states.half_space_contacts.iter_mut().for_each(|plane| plane.friction = 0.0);
+        states.pair_frictions.clear();
+        let model = states.collision_model().map_err(|message| anyhow!(message))?;
+        Ok(Self { name: name.to_owned(), states, model })
+    }
+
+    /// The problem as the stages of a method see it.
+    pub fn problem(&self, params: Params) -> Result<Problem> {
+        Ok(self.states.resolver(self.model.clone(), params)?.problem().clone())
+    }
+
+    /// The problem under the parameters that results are judged by, with the prescribed vertices of the call.
+    pub fn reference(&self) -> Result<Problem> {
+        let mut problem = self.problem(Params::fast())?;
+        for (v, prescribed) in problem.prescribed.iter_mut().enumerate() {
+            *prescribed |= self.states.fixed.get(v).copied().unwrap_or(false);
+        }
+        Ok(problem)
+    }
+}
+
+/// Problems of a scene: `count` of those recorded, spread over them.
+pub fn cases(bench: &Bench, scene: &str, count: usize) -> Result<Vec<Case>> {
+    let files = Spec::of(scene)?.files(bench)?;
+    let count = count.min(files.len());
+    (0..count)
+        .map(|k| {
+            let file = &files[(2 * k + 1) * files.len() / (2 * count)];
+            let step = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            Case::read(&format!("{scene}/{step}"), file)
+        })
+        .collect()
+}

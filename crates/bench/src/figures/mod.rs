@@ -1,0 +1,58 @@
+//! The figures and tables, a file each.
+
+mod barrier;
+mod breakdown;
+mod collision_error;
+mod parameters;
+mod row_solvers;
+mod steps;
+mod sweeps;
+mod switches;
+
+use crate::bench::Bench;
+use crate::chart::Chart;
+use crate::table::Table;
+use anyhow::Result;
+
+/// All of them, in the order of the page.
+pub const ALL: &[&dyn Figure] = &[
+    &collision_error::CollisionError,
+    &switches::Switches,
+    &barrier::Barrier,
+    &sweeps::Sweeps,
+    &row_solvers::RowSolvers,
+    &parameters::Parameters,
+    &steps::Steps,
+    &breakdown::Breakdown,
+];
+
+/// A figure or table.
+pub trait Figure: Sync {
+    /// What the command calls it.
+    fn name(&self) -> &'static str;
+    /// Heading of its section.
+    fn title(&self) -> &'static str;
+    /// What it asks, and how it is measured.
+    fn question(&self) -> &'static str;
+    /// Measures it.
+    fn run(&self, bench: &Bench) -> Result<Section>;
+}
+
+/// What a figure found.
+#[derive(Clone, Debug, Default)]
+pub struct Section {
+    /// One sentence: whether the paper's finding holds here, with the ratio; where it does not, why.
+    pub finding: String,
+    pub parts: Vec<Part>,
+}
+
+/// A part of a section.
+#[derive(Clone, Debug)]
+pub enum Part {
+    /// A table, on the page and as NAME.csv.
+    Table { name: String, caption: String, table: Table },
+    /// A table for NAME.csv alone.
+    Data { name: String, table: Table },
+    /// A chart, NAME.svg.
+    Chart { name: String, chart: Chart },
+}

@@ -1,0 +1,87 @@
+//! Gauss-Seidel sweeps per backward step (paper, section 4.2.1, Fig. 10).
+
+use super::{Figure, Part, Section};
+use crate::bench::Bench;
+use crate::chart::{Axis, Chart};
+use crate::methods::Setting;
+use crate::summary::{COLUMNS, lines, on_scenes, table};
+use anyhow::Result;
+
+pub struct Sweeps;
+
+/// Sweeps of either preset; 1 is `paper` as it is, 8 `fast` as it is.
+const SWEEPS: [usize; 6] = [1, 2, 4, 8, 16, 32];
+
+impl Figure for Sweeps {
+    fn name(&self) -> &'static str {
+        "sweeps"
+    }
+
+    fn title(&self) -> &'static str {
+        "Fig. 10: Gauss-Seidel sweeps per backward step"
+    }
+
+    fn question(&self) -> &'static str {
+        "The paper finds one sweep per backward step the most efficient: more do not necessarily save steps. Either preset, \
+         with 1 to 32 sweeps."
+    }
+
+    fn run(&self, bench: &Bench) -> Result<Section> {
+        let scenes: &[&'static str] = bench.size.pick(
+            &["bow-knot", "reef-knot", "needle", "stack", "tube"][..],
+            &["stack", "tube"],
+            &["needle"],
+        );
+        let mut settings = Vec::new();
+        let mut values: [Vec<(f64, &str, String)>; 2] = Default::default();
+        for (method, values) in ["paper", "fast"].iter().zip(&mut values) {
+            for sweeps in SWEEPS {
+                let plain = Setting::of(method)?;
+                let setting = match plain.params.backward.sweeps == sweeps {
+                    true => plain,
+                    false => plain.with(format!("{sweeps} sweeps"), |p| {
+                        p.backward.sweeps = sweeps;
+                        p.backward.polish_sweeps = p.backward.polish_sweeps.max(sweeps);
+                    }),
+                };
+                values.push((sweeps as f64, setting.method, setting.change.clone()));
+                settings.push(setting);
+            }
+        }
+        let compared = on_scenes(bench, scenes, bench.size.pick(3, 1, 1), &settings, 1)?;
+        let mut section = Section::default();
+        let mut best = Vec::new();
+        for (method, values) in ["paper", "fast"].iter().zip(&values) {
+            for (what, series) in [
+                ("CPU seconds a problem", lines(&compared, values, |s, _| s.cpu)),
+                ("steps", lines(&compared, values, |s, _| s.steps)),
+            ] {
+                let word = what.split(' ').next_back().unwrap_or_default();
+                let chart = Chart {
+                    title: format!("{method}: {what} by sweeps"),
+                    x: Axis::log("sweeps per backward step"),
+                    y: Axis::log(what),
+                    series,
+                    front: false,
+                };
+                section.parts.push(Part::Chart { name: format!("sweeps-{method}-{word}"), chart });
+            }
+            let fastest: Vec<String> = compared
+                .iter()
+                .filter_map(|c| {
+                    let all = values.iter().filter_map(|(n, m, change)| Some((*n, c.find(m, change)?.cpu)));
+                    let (sweeps, _) = all.min_by(|a, b| a.1.total_cmp(&b.1))?;
+                    Some(format!("{sweeps} ({})", c.scene))
+                })
+                .collect();
+            best.push(format!("`{method}` is fastest with {} sweeps", fastest.join(", ")));
+        }
+        section.finding = format!("{}. (The paper: 1.)", best.join("; "));
+        section.parts.push(Part::Table {
+            name: self.name().to_owned(),
+            caption: COLUMNS.to_owned(),
+            table: table(&compared, |_| true),
+        });
+        Ok(section)
+    }
+}

@@ -1,0 +1,161 @@
+//! What each point of `fast` is worth: off alone, and on alone in `paper`.
+
+use super::{Figure, Part, Section};
+use crate::bench::Bench;
+use crate::methods::Setting;
+use crate::summary::{Compared, Summary, on_scenes, table};
+use crate::table::{Entry, Table, geometric_mean, short};
+use anyhow::Result;
+use bowknot::twoway::Params;
+
+pub struct Switches;
+
+/// What a switch takes from the other preset.
+struct Switch {
+    name: &'static str,
+    copy: fn(&mut Params, &Params),
+}
+
+const SWITCHES: [Switch; 15] = [
+    Switch { name: "gap form", copy: |to, from| to.constraints.form = from.constraints.form },
+    Switch { name: "edges as balls", copy: |to, from| to.constraints.edge_form = from.constraints.edge_form },
+    Switch {
+        name: "edges limited from rest",
+        copy: |to, from| to.constraints.edge_reference = from.constraints.edge_reference,
+    },
+    Switch { name: "planes", copy: |to, from| to.stepper.bound = from.stepper.bound },
+    Switch {
+        name: "budgets",
+        copy: |to, from| {
+            to.stepper.budget = from.stepper.budget;
+            to.stepper.budget_min = from.stepper.budget_min;
+            to.stepper.budget_max = from.stepper.budget_max;
+        },
+    },
+    Switch { name: "floor", copy: |to, from| to.stepper.floor = from.stepper.floor },
+    Switch { name: "swept search", copy: |to, from| to.stepper.swept_travel = from.stepper.swept_travel },
+    Switch { name: "rows from 2 delta", copy: |to, from| to.constraints.range = from.constraints.range },
+    Switch {
+        name: "8 sweeps",
+        copy: |to, from| {
+            to.backward.sweeps = from.backward.sweeps;
+            to.backward.polish_sweeps = to.backward.polish_sweeps.max(from.backward.sweeps);
+        },
+    },
+    Switch {
+        name: "further sweeps at the end",
+        copy: |to, from| to.backward.polish_sweeps = from.backward.polish_sweeps.max(to.backward.sweeps),
+    },
+    Switch {
+        name: "proximal term, edges",
+        copy: |to, from| to.backward.edge_proximal = from.backward.edge_proximal,
+    },
+    Switch {
+        name: "proximal term, contacts",
+        copy: |to, from| to.backward.contact_proximal = from.backward.contact_proximal,
+    },
+    Switch {
+        name: "coarse correction",
+        copy: |to, from| to.backward.coarse_correction = from.backward.coarse_correction,
+    },
+    Switch { name: "active rows", copy: |to, from| to.backward.active_rows = from.backward.active_rows },
+    Switch { name: "stop by travel", copy: |to, from| to.stop.rule = from.stop.rule },
+];
+
+/// Seconds of a solve: without some points there is no end.
+const LIMIT: f64 = 4.0;
+
+impl Figure for Switches {
+    fn name(&self) -> &'static str {
+        "switches"
+    }
+
+    fn title(&self) -> &'static str {
+        "What each point of `fast` is worth"
+    }
+
+    fn question(&self) -> &'static str {
+        "`fast` with one point as in `paper` (off alone), and `paper` with one point as in `fast` (on alone), on problems of \
+         five scenes. Each cell: CPU seconds and error as multiples of those of the unchanged preset, and the stretch against \
+         rest; a star where not all calls met their stopping rule within the limits on steps and seconds. A point pays if \
+         switching it off takes more time, or leaves more error, than it costs elsewhere."
+    }
+
+    fn run(&self, bench: &Bench) -> Result<Section> {
+        let scenes: &[&'static str] = bench.size.pick(
+            &["needle", "stack", "tube", "bow-knot", "reef-knot"][..],
+            &["needle", "stack"],
+            &["needle"],
+        );
+        let (fast, paper) = (Params::fast(), Params::paper());
+        let mut settings = vec![Setting::of("fast")?.within(LIMIT), Setting::of("paper")?.within(LIMIT)];
+        for switch in &SWITCHES {
+            let off =
+                Setting::of("fast")?.with(format!("without {}", switch.name), |p| (switch.copy)(p, &paper));
+            let on = Setting::of("paper")?.with(format!("with {}", switch.name), |p| (switch.copy)(p, &fast));
+            settings.extend([off.within(LIMIT), on.within(LIMIT)]);
+        }
+        let (count, rounds) = (bench.size.pick(3, 1, 1), 1);
+        let compared = on_scenes(bench, scenes, count, &settings, rounds)?;
+        let part = |name: &str, caption: &str, method: &str, word: &str| Part::Table {
+            name: name.to_owned(),
+            caption: caption.to_owned(),
+            table: changes(&compared, method, word),
+        };
+        Ok(Section {
+            finding: finding(&compared),
+            parts: vec![
+                part("switches-off", "`fast`, off alone:", "fast", "without"),
+                part("switches-on", "`paper`, on alone:", "paper", "with"),
+                Part::Data { name: "switches-all".to_owned(), table: table(&compared, |_| true) },
+            ],
+        })
+    }
+}
+
+fn changes(compared: &[Compared], method: &str, word: &str) -> Table {
+    let mut table = Table::new(std::iter::once("").chain(compared.iter().map(|c| c.scene)));
+    for switch in &SWITCHES {
+        let change = format!("{word} {}", switch.name);
+        let cells = compared.iter().map(|c| cell(c, method, &change));
+        table.row(std::iter::once(Entry::from(switch.name)).chain(cells));
+    }
+    table
+}
+
+fn cell(compared: &Compared, method: &str, change: &str) -> Entry {
+    let exact = compared.is_exact();
+    let (Some(plain), Some(changed)) = (compared.find(method, ""), compared.find(method, change)) else {
+        return "not measured".into();
+    };
+    let star = if changed.met < changed.of { "\\*" } else { "" };
+    let ratio = |value: &dyn Fn(&Summary) -> f64| short(value(changed) / value(plain));
+    format!("{}{star}, {}, {}", ratio(&|s| s.cpu), ratio(&|s| s.error(exact)), short(changed.stretch)).into()
+}
+
+/// The points by what switching them off costs.
+fn finding(compared: &[Compared]) -> String {
+    let mut costs: Vec<(&str, f64)> = SWITCHES
+        .iter()
+        .filter_map(|switch| {
+            let change = format!("without {}", switch.name);
+            let ratios: Vec<f64> = compared
+                .iter()
+                .filter_map(|c| Some(c.find("fast", &change)?.cpu / c.find("fast", "")?.cpu))
+                .collect();
+            (!ratios.is_empty()).then(|| (switch.name, geometric_mean(&ratios)))
+        })
+        .collect();
+    costs.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let told = |costs: &[(&str, f64)]| {
+        costs.iter().map(|(name, cost)| format!("{name} ({}x)", short(*cost))).collect::<Vec<_>>().join(", ")
+    };
+    let dear: Vec<(&str, f64)> = costs.iter().copied().filter(|c| c.1 > 1.1).collect();
+    let cheap: Vec<(&str, f64)> = costs.iter().copied().filter(|c| c.1 < 0.95).collect();
+    format!(
+        "Without them `fast` takes longer, geometric mean over the scenes: {}. Without these it is faster, at the errors in \
+         the table: {}.",
+        if dear.is_empty() { "none".to_owned() } else { told(&dear) },
+        if cheap.is_empty() { "none".to_owned() } else { told(&cheap) }
+    )
+}

@@ -1,0 +1,70 @@
+//! The exact solution of a small problem: the linearisation iterated to its fixed point.
+//!
+//! The two-way method with many sweeps and nothing left to travel does that without ever intersecting: its proximal
+//! term vanishes at the fixed point, which is a KKT point of the problem with its rows linearised there. That it is one
+//! is not taken on trust: the stationarity residual, which shares no code with the backward step, must be small against
+//! what the collision stage moves, and violations small against delta; else the case has no exact solution. Problems are
+//! not convex, a method may end in another minimum: its error is then large however good it is.
+
+use super::Judgement;
+use crate::bench::Bench;
+use crate::case::Case;
+use anyhow::Result;
+use bowknot::geometry::Point;
+use bowknot::twoway::Params;
+use serde::{Deserialize, Serialize};
+
+/// Vertices above which no exact solution is sought.
+const LARGEST: usize = 6000;
+/// Seconds that one may take.
+const SECONDS: f64 = 60.0;
+/// Largest stationarity residual, as a share of the distance to the target.
+const RESIDUAL: f64 = 0.01;
+/// Largest violation of a contact, as a share of delta.
+const VIOLATION: f64 = 0.05;
+
+/// The exact solution as it is kept.
+#[derive(Debug, Serialize, Deserialize)]
+struct Found {
+    /// Positions [m]; empty if there is none.
+    x: Vec<[f64; 3]>,
+    stationarity: f64,
+    violation: f64,
+    steps: usize,
+}
+
+/// The solution, found once for each case; none for large cases and where the iteration does not come to rest.
+pub fn solution(bench: &Bench, case: &Case) -> Result<Option<Vec<Point>>> {
+    if case.states.x.len() > LARGEST {
+        return Ok(None);
+    }
+    let found: Found = bench.store.measured(&format!("exact/{}", case.name), || find(case))?;
+    Ok((!found.x.is_empty()).then(|| found.x.into_iter().map(Point::from).collect()))
+}
+
+/// `fast` with nothing left to chance.
+pub fn params() -> Params {
+    let mut params = Params::fast();
+    params.backward.sweeps = 200;
+    params.backward.polish_sweeps = 200;
+    params.backward.active_rows = false;
+    params.stop.max_steps = Some(20_000);
+    params.stop.max_seconds = Some(SECONDS);
+    params.stop.distance = 1e-5;
+    params.stop.imbalance = 1e-4;
+    params.stop.drag = Some(1e-5);
+    params
+}
+
+fn find(case: &Case) -> Result<Found> {
+    let mut resolver = case.states.resolver(case.model.clone(), params())?;
+    let mut x = case.states.x.clone();
+    let statistics = resolver.resolve(&mut x, &case.states.y, &case.states.call(), &mut ())?;
+    let judgement = Judgement::without_exact(case)?;
+    let judged = judgement.judge(&x)?;
+    let good = judged.stationarity <= RESIDUAL * judged.distance
+        && judged.violation <= VIOLATION * judgement.problem.lengths.delta
+        && judged.intersections == 0;
+    let x = if good { x.iter().map(|p| [p.x, p.y, p.z]).collect() } else { Vec::new() };
+    Ok(Found { x, stationarity: judged.stationarity, violation: judged.violation, steps: statistics.steps })
+}

@@ -1,0 +1,177 @@
+//! Non-negative least squares over rows: lambda >= 0 that makes |d + W J^T lambda| smallest in the metric of W^-1.
+//!
+//! That is a quadratic program with matrix A = J W J^T and bounds at 0. It is solved by modified proportioning with
+//! reduced gradient projections (MPRGP; Dostal and Schoeberl, Computational Optimization and Applications 30, 2005):
+//! conjugate gradients on the free multipliers, a projected gradient step where one reaches its bound, and a step that
+//! frees multipliers where the bounds hold back too much. Rows are scaled to a unit diagonal. Any lambda >= 0 gives an
+//! upper bound of the residual, and the method never raises it, so that stopping early errs to one side.
+
+use bowknot::geometry::Vector;
+use bowknot::lcp::Row;
+
+/// Iterations at most; each takes a product with A.
+const ITERATIONS: usize = 1500;
+/// Projected gradient at which to stop, relative to that at lambda = 0.
+const TOLERANCE: f64 = 1e-8;
+/// Largest ratio of what bounds hold back to what is free, before multipliers are freed.
+const PROPORTION: f64 = 1.0;
+
+/// The residual d + W J^T lambda. `weights` are inverse masses, 0 for vertices that cannot move.
+pub fn residual(rows: &[Row], weights: &[f64], wanted: Vec<Vector>) -> Vec<Vector> {
+    let system = System::new(rows, weights);
+    let mut product = vec![0.0; system.rows.len()];
+    system.gather(&wanted, &mut product);
+    let lambda = system.solve(product);
+    let mut result = wanted;
+    system.scatter(&lambda, &mut result);
+    result
+}
+
+/// Rows with a motion to forbid, scaled.
+struct System<'a> {
+    rows: Vec<&'a Row>,
+    /// 1/sqrt of each row's diagonal of J W J^T.
+    scales: Vec<f64>,
+    weights: &'a [f64],
+}
+
+impl<'a> System<'a> {
+    fn new(rows: &'a [Row], weights: &'a [f64]) -> Self {
+        let mut system = Self { rows: Vec::new(), scales: Vec::new(), weights };
+        for row in rows {
+            let mut row_of_one = *row;
+            // Rows come from the measures themselves, so that every vertex has a weight.
+            if row_of_one.prepare(weights).is_ok() && row_of_one.inverse_diagonal > 0.0 {
+                system.rows.push(row);
+                system.scales.push(row_of_one.inverse_diagonal.sqrt());
+            }
+        }
+        system
+    }
+
+    /// J y, scaled.
+    fn gather(&self, y: &[Vector], out: &mut [f64]) {
+        for ((row, scale), out) in self.rows.iter().zip(&self.scales).zip(out) {
+            let sum: f64 = (0..4).map(|k| row.gradients[k].dot(&y[row.vertices[k] as usize])).sum();
+            *out = scale * sum;
+        }
+    }
+
+    /// y += W J^T lambda, lambda scaled.
+    fn scatter(&self, lambda: &[f64], y: &mut [Vector]) {
+        for ((row, scale), lambda) in self.rows.iter().zip(&self.scales).zip(lambda) {
+            if *lambda != 0.0 {
+                for k in 0..4 {
+                    let v = row.vertices[k] as usize;
+                    y[v] += row.gradients[k] * (self.weights[v] * scale * lambda);
+                }
+            }
+        }
+    }
+
+    fn multiply(&self, lambda: &[f64], space: &mut [Vector], out: &mut [f64]) {
+        space.fill(Vector::zeros());
+        self.scatter(lambda, space);
+        self.gather(space, out);
+    }
+
+    /// Minimises lambda A lambda/2 + q lambda over lambda >= 0.
+    fn solve(&self, q: Vec<f64>) -> Vec<f64> {
+        let n = q.len();
+        let mut space = vec![Vector::zeros(); self.weights.len()];
+        let step = 1.0 / self.largest_eigenvalue(&mut space).max(f64::MIN_POSITIVE);
+        let mut lambda = vec![0.0; n];
+        let mut gradient = q;
+        let goal = TOLERANCE * norm(&chopped(&lambda, &gradient));
+        let mut direction = free(&lambda, &gradient);
+        let mut product = vec![0.0; n];
+        for _ in 0..ITERATIONS {
+            let (loose, held) = (free(&lambda, &gradient), chopped(&lambda, &gradient));
+            if (dot(&loose, &loose) + dot(&held, &held)).sqrt() <= goal {
+                break;
+            }
+            let reduced: f64 = (0..n).map(|i| loose[i] * loose[i].min(lambda[i] / step)).sum();
+            if dot(&held, &held) > PROPORTION * reduced {
+                self.multiply(&held, &mut space, &mut product);
+                let length = dot(&gradient, &held) / dot(&held, &product).max(f64::MIN_POSITIVE);
+                add(&mut lambda, -length, &held);
+                add(&mut gradient, -length, &product);
+                direction = free(&lambda, &gradient);
+                continue;
+            }
+            self.multiply(&direction, &mut space, &mut product);
+            let curvature = dot(&direction, &product);
+            if curvature <= f64::MIN_POSITIVE {
+                // A move of multipliers that leaves J^T lambda as it is (redundant rows) gains nothing.
+                direction = loose;
+                self.multiply(&direction, &mut space, &mut product);
+            }
+            let curvature = dot(&direction, &product).max(f64::MIN_POSITIVE);
+            let length = dot(&gradient, &direction) / curvature;
+            let reach = (0..n)
+                .filter(|&i| direction[i] > 0.0)
+                .map(|i| lambda[i] / direction[i])
+                .fold(f64::INFINITY, f64::min);
+            if length <= reach {
+                add(&mut lambda, -length, &direction);
+                lambda.iter_mut().for_each(|l| *l = l.max(0.0));
+                add(&mut gradient, -length, &product);
+                let loose = free(&lambda, &gradient);
+                let share = dot(&loose, &product) / curvature;
+                let previous = std::mem::replace(&mut direction, loose);
+                add(&mut direction, -share, &previous);
+            } else {
+                add(&mut lambda, -reach, &direction);
+                add(&mut gradient, -reach, &product);
+                let loose = free(&lambda, &gradient);
+                let before = lambda.clone();
+                for i in 0..n {
+                    lambda[i] = (lambda[i] - step * loose[i]).max(0.0);
+                }
+                let change: Vec<f64> = (0..n).map(|i| lambda[i] - before[i]).collect();
+                self.multiply(&change, &mut space, &mut product);
+                add(&mut gradient, 1.0, &product);
+                direction = free(&lambda, &gradient);
+            }
+        }
+        lambda
+    }
+
+    /// An upper estimate of A's largest eigenvalue, by the power method with a margin.
+    fn largest_eigenvalue(&self, space: &mut [Vector]) -> f64 {
+        let n = self.rows.len();
+        let mut vector: Vec<f64> = (0..n).map(|i| 1.0 + 0.1 * ((i * 7919) % 13) as f64).collect();
+        let mut product = vec![0.0; n];
+        let mut value = 1.0;
+        for _ in 0..30 {
+            let length = norm(&vector).max(f64::MIN_POSITIVE);
+            vector.iter_mut().for_each(|v| *v /= length);
+            self.multiply(&vector, space, &mut product);
+            value = norm(&product);
+            std::mem::swap(&mut vector, &mut product);
+        }
+        1.2 * value
+    }
+}
+
+/// The gradient where multipliers are off their bound.
+fn free(lambda: &[f64], gradient: &[f64]) -> Vec<f64> {
+    lambda.iter().zip(gradient).map(|(l, g)| if *l > 0.0 { *g } else { 0.0 }).collect()
+}
+
+/// The gradient where multipliers at their bound would rise.
+fn chopped(lambda: &[f64], gradient: &[f64]) -> Vec<f64> {
+    lambda.iter().zip(gradient).map(|(l, g)| if *l > 0.0 { 0.0 } else { g.min(0.0) }).collect()
+}
+
+fn add(to: &mut [f64], factor: f64, vector: &[f64]) {
+    to.iter_mut().zip(vector).for_each(|(t, v)| *t += factor * v);
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn norm(a: &[f64]) -> f64 {
+    dot(a, a).sqrt()
+}

@@ -1,0 +1,136 @@
+//! The row set of a state: contacts within range and edge limits, linearised there.
+//!
+//! Contacts are in gap form, desired distances those that the method's own parameters would give a pair with the gap
+//! that it starts the call with: a row that was out of reach at first is asked for all of delta.
+
+use super::nonnegative;
+use bowknot::constraints::{ContactForm, DesiredDistance, EdgeLimits, EdgeReference, contact_row};
+use bowknot::geometry::{PairKind, Point, Vector, separation};
+use bowknot::io::States;
+use bowknot::lcp::Row;
+use bowknot::proximity::{Pair, PairList, ProximitySearch};
+use bowknot::twoway::Problem;
+
+/// Slack below which a row counts as active: of contacts in desired distances, of edges in limits. Methods stop that far
+/// from the rows that they push against.
+const ACTIVE: [f64; 2] = [0.1, 0.02];
+
+/// Rows at a state.
+#[derive(Debug)]
+pub struct RowSet {
+    rows: Vec<Row>,
+    /// Value of each row at the state [m].
+    values: Vec<f64>,
+    /// Slack below which each row is active [m].
+    active: Vec<f64>,
+    /// How many rows are contacts; edges follow.
+    contacts: usize,
+    pub min_gap: Option<f64>,
+    pub stretch: Stretch,
+}
+
+/// Largest ratios of edge lengths.
+#[derive(Clone, Copy, Debug)]
+pub struct Stretch {
+    pub to_limit: f64,
+    pub to_start: f64,
+    pub to_rest: f64,
+}
+
+impl RowSet {
+    /// The rows of `problem` at `x`, for a call from `states.x`.
+    pub fn new(problem: &Problem, states: &States, x: &[Point], search: &mut ProximitySearch) -> Self {
+        let (mut pairs, mut separations) = (PairList::default(), Vec::new());
+        let bodies = problem.model.vertex_body();
+        // A vertex and a half-space have one radius between them, which must be the whole range.
+        let planes = !problem.model.half_spaces().is_empty();
+        let share = if planes { 2.0 } else { 1.0 };
+        let radii: Vec<f64> = bodies.iter().map(|&b| share * problem.spacing.margin(b)).collect();
+        search.search(&problem.model, x, &radii, &mut pairs, &mut separations);
+        let growth = states.time_step.map_or(f64::INFINITY, |dt| problem.lengths.separation_speed * dt);
+        let mut set = Self {
+            rows: Vec::new(),
+            values: Vec::new(),
+            active: Vec::new(),
+            contacts: 0,
+            min_gap: None,
+            stretch: Stretch { to_limit: 1.0, to_start: 1.0, to_rest: 1.0 },
+        };
+        let points: Vec<Vector> = x.iter().map(|p| p.coords).collect();
+        for kind in PairKind::ALL {
+            for index in pairs.range(kind) {
+                let (pair, separation) = (&pairs.pairs()[index], &separations[index]);
+                if separation.distance > problem.contact_range(kind, pair) {
+                    continue;
+                }
+                let gap = set.min_gap.map_or(separation.distance, |gap| gap.min(separation.distance));
+                set.min_gap = Some(gap);
+                let delta = problem.spacing.of(&problem.model, kind, pair).delta;
+                let start = start_gap(problem, kind, pair, &states.x);
+                let rule = DesiredDistance { delta, growth };
+                let desired = rule.of(&problem.model, kind, pair, &problem.rest, start).0;
+                let row = contact_row(ContactForm::Gap, kind, pair.vertices, x, separation, desired);
+                set.push(row, ACTIVE[0] * desired, &points);
+            }
+        }
+        set.contacts = set.rows.len();
+        set.add_edges(problem, states, x, &points);
+        set
+    }
+
+    fn push(&mut self, row: Row, active: f64, points: &[Vector]) {
+        self.values.push(row.value(points));
+        self.active.push(active);
+        self.rows.push(row);
+    }
+
+    fn add_edges(&mut self, problem: &Problem, states: &States, x: &[Point], points: &[Vector]) {
+        let movable: Vec<bool> = (0..x.len()).map(|v| problem.movable(v)).collect();
+        let limit = |e: &[u32; 2]| problem.stretch_limit(problem.model.vertex_body()[e[0] as usize]);
+        let mut limits = EdgeLimits::new(problem.model.topology(), &problem.rest, &movable, limit);
+        limits.begin(&states.x, EdgeReference::Rest);
+        let mut rows = Vec::new();
+        limits.linearise(x, &mut rows);
+        for (row, ball) in rows.into_iter().zip(&limits.balls) {
+            self.push(row, ACTIVE[1] * ball.limit, points);
+        }
+        let stretch = limits.stretch(x);
+        self.stretch =
+            Stretch { to_limit: stretch.to_limit, to_start: stretch.to_start, to_rest: stretch.to_rest };
+    }
+
+    /// Largest violation of a contact row [m].
+    pub fn contact_violation(&self) -> f64 {
+        self.values[..self.contacts].iter().map(|v| -v).fold(0.0, f64::max)
+    }
+
+    /// Rows that are active at the state.
+    pub fn active_rows(&self) -> Vec<Row> {
+        let rows = self.rows.iter().zip(&self.values).zip(&self.active);
+        rows.filter(|((_, value), active)| *value <= *active).map(|((row, _), _)| *row).collect()
+    }
+
+    /// The projection of y0 - x onto the motions that no active row forbids, in the metric of mass: 0 where x solves the
+    /// problem. By Moreau's decomposition it is y0 - x + M^-1 J^T lambda with the non-negative multipliers that make it
+    /// smallest.
+    pub fn stationarity(&self, problem: &Problem, x: &[Point], target: &[Point]) -> Vec<Vector> {
+        let weights: Vec<f64> = (0..x.len())
+            .map(|v| if problem.movable(v) { 1.0 / problem.relative_mass[v] } else { 0.0 })
+            .collect();
+        let wanted: Vec<Vector> = (0..x.len())
+            .map(|v| if problem.movable(v) { target[v] - x[v] } else { Vector::zeros() })
+            .collect();
+        nonnegative::residual(&self.active_rows(), &weights, wanted)
+    }
+}
+
+/// Distance of a pair at the start of the call [m].
+fn start_gap(problem: &Problem, kind: PairKind, pair: &Pair, start: &[Point]) -> f64 {
+    match kind {
+        PairKind::VertexHalfSpace => {
+            let plane = &problem.model.half_spaces()[pair.elements[1] as usize];
+            separation::separate_half_space(&start[pair.vertices[0] as usize], plane).distance
+        }
+        _ => separation::separate(kind, &pair.vertices.map(|v| start[v as usize])).distance,
+    }
+}

@@ -1,0 +1,162 @@
+//! The methods that are compared. A method joins by a line in [`METHODS`].
+
+use crate::bench::Size;
+use anyhow::{Context, Result};
+use bowknot::twoway::{
+    BackwardStep, BudgetedSearch, CertifiedForward, ForwardStep, LcpBackward, Params, Problem, Resolver,
+    Search,
+};
+use bowknot_baselines::barrier::{BarrierParams, by_descent};
+use bowknot_baselines::rows::{
+    AugmentedLagrangian, InterStepChebyshev, LinearSystem, ProjectedJacobi, two_way_with, two_way_with_stage,
+};
+use bowknot_baselines::{Composed, Method};
+use std::sync::Arc;
+
+/// A method made of a problem, which holds the parameters.
+type Built = Result<Box<dyn Method>>;
+
+/// A method by name: its parameters, and how it is made.
+pub struct Entry {
+    pub name: &'static str,
+    params: fn() -> Params,
+    build: fn(Problem) -> Built,
+}
+
+/// All of them.
+pub const METHODS: &[Entry] = &[
+    Entry { name: "fast", params: Params::fast, build: two_way },
+    Entry { name: "paper", params: Params::paper, build: two_way },
+    Entry { name: "log barrier", params: Params::paper, build: |p| log_barrier(p, BarrierParams::default()) },
+    Entry { name: "Harmon 2008", params: without_edges, build: |p| rows(p, LinearSystem::default()) },
+    Entry { name: "Harmon, projected", params: without_edges, build: |p| rows(p, LinearSystem::projected()) },
+    Entry { name: "Tang 2018, 20", params: Params::paper, build: |p| rows(p, AugmentedLagrangian::new(20)) },
+    Entry {
+        name: "Tang 2018, 100",
+        params: Params::paper,
+        build: |p| rows(p, AugmentedLagrangian::new(100)),
+    },
+    Entry { name: "Jacobi", params: Params::paper, build: |p| rows(p, ProjectedJacobi::new(1, 0.0)) },
+    Entry { name: "Jacobi, Chebyshev", params: Params::paper, build: chebyshev },
+];
+
+/// A method with parameters of one's choice.
+#[derive(Clone)]
+pub struct Setting {
+    /// Name of the method, a series in charts.
+    pub method: &'static str,
+    /// What differs from the method as it is; empty: nothing.
+    pub change: String,
+    pub params: Params,
+    pub build: Arc<dyn Fn(Problem) -> Built>,
+    /// Seconds of a solve in a full run; none: 20.
+    limit: Option<f64>,
+}
+
+impl Setting {
+    /// A method as it is.
+    pub fn plain(entry: &Entry) -> Self {
+        let build = entry.build;
+        Self {
+            method: entry.name,
+            change: String::new(),
+            params: (entry.params)(),
+            build: Arc::new(build),
+            limit: None,
+        }
+    }
+
+    /// The method of that name as it is.
+    pub fn of(method: &str) -> Result<Self> {
+        let entry = METHODS.iter().find(|e| e.name == method);
+        entry.map(Self::plain).with_context(|| format!("no method {method}"))
+    }
+
+    /// The method with other parameters of the two-way loop.
+    #[must_use]
+    pub fn with(mut self, change: impl Into<String>, set: impl FnOnce(&mut Params)) -> Self {
+        self.add(change.into());
+        set(&mut self.params);
+        self
+    }
+
+    /// The method, made in another way.
+    #[must_use]
+    pub fn built(mut self, change: impl Into<String>, build: impl Fn(Problem) -> Built + 'static) -> Self {
+        self.add(change.into());
+        self.build = Arc::new(build);
+        self
+    }
+
+    /// The same with another limit on the seconds of a solve in a full run.
+    #[must_use]
+    pub fn within(mut self, seconds: f64) -> Self {
+        self.limit = Some(seconds);
+        self
+    }
+
+    /// Seconds that a solve may take.
+    pub fn limit(&self, size: Size) -> f64 {
+        size.pick(self.limit.unwrap_or(20.0), 2.0, 1.0)
+    }
+
+    /// What tells its measurements from those of others.
+    pub fn key(&self) -> String {
+        match self.limit {
+            Some(seconds) => format!("{} within {seconds} s", self.name()),
+            None => self.name(),
+        }
+    }
+
+    fn add(&mut self, change: String) {
+        let separator = if self.change.is_empty() { "" } else { ", " };
+        self.change = format!("{}{separator}{change}", self.change);
+    }
+
+    /// Method and change.
+    pub fn name(&self) -> String {
+        match self.change.is_empty() {
+            true => self.method.to_owned(),
+            false => format!("{}, {}", self.method, self.change),
+        }
+    }
+}
+
+/// The two-way method of this project; its parameters make the presets.
+fn two_way(problem: Problem) -> Built {
+    let search = BudgetedSearch::new(&problem);
+    let backward: LcpBackward = LcpBackward::default();
+    composed(Resolver::with_stages(problem, search, backward, CertifiedForward::default()))
+}
+
+/// Eq. 7-8 by gradient descent.
+pub fn log_barrier(problem: Problem, params: BarrierParams) -> Built {
+    composed(by_descent(problem, params)?)
+}
+
+/// The two-way method with another solver of its rows.
+pub fn rows<K: bowknot::twoway::RowSolver + Default + 'static>(problem: Problem, solver: K) -> Built {
+    composed(two_way_with(problem, solver))
+}
+
+/// Projected Jacobi with Chebyshev weights between two-way steps (Wang 2015).
+fn chebyshev(problem: Problem) -> Built {
+    let jacobi = LcpBackward::with_solver(ProjectedJacobi::new(1, 0.0));
+    composed(two_way_with_stage(problem, InterStepChebyshev::new(jacobi, 0.9, 5)))
+}
+
+fn composed<S, B, F>(resolver: Resolver<S, B, F>) -> Built
+where
+    S: Search + 'static,
+    B: BackwardStep + 'static,
+    F: ForwardStep + 'static,
+{
+    Ok(Box::new(Composed::new("", resolver)))
+}
+
+/// `paper` without edge limits, which equations would turn into rigid links (paper, section 4.3.1).
+fn without_edges() -> Params {
+    let mut params = Params::paper();
+    params.constraints.edges = false;
+    params
+}

@@ -1,0 +1,190 @@
+//! Collision problems of scenes: at most ten each, spread over the time steps in contact.
+
+use crate::bench::{Bench, Size};
+use crate::table::Table;
+use anyhow::{Context, Result};
+use bowknot::io::States;
+use bowknot::recording::Recorder;
+use bowknot::simulator::{CollisionProblem, Watcher};
+use bowknot::{Scene, Simulator};
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+
+/// A scene that problems are recorded of.
+#[derive(Clone, Copy, Debug)]
+pub struct Spec {
+    pub scene: &'static str,
+    /// Scale of a full, a quick and a tiny run.
+    scales: [f64; 3],
+    /// Time steps of a full, a quick and a tiny run.
+    frames: [usize; 3],
+}
+
+const fn spec(scene: &'static str, scales: [f64; 3], frames: [usize; 3]) -> Spec {
+    Spec { scene, scales, frames }
+}
+
+/// All of them. A full run of each takes from seconds to a few minutes; frames end where contact is at its hardest or the
+/// scene is at rest.
+pub const SPECS: [Spec; 10] = [
+    spec("bow-knot", [0.25, 0.1, 0.1], [300, 160, 60]),
+    spec("reef-knot", [0.35, 0.15, 0.1], [280, 120, 60]),
+    spec("needle", [0.52, 0.25, 0.15], [40, 25, 20]),
+    spec("funnel", [0.12, 0.06, 0.06], [60, 30, 20]),
+    spec("stack", [0.5, 0.2, 0.1], [120, 70, 50]),
+    spec("tube", [0.45, 0.2, 0.15], [150, 100, 90]),
+    spec("dress", [0.2, 0.1, 0.08], [120, 30, 10]),
+    spec("mat", [0.3, 0.12, 0.1], [220, 200, 190]),
+    spec("hair", [0.12, 0.05, 0.05], [200, 60, 40]),
+    spec("sand", [0.25, 0.1, 0.08], [200, 80, 50]),
+];
+
+/// Problems kept of each scene.
+const KEPT: usize = 10;
+
+impl Spec {
+    /// The scene of that name.
+    pub fn of(scene: &str) -> Result<&'static Spec> {
+        SPECS.iter().find(|spec| spec.scene == scene).with_context(|| format!("no problems of {scene}"))
+    }
+
+    fn scale(&self, size: Size) -> f64 {
+        let [full, quick, tiny] = self.scales;
+        size.pick(full, quick, tiny)
+    }
+
+    /// The command that runs the scene.
+    pub fn command(&self, size: Size) -> String {
+        let [full, quick, tiny] = self.frames;
+        let frames = size.pick(full, quick, tiny);
+        format!("bowknot run {} --scale {} --frames {frames}", self.scene, self.scale(size))
+    }
+
+    /// Files of the scene's problems in the order of time, recorded now if they are not there.
+    pub fn files(&self, bench: &Bench) -> Result<Vec<PathBuf>> {
+        let folder = bench.out().join("states").join(self.scene);
+        let done = folder.join("done.txt");
+        if !done.exists() {
+            println!("  recording {}", self.command(bench.size));
+            self.record(bench, &folder)?;
+        }
+        let list = fs::read_to_string(&done).with_context(|| format!("cannot read {}", done.display()))?;
+        Ok(list.lines().map(|name| folder.join(name)).collect())
+    }
+
+    fn record(&self, bench: &Bench, folder: &std::path::Path) -> Result<()> {
+        let scene = Scene::builtin(self.scene, self.scale(bench.size))?;
+        let [full, quick, tiny] = self.frames;
+        let frames = bench.size.pick(full, quick, tiny);
+        let problems = in_contact(&scene, frames, bench.size.pick(KEPT, 3, 2))?;
+        fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
+        let mut names = Vec::new();
+        for Kept { step, states } in &problems {
+            let name = format!("{step:06}.npz");
+            states.write(&folder.join(&name))?;
+            names.push(name);
+        }
+        // Last: its being there tells that all are.
+        crate::bench::write(&folder.join("done.txt"), &(names.join("\n") + "\n"))
+    }
+}
+
+/// Records what is missing and writes a list of all.
+pub fn all(bench: &Bench) -> Result<()> {
+    let mut table = Table::new(["file", "scene", "time step", "vertices", "triangles", "command"]);
+    for spec in &SPECS {
+        for file in spec.files(bench)? {
+            let states = States::read(&file)?;
+            let step = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            table.row([
+                format!("{}/{step}.npz", spec.scene).into(),
+                spec.scene.into(),
+                step.trim_start_matches('0').into(),
+                states.x.len().into(),
+                states.triangles.len().into(),
+                spec.command(bench.size).into(),
+            ]);
+        }
+    }
+    let folder = bench.out().join("states");
+    crate::bench::write(&folder.join("states.csv"), &table.csv())?;
+    println!("{}", folder.display());
+    Ok(())
+}
+
+/// A problem and the time step that it is of.
+struct Kept {
+    step: usize,
+    states: States,
+}
+
+/// Runs a scene and keeps `count` problems, spread evenly over the time steps with contact rows. A run without any is an
+/// error: its frames or its scale are wrong.
+fn in_contact(scene: &Scene, frames: usize, count: usize) -> Result<Vec<Kept>> {
+    let mut simulator = Simulator::new(scene)?;
+    let mut last = Last { recorder: Recorder::new(&simulator), problem: None };
+    let mut kept: Vec<Kept> = Vec::new();
+    // Every `stride`th time step in contact is kept; it doubles when too many are, so that memory holds few.
+    let (mut seen, mut stride) = (0, 1);
+    for step in 1..=frames {
+        let statistics = simulator.step_watched(&mut last)?;
+        if statistics.contact_rows == 0 {
+            continue;
+        }
+        if seen % stride == 0
+            && let Some(states) = last.problem.take()
+        {
+            kept.push(Kept { step, states });
+        }
+        seen += 1;
+        if kept.len() == 4 * count {
+            stride *= 2;
+            let mut place = 0;
+            kept.retain(|_| {
+                place += 1;
+                place % 2 == 1
+            });
+        }
+    }
+    anyhow::ensure!(!kept.is_empty(), "no contact in {frames} time steps of {}", scene.name());
+    let total = kept.len();
+    let chosen: Vec<usize> =
+        (0..count.min(total)).map(|k| (2 * k + 1) * total / (2 * count.min(total))).collect();
+    let mut place = 0;
+    kept.retain(|_| {
+        place += 1;
+        chosen.contains(&(place - 1))
+    });
+    Ok(kept)
+}
+
+/// Keeps the first problem of the present time step.
+struct Last {
+    recorder: Recorder,
+    problem: Option<States>,
+}
+
+impl Watcher for Last {
+    fn problem(&mut self, problem: &CollisionProblem<'_>) -> ControlFlow<()> {
+        if problem.iteration == 0 {
+            self.problem = Some(self.recorder.states(problem));
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn problems_are_of_steps_in_contact() {
+        let scene = Scene::builtin("needle", 0.1).expect("a scene");
+        let kept = in_contact(&scene, 14, 3).expect("contact");
+        assert_eq!(kept.len(), 3);
+        assert!(kept.windows(2).all(|w| w[0].step < w[1].step));
+        assert!(kept[0].step > 1, "the sheet falls first");
+        assert!(in_contact(&scene, 1, 3).is_err(), "no contact yet");
+    }
+}

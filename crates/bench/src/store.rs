@@ -1,0 +1,92 @@
+//! What has been measured: a file for each measurement, so that a run that was stopped goes on where it was.
+
+use anyhow::{Context, Result};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use std::cell::RefCell;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Measurements below a folder.
+#[derive(Debug)]
+pub struct Store {
+    folder: PathBuf,
+    commit: String,
+    /// Commits of the measurements asked for since [`Store::forget_commits`].
+    commits: RefCell<BTreeSet<String>>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Cell<T> {
+    /// The commit that was measured.
+    commit: String,
+    value: T,
+}
+
+impl Store {
+    pub fn new(folder: &Path, commit: &str) -> Self {
+        Self { folder: folder.to_owned(), commit: commit.to_owned(), commits: RefCell::default() }
+    }
+
+    /// The measurement of that key if there is one.
+    pub fn find<T: DeserializeOwned>(&self, key: &str) -> Option<T> {
+        let text = fs::read_to_string(self.path(key)).ok()?;
+        let cell: Cell<T> = serde_json::from_str(&text).ok()?;
+        self.commits.borrow_mut().insert(cell.commit);
+        Some(cell.value)
+    }
+
+    /// The measurement of that key: the one that is there, or else made now and kept.
+    pub fn measured<T: Serialize + DeserializeOwned>(
+        &self,
+        key: &str,
+        measure: impl FnOnce() -> Result<T>,
+    ) -> Result<T> {
+        if let Some(value) = self.find(key) {
+            return Ok(value);
+        }
+        let value = measure()?;
+        let path = self.path(key);
+        if let Some(parent) = path.parent() {
+            fs::create_dir_all(parent).with_context(|| format!("cannot create {}", parent.display()))?;
+        }
+        let cell = Cell { commit: self.commit.clone(), value };
+        let text = serde_json::to_string(&cell)?;
+        // Under another name first: a run that is killed leaves no half file to be read later.
+        let partial = path.with_extension("partial");
+        fs::write(&partial, text).with_context(|| format!("cannot write {}", partial.display()))?;
+        fs::rename(&partial, &path).with_context(|| format!("cannot write {}", path.display()))?;
+        self.commits.borrow_mut().insert(self.commit.clone());
+        Ok(cell.value)
+    }
+
+    /// The commits of the measurements asked for since the last call.
+    pub fn take_commits(&self) -> Vec<String> {
+        std::mem::take(&mut *self.commits.borrow_mut()).into_iter().collect()
+    }
+
+    /// Keys are paths with `/`; whatever no file name should have becomes `_`.
+    fn path(&self, key: &str) -> PathBuf {
+        let plain = |c: char| if c.is_ascii_alphanumeric() || "/.-=+".contains(c) { c } else { '_' };
+        self.folder.join(format!("{}.json", key.chars().map(plain).collect::<String>()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn measurements_are_made_once() {
+        let folder = tempfile::tempdir().unwrap_or_else(|error| panic!("{error}"));
+        let store = Store::new(folder.path(), "first");
+        let once = store.measured("a/b c", || Ok(1.5)).expect("written");
+        assert_eq!((once, store.take_commits()), (1.5, vec!["first".to_owned()]));
+        let later = Store::new(folder.path(), "second");
+        let again = later.measured("a/b c", || panic!("measured again")).expect("read");
+        assert_eq!((1.5, vec!["first".to_owned()]), (again, later.take_commits()));
+        // A file that holds something else is measured anew.
+        assert_eq!(later.measured("a/b c", || Ok("text".to_owned())).expect("written"), "text");
+    }
+}

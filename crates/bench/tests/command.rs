@@ -1,0 +1,49 @@
+//! The command at its smallest: figures are measured, kept, and written.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn bench(arguments: &[&str], out: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_bowknot-bench"))
+        .args(arguments)
+        .arg("--out")
+        .arg(out)
+        .output()
+        .expect("the command runs")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// The first run records and measures, the second takes what is there, to the same tables.
+#[test]
+fn a_figure_is_measured_once() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let first = bench(&["steps", "--tiny"], folder.path());
+    assert!(first.status.success(), "{}", text(&first.stderr));
+    assert!(text(&first.stdout).contains("recording bowknot run needle"), "{}", text(&first.stdout));
+    let read = |name: &str| {
+        let path = folder.path().join("tiny/steps").join(name);
+        std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+    };
+    let (table, chart, page) = (read("steps.csv"), read("steps.svg"), read("section.md"));
+    assert_eq!(table.lines().count(), 3, "a header and two presets:\n{table}");
+    assert!(table.lines().skip(1).all(|line| line.ends_with(",0")), "a result intersects:\n{table}");
+    assert!(chart.starts_with("<svg") && !chart.contains("NaN"));
+    assert!(page.starts_with("## Steps of a problem") && page.contains("Commit "), "{page}");
+
+    let again = bench(&["steps", "--tiny"], folder.path());
+    assert!(again.status.success() && !text(&again.stdout).contains("recording"));
+    assert_eq!((read("steps.csv"), read("steps.svg")), (table, chart));
+}
+
+#[test]
+fn figures_are_listed_and_unknown_ones_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let list = text(&bench(&["list"], folder.path()).stdout);
+    assert!(list.contains("collision-error") && list.contains("record"), "{list}");
+    let refused = bench(&["fig-99", "--tiny"], folder.path());
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(text(&refused.stderr).contains("no figure \"fig-99\""), "{}", text(&refused.stderr));
+}
