@@ -7,5 +7,7 @@ mod paths;
 mod generators;
 // No step of the forward step, alone or within the two-way loop, ever intersects.
 mod safety;
+// Nor does one of the interior point methods to compare with.
+mod interior_points;
 // What the fuzz targets check holds for seeded random bytes.
 mod fuzz_bodies;

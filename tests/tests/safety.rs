@@ -9,7 +9,10 @@ use bowknot_stepper::{Budgets, Contacts, Stepper};
 use bowknot_tests::states::GENERATORS;
 use bowknot_tests::targets::Rule;
 use bowknot_tests::{Case, Random, Watch};
-use bowknot_twoway::{AcceptedState, BodyContact, Call, Params, Resolver};
+use bowknot_twoway::{
+    AcceptedState, BackwardStep, BodyContact, BudgetedSearch, Call, CertifiedForward, ForwardStep,
+    LcpBackward, Params, Problem, ResolveError, Resolver, Search,
+};
 use std::ops::ControlFlow;
 
 /// Distances of targets [m].
@@ -21,7 +24,7 @@ pub fn seeds() -> u64 {
 
 /// What became of a check on every generator, every rule and a spread of magnitudes.
 #[derive(Default)]
-struct Outcome {
+pub struct Outcome {
     runs: usize,
     /// Runs in which any vertex moved.
     moved: usize,
@@ -30,7 +33,7 @@ struct Outcome {
 
 impl Outcome {
     /// `check` returns the largest move of any vertex, or what went wrong.
-    fn of(seeds: u64, check: impl Fn(&Case, &[Point]) -> Result<f64, String>) -> Self {
+    pub fn of(seeds: u64, check: impl Fn(&Case, &[Point]) -> Result<f64, String>) -> Self {
         let mut outcome = Self::default();
         for (g, generator) in GENERATORS.iter().enumerate() {
             for seed in 0..seeds {
@@ -52,7 +55,7 @@ impl Outcome {
         outcome
     }
 
-    fn assert_safe(&self) {
+    pub fn assert_safe(&self) {
         let Self { runs, moved, faults } = self;
         assert!(faults.is_empty(), "{} of {runs} runs:\n{}", faults.len(), faults.join("\n"));
         // A step that never moves anything is safe, and useless.
@@ -147,7 +150,21 @@ fn greedy_steps_are_caught() {
 }
 
 fn whole_method(params: &Params, contact: impl Fn(f64) -> BodyContact + Sync) {
-    let outcome = Outcome::of(seeds(), |case, targets| {
+    watched(params, seeds(), |problem| {
+        let bodies = vec![contact(problem.lengths.edge); problem.model.bodies().len()];
+        let search = BudgetedSearch::new(&problem);
+        let backward: LcpBackward = LcpBackward::default();
+        Resolver::with_stages(problem, search, backward, CertifiedForward::default()).with_bodies(bodies)
+    });
+}
+
+/// Watches every step of a loop of stages, from everywhere to everywhere.
+pub fn watched<S: Search, B: BackwardStep, F: ForwardStep>(
+    params: &Params,
+    seeds: u64,
+    resolver: impl Fn(Problem) -> Result<Resolver<S, B, F>, ResolveError>,
+) {
+    let outcome = Outcome::of(seeds, |case, targets| {
         let mut watch = Watch::new(case);
         let mut x = case.positions.clone();
         let mut params = params.clone();
@@ -157,10 +174,9 @@ fn whole_method(params: &Params, contact: impl Fn(f64) -> BodyContact + Sync) {
             params.stepper.floor = Some(1e-8);
         }
         let masses = vec![1.0; x.len()];
-        let mut resolver = Resolver::new(case.model.clone(), &case.positions, &masses, params)
+        let mut resolver = Problem::new(case.model.clone(), &case.positions, &masses, params)
+            .and_then(&resolver)
             .map_err(|error| format!("refused: {error}"))?;
-        let bodies = vec![contact(resolver.problem().lengths.edge); case.model.bodies().len()];
-        resolver = resolver.with_bodies(bodies).map_err(|error| format!("refused: {error}"))?;
         let mut last = x.clone();
         let mut observe = |state: &AcceptedState<'_>| {
             let joined = state.previous == last.as_slice();

@@ -5,6 +5,7 @@
 //! makes of it.
 
 pub mod barrier;
+pub mod ccd;
 mod method;
 pub mod rows;
 

@@ -3,4 +3,5 @@
 
 mod common;
 mod descent;
+mod impacts;
 mod objective;

@@ -1,0 +1,71 @@
+//! One step size for all vertices: that of the earliest impact (Li et al. 2020, "Incremental Potential Contact").
+
+use super::AdditiveCcd;
+use super::pairs::clearance;
+use super::reach::{Clocks, PathSearch};
+use bowknot_twoway::geometry::Vector;
+use bowknot_twoway::stepper::{StepReport, Stepper};
+use bowknot_twoway::{ForwardStep, Problem, Search, State, Statistics};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
+
+/// Pairs that one parallel task handles at least.
+const CHUNK: usize = 256;
+
+/// Moves all vertices by the fraction of their ways at which the first pair would meet.
+#[derive(Debug, Default)]
+pub struct EarliestImpact {
+    ccd: AdditiveCcd,
+    stepper: Stepper,
+    search: PathSearch,
+    paths: Vec<Vector>,
+}
+
+impl EarliestImpact {
+    /// With these settings of the CCD.
+    pub fn new(ccd: AdditiveCcd) -> Self {
+        Self { ccd, ..Self::default() }
+    }
+}
+
+/// The smallest clearance of all listed pairs along `paths` [m]; 1 without impact.
+pub(crate) fn earliest(ccd: &AdditiveCcd, problem: &Problem, state: &State, paths: &[Vector]) -> f64 {
+    // Nonnegative floats are ordered as their bits are.
+    let first = AtomicU64::new(1.0f64.to_bits());
+    (0..state.contacts.pairs.len()).into_par_iter().with_min_len(CHUNK).for_each(|p| {
+        let until = f64::from_bits(first.load(Ordering::Relaxed));
+        let time = clearance(ccd, problem, state, paths, p, until).time;
+        first.fetch_min(time.to_bits(), Ordering::Relaxed);
+    });
+    f64::from_bits(first.into_inner())
+}
+
+impl ForwardStep for EarliestImpact {
+    fn begin(&mut self, problem: &Problem, _: &State) {
+        self.stepper.begin(problem.rest.len());
+    }
+
+    fn advance(
+        &mut self,
+        problem: &Problem,
+        state: &mut State,
+        search: &mut dyn Search,
+        statistics: &mut Statistics,
+    ) -> StepReport {
+        let clock = Instant::now();
+        let searching = statistics.seconds.search;
+        self.stepper.aim(&state.x, &state.y);
+        self.paths.clear();
+        self.paths.extend_from_slice(self.stepper.displacements());
+        self.search.list(problem, state, search, &self.paths, Clocks::Common, statistics);
+        let time = earliest(&self.ccd, problem, state, &self.paths);
+        for v in 0..self.paths.len() {
+            self.stepper.limit(v, time);
+        }
+        state.previous.clone_from(&state.x);
+        let report = self.stepper.advance(&mut state.x);
+        statistics.seconds.forward += clock.elapsed().as_secs_f64() - (statistics.seconds.search - searching);
+        report
+    }
+}

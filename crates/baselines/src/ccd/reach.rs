@@ -1,0 +1,65 @@
+//! Lists the pairs that may meet while vertices move.
+
+use bowknot_twoway::geometry::Vector;
+use bowknot_twoway::stepper::Rounding;
+use bowknot_twoway::{Problem, Reach, Search, State, Statistics};
+
+/// In which order vertices may go their ways.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Clocks {
+    /// All on one clock: each is at the same fraction of its way.
+    Common,
+    /// Each on a clock of its own.
+    Own,
+}
+
+/// Makes `state.contacts` hold every pair that may meet while vertices move from x along `paths` [m]; the present list is
+/// kept where it holds them anyway. Contact geometry stays that at x.
+///
+/// Tubes around the paths are as wide as contacts are seen from, so that pairs in contact range keep their multipliers.
+#[derive(Debug, Default)]
+pub(super) struct PathSearch {
+    displacements: Vec<Vector>,
+    deviations: Vec<f64>,
+}
+
+impl PathSearch {
+    pub(super) fn list(
+        &mut self,
+        problem: &Problem,
+        state: &mut State,
+        search: &mut dyn Search,
+        paths: &[Vector],
+        clocks: Clocks,
+        statistics: &mut Statistics,
+    ) {
+        let largest = state.x.iter().zip(paths).map(|(x, p)| x.coords.amax() + p.amax()).fold(0.0, f64::max);
+        let rounding = Rounding::new(largest).frozen;
+        let within = match search.reach() {
+            Reach::Balls(budgets) => {
+                (0..paths.len()).all(|v| budgets.limit(v, &state.x[v], &paths[v]) >= 1.0)
+            }
+            Reach::Distance(unlisted) => {
+                let longest = paths.iter().map(Vector::norm).fold(0.0, f64::max);
+                2.0 * (longest * (1.0 + 1e-12) + rounding) < unlisted - problem.spacing.largest_floor()
+            }
+        };
+        if within {
+            return;
+        }
+        let share = match clocks {
+            Clocks::Common => 1.0,
+            // Halfway along, all of the path is within half of its length.
+            Clocks::Own => 0.5,
+        };
+        let bodies = problem.model.vertex_body();
+        self.displacements.clear();
+        self.displacements.extend(paths.iter().map(|p| share * p));
+        self.deviations.clear();
+        self.deviations.extend(paths.iter().zip(bodies).map(|(p, body)| {
+            let strayed = if clocks == Clocks::Own { 0.5 * p.norm() * (1.0 + 1e-12) } else { 0.0 };
+            strayed + problem.spacing.margin(*body) + rounding
+        }));
+        search.update_swept(problem, state, &self.displacements, &self.deviations, statistics);
+    }
+}

@@ -1,0 +1,137 @@
+//! Forward steps by continuous collision detection.
+
+use crate::common::{Scene, resolve_watched};
+use bowknot_baselines::barrier::{BarrierParams, DescentStep};
+use bowknot_baselines::ccd::{AdditiveCcd, ClosingSpeed, EarliestImpact, PerVertexImpact};
+use bowknot_baselines::twoway::geometry::{Point, Topology, Vector};
+use bowknot_baselines::twoway::proximity::{BodyFilter, CollisionModel};
+use bowknot_baselines::twoway::{
+    BudgetedSearch, Call, ForwardStep, LcpBackward, Params, Resolver, Statistics,
+};
+use rayon::ThreadPoolBuilder;
+
+const SLAB: AdditiveCcd = AdditiveCcd { slackness: 0.1, speed: ClosingSpeed::Slab, max_iterations: 1000 };
+
+fn two_way<F: ForwardStep>(
+    scene: &Scene,
+    params: Params,
+    forward: F,
+) -> Resolver<BudgetedSearch, LcpBackward, F> {
+    let problem = scene.problem(params);
+    let search = BudgetedSearch::new(&problem);
+    Resolver::with_stages(problem, search, LcpBackward::default(), forward)
+}
+
+fn check(name: &str, scene: &Scene, x: &[Point], report: &Statistics) {
+    assert!(report.contact_rows > 10, "{name}: they never met: {report:?}");
+    let middle = x.len() / 4;
+    assert!(x[middle].z < x[middle + x.len() / 2].z, "{name}: they passed through each other");
+    let moved = (0..x.len()).filter(|&v| x[v] != scene.x[v]).count();
+    assert!(moved > x.len() / 2, "{name}: only {moved} vertices moved");
+}
+
+#[test]
+fn sheets_that_want_to_change_places_never_intersect_on_the_way() {
+    let scene = Scene::two_sheets(4, 0.04);
+    let target = scene.swapped();
+    for (name, mut params) in [("fast", Params::fast()), ("paper", Params::paper())] {
+        params.stop.max_steps = Some(150);
+        for ccd in [AdditiveCcd::default(), SLAB] {
+            let what = format!("{name}, earliest, {:?}", ccd.speed);
+            let mut resolver = two_way(&scene, params.clone(), EarliestImpact::new(ccd));
+            let (x, report) = resolve_watched(&mut resolver, &scene, &target, &what);
+            check(&what, &scene, &x, &report);
+
+            let what = format!("{name}, per vertex, {:?}", ccd.speed);
+            let mut resolver = two_way(&scene, params.clone(), PerVertexImpact::new(ccd));
+            let (x, report) = resolve_watched(&mut resolver, &scene, &target, &what);
+            check(&what, &scene, &x, &report);
+
+            let what = format!("{name}, per vertex, log barrier, {:?}", ccd.speed);
+            let problem = scene.problem(params.clone());
+            let step = DescentStep::new(&problem, BarrierParams::default()).unwrap();
+            let search = BudgetedSearch::new(&problem);
+            let mut resolver = Resolver::with_stages(problem, search, step, PerVertexImpact::new(ccd));
+            let (x, report) = resolve_watched(&mut resolver, &scene, &target, &what);
+            check(&what, &scene, &x, &report);
+        }
+    }
+}
+
+#[test]
+fn free_flight_takes_one_step_for_all_vertices_and_an_edge_at_a_time_for_each() {
+    let scene = Scene::two_sheets(3, 0.3);
+    let target: Vec<Point> = scene.x.iter().map(|p| p + Vector::new(2.0, -1.0, 2.0)).collect();
+    let (x, report) = resolve_watched(
+        &mut two_way(&scene, Params::fast(), EarliestImpact::default()),
+        &scene,
+        &target,
+        "earliest",
+    );
+    assert!(report.converged && report.steps == 1, "{report:?}");
+    assert!(x.iter().zip(&target).all(|(x, y)| (x - y).norm() < 1e-12));
+    let (x, report) = resolve_watched(
+        &mut two_way(&scene, Params::fast(), PerVertexImpact::default()),
+        &scene,
+        &target,
+        "per vertex",
+    );
+    // 3 m in edges of 0.1 to 0.14 m.
+    assert!(report.converged && (20..40).contains(&report.steps), "{report:?}");
+    assert!(x.iter().zip(&target).all(|(x, y)| (x - y).norm() < 1e-12));
+}
+
+#[test]
+fn one_tight_pair_holds_up_all_vertices_or_its_own() {
+    // Two particles that want to change places, and a third far away.
+    let x = [[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [5.0, 0.0, 0.0]].map(Point::from).to_vec();
+    let topology = Topology::new(3, vec![], &[], &[0, 1, 2]).unwrap();
+    let model = CollisionModel::new(topology, vec![0; 3], vec![BodyFilter::DEFORMABLE], vec![]).unwrap();
+    let scene = Scene { x, model };
+    let target = [[0.02, 0.0, 0.0], [0.0, 0.0, 0.0], [5.0, 0.1, 0.0]].map(Point::from);
+    let mut params = Params::fast();
+    params.stop.max_steps = Some(1);
+    let call = Call::default();
+    let mut x = scene.x.clone();
+    // A backward step without any rows: y is the target.
+    params.constraints.active = 1.0;
+    params.constraints.range = 1.0;
+    params.constraints.delta = Some(1e-3);
+    let ccd = AdditiveCcd::default();
+    two_way(&scene, params.clone(), EarliestImpact::new(ccd))
+        .resolve(&mut x, &target, &call, &mut ())
+        .unwrap();
+    let gone = (x[2] - scene.x[2]).norm();
+    assert!((gone - 0.45 * 0.1).abs() < 0.01 * 0.1, "{gone} m");
+    let mut x = scene.x.clone();
+    params.constraints.delta = Some(0.1);
+    two_way(&scene, params, PerVertexImpact::new(ccd)).resolve(&mut x, &target, &call, &mut ()).unwrap();
+    assert!((x[2] - target[2]).norm() < 1e-12, "{}", x[2]);
+    assert!(x[0].x < x[1].x, "{} {}", x[0], x[1]);
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let scene = Scene::two_sheets(6, 0.04);
+    let target = scene.swapped();
+    let run = |threads: usize, own: bool| {
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let mut params = Params::fast();
+        params.stop.max_steps = Some(40);
+        let mut x = scene.x.clone();
+        let call = Call::default();
+        pool.install(|| match own {
+            true => {
+                two_way(&scene, params, PerVertexImpact::default()).resolve(&mut x, &target, &call, &mut ())
+            }
+            false => {
+                two_way(&scene, params, EarliestImpact::default()).resolve(&mut x, &target, &call, &mut ())
+            }
+        })
+        .unwrap();
+        x
+    };
+    for own in [false, true] {
+        assert_eq!(run(1, own), run(3, own), "own clocks: {own}");
+    }
+}
