@@ -8,6 +8,7 @@ pub mod barrier;
 pub mod ccd;
 mod method;
 pub mod rows;
+pub mod zones;
 
 pub use method::{Composed, Method, Outcome};
 

@@ -1,0 +1,167 @@
+//! Rigid impact zones.
+
+use super::optimiser::growth;
+use super::rigid_motion::Motion;
+use super::{Impact, ImpactSearch};
+use crate::{Method, Outcome};
+use bowknot_twoway::geometry::{PairKind, Point, Vector};
+use bowknot_twoway::{Call, Problem, ResolveError};
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+/// Rigid impact zones (Provot 1997; Bridson et al. 2002, section 7.4): vertices that meet on their way become a zone, zones
+/// that meet one; each moves like a rigid body with the linear and angular momentum of what it is made of, and detection is
+/// repeated until nothing meets. A zone with a prescribed vertex, or at a half-space, moves with it instead, and one whose
+/// prescribed vertices do not move as a rigid body waits, they with it.
+///
+/// It never fails: pairs within a zone keep apart because its motion has an inverse at any time, and at worst everything is
+/// one zone. What it costs is motion: relative motion within a zone is lost. The 2002 method puts repulsions and some rounds
+/// of impulses before it; here it stands alone, as the two-way paper's Table 1 has it.
+#[derive(Debug)]
+pub struct RigidZones {
+    problem: Problem,
+    search: ImpactSearch,
+}
+
+impl RigidZones {
+    /// Of the scene in `problem`.
+    pub fn new(problem: Problem) -> Self {
+        let search = ImpactSearch::new(&problem.model);
+        Self { problem, search }
+    }
+}
+
+impl Method for RigidZones {
+    fn name(&self) -> &str {
+        "rigid impact zones"
+    }
+
+    fn solve(
+        &mut self,
+        positions: &mut [Point],
+        target: &[Point],
+        call: &Call<'_>,
+    ) -> Result<Outcome, ResolveError> {
+        let clock = Instant::now();
+        let Self { problem, search } = self;
+        problem.begin(positions, target, call)?;
+        let mut outcome = Outcome { converged: true, ..Outcome::default() };
+        let growth = growth(problem, call);
+        let wanted: Vec<Vector> = target.iter().zip(&*positions).map(|(y, x)| y - x).collect();
+        let mut paths = wanted.clone();
+        let mut zones = Zones::new(problem);
+        loop {
+            let judged = |impact: &Impact| !zones.hold(impact);
+            let impacts = search.find(problem, positions, &paths, growth, judged, &mut outcome);
+            if impacts.is_empty() {
+                break;
+            }
+            let merging = Instant::now();
+            for impact in &impacts {
+                zones.unite(impact);
+            }
+            zones.move_all(problem, positions, &wanted, &mut paths);
+            outcome.steps += 1;
+            outcome.seconds.backward += merging.elapsed().as_secs_f64();
+        }
+        positions.iter_mut().zip(&paths).for_each(|(x, path)| *x += path);
+        outcome.seconds.total = clock.elapsed().as_secs_f64();
+        Ok(outcome)
+    }
+}
+
+/// A partition of vertices, and of half-spaces behind them, into zones.
+#[derive(Debug)]
+struct Zones {
+    parent: Vec<usize>,
+    vertices: usize,
+    /// Roots of the zones that something has met.
+    met: Vec<bool>,
+}
+
+impl Zones {
+    /// Everything alone, but what goes as one: obstacles, groups of pins.
+    fn new(problem: &Problem) -> Self {
+        let vertices = problem.rest.len();
+        let nodes = vertices + problem.model.half_spaces().len();
+        let mut zones = Self { parent: (0..nodes).collect(), vertices, met: vec![false; nodes] };
+        let mut first = BTreeMap::new();
+        for v in (0..vertices).filter(|&v| problem.prescribed[v]) {
+            let who = match problem.model.is_obstacle(v as u32) {
+                true => (0, problem.model.vertex_body()[v]),
+                false => match problem.groups.get(v) {
+                    Some(&group) if group != Call::NO_GROUP => (1, group),
+                    _ => continue,
+                },
+            };
+            let leader = *first.entry(who).or_insert(v);
+            zones.join(leader, v);
+        }
+        zones
+    }
+
+    /// The nodes of a pair: its vertices, and its half-space.
+    fn nodes(&self, impact: &Impact) -> impl Iterator<Item = usize> {
+        let half_space = self.vertices + impact.pair.elements[1] as usize;
+        let half_space = (impact.kind == PairKind::VertexHalfSpace).then_some(half_space);
+        impact.vertices().iter().map(|&v| v as usize).chain(half_space)
+    }
+
+    /// Whether the motion of a zone keeps the pair apart. Keyframes that were only joined need not.
+    fn hold(&self, impact: &Impact) -> bool {
+        let mut roots = self.nodes(impact).map(|node| self.root(node));
+        roots.next().is_some_and(|first| self.met[first] && roots.all(|root| root == first))
+    }
+
+    fn root(&self, mut node: usize) -> usize {
+        while self.parent[node] != node {
+            node = self.parent[node];
+        }
+        node
+    }
+
+    /// Makes one zone of two, named after its smallest node.
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.root(a), self.root(b));
+        let (low, high) = (a.min(b), a.max(b));
+        self.parent[high] = low;
+        self.met[low] |= self.met[high];
+    }
+
+    /// Makes one zone of all that meets.
+    fn unite(&mut self, impact: &Impact) {
+        let nodes: Vec<usize> = self.nodes(impact).collect();
+        nodes.iter().for_each(|&node| self.join(nodes[0], node));
+        let root = self.root(nodes[0]);
+        self.met[root] = true;
+    }
+
+    /// Sets the paths of all zones that something has met.
+    fn move_all(&mut self, problem: &Problem, x: &[Point], wanted: &[Vector], paths: &mut [Vector]) {
+        let mut members: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for node in 0..self.parent.len() {
+            let root = self.root(node);
+            self.parent[node] = root;
+            if self.met[root] {
+                members.entry(root).or_default().push(node);
+            }
+        }
+        for nodes in members.values() {
+            let grounded = nodes.iter().any(|&node| node >= self.vertices);
+            let vertices = || nodes.iter().copied().filter(|&node| node < self.vertices);
+            let of = |v: usize| (x[v], wanted[v], problem.relative_mass[v]);
+            let prescribed: Vec<_> = vertices().filter(|&v| problem.prescribed[v]).map(of).collect();
+            let motion = if prescribed.is_empty() && !grounded {
+                Motion::keeping_momentum(&vertices().map(of).collect::<Vec<_>>())
+            } else if prescribed.is_empty() {
+                Motion::Rest
+            } else {
+                match Motion::following(&prescribed) {
+                    Some(motion) if !grounded => motion,
+                    _ => Motion::Rest,
+                }
+            };
+            vertices().for_each(|v| paths[v] = motion.displacement(&x[v]));
+        }
+    }
+}

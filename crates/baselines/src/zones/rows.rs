@@ -1,0 +1,95 @@
+//! The rows of impacts, collected over the iterations of a call.
+
+use super::{Impact, ZoneParams, ZoneSolver};
+use crate::rows::{AugmentedLagrangian, LinearSystem};
+use bowknot_twoway::Problem;
+use bowknot_twoway::constraints::{Colouring, ContactForm, contact_row};
+use bowknot_twoway::geometry::{PairKind, Point, Vector, separation};
+use bowknot_twoway::lcp::{self, Family, Row, Schedule, State};
+use std::collections::BTreeMap;
+
+/// One row a pair, from its latest impact.
+#[derive(Debug, Default)]
+pub(crate) struct ImpactRows {
+    /// By kind and elements.
+    rows: BTreeMap<(PairKind, [u32; 2]), (Row, f64)>,
+    colouring: Colouring,
+    descent: AugmentedLagrangian,
+}
+
+impl ImpactRows {
+    pub(crate) fn clear(&mut self) {
+        self.rows.clear();
+    }
+
+    /// Adds the row of an impact, or replaces the pair's and keeps its multiplier: where the pair surely is still
+    /// apart, along its normal there, n . (p - q)(y) >= desired distance.
+    pub(crate) fn add(&mut self, problem: &Problem, impact: &Impact, x: &[Point], paths: &[Vector]) {
+        let kind = impact.kind;
+        let mut vertices = impact.pair.vertices;
+        let first = vertices[0];
+        vertices[kind.vertex_count()..].fill(first);
+        let at = |v: u32| x[v as usize] + impact.time * paths[v as usize];
+        let points = vertices.map(at);
+        let separation = match kind {
+            PairKind::VertexHalfSpace => {
+                let half_space = &problem.model.half_spaces()[impact.pair.elements[1] as usize];
+                separation::separate_half_space(&points[0], half_space)
+            }
+            _ => separation::separate(kind, &points),
+        };
+        let row = contact_row(ContactForm::Gap, kind, [0, 1, 2, 3], &points, &separation, impact.desired);
+        let row = Row { vertices, ..row };
+        self.rows.entry((kind, impact.pair.elements)).or_insert((row, 0.0)).0 = row;
+    }
+
+    /// Moves `y` [m], one entry a vertex, from `free` to where the rows hold, as far as the solver gets.
+    pub(crate) fn solve(
+        &mut self,
+        problem: &Problem,
+        params: &ZoneParams,
+        free: &[Vector],
+        y: &mut Vec<Vector>,
+    ) -> Result<(), lcp::Error> {
+        let weights: Vec<f64> = (0..free.len())
+            .map(|v| if problem.movable(v) { 1.0 / problem.relative_mass[v] } else { 0.0 })
+            .collect();
+        let list: Vec<(Row, f64)> = self.rows.values().copied().collect();
+        self.colouring.first_fit(free.len(), list.len(), |r| {
+            list[r].0.vertices.into_iter().filter(|&v| problem.movable(v as usize))
+        });
+        let order = self.colouring.order();
+        let mut rows: Vec<Row> = order.iter().map(|&r| list[r as usize].0).collect();
+        let mut lambda: Vec<f64> = order.iter().map(|&r| list[r as usize].1).collect();
+        lcp::prepare_rows(&mut rows, &weights)?;
+        let schedule = Schedule::coloured(self.colouring.starts());
+        let system =
+            lcp::Problem::new(&weights, Family::new(&rows, schedule), Family::default(), Family::default())?;
+        y.clear();
+        y.extend_from_slice(free);
+        let mut state = State { y, lambda: &mut lambda, ..State::default() };
+        lcp::apply_multipliers(&system, &mut state)?;
+        match params.solver {
+            ZoneSolver::GaussSeidel => {
+                let tolerance = Some(params.tolerance * problem.lengths.delta);
+                let params =
+                    lcp::Params { max_sweeps: params.max_sweeps, tolerance, ..lcp::Params::default() };
+                match lcp::solve_coloured(&system, &mut state, &params) {
+                    Ok(_) | Err(lcp::Error::NotConverged { .. }) => {}
+                    Err(error) => return Err(error),
+                }
+            }
+            ZoneSolver::LinearSystem => {
+                LinearSystem { sweeps: params.max_sweeps, projected: false }.sweep(&system, &mut state)?;
+            }
+            ZoneSolver::AugmentedLagrangian => {
+                self.descent.iterations = params.max_sweeps as usize;
+                self.descent.descend(&system, free, &mut state);
+            }
+        }
+        let mut found = vec![0.0; rows.len()];
+        order.iter().zip(&lambda).for_each(|(&r, &lambda)| found[r as usize] = lambda);
+        self.rows.values_mut().zip(found).for_each(|(entry, lambda)| entry.1 = lambda);
+        Ok(())
+    }
+}
