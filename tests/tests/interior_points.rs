@@ -1,7 +1,7 @@
 //! What the methods to compare with promise as well: no straight path of any step intersects, judged exactly.
 
 use crate::safety::{seeds, watched};
-use bowknot_baselines::barrier::{BarrierParams, by_descent};
+use bowknot_baselines::barrier::{BarrierParams, by_descent, by_newton};
 use bowknot_baselines::ccd::{AdditiveCcd, ClosingSpeed, EarliestImpact, PerVertexImpact};
 use bowknot_twoway::{BudgetedSearch, ForwardStep, LcpBackward, Params, Resolver};
 
@@ -26,6 +26,14 @@ fn no_step_of_the_log_barrier_by_descent_intersects() {
     for params in [Params::fast(), Params::paper()] {
         watched(&params, seeds(), |problem| by_descent(problem, BarrierParams::default()));
     }
+}
+
+#[test]
+fn no_step_of_the_log_barrier_by_newtons_method_intersects() {
+    let mut params = Params::fast();
+    params.stepper.floor = Some(1e-8);
+    let ccd = AdditiveCcd { speed: ClosingSpeed::Slab, max_iterations: 50, ..AdditiveCcd::default() };
+    watched(&params, seeds().div_ceil(2), |problem| by_newton(problem, BarrierParams::default(), ccd));
 }
 
 #[test]

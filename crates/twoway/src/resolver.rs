@@ -223,13 +223,13 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
         statistics.min_gap_m = state.contacts.separations.iter().map(|s| s.distance).reduce(f64::min);
         let (mut sum, mut free) = (0.0, 0usize);
         for v in 0..state.x.len() {
-            let left = (state.y[v] - state.x[v]).norm();
             if problem.movable(v) {
-                statistics.remaining_m = statistics.remaining_m.max(left);
+                statistics.remaining_m = statistics.remaining_m.max((state.y[v] - state.x[v]).norm());
                 sum += (state.x[v] - state.target[v]).norm_squared();
                 free += 1;
             } else {
-                statistics.prescribed_behind_m = statistics.prescribed_behind_m.max(left);
+                let behind = (state.target[v] - state.x[v]).norm();
+                statistics.prescribed_behind_m = statistics.prescribed_behind_m.max(behind);
             }
         }
         statistics.behind = behind(problem, state);

@@ -27,7 +27,7 @@ pub(crate) fn behind(problem: &Problem, state: &State) -> Vec<Behind> {
     let tolerance = problem.params.stop.distance * problem.lengths.edge;
     let mut waiting = std::collections::BTreeMap::new();
     for v in (0..state.x.len()).filter(|&v| problem.prescribed[v]) {
-        let left = (state.y[v] - state.x[v]).norm();
+        let left = (state.target[v] - state.x[v]).norm();
         if left > tolerance {
             let body = problem.model.vertex_body()[v];
             let group = problem.groups.get(v).and_then(|&g| problem.group_names.get(g as usize));
@@ -61,10 +61,11 @@ impl Patience {
 
     /// Whether the free vertices have arrived and the prescribed ones are stuck.
     pub(crate) fn update(&mut self, problem: &Problem, state: &State) -> bool {
-        let left = |v: usize| (state.y[v] - state.x[v]).norm();
         let farthest = |prescribed: bool| {
+            // A stage may bring prescribed vertices to their keyframes by way of other places.
+            let ends = if prescribed { &state.target } else { &state.y };
             let vertices = (0..state.x.len()).filter(|&v| problem.prescribed[v] == prescribed);
-            vertices.map(left).fold(0.0, f64::max)
+            vertices.map(|v| (ends[v] - state.x[v]).norm()).fold(0.0, f64::max)
         };
         let edge = problem.lengths.edge;
         let behind = farthest(true);

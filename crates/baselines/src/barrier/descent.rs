@@ -114,13 +114,7 @@ impl BackwardStep for DescentStep {
     }
 
     fn finish(&mut self, problem: &Problem, state: &State, statistics: &mut Statistics) {
-        let contacts = self.objective.contacts(problem, state);
-        self.objective.derivatives(problem, state, &state.x, &contacts, &mut self.derivatives);
-        let movable = (0..state.x.len()).filter(|&v| problem.movable(v));
-        statistics.stationarity_m = movable
-            .map(|v| self.derivatives.gradient[v].norm() / self.objective.inertia(problem, state, v))
-            .fold(0.0, f64::max);
-        (statistics.max_step_stretch, statistics.max_stretch) = self.objective.stretch(&state.x);
+        self.objective.report(problem, state, &mut self.derivatives, statistics);
     }
 }
 

@@ -1,15 +1,22 @@
 //! The log-barrier interior point method (paper, Eq. 7-8; after Li et al. 2020, "Incremental Potential Contact", and Wu et
 //! al. 2020).
 //!
-//! The targets' distance and a barrier on gaps are one [`Objective`], minimised by gradient descent ([`by_descent`]).
+//! The targets' distance and a barrier on gaps are one [`Objective`], minimised by gradient descent with the step bounds of the
+//! two-way method ([`by_descent`]), or by Newton's method with a line search ([`by_newton`]).
 
 mod descent;
 mod element;
 mod function;
+mod hessian;
+mod line_search;
+mod newton;
 mod objective;
 mod params;
+mod system;
 
 pub use descent::{DescentStep, by_descent};
 pub use function::{Jet, barrier};
+pub use line_search::LineSearch;
+pub use newton::{NewtonStep, by_newton};
 pub use objective::{Contact, Derivatives, Objective};
 pub use params::{BarrierParams, Scaling};

@@ -11,7 +11,7 @@ use super::{BarrierParams, element};
 use bowknot_twoway::constraints::EdgeLimits;
 use bowknot_twoway::geometry::{PairKind, Point, Separation, Vector};
 use bowknot_twoway::lcp::BallRow;
-use bowknot_twoway::{Problem, ResolveError, State};
+use bowknot_twoway::{Problem, ResolveError, State, Statistics};
 use rayon::prelude::*;
 
 /// Pairs that one parallel task handles at least.
@@ -202,6 +202,28 @@ impl Objective {
     pub fn stretch(&self, x: &[Point]) -> (f64, f64) {
         let stretch = self.edges.stretch(x);
         (stretch.to_start, stretch.to_rest)
+    }
+
+    /// Largest range of any pair's barrier [m].
+    pub fn largest_range(&self, problem: &Problem) -> f64 {
+        self.range_share * problem.spacing.largest_delta()
+    }
+
+    /// Fills in what is known at the end of a call.
+    pub(super) fn report(
+        &self,
+        problem: &Problem,
+        state: &State,
+        derivatives: &mut Derivatives,
+        statistics: &mut Statistics,
+    ) {
+        let contacts = self.contacts(problem, state);
+        self.derivatives(problem, state, &state.x, &contacts, derivatives);
+        let movable = (0..state.x.len()).filter(|&v| problem.movable(v));
+        statistics.stationarity_m = movable
+            .map(|v| derivatives.gradient[v].norm() / self.inertia(problem, state, v))
+            .fold(0.0, f64::max);
+        (statistics.max_step_stretch, statistics.max_stretch) = self.stretch(&state.x);
     }
 
     fn overlong(&self, ball: &BallRow, x: &[Point]) -> Option<(f64, f64, Vector)> {

@@ -58,7 +58,7 @@ impl ForwardStep for EarliestImpact {
         self.stepper.aim(&state.x, &state.y);
         self.paths.clear();
         self.paths.extend_from_slice(self.stepper.displacements());
-        self.search.list(problem, state, search, &self.paths, Clocks::Common, statistics);
+        self.search.list(problem, state, search, &self.paths, Clocks::Common, 0.0, statistics);
         let time = earliest(&self.ccd, problem, state, &self.paths);
         for v in 0..self.paths.len() {
             self.stepper.limit(v, time);

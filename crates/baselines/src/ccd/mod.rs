@@ -12,4 +12,6 @@ mod reach;
 
 pub use additive::{AdditiveCcd, Clearance, ClosingSpeed};
 pub use earliest::EarliestImpact;
+pub(crate) use earliest::earliest;
 pub use per_vertex::PerVertexImpact;
+pub(crate) use reach::{Clocks, PathSearch};

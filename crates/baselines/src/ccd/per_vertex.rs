@@ -125,7 +125,7 @@ impl ForwardStep for PerVertexImpact {
         }
         self.limit_bodies(problem);
         self.shorten();
-        self.search.list(problem, state, search, &self.paths, Clocks::Own, statistics);
+        self.search.list(problem, state, search, &self.paths, Clocks::Own, 0.0, statistics);
         self.changed.fill(true);
         for round in 1..=self.rounds {
             let common = self.limit(problem, state);

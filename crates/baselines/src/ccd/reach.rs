@@ -6,7 +6,7 @@ use bowknot_twoway::{Problem, Reach, Search, State, Statistics};
 
 /// In which order vertices may go their ways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Clocks {
+pub(crate) enum Clocks {
     /// All on one clock: each is at the same fraction of its way.
     Common,
     /// Each on a clock of its own.
@@ -18,19 +18,21 @@ pub enum Clocks {
 ///
 /// Tubes around the paths are as wide as contacts are seen from, so that pairs in contact range keep their multipliers.
 #[derive(Debug, Default)]
-pub(super) struct PathSearch {
+pub(crate) struct PathSearch {
     displacements: Vec<Vector>,
     deviations: Vec<f64>,
 }
 
 impl PathSearch {
-    pub(super) fn list(
+    /// `nearest` is the distance [m] below which pairs must be listed on the way, beyond those that may meet.
+    pub(crate) fn list(
         &mut self,
         problem: &Problem,
         state: &mut State,
         search: &mut dyn Search,
         paths: &[Vector],
         clocks: Clocks,
+        nearest: f64,
         statistics: &mut Statistics,
     ) {
         let largest = state.x.iter().zip(paths).map(|(x, p)| x.coords.amax() + p.amax()).fold(0.0, f64::max);
@@ -41,7 +43,8 @@ impl PathSearch {
             }
             Reach::Distance(unlisted) => {
                 let longest = paths.iter().map(Vector::norm).fold(0.0, f64::max);
-                2.0 * (longest * (1.0 + 1e-12) + rounding) < unlisted - problem.spacing.largest_floor()
+                2.0 * (longest * (1.0 + 1e-12) + rounding)
+                    < unlisted - problem.spacing.largest_floor().max(nearest)
             }
         };
         if within {

@@ -97,6 +97,19 @@ impl Scene {
         }
     }
 
+    /// The same with the upper sheet turned a little, so that few edges are parallel.
+    pub fn turned_sheets(cells: usize, gap: f64) -> Self {
+        let mut scene = Self::two_sheets(cells, gap);
+        let (sine, cosine) = 0.4_f64.sin_cos();
+        let middle = 0.05 * cells as f64;
+        let n = scene.x.len() / 2;
+        for p in &mut scene.x[n..] {
+            let (u, v) = (p.x - middle, p.y - middle);
+            (p.x, p.y) = (middle + cosine * u - sine * v, middle + sine * u + cosine * v);
+        }
+        scene
+    }
+
     /// Where two sheets want to be that change places, and crumple on the way.
     pub fn swapped(&self) -> Vec<Point> {
         let n = self.x.len() / 2;

@@ -4,4 +4,5 @@
 mod common;
 mod descent;
 mod impacts;
+mod newton;
 mod objective;

@@ -1,0 +1,90 @@
+//! Against differences of gradients, feature by feature.
+
+use super::*;
+use crate::barrier::{barrier, element};
+
+const STRENGTH: f64 = 20.0;
+const RANGE: f64 = 0.5;
+
+fn contact(kind: PairKind, x: &[Point; 4]) -> Contact {
+    let separation = element::separation(kind, &[0, 1, 2, 3], 0, x, &[]);
+    let jet = barrier(STRENGTH, separation.distance, RANGE);
+    Contact { kind, vertices: [0, 1, 2, 3], separation, jet }
+}
+
+fn gradient(kind: PairKind, x: &[Point; 4]) -> SMatrix<f64, 12, 1> {
+    let contact = contact(kind, x);
+    let sigma = contact.separation.signed_weights(kind);
+    let mut gradient = SMatrix::<f64, 12, 1>::zeros();
+    for k in 0..kind.vertex_count() {
+        let row = contact.jet.slope * sigma[k] * contact.separation.normal;
+        gradient.fixed_rows_mut::<3>(3 * k).copy_from(&row);
+    }
+    gradient
+}
+
+/// One pair for each set of closest features.
+fn pairs() -> Vec<(PairKind, [Point; 4], usize)> {
+    let p = Point::new;
+    let o = Point::origin();
+    let triangle = [p(0.1, 0.0, 0.05), p(1.0, 0.1, 0.0), p(-0.1, 1.0, -0.02)];
+    let above = |q: Point| [q, triangle[0], triangle[1], triangle[2]];
+    let edges = |a: Point, b: Point| [a, b, p(0.0, -1.0, 0.0), p(0.1, 1.0, 0.03)];
+    vec![
+        (PairKind::VertexVertex, [p(0.1, 0.2, 0.15), o, o, o], 0),
+        (PairKind::VertexEdge, [p(0.5, 0.2, 0.15), o, p(1.0, 0.1, 0.0), o], 1),
+        (PairKind::VertexEdge, [p(-0.1, 0.2, 0.15), o, p(1.0, 0.1, 0.0), o], 0),
+        (PairKind::VertexTriangle, above(p(0.3, 0.3, 0.2)), 2),
+        (PairKind::VertexTriangle, above(p(0.6, 0.7, 0.2)), 1),
+        (PairKind::VertexTriangle, above(p(0.0, -0.2, 0.2)), 0),
+        (PairKind::EdgeEdge, edges(p(-1.0, 0.1, 0.2), p(1.0, -0.1, 0.3)), 2),
+        (PairKind::EdgeEdge, edges(p(0.2, 0.1, 0.2), p(1.0, -0.1, 0.3)), 1),
+        (PairKind::EdgeEdge, edges(p(0.2, 1.2, 0.2), p(1.0, 1.4, 0.3)), 0),
+    ]
+}
+
+#[test]
+fn hessians_are_those_of_differences_for_every_set_of_closest_features() {
+    for (kind, x, free) in pairs() {
+        let contact = contact(kind, &x);
+        assert!(contact.separation.distance < RANGE, "{kind:?} {free}");
+        assert_eq!(places(kind, &contact.separation.weights).1, free, "{kind:?} {:?}", contact.separation);
+        let hessian = pair_hessian(&contact, &x);
+        let h = 1e-6;
+        let scale = hessian.amax();
+        for column in 0..3 * kind.vertex_count() {
+            let moved = |sign: f64| {
+                let mut moved = x;
+                moved[column / 3][column % 3] += sign * h;
+                gradient(kind, &moved)
+            };
+            let expected = (moved(1.0) - moved(-1.0)) / (2.0 * h);
+            let error = (hessian.column(column) - expected).amax();
+            assert!(error < 1e-6 * scale, "{kind:?} {free} free, column {column}: {error} of {scale}");
+        }
+    }
+}
+
+#[test]
+fn the_positive_part_is_positive_and_keeps_what_was() {
+    for (kind, x, _) in pairs() {
+        let hessian = pair_hessian(&contact(kind, &x), &x);
+        let part = positive_part(&hessian);
+        let scale = hessian.amax();
+        let (before, after) = (hessian.symmetric_eigenvalues(), part.symmetric_eigenvalues());
+        assert!(after.min() > -1e-12 * scale && before.min() < -1e-3 * scale, "{kind:?} {before}");
+        assert!((after.max() - before.max()).abs() < 1e-10 * scale, "{kind:?}");
+        // Nothing but negative eigenvalues went.
+        let gone = part - hessian;
+        assert!(gone.symmetric_eigenvalues().min() > -1e-10 * scale, "{kind:?}");
+        assert!((part * gone).amax() < 1e-9 * scale * scale, "{kind:?}: both parts are orthogonal");
+    }
+}
+
+#[test]
+fn parallel_edges_give_a_finite_positive_part() {
+    let p = Point::new;
+    let x = [p(0.0, 0.0, 0.1), p(1.0, 0.0, 0.1), p(0.2, 0.0, 0.0), p(1.2, 0.0, 0.0)];
+    let part = positive_part(&pair_hessian(&contact(PairKind::EdgeEdge, &x), &x));
+    assert!(part.iter().all(|e| e.is_finite()) && part.amax() > 0.0);
+}

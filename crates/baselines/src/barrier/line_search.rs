@@ -1,0 +1,90 @@
+//! One step size for all vertices: at most that of the earliest impact, then halved until the energy does not rise (Li et
+//! al. 2020, Algorithm 1).
+
+use super::{BarrierParams, Objective};
+use crate::ccd::{AdditiveCcd, Clocks, PathSearch, earliest};
+use bowknot_twoway::geometry::{Point, Vector};
+use bowknot_twoway::stepper::{StepReport, Stepper};
+use bowknot_twoway::{ForwardStep, Problem, ResolveError, Search, State, Statistics};
+use std::time::Instant;
+
+/// Halvings after which nothing moves.
+const HALVINGS: usize = 40;
+/// Relative rounding of the energy.
+const ROUNDING: f64 = 1e-13;
+
+/// The forward step of [`super::by_newton`].
+///
+/// While prescribed vertices are on their way, the objective itself changes, so that its values before and after say nothing:
+/// such steps are limited by impacts alone.
+#[derive(Debug, Default)]
+pub struct LineSearch {
+    objective: Objective,
+    ccd: AdditiveCcd,
+    stepper: Stepper,
+    search: PathSearch,
+    paths: Vec<Vector>,
+}
+
+impl LineSearch {
+    /// A line search on the same objective as the backward step's.
+    ///
+    /// # Errors
+    /// Parameters out of their range.
+    pub fn new(problem: &Problem, params: BarrierParams, ccd: AdditiveCcd) -> Result<Self, ResolveError> {
+        Ok(Self { objective: Objective::new(problem, params)?, ccd, ..Self::default() })
+    }
+
+    /// The largest of `step`, half of it, .. that does not raise the energy; 0 where none of 40 does.
+    fn backtrack(&self, problem: &Problem, state: &State, mut step: f64) -> f64 {
+        let value = |x: &[Point]| {
+            let contacts = self.objective.contacts_at(problem, state, x);
+            self.objective.value(problem, state, x, &contacts)
+        };
+        let contacts = self.objective.contacts(problem, state);
+        let before = self.objective.value(problem, state, &state.x, &contacts);
+        for _ in 0..HALVINGS {
+            let x: Vec<Point> = state.x.iter().zip(&self.paths).map(|(x, p)| x + step * p).collect();
+            if value(&x) <= before * (1.0 + ROUNDING) {
+                return step;
+            }
+            step *= 0.5;
+        }
+        0.0
+    }
+}
+
+impl ForwardStep for LineSearch {
+    fn begin(&mut self, problem: &Problem, state: &State) {
+        self.objective.begin(problem, state);
+        self.stepper.begin(problem.rest.len());
+    }
+
+    fn advance(
+        &mut self,
+        problem: &Problem,
+        state: &mut State,
+        search: &mut dyn Search,
+        statistics: &mut Statistics,
+    ) -> StepReport {
+        let clock = Instant::now();
+        let searching = statistics.seconds.search;
+        self.stepper.aim(&state.x, &state.y);
+        self.paths.clear();
+        self.paths.extend_from_slice(self.stepper.displacements());
+        let range = self.objective.largest_range(problem);
+        self.search.list(problem, state, search, &self.paths, Clocks::Common, range, statistics);
+        let mut step = earliest(&self.ccd, problem, state, &self.paths);
+        let still = |v: usize| problem.movable(v) || self.paths[v] == Vector::zeros();
+        if (0..self.paths.len()).all(still) {
+            step = self.backtrack(problem, state, step);
+        }
+        for v in 0..self.paths.len() {
+            self.stepper.limit(v, step);
+        }
+        state.previous.clone_from(&state.x);
+        let report = self.stepper.advance(&mut state.x);
+        statistics.seconds.forward += clock.elapsed().as_secs_f64() - (statistics.seconds.search - searching);
+        report
+    }
+}

@@ -1,0 +1,145 @@
+//! The log barrier by projected Newton steps (Li et al. 2020, "Incremental Potential Contact"), as a backward step: y = x + p
+//! with H p = -dE/dx, H the Hessian with every element made positive semidefinite.
+//!
+//! Prescribed vertices that are in contact come by at most half of the barrier's range a step, and the others' step is solved for
+//! with theirs given: what is in the way of an obstacle goes along with it. Going all their way, they would leave a step
+//! size for all that lets nothing get out of their way.
+
+use super::hessian::elements;
+use super::system::System;
+use super::{BarrierParams, Contact, Derivatives, LineSearch, Objective};
+use crate::ccd::AdditiveCcd;
+use bowknot_twoway::geometry::Vector;
+use bowknot_twoway::{BackwardStep, BudgetedSearch, Problem, ResolveError, Resolver, State, Statistics};
+use std::time::Instant;
+
+/// Relative residual of the Newton systems.
+const TOLERANCE: f64 = 1e-4;
+/// Largest number of iterations of a solve.
+const MAX_ITERATIONS: usize = 2000;
+
+/// A Newton step as [`BackwardStep`].
+#[derive(Debug, Default)]
+pub struct NewtonStep {
+    objective: Objective,
+    derivatives: Derivatives,
+    step: Vec<Vector>,
+    /// See [`Self::decrement`].
+    decrement: f64,
+    solver_iterations: usize,
+}
+
+/// Newton's method with IPC's forward step: all vertices by the earliest impact, then half as far until the energy falls.
+///
+/// # Errors
+/// Parameters out of their range.
+pub fn by_newton(
+    problem: Problem,
+    params: BarrierParams,
+    ccd: AdditiveCcd,
+) -> Result<Resolver<BudgetedSearch, NewtonStep, LineSearch>, ResolveError> {
+    let step = NewtonStep::new(&problem, params.clone())?;
+    let line_search = LineSearch::new(&problem, params, ccd)?;
+    let search = BudgetedSearch::new(&problem);
+    Ok(Resolver::with_stages(problem, search, step, line_search))
+}
+
+impl NewtonStep {
+    /// Newton steps for the problem's pairs.
+    ///
+    /// # Errors
+    /// Parameters out of their range.
+    pub fn new(problem: &Problem, params: BarrierParams) -> Result<Self, ResolveError> {
+        Ok(Self { objective: Objective::new(problem, params)?, ..Self::default() })
+    }
+
+    /// Newton decrement of the last step as a length [m]: sqrt(-p . dE/dx / sum m/dt^2), the root mean square of the way to
+    /// the minimum that the quadratic model promises, weighted as the objective weighs it.
+    pub fn decrement(&self) -> f64 {
+        self.decrement
+    }
+
+    /// Iterations of conjugate gradients in the present call.
+    pub fn solver_iterations(&self) -> usize {
+        self.solver_iterations
+    }
+}
+
+impl NewtonStep {
+    /// Where prescribed vertices go in this step [m]; 0 for the others.
+    fn given(&self, problem: &Problem, state: &State, contacts: &[Contact]) -> Vec<Vector> {
+        let way = |v: usize| match problem.movable(v) {
+            true => Vector::zeros(),
+            false => state.target[v] - state.x[v],
+        };
+        let mut given: Vec<Vector> = (0..state.x.len()).map(way).collect();
+        let moves = |v: &u32| given[*v as usize] != Vector::zeros();
+        if contacts.iter().any(|c| c.vertices[..c.kind.vertex_count()].iter().any(moves)) {
+            let longest = given.iter().map(Vector::norm).fold(0.0, f64::max);
+            let share = (0.5 * self.objective.largest_range(problem) / longest).min(1.0);
+            given.iter_mut().for_each(|d| *d *= share);
+        }
+        given
+    }
+}
+
+impl BackwardStep for NewtonStep {
+    fn begin(&mut self, problem: &Problem, state: &State) {
+        self.objective.begin(problem, state);
+        self.decrement = f64::INFINITY;
+        self.solver_iterations = 0;
+    }
+
+    fn project(&mut self, problem: &Problem, state: &mut State, statistics: &mut Statistics) {
+        let clock = Instant::now();
+        let contacts = self.objective.contacts(problem, state);
+        self.objective.derivatives(problem, state, &state.x, &contacts, &mut self.derivatives);
+        let elements = elements(&self.objective, &state.x, &contacts);
+        let inertia = |v: usize| match problem.movable(v) {
+            true => self.objective.inertia(problem, state, v),
+            false => 0.0,
+        };
+        let inertia: Vec<f64> = (0..state.x.len()).map(inertia).collect();
+        let mut down: Vec<Vector> = self.derivatives.gradient.iter().map(|g| -g).collect();
+        let system = System::new(&inertia, &elements);
+        let given = self.given(problem, state, &contacts);
+        if given.iter().any(|d| *d != Vector::zeros()) {
+            let mut dragged = vec![Vector::zeros(); down.len()];
+            system.multiply(&given, &mut dragged);
+            down.iter_mut().zip(&dragged).for_each(|(down, dragged)| *down -= dragged);
+        }
+        let report = system.solve(&down, TOLERANCE, MAX_ITERATIONS, &mut self.step);
+        self.solver_iterations += report.iterations;
+        let promised: f64 = self.step.iter().zip(&down).map(|(p, g)| p.dot(g)).sum();
+        let total: f64 = inertia.iter().sum();
+        self.decrement = if total > 0.0 { (promised.max(0.0) / total).sqrt() } else { 0.0 };
+        for v in 0..state.x.len() {
+            state.y[v] = state.x[v] + if problem.movable(v) { self.step[v] } else { given[v] };
+        }
+        statistics.contact_rows = contacts.len();
+        statistics.active_rows = contacts.len();
+        statistics.seconds.backward += clock.elapsed().as_secs_f64();
+    }
+
+    fn stretch_to_limit(&self, _: &State) -> f64 {
+        1.0
+    }
+
+    fn imbalance(&mut self, _: &Problem, _: &State) -> f64 {
+        self.decrement
+    }
+
+    fn unrest(&mut self, _: &Problem, _: &State) -> f64 {
+        self.decrement
+    }
+
+    fn settled(&self, problem: &Problem, state: &State) -> Option<bool> {
+        let tolerance = self.objective.params().tolerance * problem.lengths.edge;
+        let arrived = |v: usize| problem.movable(v) || (state.target[v] - state.x[v]).norm() <= tolerance;
+        Some(self.decrement <= tolerance && (0..state.x.len()).all(arrived))
+    }
+
+    fn finish(&mut self, problem: &Problem, state: &State, statistics: &mut Statistics) {
+        self.objective.report(problem, state, &mut self.derivatives, statistics);
+    }
+}

@@ -1,0 +1,191 @@
+//! The Newton system: inertia and elements, solved by conjugate gradients with 3x3 blocks of the diagonal as preconditioner.
+//!
+//! Each vertex gathers its rows from its elements in their order: the same bits for any number of threads.
+
+use super::descent::solve;
+use super::hessian::Element;
+use bowknot_twoway::geometry::Vector;
+use nalgebra::Matrix3;
+use rayon::prelude::*;
+
+/// Vertices that one parallel task handles at least.
+const CHUNK: usize = 512;
+
+/// A symmetric positive definite matrix: inertia [N/m] of each vertex and elements. Rows of vertices without inertia are left
+/// out: those stay.
+#[derive(Debug)]
+pub struct System<'a> {
+    inertia: &'a [f64],
+    elements: &'a [Element],
+    /// Elements of each vertex and its place in them, and where those of each vertex start.
+    incidence: Vec<(u32, u8)>,
+    starts: Vec<u32>,
+    blocks: Vec<Matrix3<f64>>,
+}
+
+/// How a solve went.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolveReport {
+    /// Iterations made.
+    pub iterations: usize,
+    /// Residual relative to the right-hand side, both in the norm of the preconditioner.
+    pub residual: f64,
+}
+
+impl<'a> System<'a> {
+    /// The system of `elements` over vertices with this `inertia`, 0 for those that stay.
+    pub fn new(inertia: &'a [f64], elements: &'a [Element]) -> Self {
+        let mut starts = vec![0u32; inertia.len() + 1];
+        for element in elements {
+            for v in &element.vertices[..element.count] {
+                starts[*v as usize + 1] += 1;
+            }
+        }
+        for v in 0..inertia.len() {
+            starts[v + 1] += starts[v];
+        }
+        let mut next = starts.clone();
+        let mut incidence = vec![(0, 0); starts[inertia.len()] as usize];
+        for (e, element) in elements.iter().enumerate() {
+            for (place, v) in element.vertices[..element.count].iter().enumerate() {
+                let slot = &mut next[*v as usize];
+                incidence[*slot as usize] = (e as u32, place as u8);
+                *slot += 1;
+            }
+        }
+        let blocks = (0..inertia.len())
+            .map(|v| {
+                let mut block = Matrix3::from_diagonal_element(inertia[v]);
+                for &(e, place) in &incidence[starts[v] as usize..starts[v + 1] as usize] {
+                    let at = 3 * place as usize;
+                    block += elements[e as usize].matrix.fixed_view::<3, 3>(at, at);
+                }
+                block
+            })
+            .collect();
+        Self { inertia, elements, incidence, starts, blocks }
+    }
+
+    /// A x; 0 for vertices that stay, which `x` must be as well.
+    pub fn multiply(&self, x: &[Vector], product: &mut [Vector]) {
+        product.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(|(v, row)| {
+            *row = Vector::zeros();
+            if self.inertia[v] > 0.0 {
+                *row = self.inertia[v] * x[v];
+                for &(e, place) in &self.incidence[self.starts[v] as usize..self.starts[v + 1] as usize] {
+                    let element = &self.elements[e as usize];
+                    for k in 0..element.count {
+                        let block = element.matrix.fixed_view::<3, 3>(3 * place as usize, 3 * k);
+                        *row += block * x[element.vertices[k] as usize];
+                    }
+                }
+            }
+        });
+    }
+
+    /// Solves A x = b to a residual of `tolerance` relative to b, from x = 0; `b` is 0 for vertices that stay.
+    pub fn solve(
+        &self,
+        b: &[Vector],
+        tolerance: f64,
+        max_iterations: usize,
+        x: &mut Vec<Vector>,
+    ) -> SolveReport {
+        let count = b.len();
+        x.clear();
+        x.resize(count, Vector::zeros());
+        let precondition = |r: &[Vector]| -> Vec<Vector> {
+            let row = |v: usize| match self.inertia[v] > 0.0 {
+                true => solve(&self.blocks[v], &r[v]),
+                false => Vector::zeros(),
+            };
+            (0..count).into_par_iter().with_min_len(CHUNK).map(row).collect()
+        };
+        let mut r = b.to_vec();
+        let mut z = precondition(&r);
+        let mut p = z.clone();
+        let mut product = vec![Vector::zeros(); count];
+        let first = dot(&r, &z);
+        let mut rz = first;
+        let mut report = SolveReport { iterations: 0, residual: 1.0 };
+        while report.iterations < max_iterations && rz > tolerance * tolerance * first {
+            self.multiply(&p, &mut product);
+            let curvature = dot(&p, &product);
+            if curvature.is_nan() || curvature <= 0.0 {
+                break;
+            }
+            let step = rz / curvature;
+            for v in 0..count {
+                x[v] += step * p[v];
+                r[v] -= step * product[v];
+            }
+            z = precondition(&r);
+            let next = dot(&r, &z);
+            let share = next / rz;
+            rz = next;
+            for v in 0..count {
+                p[v] = z[v] + share * p[v];
+            }
+            report.iterations += 1;
+        }
+        report.residual = if first > 0.0 { (rz.max(0.0) / first).sqrt() } else { 0.0 };
+        report
+    }
+}
+
+fn dot(a: &[Vector], b: &[Vector]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a.dot(b)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::barrier::hessian::Block12;
+    use nalgebra::{DMatrix, DVector};
+
+    #[test]
+    fn a_solve_is_that_of_the_dense_matrix() {
+        let inertia = [1.0, 2.0, 0.5, 0.0, 3.0, 1.0];
+        let mut seed = 7u64;
+        let mut draw = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        };
+        let elements: Vec<Element> = [[0, 1, 2, 3], [2, 4, 5, 0], [5, 3, 2, 1], [1, 4, 1, 1]]
+            .into_iter()
+            .map(|vertices| {
+                let count = if vertices == [1, 4, 1, 1] { 2 } else { 4 };
+                let factor = Block12::from_fn(|i, j| if i.max(j) < 3 * count { draw() } else { 0.0 });
+                Element { vertices, count, matrix: 3.0 * factor * factor.transpose() }
+            })
+            .collect();
+        let free = |v: usize| inertia[v] > 0.0;
+        let mut dense = DMatrix::<f64>::zeros(18, 18);
+        for v in 0..6 {
+            for c in 0..3 {
+                dense[(3 * v + c, 3 * v + c)] += if free(v) { inertia[v] } else { 1.0 };
+            }
+        }
+        for element in &elements {
+            for i in 0..3 * element.count {
+                for j in 0..3 * element.count {
+                    let [a, b] = [i, j].map(|i| element.vertices[i / 3] as usize);
+                    if free(a) && free(b) {
+                        dense[(3 * a + i % 3, 3 * b + j % 3)] += element.matrix[(i, j)];
+                    }
+                }
+            }
+        }
+        let b: Vec<Vector> = (0..6)
+            .map(|v| if free(v) { Vector::new(draw(), draw(), draw()) } else { Vector::zeros() })
+            .collect();
+        let flat = DVector::from_iterator(18, b.iter().flat_map(|b| b.iter().copied()));
+        let expected = dense.lu().solve(&flat).expect("positive definite");
+        let mut x = Vec::new();
+        let report = System::new(&inertia, &elements).solve(&b, 1e-13, 200, &mut x);
+        assert!(report.residual <= 1e-13 && report.iterations > 3, "{report:?}");
+        for (i, expected) in expected.iter().enumerate() {
+            assert!((x[i / 3][i % 3] - expected).abs() < 1e-9, "{i}: {x:?} {expected}");
+        }
+    }
+}
