@@ -6,6 +6,7 @@
 //! | `bench` | what all of them use: size, output folder, what has been measured already |
 //! | `record`, `case` | collision problems: recorded from scenes, loaded to be solved |
 //! | `methods`, `solve` | the methods that are compared; timing one on one problem |
+//! | `simulate` | whole simulations and how far they are apart |
 //! | `summary` | what settings did with the problems of scenes |
 //! | `measures` | how good a result is, alike for every method |
 //! | `chart`, `table`, `page` | SVG, CSV and Markdown |
@@ -22,6 +23,7 @@ mod measures;
 mod methods;
 mod page;
 mod record;
+mod simulate;
 mod solve;
 mod store;
 mod summary;

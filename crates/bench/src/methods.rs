@@ -154,9 +154,11 @@ where
     Ok(Box::new(Composed::new("", resolver)))
 }
 
-/// `paper` without edge limits, which equations would turn into rigid links (paper, section 4.3.1).
+/// `paper` without edge limits, which equations would turn into rigid links (paper, section 4.3.1), and with rows for pairs
+/// that press or are about to, near to the collisions that Harmon et al. take: all pairs in range would be glued.
 fn without_edges() -> Params {
     let mut params = Params::paper();
+    params.backward.active_rows = true;
     params.constraints.edges = false;
     params
 }

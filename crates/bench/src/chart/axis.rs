@@ -79,7 +79,11 @@ fn log_ticks(low: f64, high: f64) -> Vec<f64> {
     let powers: Vec<f64> = (first..=last).map(|p| 10f64.powi(p)).filter(|v| inside(*v)).collect();
     match powers.len() {
         0..=2 => {
-            let finer = |p: i32| [1.0, 2.0, 5.0].map(|m| m * 10f64.powi(p));
+            let multiples: &[f64] = match high - low < 0.8 {
+                true => &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0],
+                false => &[1.0, 2.0, 5.0],
+            };
+            let finer = |p: i32| multiples.iter().map(move |m| m * 10f64.powi(p));
             (first..=last).flat_map(finer).filter(|v| inside(*v)).collect()
         }
         3..=8 => powers,
@@ -118,6 +122,7 @@ mod tests {
         assert_eq!(labels(Scale::Linear, [-1.0, 1.2]), ["-1", "-0.5", "0", "0.5", "1"]);
         assert_eq!(labels(Scale::Log, [0.002, 3.0]), ["0.01", "0.1", "1"]);
         assert_eq!(labels(Scale::Log, [2.1, 40.0]), ["2", "5", "10", "20"]);
+        assert_eq!(labels(Scale::Log, [0.02, 0.05]), ["0.02", "0.03", "0.04", "0.05"]);
         assert_eq!(labels(Scale::Log, [1e-6, 1e-4]), ["1e-6", "1e-5", "1e-4"]);
     }
 

@@ -43,8 +43,9 @@ pub fn svg(chart: &Chart) -> String {
     if chart.front {
         front(chart, place, &mut add);
     }
+    let bars = chart.series.iter().filter(|s| s.style == Style::Bars).count() as f64;
     for (index, series) in chart.series.iter().enumerate() {
-        draw(series, index, place, bottom, &mut add);
+        draw(series, index, place, [bottom, bars], &mut add);
     }
     label(chart, place, &mut add);
     legend(chart, &mut add);
@@ -101,7 +102,7 @@ fn draw(
     series: &Series,
     index: usize,
     place: impl Fn(f64, f64) -> Option<(f64, f64)>,
-    bottom: f64,
+    [bottom, bars]: [f64; 2],
     add: &mut impl FnMut(String),
 ) {
     let colour = COLOURS[index % COLOURS.len()];
@@ -109,7 +110,7 @@ fn draw(
     match series.style {
         Style::Bars => {
             let gaps = points.windows(2).map(|w| (w[1].0 - w[0].0).abs());
-            let width = (0.8 * gaps.fold(f64::INFINITY, f64::min)).clamp(2.0, 40.0);
+            let width = (0.8 / bars * gaps.fold(f64::INFINITY, f64::min)).clamp(2.0, 40.0);
             for (x, y) in points {
                 add(format!(
                     "<rect x=\"{:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{:.1}\" fill=\"{colour}\" \

@@ -3,8 +3,13 @@
 mod barrier;
 mod breakdown;
 mod collision_error;
+mod early_contact;
+mod edge_limits;
+mod funnel;
+mod newton;
 mod parameters;
 mod row_solvers;
+mod simulation_error;
 mod steps;
 mod sweeps;
 mod switches;
@@ -17,13 +22,18 @@ use anyhow::Result;
 /// All of them, in the order of the page.
 pub const ALL: &[&dyn Figure] = &[
     &collision_error::CollisionError,
+    &simulation_error::SimulationError,
     &switches::Switches,
     &barrier::Barrier,
+    &edge_limits::EdgeLimits,
     &sweeps::Sweeps,
     &row_solvers::RowSolvers,
     &parameters::Parameters,
     &steps::Steps,
     &breakdown::Breakdown,
+    &newton::Newton,
+    &funnel::Funnel,
+    &early_contact::EarlyContact,
 ];
 
 /// A figure or table.

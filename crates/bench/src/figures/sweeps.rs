@@ -52,11 +52,11 @@ impl Figure for Sweeps {
         let mut section = Section::default();
         let mut best = Vec::new();
         for (method, values) in ["paper", "fast"].iter().zip(&values) {
-            for (what, series) in [
-                ("CPU seconds a problem", lines(&compared, values, |s, _| s.cpu)),
-                ("steps", lines(&compared, values, |s, _| s.steps)),
+            for (what, word, series) in [
+                ("CPU seconds a problem", "seconds", lines(&compared, values, |s, _| s.cpu)),
+                ("steps", "steps", lines(&compared, values, |s, _| s.steps)),
+                ("error [mm]", "error", lines(&compared, values, |s, exact| 1e3 * s.error(exact))),
             ] {
-                let word = what.split(' ').next_back().unwrap_or_default();
                 let chart = Chart {
                     title: format!("{method}: {what} by sweeps"),
                     x: Axis::log("sweeps per backward step"),

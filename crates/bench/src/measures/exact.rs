@@ -11,15 +11,18 @@ use crate::bench::Bench;
 use crate::case::Case;
 use anyhow::Result;
 use bowknot::geometry::Point;
-use bowknot::twoway::Params;
+use bowknot::twoway::{AcceptedState, Params};
 use serde::{Deserialize, Serialize};
+use std::ops::ControlFlow;
 
 /// Vertices above which no exact solution is sought.
 const LARGEST: usize = 6000;
 /// Seconds that one may take.
 const SECONDS: f64 = 60.0;
-/// Largest stationarity residual, as a share of the distance to the target.
-const RESIDUAL: f64 = 0.01;
+/// Motion of a step at which the iteration is at rest, in mean edge lengths.
+const REST: f64 = 1e-7;
+/// Largest stationarity residual, as a share of the distance to the target, or in mean edge lengths where that is small.
+const RESIDUAL: [f64; 2] = [0.01, 1e-4];
 /// Largest violation of a contact, as a share of delta.
 const VIOLATION: f64 = 0.05;
 
@@ -50,20 +53,40 @@ pub fn params() -> Params {
     params.backward.active_rows = false;
     params.stop.max_steps = Some(20_000);
     params.stop.max_seconds = Some(SECONDS);
-    params.stop.distance = 1e-5;
-    params.stop.imbalance = 1e-4;
-    params.stop.drag = Some(1e-5);
+    // It ends when x is at rest.
+    params.stop.distance = f64::MIN_POSITIVE;
     params
+}
+
+/// Stops a solve once a step moves nothing any more.
+pub fn at_rest(case: &Case) -> impl FnMut(&AcceptedState<'_>) -> ControlFlow<()> + use<> {
+    let edges = case
+        .model
+        .topology()
+        .edges
+        .iter()
+        .map(|[a, b]| (case.states.rest[*a as usize] - case.states.rest[*b as usize]).norm());
+    let (sum, count) = edges.fold((0.0, 0), |(sum, count), length| (sum + length, count + 1));
+    // Grains have no edges; a micrometre is as little for them.
+    let rest = if count > 0 { REST * sum / f64::from(count) } else { 1e-9 };
+    move |state| {
+        let moved = state.positions.iter().zip(state.previous).map(|(a, b)| (a - b).norm());
+        match moved.fold(0.0, f64::max) < rest {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    }
 }
 
 fn find(case: &Case) -> Result<Found> {
     let mut resolver = case.states.resolver(case.model.clone(), params())?;
     let mut x = case.states.x.clone();
-    let statistics = resolver.resolve(&mut x, &case.states.y, &case.states.call(), &mut ())?;
+    let statistics = resolver.resolve(&mut x, &case.states.y, &case.states.call(), &mut at_rest(case))?;
     let judgement = Judgement::without_exact(case)?;
     let judged = judgement.judge(&x)?;
-    let good = judged.stationarity <= RESIDUAL * judged.distance
-        && judged.violation <= VIOLATION * judgement.problem.lengths.delta
+    let lengths = &judgement.problem.lengths;
+    let good = judged.stationarity <= (RESIDUAL[0] * judged.distance).max(RESIDUAL[1] * lengths.edge)
+        && judged.violation <= VIOLATION * lengths.delta
         && judged.intersections == 0;
     let x = if good { x.iter().map(|p| [p.x, p.y, p.z]).collect() } else { Vec::new() };
     Ok(Found { x, stationarity: judged.stationarity, violation: judged.violation, steps: statistics.steps })
