@@ -82,7 +82,15 @@ fn run(arguments: &Arguments) -> Result<()> {
     let bench = Bench::new(size, &arguments.out)?;
     match arguments.name.as_str() {
         "record" => record::all(&bench),
-        "all" => figures::ALL.iter().try_for_each(|figure| bench.figure(*figure)),
+        "all" => {
+            // One that fails keeps no other from being measured.
+            let failed: Vec<String> = figures::ALL
+                .iter()
+                .filter_map(|figure| bench.figure(*figure).err())
+                .map(|error| format!("{error:#}"))
+                .collect();
+            if failed.is_empty() { Ok(()) } else { bail!("{}", failed.join("\n")) }
+        }
         name => match figures::ALL.iter().find(|figure| figure.name() == name) {
             Some(figure) => bench.figure(*figure),
             None => {

@@ -7,9 +7,11 @@ use bowknot::twoway::{
     Search,
 };
 use bowknot_baselines::barrier::{BarrierParams, by_descent};
+use bowknot_baselines::ccd::{EarliestImpact, PerVertexImpact};
 use bowknot_baselines::rows::{
     AugmentedLagrangian, InterStepChebyshev, LinearSystem, ProjectedJacobi, two_way_with, two_way_with_stage,
 };
+use bowknot_baselines::zones::{ImpactZones, RigidZones, TwoPhase, ZoneParams, ZoneSolver};
 use bowknot_baselines::{Composed, Method};
 use std::sync::Arc;
 
@@ -38,6 +40,29 @@ pub const METHODS: &[Entry] = &[
     },
     Entry { name: "Jacobi", params: Params::paper, build: |p| rows(p, ProjectedJacobi::new(1, 0.0)) },
     Entry { name: "Jacobi, Chebyshev", params: Params::paper, build: chebyshev },
+    Entry { name: "CCD, earliest", params: Params::paper, build: |p| forward(p, EarliestImpact::default()) },
+    Entry {
+        name: "CCD, per vertex",
+        params: Params::paper,
+        build: |p| forward(p, PerVertexImpact::default()),
+    },
+    Entry {
+        name: "impact zones",
+        params: Params::paper,
+        build: |p| impact_zones(p, ZoneSolver::GaussSeidel),
+    },
+    Entry {
+        name: "impact zones, Harmon",
+        params: Params::paper,
+        build: |p| impact_zones(p, ZoneSolver::LinearSystem),
+    },
+    Entry {
+        name: "impact zones, Tang",
+        params: Params::paper,
+        build: |p| impact_zones(p, ZoneSolver::AugmentedLagrangian),
+    },
+    Entry { name: "rigid zones", params: Params::paper, build: |p| Ok(Box::new(RigidZones::new(p))) },
+    Entry { name: "two phases", params: Params::paper, build: two_phases },
 ];
 
 /// A method with parameters of one's choice.
@@ -49,7 +74,7 @@ pub struct Setting {
     pub change: String,
     pub params: Params,
     pub build: Arc<dyn Fn(Problem) -> Built>,
-    /// Seconds of a solve in a full run; none: 20.
+    /// Seconds of a solve in a full run; none: 8.
     limit: Option<f64>,
 }
 
@@ -97,7 +122,7 @@ impl Setting {
 
     /// Seconds that a solve may take.
     pub fn limit(&self, size: Size) -> f64 {
-        size.pick(self.limit.unwrap_or(20.0), 2.0, 1.0)
+        size.pick(self.limit.unwrap_or(8.0), 2.0, 1.0)
     }
 
     /// What tells its measurements from those of others.
@@ -143,6 +168,23 @@ pub fn rows<K: bowknot::twoway::RowSolver + Default + 'static>(problem: Problem,
 fn chebyshev(problem: Problem) -> Built {
     let jacobi = LcpBackward::with_solver(ProjectedJacobi::new(1, 0.0));
     composed(two_way_with_stage(problem, InterStepChebyshev::new(jacobi, 0.9, 5)))
+}
+
+/// The two-way method with another forward step.
+fn forward<F: ForwardStep + 'static>(problem: Problem, step: F) -> Built {
+    let search = BudgetedSearch::new(&problem);
+    let backward: LcpBackward = LcpBackward::default();
+    composed(Resolver::with_stages(problem, search, backward, step))
+}
+
+fn impact_zones(problem: Problem, solver: ZoneSolver) -> Built {
+    Ok(Box::new(ImpactZones::new(problem, ZoneParams { solver, ..ZoneParams::default() })))
+}
+
+/// Wu et al. 2020: five rounds of impact zones, then a log barrier.
+fn two_phases(problem: Problem) -> Built {
+    let hard = Composed::new("log barrier", by_descent(problem.clone(), BarrierParams::default())?);
+    Ok(Box::new(TwoPhase::new(problem, 5, hard)))
 }
 
 fn composed<S, B, F>(resolver: Resolver<S, B, F>) -> Built

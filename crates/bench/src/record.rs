@@ -14,7 +14,12 @@ use std::path::PathBuf;
 /// A scene that problems are recorded of.
 #[derive(Clone, Copy, Debug)]
 pub struct Spec {
-    pub scene: &'static str,
+    /// Its name here, that of its folder.
+    pub name: &'static str,
+    /// The built-in scene.
+    scene: &'static str,
+    /// Time step, if not the scene's own [s].
+    time_step: Option<f64>,
     /// Scale of a full, a quick and a tiny run.
     scales: [f64; 3],
     /// Time steps of a full, a quick and a tiny run.
@@ -22,7 +27,7 @@ pub struct Spec {
 }
 
 const fn spec(scene: &'static str, scales: [f64; 3], frames: [usize; 3]) -> Spec {
-    Spec { scene, scales, frames }
+    Spec { name: scene, scene, time_step: None, scales, frames }
 }
 
 /// All of them. A full run of each takes from seconds to a few minutes; frames end where contact is at its hardest or the
@@ -31,7 +36,7 @@ pub const SPECS: [Spec; 10] = [
     spec("bow-knot", [0.25, 0.1, 0.1], [300, 160, 60]),
     spec("reef-knot", [0.35, 0.15, 0.1], [280, 120, 60]),
     spec("needle", [0.52, 0.25, 0.15], [40, 25, 20]),
-    spec("funnel", [0.12, 0.06, 0.06], [60, 30, 20]),
+    spec("funnel", [0.2, 0.2, 0.2], [60, 20, 8]),
     spec("stack", [0.5, 0.2, 0.1], [120, 70, 50]),
     spec("tube", [0.45, 0.2, 0.15], [150, 100, 90]),
     spec("dress", [0.2, 0.1, 0.08], [120, 30, 10]),
@@ -40,13 +45,28 @@ pub const SPECS: [Spec; 10] = [
     spec("sand", [0.25, 0.1, 0.08], [200, 80, 50]),
 ];
 
+/// For figures alone: knots at 1/1000 s (paper, section 3.3).
+const SMALL_STEPS: [Spec; 2] = [
+    Spec {
+        name: "bow-knot-1000",
+        time_step: Some(0.001),
+        ..spec("bow-knot", [0.12, 0.1, 0.1], [1600, 900, 500])
+    },
+    Spec {
+        name: "reef-knot-1000",
+        time_step: Some(0.001),
+        ..spec("reef-knot", [0.2, 0.1, 0.1], [1400, 700, 400])
+    },
+];
+
 /// Problems kept of each scene.
 const KEPT: usize = 10;
 
 impl Spec {
-    /// The scene of that name.
-    pub fn of(scene: &str) -> Result<&'static Spec> {
-        SPECS.iter().find(|spec| spec.scene == scene).with_context(|| format!("no problems of {scene}"))
+    /// The one of that name.
+    pub fn of(name: &str) -> Result<&'static Spec> {
+        let mut all = SPECS.iter().chain(&SMALL_STEPS);
+        all.find(|spec| spec.name == name).with_context(|| format!("no problems of {name}"))
     }
 
     fn scale(&self, size: Size) -> f64 {
@@ -58,12 +78,13 @@ impl Spec {
     pub fn command(&self, size: Size) -> String {
         let [full, quick, tiny] = self.frames;
         let frames = size.pick(full, quick, tiny);
-        format!("bowknot run {} --scale {} --frames {frames}", self.scene, self.scale(size))
+        let time_step = self.time_step.map_or_else(String::new, |dt| format!(" --dt {dt}"));
+        format!("bowknot run {} --scale {} --frames {frames}{time_step}", self.scene, self.scale(size))
     }
 
     /// Files of the scene's problems in the order of time, recorded now if they are not there.
     pub fn files(&self, bench: &Bench) -> Result<Vec<PathBuf>> {
-        let folder = bench.out().join("states").join(self.scene);
+        let folder = bench.out().join("states").join(self.name);
         let done = folder.join("done.txt");
         if !done.exists() {
             println!("  recording {}", self.command(bench.size));
@@ -74,7 +95,8 @@ impl Spec {
     }
 
     fn record(&self, bench: &Bench, folder: &std::path::Path) -> Result<()> {
-        let scene = Scene::builtin(self.scene, self.scale(bench.size))?;
+        let mut scene = Scene::builtin(self.scene, self.scale(bench.size))?;
+        scene.simulation.dt = self.time_step.unwrap_or(scene.simulation.dt);
         let [full, quick, tiny] = self.frames;
         let frames = bench.size.pick(full, quick, tiny);
         let problems = in_contact(&scene, frames, bench.size.pick(KEPT, 3, 2))?;
@@ -98,7 +120,7 @@ pub fn all(bench: &Bench) -> Result<()> {
             let states = States::read(&file)?;
             let step = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             table.row([
-                format!("{}/{step}.npz", spec.scene).into(),
+                format!("{}/{step}.npz", spec.name).into(),
                 spec.scene.into(),
                 step.trim_start_matches('0').into(),
                 states.x.len().into(),

@@ -16,6 +16,8 @@ use std::time::Instant;
 const SHORT: f64 = 0.1;
 /// Solves at most for that.
 const REPEATS: usize = 20;
+/// CPU seconds above which a solve is measured in the first round alone.
+const LONG: f64 = 1.0;
 
 /// What a method did with a problem, and how good its result is.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -48,19 +50,22 @@ impl From<StageSeconds> for Stages {
 }
 
 /// Solves every case by every setting, each solve a measurement of its own that all figures share. In each of `rounds`
-/// the settings take turns, so that a busy machine slows all alike; times are medians over rounds. An entry is none
-/// if there was no time for it.
+/// the settings take turns, so that a busy machine slows all alike; times are medians over rounds. Of a case for which
+/// there was no time nothing is returned, so that settings are always compared on the same cases.
 pub fn compare(
     bench: &Bench,
-    cases: &[Case],
+    cases: &[&Case],
     settings: &[Setting],
     rounds: usize,
-) -> Result<Vec<Vec<Option<Solved>>>> {
+) -> Result<Vec<Option<Vec<Solved>>>> {
     let mut solved: Vec<Vec<Vec<Solved>>> = vec![vec![Vec::new(); settings.len()]; cases.len()];
     for round in 0..rounds {
         for (case, solved) in cases.iter().zip(&mut solved) {
             let mut judgement = None;
             for (setting, solved) in settings.iter().zip(solved) {
+                if solved.first().is_some_and(|first| first.cpu_seconds > LONG) {
+                    continue;
+                }
                 let key = format!("solve/{}/{}/{round}", case.name, setting.key());
                 if let Some(found) = bench.store.find(&key) {
                     solved.push(found);

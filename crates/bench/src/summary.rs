@@ -39,13 +39,13 @@ pub struct Summary {
 }
 
 /// A scene's problems solved by several settings.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Compared {
     pub scene: &'static str,
     pub cases: Vec<Case>,
-    /// One entry a problem and setting.
-    pub solved: Vec<Vec<Option<Solved>>>,
-    /// One entry a setting, without those that there was no time for.
+    /// One entry a problem that there was time for, and setting.
+    pub solved: Vec<Vec<Solved>>,
+    /// One entry a setting.
     pub summaries: Vec<Summary>,
 }
 
@@ -57,21 +57,31 @@ pub fn on_scenes(
     settings: &[Setting],
     rounds: usize,
 ) -> Result<Vec<Compared>> {
-    scenes
-        .iter()
-        .map(|scene| {
-            let cases = cases(bench, scene, count)?;
-            let solved = compare(bench, &cases, settings, rounds)?;
-            let summaries = settings
-                .iter()
-                .enumerate()
-                .filter_map(|(s, setting)| {
-                    Summary::of(setting, solved.iter().filter_map(|row| row[s].as_ref()))
-                })
-                .collect();
-            Ok(Compared { scene, cases, solved, summaries })
-        })
-        .collect()
+    let mut by_scene = Vec::new();
+    for scene in scenes {
+        by_scene.push(cases(bench, scene, count)?);
+    }
+    // The first problem of each scene, then the second: time that runs out takes the last ones of all scenes.
+    let mut order: Vec<(usize, usize)> =
+        by_scene.iter().enumerate().flat_map(|(s, cases)| (0..cases.len()).map(move |k| (s, k))).collect();
+    order.sort_by_key(|&(scene, case)| (case, scene));
+    let flat: Vec<&Case> = order.iter().map(|&(s, k)| &by_scene[s][k]).collect();
+    let solved = compare(bench, &flat, settings, rounds)?;
+    let mut solved_of: Vec<Vec<Vec<Solved>>> = vec![Vec::new(); scenes.len()];
+    for (&(scene, _), solved) in order.iter().zip(solved) {
+        solved_of[scene].extend(solved);
+    }
+    let compared = scenes.iter().zip(by_scene).zip(solved_of).map(|((&scene, cases), solved)| Compared {
+        scene,
+        summaries: settings
+            .iter()
+            .enumerate()
+            .filter_map(|(s, setting)| Summary::of(setting, solved.iter().map(|row| &row[s])))
+            .collect(),
+        cases,
+        solved,
+    });
+    Ok(compared.filter(|c| !c.solved.is_empty()).collect())
 }
 
 impl Compared {
@@ -127,9 +137,10 @@ impl Summary {
         })
     }
 
-    /// Distance to the exact solution, or else the stationarity residual [m].
+    /// Distance to the exact solution; or else the stationarity residual with the violation, as the root of the sum of
+    /// squares: either alone is small where the other is large [m].
     pub fn error(&self, exact: bool) -> f64 {
-        if exact { self.exact.unwrap_or(f64::NAN) } else { self.stationarity }
+        if exact { self.exact.unwrap_or(f64::NAN) } else { self.stationarity.hypot(self.violation) }
     }
 
     /// Method and change.
@@ -162,7 +173,7 @@ impl Summary {
 
 /// What the columns of [`table`] mean.
 pub const COLUMNS: &str = "Means over the problems of a scene. *Error*: distance to the exact solution, RMS; a star: not all \
-    problems have one, stationarity residual instead. *Steps*: mean (max). *Met*: calls that met the method's own stopping \
+    problems have one, stationarity residual and violation instead. *Steps*: mean (max). *Met*: calls that met the method's own stopping \
     rule. *Violation*: largest by which a contact is nearer than it should be. *To target*: what is minimised. *Stretch* \
     against rest, largest; *gap*, smallest; *X*: intersecting pairs.";
 

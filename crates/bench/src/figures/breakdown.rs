@@ -27,7 +27,7 @@ impl Figure for Breakdown {
 
     fn run(&self, bench: &Bench) -> Result<Section> {
         let scenes: Vec<&'static str> = bench.size.pick(
-            SPECS.iter().map(|spec| spec.scene).collect(),
+            SPECS.iter().map(|spec| spec.name).collect(),
             vec!["needle", "stack", "tube", "reef-knot", "sand"],
             vec!["needle"],
         );

@@ -25,7 +25,7 @@ impl Figure for Funnel {
     }
 
     fn run(&self, bench: &Bench) -> Result<Section> {
-        let scale = bench.size.pick(0.12, 0.06, 0.06);
+        let scale = 0.2;
         let time = bench.size.pick(0.5, 0.3, 0.2);
         let mut table = Table::new([
             "preset",

@@ -6,13 +6,16 @@ mod collision_error;
 mod early_contact;
 mod edge_limits;
 mod funnel;
+mod impact_zones;
 mod newton;
 mod parameters;
 mod row_solvers;
 mod simulation_error;
+mod step_sizes;
 mod steps;
 mod sweeps;
 mod switches;
+mod table_1;
 
 use crate::bench::Bench;
 use crate::chart::Chart;
@@ -23,11 +26,14 @@ use anyhow::Result;
 pub const ALL: &[&dyn Figure] = &[
     &collision_error::CollisionError,
     &simulation_error::SimulationError,
+    &table_1::Table1,
     &switches::Switches,
     &barrier::Barrier,
     &edge_limits::EdgeLimits,
     &sweeps::Sweeps,
     &row_solvers::RowSolvers,
+    &step_sizes::StepSizes,
+    &impact_zones::ImpactZones,
     &parameters::Parameters,
     &steps::Steps,
     &breakdown::Breakdown,

@@ -99,12 +99,12 @@ impl Figure for Parameters {
     fn run(&self, bench: &Bench) -> Result<Section> {
         let scenes: &[&'static str] =
             bench.size.pick(&["needle", "stack", "tube", "reef-knot"][..], &["stack"], &["needle"]);
-        let mut settings = vec![Setting::of("fast")?.within(8.0), Setting::of("paper")?.within(8.0)];
+        let mut settings = vec![Setting::of("fast")?, Setting::of("paper")?];
         let mut values: Vec<Vec<(f64, &str, String)>> = Vec::new();
         for sweep in &SWEEPS {
             let mut of_sweep = Vec::new();
             for &value in sweep.values {
-                let mut setting = Setting::of(sweep.method)?.within(8.0);
+                let mut setting = Setting::of(sweep.method)?;
                 let before = setting.params.clone();
                 (sweep.set)(&mut setting.params, value);
                 if setting.params != before {
@@ -142,7 +142,7 @@ impl Figure for Parameters {
         section.parts.push(Part::Data { name: self.name().to_owned(), table: table(&compared, |_| true) });
         section.parts.push(Part::Table {
             name: "parameters-steps".to_owned(),
-            caption: format!("The presets as they are, within 8 s a solve. {COLUMNS}"),
+            caption: format!("The presets as they are. {COLUMNS}"),
             table: table(&compared, |s| s.change.is_empty()),
         });
         Ok(section)

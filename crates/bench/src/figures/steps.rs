@@ -31,7 +31,7 @@ impl Figure for Steps {
 
     fn run(&self, bench: &Bench) -> Result<Section> {
         let scenes: Vec<&'static str> = bench.size.pick(
-            SPECS.iter().map(|spec| spec.scene).collect(),
+            SPECS.iter().map(|spec| spec.name).collect(),
             vec!["needle", "stack", "tube", "reef-knot", "sand"],
             vec!["needle"],
         );
@@ -72,7 +72,7 @@ fn label(class: usize) -> String {
 
 /// Steps of all problems by `fast` (0) or `paper` (1).
 fn steps(compared: &[Compared], setting: usize) -> impl Iterator<Item = usize> + '_ {
-    compared.iter().flat_map(|c| &c.solved).filter_map(move |row| row[setting].as_ref()).map(|s| s.steps)
+    compared.iter().flat_map(|c| &c.solved).map(move |row| row[setting].steps)
 }
 
 fn histogram(compared: &[Compared]) -> Vec<[usize; 2]> {
@@ -91,12 +91,7 @@ fn finding(compared: &[Compared]) -> String {
         let steps: Vec<usize> = steps(compared, setting).collect();
         let within = steps.iter().filter(|&&s| s <= 64).count();
         let middle = median(&steps.iter().map(|&s| s as f64).collect::<Vec<_>>());
-        let searches: usize = compared
-            .iter()
-            .flat_map(|c| &c.solved)
-            .filter_map(|row| row[setting].as_ref())
-            .map(|s| s.searches)
-            .sum();
+        let searches: usize = compared.iter().flat_map(|c| &c.solved).map(|row| row[setting].searches).sum();
         let total = steps.iter().sum::<usize>().max(1);
         let every = total as f64 / searches.max(1) as f64;
         format!(

@@ -73,7 +73,7 @@ fn the_exact_solution_is_exact() {
     let start = vec![Point::new(-0.01, 0.0, 0.002), Point::new(0.01, 0.0, 0.002)];
     let target = vec![Point::new(0.008, 0.0, -0.01), Point::new(-0.004, 0.0, -0.01)];
     let case = particles(start, target, vec![1.0, 3.0]);
-    let mut resolver = case.states.resolver(case.model.clone(), exact::params()).expect("a resolver");
+    let mut resolver = case.states.resolver(case.model.clone(), exact::params(60.0)).expect("a resolver");
     let mut x = case.states.x.clone();
     resolver
         .resolve(&mut x, &case.states.y, &case.states.call(), &mut exact::at_rest(&case))
