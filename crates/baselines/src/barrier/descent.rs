@@ -119,7 +119,7 @@ impl BackwardStep for DescentStep {
 }
 
 /// block^-1 gradient. Blocks are the inertia times the identity plus positive semidefinite matrices.
-pub(super) fn solve(block: &Matrix3<f64>, gradient: &Vector) -> Vector {
+fn solve(block: &Matrix3<f64>, gradient: &Vector) -> Vector {
     match block.cholesky() {
         Some(factor) => factor.solve(gradient),
         None => gradient / block.trace(),

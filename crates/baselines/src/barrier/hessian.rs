@@ -6,17 +6,24 @@
 //!
 //! hess D = 2 [W^T W - C (T^T T)^-1 C^T],   T_a = do/db_a,   C_a = (dW/db_a)^T o + W^T T_a,
 //!
-//! and hess d = (hess D / 2 - g g^T) / d. Eigenvalues of H below 0 are set to 0 (Teran et al. 2005; Li et al. 2020).
+//! and hess d = (hess D / 2 - g g^T) / d. Eigenvalues of H below 0 are set to 0 (Teran et al. 2005; Li et al. 2020). Whatever
+//! the pair, H has rank 5 at most: it acts on W^T n, on W^T times both tangents, and on the C_a, so that a problem of
+//! eigenvalues of size 5 replaces one of size 12.
 
 use super::objective::{Contact, Objective};
 use bowknot_twoway::geometry::{PairKind, Point, Vector};
-use nalgebra::{Matrix2, SMatrix};
+use nalgebra::{Matrix2, SMatrix, SVector};
 use rayon::prelude::*;
 
 /// Elements that one parallel task handles at least.
 const CHUNK: usize = 64;
 /// Weights nearer than this to 0 are of points that cannot slide on.
 const FREE: f64 = 1e-9;
+
+/// Squared sine of the angle between edges below which they count as parallel.
+const PARALLEL: f64 = 1e-12;
+/// Share of a column that must be left beside the others, or it adds no direction.
+const DEPENDENT: f64 = 1e-12;
 
 /// Second derivatives of up to four vertices [N/m], three rows each.
 pub type Block12 = SMatrix<f64, 12, 12>;
@@ -40,7 +47,7 @@ pub fn elements(objective: &Objective, x: &[Point], contacts: &[Contact]) -> Vec
         .map(|contact| Element {
             vertices: contact.vertices,
             count: contact.kind.vertex_count(),
-            matrix: positive_part(&pair_hessian(contact, &contact.vertices.map(|v| x[v as usize]))),
+            matrix: Factors::of(contact, &contact.vertices.map(|v| x[v as usize])).positive_part(),
         })
         .collect();
     let stiffness = objective.params().edge_stiffness;
@@ -95,72 +102,93 @@ fn places(kind: PairKind, weights: &[f64; 4]) -> ([[f64; 4]; 2], usize) {
     (places, count)
 }
 
-/// The Hessian of a pair's barrier, as it is.
-fn pair_hessian(contact: &Contact, x: &[Point; 4]) -> Block12 {
-    let (kind, separation, jet) = (contact.kind, &contact.separation, &contact.jet);
-    let sigma = separation.signed_weights(kind);
-    let n = separation.normal;
-    let mut gradient = SMatrix::<f64, 12, 1>::zeros();
-    for k in 0..kind.vertex_count() {
-        gradient.fixed_rows_mut::<3>(3 * k).copy_from(&(sigma[k] * n));
-    }
-    let outer = gradient * gradient.transpose();
-    let d = separation.distance;
-    if kind == PairKind::VertexHalfSpace || d <= 0.0 {
-        return jet.curvature * outer;
-    }
-    // W^T W
-    let mut hessian = Block12::zeros();
-    for i in 0..kind.vertex_count() {
-        for j in 0..kind.vertex_count() {
-            for c in 0..3 {
-                hessian[(3 * i + c, 3 * j + c)] = sigma[i] * sigma[j];
-            }
-        }
-    }
-    let (changes, count) = places(kind, &separation.weights);
-    let slides: Vec<Vector> =
-        changes[..count].iter().map(|change| (0..4).map(|k| change[k] * x[k].coords).sum()).collect();
-    let columns: Vec<SMatrix<f64, 12, 1>> = (0..count)
-        .map(|a| {
-            let mut column = SMatrix::<f64, 12, 1>::zeros();
-            for k in 0..kind.vertex_count() {
-                let row = changes[a][k] * d * n + sigma[k] * slides[a];
-                column.fixed_rows_mut::<3>(3 * k).copy_from(&row);
-            }
-            column
-        })
-        .collect();
-    match count {
-        1 => hessian -= columns[0] * columns[0].transpose() / slides[0].norm_squared(),
-        2 => {
-            let off = slides[0].dot(&slides[1]);
-            let metric = Matrix2::new(slides[0].norm_squared(), off, off, slides[1].norm_squared());
-            // Parallel edges: where one slides the other may follow, and the distance has no second derivative.
-            let determinant = metric.determinant();
-            if determinant > 1e-12 * metric[(0, 0)] * metric[(1, 1)]
-                && let Some(inverse) = metric.try_inverse()
-            {
-                for a in 0..2 {
-                    for b in 0..2 {
-                        hessian -= inverse[(a, b)] * columns[a] * columns[b].transpose();
-                    }
-                }
-            }
-        }
-        _ => {}
-    }
-    jet.curvature * outer + jet.slope / d * (hessian - outer)
+/// The Hessian of a pair's barrier as V K V^T.
+struct Factors {
+    /// W^T n, W^T times two tangents, C_a; zero where a place is not free.
+    v: SMatrix<f64, 12, 5>,
+    k: SMatrix<f64, 5, 5>,
 }
 
-/// The matrix with its eigenvalues below 0 set to 0.
-fn positive_part(matrix: &Block12) -> Block12 {
-    let eigen = matrix.symmetric_eigen();
-    let mut scaled = eigen.eigenvectors;
-    for (mut column, value) in scaled.column_iter_mut().zip(eigen.eigenvalues.iter()) {
-        column *= value.max(0.0);
+impl Factors {
+    fn of(contact: &Contact, x: &[Point; 4]) -> Self {
+        let (kind, separation, jet) = (contact.kind, &contact.separation, &contact.jet);
+        let sigma = separation.signed_weights(kind);
+        let n = separation.normal;
+        let mut factors = Self { v: SMatrix::zeros(), k: SMatrix::zeros() };
+        let lift = |direction: &Vector| {
+            let mut column = SVector::<f64, 12>::zeros();
+            for k in 0..kind.vertex_count() {
+                column.fixed_rows_mut::<3>(3 * k).copy_from(&(sigma[k] * direction));
+            }
+            column
+        };
+        factors.v.set_column(0, &lift(&n));
+        factors.k[(0, 0)] = jet.curvature;
+        let d = separation.distance;
+        if kind == PairKind::VertexHalfSpace || d <= 0.0 {
+            return factors;
+        }
+        let turn = jet.slope / d;
+        let tangent = n.cross(&Vector::ith(n.iamin(), 1.0)).normalize();
+        for (column, tangent) in [(1, tangent), (2, n.cross(&tangent))] {
+            factors.v.set_column(column, &lift(&tangent));
+            factors.k[(column, column)] = turn;
+        }
+
+        let (changes, count) = places(kind, &separation.weights);
+        let slide = |a: usize| -> Vector { (0..4).map(|k| changes[a][k] * x[k].coords).sum() };
+        let slides = [slide(0), slide(1)];
+        for a in 0..count {
+            let mut column = lift(&slides[a]);
+            for k in 0..kind.vertex_count() {
+                let mut rows = column.fixed_rows_mut::<3>(3 * k);
+                rows += changes[a][k] * d * n;
+            }
+            factors.v.set_column(3 + a, &column);
+        }
+        let metric = match count {
+            2 => {
+                let off = slides[0].dot(&slides[1]);
+                Matrix2::new(slides[0].norm_squared(), off, off, slides[1].norm_squared())
+            }
+            1 => Matrix2::new(slides[0].norm_squared(), 0.0, 0.0, 1.0),
+            _ => return factors,
+        };
+        // Parallel edges: where one slides the other may follow, and the distance has no second derivative.
+        if metric.determinant() > PARALLEL * metric[(0, 0)] * metric[(1, 1)]
+            && let Some(inverse) = metric.try_inverse()
+        {
+            factors.k.fixed_view_mut::<2, 2>(3, 3).copy_from(&(-turn * inverse));
+        }
+        factors
     }
-    scaled * eigen.eigenvectors.transpose()
+
+    /// The Hessian with its eigenvalues below 0 set to 0: V = Q R with orthonormal Q, then R K R^T is made so.
+    fn positive_part(&self) -> Block12 {
+        let mut q = SMatrix::<f64, 12, 5>::zeros();
+        for a in 0..5 {
+            let column = self.v.column(a);
+            let mut rest = column.into_owned();
+            // Twice is enough (Kahan, in Parlett 1980): what one pass leaves by rounding, the second takes.
+            for _ in 0..2 {
+                for b in 0..a {
+                    rest -= q.column(b) * q.column(b).dot(&rest);
+                }
+            }
+            let length = rest.norm();
+            if length > DEPENDENT * column.norm() {
+                q.set_column(a, &(rest / length));
+            }
+        }
+        let r = q.transpose() * self.v;
+        let eigen = (r * self.k * r.transpose()).symmetric_eigen();
+        let vectors = q * eigen.eigenvectors;
+        let mut scaled = vectors;
+        for (mut column, value) in scaled.column_iter_mut().zip(eigen.eigenvalues.iter()) {
+            column *= value.max(0.0);
+        }
+        scaled * vectors.transpose()
+    }
 }
 
 #[cfg(test)]

@@ -1,26 +1,26 @@
 //! The Newton system: inertia and elements, solved by conjugate gradients with 3x3 blocks of the diagonal as preconditioner.
 //!
-//! Each vertex gathers its rows from its elements in their order: the same bits for any number of threads.
+//! The matrix is kept as sparse rows of 3x3 blocks: in contact there are several pairs a vertex, so that this is shorter than
+//! their elements. Each row sums its elements in their order: the same bits for any number of threads.
 
-use super::descent::solve;
 use super::hessian::Element;
 use bowknot_twoway::geometry::Vector;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 /// Vertices that one parallel task handles at least.
-const CHUNK: usize = 512;
+const CHUNK: usize = 256;
 
-/// A symmetric positive definite matrix: inertia [N/m] of each vertex and elements. Rows of vertices without inertia are left
-/// out: those stay.
+/// A symmetric positive definite matrix: inertia [N/m] of each vertex and elements. Rows of vertices without inertia are
+/// zero: those stay.
 #[derive(Debug)]
-pub struct System<'a> {
-    inertia: &'a [f64],
-    elements: &'a [Element],
-    /// Elements of each vertex and its place in them, and where those of each vertex start.
-    incidence: Vec<(u32, u8)>,
+pub struct System {
+    /// Where the blocks of each row start, their columns, and what they are.
     starts: Vec<u32>,
+    columns: Vec<u32>,
     blocks: Vec<Matrix3<f64>>,
+    /// Inverses of the diagonal's blocks; 0 for vertices that stay.
+    inverses: Vec<Matrix3<f64>>,
 }
 
 /// How a solve went.
@@ -32,54 +32,64 @@ pub struct SolveReport {
     pub residual: f64,
 }
 
-impl<'a> System<'a> {
+impl System {
     /// The system of `elements` over vertices with this `inertia`, 0 for those that stay.
-    pub fn new(inertia: &'a [f64], elements: &'a [Element]) -> Self {
-        let mut starts = vec![0u32; inertia.len() + 1];
+    pub fn new(inertia: &[f64], elements: &[Element]) -> Self {
+        let mut incidence = vec![Vec::new(); inertia.len()];
         for element in elements {
-            for v in &element.vertices[..element.count] {
-                starts[*v as usize + 1] += 1;
-            }
-        }
-        for v in 0..inertia.len() {
-            starts[v + 1] += starts[v];
-        }
-        let mut next = starts.clone();
-        let mut incidence = vec![(0, 0); starts[inertia.len()] as usize];
-        for (e, element) in elements.iter().enumerate() {
             for (place, v) in element.vertices[..element.count].iter().enumerate() {
-                let slot = &mut next[*v as usize];
-                incidence[*slot as usize] = (e as u32, place as u8);
-                *slot += 1;
+                incidence[*v as usize].push((element, place));
             }
         }
-        let blocks = (0..inertia.len())
-            .map(|v| {
-                let mut block = Matrix3::from_diagonal_element(inertia[v]);
-                for &(e, place) in &incidence[starts[v] as usize..starts[v + 1] as usize] {
-                    let at = 3 * place as usize;
-                    block += elements[e as usize].matrix.fixed_view::<3, 3>(at, at);
+        let row = |v: usize| -> Vec<(u32, Matrix3<f64>)> {
+            if inertia[v] <= 0.0 {
+                return Vec::new();
+            }
+            let mut row = vec![(v as u32, Matrix3::from_diagonal_element(inertia[v]))];
+            for (element, place) in &incidence[v] {
+                for k in 0..element.count {
+                    let block = element.matrix.fixed_view::<3, 3>(3 * place, 3 * k);
+                    row.push((element.vertices[k], block.into_owned()));
                 }
-                block
-            })
-            .collect();
-        Self { inertia, elements, incidence, starts, blocks }
+            }
+            // Stable: what is summed keeps its order.
+            row.sort_by_key(|(column, _)| *column);
+            row.dedup_by(|next, sum| {
+                let same = next.0 == sum.0;
+                if same {
+                    sum.1 += next.1;
+                }
+                same
+            });
+            row
+        };
+        let rows: Vec<_> = (0..inertia.len()).into_par_iter().with_min_len(CHUNK).map(row).collect();
+        let mut starts = vec![0];
+        let (mut columns, mut blocks) = (Vec::new(), Vec::new());
+        let mut inverses = Vec::with_capacity(rows.len());
+        for (v, row) in rows.iter().enumerate() {
+            columns.extend(row.iter().map(|(column, _)| *column));
+            blocks.extend(row.iter().map(|(_, block)| *block));
+            starts.push(columns.len() as u32);
+            let diagonal = row.iter().find(|(column, _)| *column == v as u32).map(|(_, block)| *block);
+            inverses.push(diagonal.map_or_else(Matrix3::zeros, |block| match block.cholesky() {
+                Some(factor) => factor.inverse(),
+                None => Matrix3::from_diagonal_element(1.0 / block.trace()),
+            }));
+        }
+        Self { starts, columns, blocks, inverses }
     }
 
-    /// A x; 0 for vertices that stay, which `x` must be as well.
+    /// A x; 0 for vertices that stay, whose entries of `x` act on the others all the same.
     pub fn multiply(&self, x: &[Vector], product: &mut [Vector]) {
         product.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(|(v, row)| {
-            *row = Vector::zeros();
-            if self.inertia[v] > 0.0 {
-                *row = self.inertia[v] * x[v];
-                for &(e, place) in &self.incidence[self.starts[v] as usize..self.starts[v + 1] as usize] {
-                    let element = &self.elements[e as usize];
-                    for k in 0..element.count {
-                        let block = element.matrix.fixed_view::<3, 3>(3 * place as usize, 3 * k);
-                        *row += block * x[element.vertices[k] as usize];
-                    }
-                }
+            let entries = self.starts[v] as usize..self.starts[v + 1] as usize;
+            let columns = &self.columns[entries.clone()];
+            let mut sum = Vector::zeros();
+            for (block, &column) in self.blocks[entries].iter().zip(columns) {
+                sum += block * x[column as usize];
             }
+            *row = sum;
         });
     }
 
@@ -94,15 +104,12 @@ impl<'a> System<'a> {
         let count = b.len();
         x.clear();
         x.resize(count, Vector::zeros());
-        let precondition = |r: &[Vector]| -> Vec<Vector> {
-            let row = |v: usize| match self.inertia[v] > 0.0 {
-                true => solve(&self.blocks[v], &r[v]),
-                false => Vector::zeros(),
-            };
-            (0..count).into_par_iter().with_min_len(CHUNK).map(row).collect()
+        let precondition = |r: &[Vector], z: &mut [Vector]| {
+            z.iter_mut().zip(r).zip(&self.inverses).for_each(|((z, r), inverse)| *z = inverse * r);
         };
         let mut r = b.to_vec();
-        let mut z = precondition(&r);
+        let mut z = vec![Vector::zeros(); count];
+        precondition(&r, &mut z);
         let mut p = z.clone();
         let mut product = vec![Vector::zeros(); count];
         let first = dot(&r, &z);
@@ -119,7 +126,7 @@ impl<'a> System<'a> {
                 x[v] += step * p[v];
                 r[v] -= step * product[v];
             }
-            z = precondition(&r);
+            precondition(&r, &mut z);
             let next = dot(&r, &z);
             let share = next / rz;
             rz = next;
