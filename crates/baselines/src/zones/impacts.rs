@@ -4,7 +4,7 @@ use crate::Outcome;
 use crate::ccd::AdditiveCcd;
 use bowknot_twoway::Problem;
 use bowknot_twoway::constraints::DesiredDistance;
-use bowknot_twoway::geometry::{PairKind, Point, Separation, Vector};
+use bowknot_twoway::geometry::{PairKind, Point, Separation, Vector, distance};
 use bowknot_twoway::proximity::{CollisionModel, Pair, PairList, ProximitySearch};
 use rayon::prelude::*;
 use std::time::Instant;
@@ -19,14 +19,14 @@ const SLACK_SHARE: f64 = 0.5;
 /// Pairs that one parallel task tests at least.
 const CHUNK: usize = 256;
 
-/// A pair that meets, or nearly.
+/// A pair that meets, or nearly, or ends too near.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
     /// Kind of the pair.
     pub kind: PairKind,
     /// The pair.
     pub pair: Pair,
-    /// Until this time in [0, 1) the pair surely keeps apart.
+    /// Until this time in [0, 1] the pair surely keeps apart; 1: all the way, but it ends nearer than its thickness.
     pub time: f64,
     /// Distance that it is to be separated to [m].
     pub desired: f64,
@@ -43,6 +43,9 @@ impl Impact {
 /// desired distance on the whole way, or half of the gap that it started with.
 #[derive(Debug)]
 pub struct ImpactSearch {
+    /// Share of its desired distance below which a pair that does not meet, but ends there, is found too; 0, the default:
+    /// none is.
+    pub thickness: f64,
     search: ProximitySearch,
     ccd: AdditiveCcd,
     pairs: PairList,
@@ -54,6 +57,7 @@ impl ImpactSearch {
     /// A search over the primitives of `model`.
     pub fn new(model: &CollisionModel) -> Self {
         Self {
+            thickness: 0.0,
             search: ProximitySearch::new(model),
             ccd: AdditiveCcd::default(),
             pairs: PairList::default(),
@@ -75,9 +79,10 @@ impl ImpactSearch {
         outcome: &mut Outcome,
     ) -> Vec<Impact> {
         let clock = Instant::now();
-        let Self { search, pairs, separations, radii, ccd } = self;
+        let Self { thickness, search, pairs, separations, radii, ccd } = self;
+        let thickness = *thickness;
         radii.clear();
-        radii.resize(x.len(), FLOOR_SHARE * problem.spacing.largest_delta());
+        radii.resize(x.len(), FLOOR_SHARE.max(thickness) * problem.spacing.largest_delta());
         search.search_swept(&problem.model, x, paths, radii, pairs, separations);
         outcome.searches += 1;
         outcome.seconds.search += clock.elapsed().as_secs_f64();
@@ -103,12 +108,24 @@ impl ImpactSearch {
                     let slackness = (SLACK_SHARE * desired / gap).min(ccd.slackness);
                     let ccd = AdditiveCcd { slackness, ..*ccd };
                     let time = clearance(&ccd, problem, kind, &pair, x, paths, floor);
-                    (time < 1.0).then_some(Impact { time, ..impact })
+                    let near = || end_distance(problem, kind, &pair, x, paths) < thickness * desired;
+                    (time < 1.0 || (thickness > 0.0 && near())).then_some(Impact { time, ..impact })
                 });
             impacts.par_extend(found);
         }
         outcome.seconds.evaluate += clock.elapsed().as_secs_f64();
         impacts
+    }
+}
+
+/// Distance of a pair at the end of its paths [m].
+fn end_distance(problem: &Problem, kind: PairKind, pair: &Pair, x: &[Point], paths: &[Vector]) -> f64 {
+    let at = |v: u32| x[v as usize] + paths[v as usize];
+    match kind {
+        PairKind::VertexHalfSpace => {
+            problem.model.half_spaces()[pair.elements[1] as usize].signed_distance(&at(pair.vertices[0]))
+        }
+        _ => distance::closest(kind, &pair.vertices.map(at)).distance,
     }
 }
 

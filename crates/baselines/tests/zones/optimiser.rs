@@ -1,8 +1,8 @@
 use crate::common::{Draw, Scene};
 use crate::support::{crumpled, momenta, solve_clear};
-use bowknot_baselines::twoway::Params;
 use bowknot_baselines::twoway::geometry::{HalfSpace, Point, Topology, Vector};
 use bowknot_baselines::twoway::proximity::{BodyFilter, CollisionModel};
+use bowknot_baselines::twoway::{Call, Params, Resolver};
 use bowknot_baselines::zones::{ImpactZones, ZoneParams, ZoneSolver};
 
 fn zones(scene: &Scene, solver: ZoneSolver) -> ImpactZones {
@@ -50,6 +50,41 @@ fn sheets_that_come_near_are_resolved_and_keep_their_momentum() {
         }
     }
     assert_eq!(counts, [1, 1, 1]);
+}
+
+#[test]
+fn without_thickness_what_does_not_meet_may_end_near_and_with_it_keeps_its_distance() {
+    let scene = Scene::vertex_above_triangle(0.5);
+    let delta = scene.problem(Params::fast()).lengths.delta;
+    let mut target = scene.x.clone();
+    target[3].z = 0.3 * delta;
+    let mut thin = zones(&scene, ZoneSolver::GaussSeidel);
+    let (x, outcome) = solve_clear(&mut thin, &scene, &target, &[]);
+    assert_eq!((outcome.steps, outcome.converged), (0, true));
+    assert_eq!(x, target);
+    thin.params.thickness = 0.8;
+    let (x, outcome) = solve_clear(&mut thin, &scene, &target, &[]);
+    assert_eq!((outcome.steps, outcome.converged), (1, true));
+    assert!((x[3].z - delta).abs() < 0.01 * delta, "{}", x[3].z);
+
+    // Sheets pressed onto each other: whatever pair, of all that are near at the end.
+    let scene = Scene::two_sheets(6, 0.05);
+    let target = crumpled(&scene, 0.05, 7);
+    let mut resolver =
+        Resolver::new(scene.model.clone(), &scene.x, &vec![0.01; scene.x.len()], Params::fast()).unwrap();
+    let delta = resolver.problem().lengths.delta;
+    let mut gap = |thickness: f64| {
+        let mut zones = zones(&scene, ZoneSolver::GaussSeidel);
+        zones.params.thickness = thickness;
+        let (x, outcome) = solve_clear(&mut zones, &scene, &target, &[]);
+        assert!(outcome.converged);
+        let contacts = resolver.survey(&x, &Call::default()).unwrap();
+        let body = |v: u32| scene.model.vertex_body()[v as usize];
+        let gaps = contacts.pairs.pairs().iter().zip(&contacts.separations);
+        let between = gaps.filter(|(pair, _)| body(pair.vertices[0]) != body(pair.vertices[3]));
+        between.map(|(_, separation)| separation.distance).fold(f64::INFINITY, f64::min)
+    };
+    assert!(gap(0.0) < 0.7 * delta && gap(0.8) > 0.799 * delta);
 }
 
 /// A vertex between two plates that come together, nearer than twice its desired distance: what a vice holds.
