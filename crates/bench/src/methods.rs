@@ -6,8 +6,8 @@ use bowknot::twoway::{
     BackwardStep, BudgetedSearch, CertifiedForward, ForwardStep, LcpBackward, Params, Problem, Resolver,
     Search,
 };
-use bowknot_baselines::barrier::{BarrierParams, by_descent};
-use bowknot_baselines::ccd::{EarliestImpact, PerVertexImpact};
+use bowknot_baselines::barrier::{BarrierParams, by_descent, by_newton};
+use bowknot_baselines::ccd::{AdditiveCcd, EarliestImpact, PerVertexImpact};
 use bowknot_baselines::rows::{
     AugmentedLagrangian, InterStepChebyshev, LinearSystem, ProjectedJacobi, two_way_with, two_way_with_stage,
 };
@@ -30,6 +30,7 @@ pub const METHODS: &[Entry] = &[
     Entry { name: "fast", params: Params::fast, build: two_way },
     Entry { name: "paper", params: Params::paper, build: two_way },
     Entry { name: "log barrier", params: Params::paper, build: |p| log_barrier(p, BarrierParams::default()) },
+    Entry { name: "log barrier, Newton", params: Params::paper, build: newton_barrier },
     Entry { name: "Harmon 2008", params: without_edges, build: |p| rows(p, LinearSystem::default()) },
     Entry { name: "Harmon, projected", params: without_edges, build: |p| rows(p, LinearSystem::projected()) },
     Entry { name: "Tang 2018, 20", params: Params::paper, build: |p| rows(p, AugmentedLagrangian::new(20)) },
@@ -157,6 +158,11 @@ fn two_way(problem: Problem) -> Built {
 /// Eq. 7-8 by gradient descent.
 pub fn log_barrier(problem: Problem, params: BarrierParams) -> Built {
     composed(by_descent(problem, params)?)
+}
+
+/// Eq. 7-8 by projected Newton steps with a line search behind CCD, as IPC does (Li et al. 2020).
+fn newton_barrier(problem: Problem) -> Built {
+    composed(by_newton(problem, BarrierParams::default(), AdditiveCcd::default())?)
 }
 
 /// The two-way method with another solver of its rows.

@@ -17,7 +17,7 @@ pub fn section(figure: &dyn Figure, section: &Section, conditions: &str) -> Stri
     for part in &section.parts {
         let part = match part {
             Part::Table { caption, table, .. } => {
-                format!("{}\n\n{}", wrap(caption), table.markdown()).trim_end().to_owned()
+                format!("{}\n\n{}", wrap(caption), table.markdown()).trim().to_owned()
             }
             Part::Chart { name, chart } => format!("![{}](benchmarks/{name}.svg)", chart.title),
             Part::Data { .. } => continue,

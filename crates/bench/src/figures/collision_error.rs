@@ -4,8 +4,8 @@ use super::{Figure, Part, Section};
 use crate::bench::Bench;
 use crate::chart::{Axis, Chart, Mark, Series, Style, pareto_front};
 use crate::methods::{METHODS, Setting};
-use crate::summary::{COLUMNS, Compared, on_scenes, ratios, table};
-use crate::table::{geometric_mean, times};
+use crate::summary::{COLUMNS, Compared, Summary, on_scenes, ratios, table};
+use crate::table::{Entry, Table, geometric_mean, largest, smallest, times};
 use anyhow::Result;
 use bowknot::constraints::{ContactForm, EdgeReference};
 use bowknot::twoway::Params;
@@ -41,6 +41,12 @@ impl Figure for CollisionError {
         let compared = on_scenes(bench, scenes, count, &settings()?, rounds)?;
         let mut section = Section { finding: finding(&compared), parts: Vec::new() };
         section.parts.push(Part::Table {
+            name: format!("{}-ratios", self.name()),
+            caption: "Every method as it is, as multiples of `fast`: geometric mean over the scenes, smallest, largest."
+                .to_owned(),
+            table: against_fast(&compared),
+        });
+        section.parts.push(Part::Table {
             name: self.name().to_owned(),
             caption: format!("Methods as they are. {COLUMNS}"),
             table: table(&compared, |s| s.change.is_empty()),
@@ -54,6 +60,9 @@ impl Figure for CollisionError {
         Ok(section)
     }
 }
+
+/// Methods of which changes are measured as well.
+const VARIED: [&str; 2] = ["fast", "paper"];
 
 /// All methods as they are, and changes of the two presets.
 fn settings() -> Result<Vec<Setting>> {
@@ -109,7 +118,8 @@ fn chart(compared: &Compared) -> Chart {
         let mut marks = Vec::new();
         for (k, point) in summaries.iter().enumerate().filter(|(_, p)| p.method == entry.name) {
             let label = match point.change.as_str() {
-                "" => "as it is".to_owned(),
+                "" if VARIED.contains(&point.method) => "as it is".to_owned(),
+                "" => String::new(),
                 change if front.contains(&k) => change.to_owned(),
                 _ => String::new(),
             };
@@ -135,23 +145,65 @@ fn chart(compared: &Compared) -> Chart {
     }
 }
 
-/// Time and error of each other method as it is, over those of `fast`.
+/// Time and error of each method as it is, as multiples of those of `fast`: geometric means over the scenes, and extremes.
+fn against_fast(compared: &[Compared]) -> Table {
+    let mut table = Table::new([
+        "method",
+        "CPU time",
+        "from",
+        "to",
+        "error",
+        "from",
+        "to",
+        "failed",
+        "met its rule",
+        "intersections",
+    ]);
+    for entry in METHODS {
+        let of = |value: fn(&Summary) -> usize| {
+            compared.iter().filter_map(|c| c.find(entry.name, "")).map(value).sum::<usize>()
+        };
+        let times_of = |ratios: Vec<f64>| {
+            [geometric_mean(&ratios), smallest(&ratios), largest(&ratios)].map(|r| Entry::from(times(r)))
+        };
+        let (method, fast) = ((entry.name, ""), ("fast", ""));
+        let cpu = times_of(ratios(compared, method, fast, |s, _| s.cpu));
+        let error = times_of(ratios(compared, method, fast, |s, exact| s.error(exact)));
+        let all = of(|s| s.of);
+        let counts = [
+            format!("{} of {all}", of(|s| s.failed)).into(),
+            format!("{} of {all}", of(|s| s.met)).into(),
+            of(|s| s.intersections).to_string().into(),
+        ];
+        table.row(std::iter::once(Entry::from(entry.name)).chain(cpu).chain(error).chain(counts));
+    }
+    table
+}
+
+/// `fast` against the paper's method and its rivals; what is as fast, and at what error.
 fn finding(compared: &[Compared]) -> String {
     let fast = ("fast", "");
-    let parts: Vec<String> = METHODS
+    let over = |method: &str| {
+        let cpu = ratios(compared, (method, ""), fast, |s, _| s.cpu);
+        let error = ratios(compared, (method, ""), fast, |s, exact| s.error(exact));
+        (!cpu.is_empty() && !error.is_empty()).then(|| (geometric_mean(&cpu), geometric_mean(&error)))
+    };
+    let told = ["paper", "log barrier", "log barrier, Newton"].iter().filter_map(|method| {
+        over(method).map(|(c, e)| format!("{method} takes {} the time at {} the error", times(c), times(e)))
+    });
+    let faster: Vec<String> = METHODS
         .iter()
-        .filter(|entry| entry.name != "fast")
         .filter_map(|entry| {
-            let cpu = ratios(compared, (entry.name, ""), fast, |s, _| s.cpu);
-            let error = ratios(compared, (entry.name, ""), fast, |s, exact| s.error(exact));
-            (!cpu.is_empty() && !error.is_empty()).then(|| {
-                let (cpu, error) = (times(geometric_mean(&cpu)), times(geometric_mean(&error)));
-                format!("{} takes {cpu} at {error}", entry.name)
-            })
+            let (cpu, error) = over(entry.name).filter(|(cpu, _)| *cpu < 1.0)?;
+            Some(format!("{} ({} at {} the error)", entry.name, times(cpu), times(error)))
         })
         .collect();
+    let faster = match faster.is_empty() {
+        true => "No method is faster than `fast`".to_owned(),
+        false => format!("Faster than `fast`: {}", faster.join(", ")),
+    };
     format!(
-        "CPU seconds and error as multiples of those of `fast`, geometric means over the scenes: {}.",
-        parts.join("; ")
+        "Against `fast`, geometric means over the scenes: {}. {faster}.",
+        told.collect::<Vec<_>>().join("; ")
     )
 }

@@ -26,7 +26,7 @@ impl Figure for Funnel {
 
     fn run(&self, bench: &Bench) -> Result<Section> {
         let scale = 0.2;
-        let time = bench.size.pick(0.5, 0.3, 0.2);
+        let time = bench.size.pick(0.5, 0.15, 0.1);
         let mut table = Table::new([
             "preset",
             "dt, s",

@@ -25,6 +25,8 @@ struct Subject {
 
 /// Time step of the finest simulation over that of the reference.
 const REFERENCE: usize = 64;
+const CAPTION: &str =
+    "Distances from the reference; *end*: of the last positions. *X*: intersections of the four states.";
 /// Samples that simulations are compared at.
 const SAMPLES: usize = 4;
 /// Simulations that an order is taken of: the time step of the third is 16 times that of the reference, whose own error
@@ -132,7 +134,7 @@ impl Figure for SimulationError {
              Euler: 1.)",
             told.join("; ")
         );
-        section.parts.push(Part::Table { name: self.name().to_owned(), caption: String::new(), table });
+        section.parts.push(Part::Table { name: self.name().to_owned(), caption: CAPTION.to_owned(), table });
         Ok(section)
     }
 }
