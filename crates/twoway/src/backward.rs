@@ -1,18 +1,17 @@
 //! The default backward stage: the inexact LCP (paper, Eq. 9-13) with a proximal term.
 //!
 //! Linearised at x, the problem is min 1/2 sum m^ |y - y0|^2 + 1/2 sum mu |y - x|^2 subject to the rows. The
-//! proximal term mu keeps a curvature that linearising anew drops: moving an edge of length |e| that
-//! carries a multiplier lambda sideways costs lambda/|e|, and a contact's normal turns with the local
-//! edge length h. Without it y wanders for ever in hard contact; at y = x it vanishes, so the
-//! fixed point is unchanged. With w = 1/(m^ + mu):
+//! proximal term mu keeps a curvature that linearising anew drops (`proximal.rs`). Without it y wanders for ever in hard
+//! contact; at y = x it vanishes, so the fixed point is unchanged. With w = 1/(m^ + mu):
 //!
 //! y = y' + W J^T lambda,   y' = w (m^ y0 + mu x).
 
 use crate::coarse::is_sliding;
+use crate::proximal;
 use crate::row_solver::{ColouredSweeps, RowSolver, RowSystem};
 use crate::{BackwardStep, Problem, State, Statistics};
 use bowknot_constraints::{ContactRows, EdgeForm, EdgeLimits, predicted_gap};
-use bowknot_geometry::{PairKind, Vector};
+use bowknot_geometry::Vector;
 use bowknot_lcp::{self as lcp, Family, Schedule, TangentVector};
 use std::time::Instant;
 
@@ -35,6 +34,8 @@ pub struct LcpBackward<K = ColouredSweeps> {
     /// Multipliers of the friction rows along their tangents.
     friction: Vec<TangentVector>,
     proximal: Vec<f64>,
+    /// What the proximal term is multiplied by where y swings about x.
+    caution: proximal::Caution,
     weights: Vec<f64>,
     /// y' [m].
     free: Vec<Vector>,
@@ -72,6 +73,7 @@ impl<K: RowSolver> BackwardStep for LcpBackward<K> {
         self.forces.resize(self.edges.balls.len(), Vector::zeros());
         self.edge_multipliers.clear();
         self.edge_multipliers.resize(self.edges.balls.len(), 0.0);
+        self.caution.begin(problem);
     }
 
     fn project(&mut self, problem: &Problem, state: &mut State, statistics: &mut Statistics) {
@@ -80,6 +82,7 @@ impl<K: RowSolver> BackwardStep for LcpBackward<K> {
         self.fill_rows(problem, state, statistics);
         self.solve(problem, state, statistics);
         self.store(problem, state);
+        self.caution.learn(problem, state);
         statistics.seconds.backward += clock.elapsed().as_secs_f64();
     }
 
@@ -171,41 +174,12 @@ impl<K: RowSolver> LcpBackward<K> {
 
     /// mu from the last multipliers, then w and y'.
     fn set_weights(&mut self, problem: &Problem, state: &State) {
-        let params = &problem.params.backward;
         self.proximal.clear();
         self.proximal.resize(state.x.len(), 0.0);
-        if params.edge_proximal > 0.0 {
-            for (k, ball) in self.edges.balls.iter().enumerate() {
-                let lambda = match problem.params.constraints.edge_form {
-                    EdgeForm::Ball => self.forces[k].norm(),
-                    EdgeForm::Linear => self.edge_multipliers[k],
-                };
-                if lambda > 0.0 {
-                    let [a, b] = ball.vertices.map(|v| v as usize);
-                    let length = (state.x[a] - state.x[b]).norm().max(f64::MIN_POSITIVE);
-                    let mu = params.edge_proximal * lambda / length;
-                    self.proximal[a] += mu;
-                    self.proximal[b] += mu;
-                }
-            }
-        }
-        if params.contact_proximal > 0.0 {
-            let contacts = &state.contacts;
-            for kind in PairKind::ALL {
-                for p in contacts.pairs.range(kind) {
-                    let lambda = contacts.multipliers[p];
-                    if lambda > 0.0 {
-                        let vertices = &contacts.pairs.pairs()[p].vertices;
-                        for k in 0..kind.vertex_count() {
-                            let v = vertices[k] as usize;
-                            self.proximal[v] +=
-                                params.contact_proximal * lambda * contacts.separations[p].weights[k]
-                                    / problem.local_edge[v];
-                        }
-                    }
-                }
-            }
-        }
+        let (forces, scalars) = (&self.forces, &self.edge_multipliers);
+        proximal::add_edges(&mut self.proximal, problem, state, &self.edges.balls, forces, scalars);
+        proximal::add_contacts(&mut self.proximal, problem, state);
+        self.caution.apply(&mut self.proximal);
         self.weights.clear();
         self.free.clear();
         for v in 0..state.x.len() {

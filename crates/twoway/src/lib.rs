@@ -16,6 +16,7 @@ mod injection;
 mod observer;
 mod params;
 mod problem;
+mod proximal;
 mod resolver;
 mod row_solver;
 mod search;

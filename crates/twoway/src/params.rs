@@ -30,10 +30,14 @@ pub struct BackwardParams {
     /// Remaining distance below which `polish_sweeps` applies, in local edge lengths. Default 1.
     pub polish_distance: f64,
     /// Strength of the proximal term on edges: mu_i += edge_proximal * sum lambda_e / |e|. 0 switches it off; smaller
-    /// ones come nearer to the true projection until edges wander (linear form: 2). Default 0.35.
+    /// ones come nearer to the true projection until edges wander (linear form: 2). Default 0.1.
     pub edge_proximal: f64,
-    /// Strength of the proximal term on contacts: mu_i += contact_proximal * sum lambda_p |g| / h. Default 0.5.
+    /// Strength of the proximal term on contacts: mu_i += contact_proximal * sum lambda_p |g| / r, r the length that the
+    /// contact's normal turns with: that of edges, or the distance where vertices or parallel edges meet. Default 0.1.
     pub contact_proximal: f64,
+    /// Largest factor on the proximal term of a vertex: it doubles each time that the way the vertex wants turns back
+    /// from one step to the next, and falls slowly otherwise. 1: the term stays as it is. Default 32.
+    pub proximal_growth: f64,
     /// Whether one scalar for all multipliers is solved for before each sweep. Default true.
     pub coarse_correction: bool,
     /// Whether rows that are neither pushing nor predicted to close are left out of the sweeps. Default true.
@@ -90,8 +94,9 @@ impl Default for BackwardParams {
             sweeps: 8,
             polish_sweeps: 64,
             polish_distance: 1.0,
-            edge_proximal: 0.35,
-            contact_proximal: 0.5,
+            edge_proximal: 0.1,
+            contact_proximal: 0.1,
+            proximal_growth: 32.0,
             coarse_correction: true,
             active_rows: true,
         }
@@ -133,6 +138,7 @@ impl Params {
                 polish_sweeps: 1,
                 edge_proximal: 0.0,
                 contact_proximal: 0.0,
+                proximal_growth: 1.0,
                 coarse_correction: false,
                 active_rows: false,
                 ..BackwardParams::default()
@@ -160,6 +166,11 @@ impl Params {
         check(
             b.polish_sweeps >= b.sweeps,
             format!("backward.polish_sweeps = {} must be at least backward.sweeps", b.polish_sweeps),
+        );
+        let growth = b.proximal_growth;
+        check(
+            growth.is_finite() && growth >= 1.0,
+            format!("backward.proximal_growth = {growth} must be finite and at least 1"),
         );
         let s = &self.stop;
         for (key, value) in [
