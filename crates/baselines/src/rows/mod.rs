@@ -19,8 +19,9 @@ pub use inter_step::InterStepChebyshev;
 pub use jacobi::ProjectedJacobi;
 pub use linear_system::LinearSystem;
 
+use bowknot_twoway::constraints::ContactForm;
 use bowknot_twoway::{
-    BackwardStep, BudgetedSearch, CertifiedForward, LcpBackward, Problem, Resolver, RowSolver,
+    BackwardStep, BudgetedSearch, CertifiedForward, LcpBackward, Params, Problem, Resolver, RowSolver,
 };
 
 /// The two-way method with another solver of its rows; `problem` has the parameters, as a rule those of
@@ -39,4 +40,15 @@ pub fn two_way_with_stage<B: BackwardStep>(
 ) -> Resolver<BudgetedSearch, B, CertifiedForward> {
     let search = BudgetedSearch::new(&problem);
     Resolver::with_stages(problem, search, backward, CertifiedForward::default())
+}
+
+/// Parameters under which contacts keep the volume that they have, as Sifakis et al. 2008 ("Globally coupled collision handling
+/// using volume preserving impulses") have it, instead of being brought to the volume of the desired distance (paper,
+/// section 4.1): a pair below it is asked for no more than the gap with which it was first listed in the call. Calls must
+/// have a time step, whose separation speed is what this takes away.
+#[must_use]
+pub fn preserving_volume(mut params: Params) -> Params {
+    params.constraints.form = ContactForm::Volume;
+    params.constraints.separation_speed = Some(f64::MIN_POSITIVE);
+    params
 }

@@ -1,6 +1,7 @@
 use crate::common::{Scene, resolve_watched};
 use bowknot_baselines::rows::{
-    AugmentedLagrangian, InterStepChebyshev, LinearSystem, ProjectedJacobi, two_way_with, two_way_with_stage,
+    AugmentedLagrangian, InterStepChebyshev, LinearSystem, ProjectedJacobi, preserving_volume, two_way_with,
+    two_way_with_stage,
 };
 use bowknot_baselines::twoway::geometry::{Point, Vector};
 use bowknot_baselines::twoway::{
@@ -125,4 +126,28 @@ fn results_have_the_same_bits_on_any_number_of_threads() {
     for threads in [2, 5] {
         assert!(solve(threads) == one, "{threads} threads");
     }
+}
+
+#[test]
+fn contacts_that_keep_their_volume_stay_as_near_as_they_start_and_others_open() {
+    // Half of the desired distance apart, pressed onto each other.
+    let scene = Scene::two_sheets(4, 0.005);
+    let n = scene.x.len() / 2;
+    let target: Vec<Point> = (scene.x.iter().enumerate())
+        .map(|(v, x)| x + Vector::z() * if v < n { 0.01 } else { -0.01 })
+        .collect();
+    let gaps = |params: Params| {
+        let problem = scene.problem(params);
+        assert!((problem.lengths.delta - 0.0112).abs() < 1e-4);
+        let (x, statistics) = run(&scene, two_way_with(problem, ColouredSweeps), &target);
+        assert!(statistics.converged);
+        // Both sheets have one and the same warp.
+        let gaps = (0..n).map(|v| x[v + n].z - x[v].z);
+        (gaps.clone().fold(f64::INFINITY, f64::min), gaps.fold(0.0, f64::max))
+    };
+    let (low, high) = gaps(preserving_volume(params(200)));
+    assert!(low > 0.0045 && high < 0.0055, "{low} {high}");
+    let (low, high) = gaps(params(200));
+    // 20 delta a second, for 1/100 s.
+    assert!(low > 0.0065 && high < 0.008, "{low} {high}");
 }
