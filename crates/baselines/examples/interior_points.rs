@@ -16,9 +16,15 @@ use bowknot_baselines::{Composed, Method};
 /// Side of a cell [m].
 const CELL: f64 = 0.01;
 
+struct Scene {
+    x: Vec<Point>,
+    target: Vec<Point>,
+    model: CollisionModel,
+}
+
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let cells = std::env::args().nth(1).map_or(Ok(12), |text| text.parse())?;
-    let (x, target, model) = scene(cells)?;
+    let Scene { x, target, model } = scene(cells)?;
     let masses = vec![1e-4; x.len()];
     let problem = |params: Params| Problem::new(model.clone(), &x, &masses, params);
     let slab = AdditiveCcd { speed: ClosingSpeed::Slab, ..AdditiveCcd::default() };
@@ -80,7 +86,7 @@ fn two_way<F: ForwardStep + 'static>(name: &str, problem: Problem, forward: F) -
 }
 
 /// Two sheets, the upper one turned, and a spike below; the target presses them together and down.
-fn scene(cells: usize) -> Result<(Vec<Point>, Vec<Point>, CollisionModel), Box<dyn std::error::Error>> {
+fn scene(cells: usize) -> Result<Scene, Box<dyn std::error::Error>> {
     let (mut x, mut triangles) = (Vec::new(), Vec::new());
     let n = cells + 1;
     let half = 0.5 * CELL * cells as f64;
@@ -112,5 +118,5 @@ fn scene(cells: usize) -> Result<(Vec<Point>, Vec<Point>, CollisionModel), Box<d
     let bodies = (0..x.len()).map(|v| (v / (n * n)).min(2) as u32).collect();
     let topology = Topology::new(x.len(), triangles, &[], &[]).map_err(|errors| format!("{errors:?}"))?;
     let filters = vec![BodyFilter::DEFORMABLE, BodyFilter::DEFORMABLE, BodyFilter::OBSTACLE];
-    Ok((x, target, CollisionModel::new(topology, bodies, filters, vec![])?))
+    Ok(Scene { x, target, model: CollisionModel::new(topology, bodies, filters, vec![])? })
 }

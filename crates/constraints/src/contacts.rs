@@ -1,7 +1,7 @@
 //! Contact rows: one inequality a pair, linearised at the current positions x:
 //! s(y) = c(x) + J (y - x) >= 0 [m].
 
-use crate::{Colouring, ContactForm, friction_row, volume};
+use crate::{Colouring, ContactForm, face, friction_row, volume};
 use bowknot_geometry::{PairKind, Point, Separation};
 use bowknot_lcp::{FrictionRow, Problem, Row};
 use bowknot_proximity::PairList;
@@ -21,6 +21,7 @@ pub fn contact_row(
     let points = vertices.map(|v| positions[v as usize]);
     let (value, gradients) = match form {
         ContactForm::Volume => volume::row(kind, &points, separation, desired),
+        ContactForm::Face => face::row(kind, &points, separation, desired),
         ContactForm::Gap => None,
     }
     .unwrap_or_else(|| {

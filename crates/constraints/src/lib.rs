@@ -7,6 +7,7 @@ mod colouring;
 mod contacts;
 mod desired;
 mod edges;
+mod face;
 mod friction;
 mod params;
 mod volume;

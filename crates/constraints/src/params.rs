@@ -42,6 +42,9 @@ pub enum ContactForm {
     /// Volume of the pair against that of the separated pair (paper, Eq. 14-16), in units of length;
     /// falls back to the gap where the closest features are not the interiors.
     Volume,
+    /// Distance along the triangle's normal or the edges' common normal, wherever the closest features are (Harmon et al.
+    /// 2008; Tang et al. 2018): a wall beside the primitive as well as above it. To compare with.
+    Face,
 }
 
 /// How friction acts.

@@ -74,7 +74,7 @@ fn both_forms_have_the_value_and_gradient_of_what_they_linearise() {
                 let row = row_at(form, kind, &x, desired);
                 let quantity = |x: &[Point; 4]| match form {
                     ContactForm::Gap => distance::closest(kind, x).distance,
-                    ContactForm::Volume => height(kind, x, base),
+                    _ => height(kind, x, base),
                 };
                 // DESIGN: gap c = d - delta; volume c = height (1 - delta/d), equal for interior points.
                 let expected = quantity(&x) * (1.0 - desired / d);
@@ -103,10 +103,42 @@ fn both_forms_have_the_value_and_gradient_of_what_they_linearise() {
 }
 
 #[test]
+fn the_face_form_is_the_gap_form_above_insides_and_a_wall_beside_them() {
+    let mut random = Random(5);
+    let mut compared = 0;
+    for kind in KINDS {
+        for _ in 0..50 {
+            let x = interior_pair(kind, &mut random);
+            let weights = separation::separate(kind, &x).weights;
+            if weights[..kind.vertex_count()].iter().any(|w| *w < 1e-3) {
+                continue;
+            }
+            compared += 1;
+            let (face, gap) =
+                (row_at(ContactForm::Face, kind, &x, 0.1), row_at(ContactForm::Gap, kind, &x, 0.1));
+            assert!((value(&face, &x) - value(&gap, &x)).abs() < 1e-12, "{kind:?}");
+            for k in 0..4 {
+                assert!((face.gradients[k] - gap.gradients[k]).norm() < 1e-9, "{kind:?}");
+            }
+        }
+    }
+    assert!(compared > 150, "{compared}");
+    // A vertex beside a triangle, all but in its plane: half a metre away, yet short of the distance.
+    let x = [[1.5, 0.0, -0.01], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point::from);
+    let row = row_at(ContactForm::Face, PairKind::VertexTriangle, &x, 0.1);
+    assert!((value(&row, &x) - (0.01 - 0.1)).abs() < 1e-12, "{}", value(&row, &x));
+    assert!((row.gradients[0] + Vector::z()).norm() < 1e-12, "{:?}", row.gradients);
+    // Parallel edges have no common normal.
+    let x = [[0.0, 0.0, 0.5], [1.0, 0.0, 0.5], [0.2, 0.0, 0.0], [1.2, 0.0, 0.0]].map(Point::from);
+    let row = row_at(ContactForm::Face, PairKind::EdgeEdge, &x, 0.1);
+    assert!((value(&row, &x) - 0.4).abs() < 1e-9);
+}
+
+#[test]
 fn gradients_conserve_linear_momentum_and_unused_places_have_none() {
     let mut random = Random(11);
     for kind in KINDS {
-        for form in [ContactForm::Gap, ContactForm::Volume] {
+        for form in [ContactForm::Gap, ContactForm::Volume, ContactForm::Face] {
             for _ in 0..100 {
                 let x = [(); 4].map(|()| Point::from(random.vector()));
                 let row = row_at(form, kind, &x, 0.1);

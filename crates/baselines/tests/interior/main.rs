@@ -3,6 +3,7 @@
 
 mod common;
 mod descent;
+mod forms;
 mod impacts;
 mod newton;
 mod objective;
