@@ -1,6 +1,6 @@
 //! The log-barrier interior point method, and its strength k (paper, section 3.4, Fig. 5 and 6).
 
-use super::{Figure, Part, Section};
+use super::{Figure, Part, Section, verdict};
 use crate::bench::Bench;
 use crate::chart::{Axis, Chart};
 use crate::methods::{Setting, log_barrier};
@@ -72,7 +72,8 @@ impl Figure for Barrier {
         };
         Ok(Section {
             finding: format!(
-                "With k = 20 the barrier takes {}, and {}. (The paper: 5x the time.)",
+                "{}: with k = 20 the barrier takes {}, and {}. (The paper: 5x the time.)",
+                verdict(geometric_mean(&ratios(&compared, barrier, ("paper", ""), |s, _| s.cpu)) > 1.0),
                 over("paper"),
                 over("fast")
             ),

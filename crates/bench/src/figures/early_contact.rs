@@ -1,6 +1,6 @@
 //! Early contact by a large delta (paper, section 7.3).
 
-use super::{Figure, Part, Section};
+use super::{Figure, Part, Section, verdict};
 use crate::bench::Bench;
 use crate::simulate::simulate;
 use crate::table::{Table, mean, short};
@@ -81,15 +81,23 @@ impl Figure for EarlyContact {
                 let of = |delta: f64| costs.iter().find(|c| c.0 == *preset && c.1 == delta);
                 let (small, usual) = (of(DELTAS[0])?, of(0.1)?);
                 Some(format!(
-                    "with `{preset}` the sheet rests at {} delta, and a quarter of the default delta takes {} times the CPU time \
+                    "With `{preset}` the sheet rests at {} delta, and a quarter of the default delta takes {} times the CPU time \
                      in `drape`",
                     short(usual.2),
                     short(small.3 / usual.3)
                 ))
             })
             .collect();
+        let (low, high) =
+            costs.iter().fold((f64::INFINITY, 0.0f64), |(low, high), c| (low.min(c.2), high.max(c.2)));
         Ok(Section {
-            finding: format!("It holds: contact is as early as delta is large; {}.", told.join("; ")),
+            finding: format!(
+                "{}: a sheet rests at {} to {} delta, so that contact is as early as delta is large. {}.",
+                verdict(low > 0.9 && high < 1.1),
+                short(low),
+                short(high),
+                told.join("; ")
+            ),
             parts: vec![Part::Table { name: self.name().to_owned(), caption: String::new(), table }],
         })
     }

@@ -1,6 +1,6 @@
 //! What edge-length limits do (paper, section 4.1.1, Fig. 9).
 
-use super::{Figure, Part, Section};
+use super::{Figure, Part, Section, verdict};
 use crate::bench::Bench;
 use crate::simulate::simulate;
 use crate::table::{Table, largest, mean, short};
@@ -38,6 +38,7 @@ impl Figure for EdgeLimits {
             "X",
         ]);
         let mut told = Vec::new();
+        let mut holds = true;
         for preset in ["fast", "paper"] {
             let mut stretches = Vec::new();
             for edges in [true, false] {
@@ -62,6 +63,7 @@ impl Figure for EdgeLimits {
                     done.intersections().into(),
                 ]);
             }
+            holds &= stretches[1] > stretches[0];
             told.push(format!(
                 "`{preset}` stretches edges to {} times their rest length at most, and to {} without limits",
                 short(stretches[0]),
@@ -69,7 +71,7 @@ impl Figure for EdgeLimits {
             ));
         }
         Ok(Section {
-            finding: format!("{}.", told.join("; ")),
+            finding: format!("{}: {}.", verdict(holds), told.join("; ")),
             parts: vec![Part::Table { name: self.name().to_owned(), caption: String::new(), table }],
         })
     }

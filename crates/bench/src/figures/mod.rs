@@ -54,6 +54,11 @@ pub trait Figure: Sync {
     fn run(&self, bench: &Bench) -> Result<Section>;
 }
 
+/// How a finding begins: whether the paper's holds here.
+fn verdict(holds: bool) -> &'static str {
+    if holds { "The paper's finding holds here" } else { "The paper's finding does not hold here" }
+}
+
 /// What a figure found.
 #[derive(Clone, Debug, Default)]
 pub struct Section {

@@ -1,6 +1,6 @@
 //! How many two-way steps a problem takes, and how many searches (paper, sections 3.1 and 7).
 
-use super::{Figure, Part, Section};
+use super::{Figure, Part, Section, verdict};
 use crate::bench::Bench;
 use crate::chart::{Axis, Chart, Series, Style};
 use crate::methods::Setting;
@@ -101,5 +101,8 @@ fn finding(compared: &[Compared]) -> String {
             short(every)
         )
     };
-    format!("{}; {}. (The paper: most of the time, once in three.)", told(1, "paper"), told(0, "fast"))
+    let all: Vec<usize> = steps(compared, 1).collect();
+    let most = 2 * all.iter().filter(|&&s| s <= 64).count() > all.len();
+    let (paper, fast) = (told(1, "paper"), told(0, "fast"));
+    format!("{} for steps: {paper}; {fast}. (The paper: most of the time, once in three.)", verdict(most))
 }
