@@ -75,7 +75,7 @@ pub struct Setting {
     pub change: String,
     pub params: Params,
     pub build: Arc<dyn Fn(Problem) -> Built>,
-    /// Seconds of a solve in a full run; none: 8.
+    /// Seconds of a solve in a full run; none: 4.
     limit: Option<f64>,
 }
 
@@ -123,7 +123,7 @@ impl Setting {
 
     /// Seconds that a solve may take.
     pub fn limit(&self, size: Size) -> f64 {
-        size.pick(self.limit.unwrap_or(8.0), 2.0, 1.0)
+        size.pick(self.limit.unwrap_or(4.0), 2.0, 1.0)
     }
 
     /// What tells its measurements from those of others.

@@ -63,7 +63,7 @@ const SWITCHES: [Switch; 15] = [
 ];
 
 /// Seconds of a solve: without some points there is no end.
-const LIMIT: f64 = 4.0;
+const LIMIT: f64 = 2.0;
 
 impl Figure for Switches {
     fn name(&self) -> &'static str {
@@ -95,7 +95,7 @@ impl Figure for Switches {
             let on = Setting::of("paper")?.with(format!("with {}", switch.name), |p| (switch.copy)(p, &fast));
             settings.extend([off.within(LIMIT), on.within(LIMIT)]);
         }
-        let (count, rounds) = (bench.size.pick(3, 1, 1), 1);
+        let (count, rounds) = (bench.size.pick(2, 1, 1), 1);
         let compared = on_scenes(bench, scenes, count, &settings, rounds)?;
         let part = |name: &str, caption: &str, method: &str, word: &str| Part::Table {
             name: name.to_owned(),

@@ -41,7 +41,7 @@ impl Figure for Table1 {
             &["needle"],
         );
         let settings = KINDS.iter().map(|(_, m)| Setting::of(m)).collect::<Result<Vec<_>>>()?;
-        let compared = on_scenes(bench, scenes, bench.size.pick(3, 2, 1), &settings, 1)?;
+        let compared = on_scenes(bench, scenes, bench.size.pick(2, 2, 1), &settings, 1)?;
         let mut table = Table::new([
             "kind",
             "failed",

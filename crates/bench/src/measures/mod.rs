@@ -46,12 +46,18 @@ pub struct Judged {
     pub error: Option<f64>,
 }
 
+/// Iterations that multipliers are found in: of results, whose residual may be an upper bound, and of what is to be the
+/// exact solution.
+const ITERATIONS: [usize; 2] = [400, 6000];
+
 /// A case with what judging its results needs.
 #[derive(Debug)]
 pub struct Judgement<'a> {
     case: &'a Case,
     problem: Problem,
     judge: Judge,
+    /// Iterations of non-negative least squares.
+    iterations: usize,
     search: RefCell<ProximitySearch>,
     exact: Option<Vec<Point>>,
 }
@@ -61,6 +67,7 @@ impl<'a> Judgement<'a> {
     pub fn new(bench: &Bench, case: &'a Case) -> Result<Self> {
         let mut judgement = Self::without_exact(case)?;
         judgement.exact = exact::solution(bench, case)?;
+        judgement.iterations = ITERATIONS[0];
         Ok(judgement)
     }
 
@@ -69,6 +76,7 @@ impl<'a> Judgement<'a> {
             case,
             problem: case.reference()?,
             judge: Judge::from_model(&case.model),
+            iterations: ITERATIONS[1],
             search: RefCell::new(ProximitySearch::new(&case.model)),
             exact: None,
         })
@@ -78,7 +86,7 @@ impl<'a> Judgement<'a> {
     pub fn judge(&self, x: &[Point]) -> Result<Judged> {
         let (problem, states) = (&self.problem, &self.case.states);
         let rows = RowSet::new(problem, states, x, &mut self.search.borrow_mut());
-        let residual = rows.stationarity(problem, x, &states.y);
+        let residual = rows.stationarity(problem, x, &states.y, self.iterations);
         let distances = x.iter().zip(&states.y).map(|(x, y)| x - y);
         let total: f64 = (0..x.len()).filter(|&v| problem.movable(v)).map(|v| problem.relative_mass[v]).sum();
         let weighted = |vectors: &mut dyn Iterator<Item = f64>| -> f64 {

@@ -9,19 +9,17 @@
 use bowknot::geometry::Vector;
 use bowknot::lcp::Row;
 
-/// Iterations at most; each takes a product with A.
-const ITERATIONS: usize = 1500;
 /// Projected gradient at which to stop, relative to that at lambda = 0.
 const TOLERANCE: f64 = 1e-8;
 /// Largest ratio of what bounds hold back to what is free, before multipliers are freed.
 const PROPORTION: f64 = 1.0;
 
-/// The residual d + W J^T lambda. `weights` are inverse masses, 0 for vertices that cannot move.
-pub fn residual(rows: &[Row], weights: &[f64], wanted: Vec<Vector>) -> Vec<Vector> {
+/// The residual d + W J^T lambda after so many iterations at most, each a product with A. `weights` are inverse masses, 0 for vertices that cannot move.
+pub fn residual(rows: &[Row], weights: &[f64], wanted: Vec<Vector>, iterations: usize) -> Vec<Vector> {
     let system = System::new(rows, weights);
     let mut product = vec![0.0; system.rows.len()];
     system.gather(&wanted, &mut product);
-    let lambda = system.solve(product);
+    let lambda = system.solve(product, iterations);
     let mut result = wanted;
     system.scatter(&lambda, &mut result);
     result
@@ -76,7 +74,7 @@ impl<'a> System<'a> {
     }
 
     /// Minimises lambda A lambda/2 + q lambda over lambda >= 0.
-    fn solve(&self, q: Vec<f64>) -> Vec<f64> {
+    fn solve(&self, q: Vec<f64>, iterations: usize) -> Vec<f64> {
         let n = q.len();
         let mut space = vec![Vector::zeros(); self.weights.len()];
         let step = 1.0 / self.largest_eigenvalue(&mut space).max(f64::MIN_POSITIVE);
@@ -85,7 +83,7 @@ impl<'a> System<'a> {
         let goal = TOLERANCE * norm(&chopped(&lambda, &gradient));
         let mut direction = free(&lambda, &gradient);
         let mut product = vec![0.0; n];
-        for _ in 0..ITERATIONS {
+        for _ in 0..iterations {
             let (loose, held) = (free(&lambda, &gradient), chopped(&lambda, &gradient));
             if (dot(&loose, &loose) + dot(&held, &held)).sqrt() <= goal {
                 break;

@@ -113,14 +113,21 @@ impl RowSet {
     /// The projection of y0 - x onto the motions that no active row forbids, in the metric of mass: 0 where x solves the
     /// problem. By Moreau's decomposition it is y0 - x + M^-1 J^T lambda with the non-negative multipliers that make it
     /// smallest.
-    pub fn stationarity(&self, problem: &Problem, x: &[Point], target: &[Point]) -> Vec<Vector> {
+    /// After so many `iterations` at most; fewer give an upper bound.
+    pub fn stationarity(
+        &self,
+        problem: &Problem,
+        x: &[Point],
+        target: &[Point],
+        iterations: usize,
+    ) -> Vec<Vector> {
         let weights: Vec<f64> = (0..x.len())
             .map(|v| if problem.movable(v) { 1.0 / problem.relative_mass[v] } else { 0.0 })
             .collect();
         let wanted: Vec<Vector> = (0..x.len())
             .map(|v| if problem.movable(v) { target[v] - x[v] } else { Vector::zeros() })
             .collect();
-        nonnegative::residual(&self.active_rows(), &weights, wanted)
+        nonnegative::residual(&self.active_rows(), &weights, wanted, iterations)
     }
 }
 

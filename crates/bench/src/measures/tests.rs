@@ -107,7 +107,7 @@ fn multipliers_equal_those_of_the_reference() {
             })
             .collect();
         rows.push(rows[0]);
-        let ours = nonnegative::residual(&rows, &weights, wanted.clone());
+        let ours = nonnegative::residual(&rows, &weights, wanted.clone(), 1500);
 
         lcp::prepare_rows(&mut rows, &weights).expect("weights of all nodes");
         let problem =
