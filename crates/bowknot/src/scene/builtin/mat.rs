@@ -1,4 +1,5 @@
-use crate::scene::{BodyKind, BodySpec, Keyframe, Material, Motion, PinSpec, Scene, Side};
+use super::twisted_ends;
+use crate::scene::{BodyKind, BodySpec, Material, Scene};
 use crate::shapes::{Block, Shape};
 use bowknot_dynamics::{SolidMaterial, SolidModel};
 use bowknot_geometry::Vector;
@@ -19,25 +20,8 @@ pub(super) fn scene(scale: f64) -> Scene {
         stretch_limit: Some(f64::INFINITY),
         ..BodySpec::default()
     };
-    let end = |side: Side, sign: f64| {
-        let at = |time: f64, turns: f64, approach: f64| Keyframe {
-            time,
-            translate: Vector::new(-0.5 * sign * approach, 0.0, 0.0),
-            angle: 360.0 * sign * turns,
-        };
-        let keyframes = vec![at(0.0, 0.0, 0.0), at(0.5, 0.5, 0.03), at(1.0, 1.0, 0.1), at(2.0, 2.0, 0.3)];
-        PinSpec {
-            body: "mat".to_owned(),
-            side: Some(side),
-            motion: Some(Motion { axis: Vector::x(), keyframes, ..Motion::default() }),
-            ..PinSpec::default()
-        }
-    };
-    let mut scene = Scene {
-        bodies: vec![body],
-        pins: vec![end(Side::XMin, -1.0), end(Side::XMax, 1.0)],
-        ..Scene::default()
-    };
+    let twist = [(0.0, 0.0, 0.0), (0.5, 1.0, 0.03), (1.0, 2.0, 0.1), (2.0, 4.0, 0.3)];
+    let mut scene = Scene { bodies: vec![body], pins: twisted_ends("mat", &twist), ..Scene::default() };
     scene.simulation.frames = 220;
     scene.dynamics.gravity = Vector::zeros();
     scene

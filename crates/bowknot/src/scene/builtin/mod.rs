@@ -20,7 +20,7 @@ mod trampoline;
 mod tube;
 mod woven;
 
-use super::{BodySpec, ObstacleSpec, Scene, SceneError, error::nearest};
+use super::{BodySpec, Keyframe, Motion, ObstacleSpec, PinSpec, Scene, SceneError, Side, error::nearest};
 use crate::shapes::{Ball, HalfSpaceShape, Shape, Sheet};
 use bowknot_geometry::Vector;
 
@@ -135,4 +135,24 @@ fn ground() -> ObstacleSpec {
         shape: Some(Shape::HalfSpace(HalfSpaceShape::default())),
         ..ObstacleSpec::default()
     }
+}
+
+/// Pins for both ends of a body along x, turned against each other and brought nearer: at each time [s] by turns and by a
+/// length [m], of which either end makes half.
+fn twisted_ends(body: &str, twist: &[(f64, f64, f64)]) -> Vec<PinSpec> {
+    let end = |side: Side, sign: f64| {
+        let keyframe = |&(time, turns, approach): &(f64, f64, f64)| Keyframe {
+            time,
+            translate: Vector::new(-0.5 * sign * approach, 0.0, 0.0),
+            angle: 180.0 * sign * turns,
+        };
+        let keyframes = twist.iter().map(keyframe).collect();
+        PinSpec {
+            body: body.to_owned(),
+            side: Some(side),
+            motion: Some(Motion { axis: Vector::x(), keyframes, ..Motion::default() }),
+            ..PinSpec::default()
+        }
+    };
+    vec![end(Side::XMin, -1.0), end(Side::XMax, 1.0)]
 }

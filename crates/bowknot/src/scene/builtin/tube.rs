@@ -1,4 +1,5 @@
-use crate::scene::{BodySpec, Keyframe, Motion, PinSpec, Scene, Side};
+use super::twisted_ends;
+use crate::scene::{BodySpec, Scene};
 use crate::shapes::{Shape, Tube};
 use bowknot_geometry::Vector;
 
@@ -15,35 +16,17 @@ pub(super) fn scene(scale: f64) -> Scene {
         shape: Some(Shape::Tube(Tube { radius, length, edge })),
         ..BodySpec::default()
     };
-    // Each end does half of everything.
-    let end = |side: Side, sign: f64| {
-        let at = |time: f64, turn: f64, approach: f64| Keyframe {
-            time,
-            translate: Vector::new(-0.5 * sign * approach, 0.0, 0.0),
-            angle: 180.0 * sign * turn,
-        };
-        // The generators of the tube become helices that narrow towards the middle; with the ends this
-        // near, none is longer than at rest.
-        let keyframes = vec![
-            at(0.0, 0.0, 0.0),
-            at(0.2, 0.25, 0.02),
-            at(0.4, 0.5, 0.08),
-            at(0.6, 0.75, 0.14),
-            at(0.8, 1.0, 0.2),
-            at(1.5, 1.0, length - 0.35),
-        ];
-        PinSpec {
-            body: "tube".to_owned(),
-            side: Some(side),
-            motion: Some(Motion { axis: Vector::x(), keyframes, ..Motion::default() }),
-            ..PinSpec::default()
-        }
-    };
-    let mut scene = Scene {
-        bodies: vec![body],
-        pins: vec![end(Side::XMin, -1.0), end(Side::XMax, 1.0)],
-        ..Scene::default()
-    };
+    // The generators of the tube become helices that narrow towards the middle; with the ends this
+    // near, none is longer than at rest.
+    let twist = [
+        (0.0, 0.0, 0.0),
+        (0.2, 0.25, 0.02),
+        (0.4, 0.5, 0.08),
+        (0.6, 0.75, 0.14),
+        (0.8, 1.0, 0.2),
+        (1.5, 1.0, length - 0.35),
+    ];
+    let mut scene = Scene { bodies: vec![body], pins: twisted_ends("tube", &twist), ..Scene::default() };
     scene.simulation.frames = 150;
     // Under gravity the tube would swing below its ends rather than bunch up between them.
     scene.dynamics.gravity = Vector::zeros();
