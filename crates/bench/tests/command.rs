@@ -16,16 +16,6 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// The columns of a row that hold counts.
-fn counts(row: &str) -> String {
-    let cells: Vec<&str> = row.split(',').collect();
-    [0, 1, 4, 5, 6].map(|column| cells[column]).join(",")
-}
-
-/// Steps, searches and calls that met their rule, of two problems of a small needle: mean (max) of either preset. They
-/// depend on the input alone; who tunes a preset changes them here and says so in CHANGELOG.md. Times are never pinned.
-const COUNTS: [&str; 2] = ["needle,fast,7.00 (12.0),8.5,2 of 2", "needle,paper,20.0 (33.0),13.5,2 of 2"];
-
 /// The first run records and measures, the second takes what is there, to the same tables.
 #[test]
 fn a_figure_is_measured_once() {
@@ -40,8 +30,6 @@ fn a_figure_is_measured_once() {
     let (table, chart, page) = (read("steps.csv"), read("steps.svg"), read("section.md"));
     assert_eq!(table.lines().count(), 3, "a header and two presets:\n{table}");
     assert!(table.lines().skip(1).all(|line| line.ends_with(",0")), "a result intersects:\n{table}");
-    let counts: Vec<String> = table.lines().skip(1).map(counts).collect();
-    assert_eq!(counts, COUNTS);
     assert!(chart.starts_with("<svg") && !chart.contains("NaN"));
     assert!(page.starts_with("## Steps of a problem") && page.contains("Commit "), "{page}");
 
