@@ -2,6 +2,7 @@
 
 use crate::bench::Size;
 use anyhow::{Context, Result};
+use bowknot::constraints::ContactForm;
 use bowknot::twoway::{
     BackwardStep, BudgetedSearch, CertifiedForward, ForwardStep, LcpBackward, Params, Problem, Resolver,
     Search,
@@ -9,7 +10,8 @@ use bowknot::twoway::{
 use bowknot_baselines::barrier::{BarrierParams, by_descent, by_newton};
 use bowknot_baselines::ccd::{AdditiveCcd, EarliestImpact, PerVertexImpact};
 use bowknot_baselines::rows::{
-    AugmentedLagrangian, InterStepChebyshev, LinearSystem, ProjectedJacobi, two_way_with, two_way_with_stage,
+    AugmentedLagrangian, InterStepChebyshev, LinearSystem, ProjectedJacobi, preserving_volume, two_way_with,
+    two_way_with_stage,
 };
 use bowknot_baselines::zones::{ImpactZones, RigidZones, TwoPhase, ZoneParams, ZoneSolver};
 use bowknot_baselines::{Composed, Method};
@@ -41,6 +43,8 @@ pub const METHODS: &[Entry] = &[
     },
     Entry { name: "Jacobi", params: Params::paper, build: |p| rows(p, ProjectedJacobi::new(1, 0.0)) },
     Entry { name: "Jacobi, Chebyshev", params: Params::paper, build: chebyshev },
+    Entry { name: "Sifakis 2008", params: || preserving_volume(Params::paper()), build: two_way },
+    Entry { name: "face normals", params: face_normals, build: two_way },
     Entry { name: "CCD, earliest", params: Params::paper, build: |p| forward(p, EarliestImpact::default()) },
     Entry {
         name: "CCD, per vertex",
@@ -200,6 +204,13 @@ where
     F: ForwardStep + 'static,
 {
     Ok(Box::new(Composed::new("", resolver)))
+}
+
+/// `paper` with contacts along the normals of faces, as Harmon et al. 2008 and Tang et al. 2018 have them.
+fn face_normals() -> Params {
+    let mut params = Params::paper();
+    params.constraints.form = ContactForm::Face;
+    params
 }
 
 /// `paper` without edge limits, which equations would turn into rigid links (paper, section 4.3.1), and with rows for pairs

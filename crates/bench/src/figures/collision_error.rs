@@ -86,12 +86,13 @@ fn settings() -> Result<Vec<Setting>> {
             p.stop.drag = Some(distance);
         })?;
     }
-    for kappa in [0.1, 0.25, 1.0] {
+    for kappa in [0.05, 0.2, 0.5, 1.0] {
         vary("fast", format!("kappa {kappa}"), &|p| p.backward.contact_proximal = kappa)?;
     }
-    for strength in [0.1, 0.2, 0.7] {
+    for strength in [0.05, 0.2, 0.35, 0.7] {
         vary("fast", format!("edge proximal {strength}"), &|p| p.backward.edge_proximal = strength)?;
     }
+    vary("fast", "growth 1".to_owned(), &|p| p.backward.proximal_growth = 1.0)?;
     vary("fast", "volume form".to_owned(), &|p| p.constraints.form = ContactForm::Volume)?;
     vary("fast", "no floor".to_owned(), &|p| p.stepper.floor = Some(0.0))?;
     vary("paper", "edges from rest".to_owned(), &|p| p.constraints.edge_reference = EdgeReference::Rest)?;

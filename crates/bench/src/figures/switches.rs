@@ -16,7 +16,7 @@ struct Switch {
     copy: fn(&mut Params, &Params),
 }
 
-const SWITCHES: [Switch; 15] = [
+const SWITCHES: [Switch; 16] = [
     Switch { name: "gap form", copy: |to, from| to.constraints.form = from.constraints.form },
     Switch { name: "edges as balls", copy: |to, from| to.constraints.edge_form = from.constraints.edge_form },
     Switch {
@@ -53,6 +53,10 @@ const SWITCHES: [Switch; 15] = [
     Switch {
         name: "proximal term, contacts",
         copy: |to, from| to.backward.contact_proximal = from.backward.contact_proximal,
+    },
+    Switch {
+        name: "growth of the proximal term",
+        copy: |to, from| to.backward.proximal_growth = from.backward.proximal_growth,
     },
     Switch {
         name: "coarse correction",
