@@ -28,7 +28,8 @@ impl Figure for CollisionError {
          stationarity residual (the motion that would still bring x nearer to its target, all active rows obeyed) and the largest \
          violation of a contact, as the root of the sum of their squares. Problems are not convex, so that a method may do well and end in another minimum. All are judged by the row set of `fast`, \
          edges limited against rest; `paper` limits them against the start of the call and so solves another problem, \
-         `paper, edges from rest` the same one."
+         `paper, edges from rest` the same one. Impact zones only keep things from meeting, at no distance: a target that meets \
+         nothing is returned as it is."
     }
 
     fn run(&self, bench: &Bench) -> Result<Section> {
