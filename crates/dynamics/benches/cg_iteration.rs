@@ -7,18 +7,21 @@
 //! `target/PRECONDITIONER/1` is assembly, preconditioner, one CG iteration and the line search;
 //! `/101` has a hundred iterations more, so that their difference over 100 is one iteration.
 
-#[path = "../tests/common/mod.rs"]
-mod common;
+#[path = "../tests/suite/common/cloth.rs"]
+mod cloth;
+#[path = "../tests/suite/common/sheet.rs"]
+mod sheet;
 
 use bowknot_dynamics::{ClothMaterial, Dynamics, DynamicsParams, Preconditioner};
 use bowknot_geometry::{Point, Vector};
-use common::{Diagonals, cloth_model, sheet};
+use cloth::cloth_model;
 use criterion::{Criterion, criterion_group, criterion_main};
+use sheet::sheet;
 use std::hint::black_box;
 use std::time::Duration;
 
 fn targets(criterion: &mut Criterion) {
-    let (rest, triangles) = sheet(1.0, 1.0, 100, 100, Diagonals::Alternating);
+    let (rest, triangles) = sheet(1.0, 1.0, 100, 100);
     let wave = |p: &Point| Vector::new(0.0, 0.0, 0.03 * (25.0 * p.x).sin() * (21.0 * p.y + 5.0 * p.x).cos());
     let x: Vec<Point> = rest.iter().map(|p| p + wave(p)).collect();
     let v: Vec<Vector> =

@@ -10,12 +10,15 @@
 //! iterates x that contact has pushed away from the last target).
 #![allow(clippy::print_stdout, reason = "an experiment prints its table")]
 
-#[path = "../tests/common/mod.rs"]
-mod common;
+#[path = "../tests/suite/common/cloth.rs"]
+mod cloth;
+#[path = "../tests/suite/common/sheet.rs"]
+mod sheet;
 
 use bowknot_dynamics::{ClothMaterial, Dynamics, DynamicsParams, Preconditioner};
 use bowknot_geometry::{Point, Vector};
-use common::{Diagonals, cloth_model, sheet};
+use cloth::cloth_model;
+use sheet::sheet;
 use std::time::Instant;
 
 const DT: f64 = 1.0 / 20.0;
@@ -38,7 +41,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     if preconditioners.is_empty() {
         preconditioners.push(Preconditioner::default());
     }
-    let (rest, triangles) = sheet(1.0, 1.0, cells, cells, Diagonals::Alternating);
+    let (rest, triangles) = sheet(1.0, 1.0, cells, cells);
     let material = ClothMaterial::cotton();
     let dynamics = |params: DynamicsParams| {
         let model = cloth_model(&rest, triangles.clone(), material);

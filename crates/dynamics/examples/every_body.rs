@@ -7,15 +7,18 @@
 
 #![allow(clippy::print_stdout, reason = "an example reports what it did")]
 
-#[path = "../tests/common/mod.rs"]
-mod common;
+#[path = "../tests/suite/common/block.rs"]
+mod block;
+#[path = "../tests/suite/common/sheet.rs"]
+mod sheet;
+#[path = "../tests/suite/common/strands.rs"]
+mod strands;
 
 use bowknot_dynamics::{
     Body, ClothMaterial, Dynamics, DynamicsModel, DynamicsParams, ParticleMaterial, RepulsionSpring,
     SolidMaterial, StrandMaterial,
 };
 use bowknot_geometry::{Point, Vector};
-use common::Diagonals;
 use std::error::Error;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -26,13 +29,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         first
     };
     // Cotton that shears easily, its warp along x.
-    let (positions, triangles) = common::sheet(0.6, 0.4, 24, 16, Diagonals::Alternating);
+    let (positions, triangles) = sheet::sheet(0.6, 0.4, 24, 16);
     let flag = append(positions, Vector::new(1.0, 0.0, 1.0));
     let cotton =
         ClothMaterial { weft_stiffness: Some(180.0), shear_stiffness: Some(8.0), ..ClothMaterial::cotton() };
-    let (positions, tets) = common::block([0.1, 0.1, 0.2], [4, 4, 8]);
+    let (positions, tets) = block::block([0.1, 0.1, 0.2], [4, 4, 8]);
     let cube = append(positions, Vector::new(0.0, 0.0, 1.0));
-    let (positions, edges) = common::strands(50, 30, 0.3, 0.005);
+    let (positions, edges) = strands::strands(50, 30, 0.3, 0.005);
     let hair = append(positions, Vector::new(-0.5, 0.0, 1.0));
     let grains =
         append((0..100).map(|k| Point::new(0.01 * f64::from(k), -0.5, 0.5)).collect(), Vector::zeros());

@@ -5,16 +5,19 @@
 //! ```
 #![allow(clippy::print_stdout, reason = "an example reports what it did")]
 
-#[path = "../tests/common/mod.rs"]
-mod common;
+#[path = "../tests/suite/common/cloth.rs"]
+mod cloth;
+#[path = "../tests/suite/common/sheet.rs"]
+mod sheet;
 
 use bowknot_dynamics::{ClothMaterial, Dynamics, DynamicsParams};
 use bowknot_geometry::Vector;
-use common::{Diagonals, cloth_model, sheet};
+use cloth::cloth_model;
+use sheet::sheet;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let cells = 40;
-    let (rest, triangles) = sheet(1.0, 1.0, cells, cells, Diagonals::Alternating);
+    let (rest, triangles) = sheet(1.0, 1.0, cells, cells);
     let model = cloth_model(&rest, triangles, ClothMaterial::cotton());
     let mut dynamics = Dynamics::new(model, DynamicsParams::default()).map_err(|e| format!("{e:?}"))?;
 

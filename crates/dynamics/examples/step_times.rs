@@ -7,8 +7,10 @@
 
 #![expect(clippy::print_stdout, reason = "an example reports what it measured")]
 
-#[path = "../tests/common/mod.rs"]
-mod common;
+#[path = "../tests/suite/common/block.rs"]
+mod block;
+#[path = "../tests/suite/common/strands.rs"]
+mod strands;
 
 use bowknot_dynamics::geometry::boundary_triangles;
 use bowknot_dynamics::{
@@ -25,21 +27,21 @@ fn main() {
     );
     for model in [SolidModel::Stvk, SolidModel::StableNeoHookean] {
         // A slab of 1 m x 1 m x 2 cm, bent by its own velocity, held at one side.
-        let (rest, tets) = common::block([1.0, 1.0, 0.02], [120, 120, 1]);
+        let (rest, tets) = block::block([1.0, 1.0, 0.02], [120, 120, 1]);
         let count = tets.len();
         let material = SolidMaterial { model, ..SolidMaterial::rubber() };
         let body = Body::solid("mat", tets, material);
         let held: Vec<bool> = rest.iter().map(|p| p.x < 1e-9).collect();
         measure(&format!("slab of rubber, {model:?}"), &rest, body, count, &held, steps);
     }
-    let (rest, tets) = common::block([0.4, 0.4, 0.4], [31, 31, 31]);
+    let (rest, tets) = block::block([0.4, 0.4, 0.4], [31, 31, 31]);
     let count = tets.len();
     let held: Vec<bool> = rest.iter().map(|p| p.z < 1e-9).collect();
     let cube = Body::solid("cube", tets, SolidMaterial::rubber());
     measure("cube of rubber", &rest, cube.clone(), count, &held, steps);
     bring_inside(&rest, cube);
 
-    let (rest, edges) = common::strands(1575, 40, 0.3, 0.003);
+    let (rest, edges) = strands::strands(1575, 40, 0.3, 0.003);
     let count = edges.len();
     let held: Vec<bool> = (0..rest.len()).map(|v| v % 40 < 2).collect();
     let body = Body::strands("hair", edges, StrandMaterial::hair());

@@ -1,7 +1,7 @@
 //! A search on folded cloth: every vertex-triangle and edge-edge pair nearer than 2 mm, with its
 //! contact geometry, of layers 1.5 mm apart.
 
-#[path = "../tests/scenes/folded.rs"]
+#[path = "../tests/suite/scenes/folded.rs"]
 mod folded;
 
 use bowknot_geometry::{Topology, Vector};

@@ -8,7 +8,7 @@
 //! 2 mm are listed with their contact geometry.
 #![allow(clippy::print_stdout)]
 
-#[path = "../tests/scenes/folded.rs"]
+#[path = "../tests/suite/scenes/folded.rs"]
 mod folded;
 
 use bowknot_geometry::{Point, Separation, Topology};

@@ -2,7 +2,7 @@
 //! another: aim, limit by the listed pairs and by the budgets, advance. The search is not in the time.
 
 // The scene of the search's own bench.
-#[path = "../../proximity/tests/scenes/folded.rs"]
+#[path = "../../proximity/tests/suite/scenes/folded.rs"]
 mod folded;
 
 use bowknot_geometry::{Point, Topology};

@@ -1,0 +1,7 @@
+//! Interior point methods other than the two-way one.
+
+mod descent;
+mod forms;
+mod impacts;
+mod newton;
+mod objective;

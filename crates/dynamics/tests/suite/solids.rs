@@ -1,0 +1,206 @@
+//! Solids with known answers: bars, beams, patches, inversion, conservation.
+
+use crate::common::block;
+use bowknot_dynamics::{
+    Body, Dynamics, DynamicsModel, DynamicsParams, HessianFilter, SolidMaterial, SolidModel,
+};
+use bowknot_geometry::{Point, Vector};
+
+const MODELS: [SolidModel; 2] = [SolidModel::Stvk, SolidModel::StableNeoHookean];
+
+fn space() -> DynamicsParams {
+    DynamicsParams { gravity: Vector::zeros(), cg_tolerance: 1e-8, ..DynamicsParams::default() }
+}
+
+fn solid(rest: &[Point], tets: Vec<[u32; 4]>, material: SolidMaterial, params: DynamicsParams) -> Dynamics {
+    let model = DynamicsModel::new(rest.to_vec(), vec![Body::solid("block", tets, material)]).expect("valid");
+    Dynamics::new(model, params).expect("valid")
+}
+
+/// Newton iterations of one step so long that inertia does not count.
+fn settle(dynamics: &mut Dynamics, x: &mut [Point], held: &[bool], keyframes: &[Point], iterations: usize) {
+    let mut v = vec![Vector::zeros(); x.len()];
+    let infos = dynamics.solve_step(x, &mut v, 1e4, held, keyframes, iterations).expect("solves");
+    let last = infos[iterations - 1];
+    assert!(last.cg.converged && last.max_displacement < 1e-6, "{last:?}");
+}
+
+#[test]
+fn a_uniform_strain_is_met_exactly_inside() {
+    // The surface follows an affine map, the inside finds it: the patch test, at large strain.
+    let (rest, tets) = block([1.0, 0.8, 0.6], [4, 4, 3]);
+    let map = nalgebra::Matrix3::new(1.3, 0.2, 0.0, -0.1, 0.8, 0.1, 0.2, 0.0, 0.9);
+    let surface: Vec<bool> = rest
+        .iter()
+        .map(|p| {
+            p.x < 1e-9 || p.x > 1.0 - 1e-9 || p.y < 1e-9 || p.y > 0.8 - 1e-9 || p.z < 1e-9 || p.z > 0.6 - 1e-9
+        })
+        .collect();
+    assert!(surface.iter().any(|held| !held));
+    let target: Vec<Point> = rest.iter().map(|p| map * p).collect();
+    for model in MODELS {
+        let material = SolidMaterial { model, ..SolidMaterial::rubber() };
+        let mut dynamics =
+            solid(&rest, tets.clone(), material, DynamicsParams { cg_tolerance: 1e-10, ..space() });
+        let mut x = rest.clone();
+        settle(&mut dynamics, &mut x, &surface, &target, 12);
+        let error = x.iter().zip(&target).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        assert!(error < 1e-6, "{model:?}: {error:e}");
+    }
+}
+
+#[test]
+fn a_hanging_bar_stretches_by_rho_g_l2_over_2e() {
+    // nu = 0, so that the clamp does not disturb: exact but for the lumping of mass and strains of 0.1 %.
+    let (length, width) = (1.0, 0.2);
+    let (rest, tets) = block([width, width, length], [2, 2, 10]);
+    for model in MODELS {
+        let material =
+            SolidMaterial { density: 1000.0, young_modulus: 5e6, poisson_ratio: 0.0, model, damping: 0.0 };
+        let mut dynamics = solid(
+            &rest,
+            tets.clone(),
+            material,
+            DynamicsParams { cg_tolerance: 1e-9, ..DynamicsParams::default() },
+        );
+        let held: Vec<bool> = rest.iter().map(|p| p.z > length - 1e-9).collect();
+        let mut x = rest.clone();
+        settle(&mut dynamics, &mut x, &held, &rest, 10);
+        let expected = 1000.0 * 9.81 * length * length / (2.0 * 5e6);
+        let low: Vec<f64> = rest.iter().zip(&x).filter(|(r, _)| r.z < 1e-9).map(|(r, x)| r.z - x.z).collect();
+        let mean = low.iter().sum::<f64>() / low.len() as f64;
+        assert!((mean - expected).abs() < 5e-3 * expected, "{model:?}: {mean} {expected}");
+    }
+}
+
+#[test]
+fn a_cantilever_meets_beam_theory_as_it_is_refined() {
+    // Tip of a clamped beam under its own weight: q L^4 / (8 EI) + 1.2 q L^2 / (2 G A) = bending and shear.
+    // Linear tets are too stiff in bending; the error falls as the square of the cell.
+    let (length, height, width) = (1.0f64, 0.2, 0.1);
+    let (e, rho) = (5e6, 1000.0);
+    let bending = 9.81 * rho * length.powi(4) / (8.0 * e * height * height / 12.0);
+    let shear = 1.2 * 9.81 * rho * length * length / (2.0 * 0.5 * e);
+    let expected = bending + shear;
+    let mut errors = Vec::new();
+    for fine in [1, 2] {
+        let (rest, tets) = block([length, width, height], [20 * fine, 2 * fine, 4 * fine]);
+        let material = SolidMaterial {
+            density: rho,
+            young_modulus: e,
+            poisson_ratio: 0.0,
+            model: SolidModel::StableNeoHookean,
+            damping: 0.0,
+        };
+        let params = DynamicsParams { gravity: Vector::new(0.0, 0.0, -0.981), ..DynamicsParams::default() };
+        let mut dynamics = solid(&rest, tets, material, DynamicsParams { cg_tolerance: 1e-8, ..params });
+        let held: Vec<bool> = rest.iter().map(|p| p.x < 1e-9).collect();
+        let mut x = rest.clone();
+        settle(&mut dynamics, &mut x, &held, &rest, 12);
+        let tip: Vec<f64> =
+            rest.iter().zip(&x).filter(|(r, _)| r.x > length - 1e-9).map(|(r, x)| r.z - x.z).collect();
+        let mean = 10.0 * tip.iter().sum::<f64>() / tip.len() as f64;
+        errors.push(1.0 - mean / expected);
+    }
+    assert!(errors[0] > 0.0 && errors[0] < 0.25, "{errors:?}");
+    assert!(errors[1] > 0.0 && errors[1] < 0.35 * errors[0], "{errors:?}");
+}
+
+#[test]
+fn stable_neo_hookean_recovers_from_inversion() {
+    // Flattened to a crumpled sheet, and scrambled by more than a cell: half of the tets inverted. It must come
+    // back to a shape of no energy.
+    let (rest, tets) = block([0.3, 0.3, 0.3], [3, 3, 3]);
+    for filter in [HessianFilter::Clamp, HessianFilter::Absolute] {
+        for (height, noise) in [(0.0, 0.01), (1.0, 0.12)] {
+            let material = SolidMaterial { damping: 0.01, ..SolidMaterial::jelly() };
+            let params = DynamicsParams { hessian_filter: filter, air_drag: 5.0, ..space() };
+            let mut dynamics = solid(&rest, tets.clone(), material, params);
+            let wave = |k: usize| (k as f64 * 12.9898).sin();
+            let mut x: Vec<Point> = (rest.iter().enumerate())
+                .map(|(k, p)| {
+                    Point::new(p.x, p.y, height * p.z)
+                        + Vector::new(wave(k), wave(k + 99), wave(k + 999)) * noise
+                })
+                .collect();
+            let mut v = vec![Vector::zeros(); x.len()];
+            let none = vec![false; x.len()];
+            let inverted = dynamics.model().inverted_tets(&x).len();
+            assert!(inverted > tets.len() / 4, "{inverted}");
+            for _ in 0..100 {
+                let keyframes = x.clone();
+                dynamics.solve_step(&mut x, &mut v, 0.02, &none, &keyframes, 2).expect("solves");
+            }
+            let energy = dynamics.model().elastic_energy(&x);
+            assert_eq!(dynamics.model().inverted_tets(&x), Vec::<[usize; 2]>::new());
+            let volume = dynamics.model().volume(&x);
+            assert!(energy < 1e-6 && (volume - 0.027).abs() < 1e-6, "{filter:?}: {energy:e} J, {volume} m3");
+        }
+    }
+}
+
+#[test]
+fn momenta_are_conserved_in_free_flight() {
+    let (rest, tets) = block([0.3, 0.2, 0.1], [6, 4, 2]);
+    for model in MODELS {
+        let material = SolidMaterial { model, damping: 0.01, ..SolidMaterial::jelly() };
+        // Clamping is the filter that ends sooner, over many iterations.
+        let params = DynamicsParams { cg_tolerance: 1e-12, hessian_filter: HessianFilter::Clamp, ..space() };
+        let mut dynamics = solid(&rest, tets.clone(), material, params);
+        let mut x = rest.clone();
+        let mut v: Vec<Vector> = rest
+            .iter()
+            .map(|p| {
+                Vector::new(1.0 + (20.0 * p.y).sin(), p.x, (15.0 * p.x).cos()) * 0.2
+                    + Vector::z().cross(&p.coords) * 8.0
+            })
+            .collect();
+        let none = vec![false; x.len()];
+        let dt = 0.002;
+        for _ in 0..3 {
+            let (x0, v0) = (x.clone(), v.clone());
+            let infos = dynamics.solve_step(&mut x, &mut v, dt, &none, &x0, 30).expect("solves");
+            assert!(infos[29].max_displacement < 1e-10, "{:?}", infos[29]);
+            assert!((dynamics.momentum(&v) - dynamics.momentum(&v0)).norm() < 1e-12);
+            // Implicit Euler's own error, exactly: dt sum m v1 x v0.
+            let before = dynamics.angular_momentum(&x0, &v0);
+            let term: Vector =
+                (0..x.len()).map(|k| v[k].cross(&v0[k]) * (dt * dynamics.model().masses()[k])).sum();
+            let difference = (dynamics.angular_momentum(&x, &v) - before - term).norm();
+            assert!(
+                difference < 1e-9 * before.norm(),
+                "{model:?}: off by {difference:e} of {}",
+                before.norm()
+            );
+        }
+    }
+}
+
+#[test]
+fn the_inside_follows_a_surface_that_contact_moved() {
+    // Contact squeezes the surface of a step half-way through; one or two more targets with the surface held
+    // bring the inside along, at the step's own inertia, and leave no tet inverted.
+    let (rest, tets) = block([0.4, 0.4, 0.2], [8, 8, 4]);
+    let mut dynamics = solid(&rest, tets, SolidMaterial::rubber(), DynamicsParams::default());
+    let surface: Vec<bool> = rest
+        .iter()
+        .map(|p| [p.x, p.y].iter().any(|c| *c < 1e-9 || *c > 0.4 - 1e-9) || p.z < 1e-9 || p.z > 0.2 - 1e-9)
+        .collect();
+    let v = vec![Vector::new(0.0, 0.0, -1.5); rest.len()];
+    dynamics.begin_step(&rest, &v, 0.02).expect("begins");
+    let none = vec![false; rest.len()];
+    let mut y = rest.clone();
+    dynamics.newton_target(&rest, &none, &rest, &mut y).expect("solves");
+    // The surface ends where contact put it: flattened at z = 0; the inside is where it was.
+    let moved: Vec<Point> = (rest.iter().zip(&y).enumerate())
+        .map(|(k, (x, y))| if surface[k] { Point::new(y.x, y.y, y.z.max(0.0)) } else { *x })
+        .collect();
+    let mut x = moved.clone();
+    for _ in 0..2 {
+        let info = dynamics.newton_target(&x, &surface, &moved, &mut y).expect("solves");
+        assert!(info.cg.converged && info.cg.iterations < 60 * info.iterations, "{info:?}");
+        x.copy_from_slice(&y);
+    }
+    assert!(x.iter().zip(&moved).zip(&surface).all(|((x, m), held)| !held || x == m));
+    assert!(dynamics.model().inverted_tets(&x).is_empty());
+}

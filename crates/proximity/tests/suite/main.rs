@@ -1,0 +1,6 @@
+//! The search against all pairs.
+
+mod brute_force;
+mod determinism;
+mod scenes;
+mod swept;

@@ -1,0 +1,6 @@
+//! The two-way loop as a whole: bodies, friction, calls.
+
+mod bodies;
+mod common;
+mod friction;
+mod resolve;

@@ -1,0 +1,271 @@
+//! Calls of the resolver against closed forms, limits, and the promises of the README.
+#![allow(clippy::unwrap_used)] // helpers of tests are outside the functions that the lint knows as tests
+
+use crate::common::sheet;
+use bowknot_geometry::{HalfSpace, Point, Topology, Vector};
+use bowknot_proximity::{BodyFilter, CollisionModel};
+use bowknot_twoway::{AcceptedState, Call, Params, ResolveError, Resolver, Statistics};
+use std::ops::ControlFlow;
+
+struct Scene {
+    x: Vec<Point>,
+    model: CollisionModel,
+}
+
+/// Deformable sheets at the given heights, and the ground z = 0 if asked for.
+fn sheets(cells: usize, heights: &[f64], ground: bool) -> Scene {
+    let (mut x, mut triangles) = (Vec::new(), Vec::new());
+    let mut bodies = Vec::new();
+    for (body, &height) in heights.iter().enumerate() {
+        sheet(cells, 0.1, height, &mut x, &mut triangles);
+        bodies.resize(x.len(), body as u32);
+    }
+    let topology = Topology::new(x.len(), triangles, &[], &[]).unwrap();
+    let half_spaces =
+        if ground { vec![HalfSpace::new(Point::origin(), Vector::z()).unwrap()] } else { Vec::new() };
+    let filters = vec![BodyFilter::DEFORMABLE; heights.len()];
+    Scene { model: CollisionModel::new(topology, bodies, filters, half_spaces).unwrap(), x }
+}
+
+fn resolve(scene: &Scene, y: &[Point], params: Params) -> (Vec<Point>, Statistics) {
+    let mut resolver =
+        Resolver::new(scene.model.clone(), &scene.x, &vec![1.0; scene.x.len()], params).unwrap();
+    let mut x = scene.x.clone();
+    let report = resolver.resolve(&mut x, y, &Call::default(), &mut ()).unwrap();
+    (x, report)
+}
+
+fn presets() -> [Params; 2] {
+    [Params::fast(), Params::paper()]
+}
+
+#[test]
+fn without_contact_the_target_is_reached_whatever_the_distance() {
+    let scene = sheets(4, &[1.0], false);
+    for params in presets() {
+        let y: Vec<Point> = scene.x.iter().map(|p| p + Vector::new(0.0, 0.5, 0.3)).collect();
+        let (x, report) = resolve(&scene, &y, params);
+        assert!(report.converged);
+        assert_eq!(report.contact_rows, 0);
+        let worst = x.iter().zip(&y).map(|(x, y)| (x - y).norm()).fold(0.0, f64::max);
+        assert!(worst < 0.03 * 0.12, "{worst}");
+    }
+}
+
+#[test]
+fn a_sheet_pushed_through_the_ground_rests_on_it_at_delta() {
+    let scene = sheets(4, &[0.2], true);
+    let y: Vec<Point> = scene.x.iter().map(|p| p - 0.5 * Vector::z()).collect();
+    for params in presets() {
+        let (x, report) = resolve(&scene, &y, params.clone());
+        let lowest = x.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
+        let delta = 0.1 * mean_edge();
+        assert!(lowest > 0.0 && lowest < 1.5 * delta, "{lowest} against {delta}");
+        // Nothing but the vertical motion is taken away.
+        for (x, y) in x.iter().zip(&y) {
+            assert!((x - y).xy().norm() < 0.02 * mean_edge(), "{x} {y}");
+        }
+        assert!(report.min_gap_m.unwrap() > 0.0);
+    }
+}
+
+fn mean_edge() -> f64 {
+    0.1 * (40.0 + 16.0 * 2f64.sqrt()) / 56.0
+}
+
+#[test]
+fn two_sheets_that_want_to_swap_places_do_not() {
+    let scene = sheets(4, &[0.0, 0.05], false);
+    let n = scene.x.len() / 2;
+    let y: Vec<Point> = (0..2 * n).map(|i| scene.x[(i + n) % (2 * n)]).collect();
+    for params in presets() {
+        let (x, report) = resolve(&scene, &y, params);
+        for i in 0..n {
+            assert!(x[n + i].z > x[i].z, "vertex {i}: {} under {}", x[n + i], x[i]);
+        }
+        assert!(report.min_gap_m.unwrap() > 0.0);
+    }
+}
+
+#[test]
+fn a_taut_sheet_moved_along_itself_arrives() {
+    // The proximal term damps rigid motion of taut regions; it must delay it, not stop it.
+    let scene = sheets(6, &[0.0], false);
+    let stretched = |p: &Point, shift: f64| Point::new(1.3 * p.x + shift, p.y, p.z);
+    let y: Vec<Point> = scene.x.iter().map(|p| stretched(p, 0.2)).collect();
+    let mean = |p: &[Point]| p.iter().map(|p| p.x).sum::<f64>() / p.len() as f64;
+    for imbalance in [0.1, 0.01] {
+        let mut params = Params::fast();
+        params.stop.imbalance = imbalance;
+        let (x, report) = resolve(&scene, &y, params);
+        assert!(report.converged, "{report:?}");
+        // Internal forces cannot move the mean: what it lacks is what the stopping rule allows.
+        let behind = mean(&y) - mean(&x);
+        assert!(
+            behind.abs() < imbalance * mean_edge() + 0.03 * mean_edge(),
+            "{behind} m behind at {imbalance}"
+        );
+        assert!(report.imbalance_m < imbalance * mean_edge());
+        assert!(report.max_stretch <= 1.1 * 1.02 + 1e-12, "{}", report.max_stretch);
+    }
+}
+
+#[test]
+fn limits_and_observers_stop_with_a_valid_state_and_the_distance_that_remains() {
+    // Bent and stretched through each other: not done in a few steps.
+    let scene = sheets(4, &[0.0, 0.05], false);
+    let y: Vec<Point> = (0..50)
+        .map(|i| scene.x[49 - i] + Vector::new(0.0, 0.0, if i % 3 == 0 { 0.5 } else { -0.5 }))
+        .collect();
+    let mut params = Params::fast();
+    params.stop.max_steps = Some(2);
+    let (_, report) = resolve(&scene, &y, params);
+    assert_eq!(report.steps, 2);
+    assert!(!report.converged && report.remaining_m > 0.0 && report.slowest_body.is_some());
+
+    let mut resolver =
+        Resolver::new(scene.model.clone(), &scene.x, &vec![1.0; scene.x.len()], Params::fast()).unwrap();
+    let mut x = scene.x.clone();
+    let mut seen = 0;
+    let mut previous = x.clone();
+    let mut observer = |state: &AcceptedState<'_>| {
+        assert_eq!(state.previous, &previous[..], "each state starts where the last one ended");
+        previous = state.positions.to_vec();
+        seen += 1;
+        if seen == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    };
+    let report = resolver.resolve(&mut x, &y, &Call::default(), &mut observer).unwrap();
+    assert_eq!((report.steps, seen), (3, 3));
+    assert_eq!(x, previous);
+
+    let mut params = Params::fast();
+    params.stop.max_seconds = Some(1e-9);
+    assert_eq!(resolve(&scene, &y, params).1.steps, 1);
+}
+
+#[test]
+fn pins_go_to_their_target_and_wait_where_they_would_cut_through() {
+    // A pinned sheet is pushed through a free one, which yields; through a pinned one it waits.
+    let scene = sheets(4, &[0.0, 0.05], false);
+    let n = scene.x.len() / 2;
+    let y: Vec<Point> =
+        scene.x.iter().enumerate().map(|(i, p)| if i < n { p + 0.2 * Vector::z() } else { *p }).collect();
+    let mut resolver =
+        Resolver::new(scene.model.clone(), &scene.x, &vec![1.0; 2 * n], Params::fast()).unwrap();
+    let mut run = |pinned: Vec<bool>| {
+        let mut x = scene.x.clone();
+        let call = Call { prescribed: &pinned, ..Call::default() };
+        let report = resolver.resolve(&mut x, &y, &call, &mut ()).unwrap();
+        (x, report)
+    };
+    let (x, report) = run((0..2 * n).map(|i| i < n).collect());
+    assert!(report.converged && report.prescribed_behind_m < 0.03 * mean_edge(), "{report:?}");
+    assert!((0..n).all(|i| x[i + n].z > x[i].z + 1e-3));
+    let (x, report) = run(vec![true; 2 * n]);
+    assert!(!report.converged && report.prescribed_behind_m > 0.1, "{report:?}");
+    assert!(report.steps < 60, "waiting for what cannot move uses up the steps: {}", report.steps);
+    assert!((0..n).all(|i| x[i + n].z > x[i].z));
+}
+
+#[test]
+fn the_result_has_the_same_bits_for_any_number_of_threads_and_on_every_call() {
+    let scene = sheets(12, &[0.0, 0.05, 0.1], false);
+    let n = scene.x.len() / 3;
+    let y: Vec<Point> = (0..3 * n).map(|i| scene.x[3 * n - 1 - i] + 0.01 * Vector::x()).collect();
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let mut params = Params::fast();
+            params.stop.max_steps = Some(12);
+            let mut resolver =
+                Resolver::new(scene.model.clone(), &scene.x, &vec![1.0; 3 * n], params).unwrap();
+            let mut results = Vec::new();
+            for _ in 0..2 {
+                let mut x = scene.x.clone();
+                resolver.resolve(&mut x, &y, &Call::default(), &mut ()).unwrap();
+                results.push(x);
+            }
+            assert!(results[0] == results[1], "a second call differs: something outlives a call");
+            results.swap_remove(0)
+        })
+    };
+    let one = run(1);
+    for threads in [2, 3] {
+        assert!(run(threads) == one, "{threads} threads give other bits");
+    }
+}
+
+#[test]
+fn an_obstacle_waits_as_one_body() {
+    // A rigid plate rises against a sheet that is pinned at its rim: it can go only so far.
+    let (mut x, mut triangles) = (Vec::new(), Vec::new());
+    sheet(4, 0.1, 0.05, &mut x, &mut triangles);
+    let n = x.len();
+    sheet(1, 0.4, 0.0, &mut x, &mut triangles);
+    let bodies = (0..x.len()).map(|v| u32::from(v >= n)).collect();
+    let topology = Topology::new(x.len(), triangles, &[], &[]).unwrap();
+    let filters = vec![BodyFilter::DEFORMABLE, BodyFilter::OBSTACLE];
+    let model = CollisionModel::new(topology, bodies, filters, vec![]).unwrap();
+    let mut resolver = Resolver::new(model, &x, &vec![1.0; x.len()], Params::fast()).unwrap();
+    let start = x.clone();
+    let y: Vec<Point> =
+        x.iter().enumerate().map(|(i, p)| if i >= n { p + Vector::z() } else { *p }).collect();
+    let pinned: Vec<bool> = (0..x.len()).map(|i| i < n).collect();
+    let call = Call { prescribed: &pinned, ..Call::default() };
+    let report = resolver.resolve(&mut x, &y, &call, &mut ()).unwrap();
+    let risen: Vec<f64> = (n..x.len()).map(|i| x[i].z - start[i].z).collect();
+    assert!(risen.iter().all(|r| (r - risen[0]).abs() < 1e-12), "{risen:?}");
+    assert!(risen[0] > 0.01 && risen[0] < 0.05, "{risen:?}");
+    assert!(report.prescribed_behind_m > 0.9);
+}
+
+#[test]
+fn what_cannot_be_resolved_is_refused_by_name_and_leaves_the_state_alone() {
+    let scene = sheets(1, &[1.0], false);
+    let masses = vec![1.0; 4];
+    let resolver = |masses: &[f64], params| Resolver::new(scene.model.clone(), &scene.x, masses, params);
+    assert!(matches!(resolver(&[1.0; 3], Params::fast()), Err(ResolveError::Length { what: "masses", .. })));
+    assert!(matches!(
+        resolver(&[1.0, 0.0, 1.0, 1.0], Params::fast()),
+        Err(ResolveError::Mass { vertex: 1, .. })
+    ));
+    let mut broken = Params::fast();
+    broken.stepper.damping = 1.5;
+    broken.constraints.stretch_limit = 0.9;
+    let Err(ResolveError::Params(problems)) = resolver(&masses, broken) else { panic!("accepted") };
+    assert_eq!(problems.len(), 2, "every problem is reported: {problems:?}");
+
+    let mut good = resolver(&masses, Params::fast()).unwrap();
+    let mut x = scene.x.clone();
+    let mut y = scene.x.clone();
+    y[2].y = f64::NAN;
+    let error = good.resolve(&mut x, &y, &Call::default(), &mut ()).unwrap_err();
+    assert!(matches!(error, ResolveError::NonFinite { what: "the target", vertex: 2, .. }), "{error}");
+    assert_eq!(x, scene.x);
+    let far: Vec<Point> = scene.x.iter().map(|p| p + 1e13 * Vector::x()).collect();
+    let error = good.resolve(&mut x, &far, &Call::default(), &mut ()).unwrap_err();
+    assert!(matches!(error, ResolveError::FloorBelowRounding { .. }), "{error}");
+    assert_eq!(x, scene.x);
+}
+
+#[test]
+fn a_tight_start_opens_slowly() {
+    // Two sheets 1 % of delta apart: the step opens them by the separation speed, no more.
+    let delta = 0.1 * mean_edge();
+    let (mut x, mut triangles) = (Vec::new(), Vec::new());
+    sheet(4, 0.1, 0.0, &mut x, &mut triangles);
+    let n = x.len();
+    sheet(4, 0.1, 0.01 * delta, &mut x, &mut triangles);
+    let topology = Topology::new(x.len(), triangles, &[], &[]).unwrap();
+    let bodies = (0..x.len()).map(|v| u32::from(v >= n)).collect();
+    let model = CollisionModel::new(topology, bodies, vec![BodyFilter::DEFORMABLE; 2], vec![]).unwrap();
+    let scene = Scene { x, model };
+    let mut resolver =
+        Resolver::new(scene.model.clone(), &scene.x, &vec![1.0; 2 * n], Params::fast()).unwrap();
+    let mut x = scene.x.clone();
+    let call = Call { time_step: Some(0.005), ..Call::default() };
+    resolver.resolve(&mut x, &scene.x, &call, &mut ()).unwrap();
+    // 20 delta a second for 1/200 s: a tenth of delta.
+    let opened = (0..n).map(|i| x[n + i].z - x[i].z).fold(0.0, f64::max);
+    assert!(opened > 0.05 * delta && opened < 0.2 * delta, "{}", opened / delta);
+}
