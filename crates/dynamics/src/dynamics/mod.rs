@@ -60,6 +60,11 @@ impl NewtonInfo {
         self.agreement = next.agreement;
         self.energy_after = next.energy_after;
     }
+
+    /// By how much the potential fell [J].
+    fn decrease(&self) -> f64 {
+        self.energy_before - self.energy_after
+    }
 }
 
 /// Model, parameters and workspace. Nothing in it outlives a time step: [`Self::begin_step`] forgets

@@ -22,6 +22,9 @@ const AGREEMENT: f64 = 0.9;
 /// Share of the potential below which a correction's decrease is not worth another.
 const VAIN_DECREASE: f64 = 1e-6;
 
+/// Share of what the target gained at which the quadratic model may have been wrong about a correction that is the last.
+const MISSED: f64 = 0.01;
+
 /// Share of the whole displacement below which a correction is the last.
 const SMALL_CORRECTION: f64 = 0.1;
 
@@ -108,6 +111,58 @@ impl Newton<'_> {
     }
 
     /// A Newton iteration, and as many to correct it as it takes.
+    fn approach(&mut self) -> NewtonInfo {
+        let start = self.work.x.clone();
+        let mut info = self.iterate();
+        if info.agreement < AGREEMENT || self.model.has_strands() {
+            self.correct(&start, &mut info);
+        }
+        info
+    }
+
+    /// The same with springs: contacts are guessed, the guess is improved by what it led to, and only then is the way
+    /// corrected. The guess is where inertia leads; in a heap that comes down half of it is wrong, and corrections of a way
+    /// among wrong contacts are for nothing.
+    ///
+    /// A spring that pulls, wrongly, can only do so within this bound: the potential without springs must not end above
+    /// where it started, but by what pressed springs had stored, so that no energy comes from them (a target of implicit
+    /// Euler keeps elastic and kinetic energy below those before). Where it does, the target is made without them.
+    fn approach_contacts(&mut self) -> NewtonInfo {
+        let (start, imposed) = (self.work.x.clone(), self.work.imposed.clone());
+        let mut placed = start.clone();
+        add_scaled(&mut placed, 1.0, &imposed);
+        let [kinetic, internal] = self.energies(&placed);
+        let (before, scale) = (kinetic + internal, kinetic.abs() + internal.abs());
+
+        let first = self.iterate();
+        let (mut info, mut last) = (first, first);
+        self.work.least_scale = self.work.cg.scale();
+        for _ in 0..SETTLING_ITERATIONS {
+            if self.repulsion.settle(&self.work.trial) <= SETTLED {
+                break;
+            }
+            self.work.start_from_trial();
+            last = self.iterate();
+            info.add(&last);
+        }
+        // After a good first step, what settling leaves undone is mostly small, and slow where friction comes and goes.
+        if self.model.has_strands() || first.agreement.max(last.agreement) < AGREEMENT {
+            self.correct(&start, &mut info);
+        }
+        self.work.least_scale = 0.0;
+
+        let after: f64 = self.energies(&self.work.trial).iter().sum();
+        let gains_nothing = after <= before + self.repulsion.stored_energy(&placed) + NO_GAIN * scale;
+        if !gains_nothing {
+            self.work.x.copy_from_slice(&start);
+            self.work.imposed.copy_from_slice(&imposed);
+            self.repulsion.let_go();
+            info.add(&self.approach());
+        }
+        info
+    }
+
+    /// Iterations after those of `info`, the first of which started at `start`, until the model is good.
     ///
     /// Where the quadratic model is poor, its minimum is far from that of the potential: left there, stiff bodies
     /// that turn lose most of their motion. A good step after a poor one may only have restored lengths.
@@ -117,12 +172,12 @@ impl Newton<'_> {
     /// A step that would be cut is tried whole first, whatever it does to the potential: the watchdog technique
     /// (Chamberlain, Powell, Lemarechal and Pedersen 1982). A stiff rod that turns stretches along its straight step, a
     /// line search would stop it there for good, and the next step restores its length.
-    fn approach(&mut self) -> NewtonInfo {
-        let mut info = self.iterate();
-        let mut arrived = info.agreement >= AGREEMENT && !self.model.has_strands();
-        let start = if arrived { Vec::new() } else { self.work.x.clone() };
+    fn correct(&mut self, start: &[Vector], info: &mut NewtonInfo) {
+        let strands = self.model.has_strands();
+        let mut gained = info.decrease();
+        let mut arrived = false;
         while !arrived && info.iterations <= self.params.correcting_iterations {
-            let shortened = (info.step_length < 1.0).then(|| (self.work.trial.clone(), info));
+            let shortened = (info.step_length < 1.0).then(|| (self.work.trial.clone(), *info));
             if shortened.is_some() {
                 self.work.place(1.0);
             }
@@ -138,46 +193,14 @@ impl Newton<'_> {
                 _ => {}
             }
             info.add(&next);
-            let moved = largest_distance(&self.work.trial, &start, &self.work.free);
+            let moved = largest_distance(&self.work.trial, start, &self.work.free);
             let small = next.max_displacement <= SMALL_CORRECTION * moved;
-            let vain = next.energy_before - next.energy_after <= VAIN_DECREASE * next.energy_before.abs();
-            arrived = info.agreement >= AGREEMENT && small || vain;
+            gained += next.decrease();
+            let missed = (1.0 - next.agreement) * next.decrease();
+            let good = next.agreement >= AGREEMENT || !strands && missed <= MISSED * gained;
+            let vain = next.decrease() <= VAIN_DECREASE * next.energy_before.abs();
+            arrived = small && good || vain;
         }
-        info
-    }
-
-    /// The same with springs: contacts are guessed, and the guess is improved by what it led to.
-    ///
-    /// A spring that pulls, wrongly, can only do so within this bound: the potential without springs must not end above
-    /// where it started, but by what pressed springs had stored, so that no energy comes from them (a target of implicit
-    /// Euler keeps elastic and kinetic energy below those before). Where it does, the target is made without them.
-    fn approach_contacts(&mut self) -> NewtonInfo {
-        let (start, imposed) = (self.work.x.clone(), self.work.imposed.clone());
-        let mut placed = start.clone();
-        add_scaled(&mut placed, 1.0, &imposed);
-        let [kinetic, internal] = self.energies(&placed);
-        let (before, scale) = (kinetic + internal, kinetic.abs() + internal.abs());
-
-        let mut info = self.approach();
-        self.work.least_scale = self.work.cg.scale();
-        for _ in 0..SETTLING_ITERATIONS {
-            if self.repulsion.settle(&self.work.trial) <= SETTLED {
-                break;
-            }
-            self.work.start_from_trial();
-            info.add(&self.iterate());
-        }
-        self.work.least_scale = 0.0;
-
-        let after: f64 = self.energies(&self.work.trial).iter().sum();
-        let gains_nothing = after <= before + self.repulsion.stored_energy(&placed) + NO_GAIN * scale;
-        if !gains_nothing {
-            self.work.x.copy_from_slice(&start);
-            self.work.imposed.copy_from_slice(&imposed);
-            self.repulsion.let_go();
-            info.add(&self.approach());
-        }
-        info
     }
 
     /// One iteration.
