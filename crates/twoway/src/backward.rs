@@ -74,6 +74,7 @@ impl<K: RowSolver> BackwardStep for LcpBackward<K> {
         self.edge_multipliers.clear();
         self.edge_multipliers.resize(self.edges.balls.len(), 0.0);
         self.caution.begin(problem);
+        self.solver.begin();
     }
 
     fn project(&mut self, problem: &Problem, state: &mut State, statistics: &mut Statistics) {
@@ -183,7 +184,8 @@ impl<K: RowSolver> LcpBackward<K> {
         self.weights.clear();
         self.free.clear();
         for v in 0..state.x.len() {
-            let (mass, mu) = (problem.relative_mass[v], self.proximal[v]);
+            let mass = problem.relative_mass[v];
+            let mu = self.proximal[v].min(proximal::MOST_DRAG * mass);
             if problem.movable(v) {
                 let weight = 1.0 / (mass + mu);
                 self.weights.push(weight);

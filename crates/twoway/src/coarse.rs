@@ -4,7 +4,11 @@ use bowknot_geometry::Vector;
 use bowknot_lcp as lcp;
 
 /// Range of the factor: beyond it the linear model that it comes from says nothing.
-const COARSE_RANGE: (f64, f64) = (0.3, 2.0);
+const LEAST_FACTOR: f64 = 0.3;
+const LARGEST_FACTOR: f64 = 2.0;
+
+/// Growth of the multipliers in a call. Those of a chain of 600 taut edges, which start from 0, need 600.
+const MOST_GROWTH: f64 = 1e3;
 
 /// Whether a friction multiplier is at its bound: the contact slides.
 pub(crate) fn is_sliding(row: &lcp::FrictionRow, normal: f64, multiplier: lcp::TangentVector) -> bool {
@@ -19,7 +23,48 @@ pub(crate) fn is_sliding(row: &lcp::FrictionRow, normal: f64, multiplier: lcp::T
 /// Friction scales with its normals, which keeps it inside of its cone. A contact that sticks is an equation, slip = 0,
 /// and counts with lambda_t . slip; one that slides is at rest with any slip against its multiplier (in De
 /// Saxce's form, lambda (c + mu |slip|) + lambda_t . slip = 0 whatever the slip) and counts nothing.
-pub(crate) fn scale_multipliers(system: &lcp::Problem<'_>, free: &[Vector], state: &mut lcp::State<'_>) {
+///
+/// In a call multipliers grow by it by a bounded factor in all. Where rows contradict each other, between pins too far apart, the
+/// dual has no maximum: rows that ask for ever more would lift those that are right, of other bodies too.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CoarseCorrection {
+    /// By what multipliers may still grow; shrinking gives it back.
+    growth_left: f64,
+}
+
+impl Default for CoarseCorrection {
+    fn default() -> Self {
+        Self { growth_left: MOST_GROWTH }
+    }
+}
+
+impl CoarseCorrection {
+    /// Starts a call.
+    pub fn begin(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Scales the multipliers, and y with them.
+    pub fn apply(&mut self, system: &lcp::Problem<'_>, free: &[Vector], state: &mut lcp::State<'_>) {
+        let best = best_factor(system, free, state);
+        if !best.is_finite() {
+            return;
+        }
+        let s = best.clamp(LEAST_FACTOR, LARGEST_FACTOR.min(self.growth_left).max(1.0));
+        self.growth_left /= s;
+        state.lambda.iter_mut().for_each(|l| *l *= s);
+        state.forces.iter_mut().for_each(|f| *f *= s);
+        state.friction.iter_mut().for_each(|f| *f *= s);
+        for ((y, free), &weight) in state.y.iter_mut().zip(free).zip(system.weights()) {
+            if weight > 0.0 {
+                *y = free + s * (*y - free);
+            }
+        }
+    }
+}
+
+/// The maximiser; not finite where no multiplier acts.
+fn best_factor(system: &lcp::Problem<'_>, free: &[Vector], state: &lcp::State<'_>) -> f64 {
     let mut slack = 0.0;
     for (row, &lambda) in system.rows().rows.iter().zip(&*state.lambda) {
         if lambda > 0.0 {
@@ -45,19 +90,5 @@ pub(crate) fn scale_multipliers(system: &lcp::Problem<'_>, free: &[Vector], stat
             energy += (y - free).norm_squared() / weight;
         }
     }
-    if energy <= 0.0 {
-        return;
-    }
-    let s = (1.0 - slack / energy).clamp(COARSE_RANGE.0, COARSE_RANGE.1);
-    if !s.is_finite() {
-        return;
-    }
-    state.lambda.iter_mut().for_each(|l| *l *= s);
-    state.forces.iter_mut().for_each(|f| *f *= s);
-    state.friction.iter_mut().for_each(|f| *f *= s);
-    for ((y, free), &weight) in state.y.iter_mut().zip(free).zip(system.weights()) {
-        if weight > 0.0 {
-            *y = free + s * (*y - free);
-        }
-    }
+    1.0 - slack / energy
 }

@@ -9,6 +9,11 @@ use bowknot_constraints::EdgeForm;
 use bowknot_geometry::{PairKind, Point, Separation, Vector};
 use bowknot_lcp::BallRow;
 
+/// Most of the term, in the mass of its vertex. It is made of multipliers, and the heavier a vertex, the larger the multipliers
+/// that move it: without a bound both grow for ever where limits ask for more than a fraction of an edge, and x stays where
+/// it is, short of them.
+pub(crate) const MOST_DRAG: f64 = 100.0;
+
 /// A closest point is at a vertex if the other weights of its side are below this.
 const AT_VERTEX: f64 = 1e-6;
 

@@ -1,6 +1,6 @@
 //! The part of the backward step that solves its rows, as a trait: other methods plug in here and share everything else.
 
-use crate::coarse::scale_multipliers;
+use crate::coarse::CoarseCorrection;
 use crate::{Problem, State};
 use bowknot_constraints::EdgeLimits;
 use bowknot_geometry::Vector;
@@ -27,6 +27,9 @@ pub struct RowSystem<'a> {
 /// Solves the rows of a backward step, as exactly as it likes: [`crate::LcpBackward`] builds them anew in each step and
 /// keeps their multipliers from one to the next.
 pub trait RowSolver: Send {
+    /// Starts a call of the resolver.
+    fn begin(&mut self) {}
+
     /// Improves the multipliers, and y = y' + W J^T lambda with them: on entry that holds with the multipliers kept from
     /// the last step. A solver that leaves another y is free to do so; [`crate::Statistics::stationarity_m`] and the
     /// like then count as forces whatever has moved y away from y'.
@@ -39,17 +42,23 @@ pub trait RowSolver: Send {
 /// Projected Gauss-Seidel by colours, with the coarse correction and the polishing that
 /// [`crate::BackwardParams`] ask for: the default [`RowSolver`].
 #[derive(Clone, Copy, Debug, Default)]
-pub struct ColouredSweeps;
+pub struct ColouredSweeps {
+    coarse: CoarseCorrection,
+}
 
 impl RowSolver for ColouredSweeps {
+    fn begin(&mut self) {
+        self.coarse.begin();
+    }
+
     fn solve(&mut self, rows: &RowSystem<'_>, state: &mut lcp::State<'_>) -> Result<(), lcp::Error> {
         let (system, problem) = (&rows.system, rows.problem);
         let params = &problem.params.backward;
         let one = lcp::Params { max_sweeps: 1, ..lcp::Params::default() };
-        let batch = |state: &mut lcp::State<'_>, sweeps: usize| -> Result<(), lcp::Error> {
+        let mut batch = |state: &mut lcp::State<'_>, sweeps: usize| -> Result<(), lcp::Error> {
             if params.coarse_correction {
                 for _ in 0..sweeps {
-                    scale_multipliers(system, rows.free, state);
+                    self.coarse.apply(system, rows.free, state);
                     lcp::solve_coloured(system, state, &one)?;
                 }
             } else {

@@ -111,6 +111,34 @@ fn a_taut_sheet_moved_along_itself_arrives() {
 }
 
 #[test]
+fn a_sheet_torn_by_its_pins_does_not_disturb_another() {
+    // Limits of 10 % against pins 50 % apart: their multipliers grow for ever, and those of the other sheet must not.
+    let scene = sheets(6, &[0.0, 1.0], false);
+    let n = scene.x.len() / 2;
+    let mut params = Params::fast();
+    params.stop.max_steps = Some(20);
+    let wanted = |p: &Point, stretch: f64| Point::new(stretch * p.x, p.y, p.z);
+    let y: Vec<Point> =
+        scene.x.iter().enumerate().map(|(v, p)| wanted(p, if v < n { 1.5 } else { 1.3 })).collect();
+    let solve = |pinned: bool| {
+        let prescribed: Vec<bool> =
+            scene.x.iter().enumerate().map(|(v, p)| pinned && v < n && (p.x < 0.01 || p.x > 0.59)).collect();
+        let masses = vec![1.0; scene.x.len()];
+        let mut resolver = Resolver::new(scene.model.clone(), &scene.x, &masses, params.clone()).unwrap();
+        let mut x = scene.x.clone();
+        let call = Call { prescribed: &prescribed, ..Call::default() };
+        let report = resolver.resolve(&mut x, &y, &call, &mut ()).unwrap();
+        (x, report)
+    };
+    let ((torn, report), (alone, calm)) = (solve(true), solve(false));
+    assert!(report.max_stretch > 1.3, "the pins get where they are told to");
+    assert!(calm.converged, "{calm:?}");
+    assert!(report.stationarity_m < 100.0 * mean_edge(), "{} m", report.stationarity_m);
+    let apart = (n..2 * n).map(|v| (torn[v] - alone[v]).norm()).fold(0.0, f64::max);
+    assert!(apart < 0.05 * mean_edge(), "{apart} m apart");
+}
+
+#[test]
 fn limits_and_observers_stop_with_a_valid_state_and_the_distance_that_remains() {
     // Bent and stretched through each other: not done in a few steps.
     let scene = sheets(4, &[0.0, 0.05], false);

@@ -47,7 +47,7 @@ fn sheets_that_change_places_stay_apart_whatever_solves_the_rows() {
     let steps = 400;
     let chebyshev = InterStepChebyshev::new(LcpBackward::with_solver(ProjectedJacobi::new(1, 0.0)), 0.9, 10);
     let counts = [
-        ("Gauss-Seidel", count(solve(&scene, ColouredSweeps, steps, &target))),
+        ("Gauss-Seidel", count(solve(&scene, ColouredSweeps::default(), steps, &target))),
         ("linear system", count(solve(&scene, LinearSystem::default(), steps, &target))),
         ("projected", count(solve(&scene, LinearSystem::projected(), steps, &target))),
         ("augmented, 20", count(solve(&scene, AugmentedLagrangian::new(20), steps, &target))),
@@ -82,7 +82,7 @@ fn sheets_that_want_apart_stick_to_the_linear_system_alone() {
     let left = |(x, _): (Vec<Point>, Statistics)| {
         x.iter().zip(&target).map(|(x, y)| (x - y).norm()).fold(0.0, f64::max)
     };
-    assert!(left(solve(&scene, ColouredSweeps, 200, &target)) < 1e-4);
+    assert!(left(solve(&scene, ColouredSweeps::default(), 200, &target)) < 1e-4);
     assert!(left(solve(&scene, LinearSystem::projected(), 200, &target)) < 1e-4);
     assert!(left(solve(&scene, AugmentedLagrangian::new(20), 200, &target)) < 1e-4);
     assert!(left(solve(&scene, LinearSystem::default(), 200, &target)) > 0.04);
@@ -95,7 +95,8 @@ fn the_default_with_gauss_seidel_named_is_the_default() {
     let mut plain =
         Resolver::new(scene.model.clone(), &scene.x, &vec![0.01; scene.x.len()], Params::fast()).unwrap();
     let (x, _) = resolve_watched(&mut plain, &scene, &target, "plain");
-    let (same, _) = run(&scene, two_way_with(scene.problem(Params::fast()), ColouredSweeps), &target);
+    let (same, _) =
+        run(&scene, two_way_with(scene.problem(Params::fast()), ColouredSweeps::default()), &target);
     assert_eq!(x, same);
 }
 
@@ -139,7 +140,7 @@ fn contacts_that_keep_their_volume_stay_as_near_as_they_start_and_others_open() 
     let gaps = |params: Params| {
         let problem = scene.problem(params);
         assert!((problem.lengths.delta - 0.0112).abs() < 1e-4);
-        let (x, statistics) = run(&scene, two_way_with(problem, ColouredSweeps), &target);
+        let (x, statistics) = run(&scene, two_way_with(problem, ColouredSweeps::default()), &target);
         assert!(statistics.converged);
         // Both sheets have one and the same warp.
         let gaps = (0..n).map(|v| x[v + n].z - x[v].z);
