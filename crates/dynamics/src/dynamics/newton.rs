@@ -115,7 +115,7 @@ impl Newton<'_> {
         let start = self.work.x.clone();
         let mut info = self.iterate();
         if info.agreement < AGREEMENT || self.model.has_strands() {
-            self.correct(&start, &mut info);
+            self.correct(&start, info.decrease(), &mut info);
         }
         info
     }
@@ -147,7 +147,7 @@ impl Newton<'_> {
         }
         // After a good first step, what settling leaves undone is mostly small, and slow where friction comes and goes.
         if self.model.has_strands() || first.agreement.max(last.agreement) < AGREEMENT {
-            self.correct(&start, &mut info);
+            self.correct(&start, first.decrease(), &mut info);
         }
         self.work.least_scale = 0.0;
 
@@ -162,7 +162,8 @@ impl Newton<'_> {
         info
     }
 
-    /// Iterations after those of `info`, the first of which started at `start`, until the model is good.
+    /// Iterations after those of `info`, the first of which started at `start` and lowered the potential by `gained` [J], until
+    /// the model is good.
     ///
     /// Where the quadratic model is poor, its minimum is far from that of the potential: left there, stiff bodies
     /// that turn lose most of their motion. A good step after a poor one may only have restored lengths.
@@ -172,9 +173,8 @@ impl Newton<'_> {
     /// A step that would be cut is tried whole first, whatever it does to the potential: the watchdog technique
     /// (Chamberlain, Powell, Lemarechal and Pedersen 1982). A stiff rod that turns stretches along its straight step, a
     /// line search would stop it there for good, and the next step restores its length.
-    fn correct(&mut self, start: &[Vector], info: &mut NewtonInfo) {
+    fn correct(&mut self, start: &[Vector], mut gained: f64, info: &mut NewtonInfo) {
         let strands = self.model.has_strands();
-        let mut gained = info.decrease();
         let mut arrived = false;
         while !arrived && info.iterations <= self.params.correcting_iterations {
             let shortened = (info.step_length < 1.0).then(|| (self.work.trial.clone(), *info));

@@ -16,7 +16,7 @@ use std::ops::Range;
 
 /// Most fill of a factor with repulsion, in that of the mesh's: a heap of many layers is no surface, and its factor costs
 /// more than it saves. Without, springs count with their diagonal blocks.
-const MOST_FILL: usize = 4;
+const MOST_FILL: usize = 8;
 
 /// Rigid motions of aggregates.
 #[derive(Clone, Debug, Default)]
