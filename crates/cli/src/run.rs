@@ -6,7 +6,7 @@ use crate::interrupt::Interrupt;
 use crate::progress::Bar;
 use crate::{loose, output, setup};
 use bowknot::check::{Judge, StateReport};
-use bowknot::run::{Outcome, Progress};
+use bowknot::run::{Outcome, Progress, Summary};
 use bowknot::{Scene, SimulationError, Simulator, World};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -149,6 +149,7 @@ fn in_words(outcome: &Outcome, out: &Path, frames: usize) -> String {
             .and_then(serde_json::Value::as_f64)
             .map_or_else(|| "-".to_owned(), |s| format!("{s:.3}")),
     ));
+    lines.extend(unfinished(summary));
     if let Some(count) = summary.intersections {
         lines.push(match count {
             0 => "checked every accepted state and path: no intersection".to_owned(),
@@ -160,4 +161,23 @@ fn in_words(outcome: &Outcome, out: &Path, frames: usize) -> String {
         lines.push("continue with --resume".to_owned());
     }
     lines.join("\n")
+}
+
+/// What did not get where it was to be: time steps that ended at a limit, obstacles and pins with something in their way.
+fn unfinished(summary: &Summary) -> Vec<String> {
+    let mut lines = Vec::new();
+    let arrived = summary.mean.pointer("/converged").and_then(serde_json::Value::as_f64).unwrap_or(1.0);
+    let stopped = ((1.0 - arrived) * summary.frames as f64).round();
+    if stopped > 0.0 {
+        lines.push(format!(
+            "{stopped} time steps ended at the limit of steps or time, short of their targets"
+        ));
+    }
+    let waiting = summary.max.pointer("/waiting").and_then(serde_json::Value::as_object);
+    for (name, behind) in waiting.into_iter().flatten() {
+        let behind = behind.as_f64().unwrap_or(f64::NAN);
+        lines
+            .push(format!("{name} waited for what was in its way, {behind:.3e} m behind its motion at most"));
+    }
+    lines
 }

@@ -256,3 +256,57 @@ fn an_output_folder_that_cannot_be_used() {
         .refused(2, &["mine already holds a run", "--resume", "--out"]);
     assert_eq!(std::fs::read(place.path("mine/frames/000003.ply")).unwrap(), frame, "nothing is lost");
 }
+
+/// The same of a body of this kind.
+fn with_body(place: &Place, kind: &str, name: &str, content: impl AsRef<[u8]>) {
+    with_mesh(place, "body", name, content);
+    place.write("scene.toml", place.read("scene.toml") + &format!("kind = \"{kind}\"\n"));
+}
+
+/// Two tetrahedra that share a face as Gmsh writes them, the second in this order.
+fn two_tetrahedra(second: &str, tip: &str) -> String {
+    format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 {tip}\n$EndNodes\n\
+         $Elements\n2\n1 4 2 0 1 1 2 3 4\n2 4 2 0 1 {second}\n$EndElements\n"
+    )
+}
+
+#[test]
+fn tetrahedra_that_are_inverted_or_flat_are_listed() {
+    let place = Place::new();
+    with_body(&place, "solid", "mesh.msh", two_tetrahedra("1 3 2 5", "0 0 -1"));
+    place.run("run scene.toml --frames 1").ok();
+    with_body(&place, "solid", "mesh.msh", two_tetrahedra("1 2 3 5", "0 0 -1"));
+    place.run("run scene.toml").refused(2, &["body it", "of 2 tetrahedra, 1 inverted: 1"]);
+    with_body(&place, "solid", "mesh.msh", two_tetrahedra("1 2 3 5", "0.5 0.5 0"));
+    place.run("run scene.toml").refused(2, &["body it", "of 2 tetrahedra, 1 flat: 1"]);
+}
+
+#[test]
+fn a_strand_with_repeated_points() {
+    let place = Place::new();
+    with_body(&place, "strands", "lock.obj", "v 0 0 0\nv 0 0 0\nv 0 0 1\nl 1 2 3\n");
+    place
+        .run("run scene.toml")
+        .refused(2, &["body it", "edge 0 joins vertices 0 and 1", "merge repeated points"]);
+}
+
+#[test]
+fn a_sequence_that_changes_its_topology() {
+    let place = Place::new();
+    with_mesh(&place, "obstacle", "none.obj", "");
+    let scene = place.read("scene.toml").replace("mesh = \"none.obj\"", "sequence = \"walk\"");
+    place.write("scene.toml", scene);
+    place.run("run scene.toml").refused(2, &["walk"]);
+    std::fs::create_dir(place.path("walk")).unwrap();
+    place.write("walk/000.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    place.run("run scene.toml --frames 1").ok();
+    place.write("walk/001.obj", SQUARE);
+    place.run("run scene.toml").refused(2, &["001.obj", "4 vertices, not 3", "another topology"]);
+}
+
+#[test]
+fn kinds_and_friction() {
+    refused("translate", "kind = \"jelly\"\ntranslate", &["scene.toml:12", "jelly", "cloth", "solid"]);
+    refused("translate", "friction = -0.1\ntranslate", &["scene.toml:12", "friction", "-0.1", "at least 0"]);
+}

@@ -116,3 +116,32 @@ fn the_scene_of_the_readme() {
     tetrahedron(&place.path("skirt.obj"));
     place.run("run scene.toml --frames 1").ok();
 }
+
+#[test]
+fn a_pin_that_would_go_through_the_ground_waits_and_is_named() {
+    let place = Place::new();
+    let scene = r#"
+        simulation = { dt = 0.01, frames = 30 }
+        [[body]]
+        name = "flag"
+        shape = { type = "sheet", size = [0.4, 0.4], edge = 0.1 }
+        translate = [0, 0, 0.1]
+        [[pin]]
+        side = "x-min"
+        motion = { keyframes = [{ time = 0.1, translate = [0, 0, -0.2] }] }
+        [[obstacle]]
+        name = "ground"
+        shape = "half-space"
+    "#;
+    place.write("scene.toml", scene);
+    let ended = place.run("run scene.toml --check").ok();
+    assert!(ended.stdout.contains("pin[0] of flag waited for what was in its way"), "{ended:#?}");
+    assert!(ended.stdout.contains("no intersection"), "{ended:#?}");
+    let statistics = place.read("out/scene/stats.jsonl");
+    let last: serde_json::Value = serde_json::from_str(statistics.lines().last().unwrap()).unwrap();
+    let behind = last["waiting"]["pin[0] of flag"].as_f64().unwrap();
+    assert!((behind - 0.1).abs() < 0.01, "the way goes on for 10 cm below the ground: {behind}");
+    assert_eq!(last["prescribed_behind_m"].as_f64().unwrap(), behind);
+    let free = place.run(&format!("{SMALL} --out free")).ok();
+    assert!(!free.stdout.contains("waited") && !free.stdout.contains("ended at the limit"), "{free:#?}");
+}
