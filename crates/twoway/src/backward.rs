@@ -13,7 +13,6 @@ use crate::{BackwardStep, Problem, State, Statistics};
 use bowknot_constraints::{ContactRows, EdgeForm, EdgeLimits, predicted_gap};
 use bowknot_geometry::Vector;
 use bowknot_lcp::{self as lcp, Family, Schedule, TangentVector};
-use std::time::Instant;
 
 /// The default [`BackwardStep`]. Its rows are solved by `K`, projected Gauss-Seidel by default.
 #[derive(Debug, Default)]
@@ -78,13 +77,11 @@ impl<K: RowSolver> BackwardStep for LcpBackward<K> {
     }
 
     fn project(&mut self, problem: &Problem, state: &mut State, statistics: &mut Statistics) {
-        let clock = Instant::now();
         self.set_weights(problem, state);
         self.fill_rows(problem, state, statistics);
         self.solve(problem, state, statistics);
         self.store(problem, state);
         self.caution.learn(problem, state);
-        statistics.seconds.backward += clock.elapsed().as_secs_f64();
     }
 
     fn stretch_to_limit(&self, state: &State) -> f64 {

@@ -155,8 +155,14 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
                 if state.step == 0 && problem.friction_model() == FrictionModel::Filter {
                     filter_slip(problem, state);
                 }
+                let projecting = Instant::now();
                 backward.project(problem, state, &mut statistics);
-                forward.advance(problem, state, search, &mut statistics)
+                statistics.seconds.backward += projecting.elapsed().as_secs_f64();
+                let (advancing, before) = (Instant::now(), statistics.seconds.of_search());
+                let report = forward.advance(problem, state, search, &mut statistics);
+                let searched = statistics.seconds.of_search() - before;
+                statistics.seconds.forward += advancing.elapsed().as_secs_f64() - searched;
+                report
             });
 
             let accepted = AcceptedState {

@@ -51,15 +51,22 @@ pub trait BackwardStep: Send {
     /// Writes `state.y` from `state.target`, linearised at `state.x`; keeps multipliers for the next step.
     fn project(&mut self, problem: &Problem, state: &mut State, statistics: &mut Statistics);
 
-    /// Largest ratio of an edge's length to its limit at `state.x`; 1 or less: the limits hold.
-    fn stretch_to_limit(&self, state: &State) -> f64;
+    /// Largest ratio of an edge's length to its limit at `state.x`; 1 or less: the limits hold. This and the next two are for
+    /// [`crate::StopRule::Travel`]; a stage with a rule of its own, [`Self::settled`], needs none of them.
+    fn stretch_to_limit(&self, _state: &State) -> f64 {
+        1.0
+    }
 
     /// Largest over bodies of the mean stationarity residual at `state.x` [m]: how far a body as a whole is from where
     /// the forces on it balance.
-    fn imbalance(&mut self, problem: &Problem, state: &State) -> f64;
+    fn imbalance(&mut self, _problem: &Problem, _state: &State) -> f64 {
+        0.0
+    }
 
     /// Largest over bodies of the mean of the vertices' stationarity residuals at `state.x` [m].
-    fn unrest(&mut self, problem: &Problem, state: &State) -> f64;
+    fn unrest(&mut self, _problem: &Problem, _state: &State) -> f64 {
+        0.0
+    }
 
     /// Whether the loop may stop by the stage's own rule; None: by that of [`crate::StopParams`]. For descent methods, whose
     /// y is where one step should end rather than a target: having reached it says nothing about being done.

@@ -107,6 +107,13 @@ pub struct StageSeconds {
     pub forward: f64,
 }
 
+impl StageSeconds {
+    /// Of the search stage, which the forward step may call on its way.
+    pub(crate) fn of_search(&self) -> f64 {
+        self.search + self.evaluate
+    }
+}
+
 /// Work that was skipped because nothing needed it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Skipped {

@@ -11,7 +11,6 @@ use bowknot_twoway::{
     BackwardStep, BudgetedSearch, CertifiedForward, Problem, ResolveError, Resolver, State, Statistics,
 };
 use nalgebra::Matrix3;
-use std::time::Instant;
 
 /// Smallest step factor.
 const SMALLEST_FACTOR: f64 = 1e-6;
@@ -66,7 +65,6 @@ impl BackwardStep for DescentStep {
     }
 
     fn project(&mut self, problem: &Problem, state: &mut State, statistics: &mut Statistics) {
-        let clock = Instant::now();
         let contacts = self.objective.contacts(problem, state);
         let energy = self.objective.value(problem, state, &state.x, &contacts);
         self.factor = if energy > self.energy {
@@ -93,19 +91,6 @@ impl BackwardStep for DescentStep {
         }
         statistics.contact_rows = contacts.len();
         statistics.active_rows = contacts.len();
-        statistics.seconds.backward += clock.elapsed().as_secs_f64();
-    }
-
-    fn stretch_to_limit(&self, _: &State) -> f64 {
-        1.0
-    }
-
-    fn imbalance(&mut self, _: &Problem, _: &State) -> f64 {
-        self.wanted
-    }
-
-    fn unrest(&mut self, _: &Problem, _: &State) -> f64 {
-        self.wanted
     }
 
     fn settled(&self, problem: &Problem, state: &State) -> Option<bool> {

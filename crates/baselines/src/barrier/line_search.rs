@@ -6,7 +6,6 @@ use crate::ccd::{AdditiveCcd, Clocks, PathSearch, earliest};
 use bowknot_twoway::geometry::{Point, Vector};
 use bowknot_twoway::stepper::{StepReport, Stepper};
 use bowknot_twoway::{ForwardStep, Problem, ResolveError, Search, State, Statistics};
-use std::time::Instant;
 
 /// Halvings after which nothing moves.
 const HALVINGS: usize = 40;
@@ -67,8 +66,6 @@ impl ForwardStep for LineSearch {
         search: &mut dyn Search,
         statistics: &mut Statistics,
     ) -> StepReport {
-        let clock = Instant::now();
-        let searching = statistics.seconds.search;
         self.stepper.aim(&state.x, &state.y);
         self.paths.clear();
         self.paths.extend_from_slice(self.stepper.displacements());
@@ -83,8 +80,6 @@ impl ForwardStep for LineSearch {
             self.stepper.limit(v, step);
         }
         state.previous.clone_from(&state.x);
-        let report = self.stepper.advance(&mut state.x);
-        statistics.seconds.forward += clock.elapsed().as_secs_f64() - (statistics.seconds.search - searching);
-        report
+        self.stepper.advance(&mut state.x)
     }
 }

@@ -11,7 +11,6 @@ use super::{BarrierParams, Contact, Derivatives, LineSearch, Objective};
 use crate::ccd::AdditiveCcd;
 use bowknot_twoway::geometry::Vector;
 use bowknot_twoway::{BackwardStep, BudgetedSearch, Problem, ResolveError, Resolver, State, Statistics};
-use std::time::Instant;
 
 /// Relative residual of the Newton systems.
 const TOLERANCE: f64 = 1e-4;
@@ -91,7 +90,6 @@ impl BackwardStep for NewtonStep {
     }
 
     fn project(&mut self, problem: &Problem, state: &mut State, statistics: &mut Statistics) {
-        let clock = Instant::now();
         let contacts = self.objective.contacts(problem, state);
         self.objective.derivatives(problem, state, &state.x, &contacts, &mut self.derivatives);
         let elements = elements(&self.objective, &state.x, &contacts);
@@ -118,19 +116,6 @@ impl BackwardStep for NewtonStep {
         }
         statistics.contact_rows = contacts.len();
         statistics.active_rows = contacts.len();
-        statistics.seconds.backward += clock.elapsed().as_secs_f64();
-    }
-
-    fn stretch_to_limit(&self, _: &State) -> f64 {
-        1.0
-    }
-
-    fn imbalance(&mut self, _: &Problem, _: &State) -> f64 {
-        self.decrement
-    }
-
-    fn unrest(&mut self, _: &Problem, _: &State) -> f64 {
-        self.decrement
     }
 
     fn settled(&self, problem: &Problem, state: &State) -> Option<bool> {

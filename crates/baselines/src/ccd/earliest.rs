@@ -8,7 +8,6 @@ use bowknot_twoway::stepper::{StepReport, Stepper};
 use bowknot_twoway::{ForwardStep, Problem, Search, State, Statistics};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Instant;
 
 /// Pairs that one parallel task handles at least.
 const CHUNK: usize = 256;
@@ -53,8 +52,6 @@ impl ForwardStep for EarliestImpact {
         search: &mut dyn Search,
         statistics: &mut Statistics,
     ) -> StepReport {
-        let clock = Instant::now();
-        let searching = statistics.seconds.search;
         self.stepper.aim(&state.x, &state.y);
         self.paths.clear();
         self.paths.extend_from_slice(self.stepper.displacements());
@@ -64,8 +61,6 @@ impl ForwardStep for EarliestImpact {
             self.stepper.limit(v, time);
         }
         state.previous.clone_from(&state.x);
-        let report = self.stepper.advance(&mut state.x);
-        statistics.seconds.forward += clock.elapsed().as_secs_f64() - (statistics.seconds.search - searching);
-        report
+        self.stepper.advance(&mut state.x)
     }
 }

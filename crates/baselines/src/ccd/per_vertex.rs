@@ -14,7 +14,6 @@ use bowknot_twoway::stepper::{StepReport, Stepper};
 use bowknot_twoway::{ForwardStep, Problem, Search, State, Statistics};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Instant;
 
 /// Pairs that one parallel task handles at least.
 const CHUNK: usize = 256;
@@ -113,8 +112,6 @@ impl ForwardStep for PerVertexImpact {
         search: &mut dyn Search,
         statistics: &mut Statistics,
     ) -> StepReport {
-        let clock = Instant::now();
-        let searching = statistics.seconds.search;
         self.stepper.aim(&state.x, &state.y);
         for v in 0..state.x.len() {
             let length = self.stepper.displacements()[v].norm();
@@ -143,8 +140,6 @@ impl ForwardStep for PerVertexImpact {
             self.shorten();
         }
         state.previous.clone_from(&state.x);
-        let report = self.stepper.advance(&mut state.x);
-        statistics.seconds.forward += clock.elapsed().as_secs_f64() - (statistics.seconds.search - searching);
-        report
+        self.stepper.advance(&mut state.x)
     }
 }

@@ -16,17 +16,18 @@ struct Sweep {
     symbol: &'static str,
     file: &'static str,
     unit: &'static str,
-    method: &'static str,
+    /// The presets that it is swept of.
+    methods: &'static [&'static str],
     values: &'static [f64],
     set: fn(&mut Params, f64),
 }
 
-const SWEEPS: [Sweep; 7] = [
+const SWEEPS: [Sweep; 5] = [
     Sweep {
         symbol: "D_min",
         file: "d-min",
         unit: "delta",
-        method: "paper",
+        methods: &["paper"],
         values: &[0.5, 1.0, 2.0, 3.0, 3.8],
         set: |p, v| p.stepper.budget_min = 0.5 * v,
     },
@@ -34,7 +35,7 @@ const SWEEPS: [Sweep; 7] = [
         symbol: "D_max",
         file: "d-max",
         unit: "delta",
-        method: "paper",
+        methods: &["paper"],
         values: &[2.5, 4.0, 6.0, 10.0, 16.0],
         set: |p, v| p.stepper.budget_max = 0.5 * v,
     },
@@ -42,15 +43,7 @@ const SWEEPS: [Sweep; 7] = [
         symbol: "gamma",
         file: "gamma",
         unit: "1",
-        method: "paper",
-        values: &[0.3, 0.5, 0.7, 0.9, 0.99],
-        set: |p, v| p.stepper.damping = v,
-    },
-    Sweep {
-        symbol: "gamma",
-        file: "gamma",
-        unit: "1",
-        method: "fast",
+        methods: &["paper", "fast"],
         values: &[0.3, 0.5, 0.7, 0.9, 0.99],
         set: |p, v| p.stepper.damping = v,
     },
@@ -58,15 +51,7 @@ const SWEEPS: [Sweep; 7] = [
         symbol: "sigma",
         file: "sigma",
         unit: "1",
-        method: "paper",
-        values: &[1.02, 1.05, 1.1, 1.2, 1.4],
-        set: |p, v| p.constraints.stretch_limit = v,
-    },
-    Sweep {
-        symbol: "sigma",
-        file: "sigma",
-        unit: "1",
-        method: "fast",
+        methods: &["paper", "fast"],
         values: &[1.02, 1.05, 1.1, 1.2, 1.4],
         set: |p, v| p.constraints.stretch_limit = v,
     },
@@ -74,7 +59,7 @@ const SWEEPS: [Sweep; 7] = [
         symbol: "budgets up to",
         file: "budget",
         unit: "edge lengths",
-        method: "fast",
+        methods: &["fast"],
         values: &[0.12, 0.18, 0.25, 0.4, 0.6],
         set: |p, v| p.stepper.budget_max = v,
     },
@@ -100,11 +85,15 @@ impl Figure for Parameters {
         let scenes: &[&'static str] =
             bench.size.pick(&["needle", "stack", "tube", "reef-knot"][..], &["stack"], &["needle"]);
         let mut settings = vec![Setting::of("fast")?, Setting::of("paper")?];
+        let swept: Vec<(&Sweep, &str)> = SWEEPS
+            .iter()
+            .flat_map(|sweep| sweep.methods.iter().map(move |method| (sweep, *method)))
+            .collect();
         let mut values: Vec<Vec<(f64, &str, String)>> = Vec::new();
-        for sweep in &SWEEPS {
+        for (sweep, method) in &swept {
             let mut of_sweep = Vec::new();
             for &value in sweep.values {
-                let mut setting = Setting::of(sweep.method)?;
+                let mut setting = Setting::of(method)?;
                 let before = setting.params.clone();
                 (sweep.set)(&mut setting.params, value);
                 if setting.params != before {
@@ -118,20 +107,19 @@ impl Figure for Parameters {
         let compared = on_scenes(bench, scenes, bench.size.pick(2, 1, 1), &settings, 1)?;
         let mut section = Section::default();
         let mut told = Vec::new();
-        for (sweep, values) in SWEEPS.iter().zip(&values) {
+        for ((sweep, method), values) in swept.iter().zip(&values) {
             let chart = Chart {
-                title: format!("{}: CPU seconds by {}", sweep.method, sweep.symbol),
+                title: format!("{method}: CPU seconds by {}", sweep.symbol),
                 x: Axis::log(&format!("{} [{}]", sweep.symbol, sweep.unit)),
                 y: Axis::log("CPU seconds a problem"),
                 series: lines(&compared, values, |s, _| s.cpu),
                 front: false,
             };
-            let name = format!("parameters-{}-{}", sweep.method, sweep.file);
+            let name = format!("parameters-{method}-{}", sweep.file);
             section.parts.push(Part::Chart { name, chart });
             told.push(format!(
-                "{} in `{}` by up to {}",
+                "{} in `{method}` by up to {}",
                 sweep.symbol,
-                sweep.method,
                 short(spread(&compared, values, |s| s.cpu))
             ));
         }
