@@ -20,6 +20,43 @@ fn scenes_are_listed_with_their_sizes() {
     }
 }
 
+/// Every scene, small and for as many time steps as it takes to touch, under the judge.
+#[test]
+fn every_scene_runs_small_without_an_intersection() {
+    let small = [
+        ("drape", "0.3", 40),
+        ("needle", "0.2", 20),
+        ("stack", "0.15", 60),
+        ("sphere", "0.1", 60),
+        ("tube", "0.15", 60),
+        ("blade", "0.1", 20),
+        ("funnel", "0.15", 15),
+        ("dress", "0.1", 15),
+        ("gown", "0.1", 15),
+        ("bow-knot", "0.1", 60),
+        ("reef-knot", "0.15", 60),
+        ("mat", "0.15", 125),
+        ("hair", "0.08", 40),
+        ("sand", "0.1", 60),
+        ("trampoline", "0.3", 40),
+        ("cards", "1", 100),
+        ("woven", "0.3", 60),
+    ];
+    let place = Place::new();
+    let scenes = place.run("scenes --json").ok().json();
+    for scene in scenes.as_array().unwrap() {
+        let name = scene["name"].as_str().unwrap();
+        let (_, scale, frames) =
+            small.iter().find(|(n, ..)| *n == name).unwrap_or_else(|| panic!("no size for {name}"));
+        let run =
+            format!("run {name} --scale {scale} --frames {frames} --check --json --threads 1 --out {name}");
+        let summary = place.run(&run).ok().json();
+        assert_eq!(summary["intersections"], 0, "{name}");
+        assert!(summary["max"]["contact_rows"].as_f64().unwrap() > 0.0, "nothing touches in {name}");
+        assert_eq!(summary["mean"]["converged"], 1.0, "{name} has time steps that ended at a limit");
+    }
+}
+
 #[test]
 fn info_counts_a_scene() {
     let place = Place::new();
