@@ -7,7 +7,8 @@ use bowknot_lcp as lcp;
 const LEAST_FACTOR: f64 = 0.3;
 const LARGEST_FACTOR: f64 = 2.0;
 
-/// Growth of the multipliers in a call. Those of a chain of 600 taut edges, which start from 0, need 600.
+/// Growth of the multipliers in a call. In the 61st time step of `bow-knot` at scale 1, with chains of 600 taut edges, the first 16
+/// sweeps ask for 870.
 const MOST_GROWTH: f64 = 1e3;
 
 /// Whether a friction multiplier is at its bound: the contact slides.

@@ -7,28 +7,19 @@ use bowknot_baselines::twoway::{
 };
 use std::ops::ControlFlow;
 
+#[path = "../../../twoway/tests/suite/common/draw.rs"]
+mod draw;
+#[path = "../../../twoway/tests/suite/common/sheet.rs"]
+mod sheet;
+
+pub use draw::Draw;
+use sheet::sheet;
+
 /// Vertices, what they make, and the bodies that they belong to.
 #[derive(Clone)]
 pub struct Scene {
     pub x: Vec<Point>,
     pub model: CollisionModel,
-}
-
-/// Appends a square sheet of `cells` x `cells` squares of side `h` in the plane z = `height`.
-pub fn sheet(cells: usize, h: f64, height: f64, x: &mut Vec<Point>, triangles: &mut Vec<[u32; 3]>) {
-    let (base, n) = (x.len(), cells + 1);
-    for k in 0..n * n {
-        // A little warp, so that nothing is degenerate by accident.
-        let warp = 1e-3 * h * ((k * 37 % 11) as f64 - 5.0);
-        x.push(Point::new((k % n) as f64 * h, (k / n) as f64 * h, height + warp));
-    }
-    let id = |i: usize, j: usize| (base + j * n + i) as u32;
-    for j in 0..cells {
-        for i in 0..cells {
-            let [a, b, c, d] = [id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)];
-            triangles.extend(if (i + j) % 2 == 0 { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] });
-        }
-    }
 }
 
 impl Scene {
@@ -185,16 +176,14 @@ pub fn assert_clear(model: &CollisionModel, x: &[Point], what: &str) {
     }
 }
 
-/// Numbers that look random, from -1 to 1, the same in every run.
-pub struct Draw(pub u64);
-
-impl Draw {
-    pub fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    pub fn vector(&mut self) -> Vector {
-        Vector::new(self.next(), self.next(), self.next())
+/// Asserts that `solve` gives the same on one thread and on more.
+pub fn assert_same_on_any_number_of_threads<R: PartialEq + Send>(solve: impl Fn() -> R + Send + Sync) {
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(&solve)
+    };
+    let one = on(1);
+    for threads in [2, 3, 5] {
+        assert!(on(threads) == one, "{threads} threads");
     }
 }

@@ -112,9 +112,9 @@ impl Newton<'_> {
 
     /// A Newton iteration, and as many to correct it as it takes.
     fn approach(&mut self) -> NewtonInfo {
-        let start = self.work.x.clone();
         let mut info = self.iterate();
         if info.agreement < AGREEMENT || self.model.has_strands() {
+            let start = self.work.x.clone();
             self.correct(&start, info.decrease(), &mut info);
         }
         info

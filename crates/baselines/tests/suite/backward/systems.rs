@@ -1,5 +1,6 @@
 //! Small systems of rows.
 
+use crate::common::Draw;
 use bowknot_baselines::twoway::geometry::Vector;
 use bowknot_baselines::twoway::lcp::{Family, FrictionBound, Problem, Row, State, prepare_rows, residuals};
 
@@ -91,19 +92,5 @@ impl Solution {
         let of_lambda = self.lambda.iter().zip(&other.lambda).map(|(a, b)| (a - b).abs());
         let (y, lambda) = (of_y.fold(0.0, f64::max), of_lambda.fold(0.0, f64::max));
         assert!(y < tolerance && lambda < tolerance, "y off by {y:e}, lambda by {lambda:e}");
-    }
-}
-
-/// Numbers that look random, from -1 to 1, the same in every run.
-pub struct Draw(pub u64);
-
-impl Draw {
-    pub fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    pub fn vector(&mut self) -> Vector {
-        Vector::new(self.next(), self.next(), self.next())
     }
 }

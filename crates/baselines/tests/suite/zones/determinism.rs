@@ -1,4 +1,4 @@
-use crate::common::Scene;
+use crate::common::{Scene, assert_same_on_any_number_of_threads};
 use bowknot_baselines::Method;
 use bowknot_baselines::twoway::{Call, Params};
 use bowknot_baselines::zones::{ImpactZones, RigidZones, TwoPhase, ZoneParams};
@@ -8,26 +8,19 @@ fn results_have_the_same_bits_on_any_number_of_threads() {
     // Large enough for loops to be shared out.
     let scene = Scene::two_sheets(24, 0.02);
     let target = scene.swapped();
-    let solve = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| {
-            let problem = || scene.problem(Params::fast());
-            let params = ZoneParams { max_iterations: 4, ..ZoneParams::default() };
-            let methods: [Box<dyn Method>; 3] = [
-                Box::new(ImpactZones::new(problem(), params)),
-                Box::new(RigidZones::new(problem())),
-                Box::new(TwoPhase::new(problem(), 3, RigidZones::new(problem()))),
-            ];
-            methods.map(|mut method| {
-                let mut x = scene.x.clone();
-                let call = Call { time_step: Some(0.01), ..Call::default() };
-                let outcome = method.solve(&mut x, &target, &call).unwrap();
-                (x, outcome.steps, outcome.failed)
-            })
+    assert_same_on_any_number_of_threads(|| {
+        let problem = || scene.problem(Params::fast());
+        let params = ZoneParams { max_iterations: 4, ..ZoneParams::default() };
+        let methods: [Box<dyn Method>; 3] = [
+            Box::new(ImpactZones::new(problem(), params)),
+            Box::new(RigidZones::new(problem())),
+            Box::new(TwoPhase::new(problem(), 3, RigidZones::new(problem()))),
+        ];
+        methods.map(|mut method| {
+            let mut x = scene.x.clone();
+            let call = Call { time_step: Some(0.01), ..Call::default() };
+            let outcome = method.solve(&mut x, &target, &call).unwrap();
+            (x, outcome.steps, outcome.failed)
         })
-    };
-    let one = solve(1);
-    for threads in [2, 5] {
-        assert!(solve(threads) == one, "{threads} threads");
-    }
+    });
 }

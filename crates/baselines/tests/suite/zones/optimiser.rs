@@ -1,5 +1,5 @@
-use super::support::{crumpled, momenta, solve_clear};
-use crate::common::{Draw, Scene};
+use super::support::{crumpled, momenta, nearing, solve_clear};
+use crate::common::Scene;
 use bowknot_baselines::twoway::geometry::{HalfSpace, Point, Topology, Vector};
 use bowknot_baselines::twoway::proximity::{BodyFilter, CollisionModel};
 use bowknot_baselines::twoway::{Call, Params, Resolver};
@@ -31,12 +31,7 @@ fn a_vertex_stops_at_its_desired_distance_above_a_triangle() {
 #[test]
 fn sheets_that_come_near_are_resolved_and_keep_their_momentum() {
     let scene = Scene::two_sheets(4, 0.05);
-    // Toward each other, through each other by a little, with some noise.
-    let n = scene.x.len() / 2;
-    let mut draw = Draw(3);
-    let target: Vec<Point> = (0..2 * n)
-        .map(|v| scene.x[v] + Vector::z() * if v < n { 0.03 } else { -0.03 } + 2e-3 * draw.vector())
-        .collect();
+    let (n, target) = (scene.x.len() / 2, nearing(&scene));
     let mut counts = Vec::new();
     for solver in SOLVERS {
         let (x, outcome) = solve_clear(&mut zones(&scene, solver), &scene, &target, &[]);

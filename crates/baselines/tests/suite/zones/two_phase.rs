@@ -1,7 +1,7 @@
-use super::support::{crumpled, solve_clear};
-use crate::common::{Draw, Scene, assert_clear};
+use super::support::{crumpled, nearing, solve_clear};
+use crate::common::{Scene, assert_clear};
 use bowknot_baselines::barrier::{BarrierParams, by_descent};
-use bowknot_baselines::twoway::geometry::{Point, Vector};
+use bowknot_baselines::twoway::geometry::Point;
 use bowknot_baselines::twoway::{Call, Params};
 use bowknot_baselines::zones::{ImpactZones, RigidZones, TwoPhase, ZoneParams};
 use bowknot_baselines::{Composed, Method};
@@ -9,11 +9,7 @@ use bowknot_baselines::{Composed, Method};
 #[test]
 fn easy_calls_need_the_soft_phase_only_and_end_where_it_does() {
     let scene = Scene::two_sheets(4, 0.05);
-    let n = scene.x.len() / 2;
-    let mut draw = Draw(3);
-    let target: Vec<Point> = (0..2 * n)
-        .map(|v| scene.x[v] + Vector::z() * if v < n { 0.03 } else { -0.03 } + 2e-3 * draw.vector())
-        .collect();
+    let target = nearing(&scene);
     let problem = || scene.problem(Params::fast());
     let mut two = TwoPhase::new(problem(), 100, RigidZones::new(problem()));
     let (x, outcome) = solve_clear(&mut two, &scene, &target, &[]);
