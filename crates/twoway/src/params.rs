@@ -55,7 +55,7 @@ pub struct StopParams {
     pub max_seconds: Option<f64>,
     /// The rule.
     pub rule: StopRule,
-    /// `StopRule::Travel`: largest distance not travelled, in mean edge lengths. Default 0.03.
+    /// `StopRule::Travel`: largest distance not travelled, in mean edge lengths. Default 0.01.
     pub distance: f64,
     /// `StopRule::Travel`: largest distance, in mean edge lengths, of a body as a whole from where the forces on it
     /// balance. Default 0.2.
@@ -109,7 +109,7 @@ impl Default for StopParams {
             max_steps: None,
             max_seconds: None,
             rule: StopRule::Travel,
-            distance: 0.03,
+            distance: 0.01,
             imbalance: 0.2,
             drag: None,
             stretch_tolerance: 0.02,

@@ -35,6 +35,9 @@ const SETTLED: f64 = 0.05;
 /// right, as the collision stage decides.
 const SETTLING_ITERATIONS: usize = 2;
 
+/// Newton iterations more at most while springs that pull give energy. One has been enough wherever it was seen.
+const FURTHER_ITERATIONS: usize = 4;
+
 /// Share of the potential's terms below which a gain by springs is one of the linear solve's tolerance.
 const NO_GAIN: f64 = 1e-6;
 
@@ -126,7 +129,8 @@ impl Newton<'_> {
     ///
     /// A spring that pulls, wrongly, can only do so within this bound: the potential without springs must not end above
     /// where it started, but by what pressed springs had stored, so that no energy comes from them (a target of implicit
-    /// Euler keeps elastic and kinetic energy below those before). Where it does, the target is made without them.
+    /// Euler keeps elastic and kinetic energy below those before). Where it does, springs are settled further, which nearly
+    /// always ends it at once; or else the target is made without them, as if nothing were in the way.
     fn approach_contacts(&mut self) -> NewtonInfo {
         let (start, imposed) = (self.work.x.clone(), self.work.imposed.clone());
         let mut placed = start.clone();
@@ -151,9 +155,17 @@ impl Newton<'_> {
         }
         self.work.least_scale = 0.0;
 
-        let after: f64 = self.energies(&self.work.trial).iter().sum();
-        let gains_nothing = after <= before + self.repulsion.stored_energy(&placed) + NO_GAIN * scale;
-        if !gains_nothing {
+        let most = before + self.repulsion.stored_energy(&placed) + NO_GAIN * scale;
+        let gains = |newton: &Self| newton.energies(&newton.work.trial).iter().sum::<f64>() > most;
+        for _ in 0..FURTHER_ITERATIONS {
+            if !gains(self) {
+                return info;
+            }
+            self.repulsion.settle(&self.work.trial);
+            self.work.start_from_trial();
+            info.add(&self.iterate());
+        }
+        if gains(self) {
             self.work.x.copy_from_slice(&start);
             self.work.imposed.copy_from_slice(&imposed);
             self.repulsion.let_go();
