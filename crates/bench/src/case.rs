@@ -5,7 +5,7 @@ use crate::record::Spec;
 use anyhow::{Context, Result, anyhow};
 use bowknot::io::States;
 use bowknot::proximity::CollisionModel;
-use bowknot::twoway::{Params, Problem};
+use bowknot::twoway::{Params, Problem, Resolver};
 use std::path::Path;
 
 /// A collision problem. Friction is left out: few of the methods that are compared have any, and what it adds to the
@@ -17,6 +17,19 @@ pub struct Case {
     /// What it is made of, without friction.
     pub states: States,
     pub model: CollisionModel,
+    /// What sets the problem apart from the one that was recorded, for all methods alike.
+    lengths: ProblemLengths,
+}
+
+/// Parameters that make another problem of a recorded one; none: as recorded.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ProblemLengths {
+    /// Desired distance, in that of the recorded problem.
+    pub delta: Option<f64>,
+    /// Gap floor, in desired distances of the recorded problem.
+    pub floor: Option<f64>,
+    /// Stretch limit sigma.
+    pub stretch_limit: Option<f64>,
 }
 
 impl Case {
@@ -29,12 +42,33 @@ impl Case {
         states.half_space_contacts.iter_mut().for_each(|plane| plane.friction = 0.0);
         states.pair_frictions.clear();
         let model = states.collision_model().map_err(|message| anyhow!(message))?;
-        Ok(Self { name: name.to_owned(), states, model })
+        Ok(Self { name: name.to_owned(), states, model, lengths: ProblemLengths::default() })
+    }
+
+    /// The problem with other lengths; `change` tells its measurements from those of the recorded one.
+    pub fn under(&self, change: &str, lengths: ProblemLengths) -> Self {
+        Self { name: format!("{}/{change}", self.name), lengths, ..self.clone() }
+    }
+
+    /// Makes a resolver of the problem: parameters of a method, lengths of the case.
+    pub fn resolver(&self, mut params: Params) -> Result<Resolver> {
+        let recorded = |params: &Params| -> Result<f64> {
+            let resolver = self.states.resolver(self.model.clone(), params.clone())?;
+            Ok(resolver.problem().lengths.delta)
+        };
+        let ProblemLengths { delta, floor, stretch_limit } = self.lengths;
+        if delta.is_some() || floor.is_some() {
+            let of = recorded(&params)?;
+            params.constraints.delta = delta.map(|share| share * of).or(params.constraints.delta);
+            params.stepper.floor = floor.map(|share| share * of).or(params.stepper.floor);
+        }
+        params.constraints.stretch_limit = stretch_limit.unwrap_or(params.constraints.stretch_limit);
+        Ok(self.states.resolver(self.model.clone(), params)?)
     }
 
     /// The problem as the stages of a method see it.
     pub fn problem(&self, params: Params) -> Result<Problem> {
-        Ok(self.states.resolver(self.model.clone(), params)?.problem().clone())
+        Ok(self.resolver(params)?.problem().clone())
     }
 
     /// The problem under the parameters that results are judged by, with the prescribed vertices of the call.

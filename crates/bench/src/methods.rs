@@ -66,6 +66,7 @@ pub const METHODS: &[Entry] = &[
         params: Params::paper,
         build: |p| impact_zones(p, ZoneSolver::AugmentedLagrangian),
     },
+    Entry { name: "impact zones, 0.8 delta", params: Params::paper, build: thick_zones },
     Entry { name: "rigid zones", params: Params::paper, build: |p| Ok(Box::new(RigidZones::new(p))) },
     Entry { name: "two phases", params: Params::paper, build: two_phases },
 ];
@@ -189,6 +190,11 @@ fn forward<F: ForwardStep + 'static>(problem: Problem, step: F) -> Built {
 
 fn impact_zones(problem: Problem, solver: ZoneSolver) -> Built {
     Ok(Box::new(ImpactZones::new(problem, ZoneParams { solver, ..ZoneParams::default() })))
+}
+
+/// Impact zones that keep pairs at most of the distance that the other methods keep: zones proper only keep them from meeting.
+fn thick_zones(problem: Problem) -> Built {
+    Ok(Box::new(ImpactZones::new(problem, ZoneParams { thickness: 0.8, ..ZoneParams::default() })))
 }
 
 /// Wu et al. 2020: five rounds of impact zones, then a log barrier.

@@ -28,7 +28,7 @@ fn a_figure_is_measured_once() {
         std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
     };
     let (table, chart, page) = (read("steps.csv"), read("steps.svg"), read("section.md"));
-    assert_eq!(table.lines().count(), 3, "a header and two presets:\n{table}");
+    assert_eq!(table.lines().count(), 5, "a header and two presets on two kinds of targets:\n{table}");
     assert!(table.lines().skip(1).all(|line| line.ends_with(",0")), "a result intersects:\n{table}");
     assert!(chart.starts_with("<svg") && !chart.contains("NaN"));
     assert!(page.starts_with("## Steps of a problem") && page.contains("Commit "), "{page}");

@@ -28,8 +28,8 @@ impl Figure for Breakdown {
     fn run(&self, bench: &Bench) -> Result<Section> {
         let scenes: Vec<&'static str> = bench.size.pick(
             SPECS.iter().map(|spec| spec.name).collect(),
-            vec!["needle", "stack", "tube", "reef-knot", "sand"],
-            vec!["needle"],
+            vec!["needle", "stack", "tube", "reef-knot", "sand", "needle-blind", "stack-blind"],
+            vec!["needle", "needle-blind"],
         );
         let settings = [Setting::of("fast")?, Setting::of("paper")?];
         let compared = on_scenes(bench, &scenes, bench.size.pick(10, 3, 2), &settings, 1)?;

@@ -7,7 +7,10 @@ mod early_contact;
 mod edge_limits;
 mod funnel;
 mod impact_zones;
+mod joint;
+mod lengths;
 mod newton;
+mod overview;
 mod parameters;
 mod row_solvers;
 mod simulation_error;
@@ -16,6 +19,7 @@ mod steps;
 mod sweeps;
 mod switches;
 mod table_1;
+mod table_2;
 
 use crate::bench::Bench;
 use crate::chart::Chart;
@@ -24,9 +28,12 @@ use anyhow::Result;
 
 /// All of them, in the order of the page.
 pub const ALL: &[&dyn Figure] = &[
-    &collision_error::CollisionError,
+    &overview::Overview,
+    &collision_error::CollisionError { blind: false },
+    &collision_error::CollisionError { blind: true },
     &simulation_error::SimulationError,
     &table_1::Table1,
+    &table_2::Table2,
     &switches::Switches,
     &barrier::Barrier,
     &edge_limits::EdgeLimits,
@@ -35,9 +42,11 @@ pub const ALL: &[&dyn Figure] = &[
     &step_sizes::StepSizes,
     &impact_zones::ImpactZones,
     &parameters::Parameters,
+    &lengths::LengthsSwept,
     &steps::Steps,
     &breakdown::Breakdown,
     &newton::Newton,
+    &joint::Joint,
     &funnel::Funnel,
     &early_contact::EarlyContact,
 ];
@@ -57,6 +66,11 @@ pub trait Figure: Sync {
 /// How a finding begins: whether the paper's holds here.
 fn verdict(holds: bool) -> &'static str {
     if holds { "The paper's finding holds here" } else { "The paper's finding does not hold here" }
+}
+
+/// Whether a scene's problems are of a dynamics that is blind to contact.
+fn is_blind(scene: &str) -> bool {
+    scene.contains("-blind")
 }
 
 /// What a figure found.

@@ -1,6 +1,6 @@
 //! How many two-way steps a problem takes, and how many searches (paper, sections 3.1 and 7).
 
-use super::{Figure, Part, Section, verdict};
+use super::{Figure, Part, Section, is_blind, verdict};
 use crate::bench::Bench;
 use crate::chart::{Axis, Chart, Series, Style};
 use crate::methods::Setting;
@@ -32,8 +32,8 @@ impl Figure for Steps {
     fn run(&self, bench: &Bench) -> Result<Section> {
         let scenes: Vec<&'static str> = bench.size.pick(
             SPECS.iter().map(|spec| spec.name).collect(),
-            vec!["needle", "stack", "tube", "reef-knot", "sand"],
-            vec!["needle"],
+            vec!["needle", "stack", "tube", "reef-knot", "sand", "needle-blind", "stack-blind"],
+            vec!["needle", "needle-blind"],
         );
         let settings = [Setting::of("fast")?, Setting::of("paper")?];
         let compared = on_scenes(bench, &scenes, bench.size.pick(10, 3, 2), &settings, 1)?;
@@ -87,11 +87,13 @@ fn histogram(compared: &[Compared]) -> Vec<[usize; 2]> {
 }
 
 fn finding(compared: &[Compared]) -> String {
-    let told = |setting: usize, name: &str| {
-        let steps: Vec<usize> = steps(compared, setting).collect();
+    let (blind, own): (Vec<Compared>, Vec<Compared>) =
+        compared.iter().cloned().partition(|c| is_blind(c.scene));
+    let told = |group: &[Compared], setting: usize, name: &str| {
+        let steps: Vec<usize> = steps(group, setting).collect();
         let within = steps.iter().filter(|&&s| s <= 64).count();
         let middle = median(&steps.iter().map(|&s| s as f64).collect::<Vec<_>>());
-        let searches: usize = compared.iter().flat_map(|c| &c.solved).map(|row| row[setting].searches).sum();
+        let searches: usize = group.iter().flat_map(|c| &c.solved).map(|row| row[setting].searches).sum();
         let total = steps.iter().sum::<usize>().max(1);
         let every = total as f64 / searches.max(1) as f64;
         format!(
@@ -101,8 +103,14 @@ fn finding(compared: &[Compared]) -> String {
             short(every)
         )
     };
+    let both = |group: &[Compared]| format!("{}; {}", told(group, 1, "paper"), told(group, 0, "fast"));
     let all: Vec<usize> = steps(compared, 1).collect();
     let most = 2 * all.iter().filter(|&&s| s <= 64).count() > all.len();
-    let (paper, fast) = (told(1, "paper"), told(0, "fast"));
-    format!("{} for steps: {paper}; {fast}. (The paper: most of the time, once in three.)", verdict(most))
+    format!(
+        "{} for steps. Targets of a dynamics blind to contact: {}. Of Bowknot's: {}. (The paper: most of the time, once in \
+         three.)",
+        verdict(most),
+        both(&blind),
+        both(&own)
+    )
 }

@@ -1,6 +1,6 @@
 //! What each point of `fast` is worth: off alone, and on alone in `paper`.
 
-use super::{Figure, Part, Section};
+use super::{Figure, Part, Section, is_blind};
 use crate::bench::Bench;
 use crate::methods::Setting;
 use crate::summary::{Compared, Summary, on_scenes, table};
@@ -80,16 +80,27 @@ impl Figure for Switches {
 
     fn question(&self) -> &'static str {
         "`fast` with one point as in `paper` (off alone), and `paper` with one point as in `fast` (on alone), on problems of \
-         five scenes. Each cell: CPU seconds and error as multiples of those of the unchanged preset, and the stretch against \
+         five scenes, with targets of a dynamics that is blind to contact and with Bowknot's own. Each cell: CPU seconds and error as multiples of those of the unchanged preset, and the stretch against \
          rest; a star where not all calls met their stopping rule within the limits on steps and seconds. A point pays if \
          switching it off takes more time, or leaves more error, than it costs elsewhere."
     }
 
     fn run(&self, bench: &Bench) -> Result<Section> {
         let scenes: &[&'static str] = bench.size.pick(
-            &["needle", "stack", "tube", "bow-knot", "reef-knot"][..],
-            &["needle", "stack"],
-            &["needle"],
+            &[
+                "needle-blind",
+                "stack-blind",
+                "tube-blind",
+                "bow-knot-blind",
+                "reef-knot-blind",
+                "needle",
+                "stack",
+                "tube",
+                "bow-knot",
+                "reef-knot",
+            ][..],
+            &["needle-blind", "stack"],
+            &["needle-blind"],
         );
         let (fast, paper) = (Params::fast(), Params::paper());
         let mut settings = vec![Setting::of("fast")?.within(LIMIT), Setting::of("paper")?.within(LIMIT)];
@@ -101,18 +112,24 @@ impl Figure for Switches {
         }
         let (count, rounds) = (bench.size.pick(2, 1, 1), 1);
         let compared = on_scenes(bench, scenes, count, &settings, rounds)?;
-        let part = |name: &str, caption: &str, method: &str, word: &str| Part::Table {
-            name: name.to_owned(),
-            caption: caption.to_owned(),
-            table: changes(&compared, method, word),
-        };
+        let (blind, own): (Vec<Compared>, Vec<Compared>) =
+            compared.iter().cloned().partition(|c| is_blind(c.scene));
+        let mut parts = Vec::new();
+        for (group, whose) in [(&blind, "blind"), (&own, "own")] {
+            for (method, word, what) in
+                [("fast", "without", "`fast`, off alone"), ("paper", "with", "`paper`, on alone")]
+            {
+                parts.push(Part::Table {
+                    name: format!("switches-{whose}-{word}"),
+                    caption: format!("{what}, {whose} targets:"),
+                    table: changes(group, method, word),
+                });
+            }
+        }
+        parts.push(Part::Data { name: "switches-all".to_owned(), table: table(&compared, |_| true) });
         Ok(Section {
-            finding: finding(&compared),
-            parts: vec![
-                part("switches-off", "`fast`, off alone:", "fast", "without"),
-                part("switches-on", "`paper`, on alone:", "paper", "with"),
-                Part::Data { name: "switches-all".to_owned(), table: table(&compared, |_| true) },
-            ],
+            finding: format!("Blind targets: {} Own targets: {}", finding(&blind), finding(&own)),
+            parts,
         })
     }
 }

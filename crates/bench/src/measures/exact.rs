@@ -80,7 +80,7 @@ pub fn at_rest(case: &Case) -> impl FnMut(&AcceptedState<'_>) -> ControlFlow<()>
 }
 
 fn find(case: &Case, seconds: f64) -> Result<Found> {
-    let mut resolver = case.states.resolver(case.model.clone(), params(seconds))?;
+    let mut resolver = case.resolver(params(seconds))?;
     let mut x = case.states.x.clone();
     let statistics = resolver.resolve(&mut x, &case.states.y, &case.states.call(), &mut at_rest(case))?;
     let judgement = Judgement::without_exact(case)?;
