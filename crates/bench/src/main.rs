@@ -10,6 +10,9 @@
 //! | `summary` | what settings did with the problems of scenes |
 //! | `measures` | how good a result is, alike for every method |
 //! | `chart`, `table`, `page` | SVG, CSV and Markdown |
+//!
+//! Other people's programs are timed beside Bowknot by scripts in `crates/bench/peers`, which write section `peers` of
+//! the same page.
 
 // A command's output is what it is for.
 #![allow(clippy::print_stdout, clippy::print_stderr)]

@@ -1,0 +1,112 @@
+"""Timing two programs in turn, and what the machine was."""
+
+import os
+import platform
+import statistics
+import subprocess
+import time
+from dataclasses import dataclass, field
+
+from setting import REPOSITORY
+
+
+@dataclass
+class Times:
+    """Seconds of several runs; CPU seconds are user and system time of all threads."""
+
+    cpu: list = field(default_factory=list)
+    wall: list = field(default_factory=list)
+
+    def add(self, cpu, wall):
+        self.cpu.append(cpu)
+        self.wall.append(wall)
+
+
+class Clock:
+    """CPU and wall seconds of this process since it was made."""
+
+    def __init__(self):
+        self._wall, self._cpu = time.perf_counter(), time.process_time()
+
+    def cpu(self):
+        return time.process_time() - self._cpu
+
+    def wall(self):
+        return time.perf_counter() - self._wall
+
+
+def in_turn(first, second, turns):
+    """Calls both, in the other order every second time: a machine that slows down slows both."""
+    for turn in range(turns):
+        for run in (first, second) if turn % 2 == 0 else (second, first):
+            run()
+
+
+def ratios(above, below):
+    """Quotients of what was measured in the same turn."""
+    return [a / b for a, b in zip(above, below, strict=True)]
+
+
+median = statistics.median
+
+
+def with_spread(values, digits=3):
+    """The median, and the least and largest where they differ visibly."""
+    middle, low, high = (number(v, digits) for v in (median(values), min(values), max(values)))
+    return middle if low == high else f"{middle} ({low} to {high})"
+
+
+def number(value, digits=3):
+    """A number with so many significant digits, in plain notation."""
+    if value is None:
+        return ""
+    if value == 0:
+        return "0"
+    size = len(str(int(abs(value)))) if abs(value) >= 1 else 0
+    if size >= digits:
+        return f"{value:,.0f}"
+    text = f"{value:.{digits}g}"
+    return text if "e" in text else f"{value:.{max(digits - size, 0)}f}" if size else text
+
+
+def conditions(versions, threads, load_before):
+    """One line: what was measured, with what, on what."""
+    info = _lines("/proc/cpuinfo")
+    cpu = next((line.split(":", 1)[1].strip() for line in info if "model name" in line), None)
+    peers = ", ".join(f"{name} {version}" for name, version in versions.items())
+    return (
+        f"Commit {_commit()}; {peers}, Python {platform.python_version()}; {threads} of "
+        f"{os.cpu_count()} cores, {cpu or platform.processor() or 'an unknown CPU'}; "
+        f"load average {load_before} before, {load()} after."
+    )
+
+
+def load():
+    """The load average of the last minute."""
+    return f"{os.getloadavg()[0]:.2f}" if hasattr(os, "getloadavg") else "unknown"
+
+
+def _commit():
+    hash_of_head = _git("rev-parse", "--short", "HEAD")
+    changes = _git("status", "--porcelain", "--", "crates", "Cargo.toml", "Cargo.lock")
+    if hash_of_head is None or changes is None:
+        return "unknown"
+    return f"{hash_of_head} with changes" if changes else hash_of_head
+
+
+def _git(*words):
+    try:
+        done = subprocess.run(
+            ["git", *words], cwd=REPOSITORY, capture_output=True, text=True, check=False
+        )
+    except OSError:
+        return None
+    return done.stdout.strip() if done.returncode == 0 else None
+
+
+def _lines(path):
+    try:
+        with open(path, encoding="utf-8") as file:
+            return file.read().splitlines()
+    except OSError:
+        return []

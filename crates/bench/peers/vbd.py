@@ -1,0 +1,112 @@
+"""The falling sheet in NVIDIA Newton: its VBD solver on the CPU, driven as in its examples."""
+
+import io
+from contextlib import redirect_stdout
+from dataclasses import dataclass
+
+import numpy as np
+
+from fall import DENSITY, GRAVITY, Motion
+from measure import Clock
+from setting import peer
+
+# Lengths of Newton's own cloth examples [m]: where contacts act, how much farther pairs are sought,
+# and the thickness of the sheet towards obstacles.
+MARGIN, GAP, RADIUS = 0.002, 0.0015, 0.002
+
+
+@dataclass(frozen=True)
+class Settings:
+    name: str
+    substeps: int
+    iterations: int
+    # Whether motion is cut at planes against the obstacle too; Newton's default is not to.
+    cut_at_obstacle: bool = False
+    # How much farther than the margin pairs are sought [m]; a step is bounded by a part of it.
+    gap: float = GAP
+    # Pairs that a vertex can hold, twice as many an edge: more are dropped silently.
+    buffer: int = 64
+
+
+PLAIN = Settings("Newton, 1 step of 10 iterations", 1, 10)
+FINE = Settings("Newton, 10 steps of 4", 10, 4)
+CUT = Settings("Newton, 10 steps of 4, cut at obstacles", 10, 4, True)
+WIDE = Settings("Newton, 10 steps of 4, cut, pairs to 12 mm", 10, 4, True, 0.01, 512)
+
+
+def run(scene, settings, frames):
+    """Moves the sheet; kernels are compiled, and one step thrown away, before time is taken."""
+    newton, wp = peer("newton"), peer("warp")
+    wp.config.quiet = True
+    with redirect_stdout(io.StringIO()), wp.ScopedDevice("cpu"):
+        _steps(newton, wp, scene, settings, 1)
+        return _steps(newton, wp, scene, settings, frames)
+
+
+def _steps(newton, wp, scene, settings, frames):
+    model = _model(newton, wp, scene)
+    solver = _solver(newton, model, settings)
+    now, following, control = model.state(), model.state(), model.control()
+    motion = Motion([now.particle_q.numpy().copy()], [], [], settings.substeps)
+    h = scene.dt / settings.substeps
+    for _ in range(frames):
+        clock = Clock()
+        solver.rebuild_bvh(now)
+        for _ in range(settings.substeps):
+            now.clear_forces()
+            solver.step(now, following, control, None, h)
+            now, following = following, now
+        motion.cpu.append(clock.cpu())
+        motion.wall.append(clock.wall())
+        motion.sheets.append(now.particle_q.numpy().copy())
+    motion.sheets = np.array(motion.sheets, dtype=np.float64)
+    return motion
+
+
+def _model(newton, wp, scene):
+    builder = newton.ModelBuilder(gravity=(0.0, 0.0, -GRAVITY))
+    points, faces = scene.obstacle_mesh
+    shape = newton.ModelBuilder.ShapeConfig(mu=0.0, ke=1.0e3, kd=1.0e-1, margin=0.0)
+    obstacle = newton.Mesh(points.astype(np.float32), faces.ravel())
+    builder.add_shape_mesh(body=-1, mesh=obstacle, cfg=shape)
+    points, faces = scene.sheet
+    mu, lame = scene.lame
+    builder.add_cloth_mesh(
+        pos=wp.vec3(0.0),
+        rot=wp.quat_identity(),
+        scale=1.0,
+        vel=wp.vec3(0.0),
+        vertices=[wp.vec3(*point) for point in points],
+        indices=faces.ravel().tolist(),
+        density=DENSITY,
+        tri_ke=mu,
+        tri_ka=lame,
+        tri_kd=0.0,
+        edge_ke=scene.hinge_stiffness,
+        edge_kd=0.0,
+        particle_radius=RADIUS,
+    )
+    builder.color(include_bending=True)
+    model = builder.finalize(device="cpu")
+    model.soft_contact_ke, model.soft_contact_kd, model.soft_contact_mu = 1.0e3, 1.0e-1, 0.0
+    return model
+
+
+def _solver(newton, model, settings):
+    pipeline = newton.CollisionPipeline(
+        model,
+        soft_contact_gap=MARGIN + settings.gap,
+        enable_rigid_soft_full_surface_contact=True,
+        contact_matching="latest",
+    )
+    return newton.solvers.SolverVBD(
+        model,
+        iterations=settings.iterations,
+        particle_enable_self_contact=True,
+        particle_self_contact_margin=MARGIN,
+        particle_self_contact_gap=settings.gap,
+        particle_vertex_contact_buffer_size=settings.buffer,
+        particle_edge_contact_buffer_size=2 * settings.buffer,
+        rigid_soft_enable_dat=settings.cut_at_obstacle,
+        collision_pipeline=pipeline,
+    )
