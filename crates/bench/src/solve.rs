@@ -49,6 +49,15 @@ impl From<StageSeconds> for Stages {
     }
 }
 
+/// What results are judged against.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Against {
+    /// The exact solution where there is one: up to a minute a problem.
+    Exact,
+    /// Nothing but themselves: stationarity and violation.
+    Residuals,
+}
+
 /// Solves every case by every setting, each solve a measurement of its own that all figures share. In each of `rounds`
 /// the settings take turns, so that a busy machine slows all alike; times are medians over rounds. Of a case for which
 /// there was no time nothing is returned, so that settings are always compared on the same cases.
@@ -57,6 +66,7 @@ pub fn compare(
     cases: &[&Case],
     settings: &[Setting],
     rounds: usize,
+    against: Against,
 ) -> Result<Vec<Option<Vec<Solved>>>> {
     let mut solved: Vec<Vec<Vec<Solved>>> = vec![vec![Vec::new(); settings.len()]; cases.len()];
     for round in 0..rounds {
@@ -66,13 +76,24 @@ pub fn compare(
                 if solved.first().is_some_and(|first| first.cpu_seconds > LONG) {
                     continue;
                 }
-                let key = format!("solve/{}/{}/{round}", case.name, setting.key());
-                if let Some(found) = bench.store.find(&key) {
+                let key = |kind: &str| format!("{kind}/{}/{}/{round}", case.name, setting.key());
+                let found = bench.store.find(&key("solve"));
+                // What was judged by the exact solution is as good as what was not.
+                let (found, key) = match against {
+                    Against::Exact => (found, key("solve")),
+                    Against::Residuals => {
+                        (found.or_else(|| bench.store.find(&key("residuals"))), key("residuals"))
+                    }
+                };
+                if let Some(found) = found {
                     solved.push(found);
                 } else if bench.has_time() {
                     let judgement = match &judgement {
                         Some(judgement) => judgement,
-                        None => judgement.insert(Judgement::new(bench, case)?),
+                        None => judgement.insert(match against {
+                            Against::Exact => Judgement::new(bench, case)?,
+                            Against::Residuals => Judgement::of_residuals(case)?,
+                        }),
                     };
                     solved.push(bench.store.measured(&key, || solve(bench, case, setting, judgement))?);
                 }

@@ -4,7 +4,7 @@ use crate::bench::Bench;
 use crate::case::{Case, cases};
 use crate::chart::{Series, Style};
 use crate::methods::Setting;
-use crate::solve::{Solved, compare};
+use crate::solve::{Against, Solved, compare};
 use crate::table::{Entry, Table, largest, mean, short, smallest};
 use anyhow::Result;
 
@@ -56,6 +56,7 @@ pub fn on_scenes(
     count: usize,
     settings: &[Setting],
     rounds: usize,
+    against: Against,
 ) -> Result<Vec<Compared>> {
     let mut by_scene = Vec::new();
     for scene in scenes {
@@ -66,7 +67,7 @@ pub fn on_scenes(
         by_scene.iter().enumerate().flat_map(|(s, cases)| (0..cases.len()).map(move |k| (s, k))).collect();
     order.sort_by_key(|&(scene, case)| (case, scene));
     let flat: Vec<&Case> = order.iter().map(|&(s, k)| &by_scene[s][k]).collect();
-    let solved = compare(bench, &flat, settings, rounds)?;
+    let solved = compare(bench, &flat, settings, rounds, against)?;
     let mut solved_of: Vec<Vec<Vec<Solved>>> = vec![Vec::new(); scenes.len()];
     for (&(scene, _), solved) in order.iter().zip(solved) {
         solved_of[scene].extend(solved);

@@ -4,6 +4,7 @@ use super::{Figure, Part, Section, verdict};
 use crate::bench::Bench;
 use crate::chart::{Axis, Chart};
 use crate::methods::{Setting, log_barrier};
+use crate::solve::Against;
 use crate::summary::{COLUMNS, lines, on_scenes, ratios, table};
 use crate::table::{geometric_mean, times};
 use anyhow::Result;
@@ -57,7 +58,7 @@ impl Figure for Barrier {
             values.push((strength, setting.method, setting.change.clone()));
             settings.push(setting);
         }
-        let compared = on_scenes(bench, scenes, bench.size.pick(3, 1, 1), &settings, 1)?;
+        let compared = on_scenes(bench, scenes, bench.size.pick(2, 1, 1), &settings, 1, Against::Exact)?;
         let chart = |title: &str, y: &str, series| Chart {
             title: title.to_owned(),
             x: Axis::log("barrier strength k [kg/s^2]"),

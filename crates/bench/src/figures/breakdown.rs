@@ -4,6 +4,7 @@ use super::{Figure, Part, Section};
 use crate::bench::Bench;
 use crate::methods::Setting;
 use crate::record::SPECS;
+use crate::solve::Against;
 use crate::summary::{Compared, on_scenes};
 use crate::table::{Entry, Table, mean};
 use anyhow::Result;
@@ -32,7 +33,8 @@ impl Figure for Breakdown {
             vec!["needle", "needle-blind"],
         );
         let settings = [Setting::of("fast")?, Setting::of("paper")?];
-        let compared = on_scenes(bench, &scenes, bench.size.pick(10, 3, 2), &settings, 1)?;
+        let compared =
+            on_scenes(bench, &scenes, bench.size.pick(10, 3, 2), &settings, 1, Against::Residuals)?;
         let mut table = Table::new(["scene", "preset", "search %", "evaluate %", "backward %", "forward %"]);
         for c in &compared {
             for summary in &c.summaries {

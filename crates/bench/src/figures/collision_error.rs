@@ -4,6 +4,7 @@ use super::{Figure, Part, Section};
 use crate::bench::Bench;
 use crate::chart::{Axis, Chart, Mark, Series, Style, pareto_front};
 use crate::methods::{METHODS, Setting};
+use crate::solve::Against;
 use crate::summary::{COLUMNS, Compared, on_scenes, ratios, table};
 use crate::table::{geometric_mean, times};
 use anyhow::Result;
@@ -86,7 +87,7 @@ pub fn compared(bench: &Bench, blind: bool, settings: &[Setting]) -> Result<Vec<
             &["needle"],
         ),
     };
-    on_scenes(bench, scenes, bench.size.pick(2, 2, 1), settings, bench.size.pick(3, 1, 1))
+    on_scenes(bench, scenes, bench.size.pick(2, 2, 1), settings, bench.size.pick(3, 1, 1), Against::Exact)
 }
 
 /// Methods of which changes are measured as well.

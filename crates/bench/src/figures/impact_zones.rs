@@ -3,6 +3,7 @@
 use super::{Figure, Part, Section, is_blind, verdict};
 use crate::bench::Bench;
 use crate::methods::Setting;
+use crate::solve::Against;
 use crate::summary::{COLUMNS, Compared, on_scenes, table};
 use anyhow::Result;
 
@@ -51,7 +52,7 @@ impl Figure for ImpactZones {
         for method in METHODS {
             settings.push(Setting::of(method)?);
         }
-        let compared = on_scenes(bench, scenes, bench.size.pick(10, 3, 1), &settings, 1)?;
+        let compared = on_scenes(bench, scenes, bench.size.pick(10, 3, 1), &settings, 1, Against::Residuals)?;
         let failed = |method: &str, keep: &dyn Fn(&str) -> bool| {
             let group = compared.iter().filter(|c: &&Compared| keep(c.scene));
             group.filter_map(|c| c.find(method, "")).fold((0, 0), |(f, n), s| (f + s.failed, n + s.of))

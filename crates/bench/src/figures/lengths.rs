@@ -6,7 +6,7 @@ use crate::bench::Bench;
 use crate::case::{Case, ProblemLengths, cases};
 use crate::chart::{Axis, Chart};
 use crate::methods::Setting;
-use crate::solve::compare;
+use crate::solve::{Against, compare};
 use crate::summary::{COLUMNS, Compared, Summary, lines, table};
 use crate::table::short;
 use anyhow::Result;
@@ -146,7 +146,7 @@ fn on_scene(
             true => cases.to_vec(),
             false => cases.iter().map(|c| c.under(&change(sweep, value), (sweep.set)(value))).collect(),
         };
-        let solved = compare(bench, &changed.iter().collect::<Vec<_>>(), settings, 1)?;
+        let solved = compare(bench, &changed.iter().collect::<Vec<_>>(), settings, 1, Against::Exact)?;
         for (s, setting) in settings.iter().enumerate() {
             // Not `Setting::with`: it is the problem that changes.
             let rows = solved.iter().flatten().map(|row| &row[s]);

@@ -4,6 +4,7 @@ use super::{Figure, Part, Section};
 use crate::bench::Bench;
 use crate::chart::{Axis, Chart};
 use crate::methods::Setting;
+use crate::solve::Against;
 use crate::summary::{COLUMNS, Compared, Summary, lines, on_scenes, table};
 use crate::table::short;
 use anyhow::Result;
@@ -98,7 +99,7 @@ impl Figure for Parameters {
             }
             values.push(of_sweep);
         }
-        let compared = on_scenes(bench, scenes, bench.size.pick(2, 1, 1), &settings, 1)?;
+        let compared = on_scenes(bench, scenes, bench.size.pick(2, 1, 1), &settings, 1, Against::Exact)?;
         let mut section = Section::default();
         let mut told = Vec::new();
         for ((sweep, method), values) in swept.iter().zip(&values) {

@@ -3,6 +3,7 @@
 use super::{Figure, Part, Section, verdict};
 use crate::bench::Bench;
 use crate::methods::Setting;
+use crate::solve::Against;
 use crate::summary::{COLUMNS, Compared, on_scenes, ratios, table};
 use crate::table::{Entry, Table, geometric_mean, times};
 use anyhow::Result;
@@ -45,7 +46,7 @@ impl Figure for StepSizes {
         );
         let methods = ["paper", "CCD, earliest", "CCD, per vertex", "fast"];
         let settings = methods.iter().map(|m| Setting::of(m)).collect::<Result<Vec<_>>>()?;
-        let compared = on_scenes(bench, scenes, bench.size.pick(3, 1, 1), &settings, 1)?;
+        let compared = on_scenes(bench, scenes, bench.size.pick(3, 1, 1), &settings, 1, Against::Residuals)?;
         let mut stages =
             Table::new(["scene", "method", "broad s", "narrow s", "backward s", "steps", "CPU s"]);
         for c in &compared {

@@ -5,6 +5,7 @@ use crate::bench::Bench;
 use crate::chart::{Axis, Chart, Series, Style};
 use crate::methods::Setting;
 use crate::record::SPECS;
+use crate::solve::Against;
 use crate::summary::{COLUMNS, Compared, on_scenes, table};
 use crate::table::{Table, median, short};
 use anyhow::Result;
@@ -36,7 +37,8 @@ impl Figure for Steps {
             vec!["needle", "needle-blind"],
         );
         let settings = [Setting::of("fast")?, Setting::of("paper")?];
-        let compared = on_scenes(bench, &scenes, bench.size.pick(10, 3, 2), &settings, 1)?;
+        let compared =
+            on_scenes(bench, &scenes, bench.size.pick(10, 3, 2), &settings, 1, Against::Residuals)?;
         let classes = histogram(&compared);
         let mut counts = Table::new(["steps", "fast, problems", "paper, problems"]);
         for (class, [fast, paper]) in CLASSES.iter().zip(&classes) {

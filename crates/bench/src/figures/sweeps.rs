@@ -4,6 +4,7 @@ use super::{Figure, Part, Section, verdict};
 use crate::bench::Bench;
 use crate::chart::{Axis, Chart};
 use crate::methods::Setting;
+use crate::solve::Against;
 use crate::summary::{COLUMNS, lines, on_scenes, table};
 use anyhow::Result;
 
@@ -57,7 +58,7 @@ impl Figure for Sweeps {
                 settings.push(setting);
             }
         }
-        let compared = on_scenes(bench, scenes, bench.size.pick(3, 1, 1), &settings, 1)?;
+        let compared = on_scenes(bench, scenes, bench.size.pick(2, 1, 1), &settings, 1, Against::Exact)?;
         let mut section = Section::default();
         let mut best = Vec::new();
         // In every scene, for the paper's own method.

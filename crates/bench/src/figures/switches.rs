@@ -3,6 +3,7 @@
 use super::{Figure, Part, Section, is_blind};
 use crate::bench::Bench;
 use crate::methods::Setting;
+use crate::solve::Against;
 use crate::summary::{Compared, Summary, on_scenes, table};
 use crate::table::{Entry, Table, geometric_mean, short};
 use anyhow::Result;
@@ -111,7 +112,7 @@ impl Figure for Switches {
             settings.extend([off.within(LIMIT), on.within(LIMIT)]);
         }
         let (count, rounds) = (bench.size.pick(2, 1, 1), 1);
-        let compared = on_scenes(bench, scenes, count, &settings, rounds)?;
+        let compared = on_scenes(bench, scenes, count, &settings, rounds, Against::Exact)?;
         let (blind, own): (Vec<Compared>, Vec<Compared>) =
             compared.iter().cloned().partition(|c| is_blind(c.scene));
         let mut parts = Vec::new();

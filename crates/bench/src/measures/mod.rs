@@ -65,10 +65,12 @@ pub struct Judgement<'a> {
 impl<'a> Judgement<'a> {
     /// Finds the exact solution too, where the case is small enough for it and there is time.
     pub fn new(bench: &Bench, case: &'a Case) -> Result<Self> {
-        let mut judgement = Self::without_exact(case)?;
-        judgement.exact = exact::solution(bench, case)?;
-        judgement.iterations = ITERATIONS[0];
-        Ok(judgement)
+        Ok(Self { exact: exact::solution(bench, case)?, ..Self::of_residuals(case)? })
+    }
+
+    /// Without an exact solution: results have residuals alone.
+    pub fn of_residuals(case: &'a Case) -> Result<Self> {
+        Ok(Self { iterations: ITERATIONS[0], ..Self::without_exact(case)? })
     }
 
     fn without_exact(case: &'a Case) -> Result<Self> {
