@@ -6,7 +6,7 @@
 //! | `bench` | what all of them use: size, output folder, what has been measured already |
 //! | `record`, `case` | collision problems: recorded from scenes, loaded to be solved |
 //! | `methods`, `solve` | the methods that are compared; timing one on one problem |
-//! | `simulate` | whole simulations and how far they are apart |
+//! | `simulate`, `memory` | whole simulations, how far they are apart, what memory they take |
 //! | `summary` | what settings did with the problems of scenes |
 //! | `measures` | how good a result is, alike for every method |
 //! | `chart`, `table`, `page` | SVG, CSV and Markdown |
@@ -23,6 +23,7 @@ mod chart;
 mod figures;
 mod machine;
 mod measures;
+mod memory;
 mod methods;
 mod page;
 mod record;
@@ -56,6 +57,15 @@ struct Arguments {
     /// Threads; with one, CPU seconds hold no waiting for others.
     #[arg(long, default_value_t = 1)]
     threads: usize,
+    /// The scene of `footprint`, which another process of this command asks for.
+    #[arg(long, hide = true, default_value = "drape")]
+    of: String,
+    /// Its scale.
+    #[arg(long, hide = true, default_value_t = 1.0)]
+    scale: f64,
+    /// Its time steps.
+    #[arg(long, hide = true, default_value_t = 1)]
+    frames: usize,
 }
 
 fn main() -> ExitCode {
@@ -77,6 +87,9 @@ fn run(arguments: &Arguments) -> Result<()> {
         return Ok(());
     }
     rayon::ThreadPoolBuilder::new().num_threads(arguments.threads).build_global()?;
+    if arguments.name == "footprint" {
+        return memory::print_footprint(&arguments.of, arguments.scale, arguments.frames);
+    }
     let size = match (arguments.tiny, arguments.quick) {
         (true, _) => Size::Tiny,
         (false, true) => Size::Quick,

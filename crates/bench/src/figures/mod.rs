@@ -6,6 +6,7 @@ mod collision_error;
 mod early_contact;
 mod edge_limits;
 mod funnel;
+mod goals;
 mod impact_zones;
 mod joint;
 mod lengths;
@@ -49,6 +50,7 @@ pub const ALL: &[&dyn Figure] = &[
     &joint::Joint,
     &funnel::Funnel,
     &early_contact::EarlyContact,
+    &goals::Goals,
 ];
 
 /// A figure or table.
