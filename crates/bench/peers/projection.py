@@ -21,9 +21,10 @@ from measure import Times, median, number, with_spread
 
 NAME = "projection"
 
-# Bowknot's own defaults in mean edge lengths: the distance of contacts, and of a solution.
+# Bowknot's own defaults in mean edge lengths, said to it all the same: the distance of contacts, and
+# how far from where they want to be vertices may stop.
 DELTA = 0.1
-TOLERANCE = 0.03
+TOLERANCE = 0.01
 
 # Variants of `bowknot resolve`: the problem that the barrier solves, and the one of simulations.
 VARIANTS = {
@@ -47,7 +48,8 @@ def problem_of(recording, out, folder):
 def resolve(path, delta, variant, threads, folder):
     """The report of `bowknot resolve` and the state that it made."""
     result = folder / "resolved.npz"
-    options = ["--set", f"contact.delta={delta!r}", *VARIANTS[variant], "--threads", threads]
+    options = ["--set", f"contact.delta={delta!r}", "--set", f"solver.stop.distance={TOLERANCE}"]
+    options += [*VARIANTS[variant], "--threads", threads]
     text = setting.call(
         [setting.program("bowknot"), "resolve", path, "--out", result, "--json", *options]
     )
@@ -163,10 +165,10 @@ def section(records, versions, options, load_before):
     return results.Section(
         name=NAME,
         title="Projection by a log barrier of ipctk's parts",
-        question="""A state x, a target y, both from recorded scenes: what does the state cost
+        question=f"""A state x, a target y, both from recorded scenes: what does the state cost
             that is nearest to y without intersections? Contacts count from the same distance, a
             tenth of a mean edge length, and both stop when no vertex wants to move by more than
-            0.03 of one.""",
+            {TOLERANCE:g} of one.""",
         finding=f"""The barrier takes {least} to {most} times the CPU time of `bowknot resolve`
             with contacts alone, and ends nearer to the target in {nearer} of {len(both)}
             problems{closer}. {clear}{unfinished}""",
