@@ -180,11 +180,11 @@ def section(records, versions, threads, load_before):
             `rigid_soft_enable_dat`, off by default. Materials are alike, not equal: both
             membranes have the same Lame parameters at small strain, Newton's iterations do not
             reach the equilibrium of a step. *Fell in flight* is the mean over the sheet after
-            {flight} frames, compared with implicit Euler of as many steps; what Bowknot lacks
-            is its stopping rule, which counts a step as solved when no vertex is farther than
-            0.01 of an edge from where it should be. All frames, the start too, were judged by
-            `bowknot check`, again by ipctk; both were first shown a sheet through the obstacle,
-            and found it.""",
+            {flight} frames, compared with implicit Euler of as many steps; most of what Bowknot
+            lacks is its stopping rule, which counts a step as solved when no vertex is farther
+            than 0.01 of an edge from where it should be. All frames, the start too, were judged
+            by `bowknot check`, again by ipctk; both were first shown a sheet through the
+            obstacle, and found it.""",
         conditions=measure.conditions(versions, f"{threads} thread", load_before),
     )
 

@@ -21,8 +21,8 @@ from measure import Times, median, number, with_spread
 
 NAME = "projection"
 
-# Bowknot's own defaults in mean edge lengths, said to it all the same: the distance of contacts, and
-# how far from where they want to be vertices may stop.
+# In mean edge lengths, Bowknot's own defaults: the distance of contacts, and how far from where
+# they want to be vertices may stop.
 DELTA = 0.1
 TOLERANCE = 0.01
 
@@ -178,14 +178,14 @@ def section(records, versions, options, load_before):
             come nearer under load. It is ipctk's, with its stiffness rules, its projected
             Hessian, its LBVH and its Tight-Inclusion collision detection, in Newton's method
             from Python. Its time holds all of that, with SciPy's SuperLU for the linear systems
-            (share of the time in the table; CHOLMOD would be faster); it is a weak baseline for
-            the idea of a barrier. Bowknot's time is the call of the resolver within the
-            command. Neither holds reading files. *Contacts alone* is the same problem; *with
-            stretch limits* is what simulations ask, edges at most 1.1 of their rest length, and
-            another minimum (figure *barrier* above has barriers on stretch as well). Pins and
-            obstacles are held where they are and half-spaces left out for all. All states are
-            measured by ipctk: gap, intersections. At most {options.max_iterations} iterations
-            and {options.max_seconds:g} s for the barrier.""",
+            (its share is in the table) and Python between the parts: it is no figure for what a
+            barrier written as one program would take. Bowknot's time is the call of the
+            resolver within the command. Neither holds reading files. *Contacts alone* is the
+            same problem; *with stretch limits* is what simulations ask, edges at most 1.1 of
+            their rest length, and another minimum (figure *barrier* above has barriers on
+            stretch as well). Pins and obstacles are held where they are and half-spaces left
+            out for all. All states are measured by ipctk: gap, intersections. At most
+            {options.max_iterations} iterations and {options.max_seconds:g} s for the barrier.""",
         conditions=measure.conditions(
             versions, f"{threads} thread{'s' if threads > 1 else ''}", load_before
         ),

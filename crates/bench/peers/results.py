@@ -61,10 +61,10 @@ def keep(section, records, folder):
     print(f"{folder}")
 
 
-HEADING = """Other people's programs beside Bowknot on the same input, one after the other and back,
-on the same number of threads. CPU seconds are user and system time of all threads; with several turns
-the median stands with the least and largest. A ratio is the peer's seconds over Bowknot's, turn by
-turn. `crates/bench/peers/README.md` says how to repeat it."""
+HEADING = """Other people's programs beside Bowknot on the same input, one after the other and
+back, on the same number of threads. CPU seconds are user and system time of all threads; with
+several turns the median stands with the least and largest. A ratio is the peer's seconds over
+Bowknot's, turn by turn. `crates/bench/peers/README.md` says how to repeat it."""
 
 
 def rewrite(sections):
