@@ -66,6 +66,14 @@ impl Case {
         Ok(self.states.resolver(self.model.clone(), params)?)
     }
 
+    /// Mean rest length of the edges [m]; none where there are none, as among grains.
+    pub fn mean_edge(&self) -> Option<f64> {
+        let rest = &self.states.rest;
+        let edges = &self.model.topology().edges;
+        let lengths = edges.iter().map(|[a, b]| (rest[*a as usize] - rest[*b as usize]).norm());
+        (!edges.is_empty()).then(|| lengths.sum::<f64>() / edges.len() as f64)
+    }
+
     /// The problem as the stages of a method see it.
     pub fn problem(&self, params: Params) -> Result<Problem> {
         Ok(self.resolver(params)?.problem().clone())

@@ -19,6 +19,8 @@ pub struct Summary {
     pub stationarity: f64,
     /// Violation of contacts [m].
     pub violation: f64,
+    /// Largest share by which an edge exceeds its limit, times the mean edge length [m].
+    pub excess: f64,
     /// Distance to the target [m].
     pub distance: f64,
     pub steps: f64,
@@ -77,7 +79,7 @@ pub fn on_scenes(
         summaries: settings
             .iter()
             .enumerate()
-            .filter_map(|(s, setting)| Summary::of(setting, solved.iter().map(|row| &row[s])))
+            .filter_map(|(s, setting)| Summary::of(setting, &cases, solved.iter().map(|row| &row[s])))
             .collect(),
         cases,
         solved,
@@ -103,8 +105,12 @@ impl Compared {
 }
 
 impl Summary {
-    /// None of no solves.
-    pub fn of<'a>(setting: &Setting, solved: impl Iterator<Item = &'a Solved>) -> Option<Self> {
+    /// None of no solves. The problems are those of one scene, whose edges are as long in all of `cases`.
+    pub fn of<'a>(
+        setting: &Setting,
+        cases: &[Case],
+        solved: impl Iterator<Item = &'a Solved>,
+    ) -> Option<Self> {
         let solved: Vec<&Solved> = solved.collect();
         if solved.is_empty() {
             return None;
@@ -112,6 +118,7 @@ impl Summary {
         let all = |value: &dyn Fn(&Solved) -> f64| solved.iter().map(|s| value(s)).collect::<Vec<f64>>();
         let of = |value: &dyn Fn(&Solved) -> f64| mean(&all(value));
         let exact = solved.iter().all(|s| s.judged.error.is_some());
+        let edge = cases.first().and_then(Case::mean_edge).unwrap_or(0.0);
         Some(Self {
             method: setting.method,
             change: setting.change.clone(),
@@ -119,6 +126,7 @@ impl Summary {
             exact: exact.then(|| of(&|s| s.judged.error.unwrap_or(f64::NAN))),
             stationarity: of(&|s| s.judged.stationarity),
             violation: of(&|s| s.judged.violation),
+            excess: of(&|s| s.judged.stretch_violation.max(0.0)) * edge,
             distance: of(&|s| s.judged.distance),
             steps: of(&|s| s.steps as f64),
             most_steps: largest(&all(&|s| s.steps as f64)),
@@ -138,10 +146,13 @@ impl Summary {
         })
     }
 
-    /// Distance to the exact solution; or else the stationarity residual with the violation, as the root of the sum of
-    /// squares: either alone is small where the other is large [m].
+    /// Distance to the exact solution; or else the stationarity residual with the violations of contacts and of edge limits,
+    /// as the root of the sum of squares: each alone is small where the others are large [m].
     pub fn error(&self, exact: bool) -> f64 {
-        if exact { self.exact.unwrap_or(f64::NAN) } else { self.stationarity.hypot(self.violation) }
+        match exact {
+            true => self.exact.unwrap_or(f64::NAN),
+            false => self.stationarity.hypot(self.violation).hypot(self.excess),
+        }
     }
 
     /// Method and change.
@@ -174,7 +185,7 @@ impl Summary {
 
 /// What the columns of [`table`] mean.
 pub const COLUMNS: &str = "Means over the problems of a scene. *Error*: distance to the exact solution, RMS; a star: not all \
-    problems have one, stationarity residual and violation instead. *Steps*: mean (max). *Met*: calls that met the method's own stopping \
+    problems have one, stationarity residual and violations of contacts and edge limits instead. *Steps*: mean (max). *Met*: calls that met the method's own stopping \
     rule. *Violation*: largest by which a contact is nearer than it should be. *To target*: what is minimised. *Stretch* \
     against rest, largest; *gap*, smallest; *X*: intersecting pairs.";
 

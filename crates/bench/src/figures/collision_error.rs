@@ -39,8 +39,9 @@ impl Figure for CollisionError {
                 "How near does each method come to the exact solution, and in how many CPU seconds? Recorded problems of each \
                  scene, without friction; every method solves the same ones, in turns, in 4 seconds each at most. The error is the distance to the exact \
                  solution, root mean square over mass, mean over the problems; where not all problems of a scene have one, it is the \
-                 stationarity residual (the motion that would still bring x nearer to its target, all active rows obeyed) and the largest \
-                 violation of a contact, as the root of the sum of their squares. Problems are not convex, so that a method may do well and end in another minimum. All are judged by the row set of `fast`, \
+                 stationarity residual (the motion that would still bring x nearer to its target, all active rows obeyed), the largest \
+                 violation of a contact, and the largest share by which an edge exceeds its limit times the edge length, as the root of \
+                 the sum of their squares. Problems are not convex, so that a method may do well and end in another minimum. All are judged by the row set of `fast`, \
                  edges limited against rest; `paper` limits them against the start of the call and so solves another problem, \
                  `paper, edges from rest` the same one. Impact zones only keep things from meeting, at no distance: a target that meets \
                  nothing is returned as it is; with 0.8 delta they solve the problem of the others to a fifth."
@@ -164,7 +165,7 @@ fn chart(compared: &Compared) -> Chart {
     let error = if exact {
         "distance to the exact solution, RMS [mm]"
     } else {
-        "stationarity residual and violation [mm]"
+        "stationarity residual and violations [mm]"
     };
     Chart {
         title: format!("{}, {} vertices: error against run time", compared.scene, compared.vertices()),

@@ -150,8 +150,9 @@ fn on_scene(
         for (s, setting) in settings.iter().enumerate() {
             // Not `Setting::with`: it is the problem that changes.
             let rows = solved.iter().flatten().map(|row| &row[s]);
-            summaries
-                .extend(Summary::of(setting, rows).map(|s| Summary { change: change(sweep, value), ..s }));
+            summaries.extend(
+                Summary::of(setting, cases, rows).map(|s| Summary { change: change(sweep, value), ..s }),
+            );
         }
     }
     let compared = Compared { scene, cases: cases.to_vec(), solved: Vec::new(), summaries };

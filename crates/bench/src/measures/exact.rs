@@ -61,15 +61,8 @@ pub fn params(seconds: f64) -> Params {
 
 /// Stops a solve once a step moves nothing any more.
 pub fn at_rest(case: &Case) -> impl FnMut(&AcceptedState<'_>) -> ControlFlow<()> + use<> {
-    let edges = case
-        .model
-        .topology()
-        .edges
-        .iter()
-        .map(|[a, b]| (case.states.rest[*a as usize] - case.states.rest[*b as usize]).norm());
-    let (sum, count) = edges.fold((0.0, 0), |(sum, count), length| (sum + length, count + 1));
     // Grains have no edges; a micrometre is as little for them.
-    let rest = if count > 0 { REST * sum / f64::from(count) } else { 1e-9 };
+    let rest = case.mean_edge().map_or(1e-9, |length| REST * length);
     move |state| {
         let moved = state.positions.iter().zip(state.previous).map(|(a, b)| (a - b).norm());
         match moved.fold(0.0, f64::max) < rest {
