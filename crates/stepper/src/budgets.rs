@@ -18,6 +18,12 @@ pub struct Budgets {
 }
 
 impl Budgets {
+    /// Radius of the ball in which a vertex can go by `travel` [m] and arrive.
+    pub fn radius_for(travel: f64) -> f64 {
+        // As much again for the rounding of positions within the ball.
+        travel / (USABLE - (1.0 - USABLE))
+    }
+
     /// Largest alpha in [0, 1] with which vertex `v` at `x`, wanting to move by `d`, stays in its ball.
     #[inline]
     pub fn limit(&self, v: usize, x: &Point, d: &Vector) -> f64 {

@@ -52,7 +52,7 @@ impl BudgetedSearch {
                 self.budgets.radii.extend(
                     state.x.iter().zip(&state.y).zip(&problem.local_edge).enumerate().map(
                         |(v, ((x, y), h))| {
-                            let wanted = (y - x).norm();
+                            let wanted = Budgets::radius_for((y - x).norm());
                             // A prescribed vertex with nowhere to go, such as an obstacle at rest, stays put.
                             if wanted == 0.0 && problem.prescribed[v] {
                                 0.0

@@ -29,9 +29,17 @@ fn falling(sets: &[&str]) -> Scene {
     Scene::builtin("drape", 0.3).and_then(|s| s.with_sets(&[&fall, sets].concat())).expect("a scene")
 }
 
+/// Edges of 10 cm and of 2 cm: 0.1 to 0.5 edges of travel a time step, within one ball of the search and beyond.
 #[test]
 fn a_free_sheet_falls_as_implicit_euler_has_it() {
-    let mut simulator = Simulator::new(&scene(SHEET)).expect("a simulator");
+    for edge in [0.1, 0.02] {
+        falls_freely(edge);
+    }
+}
+
+fn falls_freely(edge: f64) {
+    let scene = scene(SHEET).with_sets(&[format!("body.0.shape.edge={edge}")]).expect("a sound key");
+    let mut simulator = Simulator::new(&scene).expect("a simulator");
     let statistics = (0..10).map(|_| simulator.step().expect("a step")).last().expect("ten");
     // v = -g n dt, z = z0 - g dt^2 n (n + 1) / 2.
     let (g, dt, n) = (9.81, 0.01, 10.0);
