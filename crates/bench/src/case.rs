@@ -5,7 +5,7 @@ use crate::record::Spec;
 use anyhow::{Context, Result, anyhow};
 use bowknot::io::States;
 use bowknot::proximity::CollisionModel;
-use bowknot::twoway::{Params, Problem, Resolver};
+use bowknot::twoway::{BodyContact, Params, Problem, Resolver};
 use std::path::Path;
 
 /// A collision problem. Friction is left out: few of the methods that are compared have any, and what it adds to the
@@ -28,7 +28,7 @@ pub struct ProblemLengths {
     pub delta: Option<f64>,
     /// Gap floor, in desired distances of the recorded problem.
     pub floor: Option<f64>,
-    /// Stretch limit sigma.
+    /// Stretch limit sigma; infinite: edges have none.
     pub stretch_limit: Option<f64>,
 }
 
@@ -47,7 +47,12 @@ impl Case {
 
     /// The problem with other lengths; `change` tells its measurements from those of the recorded one.
     pub fn under(&self, change: &str, lengths: ProblemLengths) -> Self {
-        Self { name: format!("{}/{change}", self.name), lengths, ..self.clone() }
+        let mut case = Self { name: format!("{}/{change}", self.name), lengths, ..self.clone() };
+        if let Some(limit) = lengths.stretch_limit {
+            case.states.body_contacts.resize(self.model.bodies().len(), BodyContact::default());
+            case.states.body_contacts.iter_mut().for_each(|body| body.stretch_limit = Some(limit));
+        }
+        case
     }
 
     /// Makes a resolver of the problem: parameters of a method, lengths of the case.
@@ -56,13 +61,12 @@ impl Case {
             let resolver = self.states.resolver(self.model.clone(), params.clone())?;
             Ok(resolver.problem().lengths.delta)
         };
-        let ProblemLengths { delta, floor, stretch_limit } = self.lengths;
+        let ProblemLengths { delta, floor, .. } = self.lengths;
         if delta.is_some() || floor.is_some() {
             let of = recorded(&params)?;
             params.constraints.delta = delta.map(|share| share * of).or(params.constraints.delta);
             params.stepper.floor = floor.map(|share| share * of).or(params.stepper.floor);
         }
-        params.constraints.stretch_limit = stretch_limit.unwrap_or(params.constraints.stretch_limit);
         Ok(self.states.resolver(self.model.clone(), params)?)
     }
 

@@ -64,6 +64,18 @@ pub fn on_scenes(
     for scene in scenes {
         by_scene.push(cases(bench, scene, count)?);
     }
+    on_cases(bench, scenes, by_scene, settings, rounds, against)
+}
+
+/// Solves the given problems of each scene by every setting, in `rounds` rounds.
+pub fn on_cases(
+    bench: &Bench,
+    scenes: &[&'static str],
+    by_scene: Vec<Vec<Case>>,
+    settings: &[Setting],
+    rounds: usize,
+    against: Against,
+) -> Result<Vec<Compared>> {
     // The first problem of each scene, then the second: time that runs out takes the last ones of all scenes.
     let mut order: Vec<(usize, usize)> =
         by_scene.iter().enumerate().flat_map(|(s, cases)| (0..cases.len()).map(move |k| (s, k))).collect();

@@ -95,7 +95,7 @@ pub fn compared(bench: &Bench, blind: bool, settings: &[Setting]) -> Result<Vec<
 const VARIED: [&str; 2] = ["fast", "paper"];
 
 /// All methods as they are, and changes of the two presets.
-fn settings() -> Result<Vec<Setting>> {
+pub fn settings() -> Result<Vec<Setting>> {
     let mut settings: Vec<Setting> = METHODS.iter().map(Setting::plain).collect();
     let mut vary = |method: &str, change: String, set: &dyn Fn(&mut Params)| -> Result<()> {
         settings.push(Setting::of(method)?.with(change, set));

@@ -3,6 +3,8 @@
 mod barrier;
 mod breakdown;
 mod collision_error;
+mod contacts_alone;
+mod defaults;
 mod early_contact;
 mod edge_limits;
 mod funnel;
@@ -32,9 +34,11 @@ pub const ALL: &[&dyn Figure] = &[
     &overview::Overview,
     &collision_error::CollisionError { blind: false },
     &collision_error::CollisionError { blind: true },
+    &contacts_alone::ContactsAlone,
     &simulation_error::SimulationError,
     &table_1::Table1,
     &table_2::Table2,
+    &defaults::Defaults,
     &switches::Switches,
     &barrier::Barrier,
     &edge_limits::EdgeLimits,

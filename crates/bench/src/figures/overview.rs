@@ -30,6 +30,7 @@ impl Figure for Overview {
         let settings: Vec<Setting> = METHODS.iter().map(Setting::plain).collect();
         let blind = compared(bench, true, &settings)?;
         let own = compared(bench, false, &settings)?;
+        let names: Vec<&str> = METHODS.iter().map(|entry| entry.name).collect();
         let name = |word: &str| format!("{}-{word}", self.name());
         Ok(Section {
             finding: format!(
@@ -41,33 +42,33 @@ impl Figure for Overview {
                 Part::Table {
                     name: name("blind"),
                     caption: "Targets of a dynamics that knows of no contact:".to_owned(),
-                    table: against_fast(&blind),
+                    table: against_fast(&blind, &names),
                 },
                 Part::Table {
                     name: name("own"),
                     caption: "Targets of Bowknot's dynamics:".to_owned(),
-                    table: against_fast(&own),
+                    table: against_fast(&own, &names),
                 },
             ],
         })
     }
 }
 
-/// Time and error of each method as it is, as multiples of those of `fast`.
-fn against_fast(compared: &[Compared]) -> Table {
+/// Time and error of methods as they are, as multiples of those of `fast`.
+pub fn against_fast(compared: &[Compared], methods: &[&str]) -> Table {
     let mut table = Table::new(["method", "CPU time", "error", "failed", "met its rule", "intersections"]);
-    for entry in METHODS {
+    for &name in methods {
         let of = |value: fn(&Summary) -> usize| {
-            compared.iter().filter_map(|c| c.find(entry.name, "")).map(value).sum::<usize>()
+            compared.iter().filter_map(|c| c.find(name, "")).map(value).sum::<usize>()
         };
         let told = |ratios: Vec<f64>| -> Entry {
             let [mean, low, high] = [geometric_mean, smallest, largest].map(|of| times(of(&ratios)));
             format!("{mean} ({low} to {high})").into()
         };
-        let (method, fast) = ((entry.name, ""), ("fast", ""));
+        let (method, fast) = ((name, ""), ("fast", ""));
         let all = of(|s| s.of);
         table.row([
-            entry.name.into(),
+            name.into(),
             told(ratios(compared, method, fast, |s, _| s.cpu)),
             told(ratios(compared, method, fast, |s, exact| s.error(exact))),
             format!("{} of {all}", of(|s| s.failed)).into(),
