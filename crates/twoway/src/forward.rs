@@ -67,7 +67,7 @@ impl ForwardStep for CertifiedForward {
 }
 
 impl CertifiedForward {
-    /// Takes a long step where one pays: limits it by every pair that could meet along it, on a clock common to
+    /// Takes a long step where one pays, as long as no contact pushes: limits it by every pair that could meet along it, on a clock common to
     /// all vertices. Returns whether it did; if not, the step sizes so far are valid limits, not yet all.
     ///
     /// Vertices are assumed to move along u = alpha_0 d; the search lists every pair whose boxes, moving so and
@@ -91,7 +91,10 @@ impl CertifiedForward {
             displacements.map(|(v, d)| stepper.alpha(v) * d.norm()).fold(0.0, f64::max)
         };
         let usable = params.bound == Bound::Planes && matches!(search.reach(), Reach::Balls(_));
-        if !usable || self.crowded || !far.is_finite() || longest(&self.stepper) <= far {
+        // What flies ahead of what is held only makes the rows between them harder: long steps then cost searches and
+        // steps.
+        let pushed = state.contacts.multipliers.iter().any(|&multiplier| multiplier > 0.0);
+        if !usable || pushed || self.crowded || !far.is_finite() || longest(&self.stepper) <= far {
             return false;
         }
         let count = state.x.len();
