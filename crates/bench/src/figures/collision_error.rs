@@ -33,7 +33,8 @@ impl Figure for CollisionError {
             true => {
                 "The same for problems as the paper's simulator poses them: its dynamics knows of no contact, so that targets go deep \
                  through what is in the way (`--set solver.repulsion.stiffness=0`). Hard ones have no exact solution: the \
-                 linearisation does not come to rest within a minute."
+                 linearisation does not come to rest within a minute. Barriers and impact zones have no edge limits, which is part of their \
+                 error here; the next section compares without."
             }
             false => {
                 "How near does each method come to the exact solution, and in how many CPU seconds? Recorded problems of each \
