@@ -23,7 +23,7 @@ pub struct StepperParams {
     /// Largest search radius, likewise (default 0.25; larger ones multiply pairs; paper: D_max/2 = 4 delta / 2).
     pub budget_max: f64,
     /// Travel wanted, in mean edge lengths, above which the search follows the vertices along their
-    /// paths on a common clock, until a contact cuts such a step short. Larger: more steps in free flight. `inf` switches it off. Default 0.6.
+    /// paths on a common clock, as long as no contact pushes. Larger: more steps in free flight. `inf` switches it off. Default 0.6.
     pub swept_travel: f64,
 }
 
