@@ -65,14 +65,16 @@ impl Figure for ImpactZones {
             counts.join(" / ")
         };
         let small = |scene: &str| scene.ends_with("-1000");
-        let in_knots = METHODS.iter().any(|method| failed(method, &|scene| scene.contains("knot")).0 > 0);
+        // I-Cloth is Tang's: that others fail is not what the paper found.
+        let in_knots = failed("impact zones, Tang", &|scene| scene.contains("knot")).0 > 0;
         let fast = failed("fast", &|_| true);
         let unsafe_ends: usize = compared.iter().flat_map(|c| &c.summaries).map(|s| s.intersections).sum();
         Ok(Section {
             finding: format!(
                 "{}: impact zones by Gauss-Seidel / linear system / augmented Lagrangian / Gauss-Seidel to 0.8 delta fail, with targets of a \
                  dynamics that is blind to contact, in {} problems at the scenes' time steps and in {} at 1/1000 s; with those of \
-                 Bowknot's, of which most meet little, in {} and {}; `fast` in {} of {}. {unsafe_ends} intersections in all results.",
+                 Bowknot's, of which most meet little, in {} and {}; `fast` in {} of {}. (The paper: the augmented Lagrangian \
+                 fails in knots of 70,000 vertices; these have up to 5,136.) {unsafe_ends} intersections in all results.",
                 verdict(in_knots && fast.0 == 0),
                 told(&|scene| is_blind(scene) && !small(scene)),
                 told(&|scene| is_blind(scene) && small(scene)),
