@@ -81,9 +81,9 @@ fn main() -> ExitCode {
 fn run(arguments: &Arguments) -> Result<()> {
     if arguments.name == "list" {
         for figure in figures::ALL {
-            println!("{:<20} {}", figure.name(), figure.title());
+            println!("{:<22} {}", figure.name(), figure.title());
         }
-        println!("{:<20} collision problems of {} scenes, as NPZ files", "record", record::SPECS.len());
+        println!("{:<22} collision problems in {} sets, as NPZ files", "record", record::SPECS.len());
         return Ok(());
     }
     rayon::ThreadPoolBuilder::new().num_threads(arguments.threads).build_global()?;
