@@ -25,7 +25,8 @@ impl Figure for StepSizes {
     fn question(&self) -> &'static str {
         "The paper finds its CCD-free scheme five times faster at 1/100 s and seven times at 1/20 s, for 10 to 20 % more steps. `paper` \
          with its own bound on steps, and with conservative additive CCD (Li et al. 2021): all vertices by the earliest impact, as \
-         IPC does, or each vertex by its own. Targets of a dynamics that is blind to contact, as the paper's; needle and stack at \
+         IPC does, or each vertex by its own. (The conservative bound of offset geometric contact, Chen et al. 2025, used by \
+         ipctk's trust region and by NVIDIA Newton, is the bound of `paper`: `bound = \"isotropic\"`.) Targets of a dynamics that is blind to contact, as the paper's; needle and stack at \
          both time steps. Wall seconds a problem: *broad*, search and what CCD searches along paths; *narrow*, distances and CCD tests in the forward step."
     }
 
