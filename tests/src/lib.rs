@@ -5,6 +5,7 @@
 //! - [`watch`]: judges every step of whatever moves them;
 //! - [`fuzz`]: what must hold for any bytes, driven by the fuzz targets and by a test.
 
+pub mod contact;
 pub mod fuzz;
 pub mod random;
 pub mod states;

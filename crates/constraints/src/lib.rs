@@ -8,6 +8,7 @@ mod contacts;
 mod desired;
 mod edges;
 mod face;
+mod facing;
 mod friction;
 mod params;
 mod volume;
@@ -23,6 +24,7 @@ pub use colouring::Colouring;
 pub use contacts::{ContactRows, contact_row, predicted_gap};
 pub use desired::DesiredDistance;
 pub use edges::{EdgeLimits, Stretch};
+pub use facing::{Facing, Feature};
 pub use friction::{friction_row, tangents};
 pub use params::{ConstraintParams, ContactForm, EdgeForm, EdgeReference, FrictionModel};
 

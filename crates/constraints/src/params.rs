@@ -17,6 +17,9 @@ pub struct ConstraintParams {
     /// Speed [m/s] at which pairs that start nearer than `delta` are separated; the default is 20 `delta` a second.
     /// Larger: tight starts open faster and fling the cloth.
     pub separation_speed: Option<f64>,
+    /// Whether rows are made of contacts alone, pairs whose normal lies in the normal cones of both features, and not of all
+    /// that are near: those ahead of a vertex that slides on a mesh are walls in its way. Default true (paper: false).
+    pub contacts_only: bool,
     /// Form of the contact constraint. Default gap.
     pub form: ContactForm,
     /// How friction acts where bodies have it: `coulomb`, within the backward step; `filter`, on the target before each
@@ -87,6 +90,7 @@ impl Default for ConstraintParams {
             range: 2.0,
             active: 1.1,
             separation_speed: None,
+            contacts_only: true,
             form: ContactForm::Gap,
             friction_model: FrictionModel::Coulomb,
             edges: true,
@@ -102,6 +106,7 @@ impl ConstraintParams {
     pub fn paper() -> Self {
         Self {
             range: 4.0,
+            contacts_only: false,
             form: ContactForm::Volume,
             friction_model: FrictionModel::Filter,
             edge_reference: EdgeReference::Start,

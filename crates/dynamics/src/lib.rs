@@ -41,7 +41,7 @@ mod volume;
 pub use bowknot_geometry as geometry;
 
 pub use body::{Body, BodyShape};
-pub use dynamics::{Dynamics, NewtonInfo};
+pub use dynamics::{Dynamics, NewtonInfo, Residual};
 pub use error::{MaterialError, ModelError, ParamsError, StepError};
 pub use linear::cg::CgInfo;
 pub use material::{ClothMaterial, ParticleMaterial, RestShape, SolidMaterial, SolidModel, StrandMaterial};

@@ -1,17 +1,21 @@
-//! Quadratic repulsion (section 6.2 of the paper): springs by which Newton's method knows of contacts.
+//! Contacts in Newton's method: springs with multipliers, an augmented Lagrangian.
 //!
 //! Without them a target is made as if nothing were in the way: a stiff body that rests on something falls on within
 //! itself, and the collision stage, which knows no elasticity, pushes back the vertices that touch alone. Whoever knows
-//! which primitives are near each other hands in springs; the Newton system then has, for each that pushes,
+//! which primitives touch hands in springs. With s = sum_i beta_i x_i, depth = desired + offset - n . s and
+//! slip = (1 - n n^T)(s - s0), s0 at the start of the time step, a contact that pushes has the energy
 //!
 //! ```text
-//! E = k/2 (desired - gap)^2 + F(|slip|),   gap = n . s - offset,   slip = (1 - n n^T)(s - s0),   s = sum_i beta_i x_i
+//! normal    k/2 (depth + lambda/k)^2                     force  lambda + k depth along n
+//! sticking  k/2 |slip - tau/k|^2                         force  tau - k slip
+//! sliding   m d . slip + c/2 |(1 - d d^T) slip|^2        force  -m d, m = mu lambda, c = m / |slip|
 //! ```
 //!
-//! with weights beta (positive on one side, negative on the other) and normal n kept for the step, s0 = s at its start.
-//! F is friction with the lagged bound f = mu k (desired - gap): k/2 |slip|^2 while k |slip| <= f, from there on
-//! f (|slip| - f / 2k); smooth and convex, as in Li et al. 2020 (IPC), section 5, but for the lag of f and of what pushes.
-//! Both are brought up to date after a solve, by `settle`.
+//! lambda and tau are its multipliers [N]. A contact that already carries what it must is not moved: at the solution depth
+//! and slip vanish, however soft the spring (Hestenes 1969 and Powell 1969; for friction Simo and Laursen 1992, "An
+//! augmented Lagrangian treatment of contact problems involving friction"). `settle` brings multipliers up to date after a
+//! solve: lambda <- max(0, lambda + k depth), tau <- tau - k slip, cut to mu lambda. Multipliers are handed in, and handed out by
+//! `forces`, so that they outlive the springs: they pass from one Newton iteration to the next and from step to step.
 //!
 //! The Hessian is applied without being stored: each spring's reaction first, then the nodes gather them. Preconditioners
 //! ask for its blocks.
@@ -27,7 +31,13 @@ use rayon::prelude::*;
 /// rest keep their gap to rounding.
 const NEARLY: f64 = 0.01;
 
-/// A spring between up to four vertices.
+/// Share of its bound by which friction may be below it and slides.
+const AT_BOUND: f64 = 1e-6;
+
+/// Share of the slip that inertia leads to below which a contact counts as sticking.
+const STUCK: f64 = 0.1;
+
+/// A contact between up to four vertices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RepulsionSpring {
     /// The vertices; obstacles are welcome. Where there are fewer than four, any vertex with weight 0.
@@ -41,10 +51,23 @@ pub struct RepulsionSpring {
     /// Gap below which it pushes [m].
     pub desired: f64,
     /// Stiffness k in units of the bodies' own at the contact [1]: 1 / sum beta_i^2 / (n . H_ii n), H_ii the blocks of the
-    /// Newton system, inertia included, of vertices that are free at the start of the time step.
+    /// Newton system, inertia included, of free vertices.
     pub stiffness: f64,
     /// Coefficient of friction mu [1]; 0: it pushes along the normal alone.
     pub friction: f64,
+    /// Force that it is known to carry, on the side that the normal points to [N]: its multipliers, lambda n + tau.
+    pub force: Vector,
+}
+
+/// How a contact resists slip.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Friction {
+    /// Not at all.
+    None,
+    /// It sticks, with the multiplier tau [N].
+    Stick(Vector),
+    /// It slides: direction d of the slip, bound m [N], curvature c across d [N/m].
+    Slide(Vector, f64, f64),
 }
 
 /// The springs of a scene, over nodes.
@@ -57,16 +80,51 @@ pub(crate) struct Repulsion {
     fixed: Vec<Vector>,
     /// s at the start of the time step [m].
     anchors: Vec<Vector>,
-    /// k [N/m], fixed within a time step; 0 if no vertex is free.
-    stiffness: Vec<f64>,
-    /// f [N]; infinite before it is known: sticks.
-    friction: Vec<f64>,
-    pushes: Vec<bool>,
+    states: Vec<SpringState>,
+    /// Whether springs push by their energy as it is, one way, without multipliers.
+    one_sided: bool,
     /// The springs that push, as of the last linearisation, with Hessian by s [N/m] and force [N].
     pushing: Vec<Pushing>,
     /// Places of nodes in `pushing`: `entries[starts[n]..starts[n + 1]]`, with their weights.
     starts: Vec<u32>,
     entries: Vec<(u32, f64)>,
+}
+
+/// What changes about a spring from solve to solve.
+#[derive(Clone, Copy, Debug)]
+struct SpringState {
+    /// k [N/m]; 0 if no vertex is free.
+    stiffness: f64,
+    pushes: bool,
+    /// lambda [N].
+    pressure: f64,
+    friction: Friction,
+}
+
+impl SpringState {
+    const IDLE: Self = Self { stiffness: 0.0, pushes: false, pressure: 0.0, friction: Friction::None };
+
+    /// Friction with the multiplier `tau` after a slip of `slip`, for a bound `most`: Coulomb's law.
+    fn rub(&self, tau: Vector, slip: &Vector, most: f64) -> Friction {
+        let trial = tau - slip * self.stiffness;
+        let size = trial.norm();
+        if most == 0.0 {
+            Friction::None
+        } else if size <= most {
+            Friction::Stick(trial)
+        } else {
+            Friction::Slide(-trial / size, most, most / slip.norm().max(most / self.stiffness))
+        }
+    }
+
+    /// The multiplier tau.
+    fn tau(&self) -> Vector {
+        match self.friction {
+            Friction::None => Vector::zeros(),
+            Friction::Stick(tau) => tau,
+            Friction::Slide(direction, most, _) => direction * -most,
+        }
+    }
 }
 
 /// A spring that pushes.
@@ -87,9 +145,9 @@ impl Repulsion {
             {
                 return refuse("it names a vertex that does not exist");
             }
-            let numbers = s.weights.iter().chain(s.normal.iter()).chain([&s.offset, &s.desired]);
-            if !numbers.into_iter().all(|value| value.is_finite()) {
-                return refuse("its weights, normal, offset and desired gap must be finite");
+            let numbers = s.weights.iter().chain(s.normal.iter()).chain(s.force.iter());
+            if !numbers.chain([&s.offset, &s.desired]).all(|value| value.is_finite()) {
+                return refuse("its weights, normal, offset, desired gap and force must be finite");
             }
             if ![s.stiffness, s.friction].iter().all(|value| *value >= 0.0 && value.is_finite()) {
                 return refuse("its stiffness and friction must be finite numbers, 0 or more");
@@ -104,9 +162,8 @@ impl Repulsion {
             nodes,
             fixed: vec![Vector::zeros(); count],
             anchors: vec![Vector::zeros(); count],
-            stiffness: vec![0.0; count],
-            friction: vec![0.0; count],
-            pushes: vec![false; count],
+            states: vec![SpringState::IDLE; count],
+            one_sided: false,
             pushing: Vec::new(),
             starts: vec![0; model.node_vertex.len() + 1],
             entries: Vec::new(),
@@ -122,8 +179,8 @@ impl Repulsion {
         !self.pushing.is_empty()
     }
 
-    /// Starts a time step at positions `x` of all vertices.
-    pub fn begin_step(&mut self, x: &[Point]) {
+    /// Measures slip from positions `x` of all vertices, those at the start of the time step.
+    pub fn anchor(&mut self, x: &[Point]) {
         for (anchor, s) in self.anchors.iter_mut().zip(&self.springs) {
             let used = (0..4).filter(|&k| s.weights[k] != 0.0);
             *anchor = used.map(|k| x[s.vertices[k] as usize].coords * s.weights[k]).sum();
@@ -153,14 +210,19 @@ impl Repulsion {
         (s.desired + s.offset - s.normal.dot(&sides), moved - s.normal * s.normal.dot(&moved))
     }
 
-    /// Fixes the stiffness for a time step and says which springs push at first: those that would with nodes where inertia
-    /// leads, `predicted`. `diagonal` has the blocks of the Newton system without springs.
-    pub fn stiffen(&mut self, diagonal: &[Matrix3<f64>], free: &[bool], predicted: &[Vector]) {
-        let mut stiffness = std::mem::take(&mut self.stiffness);
-        let mut friction = std::mem::take(&mut self.friction);
-        let mut pushes = std::mem::take(&mut self.pushes);
-        let all = stiffness.par_iter_mut().zip(&mut friction).zip(&mut pushes).enumerate();
-        all.with_min_len(CHUNK).for_each(|(spring, ((stiffness, friction), pushes))| {
+    /// Fixes the stiffness until springs are set again, and guesses which of them push and which stick: in the first iteration
+    /// what would with nodes where inertia leads, `inertial`; in later ones what does at the `iterate`. `diagonal` has the
+    /// blocks of the Newton system without springs.
+    pub fn prepare(
+        &mut self,
+        diagonal: &[Matrix3<f64>],
+        free: &[bool],
+        inertial: &[Vector],
+        iterate: Option<&[Vector]>,
+    ) {
+        self.one_sided = false;
+        let mut states = std::mem::take(&mut self.states);
+        states.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(|(spring, state)| {
             let s = &self.springs[spring];
             let mut compliance = 0.0;
             for (&node, weight) in self.nodes[spring].iter().zip(s.weights) {
@@ -168,18 +230,50 @@ impl Repulsion {
                     compliance += weight * weight / s.normal.dot(&(diagonal[node as usize] * s.normal));
                 }
             }
-            *stiffness = if compliance > 0.0 { s.stiffness / compliance } else { 0.0 };
-            let (depth, slip) = self.depth_and_slip(spring, predicted);
-            *pushes = *stiffness > 0.0 && depth > -NEARLY * s.desired;
-            // Coulomb's law for the vertices on their own: it holds at first what they would hold.
-            *friction = if slip.norm() <= s.friction * depth { f64::INFINITY } else { 0.0 };
+            *state = SpringState::IDLE;
+            if compliance <= 0.0 || s.stiffness == 0.0 {
+                return;
+            }
+            state.stiffness = s.stiffness / compliance;
+            let carried = s.normal.dot(&s.force).max(0.0);
+            let tau = s.force - s.normal * s.normal.dot(&s.force);
+            let (depth, slip) = self.depth_and_slip(spring, iterate.unwrap_or(inertial));
+            if iterate.is_none() {
+                // What inertia takes apart carries nothing.
+                state.pushes = depth > -NEARLY * s.desired;
+                let length = slip.norm();
+                if state.pushes && s.friction > 0.0 {
+                    // Coulomb's law for the vertices on their own: it holds at first what they would hold.
+                    state.friction = if length <= s.friction * depth {
+                        Friction::Stick(tau)
+                    } else {
+                        let most = s.friction * carried;
+                        Friction::Slide(slip / length, most, (most / length).min(state.stiffness))
+                    };
+                }
+            } else {
+                state.pushes = carried > 0.0 || depth > 0.0;
+                if state.pushes {
+                    let (most, length) = (s.friction * carried, slip.norm());
+                    let free = self.depth_and_slip(spring, inertial).1.norm();
+                    let sticks = tau.norm() < (1.0 - AT_BOUND) * most && length < STUCK * free;
+                    state.friction = if sticks {
+                        Friction::Stick(tau)
+                    } else if most > 0.0 && length > 0.0 {
+                        Friction::Slide(slip / length, most, (most / length).min(state.stiffness))
+                    } else {
+                        Friction::None
+                    };
+                }
+            }
+            state.pressure = if state.pushes { carried } else { 0.0 };
         });
-        (self.stiffness, self.friction, self.pushes) = (stiffness, friction, pushes);
+        self.states = states;
     }
 
     /// Linearises the springs that push at `x`.
     pub fn linearise(&mut self, x: &[Vector]) {
-        let live: Vec<u32> = (0..self.springs.len() as u32).filter(|&s| self.pushes[s as usize]).collect();
+        let live: Vec<u32> = (0..self.springs.len() as u32).filter(|&s| self.states[s as usize].pushes).collect();
         let mut pushing = std::mem::take(&mut self.pushing);
         live.par_iter().map(|&s| self.linearised(s as usize, x)).collect_into_vec(&mut pushing);
         self.pushing = pushing;
@@ -205,21 +299,21 @@ impl Repulsion {
     }
 
     fn linearised(&self, spring: usize, x: &[Vector]) -> Pushing {
-        let (k, n) = (self.stiffness[spring], self.springs[spring].normal);
+        let (state, n) = (&self.states[spring], self.springs[spring].normal);
+        let k = state.stiffness;
         let (depth, slip) = self.depth_and_slip(spring, x);
         let along_normal = n * n.transpose();
-        let (mut hessian, mut force) = (along_normal * k, n * (k * depth));
-        let most = self.friction[spring];
-        if most > 0.0 {
-            let length = slip.norm();
-            let across = Matrix3::identity() - along_normal;
-            if k * length <= most {
-                hessian += across * k;
-                force -= slip * k;
-            } else {
-                let along = slip / length;
-                hessian += (across - along * along.transpose()) * (most / length);
-                force -= along * most;
+        let across = || Matrix3::identity() - along_normal;
+        let (mut hessian, mut force) = (along_normal * k, n * (state.pressure + k * depth));
+        match state.friction {
+            Friction::None => {}
+            Friction::Stick(tau) => {
+                hessian += across() * k;
+                force += tau - slip * k;
+            }
+            Friction::Slide(direction, most, curvature) => {
+                hessian += (across() - direction * direction.transpose()) * curvature;
+                force -= direction * most + (slip - direction * direction.dot(&slip)) * curvature;
             }
         }
         Pushing { nodes: self.nodes[spring], weights: self.springs[spring].weights, hessian, force }
@@ -277,35 +371,103 @@ impl Repulsion {
         &self.entries[self.starts[node] as usize..self.starts[node + 1] as usize]
     }
 
-    /// Lets springs that pull at positions `x` go, takes in those whose gap is too small there, and bounds friction by mu
-    /// times the normal force. Returns how much force was wrong, as a share of the normal forces that are right.
+    /// Brings multipliers up to date with nodes at `x`: lets springs that pull go, takes in those whose gap is too small, bounds
+    /// friction by mu times the normal force. Returns how much force was wrong, as a share of the normal forces that are
+    /// right.
     pub fn settle(&mut self, x: &[Vector]) -> f64 {
         let (mut wrong, mut right) = (0.0, 0.0);
         for spring in 0..self.springs.len() {
-            let k = self.stiffness[spring];
-            let (depth, slip) = self.depth_and_slip(spring, x);
-            let pushed = std::mem::replace(&mut self.pushes[spring], k > 0.0 && depth > 0.0);
-            let pushes = self.pushes[spring];
-            if !(pushes || pushed) {
+            let before = self.states[spring];
+            if before.stiffness == 0.0 {
                 continue;
             }
-            let push = k * depth.max(0.0);
-            let (held, most) = (k * slip.norm(), self.springs[spring].friction * push);
-            let before = std::mem::replace(&mut self.friction[spring], most);
+            let (depth, slip) = self.depth_and_slip(spring, x);
+            let trial = before.pressure + before.stiffness * depth;
+            let state = &mut self.states[spring];
+            state.pushes = trial > 0.0;
+            if !(state.pushes || before.pushes) {
+                continue;
+            }
+            let push = trial.max(0.0);
             right += push;
-            if pushes != pushed {
-                wrong += k * depth.abs();
+            if state.pushes != before.pushes {
+                wrong += trial.abs();
             }
-            if most > 0.0 || (pushed && before > 0.0) {
-                wrong += (held.min(most) - if pushed { held.min(before) } else { 0.0 }).abs();
-            }
+            let rubs = before.rub(before.tau(), &slip, self.springs[spring].friction * push);
+            state.friction = match (rubs, before.friction) {
+                (Friction::Stick(_), _) => Friction::Stick(before.tau()),
+                // What turns back on its way has stopped in between.
+                (Friction::Slide(d, ..), Friction::Slide(old, ..)) if d.dot(&old) < 0.0 => {
+                    Friction::Stick(Vector::zeros())
+                }
+                _ => rubs,
+            };
+            let should = SpringState { friction: rubs, ..before }.tau();
+            let acted = match before.friction {
+                _ if !before.pushes => Vector::zeros(),
+                Friction::None => Vector::zeros(),
+                Friction::Stick(tau) => tau - slip * before.stiffness,
+                Friction::Slide(direction, most, curvature) => {
+                    -(direction * most + (slip - direction * direction.dot(&slip)) * curvature)
+                }
+            };
+            wrong += (should - acted).norm();
         }
         if wrong > 0.0 { wrong / right.max(f64::MIN_POSITIVE) } else { 0.0 }
     }
 
-    /// Makes no spring push, for the rest of the time step unless some settle again.
-    pub fn let_go(&mut self) {
-        self.pushes.fill(false);
+    /// Forces that the springs carry with nodes at `x` [N], by spring: what the next ones start from.
+    pub fn forces(&self, x: &[Vector]) -> Vec<Vector> {
+        let force = |spring: usize| {
+            let (state, s) = (&self.states[spring], &self.springs[spring]);
+            if !state.pushes {
+                return Vector::zeros();
+            }
+            let (depth, slip) = self.depth_and_slip(spring, x);
+            let pressure = (state.pressure + state.stiffness * depth).max(0.0);
+            let rubbing = SpringState {
+                friction: state.rub(state.tau(), &slip, s.friction * pressure),
+                ..*state
+            };
+            s.normal * pressure + rubbing.tau()
+        };
+        (0..self.springs.len()).into_par_iter().with_min_len(CHUNK).map(force).collect()
+    }
+
+    /// What the springs' carried forces do to the nodes [N]: taken from `gradient`.
+    pub fn subtract_carried(&self, gradient: &mut [Vector]) {
+        for (spring, nodes) in self.springs.iter().zip(&self.nodes) {
+            for (&node, weight) in nodes.iter().zip(spring.weights) {
+                if node != NO_NODE {
+                    gradient[node as usize] -= spring.force * weight;
+                }
+            }
+        }
+    }
+
+    /// Takes multipliers and friction from all springs, until they are set again; those push that are pressed at `x`.
+    pub fn push_only(&mut self, x: &[Vector]) {
+        self.one_sided = true;
+        for state in &mut self.states {
+            *state = SpringState { stiffness: state.stiffness, ..SpringState::IDLE };
+        }
+        self.update_pushing(x);
+    }
+
+    pub fn debug(&self, x: &[Vector]) -> String {
+        let (mut n, mut p, mut pull, mut sum, mut carried, mut deep) = (0, 0, 0, 0.0, 0.0, 0.0f64);
+        for s in 0..self.springs.len() { let st = &self.states[s]; if st.stiffness == 0.0 { continue; } n += 1; let (d, _) = self.depth_and_slip(s, x); carried += st.pressure; if st.pushes { p += 1; let f = st.pressure + st.stiffness * d; sum += f; if f < 0.0 { pull += 1; } } deep = deep.max(d); }
+        if std::env::var("DBG2").is_ok() { let mut all: Vec<usize> = (0..self.springs.len()).filter(|&s| self.states[s].stiffness > 0.0).collect(); let f = |s: usize| { let st = &self.states[s]; st.pressure + st.stiffness * self.depth_and_slip(s, x).0 }; all.sort_by(|a, b| f(*b).abs().total_cmp(&f(*a).abs())); for &s in all.iter().take(6) { let st = &self.states[s]; let (d, slip) = self.depth_and_slip(s, x); eprintln!("      {s} v {:?} w {:.3?} n {:.3?} k {:.1} depth {:.2}um slip {:.3?} lambda {:.4} push {} {:?} nodes {:?}", self.springs[s].vertices, self.springs[s].weights, self.springs[s].normal.data.0[0], st.stiffness, d*1e6, (slip*1e3).data.0[0], st.pressure, st.pushes, st.friction, self.nodes[s]); } }
+        format!("springs {n} push {p} pull {pull} sum {sum:.3} lambda {carried:.3} deepest {:.1} um", deep * 1e6)
+    }
+    /// Makes those springs push that are pressed at `x`; whether any changed.
+    pub fn update_pushing(&mut self, x: &[Vector]) -> bool {
+        let mut changed = false;
+        for spring in 0..self.springs.len() {
+            let presses = self.states[spring].stiffness > 0.0 && self.depth_and_slip(spring, x).0 > 0.0;
+            changed |= std::mem::replace(&mut self.states[spring].pushes, presses) != presses;
+        }
+        changed
     }
 
     /// Energy [J] at positions `x` of nodes, of the springs that push.
@@ -314,7 +476,7 @@ impl Repulsion {
             .into_par_iter()
             .map(|chunk| {
                 let springs = chunk * CHUNK..((chunk + 1) * CHUNK).min(self.springs.len());
-                springs.filter(|&s| self.pushes[s]).map(|s| self.energy_of(s, x)).sum()
+                springs.filter(|&s| self.one_sided || self.states[s].pushes).map(|s| self.energy_of(s, x)).sum()
             })
             .collect();
         partial.iter().sum()
@@ -322,19 +484,32 @@ impl Repulsion {
 
     /// Energy [J] at positions `x` of nodes, of those that are pressed there and could push.
     pub fn stored_energy(&self, x: &[Vector]) -> f64 {
-        let depth = |spring: usize| self.depth_and_slip(spring, x).0.max(0.0);
-        (0..self.springs.len()).map(|s| 0.5 * self.stiffness[s] * depth(s).powi(2)).sum()
+        let energy = |spring: usize| {
+            let state = &self.states[spring];
+            if state.stiffness == 0.0 {
+                return 0.0;
+            }
+            let pressed = self.depth_and_slip(spring, x).0 + state.pressure / state.stiffness;
+            0.5 * state.stiffness * pressed.max(0.0).powi(2)
+        };
+        (0..self.springs.len()).map(energy).sum()
     }
 
     fn energy_of(&self, spring: usize, x: &[Vector]) -> f64 {
+        let state = &self.states[spring];
         let (depth, slip) = self.depth_and_slip(spring, x);
-        let (k, most) = (self.stiffness[spring], self.friction[spring]);
-        let pushed = 0.5 * k * depth * depth;
-        let length = slip.norm();
-        match most > 0.0 {
-            false => pushed,
-            true if k * length <= most => pushed + 0.5 * k * length * length,
-            true => pushed + most * (length - 0.5 * most / k),
+        let k = state.stiffness;
+        if self.one_sided {
+            return 0.5 * k * depth.max(0.0).powi(2);
+        }
+        let pushed = 0.5 * k * (depth + state.pressure / k).powi(2);
+        match state.friction {
+            Friction::None => pushed,
+            Friction::Stick(tau) => pushed + 0.5 * k * (slip - tau / k).norm_squared(),
+            Friction::Slide(direction, most, curvature) => {
+                let along = direction.dot(&slip);
+                pushed + most * along + 0.5 * curvature * (slip.norm_squared() - along * along)
+            }
         }
     }
 

@@ -210,6 +210,14 @@ impl<K: RowSolver> LcpBackward<K> {
             };
             contacts.separations[p].distance <= range
         };
+        let contacts_only = constraints.contacts_only;
+        let is_contact = |p: usize, kind| {
+            let separation = &contacts.separations[p];
+            !contacts_only || {
+                let features = problem.features(kind, &contacts.pairs.pairs()[p], separation);
+                problem.is_contact(features, &separation.normal, &state.x)
+            }
+        };
         let only_active = problem.params.backward.active_rows;
         self.contacts.fill(
             constraints.form,
@@ -220,6 +228,7 @@ impl<K: RowSolver> LcpBackward<K> {
             &self.movable,
             |p, kind| {
                 in_range(p)
+                    && is_contact(p, kind)
                     && (!only_active || contacts.multipliers[p] > 0.0 || {
                         let vertices = &contacts.pairs.pairs()[p].vertices;
                         let gap = predicted_gap(kind, vertices, &contacts.separations[p], &state.x, &state.y);

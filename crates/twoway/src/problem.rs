@@ -2,8 +2,8 @@
 
 use crate::waiting::set_groups;
 use crate::{Call, ContactTable, Params, ResolveError, Spacing};
-use bowknot_constraints::{DesiredDistance, FrictionModel};
-use bowknot_geometry::{PairKind, Point};
+use bowknot_constraints::{DesiredDistance, Facing, Feature, FrictionModel};
+use bowknot_geometry::{PairKind, Point, Separation, Vector};
 use bowknot_proximity::{CollisionModel, Pair};
 use bowknot_stepper::Rounding;
 
@@ -50,6 +50,8 @@ pub struct Problem {
     /// Groups of pinned vertices that go as one in the present call: group of each vertex, counted from 0;
     /// [`crate::Call::NO_GROUP`] for none. Empty: no groups.
     pub groups: Vec<u32>,
+    /// Tells contacts from pairs that are merely near.
+    pub facing: Facing,
     /// How many groups there are.
     pub group_count: usize,
     /// The caller's names of the groups, ascending.
@@ -95,6 +97,7 @@ impl Problem {
         Ok(Self {
             mean_mass: mean,
             spacing,
+            facing: Facing::new(model.topology()),
             groups: Vec::new(),
             group_count: 0,
             group_names: Vec::new(),
@@ -108,6 +111,16 @@ impl Problem {
             params,
             prescribed,
         })
+    }
+
+    /// The features that the closest points of a pair lie on, of side a and side b.
+    pub fn features(&self, kind: PairKind, pair: &Pair, separation: &Separation) -> [Feature; 2] {
+        Facing::features(self.model.topology(), kind, pair, separation)
+    }
+
+    /// Whether two features touch that are `normal` apart, from the second to the first, or are merely near: see [`Facing`].
+    pub fn is_contact(&self, features: [Feature; 2], normal: &Vector, positions: &[Point]) -> bool {
+        self.facing.is_contact(self.model.topology(), features, normal, positions)
     }
 
     /// Starts a call: checks its input, and takes over what it prescribes.

@@ -79,11 +79,13 @@ pub struct RepulsionParams {
     /// Stiffness of the springs in units of the bodies' own at the contact [1]; 0 switches them off. Larger: contacts give
     /// way less in the dynamics, its linear system takes longer. Default 10.
     pub stiffness: f64,
+    /// tolerance
+    pub step_tolerance: f64,
 }
 
 impl Default for RepulsionParams {
     fn default() -> Self {
-        Self { stiffness: 10.0 }
+        Self { stiffness: 10.0, step_tolerance: 1e-3 }
     }
 }
 

@@ -1,5 +1,6 @@
 //! All that a simulation must remember between two time steps, and its file.
 
+use super::contacts::Carried;
 use crate::io::{IoError, Place, write_atomic};
 use bowknot_geometry::{Point, Vector};
 use ndarray::{Array1, Array2};
@@ -21,6 +22,8 @@ pub struct Checkpoint {
     /// For each pin that takes hold later than time 0 and has done so: where its vertices belong without
     /// its motion [m]. Empty for the others.
     pub anchors: Vec<Vec<Point>>,
+    /// The forces that contacts carry.
+    pub contacts: Vec<Carried>,
 }
 
 impl Checkpoint {
@@ -93,7 +96,7 @@ impl Checkpoint {
             split.push(own.to_vec());
             rest = tail;
         }
-        Ok(Self { step, positions, velocities, anchors: split })
+        Ok(Self { step, positions, velocities, anchors: split, contacts: Vec::new() })
     }
 }
 
@@ -110,6 +113,7 @@ mod tests {
             positions: vec![Point::new(0.1, -0.0, 1e-300), Point::new(1.0 / 3.0, 2.0, 3.0)],
             velocities: vec![Vector::new(-1e300, 0.0, 5e-324), Vector::zeros()],
             anchors: vec![Vec::new(), vec![Point::new(0.7, 0.8, 0.9)]],
+            contacts: Vec::new(),
         };
         checkpoint.write(&path).expect("write");
         let read = Checkpoint::read(&path).expect("read");

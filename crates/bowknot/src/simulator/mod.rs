@@ -7,11 +7,11 @@
 //! two-way method resolves once, from the start of the step to the last target.
 
 mod checkpoint;
+mod contacts;
 mod error;
 mod interior;
 mod prescribed;
 mod process;
-mod repulsion;
 mod statistics;
 
 pub use checkpoint::Checkpoint;
@@ -25,8 +25,8 @@ use crate::world::{Attachment, World};
 use bowknot_dynamics::{Dynamics, DynamicsModel};
 use bowknot_geometry::{Point, Vector};
 use bowknot_twoway::{AcceptedState, Call, Observer, ResolveError, Resolver};
+use contacts::{Carried, Contacts};
 use interior::Interior;
-use repulsion::Repulsion;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Instant;
@@ -40,6 +40,7 @@ pub struct Simulator {
     world: Arc<World>,
     dt: f64,
     newton_iterations: usize,
+    step_tolerance: f64,
     collision_every: CollisionEvery,
     dynamics: Dynamics,
     resolver: Resolver,
@@ -50,7 +51,7 @@ pub struct Simulator {
     /// Of pins that follow an obstacle, by pin and vertex; made from the anchors when first needed.
     attachments: Vec<Vec<Option<Attachment>>>,
     interior: Interior,
-    repulsion: Repulsion,
+    contacts: Contacts,
     scratch: Scratch,
 }
 
@@ -127,7 +128,7 @@ impl Simulator {
         let count = simulator.world.collision_vertices();
         let report = simulator.judge().check_state(&simulator.positions[..count], &options)?;
         if report.is_clear() {
-            simulator.survey()?;
+            simulator.survey(&[])?;
             return Ok(simulator);
         }
         let lines = describe_intersections(&simulator.world, &report.intersections);
@@ -157,12 +158,13 @@ impl Simulator {
             .and_then(|resolver| resolver.with_half_spaces(contact.half_spaces))
             .and_then(|resolver| resolver.with_pair_friction(&contact.pairs))
             .map_err(|source| resolve_error(&world, 0, source))?;
-        let repulsion = Repulsion::new(&scene.repulsion, &world, &resolver);
+        let contacts = Contacts::new(&scene.repulsion, &world, &resolver);
         let dynamics = Dynamics::new(model, scene.dynamics).map_err(SimulationError::Dynamics)?;
         let anchors = vec![Vec::new(); world.pins.len()];
         Ok(Self {
             dt: scene.simulation.dt,
             newton_iterations: scene.simulation.newton_iterations,
+            step_tolerance: scene.repulsion.step_tolerance,
             collision_every: scene.simulation.collision_every,
             dynamics,
             resolver,
@@ -172,21 +174,21 @@ impl Simulator {
             attachments: vec![Vec::new(); anchors.len()],
             anchors,
             interior: Interior::new(&world, scene.simulation.interior),
-            repulsion,
+            contacts,
             scratch: Scratch::default(),
             world: Arc::new(world),
         })
     }
 
-    /// Looks for what is near at the present state: refuses coordinates too large for the gap floor, and finds who
-    /// repels whom.
-    fn survey(&mut self) -> Result<(), SimulationError> {
-        let Self { world, resolver, repulsion, positions, step, dt, .. } = self;
+    /// Looks for what is near at the present state: refuses coordinates too large for the gap floor, and finds the
+    /// contacts.
+    fn survey(&mut self, carried: &[Carried]) -> Result<(), SimulationError> {
+        let Self { world, resolver, contacts, positions, step, dt, .. } = self;
         let call = Call { time_step: Some(*dt), ..Call::default() };
         resolver
             .survey(&positions[..world.collision_vertices()], &call)
             .map_err(|source| resolve_error(world, *step, source))?;
-        repulsion.find(resolver, &resolver.state().contacts);
+        contacts.find(resolver, carried, *dt);
         Ok(())
     }
 
@@ -214,7 +216,6 @@ impl Simulator {
         scratch.start.clone_from(&self.positions);
         let anchors = self.anchors.clone();
         self.prescribe(time, &mut scratch);
-        statistics.repulsion_springs = self.repulsion.springs().len();
         let result = self.iterate(step, &mut scratch, watcher, &mut statistics);
         if let Err(error) = result {
             self.positions.clone_from(&scratch.start);
@@ -227,7 +228,6 @@ impl Simulator {
         let dt = self.dt;
         let moved = self.positions.iter().zip(&scratch.start);
         self.velocities.iter_mut().zip(moved).for_each(|(v, (x, x0))| *v = (x - x0) / dt);
-        self.repulsion.find(&self.resolver, &self.resolver.state().contacts);
         statistics.waiting = self.waiting(time, &scratch);
         statistics.inverted_tets = interior::inverted(&self.world, &self.positions);
         self.scratch = scratch;
@@ -258,14 +258,21 @@ impl Simulator {
         watcher: &mut dyn Watcher,
         statistics: &mut StepStatistics,
     ) -> Result<(), SimulationError> {
-        let Self { world, dynamics, resolver, positions, velocities, dt, interior, repulsion, .. } = self;
+        let Self { world, dynamics, resolver, positions, velocities, dt, interior, contacts, step_tolerance, .. } = self;
         let Scratch { start, x, y, prescribed, keyframes, groups } = scratch;
         let target_error = |source| SimulationError::Target { step, source };
         let count = world.collision_vertices();
 
         let clock = Instant::now();
-        repulsion.apply(dynamics).map_err(target_error)?;
         dynamics.begin_step(start, velocities, *dt).map_err(target_error)?;
+        if !contacts.springs().is_empty() {
+            let inertial = dynamics.inertial_positions();
+            let end = |v: usize| if prescribed[v] { keyframes[v] } else { inertial[v] };
+            let mut motion: Vec<Vector> = (0..start.len()).map(|v| end(v) - start[v]).collect();
+            contacts.anticipate(&mut motion);
+        }
+        contacts.apply(dynamics).map_err(target_error)?;
+        statistics.repulsion_springs = contacts.springs().len();
         statistics.seconds.dynamics += clock.elapsed().as_secs_f64();
         y.clone_from(start);
         x.clone_from(start);
@@ -282,6 +289,7 @@ impl Simulator {
                     "the linear solve did not converge"
                 );
             }
+            let forces = dynamics.contact_forces();
             match self.collision_every {
                 CollisionEvery::Step if !last => {
                     x.clone_from(y);
@@ -318,15 +326,31 @@ impl Simulator {
             let resolved = resolved.map_err(|source| resolve_error(world, step, source))?;
             statistics.add_collision(&resolved, |body| world.name_of(body).to_owned());
 
-            x[count..].copy_from_slice(&y[count..]);
-            if x[..count] == y[..count] {
-                continue;
-            }
             let clock = Instant::now();
-            statistics.interior_solves +=
-                interior.follow(dynamics, prescribed, y, x).map_err(target_error)?;
-            statistics.collision_energy_j += energy_put_in(dynamics, start, y, x, *dt);
+            let carried = contacts.carried_after(&forces, resolver, *dt);
+            if std::env::var("DBG").is_ok() {
+                let ns = forces.len();
+                let mut fs = Vector::zeros(); let mut fr = Vector::zeros(); let (mut n1, mut n2) = (0.0, 0.0);
+                let mut tn = 0.0;
+                for (i, (f, s)) in forces.iter().zip(contacts.springs()).enumerate() { let sg = if s.normal.z > 0.0 {1.0} else {-1.0}; let _=i; fs += f * sg; n1 += f.dot(&s.normal); tn += (f - s.normal * f.dot(&s.normal)).norm(); }
+                for (_, f) in &carried[ns..] { let sg = if f.z > 0.0 {1.0} else {-1.0}; fr += f*sg; n2 += f.norm(); }
+                eprintln!("  it {iteration}: springs {:?} sum|n| {n1:.3} sum|t| {tn:.3}; rows {:?} sum {n2:.3}", fs.data.0[0].map(|x| (x*1e3).round()/1e3), fr.data.0[0].map(|x| (x*1e3).round()/1e3));
+            }
+            contacts.find(resolver, &carried, *dt);
+            x[count..].copy_from_slice(&y[count..]);
+            if x[..count] != y[..count] {
+                statistics.interior_solves +=
+                    interior.follow(dynamics, prescribed, y, x).map_err(target_error)?;
+                statistics.collision_energy_j += energy_put_in(dynamics, start, y, x, *dt);
+            }
+            contacts.apply(dynamics).map_err(target_error)?;
+            let residual = dynamics.residual(x, prescribed).map_err(target_error)?;
             statistics.seconds.dynamics += clock.elapsed().as_secs_f64();
+            (statistics.residual_n, statistics.residual_m) = (residual.force, residual.distance);
+            tracing::debug!(step, iteration, residual.force, residual.distance, "time step");
+            if residual.distance < *step_tolerance * resolver.problem().lengths.edge {
+                break;
+            }
         }
         positions.clone_from(x);
         Ok(())
@@ -379,6 +403,7 @@ impl Simulator {
             positions: self.positions.clone(),
             velocities: self.velocities.clone(),
             anchors: self.anchors.clone(),
+            contacts: self.contacts.carried(),
         }
     }
 
@@ -406,7 +431,7 @@ impl Simulator {
         }
         let before = self.checkpoint();
         self.adopt(checkpoint);
-        self.survey().map_err(|error| {
+        self.survey(&checkpoint.contacts).map_err(|error| {
             self.adopt(&before);
             error.to_string()
         })

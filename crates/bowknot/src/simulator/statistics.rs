@@ -81,9 +81,16 @@ pub struct StepStatistics {
     /// Friction rows of the last backward step.
     #[serde(default)]
     pub friction_rows: usize,
-    /// Springs of the repulsion.
+    /// Contacts in the first Newton system.
     #[serde(default)]
     pub repulsion_springs: usize,
+    /// Forces that do not balance at the end, the root of their sum of squares [N]: inertia, elasticity, bending, damping,
+    /// drag, contact and friction.
+    #[serde(default)]
+    pub residual_n: f64,
+    /// What they are worth in distance [m], see [`bowknot_dynamics::Residual::distance`].
+    #[serde(default)]
+    pub residual_m: f64,
     /// Tetrahedra without a positive volume at the end.
     #[serde(default)]
     pub inverted_tets: usize,

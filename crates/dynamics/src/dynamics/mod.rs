@@ -67,6 +67,17 @@ impl NewtonInfo {
     }
 }
 
+/// How far a state is from solving the step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Residual {
+    /// Root of the sum of squares of the forces on free nodes that do not balance [N].
+    pub force: f64,
+    /// The distance that this is worth [m]: sqrt(dt^2 r . P r / M) with r the forces, P the preconditioner of the last Newton
+    /// system and M the mass. As H is at least M / dt^2, it bounds the root mean square distance to the minimum of the
+    /// quadratic model, weighted by mass, up to the quality of P.
+    pub distance: f64,
+}
+
 /// Model, parameters and workspace. Nothing in it outlives a time step: [`Self::begin_step`] forgets
 /// all but the external forces, the wind and the repulsion, which are kept until set again.
 #[derive(Debug)]
@@ -153,7 +164,51 @@ impl Dynamics {
     pub fn set_repulsion(&mut self, springs: &[RepulsionSpring]) -> Result<(), StepError> {
         self.repulsion =
             if springs.is_empty() { Repulsion::default() } else { Repulsion::new(&self.model, springs)? };
+        if let Some(step) = &mut self.step {
+            step.fresh = true;
+            self.repulsion.anchor(&step.positions);
+        }
         Ok(())
+    }
+
+    /// Forces of the springs at the last target, on the side that the normal points to [N]; one entry per spring.
+    pub fn contact_forces(&self) -> Vec<Vector> {
+        self.repulsion.forces(&self.work.trial)
+    }
+
+    /// Where inertia alone leads from the start of the step, by vertex [m]; obstacles stay.
+    pub fn inertial_positions(&self) -> Vec<Point> {
+        let Some(step) = &self.step else { return Vec::new() };
+        let mut positions = step.positions.clone();
+        for (node, &vertex) in self.model.node_vertex.iter().enumerate() {
+            positions[vertex as usize] = Point::from(step.inertial[node]);
+        }
+        positions
+    }
+
+    /// What is missing to a solution of the step at `x` [m], with the springs' carried forces for contact forces; prescribed
+    /// vertices and obstacles are where they are.
+    ///
+    /// # Errors
+    /// Wrong lengths, entries that are not finite, no step begun.
+    pub fn residual(&mut self, x: &[Point], prescribed: &[bool]) -> Result<Residual, StepError> {
+        for (array, given) in [("x", x.len()), ("prescribed", prescribed.len())] {
+            self.check_length(array, given)?;
+        }
+        self.check_finite("x", |vertex| x[vertex].coords)?;
+        let Some(mut step) = self.step.take() else { return Err(StepError::NotBegun) };
+        let work = &mut self.work;
+        for (node, &vertex) in self.model.node_vertex.iter().enumerate() {
+            let vertex = vertex as usize;
+            work.x[node] = x[vertex].coords;
+            work.free[node] = !prescribed[vertex];
+        }
+        let (model, params, repulsion) = (&self.model, &self.params, &mut self.repulsion);
+        let residual = rayon::scope(|_| {
+            Newton { model, params, repulsion, step: &mut step, work }.residual()
+        });
+        self.step = Some(step);
+        Ok(residual)
     }
 
     /// Starts a time step of `dt` [s] from positions `x0` [m] and velocities `v0` [m/s].
@@ -192,8 +247,11 @@ impl Dynamics {
         }
         step.dt = dt;
         step.last_target = None;
+        step.most = None;
         step.fresh = true;
-        self.repulsion.begin_step(x0);
+        step.positions.clear();
+        step.positions.extend_from_slice(x0);
+        self.repulsion.anchor(x0);
         self.step = Some(step);
         Ok(())
     }

@@ -10,8 +10,8 @@ use crate::linear::system::System;
 use crate::linear::vectors::{add_scaled, dot};
 use crate::momentum::{Inertia, restore_momentum};
 use crate::repulsion::Repulsion;
-use crate::{DynamicsModel, DynamicsParams, NewtonInfo};
-use bowknot_geometry::Vector;
+use crate::{DynamicsModel, DynamicsParams, NewtonInfo, Residual};
+use bowknot_geometry::{Point, Vector};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
@@ -38,8 +38,11 @@ const SETTLING_ITERATIONS: usize = 2;
 /// Newton iterations more at most while springs that pull give energy. One has been enough wherever it was seen.
 const FURTHER_ITERATIONS: usize = 4;
 
-/// Share of the potential's terms below which a gain by springs is one of the linear solve's tolerance.
-const NO_GAIN: f64 = 1e-6;
+/// Share of the potential's terms that contacts may give: multipliers lag behind what they should be.
+const NO_GAIN: f64 = 1e-3;
+
+/// Newton iterations made with contacts that only push, at most.
+const ONE_SIDED_ITERATIONS: usize = 6;
 
 /// Energies that differ by less than this share of their terms are equal: what rounding leaves of
 /// sums over 10^5 nodes, with room.
@@ -54,14 +57,18 @@ const NEGLIGIBLE_STEP: f64 = 1e-12;
 pub struct Step {
     pub dt: f64,
     pub start: Vec<Vector>,
+    /// Positions at the start, by vertex.
+    pub positions: Vec<Point>,
     pub inertial: Vec<Vector>,
     /// The last target, if there was one: the warm start of the next solve.
     pub last_target: Option<Vec<Vector>>,
     /// Bending plus its damping / dt, as a matrix.
     pub scalar: SplitForm,
+    /// Potential without springs that no target may exceed, but by what springs store: that at the start of the step [J].
+    pub most: Option<f64>,
     /// None in a vacuum.
     pub drag: Option<Drag>,
-    /// Whether no Newton iteration has been made yet.
+    /// Whether springs have been set since the last Newton iteration, or the step has only begun.
     pub fresh: bool,
 }
 
@@ -136,13 +143,15 @@ impl Newton<'_> {
         let mut placed = start.clone();
         add_scaled(&mut placed, 1.0, &imposed);
         let [kinetic, internal] = self.energies(&placed);
-        let (before, scale) = (kinetic + internal, kinetic.abs() + internal.abs());
+        let most = *self.step.most.get_or_insert(kinetic + internal + NO_GAIN * (kinetic.abs() + internal.abs()));
 
         let first = self.iterate();
         let (mut info, mut last) = (first, first);
         self.work.least_scale = self.work.cg.scale();
         for _ in 0..SETTLING_ITERATIONS {
-            if self.repulsion.settle(&self.work.trial) <= SETTLED {
+            let w = self.repulsion.settle(&self.work.trial);
+            if std::env::var("DBG").is_ok() { eprintln!("    settle wrong {w:.4} {} last step {} agree {} ", self.repulsion.debug(&self.work.trial), last.step_length, last.agreement); }
+            if w <= SETTLED {
                 break;
             }
             self.work.start_from_trial();
@@ -154,8 +163,9 @@ impl Newton<'_> {
             self.correct(&start, first.decrease(), &mut info);
         }
         self.work.least_scale = 0.0;
+        if std::env::var("DBG").is_ok() { eprintln!("    end {} last step {} agree {} E {:.3e} most {:.3e}+{:.3e}", self.repulsion.debug(&self.work.trial), last.step_length, last.agreement, self.energies(&self.work.trial).iter().sum::<f64>(), most, self.repulsion.stored_energy(&placed)); }
 
-        let most = before + self.repulsion.stored_energy(&placed) + NO_GAIN * scale;
+        let most = most + self.repulsion.stored_energy(&placed);
         let gains = |newton: &Self| newton.energies(&newton.work.trial).iter().sum::<f64>() > most;
         for _ in 0..FURTHER_ITERATIONS {
             if !gains(self) {
@@ -168,10 +178,24 @@ impl Newton<'_> {
         if gains(self) {
             self.work.x.copy_from_slice(&start);
             self.work.imposed.copy_from_slice(&imposed);
-            self.repulsion.let_go();
-            info.add(&self.approach());
+            tracing::debug!("contacts give energy: a target with ones that only push");
+            self.push_only(&mut info);
         }
         info
+    }
+
+    /// Makes the target with springs that have no multipliers and no friction, and push one way. Their energy is convex and the
+    /// line search sees it as it is, so that none is gained but what was stored.
+    fn push_only(&mut self, info: &mut NewtonInfo) {
+        self.repulsion.push_only(&self.work.x);
+        for _ in 0..ONE_SIDED_ITERATIONS {
+            let next = self.iterate();
+            info.add(&next);
+            if !self.repulsion.update_pushing(&self.work.trial) {
+                break;
+            }
+            self.work.start_from_trial();
+        }
     }
 
     /// Iterations after those of `info`, the first of which started at `start` and lowered the potential by `gained` [J], until
@@ -278,8 +302,8 @@ impl Newton<'_> {
         info
     }
 
-    /// Fills gradient and H at `work.x`. The first time in a time step, springs get their stiffness, and the guess which of
-    /// them push.
+    /// Fills gradient and H at `work.x`. The first time after they were set, springs get their stiffness, and the guess which
+    /// of them push.
     pub fn linearise(&mut self) {
         self.linearise_bodies();
         let Self { repulsion, step, work, .. } = self;
@@ -287,9 +311,11 @@ impl Newton<'_> {
             return;
         }
         if std::mem::take(&mut step.fresh) {
-            let end = |n: usize| if work.free[n] { step.inertial[n] } else { work.x[n] + work.imposed[n] };
-            let predicted: Vec<Vector> = (0..work.x.len()).map(end).collect();
-            repulsion.stiffen(&work.values.diagonal, &work.free, &predicted);
+            let end = |n: usize, x: &Vector| if work.free[n] { *x } else { work.x[n] + work.imposed[n] };
+            let placed = |x: &[Vector]| x.iter().enumerate().map(|(n, x)| end(n, x)).collect::<Vec<_>>();
+            let iterate = step.last_target.is_some().then(|| placed(&work.x));
+            let inertial = placed(&step.inertial);
+            repulsion.prepare(&work.values.diagonal, &work.free, &inertial, iterate.as_deref());
         }
         repulsion.linearise(&work.x);
         let gradient = work.gradient.par_iter_mut().enumerate().with_min_len(CHUNK);
@@ -297,7 +323,7 @@ impl Newton<'_> {
     }
 
     /// All but repulsion.
-    fn linearise_bodies(&mut self) {
+    pub fn linearise_bodies(&mut self) {
         let Self { model, params, step, work, .. } = self;
         let motion = Motion { x: &work.x, start: &step.start, rate: 1.0 / step.dt };
         let filter = Filter::from(params.hessian_filter);
@@ -342,6 +368,21 @@ impl Newton<'_> {
                 family.linearise(chunk, motion, filter, &mut rows);
             }
         });
+    }
+
+    /// How far `work.x` is from solving the step, with the springs' carried forces for contact forces.
+    pub fn residual(&mut self) -> Residual {
+        self.linearise_bodies();
+        self.repulsion.subtract_carried(&mut self.work.gradient);
+        let Self { model, step, work, .. } = self;
+        let mut mass = 0.0;
+        for node in 0..work.x.len() {
+            work.right_side[node] = if work.free[node] { -work.gradient[node] } else { Vector::zeros() };
+            mass += if work.free[node] { model.node_masses[node] } else { 0.0 };
+        }
+        let squared = work.preconditioner.apply(&work.right_side, &mut work.step).max(0.0);
+        let force = work.right_side.iter().map(Vector::norm_squared).sum::<f64>().sqrt();
+        Residual { force, distance: step.dt * (squared / mass.max(f64::MIN_POSITIVE)).sqrt() }
     }
 
     /// Inertial and inner part of the incremental potential at `x` without repulsion [J].

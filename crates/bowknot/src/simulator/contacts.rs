@@ -1,0 +1,226 @@
+//! The contacts that the dynamics knows of: which pairs they are, and the forces that they carry.
+//!
+//! After each collision stage the pairs within contact range are sorted into contacts and mere neighbours ([`Facing`]). A
+//! contact takes over the force that it carried before: that of its spring in the Newton system and that of its row in the
+//! collision stage. Where a contact point has slid on to another feature, the force on its vertex passes to the new one.
+//! Forces are part of the state between two time steps, and of checkpoints.
+
+use crate::scene::{BodyKind, RepulsionParams};
+use crate::world::World;
+use bowknot_constraints::{Feature, FrictionModel};
+use bowknot_dynamics::{Dynamics, RepulsionSpring, StepError};
+use bowknot_geometry::{PairKind, Vector};
+use bowknot_twoway::{Problem, Resolver};
+use std::collections::HashMap;
+
+/// The contacts in force.
+#[derive(Debug, Default)]
+pub(super) struct Contacts {
+    stiffness: f64,
+    /// What each vertex that collides is part of.
+    kinds: Vec<Option<BodyKind>>,
+    springs: Vec<RepulsionSpring>,
+    /// Features of each spring's sides.
+    features: Vec<[Feature; 2]>,
+}
+
+/// The force that a contact between two features carries, on the first [N].
+pub type Carried = ([Feature; 2], Vector);
+
+impl Contacts {
+    pub fn new(params: &RepulsionParams, world: &World, resolver: &Resolver) -> Self {
+        let mut kinds = vec![None; world.collision_vertices()];
+        for body in &world.bodies {
+            kinds[body.vertices.start as usize..body.vertices.end as usize].fill(body.kind);
+        }
+        // The velocity filter takes friction from how deep the target is; springs would leave nothing of that.
+        let filtered = resolver.problem().friction_model() == FrictionModel::Filter;
+        let stiffness = if filtered { 0.0 } else { params.stiffness };
+        Self { stiffness, kinds, springs: Vec::new(), features: Vec::new() }
+    }
+
+    /// The contacts.
+    pub fn springs(&self) -> &[RepulsionSpring] {
+        &self.springs
+    }
+
+    /// The forces that they carry.
+    pub fn carried(&self) -> Vec<Carried> {
+        self.features.iter().zip(&self.springs).map(|(f, s)| (*f, s.force)).collect()
+    }
+
+    /// The same after the dynamics and the collision stage: `forces` of the springs, by spring [N], and of the rows that
+    /// pushed.
+    pub fn carried_after(&self, forces: &[Vector], resolver: &Resolver, dt: f64) -> Vec<Carried> {
+        let (problem, contacts) = (resolver.problem(), &resolver.state().contacts);
+        let mut carried: Vec<Carried> = self.features.iter().copied().zip(forces.iter().copied()).collect();
+        let unit = problem.mean_mass / (dt * dt);
+        for kind in PairKind::ALL {
+            for p in contacts.pairs.range(kind) {
+                let (lambda, separation) = (contacts.multipliers[p], &contacts.separations[p]);
+                if lambda > 0.0 {
+                    let rubbing = contacts.friction_multipliers.get(p).copied().unwrap_or_else(Vector::zeros);
+                    let features = problem.features(kind, &contacts.pairs.pairs()[p], separation);
+                    carried.push((features, (separation.normal * lambda + rubbing) * unit));
+                }
+            }
+        }
+        carried
+    }
+
+    /// Finds the contacts at the present state of the collision stage, which lists all pairs in range in an order of their own, and
+    /// hands on the forces of those before.
+    pub fn find(&mut self, resolver: &Resolver, carried: &[Carried], dt: f64) {
+        self.springs.clear();
+        self.features.clear();
+        if self.stiffness == 0.0 {
+            return;
+        }
+        let (problem, state) = (resolver.problem(), resolver.state());
+        let contacts = &state.contacts;
+        let growth = problem.lengths.separation_speed * dt;
+        let mut index = HashMap::new();
+        for kind in PairKind::ALL {
+            for p in contacts.pairs.range(kind) {
+                let (separation, pair) = (&contacts.separations[p], &contacts.pairs.pairs()[p]);
+                let used = &pair.vertices[..kind.vertex_count()];
+                // A distance that is no number repels nothing.
+                let near = separation.distance < problem.contact_range(kind, pair);
+                if !near || !self.is_elastic(used) {
+                    continue;
+                }
+                let features = problem.features(kind, pair, separation);
+                if index.contains_key(&features)
+                    || !problem.is_contact(features, &separation.normal, &state.x)
+                {
+                    continue;
+                }
+                index.insert(features, self.springs.len());
+                let plane = (kind == PairKind::VertexHalfSpace)
+                    .then(|| &problem.model.half_spaces()[pair.elements[1] as usize]);
+                let weights = separation.signed_weights(kind);
+                let mut vertices = pair.vertices;
+                (0..4).filter(|&k| weights[k] == 0.0).for_each(|k| vertices[k] = pair.vertices[0]);
+                self.features.push(features);
+                self.springs.push(RepulsionSpring {
+                    vertices,
+                    weights,
+                    normal: separation.normal,
+                    offset: plane.map_or(0.0, |plane| plane.offset),
+                    // What is nearer than it should be opens no faster than in the collision stage.
+                    desired: (SLACK * problem.desired_distance(kind, pair)).min(separation.distance + growth),
+                    stiffness: self.stiffness,
+                    friction: contacts.frictions.get(p).copied().unwrap_or(0.0),
+                    force: Vector::zeros(),
+                });
+            }
+        }
+        self.hand_on(problem, carried, &index);
+    }
+
+    /// Gives the springs the forces of those before: of the same features, and what is left by vertex and the body on
+    /// the other side, in equal shares to the contacts of that vertex that it presses.
+    fn hand_on(&mut self, problem: &Problem, carried: &[Carried], index: &HashMap<[Feature; 2], usize>) {
+        let mut left: HashMap<(u32, u32), Vector> = HashMap::new();
+        for (features, force) in carried {
+            match index.get(features) {
+                Some(&spring) => self.springs[spring].force += force,
+                None => {
+                    if let Some(side) = side(problem, features) {
+                        *left.entry(side).or_insert_with(Vector::zeros) += force;
+                    }
+                }
+            }
+        }
+        if left.is_empty() {
+            return;
+        }
+        let pressed = |spring: &RepulsionSpring, force: &Vector| spring.normal.dot(force) > 0.0;
+        let mut shares: HashMap<(u32, u32), u32> = HashMap::new();
+        for (features, spring) in self.features.iter().zip(&self.springs) {
+            if let Some(side) = side(problem, features)
+                && left.get(&side).is_some_and(|force| pressed(spring, force))
+            {
+                *shares.entry(side).or_default() += 1;
+            }
+        }
+        for (features, spring) in self.features.iter().zip(&mut self.springs) {
+            if let Some(side) = side(problem, features)
+                && let Some(force) = left.get(&side).filter(|force| pressed(spring, force))
+                && let Some(&count) = shares.get(&side)
+            {
+                spring.force += force / f64::from(count);
+            }
+        }
+    }
+
+    /// Leaves out contacts that the vertices will have passed by the end of the time step, if they go by `motion` [m] but into
+    /// no face: an edge that lies ahead of a vertex, on the surface that it slides on, is no wall.
+    pub fn anticipate(&mut self, motion: &mut [Vector]) {
+        let approach = |spring: &RepulsionSpring, motion: &[Vector]| {
+            let used = (0..4).filter(|&k| spring.weights[k] != 0.0);
+            used.map(|k| motion[spring.vertices[k] as usize] * spring.weights[k]).sum::<Vector>()
+        };
+        let is_face = |features: &[Feature; 2]| matches!(features[1], Feature::Triangle(_) | Feature::HalfSpace(_));
+        for (_, spring) in self.features.iter().zip(&self.springs).filter(|(features, _)| is_face(features)) {
+            // The gap is at least the desired one, or opens no faster than to that.
+            let closing = -approach(spring, motion).dot(&spring.normal);
+            if closing > 0.0 {
+                motion[spring.vertices[0] as usize] += spring.normal * closing;
+            }
+        }
+        let passed: Vec<bool> = self
+            .features
+            .iter()
+            .zip(&self.springs)
+            .map(|(features, spring)| {
+                let start = spring.normal * spring.desired;
+                let way = approach(spring, motion);
+                let length = way.norm_squared();
+                if is_face(features) || length == 0.0 {
+                    return false;
+                }
+                let nearest = (-start.dot(&way) / length).clamp(0.0, 1.0);
+                let [nearest, end] = [nearest, 1.0].map(|t| (start + way * t).norm());
+                nearest > PASSING * spring.desired && end >= (1.0 - 1e-9) * spring.desired
+            })
+            .collect();
+        let mut keep = passed.iter().map(|passed| !passed);
+        self.springs.retain(|_| keep.next().unwrap_or(true));
+        let mut keep = passed.iter().map(|passed| !passed);
+        self.features.retain(|_| keep.next().unwrap_or(true));
+    }
+
+    /// Whether a contact deforms something, and no strand: these are a hundred times stiffer along than across, and the
+    /// solver for them knows no springs.
+    fn is_elastic(&self, vertices: &[u32]) -> bool {
+        let kinds = || vertices.iter().filter_map(|&v| self.kinds[v as usize]);
+        kinds().any(|kind| matches!(kind, BodyKind::Cloth | BodyKind::Solid))
+            && kinds().all(|kind| kind != BodyKind::Strands)
+    }
+
+    /// Hands the springs to the dynamics.
+    pub fn apply(&self, dynamics: &mut Dynamics) -> Result<(), StepError> {
+        if self.stiffness == 0.0 { Ok(()) } else { dynamics.set_repulsion(&self.springs) }
+    }
+}
+
+/// Gap that contacts of the dynamics keep, in the desired distance of the collision stage, which then has nothing to do at rest.
+const SLACK: f64 = 1.05;
+
+/// Share of the desired distance that something must keep from a feature to count as passing it.
+const PASSING: f64 = 0.5;
+
+/// The vertex whose contact it is, and the body on the other side; half-spaces count from the end.
+fn side(problem: &Problem, features: &[Feature; 2]) -> Option<(u32, u32)> {
+    let body = |vertex: u32| problem.model.vertex_body()[vertex as usize];
+    let topology = problem.model.topology();
+    let Feature::Vertex(vertex) = features[0] else { return None };
+    let other = match features[1] {
+        Feature::Vertex(v) => body(v),
+        Feature::Edge(e) => body(topology.edges[e as usize][0]),
+        Feature::Triangle(t) => body(topology.triangles[t as usize][0]),
+        Feature::HalfSpace(h) => u32::MAX - h,
+    };
+    Some((vertex, other))
+}
