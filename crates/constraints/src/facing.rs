@@ -9,9 +9,6 @@
 use bowknot_geometry::{EdgeTriangles, PairKind, Point, Separation, Topology, Vector};
 use bowknot_proximity::Pair;
 
-/// Sine of the angle by which a normal may leave its cone. Cones above flat surfaces are single directions, and bent ones in
-/// motion are nearly flat.
-const TOLERANCE: f64 = 0.02;
 
 /// A closest point is on the boundary of its primitive where a weight is below this.
 const ON_BOUNDARY: f64 = 1e-9;
@@ -20,7 +17,7 @@ const ON_BOUNDARY: f64 = 1e-9;
 #[derive(Clone, Debug, Default)]
 pub struct Facing {
     triangles: EdgeTriangles,
-    /// Vertices next to each vertex: `neighbours[starts[v]..starts[v + 1]]`.
+    /// Vertices next to each vertex of a surface: `neighbours[starts[v]..starts[v + 1]]`.
     starts: Vec<u32>,
     neighbours: Vec<u32>,
 }
@@ -51,20 +48,22 @@ enum Place {
 impl Facing {
     /// Prepares the neighbourhoods. O(n).
     pub fn new(topology: &Topology) -> Self {
+        let triangles = topology.edge_triangles();
+        let of_surfaces = || (0..topology.edges.len()).filter(|&e| triangles.count(e as u32) > 0);
         let mut starts = vec![0u32; topology.vertex_count + 1];
-        for &v in topology.edges.iter().flatten() {
+        for v in of_surfaces().flat_map(|e| topology.edges[e]) {
             starts[v as usize + 1] += 1;
         }
         (1..starts.len()).for_each(|v| starts[v] += starts[v - 1]);
         let mut next = starts.clone();
-        let mut neighbours = vec![0; 2 * topology.edges.len()];
-        for &[a, b] in &topology.edges {
+        let mut neighbours = vec![0; next.last().map_or(0, |count| *count as usize)];
+        for [a, b] in of_surfaces().map(|e| topology.edges[e]) {
             for (from, to) in [(a, b), (b, a)] {
                 neighbours[next[from as usize] as usize] = to;
                 next[from as usize] += 1;
             }
         }
-        Self { triangles: topology.edge_triangles(), starts, neighbours }
+        Self { triangles, starts, neighbours }
     }
 
     /// The features that the closest points of a pair lie on, of side a and side b.
@@ -97,34 +96,48 @@ impl Facing {
         }
     }
 
-    /// Whether a pair is a contact: its normal lies in the normal cones of both `features` at `positions`. Two edges within
-    /// flat surfaces are none: their vertices and faces tell all about such a contact.
+    /// Whether a pair is a contact: its normal lies in the normal cones of both `features` at `positions`, or leaves them by an
+    /// angle whose sine is at most the `tolerance`: cones above flat surfaces are single directions. Strands, which have no
+    /// inside to slide past, have all directions. Two edges within
+    /// flat surfaces are none: their vertices and faces tell all about such a contact. A vertex above a face always is one, as
+    /// the face is where it is.
     pub fn is_contact(
         &self,
         topology: &Topology,
         features: [Feature; 2],
         normal: &Vector,
         positions: &[Point],
+        tolerance: f64,
     ) -> bool {
-        let first = self.place(topology, features[0], &-normal, positions);
+        if matches!((features[0], features[1]), (Feature::Vertex(_), Feature::Triangle(_) | Feature::HalfSpace(_))) {
+            return true;
+        }
+        let first = self.place(topology, features[0], &-normal, positions, tolerance);
         if first == Place::Outside {
             return false;
         }
-        match self.place(topology, features[1], normal, positions) {
+        match self.place(topology, features[1], normal, positions, tolerance) {
             Place::Outside => false,
             Place::Inside => true,
             Place::Flat => !matches!((first, features), (Place::Flat, [Feature::Edge(_), Feature::Edge(_)])),
         }
     }
 
-    fn place(&self, topology: &Topology, feature: Feature, outward: &Vector, positions: &[Point]) -> Place {
+    fn place(
+        &self,
+        topology: &Topology,
+        feature: Feature,
+        outward: &Vector,
+        positions: &[Point],
+        tolerance: f64,
+    ) -> Place {
         match feature {
             Feature::Triangle(_) | Feature::HalfSpace(_) => Place::Inside,
             Feature::Vertex(v) => {
                 let range = self.starts[v as usize] as usize..self.starts[v as usize + 1] as usize;
                 let near = self.neighbours[range].iter().all(|&u| {
                     let along = positions[u as usize] - positions[v as usize];
-                    outward.dot(&along) <= TOLERANCE * along.norm()
+                    outward.dot(&along) <= tolerance * along.norm()
                 });
                 if near { Place::Inside } else { Place::Outside }
             }
@@ -136,7 +149,7 @@ impl Facing {
                 for (_, w) in self.triangles.of(e) {
                     let to = positions[w as usize] - a;
                     let across = to - edge * (edge.dot(&to) / squared);
-                    let (rise, slack) = (outward.dot(&across), TOLERANCE * across.norm());
+                    let (rise, slack) = (outward.dot(&across), tolerance * across.norm());
                     if rise > slack {
                         return Place::Outside;
                     }
@@ -177,7 +190,7 @@ mod tests {
                 let kind = PairKind::VertexTriangle;
                 let s = separation::separate(kind, &pair.vertices.map(|v| x[v as usize]));
                 let features = Facing::features(&topology, kind, &pair, &s);
-                facing.is_contact(&topology, features, &s.normal, &x)
+                facing.is_contact(&topology, features, &s.normal, &x, 0.01)
             })
             .collect()
     }
@@ -211,7 +224,7 @@ mod tests {
             let s = separation::separate(PairKind::EdgeEdge, &pair.vertices.map(|v| x[v as usize]));
             let features = Facing::features(&topology, PairKind::EdgeEdge, &pair, &s);
             assert_eq!(features, [Feature::Edge(a), Feature::Edge(b)]);
-            facing.is_contact(&topology, features, &s.normal, &x)
+            facing.is_contact(&topology, features, &s.normal, &x, 0.01)
         };
         assert!(crossing(0.5, 0.5) && crossing(0.5, 0.0) && crossing(0.0, 0.5));
         assert!(!crossing(0.0, 0.0), "within flat surfaces vertices and faces tell all");

@@ -28,6 +28,10 @@ pub struct DynamicsParams {
     /// the right-hand side [1]. Smaller: more iterations; larger: the target stretches, see the table
     /// in the README. Default 1e-4: some 0.1 mm at 10,000 vertices and dt = 1/20 s.
     pub cg_tolerance: f64,
+    /// Residual of the time step below which iterations end, in mean edge lengths [1]: forces that do not balance, in the
+    /// distance that they are worth, see [`crate::Residual::distance`]. It is for whoever alternates Newton iterations with a
+    /// collision stage. Smaller: more iterations, up to `simulation.newton_iterations`. Default 0.003.
+    pub step_tolerance: f64,
     /// Most iterations of the linear solve [1]. Reached, it ends with the best so far and says so.
     /// Default 10000.
     pub cg_max_iterations: usize,
@@ -68,11 +72,12 @@ pub enum HessianFilter {
     /// solution, once many iterations are made.
     Clamp,
     /// They change sign (Chen et al. 2024, "Stabler Neo-Hookean Simulation: Absolute Eigenvalue
-    /// Filtering for Projected Newton"): as good or better in the first iteration, which is often the
-    /// only one, and far safer out of strong compression, where a clamped direction has nothing but
-    /// inertia to hold it.
-    #[default]
+    /// Filtering for Projected Newton"): as good or better in the first iteration, and far safer out of strong compression,
+    /// where a clamped direction has nothing but inertia to hold it.
     Absolute,
+    /// They change sign for the first target of a time step and become zero for the later ones.
+    #[default]
+    Mixed,
 }
 
 impl Default for DynamicsParams {
@@ -85,6 +90,7 @@ impl Default for DynamicsParams {
             drag_normal: 1.2,
             drag_tangential: 0.02,
             cg_tolerance: 1e-4,
+            step_tolerance: 0.003,
             cg_max_iterations: 10_000,
             preconditioner: Preconditioner::default(),
             hessian_filter: HessianFilter::default(),
@@ -121,6 +127,8 @@ impl DynamicsParams {
         }
         let tolerance = self.cg_tolerance;
         check(tolerance > 0.0 && tolerance < 1.0, "cg_tolerance", tolerance, "it must lie in (0, 1)");
+        let tolerance = self.step_tolerance;
+        check(tolerance >= 0.0 && tolerance.is_finite(), "step_tolerance", tolerance, "it must be finite, 0 or more");
         let most = self.cg_max_iterations;
         check(most > 0, "cg_max_iterations", most as f64, "it must be 1 or more");
         let decrease = self.line_search_decrease;
@@ -154,6 +162,7 @@ mod tests {
             drag_normal: f64::NAN,
             drag_tangential: -1.0,
             cg_tolerance: 0.0,
+            step_tolerance: -1.0,
             cg_max_iterations: 0,
             line_search_decrease: 0.5,
             line_search_halvings: 61,
@@ -170,6 +179,7 @@ mod tests {
                 "drag_normal",
                 "drag_tangential",
                 "cg_tolerance",
+                "step_tolerance",
                 "cg_max_iterations",
                 "line_search_decrease",
                 "line_search_halvings"

@@ -81,8 +81,8 @@ pub(crate) struct Repulsion {
     /// s at the start of the time step [m].
     anchors: Vec<Vector>,
     states: Vec<SpringState>,
-    /// Whether springs push by their energy as it is, one way, without multipliers.
-    one_sided: bool,
+    /// Whether which of them push, stick and slide is a guess, which the energy takes for granted until it is settled.
+    guessed: bool,
     /// The springs that push, as of the last linearisation, with Hessian by s [N/m] and force [N].
     pushing: Vec<Pushing>,
     /// Places of nodes in `pushing`: `entries[starts[n]..starts[n + 1]]`, with their weights.
@@ -99,10 +99,12 @@ struct SpringState {
     /// lambda [N].
     pressure: f64,
     friction: Friction,
+    /// mu times the normal force [N], or infinite: what friction may be.
+    most: f64,
 }
 
 impl SpringState {
-    const IDLE: Self = Self { stiffness: 0.0, pushes: false, pressure: 0.0, friction: Friction::None };
+    const IDLE: Self = Self { stiffness: 0.0, pushes: false, pressure: 0.0, friction: Friction::None, most: 0.0 };
 
     /// Friction with the multiplier `tau` after a slip of `slip`, for a bound `most`: Coulomb's law.
     fn rub(&self, tau: Vector, slip: &Vector, most: f64) -> Friction {
@@ -163,7 +165,7 @@ impl Repulsion {
             fixed: vec![Vector::zeros(); count],
             anchors: vec![Vector::zeros(); count],
             states: vec![SpringState::IDLE; count],
-            one_sided: false,
+            guessed: false,
             pushing: Vec::new(),
             starts: vec![0; model.node_vertex.len() + 1],
             entries: Vec::new(),
@@ -220,7 +222,7 @@ impl Repulsion {
         inertial: &[Vector],
         iterate: Option<&[Vector]>,
     ) {
-        self.one_sided = false;
+        self.guessed = true;
         let mut states = std::mem::take(&mut self.states);
         states.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(|(spring, state)| {
             let s = &self.springs[spring];
@@ -313,7 +315,7 @@ impl Repulsion {
             }
             Friction::Slide(direction, most, curvature) => {
                 hessian += (across() - direction * direction.transpose()) * curvature;
-                force -= direction * most + (slip - direction * direction.dot(&slip)) * curvature;
+                force -= direction * most;
             }
         }
         Pushing { nodes: self.nodes[spring], weights: self.springs[spring].weights, hessian, force }
@@ -375,6 +377,7 @@ impl Repulsion {
     /// friction by mu times the normal force. Returns how much force was wrong, as a share of the normal forces that are
     /// right.
     pub fn settle(&mut self, x: &[Vector]) -> f64 {
+        self.guessed = false;
         let (mut wrong, mut right) = (0.0, 0.0);
         for spring in 0..self.springs.len() {
             let before = self.states[spring];
@@ -390,10 +393,11 @@ impl Repulsion {
             }
             let push = trial.max(0.0);
             right += push;
+            state.most = self.springs[spring].friction * push;
             if state.pushes != before.pushes {
                 wrong += trial.abs();
             }
-            let rubs = before.rub(before.tau(), &slip, self.springs[spring].friction * push);
+            let rubs = before.rub(before.tau(), &slip, state.most);
             state.friction = match (rubs, before.friction) {
                 (Friction::Stick(_), _) => Friction::Stick(before.tau()),
                 // What turns back on its way has stopped in between.
@@ -407,9 +411,7 @@ impl Repulsion {
                 _ if !before.pushes => Vector::zeros(),
                 Friction::None => Vector::zeros(),
                 Friction::Stick(tau) => tau - slip * before.stiffness,
-                Friction::Slide(direction, most, curvature) => {
-                    -(direction * most + (slip - direction * direction.dot(&slip)) * curvature)
-                }
+                Friction::Slide(direction, most, _) => direction * -most,
             };
             wrong += (should - acted).norm();
         }
@@ -447,19 +449,13 @@ impl Repulsion {
 
     /// Takes multipliers and friction from all springs, until they are set again; those push that are pressed at `x`.
     pub fn push_only(&mut self, x: &[Vector]) {
-        self.one_sided = true;
+        self.guessed = false;
         for state in &mut self.states {
             *state = SpringState { stiffness: state.stiffness, ..SpringState::IDLE };
         }
         self.update_pushing(x);
     }
 
-    pub fn debug(&self, x: &[Vector]) -> String {
-        let (mut n, mut p, mut pull, mut sum, mut carried, mut deep) = (0, 0, 0, 0.0, 0.0, 0.0f64);
-        for s in 0..self.springs.len() { let st = &self.states[s]; if st.stiffness == 0.0 { continue; } n += 1; let (d, _) = self.depth_and_slip(s, x); carried += st.pressure; if st.pushes { p += 1; let f = st.pressure + st.stiffness * d; sum += f; if f < 0.0 { pull += 1; } } deep = deep.max(d); }
-        if std::env::var("DBG2").is_ok() { let mut all: Vec<usize> = (0..self.springs.len()).filter(|&s| self.states[s].stiffness > 0.0).collect(); let f = |s: usize| { let st = &self.states[s]; st.pressure + st.stiffness * self.depth_and_slip(s, x).0 }; all.sort_by(|a, b| f(*b).abs().total_cmp(&f(*a).abs())); for &s in all.iter().take(6) { let st = &self.states[s]; let (d, slip) = self.depth_and_slip(s, x); eprintln!("      {s} v {:?} w {:.3?} n {:.3?} k {:.1} depth {:.2}um slip {:.3?} lambda {:.4} push {} {:?} nodes {:?}", self.springs[s].vertices, self.springs[s].weights, self.springs[s].normal.data.0[0], st.stiffness, d*1e6, (slip*1e3).data.0[0], st.pressure, st.pushes, st.friction, self.nodes[s]); } }
-        format!("springs {n} push {p} pull {pull} sum {sum:.3} lambda {carried:.3} deepest {:.1} um", deep * 1e6)
-    }
     /// Makes those springs push that are pressed at `x`; whether any changed.
     pub fn update_pushing(&mut self, x: &[Vector]) -> bool {
         let mut changed = false;
@@ -470,13 +466,13 @@ impl Repulsion {
         changed
     }
 
-    /// Energy [J] at positions `x` of nodes, of the springs that push.
+    /// Energy [J] at positions `x` of nodes, but for a constant.
     pub fn energy(&self, x: &[Vector]) -> f64 {
         let partial: Vec<f64> = (0..self.springs.len().div_ceil(CHUNK))
             .into_par_iter()
             .map(|chunk| {
                 let springs = chunk * CHUNK..((chunk + 1) * CHUNK).min(self.springs.len());
-                springs.filter(|&s| self.one_sided || self.states[s].pushes).map(|s| self.energy_of(s, x)).sum()
+                springs.map(|s| self.energy_of(s, x)).sum()
             })
             .collect();
         partial.iter().sum()
@@ -497,20 +493,31 @@ impl Repulsion {
 
     fn energy_of(&self, spring: usize, x: &[Vector]) -> f64 {
         let state = &self.states[spring];
-        let (depth, slip) = self.depth_and_slip(spring, x);
         let k = state.stiffness;
-        if self.one_sided {
-            return 0.5 * k * depth.max(0.0).powi(2);
+        if k == 0.0 {
+            return 0.0;
         }
-        let pushed = 0.5 * k * (depth + state.pressure / k).powi(2);
-        match state.friction {
-            Friction::None => pushed,
-            Friction::Stick(tau) => pushed + 0.5 * k * (slip - tau / k).norm_squared(),
-            Friction::Slide(direction, most, curvature) => {
-                let along = direction.dot(&slip);
-                pushed + most * along + 0.5 * curvature * (slip.norm_squared() - along * along)
+        let (depth, slip) = self.depth_and_slip(spring, x);
+        let pressed = depth + state.pressure / k;
+        if self.guessed {
+            let friction = match state.friction {
+                Friction::None => 0.0,
+                Friction::Stick(tau) => 0.5 * k * (slip - tau / k).norm_squared(),
+                Friction::Slide(direction, most, curvature) => {
+                    let along = direction.dot(&slip);
+                    most * along + 0.5 * curvature * (slip.norm_squared() - along * along)
+                }
+            };
+            return if state.pushes { 0.5 * k * pressed * pressed + friction } else { 0.0 };
+        }
+        let pushed = 0.5 * k * pressed.max(0.0).powi(2);
+        let trial = (state.tau() - slip * k).norm();
+        pushed
+            + match state.friction {
+                Friction::None => 0.0,
+                _ if trial <= state.most => 0.5 * trial * trial / k,
+                _ => state.most * (trial - 0.5 * state.most) / k,
             }
-        }
     }
 
     /// Nodes that springs join and push, with whether anything but them holds: weights that do not cancel, obstacles.

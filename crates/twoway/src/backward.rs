@@ -14,6 +14,13 @@ use bowknot_constraints::{ContactRows, EdgeForm, EdgeLimits, predicted_gap};
 use bowknot_geometry::Vector;
 use bowknot_lcp::{self as lcp, Family, Schedule, TangentVector};
 
+/// Sine of the angle by which the normals of rows may leave their cones. Rows are made anew in each step: a wide cone keeps them
+/// from coming and going.
+const CONE_TOLERANCE: f64 = 0.02;
+
+/// Distance below which a pair has a row whatever its normal, in its desired distance: what is pressed is held from all sides.
+const NEAR: f64 = 1.001;
+
 /// The default [`BackwardStep`]. Its rows are solved by `K`, projected Gauss-Seidel by default.
 #[derive(Debug, Default)]
 pub struct LcpBackward<K = ColouredSweeps> {
@@ -213,9 +220,10 @@ impl<K: RowSolver> LcpBackward<K> {
         let contacts_only = constraints.contacts_only;
         let is_contact = |p: usize, kind| {
             let separation = &contacts.separations[p];
-            !contacts_only || {
+            let near = separation.distance < NEAR * contacts.desired[p] || contacts.multipliers[p] > 0.0;
+            !contacts_only || near || {
                 let features = problem.features(kind, &contacts.pairs.pairs()[p], separation);
-                problem.is_contact(features, &separation.normal, &state.x)
+                problem.is_contact(features, &separation.normal, &state.x, CONE_TOLERANCE)
             }
         };
         let only_active = problem.params.backward.active_rows;

@@ -119,8 +119,14 @@ impl Problem {
     }
 
     /// Whether two features touch that are `normal` apart, from the second to the first, or are merely near: see [`Facing`].
-    pub fn is_contact(&self, features: [Feature; 2], normal: &Vector, positions: &[Point]) -> bool {
-        self.facing.is_contact(self.model.topology(), features, normal, positions)
+    pub fn is_contact(
+        &self,
+        features: [Feature; 2],
+        normal: &Vector,
+        positions: &[Point],
+        tolerance: f64,
+    ) -> bool {
+        self.facing.is_contact(self.model.topology(), features, normal, positions, tolerance)
     }
 
     /// Starts a call: checks its input, and takes over what it prescribes.

@@ -145,8 +145,7 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
         let max_steps = limits.max_steps.unwrap_or_else(|| default_max_steps(call.time_step));
         let mut waiting = Patience::default();
         let mut unrest = f64::INFINITY;
-        let coulomb = problem.friction_model() == FrictionModel::Coulomb;
-        let drag = limits.drag.or(coulomb.then_some(DEFAULT_DRAG));
+        let drag = limits.drag.unwrap_or(DEFAULT_DRAG);
 
         while state.step < max_steps {
             // In the pool from here on: parallel loops that are called from outside it pay for each crossing.
@@ -185,10 +184,10 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
                     report.remaining < limits.distance * edge
                         && backward.imbalance(problem, state) < limits.imbalance * edge
                         && backward.stretch_to_limit(state) <= 1.0 + limits.stretch_tolerance
-                        && drag.is_none_or(|drag| {
+                        && {
                             let before = std::mem::replace(&mut unrest, backward.unrest(problem, state));
                             unrest < drag * edge || unrest > 0.5 * before
-                        })
+                        }
                 }
             };
             let out_of_time = limits.max_seconds.is_some_and(|s| clock.elapsed().as_secs_f64() > s);

@@ -22,6 +22,8 @@ pub(super) struct Contacts {
     springs: Vec<RepulsionSpring>,
     /// Features of each spring's sides.
     features: Vec<[Feature; 2]>,
+    /// Forces of rows whose pairs have no spring, by vertex that collides [N].
+    held: Vec<Vector>,
 }
 
 /// The force that a contact between two features carries, on the first [N].
@@ -36,7 +38,7 @@ impl Contacts {
         // The velocity filter takes friction from how deep the target is; springs would leave nothing of that.
         let filtered = resolver.problem().friction_model() == FrictionModel::Filter;
         let stiffness = if filtered { 0.0 } else { params.stiffness };
-        Self { stiffness, kinds, springs: Vec::new(), features: Vec::new() }
+        Self { stiffness, kinds, ..Self::default() }
     }
 
     /// The contacts.
@@ -51,17 +53,28 @@ impl Contacts {
 
     /// The same after the dynamics and the collision stage: `forces` of the springs, by spring [N], and of the rows that
     /// pushed.
-    pub fn carried_after(&self, forces: &[Vector], resolver: &Resolver, dt: f64) -> Vec<Carried> {
+    pub fn carried_after(&mut self, forces: &[Vector], resolver: &Resolver, dt: f64) -> Vec<Carried> {
         let (problem, contacts) = (resolver.problem(), &resolver.state().contacts);
         let mut carried: Vec<Carried> = self.features.iter().copied().zip(forces.iter().copied()).collect();
         let unit = problem.mean_mass / (dt * dt);
+        self.held.clear();
+        self.held.resize(problem.rest.len(), Vector::zeros());
         for kind in PairKind::ALL {
             for p in contacts.pairs.range(kind) {
                 let (lambda, separation) = (contacts.multipliers[p], &contacts.separations[p]);
-                if lambda > 0.0 {
-                    let rubbing = contacts.friction_multipliers.get(p).copied().unwrap_or_else(Vector::zeros);
-                    let features = problem.features(kind, &contacts.pairs.pairs()[p], separation);
-                    carried.push((features, (separation.normal * lambda + rubbing) * unit));
+                if lambda == 0.0 {
+                    continue;
+                }
+                let pair = &contacts.pairs.pairs()[p];
+                let rubbing = contacts.friction_multipliers.get(p).copied().unwrap_or_else(Vector::zeros);
+                let force = (separation.normal * lambda + rubbing) * unit;
+                let used = &pair.vertices[..kind.vertex_count()];
+                if self.is_elastic(used) {
+                    carried.push((problem.features(kind, pair, separation), force));
+                } else {
+                    for (&v, weight) in used.iter().zip(separation.signed_weights(kind)) {
+                        self.held[v as usize] += force * weight;
+                    }
                 }
             }
         }
@@ -91,7 +104,7 @@ impl Contacts {
                 }
                 let features = problem.features(kind, pair, separation);
                 if index.contains_key(&features)
-                    || !problem.is_contact(features, &separation.normal, &state.x)
+                    || !problem.is_contact(features, &separation.normal, &state.x, CONE_TOLERANCE)
                 {
                     continue;
                 }
@@ -107,8 +120,7 @@ impl Contacts {
                     weights,
                     normal: separation.normal,
                     offset: plane.map_or(0.0, |plane| plane.offset),
-                    // What is nearer than it should be opens no faster than in the collision stage.
-                    desired: (SLACK * problem.desired_distance(kind, pair)).min(separation.distance + growth),
+                    desired: desired_gap(problem.desired_distance(kind, pair), separation.distance, growth, dt),
                     stiffness: self.stiffness,
                     friction: contacts.frictions.get(p).copied().unwrap_or(0.0),
                     force: Vector::zeros(),
@@ -152,6 +164,21 @@ impl Contacts {
                 spring.force += force / f64::from(count);
             }
         }
+    }
+
+    /// Forces of contacts without springs, on each of the world's `count` vertices [N], and which vertices are part of what
+    /// Newton's method solves together with its contacts: cloth and solids.
+    pub fn without_springs(&self, world: &World, count: usize) -> (Vec<Vector>, Vec<bool>) {
+        let mut held = self.held.clone();
+        held.resize(count, Vector::zeros());
+        let mut counted = vec![false; count];
+        let solved = |kind| matches!(kind, Some(BodyKind::Cloth | BodyKind::Solid));
+        for body in world.bodies.iter().filter(|body| solved(body.kind)) {
+            for range in [&body.vertices, &body.interior] {
+                counted[range.start as usize..range.end as usize].fill(true);
+            }
+        }
+        (held, counted)
     }
 
     /// Leaves out contacts that the vertices will have passed by the end of the time step, if they go by `motion` [m] but into
@@ -205,8 +232,24 @@ impl Contacts {
     }
 }
 
-/// Gap that contacts of the dynamics keep, in the desired distance of the collision stage, which then has nothing to do at rest.
+/// Gap that contacts of the dynamics come to in time, in the desired distance of the collision stage, which then has nothing to
+/// do at rest.
 const SLACK: f64 = 1.05;
+
+/// Sine of the angle by which normals may leave their cones. What slides 1 cm along a normal that is tilted by so much is lifted
+/// by 0.02 mm: a stiff body feels more.
+const CONE_TOLERANCE: f64 = 2e-3;
+
+/// Time within which they do [s].
+const OPENING_TIME: f64 = 0.05;
+
+/// Gap that a contact is to have at the end of a time step, with a `distance` now and a `desired` one in the collision stage,
+/// that opens by `growth` in a step at most [m].
+fn desired_gap(desired: f64, distance: f64, growth: f64, dt: f64) -> f64 {
+    let most = SLACK * desired;
+    let opened = distance + (most - distance) * (dt / OPENING_TIME).min(1.0);
+    desired.min(distance + growth).max(opened).min(most)
+}
 
 /// Share of the desired distance that something must keep from a feature to count as passing it.
 const PASSING: f64 = 0.5;

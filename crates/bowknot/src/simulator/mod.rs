@@ -34,6 +34,9 @@ use std::time::Instant;
 /// How many intersecting pairs of a refused start are named.
 const NAMED_PAIRS: usize = 5;
 
+/// Share of the residual before it that an iteration must get below for another one to be worth it.
+const STALLED: f64 = 0.7;
+
 /// A running simulation.
 #[derive(Debug)]
 pub struct Simulator {
@@ -164,7 +167,7 @@ impl Simulator {
         Ok(Self {
             dt: scene.simulation.dt,
             newton_iterations: scene.simulation.newton_iterations,
-            step_tolerance: scene.repulsion.step_tolerance,
+            step_tolerance: scene.dynamics.step_tolerance,
             collision_every: scene.simulation.collision_every,
             dynamics,
             resolver,
@@ -276,6 +279,7 @@ impl Simulator {
         statistics.seconds.dynamics += clock.elapsed().as_secs_f64();
         y.clone_from(start);
         x.clone_from(start);
+        let mut before = f64::INFINITY;
         for iteration in 0..self.newton_iterations {
             let last = iteration + 1 == self.newton_iterations;
             let clock = Instant::now();
@@ -328,14 +332,6 @@ impl Simulator {
 
             let clock = Instant::now();
             let carried = contacts.carried_after(&forces, resolver, *dt);
-            if std::env::var("DBG").is_ok() {
-                let ns = forces.len();
-                let mut fs = Vector::zeros(); let mut fr = Vector::zeros(); let (mut n1, mut n2) = (0.0, 0.0);
-                let mut tn = 0.0;
-                for (i, (f, s)) in forces.iter().zip(contacts.springs()).enumerate() { let sg = if s.normal.z > 0.0 {1.0} else {-1.0}; let _=i; fs += f * sg; n1 += f.dot(&s.normal); tn += (f - s.normal * f.dot(&s.normal)).norm(); }
-                for (_, f) in &carried[ns..] { let sg = if f.z > 0.0 {1.0} else {-1.0}; fr += f*sg; n2 += f.norm(); }
-                eprintln!("  it {iteration}: springs {:?} sum|n| {n1:.3} sum|t| {tn:.3}; rows {:?} sum {n2:.3}", fs.data.0[0].map(|x| (x*1e3).round()/1e3), fr.data.0[0].map(|x| (x*1e3).round()/1e3));
-            }
             contacts.find(resolver, &carried, *dt);
             x[count..].copy_from_slice(&y[count..]);
             if x[..count] != y[..count] {
@@ -344,11 +340,14 @@ impl Simulator {
                 statistics.collision_energy_j += energy_put_in(dynamics, start, y, x, *dt);
             }
             contacts.apply(dynamics).map_err(target_error)?;
-            let residual = dynamics.residual(x, prescribed).map_err(target_error)?;
+            let (held, counted) = contacts.without_springs(world, x.len());
+            let residual = dynamics.residual(x, prescribed, &held, &counted).map_err(target_error)?;
             statistics.seconds.dynamics += clock.elapsed().as_secs_f64();
             (statistics.residual_n, statistics.residual_m) = (residual.force, residual.distance);
             tracing::debug!(step, iteration, residual.force, residual.distance, "time step");
-            if residual.distance < *step_tolerance * resolver.problem().lengths.edge {
+            let stalled = residual.distance > STALLED * before;
+            before = residual.distance;
+            if stalled || residual.distance < *step_tolerance * resolver.problem().lengths.edge {
                 break;
             }
         }

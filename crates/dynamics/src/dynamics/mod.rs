@@ -72,9 +72,9 @@ impl NewtonInfo {
 pub struct Residual {
     /// Root of the sum of squares of the forces on free nodes that do not balance [N].
     pub force: f64,
-    /// The distance that this is worth [m]: sqrt(dt^2 r . P r / M) with r the forces, P the preconditioner of the last Newton
-    /// system and M the mass. As H is at least M / dt^2, it bounds the root mean square distance to the minimum of the
-    /// quadratic model, weighted by mass, up to the quality of P.
+    /// The distance that this is worth [m]: the largest sqrt(dt^2 r . P r / M) of a connected component, with r the forces, P the
+    /// preconditioner of the Newton system without contacts and M the mass. As H is at least M / dt^2, this bounds the root
+    /// mean square distance, weighted by mass, to where the forces would balance, up to the quality of P.
     pub distance: f64,
 }
 
@@ -186,16 +186,30 @@ impl Dynamics {
         positions
     }
 
-    /// What is missing to a solution of the step at `x` [m], with the springs' carried forces for contact forces; prescribed
-    /// vertices and obstacles are where they are.
+    /// What is missing to a solution of the step at `x` [m], with the springs' carried forces and those `held` by other contacts
+    /// [N] for contact forces. Prescribed vertices and obstacles are where they are. Only vertices that are `counted` matter.
+    /// All slices have one entry per vertex.
     ///
     /// # Errors
     /// Wrong lengths, entries that are not finite, no step begun.
-    pub fn residual(&mut self, x: &[Point], prescribed: &[bool]) -> Result<Residual, StepError> {
-        for (array, given) in [("x", x.len()), ("prescribed", prescribed.len())] {
+    pub fn residual(
+        &mut self,
+        x: &[Point],
+        prescribed: &[bool],
+        held: &[Vector],
+        counted: &[bool],
+    ) -> Result<Residual, StepError> {
+        for (array, given) in [
+            ("x", x.len()),
+            ("prescribed", prescribed.len()),
+            ("held", held.len()),
+            ("counted", counted.len()),
+        ] {
             self.check_length(array, given)?;
         }
         self.check_finite("x", |vertex| x[vertex].coords)?;
+        let by_node = self.model.node_vertex.iter().map(|&v| v as usize);
+        let (held, counted): (Vec<Vector>, Vec<bool>) = by_node.map(|v| (held[v], counted[v])).unzip();
         let Some(mut step) = self.step.take() else { return Err(StepError::NotBegun) };
         let work = &mut self.work;
         for (node, &vertex) in self.model.node_vertex.iter().enumerate() {
@@ -205,7 +219,7 @@ impl Dynamics {
         }
         let (model, params, repulsion) = (&self.model, &self.params, &mut self.repulsion);
         let residual = rayon::scope(|_| {
-            Newton { model, params, repulsion, step: &mut step, work }.residual()
+            Newton { model, params, repulsion, step: &mut step, work }.residual(&held, &counted)
         });
         self.step = Some(step);
         Ok(residual)
@@ -247,6 +261,7 @@ impl Dynamics {
         }
         step.dt = dt;
         step.last_target = None;
+        self.work.least_scale = 0.0;
         step.most = None;
         step.fresh = true;
         step.positions.clear();

@@ -66,16 +66,16 @@ pub(crate) enum Filter {
     Exact,
 }
 
-impl From<HessianFilter> for Filter {
-    fn from(filter: HessianFilter) -> Self {
+impl Filter {
+    /// That of a target, which may be the `first` of its time step.
+    pub fn new(filter: HessianFilter, first: bool) -> Self {
         match filter {
             HessianFilter::Clamp => Filter::Clamp,
             HessianFilter::Absolute => Filter::Absolute,
+            HessianFilter::Mixed => if first { Filter::Absolute } else { Filter::Clamp },
         }
     }
-}
 
-impl Filter {
     #[inline]
     pub fn apply(self, curvature: f64) -> f64 {
         match self {
