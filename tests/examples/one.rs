@@ -12,6 +12,23 @@ fn main() {
         let s = sim.step().unwrap();
         let v = bowknot_tests::contact::velocity(&sim);
         let c = bowknot_tests::contact::center(&sim);
-        println!("{:3} v {:9.5} {:9.5} {:9.5} z {:.6} it {} cg {} steps {} springs {} rows {} res {:.2e} N {:.2e} m coll_e {:.2e} el {:.2e} gap {:?}", s.step, v.x, v.y, v.z, c.z, s.newton_iterations, s.cg_iterations, s.two_way_steps, s.repulsion_springs, s.active_rows, s.residual_n, s.residual_m, s.collision_energy_j, s.energy.elastic, s.min_gap_m.map(|g| (g*1e6).round()));
+        println!(
+            "{:3} v {:9.5} {:9.5} {:9.5} z {:.6} it {} cg {} steps {} springs {} rows {} res {:.2e} N {:.2e} m coll_e {:.2e} el {:.2e} gap {:?}",
+            s.step,
+            v.x,
+            v.y,
+            v.z,
+            c.z,
+            s.newton_iterations,
+            s.cg_iterations,
+            s.two_way_steps,
+            s.repulsion_springs,
+            s.active_rows,
+            s.residual_n,
+            s.residual_m,
+            s.collision_energy_j,
+            s.energy.elastic,
+            s.min_gap_m.map(|g| (g * 1e6).round())
+        );
     }
 }

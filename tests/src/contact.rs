@@ -61,7 +61,8 @@ impl Slider {
         [Self::JellyCube, Self::StiffCube, Self::Patch, Self::Layers, Self::Strands, Self::Grains];
 
     fn bodies(self, velocity: Vector) -> String {
-        let common = format!("friction = 1\nvelocity = [{:?}, {:?}, {:?}]\n", velocity.x, velocity.y, velocity.z);
+        let common =
+            format!("friction = 1\nvelocity = [{:?}, {:?}, {:?}]\n", velocity.x, velocity.y, velocity.z);
         let cube = |modulus: f64| {
             format!(
                 "[[body]]\nname = \"cube\"\nkind = \"solid\"\n{common}\
@@ -134,9 +135,7 @@ impl Ground {
             }
             Self::Box => of_box("ground", [-0.2, 1.3], 0.03),
             Self::CoarseBox => of_box("ground", [-0.2, 1.3], 0.25),
-            Self::Flush => {
-                of_box("near", [-0.2, 0.09], 0.03) + &of_box("far", [0.09, 1.3], 0.05)
-            }
+            Self::Flush => of_box("near", [-0.2, 0.09], 0.03) + &of_box("far", [0.09, 1.3], 0.05),
             Self::Irregular => {
                 let (positions, triangles) = grid([-0.2, 0.8], [-0.2, 0.2], [0.009, 0.009], 0.3);
                 of_mesh(&positions, &triangles)
@@ -265,7 +264,14 @@ impl Slope {
             Simulator::new(&self.scene(folder.path())).unwrap_or_else(|error| panic!("{error}"));
         let heading = self.heading.to_radians();
         let along = Vector::new(heading.cos(), heading.sin(), 0.0);
-        let mut track = Track { along, dt: self.dt, places: vec![center(&simulator)], velocities: vec![along * self.speed], cpu_seconds: 0.0, two_way_steps: 0 };
+        let mut track = Track {
+            along,
+            dt: self.dt,
+            places: vec![center(&simulator)],
+            velocities: vec![along * self.speed],
+            cpu_seconds: 0.0,
+            two_way_steps: 0,
+        };
         for _ in 0..steps {
             let statistics = simulator.step().unwrap_or_else(|error| panic!("{error}"));
             track.places.push(center(&simulator));

@@ -9,7 +9,6 @@
 use bowknot_geometry::{EdgeTriangles, PairKind, Point, Separation, Topology, Vector};
 use bowknot_proximity::Pair;
 
-
 /// A closest point is on the boundary of its primitive where a weight is below this.
 const ON_BOUNDARY: f64 = 1e-9;
 
@@ -67,7 +66,12 @@ impl Facing {
     }
 
     /// The features that the closest points of a pair lie on, of side a and side b.
-    pub fn features(topology: &Topology, kind: PairKind, pair: &Pair, separation: &Separation) -> [Feature; 2] {
+    pub fn features(
+        topology: &Topology,
+        kind: PairKind,
+        pair: &Pair,
+        separation: &Separation,
+    ) -> [Feature; 2] {
         let (w, v, [a, b]) = (&separation.weights, &pair.vertices, pair.elements);
         let on_edge = |edge: u32, first: usize| match [w[first] <= ON_BOUNDARY, w[first + 1] <= ON_BOUNDARY] {
             [false, false] => Feature::Edge(edge),
@@ -109,7 +113,10 @@ impl Facing {
         positions: &[Point],
         tolerance: f64,
     ) -> bool {
-        if matches!((features[0], features[1]), (Feature::Vertex(_), Feature::Triangle(_) | Feature::HalfSpace(_))) {
+        if matches!(
+            (features[0], features[1]),
+            (Feature::Vertex(_), Feature::Triangle(_) | Feature::HalfSpace(_))
+        ) {
             return true;
         }
         let first = self.place(topology, features[0], &-normal, positions, tolerance);
@@ -169,8 +176,9 @@ mod tests {
 
     /// Two triangles that share the edge 0-1 along y, at x = +-1, `height` below it; and free vertices.
     fn roof(height: f64, others: &[[f64; 3]]) -> (Topology, Vec<Point>) {
-        let mut x: Vec<Point> =
-            [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.5, -height], [-1.0, 0.5, -height]].map(Point::from).to_vec();
+        let mut x: Vec<Point> = [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.5, -height], [-1.0, 0.5, -height]]
+            .map(Point::from)
+            .to_vec();
         x.extend(others.iter().map(|p| Point::from(*p)));
         let mut triangles = vec![[0, 2, 1], [0, 1, 3]];
         if others.len() == 4 {

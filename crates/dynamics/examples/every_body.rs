@@ -67,6 +67,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             desired: 1e-3,
             stiffness: 10.0,
             friction: 0.3,
+            force: Vector::zeros(),
         })
         .collect();
     dynamics.set_repulsion(&springs)?;

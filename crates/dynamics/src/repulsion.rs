@@ -8,7 +8,7 @@
 //! ```text
 //! normal    k/2 (depth + lambda/k)^2                     force  lambda + k depth along n
 //! sticking  k/2 |slip - tau/k|^2                         force  tau - k slip
-//! sliding   m d . slip + c/2 |(1 - d d^T) slip|^2        force  -m d, m = mu lambda, c = m / |slip|
+//! sliding   (m |tau - k slip| - m^2/2) / k               force  m in the direction of tau - k slip
 //! ```
 //!
 //! lambda and tau are its multipliers [N]. A contact that already carries what it must is not moved: at the solution depth
@@ -104,7 +104,8 @@ struct SpringState {
 }
 
 impl SpringState {
-    const IDLE: Self = Self { stiffness: 0.0, pushes: false, pressure: 0.0, friction: Friction::None, most: 0.0 };
+    const IDLE: Self =
+        Self { stiffness: 0.0, pushes: false, pressure: 0.0, friction: Friction::None, most: 0.0 };
 
     /// Friction with the multiplier `tau` after a slip of `slip`, for a bound `most`: Coulomb's law.
     fn rub(&self, tau: Vector, slip: &Vector, most: f64) -> Friction {
@@ -241,12 +242,12 @@ impl Repulsion {
             let tau = s.force - s.normal * s.normal.dot(&s.force);
             let (depth, slip) = self.depth_and_slip(spring, iterate.unwrap_or(inertial));
             if iterate.is_none() {
-                // What inertia takes apart carries nothing.
-                state.pushes = depth > -NEARLY * s.desired;
+                // What inertia takes apart further than its force has pressed it carries nothing.
+                state.pushes = depth + carried * compliance > -NEARLY * s.desired;
                 let length = slip.norm();
                 if state.pushes && s.friction > 0.0 {
                     // Coulomb's law for the vertices on their own: it holds at first what they would hold.
-                    state.friction = if length <= s.friction * depth {
+                    state.friction = if length <= s.friction * depth.max(carried * compliance) {
                         Friction::Stick(tau)
                     } else {
                         let most = s.friction * carried;
@@ -275,7 +276,8 @@ impl Repulsion {
 
     /// Linearises the springs that push at `x`.
     pub fn linearise(&mut self, x: &[Vector]) {
-        let live: Vec<u32> = (0..self.springs.len() as u32).filter(|&s| self.states[s as usize].pushes).collect();
+        let live: Vec<u32> =
+            (0..self.springs.len() as u32).filter(|&s| self.states[s as usize].pushes).collect();
         let mut pushing = std::mem::take(&mut self.pushing);
         live.par_iter().map(|&s| self.linearised(s as usize, x)).collect_into_vec(&mut pushing);
         self.pushing = pushing;
@@ -309,13 +311,22 @@ impl Repulsion {
         let (mut hessian, mut force) = (along_normal * k, n * (state.pressure + k * depth));
         match state.friction {
             Friction::None => {}
-            Friction::Stick(tau) => {
-                hessian += across() * k;
-                force += tau - slip * k;
+            Friction::Slide(direction, most, curvature) if self.guessed => {
+                let beside = across() - direction * direction.transpose();
+                hessian += beside * curvature;
+                force -= direction * most + beside * slip * curvature;
             }
-            Friction::Slide(direction, most, curvature) => {
-                hessian += (across() - direction * direction.transpose()) * curvature;
-                force -= direction * most;
+            _ => {
+                let trial = state.tau() - slip * k;
+                let size = trial.norm();
+                if self.guessed || size <= state.most {
+                    hessian += across() * k;
+                    force += trial;
+                } else {
+                    let direction = trial / size;
+                    hessian += (across() - direction * direction.transpose()) * (k * state.most / size);
+                    force += direction * state.most;
+                }
             }
         }
         Pushing { nodes: self.nodes[spring], weights: self.springs[spring].weights, hessian, force }
@@ -377,7 +388,7 @@ impl Repulsion {
     /// friction by mu times the normal force. Returns how much force was wrong, as a share of the normal forces that are
     /// right.
     pub fn settle(&mut self, x: &[Vector]) -> f64 {
-        self.guessed = false;
+        let guessed = std::mem::replace(&mut self.guessed, false);
         let (mut wrong, mut right) = (0.0, 0.0);
         for spring in 0..self.springs.len() {
             let before = self.states[spring];
@@ -410,8 +421,14 @@ impl Repulsion {
             let acted = match before.friction {
                 _ if !before.pushes => Vector::zeros(),
                 Friction::None => Vector::zeros(),
-                Friction::Stick(tau) => tau - slip * before.stiffness,
-                Friction::Slide(direction, most, _) => direction * -most,
+                Friction::Stick(tau) if guessed => tau - slip * before.stiffness,
+                Friction::Slide(direction, most, curvature) if guessed => {
+                    -direction * most - (slip - direction * direction.dot(&slip)) * curvature
+                }
+                _ => {
+                    let trial = before.tau() - slip * before.stiffness;
+                    trial * (before.most / trial.norm()).min(1.0)
+                }
             };
             wrong += (should - acted).norm();
         }
@@ -427,10 +444,8 @@ impl Repulsion {
             }
             let (depth, slip) = self.depth_and_slip(spring, x);
             let pressure = (state.pressure + state.stiffness * depth).max(0.0);
-            let rubbing = SpringState {
-                friction: state.rub(state.tau(), &slip, s.friction * pressure),
-                ..*state
-            };
+            let rubbing =
+                SpringState { friction: state.rub(state.tau(), &slip, s.friction * pressure), ..*state };
             s.normal * pressure + rubbing.tau()
         };
         (0..self.springs.len()).into_par_iter().with_min_len(CHUNK).map(force).collect()

@@ -1,7 +1,7 @@
 //! All that a simulation must remember between two time steps, and its file.
 
-use super::contacts::Carried;
 use crate::io::{IoError, Place, write_atomic};
+use bowknot_constraints::Feature;
 use bowknot_geometry::{Point, Vector};
 use ndarray::{Array1, Array2};
 use ndarray_npy::{NpzReader, NpzWriter};
@@ -10,7 +10,7 @@ use std::io;
 use std::path::Path;
 
 /// The state between two time steps, in full: a simulation restored from it goes on to the same bits.
-/// Multipliers and search radii are set up anew in each time step, so they are no part of it.
+/// Multipliers of the collision stage and search radii are set up anew in each time step, so they are no part of it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Checkpoint {
     /// Time steps made.
@@ -22,13 +22,14 @@ pub struct Checkpoint {
     /// For each pin that takes hold later than time 0 and has done so: where its vertices belong without
     /// its motion [m]. Empty for the others.
     pub anchors: Vec<Vec<Point>>,
-    /// The forces that contacts carry.
-    pub contacts: Vec<Carried>,
+    /// The forces that contacts of the dynamics carry: the features that touch, and the force on the first [N].
+    pub contacts: Vec<([Feature; 2], Vector)>,
 }
 
 impl Checkpoint {
     /// Writes the state as one NPZ file, atomically: `step[1]`, `positions[n,3]`, `velocities[n,3]`,
-    /// `anchor_counts[p]`, `anchors[k,3]`.
+    /// `anchor_counts[p]`, `anchors[k,3]`, `contact_features[c,4]` (kind and index of either feature: 0 vertex, 1 edge,
+    /// 2 triangle, 3 half-space), `contact_forces[c,3]`.
     ///
     /// # Errors
     /// The system's refusal, with the path.
@@ -42,7 +43,11 @@ impl Checkpoint {
             let velocities = self.velocities.iter().flat_map(|v| [v.x, v.y, v.z]).collect();
             let anchors: Vec<Point> = self.anchors.concat();
             let counts: Array1<u64> = self.anchors.iter().map(|a| a.len() as u64).collect();
+            let codes = self.contacts.iter().flat_map(|(features, _)| features.map(code)).flatten().collect();
+            let codes = Array2::from_shape_vec((self.contacts.len(), 4), codes).map_err(io::Error::other)?;
+            let forces = self.contacts.iter().flat_map(|(_, f)| [f.x, f.y, f.z]).collect();
             let arrays = [
+                ("contact_forces", flat(self.contacts.len(), forces)?),
                 ("positions", flat(self.positions.len(), points(&self.positions))?),
                 ("velocities", flat(self.velocities.len(), velocities)?),
                 ("anchors", flat(anchors.len(), points(&anchors))?),
@@ -50,6 +55,7 @@ impl Checkpoint {
             let step = Array1::from_elem(1, self.step as u64);
             archive.add_array("step", &step).map_err(io::Error::other)?;
             archive.add_array("anchor_counts", &counts).map_err(io::Error::other)?;
+            archive.add_array("contact_features", &codes).map_err(io::Error::other)?;
             for (name, array) in &arrays {
                 archive.add_array(*name, array).map_err(io::Error::other)?;
             }
@@ -78,6 +84,19 @@ impl Checkpoint {
         let positions: Vec<Point> = rows("positions")?.into_iter().map(Point::from).collect();
         let velocities: Vec<Vector> = rows("velocities")?.into_iter().map(Vector::from).collect();
         let anchors: Vec<Point> = rows("anchors")?.into_iter().map(Point::from).collect();
+        let forces = rows("contact_forces")?;
+        let codes: Array2<u64> =
+            archive.by_name("contact_features").map_err(|e| fault("contact_features", e.to_string()))?;
+        if codes.ncols() != 4 || codes.nrows() != forces.len() {
+            return Err(fault("contact_features", "is not of 4 columns and a row for each force".to_owned()));
+        }
+        let contacts = codes.rows().into_iter().zip(forces).map(|(row, force)| {
+            let features = [feature(row[0], row[1])?, feature(row[2], row[3])?];
+            Some((features, Vector::from(force)))
+        });
+        let contacts: Option<Vec<([Feature; 2], Vector)>> = contacts.collect();
+        let contacts =
+            contacts.ok_or_else(|| fault("contact_features", "has an unknown kind of feature".to_owned()))?;
         let mut integers = |name: &str| -> Result<Vec<usize>, IoError> {
             let array: Array1<u64> = archive.by_name(name).map_err(|e| fault(name, e.to_string()))?;
             Ok(array.iter().map(|&count| count as usize).collect())
@@ -96,7 +115,28 @@ impl Checkpoint {
             split.push(own.to_vec());
             rest = tail;
         }
-        Ok(Self { step, positions, velocities, anchors: split, contacts: Vec::new() })
+        Ok(Self { step, positions, velocities, anchors: split, contacts })
+    }
+}
+
+/// A feature in numbers.
+fn code(feature: Feature) -> [u64; 2] {
+    match feature {
+        Feature::Vertex(v) => [0, u64::from(v)],
+        Feature::Edge(e) => [1, u64::from(e)],
+        Feature::Triangle(t) => [2, u64::from(t)],
+        Feature::HalfSpace(h) => [3, u64::from(h)],
+    }
+}
+
+fn feature(kind: u64, index: u64) -> Option<Feature> {
+    let index = u32::try_from(index).ok()?;
+    match kind {
+        0 => Some(Feature::Vertex(index)),
+        1 => Some(Feature::Edge(index)),
+        2 => Some(Feature::Triangle(index)),
+        3 => Some(Feature::HalfSpace(index)),
+        _ => None,
     }
 }
 
@@ -113,7 +153,7 @@ mod tests {
             positions: vec![Point::new(0.1, -0.0, 1e-300), Point::new(1.0 / 3.0, 2.0, 3.0)],
             velocities: vec![Vector::new(-1e300, 0.0, 5e-324), Vector::zeros()],
             anchors: vec![Vec::new(), vec![Point::new(0.7, 0.8, 0.9)]],
-            contacts: Vec::new(),
+            contacts: vec![([Feature::Vertex(7), Feature::HalfSpace(1)], Vector::new(0.1, -0.0, 1e-300))],
         };
         checkpoint.write(&path).expect("write");
         let read = Checkpoint::read(&path).expect("read");

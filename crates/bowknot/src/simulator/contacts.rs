@@ -11,10 +11,10 @@ use bowknot_constraints::{Feature, FrictionModel};
 use bowknot_dynamics::{Dynamics, RepulsionSpring, StepError};
 use bowknot_geometry::{PairKind, Vector};
 use bowknot_twoway::{Problem, Resolver};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// The contacts in force.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Contacts {
     stiffness: f64,
     /// What each vertex that collides is part of.
@@ -91,7 +91,11 @@ impl Contacts {
         }
         let (problem, state) = (resolver.problem(), resolver.state());
         let contacts = &state.contacts;
-        let growth = problem.lengths.separation_speed * dt;
+        let loaded: HashSet<[Feature; 2]> = carried
+            .iter()
+            .filter(|(_, force)| *force != Vector::zeros())
+            .map(|(features, _)| *features)
+            .collect();
         let mut index = HashMap::new();
         for kind in PairKind::ALL {
             for p in contacts.pairs.range(kind) {
@@ -103,8 +107,9 @@ impl Contacts {
                     continue;
                 }
                 let features = problem.features(kind, pair, separation);
+                let tolerance = if loaded.contains(&features) { LOADED_TOLERANCE } else { CONE_TOLERANCE };
                 if index.contains_key(&features)
-                    || !problem.is_contact(features, &separation.normal, &state.x, CONE_TOLERANCE)
+                    || !problem.is_contact(features, &separation.normal, &state.x, tolerance)
                 {
                     continue;
                 }
@@ -120,7 +125,7 @@ impl Contacts {
                     weights,
                     normal: separation.normal,
                     offset: plane.map_or(0.0, |plane| plane.offset),
-                    desired: desired_gap(problem.desired_distance(kind, pair), separation.distance, growth, dt),
+                    desired: desired_gap(problem.desired_distance(kind, pair), separation.distance, dt),
                     stiffness: self.stiffness,
                     friction: contacts.frictions.get(p).copied().unwrap_or(0.0),
                     force: Vector::zeros(),
@@ -130,38 +135,47 @@ impl Contacts {
         self.hand_on(problem, carried, &index);
     }
 
-    /// Gives the springs the forces of those before: of the same features, and what is left by vertex and the body on
-    /// the other side, in equal shares to the contacts of that vertex that it presses.
+    /// Gives the springs the forces of those before: of the same features; of what is left of a vertex against a body, in equal
+    /// shares to the contacts of that vertex that it presses; of two edges, to a contact that one of them has now.
     fn hand_on(&mut self, problem: &Problem, carried: &[Carried], index: &HashMap<[Feature; 2], usize>) {
-        let mut left: HashMap<(u32, u32), Vector> = HashMap::new();
+        let mut of_vertices: HashMap<(u32, u32), Vector> = HashMap::new();
+        let mut of_edges: Vec<Vector> = Vec::new();
+        let mut at_edge: HashMap<u32, usize> = HashMap::new();
         for (features, force) in carried {
-            match index.get(features) {
-                Some(&spring) => self.springs[spring].force += force,
-                None => {
-                    if let Some(side) = side(problem, features) {
-                        *left.entry(side).or_insert_with(Vector::zeros) += force;
-                    }
-                }
+            if let Some(&spring) = index.get(features) {
+                self.springs[spring].force += force;
+            } else if let Some(side) = side(problem, features) {
+                *of_vertices.entry(side).or_insert_with(Vector::zeros) += force;
+            } else if let [Feature::Edge(a), Feature::Edge(b)] = features {
+                at_edge.insert(*a, of_edges.len());
+                at_edge.insert(*b, of_edges.len());
+                of_edges.push(*force);
             }
         }
-        if left.is_empty() {
+        if of_vertices.is_empty() && of_edges.is_empty() {
             return;
         }
         let pressed = |spring: &RepulsionSpring, force: &Vector| spring.normal.dot(force) > 0.0;
         let mut shares: HashMap<(u32, u32), u32> = HashMap::new();
         for (features, spring) in self.features.iter().zip(&self.springs) {
             if let Some(side) = side(problem, features)
-                && left.get(&side).is_some_and(|force| pressed(spring, force))
+                && of_vertices.get(&side).is_some_and(|force| pressed(spring, force))
             {
                 *shares.entry(side).or_default() += 1;
             }
         }
         for (features, spring) in self.features.iter().zip(&mut self.springs) {
             if let Some(side) = side(problem, features)
-                && let Some(force) = left.get(&side).filter(|force| pressed(spring, force))
+                && let Some(force) = of_vertices.get(&side).filter(|force| pressed(spring, force))
                 && let Some(&count) = shares.get(&side)
             {
                 spring.force += force / f64::from(count);
+            }
+            if let [Feature::Edge(a), Feature::Edge(b)] = features
+                && let Some(&left) = at_edge.get(a).or_else(|| at_edge.get(b))
+                && pressed(spring, &of_edges[left])
+            {
+                spring.force += std::mem::take(&mut of_edges[left]);
             }
         }
     }
@@ -188,7 +202,8 @@ impl Contacts {
             let used = (0..4).filter(|&k| spring.weights[k] != 0.0);
             used.map(|k| motion[spring.vertices[k] as usize] * spring.weights[k]).sum::<Vector>()
         };
-        let is_face = |features: &[Feature; 2]| matches!(features[1], Feature::Triangle(_) | Feature::HalfSpace(_));
+        let is_face =
+            |features: &[Feature; 2]| matches!(features[1], Feature::Triangle(_) | Feature::HalfSpace(_));
         for (_, spring) in self.features.iter().zip(&self.springs).filter(|(features, _)| is_face(features)) {
             // The gap is at least the desired one, or opens no faster than to that.
             let closing = -approach(spring, motion).dot(&spring.normal);
@@ -240,15 +255,20 @@ const SLACK: f64 = 1.05;
 /// by 0.02 mm: a stiff body feels more.
 const CONE_TOLERANCE: f64 = 2e-3;
 
-/// Time within which they do [s].
-const OPENING_TIME: f64 = 0.05;
+/// The same for contacts that carry a force: they do not come and go as surfaces tremble.
+const LOADED_TOLERANCE: f64 = 0.2;
 
-/// Gap that a contact is to have at the end of a time step, with a `distance` now and a `desired` one in the collision stage,
-/// that opens by `growth` in a step at most [m].
-fn desired_gap(desired: f64, distance: f64, growth: f64, dt: f64) -> f64 {
+/// Time within which they do [s].
+const OPENING_TIME: f64 = 0.1;
+
+/// Gap that a contact is to have at the end of a time step, with a `distance` now and a `desired` one in the collision stage [m].
+///
+/// It is all but the present one. Forces pass from step to step; were the gap to be corrected at once, they would integrate its
+/// error, and a contact that is softer than what it carries is heavy would swing ever more: with k the stiffness, m / dt^2 the
+/// inertia and epsilon the share of the error that is corrected in a step, motion decays where epsilon < k / (k + m / dt^2).
+fn desired_gap(desired: f64, distance: f64, dt: f64) -> f64 {
     let most = SLACK * desired;
-    let opened = distance + (most - distance) * (dt / OPENING_TIME).min(1.0);
-    desired.min(distance + growth).max(opened).min(most)
+    if distance < most { distance + (most - distance) * (dt / OPENING_TIME).min(1.0) } else { most }
 }
 
 /// Share of the desired distance that something must keep from a feature to count as passing it.
@@ -256,13 +276,14 @@ const PASSING: f64 = 0.5;
 
 /// The vertex whose contact it is, and the body on the other side; half-spaces count from the end.
 fn side(problem: &Problem, features: &[Feature; 2]) -> Option<(u32, u32)> {
-    let body = |vertex: u32| problem.model.vertex_body()[vertex as usize];
+    let body = |vertex: u32| problem.model.vertex_body().get(vertex as usize).copied();
     let topology = problem.model.topology();
     let Feature::Vertex(vertex) = features[0] else { return None };
+    // Features of a checkpoint may be anything.
     let other = match features[1] {
-        Feature::Vertex(v) => body(v),
-        Feature::Edge(e) => body(topology.edges[e as usize][0]),
-        Feature::Triangle(t) => body(topology.triangles[t as usize][0]),
+        Feature::Vertex(v) => body(v)?,
+        Feature::Edge(e) => body(topology.edges.get(e as usize)?[0])?,
+        Feature::Triangle(t) => body(topology.triangles.get(t as usize)?[0])?,
         Feature::HalfSpace(h) => u32::MAX - h,
     };
     Some((vertex, other))

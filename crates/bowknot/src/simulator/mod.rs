@@ -34,6 +34,9 @@ use std::time::Instant;
 /// How many intersecting pairs of a refused start are named.
 const NAMED_PAIRS: usize = 5;
 
+/// Time step below which the tolerance of the residual shrinks, with its square [s].
+const TOLERATED_STEP: f64 = 0.01;
+
 /// Share of the residual before it that an iteration must get below for another one to be worth it.
 const STALLED: f64 = 0.7;
 
@@ -217,12 +220,13 @@ impl Simulator {
 
         let mut scratch = std::mem::take(&mut self.scratch);
         scratch.start.clone_from(&self.positions);
-        let anchors = self.anchors.clone();
+        let (anchors, contacts) = (self.anchors.clone(), self.contacts.clone());
         self.prescribe(time, &mut scratch);
         let result = self.iterate(step, &mut scratch, watcher, &mut statistics);
         if let Err(error) = result {
             self.positions.clone_from(&scratch.start);
             self.anchors = anchors;
+            self.contacts = contacts;
             self.attachments.iter_mut().for_each(Vec::clear);
             self.scratch = scratch;
             return Err(error);
@@ -261,7 +265,18 @@ impl Simulator {
         watcher: &mut dyn Watcher,
         statistics: &mut StepStatistics,
     ) -> Result<(), SimulationError> {
-        let Self { world, dynamics, resolver, positions, velocities, dt, interior, contacts, step_tolerance, .. } = self;
+        let Self {
+            world,
+            dynamics,
+            resolver,
+            positions,
+            velocities,
+            dt,
+            interior,
+            contacts,
+            step_tolerance,
+            ..
+        } = self;
         let Scratch { start, x, y, prescribed, keyframes, groups } = scratch;
         let target_error = |source| SimulationError::Target { step, source };
         let count = world.collision_vertices();
@@ -279,6 +294,9 @@ impl Simulator {
         statistics.seconds.dynamics += clock.elapsed().as_secs_f64();
         y.clone_from(start);
         x.clone_from(start);
+        // In short time steps the distance must shrink as what gravity does: else it would be an acceleration without bound.
+        let share = (*dt / TOLERATED_STEP).min(1.0).powi(2);
+        let tolerance = *step_tolerance * resolver.problem().lengths.edge * share;
         let mut before = f64::INFINITY;
         for iteration in 0..self.newton_iterations {
             let last = iteration + 1 == self.newton_iterations;
@@ -345,9 +363,10 @@ impl Simulator {
             statistics.seconds.dynamics += clock.elapsed().as_secs_f64();
             (statistics.residual_n, statistics.residual_m) = (residual.force, residual.distance);
             tracing::debug!(step, iteration, residual.force, residual.distance, "time step");
+            let solved = residual.distance < tolerance;
             let stalled = residual.distance > STALLED * before;
             before = residual.distance;
-            if stalled || residual.distance < *step_tolerance * resolver.problem().lengths.edge {
+            if *step_tolerance > 0.0 && (solved || stalled) {
                 break;
             }
         }

@@ -91,6 +91,8 @@ fn a_run_leaves_the_folder_that_other_tools_rely_on() {
         "repulsion_springs",
         "inverted_tets",
         "interior_solves",
+        "residual_n",
+        "residual_m",
     ];
     expected.sort_unstable();
     for (index, line) in lines.iter().enumerate() {
@@ -241,7 +243,8 @@ fn traces_and_records_hold_the_collision_problems() {
     let lines = lines(folder.path());
     let traces = names(&folder.path().join("trace"));
     let steps: u64 = lines.iter().filter_map(|line| line["two_way_steps"].as_u64()).sum();
-    assert_eq!(traces.len() as u64, steps + 5);
+    let problems: u64 = lines.iter().filter_map(|line| line["newton_iterations"].as_u64()).sum();
+    assert_eq!(traces.len() as u64, steps + problems);
     assert_eq!(traces[0], "000001_00_00000.ply");
 
     // Consecutive states are joined by straight paths without intersections.
@@ -260,7 +263,13 @@ fn traces_and_records_hold_the_collision_problems() {
     }
 
     let records = names(&folder.path().join("states"));
-    assert_eq!(records, (1..=5).map(|step| format!("{step:06}_00.npz")).collect::<Vec<_>>());
+    let of_step = |line: &Value| {
+        let (step, iterations) = (line["step"].as_u64(), line["newton_iterations"].as_u64());
+        let name = move |k| format!("{:06}_{k:02}.npz", step.expect("a number"));
+        (0..iterations.expect("a number")).map(name).collect::<Vec<_>>()
+    };
+    let expected: Vec<String> = lines.iter().flat_map(of_step).collect();
+    assert_eq!(records, expected);
     let problem = States::read(&folder.path().join("states/000003_00.npz")).expect("a problem");
     assert_eq!(problem.x, read(&"000003_00_00000.ply".to_owned())[..vertices]);
     assert_eq!((problem.y.len(), problem.masses.len(), problem.fixed.len()), (vertices, vertices, vertices));

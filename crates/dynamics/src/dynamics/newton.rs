@@ -147,7 +147,8 @@ impl Newton<'_> {
         let mut placed = start.clone();
         add_scaled(&mut placed, 1.0, &imposed);
         let [kinetic, internal] = self.energies(&placed);
-        let most = *self.step.most.get_or_insert(kinetic + internal + NO_GAIN * (kinetic.abs() + internal.abs()));
+        let most =
+            *self.step.most.get_or_insert(kinetic + internal + NO_GAIN * (kinetic.abs() + internal.abs()));
 
         let first = self.iterate();
         let (mut info, mut last) = (first, first);

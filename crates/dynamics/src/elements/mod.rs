@@ -72,7 +72,13 @@ impl Filter {
         match filter {
             HessianFilter::Clamp => Filter::Clamp,
             HessianFilter::Absolute => Filter::Absolute,
-            HessianFilter::Mixed => if first { Filter::Absolute } else { Filter::Clamp },
+            HessianFilter::Mixed => {
+                if first {
+                    Filter::Absolute
+                } else {
+                    Filter::Clamp
+                }
+            }
         }
     }
 

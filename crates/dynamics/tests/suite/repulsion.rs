@@ -36,6 +36,7 @@ fn springs(count: u32, stiffness: f64) -> Vec<RepulsionSpring> {
             desired: GAP,
             stiffness,
             friction: 0.0,
+            force: Vector::zeros(),
         })
         .collect()
 }
@@ -107,6 +108,7 @@ fn obstacles_and_half_spaces_hold_a_sheet_up() {
             desired: GAP,
             stiffness: 1000.0,
             friction: 0.0,
+            force: Vector::zeros(),
         }));
         dynamics.set_repulsion(&all).expect("valid");
         let mut keyframes = rest.clone();
@@ -142,6 +144,7 @@ fn springs_stick_below_the_angle_of_friction_and_slide_above_by_coulombs_law() {
             desired: rest[v as usize].z,
             stiffness: 1e4,
             friction,
+            force: Vector::zeros(),
         };
         dynamics.set_repulsion(&(0..2 * count).map(on_plane).collect::<Vec<_>>()).expect("valid");
         let (mut x, mut v) = (rest.clone(), vec![Vector::zeros(); rest.len()]);
