@@ -11,3 +11,5 @@ mod safety;
 mod interior_points;
 // What the fuzz targets check holds for seeded random bytes.
 mod fuzz_bodies;
+// Contact moves bodies as theory has it.
+mod slopes;

@@ -242,12 +242,12 @@ impl Repulsion {
             let tau = s.force - s.normal * s.normal.dot(&s.force);
             let (depth, slip) = self.depth_and_slip(spring, iterate.unwrap_or(inertial));
             if iterate.is_none() {
-                // What inertia takes apart further than its force has pressed it carries nothing.
-                state.pushes = depth + carried * compliance > -NEARLY * s.desired;
+                // What inertia takes apart carries nothing.
+                state.pushes = depth > -NEARLY * s.desired;
                 let length = slip.norm();
                 if state.pushes && s.friction > 0.0 {
                     // Coulomb's law for the vertices on their own: it holds at first what they would hold.
-                    state.friction = if length <= s.friction * depth.max(carried * compliance) {
+                    state.friction = if length <= s.friction * depth {
                         Friction::Stick(tau)
                     } else {
                         let most = s.friction * carried;

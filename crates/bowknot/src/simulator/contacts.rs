@@ -91,6 +91,7 @@ impl Contacts {
         }
         let (problem, state) = (resolver.problem(), resolver.state());
         let contacts = &state.contacts;
+        let growth = problem.lengths.separation_speed * dt;
         let loaded: HashSet<[Feature; 2]> = carried
             .iter()
             .filter(|(_, force)| *force != Vector::zeros())
@@ -125,7 +126,12 @@ impl Contacts {
                     weights,
                     normal: separation.normal,
                     offset: plane.map_or(0.0, |plane| plane.offset),
-                    desired: desired_gap(problem.desired_distance(kind, pair), separation.distance, dt),
+                    desired: desired_gap(
+                        problem.desired_distance(kind, pair),
+                        separation.distance,
+                        growth,
+                        dt,
+                    ),
                     stiffness: self.stiffness,
                     friction: contacts.frictions.get(p).copied().unwrap_or(0.0),
                     force: Vector::zeros(),
@@ -259,16 +265,14 @@ const CONE_TOLERANCE: f64 = 2e-3;
 const LOADED_TOLERANCE: f64 = 0.2;
 
 /// Time within which they do [s].
-const OPENING_TIME: f64 = 0.1;
+const OPENING_TIME: f64 = 0.05;
 
-/// Gap that a contact is to have at the end of a time step, with a `distance` now and a `desired` one in the collision stage [m].
-///
-/// It is all but the present one. Forces pass from step to step; were the gap to be corrected at once, they would integrate its
-/// error, and a contact that is softer than what it carries is heavy would swing ever more: with k the stiffness, m / dt^2 the
-/// inertia and epsilon the share of the error that is corrected in a step, motion decays where epsilon < k / (k + m / dt^2).
-fn desired_gap(desired: f64, distance: f64, dt: f64) -> f64 {
+/// Gap that a contact is to have at the end of a time step, with a `distance` now and a `desired` one in the collision stage,
+/// that opens by `growth` in a step at most [m].
+fn desired_gap(desired: f64, distance: f64, growth: f64, dt: f64) -> f64 {
     let most = SLACK * desired;
-    if distance < most { distance + (most - distance) * (dt / OPENING_TIME).min(1.0) } else { most }
+    let opened = distance + (most - distance) * (dt / OPENING_TIME).min(1.0);
+    desired.min(distance + growth).max(opened).min(most)
 }
 
 /// Share of the desired distance that something must keep from a feature to count as passing it.

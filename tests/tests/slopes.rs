@@ -1,0 +1,58 @@
+//! Bodies slide on slopes as Coulomb's law has it, whatever the ground's tessellation.
+
+use bowknot_tests::contact::{Ground, Slider, Slope};
+
+/// Speeds over the time steps 23 to 25 at 1/100 s: theory's within `share` of it where bodies slide; a stop where they stick.
+fn check(slider: Slider, grounds: &[Ground]) {
+    for &ground in grounds {
+        for (friction, share) in [(0.0, 0.02), (0.1, 0.03)] {
+            let slope = Slope::new(slider, ground, friction);
+            let (found, expected) = (slope.run(25).speed(23..26), slope.acceleration() * 0.24);
+            assert!(
+                (found - expected).abs() < share * expected,
+                "{slider:?} on {ground:?}, mu = {friction}: {found} m/s, not {expected}"
+            );
+        }
+        let slope = Slope::new(slider, ground, 0.5);
+        let speed = slope.run(25).speed(23..26);
+        assert!(speed.abs() < 1e-3, "{slider:?} on {ground:?} creeps at {speed} m/s");
+    }
+}
+
+#[test]
+fn cubes_slide_on_meshes_as_on_a_plane() {
+    let grounds = [
+        Ground::HalfSpace,
+        Ground::CoarseBox,
+        Ground::Irregular,
+        Ground::Slivers,
+        Ground::Seam,
+        Ground::Slab,
+    ];
+    check(Slider::JellyCube, &grounds);
+    check(Slider::StiffCube, &grounds[..5]);
+}
+
+#[test]
+fn a_patch_of_cloth_slides_on_meshes_as_on_a_plane() {
+    check(Slider::Patch, &Ground::ALL);
+}
+
+#[test]
+fn grains_slide_on_meshes_as_on_a_plane() {
+    check(Slider::Grains, &Ground::ALL);
+}
+
+#[test]
+fn a_patch_keeps_its_direction_across_the_diagonals_of_a_mesh() {
+    let slope = Slope { heading: 37.0, ..Slope::new(Slider::Patch, Ground::Irregular, 0.1) };
+    let [along, across] = slope.run(25).way();
+    assert!(along > 0.05 && across.abs() < 0.01 * along, "{along} m along, {across} m across");
+}
+
+#[test]
+fn a_patch_on_a_level_mesh_keeps_its_speed() {
+    let slope = Slope { degrees: 0.0, speed: 0.2, ..Slope::new(Slider::Patch, Ground::Box, 0.0) };
+    let speed = slope.run(100).speed(98..101);
+    assert!((speed - 0.2).abs() < 0.002, "{speed} m/s");
+}
