@@ -201,9 +201,9 @@ pub struct Slope {
     pub slider: Slider,
     /// On what.
     pub ground: Ground,
-    /// Angle of the slope [degrees].
+    /// Angle of the slope [deg].
     pub degrees: f64,
-    /// Direction of the way down in the plane, from the x axis [degrees].
+    /// Direction of the way down in the plane, from the x axis [deg].
     pub heading: f64,
     /// Coefficient of friction [1].
     pub friction: f64,
