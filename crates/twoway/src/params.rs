@@ -63,7 +63,7 @@ pub struct StopParams {
     /// `StopRule::Travel`: largest mean over a body's vertices of how far each is from where the forces on it balance, in
     /// mean edge lengths, for as long as each step still takes off half of it. What the proximal term holds
     /// back acts like a drag on all that slides; this bounds it. Smaller: one or two steps more a call. The
-    /// default is 1e-4 where bodies have Coulomb friction, and none elsewhere.
+    /// default is 1e-4.
     pub drag: Option<f64>,
     /// `StopRule::Travel`: how far the stretch limits may be exceeded, relative. Default 0.02.
     pub stretch_tolerance: f64,

@@ -15,7 +15,7 @@ use bowknot_geometry::Point;
 use bowknot_proximity::CollisionModel;
 use std::time::Instant;
 
-/// Default of [`crate::StopParams::drag`] with friction.
+/// Default of [`crate::StopParams::drag`].
 const DEFAULT_DRAG: f64 = 1e-4;
 
 /// What changes from call to call.
