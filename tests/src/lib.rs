@@ -10,6 +10,7 @@ pub mod fuzz;
 pub mod random;
 pub mod states;
 pub mod targets;
+pub mod theory;
 pub mod watch;
 
 pub use random::Random;

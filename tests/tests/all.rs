@@ -12,4 +12,6 @@ mod interior_points;
 // What the fuzz targets check holds for seeded random bytes.
 mod fuzz_bodies;
 // Contact moves bodies as theory has it.
+mod friction;
+mod momentum;
 mod slopes;

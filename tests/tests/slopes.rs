@@ -44,6 +44,54 @@ fn grains_slide_on_meshes_as_on_a_plane() {
 }
 
 #[test]
+fn at_mu_0_3_speeds_are_right_within_what_one_percent_of_friction_makes_of_them() {
+    // An error of friction of 1 % is one of 4.7 % of the acceleration here.
+    for (slider, grounds, share) in [
+        (Slider::Patch, &[Ground::HalfSpace, Ground::Box, Ground::Irregular, Ground::Seam][..], 0.03),
+        (Slider::Layers, &[Ground::HalfSpace, Ground::Irregular], 0.03),
+        (Slider::Grains, &Ground::ALL, 0.03),
+        (Slider::StiffCube, &[Ground::HalfSpace, Ground::Slivers, Ground::Seam], 0.03),
+        (Slider::JellyCube, &Ground::ALL, 0.1),
+    ] {
+        for &ground in grounds {
+            let slope = Slope::new(slider, ground, 0.3);
+            let (found, expected) = (slope.run(25).speed(23..26), slope.acceleration() * 0.24);
+            assert!(
+                (found - expected).abs() < share * expected,
+                "{slider:?} on {ground:?}: {found} m/s, not {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn short_time_steps_slide_as_long_ones() {
+    for slider in [Slider::JellyCube, Slider::StiffCube, Slider::Patch, Slider::Grains] {
+        for ground in [Ground::HalfSpace, Ground::Box, Ground::Irregular] {
+            for friction in [0.0, 0.1] {
+                let slope = Slope { dt: 0.0025, ..Slope::new(slider, ground, friction) };
+                let (found, expected) = (slope.run(60).acceleration(20, 60), slope.acceleration());
+                assert!(
+                    (found - expected).abs() < 0.03 * expected,
+                    "{slider:?} on {ground:?}, mu = {friction}: {found} m/s^2, not {expected}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn what_sticks_creeps_less_than_a_tenth_of_a_millimetre_in_a_second() {
+    for slider in [Slider::JellyCube, Slider::StiffCube, Slider::Patch, Slider::Grains] {
+        for ground in [Ground::HalfSpace, Ground::Box, Ground::Irregular] {
+            let track = Slope::new(slider, ground, 0.5).run(130);
+            let way = (track.places[130] - track.places[30]).norm();
+            assert!(way < 1e-4, "{slider:?} on {ground:?} creeps {way} m");
+        }
+    }
+}
+
+#[test]
 fn a_patch_keeps_its_direction_across_the_diagonals_of_a_mesh() {
     let slope = Slope { heading: 37.0, ..Slope::new(Slider::Patch, Ground::Irregular, 0.1) };
     let [along, across] = slope.run(25).way();

@@ -12,6 +12,12 @@ use bowknot_proximity::Pair;
 /// A closest point is on the boundary of its primitive where a weight is below this.
 const ON_BOUNDARY: f64 = 1e-9;
 
+/// Passes over the neighbours of a pair's features at most, in turning its normal into their cones.
+const TURNS: usize = 4;
+
+/// Length below which what is left of a normal has no direction.
+const LEAST_SHARE: f64 = 0.1;
+
 /// Tells contacts from pairs that are merely near; made once for a topology.
 #[derive(Clone, Debug, Default)]
 pub struct Facing {
@@ -113,10 +119,7 @@ impl Facing {
         positions: &[Point],
         tolerance: f64,
     ) -> bool {
-        if matches!(
-            (features[0], features[1]),
-            (Feature::Vertex(_), Feature::Triangle(_) | Feature::HalfSpace(_))
-        ) {
+        if above_a_face(&features) {
             return true;
         }
         let first = self.place(topology, features[0], &-normal, positions, tolerance);
@@ -130,6 +133,64 @@ impl Facing {
         }
     }
 
+    /// The direction nearest to `normal`, about, that lies in the normal cones of both `features` at `positions`: what a contact is
+    /// pushed along whose normal has left its cones a little. Unit vectors.
+    pub fn turned(
+        &self,
+        topology: &Topology,
+        features: [Feature; 2],
+        normal: &Vector,
+        positions: &[Point],
+    ) -> Vector {
+        if above_a_face(&features) {
+            return *normal;
+        }
+        let mut turned = *normal;
+        for _ in 0..TURNS {
+            let before = turned;
+            for (feature, sign) in [(features[0], -1.0), (features[1], 1.0)] {
+                self.for_each_neighbour(topology, feature, positions, |to| {
+                    let (rise, squared) = (sign * turned.dot(&to), to.norm_squared());
+                    if rise > 0.0 && squared > 0.0 {
+                        turned -= to * (sign * rise / squared);
+                    }
+                });
+            }
+            if turned == before {
+                break;
+            }
+        }
+        turned.try_normalize(LEAST_SHARE).unwrap_or(*normal)
+    }
+
+    /// Directions in which the surface goes on from a feature, of any length.
+    fn for_each_neighbour(
+        &self,
+        topology: &Topology,
+        feature: Feature,
+        positions: &[Point],
+        mut visit: impl FnMut(Vector),
+    ) {
+        match feature {
+            Feature::Triangle(_) | Feature::HalfSpace(_) => {}
+            Feature::Vertex(v) => {
+                let range = self.starts[v as usize] as usize..self.starts[v as usize + 1] as usize;
+                self.neighbours[range]
+                    .iter()
+                    .for_each(|&u| visit(positions[u as usize] - positions[v as usize]));
+            }
+            Feature::Edge(e) => {
+                let [a, b] = topology.edges[e as usize].map(|v| positions[v as usize]);
+                let edge = b - a;
+                let squared = edge.norm_squared().max(f64::MIN_POSITIVE);
+                for (_, w) in self.triangles.of(e) {
+                    let to = positions[w as usize] - a;
+                    visit(to - edge * (edge.dot(&to) / squared));
+                }
+            }
+        }
+    }
+
     fn place(
         &self,
         topology: &Topology,
@@ -138,35 +199,26 @@ impl Facing {
         positions: &[Point],
         tolerance: f64,
     ) -> Place {
-        match feature {
-            Feature::Triangle(_) | Feature::HalfSpace(_) => Place::Inside,
-            Feature::Vertex(v) => {
-                let range = self.starts[v as usize] as usize..self.starts[v as usize + 1] as usize;
-                let near = self.neighbours[range].iter().all(|&u| {
-                    let along = positions[u as usize] - positions[v as usize];
-                    outward.dot(&along) <= tolerance * along.norm()
-                });
-                if near { Place::Inside } else { Place::Outside }
-            }
-            Feature::Edge(e) => {
-                let [a, b] = topology.edges[e as usize].map(|v| positions[v as usize]);
-                let edge = b - a;
-                let squared = edge.norm_squared().max(f64::MIN_POSITIVE);
-                let (mut flat, mut count) = (true, 0);
-                for (_, w) in self.triangles.of(e) {
-                    let to = positions[w as usize] - a;
-                    let across = to - edge * (edge.dot(&to) / squared);
-                    let (rise, slack) = (outward.dot(&across), tolerance * across.norm());
-                    if rise > slack {
-                        return Place::Outside;
-                    }
-                    flat &= rise >= -slack;
-                    count += 1;
-                }
-                if flat && count > 1 { Place::Flat } else { Place::Inside }
-            }
+        if matches!(feature, Feature::Triangle(_) | Feature::HalfSpace(_)) {
+            return Place::Inside;
+        }
+        let (mut within, mut flat, mut count) = (true, matches!(feature, Feature::Edge(_)), 0);
+        self.for_each_neighbour(topology, feature, positions, |to| {
+            let (rise, slack) = (outward.dot(&to), tolerance * to.norm());
+            within &= rise <= slack;
+            flat &= rise >= -slack;
+            count += 1;
+        });
+        match (within, flat && count > 1) {
+            (false, _) => Place::Outside,
+            (true, true) => Place::Flat,
+            (true, false) => Place::Inside,
         }
     }
+}
+
+fn above_a_face(features: &[Feature; 2]) -> bool {
+    matches!(features, [Feature::Vertex(_), Feature::Triangle(_) | Feature::HalfSpace(_)])
 }
 
 #[cfg(test)]
@@ -209,6 +261,22 @@ mod tests {
         assert_eq!(above(0.0, [-0.1, 0.5, 0.1]), [false, true]);
         // Exactly above the edge either will do.
         assert_eq!(above(0.0, [0.0, 0.5, 0.1]), [true, true]);
+    }
+
+    #[test]
+    fn a_tilted_normal_turns_into_the_cone_and_one_within_stays() {
+        let (topology, x) = roof(0.0, &[[0.1, 0.5, 0.1]]);
+        let facing = Facing::new(&topology);
+        let edge = topology.edges.iter().position(|e| *e == [0, 1]).expect("an edge") as u32;
+        let turned = |x: &[Point], n: Vector| {
+            facing.turned(&topology, [Feature::Vertex(4), Feature::Edge(edge)], &n.normalize(), x)
+        };
+        assert!((turned(&x, Vector::new(0.1, 0.0, 1.0)) - Vector::z()).norm() < 1e-12);
+        let (_, ridge) = roof(0.5, &[[0.1, 0.5, 0.1]]);
+        let within = Vector::new(0.1, 0.0, 1.0).normalize();
+        assert_eq!(turned(&ridge, within), within);
+        let leaned = turned(&ridge, Vector::new(1.0, 0.0, 1.0));
+        assert!((leaned - Vector::new(0.5, 0.0, 1.0).normalize()).norm() < 1e-12, "{leaned}");
     }
 
     #[test]

@@ -28,6 +28,7 @@ mod drag;
 pub mod dynamics;
 mod elements;
 mod error;
+mod groups;
 mod linear;
 pub mod material;
 pub mod model;
@@ -41,7 +42,7 @@ mod volume;
 pub use bowknot_geometry as geometry;
 
 pub use body::{Body, BodyShape};
-pub use dynamics::{Dynamics, NewtonInfo, Residual};
+pub use dynamics::{Dynamics, NewtonInfo, Residual, Touching};
 pub use error::{MaterialError, ModelError, ParamsError, StepError};
 pub use linear::cg::CgInfo;
 pub use material::{ClothMaterial, ParticleMaterial, RestShape, SolidMaterial, SolidModel, StrandMaterial};

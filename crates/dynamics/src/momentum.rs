@@ -2,6 +2,7 @@
 
 use crate::DynamicsModel;
 use crate::drag::Drag;
+use crate::groups::Groups;
 use crate::repulsion::Repulsion;
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
@@ -71,30 +72,19 @@ fn shift(
 fn joined(model: &DynamicsModel, repulsion: &Repulsion) -> Vec<(Vec<Range<u32>>, bool)> {
     let components = &model.components;
     let of = |node: u32| components.partition_point(|c| c.end <= node);
-    let mut parent: Vec<usize> = (0..components.len()).collect();
-    fn root(parent: &mut [usize], mut node: usize) -> usize {
-        while parent[node] != node {
-            parent[node] = parent[parent[node]];
-            node = parent[node];
-        }
-        node
-    }
+    let mut joined = Groups::new(components.len());
     let mut held = vec![false; components.len()];
     repulsion.for_each_bond(|nodes, holds| {
         let Some(&first) = nodes.first() else { return };
         let first = of(first);
         held[first] |= holds;
         for &node in nodes {
-            let (a, b) = (root(&mut parent, first), root(&mut parent, of(node)));
-            parent[a.max(b)] = a.min(b);
+            joined.join(first, of(node));
         }
     });
-    let mut groups: Vec<(Vec<Range<u32>>, bool)> = vec![(Vec::new(), false); components.len()];
-    for (index, component) in components.iter().enumerate() {
-        let (group, holds) = &mut groups[root(&mut parent, index)];
-        group.push(component.clone());
-        *holds |= held[index];
-    }
-    groups.retain(|(group, _)| !group.is_empty());
-    groups
+    let group = |members: Vec<usize>| {
+        let holds = members.iter().any(|&c| held[c]);
+        (members.into_iter().map(|c| components[c].clone()).collect(), holds)
+    };
+    joined.lists().into_iter().map(group).collect()
 }

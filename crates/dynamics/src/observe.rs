@@ -102,6 +102,21 @@ impl DynamicsModel {
         }
         energies
     }
+
+    /// Elastic energy [J] of each component at positions `x` of nodes.
+    pub(crate) fn elastic_by_component(&self, x: &[Vector]) -> Vec<f64> {
+        let mut energies: Vec<f64> = self
+            .components
+            .iter()
+            .map(|c| self.bending.rows_energy(c.start as usize..c.end as usize, x))
+            .collect();
+        for family in &self.families {
+            family.for_each_energy(x, &mut |node, energy| {
+                energies[self.components.partition_point(|c| c.end <= node)] += energy;
+            });
+        }
+        energies
+    }
 }
 
 impl Dynamics {

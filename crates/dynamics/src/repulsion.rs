@@ -31,6 +31,11 @@ use rayon::prelude::*;
 /// rest keep their gap to rounding.
 const NEARLY: f64 = 0.01;
 
+/// How much softer springs are for bodies that give way as a whole, in dt^2 / M. A stiff body has far less inertia than a
+/// diagonal block suggests: springs as stiff as that turn micrometres, by which one linear solve misses a rotation,
+/// into forces of many times its weight, and settling diverges.
+const WHOLE: f64 = 0.3;
+
 /// Share of its bound by which friction may be below it and slides.
 const AT_BOUND: f64 = 1e-6;
 
@@ -215,10 +220,11 @@ impl Repulsion {
 
     /// Fixes the stiffness until springs are set again, and guesses which of them push and which stick: in the first iteration
     /// what would with nodes where inertia leads, `inertial`; in later ones what does at the `iterate`. `diagonal` has the
-    /// blocks of the Newton system without springs.
+    /// blocks of the Newton system without springs, `wholes` the mass of each node's body over dt^2 [N/m].
     pub fn prepare(
         &mut self,
         diagonal: &[Matrix3<f64>],
+        wholes: &[f64],
         free: &[bool],
         inertial: &[Vector],
         iterate: Option<&[Vector]>,
@@ -230,7 +236,9 @@ impl Repulsion {
             let mut compliance = 0.0;
             for (&node, weight) in self.nodes[spring].iter().zip(s.weights) {
                 if node != NO_NODE && free[node as usize] {
-                    compliance += weight * weight / s.normal.dot(&(diagonal[node as usize] * s.normal));
+                    let node = node as usize;
+                    let local = s.normal.dot(&(diagonal[node] * s.normal));
+                    compliance += weight * weight * (1.0 / local + WHOLE / wholes[node]);
                 }
             }
             *state = SpringState::IDLE;
@@ -537,17 +545,25 @@ impl Repulsion {
 
     /// Nodes that springs join and push, with whether anything but them holds: weights that do not cancel, obstacles.
     pub fn for_each_bond(&self, mut visit: impl FnMut(&[u32], bool)) {
-        for spring in &self.pushing {
-            let mut joined = [NO_NODE; 4];
-            let (mut count, mut sum) = (0, 0.0);
-            for (&node, weight) in spring.nodes.iter().zip(spring.weights) {
-                if node != NO_NODE {
-                    joined[count] = node;
-                    count += 1;
-                    sum += weight;
-                }
-            }
-            visit(&joined[..count], sum.abs() > 1e-9);
+        self.pushing.iter().for_each(|spring| bond(&spring.nodes, &spring.weights, &mut visit));
+    }
+
+    /// The same for all springs, whether they push or not.
+    pub fn for_each_link(&self, mut visit: impl FnMut(&[u32], bool)) {
+        let springs = self.nodes.iter().zip(&self.springs);
+        springs.for_each(|(nodes, spring)| bond(nodes, &spring.weights, &mut visit));
+    }
+}
+
+fn bond(nodes: &[u32; 4], weights: &[f64; 4], visit: &mut impl FnMut(&[u32], bool)) {
+    let mut joined = [NO_NODE; 4];
+    let (mut count, mut sum) = (0, 0.0);
+    for (&node, weight) in nodes.iter().zip(weights) {
+        if node != NO_NODE {
+            joined[count] = node;
+            count += 1;
+            sum += weight;
         }
     }
+    visit(&joined[..count], sum.abs() > 1e-9);
 }

@@ -11,7 +11,7 @@ use crate::proximal;
 use crate::row_solver::{ColouredSweeps, RowSolver, RowSystem};
 use crate::{BackwardStep, Problem, State, Statistics};
 use bowknot_constraints::{ContactRows, EdgeForm, EdgeLimits, predicted_gap};
-use bowknot_geometry::Vector;
+use bowknot_geometry::{PairKind, Vector};
 use bowknot_lcp::{self as lcp, Family, Schedule, TangentVector};
 
 /// Sine of the angle by which the normals of rows may leave their cones. Rows are made anew in each step: a wide cone keeps them
@@ -21,11 +21,24 @@ const CONE_TOLERANCE: f64 = 0.02;
 /// Distance below which a pair has a row whatever its normal, in its desired distance: what is pressed is held from all sides.
 const NEAR: f64 = 1.001;
 
+/// Share of its distance that such a pair keeps if it is no contact. Asked for its desired distance it would be a wall ahead of
+/// what slides on a mesh, and push from behind; not asked for anything, it stops the forward step where the target has
+/// not seen it. Grains on an irregular mesh gain 17 % of their speed in a second with the former; with a share of a half, `funnel` at
+/// scale 0.2 reaches the limit of steps.
+const GUARDED: f64 = 0.9;
+
+/// Share of its desired distance that it keeps in any case: at the gap floor the forward step closes no pair further, whatever
+/// its row allows.
+const LEAST_GUARDED: f64 = 0.5;
+
 /// The default [`BackwardStep`]. Its rows are solved by `K`, projected Gauss-Seidel by default.
 #[derive(Debug, Default)]
 pub struct LcpBackward<K = ColouredSweeps> {
     solver: K,
     edges: EdgeLimits,
+    /// Distances that the rows ask for, by pair, and which pairs have one.
+    wanted: Vec<f64>,
+    kept: Vec<bool>,
     /// Which vertices, and which stretch limits of bodies, `edges` was made for.
     movable: Vec<bool>,
     stretch_limits: Vec<f64>,
@@ -217,30 +230,38 @@ impl<K: RowSolver> LcpBackward<K> {
             };
             contacts.separations[p].distance <= range
         };
-        let contacts_only = constraints.contacts_only;
-        let is_contact = |p: usize, kind| {
-            let separation = &contacts.separations[p];
-            let near = separation.distance < NEAR * contacts.desired[p] || contacts.multipliers[p] > 0.0;
-            !contacts_only || near || {
-                let features = problem.features(kind, &contacts.pairs.pairs()[p], separation);
-                problem.is_contact(features, &separation.normal, &state.x, CONE_TOLERANCE)
+        self.wanted.clone_from(&contacts.desired);
+        self.kept.clear();
+        self.kept.resize(contacts.desired.len(), false);
+        for kind in PairKind::ALL {
+            for p in contacts.pairs.range(kind).filter(|&p| in_range(p)) {
+                let (separation, desired) = (&contacts.separations[p], &mut self.wanted[p]);
+                let contact = !constraints.contacts_only || {
+                    let features = problem.features(kind, &contacts.pairs.pairs()[p], separation);
+                    problem.is_contact(features, &separation.normal, &state.x, CONE_TOLERANCE)
+                };
+                let near = separation.distance < NEAR * *desired || contacts.multipliers[p] > 0.0;
+                self.kept[p] = contact || near;
+                if !contact {
+                    *desired = (GUARDED * separation.distance).clamp(LEAST_GUARDED * *desired, *desired);
+                }
             }
-        };
+        }
+        let (kept, wanted) = (&self.kept, &self.wanted);
         let only_active = problem.params.backward.active_rows;
         self.contacts.fill(
             constraints.form,
             &contacts.pairs,
             &contacts.separations,
-            &contacts.desired,
+            wanted,
             &state.x,
             &self.movable,
             |p, kind| {
-                in_range(p)
-                    && is_contact(p, kind)
+                kept[p]
                     && (!only_active || contacts.multipliers[p] > 0.0 || {
                         let vertices = &contacts.pairs.pairs()[p].vertices;
                         let gap = predicted_gap(kind, vertices, &contacts.separations[p], &state.x, &state.y);
-                        gap < active * contacts.desired[p]
+                        gap < active * wanted[p]
                     })
             },
         );

@@ -129,6 +129,11 @@ impl Problem {
         self.facing.is_contact(self.model.topology(), features, normal, positions, tolerance)
     }
 
+    /// The direction in the normal cones of both `features` that is nearest to `normal`, see [`Facing::turned`](bowknot_constraints::Facing::turned).
+    pub fn turned(&self, features: [Feature; 2], normal: &Vector, positions: &[Point]) -> Vector {
+        self.facing.turned(self.model.topology(), features, normal, positions)
+    }
+
     /// Starts a call: checks its input, and takes over what it prescribes.
     ///
     /// # Errors

@@ -15,6 +15,9 @@ use bowknot_geometry::Point;
 use bowknot_proximity::CollisionModel;
 use std::time::Instant;
 
+/// Steps past the stopping rule at most, while no contact pushes: the target is then reached to the bit, and momentum with it.
+const FINISHING_STEPS: usize = 2;
+
 /// Default of [`crate::StopParams::drag`].
 const DEFAULT_DRAG: f64 = 1e-4;
 
@@ -145,6 +148,7 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
         let max_steps = limits.max_steps.unwrap_or_else(|| default_max_steps(call.time_step));
         let mut waiting = Patience::default();
         let mut unrest = f64::INFINITY;
+        let mut finishing = 0;
         let drag = limits.drag.unwrap_or(DEFAULT_DRAG);
 
         while state.step < max_steps {
@@ -192,6 +196,11 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
             };
             let out_of_time = limits.max_seconds.is_some_and(|s| clock.elapsed().as_secs_f64() > s);
             let stuck = waiting.update(problem, state);
+            let free = state.contacts.multipliers.iter().all(|&multiplier| multiplier == 0.0);
+            if statistics.converged && free && report.remaining > 0.0 && finishing < FINISHING_STEPS {
+                finishing += 1;
+                statistics.converged = false;
+            }
             if statistics.converged || go_on.is_break() || out_of_time || stuck {
                 break;
             }

@@ -8,7 +8,7 @@
 use crate::scene::{BodyKind, RepulsionParams};
 use crate::world::World;
 use bowknot_constraints::{Feature, FrictionModel};
-use bowknot_dynamics::{Dynamics, RepulsionSpring, StepError};
+use bowknot_dynamics::{Dynamics, RepulsionSpring, StepError, Touching};
 use bowknot_geometry::{PairKind, Vector};
 use bowknot_twoway::{Problem, Resolver};
 use std::collections::{HashMap, HashSet};
@@ -24,6 +24,8 @@ pub(super) struct Contacts {
     features: Vec<[Feature; 2]>,
     /// Forces of rows whose pairs have no spring, by vertex that collides [N].
     held: Vec<Vector>,
+    /// What was in contact range after any collision stage of the time step.
+    touching: Touching,
 }
 
 /// The force that a contact between two features carries, on the first [N].
@@ -44,6 +46,38 @@ impl Contacts {
     /// The contacts.
     pub fn springs(&self) -> &[RepulsionSpring] {
         &self.springs
+    }
+
+    /// What has touched what since the time step began.
+    pub fn touching(&self) -> &Touching {
+        &self.touching
+    }
+
+    /// Forgets what touched in the last time step, but for what still does.
+    pub fn begin_step(&mut self) {
+        self.touching = Touching::default();
+        for spring in &self.springs {
+            self.touching.pairs.extend(spring.vertices[1..].iter().map(|&v| [spring.vertices[0], v]));
+        }
+    }
+
+    /// Takes down what is in contact range, or pushed, after a collision stage.
+    pub fn note_touching(&mut self, resolver: &Resolver) {
+        let (problem, contacts) = (resolver.problem(), &resolver.state().contacts);
+        for kind in PairKind::ALL {
+            for p in contacts.pairs.range(kind) {
+                let pair = &contacts.pairs.pairs()[p];
+                let near = contacts.separations[p].distance < problem.contact_range(kind, pair);
+                if !near && contacts.multipliers[p] == 0.0 {
+                    continue;
+                }
+                let used = &pair.vertices[..kind.vertex_count()];
+                if kind == PairKind::VertexHalfSpace {
+                    self.touching.held.push(used[0]);
+                }
+                self.touching.pairs.extend(used[1..].iter().map(|&v| [used[0], v]));
+            }
+        }
     }
 
     /// The forces that they carry.
@@ -114,6 +148,11 @@ impl Contacts {
                 {
                     continue;
                 }
+                // What has left its cones pushes along their border: a tilted normal would push aside what slides.
+                let normal = match tolerance > CONE_TOLERANCE {
+                    true => problem.turned(features, &separation.normal, &state.x),
+                    false => separation.normal,
+                };
                 index.insert(features, self.springs.len());
                 let plane = (kind == PairKind::VertexHalfSpace)
                     .then(|| &problem.model.half_spaces()[pair.elements[1] as usize]);
@@ -124,7 +163,7 @@ impl Contacts {
                 self.springs.push(RepulsionSpring {
                     vertices,
                     weights,
-                    normal: separation.normal,
+                    normal,
                     offset: plane.map_or(0.0, |plane| plane.offset),
                     desired: desired_gap(
                         problem.desired_distance(kind, pair),

@@ -232,9 +232,8 @@ impl Simulator {
             return Err(error);
         }
 
-        let dt = self.dt;
-        let moved = self.positions.iter().zip(&scratch.start);
-        self.velocities.iter_mut().zip(moved).for_each(|(v, (x, x0))| *v = (x - x0) / dt);
+        let Self { dynamics, positions, contacts, velocities, .. } = self;
+        dynamics.end_velocities(positions, &scratch.prescribed, contacts.touching(), velocities);
         statistics.waiting = self.waiting(time, &scratch);
         statistics.inverted_tets = interior::inverted(&self.world, &self.positions);
         self.scratch = scratch;
@@ -289,6 +288,7 @@ impl Simulator {
             let mut motion: Vec<Vector> = (0..start.len()).map(|v| end(v) - start[v]).collect();
             contacts.anticipate(&mut motion);
         }
+        contacts.begin_step();
         contacts.apply(dynamics).map_err(target_error)?;
         statistics.repulsion_springs = contacts.springs().len();
         statistics.seconds.dynamics += clock.elapsed().as_secs_f64();
@@ -349,6 +349,7 @@ impl Simulator {
             statistics.add_collision(&resolved, |body| world.name_of(body).to_owned());
 
             let clock = Instant::now();
+            contacts.note_touching(resolver);
             let carried = contacts.carried_after(&forces, resolver, *dt);
             contacts.find(resolver, &carried, *dt);
             x[count..].copy_from_slice(&y[count..]);

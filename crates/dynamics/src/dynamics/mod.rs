@@ -16,7 +16,10 @@
 //! | solve H p = b by CG | warm start: inertia, previous target | p |
 //! | search along p | E | y = x + t p, prescribed vertices at their keyframes |
 
+mod conservation;
 mod newton;
+
+pub use conservation::Touching;
 
 use crate::drag::DragSurfaces;
 use crate::linear::block::BlockValues;
@@ -243,6 +246,8 @@ impl Dynamics {
         let model = &self.model;
         step.start.clear();
         step.start.extend(model.node_vertex.iter().map(|&v| x0[v as usize].coords));
+        step.velocities.clear();
+        step.velocities.extend(model.node_vertex.iter().map(|&v| v0[v as usize]));
         step.inertial.clear();
         step.inertial.extend(model.node_vertex.iter().enumerate().map(|(node, &v)| {
             let gravity = model.gravity(v as usize, self.params.gravity);
@@ -256,8 +261,7 @@ impl Dynamics {
             }
         }
         if let Some(surfaces) = &self.surfaces {
-            let v: Vec<Vector> = model.node_vertex.iter().map(|&v| v0[v as usize]).collect();
-            surfaces.fill(&self.params, &step.start, &v, step.drag.get_or_insert_default());
+            surfaces.fill(&self.params, &step.start, &step.velocities, step.drag.get_or_insert_default());
         }
         step.dt = dt;
         step.last_target = None;
@@ -337,8 +341,8 @@ impl Dynamics {
     }
 
     /// A whole step without contact: `newton_iterations` targets, each accepted as it is; `x` and
-    /// `v` move on by `dt`. Prescribed vertices end at their `keyframes` and move at the velocity
-    /// that takes them there.
+    /// `v` move on by `dt`, see [`Self::end_velocities`]. Prescribed vertices end at their `keyframes` and move at the
+    /// velocity that takes them there.
     ///
     /// # Errors
     /// As [`Self::begin_step`] and [`Self::newton_target`]; `x` and `v` are then unchanged.
@@ -359,10 +363,8 @@ impl Dynamics {
             infos.push(self.newton_target(&iterate, prescribed, keyframes, &mut target)?);
             iterate.copy_from_slice(&target);
         }
-        for ((x, v), end) in x.iter_mut().zip(v).zip(&iterate) {
-            *v = (end - *x) / dt;
-            *x = *end;
-        }
+        self.end_velocities(&iterate, prescribed, &Touching::default(), v);
+        x.copy_from_slice(&iterate);
         Ok(infos)
     }
 

@@ -61,6 +61,8 @@ const NEGLIGIBLE_STEP: f64 = 1e-12;
 pub struct Step {
     pub dt: f64,
     pub start: Vec<Vector>,
+    /// Velocities at the start.
+    pub velocities: Vec<Vector>,
     /// Positions at the start, by vertex.
     pub positions: Vec<Point>,
     pub inertial: Vec<Vector>,
@@ -161,8 +163,7 @@ impl Newton<'_> {
             last = self.iterate();
             info.add(&last);
         }
-        // After a good first step, what settling leaves undone is mostly small, and slow where friction comes and goes.
-        if self.model.has_strands() || first.agreement.max(last.agreement) < AGREEMENT {
+        if self.model.has_strands() || last.agreement < AGREEMENT {
             self.correct(&start, first.decrease(), &mut info);
         }
 
@@ -319,7 +320,9 @@ impl Newton<'_> {
             let placed = |x: &[Vector]| x.iter().enumerate().map(|(n, x)| end(n, x)).collect::<Vec<_>>();
             let iterate = step.last_target.is_some().then(|| placed(&work.x));
             let inertial = placed(&step.inertial);
-            repulsion.prepare(&work.values.diagonal, &work.free, &inertial, iterate.as_deref());
+            let rate = 1.0 / step.dt;
+            let wholes: Vec<f64> = self.model.body_masses.iter().map(|mass| mass * rate * rate).collect();
+            repulsion.prepare(&work.values.diagonal, &wholes, &work.free, &inertial, iterate.as_deref());
         }
         repulsion.linearise(&work.x);
         let gradient = work.gradient.par_iter_mut().enumerate().with_min_len(CHUNK);

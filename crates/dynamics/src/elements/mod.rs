@@ -24,6 +24,7 @@ use crate::linear::block::BlockPattern;
 use crate::params::HessianFilter;
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
+use rayon::prelude::*;
 use std::ops::Range;
 
 /// Nodes of a chunk, the unit of parallel work and of reductions.
@@ -125,6 +126,9 @@ pub(crate) trait ElementFamily: Send + Sync {
 
     /// Energy [J] of the elements that the chunk owns.
     fn energy(&self, chunk: usize, motion: Motion<'_>) -> f64;
+
+    /// Calls `visit` with the first node of each element and its elastic energy [J] at `x`.
+    fn for_each_energy(&self, x: &[Vector], visit: &mut dyn FnMut(u32, f64));
 
     /// Adds gradient and Hessian of the elements that touch the chunk to its rows; the energy [J] of
     /// those that it owns.
@@ -234,6 +238,12 @@ impl<E: Element<N>, const N: usize> ElementFamily for Family<E, N> {
             }
         }
         energy
+    }
+
+    fn for_each_energy(&self, x: &[Vector], visit: &mut dyn FnMut(u32, f64)) {
+        let energy = |element: &E| element.energy(&element.nodes().map(|n| x[n as usize]), None);
+        let energies: Vec<f64> = self.elements.par_iter().with_min_len(CHUNK).map(energy).collect();
+        self.elements.iter().zip(energies).for_each(|(element, energy)| visit(element.nodes()[0], energy));
     }
 
     fn linearise(&self, chunk: usize, motion: Motion<'_>, filter: Filter, rows: &mut Rows<'_>) -> f64 {

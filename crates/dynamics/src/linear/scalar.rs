@@ -8,6 +8,7 @@ use super::block::BlockPattern;
 use crate::elements::CHUNK;
 use bowknot_geometry::Vector;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Collects entries.
 pub(crate) struct ScalarBuilder {
@@ -110,9 +111,13 @@ impl ScalarForm {
 
     /// The share of one chunk's rows.
     pub fn chunk_energy(&self, chunk: usize, x: &[Vector]) -> f64 {
-        let nodes = chunk * CHUNK..((chunk + 1) * CHUNK).min(x.len());
+        self.rows_energy(chunk * CHUNK..((chunk + 1) * CHUNK).min(x.len()), x)
+    }
+
+    /// The share of some rows.
+    pub fn rows_energy(&self, rows: Range<usize>, x: &[Vector]) -> f64 {
         let mut sum = 0.0;
-        for row in nodes {
+        for row in rows {
             let (columns, values) = self.row(row);
             for (&column, &value) in columns.iter().zip(values) {
                 sum -= value * (x[column as usize] - x[row]).norm_squared();

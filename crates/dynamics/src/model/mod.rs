@@ -41,6 +41,8 @@ pub struct DynamicsModel {
     pub(crate) node_vertex: Vec<u32>,
     pub(crate) vertex_node: Vec<u32>,
     pub(crate) node_masses: Vec<f64>,
+    /// Mass of the component that each node is in [kg].
+    pub(crate) body_masses: Vec<f64>,
     pub(crate) families: Vec<Box<dyn ElementFamily>>,
     pub(crate) pattern: BlockPattern,
     /// Bending [N/m].
@@ -120,11 +122,17 @@ impl DynamicsModel {
             families.iter().for_each(|family| family.for_each_clique(visit));
         });
         families.iter_mut().for_each(|family| family.bind(rest.len(), &pattern));
+        let node_masses: Vec<f64> = node_vertex.iter().map(|&v| masses[v as usize]).collect();
+        let body_masses = ordering.components.iter().flat_map(|component| {
+            let mass = node_masses[component.start as usize..component.end as usize].iter().sum();
+            std::iter::repeat_n(mass, component.len())
+        });
         Ok(Self {
             bodies,
             vertex_body,
             obstacle,
-            node_masses: node_vertex.iter().map(|&v| masses[v as usize]).collect(),
+            body_masses: body_masses.collect(),
+            node_masses,
             masses,
             rest_positions,
             node_vertex,

@@ -70,7 +70,7 @@ pub(super) fn scene(scale: f64) -> Scene {
     scene.obstacles[0].friction = FRICTION;
     scene.twoway.constraints.delta = Some(DELTA);
     // Cards touch at single corners and edges, which the dynamics' contacts take for now this feature, now that one: the house would
-    // tremble by 1 cm/s. The collision stage alone holds it still.
+    // tremble by 3 mm/s. The collision stage alone holds it still.
     scene.repulsion.stiffness = 0.0;
     scene.twoway.constraints.contacts_only = false;
     scene.simulation.newton_iterations = 1;

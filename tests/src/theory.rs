@@ -1,0 +1,349 @@
+//! Scenes in contact or collision whose outcome theory knows, and what came of them.
+//!
+//! Each function runs a scene with more `settings`, as `--set` takes them, and returns what was measured.
+
+use crate::contact::{GRAVITY, Slope, velocity};
+use bowknot::geometry::{Point, Vector};
+use bowknot::io::{MeshView, write_obj};
+use bowknot::{Scene, Simulator, StepStatistics};
+use std::f64::consts::PI;
+use std::ops::Range;
+use std::path::Path;
+
+/// A simulator of a scene as text.
+pub fn simulator(text: &str, folder: &Path, settings: &[String]) -> Simulator {
+    let scene = Scene::from_toml(text, folder)
+        .and_then(|scene| scene.with_sets(settings))
+        .unwrap_or_else(|error| panic!("{error}"));
+    Simulator::new(&scene).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Mass, momenta and energy of some vertices.
+#[derive(Clone, Copy, Debug)]
+pub struct Motion {
+    /// Mass [kg].
+    pub mass: f64,
+    /// Centre of mass [m].
+    pub center: Point,
+    /// Momentum [kg m/s].
+    pub momentum: Vector,
+    /// Angular momentum about the origin [kg m^2/s].
+    pub angular: Vector,
+    /// Kinetic energy [J].
+    pub kinetic: f64,
+}
+
+/// The motion of all bodies whose names begin with `prefix`.
+pub fn motion(simulator: &Simulator, prefix: &str) -> Motion {
+    let (masses, x, v) = (simulator.dynamics_model().masses(), simulator.positions(), simulator.velocities());
+    let zero = Vector::zeros();
+    let mut sum = Motion { mass: 0.0, center: Point::origin(), momentum: zero, angular: zero, kinetic: 0.0 };
+    for body in &simulator.world().bodies {
+        if body.kind.is_none() || !body.name.starts_with(prefix) {
+            continue;
+        }
+        for i in body.vertices.clone().chain(body.interior.clone()).map(|i| i as usize) {
+            sum.mass += masses[i];
+            sum.center += x[i].coords * masses[i];
+            sum.momentum += v[i] * masses[i];
+            sum.angular += x[i].coords.cross(&v[i]) * masses[i];
+            sum.kinetic += 0.5 * masses[i] * v[i].norm_squared();
+        }
+    }
+    sum.center /= sum.mass;
+    sum
+}
+
+fn step(simulator: &mut Simulator) -> StepStatistics {
+    simulator.step().unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Two cubes that meet in free space, without gravity.
+#[derive(Clone, Copy, Debug)]
+pub struct Meeting {
+    /// Largest change of the momentum, by one cube's at the start [1].
+    pub momentum: f64,
+    /// Largest change of the angular momentum about the common centre, by one cube's momentum times its size [1].
+    pub angular: f64,
+    /// Largest kinetic and elastic energy of any later state, by that at the start [1].
+    pub energy: f64,
+    /// The same at the end.
+    pub energy_left: f64,
+    /// Relative velocity along the way at the end, by that at the start: minus the coefficient of restitution [1].
+    pub restitution: f64,
+}
+
+/// Two cubes of 8 cm that meet at 1 m/s each, `offset` [m] beside each other's centre, with friction.
+pub fn meeting(offset: [f64; 2], modulus: f64, steps: usize, settings: &[String]) -> Meeting {
+    let folder = tempfile::tempdir().expect("a folder");
+    let cube = |name: &str, x: f64, y: f64, z: f64, speed: f64| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nkind = \"solid\"\nfriction = 0.3\nvelocity = [{speed:?}, 0, 0]\n\
+             material = {{ base = \"jelly\", young_modulus = {modulus:?}, density = 1000 }}\n\
+             shape = {{ type = \"block\", size = [0.08, 0.08, 0.08], edge = 0.02 }}\n\
+             translate = [{x:?}, {y:?}, {z:?}]\n"
+        )
+    };
+    let text = format!(
+        "[simulation]\ngravity = [0, 0, 0]\n[contact]\ndelta = 1e-3\n{}{}",
+        cube("left", -0.06, 0.0, 0.0, 1.0),
+        cube("right", 0.06, offset[0], offset[1], -1.0)
+    );
+    let mut simulator = simulator(&text, folder.path(), settings);
+    let start = motion(&simulator, "");
+    let one = motion(&simulator, "left").momentum.norm();
+    let (mut momentum, mut angular, mut energy, mut energy_left) = (0.0f64, 0.0f64, 0.0f64, 0.0);
+    for _ in 0..steps {
+        let statistics = step(&mut simulator);
+        let now = motion(&simulator, "");
+        momentum = momentum.max((now.momentum - start.momentum).norm() / one);
+        angular = angular.max((now.angular - start.angular).norm() / (one * 0.08));
+        energy_left = (statistics.energy.kinetic + statistics.energy.elastic) / start.kinetic;
+        energy = energy.max(energy_left);
+    }
+    let speed = |name: &str| motion(&simulator, name).momentum.x / one;
+    Meeting { momentum, angular, energy, energy_left, restitution: 0.5 * (speed("left") - speed("right")) }
+}
+
+/// A cube of jelly falls by 5 cm on a floor; the largest horizontal velocity of its centre of mass [m/s] and the largest gain
+/// of energy over that at the start [J].
+pub fn dropped_cube(
+    rotate: [f64; 3],
+    friction: f64,
+    mesh: bool,
+    steps: usize,
+    settings: &[String],
+) -> [f64; 2] {
+    let folder = tempfile::tempdir().expect("a folder");
+    let floor = if mesh {
+        "shape = { type = \"box\", size = [0.6, 0.6, 0.05], edge = 0.03 }\ntranslate = [0, 0, -0.025]\n"
+    } else {
+        "shape = \"half-space\"\n"
+    };
+    let [x, y, z] = rotate;
+    let text = format!(
+        "[contact]\ndelta = 1e-3\n[[body]]\nname = \"cube\"\nkind = \"solid\"\nfriction = {friction:?}\n\
+         material = {{ base = \"jelly\", young_modulus = 1e5, density = 1000 }}\n\
+         shape = {{ type = \"block\", size = [0.08, 0.08, 0.08], edge = 0.02 }}\n\
+         rotate = [{x:?}, {y:?}, {z:?}]\ntranslate = [0, 0, 0.12]\n\
+         [[obstacle]]\nname = \"floor\"\nfriction = {friction:?}\n{floor}"
+    );
+    let mut simulator = simulator(&text, folder.path(), settings);
+    let start = motion(&simulator, "");
+    let before = start.mass * GRAVITY * start.center.z;
+    let (mut aside, mut gain) = (0.0f64, f64::NEG_INFINITY);
+    for _ in 0..steps {
+        let statistics = step(&mut simulator);
+        let now = motion(&simulator, "");
+        aside = aside.max((now.momentum.xy() / now.mass).norm());
+        gain = gain.max(
+            statistics.energy.kinetic + statistics.energy.elastic + statistics.energy.potential - before,
+        );
+    }
+    [aside, gain]
+}
+
+/// Spins a cube in free space for `steps` steps at `rate` [rad/s]; the share of its angular momentum that is lost, and of its
+/// energy.
+pub fn spinning_cube(rate: f64, steps: usize, settings: &[String]) -> [f64; 2] {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = format!(
+        "[simulation]\ngravity = [0, 0, 0]\n[[body]]\nname = \"cube\"\nkind = \"solid\"\n\
+         angular_velocity = [0, {:?}, 0]\n\
+         material = {{ base = \"jelly\", young_modulus = 1e6, density = 1000 }}\n\
+         shape = {{ type = \"block\", size = [0.08, 0.08, 0.08], edge = 0.02 }}\n",
+        rate.to_degrees()
+    );
+    let mut simulator = simulator(&text, folder.path(), settings);
+    let start = motion(&simulator, "");
+    let mut energy = start.kinetic;
+    for _ in 0..steps {
+        let statistics = step(&mut simulator);
+        energy = statistics.energy.kinetic + statistics.energy.elastic;
+    }
+    let end = motion(&simulator, "");
+    [(start.angular - end.angular).norm() / start.angular.norm(), 1.0 - energy / start.kinetic]
+}
+
+/// A ball of 5 cm on a slope of `degrees`, friction 0.5: mean acceleration down the slope over the time steps of `range`, by
+/// the 5/7 g sin a of a ball that rolls [1].
+pub fn rolling_ball(degrees: f64, edge: f64, dt: f64, range: Range<usize>, settings: &[String]) -> f64 {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (sine, cosine) = degrees.to_radians().sin_cos();
+    let text = format!(
+        "[simulation]\ndt = {dt:?}\ngravity = [{:?}, 0, {:?}]\n[contact]\ndelta = 1e-3\n\
+         [[body]]\nname = \"ball\"\nkind = \"solid\"\nfriction = 0.5\n\
+         material = {{ base = \"rubber\", young_modulus = 1e6, density = 1000 }}\n\
+         shape = {{ type = \"tet-ball\", radius = 0.05, edge = {edge:?} }}\n\
+         translate = [0, 0, 0.051]\n\
+         [[obstacle]]\nname = \"ground\"\nfriction = 0.5\nshape = \"half-space\"\n",
+        GRAVITY * sine,
+        -GRAVITY * cosine
+    );
+    let mut simulator = simulator(&text, folder.path(), settings);
+    let mut velocities = vec![0.0];
+    for _ in 0..range.end {
+        step(&mut simulator);
+        velocities.push(velocity(&simulator).x);
+    }
+    let found = (velocities[range.end] - velocities[range.start]) / (range.len() as f64 * dt);
+    found / (5.0 / 7.0 * GRAVITY * sine)
+}
+
+/// A belt of cotton around a fixed cylinder through `degrees`, drawn at one end against the other, which is held: ratio of
+/// the tensions of its straight ends, and what Euler and Eytelwein have for it, exp(mu theta).
+pub fn belt(degrees: f64, friction: f64, settings: &[String]) -> [f64; 2] {
+    const RADIUS: f64 = 0.05;
+    const EDGE: f64 = 0.005;
+    const END: f64 = 0.06;
+    let folder = tempfile::tempdir().expect("a folder");
+    let theta = degrees.to_radians();
+    // A strip along the y axis in width; a full turn climbs along it so as not to meet itself.
+    let radius = RADIUS + 1.05e-3;
+    let climb = if degrees > 300.0 { 0.03 } else { 0.0 };
+    let width = 0.015;
+    let length = radius * theta + 2.0 * END;
+    let (rows, columns) = ((length / EDGE).round() as usize, (width / EDGE) as usize);
+    let mut positions = Vec::new();
+    for row in 0..=rows {
+        let s = length * row as f64 / rows as f64 - END;
+        let angle = (s / radius).clamp(0.0, theta);
+        let (sine, cosine) = angle.sin_cos();
+        let rest = s - angle * radius;
+        let (x, z) = (radius * sine + rest * cosine, radius * cosine - rest * sine);
+        let lift = climb * s / length;
+        for column in 0..=columns {
+            positions.push(Point::new(x, width * (column as f64 / columns as f64 - 0.5) + lift, z));
+        }
+    }
+    let at = |row: usize, column: usize| (row * (columns + 1) + column) as u32;
+    let triangles = strip_triangles(rows, columns);
+    let view = MeshView { positions: &positions, triangles: &triangles, ..MeshView::default() };
+    write_obj(&folder.path().join("belt.obj"), &view).expect("a mesh of the belt");
+    let range = |row: usize| (0..=columns).map(|c| at(row, c).to_string()).collect::<Vec<_>>().join(", ");
+    let drawn = (theta.cos(), -theta.sin());
+    let reach = 0.02 * length;
+    let text = format!(
+        "[simulation]\ngravity = [0, 0, 0]\nair_drag = 5\n[contact]\ndelta = 1e-3\n\
+         [[body]]\nname = \"belt\"\nmesh = \"belt.obj\"\nmaterial = {{ base = \"cotton\", poisson_ratio = 0.0 }}\nfriction = {friction:?}\n\
+         [[pin]]\nvertices = [{}]\n[[pin]]\nvertices = [{}]\n\
+         motion = {{ keyframes = [{{ time = 1.0, translate = [{:?}, 0, {:?}] }}] }}\n\
+         [[obstacle]]\nname = \"cylinder\"\nfriction = {friction:?}\nrotate = [90, 0, 0]\n\
+         shape = {{ type = \"lathe\", profile = [[0.02, -0.06], [{RADIUS}, -0.06], [{RADIUS}, 0.06], [0.02, 0.06]], edge = 0.0015 }}\n",
+        range(0),
+        range(rows),
+        reach * drawn.0,
+        reach * drawn.1,
+    );
+    let mut simulator = simulator(&text, folder.path(), settings);
+    for _ in 0..100 {
+        step(&mut simulator);
+    }
+    // Strain of the straight ends: the mean over a few rows.
+    let x = simulator.positions();
+    let strain = |first: usize, last: usize| {
+        let mut sum = 0.0;
+        for column in 0..=columns {
+            let (a, b) = (at(first, column) as usize, at(last, column) as usize);
+            let rest = (positions[b] - positions[a]).norm();
+            sum += (x[b] - x[a]).norm() / rest - 1.0;
+        }
+        sum / (columns + 1) as f64
+    };
+    let straight = (END / EDGE) as usize;
+    let (held, pulled) = (strain(2, straight - 2), strain(rows - straight + 2, rows - 2));
+    [pulled / held, (friction * theta).exp()]
+}
+
+/// A sheet on a table with a rounded edge, over which it hangs by `pull` times what friction can just hold: how far it has
+/// slid after `steps` time steps [m].
+///
+/// Per width and weight w, tension T grows around an edge of radius R by dT/dtheta = mu (T + w R cos theta) - w R sin theta at
+/// most, from the mu w L that the lying part L holds to the w H of what hangs.
+pub fn table_edge(pull: f64, friction: f64, steps: usize, settings: &[String]) -> f64 {
+    const RADIUS: f64 = 0.03;
+    const LENGTH: f64 = 0.3;
+    const WIDTH: f64 = 0.03;
+    const EDGE: f64 = 0.005;
+    let folder = tempfile::tempdir().expect("a folder");
+    let delta = 1e-3;
+    let around = RADIUS + delta;
+    // T at the end of the arc is affine in T at its beginning.
+    let carried = |start: f64| {
+        let count = 1000;
+        let dt = 0.5 * PI / f64::from(count);
+        (0..count).fold(start, |tension, k| {
+            let (sine, cosine) = ((f64::from(k) + 0.5) * dt).sin_cos();
+            let slope = |t: f64| friction * (t + around * cosine) - around * sine;
+            tension + dt * slope(tension + 0.5 * dt * slope(tension))
+        })
+    };
+    let (least, gain) = (carried(0.0), carried(1.0) - carried(0.0));
+    let rest = LENGTH - 0.5 * PI * around;
+    let hanging = pull * (least + gain * friction * rest) / (1.0 + pull * gain * friction);
+    let lying = rest - hanging;
+    let place = |s: f64, distance: f64| {
+        let (turn, out) = ((s / around).clamp(0.0, 0.5 * PI), RADIUS + distance);
+        let (sine, cosine) = turn.sin_cos();
+        let straight = s - turn * around;
+        (out * sine + straight * cosine, out * cosine - RADIUS - straight * sine)
+    };
+    let strip = |name: &str, stations: &[f64], distance: f64, columns: usize, width: f64| {
+        let mut positions = Vec::new();
+        for &s in stations {
+            let (x, z) = place(s, distance);
+            let across = (0..=columns).map(|c| width * (c as f64 / columns as f64 - 0.5));
+            positions.extend(across.map(|y| Point::new(x, y, z)));
+        }
+        let triangles = strip_triangles(stations.len() - 1, columns);
+        let view = MeshView { positions: &positions, triangles: &triangles, ..MeshView::default() };
+        write_obj(&folder.path().join(name), &view).expect("a mesh");
+        positions
+    };
+    let rows = (LENGTH / EDGE).round() as usize;
+    let stations: Vec<f64> = (0..=rows).map(|row| LENGTH * row as f64 / rows as f64 - lying).collect();
+    let columns = (WIDTH / EDGE).round() as usize;
+    let start = strip("sheet.obj", &stations, delta, columns, WIDTH);
+    let end = 0.5 * PI * around;
+    let table: Vec<f64> = (0..=8)
+        .map(|k| -0.4 + 0.05 * f64::from(k))
+        .chain((1..16).map(|k| end * f64::from(k) / 16.0))
+        .chain((0..=8).map(|k| end + 0.05 * f64::from(k)))
+        .collect();
+    strip("table.obj", &table, 0.0, 2, 0.1);
+    let text = format!(
+        "[simulation]\nair_drag = 2\n[contact]\ndelta = {delta:?}\n\
+         [[body]]\nname = \"sheet\"\nmesh = \"sheet.obj\"\nfriction = {friction:?}\n\
+         [[obstacle]]\nname = \"table\"\nmesh = \"table.obj\"\nfriction = {friction:?}\n"
+    );
+    let mut simulator = simulator(&text, folder.path(), settings);
+    for _ in 0..steps {
+        step(&mut simulator);
+    }
+    // The lying end.
+    let moved = (0..=columns).map(|c| simulator.positions()[c].x - start[c].x);
+    moved.sum::<f64>() / (columns + 1) as f64
+}
+
+/// Triangles of a strip of `rows` by `columns` quadrangles, vertices row by row.
+fn strip_triangles(rows: usize, columns: usize) -> Vec<[u32; 3]> {
+    let at = |row: usize, column: usize| (row * (columns + 1) + column) as u32;
+    let mut triangles = Vec::new();
+    for row in 0..rows {
+        for column in 0..columns {
+            let [a, b, c, d] =
+                [at(row, column), at(row, column + 1), at(row + 1, column + 1), at(row + 1, column)];
+            let even = (row + column) % 2 == 0;
+            triangles.extend(if even { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] });
+        }
+    }
+    triangles
+}
+
+/// Slides a body over a level ground from `slope.speed` until it stops: its way by v^2 / (2 mu g) [1], less what the time step
+/// takes off that: implicit Euler has no motion at the speed of the start, v dt / 2.
+pub fn stopping_distance(slope: &Slope) -> f64 {
+    let theory = slope.speed * slope.speed / (2.0 * slope.friction * GRAVITY);
+    let steps = (1.3 * slope.speed / (slope.friction * GRAVITY) / slope.dt).ceil() as usize;
+    slope.run(steps).way()[0] / (theory - 0.5 * slope.speed * slope.dt)
+}
