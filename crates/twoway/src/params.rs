@@ -78,7 +78,8 @@ pub enum StopRule {
     /// max r < clock, as the paper has it (Algorithm 1).
     Clock,
     /// max |(1 - alpha)(y - x)| < distance, the stretch limits hold, and no body as a whole is further than `imbalance` from
-    /// where the forces on it balance: the proximal term may still hold back a motion that is common to a body.
+    /// where the forces on it balance: the proximal term may still hold back a motion that is common to a body. Where no contact
+    /// pushes, up to two more steps reach the target to the bit.
     Travel,
 }
 

@@ -15,7 +15,7 @@ use bowknot_geometry::Point;
 use bowknot_proximity::CollisionModel;
 use std::time::Instant;
 
-/// Steps past the stopping rule at most, while no contact pushes: the target is then reached to the bit, and momentum with it.
+/// Steps past [`StopRule::Travel`] at most, while no contact pushes: the target is then reached to the bit, and momentum with it.
 const FINISHING_STEPS: usize = 2;
 
 /// Default of [`crate::StopParams::drag`].
@@ -196,8 +196,12 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
             };
             let out_of_time = limits.max_seconds.is_some_and(|s| clock.elapsed().as_secs_f64() > s);
             let stuck = waiting.update(problem, state);
-            let free = state.contacts.multipliers.iter().all(|&multiplier| multiplier == 0.0);
-            if statistics.converged && free && report.remaining > 0.0 && finishing < FINISHING_STEPS {
+            let finishes = limits.rule == StopRule::Travel
+                && report.remaining > 0.0
+                && finishing < FINISHING_STEPS
+                && state.step < max_steps;
+            let free = || state.contacts.multipliers.iter().all(|&multiplier| multiplier == 0.0);
+            if statistics.converged && finishes && free() {
                 finishing += 1;
                 statistics.converged = false;
             }
