@@ -214,12 +214,8 @@ impl Dynamics {
         let by_node = self.model.node_vertex.iter().map(|&v| v as usize);
         let (held, counted): (Vec<Vector>, Vec<bool>) = by_node.map(|v| (held[v], counted[v])).unzip();
         let Some(mut step) = self.step.take() else { return Err(StepError::NotBegun) };
+        self.start_from(x, prescribed);
         let work = &mut self.work;
-        for (node, &vertex) in self.model.node_vertex.iter().enumerate() {
-            let vertex = vertex as usize;
-            work.x[node] = x[vertex].coords;
-            work.free[node] = !prescribed[vertex];
-        }
         let (model, params, repulsion) = (&self.model, &self.params, &mut self.repulsion);
         let residual = rayon::scope(|_| {
             Newton { model, params, repulsion, step: &mut step, work }.residual(&held, &counted)
@@ -305,11 +301,10 @@ impl Dynamics {
         self.check_finite("keyframe", |v| if fixed(v) { keyframes[v].coords } else { Vector::zeros() })?;
         let Some(mut step) = self.step.take() else { return Err(StepError::NotBegun) };
 
+        self.start_from(x, prescribed);
         let work = &mut self.work;
         for (node, &vertex) in self.model.node_vertex.iter().enumerate() {
             let vertex = vertex as usize;
-            work.x[node] = x[vertex].coords;
-            work.free[node] = !prescribed[vertex];
             work.imposed[node] =
                 if prescribed[vertex] { keyframes[vertex] - x[vertex] } else { Vector::zeros() };
         }
@@ -366,6 +361,15 @@ impl Dynamics {
         self.end_velocities(&iterate, prescribed, &Touching::default(), v);
         x.copy_from_slice(&iterate);
         Ok(infos)
+    }
+
+    /// Takes the state that an iteration starts from, by node.
+    fn start_from(&mut self, x: &[Point], prescribed: &[bool]) {
+        let work = &mut self.work;
+        for (node, &vertex) in self.model.node_vertex.iter().enumerate() {
+            work.x[node] = x[vertex as usize].coords;
+            work.free[node] = !prescribed[vertex as usize];
+        }
     }
 
     fn gather<T>(
