@@ -35,6 +35,14 @@ fn main() {
             }
         }
     }
+    if named("throw") {
+        for mesh in [false, true] {
+            for modulus in [2e4, 1e5, 1e6] {
+                let found = theory::thrown_cube(modulus, mesh, 16, set);
+                println!("throw {modulus:e} mesh {mesh}: {found:.3?}");
+            }
+        }
+    }
     if named("roll") {
         for (edge, dt) in [(0.02, 0.01), (0.01, 0.01), (0.01, 0.0025)] {
             let steps = (0.4 / dt) as usize;
@@ -60,35 +68,21 @@ fn main() {
             }
         }
     }
-    if named("stop") {
-        for slider in [
-            Slider::JellyCube,
-            Slider::StiffCube,
-            Slider::Patch,
-            Slider::Layers,
-            Slider::Strands,
-            Slider::Grains,
-        ] {
-            for ground in Ground::ALL {
-                let mut slope = Slope { degrees: 0.0, speed: 0.8, ..Slope::new(slider, ground, 0.3) };
-                slope.settings = settings.clone();
-                println!("stop {slider:?} {ground:?}: {:.3}", theory::stopping_distance(&slope));
+    let level = |slider, ground, friction, speed| Slope {
+        degrees: 0.0,
+        speed,
+        settings: settings.clone(),
+        ..Slope::new(slider, ground, friction)
+    };
+    for slider in Slider::ALL {
+        for ground in Ground::ALL {
+            if named("stop") {
+                let ratio = theory::stopping_distance(&level(slider, ground, 0.3, 0.8));
+                println!("stop {slider:?} {ground:?}: {ratio:.3}");
             }
-        }
-    }
-    if named("level") {
-        for slider in [
-            Slider::JellyCube,
-            Slider::StiffCube,
-            Slider::Patch,
-            Slider::Layers,
-            Slider::Strands,
-            Slider::Grains,
-        ] {
-            for ground in Ground::ALL {
-                let mut slope = Slope { degrees: 0.0, speed: 0.2, ..Slope::new(slider, ground, 0.0) };
-                slope.settings = settings.clone();
-                println!("level {slider:?} {ground:?}: {:.4}", slope.run(100).speed(98..101) / 0.2);
+            if named("level") {
+                let ratio = level(slider, ground, 0.0, 0.2).run(100).speed(98..101) / 0.2;
+                println!("level {slider:?} {ground:?}: {ratio:.4}");
             }
         }
     }

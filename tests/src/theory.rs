@@ -105,6 +105,15 @@ pub fn meeting(offset: [f64; 2], modulus: f64, steps: usize, settings: &[String]
     Meeting { momentum, angular, energy, energy_left, restitution: 0.5 * (speed("left") - speed("right")) }
 }
 
+/// A floor at z = 0.
+fn floor(mesh: bool) -> &'static str {
+    if mesh {
+        "shape = { type = \"box\", size = [0.6, 0.6, 0.05], edge = 0.03 }\ntranslate = [0, 0, -0.025]\n"
+    } else {
+        "shape = \"half-space\"\n"
+    }
+}
+
 /// A cube of jelly falls by 5 cm on a floor; the largest horizontal velocity of its centre of mass [m/s] and the largest gain
 /// of energy over that at the start [J].
 pub fn dropped_cube(
@@ -115,18 +124,14 @@ pub fn dropped_cube(
     settings: &[String],
 ) -> [f64; 2] {
     let folder = tempfile::tempdir().expect("a folder");
-    let floor = if mesh {
-        "shape = { type = \"box\", size = [0.6, 0.6, 0.05], edge = 0.03 }\ntranslate = [0, 0, -0.025]\n"
-    } else {
-        "shape = \"half-space\"\n"
-    };
     let [x, y, z] = rotate;
     let text = format!(
         "[contact]\ndelta = 1e-3\n[[body]]\nname = \"cube\"\nkind = \"solid\"\nfriction = {friction:?}\n\
          material = {{ base = \"jelly\", young_modulus = 1e5, density = 1000 }}\n\
          shape = {{ type = \"block\", size = [0.08, 0.08, 0.08], edge = 0.02 }}\n\
          rotate = [{x:?}, {y:?}, {z:?}]\ntranslate = [0, 0, 0.12]\n\
-         [[obstacle]]\nname = \"floor\"\nfriction = {friction:?}\n{floor}"
+         [[obstacle]]\nname = \"floor\"\nfriction = {friction:?}\n{}",
+        floor(mesh)
     );
     let mut simulator = simulator(&text, folder.path(), settings);
     let start = motion(&simulator, "");
@@ -141,6 +146,27 @@ pub fn dropped_cube(
         );
     }
     [aside, gain]
+}
+
+/// A cube of 8 cm is thrown at a floor at 3 m/s without gravity: its velocity away from the floor after each of `steps` time
+/// steps, by that at the start [1].
+pub fn thrown_cube(modulus: f64, mesh: bool, steps: usize, settings: &[String]) -> Vec<f64> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = format!(
+        "[simulation]\ngravity = [0, 0, 0]\n[contact]\ndelta = 1e-3\n[[body]]\nname = \"cube\"\nkind = \"solid\"\n\
+         velocity = [0, 0, -3]\n\
+         material = {{ base = \"jelly\", young_modulus = {modulus:?}, density = 1000 }}\n\
+         shape = {{ type = \"block\", size = [0.08, 0.08, 0.08], edge = 0.02 }}\ntranslate = [0, 0, 0.1]\n\
+         [[obstacle]]\nname = \"floor\"\n{}",
+        floor(mesh)
+    );
+    let mut simulator = simulator(&text, folder.path(), settings);
+    let mut velocity = || {
+        step(&mut simulator);
+        let now = motion(&simulator, "");
+        now.momentum.z / (3.0 * now.mass)
+    };
+    (0..steps).map(|_| velocity()).collect()
 }
 
 /// Spins a cube in free space for `steps` steps at `rate` [rad/s]; the share of its angular momentum that is lost, and of its

@@ -35,3 +35,12 @@ fn a_cube_that_falls_is_not_kicked_aside() {
     let [aside, _] = theory::dropped_cube([0.0; 3], 0.3, true, 30, &[]);
     assert!(aside < 1e-3, "with friction: {aside} m/s");
 }
+
+#[test]
+fn a_cube_thrown_at_a_floor_comes_back_alike_from_a_mesh_and_a_half_space() {
+    for modulus in [2e4, 1e5, 1e6] {
+        let [plane, mesh] = [false, true].map(|mesh| theory::thrown_cube(modulus, mesh, 16, &[])[15]);
+        // It may lose all of its speed, but never the impulse of the floor.
+        assert!((0.0..1.0).contains(&plane) && (plane - mesh).abs() < 0.02, "{modulus} Pa: {plane}, {mesh}");
+    }
+}

@@ -35,10 +35,13 @@ pub(crate) fn restore_momentum(
         }
         return;
     }
-    for (group, held) in joined(model, repulsion) {
-        if !held {
-            shift(model, &group, inertia, free, residual, step);
-        }
+    let mut groups = Groups::new(model.components.len());
+    repulsion.for_each_bond(|nodes, holds| {
+        groups.join_all(nodes.iter().map(|&node| model.component(node)), holds);
+    });
+    for group in groups.free() {
+        let group: Vec<Range<u32>> = group.into_iter().map(|c| model.components[c].clone()).collect();
+        shift(model, &group, inertia, free, residual, step);
     }
 }
 
@@ -66,25 +69,4 @@ fn shift(
         }
     };
     nodes().for_each(|n| step[n] += shift);
-}
-
-/// Groups of components that springs join, in the order of their first, and whether something holds them.
-fn joined(model: &DynamicsModel, repulsion: &Repulsion) -> Vec<(Vec<Range<u32>>, bool)> {
-    let components = &model.components;
-    let of = |node: u32| components.partition_point(|c| c.end <= node);
-    let mut joined = Groups::new(components.len());
-    let mut held = vec![false; components.len()];
-    repulsion.for_each_bond(|nodes, holds| {
-        let Some(&first) = nodes.first() else { return };
-        let first = of(first);
-        held[first] |= holds;
-        for &node in nodes {
-            joined.join(first, of(node));
-        }
-    });
-    let group = |members: Vec<usize>| {
-        let holds = members.iter().any(|&c| held[c]);
-        (members.into_iter().map(|c| components[c].clone()).collect(), holds)
-    };
-    joined.lists().into_iter().map(group).collect()
 }

@@ -112,7 +112,7 @@ impl DynamicsModel {
             .collect();
         for family in &self.families {
             family.for_each_energy(x, &mut |node, energy| {
-                energies[self.components.partition_point(|c| c.end <= node)] += energy;
+                energies[self.component(node)] += energy;
             });
         }
         energies

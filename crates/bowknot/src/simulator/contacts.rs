@@ -24,7 +24,7 @@ pub(super) struct Contacts {
     features: Vec<[Feature; 2]>,
     /// Forces of rows whose pairs have no spring, by vertex that collides [N].
     held: Vec<Vector>,
-    /// What was in contact range after any collision stage of the time step.
+    /// What was in contact range at the start of the time step or after any of its collision stages.
     touching: Touching,
 }
 
@@ -53,22 +53,19 @@ impl Contacts {
         &self.touching
     }
 
-    /// Forgets what touched in the last time step, but for what still does.
-    pub fn begin_step(&mut self) {
+    /// Begins a time step: forgets what touched in the last one, but for what is in contact range now.
+    pub fn begin_step(&mut self, resolver: &Resolver) {
         self.touching = Touching::default();
-        for spring in &self.springs {
-            self.touching.pairs.extend(spring.vertices[1..].iter().map(|&v| [spring.vertices[0], v]));
-        }
+        self.note_touching(resolver);
     }
 
-    /// Takes down what is in contact range, or pushed, after a collision stage.
+    /// Takes down what is in contact range.
     pub fn note_touching(&mut self, resolver: &Resolver) {
         let (problem, contacts) = (resolver.problem(), &resolver.state().contacts);
         for kind in PairKind::ALL {
             for p in contacts.pairs.range(kind) {
                 let pair = &contacts.pairs.pairs()[p];
-                let near = contacts.separations[p].distance < problem.contact_range(kind, pair);
-                if !near && contacts.multipliers[p] == 0.0 {
+                if contacts.separations[p].distance >= problem.contact_range(kind, pair) {
                     continue;
                 }
                 let used = &pair.vertices[..kind.vertex_count()];

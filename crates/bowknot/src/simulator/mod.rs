@@ -288,7 +288,7 @@ impl Simulator {
             let mut motion: Vec<Vector> = (0..start.len()).map(|v| end(v) - start[v]).collect();
             contacts.anticipate(&mut motion);
         }
-        contacts.begin_step();
+        contacts.begin_step(resolver);
         contacts.apply(dynamics).map_err(target_error)?;
         statistics.repulsion_springs = contacts.springs().len();
         statistics.seconds.dynamics += clock.elapsed().as_secs_f64();

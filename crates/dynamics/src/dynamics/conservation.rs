@@ -176,31 +176,23 @@ impl Correction<'_> {
 
     /// Groups of components that touch each other, and nothing else.
     fn free_groups(&self, free: &[bool], touching: &Touching, repulsion: &Repulsion) -> Vec<Vec<usize>> {
-        let components = &self.model.components;
-        let of_node = |node: u32| {
-            let found = components.partition_point(|c| c.end <= node);
-            (found < components.len()).then_some(found)
-        };
-        let component = |vertex: u32| of_node(self.model.vertex_node[vertex as usize]);
-        let mut held: Vec<bool> = free.iter().map(|free| !free).collect();
-        let mut groups = Groups::new(components.len());
-        for &[a, b] in &touching.pairs {
-            match (component(a), component(b)) {
-                (Some(a), Some(b)) => groups.join(a, b),
-                (Some(one), None) | (None, Some(one)) => held[one] = true,
-                (None, None) => {}
-            }
+        let count = self.model.components.len();
+        let component = |vertex: u32| self.model.component(self.model.vertex_node[vertex as usize]);
+        let mut groups = Groups::new(count);
+        (0..count).filter(|&c| !free[c]).for_each(|c| groups.hold(c));
+        // Obstacles are no component.
+        let inside = |c: &usize| *c < count;
+        for pair in &touching.pairs {
+            let both = pair.map(component);
+            groups.join_all(both.into_iter().filter(inside), !both.iter().all(inside));
         }
-        for &vertex in &touching.held {
-            component(vertex).into_iter().for_each(|c| held[c] = true);
+        for vertex in &touching.held {
+            groups.join_all(Some(component(*vertex)).filter(inside), true);
         }
         repulsion.for_each_link(|nodes, holds| {
-            let mut linked = nodes.iter().filter_map(|&node| of_node(node));
-            let Some(first) = linked.next() else { return };
-            held[first] |= holds;
-            linked.for_each(|other| groups.join(first, other));
+            groups.join_all(nodes.iter().map(|&node| self.model.component(node)), holds);
         });
-        groups.lists().into_iter().filter(|group| group.iter().all(|&c| !held[c])).collect()
+        groups.free()
     }
 
     /// Replaces the rigid part of a component's velocities, as far as energy allows.
@@ -258,31 +250,26 @@ impl Correction<'_> {
         let velocity = start.velocity + impulse / mass;
         // Grains have no spin that could take the angular momentum which rubbing takes from their motion; the air takes its share
         // at velocities that the correction changes.
-        let rotation = end.spin(start.angular + torque);
+        let exact = end.spin(start.angular + torque);
         let turns = !self.in_air
             && group.iter().all(|&c| components[c].len() > 1)
-            && rotation.norm() * self.dt < LARGEST_TURN;
-        let spin = if turns { end.spin(start.angular + torque - end.angular) } else { Vector::zeros() };
-        for n in nodes.clone() {
-            v[n] += velocity - end.velocity + spin.cross(&(self.x1[n] - end.center));
-        }
-        if !turns {
-            return;
-        }
+            && exact.norm() * self.dt < LARGEST_TURN;
+        let rotation = if turns { exact } else { end.spin(end.angular) };
+        let before = |n: usize| end.velocity + end.spin(end.angular).cross(&(self.x1[n] - end.center));
+        let after = |n: usize| velocity + rotation.cross(&(self.x1[n] - end.center));
         // What moves beside the rigid motion gives way if there is too much energy.
-        let rigid = |n: usize| velocity + rotation.cross(&(self.x1[n] - end.center));
-        let (mut before, mut carried, mut beside) = (0.0, 0.0, 0.0);
+        let (mut mean, mut rigid, mut beside) = (0.0, 0.0, 0.0);
         for n in nodes.clone() {
             let half = 0.5 * self.model.node_masses[n];
-            before += half * self.mean[n].norm_squared();
-            carried += half * rigid(n).norm_squared();
-            beside += half * (v[n] - rigid(n)).norm_squared();
+            mean += half * self.mean[n].norm_squared();
+            rigid += half * after(n).norm_squared();
+            beside += half * (v[n] - before(n)).norm_squared();
         }
         let released = group.iter().map(|&c| self.released[c]).sum();
-        let most = before.max(self.kinetic_allowed(nodes.clone(), released));
-        if carried + beside > most && beside > 0.0 {
-            let share = ((most - carried) / beside).max(0.0).sqrt();
-            nodes.for_each(|n| v[n] = rigid(n) + (v[n] - rigid(n)) * share);
+        let most = mean.max(self.kinetic_allowed(nodes.clone(), released));
+        let share = if rigid + beside > most { ((most - rigid) / beside).max(0.0).sqrt() } else { 1.0 };
+        for n in nodes {
+            v[n] = after(n) + if beside > 0.0 { (v[n] - before(n)) * share } else { Vector::zeros() };
         }
     }
 

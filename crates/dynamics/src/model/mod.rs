@@ -207,6 +207,11 @@ impl DynamicsModel {
         &self.obstacle
     }
 
+    /// The component that a node is in, or their number for [`NO_NODE`].
+    pub(crate) fn component(&self, node: u32) -> usize {
+        self.components.partition_point(|c| c.end <= node)
+    }
+
     /// Whether strands are among the bodies.
     pub(crate) fn has_strands(&self) -> bool {
         self.bodies.iter().any(|body| matches!(body.shape, BodyShape::Strands { .. }))
