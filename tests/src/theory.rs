@@ -243,9 +243,7 @@ pub fn belt(degrees: f64, friction: f64, settings: &[String]) -> [f64; 2] {
         }
     }
     let at = |row: usize, column: usize| (row * (columns + 1) + column) as u32;
-    let triangles = strip_triangles(rows, columns);
-    let view = MeshView { positions: &positions, triangles: &triangles, ..MeshView::default() };
-    write_obj(&folder.path().join("belt.obj"), &view).expect("a mesh of the belt");
+    write_strip(&folder.path().join("belt.obj"), &positions, rows, columns);
     let range = |row: usize| (0..=columns).map(|c| at(row, c).to_string()).collect::<Vec<_>>().join(", ");
     let drawn = (theta.cos(), -theta.sin());
     let reach = 0.02 * length;
@@ -321,9 +319,7 @@ pub fn table_edge(pull: f64, friction: f64, steps: usize, settings: &[String]) -
             let across = (0..=columns).map(|c| width * (c as f64 / columns as f64 - 0.5));
             positions.extend(across.map(|y| Point::new(x, y, z)));
         }
-        let triangles = strip_triangles(stations.len() - 1, columns);
-        let view = MeshView { positions: &positions, triangles: &triangles, ..MeshView::default() };
-        write_obj(&folder.path().join(name), &view).expect("a mesh");
+        write_strip(&folder.path().join(name), &positions, stations.len() - 1, columns);
         positions
     };
     let rows = (LENGTH / EDGE).round() as usize;
@@ -351,8 +347,8 @@ pub fn table_edge(pull: f64, friction: f64, steps: usize, settings: &[String]) -
     moved.sum::<f64>() / (columns + 1) as f64
 }
 
-/// Triangles of a strip of `rows` by `columns` quadrangles, vertices row by row.
-fn strip_triangles(rows: usize, columns: usize) -> Vec<[u32; 3]> {
+/// Writes a strip of `rows` by `columns` quadrangles, cut into triangles, vertices row by row.
+fn write_strip(path: &Path, positions: &[Point], rows: usize, columns: usize) {
     let at = |row: usize, column: usize| (row * (columns + 1) + column) as u32;
     let mut triangles = Vec::new();
     for row in 0..rows {
@@ -363,7 +359,8 @@ fn strip_triangles(rows: usize, columns: usize) -> Vec<[u32; 3]> {
             triangles.extend(if even { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] });
         }
     }
-    triangles
+    let view = MeshView { positions, triangles: &triangles, ..MeshView::default() };
+    write_obj(path, &view).unwrap_or_else(|error| panic!("{error}"));
 }
 
 /// Slides a body over a level ground from `slope.speed` until it stops: its way by v^2 / (2 mu g) [1], less what the time step
