@@ -12,6 +12,9 @@ use bowknot_proximity::Pair;
 /// A closest point is on the boundary of its primitive where a weight is below this.
 const ON_BOUNDARY: f64 = 1e-9;
 
+/// Sine of the angle between the faces of an edge within which they are one flat surface.
+const FLAT: f64 = 2e-3;
+
 /// Passes over the neighbours of a pair's features at most, in turning its normal into their cones.
 const TURNS: usize = 4;
 
@@ -206,7 +209,7 @@ impl Facing {
         self.for_each_neighbour(topology, feature, positions, |to| {
             let (rise, slack) = (outward.dot(&to), tolerance * to.norm());
             within &= rise <= slack;
-            flat &= rise >= -slack;
+            flat &= rise >= -FLAT * to.norm();
             count += 1;
         });
         match (within, flat && count > 1) {

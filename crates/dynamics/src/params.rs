@@ -30,8 +30,9 @@ pub struct DynamicsParams {
     pub cg_tolerance: f64,
     /// Residual of the time step below which iterations end, in mean edge lengths [1]: forces that do not balance, in the
     /// distance that they are worth, see [`crate::Residual::distance`]. It is for whoever alternates Newton iterations with a
-    /// collision stage; in time steps below 1/100 s it shrinks with their square. Smaller: more iterations, up to `simulation.newton_iterations`; iterations end as well where
-    /// they no longer take off three tenths of it. 0: all are made. Default 0.003.
+    /// collision stage, and for time steps of 1/100 s: in shorter ones it shrinks with their square, in longer ones it grows with
+    /// them. Smaller: more iterations, up to `simulation.newton_iterations`; they end as well where three of them, one after the
+    /// other, do not take off three tenths of it. 0: all are made. Default 0.003.
     pub step_tolerance: f64,
     /// Most iterations of the linear solve [1]. Reached, it ends with the best so far and says so.
     /// Default 10000.

@@ -42,6 +42,9 @@ const AT_BOUND: f64 = 1e-6;
 /// Share of the slip that inertia leads to below which a contact counts as sticking.
 const STUCK: f64 = 0.1;
 
+/// Share by which the bound of friction may differ from that of the solve before.
+const SETTLED_BOUND: f64 = 0.1;
+
 /// A contact between up to four vertices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RepulsionSpring {
@@ -470,21 +473,33 @@ impl Repulsion {
         }
     }
 
-    /// Takes multipliers and friction from all springs, until they are set again; those push that are pressed at `x`.
-    pub fn push_only(&mut self, x: &[Vector]) {
-        self.guessed = false;
+    /// Takes the multipliers from all springs, until they are set again, so that they store no energy but by being pressed and
+    /// rub only against slip; those push that are pressed at `x`.
+    pub fn forget_multipliers(&mut self, x: &[Vector]) {
         for state in &mut self.states {
             *state = SpringState { stiffness: state.stiffness, ..SpringState::IDLE };
         }
-        self.update_pushing(x);
+        self.settle_without_multipliers(x);
     }
 
-    /// Makes those springs push that are pressed at `x`; whether any changed.
-    pub fn update_pushing(&mut self, x: &[Vector]) -> bool {
+    /// Brings what pushes and rubs up to date with nodes at `x`; whether anything that
+    /// pushes changed, or a bound of friction by much.
+    pub fn settle_without_multipliers(&mut self, x: &[Vector]) -> bool {
+        self.guessed = false;
         let mut changed = false;
         for spring in 0..self.springs.len() {
-            let presses = self.states[spring].stiffness > 0.0 && self.depth_and_slip(spring, x).0 > 0.0;
-            changed |= std::mem::replace(&mut self.states[spring].pushes, presses) != presses;
+            let mut state = self.states[spring];
+            let (depth, slip) = self.depth_and_slip(spring, x);
+            let pushes = state.stiffness > 0.0 && depth > 0.0;
+            changed |= std::mem::replace(&mut state.pushes, pushes) != pushes;
+            let most = self.springs[spring].friction * state.stiffness * depth.max(0.0);
+            changed |= (most - state.most).abs() > SETTLED_BOUND * most;
+            state.most = most;
+            state.friction = match state.rub(Vector::zeros(), &slip, state.most) {
+                Friction::None => Friction::None,
+                _ => Friction::Stick(Vector::zeros()),
+            };
+            self.states[spring] = state;
         }
         changed
     }

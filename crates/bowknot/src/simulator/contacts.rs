@@ -5,11 +5,12 @@
 //! collision stage. Where a contact point has slid on to another feature, the force on its vertex passes to the new one.
 //! Forces are part of the state between two time steps, and of checkpoints.
 
+use super::RELAXATION;
 use crate::scene::{BodyKind, RepulsionParams};
 use crate::world::World;
 use bowknot_constraints::{Feature, FrictionModel};
 use bowknot_dynamics::{Dynamics, RepulsionSpring, StepError, Touching};
-use bowknot_geometry::{PairKind, Vector};
+use bowknot_geometry::{PairKind, Point, Vector};
 use bowknot_twoway::{Problem, Resolver};
 use std::collections::{HashMap, HashSet};
 
@@ -20,12 +21,23 @@ pub(super) struct Contacts {
     /// What each vertex that collides is part of.
     kinds: Vec<Option<BodyKind>>,
     springs: Vec<RepulsionSpring>,
-    /// Features of each spring's sides.
-    features: Vec<[Feature; 2]>,
+    /// What each spring stands for.
+    contacts: Vec<Contact>,
     /// Forces of rows whose pairs have no spring, by vertex that collides [N].
     held: Vec<Vector>,
     /// What was in contact range at the start of the time step or after any of its collision stages.
     touching: Touching,
+}
+
+/// What a spring stands for.
+#[derive(Clone, Copy, Debug)]
+struct Contact {
+    /// Features of its sides, [`oriented`].
+    features: [Feature; 2],
+    /// What the collision stage wants to keep, whatever the distance was when the time step began [m].
+    desired: f64,
+    /// Present distance [m].
+    distance: f64,
 }
 
 /// The force that a contact between two features carries, on the first [N].
@@ -53,10 +65,15 @@ impl Contacts {
         &self.touching
     }
 
-    /// Begins a time step: forgets what touched in the last one, but for what is in contact range now.
-    pub fn begin_step(&mut self, resolver: &Resolver) {
+    /// Begins a time step: forgets what touched in the last one, but for what is in contact range now, and sets out to open gaps
+    /// from what they are now.
+    pub fn begin_step(&mut self, resolver: &Resolver, dt: f64) {
         self.touching = Touching::default();
         self.note_touching(resolver);
+        let growth = resolver.problem().lengths.separation_speed * dt;
+        for (contact, spring) in self.contacts.iter().zip(&mut self.springs) {
+            spring.desired = desired_gap(contact.desired, contact.distance, growth, dt);
+        }
     }
 
     /// Takes down what is in contact range.
@@ -79,14 +96,22 @@ impl Contacts {
 
     /// The forces that they carry.
     pub fn carried(&self) -> Vec<Carried> {
-        self.features.iter().zip(&self.springs).map(|(f, s)| (*f, s.force)).collect()
+        self.contacts.iter().zip(&self.springs).map(|(c, s)| (c.features, s.force)).collect()
+    }
+
+    /// Moves the `forces` of the springs, by spring [N], back towards what they carried.
+    pub fn relax(&self, forces: &mut [Vector]) {
+        for (force, spring) in forces.iter_mut().zip(&self.springs) {
+            *force = spring.force + (*force - spring.force) * RELAXATION;
+        }
     }
 
     /// The same after the dynamics and the collision stage: `forces` of the springs, by spring [N], and of the rows that
     /// pushed.
     pub fn carried_after(&mut self, forces: &[Vector], resolver: &Resolver, dt: f64) -> Vec<Carried> {
         let (problem, contacts) = (resolver.problem(), &resolver.state().contacts);
-        let mut carried: Vec<Carried> = self.features.iter().copied().zip(forces.iter().copied()).collect();
+        let features = self.contacts.iter().map(|contact| contact.features);
+        let mut carried: Vec<Carried> = features.zip(forces.iter().copied()).collect();
         let unit = problem.mean_mass / (dt * dt);
         self.held.clear();
         self.held.resize(problem.rest.len(), Vector::zeros());
@@ -101,7 +126,8 @@ impl Contacts {
                 let force = (separation.normal * lambda + rubbing) * unit;
                 let used = &pair.vertices[..kind.vertex_count()];
                 if self.is_elastic(used) {
-                    carried.push((problem.features(kind, pair, separation), force));
+                    let (features, sign) = oriented(problem.features(kind, pair, separation));
+                    carried.push((features, force * sign));
                 } else {
                     for (&v, weight) in used.iter().zip(separation.signed_weights(kind)) {
                         self.held[v as usize] += force * weight;
@@ -113,22 +139,45 @@ impl Contacts {
     }
 
     /// Finds the contacts at the present state of the collision stage, which lists all pairs in range in an order of their own, and
-    /// hands on the forces of those before.
-    pub fn find(&mut self, resolver: &Resolver, carried: &[Carried], dt: f64) {
+    /// hands on the forces of those before. `start` are positions at the start of the time step.
+    pub fn find(&mut self, resolver: &Resolver, carried: &[Carried], start: &[Point], dt: f64) {
         self.springs.clear();
-        self.features.clear();
+        self.contacts.clear();
         if self.stiffness == 0.0 {
             return;
         }
-        let (problem, state) = (resolver.problem(), resolver.state());
-        let contacts = &state.contacts;
-        let growth = problem.lengths.separation_speed * dt;
+        let problem = resolver.problem();
         let loaded: HashSet<[Feature; 2]> = carried
             .iter()
             .filter(|(_, force)| *force != Vector::zeros())
             .map(|(features, _)| *features)
             .collect();
         let mut index = HashMap::new();
+        self.add(resolver, start, dt, &mut index, |features| {
+            Some(if loaded.contains(features) { LOADED_TOLERANCE } else { CONE_TOLERANCE })
+        });
+        let orphans = self.orphans(problem, carried, &index);
+        if !orphans.is_empty() {
+            self.add(resolver, start, dt, &mut index, |features| {
+                side(problem, features).filter(|side| orphans.contains(side)).map(|_| LOADED_TOLERANCE)
+            });
+        }
+        let moved = moved_edges(resolver, carried, &index);
+        self.hand_on(problem, carried, &index, &moved);
+    }
+
+    /// Adds the pairs in range that are contacts within a tolerance, by features, and are not in the `index` yet.
+    fn add(
+        &mut self,
+        resolver: &Resolver,
+        start: &[Point],
+        dt: f64,
+        index: &mut Index,
+        tolerance: impl Fn(&[Feature; 2]) -> Option<f64>,
+    ) {
+        let (problem, state) = (resolver.problem(), resolver.state());
+        let contacts = &state.contacts;
+        let growth = problem.lengths.separation_speed * dt;
         for kind in PairKind::ALL {
             for p in contacts.pairs.range(kind) {
                 let (separation, pair) = (&contacts.separations[p], &contacts.pairs.pairs()[p]);
@@ -138,56 +187,68 @@ impl Contacts {
                 if !near || !self.is_elastic(used) {
                     continue;
                 }
-                let features = problem.features(kind, pair, separation);
-                let tolerance = if loaded.contains(&features) { LOADED_TOLERANCE } else { CONE_TOLERANCE };
+                let (features, sign) = oriented(problem.features(kind, pair, separation));
+                let Some(tolerance) = tolerance(&features) else { continue };
+                let mut normal = separation.normal * sign;
                 if index.contains_key(&features)
-                    || !problem.is_contact(features, &separation.normal, &state.x, tolerance)
+                    || !problem.is_contact(features, &normal, &state.x, tolerance)
                 {
                     continue;
                 }
                 // What has left its cones pushes along their border: a tilted normal would push aside what slides.
-                let normal = match tolerance > CONE_TOLERANCE {
-                    true => problem.turned(features, &separation.normal, &state.x),
-                    false => separation.normal,
-                };
+                if tolerance > CONE_TOLERANCE {
+                    normal = problem.turned(features, &normal, &state.x);
+                }
                 index.insert(features, self.springs.len());
                 let plane = (kind == PairKind::VertexHalfSpace)
                     .then(|| &problem.model.half_spaces()[pair.elements[1] as usize]);
-                let weights = separation.signed_weights(kind);
+                let offset = plane.map_or(0.0, |plane| plane.offset);
+                let weights = separation.signed_weights(kind).map(|weight| weight * sign);
                 let mut vertices = pair.vertices;
                 (0..4).filter(|&k| weights[k] == 0.0).for_each(|k| vertices[k] = pair.vertices[0]);
-                self.features.push(features);
+                let sides: Vector = (0..4).map(|k| start[vertices[k] as usize].coords * weights[k]).sum();
+                let (desired, distance) = (problem.desired_distance(kind, pair), separation.distance);
+                let first = (normal.dot(&sides) - offset).max(distance.min(desired));
+                self.contacts.push(Contact { features, desired, distance });
                 self.springs.push(RepulsionSpring {
                     vertices,
                     weights,
                     normal,
-                    offset: plane.map_or(0.0, |plane| plane.offset),
-                    desired: desired_gap(
-                        problem.desired_distance(kind, pair),
-                        separation.distance,
-                        growth,
-                        dt,
-                    ),
+                    offset,
+                    desired: desired_gap(desired, first, growth, dt),
                     stiffness: self.stiffness,
                     friction: contacts.frictions.get(p).copied().unwrap_or(0.0),
                     force: Vector::zeros(),
                 });
             }
         }
-        self.hand_on(problem, carried, &index);
     }
 
-    /// Gives the springs the forces of those before: of the same features; of what is left of a vertex against a body, in equal
-    /// shares to the contacts of that vertex that it presses; of two edges, to a contact that one of them has now.
-    fn hand_on(&mut self, problem: &Problem, carried: &[Carried], index: &HashMap<[Feature; 2], usize>) {
-        let mut of_vertices: HashMap<(u32, u32), Vector> = HashMap::new();
+    /// The sides whose contacts carried a force and are gone, and which no contact holds that it presses.
+    fn orphans(&self, problem: &Problem, carried: &[Carried], index: &Index) -> HashSet<Side> {
+        let mut orphans = lost_by_side(problem, carried, index);
+        for (contact, spring) in self.contacts.iter().zip(&self.springs) {
+            if let Some(side) = side(problem, &contact.features)
+                && orphans.get(&side).is_some_and(|force| spring.normal.dot(force) > 0.0)
+            {
+                orphans.remove(&side);
+            }
+        }
+        orphans.into_keys().collect()
+    }
+
+    /// Gives the springs the forces of those before: of the same features; of two edges, to the feature of theirs that the closest
+    /// points have moved on to, or to a contact that one of them has now; of what is left of a vertex against a body, in equal
+    /// shares to the contacts of that vertex that it presses.
+    fn hand_on(&mut self, problem: &Problem, carried: &[Carried], index: &Index, moved: &MovedEdges) {
+        let of_vertices = lost_by_side(problem, carried, index);
         let mut of_edges: Vec<Vector> = Vec::new();
         let mut at_edge: HashMap<u32, usize> = HashMap::new();
         for (features, force) in carried {
             if let Some(&spring) = index.get(features) {
                 self.springs[spring].force += force;
-            } else if let Some(side) = side(problem, features) {
-                *of_vertices.entry(side).or_insert_with(Vector::zeros) += force;
+            } else if let Some(&(spring, sign)) = moved.get(features) {
+                self.springs[spring].force += force * sign;
             } else if let [Feature::Edge(a), Feature::Edge(b)] = features {
                 at_edge.insert(*a, of_edges.len());
                 at_edge.insert(*b, of_edges.len());
@@ -198,22 +259,22 @@ impl Contacts {
             return;
         }
         let pressed = |spring: &RepulsionSpring, force: &Vector| spring.normal.dot(force) > 0.0;
-        let mut shares: HashMap<(u32, u32), u32> = HashMap::new();
-        for (features, spring) in self.features.iter().zip(&self.springs) {
-            if let Some(side) = side(problem, features)
+        let mut shares: HashMap<Side, u32> = HashMap::new();
+        for (contact, spring) in self.contacts.iter().zip(&self.springs) {
+            if let Some(side) = side(problem, &contact.features)
                 && of_vertices.get(&side).is_some_and(|force| pressed(spring, force))
             {
                 *shares.entry(side).or_default() += 1;
             }
         }
-        for (features, spring) in self.features.iter().zip(&mut self.springs) {
-            if let Some(side) = side(problem, features)
+        for (contact, spring) in self.contacts.iter().zip(&mut self.springs) {
+            if let Some(side) = side(problem, &contact.features)
                 && let Some(force) = of_vertices.get(&side).filter(|force| pressed(spring, force))
                 && let Some(&count) = shares.get(&side)
             {
                 spring.force += force / f64::from(count);
             }
-            if let [Feature::Edge(a), Feature::Edge(b)] = features
+            if let [Feature::Edge(a), Feature::Edge(b)] = &contact.features
                 && let Some(&left) = at_edge.get(a).or_else(|| at_edge.get(b))
                 && pressed(spring, &of_edges[left])
             {
@@ -246,7 +307,10 @@ impl Contacts {
         };
         let is_face =
             |features: &[Feature; 2]| matches!(features[1], Feature::Triangle(_) | Feature::HalfSpace(_));
-        for (_, spring) in self.features.iter().zip(&self.springs).filter(|(features, _)| is_face(features)) {
+        for (contact, spring) in self.contacts.iter().zip(&self.springs) {
+            if !is_face(&contact.features) {
+                continue;
+            }
             // The gap is at least the desired one, or opens no faster than to that.
             let closing = -approach(spring, motion).dot(&spring.normal);
             if closing > 0.0 {
@@ -254,14 +318,14 @@ impl Contacts {
             }
         }
         let passed: Vec<bool> = self
-            .features
+            .contacts
             .iter()
             .zip(&self.springs)
-            .map(|(features, spring)| {
+            .map(|(contact, spring)| {
                 let start = spring.normal * spring.desired;
                 let way = approach(spring, motion);
                 let length = way.norm_squared();
-                if is_face(features) || length == 0.0 {
+                if is_face(&contact.features) || length == 0.0 {
                     return false;
                 }
                 let nearest = (-start.dot(&way) / length).clamp(0.0, 1.0);
@@ -272,7 +336,7 @@ impl Contacts {
         let mut keep = passed.iter().map(|passed| !passed);
         self.springs.retain(|_| keep.next().unwrap_or(true));
         let mut keep = passed.iter().map(|passed| !passed);
-        self.features.retain(|_| keep.next().unwrap_or(true));
+        self.contacts.retain(|_| keep.next().unwrap_or(true));
     }
 
     /// Whether a contact deforms something, and no strand: these are a hundred times stiffer along than across, and the
@@ -314,8 +378,17 @@ fn desired_gap(desired: f64, distance: f64, growth: f64, dt: f64) -> f64 {
 /// Share of the desired distance that something must keep from a feature to count as passing it.
 const PASSING: f64 = 0.5;
 
-/// The vertex whose contact it is, and the body on the other side; half-spaces count from the end.
-fn side(problem: &Problem, features: &[Feature; 2]) -> Option<(u32, u32)> {
+/// Springs by what they stand for.
+type Index = HashMap<[Feature; 2], usize>;
+
+/// A vertex, and a body that it is in contact with; half-spaces count from the end.
+type Side = (u32, u32);
+
+/// Springs that have taken over from two edges, with the sign of the force in them.
+type MovedEdges = HashMap<[Feature; 2], (usize, f64)>;
+
+/// The vertex whose contact it is, and the body on the other side.
+fn side(problem: &Problem, features: &[Feature; 2]) -> Option<Side> {
     let body = |vertex: u32| problem.model.vertex_body().get(vertex as usize).copied();
     let topology = problem.model.topology();
     let Feature::Vertex(vertex) = features[0] else { return None };
@@ -327,4 +400,56 @@ fn side(problem: &Problem, features: &[Feature; 2]) -> Option<(u32, u32)> {
         Feature::HalfSpace(h) => u32::MAX - h,
     };
     Some((vertex, other))
+}
+
+/// Forces of vertices that no spring of the same features carries on, by side [N].
+fn lost_by_side(problem: &Problem, carried: &[Carried], index: &Index) -> HashMap<Side, Vector> {
+    let mut lost = HashMap::new();
+    for (features, force) in carried {
+        if *force != Vector::zeros()
+            && !index.contains_key(features)
+            && let Some(side) = side(problem, features)
+        {
+            *lost.entry(side).or_insert_with(Vector::zeros) += force;
+        }
+    }
+    lost
+}
+
+/// Pairs of edges that carried a force and whose closest points now lie on an end of one: what they have become.
+fn moved_edges(resolver: &Resolver, carried: &[Carried], index: &Index) -> MovedEdges {
+    let is_lost = |features: &[Feature; 2]| {
+        matches!(features, [Feature::Edge(_), Feature::Edge(_)]) && !index.contains_key(features)
+    };
+    let lost: HashSet<[Feature; 2]> = carried.iter().map(|(features, _)| *features).filter(is_lost).collect();
+    let mut moved = MovedEdges::new();
+    if lost.is_empty() {
+        return moved;
+    }
+    let (problem, contacts) = (resolver.problem(), &resolver.state().contacts);
+    for p in contacts.pairs.range(PairKind::EdgeEdge) {
+        let pair = &contacts.pairs.pairs()[p];
+        let [a, b] = pair.elements;
+        let before = [Feature::Edge(a), Feature::Edge(b)];
+        if lost.contains(&before) {
+            let features = problem.features(PairKind::EdgeEdge, pair, &contacts.separations[p]);
+            let (features, sign) = oriented(features);
+            if let Some(&spring) = index.get(&features) {
+                moved.insert(before, (spring, sign));
+            }
+        }
+    }
+    moved
+}
+
+/// Features in an order of their own, so that pairs of different kinds that touch at the same place are one contact: vertices before
+/// edges. And the sign that the normal and forces take.
+fn oriented(features: [Feature; 2]) -> ([Feature; 2], f64) {
+    let [a, b] = features;
+    let swaps = match (a, b) {
+        (Feature::Edge(_), Feature::Vertex(_)) => true,
+        (Feature::Vertex(v), Feature::Vertex(w)) => v > w,
+        _ => false,
+    };
+    if swaps { ([b, a], -1.0) } else { (features, 1.0) }
 }

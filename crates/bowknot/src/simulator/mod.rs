@@ -12,6 +12,7 @@ mod error;
 mod interior;
 mod prescribed;
 mod process;
+mod progress;
 mod statistics;
 
 pub use checkpoint::Checkpoint;
@@ -27,6 +28,7 @@ use bowknot_geometry::{Point, Vector};
 use bowknot_twoway::{AcceptedState, Call, Observer, ResolveError, Resolver};
 use contacts::{Carried, Contacts};
 use interior::Interior;
+use progress::Progress;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Instant;
@@ -34,11 +36,9 @@ use std::time::Instant;
 /// How many intersecting pairs of a refused start are named.
 const NAMED_PAIRS: usize = 5;
 
-/// Time step below which the tolerance of the residual shrinks, with its square [s].
-const TOLERATED_STEP: f64 = 0.01;
-
-/// Share of the residual before it that an iteration must get below for another one to be worth it.
-const STALLED: f64 = 0.7;
+/// Share of the way to a target that is taken where the iterations swing: contacts have the normals of the state before, and what is
+/// pressed hard turns from side to side with them.
+const RELAXATION: f64 = 0.5;
 
 /// A running simulation.
 #[derive(Debug)]
@@ -194,7 +194,7 @@ impl Simulator {
         resolver
             .survey(&positions[..world.collision_vertices()], &call)
             .map_err(|source| resolve_error(world, *step, source))?;
-        contacts.find(resolver, carried, *dt);
+        contacts.find(resolver, carried, positions, *dt);
         Ok(())
     }
 
@@ -288,16 +288,13 @@ impl Simulator {
             let mut motion: Vec<Vector> = (0..start.len()).map(|v| end(v) - start[v]).collect();
             contacts.anticipate(&mut motion);
         }
-        contacts.begin_step(resolver);
+        contacts.begin_step(resolver, *dt);
         contacts.apply(dynamics).map_err(target_error)?;
         statistics.repulsion_springs = contacts.springs().len();
         statistics.seconds.dynamics += clock.elapsed().as_secs_f64();
         y.clone_from(start);
         x.clone_from(start);
-        // In short time steps the distance must shrink as what gravity does: else it would be an acceleration without bound.
-        let share = (*dt / TOLERATED_STEP).min(1.0).powi(2);
-        let tolerance = *step_tolerance * resolver.problem().lengths.edge * share;
-        let mut before = f64::INFINITY;
+        let mut progress = Progress::new(*step_tolerance * resolver.problem().lengths.edge, *dt);
         for iteration in 0..self.newton_iterations {
             let last = iteration + 1 == self.newton_iterations;
             let clock = Instant::now();
@@ -311,7 +308,11 @@ impl Simulator {
                     "the linear solve did not converge"
                 );
             }
-            let forces = dynamics.contact_forces();
+            let mut forces = dynamics.contact_forces();
+            if progress.swings() {
+                relax(x, y, prescribed);
+                contacts.relax(&mut forces);
+            }
             match self.collision_every {
                 CollisionEvery::Step if !last => {
                     x.clone_from(y);
@@ -351,7 +352,7 @@ impl Simulator {
             let clock = Instant::now();
             contacts.note_touching(resolver);
             let carried = contacts.carried_after(&forces, resolver, *dt);
-            contacts.find(resolver, &carried, *dt);
+            contacts.find(resolver, &carried, start, *dt);
             x[count..].copy_from_slice(&y[count..]);
             if x[..count] != y[..count] {
                 statistics.interior_solves +=
@@ -364,10 +365,7 @@ impl Simulator {
             statistics.seconds.dynamics += clock.elapsed().as_secs_f64();
             (statistics.residual_n, statistics.residual_m) = (residual.force, residual.distance);
             tracing::debug!(step, iteration, residual.force, residual.distance, "time step");
-            let solved = residual.distance < tolerance;
-            let stalled = residual.distance > STALLED * before;
-            before = residual.distance;
-            if *step_tolerance > 0.0 && (solved || stalled) {
+            if progress.ends(residual.distance) {
                 break;
             }
         }
@@ -462,6 +460,13 @@ impl Simulator {
         self.velocities.clone_from(&checkpoint.velocities);
         self.anchors.clone_from(&checkpoint.anchors);
         self.attachments.iter_mut().for_each(Vec::clear);
+    }
+}
+
+/// Moves the target `y` back towards `x`, but for what is prescribed.
+fn relax(x: &[Point], y: &mut [Point], prescribed: &[bool]) {
+    for ((y, x), _) in y.iter_mut().zip(x).zip(prescribed).filter(|(_, prescribed)| !**prescribed) {
+        *y = x + (*y - x) * RELAXATION;
     }
 }
 

@@ -1,0 +1,80 @@
+//! When the iterations of a time step have done what they can.
+
+/// Time step that tolerances are given for [s].
+const TOLERATED_STEP: f64 = 0.01;
+
+/// Share of the least residual so far that an iteration must get below to count as progress.
+const STALLED: f64 = 0.7;
+
+/// Iterations without progress, one after the other, that are the last.
+const VAIN_ITERATIONS: usize = 3;
+
+/// Iterations without progress after which they count as swinging about the solution.
+const SWINGING: usize = 2;
+
+/// Factor of the least residual within which an iteration may be the last: a contact that was just lost or found leaves the
+/// state far from the solution for an iteration, and cloth crushed.
+const GOOD_END: f64 = 1.2;
+
+/// How the residuals of a time step go down.
+#[derive(Debug)]
+pub(super) struct Progress {
+    tolerance: f64,
+    least: f64,
+    vain: usize,
+}
+
+impl Progress {
+    /// Of a time step of `dt` [s], with the `tolerance` of the residual in one of 1/100 s [m]; 0: iterations never end by themselves.
+    ///
+    /// In shorter time steps the tolerance shrinks with their square, as what gravity does: else it would be an acceleration
+    /// without bound. In longer ones it grows with them: a constant error of velocities.
+    pub fn new(tolerance: f64, dt: f64) -> Self {
+        let ratio = dt / TOLERATED_STEP;
+        Self { tolerance: tolerance * ratio.min(ratio * ratio), least: f64::INFINITY, vain: 0 }
+    }
+
+    /// Whether the iterations swing about the solution.
+    pub fn swings(&self) -> bool {
+        self.vain >= SWINGING
+    }
+
+    /// Whether an iteration that led to `residual` [m] is the last.
+    pub fn ends(&mut self, residual: f64) -> bool {
+        self.vain = if residual > STALLED * self.least { self.vain + 1 } else { 0 };
+        self.least = self.least.min(residual);
+        let stalls = self.vain >= VAIN_ITERATIONS && residual <= GOOD_END * self.least;
+        self.tolerance > 0.0 && (residual < self.tolerance || stalls)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn iterations_end_at_the_tolerance() {
+        let mut progress = Progress::new(1e-3, 0.01);
+        assert_eq!([0.1, 0.01, 0.9e-3].map(|r| progress.ends(r)), [false, false, true]);
+    }
+
+    #[test]
+    fn iterations_without_progress_end_near_the_least_residual() {
+        let mut progress = Progress::new(1e-6, 0.01);
+        let residuals = [1.0, 0.1, 0.09, 0.08, 0.5, 0.09];
+        assert_eq!(residuals.map(|r| progress.ends(r)), [false, false, false, false, false, true]);
+    }
+
+    #[test]
+    fn iterations_without_progress_swing_and_without_a_tolerance_never_end() {
+        let mut progress = Progress::new(0.0, 0.01);
+        let swings = [1.0, 0.9, 0.8, 0.7, 0.1].map(|r| (progress.ends(r), progress.swings()));
+        assert_eq!(swings, [false, false, true, true, false].map(|swings| (false, swings)));
+    }
+
+    #[test]
+    fn the_tolerance_stands_for_an_acceleration_in_short_steps_and_a_velocity_in_long_ones() {
+        assert!((Progress::new(1.0, 0.001).tolerance - 0.01).abs() < 1e-15);
+        assert!((Progress::new(1.0, 0.05).tolerance - 5.0).abs() < 1e-12);
+    }
+}
