@@ -26,7 +26,7 @@ pub use desired::DesiredDistance;
 pub use edges::{EdgeLimits, Stretch};
 pub use facing::{Facing, Feature};
 pub use friction::{friction_row, tangents};
-pub use params::{ConstraintParams, ContactForm, EdgeForm, EdgeReference, FrictionModel};
+pub use params::{ConstraintParams, ContactForm, EdgeForm, EdgeReference, FrictionModel, STRETCH_LIMIT};
 
 /// The README's example is tested with the documentation.
 #[cfg(doctest)]

@@ -2,6 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+/// Largest ratio of an edge's length to its reference [1] where neither a body nor
+/// [`ConstraintParams::stretch_limit`] gives one.
+pub const STRETCH_LIMIT: f64 = 1.1;
+
 /// Parameters of the constraints.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -28,8 +32,9 @@ pub struct ConstraintParams {
     pub friction_model: FrictionModel,
     /// Whether edge lengths are limited at all. Default true.
     pub edges: bool,
-    /// Largest ratio of an edge's length to its reference, sigma. Default 1.1.
-    pub stretch_limit: f64,
+    /// Largest ratio of an edge's length to its reference, sigma, of every body that has none of its own. Default: that of
+    /// the body's material if it is a cloth, otherwise 1.1 (paper: 1.1 for all).
+    pub stretch_limit: Option<f64>,
     /// What an edge's reference is. Default rest.
     pub edge_reference: EdgeReference,
     /// How an edge's limit is solved. Default ball.
@@ -94,7 +99,7 @@ impl Default for ConstraintParams {
             form: ContactForm::Gap,
             friction_model: FrictionModel::Coulomb,
             edges: true,
-            stretch_limit: 1.1,
+            stretch_limit: None,
             edge_reference: EdgeReference::Rest,
             edge_form: EdgeForm::Ball,
         }
@@ -109,6 +114,7 @@ impl ConstraintParams {
             contacts_only: false,
             form: ContactForm::Volume,
             friction_model: FrictionModel::Filter,
+            stretch_limit: Some(STRETCH_LIMIT),
             edge_reference: EdgeReference::Start,
             edge_form: EdgeForm::Linear,
             ..Self::default()
@@ -140,9 +146,11 @@ impl ConstraintParams {
             self.active.is_finite() && self.active >= 1.0,
             format!("constraints.active = {} must be finite and at least 1", self.active),
         );
-        check(
-            self.stretch_limit.is_finite() && self.stretch_limit > 1.0,
-            format!("constraints.stretch_limit = {} must be finite and above 1", self.stretch_limit),
-        );
+        if let Some(limit) = self.stretch_limit {
+            check(
+                limit.is_finite() && limit > 1.0,
+                format!("constraints.stretch_limit = {limit} must be finite and above 1"),
+            );
+        }
     }
 }

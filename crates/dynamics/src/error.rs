@@ -32,6 +32,12 @@ pub enum MaterialError {
         /// Where it must lie.
         range: &'static str,
     },
+    /// A stretch limit leaves an edge no room.
+    #[error("stretch_limit = {value}: it must be above 1, or inf for no limit")]
+    StretchLimit {
+        /// Its value.
+        value: f64,
+    },
 }
 
 /// Why a [`crate::DynamicsModel`] cannot be built. Elements are counted within their body.

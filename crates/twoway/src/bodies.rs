@@ -26,8 +26,8 @@ pub struct BodyContact {
     /// Coefficient of Coulomb friction [1], at least 0; a pair takes the geometric mean of both sides'. 0, the
     /// default: none, at no cost.
     pub friction: f64,
-    /// Largest ratio of an edge's length to its reference, above 1; infinite: none, and no rows. None: the limit of
-    /// the scene, `constraints.stretch_limit`.
+    /// Largest ratio of an edge's length to its reference, above 1; infinite: none, and no rows. None:
+    /// `constraints.stretch_limit`, or [`bowknot_constraints::STRETCH_LIMIT`] where that is none either.
     pub stretch_limit: Option<f64>,
 }
 

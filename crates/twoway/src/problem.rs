@@ -2,7 +2,7 @@
 
 use crate::waiting::set_groups;
 use crate::{Call, ContactTable, Params, ResolveError, Spacing};
-use bowknot_constraints::{DesiredDistance, Facing, Feature, FrictionModel};
+use bowknot_constraints::{DesiredDistance, Facing, Feature, FrictionModel, STRETCH_LIMIT};
 use bowknot_geometry::{PairKind, Point, Separation, Vector};
 use bowknot_proximity::{CollisionModel, Pair};
 use bowknot_stepper::Rounding;
@@ -185,7 +185,8 @@ impl Problem {
 
     /// Largest ratio of an edge's length to its reference; infinite for no limit.
     pub fn stretch_limit(&self, body: u32) -> f64 {
-        self.contact.bodies()[body as usize].stretch_limit.unwrap_or(self.params.constraints.stretch_limit)
+        let own = self.contact.bodies()[body as usize].stretch_limit;
+        own.or(self.params.constraints.stretch_limit).unwrap_or(STRETCH_LIMIT)
     }
 
     /// The distance that a pair is separated to in the end, however tight it starts [m].

@@ -112,6 +112,14 @@ impl Material {
         }
     }
 
+    /// Largest ratio of an edge's length to its rest length [1], if the material says: that of a cloth.
+    pub fn stretch_limit(&self) -> Option<f64> {
+        match self {
+            Self::Cloth(material) => Some(material.stretch_limit),
+            Self::Solid(_) | Self::Strands(_) | Self::Particles(_) => None,
+        }
+    }
+
     /// Its name, if all of its numbers are those of one that has a name.
     pub fn name(&self) -> Option<&'static str> {
         let kind = self.kind();

@@ -88,7 +88,7 @@ impl Assembly {
             thickness: body.thickness,
             delta: body.delta.or(grain),
             friction: body.friction,
-            stretch_limit: body.stretch_limit,
+            stretch_limit: stretch_limit(scene, body),
         });
         self.bodies.push(WorldBody {
             name: body.name.clone(),
@@ -223,6 +223,13 @@ impl Assembly {
         };
         scene.friction_pairs.iter().filter_map(pair).collect()
     }
+}
+
+/// Stretch limit of a body: its own, or that of its material unless the scene has one for all, which is left to
+/// `constraints.stretch_limit`.
+fn stretch_limit(scene: &Scene, body: &BodySpec) -> Option<f64> {
+    let for_all = scene.twoway.constraints.stretch_limit.is_some();
+    body.stretch_limit.or_else(|| if for_all { None } else { body.material.stretch_limit() })
 }
 
 fn motion(obstacle: &ObstacleSpec, placing: Placing) -> ObstacleMotion {

@@ -6,6 +6,8 @@ mod bad_bodies;
 mod bad_input;
 /// Solids, strands, particles, friction and sequences, from scene to motion.
 mod bodies;
+/// Stretch limits of fabrics, and what overrides them.
+mod fabrics;
 /// The walking figure, what follows it, and its dresses.
 mod figure;
 /// `docs/scene-reference.md` follows the structs.

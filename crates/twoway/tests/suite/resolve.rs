@@ -259,7 +259,7 @@ fn what_cannot_be_resolved_is_refused_by_name_and_leaves_the_state_alone() {
     ));
     let mut broken = Params::fast();
     broken.stepper.damping = 1.5;
-    broken.constraints.stretch_limit = 0.9;
+    broken.constraints.stretch_limit = Some(0.9);
     let Err(ResolveError::Params(problems)) = resolver(&masses, broken) else { panic!("accepted") };
     assert_eq!(problems.len(), 2, "every problem is reported: {problems:?}");
 

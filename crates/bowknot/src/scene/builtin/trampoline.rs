@@ -9,11 +9,13 @@ use bowknot_geometry::{Point, Vector};
 pub(super) fn scene(scale: f64) -> Scene {
     let edge = 0.02 / scale;
     let mut mat = sheet("mat", 1.2, edge, [0.0, 0.0, 0.0], 0.0);
-    // A jumping mat of polypropylene webbing: far stiffer than a garment, and edges that give a little.
+    // A jumping mat of polypropylene webbing: far stiffer than a garment, and edges that give by a tenth for the springs that
+    // hold it.
     mat.material = Material::Cloth(ClothMaterial {
         density: 0.3,
         stretch_stiffness: 4000.0,
         bend_stiffness: 1e-4,
+        stretch_limit: 1.1,
         ..ClothMaterial::default()
     });
     mat.friction = 0.4;
