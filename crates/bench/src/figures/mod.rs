@@ -4,6 +4,7 @@ mod barrier;
 mod breakdown;
 mod collision_error;
 mod contacts_alone;
+mod convergence;
 mod defaults;
 mod early_contact;
 mod edge_limits;
@@ -36,6 +37,7 @@ pub const ALL: &[&dyn Figure] = &[
     &collision_error::CollisionError { blind: true },
     &contacts_alone::ContactsAlone,
     &simulation_error::SimulationError,
+    &convergence::Convergence,
     &table_1::Table1,
     &table_2::Table2,
     &defaults::Defaults,

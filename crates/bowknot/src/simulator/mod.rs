@@ -23,7 +23,7 @@ pub use statistics::{Energy, StepSeconds, StepStatistics};
 use crate::check::{Judge, StateOptions, StateReport};
 use crate::scene::{CollisionEvery, Scene};
 use crate::world::{Attachment, World};
-use bowknot_dynamics::{Dynamics, DynamicsModel};
+use bowknot_dynamics::{Dynamics, DynamicsModel, Residual};
 use bowknot_geometry::{Point, Vector};
 use bowknot_twoway::{AcceptedState, Call, Observer, ResolveError, Resolver};
 use contacts::{Carried, Contacts};
@@ -104,6 +104,17 @@ pub struct AcceptedStep<'a> {
     pub state: AcceptedState<'a>,
 }
 
+/// How far a time step is from solved after one of its iterations.
+#[derive(Clone, Copy, Debug)]
+pub struct Iterated {
+    /// The time step, from 1.
+    pub step: usize,
+    /// The Newton iteration in it, from 0.
+    pub iteration: usize,
+    /// What is missing to a solution of the time step, contact and friction included.
+    pub residual: Residual,
+}
+
 /// Sees what happens within a time step, and may stop it.
 pub trait Watcher {
     /// Called before each collision problem is resolved; `Break` abandons the time step.
@@ -116,6 +127,11 @@ pub trait Watcher {
     fn accepted(&mut self, accepted: &AcceptedStep<'_>) -> ControlFlow<()> {
         let _ = accepted;
         ControlFlow::Continue(())
+    }
+
+    /// Called after the collision stage of each Newton iteration, with the residual of the whole time step.
+    fn iterated(&mut self, iterated: &Iterated) {
+        let _ = iterated;
     }
 }
 
@@ -365,6 +381,7 @@ impl Simulator {
             statistics.seconds.dynamics += clock.elapsed().as_secs_f64();
             (statistics.residual_n, statistics.residual_m) = (residual.force, residual.distance);
             tracing::debug!(step, iteration, residual.force, residual.distance, "time step");
+            watcher.iterated(&Iterated { step, iteration, residual });
             if progress.ends(residual.distance) {
                 break;
             }
