@@ -56,7 +56,7 @@ pub struct RepulsionSpring {
     pub normal: Vector,
     /// What is taken from sum beta_i n.x_i [m]: 0 between primitives, n.p for a half-space through p.
     pub offset: f64,
-    /// Gap below which it pushes [m].
+    /// Gap below which it pushes [m]; negative for what is drawn together, minus the largest distance.
     pub desired: f64,
     /// Stiffness k in units of the bodies' own at the contact [1]: 1 / sum beta_i^2 / (n . H_ii n), H_ii the blocks of the
     /// Newton system, inertia included, of free vertices.
@@ -254,7 +254,7 @@ impl Repulsion {
             let (depth, slip) = self.depth_and_slip(spring, iterate.unwrap_or(inertial));
             if iterate.is_none() {
                 // What inertia takes apart carries nothing.
-                state.pushes = depth > -NEARLY * s.desired;
+                state.pushes = depth > -NEARLY * s.desired.max(0.0);
                 let length = slip.norm();
                 if state.pushes && s.friction > 0.0 {
                     // Coulomb's law for the vertices on their own: it holds at first what they would hold.

@@ -35,6 +35,8 @@ pub struct Call<'a> {
     /// Group of each vertex: prescribed vertices of one group go and wait as one, by one fraction of their way.
     /// [`Self::NO_GROUP`] is none. Every obstacle is a group of its own anyway. Empty: no groups.
     pub groups: &'a [u32],
+    /// Two-way steps at most, if fewer than those of the parameters: for a caller that goes on from wherever the call ends.
+    pub max_steps: Option<usize>,
 }
 
 impl Call<'_> {
@@ -146,6 +148,7 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
         let mut statistics = Statistics::default();
         let limits = &problem.params.stop;
         let max_steps = limits.max_steps.unwrap_or_else(|| default_max_steps(call.time_step));
+        let max_steps = call.max_steps.map_or(max_steps, |most| most.min(max_steps));
         let mut waiting = Patience::default();
         let mut unrest = f64::INFINITY;
         let mut finishing = 0;

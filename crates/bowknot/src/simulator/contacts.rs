@@ -5,7 +5,7 @@
 //! collision stage. Where a contact point has slid on to another feature, the force on its vertex passes to the new one.
 //! Forces are part of the state between two time steps, and of checkpoints.
 
-use super::RELAXATION;
+use super::{RELAXATION, taut};
 use crate::scene::{BodyKind, RepulsionParams};
 use crate::world::World;
 use bowknot_constraints::{Feature, FrictionModel};
@@ -71,7 +71,8 @@ impl Contacts {
         self.touching = Touching::default();
         self.note_touching(resolver);
         let growth = resolver.problem().lengths.separation_speed * dt;
-        for (contact, spring) in self.contacts.iter().zip(&mut self.springs) {
+        let contacts = self.contacts.iter().zip(&mut self.springs);
+        for (contact, spring) in contacts.filter(|(contact, _)| !taut::is_edge(&contact.features)) {
             spring.desired = desired_gap(contact.desired, contact.distance, growth, dt);
         }
     }
@@ -163,7 +164,27 @@ impl Contacts {
             });
         }
         let moved = moved_edges(resolver, carried, &index);
+        self.add_taut_edges(problem, &resolver.state().x, start, &loaded, &mut index);
         self.hand_on(problem, carried, &index, &moved);
+    }
+
+    /// Adds the edges of cloth at their stretch limits.
+    fn add_taut_edges(
+        &mut self,
+        problem: &Problem,
+        x: &[Point],
+        start: &[Point],
+        loaded: &HashSet<[Feature; 2]>,
+        index: &mut Index,
+    ) {
+        let kinds = &self.kinds;
+        let of_cloth = |v: u32| kinds[v as usize] == Some(BodyKind::Cloth);
+        let is_carried = |features: &[Feature; 2]| loaded.contains(features);
+        for (features, spring) in taut::edges(problem, x, start, self.stiffness, of_cloth, is_carried) {
+            index.insert(features, self.springs.len());
+            self.contacts.push(Contact { features, desired: spring.desired, distance: spring.desired });
+            self.springs.push(spring);
+        }
     }
 
     /// Adds the pairs in range that are contacts within a tolerance, by features, and are not in the `index` yet.
@@ -249,7 +270,9 @@ impl Contacts {
                 self.springs[spring].force += force;
             } else if let Some(&(spring, sign)) = moved.get(features) {
                 self.springs[spring].force += force * sign;
-            } else if let [Feature::Edge(a), Feature::Edge(b)] = features {
+            } else if let [Feature::Edge(a), Feature::Edge(b)] = features
+                && a != b
+            {
                 at_edge.insert(*a, of_edges.len());
                 at_edge.insert(*b, of_edges.len());
                 of_edges.push(*force);
@@ -275,6 +298,7 @@ impl Contacts {
                 spring.force += force / f64::from(count);
             }
             if let [Feature::Edge(a), Feature::Edge(b)] = &contact.features
+                && a != b
                 && let Some(&left) = at_edge.get(a).or_else(|| at_edge.get(b))
                 && pressed(spring, &of_edges[left])
             {
@@ -325,7 +349,7 @@ impl Contacts {
                 let start = spring.normal * spring.desired;
                 let way = approach(spring, motion);
                 let length = way.norm_squared();
-                if is_face(&contact.features) || length == 0.0 {
+                if is_face(&contact.features) || taut::is_edge(&contact.features) || length == 0.0 {
                     return false;
                 }
                 let nearest = (-start.dot(&way) / length).clamp(0.0, 1.0);

@@ -31,13 +31,13 @@ pub struct StepStatistics {
     pub active_rows: usize,
     /// Pairs frozen for want of a certificate, over all two-way steps.
     pub frozen_pairs: usize,
-    /// Largest clock r at the end of any collision problem.
+    /// Clock r at the end of the last collision problem.
     pub remaining_r: f64,
-    /// Largest distance not travelled at the end of any collision problem [m].
+    /// Largest distance not travelled at the end of the last collision problem [m].
     pub remaining_m: f64,
     /// Largest stationarity residual, likewise [m].
     pub stationarity_m: f64,
-    /// Whether all collision problems met the stopping rule.
+    /// Whether the last collision problem met the stopping rule.
     pub converged: bool,
     /// Smallest distance over the listed pairs at the end [m]; none if no pair is listed.
     pub min_gap_m: Option<f64>,
@@ -59,7 +59,7 @@ pub struct StepStatistics {
     pub cpu_seconds: f64,
     /// Work that was skipped because nothing needed it.
     pub skipped: Skipped,
-    /// Name of the body that has travelled least of its way, if a collision problem did not converge.
+    /// Name of the body that has travelled least of its way, if the last collision problem did not converge.
     #[serde(default)]
     pub slowest_body: Option<String>,
     /// Largest distance by which an obstacle or pin is behind its keyframe at the end [m].
@@ -137,7 +137,7 @@ impl StepStatistics {
         self.seconds.dynamics += seconds;
     }
 
-    /// Adds a collision problem. `converged` begins as true.
+    /// Adds a collision problem.
     pub(super) fn add_collision(&mut self, call: &Statistics, name_of: impl Fn(u32) -> String) {
         self.two_way_steps += call.steps;
         self.searches += call.searches;
@@ -148,10 +148,10 @@ impl StepStatistics {
         self.friction_rows = call.friction_rows;
         self.injected_energy_j += call.injected_j;
         self.frozen_pairs += call.frozen_pairs;
-        self.remaining_r = self.remaining_r.max(call.remaining_r);
-        self.remaining_m = self.remaining_m.max(call.remaining_m);
-        self.stationarity_m = self.stationarity_m.max(call.stationarity_m);
-        self.converged &= call.converged;
+        self.remaining_r = call.remaining_r;
+        self.remaining_m = call.remaining_m;
+        self.stationarity_m = call.stationarity_m;
+        self.converged = call.converged;
         self.min_gap_m = call.min_gap_m;
         self.max_step_stretch = self.max_step_stretch.max(call.max_step_stretch);
         self.seconds.search += call.seconds.search;
@@ -162,9 +162,7 @@ impl StepStatistics {
         self.skipped.evaluations += call.skipped.evaluations;
         self.skipped.rows += call.skipped.rows;
         self.prescribed_behind_m = call.prescribed_behind_m;
-        if !call.converged {
-            self.slowest_body = call.slowest_body.map(name_of).or(self.slowest_body.take());
-        }
+        self.slowest_body = call.slowest_body.filter(|_| !call.converged).map(name_of);
     }
 
     /// Fills in what is measured at the end.
