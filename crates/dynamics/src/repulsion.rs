@@ -254,11 +254,14 @@ impl Repulsion {
             let (depth, slip) = self.depth_and_slip(spring, iterate.unwrap_or(inertial));
             if iterate.is_none() {
                 // What inertia takes apart carries nothing.
-                state.pushes = depth > -NEARLY * s.desired.max(0.0);
+                state.pushes = depth > -NEARLY * s.desired.max(0.0) || s.desired < 0.0 && carried > 0.0;
                 let length = slip.norm();
                 if state.pushes && s.friction > 0.0 {
-                    // Coulomb's law for the vertices on their own: it holds at first what they would hold.
-                    state.friction = if length <= s.friction * depth {
+                    // Coulomb's law for the vertices on their own: it holds at first what they would hold, and what held before where
+                    // inertia leads to no more than its bound.
+                    let bound = s.friction * (carried + state.stiffness * depth.max(0.0));
+                    let holds = carried > 0.0 && (tau - slip * state.stiffness).norm() < bound;
+                    state.friction = if holds || length <= s.friction * depth {
                         Friction::Stick(tau)
                     } else {
                         let most = s.friction * carried;

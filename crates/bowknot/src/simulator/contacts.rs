@@ -21,23 +21,14 @@ pub(super) struct Contacts {
     /// What each vertex that collides is part of.
     kinds: Vec<Option<BodyKind>>,
     springs: Vec<RepulsionSpring>,
-    /// What each spring stands for.
-    contacts: Vec<Contact>,
+    /// Features of each spring's sides, [`oriented`]; of a taut edge, see [`taut::features`].
+    features: Vec<[Feature; 2]>,
+    /// Forces of the contacts that a run goes on from, until its first time step finds them.
+    resumed: Option<Vec<Carried>>,
     /// Forces of rows whose pairs have no spring, by vertex that collides [N].
     held: Vec<Vector>,
     /// What was in contact range at the start of the time step or after any of its collision stages.
     touching: Touching,
-}
-
-/// What a spring stands for.
-#[derive(Clone, Copy, Debug)]
-struct Contact {
-    /// Features of its sides, [`oriented`].
-    features: [Feature; 2],
-    /// What the collision stage wants to keep, whatever the distance was when the time step began [m].
-    desired: f64,
-    /// Present distance [m].
-    distance: f64,
 }
 
 /// The force that a contact between two features carries, on the first [N].
@@ -65,16 +56,19 @@ impl Contacts {
         &self.touching
     }
 
-    /// Begins a time step: forgets what touched in the last one, but for what is in contact range now, and sets out to open gaps
-    /// from what they are now.
-    pub fn begin_step(&mut self, resolver: &Resolver, dt: f64) {
+    /// Goes on with the forces of a checkpoint.
+    pub fn resume(&mut self, carried: &[Carried]) {
+        self.resumed = Some(carried.to_vec());
+    }
+
+    /// Begins a time step at the positions `start`: forgets what touched in the last one, but for what is in contact range now, and
+    /// finds the contacts anew, from nothing but positions and forces, so that a run that goes on from a checkpoint finds the same.
+    pub fn begin_step(&mut self, resolver: &Resolver, start: &[Point], dt: f64) {
         self.touching = Touching::default();
         self.note_touching(resolver);
-        let growth = resolver.problem().lengths.separation_speed * dt;
-        let contacts = self.contacts.iter().zip(&mut self.springs);
-        for (contact, spring) in contacts.filter(|(contact, _)| !taut::is_edge(&contact.features)) {
-            spring.desired = desired_gap(contact.desired, contact.distance, growth, dt);
-        }
+        let carried = self.carried();
+        self.resumed = None;
+        self.find(resolver, &carried, start, dt);
     }
 
     /// Takes down what is in contact range.
@@ -97,7 +91,8 @@ impl Contacts {
 
     /// The forces that they carry.
     pub fn carried(&self) -> Vec<Carried> {
-        self.contacts.iter().zip(&self.springs).map(|(c, s)| (c.features, s.force)).collect()
+        let of_springs = || self.features.iter().zip(&self.springs).map(|(f, s)| (*f, s.force)).collect();
+        self.resumed.clone().unwrap_or_else(of_springs)
     }
 
     /// Moves the `forces` of the springs, by spring [N], back towards what they carried.
@@ -111,8 +106,7 @@ impl Contacts {
     /// pushed.
     pub fn carried_after(&mut self, forces: &[Vector], resolver: &Resolver, dt: f64) -> Vec<Carried> {
         let (problem, contacts) = (resolver.problem(), &resolver.state().contacts);
-        let features = self.contacts.iter().map(|contact| contact.features);
-        let mut carried: Vec<Carried> = features.zip(forces.iter().copied()).collect();
+        let mut carried: Vec<Carried> = self.features.iter().copied().zip(forces.iter().copied()).collect();
         let unit = problem.mean_mass / (dt * dt);
         self.held.clear();
         self.held.resize(problem.rest.len(), Vector::zeros());
@@ -143,7 +137,7 @@ impl Contacts {
     /// hands on the forces of those before. `start` are positions at the start of the time step.
     pub fn find(&mut self, resolver: &Resolver, carried: &[Carried], start: &[Point], dt: f64) {
         self.springs.clear();
-        self.contacts.clear();
+        self.features.clear();
         if self.stiffness == 0.0 {
             return;
         }
@@ -154,13 +148,14 @@ impl Contacts {
             .map(|(features, _)| *features)
             .collect();
         let mut index = HashMap::new();
-        self.add(resolver, start, dt, &mut index, |features| {
+        self.add(resolver, start, dt, &mut index, |features, _| {
             Some(if loaded.contains(features) { LOADED_TOLERANCE } else { CONE_TOLERANCE })
         });
         let orphans = self.orphans(problem, carried, &index);
         if !orphans.is_empty() {
-            self.add(resolver, start, dt, &mut index, |features| {
-                side(problem, features).filter(|side| orphans.contains(side)).map(|_| LOADED_TOLERANCE)
+            self.add(resolver, start, dt, &mut index, |features, normal| {
+                let force = orphans.get(&side(problem, features)?)?;
+                (normal.dot(force) > 0.0).then_some(LOADED_TOLERANCE)
             });
         }
         let moved = moved_edges(resolver, carried, &index);
@@ -182,19 +177,19 @@ impl Contacts {
         let is_carried = |features: &[Feature; 2]| loaded.contains(features);
         for (features, spring) in taut::edges(problem, x, start, self.stiffness, of_cloth, is_carried) {
             index.insert(features, self.springs.len());
-            self.contacts.push(Contact { features, desired: spring.desired, distance: spring.desired });
+            self.features.push(features);
             self.springs.push(spring);
         }
     }
 
-    /// Adds the pairs in range that are contacts within a tolerance, by features, and are not in the `index` yet.
+    /// Adds the pairs in range that are contacts within a tolerance, by features and normal, and are not in the `index` yet.
     fn add(
         &mut self,
         resolver: &Resolver,
         start: &[Point],
         dt: f64,
         index: &mut Index,
-        tolerance: impl Fn(&[Feature; 2]) -> Option<f64>,
+        tolerance: impl Fn(&[Feature; 2], &Vector) -> Option<f64>,
     ) {
         let (problem, state) = (resolver.problem(), resolver.state());
         let contacts = &state.contacts;
@@ -209,8 +204,8 @@ impl Contacts {
                     continue;
                 }
                 let (features, sign) = oriented(problem.features(kind, pair, separation));
-                let Some(tolerance) = tolerance(&features) else { continue };
                 let mut normal = separation.normal * sign;
+                let Some(tolerance) = tolerance(&features, &normal) else { continue };
                 if index.contains_key(&features)
                     || !problem.is_contact(features, &normal, &state.x, tolerance)
                 {
@@ -230,7 +225,7 @@ impl Contacts {
                 let sides: Vector = (0..4).map(|k| start[vertices[k] as usize].coords * weights[k]).sum();
                 let (desired, distance) = (problem.desired_distance(kind, pair), separation.distance);
                 let first = (normal.dot(&sides) - offset).max(distance.min(desired));
-                self.contacts.push(Contact { features, desired, distance });
+                self.features.push(features);
                 self.springs.push(RepulsionSpring {
                     vertices,
                     weights,
@@ -245,17 +240,17 @@ impl Contacts {
         }
     }
 
-    /// The sides whose contacts carried a force and are gone, and which no contact holds that it presses.
-    fn orphans(&self, problem: &Problem, carried: &[Carried], index: &Index) -> HashSet<Side> {
+    /// The sides whose contacts carried a force and are gone, and which no contact holds that it presses, with that force [N].
+    fn orphans(&self, problem: &Problem, carried: &[Carried], index: &Index) -> HashMap<Side, Vector> {
         let mut orphans = lost_by_side(problem, carried, index);
-        for (contact, spring) in self.contacts.iter().zip(&self.springs) {
-            if let Some(side) = side(problem, &contact.features)
+        for (features, spring) in self.features.iter().zip(&self.springs) {
+            if let Some(side) = side(problem, features)
                 && orphans.get(&side).is_some_and(|force| spring.normal.dot(force) > 0.0)
             {
                 orphans.remove(&side);
             }
         }
-        orphans.into_keys().collect()
+        orphans
     }
 
     /// Gives the springs the forces of those before: of the same features; of two edges, to the feature of theirs that the closest
@@ -265,7 +260,7 @@ impl Contacts {
         let of_vertices = lost_by_side(problem, carried, index);
         let mut of_edges: Vec<Vector> = Vec::new();
         let mut at_edge: HashMap<u32, usize> = HashMap::new();
-        for (features, force) in carried {
+        for (features, force) in carried.iter().filter(|(_, force)| *force != Vector::zeros()) {
             if let Some(&spring) = index.get(features) {
                 self.springs[spring].force += force;
             } else if let Some(&(spring, sign)) = moved.get(features) {
@@ -283,21 +278,21 @@ impl Contacts {
         }
         let pressed = |spring: &RepulsionSpring, force: &Vector| spring.normal.dot(force) > 0.0;
         let mut shares: HashMap<Side, u32> = HashMap::new();
-        for (contact, spring) in self.contacts.iter().zip(&self.springs) {
-            if let Some(side) = side(problem, &contact.features)
+        for (features, spring) in self.features.iter().zip(&self.springs) {
+            if let Some(side) = side(problem, features)
                 && of_vertices.get(&side).is_some_and(|force| pressed(spring, force))
             {
                 *shares.entry(side).or_default() += 1;
             }
         }
-        for (contact, spring) in self.contacts.iter().zip(&mut self.springs) {
-            if let Some(side) = side(problem, &contact.features)
+        for (features, spring) in self.features.iter().zip(&mut self.springs) {
+            if let Some(side) = side(problem, features)
                 && let Some(force) = of_vertices.get(&side).filter(|force| pressed(spring, force))
                 && let Some(&count) = shares.get(&side)
             {
                 spring.force += force / f64::from(count);
             }
-            if let [Feature::Edge(a), Feature::Edge(b)] = &contact.features
+            if let [Feature::Edge(a), Feature::Edge(b)] = features
                 && a != b
                 && let Some(&left) = at_edge.get(a).or_else(|| at_edge.get(b))
                 && pressed(spring, &of_edges[left])
@@ -331,8 +326,8 @@ impl Contacts {
         };
         let is_face =
             |features: &[Feature; 2]| matches!(features[1], Feature::Triangle(_) | Feature::HalfSpace(_));
-        for (contact, spring) in self.contacts.iter().zip(&self.springs) {
-            if !is_face(&contact.features) {
+        for (features, spring) in self.features.iter().zip(&self.springs) {
+            if !is_face(features) {
                 continue;
             }
             // The gap is at least the desired one, or opens no faster than to that.
@@ -342,14 +337,15 @@ impl Contacts {
             }
         }
         let passed: Vec<bool> = self
-            .contacts
+            .features
             .iter()
             .zip(&self.springs)
-            .map(|(contact, spring)| {
+            .map(|(features, spring)| {
                 let start = spring.normal * spring.desired;
                 let way = approach(spring, motion);
                 let length = way.norm_squared();
-                if is_face(&contact.features) || taut::is_edge(&contact.features) || length == 0.0 {
+                // What carries a force is touched already, not ahead.
+                if is_face(features) || spring.force != Vector::zeros() || length == 0.0 {
                     return false;
                 }
                 let nearest = (-start.dot(&way) / length).clamp(0.0, 1.0);
@@ -360,7 +356,7 @@ impl Contacts {
         let mut keep = passed.iter().map(|passed| !passed);
         self.springs.retain(|_| keep.next().unwrap_or(true));
         let mut keep = passed.iter().map(|passed| !passed);
-        self.contacts.retain(|_| keep.next().unwrap_or(true));
+        self.features.retain(|_| keep.next().unwrap_or(true));
     }
 
     /// Whether a contact deforms something, and no strand: these are a hundred times stiffer along than across, and the
@@ -443,7 +439,7 @@ fn lost_by_side(problem: &Problem, carried: &[Carried], index: &Index) -> HashMa
 /// Pairs of edges that carried a force and whose closest points now lie on an end of one: what they have become.
 fn moved_edges(resolver: &Resolver, carried: &[Carried], index: &Index) -> MovedEdges {
     let is_lost = |features: &[Feature; 2]| {
-        matches!(features, [Feature::Edge(_), Feature::Edge(_)]) && !index.contains_key(features)
+        matches!(features, [Feature::Edge(a), Feature::Edge(b)] if a != b) && !index.contains_key(features)
     };
     let lost: HashSet<[Feature; 2]> = carried.iter().map(|(features, _)| *features).filter(is_lost).collect();
     let mut moved = MovedEdges::new();
@@ -466,14 +462,11 @@ fn moved_edges(resolver: &Resolver, carried: &[Carried], index: &Index) -> Moved
     moved
 }
 
-/// Features in an order of their own, so that pairs of different kinds that touch at the same place are one contact: vertices before
-/// edges. And the sign that the normal and forces take.
+/// Features with a vertex before an edge, so that pairs of different kinds that touch there are one contact; and the sign that the
+/// normal and forces take.
 fn oriented(features: [Feature; 2]) -> ([Feature; 2], f64) {
-    let [a, b] = features;
-    let swaps = match (a, b) {
-        (Feature::Edge(_), Feature::Vertex(_)) => true,
-        (Feature::Vertex(v), Feature::Vertex(w)) => v > w,
-        _ => false,
-    };
-    if swaps { ([b, a], -1.0) } else { (features, 1.0) }
+    match features {
+        [edge @ Feature::Edge(_), vertex @ Feature::Vertex(_)] => ([vertex, edge], -1.0),
+        _ => (features, 1.0),
+    }
 }

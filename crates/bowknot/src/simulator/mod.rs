@@ -37,8 +37,8 @@ use std::time::Instant;
 /// How many intersecting pairs of a refused start are named.
 const NAMED_PAIRS: usize = 5;
 
-/// Share of the way to a target that is taken where the iterations swing: contacts have the normals of the state before, and what is
-/// pressed hard turns from side to side with them.
+/// Share of the way to a target that is taken where the iterations swing: contacts have the normals of the state before, so that what is
+/// pressed hard overshoots, to one side and the other in turn.
 const RELAXATION: f64 = 0.5;
 
 /// Two-way steps of a collision stage at most that is not the last of a time step. Where folds lock each other on the way to a target
@@ -215,7 +215,7 @@ impl Simulator {
         resolver
             .survey(&positions[..world.collision_vertices()], &call)
             .map_err(|source| resolve_error(world, *step, source))?;
-        contacts.find(resolver, carried, positions, *dt);
+        contacts.resume(carried);
         Ok(())
     }
 
@@ -247,9 +247,12 @@ impl Simulator {
         if let Err(error) = result {
             self.positions.clone_from(&scratch.start);
             self.anchors = anchors;
+            let carried = contacts.carried();
             self.contacts = contacts;
             self.attachments.iter_mut().for_each(Vec::clear);
             self.scratch = scratch;
+            // What is near was last looked for on the way; positions that have been surveyed before are no new error.
+            self.survey(&carried)?;
             return Err(error);
         }
 
@@ -303,13 +306,13 @@ impl Simulator {
 
         let clock = Instant::now();
         dynamics.begin_step(start, velocities, *dt).map_err(target_error)?;
+        contacts.begin_step(resolver, start, *dt);
         if !contacts.springs().is_empty() {
             let inertial = dynamics.inertial_positions();
             let end = |v: usize| if prescribed[v] { keyframes[v] } else { inertial[v] };
             let mut motion: Vec<Vector> = (0..start.len()).map(|v| end(v) - start[v]).collect();
             contacts.anticipate(&mut motion);
         }
-        contacts.begin_step(resolver, *dt);
         contacts.apply(dynamics).map_err(target_error)?;
         statistics.repulsion_springs = contacts.springs().len();
         statistics.seconds.dynamics += clock.elapsed().as_secs_f64();
@@ -369,7 +372,7 @@ impl Simulator {
                 return Err(SimulationError::Interrupted);
             }
             let resolved = resolved.map_err(|source| resolve_error(world, step, source))?;
-            let converged = resolved.converged;
+            let cut = !last && !resolved.converged && resolved.steps >= STEPS_BETWEEN;
             statistics.add_collision(&resolved, |body| world.name_of(body).to_owned());
 
             let clock = Instant::now();
@@ -389,7 +392,7 @@ impl Simulator {
             (statistics.residual_n, statistics.residual_m) = (residual.force, residual.distance);
             tracing::debug!(step, iteration, residual.force, residual.distance, "time step");
             watcher.iterated(&Iterated { step, iteration, residual });
-            if progress.ends(residual.distance) && converged {
+            if progress.ends(residual.distance) && !cut {
                 break;
             }
         }

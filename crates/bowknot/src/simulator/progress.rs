@@ -12,8 +12,8 @@ const VAIN_ITERATIONS: usize = 3;
 /// Iterations without progress after which they count as swinging about the solution.
 const SWINGING: usize = 2;
 
-/// Factor of the least residual within which an iteration may be the last: a contact that was just lost or found leaves the
-/// state far from the solution for an iteration, and cloth crushed.
+/// Factor of the least residual within which iterations without progress may end: an iteration that has just lost or found a
+/// contact can be far from the solution, with edges crushed.
 const GOOD_END: f64 = 1.2;
 
 /// How the residuals of a time step go down.

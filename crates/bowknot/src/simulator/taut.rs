@@ -22,11 +22,6 @@ pub fn features(edge: u32) -> [Feature; 2] {
     [Feature::Edge(edge), Feature::Edge(edge)]
 }
 
-/// Whether it is a taut edge that these features stand for.
-pub fn is_edge(features: &[Feature; 2]) -> bool {
-    features[0] == features[1]
-}
-
 /// The edges between vertices that are `limited` and that are taut at `x` or of which a force `is_carried`, each as a spring; `start`
 /// are positions at the start of the time step.
 pub fn edges<'a>(
@@ -59,7 +54,7 @@ pub fn edges<'a>(
         if length < TAUT * limit && !is_carried(&features) {
             return None;
         }
-        // The gap that it must keep is that of -length to -limit.
+        // As a gap: minus the length, which must stay above minus the limit.
         let spring = RepulsionSpring {
             vertices: [a, b, a, a],
             weights: [-1.0, 1.0, 0.0, 0.0],
