@@ -4,8 +4,8 @@ use crate::{Colouring, EdgeReference};
 use bowknot_geometry::{Point, Topology, Vector};
 use bowknot_lcp::{BallRow, Row};
 
-/// Share of the length at the start of a call that an edge's limit never falls below: an edge that starts
-/// longer than its limit is brought back a little each call, because asking for the whole of it at
+/// Share of the length at the start that an edge's limit never falls below: an edge that starts
+/// longer than its limit is brought back a little each time, because asking for the whole of it at
 /// once is infeasible and blows up.
 const START_SHARE: f64 = 0.97;
 
@@ -51,6 +51,11 @@ impl EdgeLimits {
         }
     }
 
+    /// Limit of an edge [m] whose length is `start` at the start [m] and that is to come to `limit` [m], its rest length times sigma.
+    pub fn of_rest(limit: f64, start: f64) -> f64 {
+        limit.max(START_SHARE * start)
+    }
+
     /// Sets the limits of a call that starts at `positions`.
     pub fn begin(&mut self, positions: &[Point], reference: EdgeReference) {
         for k in 0..self.balls.len() {
@@ -59,7 +64,7 @@ impl EdgeLimits {
             self.start_lengths[k] = start;
             self.balls[k].limit = match reference {
                 EdgeReference::Start => stretch_limit * start,
-                EdgeReference::Rest => (stretch_limit * self.rest_lengths[k]).max(START_SHARE * start),
+                EdgeReference::Rest => Self::of_rest(stretch_limit * self.rest_lengths[k], start),
             };
         }
     }

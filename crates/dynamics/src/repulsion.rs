@@ -50,7 +50,8 @@ const SETTLED_BOUND: f64 = 0.1;
 pub struct RepulsionSpring {
     /// The vertices; obstacles are welcome. Where there are fewer than four, any vertex with weight 0.
     pub vertices: [u32; 4],
-    /// Their weights beta [1], barycentric: positive on the side that the normal points to, negative on the other.
+    /// Their weights beta [1], barycentric: positive on the side that the normal points to, negative on the other. Of what is
+    /// drawn together the other way round.
     pub weights: [f64; 4],
     /// Unit normal n [1].
     pub normal: Vector,
@@ -223,11 +224,12 @@ impl Repulsion {
 
     /// Fixes the stiffness until springs are set again, and guesses which of them push and which stick: in the first iteration
     /// what would with nodes where inertia leads, `inertial`; in later ones what does at the `iterate`. `diagonal` has the
-    /// blocks of the Newton system without springs, `wholes` the mass of each node's body over dt^2 [N/m].
+    /// blocks of the Newton system without springs, `rate` is 1 / dt [1/s].
     pub fn prepare(
         &mut self,
+        model: &DynamicsModel,
         diagonal: &[Matrix3<f64>],
-        wholes: &[f64],
+        rate: f64,
         free: &[bool],
         inertial: &[Vector],
         iterate: Option<&[Vector]>,
@@ -240,8 +242,15 @@ impl Repulsion {
             for (&node, weight) in self.nodes[spring].iter().zip(s.weights) {
                 if node != NO_NODE && free[node as usize] {
                     let node = node as usize;
-                    let local = s.normal.dot(&(diagonal[node] * s.normal));
-                    compliance += weight * weight * (1.0 / local + WHOLE / wholes[node]);
+                    // A kinked strand resists along both of its edges, but only as long as its neighbours stay: springs as stiff as that
+                    // are too stiff for it, and settling diverges where strands cross.
+                    let local = if model.strands[node] {
+                        diagonal[node].symmetric_eigenvalues().min()
+                    } else {
+                        s.normal.dot(&(diagonal[node] * s.normal))
+                    };
+                    let whole = model.body_masses[node] * rate * rate;
+                    compliance += weight * weight * (1.0 / local + WHOLE / whole);
                 }
             }
             *state = SpringState::IDLE;

@@ -49,7 +49,8 @@ pub struct BackwardParams {
 #[serde(deny_unknown_fields, default)]
 pub struct StopParams {
     /// Largest number of two-way steps, the paper's L. The default follows the time step: 512 up to
-    /// dt = 1/100, 2048 at 1/20 and above, in proportion to dt between.
+    /// dt = 1/100, 2048 at 1/20 and above, in proportion to dt between. A simulation that goes on with another Newton iteration
+    /// ends the stage before it after 128 steps.
     pub max_steps: Option<usize>,
     /// Largest wall time of one call [s]; none by default.
     pub max_seconds: Option<f64>,

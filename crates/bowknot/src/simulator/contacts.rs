@@ -3,9 +3,10 @@
 //! After each collision stage the pairs within contact range are sorted into contacts and mere neighbours ([`Facing`]). A
 //! contact takes over the force that it carried before: that of its spring in the Newton system and that of its row in the
 //! collision stage. Where a contact point has slid on to another feature, the force on its vertex passes to the new one.
-//! Forces are part of the state between two time steps, and of checkpoints.
+//! Forces are part of the state between two time steps, and of checkpoints. Edges at their stretch limits are springs like contacts.
 
-use super::{RELAXATION, taut};
+use super::RELAXATION;
+use super::taut::LimitedEdges;
 use crate::scene::{BodyKind, RepulsionParams};
 use crate::world::World;
 use bowknot_constraints::{Feature, FrictionModel};
@@ -18,15 +19,17 @@ use std::collections::{HashMap, HashSet};
 #[derive(Clone, Debug, Default)]
 pub(super) struct Contacts {
     stiffness: f64,
-    /// What each vertex that collides is part of.
-    kinds: Vec<Option<BodyKind>>,
     springs: Vec<RepulsionSpring>,
-    /// Features of each spring's sides, [`oriented`]; of a taut edge, see [`taut::features`].
+    /// Features of each spring's sides, [`oriented`]; of a taut edge, the edge with itself.
     features: Vec<[Feature; 2]>,
     /// Forces of the contacts that a run goes on from, until its first time step finds them.
     resumed: Option<Vec<Carried>>,
-    /// Forces of rows whose pairs have no spring, by vertex that collides [N].
-    held: Vec<Vector>,
+    /// The edges that have a stretch limit.
+    limited: LimitedEdges,
+    /// Which vertices of the world are part of bodies that Newton's method solves together with their contacts, and which of them
+    /// no row held whose pair has no spring.
+    solved: Vec<bool>,
+    counted: Vec<bool>,
     /// What was in contact range at the start of the time step or after any of its collision stages.
     touching: Touching,
 }
@@ -36,14 +39,13 @@ pub type Carried = ([Feature; 2], Vector);
 
 impl Contacts {
     pub fn new(params: &RepulsionParams, world: &World, resolver: &Resolver) -> Self {
-        let mut kinds = vec![None; world.collision_vertices()];
-        for body in &world.bodies {
-            kinds[body.vertices.start as usize..body.vertices.end as usize].fill(body.kind);
-        }
         // The velocity filter takes friction from how deep the target is; springs would leave nothing of that.
         let filtered = resolver.problem().friction_model() == FrictionModel::Filter;
         let stiffness = if filtered { 0.0 } else { params.stiffness };
-        Self { stiffness, kinds, ..Self::default() }
+        let limited = LimitedEdges::new(resolver.problem(), world);
+        let mut solved = vec![false; world.positions.len()];
+        self::solved(world).for_each(|v| solved[v] = true);
+        Self { stiffness, limited, counted: solved.clone(), solved, ..Self::default() }
     }
 
     /// The contacts.
@@ -108,8 +110,7 @@ impl Contacts {
         let (problem, contacts) = (resolver.problem(), &resolver.state().contacts);
         let mut carried: Vec<Carried> = self.features.iter().copied().zip(forces.iter().copied()).collect();
         let unit = problem.mean_mass / (dt * dt);
-        self.held.clear();
-        self.held.resize(problem.rest.len(), Vector::zeros());
+        self.counted.clone_from(&self.solved);
         for kind in PairKind::ALL {
             for p in contacts.pairs.range(kind) {
                 let (lambda, separation) = (contacts.multipliers[p], &contacts.separations[p]);
@@ -120,13 +121,11 @@ impl Contacts {
                 let rubbing = contacts.friction_multipliers.get(p).copied().unwrap_or_else(Vector::zeros);
                 let force = (separation.normal * lambda + rubbing) * unit;
                 let used = &pair.vertices[..kind.vertex_count()];
-                if self.is_elastic(used) {
+                if self.stiffness > 0.0 && self.is_elastic(used) {
                     let (features, sign) = oriented(problem.features(kind, pair, separation));
                     carried.push((features, force * sign));
                 } else {
-                    for (&v, weight) in used.iter().zip(separation.signed_weights(kind)) {
-                        self.held[v as usize] += force * weight;
-                    }
+                    used.iter().for_each(|&v| self.counted[v as usize] = false);
                 }
             }
         }
@@ -159,27 +158,12 @@ impl Contacts {
             });
         }
         let moved = moved_edges(resolver, carried, &index);
-        self.add_taut_edges(problem, &resolver.state().x, start, &loaded, &mut index);
-        self.hand_on(problem, carried, &index, &moved);
-    }
-
-    /// Adds the edges of cloth at their stretch limits.
-    fn add_taut_edges(
-        &mut self,
-        problem: &Problem,
-        x: &[Point],
-        start: &[Point],
-        loaded: &HashSet<[Feature; 2]>,
-        index: &mut Index,
-    ) {
-        let kinds = &self.kinds;
-        let of_cloth = |v: u32| kinds[v as usize] == Some(BodyKind::Cloth);
-        let is_carried = |features: &[Feature; 2]| loaded.contains(features);
-        for (features, spring) in taut::edges(problem, x, start, self.stiffness, of_cloth, is_carried) {
+        for (features, spring) in self.limited.taut(&resolver.state().x, start, self.stiffness, &loaded) {
             index.insert(features, self.springs.len());
             self.features.push(features);
             self.springs.push(spring);
         }
+        self.hand_on(problem, carried, &index, &moved);
     }
 
     /// Adds the pairs in range that are contacts within a tolerance, by features and normal, and are not in the `index` yet.
@@ -224,6 +208,8 @@ impl Contacts {
                 (0..4).filter(|&k| weights[k] == 0.0).for_each(|k| vertices[k] = pair.vertices[0]);
                 let sides: Vector = (0..4).map(|k| start[vertices[k] as usize].coords * weights[k]).sum();
                 let (desired, distance) = (problem.desired_distance(kind, pair), separation.distance);
+                // Where contacts are new or have turned, what is between the same places at the start may be less than what the
+                // collision stage has reached.
                 let first = (normal.dot(&sides) - offset).max(distance.min(desired));
                 self.features.push(features);
                 self.springs.push(RepulsionSpring {
@@ -302,19 +288,10 @@ impl Contacts {
         }
     }
 
-    /// Forces of contacts without springs, on each of the world's `count` vertices [N], and which vertices are part of what
-    /// Newton's method solves together with its contacts: cloth and solids.
-    pub fn without_springs(&self, world: &World, count: usize) -> (Vec<Vector>, Vec<bool>) {
-        let mut held = self.held.clone();
-        held.resize(count, Vector::zeros());
-        let mut counted = vec![false; count];
-        let solved = |kind| matches!(kind, Some(BodyKind::Cloth | BodyKind::Solid));
-        for body in world.bodies.iter().filter(|body| solved(body.kind)) {
-            for range in [&body.vertices, &body.interior] {
-                counted[range.start as usize..range.end as usize].fill(true);
-            }
-        }
-        (held, counted)
+    /// The vertices of the world whose forces the residual of a time step counts: those of bodies that Newton's method solves together
+    /// with their contacts, but not where rows alone hold them, of which it does not know.
+    pub fn counted(&self) -> &[bool] {
+        &self.counted
     }
 
     /// Leaves out contacts that the vertices will have passed by the end of the time step, if they go by `motion` [m] but into
@@ -359,12 +336,9 @@ impl Contacts {
         self.features.retain(|_| keep.next().unwrap_or(true));
     }
 
-    /// Whether a contact deforms something, and no strand: these are a hundred times stiffer along than across, and the
-    /// solver for them knows no springs.
+    /// Whether a contact deforms something.
     fn is_elastic(&self, vertices: &[u32]) -> bool {
-        let kinds = || vertices.iter().filter_map(|&v| self.kinds[v as usize]);
-        kinds().any(|kind| matches!(kind, BodyKind::Cloth | BodyKind::Solid))
-            && kinds().all(|kind| kind != BodyKind::Strands)
+        vertices.iter().any(|&v| self.solved[v as usize])
     }
 
     /// Hands the springs to the dynamics.
@@ -377,6 +351,9 @@ impl Contacts {
 /// do at rest.
 const SLACK: f64 = 1.05;
 
+/// Time within which they do [s].
+const OPENING_TIME: f64 = 0.05;
+
 /// Sine of the angle by which normals may leave their cones. What slides 1 cm along a normal that is tilted by so much is lifted
 /// by 0.02 mm: a stiff body feels more.
 const CONE_TOLERANCE: f64 = 2e-3;
@@ -384,10 +361,7 @@ const CONE_TOLERANCE: f64 = 2e-3;
 /// The same for contacts that carry a force: they do not come and go as surfaces tremble.
 const LOADED_TOLERANCE: f64 = 0.2;
 
-/// Time within which they do [s].
-const OPENING_TIME: f64 = 0.05;
-
-/// Gap that a contact is to have at the end of a time step, with a `distance` now and a `desired` one in the collision stage,
+/// Gap that a contact is to have at the end of a time step, with a `distance` at its start and a `desired` one in the collision stage,
 /// that opens by `growth` in a step at most [m].
 fn desired_gap(desired: f64, distance: f64, growth: f64, dt: f64) -> f64 {
     let most = SLACK * desired;
@@ -397,6 +371,17 @@ fn desired_gap(desired: f64, distance: f64, growth: f64, dt: f64) -> f64 {
 
 /// Share of the desired distance that something must keep from a feature to count as passing it.
 const PASSING: f64 = 0.5;
+
+/// Whether Newton's method solves bodies of a kind together with their contacts. Rows alone hold grains, which they do exactly.
+fn deforms(kind: BodyKind) -> bool {
+    kind != BodyKind::Particles
+}
+
+/// The vertices of bodies that Newton's method solves together with their contacts.
+pub(super) fn solved(world: &World) -> impl Iterator<Item = usize> + '_ {
+    let bodies = world.bodies.iter().filter(|body| body.kind.is_some_and(deforms));
+    bodies.flat_map(|body| body.vertices.clone().chain(body.interior.clone())).map(|v| v as usize)
+}
 
 /// Springs by what they stand for.
 type Index = HashMap<[Feature; 2], usize>;

@@ -251,7 +251,7 @@ impl Simulator {
             self.contacts = contacts;
             self.attachments.iter_mut().for_each(Vec::clear);
             self.scratch = scratch;
-            // What is near was last looked for on the way; positions that have been surveyed before are no new error.
+            // Pairs are those of where the step was stopped.
             self.survey(&carried)?;
             return Err(error);
         }
@@ -333,8 +333,8 @@ impl Simulator {
                 );
             }
             let mut forces = dynamics.contact_forces();
-            if progress.swings() {
-                relax(x, y, prescribed);
+            if progress.swings() && !contacts.springs().is_empty() {
+                relax(world, x, y, prescribed);
                 contacts.relax(&mut forces);
             }
             match self.collision_every {
@@ -386,8 +386,7 @@ impl Simulator {
                 statistics.collision_energy_j += energy_put_in(dynamics, start, y, x, *dt);
             }
             contacts.apply(dynamics).map_err(target_error)?;
-            let (held, counted) = contacts.without_springs(world, x.len());
-            let residual = dynamics.residual(x, prescribed, &held, &counted).map_err(target_error)?;
+            let residual = dynamics.residual(x, prescribed, contacts.counted()).map_err(target_error)?;
             statistics.seconds.dynamics += clock.elapsed().as_secs_f64();
             (statistics.residual_n, statistics.residual_m) = (residual.force, residual.distance);
             tracing::debug!(step, iteration, residual.force, residual.distance, "time step");
@@ -490,14 +489,13 @@ impl Simulator {
     }
 }
 
-/// Moves the target `y` back towards `x`, but for what is prescribed.
-fn relax(x: &[Point], y: &mut [Point], prescribed: &[bool]) {
-    for ((y, x), _) in y.iter_mut().zip(x).zip(prescribed).filter(|(_, prescribed)| !**prescribed) {
-        *y = x + (*y - x) * RELAXATION;
+/// Moves the target `y` back towards `x`, where Newton's method solves contacts and nothing is prescribed.
+fn relax(world: &World, x: &[Point], y: &mut [Point], prescribed: &[bool]) {
+    for v in contacts::solved(world).filter(|&v| !prescribed[v]) {
+        y[v] = x[v] + (y[v] - x[v]) * RELAXATION;
     }
 }
 
-/// Energy of where the collision stage left x, less that of its target y, if positive [J].
 fn energy_put_in(dynamics: &Dynamics, start: &[Point], y: &[Point], x: &[Point], dt: f64) -> f64 {
     let energy = |end: &[Point]| {
         let velocities: Vec<Vector> = end.iter().zip(start).map(|(x, x0)| (x - x0) / dt).collect();

@@ -2,69 +2,88 @@
 //!
 //! The collision stage keeps edges within their limits, in the metric of mass: without knowing of limits, the dynamics would
 //! stretch them beyond in each iteration, and the collision stage would draw them back at the cost of their neighbours, which it
-//! crushes. A taut edge is a one-sided spring like a contact: it pulls from its limit on, and carries its force from iteration to
-//! iteration.
+//! crushes. A taut edge is a one-sided spring like a contact: it pulls from its limit on, and the force that its spring has come to
+//! is that of the next one. What rows of the collision stage add to it is not handed on.
 
-use bowknot_constraints::{EdgeReference, Feature};
+use crate::scene::BodyKind;
+use crate::world::World;
+use bowknot_constraints::{EdgeLimits, EdgeReference, Feature};
 use bowknot_dynamics::RepulsionSpring;
 use bowknot_geometry::{Point, Vector};
 use bowknot_twoway::Problem;
+use std::collections::HashSet;
 
 /// Share of its limit from which on an edge counts as taut.
 const TAUT: f64 = 0.99;
 
-/// Share of the length at the start of a time step that the limit never falls below: what starts beyond is drawn back a little at a
-/// time.
-const START_SHARE: f64 = 0.97;
-
-/// What a taut edge stands for among contacts: the edge with itself.
-pub fn features(edge: u32) -> [Feature; 2] {
-    [Feature::Edge(edge), Feature::Edge(edge)]
+/// The edges that have a stretch limit.
+#[derive(Clone, Debug, Default)]
+pub(super) struct LimitedEdges {
+    edges: Vec<LimitedEdge>,
 }
 
-/// The edges between vertices that are `limited` and that are taut at `x` or of which a force `is_carried`, each as a spring; `start`
-/// are positions at the start of the time step.
-pub fn edges<'a>(
-    problem: &'a Problem,
-    x: &'a [Point],
-    start: &'a [Point],
-    stiffness: f64,
-    limited: impl Fn(u32) -> bool + 'a,
-    is_carried: impl Fn(&[Feature; 2]) -> bool + 'a,
-) -> impl Iterator<Item = ([Feature; 2], RepulsionSpring)> + 'a {
-    let constraints = &problem.params.constraints;
-    let all = match constraints.edges && constraints.edge_reference == EdgeReference::Rest {
-        true => problem.model.topology().edges.as_slice(),
-        false => &[],
-    };
-    all.iter().enumerate().filter_map(move |(e, &[a, b])| {
-        let [from, to] = [a, b].map(|v| v as usize);
-        if !limited(a) {
-            return None;
+#[derive(Clone, Copy, Debug)]
+struct LimitedEdge {
+    /// In the topology.
+    index: u32,
+    vertices: [u32; 2],
+    /// Largest length [m].
+    limit: f64,
+}
+
+impl LimitedEdges {
+    /// The edges of cloth and strands, where limits are those of rest lengths; none where they are of each call's start, as these limit
+    /// no sum of them.
+    pub fn new(problem: &Problem, world: &World) -> Self {
+        let constraints = &problem.params.constraints;
+        if !constraints.edges || constraints.edge_reference != EdgeReference::Rest {
+            return Self::default();
         }
-        let body = problem.model.vertex_body()[from];
-        let rest = (problem.rest[from] - problem.rest[to]).norm();
-        let limit = problem.stretch_limit(body) * rest;
-        if !limit.is_finite() {
-            return None;
-        }
-        let limit = limit.max(START_SHARE * (start[from] - start[to]).norm());
-        let (edge, features) = (x[from] - x[to], features(e as u32));
-        let length = edge.norm();
-        if length < TAUT * limit && !is_carried(&features) {
-            return None;
-        }
-        // As a gap: minus the length, which must stay above minus the limit.
-        let spring = RepulsionSpring {
-            vertices: [a, b, a, a],
-            weights: [-1.0, 1.0, 0.0, 0.0],
-            normal: edge.try_normalize(0.0)?,
-            offset: 0.0,
-            desired: -limit,
-            stiffness,
-            friction: 0.0,
-            force: Vector::zeros(),
+        let limited = |(index, &vertices): (usize, &[u32; 2])| {
+            let [a, b] = vertices.map(|v| problem.rest[v as usize]);
+            let body = problem.model.vertex_body()[vertices[0] as usize];
+            let limit = problem.stretch_limit(body) * (a - b).norm();
+            let kind = world.bodies[body as usize].kind;
+            let limits = matches!(kind, Some(BodyKind::Cloth | BodyKind::Strands)) && limit.is_finite();
+            limits.then_some(LimitedEdge { index: index as u32, vertices, limit })
         };
-        Some((features, spring))
-    })
+        Self { edges: problem.model.topology().edges.iter().enumerate().filter_map(limited).collect() }
+    }
+
+    /// Those that are taut at `x` or carry a force, each as a spring of the `stiffness` and with the edge, twice, for its features.
+    /// `start` are positions at the start of the time step.
+    pub fn taut<'a>(
+        &'a self,
+        x: &'a [Point],
+        start: &'a [Point],
+        stiffness: f64,
+        loaded: &HashSet<[Feature; 2]>,
+    ) -> impl Iterator<Item = ([Feature; 2], RepulsionSpring)> + 'a {
+        let of_edge = |features: &[Feature; 2]| match features {
+            [Feature::Edge(a), Feature::Edge(b)] if a == b => Some(*a),
+            _ => None,
+        };
+        let loaded: HashSet<u32> = loaded.iter().filter_map(of_edge).collect();
+        let length = |x: &[Point], [a, b]: [u32; 2]| x[a as usize] - x[b as usize];
+        self.edges.iter().filter_map(move |edge| {
+            let now = length(x, edge.vertices);
+            let slack = now.norm_squared() < (TAUT * edge.limit).powi(2);
+            if slack && (loaded.is_empty() || !loaded.contains(&edge.index)) {
+                return None;
+            }
+            let [a, b] = edge.vertices;
+            let spring = RepulsionSpring {
+                vertices: [a, b, a, a],
+                weights: [-1.0, 1.0, 0.0, 0.0],
+                normal: now.try_normalize(0.0)?,
+                offset: 0.0,
+                // As a gap: minus the length, which must stay above minus the limit.
+                desired: -EdgeLimits::of_rest(edge.limit, length(start, edge.vertices).norm()),
+                stiffness,
+                friction: 0.0,
+                force: Vector::zeros(),
+            };
+            Some(([Feature::Edge(edge.index); 2], spring))
+        })
+    }
 }

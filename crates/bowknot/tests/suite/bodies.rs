@@ -317,18 +317,18 @@ fn rubber_on_a_slope(friction: f64, repulsion: f64) -> (f64, f64, f64) {
 
 #[test]
 fn a_stiff_block_sticks_to_a_slope_and_slides_as_a_rigid_one() {
-    let (way, acceleration, elastic) = rubber_on_a_slope(0.5, 10.0);
-    assert!(way < 2e-3 && acceleration.abs() < 1e-6 && elastic < 1.0, "{way} {acceleration} {elastic}");
+    let (way, acceleration, stuck) = rubber_on_a_slope(0.5, 10.0);
+    assert!(way < 2e-3 && acceleration.abs() < 1e-6 && stuck < 1e-3, "{way} {acceleration} {stuck}");
     // Above the angle of friction: g (sin - mu cos).
     let (_, acceleration, elastic) = rubber_on_a_slope(0.3, 10.0);
     let expected = 9.81 * (0.4 - 0.3) / f64::hypot(1.0, 0.4);
     assert!(
-        (acceleration - expected).abs() < 0.01 * expected && elastic < 1.0,
+        (acceleration - expected).abs() < 0.01 * expected && elastic < 1e-3,
         "{acceleration} {expected} {elastic}"
     );
     // Without springs the collision stage moves those that touch alone, and the rest falls on: what the springs are for.
-    let (_, _, elastic) = rubber_on_a_slope(0.5, 0.0);
-    assert!(elastic > 5.0, "{elastic}");
+    let (_, _, without) = rubber_on_a_slope(0.5, 0.0);
+    assert!(without > 1e4 * elastic, "{elastic} {without}");
 }
 
 #[test]
@@ -521,12 +521,12 @@ fn hair_that_falls_into_place_needs_few_two_way_steps_and_stores_little() {
     let mut simulator = Simulator::new(&scene).unwrap_or_else(|error| panic!("{error}"));
     for _ in 0..45 {
         let step = simulator.step().unwrap_or_else(|error| panic!("{error}"));
+        let StepStatistics { two_way_steps, newton_iterations, .. } = step;
         assert!(
-            step.converged && step.two_way_steps < 40,
-            "{} in time step {}",
-            step.two_way_steps,
+            step.converged && two_way_steps < 20 * newton_iterations,
+            "{two_way_steps} in {newton_iterations} iterations of time step {}",
             step.step
         );
-        assert!(step.energy.elastic < 0.3, "{} J in time step {}", step.energy.elastic, step.step);
+        assert!(step.energy.elastic < 0.03, "{} J in time step {}", step.energy.elastic, step.step);
     }
 }

@@ -189,9 +189,9 @@ impl Dynamics {
         positions
     }
 
-    /// What is missing to a solution of the step at `x` [m], with the springs' carried forces and those `held` by other contacts
-    /// [N] for contact forces. Prescribed vertices and obstacles are where they are. Only vertices that are `counted` matter.
-    /// All slices have one entry per vertex.
+    /// What is missing to a solution of the step at `x` [m], with the springs' carried forces for contact forces.
+    /// Prescribed vertices and obstacles are where they are. Only forces on vertices that are `counted` matter: what holds
+    /// others may be unknown here. All slices have one entry per vertex.
     ///
     /// # Errors
     /// Wrong lengths, entries that are not finite, no step begun.
@@ -199,27 +199,19 @@ impl Dynamics {
         &mut self,
         x: &[Point],
         prescribed: &[bool],
-        held: &[Vector],
         counted: &[bool],
     ) -> Result<Residual, StepError> {
-        for (array, given) in [
-            ("x", x.len()),
-            ("prescribed", prescribed.len()),
-            ("held", held.len()),
-            ("counted", counted.len()),
-        ] {
+        for (array, given) in [("x", x.len()), ("prescribed", prescribed.len()), ("counted", counted.len())] {
             self.check_length(array, given)?;
         }
         self.check_finite("x", |vertex| x[vertex].coords)?;
-        let by_node = self.model.node_vertex.iter().map(|&v| v as usize);
-        let (held, counted): (Vec<Vector>, Vec<bool>) = by_node.map(|v| (held[v], counted[v])).unzip();
+        let counted: Vec<bool> = self.model.node_vertex.iter().map(|&v| counted[v as usize]).collect();
         let Some(mut step) = self.step.take() else { return Err(StepError::NotBegun) };
         self.start_from(x, prescribed);
         let work = &mut self.work;
         let (model, params, repulsion) = (&self.model, &self.params, &mut self.repulsion);
-        let residual = rayon::scope(|_| {
-            Newton { model, params, repulsion, step: &mut step, work }.residual(&held, &counted)
-        });
+        let residual =
+            rayon::scope(|_| Newton { model, params, repulsion, step: &mut step, work }.residual(&counted));
         self.step = Some(step);
         Ok(residual)
     }

@@ -311,7 +311,7 @@ impl Newton<'_> {
     /// of them push.
     pub fn linearise(&mut self) {
         self.linearise_bodies();
-        let Self { repulsion, step, work, .. } = self;
+        let Self { model, repulsion, step, work, .. } = self;
         if repulsion.is_empty() {
             return;
         }
@@ -320,9 +320,8 @@ impl Newton<'_> {
             let placed = |x: &[Vector]| x.iter().enumerate().map(|(n, x)| end(n, x)).collect::<Vec<_>>();
             let iterate = step.last_target.is_some().then(|| placed(&work.x));
             let inertial = placed(&step.inertial);
-            let rate = 1.0 / step.dt;
-            let wholes: Vec<f64> = self.model.body_masses.iter().map(|mass| mass * rate * rate).collect();
-            repulsion.prepare(&work.values.diagonal, &wholes, &work.free, &inertial, iterate.as_deref());
+            let diagonal = &work.values.diagonal;
+            repulsion.prepare(model, diagonal, 1.0 / step.dt, &work.free, &inertial, iterate.as_deref());
         }
         repulsion.linearise(&work.x);
         let gradient = work.gradient.par_iter_mut().enumerate().with_min_len(CHUNK);
@@ -377,12 +376,10 @@ impl Newton<'_> {
         });
     }
 
-    /// How far `work.x` is from solving the step, with the springs' carried forces for contact forces.
-    /// `held` are further forces on the nodes [N]; components without a node that is `counted` are left out.
-    pub fn residual(&mut self, held: &[Vector], counted: &[bool]) -> Residual {
+    /// How far `work.x` is from solving the step, with the springs' carried forces for contact forces, as far as nodes are `counted`.
+    pub fn residual(&mut self, counted: &[bool]) -> Residual {
         self.linearise_bodies();
         self.repulsion.subtract_carried(&mut self.work.gradient);
-        self.work.gradient.iter_mut().zip(held).for_each(|(gradient, force)| *gradient -= force);
         let Self { model, step, work, .. } = self;
         for node in 0..work.x.len() {
             let counts = work.free[node] && counted[node];

@@ -43,6 +43,8 @@ pub struct DynamicsModel {
     pub(crate) node_masses: Vec<f64>,
     /// Mass of the component that each node is in [kg].
     pub(crate) body_masses: Vec<f64>,
+    /// Whether each node is part of strands and of nothing else.
+    pub(crate) strands: Vec<bool>,
     pub(crate) families: Vec<Box<dyn ElementFamily>>,
     pub(crate) pattern: BlockPattern,
     /// Bending [N/m].
@@ -127,7 +129,12 @@ impl DynamicsModel {
             let mass = node_masses[component.start as usize..component.end as usize].iter().sum();
             std::iter::repeat_n(mass, component.len())
         });
+        let is_strand = |kind| matches!(kind, Kind::StrandStretching | Kind::StrandBending);
+        let mut strands = joined(&families, rest.len(), is_strand);
+        let others = joined(&families, rest.len(), |kind| !is_strand(kind));
+        strands.iter_mut().zip(&others).for_each(|(strand, other)| *strand &= !other);
         Ok(Self {
+            strands,
             bodies,
             vertex_body,
             obstacle,
@@ -150,21 +157,13 @@ impl DynamicsModel {
     /// The two-level preconditioner of this model: strands are solved exactly, other components that elements
     /// join get a coarse correction, single nodes need neither.
     pub(crate) fn two_level(&self) -> Preconditioner {
-        let nodes = self.node_vertex.len();
-        let (mut strands, mut others) = (vec![false; nodes], vec![false; nodes]);
-        for family in &self.families {
-            let mark = match family.kind() {
-                Kind::StrandStretching | Kind::StrandBending => &mut strands,
-                _ => &mut others,
-            };
-            family.for_each_clique(&mut |clique| clique.iter().for_each(|&n| mark[n as usize] = true));
-        }
-        strands.iter_mut().zip(&others).for_each(|(strand, other)| *strand &= !other);
+        let single = |n: usize| self.pattern.row(n).is_empty();
         // A component is all of one kind or, where strands are fixed to other bodies, in the coarse space.
         let mut leaves = Vec::new();
         let mut next = 0;
         for component in &self.components {
-            let coarse = (component.start..component.end).any(|n| others[n as usize]);
+            let mut nodes = component.start as usize..component.end as usize;
+            let coarse = nodes.any(|n| !self.strands[n] && !single(n));
             while next < self.leaves.len() && self.leaves[next].start < component.end {
                 leaves.extend(coarse.then(|| self.leaves[next].clone()));
                 next += 1;
@@ -178,7 +177,7 @@ impl DynamicsModel {
                 self.bending.row(row).0.iter().for_each(|&column| visit(column));
             })
         });
-        Preconditioner::new(Direct::new(&self.pattern, &strands), coarse)
+        Preconditioner::new(Direct::new(&self.pattern, &self.strands), coarse)
     }
 
     /// Number of vertices, obstacles included.
@@ -232,6 +231,15 @@ impl DynamicsModel {
     pub fn body_name(&self, vertex: usize) -> &str {
         self.vertex_body.get(vertex).and_then(|&b| self.bodies.get(b as usize)).map_or("", |b| &b.name)
     }
+}
+
+/// Which of `nodes` nodes elements of some kinds join.
+fn joined(families: &[Box<dyn ElementFamily>], nodes: usize, kinds: impl Fn(Kind) -> bool) -> Vec<bool> {
+    let mut joined = vec![false; nodes];
+    for family in families.iter().filter(|family| kinds(family.kind())) {
+        family.for_each_clique(&mut |clique| clique.iter().for_each(|&n| joined[n as usize] = true));
+    }
+    joined
 }
 
 /// Lumped masses [kg].
