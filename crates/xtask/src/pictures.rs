@@ -58,7 +58,7 @@ const PICTURES: &[Scene] = &[
     Scene { name: "hair", scale: "0.25", frames: &[80, 150], options: "" },
     Scene { name: "sand", scale: "0.3", frames: &[60, 200], options: "" },
     Scene { name: "trampoline", scale: "1", frames: &[40], options: "" },
-    Scene { name: "cards", scale: "1", frames: &[2500], options: "" },
+    Scene { name: "cards", scale: "1", frames: &[500], options: "" },
     Scene { name: "woven", scale: "1", frames: &[200], options: "--camera 0.5,-0.5,0.25 --target 0,0,0" },
 ];
 
