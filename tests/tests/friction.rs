@@ -38,8 +38,9 @@ fn bodies_stop_after_the_way_that_friction_leaves_them() {
         (Slider::Patch, 0.03, &Ground::ALL[..]),
         (Slider::Grains, 0.03, &Ground::ALL[..]),
         (Slider::JellyCube, 0.03, &[Ground::HalfSpace, Ground::Box, Ground::CoarseBox, Ground::Irregular]),
-        (Slider::StiffCube, 0.03, &[Ground::HalfSpace, Ground::Box, Ground::CoarseBox, Ground::Flush]),
+        (Slider::StiffCube, 0.03, &[Ground::HalfSpace, Ground::Box, Ground::Flush, Ground::Seam, Ground::Slab]),
         (Slider::Layers, 0.03, &[Ground::Box, Ground::Irregular]),
+        (Slider::Strands, 0.05, &[Ground::Irregular, Ground::Seam]),
     ];
     for (slider, share, grounds) in stops {
         for &ground in grounds {
@@ -57,6 +58,7 @@ fn bodies_keep_their_speed_for_a_second_across_edges_seams_and_flush_boxes() {
         (Slider::StiffCube, &[Ground::Irregular, Ground::Flush, Ground::Seam]),
         (Slider::Patch, &Ground::ALL),
         (Slider::Layers, &[Ground::Irregular, Ground::Flush]),
+        (Slider::Strands, &[Ground::Irregular, Ground::Seam]),
         (Slider::Grains, &[Ground::Box, Ground::Irregular, Ground::Slivers, Ground::Slab]),
     ] {
         for &ground in grounds {

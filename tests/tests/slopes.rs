@@ -39,6 +39,17 @@ fn a_patch_of_cloth_slides_on_meshes_as_on_a_plane() {
 }
 
 #[test]
+fn strands_slide_on_meshes_as_on_a_plane() {
+    let grounds = [Ground::HalfSpace, Ground::Box, Ground::Irregular, Ground::Seam];
+    check(Slider::Strands, &grounds[1..]);
+    for ground in grounds {
+        let slope = Slope::new(Slider::Strands, ground, 0.3);
+        let (found, expected) = (slope.run(25).speed(23..26), slope.acceleration() * 0.24);
+        assert!((found - expected).abs() < 0.03 * expected, "{ground:?}: {found} m/s, not {expected}");
+    }
+}
+
+#[test]
 fn grains_slide_on_meshes_as_on_a_plane() {
     check(Slider::Grains, &Ground::ALL);
 }

@@ -240,10 +240,10 @@ impl Contacts {
     }
 
     /// Gives the springs the forces of those before: of the same features; of two edges, to the feature of theirs that the closest
-    /// points have moved on to, or to a contact that one of them has now; of what is left of a vertex against a body, in equal
-    /// shares to the contacts of that vertex that it presses.
+    /// points have moved on to, or to a contact that one of them has now; of a vertex against a body, to the contacts of that vertex
+    /// that it presses most directly: one that it would press aside is a wall ahead of it.
     fn hand_on(&mut self, problem: &Problem, carried: &[Carried], index: &Index, moved: &MovedEdges) {
-        let of_vertices = lost_by_side(problem, carried, index);
+        let mut of_vertices: HashMap<Side, Vec<Vector>> = HashMap::new();
         let mut of_edges: Vec<Vector> = Vec::new();
         let mut at_edge: HashMap<u32, usize> = HashMap::new();
         for (features, force) in carried.iter().filter(|(_, force)| *force != Vector::zeros()) {
@@ -251,6 +251,8 @@ impl Contacts {
                 self.springs[spring].force += force;
             } else if let Some(&(spring, sign)) = moved.get(features) {
                 self.springs[spring].force += force * sign;
+            } else if let Some(side) = side(problem, features) {
+                of_vertices.entry(side).or_default().push(*force);
             } else if let [Feature::Edge(a), Feature::Edge(b)] = features
                 && a != b
             {
@@ -262,28 +264,28 @@ impl Contacts {
         if of_vertices.is_empty() && of_edges.is_empty() {
             return;
         }
-        let pressed = |spring: &RepulsionSpring, force: &Vector| spring.normal.dot(force) > 0.0;
-        let mut shares: HashMap<Side, u32> = HashMap::new();
-        for (features, spring) in self.features.iter().zip(&self.springs) {
+        let mut at_side: HashMap<Side, Vec<usize>> = HashMap::new();
+        for (spring, features) in self.features.iter().enumerate() {
             if let Some(side) = side(problem, features)
-                && of_vertices.get(&side).is_some_and(|force| pressed(spring, force))
+                && of_vertices.contains_key(&side)
             {
-                *shares.entry(side).or_default() += 1;
-            }
-        }
-        for (features, spring) in self.features.iter().zip(&mut self.springs) {
-            if let Some(side) = side(problem, features)
-                && let Some(force) = of_vertices.get(&side).filter(|force| pressed(spring, force))
-                && let Some(&count) = shares.get(&side)
-            {
-                spring.force += force / f64::from(count);
+                at_side.entry(side).or_default().push(spring);
             }
             if let [Feature::Edge(a), Feature::Edge(b)] = features
                 && a != b
                 && let Some(&left) = at_edge.get(a).or_else(|| at_edge.get(b))
-                && pressed(spring, &of_edges[left])
+                && self.springs[spring].normal.dot(&of_edges[left]) > 0.0
             {
-                spring.force += std::mem::take(&mut of_edges[left]);
+                self.springs[spring].force += std::mem::take(&mut of_edges[left]);
+            }
+        }
+        for (side, springs) in &at_side {
+            for force in &of_vertices[side] {
+                let pressed = |spring: &usize| self.springs[*spring].normal.dot(force);
+                let most = springs.iter().map(pressed).fold(0.0, f64::max);
+                let direct: Vec<usize> =
+                    springs.iter().copied().filter(|s| most > 0.0 && pressed(s) >= DIRECT * most).collect();
+                direct.iter().for_each(|&s| self.springs[s].force += force / direct.len() as f64);
             }
         }
     }
@@ -368,6 +370,9 @@ fn desired_gap(desired: f64, distance: f64, growth: f64, dt: f64) -> f64 {
     let opened = distance + (most - distance) * (dt / OPENING_TIME).min(1.0);
     desired.min(distance + growth).max(opened).min(most)
 }
+
+/// Share of the most direct contact's pressure from which on another one is as direct.
+const DIRECT: f64 = 0.99;
 
 /// Share of the desired distance that something must keep from a feature to count as passing it.
 const PASSING: f64 = 0.5;
