@@ -38,7 +38,11 @@ fn bodies_stop_after_the_way_that_friction_leaves_them() {
         (Slider::Patch, 0.03, &Ground::ALL[..]),
         (Slider::Grains, 0.03, &Ground::ALL[..]),
         (Slider::JellyCube, 0.03, &[Ground::HalfSpace, Ground::Box, Ground::CoarseBox, Ground::Irregular]),
-        (Slider::StiffCube, 0.03, &[Ground::HalfSpace, Ground::Box, Ground::Flush, Ground::Seam, Ground::Slab]),
+        (
+            Slider::StiffCube,
+            0.03,
+            &[Ground::HalfSpace, Ground::Box, Ground::Flush, Ground::Seam, Ground::Slab],
+        ),
         (Slider::Layers, 0.03, &[Ground::Box, Ground::Irregular]),
         (Slider::Strands, 0.05, &[Ground::Irregular, Ground::Seam]),
     ];

@@ -1,5 +1,6 @@
 //! All that a simulation must remember between two time steps, and its file.
 
+use super::ContactForce;
 use crate::io::{IoError, Place, write_atomic};
 use bowknot_constraints::Feature;
 use bowknot_geometry::{Point, Vector};
@@ -22,14 +23,14 @@ pub struct Checkpoint {
     /// For each pin that takes hold later than time 0 and has done so: where its vertices belong without
     /// its motion [m]. Empty for the others.
     pub anchors: Vec<Vec<Point>>,
-    /// The forces that contacts of the dynamics carry: the features that touch, and the force on the first [N].
-    pub contacts: Vec<([Feature; 2], Vector)>,
+    /// The forces that contacts of the dynamics carry.
+    pub contacts: Vec<ContactForce>,
 }
 
 impl Checkpoint {
     /// Writes the state as one NPZ file, atomically: `step[1]`, `positions[n,3]`, `velocities[n,3]`,
     /// `anchor_counts[p]`, `anchors[k,3]`, `contact_features[c,4]` (kind and index of either feature: 0 vertex, 1 edge,
-    /// 2 triangle, 3 half-space), `contact_forces[c,3]`.
+    /// 2 triangle, 3 half-space), `contact_normals[c,3]`, `contact_forces[c,3]`.
     ///
     /// # Errors
     /// The system's refusal, with the path.
@@ -43,11 +44,15 @@ impl Checkpoint {
             let velocities = self.velocities.iter().flat_map(|v| [v.x, v.y, v.z]).collect();
             let anchors: Vec<Point> = self.anchors.concat();
             let counts: Array1<u64> = self.anchors.iter().map(|a| a.len() as u64).collect();
-            let codes = self.contacts.iter().flat_map(|(features, _)| features.map(code)).flatten().collect();
+            let codes = self.contacts.iter().flat_map(|c| c.features.map(code)).flatten().collect();
             let codes = Array2::from_shape_vec((self.contacts.len(), 4), codes).map_err(io::Error::other)?;
-            let forces = self.contacts.iter().flat_map(|(_, f)| [f.x, f.y, f.z]).collect();
+            let of_contacts = |vector: fn(&ContactForce) -> Vector| {
+                let values = self.contacts.iter().map(vector).flat_map(|v| [v.x, v.y, v.z]).collect();
+                flat(self.contacts.len(), values)
+            };
             let arrays = [
-                ("contact_forces", flat(self.contacts.len(), forces)?),
+                ("contact_normals", of_contacts(|c| c.normal)?),
+                ("contact_forces", of_contacts(|c| c.force)?),
                 ("positions", flat(self.positions.len(), points(&self.positions))?),
                 ("velocities", flat(self.velocities.len(), velocities)?),
                 ("anchors", flat(anchors.len(), points(&anchors))?),
@@ -84,17 +89,19 @@ impl Checkpoint {
         let positions: Vec<Point> = rows("positions")?.into_iter().map(Point::from).collect();
         let velocities: Vec<Vector> = rows("velocities")?.into_iter().map(Vector::from).collect();
         let anchors: Vec<Point> = rows("anchors")?.into_iter().map(Point::from).collect();
-        let forces = rows("contact_forces")?;
+        let (normals, forces) = (rows("contact_normals")?, rows("contact_forces")?);
         let codes: Array2<u64> =
             archive.by_name("contact_features").map_err(|e| fault("contact_features", e.to_string()))?;
-        if codes.ncols() != 4 || codes.nrows() != forces.len() {
-            return Err(fault("contact_features", "is not of 4 columns and a row for each force".to_owned()));
+        if codes.ncols() != 4 || codes.nrows() != forces.len() || normals.len() != forces.len() {
+            let message = "is not of 4 columns and a row for each normal and each force".to_owned();
+            return Err(fault("contact_features", message));
         }
-        let contacts = codes.rows().into_iter().zip(forces).map(|(row, force)| {
+        let contacts = codes.rows().into_iter().zip(normals.into_iter().zip(forces));
+        let contacts = contacts.map(|(row, (normal, force))| {
             let features = [feature(row[0], row[1])?, feature(row[2], row[3])?];
-            Some((features, Vector::from(force)))
+            Some(ContactForce { features, normal: Vector::from(normal), force: Vector::from(force) })
         });
-        let contacts: Option<Vec<([Feature; 2], Vector)>> = contacts.collect();
+        let contacts: Option<Vec<ContactForce>> = contacts.collect();
         let contacts =
             contacts.ok_or_else(|| fault("contact_features", "has an unknown kind of feature".to_owned()))?;
         let mut integers = |name: &str| -> Result<Vec<usize>, IoError> {
@@ -153,7 +160,11 @@ mod tests {
             positions: vec![Point::new(0.1, -0.0, 1e-300), Point::new(1.0 / 3.0, 2.0, 3.0)],
             velocities: vec![Vector::new(-1e300, 0.0, 5e-324), Vector::zeros()],
             anchors: vec![Vec::new(), vec![Point::new(0.7, 0.8, 0.9)]],
-            contacts: vec![([Feature::Vertex(7), Feature::HalfSpace(1)], Vector::new(0.1, -0.0, 1e-300))],
+            contacts: vec![ContactForce {
+                features: [Feature::Vertex(7), Feature::HalfSpace(1)],
+                normal: Vector::z(),
+                force: Vector::new(0.1, -0.0, 1e-300),
+            }],
         };
         checkpoint.write(&path).expect("write");
         let read = Checkpoint::read(&path).expect("read");

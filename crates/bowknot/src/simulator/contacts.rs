@@ -23,7 +23,7 @@ pub(super) struct Contacts {
     /// Features of each spring's sides, [`oriented`]; of a taut edge, the edge with itself.
     features: Vec<[Feature; 2]>,
     /// Forces of the contacts that a run goes on from, until its first time step finds them.
-    resumed: Option<Vec<Carried>>,
+    resumed: Option<Vec<ContactForce>>,
     /// The edges that have a stretch limit.
     limited: LimitedEdges,
     /// Which vertices of the world are part of bodies that Newton's method solves together with their contacts, and which of them
@@ -34,8 +34,16 @@ pub(super) struct Contacts {
     touching: Touching,
 }
 
-/// The force that a contact between two features carries, on the first [N].
-pub type Carried = ([Feature; 2], Vector);
+/// The force that a contact carries.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactForce {
+    /// What touches what.
+    pub features: [Feature; 2],
+    /// Unit normal, towards the first feature [1].
+    pub normal: Vector,
+    /// The force on the first feature, friction included [N].
+    pub force: Vector,
+}
 
 impl Contacts {
     pub fn new(params: &RepulsionParams, world: &World, resolver: &Resolver) -> Self {
@@ -59,7 +67,7 @@ impl Contacts {
     }
 
     /// Goes on with the forces of a checkpoint.
-    pub fn resume(&mut self, carried: &[Carried]) {
+    pub fn resume(&mut self, carried: &[ContactForce]) {
         self.resumed = Some(carried.to_vec());
     }
 
@@ -92,9 +100,21 @@ impl Contacts {
     }
 
     /// The forces that they carry.
-    pub fn carried(&self) -> Vec<Carried> {
-        let of_springs = || self.features.iter().zip(&self.springs).map(|(f, s)| (*f, s.force)).collect();
-        self.resumed.clone().unwrap_or_else(of_springs)
+    pub fn carried(&self) -> Vec<ContactForce> {
+        let of_springs = || self.springs.iter().map(|spring| spring.force);
+        self.resumed.clone().unwrap_or_else(|| self.with_forces(of_springs()))
+    }
+
+    /// The contacts with other forces, by spring [N].
+    fn with_forces(&self, forces: impl Iterator<Item = Vector>) -> Vec<ContactForce> {
+        let of_springs = self.features.iter().zip(&self.springs).zip(forces);
+        of_springs
+            .map(|((features, spring), force)| ContactForce {
+                features: *features,
+                normal: spring.normal,
+                force,
+            })
+            .collect()
     }
 
     /// Moves the `forces` of the springs, by spring [N], back towards what they carried.
@@ -106,9 +126,9 @@ impl Contacts {
 
     /// The same after the dynamics and the collision stage: `forces` of the springs, by spring [N], and of the rows that
     /// pushed.
-    pub fn carried_after(&mut self, forces: &[Vector], resolver: &Resolver, dt: f64) -> Vec<Carried> {
+    pub fn carried_after(&mut self, forces: &[Vector], resolver: &Resolver, dt: f64) -> Vec<ContactForce> {
         let (problem, contacts) = (resolver.problem(), &resolver.state().contacts);
-        let mut carried: Vec<Carried> = self.features.iter().copied().zip(forces.iter().copied()).collect();
+        let mut carried = self.with_forces(forces.iter().copied());
         let unit = problem.mean_mass / (dt * dt);
         self.counted.clone_from(&self.solved);
         for kind in PairKind::ALL {
@@ -123,7 +143,8 @@ impl Contacts {
                 let used = &pair.vertices[..kind.vertex_count()];
                 if self.stiffness > 0.0 && self.is_elastic(used) {
                     let (features, sign) = oriented(problem.features(kind, pair, separation));
-                    carried.push((features, force * sign));
+                    let (normal, force) = (separation.normal * sign, force * sign);
+                    carried.push(ContactForce { features, normal, force });
                 } else {
                     used.iter().for_each(|&v| self.counted[v as usize] = false);
                 }
@@ -134,18 +155,15 @@ impl Contacts {
 
     /// Finds the contacts at the present state of the collision stage, which lists all pairs in range in an order of their own, and
     /// hands on the forces of those before. `start` are positions at the start of the time step.
-    pub fn find(&mut self, resolver: &Resolver, carried: &[Carried], start: &[Point], dt: f64) {
+    pub fn find(&mut self, resolver: &Resolver, carried: &[ContactForce], start: &[Point], dt: f64) {
         self.springs.clear();
         self.features.clear();
         if self.stiffness == 0.0 {
             return;
         }
         let problem = resolver.problem();
-        let loaded: HashSet<[Feature; 2]> = carried
-            .iter()
-            .filter(|(_, force)| *force != Vector::zeros())
-            .map(|(features, _)| *features)
-            .collect();
+        let with_force = carried.iter().filter(|c| c.force != Vector::zeros());
+        let loaded: HashSet<[Feature; 2]> = with_force.map(|c| c.features).collect();
         let mut index = HashMap::new();
         self.add(resolver, start, dt, &mut index, |features, _| {
             Some(if loaded.contains(features) { LOADED_TOLERANCE } else { CONE_TOLERANCE })
@@ -153,8 +171,8 @@ impl Contacts {
         let orphans = self.orphans(problem, carried, &index);
         if !orphans.is_empty() {
             self.add(resolver, start, dt, &mut index, |features, normal| {
-                let force = orphans.get(&side(problem, features)?)?;
-                (normal.dot(force) > 0.0).then_some(LOADED_TOLERANCE)
+                let pressure = orphans.get(&side(problem, features)?)?;
+                (normal.dot(pressure) > 0.0).then_some(LOADED_TOLERANCE)
             });
         }
         let moved = moved_edges(resolver, carried, &index);
@@ -226,12 +244,12 @@ impl Contacts {
         }
     }
 
-    /// The sides whose contacts carried a force and are gone, and which no contact holds that it presses, with that force [N].
-    fn orphans(&self, problem: &Problem, carried: &[Carried], index: &Index) -> HashMap<Side, Vector> {
+    /// The sides whose contacts pressed and are gone, and which no contact holds that they pressed, with their pressure [N].
+    fn orphans(&self, problem: &Problem, carried: &[ContactForce], index: &Index) -> HashMap<Side, Vector> {
         let mut orphans = lost_by_side(problem, carried, index);
         for (features, spring) in self.features.iter().zip(&self.springs) {
             if let Some(side) = side(problem, features)
-                && orphans.get(&side).is_some_and(|force| spring.normal.dot(force) > 0.0)
+                && orphans.get(&side).is_some_and(|pressure| spring.normal.dot(pressure) > 0.0)
             {
                 orphans.remove(&side);
             }
@@ -240,25 +258,26 @@ impl Contacts {
     }
 
     /// Gives the springs the forces of those before: of the same features; of two edges, to the feature of theirs that the closest
-    /// points have moved on to, or to a contact that one of them has now; of a vertex against a body, to the contacts of that vertex
-    /// that it presses most directly: one that it would press aside is a wall ahead of it.
-    fn hand_on(&mut self, problem: &Problem, carried: &[Carried], index: &Index, moved: &MovedEdges) {
-        let mut of_vertices: HashMap<Side, Vec<Vector>> = HashMap::new();
-        let mut of_edges: Vec<Vector> = Vec::new();
+    /// points have moved on to, or to a contact that one of them has now; of a vertex against a body, to the contact of that vertex
+    /// whose normal is nearest to the former one: another may be a wall ahead of it.
+    fn hand_on(&mut self, problem: &Problem, carried: &[ContactForce], index: &Index, moved: &MovedEdges) {
+        let mut of_vertices: HashMap<Side, Vec<ContactForce>> = HashMap::new();
+        let mut of_edges: Vec<ContactForce> = Vec::new();
         let mut at_edge: HashMap<u32, usize> = HashMap::new();
-        for (features, force) in carried.iter().filter(|(_, force)| *force != Vector::zeros()) {
+        for contact in carried.iter().filter(|c| c.force != Vector::zeros()) {
+            let ContactForce { features, force, .. } = contact;
             if let Some(&spring) = index.get(features) {
                 self.springs[spring].force += force;
             } else if let Some(&(spring, sign)) = moved.get(features) {
                 self.springs[spring].force += force * sign;
             } else if let Some(side) = side(problem, features) {
-                of_vertices.entry(side).or_default().push(*force);
+                of_vertices.entry(side).or_default().push(*contact);
             } else if let [Feature::Edge(a), Feature::Edge(b)] = features
                 && a != b
             {
                 at_edge.insert(*a, of_edges.len());
                 at_edge.insert(*b, of_edges.len());
-                of_edges.push(*force);
+                of_edges.push(*contact);
             }
         }
         if of_vertices.is_empty() && of_edges.is_empty() {
@@ -274,18 +293,18 @@ impl Contacts {
             if let [Feature::Edge(a), Feature::Edge(b)] = features
                 && a != b
                 && let Some(&left) = at_edge.get(a).or_else(|| at_edge.get(b))
-                && self.springs[spring].normal.dot(&of_edges[left]) > 0.0
+                && self.springs[spring].normal.dot(&of_edges[left].normal) > 0.0
             {
-                self.springs[spring].force += std::mem::take(&mut of_edges[left]);
+                self.springs[spring].force += std::mem::take(&mut of_edges[left].force);
             }
         }
         for (side, springs) in &at_side {
-            for force in &of_vertices[side] {
-                let pressed = |spring: &usize| self.springs[*spring].normal.dot(force);
-                let most = springs.iter().map(pressed).fold(0.0, f64::max);
-                let direct: Vec<usize> =
-                    springs.iter().copied().filter(|s| most > 0.0 && pressed(s) >= DIRECT * most).collect();
-                direct.iter().for_each(|&s| self.springs[s].force += force / direct.len() as f64);
+            for lost in &of_vertices[side] {
+                let agrees = |spring: usize| self.springs[spring].normal.dot(&lost.normal);
+                let most = springs.iter().map(|&s| agrees(s)).fold(0.0, f64::max);
+                let nearest = |s: &usize| most > 0.0 && agrees(*s) >= NEAREST * most;
+                let nearest: Vec<usize> = springs.iter().copied().filter(nearest).collect();
+                nearest.iter().for_each(|&s| self.springs[s].force += lost.force / nearest.len() as f64);
             }
         }
     }
@@ -371,8 +390,8 @@ fn desired_gap(desired: f64, distance: f64, growth: f64, dt: f64) -> f64 {
     desired.min(distance + growth).max(opened).min(most)
 }
 
-/// Share of the most direct contact's pressure from which on another one is as direct.
-const DIRECT: f64 = 0.99;
+/// Share of the largest cosine between normals from which on another one counts as the same: those of a flat surface.
+const NEAREST: f64 = 0.999;
 
 /// Share of the desired distance that something must keep from a feature to count as passing it.
 const PASSING: f64 = 0.5;
@@ -412,26 +431,26 @@ fn side(problem: &Problem, features: &[Feature; 2]) -> Option<Side> {
     Some((vertex, other))
 }
 
-/// Forces of vertices that no spring of the same features carries on, by side [N].
-fn lost_by_side(problem: &Problem, carried: &[Carried], index: &Index) -> HashMap<Side, Vector> {
+/// Pressures of vertices, forces without friction, that no spring of the same features carries on, by side [N].
+fn lost_by_side(problem: &Problem, carried: &[ContactForce], index: &Index) -> HashMap<Side, Vector> {
     let mut lost = HashMap::new();
-    for (features, force) in carried {
+    for ContactForce { features, normal, force } in carried {
         if *force != Vector::zeros()
             && !index.contains_key(features)
             && let Some(side) = side(problem, features)
         {
-            *lost.entry(side).or_insert_with(Vector::zeros) += force;
+            *lost.entry(side).or_insert_with(Vector::zeros) += normal * normal.dot(force);
         }
     }
     lost
 }
 
 /// Pairs of edges that carried a force and whose closest points now lie on an end of one: what they have become.
-fn moved_edges(resolver: &Resolver, carried: &[Carried], index: &Index) -> MovedEdges {
+fn moved_edges(resolver: &Resolver, carried: &[ContactForce], index: &Index) -> MovedEdges {
     let is_lost = |features: &[Feature; 2]| {
         matches!(features, [Feature::Edge(a), Feature::Edge(b)] if a != b) && !index.contains_key(features)
     };
-    let lost: HashSet<[Feature; 2]> = carried.iter().map(|(features, _)| *features).filter(is_lost).collect();
+    let lost: HashSet<[Feature; 2]> = carried.iter().map(|c| c.features).filter(is_lost).collect();
     let mut moved = MovedEdges::new();
     if lost.is_empty() {
         return moved;

@@ -17,6 +17,7 @@ mod statistics;
 mod taut;
 
 pub use checkpoint::Checkpoint;
+pub use contacts::ContactForce;
 pub use error::{SimulationError, describe_intersections};
 pub use process::{cpu_seconds, peak_memory_bytes};
 pub use statistics::{Energy, StepSeconds, StepStatistics};
@@ -27,7 +28,7 @@ use crate::world::{Attachment, World};
 use bowknot_dynamics::{Dynamics, DynamicsModel, Residual};
 use bowknot_geometry::{Point, Vector};
 use bowknot_twoway::{AcceptedState, Call, Observer, ResolveError, Resolver};
-use contacts::{Carried, Contacts};
+use contacts::Contacts;
 use interior::Interior;
 use progress::Progress;
 use std::ops::ControlFlow;
@@ -209,7 +210,7 @@ impl Simulator {
 
     /// Looks for what is near at the present state: refuses coordinates too large for the gap floor, and finds the
     /// contacts.
-    fn survey(&mut self, carried: &[Carried]) -> Result<(), SimulationError> {
+    fn survey(&mut self, carried: &[ContactForce]) -> Result<(), SimulationError> {
         let Self { world, resolver, contacts, positions, step, dt, .. } = self;
         let call = Call { time_step: Some(*dt), ..Call::default() };
         resolver

@@ -29,11 +29,11 @@ const MISSED: f64 = 0.01;
 const SMALL_CORRECTION: f64 = 0.1;
 
 /// Share of the contact forces that may be wrong, by springs that pull, are missing, or rub too much or too little.
-const SETTLED: f64 = 0.01;
+const SETTLED: f64 = 0.002;
 
 /// Newton iterations made for them at most. In a heap of cloth thousands of contacts come and go, and what is wrong now is
 /// found after the collision stage; but friction that is wrong by more than 1 % shows in how bodies slide.
-const SETTLING_ITERATIONS: usize = 4;
+const SETTLING_ITERATIONS: usize = 6;
 
 /// Share of wrong forces at which they must go on, and how many there may then be.
 const UNSETTLED: f64 = 0.3;
