@@ -1,4 +1,4 @@
-//! Vertices near analytic half-spaces: a linear pass.
+//! Vertices near analytic half-spaces: a linear pass. The vertex brings the radius of both sides.
 
 use crate::Pair;
 use bowknot_geometry::{HalfSpace, Point, Vector, separation};
@@ -23,7 +23,7 @@ pub fn near_half_spaces(
         for &v in vertices {
             let start = positions[v as usize];
             let end = displacements.map(|u| start + u[v as usize]);
-            let radius = radii[v as usize];
+            let radius = 2.0 * radii[v as usize];
             for (half_space, index) in half_spaces.iter().zip(0..) {
                 // The end itself is rounded to half a unit in each coordinate.
                 let reaches =

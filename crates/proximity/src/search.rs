@@ -81,7 +81,8 @@ impl ProximitySearch {
     }
 
     /// Lists every pair that may collide whose certified lower bound of the distance is at most
-    /// max over side a of `radii` + max over side b of `radii` (half-spaces: the vertex's radius).
+    /// max over side a of `radii` + max over side b of `radii` (half-spaces, which have no radius: twice the
+    /// vertex's).
     ///
     /// `radii` [m], one a vertex, finite and >= 0. `separations` gets each listed pair's contact
     /// geometry at `positions`, in the order of `pairs`. The result depends on the input alone,

@@ -56,7 +56,8 @@ fn check(scene: &Scene, displacements: &[Vector], listed: &PairList) -> usize {
             let gap = if *kind == PairKind::VertexHalfSpace {
                 let v = a[0] as usize;
                 let place = scene.positions[v] + time * displacements[v];
-                scene.model.half_spaces()[pair.elements[1] as usize].signed_distance(&place) - scene.radii[v]
+                scene.model.half_spaces()[pair.elements[1] as usize].signed_distance(&place)
+                    - 2.0 * scene.radii[v]
             } else {
                 let [other_low, other_high] = moving_box(scene, displacements, b, time);
                 (low - other_high).sup(&(other_low - high)).max()

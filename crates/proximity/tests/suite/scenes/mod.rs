@@ -144,7 +144,8 @@ impl Scene {
     pub fn side_radii(&self, kind: PairKind, pair: &Pair) -> [f64; 2] {
         let largest = |side: &[u32]| side.iter().map(|&v| self.radii[v as usize]).fold(0.0, f64::max);
         let (a, b) = pair.vertices[..kind.vertex_count()].split_at(kind.side_a());
-        [largest(a), largest(b)]
+        // A half-space has the radius of the vertex.
+        [largest(a), largest(if b.is_empty() { a } else { b })]
     }
 
     /// Every pair that may be formed, near or far, by kind and in order.
