@@ -17,12 +17,10 @@ struct Subject {
     scale: f64,
     /// Time steps of full, quick and tiny runs.
     frames: [usize; 3],
-    /// Keys that differ from the scene's own.
-    sets: &'static [&'static str],
 }
 
 const fn subject(scene: &'static str, scale: f64, frames: [usize; 3]) -> Subject {
-    Subject { scene, scale, frames, sets: &[] }
+    Subject { scene, scale, frames }
 }
 
 const SUBJECTS: [Subject; 5] = [
@@ -30,11 +28,7 @@ const SUBJECTS: [Subject; 5] = [
     subject("stack", 0.2, [120, 60, 30]),
     subject("trampoline", 0.6, [60, 30, 16]),
     subject("needle", 0.3, [40, 14, 8]),
-    Subject {
-        // By itself the scene keeps its contacts in the collision stage.
-        sets: &["solver.repulsion.stiffness=3", "contact.contacts_only=true"],
-        ..subject("cards", 1.0, [100, 20, 8])
-    },
+    subject("cards", 1.0, [100, 20, 8]),
 ];
 
 /// Iterations of each time step whose residuals are shown.
@@ -222,7 +216,7 @@ impl Subject {
 
     /// The scene with so many iterations in each time step, all of them made; none: as it is by default.
     fn scene(&self, iterations: Option<usize>) -> Result<Scene> {
-        let mut sets: Vec<String> = self.sets.iter().map(|&set| set.to_owned()).collect();
+        let mut sets: Vec<String> = Vec::new();
         if let Some(count) = iterations {
             sets.push("solver.step_tolerance=0".to_owned());
             sets.push(format!("simulation.newton_iterations={count}"));

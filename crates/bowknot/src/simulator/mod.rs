@@ -2,7 +2,7 @@
 //!
 //! For each Newton iteration the dynamics makes a target y from x, prescribed vertices (pins, obstacles)
 //! get their keyframe at t + dt, and the two-way method moves x towards y without intersections; the
-//! vertices inside of solids, which it does not know, are then brought along. The best of them counts. At the end
+//! vertices inside of solids, which it does not know, are then brought along. At the end
 //! v = (x_end - x_start) / dt. With [`CollisionEvery::Step`] the iterations run freely and the
 //! two-way method resolves once, from the start of the step to the last target.
 
@@ -30,7 +30,7 @@ use bowknot_geometry::{Point, Vector};
 use bowknot_twoway::{AcceptedState, Call, Observer, ResolveError, Resolver};
 use contacts::Contacts;
 use interior::Interior;
-use progress::{GOOD_END, Progress};
+use progress::Progress;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Instant;
@@ -76,15 +76,6 @@ struct Scratch {
     prescribed: Vec<bool>,
     keyframes: Vec<Point>,
     groups: Vec<u32>,
-}
-
-/// What an iteration came to. Like every result of a collision stage it is free of intersections and joined to the start of the time step
-/// by a way that is, so that the time step may end with it.
-#[derive(Debug)]
-struct Solved {
-    residual: Residual,
-    x: Vec<Point>,
-    contacts: Contacts,
 }
 
 /// A collision problem on its way to the two-way method. Slices have one entry a vertex that collides.
@@ -329,8 +320,6 @@ impl Simulator {
         y.clone_from(start);
         x.clone_from(start);
         let mut progress = Progress::new(*step_tolerance * resolver.problem().lengths.edge, *dt);
-        let mut best: Option<Solved> = None;
-        let mut residual = Residual::default();
         for iteration in 0..self.newton_iterations {
             let last = iteration + 1 == self.newton_iterations;
             let clock = Instant::now();
@@ -398,27 +387,15 @@ impl Simulator {
                 statistics.collision_energy_j += energy_put_in(dynamics, start, y, x, *dt);
             }
             contacts.apply(dynamics).map_err(target_error)?;
-            residual = dynamics.residual(x, prescribed, contacts.counted()).map_err(target_error)?;
+            let residual = dynamics.residual(x, prescribed, contacts.counted()).map_err(target_error)?;
             statistics.seconds.dynamics += clock.elapsed().as_secs_f64();
+            (statistics.residual_n, statistics.residual_m) = (residual.force, residual.distance);
             tracing::debug!(step, iteration, residual.force, residual.distance, "time step");
             watcher.iterated(&Iterated { step, iteration, residual });
             if progress.ends(residual.distance) && !cut {
                 break;
             }
-            let better = best.as_ref().is_none_or(|best| residual.distance < best.residual.distance);
-            if !last && resolved.converged && better {
-                best = Some(Solved { residual, x: x.clone(), contacts: contacts.clone() });
-            }
         }
-        if let Some(best) = best.filter(|best| GOOD_END * best.residual.distance < residual.distance) {
-            let clock = Instant::now();
-            (residual, *contacts) = (best.residual, best.contacts);
-            x.clone_from(&best.x);
-            let call = Call { time_step: Some(*dt), ..Call::default() };
-            resolver.survey(&x[..count], &call).map_err(|source| resolve_error(world, step, source))?;
-            statistics.seconds.other += clock.elapsed().as_secs_f64();
-        }
-        (statistics.residual_n, statistics.residual_m) = (residual.force, residual.distance);
         positions.clone_from(x);
         Ok(())
     }

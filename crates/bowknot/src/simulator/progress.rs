@@ -12,9 +12,9 @@ const VAIN_ITERATIONS: usize = 3;
 /// Iterations without progress after which they count as swinging about the solution.
 const SWINGING: usize = 2;
 
-/// Factor of the least residual within which a time step may end: an iteration that has just lost or found a contact can be far from the
-/// solution, with edges crushed.
-pub(super) const GOOD_END: f64 = 1.2;
+/// Factor of the least residual within which iterations without progress may end: an iteration that has just lost or found a
+/// contact can be far from the solution, with edges crushed.
+const GOOD_END: f64 = 1.2;
 
 /// How the residuals of a time step go down.
 #[derive(Debug)]

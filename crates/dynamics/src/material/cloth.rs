@@ -106,8 +106,8 @@ impl ClothMaterial {
     /// [`Self::cotton`].
     ///
     /// Limit: the mean of 214 winter suitings, 0.26 kg/m^2, has LT = 0.6082 and log10 WT = 0.9621 (Kawabata, "The
-    /// Standardization and Analysis of Hand Evaluation", 2nd ed., 1980, constants of equation KN-101-WINTER), hence
-    /// EMT = 2 WT/(500 LT) = 6.0 %.
+    /// Standardization and Analysis of Hand Evaluation", 2nd ed., 1980, constants of equation KN-101-WINTER, as they are quoted;
+    /// not checked against the book), hence EMT = 2 WT/(500 LT) = 6.0 %.
     pub fn wool() -> Self {
         Self { stretch_limit: 1.06, ..Self::from_young_modulus(0.2348, 0.170e6, 0.277, 0.568e-3) }
     }
