@@ -33,8 +33,6 @@ pub(super) fn scene(scale: f64) -> Scene {
             }),
             translate: Vector::new(0.0, 0.0, 0.1),
             friction: 1.0,
-            // The collision stage knows no elasticity: what it may stretch, it stretches where cords are drawn over the ball,
-            // and Newton's method draws back by as much. At 10 % nine cords a side stored 0.4 J, at 2 % 0.04 J.
             stretch_limit: Some(1.02),
             ..BodySpec::default()
         }],
