@@ -26,24 +26,24 @@ fn a_ball_rolls_down_a_slope() {
 #[test]
 fn a_sheet_slides_over_a_rounded_edge_where_what_hangs_pulls_enough() {
     for friction in [0.2, 0.4] {
-        let held = theory::table_edge(0.9, friction, 100, &[]);
-        let slid = theory::table_edge(1.2, friction, 100, &[]);
-        assert!(held < 3e-3 && slid > 3e-2, "mu = {friction}: {held} m below, {slid} m above");
+        let held = theory::table_edge(0.95, friction, 100, &[]);
+        let slid = theory::table_edge(1.05, friction, 100, &[]);
+        assert!(held < 1e-3 && slid > 5e-2, "mu = {friction}: {held} m below, {slid} m above");
     }
 }
 
 #[test]
 fn bodies_stop_after_the_way_that_friction_leaves_them() {
     let stops = [
-        (Slider::Patch, 0.03, &Ground::ALL[..]),
-        (Slider::Grains, 0.03, &Ground::ALL[..]),
+        (Slider::Patch, 0.01, &Ground::ALL[..]),
+        (Slider::Grains, 0.01, &Ground::ALL[..]),
         (Slider::JellyCube, 0.03, &[Ground::HalfSpace, Ground::Box, Ground::CoarseBox, Ground::Irregular]),
         (
             Slider::StiffCube,
             0.03,
             &[Ground::HalfSpace, Ground::Box, Ground::Flush, Ground::Seam, Ground::Slab],
         ),
-        (Slider::Layers, 0.03, &[Ground::Box, Ground::Irregular]),
+        (Slider::Layers, 0.01, &[Ground::Box, Ground::Irregular]),
         (Slider::Strands, 0.05, &[Ground::Irregular, Ground::Seam]),
     ];
     for (slider, share, grounds) in stops {
