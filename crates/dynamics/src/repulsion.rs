@@ -50,17 +50,17 @@ const SETTLED_BOUND: f64 = 0.1;
 pub struct RepulsionSpring {
     /// The vertices; obstacles are welcome. Where there are fewer than four, any vertex with weight 0.
     pub vertices: [u32; 4],
-    /// Their weights beta [1], barycentric: positive on the side that the normal points to, negative on the other. Of what is
-    /// drawn together the other way round.
+    /// Their weights beta [1], barycentric: positive on the side that the normal points to, negative on the other. For a
+    /// largest distance the signs are reversed.
     pub weights: [f64; 4],
     /// Unit normal n [1].
     pub normal: Vector,
     /// What is taken from sum beta_i n.x_i [m]: 0 between primitives, n.p for a half-space through p.
     pub offset: f64,
-    /// Gap below which it pushes [m]; negative for what is drawn together, minus the largest distance.
+    /// Gap below which it pushes [m]. For a largest distance: minus that distance.
     pub desired: f64,
     /// Stiffness k in units of the bodies' own at the contact [1]: 1 / sum beta_i^2 / (n . H_ii n), H_ii the blocks of the
-    /// Newton system, inertia included, of free vertices.
+    /// Newton system, inertia included, of free vertices; softer for light bodies and for strands.
     pub stiffness: f64,
     /// Coefficient of friction mu [1]; 0: it pushes along the normal alone.
     pub friction: f64,

@@ -1,4 +1,5 @@
-//! Vertices near analytic half-spaces: a linear pass. The vertex brings the radius of both sides.
+//! Vertices near analytic half-spaces: a linear pass. A half-space has no radius, so that of the vertex
+//! counts twice.
 
 use crate::Pair;
 use bowknot_geometry::{HalfSpace, Point, Vector, separation};

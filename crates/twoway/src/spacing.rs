@@ -80,7 +80,8 @@ impl Spacing {
         spacing
     }
 
-    /// Half of what pairs are listed within for each side; all of it against half-spaces, which have no radius.
+    /// Half of what pairs are listed within for each side. Against half-spaces, where the search counts it twice, it is more than
+    /// needed.
     fn fill_margins(&mut self, half_spaces: usize) {
         let mut margins = Vec::with_capacity(self.bodies.len());
         for side in &self.bodies {

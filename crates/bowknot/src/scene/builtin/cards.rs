@@ -16,7 +16,8 @@ const FRICTION: f64 = 0.5;
 /// Three playing cards of 63 by 88 mm make a house: two lean against each other, 22 and 20 degrees off the vertical, and
 /// a third closes the open end, 25 degrees off it. Friction alone holds them, for 5 s.
 ///
-/// A card is a stiff sheet of 0.3 kg/m^2; in its plane it is as stiff as the same plate, 0.3 mm thick, must be that bends so.
+/// A card is a stiff sheet of 0.3 kg/m^2. Its stiffness in the plane is that of a plate of its thickness h and bending stiffness D,
+/// 12 (1 - nu^2) D / h^2.
 pub(super) fn scene(scale: f64) -> Scene {
     let card = |name: &str, size: [f64; 2], rotate: Vector, translate: Vector| BodySpec {
         name: name.to_owned(),
