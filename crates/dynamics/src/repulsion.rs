@@ -235,6 +235,7 @@ impl Repulsion {
         iterate: Option<&[Vector]>,
     ) {
         self.guessed = true;
+        let softest = self.softest(model, diagonal);
         let mut states = std::mem::take(&mut self.states);
         states.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(|(spring, state)| {
             let s = &self.springs[spring];
@@ -242,13 +243,8 @@ impl Repulsion {
             for (&node, weight) in self.nodes[spring].iter().zip(s.weights) {
                 if node != NO_NODE && free[node as usize] {
                     let node = node as usize;
-                    // A kinked strand resists along both of its edges, but only as long as its neighbours stay: springs as stiff as that
-                    // are too stiff for it, and settling diverges where strands cross.
-                    let local = if model.strands[node] {
-                        diagonal[node].symmetric_eigenvalues().min()
-                    } else {
-                        s.normal.dot(&(diagonal[node] * s.normal))
-                    };
+                    let along = || s.normal.dot(&(diagonal[node] * s.normal));
+                    let local = if model.strands[node] { softest[node] } else { along() };
                     let whole = model.body_masses[node] * rate * rate;
                     compliance += weight * weight * (1.0 / local + WHOLE / whole);
                 }
@@ -295,6 +291,18 @@ impl Repulsion {
             state.pressure = if state.pushes { carried } else { 0.0 };
         });
         self.states = states;
+    }
+
+    /// Stiffness of the strands' nodes with springs in their softest direction [N/m], 0 elsewhere. A kinked strand resists along both of its
+    /// edges, but only as long as its neighbours stay: springs as stiff as that are too stiff for it, and settling diverges
+    /// where strands cross.
+    fn softest(&self, model: &DynamicsModel, diagonal: &[Matrix3<f64>]) -> Vec<f64> {
+        let mut touched = vec![false; diagonal.len()];
+        self.nodes.iter().flatten().filter(|n| **n != NO_NODE).for_each(|n| touched[*n as usize] = true);
+        let of_node = |(node, block): (usize, &Matrix3<f64>)| {
+            if touched[node] && model.strands[node] { block.symmetric_eigenvalues().min() } else { 0.0 }
+        };
+        diagonal.par_iter().enumerate().with_min_len(CHUNK).map(of_node).collect()
     }
 
     /// Linearises the springs that push at `x`.

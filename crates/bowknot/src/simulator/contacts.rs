@@ -13,7 +13,7 @@ use bowknot_constraints::{Feature, FrictionModel};
 use bowknot_dynamics::{Dynamics, RepulsionSpring, StepError, Touching};
 use bowknot_geometry::{PairKind, Point, Vector};
 use bowknot_twoway::{Problem, Resolver};
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// The contacts in force.
 #[derive(Clone, Debug, Default)]
@@ -163,8 +163,8 @@ impl Contacts {
         }
         let problem = resolver.problem();
         let with_force = carried.iter().filter(|c| c.force != Vector::zeros());
-        let loaded: HashSet<[Feature; 2]> = with_force.map(|c| c.features).collect();
-        let mut index = HashMap::new();
+        let loaded: FxHashSet<[Feature; 2]> = with_force.map(|c| c.features).collect();
+        let mut index = FxHashMap::default();
         self.add(resolver, start, dt, &mut index, |features, _| {
             Some(if loaded.contains(features) { LOADED_TOLERANCE } else { CONE_TOLERANCE })
         });
@@ -245,7 +245,7 @@ impl Contacts {
     }
 
     /// The sides whose contacts pressed and are gone, and which no contact holds that they pressed, with their pressure [N].
-    fn orphans(&self, problem: &Problem, carried: &[ContactForce], index: &Index) -> HashMap<Side, Vector> {
+    fn orphans(&self, problem: &Problem, carried: &[ContactForce], index: &Index) -> FxHashMap<Side, Vector> {
         let mut orphans = lost_by_side(problem, carried, index);
         for (features, spring) in self.features.iter().zip(&self.springs) {
             if let Some(side) = side(problem, features)
@@ -261,9 +261,9 @@ impl Contacts {
     /// points have moved on to, or to a contact that one of them has now; of a vertex against a body, to the contact of that vertex
     /// whose normal is nearest to the former one: another may be a wall ahead of it.
     fn hand_on(&mut self, problem: &Problem, carried: &[ContactForce], index: &Index, moved: &MovedEdges) {
-        let mut of_vertices: HashMap<Side, Vec<ContactForce>> = HashMap::new();
+        let mut of_vertices: FxHashMap<Side, Vec<ContactForce>> = FxHashMap::default();
         let mut of_edges: Vec<ContactForce> = Vec::new();
-        let mut at_edge: HashMap<u32, usize> = HashMap::new();
+        let mut at_edge: FxHashMap<u32, usize> = FxHashMap::default();
         for contact in carried.iter().filter(|c| c.force != Vector::zeros()) {
             let ContactForce { features, force, .. } = contact;
             if let Some(&spring) = index.get(features) {
@@ -283,7 +283,7 @@ impl Contacts {
         if of_vertices.is_empty() && of_edges.is_empty() {
             return;
         }
-        let mut at_side: HashMap<Side, Vec<usize>> = HashMap::new();
+        let mut at_side: FxHashMap<Side, Vec<usize>> = FxHashMap::default();
         for (spring, features) in self.features.iter().enumerate() {
             if let Some(side) = side(problem, features)
                 && of_vertices.contains_key(&side)
@@ -408,13 +408,13 @@ pub(super) fn solved(world: &World) -> impl Iterator<Item = usize> + '_ {
 }
 
 /// Springs by what they stand for.
-type Index = HashMap<[Feature; 2], usize>;
+type Index = FxHashMap<[Feature; 2], usize>;
 
 /// A vertex, and a body that it is in contact with; half-spaces count from the end.
 type Side = (u32, u32);
 
 /// Springs that have taken over from two edges, with the sign of the force in them.
-type MovedEdges = HashMap<[Feature; 2], (usize, f64)>;
+type MovedEdges = FxHashMap<[Feature; 2], (usize, f64)>;
 
 /// The vertex whose contact it is, and the body on the other side.
 fn side(problem: &Problem, features: &[Feature; 2]) -> Option<Side> {
@@ -432,8 +432,8 @@ fn side(problem: &Problem, features: &[Feature; 2]) -> Option<Side> {
 }
 
 /// Pressures of vertices, forces without friction, that no spring of the same features carries on, by side [N].
-fn lost_by_side(problem: &Problem, carried: &[ContactForce], index: &Index) -> HashMap<Side, Vector> {
-    let mut lost = HashMap::new();
+fn lost_by_side(problem: &Problem, carried: &[ContactForce], index: &Index) -> FxHashMap<Side, Vector> {
+    let mut lost = FxHashMap::default();
     for ContactForce { features, normal, force } in carried {
         if *force != Vector::zeros()
             && !index.contains_key(features)
@@ -450,8 +450,8 @@ fn moved_edges(resolver: &Resolver, carried: &[ContactForce], index: &Index) -> 
     let is_lost = |features: &[Feature; 2]| {
         matches!(features, [Feature::Edge(a), Feature::Edge(b)] if a != b) && !index.contains_key(features)
     };
-    let lost: HashSet<[Feature; 2]> = carried.iter().map(|c| c.features).filter(is_lost).collect();
-    let mut moved = MovedEdges::new();
+    let lost: FxHashSet<[Feature; 2]> = carried.iter().map(|c| c.features).filter(is_lost).collect();
+    let mut moved = MovedEdges::default();
     if lost.is_empty() {
         return moved;
     }

@@ -11,7 +11,7 @@ use bowknot_constraints::{EdgeLimits, EdgeReference, Feature};
 use bowknot_dynamics::RepulsionSpring;
 use bowknot_geometry::{Point, Vector};
 use bowknot_twoway::Problem;
-use std::collections::HashSet;
+use rustc_hash::FxHashSet;
 
 /// Share of its limit from which on an edge counts as taut.
 const TAUT: f64 = 0.99;
@@ -57,13 +57,13 @@ impl LimitedEdges {
         x: &'a [Point],
         start: &'a [Point],
         stiffness: f64,
-        loaded: &HashSet<[Feature; 2]>,
+        loaded: &FxHashSet<[Feature; 2]>,
     ) -> impl Iterator<Item = ([Feature; 2], RepulsionSpring)> + 'a {
         let of_edge = |features: &[Feature; 2]| match features {
             [Feature::Edge(a), Feature::Edge(b)] if a == b => Some(*a),
             _ => None,
         };
-        let loaded: HashSet<u32> = loaded.iter().filter_map(of_edge).collect();
+        let loaded: FxHashSet<u32> = loaded.iter().filter_map(of_edge).collect();
         let length = |x: &[Point], [a, b]: [u32; 2]| x[a as usize] - x[b as usize];
         self.edges.iter().filter_map(move |edge| {
             let now = length(x, edge.vertices);

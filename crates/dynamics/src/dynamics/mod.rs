@@ -29,7 +29,7 @@ use crate::model::NO_NODE;
 use crate::repulsion::Repulsion;
 use crate::{DynamicsModel, DynamicsParams, ParamsError, RepulsionSpring, StepError};
 use bowknot_geometry::{Point, Vector};
-use newton::{Newton, Step, Workspace};
+use newton::{Known, Newton, Step, Workspace};
 use serde::Serialize;
 
 /// What one Newton iteration did.
@@ -121,6 +121,7 @@ impl Dynamics {
             },
             cg: CgWorkspace::default(),
             least_scale: 0.0,
+            known: Known::default(),
         };
         let surfaces = (params.air_density > 0.0).then(|| DragSurfaces::new(&model));
         let repulsion = Repulsion::default();
@@ -254,6 +255,7 @@ impl Dynamics {
         step.dt = dt;
         step.last_target = None;
         self.work.least_scale = 0.0;
+        self.work.known.clear();
         step.most = None;
         step.fresh = true;
         step.positions.clear();
@@ -360,7 +362,10 @@ impl Dynamics {
         let work = &mut self.work;
         for (node, &vertex) in self.model.node_vertex.iter().enumerate() {
             work.x[node] = x[vertex as usize].coords;
-            work.free[node] = !prescribed[vertex as usize];
+            let free = !prescribed[vertex as usize];
+            if std::mem::replace(&mut work.free[node], free) != free {
+                work.known.clear();
+            }
         }
     }
 

@@ -26,7 +26,7 @@ const VAIN_DECREASE: f64 = 1e-6;
 const MISSED: f64 = 0.01;
 
 /// Share of the whole displacement below which a correction is the last.
-const SMALL_CORRECTION: f64 = 0.1;
+const SMALL_CORRECTION: f64 = 0.2;
 
 /// Share of the contact forces that may be wrong, by springs that pull, are missing, or rub too much or too little.
 const SETTLED: f64 = 0.002;
@@ -39,6 +39,9 @@ const SETTLING_ITERATIONS: usize = 6;
 /// Share of wrong forces at which they must go on, and how many there may then be.
 const UNSETTLED: f64 = 0.3;
 const MOST_SETTLING: usize = 8;
+
+/// Residual of a rough linear solve, relative to its own right-hand side.
+const ROUGH: f64 = 0.03;
 
 /// Newton iterations more at most while springs that pull give energy. One has been enough wherever it was seen.
 const FURTHER_ITERATIONS: usize = 4;
@@ -95,6 +98,28 @@ pub struct Workspace {
     pub cg: CgWorkspace,
     /// See [`Limits::least_scale`]: that of the first solve of the time step, 0 in it.
     pub least_scale: f64,
+    /// What has been computed in this time step.
+    pub known: Known,
+}
+
+/// What is known of a state, so that it is not computed twice.
+#[derive(Debug, Default)]
+pub struct Known {
+    /// Where `energies` were computed last [m]; empty if nowhere in this time step.
+    energies_at: Vec<Vector>,
+    energies: [f64; 2],
+    /// Where the bodies were linearised last [m], with which filter, and their gradient [N].
+    linearised_at: Vec<Vector>,
+    filter: Option<Filter>,
+    gradient: Vec<Vector>,
+}
+
+impl Known {
+    /// Forgets all: a time step begins.
+    pub fn clear(&mut self) {
+        self.energies_at.clear();
+        self.linearised_at.clear();
+    }
 }
 
 impl Workspace {
@@ -112,6 +137,15 @@ impl Workspace {
     }
 }
 
+/// How well a linear system is solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Accuracy {
+    /// To [`ROUGH`]: what is linearised here will be linearised again elsewhere.
+    Rough,
+    /// To [`DynamicsParams::cg_tolerance`].
+    Full,
+}
+
 /// What an iteration works on: from `work.x` to `work.trial`, by node.
 pub struct Newton<'a> {
     pub model: &'a DynamicsModel,
@@ -123,18 +157,31 @@ pub struct Newton<'a> {
 
 impl Newton<'_> {
     /// Makes the target.
+    ///
+    /// Linear systems on the way to it are solved roughly, as what they are linearised at is not the target, and the last one
+    /// accurately: an inexact Newton method (Dembo, Eisenstat and Steihaug 1982).
     pub fn reach(&mut self) -> NewtonInfo {
         if self.repulsion.is_empty() { self.approach() } else { self.approach_contacts() }
     }
 
     /// A Newton iteration, and as many to correct it as it takes.
     fn approach(&mut self) -> NewtonInfo {
-        let mut info = self.iterate();
+        let mut info = self.iterate(Accuracy::Full);
         if info.agreement < AGREEMENT || self.model.has_strands() {
             let start = self.work.x.clone();
             self.correct(&start, info.decrease(), &mut info);
+            self.refine(&mut info);
         }
         info
+    }
+
+    /// Solves once more, accurately, if the last solve was rough.
+    fn refine(&mut self, info: &mut NewtonInfo) {
+        if info.cg.residual > self.params.cg_tolerance {
+            self.repulsion.settle(&self.work.trial);
+            self.work.start_from_trial();
+            info.add(&self.iterate(Accuracy::Full));
+        }
     }
 
     /// The same with springs: contacts are guessed, the guess is improved by what it led to, and only then is the way
@@ -149,11 +196,12 @@ impl Newton<'_> {
         let (start, imposed) = (self.work.x.clone(), self.work.imposed.clone());
         let mut placed = start.clone();
         add_scaled(&mut placed, 1.0, &imposed);
-        let [kinetic, internal] = self.energies(&placed);
+        let [kinetic, internal] = self.energies_at(&placed);
         let most =
             *self.step.most.get_or_insert(kinetic + internal + NO_GAIN * (kinetic.abs() + internal.abs()));
 
-        let first = self.iterate();
+        let accuracy = if self.step.last_target.is_none() { Accuracy::Full } else { Accuracy::Rough };
+        let first = self.iterate(accuracy);
         let (mut info, mut last) = (first, first);
         for iteration in 0..MOST_SETTLING {
             let tolerated = if iteration < SETTLING_ITERATIONS { SETTLED } else { UNSETTLED };
@@ -161,22 +209,23 @@ impl Newton<'_> {
                 break;
             }
             self.work.start_from_trial();
-            last = self.iterate();
+            last = self.iterate(Accuracy::Rough);
             info.add(&last);
         }
         if self.model.has_strands() || last.agreement < AGREEMENT {
             self.correct(&start, first.decrease(), &mut info);
         }
+        self.refine(&mut info);
 
         let most = most + self.repulsion.stored_energy(&placed);
-        let gains = |newton: &Self| newton.energies(&newton.work.trial).iter().sum::<f64>() > most;
+        let gains = |newton: &mut Self| newton.at_trial(Self::energies_at).iter().sum::<f64>() > most;
         for _ in 0..FURTHER_ITERATIONS {
             if !gains(self) {
                 return info;
             }
             self.repulsion.settle(&self.work.trial);
             self.work.start_from_trial();
-            info.add(&self.iterate());
+            info.add(&self.iterate(Accuracy::Full));
         }
         if gains(self) {
             self.work.x.copy_from_slice(&start);
@@ -192,7 +241,7 @@ impl Newton<'_> {
     fn push_only(&mut self, info: &mut NewtonInfo) {
         self.repulsion.forget_multipliers(&self.work.x);
         for _ in 0..ONE_SIDED_ITERATIONS {
-            let next = self.iterate();
+            let next = self.iterate(Accuracy::Full);
             info.add(&next);
             if !self.repulsion.settle_without_multipliers(&self.work.trial) {
                 break;
@@ -221,13 +270,13 @@ impl Newton<'_> {
                 self.work.place(1.0);
             }
             self.work.start_from_trial();
-            let mut next = self.iterate();
+            let mut next = self.iterate(Accuracy::Rough);
             match shortened {
                 Some((trial, before)) if next.energy_after >= before.energy_after => {
                     self.work.trial.copy_from_slice(&trial);
                     self.work.start_from_trial();
                     info.add(&next);
-                    next = self.iterate();
+                    next = self.iterate(Accuracy::Rough);
                 }
                 _ => {}
             }
@@ -243,7 +292,7 @@ impl Newton<'_> {
     }
 
     /// One iteration.
-    fn iterate(&mut self) -> NewtonInfo {
+    fn iterate(&mut self, accuracy: Accuracy) -> NewtonInfo {
         self.linearise();
         let Self { model, params, repulsion, step, work } = self;
 
@@ -255,22 +304,24 @@ impl Newton<'_> {
             repulsion: repulsion.any_pushes().then_some(&**repulsion),
             free: &work.free,
         };
-        system.multiply(&work.imposed, &mut work.right_side);
+        if work.imposed.iter().any(|p| *p != Vector::zeros()) {
+            system.multiply(&work.imposed, &mut work.right_side);
+        } else {
+            work.right_side.fill(Vector::zeros());
+        }
         for ((b, g), &free) in work.right_side.iter_mut().zip(&work.gradient).zip(&work.free) {
             *b = if free { -(*b + g) } else { Vector::zeros() };
         }
 
-        // Guesses: to where inertia leads, and to where the last target was. Near the solution of a step
-        // the second is all but exact; in free flight the first is.
-        let mut guess_count = 1;
-        for node in 0..work.x.len() {
-            let to = |target: &[Vector]| {
-                if work.free[node] { target[node] - work.x[node] } else { Vector::zeros() }
-            };
-            work.guesses[0][node] = to(&step.inertial);
-            if let Some(last) = &step.last_target {
-                work.guesses[1][node] = to(last);
-                guess_count = 2;
+        // Guesses: to where inertia leads, and to where the last target was. Near the solution of a step the second is all but
+        // exact; in free flight the first is. Corrections start from them too: what is still missing along them is what
+        // conjugate gradients find last.
+        let guess_count = 1 + usize::from(step.last_target.is_some());
+        for (guess, target) in work.guesses.iter_mut().zip([Some(&step.inertial), step.last_target.as_ref()])
+        {
+            let Some(target) = target else { continue };
+            for (node, guess) in guess.iter_mut().enumerate() {
+                *guess = if work.free[node] { target[node] - work.x[node] } else { Vector::zeros() };
             }
         }
         let [inertia, last] = &work.guesses;
@@ -278,6 +329,10 @@ impl Newton<'_> {
         work.preconditioner.build(&system, &work.x);
         let limits = Limits {
             tolerance: params.cg_tolerance,
+            own_tolerance: match accuracy {
+                Accuracy::Rough => ROUGH,
+                Accuracy::Full => 0.0,
+            },
             least_scale: work.least_scale,
             max_iterations: params.cg_max_iterations,
         };
@@ -334,6 +389,11 @@ impl Newton<'_> {
         let Self { model, params, step, work, .. } = self;
         let motion = Motion { x: &work.x, start: &step.start, rate: 1.0 / step.dt };
         let filter = Filter::new(params.hessian_filter, step.last_target.is_none());
+        let known = &mut work.known;
+        if known.linearised_at == work.x && known.filter == Some(filter) {
+            work.gradient.copy_from_slice(&known.gradient);
+            return;
+        }
         let inertia = 1.0 / (step.dt * step.dt);
         let drag = params.air_drag / step.dt;
 
@@ -375,6 +435,9 @@ impl Newton<'_> {
                 family.linearise(chunk, motion, filter, &mut rows);
             }
         });
+        known.linearised_at.clone_from(&work.x);
+        known.filter = Some(filter);
+        known.gradient.clone_from(&work.gradient);
     }
 
     /// How far `work.x` is from solving the step, with the springs' carried forces for contact forces, as far as nodes are `counted`.
@@ -448,11 +511,29 @@ impl Newton<'_> {
         [kinetic, internal]
     }
 
+    /// The same, not computed again where they were computed last.
+    fn energies_at(&mut self, x: &[Vector]) -> [f64; 2] {
+        if self.work.known.energies_at != x {
+            self.work.known.energies = self.energies(x);
+            self.work.known.energies_at.clear();
+            self.work.known.energies_at.extend_from_slice(x);
+        }
+        self.work.known.energies
+    }
+
     /// Incremental potential at `x`, and the size of its largest term: what rounding is relative to [J].
-    pub fn potential(&self, x: &[Vector]) -> (f64, f64) {
-        let [kinetic, mut internal] = self.energies(x);
+    pub fn potential(&mut self, x: &[Vector]) -> (f64, f64) {
+        let [kinetic, mut internal] = self.energies_at(x);
         internal += self.repulsion.energy(x);
         (kinetic + internal, kinetic.abs() + internal.abs())
+    }
+
+    /// Calls `evaluate` with the trial.
+    fn at_trial<T>(&mut self, evaluate: impl FnOnce(&mut Self, &[Vector]) -> T) -> T {
+        let trial = std::mem::take(&mut self.work.trial);
+        let value = evaluate(self, &trial);
+        self.work.trial = trial;
+        value
     }
 
     /// Backtracking from the full Newton step; leaves the target in `work.trial`.
@@ -463,7 +544,7 @@ impl Newton<'_> {
     /// lowest is taken.
     fn search_line(&mut self, info: &mut NewtonInfo) {
         self.work.place(0.0);
-        let (before, scale) = self.potential(&self.work.trial);
+        let (before, scale) = self.at_trial(Self::potential);
         info.energy_before = before;
         let predicted = dot(&self.work.step, &self.work.right_side);
         // Maxima are the same in any order.
@@ -474,7 +555,7 @@ impl Newton<'_> {
         let mut length = 1.0;
         for halving in 0..=halvings {
             self.work.place(length);
-            let (energy, terms) = self.potential(&self.work.trial);
+            let (energy, terms) = self.at_trial(Self::potential);
             if energy < best.0 {
                 best = (energy, length);
             }

@@ -291,7 +291,7 @@ pub(super) fn assemble(
         gradient: [Vector::zeros(); 3],
         hessian: [[Matrix3::zeros(); 3]; 3],
     };
-    for k in 0..3 {
+    for k in 1..3 {
         let g = shape[k];
         out.gradient[k] = (u1 * (p11 * g.x + p12 * g.y) + u2 * (p21 * g.x + p22 * g.y)) * area;
         let (g11, g12, g21, g22) = (k11 * g, k12.transpose() * g, k12 * g, k22 * g);
@@ -312,6 +312,11 @@ pub(super) fn assemble(
             out.hessian[k][l] = basis * (block * area) * basis.transpose();
         }
     }
+    // Translations cost nothing: what is left belongs to node 0.
+    out.gradient[0] = -(out.gradient[1] + out.gradient[2]);
+    let [_, [_, h11, h12], [.., h22]] = out.hessian;
+    let (h01, h02) = (-(h11 + h12.transpose()), -(h12 + h22));
+    out.hessian[0] = [-(h01 + h02), h01, h02];
     out
 }
 

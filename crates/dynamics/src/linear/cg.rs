@@ -24,6 +24,8 @@ pub struct CgInfo {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limits {
     pub tolerance: f64,
+    /// Residual relative to b itself that is enough [1].
+    pub own_tolerance: f64,
     /// Squared norm that the tolerance is relative to where b has a smaller one: that of a larger problem, which this
     /// one corrects.
     pub least_scale: f64,
@@ -89,6 +91,7 @@ pub(crate) fn solve(
         return CgInfo { iterations: 0, residual: 0.0, converged: scale == 0.0 };
     }
     *own_scale = scale;
+    let enough = limits.own_tolerance * limits.own_tolerance * scale;
     let scale = scale.max(limits.least_scale);
 
     // Conjugate the guesses one after the other: p is the guess made conjugate to those before.
@@ -112,7 +115,7 @@ pub(crate) fn solve(
 
     let mut rz = preconditioner.apply(r, z);
     p.copy_from_slice(z);
-    let goal = limits.tolerance * limits.tolerance * scale;
+    let goal = (limits.tolerance * limits.tolerance * scale).max(enough);
     let mut info = CgInfo { iterations: 0, residual: (rz / scale).sqrt(), converged: rz <= goal };
     while !info.converged && info.iterations < limits.max_iterations {
         let curvature = system.multiply(p, q);

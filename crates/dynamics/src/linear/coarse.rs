@@ -12,7 +12,7 @@ use crate::repulsion::Repulsion;
 use bowknot_geometry::Vector;
 use nalgebra::{Matrix3, Matrix6, Vector6};
 use rayon::prelude::*;
-use std::ops::Range;
+use std::ops::{AddAssign, Range};
 
 /// Most fill of a factor with repulsion, in that of the mesh's: a heap of many layers is no surface, and its factor costs
 /// more than it saves. Without, springs count with their diagonal blocks.
@@ -242,7 +242,13 @@ impl RowSum {
     #[inline]
     fn add(&mut self, block: &Matrix3<f64>, arm: &Arm) {
         self.shift += block * arm.free;
-        self.spin += block * spin_matrix(arm);
+        // The block times the spin matrix, without its zeros.
+        let [a, b, c] = [block.column(0), block.column(1), block.column(2)];
+        let o = &arm.offset;
+        let mut spin = |k: usize, column: Vector| self.spin.column_mut(k).add_assign(&column);
+        spin(0, c * o.y - b * o.z);
+        spin(1, a * o.z - c * o.x);
+        spin(2, b * o.x - a * o.y);
     }
 
     #[inline]
