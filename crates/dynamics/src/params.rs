@@ -32,7 +32,7 @@ pub struct DynamicsParams {
     /// distance that they are worth, see [`crate::Residual::distance`]. It is for whoever alternates Newton iterations with a
     /// collision stage, and for time steps of 1/100 s: in shorter ones it shrinks with their square, in longer ones it grows with
     /// them. Smaller: more iterations, up to `simulation.newton_iterations`; they end as well where three of them, one after the
-    /// other, do not take off three tenths of it. 0: all are made. Default 0.003.
+    /// other, do not take off three tenths of a residual that is no more than four tolerances. 0: all are made. Default 0.003.
     pub step_tolerance: f64,
     /// Most iterations of the linear solve [1]. Reached, it ends with the best so far and says so.
     /// Default 10000.

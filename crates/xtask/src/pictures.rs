@@ -27,7 +27,7 @@ const PICTURES: &[Scene] = &[
     Scene {
         name: "funnel",
         scale: "0.2",
-        frames: &[30, 50],
+        frames: &[26, 30],
         options: "--camera 1.7,-1.7,1.7 --target 0,0,0.95 --fov 40",
     },
     Scene {
