@@ -11,7 +11,8 @@ mod safety;
 mod interior_points;
 // What the fuzz targets check holds for seeded random bytes.
 mod fuzz_bodies;
-// Contact moves bodies as theory has it.
+// Contact moves bodies as theory has it, and crushes none.
+mod folds;
 mod friction;
 mod momentum;
 mod slopes;
