@@ -158,8 +158,8 @@ pub struct Newton<'a> {
 impl Newton<'_> {
     /// Makes the target.
     ///
-    /// Linear systems on the way to it are solved roughly, as what they are linearised at is not the target, and the last one
-    /// accurately: an inexact Newton method (Dembo, Eisenstat and Steihaug 1982).
+    /// The first linear system of a time step, or of any target without contacts, and the last one of each target are solved accurately, those between roughly, as they are
+    /// linearised again where they lead: an inexact Newton method (Dembo, Eisenstat and Steihaug 1982).
     pub fn reach(&mut self) -> NewtonInfo {
         if self.repulsion.is_empty() { self.approach() } else { self.approach_contacts() }
     }

@@ -92,6 +92,36 @@ fn sheets_fly_together_with_their_momentum_at_any_tolerance() {
 }
 
 #[test]
+fn targets_end_with_an_accurate_solve_and_a_residual_between_them_changes_no_bit() {
+    let targets = |measured: bool| {
+        let (mut dynamics, rest) = sheets(DynamicsParams::default());
+        let tolerance = dynamics.params().cg_tolerance;
+        let count = rest.len() / 2;
+        dynamics.set_repulsion(&springs(count as u32, 10.0)).expect("valid");
+        let held: Vec<bool> = (0..rest.len()).map(|k| k == 2 * count).collect();
+        let speed = |k: usize| Vector::new(0.0, (k as f64).cos(), if k < count { 1.0 } else { -1.0 });
+        let v: Vec<Vector> = (0..rest.len()).map(speed).collect();
+        dynamics.begin_step(&rest, &v, 0.01).expect("finite");
+        let (mut x, mut y, mut targets) = (rest.clone(), rest.clone(), Vec::new());
+        let mut solves = 0;
+        for _ in 0..3 {
+            let info = dynamics.newton_target(&x, &held, &rest, &mut y).expect("finite");
+            assert!(info.cg.converged && info.cg.residual <= tolerance, "{info:?}");
+            solves += info.iterations;
+            x.copy_from_slice(&y);
+            // What it linearises the next target starts from.
+            if measured {
+                dynamics.residual(&x, &held, &vec![true; rest.len()]).expect("finite");
+            }
+            targets.push(y.clone());
+        }
+        assert!(solves > 3, "no target took more than one solve");
+        targets
+    };
+    assert_eq!(targets(false), targets(true));
+}
+
+#[test]
 fn obstacles_and_half_spaces_hold_a_sheet_up() {
     // Every vertex of the lower sheet over a half-space z < -5 mm, and over an obstacle's vertex: both by offset or by
     // the obstacle's keyframe.
