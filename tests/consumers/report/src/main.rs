@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let info = info?;
     println!("{} frames in {} bytes", info.frames, info.bytes);
     assert_eq!(info.frames, 2);
-    assert!(text?.starts_with("<!DOCTYPE html>"));
+    assert!(text?.starts_with("<!doctype html>"));
     Ok(())
 }
 
