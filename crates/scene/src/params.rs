@@ -70,10 +70,11 @@ impl Preset {
     }
 }
 
-/// Quadratic repulsion, `[solver.repulsion]` (paper, section 6.2): springs between surfaces that are near at the start of a
-/// time step, in the linear system of the dynamics, by which it knows of contacts and their friction. Without them what
-/// rests on something is deformed within each time step, as if it fell on. The guarantee does not rest on them. Pairs with
-/// a strand have none, nor have grains among themselves.
+/// Contact forces of the dynamics, `[solver.repulsion]` (paper, section 6.2): springs between surfaces that are near, in
+/// the linear system of the dynamics, by which it knows of contacts and their friction. Without them the collision stage
+/// alone holds bodies apart, and what rests on something is deformed within each time step. The guarantee does not rest
+/// on them. Grains have none where they touch grains or obstacles. With `contact.friction_model = "filter"`, and so with
+/// the preset `paper`, there are no springs whatever the stiffness.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RepulsionParams {
