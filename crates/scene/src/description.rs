@@ -6,7 +6,7 @@ use crate::contact::FrictionPair;
 use crate::error::{self, Problem, SceneError};
 use crate::params::{OutputParams, Preset, RepulsionParams, SimulationParams};
 use crate::source::Source;
-use crate::{read, write};
+use crate::{read, short, write};
 use bowknot_dynamics::DynamicsParams;
 use bowknot_io::IoError;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
@@ -121,6 +121,11 @@ impl Scene {
     /// paths become absolute if the system tells where they are.
     pub fn to_toml(&self) -> String {
         write::text(self)
+    }
+
+    /// The scene as TOML without what is default, the way a person would write it; [`Self::from_toml`] reads it back equal.
+    pub fn to_short_toml(&self) -> String {
+        short::text(self)
     }
 
     /// Checks every value; what [`Self::load`] reports for files, for scenes made in code.

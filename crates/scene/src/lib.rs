@@ -23,6 +23,7 @@ mod params;
 mod read;
 mod reader;
 pub mod shapes;
+mod short;
 mod source;
 #[cfg(test)]
 mod tests;
