@@ -1,10 +1,11 @@
 //! From a parsed description to a [`Scene`].
 
 use crate::body::{BodySpec, ObstacleSpec, PinSpec, Region};
-use crate::contact::{self, FrictionPair};
+use crate::contact;
 use crate::description::Scene;
 use crate::error::{Problem, SceneError, nearest};
 use crate::fields::field_names;
+use crate::friction::FrictionPair;
 use crate::kind::BodyKind;
 use crate::material;
 use crate::motion::Motion;

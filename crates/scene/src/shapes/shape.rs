@@ -1,12 +1,24 @@
 //! The choice among all shapes.
 
 use super::animated::Animated;
+use super::ball::Ball;
+use super::block::Block;
+use super::cone::Cone;
+use super::cuboid::Cuboid;
+use super::figure::{AnimatedFigure, Figure};
+use super::garment::Garment;
+use super::grains::Grains;
+use super::half_space::HalfSpaceShape;
+use super::lathe::Lathe;
 use super::limits::{limit_vertices, positive_lengths};
 use super::mesh::TriangleMesh;
-use super::{
-    AnimatedFigure, Ball, Block, Cone, Cuboid, Figure, Garment, Grains, HalfSpaceShape, Lathe, Ribbon, Sheet,
-    Strands, TetBall, Tube, Wedge, Woven,
-};
+use super::ribbon::Ribbon;
+use super::sheet::Sheet;
+use super::strands::Strands;
+use super::tet_ball::TetBall;
+use super::tube::Tube;
+use super::wedge::Wedge;
+use super::woven::Woven;
 use crate::kind::BodyKind;
 use bowknot_errors::{Checks, Parameters};
 use bowknot_io::Mesh;
