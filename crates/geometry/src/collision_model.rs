@@ -1,9 +1,10 @@
-//! What is fixed about a scene's collisions: topology, bodies, filters, half-spaces.
+//! The fixed data of a scene's collisions: topology, bodies with their filters, half-spaces.
 
-use bowknot_geometry::{HalfSpace, Topology};
+use crate::half_space::HalfSpace;
+use crate::topology::Topology;
 use serde::{Deserialize, Serialize};
 
-/// With whom a body collides.
+/// Which bodies a body collides with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BodyFilter {
     /// Obstacles have no freedom; pairs of two obstacle primitives are never formed.
@@ -59,7 +60,7 @@ pub enum ModelError {
     },
 }
 
-/// What is fixed about a scene's collisions.
+/// The fixed data of a scene's collisions.
 #[derive(Clone, Debug, Default)]
 pub struct CollisionModel {
     topology: Topology,
