@@ -1,15 +1,14 @@
-//! Several threads through one sequence of phases, each phase in parallel, with no fork between them.
+//! Several threads run one sequence of phases, each phase in parallel, without a fork between phases.
 //!
-//! A sweep has dozens of colours of a few hundred rows, some microseconds of work each; forking and
-//! joining anew for each costs as much. So one fork covers all sweeps: each thread walks the
-//! same sequence of phases (colours) and waits, spinning, until all places of the earlier phases are
-//! done. Each thread has its own share of every phase, the same fraction of the places: where rows
-//! are stored in spatial order it meets the same nodes in every colour, in its own cache. A thread that
-//! is through takes chunks of the others' shares.
+//! A sweep has dozens of colours of a few hundred rows. One colour is some microseconds of work, and a fork and join
+//! would cost as much. So one fork covers all sweeps. Each thread goes through the same sequence of phases (colours) and
+//! waits, spinning, until all places of the earlier phases are done. Each thread has its own share of every phase, the
+//! same fraction of the places: if rows are stored in spatial order, it accesses the same nodes in every colour, in its
+//! own cache. A thread that has finished its share takes chunks of the shares of others.
 //!
-//! No thread waits in vain: a chunk is only ever claimed by a thread that is running, which does it
-//! at once, and chunks that nobody claimed are taken by whoever arrives. If no other thread ever
-//! comes to help, the first does everything. Who runs a chunk has no influence on results.
+//! There is no deadlock. Only a running thread claims a chunk, and it runs the chunk at once; any thread may claim a
+//! chunk that is not claimed yet. If no other thread ever runs, the first does everything. Results do not depend on
+//! which thread runs a chunk.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -18,17 +17,17 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 pub(crate) trait Phases: Sync {
     /// How many phases there are.
     fn count(&self) -> usize;
-    /// How many places a phase has, and how many make a chunk (at least 1). A phase whose chunk is
-    /// its size is run by one thread.
+    /// The number of places of a phase and of a chunk (at least 1). One thread runs a phase that is a single chunk.
     fn size(&self, phase: usize) -> (usize, usize);
-    /// Runs places of a phase; raises `residual` to the largest seen.
+    /// Runs places of a phase; raises `residual` to the largest residual among them.
     fn run(&self, phase: usize, places: Range<usize>, residual: &mut f64);
 }
 
-/// More threads than this would find no work in a colour.
+/// A colour has no work for more threads than this.
 const MAX_THREADS: usize = 32;
 
-/// Alone on its cache lines (pairs of 64 bytes, as neighbours are prefetched).
+/// A counter that shares its cache lines with nothing else. Lines come in pairs of 64 bytes, because the processor
+/// prefetches the neighbour.
 #[derive(Default)]
 #[repr(align(128))]
 struct Counter(AtomicUsize);
@@ -37,8 +36,8 @@ struct Counter(AtomicUsize);
 struct Progress {
     /// Chunks claimed of each thread's shares, over all phases.
     claimed: [Counter; MAX_THREADS],
-    /// Chunks done, over all shares and phases. Since no chunk begins before the earlier phases are
-    /// done, it tells which these are.
+    /// Chunks done, over all shares and phases. No chunk begins before the earlier phases are done, so the count tells
+    /// which phases are done.
     done: Counter,
 }
 
@@ -65,7 +64,7 @@ fn work(phases: &impl Phases, progress: &Progress, own: usize, threads: usize) -
     let mut all_before = 0;
     for phase in 0..phases.count() {
         let (size, chunk) = phases.size(phase);
-        // A phase that is one chunk goes to the first share, whole.
+        // A phase that is one chunk belongs to the first share.
         let shares = if size <= chunk { 1 } else { threads };
         wait(|| progress.done.0.load(Ordering::Acquire) >= all_before);
         let mut all = 0;
@@ -98,7 +97,7 @@ fn claim(claimed: &AtomicUsize, end: usize) -> Option<usize> {
     None
 }
 
-/// Spins until `ready`; yields once that takes long, as when there are more threads than cores.
+/// Spins until `ready`; yields to other threads if that takes long, as when there are more threads than cores.
 fn wait(ready: impl Fn() -> bool) {
     let mut spins = 0_u32;
     while !ready() {
@@ -167,8 +166,8 @@ mod tests {
     }
 
     #[test]
-    fn one_thread_finishes_alone_what_many_share() {
-        // The pool has one thread, so nobody ever comes to help.
+    fn one_thread_alone_runs_the_shares_of_all() {
+        // The pool has one thread, so no other thread takes a share.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
         let recorder = Recorder::new(vec![(1000, 10), (500, 10)]);
         assert_eq!(pool.install(|| run(&recorder, 16)), 1499.0);

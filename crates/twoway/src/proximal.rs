@@ -7,7 +7,7 @@
 use crate::{Problem, State};
 use bowknot_constraints::EdgeForm;
 use bowknot_geometry::{PairKind, Point, Separation, Vector};
-use bowknot_lcp::BallRow;
+use bowknot_lcp::DistanceLimit;
 
 /// Most of the term, in the mass of its vertex. It is made of multipliers, and the heavier a vertex, the larger the multipliers
 /// that move it: without a bound both grow for ever where limits ask for more than a fraction of an edge, and x stays where
@@ -23,7 +23,7 @@ pub(crate) fn add_edges(
     proximal: &mut [f64],
     problem: &Problem,
     state: &State,
-    balls: &[BallRow],
+    balls: &[DistanceLimit],
     forces: &[Vector],
     scalars: &[f64],
 ) {

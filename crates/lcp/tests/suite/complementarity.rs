@@ -51,8 +51,14 @@ fn small(seed: u64, nodes: usize, rows: usize, bounded: bool) -> Small {
 }
 
 impl Small {
-    fn problem(&self) -> Problem<'_> {
-        Problem::new(&self.weights, Family::serial(&self.rows), Family::default(), Family::default()).unwrap()
+    fn problem(&self) -> LcpProblem<'_> {
+        LcpProblem::new(
+            &self.weights,
+            ConstraintSet::serial(&self.rows),
+            ConstraintSet::default(),
+            ConstraintSet::default(),
+        )
+        .unwrap()
     }
 
     /// Whether the rows are so far from parallel that sweeps, whose error shrinks by about this ratio of
@@ -70,10 +76,10 @@ impl Small {
 
     fn solve(
         &self,
-        solve: impl Fn(&Problem<'_>, &mut State<'_>) -> Result<Info, Error>,
+        solve: impl Fn(&LcpProblem<'_>, &mut LcpState<'_>) -> Result<LcpInfo, LcpError>,
     ) -> (Vec<Vector>, Vec<f64>) {
         let (mut y, mut lambda) = (self.y_free.clone(), vec![0.0; self.rows.len()]);
-        let mut state = State { y: &mut y, lambda: &mut lambda, ..State::default() };
+        let mut state = LcpState { y: &mut y, lambda: &mut lambda, ..LcpState::default() };
         solve(&self.problem(), &mut state).unwrap();
         (y, lambda)
     }
@@ -114,7 +120,7 @@ fn near(a: &[Vector], b: &[Vector], tolerance: f64) -> Result<(), TestCaseError>
     Ok(())
 }
 
-const PATIENT: Params = Params {
+const PATIENT: LcpParams = LcpParams {
     max_sweeps: 400_000,
     tolerance: Some(1e-13),
     relaxation: 1.0,
@@ -188,7 +194,7 @@ proptest! {
                 state.lambda[i] = if row.inverse_diagonal == 0.0 { 0.0 } else { start[i] };
             }
             apply_multipliers(problem, state)?;
-            solve_coloured(problem, state, &Params { relaxation: 1.4, ..PATIENT })
+            solve_coloured(problem, state, &LcpParams { relaxation: 1.4, ..PATIENT })
         });
         case.check(&y, &lambda, 1e-9)?;
         near(&y, &expected, 1e-7)?;
@@ -199,7 +205,7 @@ proptest! {
         let case = small(seed, nodes, rows, bounded);
         prop_assume!(case.well_conditioned());
         let (expected, _) = case.solve(solve_exact);
-        for params in [PATIENT, Params { relaxation: 1.5, ..PATIENT }] {
+        for params in [PATIENT, LcpParams { relaxation: 1.5, ..PATIENT }] {
             let (y, lambda) = case.solve(|p, s| Jacobi::new().solve(p, s, &params));
             case.check(&y, &lambda, 1e-9)?;
             near(&y, &expected, 1e-7)?;
@@ -210,7 +216,7 @@ proptest! {
 /// Dykstra's algorithm as its authors state it: one correction vector over all nodes for each set.
 fn dykstra(case: &Case, rounds: usize) -> Vec<Vector> {
     let (n, mut y) = (case.y_free.len(), case.y_free.clone());
-    let mut corrections = vec![vec![Vector::zeros(); n]; case.rows.len() + case.balls.len()];
+    let mut corrections = vec![vec![Vector::zeros(); n]; case.rows.len() + case.limits.len()];
     for _ in 0..rounds {
         for (set, correction) in corrections.iter_mut().enumerate() {
             let z: Vec<Vector> = y.iter().zip(&*correction).map(|(y, c)| y + c).collect();
@@ -227,11 +233,11 @@ fn dykstra(case: &Case, rounds: usize) -> Vec<Vector> {
                     }
                 }
             } else {
-                let ball = &case.balls[set - case.rows.len()];
-                let [a, b] = ball.vertices.map(|v| v as usize);
+                let edge = &case.limits[set - case.rows.len()];
+                let [a, b] = edge.vertices.map(|v| v as usize);
                 let (e, total) = (z[a] - z[b], w[a] + w[b]);
-                if e.norm() > ball.limit && total > 0.0 {
-                    let excess = e * (1.0 - ball.limit / e.norm());
+                if e.norm() > edge.limit && total > 0.0 {
+                    let excess = e * (1.0 - edge.limit / e.norm());
                     projected[a] -= excess * (w[a] / total);
                     projected[b] += excess * (w[b] / total);
                 }
@@ -246,32 +252,42 @@ fn dykstra(case: &Case, rounds: usize) -> Vec<Vector> {
 }
 
 #[test]
-fn rows_and_balls_together_are_dykstras_projection() {
+fn rows_and_distance_limits_together_are_dykstras_projection() {
     for seed in 0..4 {
         let case = cloth(5, 12, seed);
         let expected = dykstra(&case, 6000);
-        let problem = Problem::new(
+        let problem = LcpProblem::new(
             &case.weights,
-            Family::new(&case.rows, Schedule::coloured(&case.row_starts)),
-            Family::new(&case.balls, Schedule::coloured(&case.ball_starts)),
-            Family::default(),
+            ConstraintSet::new(&case.rows, Schedule::coloured(&case.row_starts)),
+            ConstraintSet::new(&case.limits, Schedule::coloured(&case.limit_starts)),
+            ConstraintSet::default(),
         )
         .unwrap();
-        let (mut y, mut lambda, mut forces) = case.start();
-        let mut state = State { y: &mut y, lambda: &mut lambda, forces: &mut forces, friction: &mut [] };
-        solve_serial(&problem, &mut state, &Params { max_sweeps: 6000, ..Params::default() }).unwrap();
+        let (mut y, mut lambda, mut limit_multipliers) = case.start();
+        let mut state = LcpState {
+            y: &mut y,
+            lambda: &mut lambda,
+            limit_multipliers: &mut limit_multipliers,
+            friction: &mut [],
+        };
+        solve_serial(&problem, &mut state, &LcpParams { max_sweeps: 6000, ..LcpParams::default() }).unwrap();
         let judged = residuals(&problem, &state, FrictionBound::Disc).unwrap();
         assert!(judged.complementarity < 1e-9 && judged.penetration < 1e-9, "{judged:?}");
-        assert!(judged.ball_violation < 1e-9 && judged.ball_correction < 1e-9, "{judged:?}");
+        assert!(judged.limit_violation < 1e-9 && judged.limit_correction < 1e-9, "{judged:?}");
         let moved = case.y_free.iter().zip(&y).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
         assert!(moved > 1e-3, "nothing to do");
         for (a, b) in y.iter().zip(&expected) {
             assert!((a - b).norm() < 1e-9, "{a:?} against {b:?}");
         }
         // Jacobi, with friction absent, finds the same point.
-        let (mut y, mut lambda, mut forces) = case.start();
-        let mut state = State { y: &mut y, lambda: &mut lambda, forces: &mut forces, friction: &mut [] };
-        let params = Params { relaxation: 1.9, max_sweeps: 100_000, ..Params::default() };
+        let (mut y, mut lambda, mut limit_multipliers) = case.start();
+        let mut state = LcpState {
+            y: &mut y,
+            lambda: &mut lambda,
+            limit_multipliers: &mut limit_multipliers,
+            friction: &mut [],
+        };
+        let params = LcpParams { relaxation: 1.9, max_sweeps: 100_000, ..LcpParams::default() };
         Jacobi::new().solve(&problem, &mut state, &params).unwrap();
         for (a, b) in y.iter().zip(&expected) {
             assert!((a - b).norm() < 1e-7, "{a:?} against {b:?}");
@@ -311,11 +327,11 @@ fn rows_that_contradict_each_other_are_named_or_bounded_and_never_nan() {
     prepare_rows(&mut rows, &weights).unwrap();
     let case = Small { weights: weights.to_vec(), rows: rows.to_vec(), y_free: vec![zero] };
     let (mut y, mut lambda) = (case.y_free.clone(), vec![0.0; 2]);
-    let mut state = State { y: &mut y, lambda: &mut lambda, ..State::default() };
-    assert!(matches!(solve_exact(&case.problem(), &mut state), Err(Error::Infeasible { .. })));
+    let mut state = LcpState { y: &mut y, lambda: &mut lambda, ..LcpState::default() };
+    assert!(matches!(solve_exact(&case.problem(), &mut state), Err(LcpError::Infeasible { .. })));
     assert_eq!((state.y[0], &*state.lambda), (zero, &[0.0, 0.0][..]), "an error leaves the state alone");
-    let patient = Params { max_sweeps: 3000, tolerance: Some(1e-9), ..Params::default() };
-    let Err(Error::NotConverged { sweeps: 3000, residual }) =
+    let patient = LcpParams { max_sweeps: 3000, tolerance: Some(1e-9), ..LcpParams::default() };
+    let Err(LcpError::NotConverged { sweeps: 3000, residual }) =
         solve_serial(&case.problem(), &mut state, &patient)
     else {
         panic!("contradictory rows cannot converge")
@@ -339,14 +355,19 @@ fn chebyshev_weights_need_fewer_sweeps_on_a_smooth_error() {
     let mut rows: Vec<Row> =
         (0..30).map(|i| Row::new([i, i + 1, i, i], [Vector::x(), -Vector::x(), zero, zero], 1.0)).collect();
     prepare_rows(&mut rows, &weights).unwrap();
-    let problem =
-        Problem::new(&weights, Family::serial(&rows), Family::default(), Family::default()).unwrap();
+    let problem = LcpProblem::new(
+        &weights,
+        ConstraintSet::serial(&rows),
+        ConstraintSet::default(),
+        ConstraintSet::default(),
+    )
+    .unwrap();
     let sweeps = |spectral_radius: f64| {
         let mut y: Vec<Vector> = (0..31).map(|i| Vector::x() * (1.5 * f64::from(i))).collect();
         let mut lambda = vec![0.0; 30];
-        let mut state = State { y: &mut y, lambda: &mut lambda, ..State::default() };
+        let mut state = LcpState { y: &mut y, lambda: &mut lambda, ..LcpState::default() };
         let params =
-            Params { max_sweeps: 20_000, tolerance: Some(1e-8), spectral_radius, ..Params::default() };
+            LcpParams { max_sweeps: 20_000, tolerance: Some(1e-8), spectral_radius, ..LcpParams::default() };
         let sweeps = Jacobi::new().solve(&problem, &mut state, &params).unwrap().sweeps;
         let judged = residuals(&problem, &state, FrictionBound::Disc).unwrap();
         assert!(judged.complementarity < 1e-7);

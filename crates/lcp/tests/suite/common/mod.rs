@@ -31,13 +31,13 @@ pub struct Case {
     pub y_free: Vec<Vector>,
     pub rows: Vec<Row>,
     pub row_starts: Vec<u32>,
-    pub balls: Vec<BallRow>,
-    pub ball_starts: Vec<u32>,
+    pub limits: Vec<DistanceLimit>,
+    pub limit_starts: Vec<u32>,
 }
 
 impl Case {
     pub fn start(&self) -> (Vec<Vector>, Vec<f64>, Vec<Vector>) {
-        (self.y_free.clone(), vec![0.0; self.rows.len()], vec![Vector::zeros(); self.balls.len()])
+        (self.y_free.clone(), vec![0.0; self.rows.len()], vec![Vector::zeros(); self.limits.len()])
     }
 }
 
@@ -65,7 +65,7 @@ pub fn colour<T: Copy>(items: &[T], nodes: impl Fn(&T) -> Vec<u32>, weights: &[f
     (classes.concat(), starts)
 }
 
-/// A sheet of side x side nodes 1 cm apart, crumpled: edges and both diagonals' first as ball rows, and
+/// A sheet of side x side nodes 1 cm apart, crumpled: edges and both diagonals' first as distance limits, and
 /// `contacts` rows between random neighbourhoods; one node in 100 is pinned.
 pub fn cloth(side: usize, contacts: usize, seed: u64) -> Case {
     let mut random = Random(seed);
@@ -75,12 +75,12 @@ pub fn cloth(side: usize, contacts: usize, seed: u64) -> Case {
     let y_free: Vec<Vector> = (0..n).map(|v| rest(v) * 1.1 + 0.3 * h * random.vector()).collect();
     let weights: Vec<f64> =
         (0..n).map(|v| if v % 100 == 7 { 0.0 } else { 1.0 + 0.5 * random.signed() }).collect();
-    let mut balls = Vec::new();
+    let mut limits = Vec::new();
     for j in 0..side {
         for i in 0..side {
             let v = (j * side + i) as u32;
             let mut edge = |other: usize, length: f64| {
-                balls.push(BallRow { vertices: [v, other as u32], limit: 1.05 * length });
+                limits.push(DistanceLimit { vertices: [v, other as u32], limit: 1.05 * length });
             };
             if i + 1 < side {
                 edge(j * side + i + 1, h);
@@ -115,6 +115,6 @@ pub fn cloth(side: usize, contacts: usize, seed: u64) -> Case {
     rows.sort_by_key(|row| row.vertices[1]);
     prepare_rows(&mut rows, &weights).expect("nodes are in range");
     let (rows, row_starts) = colour(&rows, |r| r.vertices.to_vec(), &weights);
-    let (balls, ball_starts) = colour(&balls, |b| b.vertices.to_vec(), &weights);
-    Case { weights, y_free, rows, row_starts, balls, ball_starts }
+    let (limits, limit_starts) = colour(&limits, |b| b.vertices.to_vec(), &weights);
+    Case { weights, y_free, rows, row_starts, limits, limit_starts }
 }
