@@ -42,7 +42,7 @@ fn place(points: [Int3; 4], spacing: f64, shift: f64) -> [Point; 4] {
 }
 
 fn for_each_pair(count: usize, finest: usize, mut check: impl FnMut(PairKind, [Int3; 4], f64, [Point; 4])) {
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     for i in 0..count {
         let grid = grid_pair(&mut random, finest);
         let (spacing, shift) = [(1.0, 0.0), (2_f64.powi(-20), 8192.0), (2_f64.powi(-30), 0.0)][i % 3];

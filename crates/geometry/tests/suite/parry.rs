@@ -68,7 +68,7 @@ fn random_pair(random: &mut Random, size: f64) -> [Point; 4] {
 
 #[test]
 fn distances_agree_in_general_position() {
-    let mut random = Random(9);
+    let mut random = Random::new(9);
     for _ in 0..200_000 {
         let points = random_pair(&mut random, 1.0);
         let kind = KINDS[random.below(4)];
@@ -83,7 +83,7 @@ fn distances_agree_in_general_position() {
 #[test]
 fn no_distance_exceeds_theirs_however_degenerate() {
     // Any two points that another implementation finds bound the distance from above.
-    let mut random = Random(10);
+    let mut random = Random::new(10);
     for _ in 0..200_000 {
         let points = crate::sampling::near_degenerate_pair(&mut random);
         let kind = KINDS[random.below(4)];

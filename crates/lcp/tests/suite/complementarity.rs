@@ -17,7 +17,7 @@ struct Small {
 }
 
 fn small(seed: u64, nodes: usize, rows: usize, bounded: bool) -> Small {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let weights: Vec<f64> =
         (0..nodes).map(|_| if random.below(5) == 0 { 0.0 } else { 1.0 + 0.9 * random.signed() }).collect();
     let y_free: Vec<Vector> = (0..nodes).map(|_| random.vector()).collect();
@@ -186,7 +186,7 @@ proptest! {
         let case = small(seed, nodes, rows, true);
         prop_assume!(case.well_conditioned());
         let (expected, _) = case.solve(solve_exact);
-        let mut random = Random(seed ^ 1);
+        let mut random = Random::new(seed ^ 1);
         let start: Vec<f64> = case.rows.iter().map(|r| (random.signed() + 1.0).min(r.upper)).collect();
         let (y, lambda) = case.solve(|problem, state| {
             // Multipliers of rows that cannot move anything are left alone; they start at 0.
@@ -309,10 +309,13 @@ fn two_hundred_redundant_rows_are_solved_exactly() {
 
 #[test]
 fn rounding_at_a_degenerate_corner_is_no_contradiction() {
-    // Half of 27 rows meet in one point of six dimensions; one was called infeasible for 1e-15 of value.
-    let case = small(15_948_984_401_421_849_885, 2, 27, false);
-    let (y, lambda) = case.solve(solve_exact);
-    case.check(&y, &lambda, 1e-10).unwrap();
+    // Half of 27 rows meet in one point of six dimensions. With these seeds a solver without the bound on rounding calls
+    // one of them infeasible, for 1e-15 of its value.
+    for seed in [503, 2075, 2085, 2184] {
+        let case = small(seed, 2, 27, false);
+        let (y, lambda) = case.solve(solve_exact);
+        case.check(&y, &lambda, 1e-10).unwrap();
+    }
 }
 
 #[test]

@@ -84,7 +84,7 @@ fn soup(random: &mut Random) -> Scene {
 
 #[test]
 fn pairs_that_meet_on_the_way_are_listed() {
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     for (common, own) in [(0.0, 0.02), (0.3, 0.3), (5.0, 0.1)] {
         let scene = soup(&mut random);
         let along = [random.vector(common), Vector::zeros(), random.vector(common)];
@@ -99,7 +99,7 @@ fn pairs_that_meet_on_the_way_are_listed() {
 #[test]
 fn a_common_motion_adds_nothing() {
     // The hulls of the paths of all bodies overlap, but nothing comes nearer on a common clock.
-    let mut random = Random(2);
+    let mut random = Random::new(2);
     let scene = soup(&mut random);
     let mut search = ProximitySearch::new(&scene.model);
     let still = sweep(&scene, &vec![Vector::zeros(); scene.positions.len()], &mut search);
@@ -112,7 +112,7 @@ fn a_common_motion_adds_nothing() {
 
 #[test]
 fn swept_and_plain_searches_share_trees() {
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     let mut scene = soup(&mut random);
     let mut kept = ProximitySearch::new(&scene.model);
     for step in 0..30 {

@@ -2,23 +2,19 @@
 
 use bowknot_lcp::*;
 
-/// A reproducible source of numbers (splitmix64; Steele, Lea and Flood 2014).
-pub struct Random(pub u64);
+/// Seeded random numbers.
+pub struct Random(fastrand::Rng);
 
 impl Random {
-    pub fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+    pub fn new(seed: u64) -> Self {
+        Self(fastrand::Rng::with_seed(seed))
     }
     /// Uniform in [-1, 1).
     pub fn signed(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        2.0 * self.0.f64() - 1.0
     }
     pub fn below(&mut self, n: usize) -> usize {
-        (self.next() % n as u64) as usize
+        self.0.usize(..n)
     }
     pub fn vector(&mut self) -> Vector {
         Vector::new(self.signed(), self.signed(), self.signed())
@@ -68,7 +64,7 @@ pub fn colour<T: Copy>(items: &[T], nodes: impl Fn(&T) -> Vec<u32>, weights: &[f
 /// A sheet of side x side nodes 1 cm apart, crumpled: edges and both diagonals' first as distance limits, and
 /// `contacts` rows between random neighbourhoods; one node in 100 is pinned.
 pub fn cloth(side: usize, contacts: usize, seed: u64) -> Case {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let h = 0.01;
     let n = side * side;
     let rest = |v: usize| Vector::new((v % side) as f64 * h, (v / side) as f64 * h, 0.0);
