@@ -167,7 +167,7 @@ fn the_volume_form_gives_way_to_the_gap_form_where_the_closest_feature_is_not_th
 
 #[test]
 fn linearised_edges_have_the_value_and_slope_of_their_length() {
-    let topology = Topology::new(3, vec![[0, 1, 2]], &[], &[]).unwrap();
+    let topology = Topology::builder(3).triangles([[0, 1, 2]]).build().unwrap();
     let rest = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point::from);
     let mut edges = EdgeLimits::new(&topology, &rest, &[true; 3], |_| 1.1);
     assert_eq!(edges.colour_count(), 3);
@@ -191,7 +191,7 @@ fn linearised_edges_have_the_value_and_slope_of_their_length() {
 
 #[test]
 fn limits_from_rest_bring_a_stretched_start_back_without_asking_for_all_at_once() {
-    let topology = Topology::new(2, vec![], &[[0, 1]], &[]).unwrap();
+    let topology = Topology::builder(2).strand_edges([[0, 1]]).build().unwrap();
     let rest = [Point::origin(), Point::new(1.0, 0.0, 0.0)];
     let mut edges = EdgeLimits::new(&topology, &rest, &[true; 2], |_| 1.1);
     let mut at = |length: f64| {
@@ -205,7 +205,7 @@ fn limits_from_rest_bring_a_stretched_start_back_without_asking_for_all_at_once(
 
 #[test]
 fn the_desired_distance_respects_fine_meshes_and_tight_starts() {
-    let topology = Topology::new(4, vec![[1, 2, 3]], &[], &[0]).unwrap();
+    let topology = Topology::builder(4).triangles([[1, 2, 3]]).particles([0]).build().unwrap();
     let model = CollisionModel::single_body(topology);
     let pair = Pair { elements: [0, 0], vertices: [0, 1, 2, 3] };
     let rest = [[0.2, 0.2, 0.004], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point::from);

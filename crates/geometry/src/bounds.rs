@@ -3,7 +3,7 @@
 //! Every operation rounds so that what it promises holds in exact arithmetic: inflated boxes contain
 //! the exact ones, distances never exceed the exact ones.
 
-use crate::Point;
+use crate::point::Point;
 
 /// An axis-aligned box [m]; empty where any `min` exceeds its `max`.
 #[derive(Clone, Copy, Debug, PartialEq)]

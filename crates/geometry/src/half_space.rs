@@ -1,6 +1,6 @@
 //! Analytic half-spaces: grounds and walls.
 
-use crate::{Point, Vector};
+use crate::point::{Point, Vector};
 use serde::{Deserialize, Serialize};
 
 /// The solid below a plane: points with `normal . x < offset` are inside.

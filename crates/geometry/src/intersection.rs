@@ -10,7 +10,7 @@
 //! of them are multiples of 2^-1056, above the smallest subnormal 2^-1074. Products of three
 //! differences below 2^334 stay below 2^1005, which leaves room for sums and for splitting.)
 
-use crate::Point;
+use crate::point::Point;
 use robust::{Coord, Coord3D};
 
 /// Whether the closed segment `edge` and the closed triangle `triangle` share a point, decided

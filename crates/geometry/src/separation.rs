@@ -17,7 +17,9 @@
 //! that underflow (errors of 2^-1074) stays far below that.
 
 use crate::distance::{self, Local, MAX_SCALE, MIN_SCALE};
-use crate::{HalfSpace, PairKind, Point, Vector};
+use crate::half_space::HalfSpace;
+use crate::pair::PairKind;
+use crate::point::{Point, Vector};
 
 /// Bound of the rounding of a slab width, per largest coordinate difference; see the module.
 const WIDTH_ROUNDING: f64 = 10.0 * f64::EPSILON;

@@ -11,7 +11,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 fn search(criterion: &mut Criterion) {
     for vertices in [10_000, 50_000] {
         let (positions, triangles) = folded::folded_cloth(vertices, 0.0015);
-        let Ok(topology) = Topology::new(positions.len(), triangles, &[], &[]) else { continue };
+        let Ok(topology) = Topology::builder(positions.len()).triangles(triangles).build() else { continue };
         let model = CollisionModel::single_body(topology);
         let radii = vec![0.001; positions.len()];
         let displacements = vec![Vector::new(0.0, 0.0, 0.001); positions.len()];

@@ -31,7 +31,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let threads = number(next, 2)?;
     let repeats = number(next + 1, 20)?.max(1);
 
-    let topology = Topology::new(positions.len(), triangles, &[], &[])
+    let topology = Topology::builder(positions.len())
+        .triangles(triangles)
+        .build()
         .map_err(|errors| format!("{} faults, {}", errors.len(), errors[0]))?;
     println!(
         "{} vertices, {} edges, {} triangles, {threads} threads",

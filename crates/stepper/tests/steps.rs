@@ -130,7 +130,7 @@ fn an_obstacle_moves_as_one() {
     use bowknot_geometry::Topology;
     use bowknot_proximity::BodyFilter;
     let x = vertex_over_triangle(0.5);
-    let topology = Topology::new(4, vec![[1, 2, 3]], &[], &[0]).unwrap();
+    let topology = Topology::builder(4).triangles([[1, 2, 3]]).particles([0]).build().unwrap();
     let filters = vec![BodyFilter::DEFORMABLE, BodyFilter::OBSTACLE];
     let model = CollisionModel::new(topology, vec![0, 1, 1, 1], filters, vec![]).unwrap();
     let y: Vec<Point> = x.iter().map(|p| p + Vector::z()).collect();

@@ -100,7 +100,12 @@ fn check_sound(mesh: &Mesh) {
     assert!(body.as_ref().is_none_or(|bodies| bodies.len() == count), "bodies of some vertices");
 
     check_mesh(positions, triangles);
-    let is_simple = Topology::new(count, triangles.clone(), strands, particles).is_ok();
+    let is_simple = Topology::builder(count)
+        .triangles(triangles.iter().copied())
+        .strand_edges(strands.iter().copied())
+        .particles(particles.iter().copied())
+        .build()
+        .is_ok();
     let parts = Parts { triangles, strands, particles, vertex_count: count, ..Parts::default() };
     match Judge::new(&parts) {
         Ok(judge) => {

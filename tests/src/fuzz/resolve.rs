@@ -120,7 +120,12 @@ fn case(draw: &mut Draw<'_>) -> Option<Case> {
         }
         _ => Vec::new(),
     };
-    let topology = Topology::new(positions.len(), triangles, &strands, &particles).ok()?;
+    let topology = Topology::builder(positions.len())
+        .triangles(triangles)
+        .strand_edges(strands.iter().copied())
+        .particles(particles.iter().copied())
+        .build()
+        .ok()?;
     let model = CollisionModel::new(topology, vertex_body, bodies, half_spaces).ok()?;
     Some(Case { name: "fuzz".to_owned(), model, positions })
 }

@@ -82,7 +82,11 @@ impl Draft {
     }
 
     fn finish(self, name: &str, seed: u64) -> Case {
-        let topology = Topology::new(self.positions.len(), self.triangles, &self.strands, &self.particles)
+        let topology = Topology::builder(self.positions.len())
+            .triangles(self.triangles)
+            .strand_edges(self.strands.iter().copied())
+            .particles(self.particles.iter().copied())
+            .build()
             .expect("generators name their own vertices");
         let model = CollisionModel::new(topology, self.body, self.filters, self.half_spaces)
             .expect("generators give every vertex a body");

@@ -1,7 +1,10 @@
 //! Two edges.
 
-use super::{Closest, clamp_unit, in_range, norm, rescale, select};
-use crate::{PairKind, Point, Vector};
+use super::arithmetic::{clamp_unit, in_range, norm, select};
+use super::closest_points::Closest;
+use super::rescale::closest_rescaled;
+use crate::pair::PairKind;
+use crate::point::{Point, Vector};
 use std::hint::select_unpredictable;
 
 /// Closest points of two edges, which may have zero length or be parallel.
@@ -12,7 +15,7 @@ pub fn edge_edge(a: [&Point; 2], b: [&Point; 2]) -> Closest {
         return closest;
     }
     let points = [*a[0], *a[1], *b[0], *b[1]];
-    rescale::closest_rescaled(PairKind::EdgeEdge, &points, |[a0, a1, b0, b1]| core([a0, a1], [b0, b1]).0)
+    closest_rescaled(PairKind::EdgeEdge, &points, |[a0, a1, b0, b1]| core([a0, a1], [b0, b1]).0)
 }
 
 /// The closest points, and a sum of squares that bounds all differences.

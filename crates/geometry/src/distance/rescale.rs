@@ -1,8 +1,9 @@
 //! The rare inputs whose differences are so small or so large that their powers leave the range of
 //! `f64`: they are moved to their first vertex and scaled by a power of two.
 
-use super::Closest;
-use crate::{PairKind, Point, Vector};
+use super::closest_points::Closest;
+use crate::pair::PairKind;
+use crate::point::{Point, Vector};
 
 /// Largest difference below which a pair is scaled up [m]: fourth powers stay normal above it.
 pub(crate) const MIN_SCALE: f64 = 1e-70;

@@ -1,7 +1,10 @@
 //! A vertex and an edge.
 
-use super::{Closest, clamp_unit, in_range, norm, rescale, select};
-use crate::{PairKind, Point, Vector};
+use super::arithmetic::{clamp_unit, in_range, norm, select};
+use super::closest_points::Closest;
+use super::rescale::closest_rescaled;
+use crate::pair::PairKind;
+use crate::point::{Point, Vector};
 use std::hint::select_unpredictable;
 
 /// Closest points of a vertex and an edge, which may have zero length.
@@ -12,7 +15,7 @@ pub fn vertex_edge(a: &Point, b: [&Point; 2]) -> Closest {
         return closest;
     }
     let points = [*a, *b[0], *b[1], Point::origin()];
-    rescale::closest_rescaled(PairKind::VertexEdge, &points, |[a, b0, b1, _]| core(a, [b0, b1]))
+    closest_rescaled(PairKind::VertexEdge, &points, |[a, b0, b1, _]| core(a, [b0, b1]))
 }
 
 #[inline(always)]

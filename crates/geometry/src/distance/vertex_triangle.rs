@@ -1,8 +1,11 @@
 //! A vertex and a triangle.
 
+use super::arithmetic::{in_range, norm, select};
+use super::closest_points::Closest;
+use super::rescale::closest_rescaled;
 use super::vertex_edge::foot_on_edge;
-use super::{Closest, in_range, norm, rescale, select};
-use crate::{PairKind, Point, Vector};
+use crate::pair::PairKind;
+use crate::point::{Point, Vector};
 
 /// Closest points of a vertex and a triangle, which may have zero area.
 #[inline]
@@ -12,7 +15,7 @@ pub fn vertex_triangle(a: &Point, b: [&Point; 3]) -> Closest {
         return closest;
     }
     let points = [*a, *b[0], *b[1], *b[2]];
-    rescale::closest_rescaled(PairKind::VertexTriangle, &points, |[a, b0, b1, b2]| core(a, [b0, b1, b2]).0)
+    closest_rescaled(PairKind::VertexTriangle, &points, |[a, b0, b1, b2]| core(a, [b0, b1, b2]).0)
 }
 
 /// The closest points, and a sum of squares that bounds all differences.

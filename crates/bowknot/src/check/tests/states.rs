@@ -219,7 +219,7 @@ fn obstacles_and_filters_are_exempt() {
         BodyFilter { groups: 2, ..BodyFilter::OBSTACLE },
         BodyFilter { mask: 1, ..BodyFilter::DEFORMABLE },
     ];
-    let topology = Topology::new(9, triangles.to_vec(), &[], &[]).expect("valid topology");
+    let topology = Topology::builder(9).triangles(triangles.iter().copied()).build().expect("valid topology");
     let model =
         CollisionModel::new(topology, body.to_vec(), filters.to_vec(), Vec::new()).expect("valid model");
     let judge = Judge::from_model(&model);

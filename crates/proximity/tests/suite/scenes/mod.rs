@@ -107,9 +107,12 @@ impl Builder {
     }
 
     pub fn build(&self) -> Scene {
-        let topology =
-            Topology::new(self.positions.len(), self.triangles.clone(), &self.strands, &self.particles)
-                .expect("valid elements");
+        let topology = Topology::builder(self.positions.len())
+            .triangles(self.triangles.iter().copied())
+            .strand_edges(self.strands.iter().copied())
+            .particles(self.particles.iter().copied())
+            .build()
+            .expect("valid elements");
         let model = CollisionModel::new(
             topology,
             self.vertex_body.clone(),
