@@ -1,5 +1,5 @@
-//! Flags of sixteen lanes as bits, lists of bits, and short sorts: the parts of the traversal whose
-//! plain form would stall on branches that cannot be predicted.
+//! Flags of sixteen lanes as bits, lists of bits, and short sorts, without branches. In their usual form these parts of the
+//! traversal would stall on branches that cannot be predicted.
 
 use crate::tree::LANES;
 
@@ -57,8 +57,8 @@ static PLACES: [[u8; 8]; 256] = {
     table
 };
 
-/// Writes `base` plus the place of each of the sixteen bits that is set to `list` at `end`; returns
-/// the new end. Sixteen entries beyond `end` are needed and may be overwritten.
+/// Writes `base` plus the place of each set bit of sixteen to `list` at `end`; returns the new end. The list must have
+/// sixteen entries beyond `end`, which may be overwritten.
 #[inline(always)]
 pub fn append_places(list: &mut [u32], mut end: usize, mask: u32, base: u32) -> usize {
     for half in 0..2 {

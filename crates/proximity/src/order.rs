@@ -1,6 +1,6 @@
-//! Spatial order of elements: a kd tree's leaves, aligned to groups of 16, 256, 4096, ..
+//! Spatial order of elements: the leaves of a kd tree, aligned to groups of 16, 256, 4096, ..
 
-/// Elements below which a subtree is not worth a thread of its own.
+/// A subtree of no more elements than this is ordered on one thread.
 const PARALLEL: usize = 4096;
 
 /// An element's centre and its place in the caller's list.

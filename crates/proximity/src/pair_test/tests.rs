@@ -16,7 +16,7 @@ fn vector(random: &mut Rng, size: f64) -> Vector {
 
 /// Pairs whose radii are their distance but for a part of about the slack: what the test claims must
 /// be true, and it must not leave everything undecided.
-fn check<K: Kind<A, B>, const A: usize, const B: usize>(place: f64) {
+fn check<K: PairTest<A, B>, const A: usize, const B: usize>(place: f64) {
     let mut random = Rng::with_seed(K::KIND as u64 + 17);
     let origin = Point::new(1.0, 2.0, -1.0);
     let mut counts = [0; 3];
