@@ -1,7 +1,7 @@
 //! Nanoseconds per call of the closest points and the certified separation, each kind.
 //!
-//! `cargo bench -p bowknot-geometry`. Pairs are drawn as a proximity search meets them: elements of
-//! about 1 cm, a few millimetres apart, all regions of closest features mixed; throughput over a list.
+//! `cargo bench -p bowknot-geometry`. Pairs are drawn as a proximity search meets them: elements of about 1
+//! cm, a few millimetres apart, all regions of closest features mixed; throughput over a list.
 
 use bowknot_geometry::{HalfSpace, PairKind, Point, Vector, distance, separation};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};

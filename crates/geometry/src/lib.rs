@@ -1,9 +1,9 @@
 //! Geometry of simplices for collision handling.
 //!
-//! What it knows: points and simplices, closest points and distances of the pair kinds
-//! (vertex-vertex, vertex-edge, vertex-triangle, edge-edge, vertex-half-space), *certified* lower
-//! bounds of distances, exact intersection predicates, and the topology of triangle meshes,
-//! strands and particles. It does not know files, threads or time.
+//! The crate knows points and simplices, closest points and distances of the pair kinds (vertex-vertex,
+//! vertex-edge, vertex-triangle, edge-edge, vertex-half-space), *certified* lower bounds of distances, exact
+//! intersection predicates, the topology of triangle meshes, strands and particles, and which bodies may
+//! collide. It does not know files, threads or time.
 //!
 //! ```
 //! use bowknot_geometry::{PairKind, Point, separation::separate};

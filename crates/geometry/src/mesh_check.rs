@@ -1,13 +1,13 @@
-//! What is wrong with a triangle mesh that someone hands in.
+//! Faults of triangle meshes.
 
 use crate::point::{Point, Vector};
 use crate::vertex_range::VertexOutOfRange;
 
-/// The height of a triangle over its longest edge, as a part of that edge, at which its area cannot
-/// be told from rounding: its computed normal may then point anywhere.
+/// The height of a triangle over its longest edge, relative to that edge, at which its area is of the size of
+/// rounding errors: the computed normal may then have any direction.
 const ZERO_HEIGHT: f64 = 4.0 * f64::EPSILON;
 
-/// Something in a mesh that simulating it would trip over.
+/// A fault of a mesh that may disturb a simulation.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshProblem {
@@ -22,7 +22,7 @@ pub enum MeshProblem {
     /// A triangle names a vertex that does not exist.
     #[error(transparent)]
     VertexOutOfRange(#[from] VertexOutOfRange),
-    /// A triangle has zero area, exactly or within rounding: collinear, coincident or repeated
+    /// A triangle has zero area, exactly or within rounding, because of collinear, coincident or repeated
     /// vertices.
     #[error("triangle {triangle} (vertices {}, {}, {}) has zero area, at {}", vertices[0], vertices[1], vertices[2], place(centre))]
     ZeroArea {
@@ -33,7 +33,7 @@ pub enum MeshProblem {
         /// Its centre [m].
         centre: Point,
     },
-    /// A triangle has the same three vertices as an earlier one, in whatever order.
+    /// A triangle has the same three vertices as an earlier one, in any order.
     #[error("triangle {triangle} repeats triangle {first} (vertices {}, {}, {}), at {}", vertices[0], vertices[1], vertices[2], place(centre))]
     RepeatedTriangle {
         /// The later triangle.
@@ -55,9 +55,9 @@ pub enum MeshProblem {
     },
 }
 
-/// Every problem of a triangle mesh: by kind in the order of [`MeshProblem`], then by index.
+/// All problems of a triangle mesh: by type in the order of [`MeshProblem`], then by index.
 ///
-/// A triangle with vertices out of range or not finite is not judged further. O(n log n).
+/// A triangle with vertices out of range or not finite is not checked further. O(n log n).
 pub fn check_mesh(positions: &[Point], triangles: &[[u32; 3]]) -> Vec<MeshProblem> {
     let vertices = || positions.iter().enumerate().map(|(vertex, position)| (vertex as u32, *position));
     let mut problems: Vec<MeshProblem> = vertices()
@@ -77,17 +77,17 @@ pub fn check_mesh(positions: &[Point], triangles: &[[u32; 3]]) -> Vec<MeshProble
         }
     }
 
-    // Triangles that can be judged, with their corners.
-    let judged: Vec<(u32, [u32; 3], [Point; 3])> = triangles
+    // Triangles that can be checked, with their corners.
+    let checked: Vec<(u32, [u32; 3], [Point; 3])> = triangles
         .iter()
         .enumerate()
         .filter(|(_, vs)| vs.iter().all(|&v| positions.get(v as usize).is_some_and(is_finite)))
         .map(|(t, vs)| (t as u32, *vs, vs.map(|v| positions[v as usize])))
         .collect();
-    for &(triangle, vertices, corners) in judged.iter().filter(|(_, _, corners)| has_zero_area(corners)) {
+    for &(triangle, vertices, corners) in checked.iter().filter(|(_, _, corners)| has_zero_area(corners)) {
         problems.push(MeshProblem::ZeroArea { triangle, vertices, centre: centre(&corners) });
     }
-    problems.extend(repeated(&judged));
+    problems.extend(repeated(&checked));
 
     let unreferenced = vertices().filter(|(vertex, _)| !referenced[*vertex as usize]);
     problems
@@ -95,8 +95,8 @@ pub fn check_mesh(positions: &[Point], triangles: &[[u32; 3]]) -> Vec<MeshProble
     problems
 }
 
-fn repeated(judged: &[(u32, [u32; 3], [Point; 3])]) -> Vec<MeshProblem> {
-    let mut keyed: Vec<([u32; 3], usize)> = judged
+fn repeated(checked: &[(u32, [u32; 3], [Point; 3])]) -> Vec<MeshProblem> {
+    let mut keyed: Vec<([u32; 3], usize)> = checked
         .iter()
         .enumerate()
         .map(|(place, &(_, mut vertices, _))| {
@@ -113,10 +113,10 @@ fn repeated(judged: &[(u32, [u32; 3], [Point; 3])]) -> Vec<MeshProblem> {
     later
         .into_iter()
         .map(|(place, first)| {
-            let (triangle, vertices, corners) = judged[place];
+            let (triangle, vertices, corners) = checked[place];
             MeshProblem::RepeatedTriangle {
                 triangle,
-                first: judged[first].0,
+                first: checked[first].0,
                 vertices,
                 centre: centre(&corners),
             }
@@ -141,7 +141,7 @@ fn has_zero_area([a, b, c]: &[Point; 3]) -> bool {
     ab.cross(&ca).norm() <= ZERO_HEIGHT * longest_squared
 }
 
-/// The mean of the corners; each is divided first, for the sum may overflow.
+/// The mean of the corners. Each is divided first, because the sum may overflow.
 fn centre(corners: &[Point; 3]) -> Point {
     Point::from(corners.iter().fold(Vector::zeros(), |sum, p| sum + p.coords / 3.0))
 }

@@ -1,4 +1,5 @@
-//! A sweep over a cloth-like grid: distance limits on its edges in 12 colours, random contact rows in about 40.
+//! A sweep over a cloth-like grid: distance limits on its edges in 12 colours, random contact rows in
+//! about 40.
 //!
 //! `cargo bench -p bowknot-lcp --bench sweep`
 

@@ -1,5 +1,5 @@
-//! A chain of nodes, hung from one pinned end and thrown below the ground: limits on the links as ball
-//! rows, the ground as rows, friction on the ground.
+//! A chain of nodes hangs from one pinned end and is thrown below the ground: distance limits for the links,
+//! rows for the ground, friction on the ground.
 //!
 //! `cargo run --release -p bowknot-lcp --example chain_on_ground`
 #![allow(clippy::print_stdout)] // an example shows something
@@ -12,11 +12,11 @@ fn main() -> Result<(), LcpError> {
     // The first node is pinned 0.4 m above the ground.
     let weights: Vec<f64> = (0..nodes).map(|i| if i == 0 { 0.0 } else { 1.0 }).collect();
     let start = |i: u32| Vector::new(f64::from(i) * link, 0.0, 0.4);
-    // Where the nodes would go by themselves: sideways and 0.6 m down, through the ground.
+    // The unconstrained positions: sideways and 0.6 m down, through the ground.
     let mut y: Vec<Vector> =
         (0..nodes).map(|i| if i == 0 { start(0) } else { start(i) + Vector::new(0.0, 0.05, -0.6) }).collect();
 
-    // One row a node: z >= 0. Unused places repeat the node, with a zero gradient.
+    // One row per node: z >= 0. Unused places repeat the node, with a zero gradient.
     let zero = Vector::zeros();
     let mut rows: Vec<Row> =
         (0..nodes).map(|i| Row::new([i; 4], [Vector::z(), zero, zero, zero], 0.0)).collect();

@@ -5,8 +5,8 @@ use crate::problem::LcpProblem;
 use crate::rows::Constraint;
 use crate::schedule::ConstraintSet;
 
-/// Checks that no two constraints of one colour share a node that can move. A constraint may name a node several times.
-/// Cost: one pass, and two numbers per node.
+/// Checks that no two constraints of one colour share a node that can move. A constraint may name a node
+/// several times. Cost: one pass, and two numbers per node.
 ///
 /// # Errors
 /// [`LcpError::Colour`] for the first clash.

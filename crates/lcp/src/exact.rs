@@ -1,13 +1,14 @@
 //! An exact solver for small problems: the reference for tests of the iterative solvers.
 //!
-//! With the multipliers of distance limits and friction fixed, the rows' multipliers minimise the convex quadratic
-//! lambda^T A lambda / 2 + q^T lambda over the box 0 <= lambda <= upper. Here A = J W J^T is the Delassus matrix and q
-//! the row values at lambda = 0; the gradient A lambda + q is s. This is a primal active-set method in the manner of
-//! Lawson and Hanson (1974, ch. 23), with upper bounds as in Stark and Parker (1995), on given normal equations. They
-//! assume independent columns, but here redundant rows are common: a vertex on a flat patch touches six triangles. So
-//! the set of free multipliers is kept independent. A row that depends on this set enters along the direction that does
-//! not change J^T lambda and has no curvature, until another multiplier reaches a bound and leaves the set. If none
-//! does, the rows contradict each other (Farkas).
+//! With the multipliers of distance limits and friction fixed, the rows' multipliers minimise the convex
+//! quadratic lambda^T A lambda / 2 + q^T lambda over the box 0 <= lambda <= upper. Here A = J W J^T is the
+//! Delassus matrix and q the row values at lambda = 0; the gradient A lambda + q is s. This is a primal
+//! active-set method in the manner of Lawson and Hanson (1974, ch. 23), with upper bounds as in Stark and
+//! Parker (1995), on given normal equations. They assume independent columns, but here redundant rows are
+//! common: a vertex on a flat patch touches six triangles. So the set of free multipliers is kept
+//! independent. A row that depends on this set enters along the direction that does not change J^T lambda and
+//! has no curvature, until another multiplier reaches a bound and leaves the set. If none does, the rows
+//! contradict each other (Farkas).
 
 use crate::error::LcpError;
 use crate::info::LcpInfo;
@@ -16,8 +17,8 @@ use crate::rows::Row;
 use crate::state::LcpState;
 use nalgebra::DMatrix;
 
-/// A pivot, which is what is left of a diagonal entry after eliminating the free rows, counts as rounding below this share
-/// of the entry. With some hundred rows rounding is about 1e-13 of it.
+/// A pivot, which is what is left of a diagonal entry after eliminating the free rows, counts as rounding
+/// below this share of the entry. With some hundred rows rounding is about 1e-13 of it.
 const DEPENDENT: f64 = 1e-12;
 /// Rounding of a row value, relative to the sum of the magnitudes of its terms.
 const ROUNDING: f64 = 1e-13;
@@ -68,9 +69,9 @@ pub fn solve_exact(problem: &LcpProblem<'_>, state: &mut LcpState<'_>) -> Result
     Ok(info)
 }
 
-/// Solves 0 <= lambda <= upper, s = A lambda + q: s >= 0 where lambda = 0, s = 0 between the bounds,
-/// s <= 0 where lambda = upper. A is n x n, symmetric and positive semi-definite; rows with a zero
-/// diagonal are left out (lambda = 0). `LcpInfo::sweeps` counts steps, `LcpInfo::residual` is the largest
+/// Solves 0 <= lambda <= upper, s = A lambda + q: s >= 0 where lambda = 0, s = 0 between the bounds, s <= 0
+/// where lambda = upper. A is n x n, symmetric and positive semi-definite; rows with a zero diagonal are left
+/// out (lambda = 0). `LcpInfo::sweeps` counts steps, `LcpInfo::residual` is the largest
 /// |lambda - clamp(lambda - s, 0, upper)|.
 ///
 /// # Errors
@@ -106,7 +107,8 @@ pub fn solve_dense(matrix: &DMatrix<f64>, q: &[f64], upper: &[f64]) -> Result<(V
     let mut stalled = 0;
     for sweeps in 0..limit {
         let values = solver.values();
-        // After many steps without a change the lowest index, rather than the worst row: this rule cannot cycle (Bland).
+        // After many steps without a change the lowest index, rather than the worst row: this rule cannot
+        // cycle (Bland).
         let Some(entering) = solver.violated(&values, stalled > 2 * n) else {
             let residual = (0..n)
                 .filter(|&i| matrix[(i, i)] > 0.0)
@@ -227,8 +229,8 @@ impl ActiveSet<'_> {
         self.lambda[row] += sign * step;
         self.leave(place, direction[place] > 0.0);
         let (line, pivot) = self.free.eliminate(self.matrix, row);
-        // It replaces a row that it depended on, so it is independent now; the lower bound only guards the square root
-        // against rounding.
+        // It replaces a row that it depended on, so it is independent now; the lower bound only guards the
+        // square root against rounding.
         self.free.push(row, line, pivot.max(DEPENDENT * self.matrix[(row, row)]));
         Ok(true)
     }

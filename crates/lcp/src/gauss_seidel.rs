@@ -1,7 +1,8 @@
-//! Projected Gauss-Seidel: one row after the other, or colour by colour with the rows of a colour in parallel.
+//! Projected Gauss-Seidel: one row after the other, or colour by colour with the rows of a colour in
+//! parallel.
 //!
-//! Both visit the rows in the order of the schedule and compute each row in the same way. Rows of a colour share no node
-//! that moves, so both give the same bits for any number of threads.
+//! Both visit the rows in the order of the schedule and compute each row in the same way. Rows of a colour
+//! share no node that moves, so both give the same bits for any number of threads.
 
 use crate::error::LcpError;
 use crate::info::LcpInfo;
@@ -16,8 +17,8 @@ use crate::vector::{TangentVector, Vector};
 use bowknot_errors::Parameters;
 use std::ops::Range;
 
-/// Rows that a thread takes at once: so many that the cost of the counter (50 ns) is small, and so few that threads
-/// share a colour of some hundred rows evenly.
+/// Rows that a thread takes at once: so many that the cost of the counter (50 ns) is small, and so few that
+/// threads share a colour of some hundred rows evenly.
 const ROW_CHUNK: usize = 64;
 /// Distance limits that a thread takes at once; they are cheaper than rows.
 const LIMIT_CHUNK: usize = 128;
@@ -42,8 +43,8 @@ pub fn sweep_serial(
 /// Sweeps in the order of the schedules, on this thread.
 ///
 /// # Errors
-/// [`LcpError::Length`] if the state does not fit the problem; [`LcpError::Parameters`]; [`LcpError::NotConverged`] if
-/// [`LcpParams::tolerance`] asks for more than `max_sweeps` give.
+/// [`LcpError::Length`] if the state does not fit the problem; [`LcpError::Parameters`];
+/// [`LcpError::NotConverged`] if [`LcpParams::tolerance`] asks for more than `max_sweeps` give.
 pub fn solve_serial(
     problem: &LcpProblem<'_>,
     state: &mut LcpState<'_>,
@@ -60,8 +61,8 @@ pub fn solve_serial(
     })
 }
 
-/// One sweep, the rows of a colour in parallel on the threads of the current rayon pool. The same
-/// bits as [`sweep_serial`] if the colours are valid ([`crate::validate_colours`]).
+/// One sweep, the rows of a colour in parallel on the threads of the current rayon pool. The same bits as
+/// [`sweep_serial`] if the colours are valid ([`crate::validate_colours`]).
 ///
 /// # Errors
 /// [`LcpError::Length`] if the state does not fit the problem; [`LcpError::Parameters`].
@@ -97,8 +98,8 @@ pub fn solve_coloured(
     })
 }
 
-/// Repeats `sweep(whether to compute the residual, number of sweeps)`, which returns the residual of the last sweep.
-/// It makes as few calls, and computes as few residuals, as the tolerance allows.
+/// Repeats `sweep(whether to compute the residual, number of sweeps)`, which returns the residual of the last
+/// sweep. It makes as few calls, and computes as few residuals, as the tolerance allows.
 fn repeat(params: &LcpParams, mut sweep: impl FnMut(bool, u32) -> f64) -> Result<LcpInfo, LcpError> {
     let sweeps = params.max_sweeps;
     let Some(tolerance) = params.tolerance else {
@@ -303,8 +304,9 @@ struct Phase {
     chunk: usize,
 }
 
-/// The phases of one sweep. Each colour is a phase, but successive colours that one thread takes whole are joined into
-/// one. Contacts have many such small colours, and waiting for the other threads costs as much as a dozen rows.
+/// The phases of one sweep. Each colour is a phase, but successive colours that one thread takes whole are
+/// joined into one. Contacts have many such small colours, and waiting for the other threads costs as much as
+/// a dozen rows.
 fn phases(problem: &LcpProblem<'_>) -> Vec<Phase> {
     let mut phases = Vec::new();
     let sets = [

@@ -1,17 +1,18 @@
 //! Projected Jacobi: all rows at once from the same positions. It needs no colours.
 //!
-//! If every row is solved by itself and the moves are added up, rows that share nodes overshoot without bound. So each
-//! row takes its nodes to be lighter by the number n_v of rows that share them ("mass splitting", Tonge, Benevolenski and
-//! Voroshilov 2012): its diagonal is D_r = sum over nodes of n_v w_v |g_rv|^2. By Cauchy-Schwarz, for any multipliers x,
+//! If every row is solved by itself and the moves are added up, rows that share nodes overshoot without
+//! bound. So each row takes its nodes to be lighter by the number n_v of rows that share them ("mass
+//! splitting", Tonge, Benevolenski and Voroshilov 2012): its diagonal is D_r = sum over nodes of n_v
+//! w_v |g_rv|^2. By Cauchy-Schwarz, for any multipliers x,
 //!
 //! ```text
 //! x^T A x = sum_v w_v |sum_r g_rv x_r|^2 <= sum_v w_v n_v sum_r |g_rv|^2 |x_r|^2 = x^T D x,
 //! ```
 //!
-//! so D - A is positive semi-definite and the step is a proximal gradient step in the metric D: the dual decreases for
-//! relaxations in (0, 2), for rows and distance limits alike. (None of the solvers has such a proof for friction, whose
-//! bound depends on the normal multiplier.) Moves are gathered by node, in the order of the rows, so results do not
-//! depend on the number of threads.
+//! so D - A is positive semi-definite and the step is a proximal gradient step in the metric D: the dual
+//! decreases for relaxations in (0, 2), for rows and distance limits alike. (None of the solvers has such a
+//! proof for friction, whose bound depends on the normal multiplier.) Moves are gathered by node, in the
+//! order of the rows, so results do not depend on the number of threads.
 
 use crate::error::LcpError;
 use crate::info::LcpInfo;
@@ -33,8 +34,8 @@ const MIN_SHARE: usize = 1024;
 pub struct Jacobi {
     /// Where the places of each node start in `places`, and the end.
     starts: Vec<u32>,
-    /// The places at which each node that can move is named: 4r + k in rows, 2b + k in distance limits (after all rows),
-    /// 4f + k in friction rows (after all distance limits).
+    /// The places at which each node that can move is named: 4r + k in rows, 2b + k in distance limits (after
+    /// all rows), 4f + k in friction rows (after all distance limits).
     places: Vec<u32>,
     rows: Scratch<f64>,
     limits: Scratch<Vector>,
@@ -230,8 +231,8 @@ impl<T: Copy + Send + Sync + std::ops::Sub<Output = T>> Scratch<T> {
         self.previous.resize(count, zero);
     }
 
-    /// Replaces each multiplier by `propose(row, multiplier, multiplier before the last sweep, inverse)`; returns the
-    /// largest correction of a row value.
+    /// Replaces each multiplier by `propose(row, multiplier, multiplier before the last sweep, inverse)`;
+    /// returns the largest correction of a row value.
     fn update(
         &mut self,
         multipliers: &mut [T],

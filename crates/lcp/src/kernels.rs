@@ -1,20 +1,21 @@
 //! One step of each type of constraint: solve it alone and move its nodes.
 //!
-//! With `RESIDUAL` each step returns the correction of the row's value, |change of the multiplier| times its diagonal.
-//! Keeping the largest correction costs a sixth of a sweep.
+//! With `RESIDUAL` each step returns the correction of the row's value, |change of the multiplier| times its
+//! diagonal. Keeping the largest correction costs a sixth of a sweep.
 //!
-//! A node is written only if it can move and the multiplier changed. Rows of one colour may share nodes that cannot
-//! move, and several threads writing them would contend for the cache line.
+//! A node is written only if it can move and the multiplier changed. Rows of one colour may share nodes that
+//! cannot move, and several threads writing them would contend for the cache line.
 //!
 //! # Why distance limits converge
-//! Dykstra's algorithm (Boyle and Dykstra 1986) projects y_free onto the intersection of convex sets: each set keeps the
-//! correction that it made last, takes it back, projects, and keeps the new one. For the ball |y_a - y_b| <= L in the
-//! metric m = 1/w only e = y_a - y_b matters. With the multiplier f, y_a -> y_a - w_a f and y_b -> y_b + w_b f, hence
-//! e -> e - W f, W = w_a + w_b. Taking back the old f gives z = e + W f_old. The cost of changing e by -W f is
-//! (w_a + w_b)|f|^2 / 2 = |z - e_new|^2 / 2W, so e_new is the Euclidean projection of z onto the ball,
-//! e_new = min(1, L/|z|) z, and f_new = (z - e_new)/W = max(0, |z| - L) / (W |z|) z. This is exact block minimisation of
-//! the dual; nothing is linearised, so a sweep cannot overshoot. For a half-space Dykstra's correction is lambda times
-//! the gradient, and the same procedure is projected Gauss-Seidel. So both types may be swept together.
+//! Dykstra's algorithm (Boyle and Dykstra 1986) projects y_free onto the intersection of convex sets: each
+//! set keeps the correction that it made last, takes it back, projects, and keeps the new one. For the
+//! ball |y_a - y_b| <= L in the metric m = 1/w only e = y_a - y_b matters. With the multiplier f, y_a ->
+//! y_a - w_a f and y_b -> y_b + w_b f, hence e -> e - W f, W = w_a + w_b. Taking back the old f gives z = e +
+//! W f_old. The cost of changing e by -W f is (w_a + w_b)|f|^2 / 2 = |z - e_new|^2 / 2W, so e_new is the
+//! Euclidean projection of z onto the ball, e_new = min(1, L/|z|) z, and f_new = (z - e_new)/W = max(0, |z| -
+//! L) / (W |z|) z. This is exact block minimisation of the dual; nothing is linearised, so a sweep cannot
+//! overshoot. For a half-space Dykstra's correction is lambda times the gradient, and the same procedure is
+//! projected Gauss-Seidel. So both types may be swept together.
 
 use crate::params::FrictionBound;
 use crate::rows::{DistanceLimit, FrictionRow, Row};
@@ -58,8 +59,8 @@ pub(crate) fn relax_row<const RESIDUAL: bool, const EQUATION: bool>(
     if RESIDUAL { change.abs() / row.inverse_diagonal } else { 0.0 }
 }
 
-/// The projected multiplier of a row. Unlike `clamp`, `max` and `min` turn NaN, from an overflow elsewhere, into 0: the
-/// row then does nothing, and NaN does not spread.
+/// The projected multiplier of a row. Unlike `clamp`, `max` and `min` turn NaN, from an overflow elsewhere,
+/// into 0: the row then does nothing, and NaN does not spread.
 #[inline(always)]
 pub(crate) fn row_multiplier(row: &Row, value: f64, old: f64, step: f64) -> f64 {
     (old - value * step).max(0.0).min(row.upper)

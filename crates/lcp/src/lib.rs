@@ -1,16 +1,16 @@
 //! Linear complementarity problems over sparse rows, and their projected solvers.
 //!
-//! The problem: project node positions y_free (3-vectors with inverse weights w >= 0) onto linear inequalities over up
-//! to four nodes ([`Row`]), limits on distances ([`DistanceLimit`]), and friction bounds ([`FrictionRow`]). It is given
-//! as borrowed arrays ([`LcpProblem`]), and solved in place ([`LcpState`]):
+//! The problem: project node positions y_free (3-vectors with inverse weights w >= 0) onto linear
+//! inequalities over up to four nodes ([`Row`]), limits on distances ([`DistanceLimit`]), and friction bounds
+//! ([`FrictionRow`]). It is given as borrowed arrays ([`LcpProblem`]), and solved in place ([`LcpState`]):
 //!
 //! - [`sweep_serial`], [`solve_serial`]: projected Gauss-Seidel, one row after the other;
 //! - [`sweep_coloured`], [`solve_coloured`]: the same, colour by colour in parallel, to the same bits;
 //! - [`Jacobi`]: all rows at once, with split masses, for comparison and where there are no colours;
 //! - [`solve_exact`]: an active-set method on the dense Delassus matrix, the reference for small problems.
 //!
-//! The crate knows neither meshes nor contacts. Positions and row values share one unit, usually metres. With weights
-//! relative to their mean, multipliers have it too.
+//! The crate knows neither meshes nor contacts. Positions and row values share one unit, usually metres. With
+//! weights relative to their mean, multipliers have it too.
 
 mod colours;
 mod error;

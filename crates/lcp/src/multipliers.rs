@@ -6,8 +6,8 @@ use crate::state::LcpState;
 
 /// y += W (J^T lambda + multipliers of distance limits + friction), over all constraints, scheduled or not.
 ///
-/// Call it with `y` = y_free to start the solvers from kept multipliers. The multiplier of a row does nothing if none of
-/// its nodes can move.
+/// Call it with `y` = y_free to start the solvers from kept multipliers. The multiplier of a row does nothing
+/// if none of its nodes can move.
 ///
 /// # Errors
 /// [`LcpError::Length`] if the state does not fit the problem.

@@ -11,7 +11,8 @@ pub enum FrictionBound {
     /// A disc: isotropic friction, the same bound in every tangential direction.
     #[default]
     Disc,
-    /// A square along the two tangents: the problem is a box LCP; the bound is up to sqrt(2) larger along the diagonals.
+    /// A square along the two tangents: the problem is a box LCP; the bound is up to sqrt(2) larger along the
+    /// diagonals.
     Square,
 }
 
@@ -35,19 +36,20 @@ impl FrictionBound {
 pub struct LcpParams {
     /// Largest number of sweeps. Default 64. More sweeps are more accurate; the cost is linear in them.
     pub max_sweeps: u32,
-    /// With `Some(t)` a solver stops after the first sweep that changes no row value by more than t [unit of the row
-    /// values], and it is an error to reach `max_sweeps`. With `None`, the default, it does exactly `max_sweeps`.
-    /// Smaller is more accurate and slower.
+    /// With `Some(t)` a solver stops after the first sweep that changes no row value by more than t [unit of
+    /// the row values], and it is an error to reach `max_sweeps`. With `None`, the default, it does exactly
+    /// `max_sweeps`. Smaller is more accurate and slower.
     pub tolerance: Option<f64>,
-    /// Factor on each row's step, in (0, 2). Default 1: each row is solved exactly. Above 1 over-relaxes, below 1 damps.
+    /// Factor on each row's step, in (0, 2). Default 1: each row is solved exactly. Above 1 over-relaxes,
+    /// below 1 damps.
     pub relaxation: f64,
-    /// Jacobi only: estimate of the spectral radius of its iteration, in [0, 1), for Chebyshev acceleration (Golub and
-    /// Varga 1961). Default 0: none. A value nearer to 1 reduces slow, smooth errors faster, but may overshoot where
-    /// contacts open and close.
+    /// Jacobi only: estimate of the spectral radius of its iteration, in [0, 1), for Chebyshev acceleration
+    /// (Golub and Varga 1961). Default 0: none. A value nearer to 1 reduces slow, smooth errors faster, but
+    /// may overshoot where contacts open and close.
     pub spectral_radius: f64,
     /// Whether rows are equations, s = 0, with multipliers of either sign: a linear system in place of the
-    /// complementarity problem, for comparison (Harmon et al. 2008 solve it). Default false. Rows that should separate
-    /// then pull. [`crate::residuals`] evaluates the complementarity problem all the same.
+    /// complementarity problem, for comparison (Harmon et al. 2008 solve it). Default false. Rows that should
+    /// separate then pull. [`crate::residuals`] evaluates the complementarity problem all the same.
     pub equations: bool,
     /// Region of the friction multipliers. Default: disc.
     pub friction_bound: FrictionBound,

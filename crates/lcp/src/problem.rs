@@ -1,7 +1,7 @@
 //! The borrowed view of a problem: constraints, their schedules, and inverse weights.
 //!
-//! The problem is the projection of node positions y_free onto the constraints, in the metric of the masses 1/w. The
-//! inverse weight w of a node that cannot move is 0:
+//! The problem is the projection of node positions y_free onto the constraints, in the metric of the masses
+//! 1/w. The inverse weight w of a node that cannot move is 0:
 //!
 //! ```text
 //! y = y_free + W (J^T lambda + multipliers of distance limits + friction)
@@ -16,9 +16,9 @@ use crate::schedule::{ConstraintSet, Schedule};
 
 /// A checked problem: every index is in range, every row prepared, every weight finite.
 ///
-/// A sweep visits the distance limits first, then the rows, then friction: the rows (contacts) come later than the
-/// distance limits, so a sweep leaves them less violated. With [`LcpProblem::attach_friction`] each friction row is
-/// visited right after its normal's row.
+/// A sweep visits the distance limits first, then the rows, then friction: the rows (contacts) come later
+/// than the distance limits, so a sweep leaves them less violated. With [`LcpProblem::attach_friction`] each
+/// friction row is visited right after its normal's row.
 #[derive(Clone, Copy, Debug)]
 pub struct LcpProblem<'a> {
     weights: &'a [f64],
@@ -33,8 +33,8 @@ impl<'a> LcpProblem<'a> {
     /// The entry of [`Self::attach_friction`] for a row without friction.
     pub const NO_FRICTION: u32 = u32::MAX;
 
-    /// Checks the parts and keeps them. `weights[i]` >= 0 is the inverse weight of node i. Cost: one pass over the
-    /// indices. Colours are not checked, see [`crate::validate_colours`].
+    /// Checks the parts and keeps them. `weights[i]` >= 0 is the inverse weight of node i. Cost: one pass
+    /// over the indices. Colours are not checked, see [`crate::validate_colours`].
     ///
     /// # Errors
     /// The first fault: [`LcpError::Weight`], [`LcpError::UnknownNode`], [`LcpError::UnknownNormal`],
@@ -60,14 +60,14 @@ impl<'a> LcpProblem<'a> {
         }
     }
 
-    /// Makes Gauss-Seidel sweeps visit each friction row right after its normal's row, rather than all friction rows after
-    /// all rows: the rows of one contact are solved together. `friction_of` names the friction row of each row, or
-    /// [`Self::NO_FRICTION`]. Friction rows then have no schedule of their own. Colours stay valid, because a friction row
-    /// has the nodes of its normal's row.
+    /// Makes Gauss-Seidel sweeps visit each friction row right after its normal's row, rather than all
+    /// friction rows after all rows: the rows of one contact are solved together. `friction_of` names the
+    /// friction row of each row, or [`Self::NO_FRICTION`]. Friction rows then have no schedule of their own.
+    /// Colours stay valid, because a friction row has the nodes of its normal's row.
     ///
     /// # Errors
-    /// [`LcpError::Length`]; [`LcpError::Attached`] for a friction row that does not exist, has another normal, or moves a
-    /// node that its normal's row does not have.
+    /// [`LcpError::Length`]; [`LcpError::Attached`] for a friction row that does not exist, has another
+    /// normal, or moves a node that its normal's row does not have.
     pub fn attach_friction(mut self, friction_of: &'a [u32]) -> Result<Self, LcpError> {
         let rows = self.rows.rows;
         if friction_of.len() != rows.len() {
@@ -91,7 +91,8 @@ impl<'a> LcpProblem<'a> {
         Ok(self)
     }
 
-    /// The friction row of each row, as given to [`Self::attach_friction`]; empty if friction rows have their own schedule.
+    /// The friction row of each row, as given to [`Self::attach_friction`]; empty if friction rows have their
+    /// own schedule.
     pub fn attached(&self) -> &'a [u32] {
         self.attached
     }

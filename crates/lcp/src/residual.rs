@@ -7,20 +7,20 @@ use crate::problem::LcpProblem;
 use crate::state::LcpState;
 use serde::{Deserialize, Serialize};
 
-/// Largest residuals over all constraints, scheduled or not. A constraint is left out if none of its nodes can move:
-/// no solver could change it.
+/// Largest residuals over all constraints, scheduled or not. A constraint is left out if none of its nodes
+/// can move: no solver could change it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Residuals {
-    /// Largest |lambda - clamp(lambda - s, 0, upper)| of a row, which is |min(lambda, s)| for a hard
-    /// row: it is zero exactly where lambda >= 0, s >= 0 and lambda s = 0. It compares lambda with s as the paper does:
-    /// with inverse weights near 1 both have the same unit.
+    /// Largest |lambda - clamp(lambda - s, 0, upper)| of a row, which is |min(lambda, s)| for a hard row: it
+    /// is zero exactly where lambda >= 0, s >= 0 and lambda s = 0. It compares lambda with s as the paper
+    /// does: with inverse weights near 1 both have the same unit.
     pub complementarity: f64,
     /// Largest violation of a row: max(0, -s).
     pub penetration: f64,
     /// Largest |y_a - y_b| - L of a distance limit, or 0.
     pub limit_violation: f64,
-    /// Largest correction that a distance limit alone would make to y_a - y_b. Unlike the violation it also counts
-    /// multipliers of limits that are slack or whose direction has changed.
+    /// Largest correction that a distance limit alone would make to y_a - y_b. Unlike the violation it also
+    /// counts multipliers of limits that are slack or whose direction has changed.
     pub limit_correction: f64,
     /// Largest correction that a friction row alone would make to its slip.
     pub friction_correction: f64,

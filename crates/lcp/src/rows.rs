@@ -6,8 +6,9 @@ use rayon::prelude::*;
 
 /// A linear inequality over up to four nodes: s = offset + sum_k gradients\[k\] . y\[vertices\[k\]\] >= 0.
 ///
-/// A row has 136 bytes; a sweep reads the rows once from front to back. They are stored as an array of structs, because
-/// a sweep needs every field and an active list skips rows. One array per field is 3 % slower even without skipping.
+/// A row has 136 bytes; a sweep reads the rows once from front to back. They are stored as an array of
+/// structs, because a sweep needs every field and an active list skips rows. One array per field is 3 %
+/// slower even without skipping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Row {
@@ -29,8 +30,8 @@ impl Row {
         Self { gradients, vertices, offset, upper: f64::INFINITY, inverse_diagonal: f64::NAN }
     }
 
-    /// Computes the inverse diagonal. The gradients of a node that the row names several times are added up. Call it
-    /// again whenever gradients or weights change.
+    /// Computes the inverse diagonal. The gradients of a node that the row names several times are added up.
+    /// Call it again whenever gradients or weights change.
     ///
     /// # Errors
     /// [`LcpError::UnknownNode`], with index 0, if a node has no weight.
@@ -82,11 +83,11 @@ pub struct DistanceLimit {
     pub limit: f64,
 }
 
-/// Friction of one contact. A multiplier opposes the slip, which is sum_k coefficients\[k\] y\[vertices\[k\]\] along two
-/// tangents. It is bounded by `friction` times the multiplier of row `normal`.
+/// Friction of one contact. A multiplier opposes the slip, which is sum_k coefficients\[k\]
+/// y\[vertices\[k\]\] along two tangents. It is bounded by `friction` times the multiplier of row `normal`.
 ///
-/// The inverse weight of a node is one number. So both tangents have the same diagonal and do not couple, and projecting
-/// onto the disc solves the two components exactly.
+/// The inverse weight of a node is one number. So both tangents have the same diagonal and do not couple, and
+/// projecting onto the disc solves the two components exactly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct FrictionRow {
@@ -165,8 +166,8 @@ fn check_nodes<T: Constraint>(item: &T, nodes: usize) -> Result<(), LcpError> {
     }
 }
 
-/// 1 / diagonal, and 0 where that would not be finite: such a row moves nothing. A gradient so small that its diagonal is
-/// not a normal number gives no direction.
+/// 1 / diagonal, and 0 where that would not be finite: such a row moves nothing. A gradient so small that its
+/// diagonal is not a normal number gives no direction.
 pub(crate) fn invert(diagonal: f64) -> f64 {
     if diagonal >= f64::MIN_POSITIVE { 1.0 / diagonal } else { 0.0 }
 }

@@ -2,17 +2,17 @@
 
 /// Which rows are swept, in which order, and which of them are independent.
 ///
-/// Colour c holds the places `starts[c]..starts[c + 1]` of `order`, or of the rows themselves if `order` is `None`. The
-/// rows of a colour are swept in parallel, so no two of them may share a node that can move ([`crate::validate_colours`]
-/// checks it). Rows that are not in `order` are not swept: inactive rows cost nothing. A sweep is fastest if rows are
-/// stored by colour, in spatial order within each colour, and `order` rises: rows are then read in order, and each
-/// thread stays in its part of the nodes.
+/// Colour c holds the places `starts[c]..starts[c + 1]` of `order`, or of the rows themselves if `order` is
+/// `None`. The rows of a colour are swept in parallel, so no two of them may share a node that can move
+/// ([`crate::validate_colours`] checks it). Rows that are not in `order` are not swept: inactive rows cost
+/// nothing. A sweep is fastest if rows are stored by colour, in spatial order within each colour, and `order`
+/// rises: rows are then read in order, and each thread stays in its part of the nodes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Schedule<'a> {
     /// Indices of the rows to sweep; `None`: all, as stored.
     pub order: Option<&'a [u32]>,
-    /// Where each colour starts, and the end. If it is empty, there are no colours, and rows are swept one after the
-    /// other.
+    /// Where each colour starts, and the end. If it is empty, there are no colours, and rows are swept one
+    /// after the other.
     pub starts: &'a [u32],
 }
 

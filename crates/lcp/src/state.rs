@@ -4,16 +4,16 @@ use crate::error::LcpError;
 use crate::problem::LcpProblem;
 use crate::vector::{TangentVector, Vector};
 
-/// Positions and multipliers. The solvers keep `y` consistent with the multipliers: y is y_free plus the moves that
-/// [`crate::apply_multipliers`] computes from them.
+/// Positions and multipliers. The solvers keep `y` consistent with the multipliers: y is y_free plus the
+/// moves that [`crate::apply_multipliers`] computes from them.
 #[derive(Debug, Default)]
 pub struct LcpState<'a> {
     /// Node positions.
     pub y: &'a mut [Vector],
     /// Multiplier of each row.
     pub lambda: &'a mut [f64],
-    /// Multiplier f of each distance limit: -f pulls node a, +f pulls node b. It points from b to a where the limit acts;
-    /// its norm is the scalar multiplier.
+    /// Multiplier f of each distance limit: -f pulls node a, +f pulls node b. It points from b to a where the
+    /// limit acts; its norm is the scalar multiplier.
     pub limit_multipliers: &'a mut [Vector],
     /// Multipliers of each friction row along its tangents.
     pub friction: &'a mut [TangentVector],

@@ -1,5 +1,5 @@
-//! A search on folded cloth: every vertex-triangle and edge-edge pair nearer than 2 mm, with its
-//! contact geometry, of layers 1.5 mm apart.
+//! A search on folded cloth: every vertex-triangle and edge-edge pair nearer than 2 mm, with its contact
+//! geometry, of layers 1.5 mm apart.
 
 #[path = "../tests/suite/scenes/folded.rs"]
 mod folded;

@@ -4,8 +4,8 @@
 //! cargo run --release -p bowknot-proximity --example time_search -- [VERTICES [THREADS [REPEATS]]]
 //! cargo run --release -p bowknot-proximity --example time_search -- POSITIONS TRIANGLES [THREADS [REPEATS]]
 //! ```
-//! POSITIONS holds little-endian f64 triples, TRIANGLES little-endian u32 triples. Pairs nearer than
-//! 2 mm are listed with their contact geometry.
+//! POSITIONS holds little-endian f64 triples, TRIANGLES little-endian u32 triples. Pairs nearer than 2 mm are
+//! listed with their contact geometry.
 #![allow(clippy::print_stdout)]
 
 #[path = "../tests/suite/scenes/folded.rs"]

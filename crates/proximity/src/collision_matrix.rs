@@ -24,7 +24,8 @@ impl CollisionMatrix {
         for a in filters.iter().filter(|a| !a.0) {
             matrix.deformable |= a.3;
             matrix.some_forbidden |= !a.3;
-            // A filter is also compared with itself. If only one body has it, this may cost time but loses no pair.
+            // A filter is also compared with itself. If only one body has it, this may cost time but loses no
+            // pair.
             for b in &filters {
                 let allowed = a.1 & b.2 != 0 && b.1 & a.2 != 0;
                 matrix.some_forbidden |= !allowed;

@@ -1,9 +1,10 @@
 //! Positions relative to a local origin, in `f32`.
 //!
-//! Boxes and the first distance test use `f32`. Its rounding error grows with the coordinates, so coordinates are taken
-//! relative to an origin near the deformable vertices. The origin affects, by rounding, which pairs are dropped, and the
-//! same input must give the same pairs. So it is a function of the positions alone, not of earlier searches. It lies on
-//! a coarse grid and rarely changes while vertices move, so the trees of obstacles at rest stay valid.
+//! Boxes and the first distance test use `f32`. Its rounding error grows with the coordinates, so coordinates
+//! are taken relative to an origin near the deformable vertices. The origin affects, by rounding, which pairs
+//! are dropped, and the same input must give the same pairs. So it is a function of the positions alone, not
+//! of earlier searches. It lies on a coarse grid and rarely changes while vertices move, so the trees of
+//! obstacles at rest stay valid.
 
 use bowknot_geometry::{Point, Vector};
 
@@ -13,11 +14,12 @@ pub const UNIT_ROUNDOFF: f32 = f32::EPSILON / 2.0;
 /// Coordinates beyond this [m] are treated as not finite: their squares would overflow.
 const MAX_COORDINATE: f64 = 1e15;
 
-/// A vertex in the local frame: offset from the origin and radius [m]. All four are not-a-number if the input is not
-/// finite; such vertices, and elements with them, are in no pair.
+/// A vertex in the local frame: offset from the origin and radius [m]. All four are not-a-number if the input
+/// is not finite; such vertices, and elements with them, are in no pair.
 pub type LocalVertex = [f32; 4];
 
-/// The origin of a frame: the centre of the box of `vertices`, rounded to a grid about as coarse as the box is large.
+/// The origin of a frame: the centre of the box of `vertices`, rounded to a grid about as coarse as the box
+/// is large.
 pub fn origin(positions: &[Point], vertices: &[u32]) -> Point {
     let mut low = [f64::INFINITY; 3];
     let mut high = [f64::NEG_INFINITY; 3];
@@ -31,7 +33,8 @@ pub fn origin(positions: &[Point], vertices: &[u32]) -> Point {
             }
         }
     }
-    // The grid is at least a few centimetres wide; with a finer one a lone particle would change the origin all the time.
+    // The grid is at least a few centimetres wide; with a finer one a lone particle would change the origin
+    // all the time.
     let extent = (0..3).fold(0.06, |e: f64, k| e.max(high[k] - low[k]));
     let grid = extent.log2().ceil().exp2();
     let centre =
@@ -41,8 +44,8 @@ pub fn origin(positions: &[Point], vertices: &[u32]) -> Point {
 
 /// A vertex in the frame of `origin`.
 ///
-/// With u = [`UNIT_ROUNDOFF`], each coordinate and the radius are off by at most u times themselves (and an `f64` rounding
-/// error far below that).
+/// With u = [`UNIT_ROUNDOFF`], each coordinate and the radius are off by at most u times themselves (and an
+/// `f64` rounding error far below that).
 #[inline(always)]
 pub fn localize(position: &Point, displacement: &Vector, radius: f64, origin: &Point) -> LocalVertex {
     let x = (position.x + displacement.x) - origin.x;

@@ -1,5 +1,5 @@
-//! Vertices near analytic half-spaces, found in a linear pass. A half-space has no radius, so the radius of the vertex
-//! counts twice.
+//! Vertices near analytic half-spaces, found in a linear pass. A half-space has no radius, so the radius of
+//! the vertex counts twice.
 
 use crate::pairs::Pair;
 use bowknot_geometry::{HalfSpace, Point, Vector, separation};
@@ -8,8 +8,9 @@ use rayon::prelude::*;
 /// Vertices that one task tests.
 const CHUNK: usize = 4096;
 
-/// Lists the pairs of `vertices` (ascending) and half-spaces, in order. With `displacements` it lists the pairs that come
-/// near at some time of the motion: the distance is linear in time, so it is smallest at the start or at the end.
+/// Lists the pairs of `vertices` (ascending) and half-spaces, in order. With `displacements` it lists the
+/// pairs that come near at some time of the motion: the distance is linear in time, so it is smallest at the
+/// start or at the end.
 pub fn near_half_spaces(
     half_spaces: &[HalfSpace],
     vertices: &[u32],

@@ -20,8 +20,8 @@ pub struct Layer {
 }
 
 impl Layer {
-    /// Builds the trees of the primitives whose vertices satisfy `belongs`, in spatial order; returns how many trees that
-    /// were. [`Self::refit`] must follow.
+    /// Builds the trees of the primitives whose vertices satisfy `belongs`, in spatial order; returns how
+    /// many trees that were. [`Self::refit`] must follow.
     pub fn build(
         &mut self,
         model: &CollisionModel,

@@ -4,10 +4,10 @@
 //!
 //! One search has these stages, each in its own modules:
 //! 1. `frame`: positions relative to a local origin, in `f32`, with their radii;
-//! 2. `obstacles`, `layer`, `tree`, `order`: packed 16-ary trees of the deformable primitives (refitted), of obstacles that
-//!    move (refitted) and of obstacles at rest (kept);
-//! 3. `traverse`, `pair_test`: every element against the trees; a certified `f32` test decides all but a few pairs, and
-//!    [`bowknot_geometry::separation::separate`] decides those;
+//! 2. `obstacles`, `layer`, `tree`, `order`: packed 16-ary trees of the deformable primitives (refitted), of
+//!    obstacles that move (refitted) and of obstacles at rest (kept);
+//! 3. `traverse`, `pair_test`: every element against the trees; a certified `f32` test decides all but a few
+//!    pairs, and [`bowknot_geometry::separation::separate`] decides those;
 //! 4. `assemble`, `narrow`: the pairs in order, with their contact geometry.
 
 mod assemble;

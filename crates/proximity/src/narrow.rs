@@ -1,10 +1,10 @@
 //! Contact geometry of many pairs of one kind at once.
 //!
-//! The arithmetic is that of `bowknot_geometry`'s distances and separations, operation by operation, without branches over
-//! [`BATCH`] pairs side by side, so that it compiles to vector instructions. Pairs that need a branch there (nearly
-//! parallel edges, a slab much narrower than the distance, differences beyond [1e-60, 1e60] m) are marked and left to
-//! [`bowknot_geometry::separation::separate`]. The derivation in that module certifies a width whatever the closest points,
-//! and it holds here because the operations are the same.
+//! The arithmetic is that of `bowknot_geometry`'s distances and separations, operation by operation, without
+//! branches over [`BATCH`] pairs side by side, so that it compiles to vector instructions. Pairs that need a
+//! branch there (nearly parallel edges, a slab much narrower than the distance, differences beyond [1e-60,
+//! 1e60] m) are marked and left to [`bowknot_geometry::separation::separate`]. The derivation in that module
+//! certifies a width whatever the closest points, and it holds here because the operations are the same.
 
 use crate::min_max::{larger, smaller};
 use crate::pair_test::{EdgeEdge, PairTest, VertexEdge, VertexTriangle, VertexVertex};
@@ -14,7 +14,8 @@ use bowknot_geometry::{PairKind, Point, Separation, Vector, separation};
 /// Pairs that are computed side by side.
 const BATCH: usize = 8;
 
-/// Bound of the rounding error of a width per largest coordinate difference, see `bowknot_geometry::separation`.
+/// Bound of the rounding error of a width per largest coordinate difference, see
+/// `bowknot_geometry::separation`.
 const WIDTH_ROUNDING: f64 = 10.0 * f64::EPSILON;
 
 /// If the width is below this part of the distance, other directions are tried.
@@ -121,8 +122,8 @@ fn separate_kind<K: PairTest<A, B> + ClosestPoints, const A: usize, const B: usi
         }
         let mut any_untrusted = false;
         for (lane, separation) in separations.iter_mut().enumerate() {
-            // Field by field: a value assembled on the stack would be read by wider loads than the stores that wrote it,
-            // which stalls.
+            // Field by field: a value assembled on the stack would be read by wider loads than the stores
+            // that wrote it, which stalls.
             for k in 0..3 {
                 separation.normal[k] = normal.0[k][lane];
             }
@@ -226,8 +227,8 @@ impl ClosestPoints for EdgeEdge {
     }
 }
 
-/// The parameter in [0, 1] of the point of an edge that is closest to p, and p minus that point, measured from the nearer
-/// end.
+/// The parameter in [0, 1] of the point of an edge that is closest to p, and p minus that point, measured
+/// from the nearer end.
 #[inline(always)]
 fn foot(p: &V3, start: &V3, end: &V3) -> (f64, V3) {
     let edge = sub(*end, *start);

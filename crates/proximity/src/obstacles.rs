@@ -2,8 +2,9 @@
 
 use bowknot_geometry::{CollisionModel, Point, Vector};
 
-/// Number of searches without motion after which an obstacle counts as being at rest. When an obstacle changes its layer,
-/// both layers are rebuilt; so an obstacle that stops for a short time stays in the layer of moving ones.
+/// Number of searches without motion after which an obstacle counts as being at rest. When an obstacle
+/// changes its layer, both layers are rebuilt; so an obstacle that stops for a short time stays in the layer
+/// of moving ones.
 const REST_AFTER: u32 = 16;
 
 /// Position, displacement and radius of a vertex in a search.
@@ -48,8 +49,9 @@ impl ObstacleTracker {
         }
     }
 
-    /// Compares the vertices of all obstacles with the last search and keeps their state for the next. A body has moved if
-    /// a position, a radius or a displacement (of a swept search) has changed: each makes its boxes invalid.
+    /// Compares the vertices of all obstacles with the last search and keeps their state for the next. A body
+    /// has moved if a position, a radius or a displacement (of a swept search) has changed: each makes its
+    /// boxes invalid.
     pub fn update(
         &mut self,
         model: &CollisionModel,
@@ -68,9 +70,9 @@ impl ObstacleTracker {
         self.moved.fill(false);
         for (&v, last) in self.vertices.iter().zip(&mut self.last) {
             let now = state(v);
-            // A position that is not a number differs from itself, so its body never counts as being at rest; this is
-            // safe. A vertex with a displacement moves, even along the same path as in the last search: the boxes of
-            // obstacles at rest cover no motion.
+            // A position that is not a number differs from itself, so its body never counts as being at rest;
+            // this is safe. A vertex with a displacement moves, even along the same path as in the last
+            // search: the boxes of obstacles at rest cover no motion.
             if *last != now || now.1 != Vector::new(0.0, 0.0, 0.0) {
                 *last = now;
                 self.moved[model.vertex_body()[v as usize] as usize] = true;

@@ -14,8 +14,8 @@ pub struct Centre {
 
 /// Reorders `centres` so that consecutive groups of `group` are compact, for every power of it.
 ///
-/// Halves are split along the longest side of the centres' box, at a multiple of the largest power
-/// of `group` below their number. Ties are broken by index: the order depends on the input alone.
+/// Halves are split along the longest side of the centres' box, at a multiple of the largest power of `group`
+/// below their number. Ties are broken by index: the order depends on the input alone.
 pub fn kd_order(centres: &mut [Centre], group: usize) {
     let n = centres.len();
     if n <= group {

@@ -1,20 +1,21 @@
 //! The kinds of pairs that trees search for, and the certified `f32` test of each.
 //!
-//! For any vector d, min over side a of d.x - max over side b of d.x <= |d| times the distance of the sides (weak duality).
-//! So d need not be accurate: here it joins closest points computed in `f32`. If the slab along d is wider than the radii
-//! by more than the rounding error, the pair is certainly farther apart than its radii (`rejected`). If |d| is below the
-//! radii by more than the rounding error, the pair is certainly nearer (`accepted`), because d joins two points of the
-//! sides. The few pairs in between are left to `f64`.
+//! For any vector d, min over side a of d.x - max over side b of d.x <= |d| times the distance of the sides
+//! (weak duality). So d need not be accurate: here it joins closest points computed in `f32`. If the slab
+//! along d is wider than the radii by more than the rounding error, the pair is certainly farther apart than
+//! its radii (`rejected`). If |d| is below the radii by more than the rounding error, the pair is certainly
+//! nearer (`accepted`), because d joins two points of the sides. The few pairs in between are left to `f64`.
 //!
-//! **Rounding.** With u = 2^-24 and m the largest local coordinate of both elements, stored coordinates are off by u m, and
-//! so each coordinate of the computed differences r = a0 - b0, a1 - a0, .. by 2 u m + u 2 m = 4 u m. A dot product of a
-//! difference with d (exact as stored) adds 3 u (2 m) |d|_1, so each of the up to three products is off by 10 u m |d|_1,
-//! and their sums round by another 12 u m |d|_1: altogether 42 u m |d|_1 <= 73 u m |d|. The row's `reject` holds the radius
-//! with a factor 1 + 16 u (for the rounding of the radius and of |d|) plus 80 u m, each side with its own m. For the other
-//! test, the point of a side with computed weights in [0, 1] is off by 4 u m for each difference and 6 u (6 m) for its
-//! operations, together below 60 u m per coordinate and 104 u m in length, which `accept` subtracts as 128 u m. Products of
-//! tiny numbers may underflow: below a length |d| of 1e-12 m nothing is rejected, and above it 1e-18 m of slack covers
-//! errors of 1e-44.
+//! **Rounding.** With u = 2^-24 and m the largest local coordinate of both elements, stored coordinates are
+//! off by u m, and so each coordinate of the computed differences r = a0 - b0, a1 - a0, .. by 2 u m + u 2 m =
+//! 4 u m. A dot product of a difference with d (exact as stored) adds 3 u (2 m) |d|_1, so each of the up to
+//! three products is off by 10 u m |d|_1, and their sums round by another 12 u m |d|_1: altogether 42 u
+//! m |d|_1 <= 73 u m |d|. The row's `reject` holds the radius with a factor 1 + 16 u (for the rounding of the
+//! radius and of |d|) plus 80 u m, each side with its own m. For the other test, the point of a side with
+//! computed weights in [0, 1] is off by 4 u m for each difference and 6 u (6 m) for its operations, together
+//! below 60 u m per coordinate and 104 u m in length, which `accept` subtracts as 128 u m. Products of tiny
+//! numbers may underflow: below a length |d| of 1e-12 m nothing is rejected, and above it 1e-18 m of slack
+//! covers errors of 1e-44.
 
 use crate::bits::{bits, flag};
 use crate::frame::UNIT_ROUNDOFF;
@@ -51,8 +52,8 @@ pub struct Verdicts {
     pub accepted: u32,
 }
 
-/// Sixteen pairs side by side: local coordinates of both sides' vertices [m], and the sums of the
-/// sides' `reject` and `accept` of [`crate::tree::ElementRow`] [m].
+/// Sixteen pairs side by side: local coordinates of both sides' vertices [m], and the sums of the sides'
+/// `reject` and `accept` of [`crate::tree::ElementRow`] [m].
 #[repr(C, align(64))]
 pub struct Batch<const A: usize, const B: usize> {
     pub a: [[[f32; LANES]; 3]; A],
@@ -121,8 +122,8 @@ impl PairTest<1, 3> for VertexTriangle {
     const KIND: PairKind = PairKind::VertexTriangle;
     const SYMMETRIC: bool = false;
 
-    /// The shortest of four vectors: from the nearest point of each edge, and from the foot in the plane if that is inside
-    /// the triangle.
+    /// The shortest of four vectors: from the nearest point of each edge, and from the foot in the plane if
+    /// that is inside the triangle.
     #[inline(always)]
     fn direction([p]: &[[f32; 3]; 1], [b0, b1, b2]: &[[f32; 3]; 3]) -> [f32; 3] {
         let (ab, ac, ap) = (sub(*b1, *b0), sub(*b2, *b0), sub(*p, *b0));

@@ -6,9 +6,9 @@ use std::ops::Range;
 /// A pair of primitives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Pair {
-    /// The primitives' indices: vertices, edges or triangles of the topology by the pair's kind
-    /// (for [`PairKind::VertexHalfSpace`] the vertex and the half-space). In edge-edge and
-    /// vertex-vertex pairs the smaller index comes first.
+    /// The primitives' indices: vertices, edges or triangles of the topology by the pair's kind (for
+    /// [`PairKind::VertexHalfSpace`] the vertex and the half-space). In edge-edge and vertex-vertex pairs the
+    /// smaller index comes first.
     pub elements: [u32; 2],
     /// Vertices in [`PairKind`] order; unused places repeat the first vertex.
     pub vertices: [u32; 4],
@@ -53,10 +53,11 @@ impl PairList {
         &mut self.pairs
     }
 
-    /// For each pair, the index of the same pair in another list, or `u32::MAX` if that list does not have it.
+    /// For each pair, the index of the same pair in another list, or `u32::MAX` if that list does not have
+    /// it.
     ///
-    /// One pass over both lists, which are sorted. It serves to carry data of pairs, such as multipliers, from an old list
-    /// to a new one.
+    /// One pass over both lists, which are sorted. It serves to carry data of pairs, such as multipliers,
+    /// from an old list to a new one.
     pub fn match_with(&self, old: &PairList) -> Vec<u32> {
         let mut matches = Vec::with_capacity(self.len());
         for kind in PairKind::ALL {

@@ -45,8 +45,8 @@ pub struct ProximitySearch {
     statistics: SearchStatistics,
 }
 
-/// The leaves that query other trees: all leaves of deformable primitives, and for each layer of obstacles the leaves
-/// that overlap the box of the deformable primitives.
+/// The leaves that query other trees: all leaves of deformable primitives, and for each layer of obstacles
+/// the leaves that overlap the box of the deformable primitives.
 #[derive(Debug, Default)]
 struct Leaves {
     all: Vec<u32>,
@@ -75,15 +75,16 @@ impl ProximitySearch {
         }
     }
 
-    /// Lists every pair that may collide whose certified lower bound of the distance is at most max over side a of `radii`
-    /// + max over side b of `radii`. A half-space has no radius; for its pairs twice the radius of the vertex counts.
+    /// Lists every pair that may collide whose certified lower bound of the distance is at most max over side
+    /// a of `radii` + max over side b of `radii`. A half-space has no radius; for its pairs twice the radius
+    /// of the vertex counts.
     ///
-    /// There is one radius [m] per vertex, finite and >= 0. `separations` gets the contact geometry of each listed pair at
-    /// `positions`, in the order of `pairs`. The result depends on the input alone, not on the number of threads or on
-    /// earlier searches.
+    /// There is one radius [m] per vertex, finite and >= 0. `separations` gets the contact geometry of each
+    /// listed pair at `positions`, in the order of `pairs`. The result depends on the input alone, not on the
+    /// number of threads or on earlier searches.
     ///
-    /// A vertex whose position or radius is not finite or beyond 1e15 m is in no pair, and neither are the elements that
-    /// it belongs to. All other pairs are listed as usual.
+    /// A vertex whose position or radius is not finite or beyond 1e15 m is in no pair, and neither are the
+    /// elements that it belongs to. All other pairs are listed as usual.
     ///
     /// # Panics
     /// If a slice has another length than the model has vertices.
@@ -98,12 +99,13 @@ impl ProximitySearch {
         self.run::<false>(model, positions, None, radii, pairs, separations);
     }
 
-    /// As [`Self::search`], for vertices that move linearly from x to x + u over the path time [0, 1]: lists every pair
-    /// whose boxes, moving linearly and inflated by their radii, overlap at some time. Contact geometry is that of the
-    /// start, `positions`.
+    /// As [`Self::search`], for vertices that move linearly from x to x + u over the path time [0, 1]: lists
+    /// every pair whose boxes, moving linearly and inflated by their radii, overlap at some time. Contact
+    /// geometry is that of the start, `positions`.
     ///
-    /// The boxes contain the elements at any time, so the distance of a pair that is not listed always exceeds the sum of
-    /// its radii. The test of distances is not applied, because the distance at the start says nothing about later times.
+    /// The boxes contain the elements at any time, so the distance of a pair that is not listed always
+    /// exceeds the sum of its radii. The test of distances is not applied, because the distance at the start
+    /// says nothing about later times.
     ///
     /// # Panics
     /// If a slice has another length than the model has vertices.
@@ -314,8 +316,8 @@ impl ProximitySearch {
     }
 }
 
-/// Searches for one kind of pair: deformable elements of side *a* against all elements of side *b*, and elements of
-/// obstacles of side *a* against deformable ones. Trees are given as (side a, side b).
+/// Searches for one kind of pair: deformable elements of side *a* against all elements of side *b*, and
+/// elements of obstacles of side *a* against deformable ones. Trees are given as (side a, side b).
 fn search_kind<K: PairTest<A, B>, const A: usize, const B: usize, const SWEPT: bool>(
     scene: &Scene<'_>,
     collisions: CollisionMatrix,

@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 /// Counts of the last search.
 ///
-/// All but `pairs` measure effort, and may differ between two searches of the same state after different earlier
-/// searches.
+/// All but `pairs` measure effort, and may differ between two searches of the same state after different
+/// earlier searches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SearchStatistics {
     /// Pairs that share no vertex, may collide, and whose inflated boxes meet.

@@ -309,8 +309,8 @@ fn lane_overlaps(node: &Node, lane: usize, [low, high]: &[[f32; 3]; 2]) -> bool 
     x & y & z
 }
 
-/// Elements of a leaf whose boxes overlap that of another element, that share no vertex with it, and that have the larger
-/// index if each pair would be found twice.
+/// Elements of a leaf whose boxes overlap that of another element, that share no vertex with it, and that
+/// have the larger index if each pair would be found twice.
 #[inline(always)]
 fn candidates<K: PairTest<A, B>, const A: usize, const B: usize>(
     node: &Node,
@@ -368,13 +368,14 @@ fn moving_box<const V: usize>(tree: &Tree<V>, leaf: usize, lane: usize) -> [[[f3
 
 /// The elements of a leaf whose moving boxes overlap another moving box at some time, one bit each.
 ///
-/// A vertex moves from x to x + u in a straight line. The lower bound of an element is the minimum of linear functions of
-/// time, hence concave: it never falls below the straight line between the bounds at the start and at the end. So the box
-/// whose corners move linearly from the first to the last box contains the element, inflated by its radius, at any time.
-/// Two such boxes are apart along an axis while a gap, linear in time, is positive. A gap that is positive at both ends is
-/// always positive. A gap that changes sign does so at g0 / (g0 - g1). Both ends have a relative error of u = 2^-24, as
-/// the corners are exact data, and the denominator adds numbers of one sign, so the time has a relative error of 4 u; it
-/// is moved outward by 16 u. The pair is dropped if the six intervals without a gap and [0, 1] have no time in common.
+/// A vertex moves from x to x + u in a straight line. The lower bound of an element is the minimum of linear
+/// functions of time, hence concave: it never falls below the straight line between the bounds at the start
+/// and at the end. So the box whose corners move linearly from the first to the last box contains the
+/// element, inflated by its radius, at any time. Two such boxes are apart along an axis while a gap, linear
+/// in time, is positive. A gap that is positive at both ends is always positive. A gap that changes sign does
+/// so at g0 / (g0 - g1). Both ends have a relative error of u = 2^-24, as the corners are exact data, and the
+/// denominator adds numbers of one sign, so the time has a relative error of 4 u; it is moved outward by 16
+/// u. The pair is dropped if the six intervals without a gap and [0, 1] have no time in common.
 #[inline(always)]
 fn moving_boxes_overlap(first: &Node, last: &Node, [own_first, own_last]: &[[[f32; 3]; 2]; 2]) -> u32 {
     const EARLIER: f32 = 1.0 - 16.0 * UNIT_ROUNDOFF;

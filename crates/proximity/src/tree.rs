@@ -1,15 +1,15 @@
 //! A packed implicit 16-ary tree of boxes over elements of `V` vertices.
 //!
-//! Elements are stored in a spatial order. Each 16 of them make a leaf, each 16 leaves a node, and so on: the children of
-//! node i of a level are 16 i .. 16 i + 15 of the level below, without pointers. A node holds the boxes of its 16 children
-//! side by side, so that one box is tested against all of them in a few vector instructions. When elements move, the
-//! order stays and the boxes are refitted. A stale order costs time but no correctness; it is rebuilt when the leaves have
-//! grown.
+//! Elements are stored in a spatial order. Each 16 of them make a leaf, each 16 leaves a node, and so on: the
+//! children of node i of a level are 16 i .. 16 i + 15 of the level below, without pointers. A node holds the
+//! boxes of its 16 children side by side, so that one box is tested against all of them in a few vector
+//! instructions. When elements move, the order stays and the boxes are refitted. A stale order costs time but
+//! no correctness; it is rebuilt when the leaves have grown.
 //!
 //! **Rounding.** With u = 2^-24, local coordinates x and radii r are off by u|x| and u r (see
-//! [`crate::frame`]). Let m be the largest |x| of an element. A computed box bound x - r is off by at most
-//! u m + u r + u (m + r), and moving it outward by 8 u (m + r) rounds once more: the computed box certainly contains the
-//! exact one. 1e-30 m more covers underflow.
+//! [`crate::frame`]). Let m be the largest |x| of an element. A computed box bound x - r is off by at most u
+//! m + u r + u (m + r), and moving it outward by 8 u (m + r) rounds once more: the computed box certainly
+//! contains the exact one. 1e-30 m more covers underflow.
 
 use crate::frame::{LocalVertex, UNIT_ROUNDOFF};
 use crate::min_max::{larger, smaller};
@@ -65,8 +65,8 @@ impl Node {
     }
 }
 
-/// What the distance test needs of an element. Each element is stored in one place, not side by side as the boxes are,
-/// because the test reads single elements of many leaves.
+/// What the distance test needs of an element. Each element is stored in one place, not side by side as the
+/// boxes are, because the test reads single elements of many leaves.
 #[derive(Clone, Copy, Debug)]
 pub struct ElementRow<const V: usize> {
     /// Local coordinates of the vertices [m].
@@ -103,16 +103,16 @@ impl<const V: usize> Leaf<V> {
     };
 }
 
-/// The tree. Level 0 holds the boxes of the elements, the last level only the root. There are at least two levels unless
-/// the tree is empty.
+/// The tree. Level 0 holds the boxes of the elements, the last level only the root. There are at least two
+/// levels unless the tree is empty.
 #[derive(Debug, Default)]
 pub struct Tree<const V: usize> {
     /// Nodes of each level.
     pub levels: Vec<Vec<Node>>,
     /// Leaves, in spatial order.
     pub leaves: Vec<Leaf<V>>,
-    /// Boxes at the start and the end of a motion; level 0 then holds their hull. Empty if the last refit was without
-    /// motion.
+    /// Boxes at the start and the end of a motion; level 0 then holds their hull. Empty if the last refit was
+    /// without motion.
     pub sweep: Vec<[Node; 2]>,
     len: usize,
     /// Sum of the extents of the leaves when the tree was built.
@@ -136,8 +136,8 @@ impl<const V: usize> Tree<V> {
         self.levels.last().map_or(Node::EMPTY, |root| root[0]).bounds()
     }
 
-    /// Builds the tree of `elements` (index and vertices of each) in spatial order. [`Self::refit`] must follow: it sets the
-    /// boxes.
+    /// Builds the tree of `elements` (index and vertices of each) in spatial order. [`Self::refit`] must
+    /// follow: it sets the boxes.
     pub fn build(&mut self, elements: &[(u32, [u32; V])], local: &[LocalVertex]) {
         let mut centres: Vec<Centre> = elements
             .iter()

@@ -5,8 +5,8 @@ use crate::point::Vector;
 /// The closest points of a pair: p on side *a*, q on side *b*.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closest {
-    /// Barycentric weights of p and q over the pair's vertices in [`PairKind`] order, each in
-    /// [0, 1]; the weights of each side sum to 1 (up to rounding), unused places are 0.
+    /// Barycentric weights of p and q over the pair's vertices in [`crate::PairKind`] order, each in [0, 1];
+    /// the weights of each side sum to 1 (up to rounding), unused places are 0.
     pub weights: [f64; 4],
     /// p - q [m].
     pub offset: Vector,

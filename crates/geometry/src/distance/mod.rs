@@ -1,17 +1,16 @@
 //! Closest points and distances of the pair kinds.
 //!
-//! Every function works with coordinate differences inside the pair, so a large common offset costs
-//! no accuracy beyond what the coordinates themselves have lost. The points that the weights name
-//! always lie on both sides, hence `distance` is never below the true distance by more than
-//! rounding; it is off by at most 8 rounding units (2^-53) times the largest coordinate difference
-//! within the pair, for every input: zero-length edges, collinear and sliver triangles, parallel
-//! edges and coincident points included (`tests/suite/exact_distance.rs` compares with integers and
-//! sees less than 4).
+//! Every function works with coordinate differences inside the pair, so a large common offset costs no
+//! accuracy beyond what the coordinates themselves have lost. The points that the weights define always lie
+//! on the two sides, hence `distance` is never below the true distance by more than rounding. Its error is at
+//! most 8 rounding units (2^-53) times the largest coordinate difference within the pair, for every input,
+//! including zero-length edges, collinear and sliver triangles, parallel edges and coincident points
+//! (`tests/suite/exact_distance.rs` compares with integers and finds less than 4).
 //!
-//! The gradient of the distance by vertex i is `sign_i * weights[i] * offset / distance`, with sign
-//! +1 on side *a* and -1 on side *b* (the closest points move, but at a minimum that adds nothing).
-//! Where the closest points are not unique (parallel edges) or coincide it has no gradient; the
-//! weights are then those of one choice, the same for the same input.
+//! The gradient of the distance by vertex i is `sign_i * weights[i] * offset / distance`, with sign +1 on
+//! side *a* and -1 on side *b*. (The closest points move too, but at a minimum that contributes nothing.) The
+//! distance has no gradient where the closest points are not unique (parallel edges) or coincide. The weights
+//! are then those of one choice, the same for the same input.
 
 mod arithmetic;
 mod closest_points;
@@ -34,8 +33,8 @@ pub(crate) use rescale::{Local, MAX_SCALE, MIN_SCALE};
 
 /// Closest points of any pair kind but [`PairKind::VertexHalfSpace`]; unused points are ignored.
 ///
-/// A half-space is no set of points: asked for [`PairKind::VertexHalfSpace`] the answer is that of
-/// the vertex with itself, distance zero; use [`crate::HalfSpace::signed_distance`].
+/// A half-space has no vertices. For [`PairKind::VertexHalfSpace`] the result is that of the vertex with
+/// itself, with a distance of zero; use [`crate::HalfSpace::signed_distance`].
 #[inline]
 pub fn closest(kind: PairKind, points: &[Point; 4]) -> Closest {
     let [p0, p1, p2, p3] = points;

@@ -1,13 +1,13 @@
-//! Who is next to whom: triangles of edges, connected components, boundaries.
+//! Adjacency: triangles of edges, connected components, boundaries.
 
 use super::primitives::Topology;
 use crate::union_find::UnionFind;
 
-/// The triangles at each edge, in compressed rows: those of edge e stand at
-/// `starts[e]..starts[e + 1]`, by ascending triangle.
+/// The triangles at each edge, in compressed rows: those of edge e are at `starts[e]..starts[e + 1]`,
+/// ascending.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct EdgeTriangles {
-    /// Start of each edge's row, and the end: one more than there are edges.
+    /// Start of each edge's row, and the end: one entry more than there are edges.
     pub starts: Vec<u32>,
     /// Triangles.
     pub triangles: Vec<u32>,
@@ -22,8 +22,8 @@ impl EdgeTriangles {
         self.triangles[row.clone()].iter().copied().zip(self.opposite_vertices[row].iter().copied())
     }
 
-    /// How many triangles there are at an edge: 0 on strands, 1 on a boundary, 2 inside a surface,
-    /// more where sheets branch.
+    /// Number of triangles at an edge: 0 on strands, 1 on a boundary, 2 inside a surface, more where surfaces
+    /// branch.
     pub fn count(&self, edge: u32) -> usize {
         self.row(edge).len()
     }
@@ -38,8 +38,8 @@ impl EdgeTriangles {
 pub struct Components {
     /// How many there are.
     pub count: usize,
-    /// Component of each vertex, below `count`, numbered by their smallest vertices. A vertex
-    /// without edges is a component of its own.
+    /// Component of each vertex, below `count`. Components are numbered in the order of their smallest
+    /// vertices. A vertex without edges is a component of its own.
     pub of_vertex: Vec<u32>,
 }
 

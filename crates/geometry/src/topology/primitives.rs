@@ -4,9 +4,10 @@ use serde::{Deserialize, Serialize};
 
 /// The primitives of a scene over one array of vertices.
 ///
-/// Every vertex of a triangle or a strand takes part in vertex-triangle pairs; every edge, of
-/// triangles and strands alike, in edge-edge pairs; particles (vertices of no edge) in
-/// vertex-vertex, vertex-edge and vertex-triangle pairs. A vertex in none of the lists is inert.
+/// Every vertex of a triangle or a strand is part of vertex-triangle pairs; every edge of a triangle or a
+/// strand, of edge-edge pairs; and every particle (a vertex of no edge), of vertex-vertex, vertex-edge and
+/// vertex-triangle pairs. A vertex in none of the lists does not collide. [`Topology::builder`] fills all
+/// lists.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Topology {
     /// Number of vertices.

@@ -1,13 +1,13 @@
 //! The surface of a tetrahedral mesh.
 
-/// Faces of a tetrahedron with vertices 0 to 3, counter-clockwise seen from outside if its volume
-/// (x1 - x0) x (x2 - x0) . (x3 - x0) / 6 is positive.
+/// Faces of a tetrahedron with vertices 0 to 3, counter-clockwise seen from outside if its volume (x1 - x0) x
+/// (x2 - x0) . (x3 - x0) / 6 is positive.
 const FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
 
 /// The triangles that belong to one tetrahedron only: the surface of the solid.
 ///
-/// They point outward where the tetrahedron has a positive volume, and come in the order of the tetrahedra. A face
-/// shared by two or more is inside. O(n log n).
+/// They point outward if the tetrahedron has a positive volume, and are in the order of the tetrahedra. A
+/// face of two or more tetrahedra is inside. O(n log n).
 pub fn boundary_triangles(tets: &[[u32; 4]]) -> Vec<[u32; 3]> {
     let face = |place: usize| FACES[place % 4].map(|k| tets[place / 4][k]);
     let mut keyed: Vec<([u32; 3], usize)> = (0..4 * tets.len())

@@ -5,8 +5,8 @@ use bowknot_geometry::{PairKind, Point, distance, separation};
 /// 2^-53.
 const U: f64 = f64::EPSILON / 2.0;
 
-/// Four points on a grid of random coarseness up to `finest`; coarse grids and the copied, collinear
-/// and parallel points make degenerate pairs common, fine grids make slivers.
+/// Four points on a grid of random coarseness up to `finest`; coarse grids and the copied, collinear and
+/// parallel points make degenerate pairs common, fine grids make slivers.
 fn grid_pair(random: &mut Random, finest: usize) -> [Int3; 4] {
     let range = [1, 2, 4, 16, finest][random.below(5)];
     let mut p = [0; 4].map(|_| [0; 3].map(|_: i32| random.below(2 * range + 1) as i128 - range as i128));

@@ -28,8 +28,8 @@ proptest! {
         for (order, swapped) in reorderings(kind) {
             let other = distance::closest(kind, &order.map(|i| points[i]));
             prop_assert!((closest.distance - other.distance).abs() <= 4e-15 * scale, "{:?}", order);
-            // Directions agree where they are determined: apart from parallel edges' choices the
-            // closest points are unique, to the square root of rounding.
+            // Directions agree where they are determined: apart from parallel edges' choices the closest
+            // points are unique, to the square root of rounding.
             let turned = if *swapped { -other.offset } else { other.offset };
             prop_assert!((turned - closest.offset).norm() <= 1e-6 * scale || kind == PairKind::EdgeEdge);
         }

@@ -1,9 +1,9 @@
 //! Against parry3d-f64 and parry3d 0.31.
 //!
-//! parry's segment-segment routine compares squared lengths and their products with an *absolute*
-//! epsilon (2.2e-16 in f64, 1.2e-7 in f32; `closest_points_segment_segment.rs`): edges below about
-//! 1e-4 m in f64 and below about 2 cm in f32 all count as parallel there. So pairs are compared at
-//! sizes near 1, and the last test pins the difference at small sizes, with brute force as judge.
+//! parry's segment-segment routine compares squared lengths and their products with an *absolute* epsilon
+//! (2.2e-16 in f64, 1.2e-7 in f32; `closest_points_segment_segment.rs`): edges below about 1e-4 m in f64 and
+//! below about 2 cm in f32 all count as parallel there. So pairs are compared at sizes near 1, and the last
+//! test pins the difference at small sizes, with brute force as judge.
 
 use crate::sampling::{KINDS, Random};
 use bowknot_geometry::{PairKind, Point, distance};

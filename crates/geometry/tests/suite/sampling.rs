@@ -45,8 +45,8 @@ impl Random {
     }
 }
 
-/// A pair of elements of any size and place: in general position, or with points that coincide,
-/// lie on lines or planes of others, or edges that are parallel, all exactly or nearly.
+/// A pair of elements of any size and place: in general position, or with points that coincide, lie on lines
+/// or planes of others, or edges that are parallel, all exactly or nearly.
 pub fn near_degenerate_pair(random: &mut Random) -> [Point; 4] {
     let size = random.power(-5.0, 2.0);
     let far = [0.0, 1.0, 1e4][random.below(3)];

@@ -315,7 +315,8 @@ fn friction_between_free_nodes_agrees_over_solvers_and_spellings_and_keeps_momen
         solve_serial(problem, state, &TIGHT).unwrap();
     };
     let (y, multiplier) = rub(friction, serial);
-    // 1 + (0.5 + 2) / 4 = 1.625 is the diagonal of both: lambda = 1.1 / 1.625, slip 0.316 - 0.11 along the drag.
+    // 1 + (0.5 + 2) / 4 = 1.625 is the diagonal of both: lambda = 1.1 / 1.625, slip 0.316 - 0.11 along the
+    // drag.
     let (lambda, drag) = (1.1 / 1.625, Vector2::new(0.3, 0.1));
     assert!((multiplier + drag.normalize() * (0.1 * lambda)).norm() < 1e-12, "{multiplier:?}");
     let slip = (y[0] - 0.5 * (y[1] + y[2])).xy();
@@ -367,7 +368,8 @@ fn relaxation_scales_the_first_step_of_every_kind_of_row() {
 
 #[test]
 fn equations_pull_where_complementarity_lets_go() {
-    // Two nodes of weight 1 over the floor x >= 0: one has sunk, the other would leave; a third row ties them.
+    // Two nodes of weight 1 over the floor x >= 0: one has sunk, the other would leave; a third row ties
+    // them.
     let zero = Vector::zeros();
     let x = Vector::x();
     let mut rows = vec![
@@ -396,8 +398,8 @@ fn equations_pull_where_complementarity_lets_go() {
             assert_eq!(lambda, expected);
         }
     }
-    // With the third row the system is redundant, but what it asks of y contradicts the first two: x0 = x1 = 0 leaves
-    // 1/4. No bound holds its multiplier, which grows from sweep to sweep, and never to NaN.
+    // With the third row the system is redundant, but what it asks of y contradicts the first two: x0 = x1 =
+    // 0 leaves 1/4. No bound holds its multiplier, which grows from sweep to sweep, and never to NaN.
     let problem = LcpProblem::new(
         &weights,
         ConstraintSet::serial(&rows),

@@ -1,5 +1,5 @@
-//! Random problems: every solver against the exact one, the exact one against enumeration, and all
-//! against the conditions of a solution.
+//! Random problems: every solver against the exact one, the exact one against enumeration, and all against
+//! the conditions of a solution.
 #![allow(clippy::unwrap_used)] // helpers outside the test functions
 
 use crate::common::{Case, Random, cloth};
@@ -130,7 +130,8 @@ const PATIENT: LcpParams = LcpParams {
 };
 
 proptest! {
-    // A fixed seed: the conditioning that sweeps need is estimated for all rows, not for each set of acting ones.
+    // A fixed seed: the conditioning that sweeps need is estimated for all rows, not for each set of acting
+    // ones.
     #![proptest_config(ProptestConfig {
         cases: 2000,
         rng_seed: RngSeed::Fixed(2023),
@@ -309,8 +310,8 @@ fn two_hundred_redundant_rows_are_solved_exactly() {
 
 #[test]
 fn rounding_at_a_degenerate_corner_is_no_contradiction() {
-    // Half of 27 rows meet in one point of six dimensions. With these seeds a solver without the bound on rounding calls
-    // one of them infeasible, for 1e-15 of its value.
+    // Half of 27 rows meet in one point of six dimensions. With these seeds a solver without the bound on
+    // rounding calls one of them infeasible, for 1e-15 of its value.
     for seed in [503, 2075, 2085, 2184] {
         let case = small(seed, 2, 27, false);
         let (y, lambda) = case.solve(solve_exact);

@@ -14,8 +14,8 @@ fn vector(random: &mut Rng, size: f64) -> Vector {
     Vector::new(signed(random), signed(random), signed(random)) * size
 }
 
-/// Pairs whose radii are their distance but for a part of about the slack: what the test claims must
-/// be true, and it must not leave everything undecided.
+/// Pairs whose radii are their distance but for a part of about the slack: what the test claims must be true,
+/// and it must not leave everything undecided.
 fn check<K: PairTest<A, B>, const A: usize, const B: usize>(place: f64) {
     let mut random = Rng::with_seed(K::KIND as u64 + 17);
     let origin = Point::new(1.0, 2.0, -1.0);

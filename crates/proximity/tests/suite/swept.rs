@@ -38,8 +38,8 @@ fn moving_box(scene: &Scene, displacements: &[Vector], vertices: &[u32], time: f
     [low0 + time * (low1 - low0) - inflate, high0 + time * (high1 - high0) + inflate]
 }
 
-/// Every pair whose moving boxes meet at a sampled moment must be listed; a listed pair's must meet
-/// up to rounding within some interval between samples.
+/// Every pair whose moving boxes meet at a sampled moment must be listed; a listed pair's must meet up to
+/// rounding within some interval between samples.
 fn check(scene: &Scene, displacements: &[Vector], listed: &PairList) -> usize {
     let listed = keys(listed);
     let all = scene.all_pairs();
@@ -104,8 +104,8 @@ fn a_common_motion_adds_nothing() {
     let mut search = ProximitySearch::new(&scene.model);
     let still = sweep(&scene, &vec![Vector::zeros(); scene.positions.len()], &mut search);
     let moving = sweep(&scene, &vec![Vector::new(0.75, 0.5, 0.25); scene.positions.len()], &mut search);
-    // The half-space stays where it is and is left behind or stays as near as at the start. Boxes
-    // that touch to rounding may differ.
+    // The half-space stays where it is and is left behind or stays as near as at the start. Boxes that touch
+    // to rounding may differ.
     let (still, moving) = (keys(&still), keys(&moving));
     assert!(still.symmetric_difference(&moving).count() * 1000 < still.len());
 }

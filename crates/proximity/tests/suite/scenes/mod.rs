@@ -186,8 +186,8 @@ impl Scene {
         all
     }
 
-    /// Checks a list against all pairs: none nearer than its radii is missing, none is certainly
-    /// farther, order and geometry are right. Returns the number of pairs.
+    /// Checks a list against all pairs: none nearer than its radii is missing, none is certainly farther,
+    /// order and geometry are right. Returns the number of pairs.
     pub fn check(&self, pairs: &PairList, separations: &[Separation]) -> usize {
         assert_eq!(pairs.len(), separations.len());
         let mut listed = pairs.pairs().iter().enumerate().peekable();
