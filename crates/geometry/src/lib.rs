@@ -44,6 +44,8 @@ pub use mesh_check::{MeshProblem, check_mesh};
 pub use pair::PairKind;
 pub use point::{Point, Vector};
 pub use separation::Separation;
-pub use topology::{Components, EdgeTriangles, Topology, TopologyBuilder, TopologyError, boundary_triangles};
+pub use topology::{
+    Components, EdgeTriangles, Topology, TopologyBuilder, TopologyError, boundary_triangles, check_elements,
+};
 pub use union_find::UnionFind;
 pub use vertex_range::VertexOutOfRange;

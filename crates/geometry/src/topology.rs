@@ -8,7 +8,7 @@ mod tets;
 
 pub use adjacency::{Components, EdgeTriangles};
 pub use builder::TopologyBuilder;
-pub use error::TopologyError;
+pub use error::{TopologyError, check_elements};
 pub use primitives::Topology;
 pub use tets::boundary_triangles;
 

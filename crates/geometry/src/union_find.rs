@@ -38,6 +38,17 @@ impl UnionFind {
         member
     }
 
+    /// The smallest member of the set of `member`, as [`Self::find`], without shortening the path.
+    ///
+    /// # Panics
+    /// If `member` is not below the count.
+    pub fn root(&self, mut member: u32) -> u32 {
+        while self.parent[member as usize] != member {
+            member = self.parent[member as usize];
+        }
+        member
+    }
+
     /// Joins the sets of two members.
     ///
     /// # Panics
@@ -60,6 +71,7 @@ mod tests {
         let mut backward = UnionFind::new(7);
         pairs.iter().rev().for_each(|&[a, b]| backward.join(b, a));
         for sets in [&mut forward, &mut backward] {
+            assert_eq!((0..7).map(|v| sets.root(v)).collect::<Vec<_>>(), [0, 1, 0, 1, 0, 0, 6]);
             assert_eq!((0..7).map(|v| sets.find(v)).collect::<Vec<_>>(), [0, 1, 0, 1, 0, 0, 6]);
         }
         assert_eq!(forward.len(), 7);

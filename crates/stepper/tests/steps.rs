@@ -106,11 +106,8 @@ fn a_target_that_is_not_finite_is_ignored_and_counted() {
 fn budgets_keep_a_vertex_in_its_ball_wherever_it_heads() {
     let mut budgets = Budgets { anchors: vec![Point::origin()], radii: vec![1.0] };
     let mut x = Point::origin();
-    let mut seed = 1u64;
-    let mut random = || {
-        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    };
+    let mut rng = fastrand::Rng::with_seed(1);
+    let mut random = || 2.0 * rng.f64() - 1.0;
     let mut reached: f64 = 0.0;
     for k in 0..10_000 {
         let scale = 10f64.powi(k % 9 - 4);

@@ -109,7 +109,7 @@ impl Scene {
     /// Where two sheets want to be that change places, and crumple on the way.
     pub fn swapped(&self) -> Vec<Point> {
         let n = self.x.len() / 2;
-        let mut draw = Draw(5);
+        let mut draw = Draw::new(5);
         (0..2 * n)
             .map(|v| {
                 let other = self.x[(v + n) % (2 * n)];

@@ -1,8 +1,7 @@
 //! Building a topology from elements.
 
-use super::error::TopologyError;
+use super::error::{TopologyError, check_elements};
 use super::primitives::Topology;
-use crate::vertex_range::VertexOutOfRange;
 use bowknot_errors::Errors;
 
 /// Collects the elements of a [`Topology`]; see [`Topology::builder`].
@@ -56,9 +55,9 @@ impl TopologyBuilder {
     pub fn build(self) -> Result<Topology, Errors<TopologyError>> {
         let Self { vertex_count, triangles, strand_edges: strands, particles } = self;
         let mut errors = Vec::new();
-        check_elements("triangle", &triangles, vertex_count, &mut errors);
-        check_elements("strand edge", &strands, vertex_count, &mut errors);
-        check_elements("particle", particles.as_chunks::<1>().0, vertex_count, &mut errors);
+        errors.extend(check_elements("triangle", &triangles, vertex_count));
+        errors.extend(check_elements("strand edge", &strands, vertex_count));
+        errors.extend(check_elements("particle", particles.as_chunks::<1>().0, vertex_count));
         Errors::check(errors)?;
 
         let sorted = |a: u32, b: u32| if a < b { [a, b] } else { [b, a] };
@@ -100,24 +99,5 @@ impl TopologyBuilder {
             particles,
             surface_vertices,
         })
-    }
-}
-
-/// Reports vertices out of range and repeated vertices, element by element.
-fn check_elements<const N: usize>(
-    element: &'static str,
-    elements: &[[u32; N]],
-    vertex_count: usize,
-    errors: &mut Vec<TopologyError>,
-) {
-    for (index, vertices) in elements.iter().enumerate() {
-        for (k, &vertex) in vertices.iter().enumerate() {
-            errors.extend(
-                VertexOutOfRange::of(element, index, &[vertex], vertex_count).map(TopologyError::from),
-            );
-            if vertices[..k].contains(&vertex) {
-                errors.push(TopologyError::RepeatedVertex { element, index, vertex });
-            }
-        }
     }
 }

@@ -20,3 +20,19 @@ pub enum TopologyError {
         vertex: u32,
     },
 }
+
+/// Vertices out of range and repeated vertices, element by element. `element` names their type in messages.
+pub fn check_elements<const N: usize>(
+    element: &'static str,
+    elements: &[[u32; N]],
+    vertex_count: usize,
+) -> impl Iterator<Item = TopologyError> {
+    elements.iter().enumerate().flat_map(move |(index, vertices)| {
+        vertices.iter().enumerate().flat_map(move |(k, &vertex)| {
+            let missing = VertexOutOfRange::of(element, index, &vertices[k..=k], vertex_count);
+            let repeated = vertices[..k].contains(&vertex);
+            let repeated = repeated.then_some(TopologyError::RepeatedVertex { element, index, vertex });
+            missing.map(TopologyError::from).chain(repeated)
+        })
+    })
+}

@@ -115,7 +115,7 @@ fn however_violent_the_targets_bodies_of_all_kinds_keep_their_thickness() {
     for (preset, mut params) in [("fast", Params::fast()), ("paper", Params::paper())] {
         params.stop.max_steps = Some(40);
         let mut resolver = zoo.resolver(params);
-        let mut draw = Draw(7);
+        let mut draw = Draw::new(7);
         let mut x = zoo.x.clone();
         let mut met = [false; 5];
         for call_index in 0..12 {

@@ -49,7 +49,7 @@ impl System {
     /// Rows of three nodes each over a few, with weights and gradients that look random; fewer rows than coordinates,
     /// hence with one lambda only.
     pub fn random(seed: u64) -> Self {
-        let mut draw = Draw(seed);
+        let mut draw = Draw::new(seed);
         let nodes = 6;
         let weights = (0..nodes).map(|v| if v == 5 { 0.0 } else { 1.0 + 0.5 * draw.next() }).collect();
         let free: Vec<Vector> = (0..nodes).map(|_| draw.vector()).collect();
