@@ -1,4 +1,5 @@
-//! Two triangles whose targets swap them, by a method made of the default stages: they end up close, and still in order.
+//! Two triangles whose targets swap them, by a method made of the default stages: they end up close, and
+//! still in order.
 #![allow(clippy::print_stdout, reason = "a command")]
 
 use bowknot_baselines::twoway::geometry::{Point, Topology, Vector};
