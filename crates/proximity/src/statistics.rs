@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// earlier searches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SearchStatistics {
-    /// Pairs that share no vertex, may collide, and whose inflated boxes meet.
+    /// Pairs that share no vertex, may collide, and whose inflated boxes overlap.
     pub candidates: u64,
     /// Candidates that the certified `f32` test left to the `f64` one.
     pub undecided: u64,

@@ -13,7 +13,7 @@ fn messages(positions: &[Point], triangles: &[[u32; 3]]) -> Vec<String> {
 fn a_good_mesh_has_no_problem() {
     let (positions, triangles) = square();
     assert_eq!(check_mesh(&positions, &triangles), []);
-    // Neither far away, nor tiny, nor as a needle that is still a triangle.
+    // It has none far from the origin, at a tiny or huge size, or as a needle that is still a triangle.
     for (scale, shift) in [(1.0, 1e4), (1e-200, 0.0), (1e200, 0.0)] {
         let moved: Vec<Point> = positions.iter().map(|p| p.map(|x| x * scale + shift)).collect();
         assert_eq!(check_mesh(&moved, &triangles), []);

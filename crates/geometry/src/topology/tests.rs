@@ -1,7 +1,7 @@
 use super::*;
 
-/// Two triangles that share an edge, a third on the same edge, a strand of two edges, a particle, and an
-/// inert vertex.
+/// Two triangles that share an edge, a third on the same edge, a strand of two edges, a particle, and a
+/// vertex without elements.
 fn scene() -> Topology {
     let triangles = vec![[0, 1, 2], [2, 1, 3], [1, 2, 4]];
     Topology::builder(10)

@@ -15,7 +15,7 @@ fn grid_pair(random: &mut Random, finest: usize) -> [Int3; 4] {
         0 => p[i] = p[j],
         1 => p[i] = [0, 1, 2].map(|c| (p[j][c] + p[k][c]) / 2),
         2 => p[3] = [0, 1, 2].map(|c| (p[2][c] + p[1][c] - p[0][c]).clamp(-(range as i128), range as i128)),
-        // Steps of neighbouring Fibonacci numbers: as near parallel as integers can be.
+        // Steps of successive Fibonacci numbers: as nearly parallel as integers allow.
         3 if finest > 256 => {
             let n = random.below(25);
             let fibonacci = |n: usize| (0..n).fold((0_i128, 1), |(x, y), _| (y, x + y)).0;
@@ -36,7 +36,7 @@ fn grid_pair(random: &mut Random, finest: usize) -> [Int3; 4] {
     p
 }
 
-/// Grid points as the library sees them: scaled by a power of two and moved, both without rounding.
+/// Grid points as input of the library: scaled by a power of two and moved, both without rounding.
 fn place(points: [Int3; 4], spacing: f64, shift: f64) -> [Point; 4] {
     points.map(|p| Point::from(p.map(|x| x as f64 * spacing + shift)))
 }
@@ -67,7 +67,7 @@ fn distances_and_weights_are_those_of_integer_arithmetic() {
             (a.iter().sum::<f64>() - 1.0).abs() <= 2.0 * U && (b.iter().sum::<f64>() - 1.0).abs() <= 2.0 * U
         );
         assert!(weights[kind.vertex_count()..].iter().all(|&w| w == 0.0));
-        // The offset is that of the points that the weights name.
+        // The offset is that of the points that the weights define.
         let named = (0..kind.vertex_count())
             .map(|i| (points[i] - points[0]) * if i < kind.side_a() { weights[i] } else { -weights[i] })
             .sum::<bowknot_geometry::Vector>();

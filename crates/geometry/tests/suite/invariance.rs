@@ -3,7 +3,7 @@ use bowknot_geometry::{PairKind, Point, Vector, distance, separation};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 use proptest::prelude::*;
 
-/// Orders of the vertices that leave the pair what it is; the flag tells of swapped sides.
+/// Orders of the vertices that describe the same pair; the flag says whether the sides are swapped.
 fn reorderings(kind: PairKind) -> &'static [([usize; 4], bool)] {
     match kind {
         PairKind::VertexVertex => &[([1, 0, 2, 3], true)],
@@ -28,8 +28,8 @@ proptest! {
         for (order, swapped) in reorderings(kind) {
             let other = distance::closest(kind, &order.map(|i| points[i]));
             prop_assert!((closest.distance - other.distance).abs() <= 4e-15 * scale, "{:?}", order);
-            // Directions agree where they are determined: apart from parallel edges' choices the closest
-            // points are unique, to the square root of rounding.
+            // Directions agree where they are determined: except for parallel edges, the closest points are
+            // unique, up to the square root of rounding.
             let turned = if *swapped { -other.offset } else { other.offset };
             prop_assert!((turned - closest.offset).norm() <= 1e-6 * scale || kind == PairKind::EdgeEdge);
         }

@@ -38,7 +38,7 @@ macro_rules! parry_distance {
 parry_distance!(distance_f64, parry3d_f64, f64);
 parry_distance!(distance_f32, parry3d, f32);
 
-/// The least distance over points of both sides, refined around the best places.
+/// The smallest distance over points of both sides, refined around the best points.
 fn brute_force(kind: PairKind, points: &[Point; 4]) -> f64 {
     assert_eq!(kind, PairKind::EdgeEdge);
     let [a0, a1, b0, b1] = points;
@@ -62,7 +62,7 @@ fn brute_force(kind: PairKind, points: &[Point; 4]) -> f64 {
 }
 
 fn random_pair(random: &mut Random, size: f64) -> [Point; 4] {
-    // Rounded to f32, so that both precisions see the same points.
+    // Rounded to f32, so that both precisions get the same points.
     [0; 4].map(|_| Point::from(random.vector(size)).map(|x| f64::from(x as f32)))
 }
 

@@ -119,7 +119,8 @@ fn coordinates_of_any_finite_size_give_numbers() {
             let whole = [1.0, -1.0, random.signed()][random.below(3)];
             *x = whole * sizes[random.below(sizes.len())];
         }
-        // Mostly of one size, so that the size itself is met and not only the largest.
+        // Most coordinates have one size, so that the bound is tested at that size and not only at the
+        // largest.
         if random.below(2) == 0 {
             let size = sizes[random.below(sizes.len())];
             points = [0; 4].map(|_| Point::from(random.vector(size)));
@@ -159,7 +160,7 @@ fn tiny_and_huge_pairs_are_as_good_as_plain_ones() {
                 (scaled.distance / scale - plain.distance).abs() < 1e-14,
                 "{kind:?} {points:?} {exponent}"
             );
-            // Scaling by a power of two is exact, so the slab of the plain points judges.
+            // Scaling by a power of two is exact, so the slab of the unscaled points is the reference.
             let exact = slab(kind, &points, &scaled.normal);
             assert!(
                 certified(scaled.width / scale, &scaled.normal, exact, 1.0),

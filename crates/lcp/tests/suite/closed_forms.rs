@@ -56,7 +56,7 @@ fn a_slack_edge_and_a_pinned_one_stay() {
     assert_eq!((y, limit_multipliers), (y_free.to_vec(), vec![Vector::zeros()]));
     let (y, limit_multipliers) = solve_limits(&[0.0, 0.0], &y_free, &[limit(0, 1, 1.0)]);
     assert_eq!((y, limit_multipliers), (y_free.to_vec(), vec![Vector::zeros()]));
-    // One end pinned: the other takes the whole way.
+    // One end is pinned: the other moves the whole way.
     let (y, _) = solve_limits(&[1.0, 0.0], &y_free, &[limit(0, 1, 1.0)]);
     assert_near(y[0], Vector::x());
     assert_eq!(y[1], y_free[1]);
@@ -117,7 +117,7 @@ fn kept_multipliers_lead_to_the_same_solution() {
 
 #[test]
 fn an_upper_bound_caps_the_force() {
-    // A soft floor: needs 3 to hold the node, may use 2.
+    // A soft ground: holding the node takes 3, and the bound is 2.
     let weights = [1.0];
     let mut rows = [Row::new([0; 4], [Vector::z(), Vector::zeros(), Vector::zeros(), Vector::zeros()], 0.0)];
     rows[0].upper = 2.0;
@@ -180,7 +180,7 @@ fn dragged(weight: f64, drag: Vector2<f64>, bound: FrictionBound) -> (Vector, f6
 #[test]
 fn a_block_sticks_inside_the_cone_and_slides_by_the_excess_outside() {
     for weight in [1.0, 0.25] {
-        // Friction can undo a drag of mu x depth = 1 whatever the weight.
+        // Friction can undo a drag of mu x depth = 1, for any weight.
         let (y, lambda, multipliers) = dragged(weight, Vector2::new(0.6, 0.7), FrictionBound::Disc);
         assert_near(y, Vector::new(5.0, 0.0, 0.0));
         assert!((lambda - 2.0 / weight).abs() < 1e-12);
@@ -368,8 +368,8 @@ fn relaxation_scales_the_first_step_of_every_kind_of_row() {
 
 #[test]
 fn equations_pull_where_complementarity_lets_go() {
-    // Two nodes of weight 1 over the floor x >= 0: one has sunk, the other would leave; a third row ties
-    // them.
+    // Two nodes of weight 1 at the ground x >= 0: one is below it, the other moves away from it. A third row
+    // ties them.
     let zero = Vector::zeros();
     let x = Vector::x();
     let mut rows = vec![
@@ -398,8 +398,8 @@ fn equations_pull_where_complementarity_lets_go() {
             assert_eq!(lambda, expected);
         }
     }
-    // With the third row the system is redundant, but what it asks of y contradicts the first two: x0 = x1 =
-    // 0 leaves 1/4. No bound holds its multiplier, which grows from sweep to sweep, and never to NaN.
+    // The third row makes the system redundant, and it contradicts the first two: for x0 = x1 = 0 its value
+    // is 1/4. Its multiplier has no bound and grows from sweep to sweep, but is never NaN.
     let problem = LcpProblem::new(
         &weights,
         ConstraintSet::serial(&rows),

@@ -61,8 +61,8 @@ impl Small {
         .unwrap()
     }
 
-    /// Whether the rows are so far from parallel that sweeps, whose error shrinks by about this ratio of
-    /// eigenvalues a sweep, end within the limit.
+    /// Whether the rows are so far from parallel that sweeps converge within the limit. Each sweep reduces
+    /// the error by about this ratio of eigenvalues.
     fn well_conditioned(&self) -> bool {
         let mut a = delassus(&self.problem());
         for (i, row) in self.rows.iter().enumerate() {
@@ -130,8 +130,7 @@ const PATIENT: LcpParams = LcpParams {
 };
 
 proptest! {
-    // A fixed seed: the conditioning that sweeps need is estimated for all rows, not for each set of acting
-    // ones.
+    // The seed is fixed, because the conditioning is estimated for all rows, not for each set of active rows.
     #![proptest_config(ProptestConfig {
         cases: 2000,
         rng_seed: RngSeed::Fixed(2023),
@@ -153,7 +152,7 @@ proptest! {
         let (a, n) = (delassus(&problem), case.rows.len());
         let q = DVector::from_iterator(n, case.rows.iter().map(|row| row.value(&case.y_free)));
         let cost = |l: &DVector<f64>| (0.5 * &a * l + &q).dot(l);
-        // The best over all guesses of which rows act, each by least squares: an upper bound that is met.
+        // The best over all sets of active rows, each by least squares: an upper bound that is attained.
         let mut best = f64::INFINITY;
         for set in 0_usize..1 << n {
             let members: Vec<usize> = (0..n).filter(|i| set >> i & 1 == 1).collect();
@@ -168,7 +167,7 @@ proptest! {
         }
         let (_, lambda) = case.solve(solve_exact);
         let found = cost(&DVector::from_vec(lambda));
-        // Rows that nothing can move are in the cost as 0 x lambda: both leave them out.
+        // Rows whose nodes cannot move contribute 0 x lambda to the cost; both methods leave them out.
         prop_assert!((found - best).abs() < 1e-9 * (1.0 + best.abs()), "{found} against {best}");
     }
 
@@ -190,7 +189,7 @@ proptest! {
         let mut random = Random::new(seed ^ 1);
         let start: Vec<f64> = case.rows.iter().map(|r| (random.signed() + 1.0).min(r.upper)).collect();
         let (y, lambda) = case.solve(|problem, state| {
-            // Multipliers of rows that cannot move anything are left alone; they start at 0.
+            // The solver does not change multipliers of rows whose nodes cannot move; they start at 0.
             for (i, row) in case.rows.iter().enumerate() {
                 state.lambda[i] = if row.inverse_diagonal == 0.0 { 0.0 } else { start[i] };
             }
@@ -310,8 +309,8 @@ fn two_hundred_redundant_rows_are_solved_exactly() {
 
 #[test]
 fn rounding_at_a_degenerate_corner_is_no_contradiction() {
-    // Half of 27 rows meet in one point of six dimensions. With these seeds a solver without the bound on
-    // rounding calls one of them infeasible, for 1e-15 of its value.
+    // Half of 27 rows meet in one point of six dimensions. With these seeds a solver that takes every slope
+    // below zero, however small, for a contradiction finds one of them infeasible.
     for seed in [503, 2075, 2085, 2184] {
         let case = small(seed, 2, 27, false);
         let (y, lambda) = case.solve(solve_exact);
@@ -342,18 +341,18 @@ fn rows_that_contradict_each_other_are_named_or_bounded_and_never_nan() {
     };
     assert!(residual > 0.1 && residual.is_finite());
     assert!(y[0].iter().chain(&lambda).all(|v| v.is_finite()));
-    // With bounds there is an answer: both rows pull with all they have.
+    // With bounds there is a solution: both multipliers are at their bounds.
     rows.iter_mut().for_each(|row| row.upper = 3.0);
     let case = Small { rows: rows.to_vec(), ..case };
     let (y, lambda) = case.solve(solve_exact);
     case.check(&y, &lambda, 1e-12).unwrap();
-    // In between, both violated, both at their bound.
+    // The node is in between; both rows are violated.
     assert_eq!((lambda, y[0]), (vec![3.0, 3.0], zero));
 }
 
 #[test]
 fn chebyshev_weights_need_fewer_sweeps_on_a_smooth_error() {
-    // A chain of 30 links pulled from one end: plain Jacobi spreads the pull one link a sweep.
+    // A chain of 30 links pulled from one end: plain Jacobi spreads the pull by one link per sweep.
     let weights = vec![1.0; 31];
     let zero = Vector::zeros();
     let mut rows: Vec<Row> =

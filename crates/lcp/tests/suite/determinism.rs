@@ -29,7 +29,7 @@ fn rubbing(case: &Case) -> Vec<FrictionRow> {
     friction
 }
 
-/// All bits of the state that `solve` leaves, and its residual's.
+/// All bits of the state after `solve`, and of its residual.
 fn bits(
     problem: &LcpProblem<'_>,
     case: &Case,
@@ -54,7 +54,7 @@ fn bits(
 fn results_have_the_same_bits_on_any_number_of_threads() {
     let case = cloth(60, 6000, 5);
     let friction = rubbing(&case);
-    // Every third row left out.
+    // Every third row is left out.
     let (mut order, mut starts) = (Vec::new(), vec![0]);
     for ends in case.row_starts.windows(2) {
         order.extend((ends[0]..ends[1]).filter(|r| r % 3 != 0));
@@ -142,7 +142,7 @@ fn friction_attached_to_its_normals_has_the_same_bits_and_the_same_solution() {
     }
     let after_all = bits(&problem, &case, |state| solve_serial(&problem, state, &params).unwrap());
     assert!(after_all != serial, "attached rows are swept in another order");
-    // Each friction row was swept: its multiplier is inside of its cone, and many are not 0.
+    // Each friction row was swept: many multipliers are not 0.
     let (mut y, mut lambda, mut limit_multipliers) = case.start();
     let mut multipliers = vec![Vector2::zeros(); friction.len()];
     let mut state = LcpState {

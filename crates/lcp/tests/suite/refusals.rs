@@ -22,7 +22,7 @@ fn friction(normal: u32) -> FrictionRow {
     }
 }
 
-/// What a problem of these rows alone is refused for.
+/// The error of a problem with these rows only.
 fn new(weights: &[f64], rows: ConstraintSet<'_, Row>) -> Result<(), LcpError> {
     LcpProblem::new(weights, rows, ConstraintSet::default(), ConstraintSet::default()).map(|_| ())
 }
@@ -133,7 +133,7 @@ fn colours_that_share_a_moving_node_are_refused() {
     assert_eq!(judge(&[0, 1, 2], &[0, 1, 3]), Err(clash));
     let clash = LcpError::Colour { constraint: "row", colour: 0, first: 0, second: 0, node: 0 };
     assert_eq!(judge(&[0, 0], &[0, 2]), Err(clash));
-    // Without colours rows are swept one after the other: nothing to clash.
+    // Without colours rows are swept one after the other, so there is no clash.
     assert_eq!(judge(&[0, 1, 2], &[]), Ok(()));
     let limits =
         [DistanceLimit { vertices: [0, 2], limit: 1.0 }, DistanceLimit { vertices: [2, 3], limit: 1.0 }];

@@ -38,8 +38,8 @@ fn moving_box(scene: &Scene, displacements: &[Vector], vertices: &[u32], time: f
     [low0 + time * (low1 - low0) - inflate, high0 + time * (high1 - high0) + inflate]
 }
 
-/// Every pair whose moving boxes meet at a sampled moment must be listed; a listed pair's must meet up to
-/// rounding within some interval between samples.
+/// Every pair whose moving boxes overlap at a sampled moment must be listed. The boxes of a listed pair must
+/// overlap, up to rounding, at a moment or between two moments.
 fn check(scene: &Scene, displacements: &[Vector], listed: &PairList) -> usize {
     let listed = keys(listed);
     let all = scene.all_pairs();
@@ -98,7 +98,7 @@ fn pairs_that_meet_on_the_way_are_listed() {
 
 #[test]
 fn a_common_motion_adds_nothing() {
-    // The hulls of the paths of all bodies overlap, but nothing comes nearer on a common clock.
+    // The hulls of the paths of all bodies overlap, but nothing comes nearer at the same path time.
     let mut random = Random::new(2);
     let scene = soup(&mut random);
     let mut search = ProximitySearch::new(&scene.model);

@@ -61,8 +61,8 @@ pub fn colour<T: Copy>(items: &[T], nodes: impl Fn(&T) -> Vec<u32>, weights: &[f
     (classes.concat(), starts)
 }
 
-/// A sheet of side x side nodes 1 cm apart, crumpled: edges and both diagonals' first as distance limits, and
-/// `contacts` rows between random neighbourhoods; one node in 100 is pinned.
+/// A crumpled sheet of side x side nodes 1 cm apart: edges and one diagonal per cell as distance limits, and
+/// `contacts` rows between random neighbourhoods. One node in 100 is pinned.
 pub fn cloth(side: usize, contacts: usize, seed: u64) -> Case {
     let mut random = Random::new(seed);
     let h = 0.01;
@@ -107,7 +107,7 @@ pub fn cloth(side: usize, contacts: usize, seed: u64) -> Case {
         row.offset = -row.value(&y_free) - 0.1 * h * (random.signed() + 0.5);
         rows.push(row);
     }
-    // Contacts come in spatial order.
+    // Contacts are in spatial order.
     rows.sort_by_key(|row| row.vertices[1]);
     prepare_rows(&mut rows, &weights).expect("nodes are in range");
     let (rows, row_starts) = colour(&rows, |r| r.vertices.to_vec(), &weights);
