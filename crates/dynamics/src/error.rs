@@ -1,5 +1,7 @@
 //! What can go wrong, each with the object and the place.
 
+use bowknot_geometry::VertexOutOfRange;
+
 /// Why a material is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -51,20 +53,12 @@ pub enum ModelError {
         vertex: usize,
     },
     /// An element names a vertex that does not exist.
-    #[error(
-        "body \"{body}\": {element} {index} names vertex {vertex}, but there are only {vertex_count} vertices"
-    )]
+    #[error("body \"{body}\": {error}")]
     VertexOutOfRange {
         /// Name of the body.
         body: String,
-        /// "triangle", "tet", "edge", "particle" or "vertex".
-        element: &'static str,
-        /// Which of them.
-        index: usize,
-        /// The vertex that it names.
-        vertex: u32,
-        /// How many vertices there are.
-        vertex_count: usize,
+        /// The element: "triangle", "tet", "edge", "particle" or "vertex".
+        error: VertexOutOfRange,
     },
     /// An element names a vertex twice.
     #[error("body \"{body}\": {element} {index} names vertex {vertex} twice")]

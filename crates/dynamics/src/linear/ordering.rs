@@ -3,7 +3,7 @@
 //! Connected components first, then recursive bisection of the rest positions at the median of the
 //! longest side. Neighbours then stand close in memory, and the leaves are ready-made aggregates.
 
-use bowknot_geometry::Vector;
+use bowknot_geometry::{UnionFind, Vector};
 use std::ops::Range;
 
 /// A numbering and its leaves.
@@ -23,21 +23,11 @@ pub(crate) fn order_nodes(
     for_each_link: impl FnOnce(&mut dyn FnMut(u32, u32)),
 ) -> Ordering {
     let count = positions.len();
-    let mut parent: Vec<u32> = (0..count as u32).collect();
-    fn root(parent: &mut [u32], mut node: u32) -> u32 {
-        while parent[node as usize] != node {
-            parent[node as usize] = parent[parent[node as usize] as usize];
-            node = parent[node as usize];
-        }
-        node
-    }
-    for_each_link(&mut |a, b| {
-        let (a, b) = (root(&mut parent, a), root(&mut parent, b));
-        // The smaller index is the root, so components come in the order of their first node.
-        parent[a.max(b) as usize] = a.min(b);
-    });
+    let mut sets = UnionFind::new(count);
+    // A set is represented by its smallest node, so components are in the order of their first node.
+    for_each_link(&mut |a, b| sets.join(a, b));
     let mut order: Vec<u32> = (0..count as u32).collect();
-    let component: Vec<u32> = (0..count as u32).map(|n| root(&mut parent, n)).collect();
+    let component: Vec<u32> = (0..count as u32).map(|n| sets.find(n)).collect();
     order.sort_by_key(|&n| component[n as usize]);
 
     let (mut leaves, mut components) = (Vec::new(), Vec::new());

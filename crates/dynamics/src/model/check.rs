@@ -1,7 +1,7 @@
 //! What must hold before a model is built.
 
 use crate::{Body, BodyShape, MaterialError, ModelError};
-use bowknot_geometry::{Point, Vector};
+use bowknot_geometry::{Point, Vector, VertexOutOfRange};
 use std::collections::HashMap;
 
 /// An area (volume, length) below this share of the longest edge squared (cubed; of the largest coordinate)
@@ -59,14 +59,8 @@ fn check_indices(body: &Body, vertex_count: usize, errors: &mut Vec<ModelError>)
     let mut index = 0;
     body.shape.for_each_element(|vertices| {
         for (k, &vertex) in vertices.iter().enumerate() {
-            if vertex as usize >= vertex_count {
-                errors.push(ModelError::VertexOutOfRange {
-                    body: name(),
-                    element,
-                    index,
-                    vertex,
-                    vertex_count,
-                });
+            for error in VertexOutOfRange::of(element, index, &[vertex], vertex_count) {
+                errors.push(ModelError::VertexOutOfRange { body: name(), error });
             }
             if vertices[..k].contains(&vertex) {
                 errors.push(ModelError::RepeatedVertex { body: name(), element, index, vertex });
