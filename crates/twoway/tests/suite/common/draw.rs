@@ -2,7 +2,7 @@
 
 use bowknot_geometry::Vector;
 
-/// Numbers that look random, from -1 to 1, the same in every run.
+/// Pseudorandom numbers from -1 to 1, the same in every run.
 pub struct Draw(pub u64);
 
 impl Draw {
