@@ -4,7 +4,7 @@ use crate::io::States;
 use crate::simulator::{CollisionProblem, Simulator};
 use bowknot_geometry::Topology;
 use bowknot_proximity::{BodyFilter, CollisionModel};
-use bowknot_twoway::{Call, Params, ResolveError, Resolver};
+use bowknot_twoway::{Params, ResolveError, ResolveInput, Resolver};
 use std::collections::BTreeMap;
 
 /// Makes files of the collision problems of one simulation.
@@ -96,8 +96,8 @@ impl States {
     }
 
     /// The call that the problem stands for.
-    pub fn call(&self) -> Call<'_> {
-        Call {
+    pub fn input(&self) -> ResolveInput<'_> {
+        ResolveInput {
             prescribed: &self.fixed,
             time_step: self.time_step,
             start: (!self.start.is_empty()).then_some(&self.start),
@@ -136,7 +136,7 @@ mod tests {
             let model = read.collision_model().expect("a model");
             let mut resolver = read.resolver(model, self.params.clone()).expect("a resolver");
             let mut x = read.x.clone();
-            resolver.resolve(&mut x, &read.y, &read.call(), &mut ()).expect("resolved");
+            resolver.resolve_with(&mut x, &read.y, &read.input(), &mut ()).expect("resolved");
             self.ends.push(x);
             ControlFlow::Continue(())
         }

@@ -2,7 +2,7 @@
 
 use super::*;
 use bowknot_geometry::{HalfSpace, Point, Vector};
-use bowknot_twoway::{BodyContact, Call, ContactSide, HalfSpaceContact, PairFriction};
+use bowknot_twoway::{BodyContact, ContactSide, HalfSpaceContact, PairFriction, ResolveInput};
 use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -359,7 +359,7 @@ fn states() -> States {
             sides: [ContactSide::Body(1), ContactSide::HalfSpace(0)],
             friction: 0.75,
         }],
-        groups: vec![3, 3, Call::NO_GROUP, 0, Call::NO_GROUP, Call::NO_GROUP],
+        groups: vec![3, 3, ResolveInput::NO_GROUP, 0, ResolveInput::NO_GROUP, ResolveInput::NO_GROUP],
         start: sample().positions.iter().map(|p| p * 0.75).collect(),
     }
 }

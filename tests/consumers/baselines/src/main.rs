@@ -3,7 +3,7 @@
 
 use bowknot_baselines::twoway::geometry::{Point, Topology, Vector};
 use bowknot_baselines::twoway::proximity::CollisionModel;
-use bowknot_baselines::twoway::{ResolveInput, Params, ResolveError, Resolver};
+use bowknot_baselines::twoway::{Params, ResolveError, ResolveInput, Resolver};
 use bowknot_baselines::{Composed, Method};
 
 fn main() -> Result<(), ResolveError> {

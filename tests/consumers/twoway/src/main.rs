@@ -3,7 +3,7 @@
 
 use bowknot_twoway::geometry::{Point, Topology, Vector};
 use bowknot_twoway::proximity::CollisionModel;
-use bowknot_twoway::{AcceptedState, ResolveInput, Params, ResolveError, Resolver};
+use bowknot_twoway::{AcceptedState, Params, ResolveError, ResolveInput, Resolver};
 use std::ops::ControlFlow;
 
 fn main() -> Result<(), ResolveError> {
