@@ -1,4 +1,5 @@
-//! Colours of a sheet's edges: their number, their sizes, and a check that edges of one colour share no movable vertex.
+//! Colours of a sheet's edges: their number, their sizes, and a check that edges of one colour share no
+//! movable vertex.
 //!
 //! `cargo run --release -p bowknot-constraints --example edge_colours`
 #![allow(clippy::print_stdout)]
@@ -24,7 +25,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     let topology = Topology::new(rest.len(), triangles, &[], &[]).map_err(|errors| errors[0].clone())?;
-    // One side is held. Edges between held vertices need no limit, and edges that share a held vertex may have one colour.
+    // One side is held. Edges between held vertices need no limit, and edges that share a held vertex may
+    // have one colour.
     let movable: Vec<bool> = (0..SIDE * SIDE).map(|v| v >= SIDE).collect();
 
     let mut limits = EdgeLimits::new(&topology, &rest, &movable, |_| STRETCH);

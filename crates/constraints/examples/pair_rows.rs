@@ -1,5 +1,5 @@
-//! Contact rows of a vertex above a triangle, in both forms: values and gradients at the linearisation point, and values at
-//! targets on both sides.
+//! Contact rows of a vertex above a triangle, in both forms: values and gradients at the linearisation point,
+//! and values at targets on both sides.
 //!
 //! `cargo run --release -p bowknot-constraints --example pair_rows`
 #![allow(clippy::print_stdout)]
@@ -15,8 +15,8 @@ fn main() {
     let vertices = [0, 1, 2, 3];
     let triangle = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point::from);
 
-    // Above the interior the two forms differ only in the gradients of the triangle's vertices. Beside the triangle the
-    // volume form would block the whole plane of the triangle, so the gap form applies.
+    // Above the interior the two forms differ only in the gradients of the triangle's vertices. Beside the
+    // triangle the volume form would block the whole plane of the triangle, so the gap form applies.
     for (place, vertex) in [("over the inside", [0.25, 0.25, 0.05]), ("beside an edge", [0.5, -0.04, 0.005])]
     {
         let x = [Point::from(vertex), triangle[0], triangle[1], triangle[2]];

@@ -6,7 +6,8 @@
 
 use std::ops::Range;
 
-/// Words of the mask of the colours in use at a vertex. Rows that find no free colour get a colour of their own.
+/// Words of the mask of the colours in use at a vertex. Rows that find no free colour get a colour of their
+/// own.
 const WORDS: usize = 4;
 const COLOURS: usize = WORDS * 64;
 const NONE: u32 = u32::MAX;

@@ -26,8 +26,8 @@ pub fn contact_row(
     }
     .unwrap_or_else(|| {
         let gradients = separation.signed_weights(kind).map(|beta| separation.normal * beta);
-        // The forward step can use no more than the slab. Where the normal is not that of the closest points, the slab is
-        // narrower than the computed distance.
+        // The forward step can use no more than the slab. Where the normal is not that of the closest points,
+        // the slab is narrower than the computed distance.
         (separation.distance.min(separation.width.max(0.0)) - desired, gradients)
     });
     let linear: f64 = gradients.iter().zip(&points).map(|(g, x)| g.dot(&x.coords)).sum();
@@ -69,8 +69,8 @@ pub struct ContactRows {
 }
 
 impl ContactRows {
-    /// Fills in the rows of the pairs that `keep` accepts, ordered by colour. `movable[v]` tells which vertices a
-    /// row may move; only they count for colours.
+    /// Fills in the rows of the pairs that `keep` accepts, ordered by colour. `movable[v]` tells which
+    /// vertices a row may move; only they count for colours.
     pub fn fill(
         &mut self,
         form: ContactForm,
@@ -101,8 +101,8 @@ impl ContactRows {
         }));
     }
 
-    /// Adds friction rows to the rows of pairs whose entry in `coefficients` is above 0. Slip is measured from the positions
-    /// `start`. Without entries, or if all are 0, there are no friction rows.
+    /// Adds friction rows to the rows of pairs whose entry in `coefficients` is above 0. Slip is measured
+    /// from the positions `start`. Without entries, or if all are 0, there are no friction rows.
     pub fn fill_friction(
         &mut self,
         pairs: &PairList,

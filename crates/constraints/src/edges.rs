@@ -4,8 +4,9 @@ use crate::{Colouring, EdgeReference};
 use bowknot_geometry::{Point, Topology, Vector};
 use bowknot_lcp::{BallRow, Row};
 
-/// Smallest ratio of an edge's limit to its length at the start of the call. An edge that starts longer than its limit is
-/// shortened a little in each call, because asking for all of it at once is infeasible and diverges.
+/// Smallest ratio of an edge's limit to its length at the start of the call. An edge that starts longer than
+/// its limit is shortened a little in each call, because asking for all of it at once is infeasible and
+/// diverges.
 const START_SHARE: f64 = 0.97;
 
 /// Edge-length limits in colour order.
@@ -23,8 +24,8 @@ pub struct EdgeLimits {
 }
 
 impl EdgeLimits {
-    /// Collects and colours the edges with at least one movable vertex and a finite `stretch_limit`, the largest ratio
-    /// of an edge's length to its reference length. Other edges have no row.
+    /// Collects and colours the edges with at least one movable vertex and a finite `stretch_limit`, the
+    /// largest ratio of an edge's length to its reference length. Other edges have no row.
     pub fn new(
         topology: &Topology,
         rest: &[Point],
@@ -50,7 +51,8 @@ impl EdgeLimits {
         }
     }
 
-    /// Limit of an edge in a call [m]. Its length at the start is `start` [m]; `limit` is its rest length times sigma [m].
+    /// Limit of an edge in a call [m]. Its length at the start is `start` [m]; `limit` is its rest length
+    /// times sigma [m].
     pub fn of_rest(limit: f64, start: f64) -> f64 {
         limit.max(START_SHARE * start)
     }

@@ -1,10 +1,11 @@
 //! Which of the close pairs are contacts.
 //!
-//! Where two surfaces touch, many pairs of primitives are close to each other, but the distance of the surfaces has a minimum
-//! at few of them. The others have tilted normals, and a constraint along such a normal blocks bodies that slide past: these
-//! are the ghost collisions at internal edges of meshes. A pair is a contact if its normal lies in the normal cones of the
-//! features of both sides, that is, if no neighbouring feature is closer to the other side. Offset geometric contact (Chen et
-//! al. 2025) sorts contacts by the same blocks: those above faces, edges and vertices.
+//! Where two surfaces touch, many pairs of primitives are close to each other, but the distance of the
+//! surfaces has a minimum at few of them. The others have tilted normals, and a constraint along such a
+//! normal blocks bodies that slide past: these are the ghost collisions at internal edges of meshes. A pair
+//! is a contact if its normal lies in the normal cones of the features of both sides, that is, if no
+//! neighbouring feature is closer to the other side. Offset geometric contact (Chen et al. 2025) sorts
+//! contacts by the same blocks: those above faces, edges and vertices.
 
 use bowknot_geometry::{EdgeTriangles, PairKind, Point, Separation, Topology, Vector};
 use bowknot_proximity::Pair;
@@ -109,10 +110,11 @@ impl Facing {
         }
     }
 
-    /// Whether a pair is a contact: its normal lies in the normal cones of both `features` at `positions`, or leaves them by an
-    /// angle with a sine of at most `tolerance`. The tolerance is needed because cones above flat surfaces are single
-    /// directions. The cones of strands have all directions. Two edges within flat surfaces are no contact: vertices and faces
-    /// represent it completely. A vertex above the interior of a face always is a contact.
+    /// Whether a pair is a contact: its normal lies in the normal cones of both `features` at `positions`, or
+    /// leaves them by an angle with a sine of at most `tolerance`. The tolerance is needed because cones
+    /// above flat surfaces are single directions. The cones of strands have all directions. Two edges within
+    /// flat surfaces are no contact: vertices and faces represent it completely. A vertex above the interior
+    /// of a face always is a contact.
     pub fn is_contact(
         &self,
         topology: &Topology,
@@ -135,8 +137,8 @@ impl Facing {
         }
     }
 
-    /// The direction in the normal cones of both `features` at `positions` that is closest to `normal`, approximately. A contact
-    /// is pushed along it if its normal has left the cones a little. Unit vectors.
+    /// The direction in the normal cones of both `features` at `positions` that is closest to `normal`,
+    /// approximately. A contact is pushed along it if its normal has left the cones a little. Unit vectors.
     pub fn turned(
         &self,
         topology: &Topology,

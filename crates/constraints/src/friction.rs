@@ -1,10 +1,10 @@
 //! Friction rows: the slip of a contact along its two tangents since the start of the time step,
 //! u = T^T sum_k s_k beta_k (y_k - start_k), s_k = +1 on side a and -1 on side b.
 //!
-//! Coulomb's law at the level of positions bounds the multiplier along the slip by mu times the normal's: over a time
-//! step dt the slip is dt times the relative velocity at its end (implicit Euler). The weights are those of
-//! the closest points at the linearisation point. The motion of every vertex of the pair counts, prescribed
-//! or not, so a moving obstacle drags what it touches.
+//! Coulomb's law at the level of positions bounds the multiplier along the slip by mu times the normal's:
+//! over a time step dt the slip is dt times the relative velocity at its end (implicit Euler). The weights
+//! are those of the closest points at the linearisation point. The motion of every vertex of the pair counts,
+//! prescribed or not, so a moving obstacle drags what it touches.
 
 use bowknot_geometry::{PairKind, Point, Separation, Vector};
 use bowknot_lcp::FrictionRow;
@@ -37,7 +37,8 @@ pub fn friction_row(
 
 /// Two unit vectors that form a right-handed frame with the unit `normal`.
 pub fn tangents(normal: &Vector) -> [Vector; 2] {
-    // The coordinate axis with the smallest component along the normal: its part across is at least sqrt(2/3) long.
+    // The coordinate axis with the smallest component along the normal: its part across is at least sqrt(2/3)
+    // long.
     let axis = Vector::ith(normal.iamin(), 1.0);
     let first = (axis - *normal * normal.dot(&axis)).normalize();
     [first, normal.cross(&first)]

@@ -11,33 +11,35 @@ pub const STRETCH_LIMIT: f64 = 1.1;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ContactParams {
-    /// Desired distance of contacts [m], delta. Default a tenth of the mean edge length. Larger: faster, rounder contacts
-    /// with a visible gap; smaller: tighter contacts, more steps.
+    /// Desired distance of contacts [m], delta. Default a tenth of the mean edge length. Larger: faster,
+    /// rounder contacts with a visible gap; smaller: tighter contacts, more steps.
     pub delta: Option<f64>,
-    /// Minimum separation [m], xi: no step makes a smaller gap. Default a tenth of `delta`; 0 switches it off, so that gaps are
-    /// bounded by rounding alone. Refused below 16 ulp of the largest coordinate.
+    /// Minimum separation [m], xi: no step makes a smaller gap. Default a tenth of `delta`; 0 switches it
+    /// off, so that gaps are bounded by rounding alone. Refused below 16 ulp of the largest coordinate.
     pub min_separation: Option<f64>,
-    /// Distance within which a pair is a candidate and becomes a contact row, in `delta`. Larger: contacts are found
-    /// earlier, and the number of pairs grows with its square. Default 2 (paper: 4).
+    /// Distance within which a pair is a candidate and becomes a contact row, in `delta`. Larger: contacts
+    /// are found earlier, and the number of pairs grows with its square. Default 2 (paper: 4).
     pub range: f64,
-    /// Predicted gap below which the solver sweeps a row, in `delta`. Larger: more rows, slightly fewer steps. Default 1.1.
+    /// Predicted gap below which the solver sweeps a row, in `delta`. Larger: more rows, slightly fewer
+    /// steps. Default 1.1.
     pub active: f64,
-    /// Speed [m/s] at which pairs are separated that start closer than `delta`. Default 20 `delta` per second. Larger: pairs
-    /// that start close open faster, and the cloth is thrown.
+    /// Speed [m/s] at which pairs are separated that start closer than `delta`. Default 20 `delta` per
+    /// second. Larger: pairs that start close open faster, and the cloth is thrown.
     pub separation_speed: Option<f64>,
-    /// Whether only contacts become rows: pairs whose normal lies in the normal cones of both features. If false, all pairs
-    /// in range do; the rows of those ahead of a vertex that slides on a mesh block its way. Default true (paper: false).
+    /// Whether only contacts become rows: pairs whose normal lies in the normal cones of both features. If
+    /// false, all pairs in range do; the rows of those ahead of a vertex that slides on a mesh block its way.
+    /// Default true (paper: false).
     pub contacts_only: bool,
     /// Form of the contact constraint. Default gap.
     pub form: ContactForm,
-    /// How friction acts where bodies have it: `coulomb`, in the backward step; `filter`, on the target before each
-    /// call as in the paper, cheaper and less accurate; or `none`. Without coefficients of friction all three cost nothing.
-    /// Default coulomb.
+    /// How friction acts where bodies have it: `coulomb`, in the backward step; `filter`, on the target
+    /// before each call as in the paper, cheaper and less accurate; or `none`. Without coefficients of
+    /// friction all three cost nothing. Default coulomb.
     pub friction_model: FrictionModel,
     /// Whether edge lengths are limited at all. Default true.
     pub edges: bool,
-    /// Largest ratio of an edge's length to its reference length, sigma, for every body without its own. Default: the limit
-    /// of the body's material if it is a cloth, otherwise 1.1 (paper: 1.1 for all).
+    /// Largest ratio of an edge's length to its reference length, sigma, for every body without its own.
+    /// Default: the limit of the body's material if it is a cloth, otherwise 1.1 (paper: 1.1 for all).
     pub stretch_limit: Option<f64>,
     /// The reference length of an edge. Default rest.
     pub edge_reference: EdgeReference,
@@ -54,8 +56,9 @@ pub enum ContactForm {
     /// Volume of the pair less that of the separated pair (paper, Eq. 14-16), in units of length. It
     /// falls back to the gap form where the closest features are not the interiors.
     Volume,
-    /// Distance along the triangle's normal or the edges' common normal, wherever the closest features are (Harmon et al.
-    /// 2008; Tang et al. 2018). It also constrains vertices that pass beside the primitive. For comparison.
+    /// Distance along the triangle's normal or the edges' common normal, wherever the closest features are
+    /// (Harmon et al. 2008; Tang et al. 2018). It also constrains vertices that pass beside the primitive.
+    /// For comparison.
     Face,
 }
 
@@ -63,10 +66,12 @@ pub enum ContactForm {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FrictionModel {
-    /// Coulomb's law in every backward step: tangential multipliers are at most mu times the normal's and solved with it.
+    /// Coulomb's law in every backward step: tangential multipliers are at most mu times the normal's and
+    /// solved with it.
     Coulomb,
-    /// The velocity filter of Bridson et al. 2002 (paper, section 6.3): penetration depths at the target estimate the
-    /// normal impulses, and the target's slip is reduced by mu times them before collisions are handled.
+    /// The velocity filter of Bridson et al. 2002 (paper, section 6.3): penetration depths at the target
+    /// estimate the normal impulses, and the target's slip is reduced by mu times them before collisions are
+    /// handled.
     Filter,
     /// No friction.
     None,

@@ -1,9 +1,9 @@
 //! The volume form of contact constraints (paper, Eq. 14-16).
 //!
-//! The paper asks for V(x) >= V(r), with r the positions after pushing the pair apart along the normal n
-//! to the desired distance. V(r)/V(x) = delta/d holds exactly, because the closest points lie on the primitives.
-//! Dividing by the area |N| of the base at the linearisation point gives a length, so that multipliers
-//! keep their meaning from one linearisation to the next:
+//! The paper asks for V(x) >= V(r), with r the positions after pushing the pair apart along the normal n to
+//! the desired distance. V(r)/V(x) = delta/d holds exactly, because the closest points lie on the primitives.
+//! Dividing by the area |N| of the base at the linearisation point gives a length, so that multipliers keep
+//! their meaning from one linearisation to the next:
 //!
 //! c(x) = (6 V(x) - 6 V(r)) / |N|, hence at the linearisation point c = (6|V|/|N|) (1 - delta/d).
 //!

@@ -1,6 +1,6 @@
-//! One forward step of folded cloth, about 10,000 vertices in layers 1.5 mm apart that are asked to lie on one
-//! another: set the target, limit by the candidate pairs and by the trust regions, advance. The time does not include the
-//! search.
+//! One forward step of folded cloth, about 10,000 vertices in layers 1.5 mm apart that are asked to lie on
+//! one another: set the target, limit by the candidate pairs and by the trust regions, advance. The time does
+//! not include the search.
 
 // The scene of the search's own bench.
 #[path = "../../proximity/tests/suite/scenes/folded.rs"]

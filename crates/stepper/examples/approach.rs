@@ -1,9 +1,9 @@
 //! A vertex moves toward a triangle and along it, step by step. It comes near and never passes through.
 //!
-//! Planes limit only the motion that closes the gap, so a target on the vertex's own side is reached at once. Distances, the
-//! paper's bound, limit every step to half of the gap, whatever its direction. With either bound a target on the other side
-//! is approached until the minimum separation and no further: a step shortens the whole displacement; a target that does
-//! not lead through has to be found by the backward step.
+//! Planes limit only the motion that closes the gap, so a target on the vertex's own side is reached at once.
+//! Distances, the paper's bound, limit every step to half of the gap, whatever its direction. With either
+//! bound a target on the other side is approached until the minimum separation and no further: a step
+//! shortens the whole displacement; a target that does not lead through has to be found by the backward step.
 //!
 //! `cargo run --release -p bowknot-stepper --example approach`
 #![allow(clippy::print_stdout)]

@@ -9,19 +9,19 @@ use serde::{Deserialize, Serialize};
 pub struct ForwardParams {
     /// The bound that limits the vertices. Default planes.
     pub bound: Bound,
-    /// Share of a pair's gap that one step may use up, the paper's gamma. Closer to 1: longer steps that leave smaller
-    /// gaps. Default 0.9.
+    /// Share of a pair's gap that one step may use up, the paper's gamma. Closer to 1: longer steps that
+    /// leave smaller gaps. Default 0.9.
     pub damping: f64,
     /// How far vertices may travel between two searches. Default per-vertex.
     pub trust_region: TrustRegionRule,
-    /// Smallest radius of a trust region: in local edge lengths for `per-vertex` (default 0.1; with smaller ones contacts
-    /// come and go), in `delta` for `uniform` (D_min/2; paper: 2 delta / 2).
+    /// Smallest radius of a trust region: in local edge lengths for `per-vertex` (default 0.1; with smaller
+    /// ones contacts come and go), in `delta` for `uniform` (D_min/2; paper: 2 delta / 2).
     pub trust_region_min: f64,
-    /// Largest radius of a trust region, in the same units (default 0.25; larger ones find many more pairs; paper:
-    /// D_max/2 = 4 delta / 2).
+    /// Largest radius of a trust region, in the same units (default 0.25; larger ones find many more pairs;
+    /// paper: D_max/2 = 4 delta / 2).
     pub trust_region_max: f64,
-    /// Wanted travel, in mean edge lengths, above which the search follows the vertices along their paths while no contact
-    /// presses. Larger: more steps in free flight. `inf` switches it off. Default 0.6.
+    /// Wanted travel, in mean edge lengths, above which the search follows the vertices along their paths
+    /// while no contact presses. Larger: more steps in free flight. `inf` switches it off. Default 0.6.
     pub swept_travel: f64,
 }
 
@@ -39,7 +39,8 @@ pub enum Bound {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TrustRegionRule {
-    /// One distance for all vertices: the next search is due when the fastest vertex has used it up (paper, Algorithm 1).
+    /// One distance for all vertices: the next search is due when the fastest vertex has used it up (paper,
+    /// Algorithm 1).
     Uniform,
     /// One ball per vertex, as large as the travel that the vertex wants.
     PerVertex,

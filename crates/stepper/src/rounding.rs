@@ -2,17 +2,18 @@
 
 /// Absolute rounding bounds at the scale of a scene's coordinates.
 ///
-/// Let u = 2^-53 and C the largest coordinate before or after a step. The update x + alpha d is rounded twice, by at most
-/// u |alpha d| + u |x'| <= 2 u C in each component where |alpha d| <= C. Along any unit vector this is less than
-/// 2 sqrt(3) u C = 1.74 ulp(C), where ulp(C) = 2 u C. The closing speed n . d, from which a share is computed, is itself off
-/// by at most 4 u |d|, scaled by alpha to the travel of one step, which trust regions keep below C. `step` = 4 ulp(C) covers
-/// both, and the division that makes alpha from a share.
+/// Let u = 2^-53 and C the largest coordinate before or after a step. The update x + alpha d is rounded
+/// twice, by at most u |alpha d| + u |x'| <= 2 u C in each component where |alpha d| <= C. Along any unit
+/// vector this is less than 2 sqrt(3) u C = 1.74 ulp(C), where ulp(C) = 2 u C. The closing speed n . d, from
+/// which a share is computed, is itself off by at most 4 u |d|, scaled by alpha to the travel of one step,
+/// which trust regions keep below C. `step` = 4 ulp(C) covers both, and the division that makes alpha from a
+/// share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rounding {
     /// By how much, at most, one side closes a gap beyond its share in one step [m].
     pub step: f64,
-    /// Gap at or below which a pair's vertices must not move at all [m]. Above it, a step that is not meant to close the gap
-    /// cannot close it by rounding.
+    /// Gap at or below which a pair's vertices must not move at all [m]. Above it, a step that is not meant
+    /// to close the gap cannot close it by rounding.
     pub frozen: f64,
 }
 

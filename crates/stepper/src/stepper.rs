@@ -1,10 +1,10 @@
 //! The forward step (paper, Eq. 3, 18-20), with separating planes in place of the isotropic bound.
 //!
-//! For a pair with unit normal n and certified slab width w, side *a* may close at most a share of
-//! G = gamma max(0, w - xi), where xi is the pair's minimum separation, and side *b* the rest. Each side then stays in its
-//! own half-space. Half-spaces are convex, so no straight path of any vertex crosses, whatever the speeds, and a smaller
-//! alpha is always safe too. The isotropic bound is the paper's: no vertex moves by more than half of the
-//! smallest distance of its pairs.
+//! For a pair with unit normal n and certified slab width w, side *a* may close at most a share of G = gamma
+//! max(0, w - xi), where xi is the pair's minimum separation, and side *b* the rest. Each side then stays in
+//! its own half-space. Half-spaces are convex, so no straight path of any vertex crosses, whatever the
+//! speeds, and a smaller alpha is always safe too. The isotropic bound is the paper's: no vertex moves by
+//! more than half of the smallest distance of its pairs.
 
 use crate::rounding::Rounding;
 use crate::trust_regions::TrustRegions;
@@ -45,8 +45,8 @@ pub struct StepReport {
 pub struct Stepper {
     /// d = y - x [m].
     displacements: Vec<Vector>,
-    /// Bits of alpha. Nonnegative floats are ordered as their bits are, so an atomic minimum of bits is a minimum of the
-    /// numbers, and it gives the same result in any order.
+    /// Bits of alpha. Nonnegative floats are ordered as their bits are, so an atomic minimum of bits is a
+    /// minimum of the numbers, and it gives the same result in any order.
     alphas: Vec<AtomicU64>,
     /// The paper's r of each vertex.
     remaining_fractions: Vec<f64>,
@@ -68,16 +68,16 @@ impl Stepper {
         self.alphas.resize_with(vertex_count, || AtomicU64::new(1.0f64.to_bits()));
     }
 
-    /// Sets the group of each vertex, one entry per vertex, [`Self::NO_GROUP`] for none. All vertices of a group move by the
-    /// same fraction of their displacements, see [`Self::limit_by_groups`]; pairs within a group are then limited by their
-    /// relative motion alone.
+    /// Sets the group of each vertex, one entry per vertex, [`Self::NO_GROUP`] for none. All vertices of a
+    /// group move by the same fraction of their displacements, see [`Self::limit_by_groups`]; pairs within a
+    /// group are then limited by their relative motion alone.
     pub fn set_groups(&mut self, groups: &[u32]) {
         self.groups.clear();
         self.groups.extend_from_slice(groups);
     }
 
-    /// Starts a step from `positions` toward `target`. A vertex whose target is not finite does not move; returns the number
-    /// of these vertices.
+    /// Starts a step from `positions` toward `target`. A vertex whose target is not finite does not move;
+    /// returns the number of these vertices.
     pub fn set_target(&mut self, positions: &[Point], target: &[Point]) -> usize {
         self.displacements.resize(positions.len(), Vector::zeros());
         let mut largest = 0.0f64;
@@ -111,7 +111,8 @@ impl Stepper {
     /// Lowers the step size of a vertex to at most `alpha`.
     #[inline]
     pub fn limit(&self, vertex: usize, alpha: f64) {
-        // NaN becomes 0: its bits would compare as larger than those of every number, and the limit would be lost.
+        // NaN becomes 0: its bits would compare as larger than those of every number, and the limit would be
+        // lost.
         let alpha = if alpha >= 0.0 { alpha } else { 0.0 };
         let bits = alpha.to_bits();
         if self.alphas[vertex].load(Ordering::Relaxed) > bits {
@@ -124,8 +125,8 @@ impl Stepper {
         self.rounding.unwrap_or(Rounding { step: f64::INFINITY, frozen: f64::INFINITY })
     }
 
-    /// Limits the vertices of every pair by the pair's slab. Returns the number of frozen pairs: those for which no direction
-    /// certifies a gap above rounding.
+    /// Limits the vertices of every pair by the pair's slab. Returns the number of frozen pairs: those for
+    /// which no direction certifies a gap above rounding.
     pub fn limit_by_planes(&self, contacts: &Contacts<'_>, damping: f64) -> usize {
         let rounding = self.rounding();
         let frozen = AtomicUsize::new(0);
@@ -144,12 +145,13 @@ impl Stepper {
         frozen.into_inner()
     }
 
-    /// As [`Self::limit_by_planes`], for vertices that move along `paths` [m], all at the same path time t in [0, 1], and
-    /// deviate from there by at most the radius of their `tubes` [m]. A pair whose slab stays open while it moves along is not
-    /// limited, so that motion common to both sides is free.
+    /// As [`Self::limit_by_planes`], for vertices that move along `paths` [m], all at the same path time t in
+    /// [0, 1], and deviate from there by at most the radius of their `tubes` [m]. A pair whose slab stays
+    /// open while it moves along is not limited, so that motion common to both sides is free.
     ///
-    /// Let the slab move by t f. Side *a* closes it by at most t max over a of -n.(u_i - f) plus its tube, side *b* by at most
-    /// t max over b of n.(u_j - f) plus its own. In the sum f cancels; the sum is linear in t, so it is largest at an end.
+    /// Let the slab move by t f. Side *a* closes it by at most t max over a of -n.(u_i - f) plus its tube,
+    /// side *b* by at most t max over b of n.(u_j - f) plus its own. In the sum f cancels; the sum is linear
+    /// in t, so it is largest at an end.
     pub fn limit_by_moving_planes(
         &self,
         contacts: &Contacts<'_>,
@@ -232,8 +234,9 @@ impl Stepper {
         }
     }
 
-    /// Limits a pair whose vertices move by the same fraction. If the slab moves with the pair, only the difference of both
-    /// sides' motion closes it, and that is linear in the fraction (see [`Self::limit_by_moving_planes`]). Common motion is free.
+    /// Limits a pair whose vertices move by the same fraction. If the slab moves with the pair, only the
+    /// difference of both sides' motion closes it, and that is linear in the fraction (see
+    /// [`Self::limit_by_moving_planes`]). Common motion is free.
     fn limit_within_group(&self, vertices: &[u32], side_a: usize, n: &Vector, allowed: f64) {
         let largest = |side: &[u32], sign: f64| {
             let along = side.iter().map(|&v| sign * n.dot(&self.displacements[v as usize]));
@@ -259,8 +262,8 @@ impl Stepper {
         moving
     }
 
-    /// Limits the vertices of every pair to half of the pair's certified distance, whatever the direction (paper, Eq.
-    /// 18-20). Returns the number of frozen pairs.
+    /// Limits the vertices of every pair to half of the pair's certified distance, whatever the direction
+    /// (paper, Eq. 18-20). Returns the number of frozen pairs.
     pub fn limit_by_distances(&self, contacts: &Contacts<'_>, damping: f64) -> usize {
         let rounding = self.rounding();
         let frozen = AtomicUsize::new(0);
@@ -281,8 +284,8 @@ impl Stepper {
         frozen.into_inner()
     }
 
-    /// Limits the move of every vertex to half of `distance` [m], a lower bound of the distances of all pairs that are no
-    /// candidates: the paper's D^(l).
+    /// Limits the move of every vertex to half of `distance` [m], a lower bound of the distances of all pairs
+    /// that are no candidates: the paper's D^(l).
     pub fn limit_by_non_candidates(&self, distance: f64, damping: f64) {
         let room = (0.5 * damping * distance - self.rounding().step).max(0.0);
         (0..self.displacements.len())
@@ -299,8 +302,8 @@ impl Stepper {
         }
     }
 
-    /// Keeps every vertex in its trust region. Returns whether a trust region, rather than a pair, limits some vertex: then
-    /// the pairs should be searched again.
+    /// Keeps every vertex in its trust region. Returns whether a trust region, rather than a pair, limits
+    /// some vertex: then the pairs should be searched again.
     pub fn limit_by_trust_regions(&self, positions: &[Point], trust_regions: &TrustRegions) -> bool {
         (0..positions.len())
             .into_par_iter()
@@ -331,8 +334,8 @@ impl Stepper {
         smallest.into_iter().fold(1.0, f64::min)
     }
 
-    /// Makes every group move as one, as [`Self::limit_by_bodies`] does with obstacles. `group_count` is one more than the
-    /// largest group.
+    /// Makes every group move as one, as [`Self::limit_by_bodies`] does with obstacles. `group_count` is one
+    /// more than the largest group.
     pub fn limit_by_groups(&self, group_count: usize) {
         if self.groups.is_empty() {
             return;
@@ -346,7 +349,8 @@ impl Stepper {
         members().for_each(|v| self.limit(v, smallest[self.groups[v] as usize]));
     }
 
-    /// Takes the step x <- x + alpha d. The result is y up to rounding where alpha = 1, and exactly x where alpha = 0.
+    /// Takes the step x <- x + alpha d. The result is y up to rounding where alpha = 1, and exactly x where
+    /// alpha = 0.
     pub fn advance(&mut self, positions: &mut [Point]) -> StepReport {
         let mut report = StepReport::default();
         for v in 0..positions.len() {
@@ -368,7 +372,8 @@ impl Stepper {
         report
     }
 
-    /// Remaining fraction r of each vertex: the product of (1 - alpha) over the steps of a call (paper, Eq. 20).
+    /// Remaining fraction r of each vertex: the product of (1 - alpha) over the steps of a call (paper, Eq.
+    /// 20).
     pub fn remaining_fractions(&self) -> &[f64] {
         &self.remaining_fractions
     }

@@ -7,8 +7,8 @@ const USABLE: f64 = 1.0 - 1e-3;
 
 /// The trust regions of the vertices: one ball per vertex, around its position at the last search.
 ///
-/// The search leaves out a pair only if a certified lower bound of its distance exceeds the sum of the largest radii of
-/// its two sides. As long as every vertex stays in its ball, such a pair cannot meet.
+/// The search leaves out a pair only if a certified lower bound of its distance exceeds the sum of the
+/// largest radii of its two sides. As long as every vertex stays in its ball, such a pair cannot meet.
 #[derive(Clone, Debug, Default)]
 pub struct TrustRegions {
     /// Centres: positions at the last search [m].

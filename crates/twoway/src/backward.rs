@@ -1,8 +1,9 @@
 //! The default backward stage: the inexact LCP (paper, Eq. 9-13) with a proximal term.
 //!
 //! Linearised at x, the problem is min 1/2 sum m^ |y - y0|^2 + 1/2 sum mu |y - x|^2 subject to the rows. The
-//! proximal term with weights mu replaces curvature that linearisation drops (`proximal.rs`). Without it y does not come to
-//! rest in hard contact. At y = x the term vanishes, so it does not change the fixed point. With w = 1/(m^ + mu):
+//! proximal term with weights mu replaces curvature that linearisation drops (`proximal.rs`). Without it y
+//! does not come to rest in hard contact. At y = x the term vanishes, so it does not change the fixed point.
+//! With w = 1/(m^ + mu):
 //!
 //! y = y' + W J^T lambda,   y' = w (m^ y0 + mu x).
 
@@ -19,24 +20,25 @@ use bowknot_constraints::{ContactRows, EdgeForm, EdgeLimits, predicted_gap};
 use bowknot_geometry::{PairKind, Vector};
 use bowknot_lcp::{self as lcp, Family, Schedule, TangentVector};
 
-/// Sine of the largest angle by which the normals of rows may leave their cones. Rows are rebuilt in each step; a wide cone
-/// prevents that they come and go.
+/// Sine of the largest angle by which the normals of rows may leave their cones. Rows are rebuilt in each
+/// step; a wide cone prevents that they come and go.
 const CONE_TOLERANCE: f64 = 0.02;
 
-/// Distance below which a pair has a row whatever its normal, in its desired distance: pressed vertices are held from all
-/// sides.
+/// Distance below which a pair has a row whatever its normal, in its desired distance: pressed vertices are
+/// held from all sides.
 const CLOSE: f64 = 1.001;
 
 /// Share of its distance that the row of such a pair asks for if the pair is no contact.
 ///
-/// With the desired distance instead, the row would block bodies that slide on a mesh, and push them from behind: grains on an
-/// irregular mesh gain 17 % of their speed in a second. Without any row, the pair would stop the forward step where the
-/// target does not know of it. With a share of a half and no smallest distance, `funnel` at scale 0.2 reaches the limit of steps.
+/// With the desired distance instead, the row would block bodies that slide on a mesh, and push them from
+/// behind: grains on an irregular mesh gain 17 % of their speed in a second. Without any row, the pair would
+/// stop the forward step where the target does not know of it. With a share of a half and no smallest
+/// distance, `funnel` at scale 0.2 reaches the limit of steps.
 const NON_CONTACT_SHARE: f64 = 0.9;
 
-/// Smallest distance that such a row asks for, in the desired distance of the pair. At the minimum separation the forward step
-/// closes no pair further, whatever its row allows. Without this bound, two of three variants of `funnel` reach the limit of
-/// steps.
+/// Smallest distance that such a row asks for, in the desired distance of the pair. At the minimum separation
+/// the forward step closes no pair further, whatever its row allows. Without this bound, two of three
+/// variants of `funnel` reach the limit of steps.
 const MIN_NON_CONTACT_DISTANCE: f64 = 0.5;
 
 /// The default [`BackwardStep`]. `K` solves its rows, by default projected Gauss-Seidel.

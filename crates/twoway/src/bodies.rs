@@ -1,13 +1,14 @@
 //! Contact data of bodies and half-spaces: thickness, contact distance, friction, stretch limit.
 //!
 //! A pair with sides a and b has:
-//! - a *minimum separation* xi_p, below which no step closes its gap: the mean of both sides' thicknesses, if at least one
-//!   side has one. A side without a thickness counts as 0 if it is a half-space, and with the scene's minimum separation
-//!   otherwise;
-//! - a *desired distance* delta_p: the mean of both sides' `delta`. A side without one counts with the scene's delta, and a
-//!   side's delta is at least [`crate::MIN_SEPARATION_MARGIN`] times its thickness. For a grain, `delta` is its diameter: the
-//!   mean of two diameters is the sum of two radii;
-//! - a *coefficient of friction* mu: the geometric mean of both coefficients, unless the pair of bodies has its own.
+//! - a *minimum separation* xi_p, below which no step closes its gap: the mean of both sides' thicknesses, if
+//!   at least one side has one. A side without a thickness counts as 0 if it is a half-space, and with the
+//!   scene's minimum separation otherwise;
+//! - a *desired distance* delta_p: the mean of both sides' `delta`. A side without one counts with the
+//!   scene's delta, and a side's delta is at least [`crate::MIN_SEPARATION_MARGIN`] times its thickness. For
+//!   a grain, `delta` is its diameter: the mean of two diameters is the sum of two radii;
+//! - a *coefficient of friction* mu: the geometric mean of both coefficients, unless the pair of bodies has
+//!   its own.
 
 use crate::error::ResolveError;
 use bowknot_errors::{Checks, Parameters};
@@ -19,17 +20,17 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct BodyContact {
-    /// Guaranteed smallest gap [m] to a body of the same thickness: the minimum separation of a pair is the mean of both
-    /// sides'. None: the minimum separation of the scene.
+    /// Guaranteed smallest gap [m] to a body of the same thickness: the minimum separation of a pair is the
+    /// mean of both sides'. None: the minimum separation of the scene.
     pub thickness: Option<f64>,
-    /// Desired distance [m] of contacts with a body of the same `delta`, the grain size of particles. A pair has the mean
-    /// of both sides'. None: `delta` of the scene.
+    /// Desired distance [m] of contacts with a body of the same `delta`, the grain size of particles. A pair
+    /// has the mean of both sides'. None: `delta` of the scene.
     pub delta: Option<f64>,
     /// Coefficient of Coulomb friction [1], at least 0. A pair has the geometric mean of both sides'. 0, the
     /// default: no friction, at no cost.
     pub friction: f64,
-    /// Largest ratio of an edge's length to its reference length, above 1. Infinite: no limit and no rows. None:
-    /// `contact.stretch_limit`, or [`bowknot_constraints::STRETCH_LIMIT`] if that is none as well.
+    /// Largest ratio of an edge's length to its reference length, above 1. Infinite: no limit and no rows.
+    /// None: `contact.stretch_limit`, or [`bowknot_constraints::STRETCH_LIMIT`] if that is none as well.
     pub stretch_limit: Option<f64>,
 }
 
@@ -37,8 +38,8 @@ pub struct BodyContact {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct HalfSpaceContact {
-    /// As [`BodyContact::thickness`]. None: 0 against a body with a thickness, so that the gap between body and plane is at
-    /// least half of the body's thickness; the scene's minimum separation against others.
+    /// As [`BodyContact::thickness`]. None: 0 against a body with a thickness, so that the gap between body
+    /// and plane is at least half of the body's thickness; the scene's minimum separation against others.
     pub thickness: Option<f64>,
     /// As [`BodyContact::friction`].
     pub friction: f64,
@@ -75,7 +76,8 @@ pub struct ContactTable {
 }
 
 impl ContactTable {
-    /// The table of a scene without contact data: all bodies and half-spaces have the scene's values and no friction.
+    /// The table of a scene without contact data: all bodies and half-spaces have the scene's values and no
+    /// friction.
     pub fn new(model: &CollisionModel) -> Self {
         Self {
             bodies: vec![BodyContact::default(); model.bodies().len()],

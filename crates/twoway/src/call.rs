@@ -85,7 +85,8 @@ impl CallInput {
         self.time_step
     }
 
-    /// Positions at the start of the time step, from which friction measures slip [m]. Empty without friction.
+    /// Positions at the start of the time step, from which friction measures slip [m]. Empty without
+    /// friction.
     pub fn slip_start(&self) -> &[Point] {
         &self.slip_start
     }

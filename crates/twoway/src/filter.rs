@@ -1,12 +1,14 @@
 //! The velocity filter for friction (Bridson, Fedkiw and Anderson 2002; paper, section 6.3).
 //!
-//! The target comes from dynamics without friction. Where it would bring a candidate pair closer than its desired distance, the
-//! depth estimates the normal impulse that collision handling will apply. The slip since the start of the time step
-//! shrinks by mu times that depth, at most to zero. Collision handling takes care of the normal motion.
+//! The target comes from dynamics without friction. Where it would bring a candidate pair closer than its
+//! desired distance, the depth estimates the normal impulse that collision handling will apply. The slip
+//! since the start of the time step shrinks by mu times that depth, at most to zero. Collision handling takes
+//! care of the normal motion.
 //!
-//! The filter is here and not in the dynamics because only the resolver has the pairs, their closest points and normals. It
-//! costs one pass over the pairs per call. It is only as accurate as the depths: a vertex of several pairs takes the mean of
-//! their changes, and impulses that contacts pass on to each other are not counted.
+//! The filter is here and not in the dynamics because only the resolver has the pairs, their closest points
+//! and normals. It costs one pass over the pairs per call. It is only as accurate as the depths: a vertex of
+//! several pairs takes the mean of their changes, and impulses that contacts pass on to each other are not
+//! counted.
 
 use crate::scene::CollisionScene;
 use crate::state::ResolveState;

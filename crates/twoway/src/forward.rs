@@ -9,8 +9,8 @@ use bowknot_stepper::{Bound, StepReport, Stepper};
 
 /// Largest travel of a vertex in a swept step, in local edge lengths.
 const MAX_SWEPT_TRAVEL: f64 = 4.0;
-/// Radius of the tube around a swept path within which a vertex may deviate, in local edge lengths. It is so small that the
-/// tubes of neighbours in the mesh, about a third of an edge apart, do not meet.
+/// Radius of the tube around a swept path within which a vertex may deviate, in local edge lengths. It is so
+/// small that the tubes of neighbours in the mesh, about a third of an edge apart, do not meet.
 const SWEPT_TUBE_RADIUS: f64 = 0.1;
 /// Share of that radius that may be used; the rest covers rounding.
 const SWEPT_USABLE: f64 = 1.0 - 1e-3;
@@ -27,8 +27,8 @@ pub struct CertifiedForward {
     paths: Vec<Vector>,
     /// Radii of the tubes around the paths [m].
     tubes: Vec<f64>,
-    /// Whether a swept step of this call had to be shortened. In such hard contact swept steps do not pay, and the call
-    /// takes no more of them.
+    /// Whether a swept step of this call had to be shortened. In such hard contact swept steps do not pay,
+    /// and the call takes no more of them.
     swept_step_failed: bool,
 }
 
@@ -73,21 +73,22 @@ impl ForwardStep for CertifiedForward {
 }
 
 impl CertifiedForward {
-    /// Takes a long step where one pays and no contact presses: limits it by every pair that could meet along it, with all
-    /// vertices at the same path time. Returns whether it did. If not, the step sizes so far are valid limits, but other
-    /// limits are still missing.
+    /// Takes a long step where one pays and no contact presses: limits it by every pair that could meet along
+    /// it, with all vertices at the same path time. Returns whether it did. If not, the step sizes so far are
+    /// valid limits, but other limits are still missing.
     ///
-    /// All vertices are assumed to move along u = alpha_0 d. The search finds every pair whose boxes, moved along u and
-    /// inflated by the tubes, meet at the same path time. There are three kinds of pairs:
+    /// All vertices are assumed to move along u = alpha_0 d. The search finds every pair whose boxes, moved
+    /// along u and inflated by the tubes, meet at the same path time. There are three kinds of pairs:
     /// - pairs that are no candidates: they cannot meet while every vertex stays in its tube;
     /// - candidates whose slab stays open while it moves along: they are as safe;
     /// - the other candidates: their planes lower alpha.
     ///
-    /// If (alpha_0 - alpha) |d| is within the tube for all vertices, pairs of the first two kinds cannot meet at any path
-    /// time. Otherwise alpha_0 is lowered to alpha and the search is repeated. After the last search the whole step is scaled
-    /// instead: with tau = min over the vertices of tube / ((alpha_0 - alpha) |d|) and alpha <- min(alpha, tau alpha_0), the
-    /// vertices follow the assumed paths at the path time tau t. They deviate by at most tau (alpha_0 - alpha) |d| <= tube,
-    /// since min(alpha, tau alpha_0) >= tau alpha.
+    /// If (alpha_0 - alpha) |d| is within the tube for all vertices, pairs of the first two kinds cannot meet
+    /// at any path time. Otherwise alpha_0 is lowered to alpha and the search is repeated. After the last
+    /// search the whole step is scaled instead: with tau = min over the vertices of tube / ((alpha_0 - alpha)
+    /// |d|) and alpha <- min(alpha, tau alpha_0), the vertices follow the assumed paths at the path time tau
+    /// t. They deviate by at most tau (alpha_0 - alpha) |d| <= tube, since min(alpha, tau alpha_0) >= tau
+    /// alpha.
     fn sweep(
         &mut self,
         scene: &CollisionScene,
@@ -102,8 +103,8 @@ impl CertifiedForward {
             displacements.map(|(v, d)| stepper.alpha(v) * d.norm()).fold(0.0, f64::max)
         };
         let usable = params.bound == Bound::Planes && matches!(search.coverage(), Coverage::TrustRegions(_));
-        // Where contacts press, free vertices that move far ahead of held ones only make the rows between them harder: long
-        // steps then cost searches and steps.
+        // Where contacts press, free vertices that move far ahead of held ones only make the rows between
+        // them harder: long steps then cost searches and steps.
         let is_off = !usable || self.swept_step_failed || !min_travel.is_finite();
         if is_off || state.contacts.any_presses() || longest(&self.stepper) <= min_travel {
             return false;

@@ -7,10 +7,11 @@ use bowknot_geometry::PairKind;
 
 /// A bound of the kinetic energy [J] that a call adds by separating contacts to their desired distance.
 ///
-/// In a call a contact opens by at most s = desired distance - gap at the start, and the separation speed limits s to speed
-/// times dt. The vertices of the contact gain at most the speed s/dt along the normal, in addition to the motion of the
-/// target. A vertex of several contacts counts with the largest s. The sum of 1/2 m (s/dt)^2 over the vertices of pressing
-/// contacts bounds what a scene at rest can gain. Contacts at their desired distance add nothing.
+/// In a call a contact opens by at most s = desired distance - gap at the start, and the separation speed
+/// limits s to speed times dt. The vertices of the contact gain at most the speed s/dt along the normal, in
+/// addition to the motion of the target. A vertex of several contacts counts with the largest s. The sum of
+/// 1/2 m (s/dt)^2 over the vertices of pressing contacts bounds what a scene at rest can gain. Contacts at
+/// their desired distance add nothing.
 pub(crate) fn injected_energy(scene: &CollisionScene, state: &ResolveState) -> f64 {
     let Some(dt) = state.call.time_step() else { return 0.0 };
     let contacts = &state.contacts;

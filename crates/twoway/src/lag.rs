@@ -26,7 +26,8 @@ pub enum PrescribedEntity {
     Pins(u32),
 }
 
-/// The entities that lag by more than the distance at which vertices have arrived, in the order of [`PrescribedEntity`].
+/// The entities that lag by more than the distance at which vertices have arrived, in the order of
+/// [`PrescribedEntity`].
 pub(crate) fn lags(scene: &CollisionScene, state: &ResolveState) -> Vec<Lag> {
     let tolerance = scene.params().solver.stop.distance * scene.lengths().edge;
     let mut lags = BTreeMap::new();

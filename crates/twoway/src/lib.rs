@@ -1,10 +1,10 @@
 //! The two-way interior point method: `resolve(x, y)` without intersections.
 //!
-//! Given an intersection-free state x and a target y from any dynamics, [`Resolver::resolve`] moves x toward y. Each two-way
-//! step finds the candidate pairs, those that could meet ([`Search`]), removes intersections from the target
-//! ([`BackwardStep`]), and moves the vertices toward it on paths that are certified free of intersections
-//! ([`ForwardStep`]). Friction changes the target alone, so it does not affect that certificate. The stages are traits, and
-//! other methods implement them.
+//! Given an intersection-free state x and a target y from any dynamics, [`Resolver::resolve`] moves x toward
+//! y. Each two-way step finds the candidate pairs, those that could meet ([`Search`]), removes intersections
+//! from the target ([`BackwardStep`]), and moves the vertices toward it on paths that are certified free of
+//! intersections ([`ForwardStep`]). Friction changes the target alone, so it does not affect that
+//! certificate. The stages are traits, and other methods implement them.
 
 mod backward;
 mod bodies;

@@ -4,13 +4,13 @@ use crate::scene::CollisionScene;
 use crate::state::ResolveState;
 use bowknot_geometry::Vector;
 
-/// Change of the factor of a vertex each time that its wanted displacement reverses, and each time that it does not. In hard
-/// contact, values of 1.5 to 3 and 0.7 to 0.9 differ by less than the scenes do.
+/// Change of the factor of a vertex each time that its wanted displacement reverses, and each time that it
+/// does not. In hard contact, values of 1.5 to 3 and 0.7 to 0.9 differ by less than the scenes do.
 const GROWTH: f64 = 2.0;
 const DECAY: f64 = 0.8;
 
-/// The factors. If the wanted displacement of a vertex reverses from one step to the next, y oscillates about x: the proximal
-/// weight is too small there.
+/// The factors. If the wanted displacement of a vertex reverses from one step to the next, y oscillates about
+/// x: the proximal weight is too small there.
 #[derive(Debug, Default)]
 pub(crate) struct OscillationDamping {
     factors: Vec<f64>,

@@ -32,21 +32,25 @@ pub struct SolverParams {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct BackwardParams {
-    /// Gauss-Seidel sweeps per backward step. More: a more accurate target, slower steps. Default 8 (paper: 1).
+    /// Gauss-Seidel sweeps per backward step. More: a more accurate target, slower steps. Default 8 (paper:
+    /// 1).
     pub sweeps: usize,
-    /// Largest number of sweeps once the remaining distance is below `polish_distance`, while the target stretches edges
-    /// beyond their limits by more than half of `solver.stop.stretch_tolerance`. Default 64.
+    /// Largest number of sweeps once the remaining distance is below `polish_distance`, while the target
+    /// stretches edges beyond their limits by more than half of `solver.stop.stretch_tolerance`. Default 64.
     pub polish_sweeps: usize,
     /// Remaining distance below which `polish_sweeps` applies, in mean edge lengths. Default 1.
     pub polish_distance: f64,
-    /// Strength of the proximal term on edges: mu_i += edge_proximal * sum lambda_e / |e|. Smaller: closer to the true
-    /// projection, until edges no longer come to rest; 0 switches it off (the linear form needs 2). Default 0.1.
+    /// Strength of the proximal term on edges: mu_i += edge_proximal * sum lambda_e / |e|. Smaller: closer to
+    /// the true projection, until edges no longer come to rest; 0 switches it off (the linear form needs 2).
+    /// Default 0.1.
     pub edge_proximal: f64,
-    /// Strength of the proximal term on contacts: mu_i += contact_proximal * sum lambda_p |g| / r. Here r is the radius of
-    /// curvature of the contact: the edge length, or the distance where vertices or parallel edges meet. Default 0.1.
+    /// Strength of the proximal term on contacts: mu_i += contact_proximal * sum lambda_p |g| / r. Here r is
+    /// the radius of curvature of the contact: the edge length, or the distance where vertices or parallel
+    /// edges meet. Default 0.1.
     pub contact_proximal: f64,
-    /// Largest factor on the proximal term of a vertex. The factor doubles each time that the wanted displacement of the
-    /// vertex reverses from one step to the next, and falls slowly otherwise. 1: no factor. Default 32.
+    /// Largest factor on the proximal term of a vertex. The factor doubles each time that the wanted
+    /// displacement of the vertex reverses from one step to the next, and falls slowly otherwise. 1: no
+    /// factor. Default 32.
     pub proximal_growth: f64,
     /// Whether a common factor of all multipliers is optimised before each sweep. Default true.
     pub coarse_correction: bool,

@@ -1,9 +1,9 @@
 //! The proximal term of the backward step: it replaces part of the curvature that linearisation drops.
 //!
-//! An edge of length |e| with a multiplier lambda has the curvature lambda/|e| sideways, and a contact lambda/r, where r is
-//! the radius of curvature of the contact. This is the local edge length h if a face or two crossing edges define the
-//! normal. It is the distance d if a vertex or one of two parallel edges does, because grains and hairs roll about each other;
-//! with h in place of d they do not come to rest.
+//! An edge of length |e| with a multiplier lambda has the curvature lambda/|e| sideways, and a contact
+//! lambda/r, where r is the radius of curvature of the contact. This is the local edge length h if a face or
+//! two crossing edges define the normal. It is the distance d if a vertex or one of two parallel edges does,
+//! because grains and hairs roll about each other; with h in place of d they do not come to rest.
 
 use crate::scene::CollisionScene;
 use crate::state::ResolveState;
@@ -13,16 +13,16 @@ use bowknot_lcp::BallRow;
 
 /// Largest proximal weight of a vertex, in its mass.
 ///
-/// The weight is made of multipliers, and the larger the weight, the larger the multipliers that move the vertex. Without a
-/// bound both grow without limit where rows ask for more than a fraction of an edge, and x stops before it reaches the
-/// limits.
+/// The weight is made of multipliers, and the larger the weight, the larger the multipliers that move the
+/// vertex. Without a bound both grow without limit where rows ask for more than a fraction of an edge, and x
+/// stops before it reaches the limits.
 pub(crate) const MAX_PROXIMAL_MASS: f64 = 100.0;
 
 /// A closest point is at a vertex if the other weights of its side are at most this.
 const AT_VERTEX: f64 = 1e-6;
 
-/// Adds the curvature of the edge limits to `proximal`, one entry per vertex [1]. Multipliers [m] are `forces` in the ball form
-/// and `scalars` in the linear form.
+/// Adds the curvature of the edge limits to `proximal`, one entry per vertex [1]. Multipliers [m] are
+/// `forces` in the ball form and `scalars` in the linear form.
 pub(crate) fn add_edges(
     proximal: &mut [f64],
     scene: &CollisionScene,
@@ -111,8 +111,8 @@ fn origin(kind: PairKind, separation: &Separation, vertices: &[u32; 4], x: &[Poi
     }
 }
 
-/// Radius of curvature of a contact [m]: how far a vertex moves while the normal turns by about one radian. The pair is
-/// `distance` apart, its edges are of length `edge`.
+/// Radius of curvature of a contact [m]: how far a vertex moves while the normal turns by about one radian.
+/// The pair is `distance` apart, its edges are of length `edge`.
 fn curvature_radius(origin: NormalOrigin, distance: f64, edge: f64) -> f64 {
     match origin {
         NormalOrigin::Face => edge,

@@ -35,8 +35,9 @@ pub struct Resolver<S = TrustRegionSearch, B = LcpBackward, F = CertifiedForward
 }
 
 impl Resolver {
-    /// A resolver for vertices with the given rest positions [m] and masses [kg]. Masses of obstacle vertices are ignored.
-    /// Rest positions determine default lengths, stretch limits, and the desired distance of neighbours.
+    /// A resolver for vertices with the given rest positions [m] and masses [kg]. Masses of obstacle vertices
+    /// are ignored. Rest positions determine default lengths, stretch limits, and the desired distance of
+    /// neighbours.
     ///
     /// # Errors
     /// Wrong lengths, non-finite numbers, massless vertices, parameters out of range.
@@ -95,8 +96,8 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
         &self.state
     }
 
-    /// Finds the candidate pairs at intersection-free positions, with their contact geometry, as the first step of a call
-    /// would find them: every pair that is closer than its contact range is among them.
+    /// Finds the candidate pairs at intersection-free positions, with their contact geometry, as the first
+    /// step of a call would find them: every pair that is closer than its contact range is among them.
     ///
     /// # Errors
     /// As [`Self::resolve`].
@@ -110,20 +111,20 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
         Ok(&self.state.contacts)
     }
 
-    /// Moves `positions` from an intersection-free state toward `target`. Every accepted state and the straight path to it are
-    /// free of intersections, however far the target.
+    /// Moves `positions` from an intersection-free state toward `target`. Every accepted state and the
+    /// straight path to it are free of intersections, however far the target.
     ///
     /// # Errors
-    /// Wrong lengths, non-finite numbers and coordinates too large for the minimum separation. The call is then refused, and
-    /// `positions` are unchanged.
+    /// Wrong lengths, non-finite numbers and coordinates too large for the minimum separation. The call is
+    /// then refused, and `positions` are unchanged.
     pub fn resolve(&mut self, positions: &mut [Point], target: &[Point]) -> Result<Statistics, ResolveError> {
         self.resolve_with(positions, target, &ResolveInput::default(), &mut ())
     }
 
     /// As [`Self::resolve`], with further input and an observer. It is always valid to stop early.
     ///
-    /// This is Algorithm 1 of the paper. The search keeps D^(l), and a search is due if D^(l) < D^min, or by the rule that
-    /// replaces it.
+    /// This is Algorithm 1 of the paper. The search keeps D^(l), and a search is due if D^(l) < D^min, or by
+    /// the rule that replaces it.
     ///
     /// # Errors
     /// As [`Self::resolve`].

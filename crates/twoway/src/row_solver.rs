@@ -1,4 +1,5 @@
-//! The part of the backward step that solves its rows, as a trait. Other solvers implement it and share everything else.
+//! The part of the backward step that solves its rows, as a trait. Other solvers implement it and share
+//! everything else.
 
 use crate::coarse::CoarseCorrection;
 use crate::scene::CollisionScene;
@@ -13,7 +14,8 @@ const POLISH_BATCH: usize = 8;
 /// The rows of one backward step, linearised at x^(l), and what belongs to them.
 #[derive(Clone, Copy, Debug)]
 pub struct RowSystem<'a> {
-    /// Inverse weights w, rows and colours. The first rows are contacts; in the linear form of edges, edges follow.
+    /// Inverse weights w, rows and colours. The first rows are contacts; in the linear form of edges, edges
+    /// follow.
     pub system: lcp::Problem<'a>,
     /// y', the value of y without multipliers [m].
     pub free: &'a [Vector],
@@ -25,15 +27,15 @@ pub struct RowSystem<'a> {
     pub state: &'a ResolveState,
 }
 
-/// Solves the rows of a backward step, with any accuracy. [`crate::LcpBackward`] rebuilds the rows in each step and
-/// keeps their multipliers from one step to the next.
+/// Solves the rows of a backward step, with any accuracy. [`crate::LcpBackward`] rebuilds the rows in each
+/// step and keeps their multipliers from one step to the next.
 pub trait RowSolver: Send {
     /// Starts a call of the resolver.
     fn begin(&mut self) {}
 
-    /// Improves the multipliers, and y = y' + W J^T lambda with them. On entry this equation holds with the multipliers of
-    /// the last step. A solver may return another y; [`crate::Statistics::stationarity_m`] and the other residuals then
-    /// count the whole difference of y and y' as forces.
+    /// Improves the multipliers, and y = y' + W J^T lambda with them. On entry this equation holds with the
+    /// multipliers of the last step. A solver may return another y; [`crate::Statistics::stationarity_m`] and
+    /// the other residuals then count the whole difference of y and y' as forces.
     ///
     /// # Errors
     /// The solver refuses the rows; y' is then used as the target.

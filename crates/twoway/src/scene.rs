@@ -152,7 +152,8 @@ impl CollisionScene {
         Facing::features(self.model.topology(), kind, pair, separation)
     }
 
-    /// Whether two features are a contact or only close, see [`Facing`]. `normal` points from the second to the first.
+    /// Whether two features are a contact or only close, see [`Facing`]. `normal` points from the second to
+    /// the first.
     pub fn is_contact(
         &self,
         features: [Feature; 2],
@@ -240,9 +241,9 @@ fn obstacle_flags(model: &CollisionModel) -> Vec<bool> {
 /// Edge length of a particle, in its body's delta: the length scale on which grains roll over each other.
 const PARTICLE_EDGE: f64 = 2.5;
 
-/// Mean rest length of the edges of all deformable bodies, and of the edges at each vertex. Particles count with the delta
-/// of their body, or that of the scene if it is stated. A scene of particles without either takes a hundredth of its
-/// diagonal.
+/// Mean rest length of the edges of all deformable bodies, and of the edges at each vertex. Particles count
+/// with the delta of their body, or that of the scene if it is stated. A scene of particles without either
+/// takes a hundredth of its diagonal.
 fn edge_lengths(
     model: &CollisionModel,
     contact: &ContactTable,
@@ -280,8 +281,8 @@ fn edge_lengths(
         let diagonal = (high - low).norm();
         if diagonal > 0.0 { 0.01 * diagonal } else { 0.01 }
     };
-    // The edges of an obstacle may be far longer than those of the cloth that it meets; its trust regions follow the
-    // shorter ones.
+    // The edges of an obstacle may be far longer than those of the cloth that it meets; its trust regions
+    // follow the shorter ones.
     let local = sums
         .iter()
         .enumerate()

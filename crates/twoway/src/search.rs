@@ -1,5 +1,5 @@
-//! The default search stage: it searches when a vertex has used up its trust region, and otherwise only refreshes the contact
-//! geometry.
+//! The default search stage: it searches when a vertex has used up its trust region, and otherwise only
+//! refreshes the contact geometry.
 
 use crate::scene::CollisionScene;
 use crate::spacing::MIN_SEPARATION_MARGIN;
@@ -22,7 +22,8 @@ pub struct TrustRegionSearch {
     search: ProximitySearch,
     rule: TrustRegionRule,
     trust_regions: TrustRegions,
-    /// Search radius of each vertex: that of its trust region plus half of the range within which pairs matter.
+    /// Search radius of each vertex: that of its trust region plus half of the range within which pairs
+    /// matter.
     radii: Vec<f64>,
     /// The paper's D^(l), for the rule `uniform`.
     covered_distance: f64,
@@ -58,7 +59,8 @@ impl TrustRegionSearch {
                 self.trust_regions.radii.extend(state.x.iter().zip(&state.y).enumerate().map(
                     |(v, (x, y))| {
                         let (wanted, h) = (TrustRegions::radius_for((y - x).norm()), scene.local_edge(v));
-                        // A prescribed vertex that is at its target, such as one of an obstacle at rest, does not move.
+                        // A prescribed vertex that is at its target, such as one of an obstacle at rest, does
+                        // not move.
                         if wanted == 0.0 && state.call.is_prescribed(v) {
                             0.0
                         } else {
@@ -111,8 +113,9 @@ impl TrustRegionSearch {
                     let min_separation = match spacing.min_separation {
                         None => scene.lengths().min_separation.min(0.1 * desired),
                         Some(guaranteed) => {
-                            // The rest distance of neighbours bounds their minimum separation. A pair that starts closer
-                            // has its own gap as minimum separation, which grows from call to call.
+                            // The rest distance of neighbours bounds their minimum separation. A pair that
+                            // starts closer has its own gap as minimum separation, which grows from call to
+                            // call.
                             let (unlimited, _) = rule.without_growth_limit(model, kind, pair, scene.rest());
                             guaranteed.min(unlimited / MIN_SEPARATION_MARGIN).min(separation.width.max(0.0))
                         }
@@ -248,8 +251,8 @@ impl Search for TrustRegionSearch {
         statistics: &mut Statistics,
     ) {
         let timer = Instant::now();
-        // No margin for contacts that are still farther: the next update searches again and finds them. But a margin for
-        // minimum separations: pairs that are no candidates must not come closer.
+        // No margin for contacts that are still farther: the next update searches again and finds them. But a
+        // margin for minimum separations: pairs that are no candidates must not come closer.
         self.radii.clear();
         let bodies = scene.model().vertex_body();
         let margin = |body: &u32| scene.spacing().min_separation_margin(*body);

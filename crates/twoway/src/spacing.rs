@@ -5,9 +5,10 @@ use crate::params::Params;
 use bowknot_geometry::PairKind;
 use bowknot_proximity::{CollisionModel, Pair};
 
-/// Smallest ratio of a pair's desired distance to its minimum separation, where bodies have a thickness. Contacts move in
-/// the gap above the minimum separation. A step uses up at most 0.9 of it, so a small gap means small steps.
-/// The value was chosen, not tuned: a body of thickness t rests at 1.5 t where delta is smaller.
+/// Smallest ratio of a pair's desired distance to its minimum separation, where bodies have a thickness.
+/// Contacts move in the gap above the minimum separation. A step uses up at most 0.9 of it, so a small gap
+/// means small steps. The value was chosen, not tuned: a body of thickness t rests at 1.5 t where delta is
+/// smaller.
 pub const MIN_SEPARATION_MARGIN: f64 = 1.5;
 
 /// Desired distances and guaranteed minimum separations of all pairs of bodies.
@@ -40,13 +41,14 @@ struct Side {
 pub struct PairSpacing {
     /// Desired distance delta_p [m], before it is lowered for neighbours and for pairs that start close.
     pub delta: f64,
-    /// Guaranteed minimum separation xi_p [m] of bodies with a thickness, before it is lowered likewise. None: that of the
-    /// scene, which is no guarantee: it is lowered with the desired distance.
+    /// Guaranteed minimum separation xi_p [m] of bodies with a thickness, before it is lowered likewise.
+    /// None: that of the scene, which is no guarantee: it is lowered with the desired distance.
     pub min_separation: Option<f64>,
 }
 
 impl Spacing {
-    /// The spacing of the bodies in `table`. The scene's `delta` and `min_separation` [m] apply where they have none.
+    /// The spacing of the bodies in `table`. The scene's `delta` and `min_separation` [m] apply where they
+    /// have none.
     pub(crate) fn new(
         model: &CollisionModel,
         table: &ContactTable,
@@ -83,8 +85,8 @@ impl Spacing {
         spacing
     }
 
-    /// Half of the distance within which pairs are candidates, for each side. Against half-spaces the search counts it
-    /// twice, and it is more than needed.
+    /// Half of the distance within which pairs are candidates, for each side. Against half-spaces the search
+    /// counts it twice, and it is more than needed.
     fn fill_margins(&mut self, half_spaces: usize) {
         let mut margins = Vec::with_capacity(self.bodies.len());
         for side in &self.bodies {
@@ -148,8 +150,8 @@ impl Spacing {
         self.uniform
     }
 
-    /// What a vertex of `body` adds to its search radius [m]: pairs closer than the range of rows, or than the minimum
-    /// separation, are candidates.
+    /// What a vertex of `body` adds to its search radius [m]: pairs closer than the range of rows, or than
+    /// the minimum separation, are candidates.
     #[inline]
     pub fn margin(&self, body: u32) -> f64 {
         if self.uniform {
@@ -159,8 +161,8 @@ impl Spacing {
         }
     }
 
-    /// The part of [`Self::margin`] without which pairs that are no candidates could come closer than a guaranteed minimum
-    /// separation [m].
+    /// The part of [`Self::margin`] without which pairs that are no candidates could come closer than a
+    /// guaranteed minimum separation [m].
     #[inline]
     pub fn min_separation_margin(&self, body: u32) -> f64 {
         if self.uniform { 0.0 } else { self.margins[body as usize].1 }
@@ -171,7 +173,8 @@ impl Spacing {
         self.largest_delta
     }
 
-    /// Distance that pairs which are no candidates must keep, by the guaranteed minimum separations [m]; 0 without any.
+    /// Distance that pairs which are no candidates must keep, by the guaranteed minimum separations [m]; 0
+    /// without any.
     pub fn largest_min_separation(&self) -> f64 {
         self.largest_min_separation
     }

@@ -12,12 +12,12 @@ pub trait Search: Send {
     /// Starts a call.
     fn begin(&mut self, scene: &CollisionScene, state: &mut ResolveState);
 
-    /// Makes `state.contacts` valid for `state.x`: it then has every pair that could meet within the trust regions, with
-    /// its contact geometry.
+    /// Makes `state.contacts` valid for `state.x`: it then has every pair that could meet within the trust
+    /// regions, with its contact geometry.
     fn update(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics);
 
-    /// Instead finds every pair that could meet while the vertices move from x along `displacements`, all at the same path
-    /// time, and deviate from there by at most `deviations` [m].
+    /// Instead finds every pair that could meet while the vertices move from x along `displacements`, all at
+    /// the same path time, and deviate from there by at most `deviations` [m].
     fn update_swept(
         &mut self,
         scene: &CollisionScene,
@@ -51,17 +51,19 @@ pub trait BackwardStep: Send {
     /// Starts a call.
     fn begin(&mut self, scene: &CollisionScene, state: &ResolveState);
 
-    /// Computes `state.y` from `state.target`, linearised at `state.x`. Multipliers are kept for the next step.
+    /// Computes `state.y` from `state.target`, linearised at `state.x`. Multipliers are kept for the next
+    /// step.
     fn project(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics);
 
-    /// Residuals at `state.x`, for [`crate::StopRule::Travel`]. A stage with a rule of its own, [`Self::converged`], needs
-    /// none.
+    /// Residuals at `state.x`, for [`crate::StopRule::Travel`]. A stage with a rule of its own,
+    /// [`Self::converged`], needs none.
     fn residuals(&mut self, _scene: &CollisionScene, _state: &ResolveState) -> Residuals {
         Residuals::default()
     }
 
-    /// Whether the call has converged by the stage's own rule. None: [`crate::StopRule`] decides. Descent methods need a rule
-    /// of their own: their y is the end of one step rather than a target, so that reaching it does not mean convergence.
+    /// Whether the call has converged by the stage's own rule. None: [`crate::StopRule`] decides. Descent
+    /// methods need a rule of their own: their y is the end of one step rather than a target, so that
+    /// reaching it does not mean convergence.
     fn converged(&self, _scene: &CollisionScene, _state: &ResolveState) -> Option<bool> {
         None
     }

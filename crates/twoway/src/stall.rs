@@ -3,8 +3,8 @@
 use crate::scene::CollisionScene;
 use crate::state::ResolveState;
 
-/// Detects a call that stalls: all free vertices have arrived, and prescribed vertices are blocked. To wait for those would use
-/// up all steps of this call, and of every following one.
+/// Detects a call that stalls: all free vertices have arrived, and prescribed vertices are blocked. To wait
+/// for those would use up all steps of this call, and of every following one.
 #[derive(Debug, Default)]
 pub(crate) struct StallDetector {
     /// Smallest lag of the prescribed vertices so far [m].
@@ -22,8 +22,8 @@ impl StallDetector {
     /// Whether the call stalls, as of the state after a step.
     pub(crate) fn update(&mut self, scene: &CollisionScene, state: &ResolveState) -> bool {
         let farthest = |prescribed: bool| {
-            // A stage may move prescribed vertices to their keyframes by way of other positions, so y does not tell how far
-            // they have to go.
+            // A stage may move prescribed vertices to their keyframes by way of other positions, so y does
+            // not tell how far they have to go.
             let ends = if prescribed { &state.target } else { &state.y };
             let vertices = (0..state.x.len()).filter(|&v| state.call.is_prescribed(v) == prescribed);
             vertices.map(|v| (ends[v] - state.x[v]).norm()).fold(0.0, f64::max)

@@ -43,7 +43,8 @@ pub struct ContactSet {
     pub multipliers: Vec<f64>,
     /// Coefficient of friction mu of each pair [1]; empty without Coulomb friction.
     pub frictions: Vec<f64>,
-    /// Friction multiplier of each pair, in space [m, in units of relative mass]; empty without Coulomb friction.
+    /// Friction multiplier of each pair, in space [m, in units of relative mass]; empty without Coulomb
+    /// friction.
     pub friction_multipliers: Vec<Vector>,
 }
 

@@ -42,8 +42,8 @@ pub struct Statistics {
     pub remaining_m: f64,
     /// Stationarity residual max |y0 + m^-1 J^T lambda - x| [m].
     pub stationarity_m: f64,
-    /// Largest net residual of a body, |mean of m^ (y0 + m^-1 J^T lambda - x)| [m]: how far a body as a whole is from where
-    /// the forces on it balance.
+    /// Largest net residual of a body, |mean of m^ (y0 + m^-1 J^T lambda - x)| [m]: how far a body as a whole
+    /// is from where the forces on it balance.
     pub net_residual_m: f64,
     /// Complementarity max |min(lambda, s)| over the rows [m].
     pub complementarity_m: f64,
@@ -57,12 +57,13 @@ pub struct Statistics {
     pub max_stretch: f64,
     /// Largest distance of an obstacle's or pin's vertex to its keyframe [m].
     pub prescribed_lag_m: f64,
-    /// Obstacles and pinned vertices that lag behind their keyframes by more than `solver.stop.distance`, because going on
-    /// would cut through something or because the steps were used up.
+    /// Obstacles and pinned vertices that lag behind their keyframes by more than `solver.stop.distance`,
+    /// because going on would cut through something or because the steps were used up.
     pub lags: Vec<Lag>,
-    /// Bound of the kinetic energy that separating contacts to their desired distance has injected [J]: the sum over
-    /// vertices of 1/2 m (s/dt)^2, where s is the largest growth of a gap that a pressing contact of the vertex asks for
-    /// in this call, at most the separation speed times dt. 0 for a call without a time step.
+    /// Bound of the kinetic energy that separating contacts to their desired distance has injected [J]: the
+    /// sum over vertices of 1/2 m (s/dt)^2, where s is the largest growth of a gap that a pressing contact of
+    /// the vertex asks for in this call, at most the separation speed times dt. 0 for a call without a time
+    /// step.
     pub injected_j: f64,
     /// Body of the vertex with the largest remaining distance, if the call did not converge.
     pub slowest_body: Option<u32>,

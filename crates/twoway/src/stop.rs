@@ -4,8 +4,8 @@ use bowknot_errors::{Checks, Parameters};
 use bowknot_stepper::StepReport;
 use serde::{Deserialize, Serialize};
 
-/// Largest number of steps beyond [`StopRule::Travel`] while no contact presses: the target is then reached to the bit, and
-/// momentum with it.
+/// Largest number of steps beyond [`StopRule::Travel`] while no contact presses: the target is then reached
+/// to the bit, and momentum with it.
 const MAX_FINISHING_STEPS: usize = 2;
 
 /// Default of the field `residual` of [`StopRule::Travel`].
@@ -17,18 +17,19 @@ const DEFAULT_RESIDUAL: f64 = 1e-4;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "StopTable", into = "StopTable")]
 pub struct StopParams {
-    /// Largest number of two-way steps, the paper's L. Default: by the time step, 512 up to dt = 1/100 s, 2048 from
-    /// dt = 1/20 s, linear in dt between. In a simulation, a call that another Newton iteration follows ends after 128.
+    /// Largest number of two-way steps, the paper's L. Default: by the time step, 512 up to dt = 1/100 s,
+    /// 2048 from dt = 1/20 s, linear in dt between. In a simulation, a call that another Newton iteration
+    /// follows ends after 128.
     pub max_steps: Option<usize>,
     /// Largest wall time of one call [s]. Default: no limit.
     pub max_seconds: Option<f64>,
     /// The stopping rule. Default travel.
     pub rule: StopRule,
-    /// Largest remaining distance of a vertex that has arrived, in mean edge lengths. It is part of the rule `travel`, and
-    /// obstacles and pins that are farther from their keyframes count as lagging. Default 0.01.
+    /// Largest remaining distance of a vertex that has arrived, in mean edge lengths. It is part of the rule
+    /// `travel`, and obstacles and pins that are farther from their keyframes count as lagging. Default 0.01.
     pub distance: f64,
-    /// By how much edges may exceed their stretch limits, relative. It is part of the rule `travel`, and the backward step
-    /// polishes the target until half of it. Default 0.02.
+    /// By how much edges may exceed their stretch limits, relative. It is part of the rule `travel`, and the
+    /// backward step polishes the target until half of it. Default 0.02.
     pub stretch_tolerance: f64,
 }
 
@@ -40,16 +41,17 @@ pub enum StopRule {
         /// Rule `clock`: largest remaining fraction r of any vertex, the paper's epsilon. Default 1e-4.
         remaining_fraction: f64,
     },
-    /// All vertices have arrived, max |(1 - alpha)(y - x)| < `distance`; the stretch limits hold; and both residuals are
-    /// small. Small residuals are needed because the proximal term may still hold back a motion that is common to a body.
-    /// Where no contact presses, up to two more steps reach the target to the bit.
+    /// All vertices have arrived, max |(1 - alpha)(y - x)| < `distance`; the stretch limits hold; and both
+    /// residuals are small. Small residuals are needed because the proximal term may still hold back a motion
+    /// that is common to a body. Where no contact presses, up to two more steps reach the target to the bit.
     Travel {
-        /// Rule `travel`: largest net residual, in mean edge lengths: how far a body as a whole is from where the forces on
-        /// it balance. 0 is never reached. Default 0.2.
+        /// Rule `travel`: largest net residual, in mean edge lengths: how far a body as a whole is from where
+        /// the forces on it balance. 0 is never reached. Default 0.2.
         net_residual: f64,
-        /// Rule `travel`: residual tolerance, the largest mean residual of a body's vertices, in mean edge lengths; it
-        /// applies only as long as each step halves the mean residual. It bounds how much the proximal term slows down
-        /// bodies that slide. Smaller: one or two more steps per call. The default is 1e-4.
+        /// Rule `travel`: residual tolerance, the largest mean residual of a body's vertices, in mean edge
+        /// lengths; it applies only as long as each step halves the mean residual. It bounds how much the
+        /// proximal term slows down bodies that slide. Smaller: one or two more steps per call. The default
+        /// is 1e-4.
         residual: Option<f64>,
     },
 }
@@ -57,10 +59,11 @@ pub enum StopRule {
 /// How far a state is from the solution, as the backward step measures it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Residuals {
-    /// Largest net residual of a body [m]: the length of the mean stationarity residual of its vertices, weighted by mass. It
-    /// tells how far the body as a whole is from where the forces on it balance.
+    /// Largest net residual of a body [m]: the length of the mean stationarity residual of its vertices,
+    /// weighted by mass. It tells how far the body as a whole is from where the forces on it balance.
     pub net_residual: f64,
-    /// Largest mean residual of a body [m]: the mean length of the stationarity residuals of its vertices, weighted by mass.
+    /// Largest mean residual of a body [m]: the mean length of the stationarity residuals of its vertices,
+    /// weighted by mass.
     pub mean_residual: f64,
     /// Largest ratio of an edge's length to its limit [1]. At 1 or less, the limits hold.
     pub stretch_to_limit: f64,
@@ -134,7 +137,8 @@ pub(crate) struct StopTest {
 }
 
 impl StopTest {
-    /// Starts a call that stands for `time_step` [s]. `max_steps` is the caller's own limit on the number of steps.
+    /// Starts a call that stands for `time_step` [s]. `max_steps` is the caller's own limit on the number of
+    /// steps.
     pub fn new(params: &StopParams, edge: f64, time_step: Option<f64>, max_steps: Option<usize>) -> Self {
         let limit = params.max_steps.unwrap_or_else(|| default_max_steps(time_step));
         Self {
@@ -156,7 +160,8 @@ impl StopTest {
         self.params.max_seconds.is_some_and(|limit| elapsed_seconds > limit)
     }
 
-    /// Whether a step met the rule. `residuals` are those of the state after it; they are asked for only if needed.
+    /// Whether a step met the rule. `residuals` are those of the state after it; they are asked for only if
+    /// needed.
     pub fn is_met(&mut self, report: &StepReport, residuals: impl FnOnce() -> Residuals) -> bool {
         let (params, edge) = (&self.params, self.edge);
         match params.rule {
@@ -179,7 +184,8 @@ impl StopTest {
         }
     }
 
-    /// Whether a call that has converged takes another step, to reach the target to the bit, after `steps` steps.
+    /// Whether a call that has converged takes another step, to reach the target to the bit, after `steps`
+    /// steps.
     pub fn takes_finishing_step(
         &mut self,
         report: &StepReport,

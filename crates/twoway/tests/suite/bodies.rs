@@ -1,4 +1,5 @@
-//! Thickness, contact distance and stretch limit of each body, against distances by brute force; groups of pins.
+//! Thickness, contact distance and stretch limit of each body, against distances by brute force; groups of
+//! pins.
 #![allow(clippy::unwrap_used)] // helpers of tests are outside the functions that the lint knows as tests
 
 use crate::common::{Draw, Flight, brute_force, sheet};
@@ -148,8 +149,8 @@ fn however_violent_the_targets_bodies_of_all_kinds_keep_their_thickness() {
 
 #[test]
 fn a_swept_step_without_candidates_keeps_minimum_separations() {
-    // Two grains that are no candidates fly to positions side by side, closer than their thickness. Their paths do not
-    // intersect.
+    // Two grains that are no candidates fly to positions side by side, closer than their thickness. Their
+    // paths do not intersect.
     let side_by_side = 0.025;
     let mut x = vec![Point::new(-0.2, 0.0, 0.0), Point::new(0.2, side_by_side, 0.0)];
     let y = [Point::new(0.0, 0.0, 0.0), Point::new(0.0, side_by_side, 0.0)];
@@ -376,8 +377,8 @@ fn a_group_of_pins_waits_as_a_whole_and_says_how_far_behind_it_is() {
 
 #[test]
 fn layers_within_a_group_do_not_hold_each_other_back() {
-    // Two sheets pinned as one group, close together, move along the normal: each is in the other's way but for
-    // their common motion.
+    // Two sheets pinned as one group, close together, move along the normal: each is in the other's way but
+    // for their common motion.
     let (mut x, mut triangles) = (Vec::new(), Vec::new());
     sheet(4, 0.1, 0.0, &mut x, &mut triangles);
     let n = x.len();

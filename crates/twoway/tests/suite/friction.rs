@@ -193,7 +193,8 @@ fn the_filter_drags_as_well_and_none_does_not() {
     assert_eq!(rows, 0, "the filter has no rows");
     assert!(filtered > 0.8 * speed && filtered < 1.01 * speed, "{filtered} m/s");
     let (free, rows) = run(FrictionModel::None);
-    // Not exactly 0: contacts across the plate's diagonal have tilted normals, which push a little as the diagonal passes.
+    // Not exactly 0: contacts across the plate's diagonal have tilted normals, which push a little as the
+    // diagonal passes.
     assert!(free.abs() < 0.1 * speed && rows == 0, "{free} m/s");
 }
 
@@ -230,7 +231,8 @@ fn friction_between_two_bodies_is_equal_and_opposite() {
         assert!((a + b).norm() < 1e-3 * a.norm(), "{a} {b}");
         given[k] = -a.x;
         if friction > 0.0 {
-            // The warp of the sheets tilts normals. Friction adds at most mu times the normal impulse along x.
+            // The warp of the sheets tilts normals. Friction adds at most mu times the normal impulse along
+            // x.
             assert!(given[1] < 1.1 * 0.4 * a.z.abs(), "{a}");
             assert!(report.friction_rows == report.contact_rows && report.sliding_contacts > 0, "{report:?}");
         }

@@ -112,8 +112,8 @@ fn a_taut_sheet_moved_along_itself_arrives() {
 
 #[test]
 fn a_sheet_torn_by_its_pins_does_not_disturb_another() {
-    // Limits of 10 % contradict pins that stretch the sheet by 50 %: its multipliers grow without bound, and those of the other sheet
-    // must not.
+    // Limits of 10 % contradict pins that stretch the sheet by 50 %: its multipliers grow without bound, and
+    // those of the other sheet must not.
     let scene = sheets(6, &[0.0, 1.0], false);
     let n = scene.x.len() / 2;
     let mut params = Params::fast();
@@ -174,7 +174,8 @@ fn limits_and_observers_stop_with_a_valid_state_and_the_distance_that_remains() 
 
 #[test]
 fn pins_go_to_their_target_and_wait_where_they_would_cut_through() {
-    // A pinned sheet is pushed through a free sheet, which yields. If the other sheet is pinned as well, it waits.
+    // A pinned sheet is pushed through a free sheet, which yields. If the other sheet is pinned as well, it
+    // waits.
     let scene = sheets(4, &[0.0, 0.05], false);
     let n = scene.x.len() / 2;
     let y: Vec<Point> =
