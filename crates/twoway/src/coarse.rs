@@ -18,13 +18,15 @@ pub(crate) fn is_sliding(row: &lcp::FrictionRow, normal: f64, multiplier: lcp::T
 
 /// The coarse correction: one factor s for all multipliers, the maximiser of the dual along that ray.
 ///
-/// With delta = y - y' = W J^T lambda, scaling by s moves y to y' + s delta and each row value linearly; the
-/// dual's derivative vanishes where sum lambda_p c_p(y) + sum (L |f| - f . (y_a - y_b)) = (1 - s) sum
-/// |delta|^2 / w.
+/// With delta = y - y' = W J^T lambda, scaling by s moves y to y' + s delta and each row value linearly. The
+/// dual's derivative vanishes where
 ///
-/// Friction scales with its normals, so it stays within its cone. A sticking contact is an equation, slip =
-/// 0, and counts with lambda_t . slip. A sliding contact is solved by any slip opposite to its multiplier (in
-/// De Saxce's form, lambda (c + mu |slip|) + lambda_t . slip = 0 for every such slip) and does not count.
+/// sum lambda_p c_p(y) + sum (L |f| - f . (y_a - y_b)) = (1 - s) sum |delta|^2 / w.
+///
+/// Friction scales with its normals, so it stays within its cone. A sticking contact is the equation
+/// slip = 0 and counts with lambda_t . slip. A sliding contact is solved by any slip opposite to its
+/// multiplier (in De Saxce's form, lambda (c + mu |slip|) + lambda_t . slip = 0 for every such slip) and does
+/// not count.
 ///
 /// In a call it multiplies the multipliers by a bounded factor in all. Where rows contradict each other, such
 /// as between pins too far apart, the dual has no maximum. The growing multipliers of such rows would raise

@@ -336,7 +336,7 @@ fn stretch_limits_are_those_of_each_body_and_none_costs_nothing() {
 }
 
 #[test]
-fn a_group_of_pins_waits_as_a_whole_and_says_how_far_behind_it_is() {
+fn a_group_of_pins_waits_as_a_whole_and_reports_its_lag() {
     // Two pins carry the ends of a strand down through a pinned sheet; one of them alone could go on.
     let (mut x, mut triangles) = (Vec::new(), Vec::new());
     sheet(4, 0.1, 0.0, &mut x, &mut triangles);
