@@ -1,20 +1,22 @@
 //! From a parsed description to a [`Scene`].
 
 use crate::body::{BodySpec, ObstacleSpec, PinSpec, Region};
-use crate::contact::{self, FrictionPair};
+use crate::contact;
 use crate::description::Scene;
 use crate::error::{Problem, SceneError, nearest};
 use crate::fields::field_names;
+use crate::friction::FrictionPair;
 use crate::kind::BodyKind;
 use crate::material;
 use crate::motion::Motion;
 use crate::params::{OutputParams, Preset, RepulsionParams, SimulationParams};
-use crate::reader::{Reader, describe, join};
+use crate::reader::Reader;
 use crate::shapes::{
     Ball, Block, Cone, Cuboid, Figure, Garment, Grains, HalfSpaceShape, Lathe, Ribbon, Shape, Sheet, Strands,
     TetBall, Tube, Wedge, Woven,
 };
 use crate::source::Source;
+use crate::values::{describe, join};
 use bowknot_dynamics::DynamicsParams;
 use bowknot_errors::Parameters;
 use bowknot_geometry::Vector;
@@ -88,7 +90,7 @@ pub(super) fn twoway(source: &Source) -> Result<Params, SceneError> {
     }
     let (_, params) = read_twoway(&mut reader, &source.table);
     let mut problems = reader.problems;
-    problems.extend(parameter_problems(&params, source));
+    report_errors(&mut problems, source, "", &params);
     if problems.is_empty() { Ok(params) } else { Err(SceneError::Invalid(problems)) }
 }
 
@@ -228,21 +230,18 @@ fn shape(reader: &mut Reader<'_>, table: &Table, path: &str) -> Option<Shape> {
 /// Checks the values of a scene that has been read or made in code.
 pub(super) fn validate(scene: &Scene, source: &Source) -> Result<(), SceneError> {
     let mut problems = Vec::new();
-    let mut faults = Vec::new();
-    scene.simulation.validate(&mut faults);
-    report(&mut problems, source, "simulation", &mut faults);
-    scene.output.validate(&mut faults);
-    report(&mut problems, source, "output", &mut faults);
+    report_errors(&mut problems, source, "simulation", &scene.simulation);
+    report_errors(&mut problems, source, "output", &scene.output);
     for error in scene.dynamics.validate().err().into_iter().flatten() {
         let table = if SIMULATION_DYNAMICS.contains(&error.field) { "simulation" } else { "solver" };
         let message = format!("{}: {}", error.value, error.allowed);
         problems.push(source.problem(&join(table, error.field), message));
     }
-    problems.extend(parameter_problems(&scene.twoway, source));
+    // The paths of these parameters are keys of the scene.
+    report_errors(&mut problems, source, "", &scene.twoway);
     validate_bodies(scene, source, &mut problems);
     contact::validate_pairs(scene, source, &mut problems);
-    scene.repulsion.validate(&mut faults);
-    report(&mut problems, source, "solver.repulsion", &mut faults);
+    report_errors(&mut problems, source, "solver.repulsion", &scene.repulsion);
     for (index, pin) in scene.pins.iter().enumerate() {
         validate_pin(scene, pin, source, &format!("pin[{index}]"), &mut problems);
     }
@@ -259,12 +258,6 @@ fn report(
     faults: &mut Vec<(&'static str, String)>,
 ) {
     problems.extend(faults.drain(..).map(|(key, message)| source.problem(&join(path, key), message)));
-}
-
-/// What is wrong with parameters whose paths are the keys of a scene.
-fn parameter_problems(params: &impl Parameters, source: &Source) -> Vec<Problem> {
-    let errors = params.validate().err().into_iter().flatten();
-    errors.map(|error| source.problem(&error.path, format!("{}: {}", error.value, error.allowed))).collect()
 }
 
 fn validate_bodies(scene: &Scene, source: &Source, problems: &mut Vec<Problem>) {
@@ -358,19 +351,23 @@ fn validate_bodies(scene: &Scene, source: &Source, problems: &mut Vec<Problem>) 
 }
 
 fn validate_shape(shape: Option<&Shape>, source: &Source, path: &str, problems: &mut Vec<Problem>) {
-    let mut faults = Vec::new();
     if let Some(shape) = shape {
-        shape.validate(&mut faults);
+        report_errors(problems, source, &join(path, "shape"), shape);
     }
-    report(problems, source, &join(path, "shape"), &mut faults);
 }
 
 fn validate_motion(motion: Option<&Motion>, source: &Source, path: &str, problems: &mut Vec<Problem>) {
-    let mut faults = Vec::new();
     if let Some(motion) = motion {
-        motion.validate(&mut faults);
+        report_errors(problems, source, &join(path, "motion"), motion);
     }
-    report(problems, source, &join(path, "motion"), &mut faults);
+}
+
+/// Reports the fields of a struct that are out of their range, with the struct's place in the scene.
+fn report_errors(problems: &mut Vec<Problem>, source: &Source, path: &str, parameters: &impl Parameters) {
+    for error in parameters.validate().err().into_iter().flatten() {
+        let message = format!("{} {}", error.value, error.allowed);
+        problems.push(source.problem(&join(path, &error.path), message));
+    }
 }
 
 fn validate_pin(scene: &Scene, pin: &PinSpec, source: &Source, path: &str, problems: &mut Vec<Problem>) {

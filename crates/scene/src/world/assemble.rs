@@ -219,7 +219,7 @@ impl Assembly {
             let plane = || self.half_space_names.iter().position(|n| n == name);
             body.or_else(|| plane().map(|h| ContactSide::HalfSpace(h as u32)))
         };
-        let pair = |spec: &crate::contact::FrictionPair| {
+        let pair = |spec: &crate::friction::FrictionPair| {
             let [a, b] = &spec.bodies;
             // Validation has refused names that do not exist.
             Some(PairFriction { sides: [side(a)?, side(b)?], friction: spec.friction })
