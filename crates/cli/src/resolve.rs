@@ -37,7 +37,7 @@ pub fn resolve(options: &ResolveOptions) -> Result<Done, Failure> {
     setup::machine(&options.machine)?;
     let mut params = bowknot::scene::twoway_params(&method_sets(&options.method)).map_err(Failure::input)?;
     if options.max_seconds.is_some() {
-        params.stop.max_seconds = options.max_seconds;
+        params.solver.stop.max_seconds = options.max_seconds;
     }
     let states = States::read(&options.states)?;
     let fault = |message: String| Failure::input(format!("{}: {message}", options.states.display()));
@@ -52,7 +52,7 @@ pub fn resolve(options: &ResolveOptions) -> Result<Done, Failure> {
     let mut x = states.x.clone();
     let cpu = bowknot::simulator::cpu_seconds();
     let statistics = resolver
-        .resolve(&mut x, &states.y, &states.call(), &mut watch)
+        .resolve_with(&mut x, &states.y, &states.input(), &mut watch)
         .map_err(|error| fault(error.to_string()))?;
     let summary = summarise(&statistics, bowknot::simulator::cpu_seconds() - cpu);
     write_result(&options.out, &x)?;

@@ -9,17 +9,15 @@ use toml::{Table, Value};
 /// The scene as tables, every default filled in.
 pub(super) fn table(scene: &Scene) -> Table {
     let mut simulation = fields(&scene.simulation);
-    let mut solver = fields(&scene.twoway.backward);
+    let mut solver = fields(&scene.twoway.solver);
     for (key, value) in fields(&scene.dynamics) {
         let table = if SIMULATION_DYNAMICS.contains(&key.as_str()) { &mut simulation } else { &mut solver };
         table.insert(key, value);
     }
-    solver.insert("stop".to_owned(), Value::Table(fields(&scene.twoway.stop)));
     solver.insert("repulsion".to_owned(), Value::Table(fields(&scene.repulsion)));
     let mut contact = Table::new();
     insert(&mut contact, "preset", &scene.preset);
-    contact.extend(fields(&scene.twoway.constraints));
-    contact.extend(fields(&scene.twoway.stepper));
+    contact.extend(fields(&scene.twoway.contact));
     insert(&mut contact, "friction_pairs", &scene.friction_pairs);
 
     let mut root = Table::new();

@@ -226,7 +226,7 @@ impl Subject {
 
     fn residuals(&self, bench: &Bench) -> Result<Residuals> {
         let mut simulator = Simulator::new(&self.scene(Some(SHOWN))?)?;
-        let mut seen = Seen { edge: simulator.resolver().problem().lengths.edge, residuals: Vec::new() };
+        let mut seen = Seen { edge: simulator.resolver().scene().lengths().edge, residuals: Vec::new() };
         for _ in 0..self.frames(bench) {
             seen.residuals.push(Vec::with_capacity(SHOWN));
             simulator.step_watched(&mut seen)?;
@@ -248,7 +248,7 @@ impl Subject {
         }
         let (first, last) = (first.unwrap_or(0), states.len() - 1);
         let chosen = (0..STATES).map(|k| states[first + k * (last - first) / (STATES - 1)].clone()).collect();
-        Ok((simulator.resolver().problem().lengths.edge, chosen))
+        Ok((simulator.resolver().scene().lengths().edge, chosen))
     }
 
     /// Makes time steps from each of the states.

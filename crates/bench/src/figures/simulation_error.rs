@@ -171,8 +171,8 @@ fn settings(contact: bool) -> Vec<(String, Vec<String>)> {
             vec![newton(4), "simulation.collision_every=step".to_owned()],
         ));
         for (name, set) in [
-            ("fast, 1, 1 sweep", "solver.sweeps=1"),
-            ("fast, 1, 32 sweeps", "solver.sweeps=32"),
+            ("fast, 1, 1 sweep", "solver.backward.sweeps=1"),
+            ("fast, 1, 32 sweeps", "solver.backward.sweeps=32"),
             ("fast, 1, stop at 0.1 h", "solver.stop.distance=0.1"),
             ("fast, 1, stop at 0.001 h", "solver.stop.distance=0.001"),
             ("fast, 1, no repulsion", "solver.repulsion.stiffness=0"),
