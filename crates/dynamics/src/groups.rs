@@ -1,6 +1,6 @@
-//! Groups of things that are joined pair by pair, and which of them something else holds.
+//! Union-find, with a mark for groups that something else holds.
 
-/// Disjoint sets of 0..n; the smallest member stands for its set.
+/// Disjoint sets of 0..n. The smallest member represents its set.
 #[derive(Clone, Debug)]
 pub(crate) struct Groups {
     parent: Vec<usize>,
@@ -8,12 +8,13 @@ pub(crate) struct Groups {
 }
 
 impl Groups {
-    /// Each of 0..`count` on its own.
+    /// Each of 0..`count` is a group of its own.
     pub fn new(count: usize) -> Self {
         Self { parent: (0..count).collect(), held: vec![false; count] }
     }
 
-    fn root(&mut self, mut member: usize) -> usize {
+    /// The smallest member of a group.
+    pub fn root(&mut self, mut member: usize) -> usize {
         while self.parent[member] != member {
             self.parent[member] = self.parent[self.parent[member]];
             member = self.parent[member];
@@ -21,26 +22,26 @@ impl Groups {
         member
     }
 
-    /// Makes the groups of two members one.
+    /// Joins the groups of two members.
     pub fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.root(a), self.root(b));
         self.parent[a.max(b)] = a.min(b);
     }
 
-    /// Says that something holds a member, and so its group.
+    /// Marks a member, and thereby its group, as held by something else.
     pub fn hold(&mut self, member: usize) {
         self.held[member] = true;
     }
 
-    /// Joins all of `members`; `holds` says whether something holds them.
-    pub fn join_all(&mut self, members: impl IntoIterator<Item = usize>, holds: bool) {
+    /// Joins all of `members`; `held` says whether something else holds them.
+    pub fn join_all(&mut self, members: impl IntoIterator<Item = usize>, held: bool) {
         let mut members = members.into_iter();
         let Some(first) = members.next() else { return };
-        self.held[first] |= holds;
+        self.held[first] |= held;
         members.for_each(|member| self.join(first, member));
     }
 
-    /// The members of each group that nothing holds, ascending, in the order of their first.
+    /// The members of each group that nothing holds, ascending, in the order of the smallest members.
     pub fn free(mut self) -> Vec<Vec<usize>> {
         let mut lists: Vec<Vec<usize>> = vec![Vec::new(); self.parent.len()];
         for member in 0..self.parent.len() {
@@ -57,7 +58,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_joined_stands_together_in_order() {
+    fn groups_are_sorted_and_held_ones_are_left_out() {
         let mut groups = Groups::new(6);
         groups.join(4, 1);
         groups.join(5, 4);

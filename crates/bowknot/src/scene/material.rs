@@ -3,7 +3,8 @@
 use super::error::nearest;
 use super::fields::field_names;
 use super::reader::{Reader, describe, join};
-use bowknot_dynamics::{ClothMaterial, MaterialError, ParticleMaterial, SolidMaterial, StrandMaterial};
+use bowknot_dynamics::{ClothMaterial, ParticleMaterial, SolidMaterial, StrandMaterial};
+use bowknot_dynamics::{Errors, ParamError, Parameters};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
@@ -130,7 +131,7 @@ impl Material {
     ///
     /// # Errors
     /// All that is wrong, by field name.
-    pub fn validate(&self) -> Result<(), Vec<MaterialError>> {
+    pub fn validate(&self) -> Result<(), Errors<ParamError>> {
         match self {
             Self::Cloth(material) => material.validate(),
             Self::Solid(material) => material.validate(),

@@ -16,17 +16,13 @@ use crate::shapes::{
     TetBall, Tube, Wedge, Woven,
 };
 use bowknot_constraints::ConstraintParams;
-use bowknot_dynamics::DynamicsParams;
+use bowknot_dynamics::{DynamicsParams, Environment, NewtonParams, Parameters};
 use bowknot_geometry::Vector;
 use bowknot_stepper::StepperParams;
 use bowknot_twoway::{BackwardParams, Params, StopParams};
 use std::collections::HashMap;
 use std::path::Path;
 use toml::{Table, Value};
-
-/// Fields of [`DynamicsParams`] that stand in `[simulation]`; the others stand in `[solver]`.
-pub(super) const SIMULATION_DYNAMICS: [&str; 6] =
-    ["gravity", "air_drag", "wind", "air_density", "drag_normal", "drag_tangential"];
 
 /// Top-level keys.
 const TABLES: [&str; 7] = ["simulation", "contact", "solver", "output", "body", "obstacle", "pin"];
@@ -38,18 +34,17 @@ pub(super) fn scene(source: &Source, folder: &Path, name: &str) -> Result<Scene,
     reader.check_keys(root, "", &TABLES);
 
     let table = reader.table(root, "", "simulation");
-    let known = [field_names::<SimulationParams>(), &SIMULATION_DYNAMICS].concat();
+    let known = [field_names::<SimulationParams>(), field_names::<Environment>()].concat();
     reader.check_keys(&table, "simulation", &known);
     let mut simulation = reader.fields(&SimulationParams::default(), &table, "simulation", &[]);
     if simulation.name.is_empty() {
         simulation.name = name.to_owned();
     }
-    let solver_dynamics = solver_dynamics();
-    let dynamics = reader.fields(&DynamicsParams::default(), &table, "simulation", &solver_dynamics);
+    let environment = reader.fields(&Environment::default(), &table, "simulation", &[]);
     let table = reader.table(root, "", "solver");
-    let dynamics = reader.fields(&dynamics, &table, "solver", &[]);
+    let newton = reader.fields(&NewtonParams::default(), &table, "solver", &[]);
+    let dynamics = DynamicsParams { environment, newton };
     let (preset, twoway) = read_twoway(&mut reader, root);
-    // `fields` read gravity and drag from [solver] too, but there `read_twoway` has refused them.
 
     let table = reader.table(root, "", "output");
     let output = reader.structure::<OutputParams>(&table, "output", &[]);
@@ -92,11 +87,6 @@ pub(super) fn twoway(source: &Source) -> Result<Params, SceneError> {
     if problems.is_empty() { Ok(params) } else { Err(SceneError::Invalid(problems)) }
 }
 
-fn solver_dynamics() -> Vec<&'static str> {
-    let here = |field: &&&str| !SIMULATION_DYNAMICS.contains(*field);
-    field_names::<DynamicsParams>().iter().filter(here).copied().collect()
-}
-
 fn read_twoway(reader: &mut Reader<'_>, root: &Table) -> (Preset, Params) {
     let contact = reader.table(root, "", "contact");
     let known =
@@ -116,8 +106,8 @@ fn read_twoway(reader: &mut Reader<'_>, root: &Table) -> (Preset, Params) {
     let stepper = reader.fields(&base.stepper, &contact, "contact", &[]);
 
     let solver = reader.table(root, "", "solver");
-    let dynamics = solver_dynamics();
-    let known = [field_names::<BackwardParams>(), &dynamics, &["stop", "repulsion"]].concat();
+    let newton = field_names::<NewtonParams>();
+    let known = [field_names::<BackwardParams>(), newton, &["stop", "repulsion"]].concat();
     reader.check_keys(&solver, "solver", &known);
     let mut backward = reader.fields(&base.backward, &solver, "solver", &[]);
     // Who asks for more sweeps than a preset polishes with does not want fewer at the end.
@@ -235,10 +225,12 @@ pub(super) fn validate(scene: &Scene, source: &Source) -> Result<(), SceneError>
     report(&mut problems, source, "simulation", &mut faults);
     scene.output.validate(&mut faults);
     report(&mut problems, source, "output", &mut faults);
-    for error in scene.dynamics.validate().err().into_iter().flatten() {
-        let table = if SIMULATION_DYNAMICS.contains(&error.field) { "simulation" } else { "solver" };
-        let message = format!("{}: {}", error.value, error.allowed);
-        problems.push(source.problem(&join(table, error.field), message));
+    let DynamicsParams { environment, newton } = &scene.dynamics;
+    for (table, checked) in [("simulation", environment.validate()), ("solver", newton.validate())] {
+        for error in checked.err().into_iter().flatten() {
+            let message = format!("{} {}", error.value, error.allowed);
+            problems.push(source.problem(&join(table, &error.path), message));
+        }
     }
     validate_twoway(&scene.twoway, source, &mut problems);
     validate_bodies(scene, source, &mut problems);
@@ -332,11 +324,8 @@ fn validate_bodies(scene: &Scene, source: &Source, problems: &mut Vec<Problem>) 
         report(problems, source, &path, &mut faults);
         validate_shape(body.shape.as_ref(), source, &path, problems);
         for error in body.material.validate().err().into_iter().flatten() {
-            // The messages have the form "field = value: what is allowed".
-            let message = error.to_string();
-            let (field, rest) = message.split_once(" = ").unwrap_or(("", &message));
-            let key = join(&path, &format!("material.{field}"));
-            problems.push(source.problem(&key, rest));
+            let key = join(&path, &format!("material.{}", error.path));
+            problems.push(source.problem(&key, format!("{} {}", error.value, error.allowed)));
         }
     }
     for (index, obstacle) in scene.obstacles.iter().enumerate() {

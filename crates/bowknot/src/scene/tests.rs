@@ -53,8 +53,8 @@ fn values_reach_their_structs() {
     let scene = Scene::from_toml(SMALL, "").expect("a scene");
     assert_eq!(scene.simulation.dt, 0.02);
     assert_eq!(scene.simulation.frames, SimulationParams::default().frames);
-    assert_eq!(scene.dynamics.gravity, Vector::new(0.0, 0.0, -1.62));
-    assert_eq!(scene.dynamics.cg_tolerance, 1e-6);
+    assert_eq!(scene.dynamics.environment.gravity, Vector::new(0.0, 0.0, -1.62));
+    assert_eq!(scene.dynamics.newton.cg_tolerance, 1e-6);
     assert_eq!(scene.twoway.constraints.delta, Some(0.002));
     assert_eq!(scene.twoway.backward.sweeps, 4);
     assert_eq!(scene.twoway.stop.max_steps, Some(100));
@@ -111,7 +111,7 @@ fn problems_name_file_line_key_and_what_is_allowed() {
         (
             "cg_tolerance = 1e-6",
             "cg_tolerance = 2",
-            "scene.toml:11: solver.cg_tolerance: 2: it must lie in (0, 1)",
+            "scene.toml:11: solver.cg_tolerance: 2 must lie between 0 and 1",
         ),
         ("max_steps = 100", "max_steps = 0", "scene.toml:12: solver.stop.max_steps: 0 must be at least 1"),
         (
@@ -123,7 +123,7 @@ fn problems_name_file_line_key_and_what_is_allowed() {
         (
             "density = 0.1",
             "density = 0",
-            "scene.toml:17: body[0].material.density: 0 kg/m2: it must be a finite number greater than 0",
+            "scene.toml:17: body[0].material.density: 0 kg/m2 must be finite and above 0",
         ),
         (
             "type = \"sheet\"",

@@ -1,7 +1,7 @@
 //! From a [`Scene`] to TOML.
 
 use super::Scene;
-use super::read::SIMULATION_DYNAMICS;
+
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
@@ -9,11 +9,9 @@ use toml::{Table, Value};
 /// The scene as tables, every default filled in.
 pub(super) fn table(scene: &Scene) -> Table {
     let mut simulation = fields(&scene.simulation);
+    simulation.extend(fields(&scene.dynamics.environment));
     let mut solver = fields(&scene.twoway.backward);
-    for (key, value) in fields(&scene.dynamics) {
-        let table = if SIMULATION_DYNAMICS.contains(&key.as_str()) { &mut simulation } else { &mut solver };
-        table.insert(key, value);
-    }
+    solver.extend(fields(&scene.dynamics.newton));
     solver.insert("stop".to_owned(), Value::Table(fields(&scene.twoway.stop)));
     solver.insert("repulsion".to_owned(), Value::Table(fields(&scene.repulsion)));
     let mut contact = Table::new();

@@ -4,7 +4,7 @@ use crate::check::{CheckError, Intersection};
 use crate::io::IoError;
 use crate::scene::SceneError;
 use crate::world::World;
-use bowknot_dynamics::{ParamsError, StepError};
+use bowknot_dynamics::{Errors, ParamError, StepError};
 use bowknot_twoway::ResolveError;
 use std::path::PathBuf;
 
@@ -18,8 +18,8 @@ pub enum SimulationError {
     #[error(transparent)]
     Scene(#[from] SceneError),
     /// Parameters of the dynamics are refused.
-    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
-    Dynamics(Vec<ParamsError>),
+    #[error(transparent)]
+    Dynamics(Errors<ParamError>),
     /// The state cannot be judged.
     #[error(transparent)]
     Check(#[from] CheckError),

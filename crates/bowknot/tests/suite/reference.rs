@@ -2,7 +2,8 @@
 //! differs. `BOWKNOT_ACCEPT=1 cargo test --release -p bowknot reference` writes it anew.
 
 use bowknot::constraints::ConstraintParams;
-use bowknot::dynamics::{ClothMaterial, DynamicsParams, ParticleMaterial, SolidMaterial, StrandMaterial};
+use bowknot::dynamics::{ClothMaterial, ParticleMaterial, SolidMaterial, StrandMaterial};
+use bowknot::dynamics::{Environment, NewtonParams};
 use bowknot::scene::{
     BodyKind, BodySpec, FrictionPair, Keyframe, Motion, ObstacleSpec, OutputParams, PinSpec, Region,
     RepulsionParams, SimulationParams,
@@ -262,14 +263,11 @@ fn split_unit(doc: &str, kind: &str) -> (String, String) {
 fn page() -> String {
     let mut page = Page { sources: Sources::read(), text: HEAD.to_owned() };
     let all = |_: &str| true;
-    let in_simulation = |key: &str| {
-        ["gravity", "air_drag", "wind", "air_density", "drag_normal", "drag_tangential"].contains(&key)
-    };
 
     page.section("[simulation]", "Time and the order of work.");
     page.head(false);
     page.rows("SimulationParams", &SimulationParams::default(), None, all);
-    page.rows("DynamicsParams", &DynamicsParams::default(), None, in_simulation);
+    page.rows("Environment", &Environment::default(), None, all);
 
     page.section(
         "[contact]",
@@ -300,8 +298,8 @@ fn page() -> String {
     );
     page.head(true);
     page.rows::<BackwardParams>("BackwardParams", &fast.backward, Some(&paper.backward), all);
-    let dynamics = DynamicsParams::default();
-    page.rows("DynamicsParams", &dynamics, Some(&dynamics), |key| !in_simulation(key));
+    let newton = NewtonParams::default();
+    page.rows("NewtonParams", &newton, Some(&newton), all);
     page.section("[solver.stop]", "When a collision problem counts as solved.");
     page.head(true);
     page.rows::<StopParams>("StopParams", &fast.stop, Some(&paper.stop), all);
