@@ -4,8 +4,8 @@
 //! cargo bench -p bowknot-dynamics
 //! ```
 //!
-//! `target/PRECONDITIONER/1` is assembly, preconditioner, one CG iteration and the line search; `/101` has a hundred more
-//! iterations, so that a hundredth of the difference is the time of one iteration.
+//! `target/PRECONDITIONER/1` is assembly, preconditioner, one CG iteration and the line search; `/101` has a
+//! hundred more iterations, so that a hundredth of the difference is the time of one iteration.
 
 #[path = "../tests/suite/common/cloth.rs"]
 mod cloth;

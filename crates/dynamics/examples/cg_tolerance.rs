@@ -1,13 +1,13 @@
-//! How small must the residual of CG be? Compares targets of a cloth of about 10,000 vertices at dt = 1/20 s, solved to
-//! several tolerances, with the converged target.
+//! How small must the residual of CG be? Compares targets of a cloth of about 10,000 vertices at dt = 1/20 s,
+//! solved to several tolerances, with the converged target.
 //!
 //! ```text
 //! cargo run --release -p bowknot-dynamics --example cg_tolerance [-- cells [preconditioner..]]
 //! ```
 //!
-//! There are three states, each after some time steps: a crumpled sheet in free flight; a sheet held at two corners; a sheet
-//! draped over a ball by plain projection. The projection is no real contact resolution, but it moves iterates x away from
-//! the last target as contact does.
+//! There are three states, each after some time steps: a crumpled sheet in free flight; a sheet held at two
+//! corners; a sheet draped over a ball by plain projection. The projection is no real contact resolution, but
+//! it moves iterates x away from the last target as contact does.
 #![allow(clippy::print_stdout, reason = "an experiment prints its table")]
 
 #[path = "../tests/suite/common/cloth.rs"]

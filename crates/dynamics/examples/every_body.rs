@@ -1,5 +1,5 @@
-//! Every kind of body for a second: a jelly cube held at its top, a flag of woven cloth in the wind, hair, and grains that
-//! springs keep above a plane. It prints energies by kind. There are no other contacts.
+//! Every kind of body for a second: a jelly cube held at its top, a flag of woven cloth in the wind, hair,
+//! and grains that springs keep above a plane. It prints energies by kind. There are no other contacts.
 //!
 //! ```text
 //! cargo run --release -p bowknot-dynamics --example every_body

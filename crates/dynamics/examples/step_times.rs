@@ -1,5 +1,5 @@
-//! Times of time steps for bodies of the sizes in the paper's Table 2: a mat of 33,000 vertices and 86,000 tets, hair of
-//! 63,000 vertices, and 30,000 grains, each at dt = 1/100 s with two Newton iterations.
+//! Times of time steps for bodies of the sizes in the paper's Table 2: a mat of 33,000 vertices and 86,000
+//! tets, hair of 63,000 vertices, and 30,000 grains, each at dt = 1/100 s with two Newton iterations.
 //!
 //! ```text
 //! cargo run --release -p bowknot-dynamics --example step_times [STEPS]
@@ -24,7 +24,7 @@ use std::time::Instant;
 fn main() -> Result<(), Box<dyn Error>> {
     let steps = std::env::args().nth(1).and_then(|text| text.parse().ok()).unwrap_or(5);
     println!(
-        "body, vertices, elements, seconds to build, seconds a step, CPU seconds a step, CG iterations of both targets"
+        "body, vertices, elements, seconds to build, seconds per step, CPU seconds per step, CG iterations of both targets"
     );
     for model in [SolidModel::Stvk, SolidModel::StableNeoHookean] {
         // A slab of 1 m x 1 m x 2 cm that is held at one side and bent by its initial velocity.
@@ -85,8 +85,8 @@ fn measure(
     Ok(())
 }
 
-/// The inside of a solid follows its surface, which contact stopped half-way to the target and moved aside by 2 cm, more
-/// than a cell.
+/// The inside of a solid follows its surface, which contact stopped half-way to the target and moved aside by
+/// 2 cm, more than a cell.
 fn follow_surface(rest: &[Point], cube: Body) -> Result<(), Box<dyn Error>> {
     let BodyShape::Solid { tets, .. } = &cube.shape else { return Ok(()) };
     let mut surface = vec![false; rest.len()];
@@ -115,7 +115,8 @@ fn follow_surface(rest: &[Point], cube: Body) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// CPU seconds of this process so far (on Linux, in ticks of 10 ms). They are comparable also on a busy machine.
+/// CPU seconds of this process so far (on Linux, in ticks of 10 ms). They are comparable also on a busy
+/// machine.
 fn cpu_seconds() -> f64 {
     let text = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
     let fields = text.rsplit(')').next().unwrap_or_default().split_whitespace();

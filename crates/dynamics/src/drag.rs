@@ -1,8 +1,8 @@
-//! Wind and the drag of air: forces on surfaces, strands and grains that grow with the square of the velocity relative to the
-//! wind.
+//! Wind and the drag of air: forces on surfaces, strands and grains that grow with the square of the velocity
+//! relative to the wind.
 //!
-//! The relative velocity u = wind - v of an element is split into its component u_n along the normal (for a strand: across
-//! it) and u_t in the plane (along the strand):
+//! The relative velocity u = wind - v of an element is split into its component u_n along the normal (for a
+//! strand: across it) and u_t in the plane (along the strand):
 //!
 //! ```text
 //! F = rho/2 (A_n c_n |u_n| u_n + A_t c_t |u_t| u_t)
@@ -15,9 +15,10 @@
 //! | strand edge | diameter times length, `drag_normal` | half of its circumference times length, `drag_tangential` |
 //! | grain | cross-section, 0.47, a sphere at Re of 10^3 to 10^5; isotropic | |
 //!
-//! F is linearised at the start of the step (Rosenbrock's Euler method): F(v) = F(v0) - K (v - v0), with K = -dF/dv positive
-//! semi-definite. It is then the gradient of a quadratic form of positions, has its place in the diagonal blocks of the Newton
-//! matrix, and velocities tend to the terminal velocity without overshoot at any time step.
+//! F is linearised at the start of the step (Rosenbrock's Euler method): F(v) = F(v0) - K (v - v0), with
+//! K = -dF/dv positive semi-definite. It is then the gradient of a quadratic form of positions, has its place
+//! in the diagonal blocks of the Newton matrix, and velocities tend to the terminal velocity without overshoot
+//! at any time step.
 
 use crate::body::BodyShape;
 use crate::model::DynamicsModel;
@@ -110,8 +111,8 @@ impl DragSurfaces {
 }
 
 impl Drag {
-    /// Adds the drag of an element in equal shares to its nodes. `normal` is the projection on its normal directions, in which
-    /// the factor is `across`; in the other directions it is `along`.
+    /// Adds the drag of an element in equal shares to its nodes. `normal` is the projection on its normal
+    /// directions, in which the factor is `across`; in the other directions it is `along`.
     fn add<const N: usize>(
         &mut self,
         nodes: &[u32; N],

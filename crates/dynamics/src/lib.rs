@@ -1,8 +1,9 @@
 //! Implicit Euler dynamics of deformable bodies.
 //!
-//! The crate knows materials in physical units, lumped masses, cloth, solids, strands and particles, damping, wind, gravity
-//! and prescribed vertices. It computes **one Newton iteration** `x -> y` of the implicit Euler step at a time. It does not
-//! know how contact is resolved: a collision stage moves x towards y as far as it can and asks for the next y.
+//! The crate knows materials in physical units, lumped masses, cloth, solids, strands and particles, damping,
+//! wind, gravity and prescribed vertices. It computes **one Newton iteration** `x -> y` of the implicit Euler
+//! step at a time. It does not know how contact is resolved: a collision stage moves x towards y as far as it
+//! can and asks for the next y.
 //!
 //! A time step minimises the incremental potential
 //!

@@ -20,17 +20,19 @@ pub struct DynamicsParams {
 pub struct Environment {
     /// Acceleration of gravity [m/s^2], unless a body has its own. Default (0, 0, -9.81).
     pub gravity: Vector,
-    /// Mass-proportional damping [1/s]: velocities decay as exp(-t * this), in a vacuum as well. It slows free flight and
-    /// rotation; for losses inside of a material see [`crate::ClothMaterial::stretch_damping`]. Default 0.
+    /// Mass-proportional damping [1/s]: velocities decay as exp(-t * this), in a vacuum as well. It slows
+    /// free flight and rotation; for losses inside of a material see
+    /// [`crate::ClothMaterial::stretch_damping`]. Default 0.
     pub air_drag: f64,
     /// Velocity of the air [m/s]; it has an effect only with an `air_density`. Default (0, 0, 0).
     pub wind: Vector,
-    /// Density of the air [kg/m^3]: 1.2 at room temperature. Surfaces, strands and grains then feel drag that grows with the
-    /// square of their velocity relative to the wind. Default 0, a vacuum.
+    /// Density of the air [kg/m^3]: 1.2 at room temperature. Surfaces, strands and grains then feel drag that
+    /// grows with the square of their velocity relative to the wind. Default 0, a vacuum.
     pub air_density: f64,
     /// Drag coefficient across surfaces and strands [1]. Default 1.2: a plate across the flow has 1.1 to 1.3.
     pub drag_normal: f64,
-    /// Drag coefficient along surfaces and strands, both sides together [1]. Default 0.02: the friction of rough skin.
+    /// Drag coefficient along surfaces and strands, both sides together [1]. Default 0.02: the friction of
+    /// rough skin.
     pub drag_tangential: f64,
 }
 
@@ -38,33 +40,35 @@ pub struct Environment {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct NewtonParams {
-    /// Residual at which linear solves end [1], in the preconditioner's norm and relative to the right-hand side of the first
-    /// solve of the time step. Intermediate solves of a target end at 0.03 of their own right-hand side as well. Smaller:
-    /// more iterations; larger: targets are stretched, see the table in the README. Default 1e-4: errors of 0.1 to 0.4 mm at
-    /// 10,000 vertices and dt = 1/20 s.
+    /// Residual at which linear solves end [1], in the preconditioner's norm and relative to the right-hand
+    /// side of the first solve of the time step. Intermediate solves of a target end at 0.03 of their own
+    /// right-hand side as well. Smaller: more iterations; larger: targets are stretched, see the README
+    /// of `bowknot-dynamics`. Default 1e-4: errors of 0.1 to 0.4 mm at 10,000 vertices and dt = 1/20 s.
     pub cg_tolerance: f64,
-    /// Residual of the time step below which Newton iterations end, in mean edge lengths [1]: the distance that the forces
-    /// out of balance are worth, see [`crate::Residual::distance`]. It is for callers that alternate Newton iterations with a
-    /// collision stage, and for time steps of 1/100 s: in shorter ones the residual shrinks with the square of the time step,
-    /// in longer ones it grows. Smaller: more iterations, up to `simulation.newton_iterations`. Iterations also end if three
-    /// in a row do not reduce a residual of at most four tolerances by three tenths. 0: all iterations are made. Default
-    /// 0.003.
+    /// Residual of the time step below which Newton iterations end, in mean edge lengths [1]: the distance
+    /// that the forces out of balance are worth, see [`crate::Residual::distance`]. It is for callers that
+    /// alternate Newton iterations with a collision stage, and for time steps of 1/100 s: in shorter ones the
+    /// residual shrinks with the square of the time step, in longer ones it grows. Smaller: more iterations,
+    /// up to `simulation.newton_iterations`. Iterations also end if three in a row do not reduce a residual
+    /// of at most four tolerances by three tenths. 0: all iterations are made. Default 0.003.
     pub step_tolerance: f64,
-    /// Largest number of iterations of a linear solve [1]. At this number the solve ends with its last iterate and reports
-    /// that it has not converged. Default 10000.
+    /// Largest number of iterations of a linear solve [1]. At this number the solve ends with its last
+    /// iterate and reports that it has not converged. Default 10000.
     pub cg_max_iterations: usize,
     /// Preconditioner of the linear solve.
     pub preconditioner: PreconditionerKind,
     /// What is done with the negative curvatures of the elastic energy.
     pub hessian_filter: HessianFilter,
-    /// Largest number of halvings of a Newton step by the line search [1], at most 60; 0 accepts every full step. Default 20.
+    /// Largest number of halvings of a Newton step by the line search [1], at most 60; 0 accepts every full
+    /// step. Default 20.
     pub line_search_halvings: usize,
-    /// Largest number of Newton iterations within one target after the first [1], at most 1000. They are made until the last
-    /// one changes little; without strands, only if the quadratic model missed its predicted decrease by a tenth. Fewer:
-    /// stiff bodies that rotate fast, above all strands, are slowed down. Default 12.
+    /// Largest number of Newton iterations within one target after the first [1], at most 1000. They are made
+    /// until the last one changes little; without strands, only if the quadratic model missed its predicted
+    /// decrease by a tenth. Fewer: stiff bodies that rotate fast, above all strands, are slowed down. Default
+    /// 12.
     pub correcting_iterations: usize,
-    /// Share of the predicted decrease of energy that a step must reach (Armijo condition) [1], in [0, 0.5). Larger: more
-    /// halvings. Default 1e-4.
+    /// Share of the predicted decrease of energy that a step must reach (Armijo condition) [1], in [0, 0.5).
+    /// Larger: more halvings. Default 1e-4.
     pub line_search_decrease: f64,
 }
 
@@ -75,8 +79,9 @@ pub struct NewtonParams {
 pub enum PreconditionerKind {
     /// The inverses of the 3 x 3 diagonal blocks: little memory, many iterations.
     BlockJacobi,
-    /// Block-Jacobi plus a coarse correction, in which patches of 32 to 64 nodes move as rigid bodies: 20 to 40 times fewer
-    /// iterations and 5 to 10 times less time at 10,000 vertices of cloth. Strands are solved exactly.
+    /// Block-Jacobi plus a coarse correction, in which patches of 32 to 64 nodes move as rigid bodies: 20 to
+    /// 40 times fewer iterations and 5 to 10 times less time at 10,000 vertices of cloth. Strands are solved
+    /// exactly.
     #[default]
     TwoLevel,
 }
@@ -85,12 +90,12 @@ pub enum PreconditionerKind {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum HessianFilter {
-    /// They are set to zero, which gives the nearest positive semi-definite matrix. It is a little faster near a solution, if
-    /// many iterations are made.
+    /// They are set to zero, which gives the nearest positive semi-definite matrix. It is a little faster
+    /// near a solution, if many iterations are made.
     Clamp,
-    /// Their sign is changed (Chen et al. 2024, "Stabler Neo-Hookean Simulation: Absolute Eigenvalue Filtering for Projected
-    /// Newton"). It is as good or better in the first iteration, and far more robust under strong compression, where only
-    /// inertia resists motion along a clamped direction.
+    /// Their sign is changed (Chen et al. 2024, "Stabler Neo-Hookean Simulation: Absolute Eigenvalue
+    /// Filtering for Projected Newton"). It is as good or better in the first iteration, and far more robust
+    /// under strong compression, where only inertia resists motion along a clamped direction.
     Absolute,
     /// Their sign is changed for the first target of a time step; they are set to zero for later targets.
     #[default]

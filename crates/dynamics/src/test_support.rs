@@ -5,8 +5,8 @@ use crate::elements::filter::Filter;
 use bowknot_geometry::Vector;
 use nalgebra::{DMatrix, Matrix3, Rotation3};
 
-/// Triangles of a grid of `columns` x `rows` cells. Vertex (i, j) has the index i + j * (columns + 1). Diagonals are parallel
-/// or, with `alternate`, change direction from cell to cell.
+/// Triangles of a grid of `columns` x `rows` cells. Vertex (i, j) has the index i + j * (columns + 1).
+/// Diagonals are parallel or, with `alternate`, change direction from cell to cell.
 pub(crate) fn grid_triangles(columns: usize, rows: usize, alternate: bool) -> Vec<[u32; 3]> {
     let index = |i: usize, j: usize| (i + j * (columns + 1)) as u32;
     let mut triangles = Vec::new();

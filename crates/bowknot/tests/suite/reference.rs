@@ -48,7 +48,7 @@ const SOURCES: [&str; 33] = [
     "stepper/src/params.rs",
     "twoway/src/params.rs",
     "dynamics/src/params.rs",
-    "dynamics/src/material/mod.rs",
+    "dynamics/src/material/rest_shape.rs",
     "dynamics/src/material/cloth.rs",
     "dynamics/src/material/solid.rs",
     "dynamics/src/material/strand.rs",

@@ -1,23 +1,25 @@
 //! Velocities at the end of a time step that conserve linear and angular momentum.
 //!
-//! The mean velocity of a step, (x1 - x0) / dt, is the velocity in its middle. Implicit Euler takes it for the velocity at the
-//! end, which slows rotation: with forces f that act at x1, about the centre of mass and relative to its motion,
+//! The mean velocity of a step, (x1 - x0) / dt, is the velocity in its middle. Implicit Euler takes it for
+//! the velocity at the end, which slows rotation: with forces f that act at x1, about the centre of mass and
+//! relative to its motion,
 //!
 //! ```text
 //! x1 = x0 + dt v1,  m (v1 - v0) = dt f
 //! =>  sum m x1 x v1 = sum m x0 x v0 + dt sum x1 x f - dt sum m v0 x v1
 //! ```
 //!
-//! The last term is lost, whatever the forces are: a body that rotates by 0.2 rad per step loses 2 % of its rotation in each
-//! step. In addition, the mean velocity of a point that rotates is a chord of its circle, which points out of the circle at
-//! x1. Therefore the rigid motion of each body, fitted to the mean velocities at (x0 + x1) / 2, is replaced by one about x1
-//! that includes the lost term; the rest of the motion, vibrations, stays. Groups of bodies that touch nothing but each other
-//! then get a common rigid motion, which gives them exactly the linear and angular momentum that gravity and air leave them:
+//! The last term is lost, whatever the forces are: a body that rotates by 0.2 rad per step loses 2 % of its
+//! rotation in each step. In addition, the mean velocity of a point that rotates is a chord of its circle,
+//! which points out of the circle at x1. Therefore the rigid motion of each body, fitted to the mean
+//! velocities at (x0 + x1) / 2, is replaced by one about x1 that includes the lost term; the rest of the
+//! motion, vibrations, stays. Groups of bodies that touch nothing but each other then get a common rigid
+//! motion, which gives them exactly the linear and angular momentum that gravity and air leave them:
 //! tolerances of linear solves and contacts have no effect on these.
 //!
-//! Positions do not change, so no intersection can result. Energy is not gained: a body, or a group of bodies that touch,
-//! ends with at most the kinetic energy that it had at the start plus the work of gravity, air and elasticity since, or with
-//! at most the kinetic energy without the correction.
+//! Positions do not change, so no intersection can result. Energy is not gained: a body, or a group of bodies
+//! that touch, ends with at most the kinetic energy that it had at the start plus the work of gravity, air
+//! and elasticity since, or with at most the kinetic energy without the correction.
 
 use super::newton::state::Step;
 use crate::groups::Groups;
@@ -28,7 +30,8 @@ use bowknot_geometry::{Point, Vector};
 use nalgebra::{Matrix3, SymmetricEigen};
 use std::ops::Range;
 
-/// Moments of inertia up to this share of the largest one count as zero, such as that of a straight strand about its axis.
+/// Moments of inertia up to this share of the largest one count as zero, such as that of a straight strand
+/// about its axis.
 const MIN_INERTIA_RATIO: f64 = 1e-6;
 
 /// Largest rotation in a time step that the step resolves [rad]; faster rotations are not corrected.
@@ -263,8 +266,9 @@ impl Correction<'_> {
             torque += (self.x1[n] - end.center).cross(&self.forces[n]) * self.dt;
         }
         let velocity = start.velocity + impulse / mass;
-        // Angular momentum is not prescribed in two cases. Friction takes some from the motion of grains, which have no spin
-        // that could take it up; and the forces of the air depend on the velocities that are corrected here.
+        // Angular momentum is not prescribed in two cases. Friction takes some from the motion of grains,
+        // which have no spin that could take it up; and the forces of the air depend on the velocities that
+        // are corrected here.
         let exact = end.spin(start.angular + torque);
         let turns = !self.in_air
             && group.iter().all(|&c| components[c].len() > 1)
@@ -288,7 +292,8 @@ impl Correction<'_> {
         }
     }
 
-    /// Kinetic energy at the start, plus the elastic energy `released` and the work of outer forces since [J].
+    /// Kinetic energy at the start, plus the elastic energy `released` and the work of outer forces since
+    /// [J].
     fn kinetic_allowed(&self, nodes: impl Iterator<Item = usize>, released: f64) -> f64 {
         let of_node = |n: usize| {
             0.5 * self.model.node_masses[n] * self.v0[n].norm_squared()

@@ -12,8 +12,8 @@ pub struct NewtonInfo {
     pub iterations: usize,
     /// Share of the last Newton step that the line search kept, in (0, 1].
     pub step_length: f64,
-    /// Ratio of the last step's decrease of the potential to the decrease that the quadratic model predicted, or its inverse
-    /// if that is smaller, or `step_length` if that is smaller still [1].
+    /// Ratio of the last step's decrease of the potential to the decrease that the quadratic model predicted,
+    /// or its inverse if that is smaller, or `step_length` if that is smaller still [1].
     pub reduction_ratio: f64,
     /// Incremental potential at x, with prescribed vertices at their keyframes [J].
     pub energy_before: f64,
@@ -46,9 +46,9 @@ impl NewtonInfo {
 pub struct Residual {
     /// Root of the sum of squares of the forces on free nodes that are out of balance [N].
     pub force: f64,
-    /// These forces as a distance [m]: the largest sqrt(dt^2 r . P r / M) over connected components, with r the forces, P the
-    /// preconditioner of the Newton system without contacts, and M the mass of the component. As H is at least M / dt^2, this
-    /// is an upper bound of the root mean square distance, weighted by mass, to the state in which the forces balance, up to
-    /// the quality of P.
+    /// These forces as a distance [m]: the largest sqrt(dt^2 r . P r / M) over connected components, with r
+    /// the forces, P the preconditioner of the Newton system without contacts, and M the mass of the
+    /// component. As H is at least M / dt^2, this is an upper bound of the root mean square distance,
+    /// weighted by mass, to the state in which the forces balance, up to the quality of P.
     pub distance: f64,
 }

@@ -97,8 +97,8 @@ impl Dynamics {
         &self.params
     }
 
-    /// Sets the force on each vertex [N], 0 at first. It is kept until it is set again and takes effect at the next
-    /// [`Self::begin_step`].
+    /// Sets the force on each vertex [N], 0 at first. It is kept until it is set again and takes effect at
+    /// the next [`Self::begin_step`].
     ///
     /// # Errors
     /// The length is wrong, or an entry is not finite.
@@ -119,8 +119,9 @@ impl Dynamics {
         Ok(())
     }
 
-    /// Sets the springs of contacts; there are none at first. They are kept until they are set again and take effect at the
-    /// next [`Self::newton_target`]. Without springs the result has the same bits as if they had never been set.
+    /// Sets the springs of contacts; there are none at first. They are kept until they are set again and take
+    /// effect at the next [`Self::newton_target`]. Without springs the result has the same bits as if they
+    /// had never been set.
     ///
     /// # Errors
     /// The first invalid spring and the reason; the previous springs then stay.
@@ -134,13 +135,14 @@ impl Dynamics {
         Ok(())
     }
 
-    /// Forces of the springs at the last target on the side that the normal points to [N], one entry per spring.
+    /// Forces of the springs at the last target on the side that the normal points to [N], one entry per
+    /// spring.
     pub fn contact_forces(&self) -> Vec<Vector> {
         self.repulsion.forces(&self.work.trial)
     }
 
-    /// Positions where inertia alone leads from the start of the step [m], one entry per vertex. Obstacles stay where they
-    /// are; without a step that was begun the list is empty.
+    /// Positions where inertia alone leads from the start of the step [m], one entry per vertex. Obstacles
+    /// stay where they are; without a step that was begun the list is empty.
     pub fn inertial_positions(&self) -> Vec<Point> {
         let Some(step) = &self.step else { return Vec::new() };
         let mut positions = step.positions.clone();
@@ -151,8 +153,8 @@ impl Dynamics {
     }
 
     /// The residual of the time step at `x` [m]. Contact forces are the known forces of the springs, see
-    /// [`RepulsionSpring::force`]. Only forces on vertices that are free and `counted` enter; leave out vertices on which
-    /// unknown forces act. All slices have one entry per vertex.
+    /// [`RepulsionSpring::force`]. Only forces on vertices that are free and `counted` enter; leave out
+    /// vertices on which unknown forces act. All slices have one entry per vertex.
     ///
     /// # Errors
     /// A length is wrong, an entry is not finite, or no step was begun.
@@ -179,7 +181,8 @@ impl Dynamics {
 
     /// Starts a time step of `dt` [s] from positions `x0` [m] and velocities `v0` [m/s].
     ///
-    /// Velocities of vertices that will be prescribed have an effect on the drag of air only, but must be finite.
+    /// Velocities of vertices that will be prescribed have an effect on the drag of air only, but must be
+    /// finite.
     ///
     /// # Errors
     /// A length is wrong, an entry is not finite, or the time step is not positive and finite.
@@ -226,16 +229,17 @@ impl Dynamics {
         Ok(())
     }
 
-    /// Computes the target `y` [m] from the current iterate `x` [m] by a Newton iteration and the ones that correct it.
+    /// Computes the target `y` [m] from the current iterate `x` [m] by a Newton iteration and the ones that
+    /// correct it.
     ///
-    /// Vertices that are `prescribed` end the step at their `keyframes` [m], which are read for them only; vertices of
-    /// obstacles always do. Their entries of `y` are exactly the keyframes, whatever the line search does. `x` may be any
-    /// state, such as the result of contact resolution, and may differ from one call to the next. All slices have one entry
-    /// per vertex.
+    /// Vertices that are `prescribed` end the step at their `keyframes` [m], which are read for them only;
+    /// vertices of obstacles always do. Their entries of `y` are exactly the keyframes, whatever the line
+    /// search does. `x` may be any state, such as the result of contact resolution, and may differ from one
+    /// call to the next. All slices have one entry per vertex.
     ///
-    /// If contact moves the surface of a solid elsewhere than to `y`, its inside can follow: call this once or twice more in
-    /// the same step, with the surface prescribed and its positions as keyframes. The inside then solves the time step,
-    /// inertia included, with the surface held.
+    /// If contact moves the surface of a solid elsewhere than to `y`, its inside can follow: call this once
+    /// or twice more in the same step, with the surface prescribed and its positions as keyframes. The inside
+    /// then solves the time step, inertia included, with the surface held.
     ///
     /// # Errors
     /// A length is wrong, an entry is not finite, or no step was begun.
@@ -264,8 +268,9 @@ impl Dynamics {
                 if prescribed[vertex] { keyframes[vertex] - x[vertex] } else { Vector::zeros() };
         }
         self.repulsion.place_obstacles(keyframes);
-        // Thousands of parallel loops follow. From inside of the thread pool each is a push on a local queue; from outside
-        // each would put this thread to sleep and wake it again (20 times the CPU time on a busy machine, at 1,700 nodes).
+        // Thousands of parallel loops follow. From inside of the thread pool each is a push on a local queue;
+        // from outside each would put this thread to sleep and wake it again (20 times the CPU time on a busy
+        // machine, at 1,700 nodes).
         let repulsion = &mut self.repulsion;
         let mut info = rayon::scope(|_| {
             Newton { model: &self.model, params: &self.params, repulsion, step: &mut step, work }.solve()
@@ -289,9 +294,9 @@ impl Dynamics {
         Ok(info)
     }
 
-    /// Makes a whole step without contact resolution: `newton_iterations` targets, each of which is the next iterate. `x` and
-    /// `v` advance by `dt`, see [`Self::end_velocities`]. Prescribed vertices end at their `keyframes` and have the velocity
-    /// that takes them there.
+    /// Makes a whole step without contact resolution: `newton_iterations` targets, each of which is the next
+    /// iterate. `x` and `v` advance by `dt`, see [`Self::end_velocities`]. Prescribed vertices end at their
+    /// `keyframes` and have the velocity that takes them there.
     ///
     /// # Errors
     /// Those of [`Self::begin_step`] and [`Self::newton_target`]; `x` and `v` are then unchanged.
@@ -317,9 +322,10 @@ impl Dynamics {
         Ok(infos)
     }
 
-    /// Velocities at the end of the step, at positions `x` [m], in `v` [m/s]. They conserve linear and angular momentum.
-    /// Bodies with a vertex that is `prescribed`, obstacles and single grains move at the mean velocities of the step. All
-    /// slices have one entry per vertex. Without a step that was begun `v` stays unchanged.
+    /// Velocities at the end of the step, at positions `x` [m], in `v` [m/s]. They conserve linear and
+    /// angular momentum. Bodies with a vertex that is `prescribed`, obstacles and single grains move at the
+    /// mean velocities of the step. All slices have one entry per vertex. Without a step that was begun `v`
+    /// stays unchanged.
     pub fn end_velocities(&self, x: &[Point], prescribed: &[bool], touching: &Touching, v: &mut [Vector]) {
         let Some(step) = &self.step else { return };
         let Self { model, params, external_forces, repulsion, .. } = self;

@@ -6,10 +6,12 @@ use crate::linear::preconditioner::Preconditioner;
 use crate::model::DynamicsModel;
 use bowknot_geometry::Vector;
 
-/// Strands are solved exactly. Other components that elements join get a coarse correction. Single nodes need neither.
+/// Strands are solved exactly. Other components that elements join get a coarse correction. Single nodes need
+/// neither.
 pub(super) fn two_level(model: &DynamicsModel) -> Preconditioner {
     let single = |n: usize| model.pattern.row(n).is_empty();
-    // A component consists of strands only or, if strands are attached to other bodies, is in the coarse space.
+    // A component consists of strands only or, if strands are attached to other bodies, is in the coarse
+    // space.
     let mut leaves = Vec::new();
     let mut next = 0;
     for component in &model.components {

@@ -1,23 +1,24 @@
 //! Quadratic bending: its Hessian is constant, has one number per pair of nodes, and is assembled once.
 //!
-//! For sheets that bend much more easily than they stretch, the integrated jump of the surface's derivative across an inner
-//! edge e is a vector K_e x that is linear in positions, with cotangent weights K_e over the four vertices of the two
-//! triangles at e (Bergou, Wardetzky, Harmon, Zorin and Grinspun 2006, "A Quadratic Bending Model for Inextensible
-//! Surfaces").
+//! For sheets that bend much more easily than they stretch, the integrated jump of the surface's derivative
+//! across an inner edge e is a vector K_e x that is linear in positions, with cotangent weights K_e over the
+//! four vertices of the two triangles at e (Bergou, Wardetzky, Harmon, Zorin and Grinspun 2006, "A Quadratic
+//! Bending Model for Inextensible Surfaces").
 //!
-//! Bergou et al. sum `3/(A0 + A1) |K_e x|^2` over edges. That sum does not converge to the energy of a plate: the energy of a
-//! cylinder is 1.5 times D/2 kappa^2 on equilateral triangles and 3 to 9 times on right triangles, depending on its
-//! direction. Here the jumps at the three edges of a triangle are first combined to its curvature tensor (Grinspun, Gingold,
-//! Reisman and Zorin 2006, "Computing Discrete Shape Operators on General Meshes"), which is linear in x like the jumps:
+//! Bergou et al. sum `3/(A0 + A1) |K_e x|^2` over edges. That sum does not converge to the energy of a plate:
+//! the energy of a cylinder is 1.5 times D/2 kappa^2 on equilateral triangles and 3 to 9 times on right
+//! triangles, depending on its direction. Here the jumps at the three edges of a triangle are first combined
+//! to its curvature tensor (Grinspun, Gingold, Reisman and Zorin 2006, "Computing Discrete Shape Operators on
+//! General Meshes"), which is linear in x like the jumps:
 //!
 //! ```text
 //! L_T = sum_e K_e x / (2 A_T) (n_e n_e^T),   E = D/2 sum_T A_T |L_T|^2 = sum_T D/(8 A_T) sum_ef (n_e.n_f)^2 (K_e x).(K_f x)
 //! ```
 //!
-//! n_e is the normal of e in the triangle's plane at rest. E is exact for constant curvature on every mesh of two families
-//! of parallel lines and their diagonals, and zero for flat states only. The jump across a free edge is the one with the
-//! least energy (a Schur complement), as the moment vanishes there. D is the stiffness of a strip with free sides; Poisson's
-//! ratio of bending is taken as 0.
+//! n_e is the normal of e in the triangle's plane at rest. E is exact for constant curvature on every mesh of
+//! two families of parallel lines and their diagonals, and zero for flat states only. The jump across a free
+//! edge is the one with the least energy (a Schur complement), as the moment vanishes there. D is the
+//! stiffness of a strip with free sides; Poisson's ratio of bending is taken as 0.
 //!
 //! The rest state is flat; [`super::shell`] is for sheets that are curved at rest.
 
@@ -27,8 +28,8 @@ use std::collections::BTreeMap;
 
 /// The jumps across the edges of one triangle.
 pub(crate) struct Stencil {
-    /// The corners, then for each corner the vertex beyond the edge opposite of it: u32::MAX if that edge is free. Vertices
-    /// beyond may coincide on small closed surfaces.
+    /// The corners, then for each corner the vertex beyond the edge opposite of it: u32::MAX if that edge is
+    /// free. Vertices beyond may coincide on small closed surfaces.
     local: [u32; 6],
     /// Weights of K_e over these nodes, by the corner opposite of e.
     jumps: [[f64; 6]; 3],
@@ -126,8 +127,8 @@ pub(crate) struct Merged {
     pub area: f64,
 }
 
-/// |e| times the outward derivative, across edge ab, of the linear function on triangle abo: the weights of x_a, x_b and
-/// x_o.
+/// Weights of x_a, x_b and x_o in |e| times the outward derivative, across edge ab, of the linear function on
+/// triangle abo.
 fn flux(a: Vector, b: Vector, o: Vector) -> [f64; 3] {
     let cotangent = |p: Vector, q: Vector, r: Vector| {
         let (u, v) = (q - p, r - p);
@@ -137,7 +138,8 @@ fn flux(a: Vector, b: Vector, o: Vector) -> [f64; 3] {
     [at_b, at_a, -(at_a + at_b)]
 }
 
-/// The matrix (n_e.n_f)^2 of the edges opposite of each corner, with the jumps of free edges eliminated by minimisation.
+/// The matrix (n_e.n_f)^2 of the edges opposite of each corner, with the jumps of free edges eliminated by
+/// minimisation.
 fn free_edges_condensed(corners: &[Vector; 3], inner: [bool; 3]) -> [[f64; 3]; 3] {
     let directions: [Vector; 3] =
         std::array::from_fn(|c| (corners[(c + 2) % 3] - corners[(c + 1) % 3]).normalize());
@@ -146,7 +148,8 @@ fn free_edges_condensed(corners: &[Vector; 3], inner: [bool; 3]) -> [[f64; 3]; 3
         std::array::from_fn(|e| std::array::from_fn(|f| directions[e].dot(&directions[f]).powi(2)));
     for free in (0..3).filter(|&e| !inner[e]) {
         let row = gram[free];
-        // The pivot is 1 for the first free edge and 1 - cos^4 for the second; it can be 0 only for the third.
+        // The pivot is 1 for the first free edge and 1 - cos^4 for the second; it can be 0 only for the
+        // third.
         for e in 0..3 {
             for f in 0..3 {
                 gram[e][f] -= if row[free] > 1e-12 { row[e] * row[f] / row[free] } else { 0.0 };

@@ -1,5 +1,5 @@
-//! What all triangles of constant strain share: shape functions, deformation gradient, its singular values, and the
-//! assembly of forces and Hessian from a state in the frames of the singular vectors.
+//! What all triangles of constant strain share: shape functions, deformation gradient, its singular values,
+//! and the assembly of forces and Hessian from a state in the frames of the singular vectors.
 
 use super::element::Linearisation;
 use super::filter::Filter;
@@ -7,8 +7,8 @@ use super::svd::any_normal;
 use bowknot_geometry::Vector;
 use nalgebra::{Matrix2, Matrix3, Matrix4, Vector2};
 
-/// Divisors that are singular values, or sums of them, are at least this large. It limits the curvatures of triangles
-/// crushed to less than a twentieth; forces do not depend on it.
+/// Divisors that are singular values, or sums of them, are at least this large. It limits the curvatures of
+/// triangles crushed to less than a twentieth; forces do not depend on it.
 pub(super) const MIN_SINGULAR_VALUE: f64 = 0.05;
 
 /// Singular values up to this count as zero: their reciprocals, and the squares on the way, must be finite.
@@ -21,8 +21,8 @@ pub(super) struct Decomposition {
     pub v1: [f64; 2],
 }
 
-/// Gradients of the shape functions in the rest plane [1/m] and the area [m^2]; None if the triangle has no area. The first
-/// axis of the plane is the projection of `axis` or, without one, points to vertex 1.
+/// Gradients of the shape functions in the rest plane [1/m] and the area [m^2]; None if the triangle has no
+/// area. The first axis of the plane is the projection of `axis` or, without one, points to vertex 1.
 pub(super) fn rest_gradients(rest: &[Vector; 3], axis: Option<&Vector>) -> Option<([[f64; 2]; 3], f64)> {
     let (e1, e2) = (rest[1] - rest[0], rest[2] - rest[0]);
     let (g1, g2, determinant) = match axis {
@@ -106,8 +106,8 @@ pub(super) struct Curvatures {
     pub normal: Matrix2<f64>,
 }
 
-/// Energy, gradient and Hessian of a triangle from an energy density, the `stress` (entry [i][j] is the component along
-/// u_i v_j^T) and the curvatures.
+/// Energy, gradient and Hessian of a triangle from an energy density, the `stress` (entry [i][j] is the
+/// component along u_i v_j^T) and the curvatures.
 #[inline]
 pub(super) fn assemble(
     gradients: &[[f64; 2]; 3],

@@ -1,9 +1,10 @@
 //! Sets of elements of one kind, and how they add their derivatives to the block matrix.
 //!
-//! The unit of parallel work is a chunk of rows. Nodes are numbered along the mesh and cut into chunks; a chunk visits every
-//! element that touches one of its nodes and adds to its own rows only. Elements on the border of two chunks are computed
-//! twice (about a tenth of them at 512 nodes per chunk). In exchange there are no locks, no atomics and no buffers, and sums
-//! always run in element order: the result has the same bits for any number of threads.
+//! The unit of parallel work is a chunk of rows. Nodes are numbered along the mesh and cut into chunks; a
+//! chunk visits every element that touches one of its nodes and adds to its own rows only. Elements on the
+//! border of two chunks are computed twice (about a tenth of them at 512 nodes per chunk). In exchange there
+//! are no locks, no atomics and no buffers, and sums always run in element order: the result has the same
+//! bits for any number of threads.
 
 use super::element::{Element, Start};
 use super::filter::Filter;
@@ -51,8 +52,8 @@ pub(crate) trait AnyElementSet: Send + Sync {
     /// Calls `visit` with the first node of each element and its elastic energy [J] at `x`.
     fn for_each_energy(&self, x: &[Vector], visit: &mut dyn FnMut(u32, f64));
 
-    /// Adds gradient and Hessian of the elements that touch the chunk to its rows. Returns the energy [J] of the elements
-    /// that the chunk owns.
+    /// Adds gradient and Hessian of the elements that touch the chunk to its rows. Returns the energy [J] of
+    /// the elements that the chunk owns.
     fn linearise(&self, chunk: usize, motion: Motion<'_>, filter: Filter, rows: &mut Rows<'_>) -> f64;
 
     /// Number of elements.

@@ -1,17 +1,17 @@
 //! Bending of sheets that are curved at rest.
 //!
-//! The flat form ([`super::bending`]) measures the jumps K_e x of the surface's derivative across the edges of a triangle,
-//! which are vectors along the normal, and combines them to the curvature tensor. A sheet that is curved at rest has jumps at
-//! rest, which rotate with the triangle:
+//! The flat form ([`super::bending`]) measures the jumps K_e x of the surface's derivative across the edges
+//! of a triangle, which are vectors along the normal, and combines them to the curvature tensor. A sheet that
+//! is curved at rest has jumps at rest, which rotate with the triangle:
 //!
 //! ```text
 //! r_e = K_e x - (a_e f1 + b_e f2 + c_e n),   E_T = D/(8 A_T) sum_ef (n_e.n_f)^2 r_e . r_f
 //! ```
 //!
-//! f1 and f2 are the columns of the triangle's deformation gradient, n is its unit normal (f1 x f2 scaled smoothly, shorter
-//! than 1 only for crushed triangles), and a, b, c are the components of K_e x at rest along f1, f2 and n. E is zero for
-//! rigid motions of the rest shape and equals the flat form for flat rest shapes. Only n is nonlinear in x. The Hessian is
-//! the Gauss-Newton matrix, which is positive semi-definite.
+//! f1 and f2 are the columns of the triangle's deformation gradient, n is its unit normal (f1 x f2 scaled
+//! smoothly, shorter than 1 only for crushed triangles), and a, b, c are the components of K_e x at rest
+//! along f1, f2 and n. E is zero for rigid motions of the rest shape and equals the flat form for flat rest
+//! shapes. Only n is nonlinear in x. The Hessian is the Gauss-Newton matrix, which is positive semi-definite.
 
 use super::bending::{Merged, for_each_stencil};
 use super::element::{Element, Linearisation, Start};

@@ -5,18 +5,19 @@
 //! | [`StrandEdge`] | EA/2 L (l/L - 1)^2 | an edge of rest length L, length l |
 //! | [`StrandTurn`] | EI/(2 M) (\|w\| - w0)^2, w = (x_c - x_b)/L_c - (x_b - x_a)/L_a | two edges that meet in b, M = (L_a + L_c)/2 |
 //!
-//! w is the jump of the tangent and linear in positions; \|w\|/M is the curvature (2 sin(angle/2)/M unstretched) and w0 the
-//! length of w at rest. For a straight rest shape, w0 = 0, the Hessian is constant (Bergou, Wardetzky, Robinson, Audoly and
-//! Grinspun 2008, "Discrete Elastic Rods", bending of isotropic rods). A curved rest shape fixes the angle between the edges,
-//! but not the plane of bending: there is no twist, and a curl may roll over.
+//! w is the jump of the tangent and linear in positions; \|w\|/M is the curvature (2 sin(angle/2)/M
+//! unstretched) and w0 the length of w at rest. For a straight rest shape, w0 = 0, the Hessian is constant
+//! (Bergou, Wardetzky, Robinson, Audoly and Grinspun 2008, "Discrete Elastic Rods", bending of isotropic
+//! rods). A curved rest shape fixes the angle between the edges, but not the plane of bending: there is no
+//! twist, and a curl may roll over.
 //!
-//! Where k edges meet, each pair of them resists bending with 2/k of the stiffness. A path through a branching vertex then
-//! bends nearly as it would without the branches (by a sixth more easily if one branch stands at right angles), because the
-//! branches rotate with it.
+//! Where k edges meet, each pair of them resists bending with 2/k of the stiffness. A path through a
+//! branching vertex then bends nearly as it would without the branches (by a sixth more easily if one branch
+//! stands at right angles), because the branches rotate with it.
 //!
-//! Damping of edges is a potential of the Green strain increment since the start of the step, `beta/dt EA/2 L dE^2`,
-//! dE = (l^2 - l0^2)/(2 L^2); it is invariant under rotations. Damping of bending is `beta/dt EI/(2 M) |w - w_start|^2`,
-//! which depends slightly on rotations of bent strands.
+//! Damping of edges is a potential of the Green strain increment since the start of the step, `beta/dt EA/2 L
+//! dE^2`, dE = (l^2 - l0^2)/(2 L^2); it is invariant under rotations. Damping of bending is `beta/dt EI/(2 M)
+//! |w - w_start|^2`, which depends slightly on rotations of bent strands.
 
 use super::element::{Element, Linearisation, Start};
 use super::filter::Filter;
@@ -26,8 +27,8 @@ use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
 use std::collections::BTreeMap;
 
-/// Lower bound of divisors in transverse curvatures: lengths over the rest length, and jumps of the tangent over the jump at
-/// rest. Forces do not depend on it.
+/// Lower bound of divisors in transverse curvatures: lengths over the rest length, and jumps of the tangent
+/// over the jump at rest. Forces do not depend on it.
 const MIN_RATIO: f64 = 0.05;
 
 /// A spring along an edge.
@@ -118,8 +119,8 @@ pub(crate) struct StrandTurn {
 }
 
 impl StrandTurn {
-    /// The bending spring at `nodes[1]`. Its rest shape is straight, or that of the rest positions `rest`. None if an edge
-    /// has no length at rest. `stiffness` is EI [N m^2].
+    /// The bending spring at `nodes[1]`. Its rest shape is straight, or that of the rest positions `rest`.
+    /// None if an edge has no length at rest. `stiffness` is EI [N m^2].
     pub fn new(
         nodes: [u32; 3],
         rest: &[Vector; 3],

@@ -6,23 +6,24 @@ use nalgebra::Matrix3;
 /// Columns whose angle has a smaller cosine count as orthogonal: a few ulp.
 const ORTHOGONALITY_TOLERANCE: f64 = 1e-15;
 
-/// Singular values up to this count as zero: their squares and reciprocals must be finite. Columns shorter than
-/// 1e-77 are not made orthogonal, as their products vanish.
+/// Singular values up to this count as zero: their squares and reciprocals must be finite. Columns shorter
+/// than 1e-77 are not made orthogonal, as their products vanish.
 const ZERO_SINGULAR_VALUE: f64 = 1e-150;
 
 /// Largest number of sweeps; random matrices need four.
 const MAX_SWEEPS: usize = 12;
 
-/// F = u diag(s) v^T with rotations u and v (no reflections) and s1 >= s2 >= |s3|; s3 is negative if F is inverted.
+/// F = u diag(s) v^T with rotations u and v (no reflections) and s1 >= s2 >= |s3|; s3 is negative if F is
+/// inverted.
 pub(crate) struct Svd {
     pub u: Matrix3<f64>,
     pub s: Vector,
     pub v: Matrix3<f64>,
 }
 
-/// One-sided Jacobi rotations make the columns of F V orthogonal; small singular values have full relative accuracy (Demmel
-/// and Veselic 1992). No trigonometric functions are used, which differ between platforms. The result is finite for any
-/// rank.
+/// One-sided Jacobi rotations make the columns of F V orthogonal; small singular values have full relative
+/// accuracy (Demmel and Veselic 1992). No trigonometric functions are used, which differ between platforms.
+/// The result is finite for any rank.
 #[inline]
 pub(crate) fn signed_svd(f: &Matrix3<f64>) -> Svd {
     let mut b: [Vector; 3] = std::array::from_fn(|k| f.column(k).into_owned());

@@ -1,13 +1,13 @@
 //! Tetrahedra of constant strain.
 //!
-//! F = sum x_a g_a^T, with g_a the gradients of the shape functions at rest. The energy is V W(F) with W a [`SolidLaw`]. Its
-//! curvatures come from an analytic eigensystem in the frames of the singular vectors, and each is filtered separately.
-//! Linear tetrahedra lock in bending as Poisson's ratio approaches 0.5.
+//! F = sum x_a g_a^T, with g_a the gradients of the shape functions at rest. The energy is V W(F) with W a
+//! [`SolidLaw`]. Its curvatures come from an analytic eigensystem in the frames of the singular vectors, and
+//! each is filtered separately. Linear tetrahedra lock in bending as Poisson's ratio approaches 0.5.
 //!
 //! Damping is a potential of the Green strain increment since the start of the step, as for triangles
-//! ([`super::triangle`]): `beta/dt (mu |dE|^2 + lambda/2 tr(dE)^2)` with the Lame parameters of small strain. It is invariant
-//! under rotations, so it conserves linear and angular momentum. The curvatures of a damped element are the sum of those of
-//! both potentials, and the sum is filtered.
+//! ([`super::triangle`]): `beta/dt (mu |dE|^2 + lambda/2 tr(dE)^2)` with the Lame parameters of small strain.
+//! It is invariant under rotations, so it conserves linear and angular momentum. The curvatures of a damped
+//! element are the sum of those of both potentials, and the sum is filtered.
 
 use super::element::{Element, Linearisation, Start};
 use super::filter::Filter;
@@ -65,8 +65,8 @@ impl Tetrahedron {
         rate * (mu * strain.norm_squared() + 0.5 * lambda * trace * trace)
     }
 
-    /// Stress and filtered curvatures of elasticity and damping together. Index 3 i + j belongs to the increment d_ij along
-    /// u_i v_j^T; `strain` is the increment since the start of the step, in the frame v.
+    /// Stress and filtered curvatures of elasticity and damping together. Index 3 i + j belongs to the
+    /// increment d_ij along u_i v_j^T; `strain` is the increment since the start of the step, in the frame v.
     fn damped(
         &self,
         principal: &Principal,
@@ -200,7 +200,8 @@ impl Element<4> for Tetrahedron {
             }
             for a in 0..3 {
                 for b in a..3 {
-                    // d_ij d_kl has a curvature where i = k, j = l (even), i = l, j = k (odd), i = j, k = l (scaling).
+                    // d_ij d_kl has a curvature where i = k, j = l (even), i = l, j = k (odd), i = j, k = l
+                    // (scaling).
                     let mut block = (scaling.component_mul(&(h[a] * h[b].transpose()))
                         + odd.component_mul(&(h[b] * h[a].transpose())))
                         * self.volume;

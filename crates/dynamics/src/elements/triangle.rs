@@ -8,9 +8,9 @@
 //! W = mu |F - R|^2 + lambda/2 tr(R^T F - I)^2 = mu (d1^2 + d2^2) + lambda/2 (d1 + d2)^2,   d_i = s_i - 1
 //! ```
 //!
-//! so W is a function of the singular values, and its Hessian is block-diagonal in a known basis (Smith, de Goes and Kim
-//! 2019, "Analytic Eigensystems for Isotropic Distortion Energies", here for 3 x 2). With
-//! p_i = dW/ds_i = 2 mu d_i + lambda (d1 + d2) and the normal n = u1 x u2 the eigenmatrices are
+//! so W is a function of the singular values, and its Hessian is block-diagonal in a known basis (Smith, de
+//! Goes and Kim 2019, "Analytic Eigensystems for Isotropic Distortion Energies", here for 3 x 2). With p_i =
+//! dW/ds_i = 2 mu d_i + lambda (d1 + d2) and the normal n = u1 x u2 the eigenmatrices are
 //!
 //! | mode | eigenmatrix | curvature |
 //! |---|---|---|
@@ -19,14 +19,14 @@
 //! | twist | (u2 v1^T - u1 v2^T) / sqrt 2 | (p1 + p2) / (s1 + s2) |
 //! | normal | n v1^T, n v2^T | p1 / s1, p2 / s2 |
 //!
-//! Scaling and flip are positive for any nu in (-1, 1). Twist and normal become negative under compression and are filtered
-//! ([`Filter`]). Divisors have a lower bound, so that a triangle crushed to a line or a point still has finite forces and
-//! curvatures.
+//! Scaling and flip are positive for any nu in (-1, 1). Twist and normal become negative under compression
+//! and are filtered ([`Filter`]). Divisors have a lower bound, so that a triangle crushed to a line or a
+//! point still has finite forces and curvatures.
 //!
-//! Damping is a potential of the Green strain increment since the start of the step,
-//! `beta/dt (mu |dE|^2 + lambda/2 tr(dE)^2)`, dE = (F^T F - F0^T F0)/2. It is invariant under rotations, so it conserves
-//! linear and angular momentum; its gradient is the viscous force of implicit Euler. The curvatures of a damped element are
-//! the sum of those of both potentials, and the sum is filtered.
+//! Damping is a potential of the Green strain increment since the start of the step, `beta/dt (mu |dE|^2 +
+//! lambda/2 tr(dE)^2)`, dE = (F^T F - F0^T F0)/2. It is invariant under rotations, so it conserves linear and
+//! angular momentum; its gradient is the viscous force of implicit Euler. The curvatures of a damped element
+//! are the sum of those of both potentials, and the sum is filtered.
 
 use super::element::{Element, Linearisation, Start};
 use super::filter::Filter;
@@ -71,9 +71,9 @@ impl Triangle {
         self.mu * (d1 * d1 + d2 * d2) + 0.5 * self.lambda * (d1 + d2) * (d1 + d2)
     }
 
-    /// [`Self::elastic_density`] from the columns of F, without its singular vectors, for line searches. With C = F^T F and
-    /// J = |f0 x f1| = s1 s2: (s1 + s2)^2 = tr C + 2 J and (s1 - s2)^2 = tr C - 2 J. The latter is computed from
-    /// (s1^2 - s2^2)^2 = (c00 - c11)^2 + 4 c01^2, without cancellation.
+    /// [`Self::elastic_density`] from the columns of F, without its singular vectors, for line searches. With
+    /// C = F^T F and J = |f0 x f1| = s1 s2: (s1 + s2)^2 = tr C + 2 J and (s1 - s2)^2 = tr C - 2 J. The latter
+    /// is computed from (s1^2 - s2^2)^2 = (c00 - c11)^2 + 4 c01^2, without cancellation.
     #[inline]
     fn elastic_density_of(&self, f: &[Vector; 2]) -> f64 {
         let (c00, c11, c01) = (f[0].norm_squared(), f[1].norm_squared(), f[0].dot(&f[1]));
@@ -110,8 +110,8 @@ impl Triangle {
         }
     }
 
-    /// Adds damping to the elastic part and filters the sum. Filtered separately, the two parts would not cancel each other
-    /// where they should, and Newton's method would converge slowly.
+    /// Adds damping to the elastic part and filters the sum. Filtered separately, the two parts would not
+    /// cancel each other where they should, and Newton's method would converge slowly.
     fn damped(
         &self,
         local: &mut Local,

@@ -1,16 +1,17 @@
 //! Orthotropic triangles: stiff along warp and weft, soft in shear.
 //!
-//! As for isotropic triangles ([`super::triangle`]) the energy is quadratic in the strain e = U - I of the rotated frame,
-//! U = (F^T F)^(1/2), here with the axes of the weave:
+//! As for isotropic triangles ([`super::triangle`]) the energy is quadratic in the strain e = U - I of the
+//! rotated frame, U = (F^T F)^(1/2), here with the axes of the weave:
 //!
 //! ```text
 //! W = c11/2 e11^2 + c12 e11 e22 + c22/2 e22^2 + 2 G e12^2
 //! c11 = E1/(1 - nu^2),  c22 = E2/(1 - nu^2),  c12 = nu sqrt(E1 E2)/(1 - nu^2)
 //! ```
 //!
-//! A strip that is pulled along warp or weft with free sides then has the stiffness E1 or E2 exactly. W is not a function of
-//! singular values, but U(F) has derivatives in closed form in the frames of F = sum s_i u_i v_i^T. With increments d_ij of F
-//! along u_i v_j^T (i = n: along the normal), differentiating U U = F^T F once and twice gives
+//! A strip that is pulled along warp or weft with free sides then has the stiffness E1 or E2 exactly. W is
+//! not a function of singular values, but U(F) has derivatives in closed form in the frames of F = sum s_i
+//! u_i v_i^T. With increments d_ij of F along u_i v_j^T (i = n: along the normal), differentiating U U = F^T
+//! F once and twice gives
 //!
 //! ```text
 //! dU_ij = (s_i d_ij + s_j d_ji)/(s_i + s_j),   (d2U)_ij = 2/(s_i + s_j) [(d^T d)_ij - (dU dU)_ij]
@@ -93,7 +94,8 @@ impl Weave {
 }
 
 impl WovenTriangle {
-    /// A triangle over `nodes` with rest positions `rest`; None if it has no area at rest, or if `warp` is normal to it.
+    /// A triangle over `nodes` with rest positions `rest`; None if it has no area at rest, or if `warp` is
+    /// normal to it.
     pub fn new(
         nodes: [u32; 3],
         rest: &[Vector; 3],

@@ -1,7 +1,7 @@
 //! Sparse symmetric matrices of 3 x 3 blocks: full rows, the diagonal stored separately.
 //!
-//! Both triangles are stored. A product then reads each row once and writes only the result of that row, so it is
-//! parallel and deterministic without scattering.
+//! Both triangles are stored. A product then reads each row once and writes only the result of that row, so
+//! it is parallel and deterministic without scattering.
 
 use nalgebra::Matrix3;
 

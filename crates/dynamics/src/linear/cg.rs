@@ -15,8 +15,8 @@ pub struct CgInfo {
     pub iterations: usize,
     /// Residual in the preconditioner's norm, relative to that of the right-hand side [1].
     pub residual: f64,
-    /// Whether the residual fell below the tolerance. If not, the last iterate is used all the same: the target is less
-    /// accurate, but the step does not fail.
+    /// Whether the residual fell below the tolerance. If not, the last iterate is used all the same: the
+    /// target is less accurate, but the step does not fail.
     pub converged: bool,
 }
 
@@ -27,8 +27,8 @@ pub(crate) struct Limits {
     pub tolerance: f64,
     /// Residual relative to b itself at which the solve may end as well [1].
     pub own_tolerance: f64,
-    /// Smallest squared norm that `tolerance` is relative to: that of the first solve of the time step, which the present
-    /// one corrects.
+    /// Smallest squared norm that `tolerance` is relative to: that of the first solve of the time step, which
+    /// the present one corrects.
     pub min_scale: f64,
     pub max_iterations: usize,
 }
@@ -70,8 +70,9 @@ impl CgWorkspace {
 
 /// Solves H x = b over the free nodes; b and x are zero elsewhere.
 ///
-/// The start is the combination of `guesses` with the least energy, or zero if there are none. The tolerance is relative to
-/// b, not to the first residual: a good guess saves iterations and does not raise the accuracy.
+/// The start is the combination of `guesses` with the least energy, or zero if there are none. The tolerance
+/// is relative to b, not to the first residual: a good guess saves iterations and does not raise the
+/// accuracy.
 pub(crate) fn solve(
     system: &System<'_>,
     preconditioner: &mut Preconditioner,

@@ -1,14 +1,15 @@
 //! Sparse Cholesky factorisation of symmetric matrices of B x B blocks.
 //!
-//! It is made for small systems with the graph of a surface (coarse spaces) or of strands. Nodes are eliminated in the order
-//! of nested dissection by position (recursive bisection; nodes of one half that touch the other half come last), or in an
-//! order that the caller gives. Semi-definite matrices are allowed, see [`PivotPolicy`].
+//! It is made for small systems with the graph of a surface (coarse spaces) or of strands. Nodes are
+//! eliminated in the order of nested dissection by position (recursive bisection; nodes of one half that
+//! touch the other half come last), or in an order that the caller gives. Semi-definite matrices are allowed,
+//! see [`PivotPolicy`].
 
 use bowknot_geometry::Vector;
 use nalgebra::{SMatrix, SVector};
 
-/// A pivot at most this share of its diagonal entry counts as zero: the rounding error of a sum of a few dozen terms that
-/// cancel, with a margin.
+/// A pivot at most this share of its diagonal entry counts as zero: the rounding error of a sum of a few
+/// dozen terms that cancel, with a margin.
 const ZERO_PIVOT: f64 = 1e-11;
 
 /// Smallest pivot with [`PivotPolicy::Raise`], as a share of its diagonal entry.
@@ -38,8 +39,8 @@ pub(crate) struct Symbolic {
 }
 
 impl Symbolic {
-    /// Analyses the graph in which node i has the `neighbours(i)` (in any order, i itself allowed), in the order of nested
-    /// dissection by `positions`.
+    /// Analyses the graph in which node i has the `neighbours(i)` (in any order, i itself allowed), in the
+    /// order of nested dissection by `positions`.
     pub fn new<'a>(positions: &[Vector], neighbours: impl Fn(usize) -> &'a [u32]) -> Self {
         let count = positions.len();
         let mut order: Vec<u32> = (0..count as u32).collect();
@@ -54,7 +55,8 @@ impl Symbolic {
         let mut place = vec![0; count];
         order.iter().enumerate().for_each(|(new, &old)| place[old as usize] = new as u32);
 
-        // The structure of a column is that of the matrix united with those of its children in the elimination tree.
+        // The structure of a column is that of the matrix united with those of its children in the
+        // elimination tree.
         let mut structures: Vec<Vec<u32>> = vec![Vec::new(); count];
         let mut children: Vec<Vec<u32>> = vec![Vec::new(); count];
         let mut seen = vec![u32::MAX; count];
@@ -148,8 +150,8 @@ pub(crate) struct Cholesky<const B: usize> {
 }
 
 impl<const B: usize> Cholesky<B> {
-    /// Factorises a matrix. `row(i)` gives the columns and blocks of row i, in old indices; blocks above the diagonal of the
-    /// new order are skipped.
+    /// Factorises a matrix. `row(i)` gives the columns and blocks of row i, in old indices; blocks above the
+    /// diagonal of the new order are skipped.
     pub fn factorise<'a>(
         &mut self,
         symbolic: &Symbolic,

@@ -1,10 +1,10 @@
 //! A coarse correction: every aggregate of nodes moves as a rigid body.
 //!
-//! Conjugate gradients are slow to find motions of large patches that hardly stretch the cloth. The columns of P are the six
-//! rigid motions of each aggregate (a leaf of the numbering, [`super::ordering`]) about its centre at the current x. The
-//! Galerkin matrix P^T H P is factorised, and `P (P^T H P)^-1 P^T` is added to the fine preconditioner. Springs join
-//! aggregates that the mesh does not join: the graph of the matrix is then built anew, unless the factor would fill in too
-//! much.
+//! Conjugate gradients are slow to find motions of large patches that hardly stretch the cloth. The columns
+//! of P are the six rigid motions of each aggregate (a leaf of the numbering, [`super::ordering`]) about its
+//! centre at the current x. The Galerkin matrix P^T H P is factorised, and `P (P^T H P)^-1 P^T` is added to
+//! the fine preconditioner. Springs join aggregates that the mesh does not join: the graph of the matrix is
+//! then built anew, unless the factor would fill in too much.
 
 use super::cholesky::{Cholesky, PivotPolicy, Symbolic};
 use super::springs::LinearSprings;
@@ -14,8 +14,9 @@ use nalgebra::{Matrix3, Matrix6, Vector6};
 use rayon::prelude::*;
 use std::ops::{AddAssign, Range};
 
-/// Largest fill of a factor with springs, relative to that of the mesh. The graph of a pile of many layers is not that of a
-/// surface, and its factor costs more time than it saves. Beyond this only the diagonal blocks of springs are used.
+/// Largest fill of a factor with springs, relative to that of the mesh. The graph of a pile of many layers is
+/// not that of a surface, and its factor costs more time than it saves. Beyond this only the diagonal blocks
+/// of springs are used.
 const MAX_FILL: usize = 8;
 
 /// Rigid motions of aggregates.
@@ -67,9 +68,9 @@ impl Graph {
 }
 
 impl Coarse {
-    /// Prepares the graph of `aggregates`, at least one. With each node they contain all nodes that H couples to it; nodes
-    /// in none of them get no correction. `rest` are the rest positions of all nodes; `row` visits the off-diagonal columns
-    /// of a row of H.
+    /// Prepares the graph of `aggregates`, at least one. With each node they contain all nodes that H couples
+    /// to it; nodes in none of them get no correction. `rest` are the rest positions of all nodes; `row`
+    /// visits the off-diagonal columns of a row of H.
     pub fn new(aggregates: &[Range<u32>], rest: &[Vector], row: impl Fn(usize, &mut dyn FnMut(u32))) -> Self {
         let mut aggregate_of = vec![0u32; rest.len()];
         for (a, range) in aggregates.iter().enumerate() {
@@ -110,8 +111,8 @@ impl Coarse {
                 if arms[node].free == 0.0 {
                     continue;
                 }
-                // The row of H P, neighbour by neighbour. Neighbours in one aggregate mostly follow each other; their
-                // sum is formed before P^T is applied.
+                // The row of H P, neighbour by neighbour. Neighbours in one aggregate mostly follow each
+                // other; their sum is formed before P^T is applied.
                 let mut sum = RowSum { aggregate: aggregate_of[node], ..RowSum::default() };
                 let mut flush = |sum: &RowSum| {
                     let slot = around.binary_search(&sum.aggregate);
@@ -217,7 +218,8 @@ fn centres(aggregates: &[Range<u32>], x: &[Vector]) -> Vec<Vector> {
 /// A node moves with its aggregate by `free * shift + spin x offset`.
 #[derive(Clone, Copy, Debug, Default)]
 struct Arm {
-    /// Vector from the aggregate's centre to the node over the aggregate's size [1]; zero if the node is not free.
+    /// Vector from the aggregate's centre to the node over the aggregate's size [1]; zero if the node is not
+    /// free.
     offset: Vector,
     /// 1 if the node is free, 0 otherwise.
     free: f64,

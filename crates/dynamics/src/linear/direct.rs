@@ -1,9 +1,10 @@
 //! Exact solves over strands.
 //!
-//! The edges of a strand are very stiff compared with the inertia of its nodes. Conjugate gradients with block-Jacobi
-//! therefore take about n iterations for a strand of n nodes. Its part of H is a narrow band, which is factorised instead:
-//! some 2 blocks per node, no more work than a product with H. Nodes are eliminated from the far ends inwards: in that order
-//! trees, and bending between second neighbours, cause hardly any fill-in.
+//! The edges of a strand are very stiff compared with the inertia of its nodes. Conjugate gradients with
+//! block-Jacobi therefore take about n iterations for a strand of n nodes. Its part of H is a narrow band,
+//! which is factorised instead: some 2 blocks per node, no more work than a product with H. Nodes are
+//! eliminated from the far ends inwards: in that order trees, and bending between second neighbours, cause
+//! hardly any fill-in.
 
 use super::block::BlockPattern;
 use super::cholesky::{Cholesky, PivotPolicy, Symbolic};
@@ -13,7 +14,8 @@ use nalgebra::Matrix3;
 use rayon::prelude::*;
 use std::collections::VecDeque;
 
-/// Smallest number of nodes in a group, the unit of parallel work: a group takes whole strands until it has as many.
+/// Smallest number of nodes in a group, the unit of parallel work: a group takes whole strands until it has
+/// as many.
 const MIN_GROUP_NODES: usize = 512;
 
 /// Place of a node that is in no group.
@@ -32,7 +34,8 @@ struct Group {
     /// In the order of elimination.
     nodes: Vec<u32>,
     symbolic: Symbolic,
-    /// Compressed rows over places in the group, each with its diagonal first, and the index of each block in the pattern.
+    /// Compressed rows over places in the group, each with its diagonal first, and the index of each block in
+    /// the pattern.
     starts: Vec<u32>,
     columns: Vec<u32>,
     slots: Vec<u32>,

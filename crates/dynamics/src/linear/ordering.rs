@@ -1,7 +1,7 @@
 //! Numbering of nodes along the mesh, so that ranges of numbers are compact patches.
 //!
-//! Nodes are sorted by connected component, then by recursive bisection of the rest positions at the median of the longest
-//! side. Neighbours are then close in memory, and the leaves serve as aggregates.
+//! Nodes are sorted by connected component, then by recursive bisection of the rest positions at the median
+//! of the longest side. Neighbours are then close in memory, and the leaves serve as aggregates.
 
 use crate::groups::Groups;
 use bowknot_geometry::Vector;
@@ -17,7 +17,8 @@ pub(crate) struct Ordering {
     pub components: Vec<Range<u32>>,
 }
 
-/// Orders the nodes at `positions`; `for_each_link` calls its argument with each pair of nodes that are joined.
+/// Orders the nodes at `positions`; `for_each_link` calls its argument with each pair of nodes that are
+/// joined.
 pub(crate) fn order_nodes(
     positions: &[Vector],
     leaf: usize,

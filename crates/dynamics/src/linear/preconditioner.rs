@@ -9,8 +9,8 @@ use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
-/// Block-Jacobi with an exact solve over strands and a coarse correction, each if the model has nodes for it. It is rebuilt
-/// for every system.
+/// Block-Jacobi with an exact solve over strands and a coarse correction, each if the model has nodes for it.
+/// It is rebuilt for every system.
 #[derive(Debug, Default)]
 pub(crate) struct Preconditioner {
     /// Inverses of the diagonal blocks; zero for nodes that are not free.
@@ -75,8 +75,9 @@ impl Preconditioner {
     }
 }
 
-/// The inverse of a symmetric positive definite block. The smallest eigenvalue is at least the inertia of the node, so the
-/// block is singular only if the input is not finite. The identity is returned then, and CG detects the non-finite numbers.
+/// The inverse of a symmetric positive definite block. The smallest eigenvalue is at least the inertia of the
+/// node, so the block is singular only if the input is not finite. The identity is returned then, and CG
+/// detects the non-finite numbers.
 fn invert(block: Matrix3<f64>) -> Matrix3<f64> {
     block.try_inverse().map_or_else(Matrix3::identity, |inverse| (inverse + inverse.transpose()) * 0.5)
 }

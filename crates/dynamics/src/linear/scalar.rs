@@ -1,8 +1,8 @@
-//! Translation-invariant quadratic forms `E(x) = 1/2 sum q_ij x_i.x_j` with one number per pair of nodes: the matrix is the
-//! same for every coordinate.
+//! Translation-invariant quadratic forms `E(x) = 1/2 sum q_ij x_i.x_j` with one number per pair of nodes: the
+//! matrix is the same for every coordinate.
 //!
-//! Rows sum to zero. The diagonal is implied, `q_ii = - sum q_ij`, and products use differences x_j - x_i: they are exactly
-//! invariant under translation, however far the origin is.
+//! Rows sum to zero. The diagonal is implied, `q_ii = - sum q_ij`, and products use differences x_j - x_i:
+//! they are exactly invariant under translation, however far the origin is.
 
 use super::block::BlockPattern;
 use crate::nodes::CHUNK;
@@ -20,7 +20,8 @@ impl ScalarBuilder {
         Self { rows: vec![Vec::new(); node_count] }
     }
 
-    /// Adds `value` to entries (i, j) and (j, i) and subtracts it from both diagonal entries. Does nothing if i = j.
+    /// Adds `value` to entries (i, j) and (j, i) and subtracts it from both diagonal entries. Does nothing if
+    /// i = j.
     pub fn add(&mut self, i: u32, j: u32, value: f64) {
         if i == j {
             return;
@@ -76,8 +77,8 @@ impl ScalarForm {
         sum
     }
 
-    /// Splits the form for a matrix with `pattern` into the entries that its off-diagonal blocks have a place for, and the
-    /// others.
+    /// Splits the form for a matrix with `pattern` into the entries that its off-diagonal blocks have a place
+    /// for, and the others.
     pub fn split(&self, pattern: &BlockPattern) -> SplitForm {
         let mut split = SplitForm {
             diagonal: self.diagonal.clone(),
@@ -127,8 +128,8 @@ impl ScalarForm {
     }
 }
 
-/// A form split by a block pattern. The block matrix takes the entries in the pattern, so that products read fewer
-/// numbers.
+/// A form split by a block pattern. The block matrix takes the entries in the pattern, so that products read
+/// fewer numbers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SplitForm {
     pub diagonal: Vec<f64>,

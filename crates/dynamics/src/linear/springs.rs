@@ -1,8 +1,9 @@
 //! Springs between nodes as a part of the Newton system, see [`super::system`].
 //!
-//! A spring acts on the weighted sum s = sum beta_i x_i of up to four nodes, with a force and a 3 x 3 Hessian over s. The
-//! Hessian over all nodes is applied without being stored: a product first computes the reaction of each spring, then each
-//! node gathers the reactions of its springs. Preconditioners ask for single blocks.
+//! A spring acts on the weighted sum s = sum beta_i x_i of up to four nodes, with a force and a 3 x 3 Hessian
+//! over s. The Hessian over all nodes is applied without being stored: a product first computes the reaction
+//! of each spring, then each node gathers the reactions of its springs. Preconditioners ask for single
+//! blocks.
 
 use crate::nodes::{CHUNK, NO_NODE};
 use bowknot_geometry::Vector;
@@ -123,8 +124,8 @@ impl LinearSprings {
     }
 }
 
-/// Calls `visit` with the nodes of a spring, and whether an obstacle or a half-space holds them: their weights then do
-/// not sum to 0.
+/// Calls `visit` with the nodes of a spring, and whether an obstacle or a half-space holds them: their
+/// weights then do not sum to 0.
 pub(crate) fn visit_nodes(nodes: &[u32; 4], weights: &[f64; 4], visit: &mut impl FnMut(&[u32], bool)) {
     let mut joined = [NO_NODE; 4];
     let (mut count, mut sum) = (0, 0.0);

@@ -1,5 +1,5 @@
-//! The matrix of a Newton iteration over the free nodes: H = block matrix + entries of a scalar form outside of the block
-//! pattern + active springs.
+//! The matrix of a Newton iteration over the free nodes: H = block matrix + entries of a scalar form outside
+//! of the block pattern + active springs.
 
 use super::block::{BlockPattern, BlockValues};
 use super::scalar::SplitForm;

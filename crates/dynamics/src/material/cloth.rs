@@ -6,50 +6,55 @@ use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::Vector;
 use serde::{Deserialize, Serialize};
 
-/// A woven or knitted sheet, linear in the rotated frame. It is isotropic, or has different stiffnesses along warp, weft and
-/// in shear.
+/// A woven or knitted sheet, linear in the rotated frame. It is isotropic, or has different stiffnesses along
+/// warp, weft and in shear.
 ///
-/// Forces do not depend on the thickness: stiffnesses are those of the sheet, per metre of its width. For a homogeneous
-/// sheet with Young's modulus E they are `E t` and `E t^3 / (12 (1 - nu^2))`, see [`ClothMaterial::from_young_modulus`]. The
-/// yarns of a fabric slide, so that it bends far more easily than that.
+/// Forces do not depend on the thickness: stiffnesses are those of the sheet, per metre of its width. For a
+/// homogeneous sheet with Young's modulus E they are `E t` and `E t^3 / (12 (1 - nu^2))`, see
+/// [`ClothMaterial::from_young_modulus`]. The yarns of a fabric slide, so that it bends far more easily than
+/// that.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ClothMaterial {
     /// Mass per area [kg/m^2]. Larger: heavier, slower to accelerate.
     pub density: f64,
-    /// Young's modulus times thickness [N/m]; along the warp if `weft_stiffness` is given. Larger: stretches less; the
-    /// linear solve takes more iterations, about in proportion to the square root.
+    /// Young's modulus times thickness [N/m]; along the warp if `weft_stiffness` is given. Larger: stretches
+    /// less; the linear solve takes more iterations, about in proportion to the square root.
     pub stretch_stiffness: f64,
-    /// Young's modulus times thickness along the weft [N/m], across `warp_direction`. Default: that along the warp.
+    /// Young's modulus times thickness along the weft [N/m], across `warp_direction`. Default: that along the
+    /// warp.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub weft_stiffness: Option<f64>,
     /// Shear modulus times thickness [N/m]: force per width and angle between warp and weft. Woven cloth
-    /// shears 10 to 100 times more easily than it stretches. Default: sqrt(warp weft)/(2 (1 + nu)), isotropic if warp
-    /// and weft are equal.
+    /// shears 10 to 100 times more easily than it stretches. Default: sqrt(warp weft)/(2 (1 + nu)), isotropic
+    /// if warp and weft are equal.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shear_stiffness: Option<f64>,
-    /// Direction of the warp in the rest state [1], projected into each triangle. It is used only with a weft or shear
-    /// stiffness. Default (1, 0, 0).
+    /// Direction of the warp in the rest state [1], projected into each triangle. It is used only with a weft
+    /// or shear stiffness. Default (1, 0, 0).
     pub warp_direction: Vector,
-    /// Poisson's ratio of the membrane [1], in (-1, 1): how much it narrows when it is stretched. With different stiffnesses
-    /// along warp and weft, the geometric mean of both ratios.
+    /// Poisson's ratio of the membrane [1], in (-1, 1): how much it narrows when it is stretched. With
+    /// different stiffnesses along warp and weft, the geometric mean of both ratios.
     pub poisson_ratio: f64,
-    /// Bending stiffness D [N m]: moment per width and curvature of a strip with free sides. Larger: wider folds.
+    /// Bending stiffness D [N m]: moment per width and curvature of a strip with free sides. Larger: wider
+    /// folds.
     pub bend_stiffness: f64,
-    /// Shape without bending energy: `flat`, or `initial`, the curved shape that the body has at the start. Default `flat`.
+    /// Shape without bending energy: `flat`, or `initial`, the curved shape that the body has at the start.
+    /// Default `flat`.
     pub rest_shape: RestShape,
     /// Thickness [m], for contact and for pictures.
     pub thickness: f64,
-    /// Largest ratio of an edge's length to its rest length [1], above 1; inf: no limit. At this ratio the yarns of the
-    /// fabric are straight and it stiffens; below, the fabric stretches according to its stiffness. The collision stage
-    /// enforces the limit on every edge, whatever its direction: cloth of low shear stiffness stretches more on the bias and
-    /// needs a higher limit. Wool has 1.06, wool-lycra 1.2, the other fabrics 1.05.
+    /// Largest ratio of an edge's length to its rest length [1], above 1; inf: no limit. At this ratio the
+    /// yarns of the fabric are straight and it stiffens; below, the fabric stretches according to its
+    /// stiffness. The collision stage enforces the limit on every edge, whatever its direction: cloth of low
+    /// shear stiffness stretches more on the bias and needs a higher limit. Wool has 1.06, wool-lycra 1.2,
+    /// the other fabrics 1.05.
     pub stretch_limit: f64,
-    /// Strain-rate damping [s]: viscous stress = this times stiffness times strain rate. It conserves linear and angular
-    /// momentum. 0: no damping but that of implicit Euler.
+    /// Strain-rate damping [s]: viscous stress = this times stiffness times strain rate. It conserves linear
+    /// and angular momentum. 0: no damping but that of implicit Euler.
     pub stretch_damping: f64,
-    /// Bending-rate damping [s]: viscous moment = this times stiffness times curvature rate. It conserves linear momentum,
-    /// but slightly slows a bent sheet that spins as a whole.
+    /// Bending-rate damping [s]: viscous moment = this times stiffness times curvature rate. It conserves
+    /// linear momentum, but slightly slows a bent sheet that spins as a whole.
     pub bend_damping: f64,
 }
 
@@ -64,8 +69,8 @@ impl ClothMaterial {
     /// The names that [`Self::named`] accepts.
     pub const NAMES: [&'static str; 6] = ["cotton", "wool", "wool-lycra", "polyester", "silk", "denim"];
 
-    /// A homogeneous sheet: density [kg/m^2], Young's modulus [Pa], Poisson's ratio, thickness [m]. It has no stretch limit,
-    /// as these numbers do not say where it stiffens.
+    /// A homogeneous sheet: density [kg/m^2], Young's modulus [Pa], Poisson's ratio, thickness [m]. It has no
+    /// stretch limit, as these numbers do not say where it stiffens.
     pub fn from_young_modulus(density: f64, young_modulus: f64, poisson_ratio: f64, thickness: f64) -> Self {
         Self {
             density,
@@ -92,9 +97,10 @@ impl ClothMaterial {
     /// Directions", Fibres & Textiles in Eastern Europe 22 (2014), tables 1 and 3, as simulation
     /// packages transcribe them. Bending is the homogeneous estimate, an engineering choice.
     ///
-    /// Stretch limits are class values, rounded to a hundredth: 1 plus the strain EMT that the Kawabata system (KES-F)
-    /// measures under 500 gf/cm = 490 N/m, mean of warp and weft, in fabrics of that kind. No such test of exactly these
-    /// fabrics is known. Cotton takes the limit of denim, which is of cellulose as well, see [`Self::denim`].
+    /// Stretch limits are class values, rounded to a hundredth: 1 plus the strain EMT that the Kawabata
+    /// system (KES-F) measures under 500 gf/cm = 490 N/m, mean of warp and weft, in fabrics of that kind. No
+    /// such test of exactly these fabrics is known. Cotton takes the limit of denim, which is of cellulose as
+    /// well, see [`Self::denim`].
     pub fn cotton() -> Self {
         Self { stretch_limit: 1.05, ..Self::from_young_modulus(0.1503, 0.821e6, 0.243, 0.318e-3) }
     }
@@ -102,9 +108,9 @@ impl ClothMaterial {
     /// Plain-woven wool: 0.2348 kg/m^2, 0.568 mm, 0.170 MPa, 0.277; stretch limit 1.06. Source: see
     /// [`Self::cotton`].
     ///
-    /// Limit: the mean of 214 winter suitings, 0.26 kg/m^2, has LT = 0.6082 and log10 WT = 0.9621 (Kawabata, "The
-    /// Standardization and Analysis of Hand Evaluation", 2nd ed., 1980, constants of equation KN-101-WINTER, as they are quoted;
-    /// not checked against the book), hence EMT = 2 WT/(500 LT) = 6.0 %.
+    /// Limit: the mean of 214 winter suitings, 0.26 kg/m^2, has LT = 0.6082 and log10 WT = 0.9621 (Kawabata,
+    /// "The Standardization and Analysis of Hand Evaluation", 2nd ed., 1980, constants of equation
+    /// KN-101-WINTER, as they are quoted; not checked against the book), hence EMT = 2 WT/(500 LT) = 6.0 %.
     pub fn wool() -> Self {
         Self { stretch_limit: 1.06, ..Self::from_young_modulus(0.2348, 0.170e6, 0.277, 0.568e-3) }
     }
@@ -112,8 +118,8 @@ impl ClothMaterial {
     /// Plain-woven wool with lycra: 0.1782 kg/m^2, 0.328 mm, 0.076 MPa, 0.071; stretch limit 1.2. Source: see
     /// [`Self::cotton`].
     ///
-    /// Limit: the lower end of "comfort stretch", the trade's word for woven fabrics with a little elastane that stretch by
-    /// 20 to 30 %. It is a trade value, not a measurement.
+    /// Limit: the lower end of "comfort stretch", the trade's word for woven fabrics with a little elastane
+    /// that stretch by 20 to 30 %. It is a trade value, not a measurement.
     pub fn wool_lycra() -> Self {
         Self { stretch_limit: 1.2, ..Self::from_young_modulus(0.1782, 0.076e6, 0.071, 0.328e-3) }
     }
@@ -121,16 +127,16 @@ impl ClothMaterial {
     /// Plain-woven polyester: 0.1646 kg/m^2, 0.252 mm, 0.478 MPa, 0.381; stretch limit 1.05. Source: see
     /// [`Self::cotton`].
     ///
-    /// Limit: the mean of 156 summer suitings, 0.19 kg/m^2, has LT = 0.6286 and log10 WT = 0.8713 (Kawabata 1980 as for
-    /// [`Self::wool`], equation KN-101-SUMMER), hence EMT = 4.7 %: a class of woven cloth as light, not of polyester in
-    /// particular.
+    /// Limit: the mean of 156 summer suitings, 0.19 kg/m^2, has LT = 0.6286 and log10 WT = 0.8713 (Kawabata
+    /// 1980 as for [`Self::wool`], equation KN-101-SUMMER), hence EMT = 4.7 %: a class of woven cloth as
+    /// light, not of polyester in particular.
     pub fn polyester() -> Self {
         Self { stretch_limit: 1.05, ..Self::from_young_modulus(0.1646, 0.478e6, 0.381, 0.252e-3) }
     }
 
-    /// A light silk. Engineering choices throughout: 60 g/m^2 is the trade weight of a 14 momme
-    /// crepe de Chine; the stiffnesses place it below cotton in bending, above it in stretching
-    /// per weight. The stretch limit 1.05 is that of light woven fabrics, see [`Self::polyester`]; no silk was tested for it.
+    /// A light silk. Engineering choices throughout: 60 g/m^2 is the trade weight of a 14 momme crepe de
+    /// Chine; the stiffnesses place it below cotton in bending, above it in stretching per weight. The
+    /// stretch limit 1.05 is that of light woven fabrics, see [`Self::polyester`]; no silk was tested for it.
     pub fn silk() -> Self {
         Self {
             density: 0.060,
@@ -146,9 +152,9 @@ impl ClothMaterial {
     /// A heavy denim; stretch limit 1.05. Engineering choices: 0.41 kg/m^2 is the trade weight of a 12 ounce
     /// denim; the stiffnesses place it well above cotton.
     ///
-    /// Limit: six denims based on regenerated cellulose have EMT from 4.7 to 5.7 %, 5.2 % on average (Kumari and
-    /// Khurana, "Regenerated Cellulose-Based Denim Fabric for Tropical Regions", Journal of Textiles 2016, 4614168,
-    /// table 5).
+    /// Limit: six denims based on regenerated cellulose have EMT from 4.7 to 5.7 %, 5.2 % on average (Kumari
+    /// and Khurana, "Regenerated Cellulose-Based Denim Fabric for Tropical Regions", Journal of Textiles
+    /// 2016, 4614168, table 5).
     pub fn denim() -> Self {
         Self {
             density: 0.41,
@@ -181,8 +187,8 @@ impl ClothMaterial {
 
     /// Lame parameters of plane stress times thickness [N/m]: (lambda, mu).
     ///
-    /// `mu = Et / (2 (1 + nu))`, `lambda = Et nu / (1 - nu^2)`. A strip that is pulled along its length with free sides then
-    /// has the stiffness Et exactly.
+    /// `mu = Et / (2 (1 + nu))`, `lambda = Et nu / (1 - nu^2)`. A strip that is pulled along its length with
+    /// free sides then has the stiffness Et exactly.
     pub fn lame(&self) -> (f64, f64) {
         let (stiffness, nu) = (self.stretch_stiffness, self.poisson_ratio);
         (stiffness * nu / (1.0 - nu * nu), stiffness / (2.0 * (1.0 + nu)))

@@ -1,6 +1,7 @@
 //! Materials in physical units, with named presets.
 //!
-//! Every field of a material is checked ([`crate::Parameters`]). Unknown keys are refused when a material is read.
+//! Every field of a material is checked ([`crate::Parameters`]). Unknown keys are refused when a material is
+//! read.
 
 mod checks;
 pub(crate) mod cloth;

@@ -12,13 +12,13 @@ pub struct SolidMaterial {
     pub density: f64,
     /// Young's modulus at small strain [Pa]. Default 1e6. Larger: deforms less.
     pub young_modulus: f64,
-    /// Poisson's ratio at small strain [1], in (-1, 0.5). Default 0.45. As it approaches 0.5, linear tetrahedra become much
-    /// too stiff in bending (volumetric locking).
+    /// Poisson's ratio at small strain [1], in (-1, 0.5). Default 0.45. As it approaches 0.5, linear
+    /// tetrahedra become much too stiff in bending (volumetric locking).
     pub poisson_ratio: f64,
     /// Law of large strains. Default `stable-neo-hookean`.
     pub model: SolidModel,
-    /// Strain-rate damping [s]: viscous stress = this times stiffness times strain rate. It conserves linear and angular
-    /// momentum. Default 0: no damping but that of implicit Euler.
+    /// Strain-rate damping [s]: viscous stress = this times stiffness times strain rate. It conserves linear
+    /// and angular momentum. Default 0: no damping but that of implicit Euler.
     pub damping: f64,
 }
 
@@ -27,12 +27,12 @@ pub struct SolidMaterial {
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum SolidModel {
-    /// St. Venant-Kirchhoff: stress is linear in the Green strain. It stiffens under tension. Compressed below
-    /// 1/sqrt(3) = 0.58 of its length it softens, and flattened it has no stress: strong compression collapses it, and
-    /// inverted elements stay inverted.
+    /// St. Venant-Kirchhoff: stress is linear in the Green strain. It stiffens under tension. Compressed
+    /// below 1/sqrt(3) = 0.58 of its length it softens, and flattened it has no stress: strong compression
+    /// collapses it, and inverted elements stay inverted.
     Stvk,
-    /// Stable neo-Hookean (Smith, de Goes and Kim 2018): it resists inversion and recovers from it, and its energy is smooth
-    /// there.
+    /// Stable neo-Hookean (Smith, de Goes and Kim 2018): it resists inversion and recovers from it, and its
+    /// energy is smooth there.
     #[default]
     StableNeoHookean,
 }
@@ -48,7 +48,8 @@ impl SolidMaterial {
     /// The names that [`Self::named`] accepts.
     pub const NAMES: [&'static str; 4] = ["rubber", "silicone", "jelly", "foam"];
 
-    /// A soft rubber: 1000 kg/m^3, 1 MPa (about Shore A 25), 0.45 instead of 0.4995, at which linear tetrahedra lock.
+    /// A soft rubber: 1000 kg/m^3, 1 MPa (about Shore A 25), 0.45 instead of 0.4995, at which linear
+    /// tetrahedra lock.
     pub fn rubber() -> Self {
         Self {
             density: 1000.0,

@@ -19,14 +19,15 @@ pub struct StrandMaterial {
     pub bend_stiffness: f64,
     /// Radius [m], for the drag by air, for contact and for pictures. Default: that of hair.
     pub radius: f64,
-    /// Strain-rate damping [s]: viscous force = this times stiffness times strain rate. It conserves linear and angular
-    /// momentum. Default 0.
+    /// Strain-rate damping [s]: viscous force = this times stiffness times strain rate. It conserves linear
+    /// and angular momentum. Default 0.
     pub stretch_damping: f64,
-    /// Bending-rate damping [s]: viscous moment = this times stiffness times curvature rate. It conserves linear momentum,
-    /// but slightly slows a bent strand that spins as a whole. Default 0.
+    /// Bending-rate damping [s]: viscous moment = this times stiffness times curvature rate. It conserves
+    /// linear momentum, but slightly slows a bent strand that spins as a whole. Default 0.
     pub bend_damping: f64,
-    /// Shape without bending energy: `flat` is straight; `initial` has the angle at each vertex that the strand has at the
-    /// start, but not the plane of bending (there is no twist, and a curl may roll over). Default `initial`.
+    /// Shape without bending energy: `flat` is straight; `initial` has the angle at each vertex that the
+    /// strand has at the start, but not the plane of bending (there is no twist, and a curl may roll over).
+    /// Default `initial`.
     pub rest_shape: RestShape,
 }
 
@@ -62,8 +63,9 @@ impl StrandMaterial {
         Self::from_young_modulus(1320.0, 3.9e9, 40e-6)
     }
 
-    /// A lock of 100 hairs that slide freely: 100 times the mass and the stiffnesses of one hair. Its radius is that of a
-    /// round bundle half filled with hair. It is for scenes in which one strand stands for many hairs.
+    /// A lock of 100 hairs that slide freely: 100 times the mass and the stiffnesses of one hair. Its radius
+    /// is that of a round bundle half filled with hair. It is for scenes in which one strand stands for many
+    /// hairs.
     pub fn lock() -> Self {
         let hair = Self::hair();
         Self {
@@ -75,8 +77,8 @@ impl StrandMaterial {
         }
     }
 
-    /// Cotton yarn of 100 tex: 0.1 g/m, 1 mm across. Engineering choices: EA 160 N, half of that of straight cotton fibres
-    /// of 5 GPa; EI that of 575 loose fibres of 12 micrometres.
+    /// Cotton yarn of 100 tex: 0.1 g/m, 1 mm across. Engineering choices: EA 160 N, half of that of straight
+    /// cotton fibres of 5 GPa; EI that of 575 loose fibres of 12 micrometres.
     pub fn yarn() -> Self {
         Self {
             density: 1e-4,

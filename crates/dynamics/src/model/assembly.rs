@@ -98,8 +98,8 @@ impl<'a> Assembly<'a> {
             }
         }
         if material.bend_stiffness > 0.0 {
-            // Damping of curvature rates does not depend on the rest shape. Both forms have the same pattern, so each
-            // is also added if its stiffness is 0.
+            // Damping of curvature rates does not depend on the rest shape. Both forms have the same pattern,
+            // so each is also added if its stiffness is 0.
             let flat = match material.rest_shape {
                 RestShape::Flat => material.bend_stiffness,
                 RestShape::Initial => {

@@ -7,11 +7,12 @@ use bowknot_errors::{Errors, ParamError, Parameters};
 use bowknot_geometry::Point;
 use std::collections::HashMap;
 
-/// Areas, volumes and lengths count as zero up to this share of the longest edge squared, of the longest edge cubed and of
-/// the largest coordinate.
+/// Areas, volumes and lengths count as zero up to this share of the longest edge squared, of the longest edge
+/// cubed and of the largest coordinate.
 const ZERO: f64 = 1e-12;
 
-/// Smallest angle between the warp and a triangle's normal [rad], below which the warp has no direction in the triangle.
+/// Smallest angle between the warp and a triangle's normal [rad], below which the warp has no direction in
+/// the triangle.
 const MIN_WARP_ANGLE: f64 = 1e-6;
 
 /// Checks indices and materials first and then, if there is no error, sizes.

@@ -19,18 +19,18 @@ use check::check;
 use masses::masses;
 use std::ops::Range;
 
-/// Largest number of nodes in a leaf of the numbering; leaves are the aggregates of the coarse correction. As nodes are
-/// halved until they fit, a leaf has 32 to 64 nodes.
+/// Largest number of nodes in a leaf of the numbering; leaves are the aggregates of the coarse correction. As
+/// nodes are halved until they fit, a leaf has 32 to 64 nodes.
 const MAX_LEAF_NODES: usize = 64;
 
-/// Largest number of aggregates. In larger models aggregates are larger, so that the coarse factor, whose cost grows with
-/// their number to the power 1.5, remains a small part of a step.
+/// Largest number of aggregates. In larger models aggregates are larger, so that the coarse factor, whose
+/// cost grows with their number to the power 1.5, remains a small part of a step.
 const MAX_AGGREGATES: usize = 4096;
 
 /// Everything that is fixed during a run.
 ///
-/// Internally the deformable vertices are *nodes*, numbered along the mesh. All slices of the public interface are in the
-/// order of the scene's vertices.
+/// Internally the deformable vertices are *nodes*, numbered along the mesh. All slices of the public
+/// interface are in the order of the scene's vertices.
 pub struct DynamicsModel {
     rest_positions: Vec<Point>,
     bodies: Vec<Body>,
@@ -73,8 +73,8 @@ impl std::fmt::Debug for DynamicsModel {
 impl DynamicsModel {
     /// Builds masses, elements and patterns from the rest positions [m] of all vertices.
     ///
-    /// Several deformable bodies may share a vertex (they are sewn together there); a deformable body and an obstacle may
-    /// not.
+    /// Several deformable bodies may share a vertex (they are sewn together there); a deformable body and an
+    /// obstacle may not.
     ///
     /// # Errors
     /// Every error that was found, see [`ModelError`].
@@ -167,8 +167,8 @@ impl DynamicsModel {
         &self.bodies
     }
 
-    /// Mass of each vertex [kg]: a third of the mass of its triangles, a quarter of the mass of its tets, half of the mass of
-    /// its strand edges, the mass of a grain; 0 for vertices of obstacles.
+    /// Mass of each vertex [kg]: a third of the mass of its triangles, a quarter of the mass of its tets,
+    /// half of the mass of its strand edges, the mass of a grain; 0 for vertices of obstacles.
     pub fn masses(&self) -> &[f64] {
         &self.masses
     }
@@ -193,8 +193,8 @@ impl DynamicsModel {
         self.masses.iter().sum()
     }
 
-    /// Gravity on a vertex [m/s^2]: that of its body (of the last one, if several share it) or, if that has none, that of the
-    /// `scene`.
+    /// Gravity on a vertex [m/s^2]: that of its body (of the last one, if several share it) or, if that has
+    /// none, that of the `scene`.
     pub fn gravity(&self, vertex: usize, scene: Vector) -> Vector {
         let body = self.vertex_body.get(vertex).and_then(|&b| self.bodies.get(b as usize));
         body.and_then(|b| b.gravity).unwrap_or(scene)

@@ -8,13 +8,14 @@ use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
-/// A spring is active at first if inertia leads to a gap that is less than the desired one plus this share of it: bodies at
-/// rest keep their gap only up to rounding.
+/// A spring is active at first if inertia leads to a gap that is less than the desired one plus this share of
+/// it: bodies at rest keep their gap only up to rounding.
 const ACTIVATION_MARGIN: f64 = 0.01;
 
-/// Compliance of springs against rigid motion of bodies, in dt^2 / M. The inertia of a stiff body is far less than the
-/// diagonal block of a node suggests. With springs as stiff as the block, errors of micrometres that one linear solve makes
-/// in a rotation become forces of many times the weight of the body, and the updates of the active set diverge.
+/// Compliance of springs against rigid motion of bodies, in dt^2 / M. The inertia of a stiff body is far less
+/// than the diagonal block of a node suggests. With springs as stiff as the block, errors of micrometres that
+/// one linear solve makes in a rotation become forces of many times the weight of the body, and the updates
+/// of the active set diverge.
 const RIGID_COMPLIANCE: f64 = 0.3;
 
 /// A force of friction that is smaller than its bound by more than this share sticks.
@@ -24,9 +25,10 @@ const FRICTION_BOUND_TOLERANCE: f64 = 1e-6;
 const MAX_STICKING_SLIP: f64 = 0.1;
 
 impl Repulsion {
-    /// Sets the stiffness of the springs and guesses the active set. In the first iteration of a time step the guess is the
-    /// active set at the positions `inertial`, where inertia leads; in later iterations it is the active set at the `iterate`.
-    /// `diagonal` has the diagonal blocks of the Newton system without springs; `rate` is 1 / dt [1/s].
+    /// Sets the stiffness of the springs and guesses the active set. In the first iteration of a time step
+    /// the guess is the active set at the positions `inertial`, where inertia leads; in later iterations it
+    /// is the active set at the `iterate`. `diagonal` has the diagonal blocks of the Newton system without
+    /// springs; `rate` is 1 / dt [1/s].
     pub fn prepare(
         &mut self,
         model: &DynamicsModel,
@@ -75,13 +77,13 @@ impl Repulsion {
         let s = &self.springs[spring];
         let (lambda, tau) = self.known_multipliers(spring);
         let (depth, slip) = self.depth_and_slip(spring, inertial);
-        // A contact that inertia opens is inactive, even if it carried a force; an upper limit of a distance is active as
-        // long as it carries one.
+        // A contact that inertia opens is inactive, even if it carried a force; an upper limit of a distance
+        // is active as long as it carries one.
         state.active = depth > -ACTIVATION_MARGIN * s.desired.max(0.0) || s.desired < 0.0 && lambda > 0.0;
         let length = slip.norm();
         if state.active && s.friction > 0.0 {
-            // Coulomb's law for the vertices on their own: a contact sticks if friction could hold its vertices, or if it
-            // carries a force and friction stays below its bound where inertia leads.
+            // Coulomb's law for the vertices on their own: a contact sticks if friction could hold its
+            // vertices, or if it carries a force and friction stays below its bound where inertia leads.
             let bound = s.friction * (lambda + state.stiffness * depth.max(0.0));
             let holds = lambda > 0.0 && (tau - slip * state.stiffness).norm() < bound;
             state.friction = if holds || length <= s.friction * depth {
@@ -119,9 +121,10 @@ impl Repulsion {
         }
     }
 
-    /// Stiffness of each node in its softest direction if it has springs and belongs to strands, 0 otherwise [N/m]. A bent
-    /// strand resists along both of its edges, but only as long as the neighbours do not move. Springs as stiff as that are
-    /// too stiff for it, and the updates of the active set diverge where strands cross.
+    /// Stiffness of each node in its softest direction if it has springs and belongs to strands, 0 otherwise
+    /// [N/m]. A bent strand resists along both of its edges, but only as long as the neighbours do not move.
+    /// Springs as stiff as that are too stiff for it, and the updates of the active set diverge where strands
+    /// cross.
     fn softest_stiffness(&self, model: &DynamicsModel, diagonal: &[Matrix3<f64>]) -> Vec<f64> {
         let mut touched = vec![false; diagonal.len()];
         self.nodes.iter().flatten().filter(|n| **n != NO_NODE).for_each(|n| touched[*n as usize] = true);

@@ -20,8 +20,8 @@ pub(crate) struct Repulsion {
     /// s at the start of the time step [m].
     anchors: Vec<Vector>,
     pub(super) states: Vec<SpringState>,
-    /// Whether the active set (which springs push, stick and slide) is a guess. Energies take a guess as given until the
-    /// first update.
+    /// Whether the active set (which springs push, stick and slide) is a guess. Energies take a guess as
+    /// given until the first update.
     pub(super) guessed: bool,
     /// The active springs at the last linearisation.
     pub(super) linear: LinearSprings,
@@ -69,7 +69,8 @@ impl Repulsion {
         &self.linear
     }
 
-    /// Sets the positions `x` of all vertices from which slip is measured: those at the start of the time step.
+    /// Sets the positions `x` of all vertices from which slip is measured: those at the start of the time
+    /// step.
     pub fn anchor(&mut self, x: &[Point]) {
         for (anchor, s) in self.anchors.iter_mut().zip(&self.springs) {
             let used = (0..4).filter(|&k| s.weights[k] != 0.0);
@@ -100,7 +101,8 @@ impl Repulsion {
         (s.desired + s.offset - s.normal.dot(&sides), moved - s.normal * s.normal.dot(&moved))
     }
 
-    /// Forces of the springs with nodes at `x` [N], by spring: the multipliers that the next solve starts from.
+    /// Forces of the springs with nodes at `x` [N], by spring: the multipliers that the next solve starts
+    /// from.
     pub fn forces(&self, x: &[Vector]) -> Vec<Vector> {
         let force = |spring: usize| {
             let (state, s) = (&self.states[spring], &self.springs[spring]);
@@ -116,7 +118,7 @@ impl Repulsion {
     }
 
     /// Subtracts the known forces of the springs on the nodes from `gradient` [N].
-    pub fn subtract_carried(&self, gradient: &mut [Vector]) {
+    pub fn subtract_known_forces(&self, gradient: &mut [Vector]) {
         for (spring, nodes) in self.springs.iter().zip(&self.nodes) {
             for (&node, weight) in nodes.iter().zip(spring.weights) {
                 if node != NO_NODE {

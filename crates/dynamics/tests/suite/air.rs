@@ -75,7 +75,8 @@ fn a_free_sheet_ends_at_the_speed_of_the_wind_at_any_time_step() {
         let model = cloth_model(&rest, triangles.clone(), ClothMaterial::cotton());
         let dynamics = Dynamics::new(model, params).expect("valid");
         let v = fall(dynamics, &rest, Vector::new(1.0, 0.0, -500.0), dt, 400);
-        // Across the sheet it reaches the speed of the wind; along it there is only friction, which is slower.
+        // Across the sheet it reaches the speed of the wind; along it there is only friction, which is
+        // slower.
         assert!((v - wind).z.abs() < 0.05 * wind.z, "dt = {dt}: {v}");
         assert!(v.norm() <= 501.0 && v.y >= 0.0, "dt = {dt}: {v}");
     }

@@ -221,8 +221,8 @@ fn a_hanging_strip_meets_its_analytic_stretch() {
 
 #[test]
 fn a_clamped_strip_meets_its_sag() {
-    // w = q L^4 / (8 D), small against L. The first two rows are held, so the strip is clamped half a cell beyond the first
-    // row: the hinge at the second row represents half a cell on either side.
+    // w = q L^4 / (8 D), small against L. The first two rows are held, so the strip is clamped half a cell
+    // beyond the first row: the hinge at the second row represents half a cell on either side.
     let (columns, length) = (50, 0.25);
     let cell = length / columns as f64;
     let material =
@@ -291,7 +291,8 @@ fn external_forces_accelerate() {
 
 #[test]
 fn scaled_problems_have_scaled_answers() {
-    // With lengths and times multiplied by k, the same density and Et, D k^2 and gravity / k, all terms scale alike.
+    // With lengths and times multiplied by k, the same density and Et, D k^2 and gravity / k, all terms scale
+    // alike.
     let run = |k: f64| {
         let (rest, triangles) = sheet(0.3 * k, 0.3 * k, 10, 10);
         let cotton = ClothMaterial::cotton();

@@ -44,7 +44,8 @@ fn two_sheets_pushed_together_balance_by_a_depth_that_stiffness_divides() {
     let depth = |stiffness: f64| {
         let (mut dynamics, rest) = sheets(weightless(with_tolerance(1e-10)));
         let count = rest.len() / 2;
-        // A force of 0.02 N on each sheet, a third of its weight, towards the other sheet; it is distributed by mass.
+        // A force of 0.02 N on each sheet, a third of its weight, towards the other sheet; it is distributed
+        // by mass.
         let masses = dynamics.model().masses().to_vec();
         let total: f64 = masses[..count].iter().sum();
         let forces: Vec<Vector> = (0..rest.len())
@@ -118,8 +119,8 @@ fn targets_end_with_an_accurate_solve_and_a_residual_between_them_changes_no_bit
 
 #[test]
 fn obstacles_and_half_spaces_hold_a_sheet_up() {
-    // Every vertex of the lower sheet has a spring against the half-space z < -5 mm (by an offset) or against an obstacle's
-    // vertex (by its keyframe).
+    // Every vertex of the lower sheet has a spring against the half-space z < -5 mm (by an offset) or against
+    // an obstacle's vertex (by its keyframe).
     for obstacle in [false, true] {
         let mut params = with_tolerance(1e-10);
         params.environment.air_drag = 5.0;

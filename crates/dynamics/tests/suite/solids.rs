@@ -17,7 +17,8 @@ fn settle(dynamics: &mut Dynamics, x: &mut [Point], held: &[bool], keyframes: &[
 
 #[test]
 fn the_inside_of_an_affinely_deformed_surface_is_affine() {
-    // The patch test at large strain: the surface follows an affine map, and the inside must follow it as well.
+    // The patch test at large strain: the surface follows an affine map, and the inside must follow it as
+    // well.
     let (rest, tets) = block([1.0, 0.8, 0.6], [4, 4, 3]);
     let map = nalgebra::Matrix3::new(1.3, 0.2, 0.0, -0.1, 0.8, 0.1, 0.2, 0.0, 0.9);
     let surface: Vec<bool> = rest
@@ -40,7 +41,8 @@ fn the_inside_of_an_affinely_deformed_surface_is_affine() {
 
 #[test]
 fn a_hanging_bar_stretches_by_rho_g_l2_over_2e() {
-    // With nu = 0 the clamp has no effect on the stretch, which is exact up to the lumping of mass and strains of 0.1 %.
+    // With nu = 0 the clamp has no effect on the stretch, which is exact up to the lumping of mass and
+    // strains of 0.1 %.
     let (length, width) = (1.0, 0.2);
     let (rest, tets) = block([width, width, length], [2, 2, 10]);
     for model in MODELS {
@@ -59,8 +61,8 @@ fn a_hanging_bar_stretches_by_rho_g_l2_over_2e() {
 
 #[test]
 fn a_cantilever_meets_beam_theory_as_it_is_refined() {
-    // The tip of a clamped beam under its own weight sags by bending and shear: q L^4 / (8 EI) + 1.2 q L^2 / (2 G A). Linear
-    // tets are too stiff in bending; the error decreases with the square of the cell size.
+    // The tip of a clamped beam under its own weight sags by bending and shear: q L^4 / (8 EI) + 1.2 q L^2 /
+    // (2 G A). Linear tets are too stiff in bending; the error decreases with the square of the cell size.
     let (length, height, width) = (1.0f64, 0.2, 0.1);
     let (e, rho) = (5e6, 1000.0);
     let bending = 9.81 * rho * length.powi(4) / (8.0 * e * height * height / 12.0);
@@ -92,8 +94,8 @@ fn a_cantilever_meets_beam_theory_as_it_is_refined() {
 
 #[test]
 fn stable_neo_hookean_recovers_from_inversion() {
-    // The block is flattened to a crumpled sheet, or its vertices are displaced by more than a cell, so that half of the tets
-    // are inverted. It must recover a shape without energy.
+    // The block is flattened to a crumpled sheet, or its vertices are displaced by more than a cell, so that
+    // half of the tets are inverted. It must recover a shape without energy.
     let (rest, tets) = block([0.3, 0.3, 0.3], [3, 3, 3]);
     for filter in [HessianFilter::Clamp, HessianFilter::Absolute] {
         for (height, noise) in [(0.0, 0.01), (1.0, 0.12)] {
@@ -162,8 +164,8 @@ fn momenta_are_conserved_in_free_flight() {
 
 #[test]
 fn the_inside_follows_a_surface_that_contact_moved() {
-    // Contact moves the surface during a time step. One or two more targets with the surface held move the inside, with the
-    // inertia of the step, and leave no tet inverted.
+    // Contact moves the surface during a time step. One or two more targets with the surface held move the
+    // inside, with the inertia of the step, and leave no tet inverted.
     let (rest, tets) = block([0.4, 0.4, 0.2], [8, 8, 4]);
     let mut dynamics = solid(&rest, tets, SolidMaterial::rubber(), DynamicsParams::default());
     let surface: Vec<bool> = rest

@@ -31,8 +31,9 @@ fn a_hanging_thread_stretches_by_rho_g_l2_over_2ea() {
 
 #[test]
 fn a_clamped_strand_meets_beam_theory() {
-    // The tip of a beam under its own weight sags by q L^4 / (8 EI). Held by its first two vertices, the beam is clamped in
-    // the middle of the edge between them: the bending spring at the second vertex represents half a cell on either side.
+    // The tip of a beam under its own weight sags by q L^4 / (8 EI). Held by its first two vertices, the beam
+    // is clamped in the middle of the edge between them: the bending spring at the second vertex represents
+    // half a cell on either side.
     let (cells, length) = (40, 0.2f64);
     let rest: Vec<Point> =
         (0..=cells + 1).map(|k| Point::new(length * (k as f64 - 1.0) / cells as f64, 0.0, 0.0)).collect();
@@ -130,7 +131,8 @@ fn hair_is_solved_in_a_few_iterations_however_stiff() {
     assert!(dynamics.max_stretch(&x) < 1.01, "{}", dynamics.max_stretch(&x));
 }
 
-/// Angle below the horizontal of a straw that is hinged at one end and falls for 0.2 s from the horizontal [rad].
+/// Angle below the horizontal of a straw that is hinged at one end and falls for 0.2 s from the horizontal
+/// [rad].
 fn fallen(correcting_iterations: usize) -> f64 {
     let (length, nodes) = (0.3, 13);
     let rest: Vec<Point> =
@@ -159,7 +161,8 @@ fn a_stiff_straw_falls_as_a_rigid_rod_does() {
     }
     let corrected = fallen(NewtonParams::default().correcting_iterations);
     assert!((corrected / angle - 1.0).abs() < 0.05, "{corrected}, not {angle}");
-    // A single Newton step is shortened by the line search, because a straight motion stretches a rod that rotates.
+    // A single Newton step is shortened by the line search, because a straight motion stretches a rod that
+    // rotates.
     assert!(fallen(0) < 0.5 * angle, "{}", fallen(0));
 }
 

@@ -43,9 +43,10 @@ impl Newton<'_> {
             *b = if free { -(*b + g) } else { Vector::zeros() };
         }
 
-        // There are two guesses: the way to the positions where inertia leads, and the way to the last target. In free flight
-        // the first is all but exact, near the solution of a step the second. Corrections use them as well: what is still
-        // missing along them is what conjugate gradients find last.
+        // There are two guesses: the way to the positions where inertia leads, and the way to the last
+        // target. In free flight the first is all but exact, near the solution of a step the second.
+        // Corrections use them as well: what is still missing along them is what conjugate gradients find
+        // last.
         let guess_count = 1 + usize::from(step.last_target.is_some());
         for (guess, target) in work.guesses.iter_mut().zip([Some(&step.inertial), step.last_target.as_ref()])
         {

@@ -5,20 +5,21 @@ use crate::dynamics::info::NewtonInfo;
 use crate::linear::vectors::dot;
 use bowknot_geometry::Vector;
 
-/// Energies that differ by less than this share of their terms count as equal: the rounding error of sums over 10^5 nodes,
-/// with a margin.
+/// Energies that differ by less than this share of their terms count as equal: the rounding error of sums
+/// over 10^5 nodes, with a margin.
 const ENERGY_ROUNDING: f64 = 1e-12;
 
-/// Steps shorter than this share of the largest coordinate are rounding errors. They are accepted without a line search, as
-/// energies would differ by rounding only.
+/// Steps shorter than this share of the largest coordinate are rounding errors. They are accepted without a
+/// line search, as energies would differ by rounding only.
 const NEGLIGIBLE_STEP: f64 = 1e-12;
 
 impl Newton<'_> {
     /// Shortens the full Newton step until the potential decreases enough; the result is in `work.trial`.
     ///
-    /// Prescribed nodes are at their keyframes in all trials: the line is over free nodes only and starts from the state with
-    /// free nodes at x. The predicted decrease p.b is that of the quadratic model from there. If no trial passes (the
-    /// keyframes jump far, so that the model is inaccurate), the trial with the lowest potential is taken.
+    /// Prescribed nodes are at their keyframes in all trials: the line is over free nodes only and starts
+    /// from the state with free nodes at x. The predicted decrease p.b is that of the quadratic model from
+    /// there. If no trial passes (the keyframes jump far, so that the model is inaccurate), the trial with
+    /// the lowest potential is taken.
     pub(super) fn search_line(&mut self, info: &mut NewtonInfo) {
         self.work.place(0.0);
         let (before, scale) = self.at_trial(Self::potential);

@@ -9,8 +9,8 @@ use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 impl Newton<'_> {
-    /// Computes the gradient and H at `work.x`. Springs that have not been prepared get their stiffness and the guess of the
-    /// active set.
+    /// Computes the gradient and H at `work.x`. Springs that have not been prepared get their stiffness and
+    /// the guess of the active set.
     pub fn linearise(&mut self) {
         self.linearise_bodies();
         let Self { model, repulsion, step, work, .. } = self;

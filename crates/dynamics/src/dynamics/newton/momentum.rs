@@ -17,10 +17,10 @@ pub(crate) struct Inertia<'a> {
     pub rate: f64,
 }
 
-/// Translates every group of freely flying components so that the `residual` of the linear solve sums to zero over it. Inner
-/// forces then cancel, and the linear momentum of the group is conserved to rounding at any tolerance. In a translation H
-/// sums to inertia and drag alone, so the translation is the sum of residuals divided by these. Components that springs join
-/// form one group.
+/// Translates every group of freely flying components so that the `residual` of the linear solve sums to zero
+/// over it. Inner forces then cancel, and the linear momentum of the group is conserved to rounding at any
+/// tolerance. In a translation H sums to inertia and drag alone, so the translation is the sum of residuals
+/// divided by these. Components that springs join form one group.
 pub(crate) fn restore_momentum(
     model: &DynamicsModel,
     repulsion: &Repulsion,

@@ -7,7 +7,8 @@ use bowknot_geometry::Vector;
 use rayon::prelude::*;
 
 impl Newton<'_> {
-    /// The incremental potential at `x` without springs [J]: the part of inertia and air, and the part of elements.
+    /// The incremental potential at `x` without springs [J]: the part of inertia and air, and the part of
+    /// elements.
     fn energies(&self, x: &[Vector]) -> [f64; 2] {
         let Self { model, params, step, .. } = self;
         let free = &self.work.free;
@@ -57,7 +58,8 @@ impl Newton<'_> {
         self.work.cache.energies
     }
 
-    /// The incremental potential at `x` and the sum of the sizes of its parts, to which rounding is relative [J].
+    /// The incremental potential at `x` and the sum of the sizes of its parts, to which rounding is relative
+    /// [J].
     pub fn potential(&mut self, x: &[Vector]) -> (f64, f64) {
         let [kinetic, mut internal] = self.energies_at(x);
         internal += self.repulsion.energy(x);

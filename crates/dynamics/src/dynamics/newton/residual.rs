@@ -6,11 +6,11 @@ use crate::linear::system::System;
 use bowknot_geometry::Vector;
 
 impl Newton<'_> {
-    /// The residual of the time step at `work.x` over the nodes that are `counted`; contact forces are the known forces of the
-    /// springs.
+    /// The residual of the time step at `work.x` over the nodes that are `counted`; contact forces are the
+    /// known forces of the springs.
     pub fn residual(&mut self, counted: &[bool]) -> Residual {
         self.linearise_bodies();
-        self.repulsion.subtract_carried(&mut self.work.gradient);
+        self.repulsion.subtract_known_forces(&mut self.work.gradient);
         let Self { model, step, work, .. } = self;
         for node in 0..work.x.len() {
             let counts = work.free[node] && counted[node];

@@ -28,12 +28,13 @@ pub struct Step {
     pub last_target: Option<Vec<Vector>>,
     /// Bending plus its damping / dt, as a matrix.
     pub scalar: SplitForm,
-    /// Potential without springs that no target may exceed by more than springs have stored: that at the first iterate of the
-    /// step [J].
+    /// Potential without springs that no target may exceed by more than springs have stored: that at the
+    /// first iterate of the step [J].
     pub max_potential: Option<f64>,
     /// None in a vacuum.
     pub drag: Option<Drag>,
-    /// Whether springs must be prepared: they have been set since the last Newton iteration, or the step has just begun.
+    /// Whether springs must be prepared: they have been set since the last Newton iteration, or the step has
+    /// just begun.
     pub unprepared: bool,
 }
 
@@ -81,7 +82,8 @@ impl EvaluationCache {
 }
 
 impl Workspace {
-    /// Sets the trial to the iterate plus `length` times the Newton step, with prescribed nodes at their keyframes.
+    /// Sets the trial to the iterate plus `length` times the Newton step, with prescribed nodes at their
+    /// keyframes.
     pub fn place(&mut self, length: f64) {
         self.trial.copy_from_slice(&self.x);
         add_scaled(&mut self.trial, 1.0, &self.imposed);

@@ -47,8 +47,9 @@ fn constant_curvature_has_the_energy_of_a_plate() {
             assert!((0.90..1.001).contains(&found), "{name} {curvature:?}: {found}");
         }
     }
-    // Alternating diagonals are not an affine image of a regular mesh. The energy is exact along the mesh lines, 1.5 times
-    // that of the plate for a cylinder along a diagonal, and twice for twist (see the README).
+    // Alternating diagonals are not an affine image of a regular mesh. The energy is exact along the mesh
+    // lines, 1.5 times that of the plate for a cylinder along a diagonal, and twice for twist (see the
+    // README).
     let (positions, triangles) = grid(40, 0.025, 0.0, true);
     for (curvature, exact, expected) in [
         ([1.0, 0.0, 0.0], 1.0, 1.0),
@@ -95,7 +96,8 @@ fn only_flat_states_store_no_energy() {
     eigenvalues.sort_by(f64::total_cmp);
     let largest = eigenvalues[count - 1];
     assert!(eigenvalues[..3].iter().all(|e| e.abs() < 1e-12 * largest), "{:?}", &eigenvalues[..5]);
-    // Two corners of the sheet are single triangles with one inner edge. They, too, store energy when they bend about it.
+    // Two corners of the sheet are single triangles with one inner edge. They, too, store energy when they
+    // bend about it.
     assert!(eigenvalues[3] > 1e-6 * largest, "{:?}", &eigenvalues[..5]);
 }
 

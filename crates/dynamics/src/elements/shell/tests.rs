@@ -84,7 +84,8 @@ fn for_a_flat_rest_shape_it_equals_the_flat_form() {
 
 #[test]
 fn a_tube_wall_bends_with_its_change_of_curvature() {
-    // A part of a cylinder of radius R that is bent to radius R' without stretch: D/2 (1/R' - 1/R)^2 per area.
+    // A part of a cylinder of radius R that is bent to radius R' without stretch: D/2 (1/R' - 1/R)^2 per
+    // area.
     let (columns, rows, width, length) = (80u32, 8u32, 0.4, 0.2);
     let shape = |radius: f64| {
         let mut positions = Vec::new();
@@ -110,7 +111,8 @@ fn a_tube_wall_bends_with_its_change_of_curvature() {
         let bending = model.elastic_energies(&points(&shape(radius))).bending;
         let change: f64 = 1.0 / radius - 1.0 / 0.15;
         let expected = 0.5 * 1e-3 * change * change * width * length;
-        // The flat form has the same error: the outermost triangles, 1 in 80, have no inner edge across the bend.
+        // The flat form has the same error: the outermost triangles, 1 in 80, have no inner edge across the
+        // bend.
         assert!((bending / expected - 1.0).abs() < 0.02, "radius {radius}: {bending:e} {expected:e}");
     }
 }

@@ -85,8 +85,8 @@ fn a_stretched_edge_pulls_with_ea_times_strain() {
 
 #[test]
 fn a_ring_bends_with_ei_over_two_r() {
-    // A straight strand that is closed to a ring of radius R has the energy EI/2 * 2 pi R / R^2, to second order in the edge
-    // length. A strand whose rest shape is the ring has none.
+    // A straight strand that is closed to a ring of radius R has the energy EI/2 * 2 pi R / R^2, to second
+    // order in the edge length. A strand whose rest shape is the ring has none.
     let (radius, count) = (0.3, 120);
     let at = |k: u32| {
         let angle = 2.0 * std::f64::consts::PI * f64::from(k) / f64::from(count);
@@ -128,7 +128,7 @@ fn a_path_through_a_branching_vertex_bends_nearly_as_without_branches() {
     let path = energy(&[[0, 1], [1, 2]], &at(0.0));
     let branched = |branch: f64| energy(&[[0, 1], [1, 2], [1, 3]], &at(branch));
     let smallest = (0..=200).map(|k| branched(angle * k as f64 / 200.0)).fold(f64::INFINITY, f64::min);
-    // Bending between perpendicular edges has the weight cos^2(45 degrees) = 1/2 relative to that between straight ones. The
-    // energy with the branch is therefore 2/3 (1 + 1/2 * 1/2) = 5/6 of that of the path.
+    // Bending between perpendicular edges has the weight cos^2(45 degrees) = 1/2 relative to that between
+    // straight ones. The energy with the branch is therefore 2/3 (1 + 1/2 * 1/2) = 5/6 of that of the path.
     assert!((smallest / path - 5.0 / 6.0).abs() < 1e-3, "{smallest} {path}");
 }

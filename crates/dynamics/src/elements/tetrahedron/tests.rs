@@ -164,8 +164,8 @@ fn the_stress_of_uniform_strain_is_that_of_the_laws() {
 
 #[test]
 fn stvk_softens_under_compression_and_stable_neo_hookean_does_not() {
-    // Uniaxial strain: the stress of StVK, (lambda + 2 mu) (s^3 - s)/2, is strongest at s = 1/sqrt 3 and zero at s = 0. That
-    // of stable neo-Hookean grows down to inversion.
+    // Uniaxial strain: the stress of StVK, (lambda + 2 mu) (s^3 - s)/2, is strongest at s = 1/sqrt 3 and zero
+    // at s = 0. That of stable neo-Hookean grows down to inversion.
     let pull = |model, s: f64| stress(model, &Matrix3::from_diagonal(&Vector::new(s, 1.0, 1.0)))[(0, 0)];
     let (lambda, mu) = material(SolidModel::Stvk, 0.0).lame();
     let strongest = 1.0 / 3.0f64.sqrt();
@@ -181,7 +181,8 @@ fn stvk_softens_under_compression_and_stable_neo_hookean_does_not() {
 
 #[test]
 fn energies_of_small_strains_are_accurate() {
-    // The energy of a strain of 1e-9 is 1/2 e:C:e. The formula of stable neo-Hookean as published has no correct digit there.
+    // The energy of a strain of 1e-9 is 1/2 e:C:e. The formula of stable neo-Hookean as published has no
+    // correct digit there.
     let (lambda, mu) = material(SolidModel::Stvk, 0.0).lame();
     for model in MODELS {
         let e = 2f64.powi(-30);

@@ -55,8 +55,8 @@ fn filtered_hessians_are_positive_semi_definite() {
 
 #[test]
 fn the_clamped_hessian_is_the_nearest_positive_one() {
-    // Its eigenvalues over F are those of the exact Hessian with the negative ones set to zero, so the difference is negative
-    // semi-definite.
+    // Its eigenvalues over F are those of the exact Hessian with the negative ones set to zero, so the
+    // difference is negative semi-definite.
     let mut stream = Stream(4);
     for _ in 0..50 {
         let x = deformed(&mut stream, 0.8, 0.15);
@@ -112,8 +112,8 @@ fn forces_of_an_element_sum_to_zero_and_have_no_torque() {
 
 #[test]
 fn uniaxial_tension_has_youngs_modulus() {
-    // A strip with free sides that is stretched by e along the first axis narrows by nu e and has a tension of Et e per
-    // width.
+    // A strip with free sides that is stretched by e along the first axis narrows by nu e and has a tension
+    // of Et e per width.
     let (stiffness, nu) = (1000.0, 0.3);
     let material =
         ClothMaterial { stretch_stiffness: stiffness, poisson_ratio: nu, ..ClothMaterial::default() };

@@ -26,8 +26,8 @@ pub fn dynamics(rest: &[Point], bodies: Vec<Body>, params: DynamicsParams) -> Dy
     Dynamics::new(DynamicsModel::new(rest.to_vec(), bodies).expect("valid"), params).expect("valid")
 }
 
-/// The equilibrium at `x`: one step of `dt`, so long that inertia has no effect. The last of its `iterations` must move
-/// vertices by less than `tolerance` [m].
+/// The equilibrium at `x`: one step of `dt`, so long that inertia has no effect. The last of its `iterations`
+/// must move vertices by less than `tolerance` [m].
 pub fn equilibrium(
     dynamics: &mut Dynamics,
     x: &mut [Point],
