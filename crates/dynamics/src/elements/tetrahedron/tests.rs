@@ -1,6 +1,6 @@
 use super::*;
-use crate::elements::test_support::{Stream, check_balance, check_derivatives, check_positive, dense};
-use crate::{SolidMaterial, SolidModel};
+use crate::material::SolidModel;
+use crate::test_support::{Stream, check_balance, check_derivatives, check_positive, dense};
 use nalgebra::Rotation3;
 
 const NONE: Option<Start<'static, 4>> = None;
@@ -34,7 +34,7 @@ fn stress(model: SolidModel, f: &Matrix3<f64>) -> Matrix3<f64> {
     Matrix3::from_columns(&[part.gradient[1], part.gradient[2], part.gradient[3]]) / tet.volume
 }
 
-/// Both mirrored and upright, stretched, near rest, compressed.
+/// Stretched, near rest, compressed, and inverted.
 fn states(stream: &mut Stream) -> Vec<[Vector; 4]> {
     let mut states = Vec::new();
     for (scale, amount) in [(1.5, 0.2), (1.0, 0.1), (0.6, 0.1), (-1.0, 0.1), (-0.5, 0.1)] {
@@ -95,14 +95,14 @@ fn the_clamped_hessian_is_the_nearest_positive_one() {
             let x = stream.deformed(&REST, 0.6, 0.15);
             let exact = dense(&tet(model, 0.0).linearise(&x, NONE, Filter::Exact).hessian);
             let clamped = dense(&tet(model, 0.0).linearise(&x, NONE, Filter::Clamp).hessian);
-            let most = (&exact - &clamped).symmetric_eigenvalues().max();
-            assert!(most < 1e-10 * exact.abs().max(), "clamping lowered a curvature by {most:e}");
+            let lowered = (&exact - &clamped).symmetric_eigenvalues().max();
+            assert!(lowered < 1e-10 * exact.abs().max(), "clamping lowered a curvature by {lowered:e}");
         }
     }
 }
 
 #[test]
-fn rigid_motions_cost_nothing_and_forces_balance() {
+fn rigid_motions_store_no_energy_and_forces_balance() {
     let mut stream = Stream::new(5);
     for model in MODELS {
         for _ in 0..20 {
@@ -141,8 +141,8 @@ fn the_hessian_at_rest_is_that_of_linear_elasticity() {
 }
 
 #[test]
-fn uniform_stretch_meets_the_laws() {
-    // Patch tests at finite strain, by the stresses as their authors give them.
+fn the_stress_of_uniform_strain_is_that_of_the_laws() {
+    // Patch tests at finite strain, with the stresses of the papers.
     let (lambda, mu) = material(SolidModel::Stvk, 0.0).lame();
     let mut stream = Stream::new(7);
     for _ in 0..20 {
@@ -164,8 +164,8 @@ fn uniform_stretch_meets_the_laws() {
 
 #[test]
 fn stvk_softens_under_compression_and_stable_neo_hookean_does_not() {
-    // Uniaxial strain: the stress of StVK, (lambda + 2 mu) (s^3 - s)/2, is strongest at s = 1/sqrt 3 and none
-    // at s = 0; stable neo-Hookean pushes ever harder down to inversion.
+    // Uniaxial strain: the stress of StVK, (lambda + 2 mu) (s^3 - s)/2, is strongest at s = 1/sqrt 3 and zero
+    // at s = 0. That of stable neo-Hookean grows down to inversion.
     let pull = |model, s: f64| stress(model, &Matrix3::from_diagonal(&Vector::new(s, 1.0, 1.0)))[(0, 0)];
     let (lambda, mu) = material(SolidModel::Stvk, 0.0).lame();
     let strongest = 1.0 / 3.0f64.sqrt();
@@ -180,8 +180,9 @@ fn stvk_softens_under_compression_and_stable_neo_hookean_does_not() {
 }
 
 #[test]
-fn small_strains_keep_their_digits() {
-    // Energies of 1e-9 strain: 1/2 e:C:e, where the plain formula of stable neo-Hookean has no digit left.
+fn energies_of_small_strains_are_accurate() {
+    // The energy of a strain of 1e-9 is 1/2 e:C:e. The formula of stable neo-Hookean as published has no
+    // correct digit there.
     let (lambda, mu) = material(SolidModel::Stvk, 0.0).lame();
     for model in MODELS {
         let e = 2f64.powi(-30);

@@ -1,8 +1,27 @@
-//! What tests of elements share.
+//! Helpers that unit tests share.
 
-use super::{Element, Filter, Start};
+use crate::elements::element::{Element, Start};
+use crate::elements::filter::Filter;
 use bowknot_geometry::Vector;
 use nalgebra::{DMatrix, Matrix3, Rotation3};
+
+/// Triangles of a grid of `columns` x `rows` cells. Vertex (i, j) has the index i + j * (columns + 1).
+/// Diagonals are parallel or, with `alternate`, change direction from cell to cell.
+pub(crate) fn grid_triangles(columns: usize, rows: usize, alternate: bool) -> Vec<[u32; 3]> {
+    let index = |i: usize, j: usize| (i + j * (columns + 1)) as u32;
+    let mut triangles = Vec::new();
+    for j in 0..rows {
+        for i in 0..columns {
+            let (a, b, c, d) = (index(i, j), index(i + 1, j), index(i + 1, j + 1), index(i, j + 1));
+            if alternate && (i + j) % 2 == 1 {
+                triangles.extend([[a, b, d], [b, c, d]]);
+            } else {
+                triangles.extend([[a, b, c], [a, c, d]]);
+            }
+        }
+    }
+    triangles
+}
 
 /// Seeded random numbers.
 pub(crate) struct Stream(fastrand::Rng);
@@ -21,14 +40,14 @@ impl Stream {
         Vector::new(self.next(), self.next(), self.next())
     }
 
-    /// `rest` stretched by about `amount` in random ways, scaled, turned and shifted.
+    /// `rest` with pseudo-random displacements of about `amount`, scaled, rotated and translated.
     pub fn deformed<const N: usize>(&mut self, rest: &[Vector; N], scale: f64, amount: f64) -> [Vector; N] {
         let turn = Rotation3::new(self.vector() * 3.0);
         rest.map(|x| turn * (x * scale + self.vector() * amount) + Vector::new(3.0, -2.0, 1.0))
     }
 }
 
-/// The full matrix of an element's upper blocks.
+/// The full matrix of an element from its upper blocks.
 pub(crate) fn dense<const N: usize>(hessian: &[[Matrix3<f64>; N]; N]) -> DMatrix<f64> {
     DMatrix::from_fn(3 * N, 3 * N, |i, j| {
         let (a, b) = (i / 3, j / 3);
@@ -42,7 +61,7 @@ fn moved<const N: usize>(x: &[Vector; N], coordinate: usize, by: f64) -> [Vector
     x
 }
 
-/// Gradient against differences of the energy.
+/// Compares the gradient with differences of the energy.
 pub(crate) fn check_gradient<E: Element<N>, const N: usize>(
     element: &E,
     x: &[Vector; N],
@@ -50,7 +69,7 @@ pub(crate) fn check_gradient<E: Element<N>, const N: usize>(
 ) {
     let h = 1e-5;
     let here = element.linearise(x, start, Filter::Exact);
-    // Two formulas.
+    // Both functions compute the energy, with different formulas.
     let size = here.energy.abs().max(1.0);
     let energy = element.energy(x, start);
     assert!((here.energy - energy).abs() <= 1e-13 * size, "{} {energy}", here.energy);
@@ -64,7 +83,7 @@ pub(crate) fn check_gradient<E: Element<N>, const N: usize>(
     }
 }
 
-/// [`check_gradient`], and the exact Hessian against differences of the gradient.
+/// [`check_gradient`]; and compares the exact Hessian with differences of the gradient.
 pub(crate) fn check_derivatives<E: Element<N>, const N: usize>(
     element: &E,
     x: &[Vector; N],
@@ -85,15 +104,15 @@ pub(crate) fn check_derivatives<E: Element<N>, const N: usize>(
     }
 }
 
-/// No negative curvature, up to rounding.
+/// A Hessian must be positive semi-definite up to rounding.
 pub(crate) fn check_positive<const N: usize>(hessian: &[[Matrix3<f64>; N]; N], what: &str) {
     let hessian = dense(hessian);
     assert!(hessian.iter().all(|h| h.is_finite()), "{what}");
-    let (least, most) = (hessian.clone().symmetric_eigenvalues().min(), hessian.abs().max());
-    assert!(least >= -1e-10 * most, "{what}: {least:e} of {most:e}");
+    let (smallest, scale) = (hessian.clone().symmetric_eigenvalues().min(), hessian.abs().max());
+    assert!(smallest >= -1e-10 * scale, "{what}: {smallest:e} of {scale:e}");
 }
 
-/// Forces sum to zero and have no torque, up to rounding.
+/// Forces must sum to zero and have no torque, up to rounding.
 pub(crate) fn check_balance<const N: usize>(x: &[Vector; N], gradient: &[Vector; N]) {
     let size =
         gradient.iter().map(|g| g.norm()).sum::<f64>() * x.iter().map(|x| x.norm()).fold(1.0, f64::max);

@@ -1,26 +1,26 @@
-//! Linear momentum, kept to rounding however loosely the linear system is solved.
+//! Linear momentum is conserved to rounding at any tolerance of the linear solve.
 
-use crate::DynamicsModel;
 use crate::drag::Drag;
 use crate::groups::Groups;
-use crate::repulsion::Repulsion;
+use crate::model::DynamicsModel;
+use crate::repulsion::springs::Repulsion;
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
 use std::ops::Range;
 
-/// What holds nodes beside inner forces: H summed over a translation.
+/// H over a translation: the forces that are not inner forces.
 pub(crate) struct Inertia<'a> {
-    /// Per mass [1/s^2].
+    /// Inertia and mass-proportional damping per mass [1/s^2].
     pub per_mass: f64,
     pub drag: Option<&'a Drag>,
     /// 1 / dt [1/s].
     pub rate: f64,
 }
 
-/// Moves everything that flies freely together as a whole, so that the `residual` of the linear solve sums to
-/// zero over it: inner forces then cancel, and its linear momentum is conserved to rounding however loose the
-/// tolerance. H sums to inertia (and drag) alone in translations, so the move solves that with the sum of
-/// residuals. Components that repulsion joins fly together.
+/// Translates every group of freely flying components so that the `residual` of the linear solve sums to zero
+/// over it. Inner forces then cancel, and the linear momentum of the group is conserved to rounding at any
+/// tolerance. In a translation H sums to inertia and drag alone, so the translation is the sum of residuals
+/// divided by these. Components that springs join form one group.
 pub(crate) fn restore_momentum(
     model: &DynamicsModel,
     repulsion: &Repulsion,
@@ -36,8 +36,8 @@ pub(crate) fn restore_momentum(
         return;
     }
     let mut groups = Groups::new(model.components.len());
-    repulsion.for_each_bond(|nodes, holds| {
-        groups.join_all(nodes.iter().map(|&node| model.component(node)), holds);
+    repulsion.linear().for_each_spring(|nodes, held| {
+        groups.join_all(nodes.iter().map(|&node| model.component(node)), held);
     });
     for group in groups.free() {
         let group: Vec<Range<u32>> = group.into_iter().map(|c| model.components[c].clone()).collect();
@@ -45,6 +45,7 @@ pub(crate) fn restore_momentum(
     }
 }
 
+/// Translates the components of a group, unless a node is not free.
 fn shift(
     model: &DynamicsModel,
     group: &[Range<u32>],
@@ -64,7 +65,7 @@ fn shift(
         Some(drag) => {
             let drag: Matrix3<f64> = nodes().map(|n| drag.matrix[n]).sum();
             let total = Matrix3::from_diagonal_element(mass * inertia.per_mass) + drag * inertia.rate;
-            // Positive definite; it is not only where the state is not finite, which is reported elsewhere.
+            // The matrix is positive definite unless the state is not finite, which the caller reports.
             total.try_inverse().map_or_else(Vector::zeros, |inverse| inverse * sum)
         }
     };

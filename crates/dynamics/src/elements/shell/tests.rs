@@ -1,13 +1,17 @@
 use super::*;
-use crate::elements::Kind;
+use crate::body::Body;
 use crate::elements::bending::add_bending;
-use crate::elements::test_support::{
-    Stream, check_balance, check_derivatives, check_gradient, check_positive,
-};
+use crate::elements::set::ElementKind;
 use crate::linear::scalar::ScalarBuilder;
+use crate::material::{ClothMaterial, RestShape};
+use crate::model::DynamicsModel;
+use crate::test_support::{
+    Stream, check_balance, check_derivatives, check_gradient, check_positive, grid_triangles,
+};
+use bowknot_geometry::Point;
 use nalgebra::Rotation3;
 
-/// A triangle with a neighbour at each side, all tilted.
+/// A triangle with a neighbour at each side, all in different planes.
 const REST: [Vector; 6] = [
     Vector::new(0.0, 0.0, 0.0),
     Vector::new(1.0, 0.1, 0.2),
@@ -34,14 +38,14 @@ fn the_gradient_matches_differences_and_the_hessian_at_rest_too() {
             check_gradient(&bend, &stream.deformed(&REST, scale, amount), None);
         }
     }
-    // Where the residuals vanish, Gauss and Newton's Hessian is exact.
+    // Where the residuals vanish, the Gauss-Newton matrix is the exact Hessian.
     for _ in 0..5 {
         check_derivatives(&bend, &stream.deformed(&REST, 1.0, 0.0), None);
     }
 }
 
 #[test]
-fn rigid_motions_cost_nothing_forces_balance_and_hessians_are_positive() {
+fn rigid_motions_store_no_energy_forces_balance_and_hessians_are_positive() {
     let mut stream = Stream::new(2);
     let bend = bend();
     for k in 0..20 {
@@ -60,7 +64,7 @@ fn rigid_motions_cost_nothing_forces_balance_and_hessians_are_positive() {
 }
 
 #[test]
-fn of_a_flat_rest_shape_it_is_the_flat_form() {
+fn for_a_flat_rest_shape_it_equals_the_flat_form() {
     let flat = REST.map(|x| Vector::new(x.x, x.y, 0.0));
     let mut form = ScalarBuilder::new(6);
     add_bending(&TRIANGLES, &flat, 3.0, &mut form);
@@ -80,7 +84,8 @@ fn of_a_flat_rest_shape_it_is_the_flat_form() {
 
 #[test]
 fn a_tube_wall_bends_with_its_change_of_curvature() {
-    // A half cylinder of radius R opened or closed to radius R' without stretch: D/2 (1/R' - 1/R)^2 an area.
+    // A part of a cylinder of radius R that is bent to radius R' without stretch: D/2 (1/R' - 1/R)^2 per
+    // area.
     let (columns, rows, width, length) = (80u32, 8u32, 0.4, 0.2);
     let shape = |radius: f64| {
         let mut positions = Vec::new();
@@ -93,29 +98,21 @@ fn a_tube_wall_bends_with_its_change_of_curvature() {
         }
         positions
     };
-    let mut triangles = Vec::new();
-    for j in 0..rows {
-        for i in 0..columns {
-            let [a, b] = [i + j * (columns + 1), i + (j + 1) * (columns + 1)];
-            triangles.extend([[a, a + 1, b + 1], [a, b + 1, b]]);
-        }
-    }
+    let triangles = grid_triangles(columns as usize, rows as usize, false);
     let rest = shape(0.15);
-    let material = crate::ClothMaterial {
-        bend_stiffness: 1e-3,
-        rest_shape: crate::RestShape::Initial,
-        ..crate::ClothMaterial::cotton()
-    };
-    let points = |x: &[Vector]| -> Vec<bowknot_geometry::Point> { x.iter().map(|v| (*v).into()).collect() };
-    let body = crate::Body::cloth("tube", triangles, material);
-    let model = crate::DynamicsModel::new(points(&rest), vec![body]).expect("valid");
-    assert!(model.families.iter().any(|f| f.kind() == Kind::Bending));
+    let material =
+        ClothMaterial { bend_stiffness: 1e-3, rest_shape: RestShape::Initial, ..ClothMaterial::cotton() };
+    let points = |x: &[Vector]| -> Vec<Point> { x.iter().map(|v| (*v).into()).collect() };
+    let body = Body::cloth("tube", triangles, material);
+    let model = DynamicsModel::new(points(&rest), vec![body]).expect("valid");
+    assert!(model.element_sets.iter().any(|set| set.kind() == ElementKind::Bending));
     assert!(model.elastic_energies(&points(&rest)).bending < 1e-24);
     for radius in [0.1, 0.2, 1.0, 1e6] {
         let bending = model.elastic_energies(&points(&shape(radius))).bending;
         let change: f64 = 1.0 / radius - 1.0 / 0.15;
         let expected = 0.5 * 1e-3 * change * change * width * length;
-        // The flat form's own error: the outermost triangles, 1 in 80, have no inner edge across the bend.
+        // The flat form has the same error: the outermost triangles, 1 in 80, have no inner edge across the
+        // bend.
         assert!((bending / expected - 1.0).abs() < 0.02, "radius {radius}: {bending:e} {expected:e}");
     }
 }

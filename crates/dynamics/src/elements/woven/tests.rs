@@ -1,7 +1,6 @@
 use super::*;
-use crate::ClothMaterial;
-use crate::elements::test_support::{Stream, check_balance, check_derivatives, check_positive, dense};
 use crate::elements::triangle::Triangle;
+use crate::test_support::{Stream, check_balance, check_derivatives, check_positive, dense};
 use nalgebra::Rotation3;
 
 const REST: [Vector; 3] =
@@ -27,10 +26,10 @@ fn derivatives_match_differences() {
 }
 
 #[test]
-fn with_equal_stiffnesses_it_is_the_isotropic_triangle() {
+fn with_equal_stiffnesses_it_equals_the_isotropic_triangle() {
     let material = ClothMaterial { stretch_stiffness: 100.0, poisson_ratio: 0.3, ..ClothMaterial::cotton() };
     let isotropic = Triangle::new([0, 1, 2], &REST, material.lame(), 0.03).expect("area");
-    let woven = WovenTriangle::new([0, 1, 2], &REST, &WARP, material.weave(), 0.03).expect("area");
+    let woven = WovenTriangle::new([0, 1, 2], &REST, &WARP, Weave::new(&material), 0.03).expect("area");
     let mut stream = Stream::new(2);
     for scale in [0.5, 1.0, 1.5] {
         let (x, x0) = (stream.deformed(&REST, scale, 0.2), stream.deformed(&REST, 1.0, 0.2));
@@ -62,7 +61,7 @@ fn filtered_hessians_are_positive_also_of_crushed_triangles() {
 }
 
 #[test]
-fn rigid_motions_cost_nothing_and_forces_balance() {
+fn rigid_motions_store_no_energy_and_forces_balance() {
     let mut stream = Stream::new(4);
     for _ in 0..20 {
         let turn = Rotation3::new(stream.vector() * 3.0);
@@ -86,9 +85,10 @@ fn warp_weft_and_shear_have_their_stiffnesses() {
         ..ClothMaterial::cotton()
     };
     let corners = [Vector::zeros(), Vector::new(2.0, 0.0, 0.0), Vector::new(0.0, 1.0, 0.0)];
-    // A warp that leaves the plane counts by its projection.
-    let woven = WovenTriangle::new([0, 1, 2], &corners, &Vector::new(3.0, 0.0, 5.0), material.weave(), 0.0)
-        .expect("area");
+    // The projection of the warp into the plane counts.
+    let woven =
+        WovenTriangle::new([0, 1, 2], &corners, &Vector::new(3.0, 0.0, 5.0), Weave::new(&material), 0.0)
+            .expect("area");
     let force = |f: Matrix2<f64>| {
         let x = corners.map(|x| {
             let y = f * x.xy();
@@ -109,5 +109,5 @@ fn warp_weft_and_shear_have_their_stiffnesses() {
     // Pure shear e12: stress 2 G e12.
     let shear = force(Matrix2::new(1.0, e, e, 1.0));
     assert!((shear.gradient[2] - Vector::new(2.0 * 30.0 * e, 0.0, 0.0)).norm() < 1e-10);
-    assert!(WovenTriangle::new([0, 1, 2], &corners, &Vector::z(), material.weave(), 0.0).is_none());
+    assert!(WovenTriangle::new([0, 1, 2], &corners, &Vector::z(), Weave::new(&material), 0.0).is_none());
 }

@@ -1,6 +1,6 @@
 use super::*;
-use crate::elements::test_support::{Stream, check_balance, check_derivatives, check_positive};
-use crate::{RestShape, StrandMaterial};
+use crate::material::{RestShape, StrandMaterial};
+use crate::test_support::{Stream, check_balance, check_derivatives, check_positive};
 use nalgebra::Rotation3;
 
 const BENT: [Vector; 3] =
@@ -32,7 +32,7 @@ fn derivatives_match_differences() {
 }
 
 #[test]
-fn rigid_motions_cost_nothing_and_forces_balance() {
+fn rigid_motions_store_no_energy_and_forces_balance() {
     let mut stream = Stream::new(2);
     for _ in 0..20 {
         let rotation = Rotation3::new(stream.vector() * 3.0);
@@ -85,8 +85,8 @@ fn a_stretched_edge_pulls_with_ea_times_strain() {
 
 #[test]
 fn a_ring_bends_with_ei_over_two_r() {
-    // A straight strand closed to a ring of radius R: energy EI/2 * 2 pi R / R^2, to second order in the
-    // edge length; at its rest shape none.
+    // A straight strand that is closed to a ring of radius R has the energy EI/2 * 2 pi R / R^2, to second
+    // order in the edge length. A strand whose rest shape is the ring has none.
     let (radius, count) = (0.3, 120);
     let at = |k: u32| {
         let angle = 2.0 * std::f64::consts::PI * f64::from(k) / f64::from(count);
@@ -110,14 +110,14 @@ fn a_ring_bends_with_ei_over_two_r() {
 
 #[test]
 fn a_path_through_a_branching_vertex_bends_nearly_as_without_branches() {
-    // A straight path a b c with a side branch d, turned at b by a small angle; d gives way.
+    // A straight path a b c with a side branch d is bent at b by a small angle; d is free to rotate.
     let material = StrandMaterial { bend_stiffness: 1.0, ..StrandMaterial::rope() };
     let rest = [-Vector::x(), Vector::zeros(), Vector::x(), Vector::y()];
     let energy = |edges: &[[u32; 2]], x: &[Vector; 4]| {
         let (_, turns) = strand_elements(edges, &rest, &material);
         turns.iter().map(|t| t.energy(&t.nodes.map(|n| x[n as usize]), None)).sum::<f64>()
     };
-    // Turned in the plane of the branch; the branch lies at `branch` from the y axis.
+    // The path is bent in the plane of the branch; `branch` is the angle between the branch and the y axis.
     let angle: f64 = 1e-3;
     let at = |branch: f64| {
         let mut x = rest;
@@ -127,8 +127,8 @@ fn a_path_through_a_branching_vertex_bends_nearly_as_without_branches() {
     };
     let path = energy(&[[0, 1], [1, 2]], &at(0.0));
     let branched = |branch: f64| energy(&[[0, 1], [1, 2], [1, 3]], &at(branch));
-    let least = (0..=200).map(|k| branched(angle * k as f64 / 200.0)).fold(f64::INFINITY, f64::min);
-    // The turning of perpendicular edges weighs by cos^2(45 degrees) = 1/2 less than that of straight ones,
-    // so the branch holds 2/3 (1 + 1/2 * 1/2) = 5/6 of the path.
-    assert!((least / path - 5.0 / 6.0).abs() < 1e-3, "{least} {path}");
+    let smallest = (0..=200).map(|k| branched(angle * k as f64 / 200.0)).fold(f64::INFINITY, f64::min);
+    // Bending between perpendicular edges has the weight cos^2(45 degrees) = 1/2 relative to that between
+    // straight ones. The energy with the branch is therefore 2/3 (1 + 1/2 * 1/2) = 5/6 of that of the path.
+    assert!((smallest / path - 5.0 / 6.0).abs() < 1e-3, "{smallest} {path}");
 }

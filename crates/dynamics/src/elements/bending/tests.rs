@@ -1,26 +1,14 @@
 use super::*;
 use crate::linear::scalar::ScalarForm;
+use crate::test_support::grid_triangles;
 use nalgebra::Rotation3;
 
-/// A sheet of `n` x `n` cells of size `h`, alternating diagonals or parallel ones, sheared by `shear`.
+/// A sheet of `n` x `n` cells of size `h` with alternating or parallel diagonals, sheared by `shear`.
 fn grid(n: usize, h: f64, shear: f64, alternate: bool) -> (Vec<Vector>, Vec<[u32; 3]>) {
-    let index = |i: usize, j: usize| (i + j * (n + 1)) as u32;
-    let mut positions = Vec::new();
-    let mut triangles = Vec::new();
-    for j in 0..=n {
-        for i in 0..=n {
-            positions.push(Vector::new(i as f64 * h + shear * j as f64 * h, j as f64 * h, 0.0));
-            if i < n && j < n {
-                let (a, b, c, d) = (index(i, j), index(i + 1, j), index(i + 1, j + 1), index(i, j + 1));
-                if alternate && (i + j) % 2 == 1 {
-                    triangles.extend([[a, b, d], [b, c, d]]);
-                } else {
-                    triangles.extend([[a, b, c], [a, c, d]]);
-                }
-            }
-        }
-    }
-    (positions, triangles)
+    let vertices = (0..=n).flat_map(|j| (0..=n).map(move |i| (i, j)));
+    let position =
+        |(i, j): (usize, usize)| Vector::new(i as f64 * h + shear * j as f64 * h, j as f64 * h, 0.0);
+    (vertices.map(position).collect(), grid_triangles(n, n, alternate))
 }
 
 fn form(positions: &[Vector], triangles: &[[u32; 3]], stiffness: f64) -> ScalarForm {
@@ -29,7 +17,7 @@ fn form(positions: &[Vector], triangles: &[[u32; 3]], stiffness: f64) -> ScalarF
     builder.build()
 }
 
-/// Energy over (area * D / 2) of w = 1/2 x^T K x with the given curvatures.
+/// Energy over (area * D / 2) of the surface w = 1/2 x^T K x with the given curvatures K.
 fn ratio(positions: &[Vector], triangles: &[[u32; 3]], [xx, yy, xy]: [f64; 3]) -> f64 {
     let bent: Vec<Vector> = positions
         .iter()
@@ -46,8 +34,8 @@ fn ratio(positions: &[Vector], triangles: &[[u32; 3]], [xx, yy, xy]: [f64; 3]) -
 }
 
 #[test]
-fn constant_curvature_costs_what_a_plate_costs() {
-    // Free edges give their share of up to 2/n away, so look at the trend: 40 cells a side.
+fn constant_curvature_has_the_energy_of_a_plate() {
+    // Triangles at free edges store less energy, up to 2/n of the whole: n is 40 here.
     for (shear, alternate, name) in [(0.0, false, "right"), (0.5, false, "equilateral-like")] {
         let (positions, triangles) = grid(40, 0.025, shear, alternate);
         for curvature in
@@ -59,8 +47,9 @@ fn constant_curvature_costs_what_a_plate_costs() {
             assert!((0.90..1.001).contains(&found), "{name} {curvature:?}: {found}");
         }
     }
-    // Alternating diagonals are no affine image of a regular mesh: exact along the mesh lines, half as
-    // much again for a cylinder along a diagonal, twice for twist (the README says so).
+    // Alternating diagonals are not an affine image of a regular mesh. The energy is exact along the mesh
+    // lines, 1.5 times that of the plate for a cylinder along a diagonal, and twice for twist (see the
+    // README).
     let (positions, triangles) = grid(40, 0.025, 0.0, true);
     for (curvature, exact, expected) in [
         ([1.0, 0.0, 0.0], 1.0, 1.0),
@@ -74,7 +63,7 @@ fn constant_curvature_costs_what_a_plate_costs() {
 }
 
 #[test]
-fn flat_states_and_rigid_motions_cost_nothing() {
+fn flat_states_and_rigid_motions_store_no_energy() {
     let (positions, triangles) = grid(10, 0.1, 0.3, true);
     let form = form(&positions, &triangles, 1.0);
     let turn = Rotation3::new(Vector::new(0.4, -1.0, 2.0));
@@ -82,7 +71,7 @@ fn flat_states_and_rigid_motions_cost_nothing() {
         positions.iter().map(|p| turn * p + Vector::new(1e3, -2e3, 5e2)).collect::<Vec<_>>(),
         positions.iter().map(|p| Vector::new(2.0 * p.x + p.y, 0.3 * p.y, p.x)).collect(),
     ] {
-        // Entries are near 100; coordinates of 1e3 round to 1e-13, so energies to 100 * 1e-26 an entry.
+        // Entries are near 100; coordinates of 1e3 round to 1e-13, and energies to 100 * 1e-26 per entry.
         let energy = form.energy(&moved);
         assert!(energy.abs() < 1e-12, "{energy:e}");
         let force = (0..moved.len()).map(|n| form.product(n, &moved).norm()).fold(0.0, f64::max);
@@ -91,8 +80,8 @@ fn flat_states_and_rigid_motions_cost_nothing() {
 }
 
 #[test]
-fn only_flat_states_cost_nothing() {
-    // Null space of the form on one coordinate: constants and the two linear functions.
+fn only_flat_states_store_no_energy() {
+    // The null space of the form on one coordinate consists of the constants and the two linear functions.
     let (positions, triangles) = grid(4, 0.25, 0.2, true);
     let form = form(&positions, &triangles, 1.0);
     let count = positions.len();
@@ -107,8 +96,8 @@ fn only_flat_states_cost_nothing() {
     eigenvalues.sort_by(f64::total_cmp);
     let largest = eigenvalues[count - 1];
     assert!(eigenvalues[..3].iter().all(|e| e.abs() < 1e-12 * largest), "{:?}", &eigenvalues[..5]);
-    // Two corners of alternating diagonals are single triangles that may flap freely about their one
-    // inner edge only at a cost, too.
+    // Two corners of the sheet are single triangles with one inner edge. They, too, store energy when they
+    // bend about it.
     assert!(eigenvalues[3] > 1e-6 * largest, "{:?}", &eigenvalues[..5]);
 }
 
@@ -137,7 +126,7 @@ fn the_gradient_matches_differences_of_the_energy() {
 
 #[test]
 fn closed_surfaces_and_shared_far_vertices_are_handled() {
-    // A tetrahedron: every vertex across an edge is the far corner of all neighbours.
+    // On a tetrahedron the vertices beyond the three edges of a triangle coincide.
     let positions = [
         Vector::new(0.0, 0.0, 0.0),
         Vector::new(1.0, 0.0, 0.0),
@@ -152,7 +141,7 @@ fn closed_surfaces_and_shared_far_vertices_are_handled() {
 
 #[test]
 fn edges_of_three_triangles_do_not_bend() {
-    // Three pages of a book: the spine is a free edge for each.
+    // Three pages of a book: the spine is a free edge of each.
     let turn = |angle: f64| Vector::new(angle.cos(), 0.5, angle.sin());
     let positions = [Vector::zeros(), Vector::new(0.0, 1.0, 0.0), turn(0.0), turn(2.0), turn(4.0)];
     let triangles = [[0, 1, 2], [0, 1, 3], [0, 1, 4]];

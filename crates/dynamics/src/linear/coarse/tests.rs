@@ -3,7 +3,7 @@ use crate::linear::block::{BlockPattern, BlockValues};
 use crate::linear::scalar::{ScalarBuilder, SplitForm};
 use nalgebra::{DMatrix, SMatrix};
 
-/// A chain of 12 nodes with random couplings, cut into three aggregates, one node held.
+/// A chain of 12 nodes with pseudo-random couplings; one node is held.
 fn chain() -> (Vec<Vector>, BlockPattern, BlockValues, SplitForm, Vec<bool>) {
     let count = 12;
     let wave = |k: usize| (k as f64 * 2.3).sin();
@@ -30,11 +30,11 @@ fn chain() -> (Vec<Vector>, BlockPattern, BlockValues, SplitForm, Vec<bool>) {
 #[test]
 fn the_correction_is_the_galerkin_projection() {
     let (x, pattern, values, scalar, free) = chain();
-    let system = System { pattern: &pattern, values: &values, scalar: &scalar, repulsion: None, free: &free };
+    let system = System { pattern: &pattern, values: &values, scalar: &scalar, springs: None, free: &free };
     let aggregates = [0..4u32, 4..7, 7..12];
     let mut coarse = Coarse::new(&aggregates, &x, |row, visit| {
         pattern.columns[pattern.row(row)].iter().for_each(|&c| visit(c));
-        scalar.far(row).0.iter().for_each(|&c| visit(c));
+        scalar.off_pattern(row).0.iter().for_each(|&c| visit(c));
     });
     coarse.build(&system, &x);
 
@@ -79,14 +79,14 @@ fn the_correction_is_the_galerkin_projection() {
 }
 
 #[test]
-fn aggregates_without_six_motions_are_no_harm() {
-    // One free node, two free nodes, none: spins and shifts that move nothing are dropped.
+fn aggregates_with_fewer_than_six_motions_are_solved() {
+    // Aggregates with one free node, two and none: spins and shifts that move nothing are dropped.
     let (x, pattern, values, scalar, _) = chain();
     let free: Vec<bool> = (0..12).map(|k| [0, 4, 5].contains(&k)).collect();
-    let system = System { pattern: &pattern, values: &values, scalar: &scalar, repulsion: None, free: &free };
+    let system = System { pattern: &pattern, values: &values, scalar: &scalar, springs: None, free: &free };
     let mut coarse = Coarse::new(&[0..4, 4..7, 7..12], &x, |row, visit| {
         pattern.columns[pattern.row(row)].iter().for_each(|&c| visit(c));
-        scalar.far(row).0.iter().for_each(|&c| visit(c));
+        scalar.off_pattern(row).0.iter().for_each(|&c| visit(c));
     });
     coarse.build(&system, &x);
     let r: Vec<Vector> =
@@ -97,7 +97,7 @@ fn aggregates_without_six_motions_are_no_harm() {
         assert!(displacement.iter().all(|d| d.is_finite()));
         assert!(free[node] || displacement.norm() == 0.0);
     }
-    // The lone node's correction is the exact solution.
+    // The correction of the single node is the exact solution.
     let alone = values.diagonal[0].try_inverse().expect("regular") * r[0];
     assert!((coarse.displacement(0) - alone).norm() < 1e-9, "{} {alone}", coarse.displacement(0));
 }
