@@ -216,5 +216,5 @@ fn impossible_sizes_and_cameras_are_refused() {
     }
     let blind = Camera { target: camera().eye, ..camera() };
     let refused = renderer.render(&model, &frame, &Shot::new(blind, SIZE));
-    assert!(matches!(refused, Err(RenderError::BlindCamera(_))));
+    assert!(matches!(refused, Err(RenderError::CameraAtTarget(_))));
 }

@@ -147,7 +147,7 @@ fn shot(
     size: [u32; 2],
     legend: Option<&Legend>,
 ) -> Result<Shot, Failure> {
-    let free = legend.map_or(0, |legend| legend.width(size[1])).min(size[0] / 2);
+    let legend_width = legend.map_or(0, |legend| legend.width(size[1])).min(size[0] / 2);
     let view = match options.view {
         Direction::Front => View::Front,
         Direction::Side => View::Side,
@@ -157,7 +157,7 @@ fn shot(
     let camera = match (options.camera, options.target) {
         (Some(eye), Some(target)) => Camera { eye: eye.into(), target: target.into(), fov: options.fov },
         (eye, _) => {
-            let mut fit = Fit::new(view, options.fov, f64::from(size[0] - free) / f64::from(size[1]));
+            let mut fit = Fit::new(view, options.fov, f64::from(size[0] - legend_width) / f64::from(size[1]));
             let every = (run.last_frame() / FITTED_FRAMES).max(1);
             let spread = run.frames().filter(|frame| frame % every == 0 || *frame == run.last_frame());
             let radius = run.radius();
@@ -171,7 +171,7 @@ fn shot(
             }
         }
     };
-    Ok(Shot { free, ground: run.ground().to_vec(), ..Shot::new(camera, size) })
+    Ok(Shot { legend_width, ground: run.ground().to_vec(), ..Shot::new(camera, size) })
 }
 
 fn model(run: &RunFolder) -> Result<Model, Failure> {
