@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 /// Simulates deformable bodies that never intersect.
 ///
-/// Exit codes: 0 done; 1 a check found an intersection or too small a distance; 2 bad input; 3 no such backend or
-/// device; 130 interrupted, with a valid checkpoint.
+/// Exit codes: 0 done; 1 a check found an intersection or too small a distance; 2 bad input; 3 no such
+/// backend or device; 130 interrupted, with a valid checkpoint.
 #[derive(Debug, Parser)]
 #[command(name = "bowknot", version, arg_required_else_help = true)]
 pub struct Arguments {
@@ -46,7 +46,8 @@ pub struct ScenesOptions {
 
 #[derive(Debug, Args)]
 pub struct RunOptions {
-    /// A built-in scene (see `bowknot scenes`), a scene file (.toml), or a mesh (.obj, .ply) to drop on a ball as cloth
+    /// A built-in scene (see `bowknot scenes`), a scene file (.toml), or a mesh (.obj, .ply) to drop on a
+    /// ball as cloth
     pub scene: String,
     /// Number of time steps [default: that of the scene]
     #[arg(long, value_name = "N")]
@@ -73,8 +74,8 @@ pub struct RunOptions {
     /// Write the collision problems to states/, for `bowknot resolve`
     #[arg(long)]
     pub record: bool,
-    /// Check the path to every accepted state by a certificate, and the state at the end of each time step by exact
-    /// tests: exit code 1 if anything intersects
+    /// Check the path to every accepted state by a certificate, and the state at the end of each time step by
+    /// exact tests: exit code 1 if anything intersects
     #[arg(long)]
     pub check: bool,
     /// If the start intersects, write the triangles that do to this file (.ply or .obj)
@@ -112,7 +113,8 @@ pub struct ResolveOptions {
 
 #[derive(Debug, Args)]
 pub struct CheckOptions {
-    /// States (.ply, .obj, .npz, .msh, .t, .seg), folders of frames, or folders of runs; in a folder `trace` the path between successive files is checked too
+    /// States (.ply, .obj, .npz, .msh, .t, .seg), folders of frames, or folders of runs; in a folder `trace`
+    /// the path between successive files is checked too
     #[arg(required = true, value_name = "PATH")]
     pub paths: Vec<PathBuf>,
     /// Also fail if two primitives are nearer than this [m]
@@ -121,7 +123,8 @@ pub struct CheckOptions {
     /// Print at most this many intersections of each state and path; all are counted
     #[arg(long, value_name = "N", default_value_t = 5)]
     pub list: usize,
-    /// Write the triangles and strands that intersect to this file (.ply or .obj), for the first state where any do
+    /// Write the triangles and strands that intersect to this file (.ply or .obj), for the first state where
+    /// any do
     #[arg(long, value_name = "FILE")]
     pub dump: Option<PathBuf>,
     /// Print JSON
@@ -140,8 +143,8 @@ pub struct RenderOptions {
     /// The frame to draw [default for a picture: the last]
     #[arg(long, value_name = "K", conflicts_with = "frames")]
     pub frame: Option<usize>,
-    /// Frames to draw, both ends included; an omitted end is the first or last [default: all; for an animation as many as
-    /// play at the speed of the simulation with at most 30 frames per second]
+    /// Frames to draw, both ends included; an omitted end is the first or last [default: all; for an
+    /// animation as many as play at the speed of the simulation with at most 30 frames per second]
     #[arg(long, value_name = "A..B[:STEP]", value_parser = frames)]
     pub frames: Option<FrameRange>,
     /// Frames per second of an animation [default: the speed of the simulation]
@@ -186,7 +189,8 @@ pub enum Color {
     Gap,
     /// Speed between frames
     Speed,
-    /// Distance to the target: of each vertex if the run was made with --record, else the largest of each time step
+    /// Distance to the target: of each vertex if the run was made with --record, else the largest of each
+    /// time step
     Remaining,
     /// The body, by name
     Body,

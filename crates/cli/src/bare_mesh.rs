@@ -1,4 +1,5 @@
-//! A mesh file as a scene: the mesh falls on a ball that stands on the ground. Ball and gaps are sized to the mesh.
+//! A mesh file as a scene: the mesh falls on a ball that stands on the ground. Ball and gaps are sized to the
+//! mesh.
 
 use crate::exit::Failure;
 use bowknot::geometry::{Point, Vector};
@@ -18,7 +19,8 @@ pub fn is_mesh(name: &str) -> bool {
     MESH_ENDINGS.iter().any(|known| extension == *known)
 }
 
-/// The scene of a mesh file. `sets` may change how it is imported (`body.0.up=y`), so its size is measured after them.
+/// The scene of a mesh file. `sets` may change how it is imported (`body.0.up=y`), so its size is measured
+/// after them.
 pub fn scene(name: &str, sets: &[String]) -> Result<Scene, Failure> {
     let path = Path::new(name);
     let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();

@@ -4,7 +4,8 @@ use bowknot::check::OffendingMesh;
 use bowknot::io::{IoError, MeshView, write_obj, write_ply};
 use std::path::Path;
 
-/// Writes the elements with the attributes of their vertices, as OBJ if the file has that extension and as PLY otherwise.
+/// Writes the elements with the attributes of their vertices, as OBJ if the file has that extension and as
+/// PLY otherwise.
 pub fn write(path: &Path, mesh: &OffendingMesh, obstacle: &[bool], body: &[u32]) -> Result<(), IoError> {
     let view = MeshView {
         positions: &mesh.positions,

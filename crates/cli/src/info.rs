@@ -55,8 +55,8 @@ fn info_of_scene(info: SceneInfo) -> Info {
     }
 }
 
-/// Counts of a mesh as its file holds it, with the surface of its tetrahedra. In a frame, elements with an obstacle vertex
-/// are not counted.
+/// Counts of a mesh as its file holds it, with the surface of its tetrahedra. In a frame, elements with an
+/// obstacle vertex are not counted.
 fn info_of_mesh(mesh: Mesh) -> Info {
     let tets = mesh.tets.len();
     let mesh = mesh.into_surface();

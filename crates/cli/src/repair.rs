@@ -65,8 +65,9 @@ fn to_text(report: &RepairReport, out: &Path) -> String {
     lines.extend(report.after.findings.iter().map(|finding| format!("  {finding}")));
     lines.push(format!("wrote {}", out.display()));
     if report.after.intersections > 0 {
-        let remedy = "a larger --weld-distance closes wider seams; `bowknot check --dump FILE` writes the triangles that \
-                      intersect; a mesh for an obstacle needs no further repair, since obstacles may intersect themselves";
+        let remedy = "a larger --weld-distance closes wider seams; `bowknot check --dump FILE` writes the \
+                      triangles that intersect; a mesh for an obstacle needs no further repair, since obstacles \
+                      may intersect themselves";
         lines.push(remedy.to_owned());
     }
     lines.join("\n")

@@ -38,7 +38,9 @@ pub fn scenes(options: &ScenesOptions) -> Result<Exit, Failure> {
             e.name, e.frames, e.summary
         )
     }));
-    lines.push("(vertices and triangles are those of deformable bodies, obstacle counts vertices, frames is the default of --frames)".to_owned());
+    let note =
+        "(vertices and triangles of deformable bodies, vertices of obstacles, default number of time steps)";
+    lines.push(note.to_owned());
     output::print(&lines.join("\n"))?;
     Ok(Exit::Success)
 }

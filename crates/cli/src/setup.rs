@@ -6,8 +6,8 @@ use tracing_subscriber::filter::{LevelFilter, Targets};
 use tracing_subscriber::layer::SubscriberExt;
 use tracing_subscriber::util::SubscriberInitExt;
 
-/// Shows the warnings of the libraries on stderr, or their errors only if `quiet`. The variable `BOWKNOT_LOG` selects other
-/// levels, such as `debug`, also by crate: `warn,bowknot_twoway=debug`.
+/// Shows the warnings of the libraries on stderr, or their errors only if `quiet`. The variable `BOWKNOT_LOG`
+/// selects other levels, such as `debug`, also by crate: `warn,bowknot_twoway=debug`.
 pub fn logging(quiet: bool) {
     let default = Targets::new().with_default(if quiet { LevelFilter::ERROR } else { LevelFilter::WARN });
     let asked = std::env::var("BOWKNOT_LOG").ok().filter(|levels| !levels.is_empty());

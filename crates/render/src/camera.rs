@@ -73,10 +73,10 @@ pub(crate) fn axes(back: &Vector) -> [Vector; 3] {
 
 /// Finds the nearest eye, in a given direction, that sees all points.
 ///
-/// Each side of the view is a plane through the eye e. With t the tangent of half the angle of view, the left and right
-/// planes demand x + t z <= e_x + t e_z and -x + t z <= -e_x + t e_z of each point, where x points right and z back. So the
-/// largest x + t z and the largest -x + t z of all points give e_x and the smallest e_z. The height works likewise. The fit
-/// therefore keeps four numbers and no points.
+/// Each side of the view is a plane through the eye e. With t the tangent of half the angle of view, the left
+/// and right planes demand x + t z <= e_x + t e_z and -x + t z <= -e_x + t e_z of each point, where x points
+/// right and z back. So the largest x + t z and the largest -x + t z of all points give e_x and the smallest
+/// e_z. The height works likewise. The fit therefore keeps four numbers and no points.
 #[derive(Clone, Debug)]
 pub struct Fit {
     axes: [Vector; 3],
@@ -122,7 +122,8 @@ impl Fit {
         }
         let [a, b, c, d] = self.largest;
         let [tx, ty] = self.tangents;
-        // A single point is seen from a distance of 1 mm, or of a millionth of its coordinates if that is more.
+        // A single point is seen from a distance of 1 mm, or of a millionth of its coordinates if that is
+        // more.
         let min_distance = 1e-3_f64.max(1e-6 * self.largest.iter().fold(0.0, |m: f64, v| m.max(v.abs())));
         let distance = ((a + b) / (2.0 * tx)).max((c + d) / (2.0 * ty)).max(self.depth[1] + min_distance);
         let place = |z: f64| {

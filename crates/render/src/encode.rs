@@ -31,18 +31,19 @@ pub fn write_small_png(out: impl Write, picture: &Picture) -> Result<(), RenderE
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_palette(palette.colors.as_flattened().to_vec());
     encoder.set_compression(png::Compression::High);
-    // Neighbouring indices are unrelated colours, so a filter that predicts one from another would only add noise.
+    // Neighbouring indices are unrelated colours, so a filter that predicts one from another would only add
+    // noise.
     encoder.set_filter(png::Filter::NoFilter);
     let mut writer = encoder.write_header().map_err(Error::from)?;
     writer.write_image_data(&palette.indices(picture)).map_err(Error::from)?;
     Ok(writer.finish().map_err(Error::from)?)
 }
 
-/// Writes an animation that repeats for ever. All frames share one palette, so that nothing flickers. Each frame holds only
-/// the rectangle in which it differs from the frame before it.
+/// Writes an animation that repeats for ever. All frames share one palette, so that nothing flickers. Each
+/// frame holds only the rectangle in which it differs from the frame before it.
 ///
-/// The delays of the frames are rounded to a hundredth of a second, the unit of the format. `frames_per_second` is clamped
-/// to at most 50, the fastest that viewers play.
+/// The delays of the frames are rounded to a hundredth of a second, the unit of the format.
+/// `frames_per_second` is clamped to at most 50, the fastest that viewers play.
 ///
 /// # Errors
 /// No frame, frames of different sizes or larger than the format allows, and errors of `out`.
@@ -88,8 +89,8 @@ pub fn write_gif(out: impl Write, pictures: &[Picture], frames_per_second: f64) 
     Ok(())
 }
 
-/// The smallest rectangle in which two pictures differ, as its first and its one past last column and row; one pixel if
-/// they are equal.
+/// The smallest rectangle in which two pictures differ, as its first and its one past last column and row;
+/// one pixel if they are equal.
 fn changed(a: &[u8], b: &[u8], width: u32) -> [u32; 4] {
     let mut found = [u32::MAX, u32::MAX, 0, 0];
     for (k, _) in a.iter().zip(b).enumerate().filter(|(_, (p, q))| p != q) {
@@ -112,8 +113,8 @@ const LEVELS: usize = 64;
 const SAMPLES: usize = 200_000;
 
 impl Palette {
-    /// A palette from evenly spaced pixels of all pictures (Dekker, "Kohonen neural networks for optimal colour
-    /// quantization", 1994).
+    /// A palette from evenly spaced pixels of all pictures (Dekker, "Kohonen neural networks for optimal
+    /// colour quantization", 1994).
     fn new(pictures: &[Picture], count: usize) -> Self {
         let total: usize = pictures.iter().map(|p| p.pixels.len()).sum();
         // An odd step, so that the samples do not line up in columns of a picture of even width.
@@ -142,8 +143,8 @@ impl Palette {
         Self { colors, nearest }
     }
 
-    /// The nearest colour of each pixel, after ordered dithering (Bayer, 1973). Parts of a picture that do not move keep
-    /// their pattern from frame to frame, which error diffusion would change.
+    /// The nearest colour of each pixel, after ordered dithering (Bayer, 1973). Parts of a picture that do
+    /// not move keep their pattern from frame to frame, which error diffusion would change.
     fn indices(&self, picture: &Picture) -> Vec<u8> {
         const BAYER: [[u8; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
         // About the spacing of the table's levels: it hides steps and is too small to show as grain.

@@ -1,5 +1,5 @@
-//! Offscreen pictures of triangles, strands and particles through wgpu. No window is needed, and any driver will do, a
-//! software driver included.
+//! Offscreen pictures of triangles, strands and particles through wgpu. No window is needed, and any driver
+//! will do, a software driver included.
 //!
 //! ```no_run
 //! use bowknot_render::geometry::{HalfSpace, Point, Vector};

@@ -1,8 +1,8 @@
 //! The light of a picture: a soft key light and a sky, both sampled by many small lights.
 //!
-//! Each small light casts hard shadows through a shadow map. The sum of many samples of an area light and of a dome gives
-//! soft shadows and ambient occlusion. This is the many-light view of global illumination (Keller, "Instant Radiosity",
-//! SIGGRAPH 1997) with a single bounce of sky light.
+//! Each small light casts hard shadows through a shadow map. The sum of many samples of an area light and of
+//! a dome gives soft shadows and ambient occlusion. This is the many-light view of global illumination
+//! (Keller, "Instant Radiosity", SIGGRAPH 1997) with a single bounce of sky light.
 
 use bowknot_geometry::Vector;
 use std::f64::consts::{PI, TAU};
@@ -29,7 +29,8 @@ pub struct Light {
     pub key: bool,
 }
 
-/// The lights for a camera. `back` points from its target to its eye; the key light stands to the left of the camera.
+/// The lights for a camera. `back` points from its target to its eye; the key light stands to the left of the
+/// camera.
 pub fn lights(back: &Vector, key_count: usize, sky_count: usize) -> Vec<Light> {
     let around = if back.x.hypot(back.y) > 1e-3 { back.y.atan2(back.x) } else { -PI / 2.0 };
     let (azimuth, height) = (around - KEY_TURN.to_radians(), KEY_HEIGHT.to_radians());
@@ -46,8 +47,9 @@ pub fn lights(back: &Vector, key_count: usize, sky_count: usize) -> Vec<Light> {
     }
     normalise(&mut lights, KEY_SHARE);
 
-    // A spiral spreads the points over a hemisphere by equal area (Archimedes: bands of equal height in z). The sky is
-    // brighter toward the zenith, as an overcast sky is (Moon and Spencer, "Illumination from a nonuniform sky", 1942).
+    // A spiral spreads the points over a hemisphere by equal area (Archimedes: bands of equal height in z).
+    // The sky is brighter toward the zenith, as an overcast sky is (Moon and Spencer, "Illumination from a
+    // nonuniform sky", 1942).
     let mut sky = Vec::with_capacity(sky_count);
     for k in 0..sky_count {
         let z = 0.06 + 0.94 * (k as f64 + 0.5) / sky_count as f64;

@@ -16,7 +16,8 @@ pub struct Elements<'a> {
     pub strands: &'a [[u32; 2]],
     /// Vertex of each particle; it is drawn as a ball.
     pub particles: &'a [u32],
-    /// Whether each vertex belongs to an obstacle; empty if none does. The first vertex of an element decides.
+    /// Whether each vertex belongs to an obstacle; empty if none does. The first vertex of an element
+    /// decides.
     pub obstacle: &'a [bool],
     /// Body of each vertex, which gives its colour; empty if all belong to body 0.
     pub body: &'a [u32],
@@ -36,8 +37,8 @@ pub struct Style {
 pub struct Frame<'a> {
     /// Positions of the vertices [m].
     pub positions: &'a [Point],
-    /// A value in [0, 1] per vertex, which the colour map shows; a vertex with NaN has the colour of its body. Empty: all
-    /// are NaN.
+    /// A value in [0, 1] per vertex, which the colour map shows; a vertex with NaN has the colour of its
+    /// body. Empty: all are NaN.
     pub values: &'a [f32],
 }
 

@@ -1,8 +1,8 @@
 //! Colours of bodies, obstacles and the backdrop, as sRGB.
 
-/// Colours of deformable bodies, used in turn. They are distinct for colour-blind readers too, and muted enough to shade
-/// well. The hues are those of Paul Tol's qualitative scheme "muted" (SRON/EPS/TN/09-002, issue 3.2, 2021), some of them
-/// lightened, with the most distinct first.
+/// Colours of deformable bodies, used in turn. They are distinct for colour-blind readers too, and muted
+/// enough to shade well. The hues are those of Paul Tol's qualitative scheme "muted" (SRON/EPS/TN/09-002,
+/// issue 3.2, 2021), some of them lightened, with the most distinct first.
 const BODIES: [[u8; 3]; 9] = [
     [201, 102, 92],
     [68, 142, 176],

@@ -28,7 +28,8 @@ impl Picture {
         self.pixels[(y * self.width + x) as usize]
     }
 
-    /// Blends a colour into a pixel, with opacity `coverage` in [0, 1]. Pixels outside of the picture are ignored.
+    /// Blends a colour into a pixel, with opacity `coverage` in [0, 1]. Pixels outside of the picture are
+    /// ignored.
     pub fn blend(&mut self, x: i64, y: i64, color: [u8; 3], coverage: f32) {
         if (0..i64::from(self.width)).contains(&x) && (0..i64::from(self.height)).contains(&y) {
             let pixel = &mut self.pixels[(y * i64::from(self.width) + x) as usize];
@@ -39,7 +40,8 @@ impl Picture {
         }
     }
 
-    /// Fills a rectangle, given its upper left corner and its size. The part outside of the picture is ignored.
+    /// Fills a rectangle, given its upper left corner and its size. The part outside of the picture is
+    /// ignored.
     pub fn fill(&mut self, [x, y]: [i64; 2], [width, height]: [i64; 2], color: [u8; 3]) {
         for row in y..y + height {
             for column in x..x + width {
@@ -48,8 +50,8 @@ impl Picture {
         }
     }
 
-    /// The picture reduced to a `factor`-th of its size by means of linear light. Incomplete blocks at the right and lower
-    /// edges are dropped.
+    /// The picture reduced to a `factor`-th of its size by means of linear light. Incomplete blocks at the
+    /// right and lower edges are dropped.
     pub fn shrink(&self, factor: u32) -> Self {
         if factor <= 1 {
             return self.clone();

@@ -1,4 +1,5 @@
-// Surfaces, balls and ground under many small lights, each with a shadow map; see lights.rs and renderer/mod.rs.
+// Surfaces, balls and ground under many small lights, each with a shadow map; see lights.rs and
+// renderer/mod.rs.
 
 // The view of the camera or of a light.
 struct View {
@@ -58,7 +59,8 @@ fn received(point: vec3<f32>, normal: vec3<f32>) -> Received {
         key_count += direction.w;
         key_direction += direction.w * direction.xyz;
         if cosine > 0.0 {
-            // Offset from the surface by some texels, more at grazing angles, so that it does not shade itself.
+            // Offset from the surface by some texels, more at grazing angles, so that it does not shade
+            // itself.
             let start = point + normal * (texel * (1.0 + 1.5 * (1.0 - cosine))) + direction.xyz * texel;
             let at = (scene.lights[k].matrix * vec4<f32>(start, 1.0)).xyz;
             var seen = 1.0;
@@ -157,7 +159,8 @@ struct BallOut {
 
 // The square of a ball without its colour: the pass of a light has no access to the palette.
 fn ball_square(in: BallIn, index: u32) -> BallOut {
-    // Direction from the centre of the ball toward the viewer, and the radius of its outline in the plane of the square.
+    // Direction from the centre of the ball toward the viewer, and the radius of its outline in the plane of
+    // the square.
     var toward = view.eye.xyz;
     var size = in.radius;
     if view.eye.w > 0.5 {
@@ -189,8 +192,8 @@ fn ball_outline_vertex(in: BallIn, @builtin(vertex_index) index: u32) -> BallOut
     return ball_square(in, index);
 }
 
-// The point where the ray through a point of the square meets the ball; w: distance of the ray from the centre. A ray that
-// misses gives the point of the ball nearest to it.
+// The point where the ray through a point of the square meets the ball; w: distance of the ray from the
+// centre. A ray that misses gives the point of the ball nearest to it.
 fn ball_hit(point: vec3<f32>, ball: vec4<f32>) -> vec4<f32> {
     var along = -view.eye.xyz;
     if view.eye.w > 0.5 {
@@ -249,8 +252,8 @@ fn backdrop_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec
     return vec4<f32>(backdrop(position.y), 1.0);
 }
 
-// The ground has the colour of the backdrop, darkened by the light that is blocked, so that it has no edge and no horizon.
-// Ground that is not level is darker as far as it faces away from the light.
+// The ground has the colour of the backdrop, darkened by the light that is blocked, so that it has no edge
+// and no horizon. Ground that is not level is darker as far as it faces away from the light.
 @fragment
 fn ground_fragment(in: SurfaceOut) -> @location(0) vec4<f32> {
     let light = received(in.point, normalize(in.normal)).diffuse;

@@ -1,9 +1,9 @@
 //! Strands as tubes with round ends.
 //!
-//! Edges are joined into chains at the vertices where exactly two of them meet. A frame is transported along each chain
-//! without twist, so that neighbouring rings of a tube do not turn against each other (parallel transport by double
-//! reflection: Wang, Jüttler, Zheng and Liu, "Computation of Rotation Minimizing Frames", ACM Transactions on Graphics 27,
-//! 2008).
+//! Edges are joined into chains at the vertices where exactly two of them meet. A frame is transported along
+//! each chain without twist, so that neighbouring rings of a tube do not turn against each other (parallel
+//! transport by double reflection: Wang, Jüttler, Zheng and Liu, "Computation of Rotation Minimizing Frames",
+//! ACM Transactions on Graphics 27, 2008).
 
 use bowknot_geometry::{Point, Vector};
 use std::f64::consts::TAU;
@@ -40,7 +40,8 @@ struct Chain {
 }
 
 impl Tubes {
-    /// Joins edges into chains and triangulates their tubes, which have rings of `sides` vertices, at least 3.
+    /// Joins edges into chains and triangulates their tubes, which have rings of `sides` vertices, at least
+    /// 3.
     pub fn new(edges: &[[u32; 2]], sides: usize) -> Self {
         let mut tubes = Self { chains: chains(edges), sides: sides.max(3), triangles: Vec::new() };
         let sides = tubes.sides as u32;
@@ -113,7 +114,8 @@ impl Tubes {
     }
 }
 
-/// Chains of edges, in the order of their first edges. A chain ends at a vertex where the number of edges is not two.
+/// Chains of edges, in the order of their first edges. A chain ends at a vertex where the number of edges is
+/// not two.
 fn chains(edges: &[[u32; 2]]) -> Vec<Chain> {
     let count = edges.iter().flatten().max().map_or(0, |&v| v as usize + 1);
     let mut at: Vec<Vec<u32>> = vec![Vec::new(); count];
@@ -180,8 +182,8 @@ fn tangents(points: &[Point], closed: bool) -> Vec<Vector> {
         .collect()
 }
 
-/// Unit vectors perpendicular to the tangents, transported without twist. Around a loop, the angle between the first
-/// vector and its transport is spread evenly over all points.
+/// Unit vectors perpendicular to the tangents, transported without twist. Around a loop, the angle between
+/// the first vector and its transport is spread evenly over all points.
 fn frames(points: &[Point], tangents: &[Vector], closed: bool) -> Vec<Vector> {
     let across = |t: &Vector| {
         let axis = if t.z.abs() < 0.9 { Vector::z() } else { Vector::x() };

@@ -1,7 +1,7 @@
 //! The steps of CI, each with its name and duration.
 //!
-//! All steps share one target folder and the release profile, so that each reuses what the steps above it compiled. The
-//! tests come last and nothing follows them: the log ends with the test runner's own lines.
+//! All steps share one target folder and the release profile, so that each reuses what the steps above it
+//! compiled. The tests come last and nothing follows them: the log ends with the test runner's own lines.
 
 use crate::workspace::{cargo, root, target_folder};
 use crate::{bowknot, docs, readers};
@@ -76,7 +76,8 @@ fn all_steps(root: &Path) -> Vec<Step> {
         println!("==> wasm: skipped, because the target is missing: rustup target add {WASM_TARGET}");
     }
     steps.push(Step::new("build tests", cargo(root, "test --release --workspace --no-run")));
-    // The step above built the command. `cargo run` would build it anew, with the features of its own package alone.
+    // The step above built the command. `cargo run` would build it anew, with the features of its own package
+    // alone.
     let target = target_folder(root);
     let mut drape = Command::new(bowknot::path(&target));
     drape
@@ -97,8 +98,8 @@ fn all_steps(root: &Path) -> Vec<Step> {
     steps
 }
 
-/// Runs a command whose last argument is its output folder, and removes that folder first: `bowknot run` refuses a
-/// folder that holds a run.
+/// Runs a command whose last argument is its output folder, and removes that folder first: `bowknot run`
+/// refuses a folder that holds a run.
 fn run_afresh(command: &mut Command) -> std::io::Result<bool> {
     if let Some(out) = command.get_args().last().map(Path::new).filter(|out| out.exists()) {
         std::fs::remove_dir_all(out)?;

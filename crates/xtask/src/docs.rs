@@ -1,7 +1,7 @@
 //! Builds the documentation and refuses warnings, except about units in square brackets.
 //!
-//! Rustdoc takes `[m]` for a link to an item `m`. The workspace therefore allows unresolved links. That would hide broken
-//! ones, so this step turns the warning on again and ignores it for units.
+//! Rustdoc takes `[m]` for a link to an item `m`. The workspace therefore allows unresolved links. That would
+//! hide broken ones, so this step turns the warning on again and ignores it for units.
 
 use std::process::{Command, Stdio};
 

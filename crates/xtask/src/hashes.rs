@@ -1,7 +1,7 @@
 //! `cargo xtask hashes`: a hash of the frames of each built-in scene.
 //!
-//! A change of form alone must not change a bit of any result. To show it, run the command before and after the change,
-//! on the same machine, and compare what it prints:
+//! A change of form alone must not change a bit of any result. To show it, run the command before and after
+//! the change, on the same machine, and compare what it prints:
 //!
 //! ```sh
 //! cargo xtask hashes > before.txt
@@ -95,7 +95,8 @@ struct Frames {
     hash: u64,
 }
 
-/// Builds the command, runs the scenes and prints a line per scene: its name, the number of its frame files, their hash.
+/// Builds the command, runs the scenes and prints a line per scene: its name, the number of its frame files,
+/// their hash.
 pub fn run(root: &Path, options: &Options) -> ExitCode {
     let command = match bowknot::build(root) {
         Ok(command) => command,
@@ -190,8 +191,8 @@ fn hash_files(folder: &Path) -> io::Result<Frames> {
     Ok(Frames { count: files.len(), hash: hash.0 })
 }
 
-/// The 64-bit FNV-1a hash (Fowler, Noll and Vo): it finds accidental differences; nobody makes frames that collide on
-/// purpose.
+/// The 64-bit FNV-1a hash (Fowler, Noll and Vo): it finds accidental differences; nobody makes frames that
+/// collide on purpose.
 struct Fnv(u64);
 
 impl Default for Fnv {

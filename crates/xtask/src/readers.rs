@@ -1,7 +1,7 @@
 //! Exports of a small run, read back by third-party readers: `tests/readers`.
 //!
-//! The readers are Python packages. They are installed into a virtual environment in the target folder, and again
-//! whenever their `requirements.txt` changes.
+//! The readers are Python packages. They are installed into a virtual environment in the target folder, and
+//! again whenever their `requirements.txt` changes.
 
 use crate::bowknot;
 use std::io::{Error, Result};

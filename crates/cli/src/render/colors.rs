@@ -13,14 +13,15 @@ use bowknot_render::{Legend, Scale, body_color};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Share of the values at either end that may lie beyond the scale, so that a few extreme edges do not take the range of
-/// colours from all others.
+/// Share of the values at either end that may lie beyond the scale, so that a few extreme edges do not take
+/// the range of colours from all others.
 const OUTLIERS: f64 = 0.002;
 
 /// Colours of all frames that are drawn.
 pub struct Coloring {
     legend: Option<Legend>,
-    /// For each frame the position of each vertex on the scale, in [0, 1], or NaN for none; empty without a scale.
+    /// For each frame the position of each vertex on the scale, in [0, 1], or NaN for none; empty without a
+    /// scale.
     shares: Vec<Vec<f32>>,
 }
 

@@ -2,8 +2,8 @@
 
 use bowknot::io::Mesh;
 
-/// Mean length of the edges of triangles and strands [m], in which an edge counts once per element; none if there are no
-/// edges.
+/// Mean length of the edges of triangles and strands [m], in which an edge counts once per element; none if
+/// there are no edges.
 pub fn mean_edge(mesh: &Mesh) -> Option<f64> {
     let sides = mesh.triangles.iter().flat_map(|&[i, j, k]| [[i, j], [j, k], [k, i]]);
     let lengths = sides

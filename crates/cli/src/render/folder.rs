@@ -14,7 +14,8 @@ use std::path::{Path, PathBuf};
 const DELTA: f64 = 0.1;
 /// Smallest radius of strands and grains, relative to the size of the scene: thinner ones could not be seen.
 const MIN_RADIUS: f64 = 5e-4;
-/// Number of grains whose nearest neighbours are measured to estimate their size, if the scene does not give it.
+/// Number of grains whose nearest neighbours are measured to estimate their size, if the scene does not give
+/// it.
 const SAMPLED_GRAINS: usize = 500;
 
 /// The folder of a run.
@@ -162,8 +163,8 @@ fn plane(corners: &[Point; 4]) -> Option<HalfSpace> {
     HalfSpace::new(corners[0], (corners[1] - corners[0]).cross(&(corners[3] - corners[0])))
 }
 
-/// Radius for strands and grains [m]: the smallest in the materials, or half the contact distance. With it they touch in
-/// the picture when they are in contact.
+/// Radius for strands and grains [m]: the smallest in the materials, or half the contact distance. With it
+/// they touch in the picture when they are in contact.
 fn radius(scene: &Scene, mesh: &Mesh) -> f64 {
     if mesh.strands.is_empty() && mesh.particles.is_empty() {
         return 0.0;

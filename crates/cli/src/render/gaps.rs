@@ -6,8 +6,8 @@ use crate::exit::Failure;
 use bowknot::geometry::{Point, Topology};
 use bowknot::proximity::{BodyFilter, CollisionModel, PairList, ProximitySearch};
 
-/// Largest gap that is measured, relative to the mean edge length. Elements a few edges apart on the same sheet are
-/// farther from each other, so that smaller gaps are contacts.
+/// Largest gap that is measured, relative to the mean edge length. Elements a few edges apart on the same
+/// sheet are farther from each other, so that smaller gaps are contacts.
 const CAP: f64 = 0.5;
 
 /// Measures gaps.
@@ -40,14 +40,14 @@ impl Gaps {
         self.cap
     }
 
-    /// For each vertex, the smallest distance from an element with this vertex to an element that shares no vertex with it
-    /// [m]; the cap, if there is none within the cap.
+    /// For each vertex, the smallest distance from an element with this vertex to an element that shares no
+    /// vertex with it [m]; the cap, if there is none within the cap.
     pub fn measure(&self, positions: &[Point]) -> Vec<f64> {
         let mut gaps = vec![self.cap; positions.len()];
         let (mut pairs, mut separations) = (PairList::default(), Vec::new());
         let half_spaces = self.model.half_spaces();
-        // A pair is a candidate if its distance is below the sum of the radii of its sides. Half-spaces have no radius and
-        // are measured directly.
+        // A pair is a candidate if its distance is below the sum of the radii of its sides. Half-spaces have
+        // no radius and are measured directly.
         let radii = vec![self.cap / 2.0; positions.len()];
         ProximitySearch::new(&self.model).search(
             &self.model,

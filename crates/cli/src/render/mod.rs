@@ -51,8 +51,8 @@ impl Output {
             // The name of a folder may contain a dot, as in run.2.
             Some(_) if path.is_dir() => Ok(Self::Folder),
             Some(other) => Err(Failure::input(format!(
-                "{}: no format is called .{other}: pictures end in .png, animations in .gif, and a name without an extension \
-                 is a folder of pictures",
+                "{}: no format is called .{other}: pictures end in .png, animations in .gif, and a name without \
+                 an extension is a folder of pictures",
                 path.display()
             ))),
         }
@@ -193,7 +193,8 @@ fn write(path: &Path, indexed: bool, picture: &Picture) -> Result<(), Failure> {
     encode(path, |out| if indexed { write_small_png(out, picture) } else { write_png(out, picture) })
 }
 
-/// Writes a file atomically, and its folder if there is none. An error of the encoder is reported as one of the file.
+/// Writes a file atomically, and its folder if there is none. An error of the encoder is reported as one of
+/// the file.
 fn encode(path: &Path, fill: impl FnOnce(&mut dyn Write) -> Result<(), RenderError>) -> Result<(), Failure> {
     let folder: PathBuf = path.parent().unwrap_or(Path::new("")).to_owned();
     if !folder.as_os_str().is_empty() {

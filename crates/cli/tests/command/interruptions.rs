@@ -62,7 +62,8 @@ fn an_interrupted_run_continues_with_the_same_bits() {
 #[test]
 fn a_full_disk_leaves_whole_frames() {
     let place = Place::new();
-    // Frames stay below the larger limit; `stats.jsonl`, which grows by about a kilobyte per frame, reaches it.
+    // Frames stay below the larger limit; `stats.jsonl`, which grows by about a kilobyte per frame, reaches
+    // it.
     let script = "trap '' XFSZ; ulimit -f \"$1\"; shift; exec \"$@\"";
     let run = |blocks: &str, out: &str| {
         let words =

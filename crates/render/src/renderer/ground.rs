@@ -4,8 +4,8 @@ use super::shot::Shot;
 use crate::camera::axes;
 use crate::model::{Drawing, SurfaceVertex};
 
-/// Half the side of a square of ground, as a multiple of the radius of the model. The shader fades the ground to the
-/// backdrop within this distance.
+/// Half the side of a square of ground, as a multiple of the radius of the model. The shader fades the ground
+/// to the backdrop within this distance.
 const GROUND_EXTENT: f64 = 8.0;
 
 /// Two triangles for each plane that has the camera in front of it.

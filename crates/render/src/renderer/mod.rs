@@ -1,8 +1,8 @@
 //! Draws a frame: a shadow map for each light, then the picture as the camera sees it.
 //!
-//! All passes of a picture are one submission. A depth-only pass for each light writes a layer of the shadow maps. Then
-//! one pass with four samples per pixel shades each visible point with the lights that its shadow maps let through.
-//! Vertices and uniforms are uploaded for each frame; the textures are kept.
+//! All passes of a picture are one submission. A depth-only pass for each light writes a layer of the shadow
+//! maps. Then one pass with four samples per pixel shades each visible point with the lights that its shadow
+//! maps let through. Vertices and uniforms are uploaded for each frame; the textures are kept.
 
 mod buffers;
 mod ground;
@@ -48,8 +48,8 @@ impl Renderer {
     /// Draws a frame.
     ///
     /// # Errors
-    /// A frame that does not fit the model, a size that the device cannot draw, a camera at its target, a driver that
-    /// fails.
+    /// A frame that does not fit the model, a size that the device cannot draw, a camera at its target, a
+    /// driver that fails.
     pub fn render(&mut self, model: &Model, frame: &Frame<'_>, shot: &Shot) -> Result<Picture, RenderError> {
         let drawing = model.drawing(frame)?;
         let largest = self.device.device.limits().max_texture_dimension_2d;
@@ -95,7 +95,8 @@ impl Renderer {
     }
 }
 
-/// Records the pass that draws the shadow map of a light. `view` is the offset of its view in their buffer [bytes].
+/// Records the pass that draws the shadow map of a light. `view` is the offset of its view in their buffer
+/// [bytes].
 fn shadow_pass(
     device: &Device,
     encoder: &mut wgpu::CommandEncoder,

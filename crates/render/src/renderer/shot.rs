@@ -10,11 +10,11 @@ pub struct Quality {
     pub key_lights: usize,
     /// Number of lights that sample the sky. More give smoother ambient occlusion, at proportional cost.
     pub sky_lights: usize,
-    /// Side of a shadow map [texels]. A larger one gives finer shadows; memory grows with its square, 2 bytes per texel and
-    /// light.
+    /// Side of a shadow map [texels]. A larger one gives finer shadows; memory grows with its square, 2 bytes
+    /// per texel and light.
     pub shadow_map: u32,
-    /// Factor by which the picture is drawn larger in each direction and then reduced, in addition to the four samples per
-    /// pixel.
+    /// Factor by which the picture is drawn larger in each direction and then reduced, in addition to the
+    /// four samples per pixel.
     pub supersampling: u32,
 }
 

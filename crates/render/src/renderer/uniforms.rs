@@ -129,8 +129,8 @@ fn scene_data(drawing: &Drawing, size: [u32; 2], texel: f64) -> SceneData {
     }
 }
 
-/// The view from the space of the drawing to clip space, where x and y run from -1 to 1 over the whole picture and depth
-/// from 0 to 1.
+/// The view from the space of the drawing to clip space, where x and y run from -1 to 1 over the whole
+/// picture and depth from 0 to 1.
 fn camera_view(drawing: &Drawing, shot: &Shot) -> Result<ViewData, RenderError> {
     let camera = &shot.camera;
     let [right, up, back] = camera.axes()?;
@@ -152,7 +152,8 @@ fn camera_view(drawing: &Drawing, shot: &Shot) -> Result<ViewData, RenderError> 
     Ok(ViewData { matrix: columns(&matrix), eye: homogeneous(&eye, 1.0) })
 }
 
-/// From the space of the drawing to the clip space of a light: a parallel projection of everything within `radius`.
+/// From the space of the drawing to the clip space of a light: a parallel projection of everything within
+/// `radius`.
 fn light_matrix(direction: &Vector, radius: f64) -> Matrix4<f64> {
     let [right, up, back] = axes(direction);
     let row = |axis: &Vector, scale: f64, shift: f64| {

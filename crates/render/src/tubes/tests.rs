@@ -35,7 +35,8 @@ fn rings_lie_on_the_tube_and_do_not_twist() {
         assert!((distance - radius).abs() < 1e-6 * radius + 2e-6, "{distance}");
         assert!((v.normal.norm() - 1.0).abs() < 1e-12);
     }
-    // Neighbouring rings are not twisted: the vector from a vertex to that of the next ring points along the strand.
+    // Neighbouring rings are not twisted: the vector from a vertex to that of the next ring points along the
+    // strand.
     let body = &vertices[CAP_RINGS * sides..(points.len() + CAP_RINGS) * sides];
     for k in 0..body.len() - sides {
         let (a, b) = (&body[k], &body[k + sides]);
@@ -44,8 +45,8 @@ fn rings_lie_on_the_tube_and_do_not_twist() {
     }
 }
 
-/// Checks that the surface is closed, each edge having two triangles of opposite orientation, and that it has this
-/// volume [m3].
+/// Checks that the surface is closed, each edge having two triangles of opposite orientation, and that it has
+/// this volume [m3].
 fn check_closed(tubes: &Tubes, vertices: &[TubeVertex], volume: f64) {
     let mut seen = std::collections::BTreeMap::new();
     let mut measured = 0.0;
@@ -69,7 +70,8 @@ fn tubes_are_closed_and_face_outward() {
     let straight: Vec<Point> = (0..5).map(|k| Point::new(f64::from(k), 0.3, 0.0)).collect();
     let tubes = Tubes::new(&[[0, 1], [1, 2], [2, 3], [3, 4]], 32);
     let area = TAU / 2.0 * radius * radius;
-    // Each end is half a ball, which adds two thirds of the radius to the length; two rings miss a part of it.
+    // Each end is half a ball, which adds two thirds of the radius to the length; two rings miss a part of
+    // it.
     check_closed(&tubes, &tubes.vertices(&straight, radius), area * (4.0 + 2.0 * radius * 0.6));
 
     let n = 60;
