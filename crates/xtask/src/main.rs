@@ -3,7 +3,7 @@
 //! | command | does |
 //! |---|---|
 //! | `check` | runs everything that CI runs |
-//! | `pictures` | draws the built-in scenes into `docs/pictures` |
+//! | `pictures` | draws the built-in scenes into `assets/pictures` |
 //! | `hashes` | prints a hash of the frames of each built-in scene, to show that a change leaves every bit as it is |
 //!
 //! `cargo xtask help` prints the options.
@@ -27,7 +27,7 @@ Usage: cargo xtask check [--fast]
 
 check     run what CI runs, in named steps: format, clippy, docs, wasm, a small run, its exports read back, tests
           --fast        format, clippy and unit tests only
-pictures  run built-in scenes, all or those named, and draw them into docs/pictures; needs a graphics driver
+pictures  run built-in scenes, all or those named, and draw them into assets/pictures; needs a graphics driver
 hashes    run built-in scenes at a small scale on one thread each, and print for each its name, the number of its frames
           and a hash of all bytes of the frames: compare the lines before and after a change that is to leave every
           result as it is, on the same machine

@@ -1,4 +1,4 @@
-//! `cargo xtask pictures`: a small picture of each built-in scene, in `docs/pictures`.
+//! `cargo xtask pictures`: a small picture of each built-in scene, in `assets/pictures`.
 //!
 //! Add each new scene to [`PICTURES`]; `cargo xtask pictures NAME` then draws it.
 

@@ -2,8 +2,8 @@
 
 use super::*;
 use bowknot::geometry::{HalfSpace, Vector};
-use bowknot::io::States;
 use bowknot::lcp::{self, Family, Row};
+use bowknot::recording::States;
 
 /// Particles above the ground, 2 mm across: their distances are 2 mm from each other and 1 mm from the ground.
 fn particles(x: Vec<Point>, y: Vec<Point>, masses: Vec<f64>) -> Case {

@@ -1,7 +1,7 @@
 //! The summary of a run: `summary.json`.
 
 use crate::simulator::StepStatistics;
-use crate::world::SceneInfo;
+use bowknot_scene::world::SceneInfo;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
