@@ -186,7 +186,8 @@ fn settings(contact: bool) -> Vec<(String, Vec<String>)> {
 }
 
 fn reference(bench: &Bench, subject: &Subject) -> Result<Simulation> {
-    let sets = [format!("simulation.newton_iterations={CONVERGED}"), "solver.newton.step_tolerance=0".to_owned()];
+    let sets =
+        [format!("simulation.newton_iterations={CONVERGED}"), "solver.newton.step_tolerance=0".to_owned()];
     at(bench, subject, "reference", &sets, subject.coarsest * subject.reference)
 }
 
