@@ -1,4 +1,4 @@
-//! What the methods to compare with promise as well: no straight path of any step intersects, judged exactly.
+//! The baselines also guarantee that no straight path of any step intersects. The judge decides this exactly.
 
 use crate::safety::{seeds, watched};
 use bowknot_baselines::barrier::{BarrierParams, by_descent, by_newton};
@@ -52,11 +52,11 @@ fn no_step_to_each_vertexs_impact_intersects() {
     with_impacts(PerVertexImpact::new);
 }
 
-/// Goes all the way, whatever is in it.
+/// Goes the whole way, whether or not anything is in it.
 #[derive(Default)]
-struct Heedless(Stepper);
+struct Unlimited(Stepper);
 
-impl ForwardStep for Heedless {
+impl ForwardStep for Unlimited {
     fn begin(&mut self, scene: &CollisionScene, _: &ResolveState) {
         self.0.begin(scene.vertex_count());
     }
@@ -75,13 +75,13 @@ impl ForwardStep for Heedless {
 }
 
 #[test]
-fn steps_that_heed_no_impact_are_caught() {
+fn steps_that_ignore_impacts_are_found() {
     let mut params = Params::fast();
     params.contact.min_separation = Some(1e-8);
     let outcome = watched(&params, 1, |scene| {
         let search = TrustRegionSearch::new(&scene);
         let backward: LcpBackward = LcpBackward::default();
-        Ok(Resolver::with_stages(scene, search, backward, Heedless::default()))
+        Ok(Resolver::with_stages(scene, search, backward, Unlimited::default()))
     });
     assert!(outcome.caught() >= 0.1, "{} of the runs", outcome.caught());
 }

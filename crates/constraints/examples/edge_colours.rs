@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             triangles.extend([[a, a + 1, a + SIDE + 1], [a, a + SIDE + 1, a + SIDE]]);
         }
     }
-    let topology = Topology::new(rest.len(), triangles, &[], &[]).map_err(|errors| errors[0].clone())?;
+    let topology = Topology::builder(rest.len()).triangles(triangles).build()?;
     // One side is held. Edges between held vertices need no limit, and edges that share a held vertex may
     // have one colour.
     let movable: Vec<bool> = (0..SIDE * SIDE).map(|v| v >= SIDE).collect();

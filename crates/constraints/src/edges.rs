@@ -3,7 +3,7 @@
 use crate::colouring::Colouring;
 use crate::params::EdgeReference;
 use bowknot_geometry::{Point, Topology, Vector};
-use bowknot_lcp::{BallRow, Row};
+use bowknot_lcp::{DistanceLimit, Row};
 
 /// Smallest ratio of an edge's limit to its length at the start of the call. An edge that starts longer than
 /// its limit is shortened a little in each call, because asking for all of it at once is infeasible and
@@ -14,7 +14,7 @@ const START_SHARE: f64 = 0.97;
 #[derive(Clone, Debug, Default)]
 pub struct EdgeLimits {
     /// Vertices of each edge and its largest length in this call, L [m].
-    pub balls: Vec<BallRow>,
+    pub balls: Vec<DistanceLimit>,
     /// Rest length of each edge [m].
     pub rest_lengths: Vec<f64>,
     /// Length of each edge at the start of the call [m].
@@ -40,8 +40,8 @@ impl EdgeLimits {
         colouring
             .first_fit(movable.len(), edges.len(), |r| edges[r].into_iter().filter(|&v| movable[v as usize]));
         let vertices = colouring.order().iter().map(|&r| edges[r as usize]);
-        let balls: Vec<BallRow> =
-            vertices.map(|e| BallRow { vertices: e, limit: length(&e, rest) }).collect();
+        let balls: Vec<DistanceLimit> =
+            vertices.map(|e| DistanceLimit { vertices: e, limit: length(&e, rest) }).collect();
         let rest_lengths: Vec<f64> = balls.iter().map(|b| b.limit).collect();
         Self {
             stretch_limits: balls.iter().map(|b| stretch_limit(&b.vertices)).collect(),

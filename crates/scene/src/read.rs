@@ -17,7 +17,7 @@ use crate::shapes::{
 };
 use crate::source::Source;
 use crate::values::{describe, join};
-use bowknot_dynamics::DynamicsParams;
+use bowknot_dynamics::{DynamicsParams, Environment, NewtonParams};
 use bowknot_errors::Parameters;
 use bowknot_geometry::Vector;
 use bowknot_io::Import;
@@ -25,10 +25,6 @@ use bowknot_twoway::{ContactParams, Params, SolverParams};
 use std::collections::HashMap;
 use std::path::Path;
 use toml::{Table, Value};
-
-/// Fields of [`DynamicsParams`] that stand in `[simulation]`; the others stand in `[solver]`.
-pub(super) const SIMULATION_DYNAMICS: [&str; 6] =
-    ["gravity", "air_drag", "wind", "air_density", "drag_normal", "drag_tangential"];
 
 /// Top-level keys.
 const TABLES: [&str; 7] = ["simulation", "contact", "solver", "output", "body", "obstacle", "pin"];
@@ -40,18 +36,18 @@ pub(super) fn scene(source: &Source, folder: &Path, name: &str) -> Result<Scene,
     reader.check_keys(root, "", &TABLES);
 
     let table = reader.table(root, "", "simulation");
-    let known = [field_names::<SimulationParams>(), &SIMULATION_DYNAMICS].concat();
+    let known = [field_names::<SimulationParams>(), field_names::<Environment>()].concat();
     reader.check_keys(&table, "simulation", &known);
     let mut simulation = reader.fields(&SimulationParams::default(), &table, "simulation", &[]);
     if simulation.name.is_empty() {
         simulation.name = name.to_owned();
     }
-    let solver_dynamics = solver_dynamics();
-    let dynamics = reader.fields(&DynamicsParams::default(), &table, "simulation", &solver_dynamics);
+    let environment = reader.fields(&Environment::default(), &table, "simulation", &[]);
     let table = reader.table(root, "", "solver");
-    let dynamics = reader.fields(&dynamics, &table, "solver", &[]);
+    let table = reader.table(&table, "solver", "newton");
+    let newton = reader.structure::<NewtonParams>(&table, "solver.newton", &[]);
+    let dynamics = DynamicsParams { environment, newton };
     let (preset, twoway) = read_twoway(&mut reader, root);
-    // `fields` read gravity and drag from [solver] too, but there `read_twoway` has refused them.
 
     let table = reader.table(root, "", "output");
     let output = reader.structure::<OutputParams>(&table, "output", &[]);
@@ -94,11 +90,6 @@ pub(super) fn twoway(source: &Source) -> Result<Params, SceneError> {
     if problems.is_empty() { Ok(params) } else { Err(SceneError::Invalid(problems)) }
 }
 
-fn solver_dynamics() -> Vec<&'static str> {
-    let here = |field: &&&str| !SIMULATION_DYNAMICS.contains(*field);
-    field_names::<DynamicsParams>().iter().filter(here).copied().collect()
-}
-
 fn read_twoway(reader: &mut Reader<'_>, root: &Table) -> (Preset, Params) {
     let contact = reader.table(root, "", "contact");
     let known = [&["preset", "friction_pairs"], field_names::<ContactParams>()].concat();
@@ -115,7 +106,7 @@ fn read_twoway(reader: &mut Reader<'_>, root: &Table) -> (Preset, Params) {
     let contact = reader.fields(&base.contact, &contact, "contact", &[]);
 
     let solver = reader.table(root, "", "solver");
-    let known = [field_names::<SolverParams>(), &solver_dynamics(), &["repulsion"]].concat();
+    let known = [field_names::<SolverParams>(), &["newton", "repulsion"]].concat();
     reader.check_keys(&solver, "solver", &known);
     let backward_table = reader.table(&solver, "solver", "backward");
     let mut backward = reader.structure_over(&base.solver.backward, &backward_table, "solver.backward");
@@ -231,12 +222,9 @@ fn shape(reader: &mut Reader<'_>, table: &Table, path: &str) -> Option<Shape> {
 pub(super) fn validate(scene: &Scene, source: &Source) -> Result<(), SceneError> {
     let mut problems = Vec::new();
     report_errors(&mut problems, source, "simulation", &scene.simulation);
+    report_errors(&mut problems, source, "simulation", &scene.dynamics.environment);
+    report_errors(&mut problems, source, "solver.newton", &scene.dynamics.newton);
     report_errors(&mut problems, source, "output", &scene.output);
-    for error in scene.dynamics.validate().err().into_iter().flatten() {
-        let table = if SIMULATION_DYNAMICS.contains(&error.field) { "simulation" } else { "solver" };
-        let message = format!("{}: {}", error.value, error.allowed);
-        problems.push(source.problem(&join(table, error.field), message));
-    }
     // The paths of these parameters are keys of the scene.
     report_errors(&mut problems, source, "", &scene.twoway);
     validate_bodies(scene, source, &mut problems);
@@ -304,11 +292,8 @@ fn validate_bodies(scene: &Scene, source: &Source, problems: &mut Vec<Problem>) 
         report(problems, source, &path, &mut faults);
         validate_shape(body.shape.as_ref(), source, &path, problems);
         for error in body.material.validate().err().into_iter().flatten() {
-            // The messages have the form "field = value: what is allowed".
-            let message = error.to_string();
-            let (field, rest) = message.split_once(" = ").unwrap_or(("", &message));
-            let key = join(&path, &format!("material.{field}"));
-            problems.push(source.problem(&key, rest));
+            let key = join(&path, &format!("material.{}", error.path));
+            problems.push(source.problem(&key, format!("{} {}", error.value, error.allowed)));
         }
     }
     for (index, obstacle) in scene.obstacles.iter().enumerate() {

@@ -13,7 +13,7 @@ delta = 0.002
 
 [solver]
 backward = { sweeps = 4 }
-cg_tolerance = 1e-6
+newton = { cg_tolerance = 1e-6 }
 stop = { max_steps = 100 }
 
 [[body]]
@@ -53,8 +53,8 @@ fn values_reach_their_structs() {
     let scene = Scene::from_toml(SMALL, "").expect("a scene");
     assert_eq!(scene.simulation.dt, 0.02);
     assert_eq!(scene.simulation.frames, SimulationParams::default().frames);
-    assert_eq!(scene.dynamics.gravity, Vector::new(0.0, 0.0, -1.62));
-    assert_eq!(scene.dynamics.cg_tolerance, 1e-6);
+    assert_eq!(scene.dynamics.environment.gravity, Vector::new(0.0, 0.0, -1.62));
+    assert_eq!(scene.dynamics.newton.cg_tolerance, 1e-6);
     assert_eq!(scene.twoway.contact.delta, Some(0.002));
     assert_eq!(scene.twoway.solver.backward.sweeps, 4);
     assert_eq!(scene.twoway.solver.stop.max_steps, Some(100));
@@ -110,12 +110,12 @@ fn problems_name_file_line_key_and_what_is_allowed() {
         (
             "cg_tolerance = 1e-6",
             "gravity = [0, 0, 0]",
-            "scene.toml:11: solver.gravity: unknown key; known here:",
+            "scene.toml:11: solver.newton.gravity: unknown key; known here:",
         ),
         (
             "cg_tolerance = 1e-6",
             "cg_tolerance = 2",
-            "scene.toml:11: solver.cg_tolerance: 2: it must lie in (0, 1)",
+            "scene.toml:11: solver.newton.cg_tolerance: 2 must lie between 0 and 1",
         ),
         ("max_steps = 100", "max_steps = 0", "scene.toml:12: solver.stop.max_steps: 0 must be at least 1"),
         (
@@ -127,7 +127,7 @@ fn problems_name_file_line_key_and_what_is_allowed() {
         (
             "density = 0.1",
             "density = 0",
-            "scene.toml:17: body[0].material.density: 0 kg/m2: it must be a finite number greater than 0",
+            "scene.toml:17: body[0].material.density: 0 kg/m2 must be finite and above 0",
         ),
         (
             "type = \"sheet\"",

@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
 
     // The topology, the obstacle, and a resolver.
-    let topology = Topology::new(x.len(), triangles, &[], &[]).map_err(|e| format!("{e:?}"))?;
+    let topology = Topology::builder(x.len()).triangles(triangles).build()?;
     let springs: Vec<([usize; 2], f64)> = (topology.edges.iter())
         .map(|e| e.map(|v| v as usize))
         .filter(|e| e[1] < cloth)

@@ -18,7 +18,7 @@ use crate::statistics::Statistics;
 use crate::stop::Residuals;
 use bowknot_constraints::{ContactRows, EdgeForm, EdgeLimits, predicted_gap};
 use bowknot_geometry::{PairKind, Vector};
-use bowknot_lcp::{self as lcp, Family, Schedule, TangentVector};
+use bowknot_lcp::{self as lcp, ConstraintSet, Schedule, TangentVector};
 
 /// Sine of the largest angle by which the normals of rows may leave their cones. Rows are rebuilt in each
 /// step; a wide cone prevents that they come and go.
@@ -296,7 +296,7 @@ impl<K: RowSolver> LcpBackward<K> {
         if params.edge_form == EdgeForm::Linear {
             self.edges.linearise(&state.x, &mut self.contacts.rows);
             if !self.contacts.friction_of.is_empty() {
-                self.contacts.friction_of.resize(self.contacts.rows.len(), lcp::Problem::NO_FRICTION);
+                self.contacts.friction_of.resize(self.contacts.rows.len(), lcp::LcpProblem::NO_FRICTION);
             }
             self.lambda.extend_from_slice(&self.edge_multipliers);
             let starts = self.edges.colour_starts().iter().skip(1);
@@ -328,8 +328,8 @@ impl<K: RowSolver> LcpBackward<K> {
             + self.forces.iter().filter(|f| **f != Vector::zeros()).count();
     }
 
-    fn solve_rows(&mut self, scene: &CollisionScene, state: &ResolveState) -> Result<(), lcp::Error> {
-        let balls: &[lcp::BallRow] = match scene.params().contact.edge_form {
+    fn solve_rows(&mut self, scene: &CollisionScene, state: &ResolveState) -> Result<(), lcp::LcpError> {
+        let balls: &[lcp::DistanceLimit] = match scene.params().contact.edge_form {
             EdgeForm::Ball => &self.edges.balls,
             EdgeForm::Linear => &[],
         };
@@ -337,18 +337,22 @@ impl<K: RowSolver> LcpBackward<K> {
         self.y.clone_from(&self.free);
         lcp::prepare_rows(&mut self.contacts.rows, &self.weights)?;
         lcp::prepare_friction(&mut self.contacts.friction, &self.weights)?;
-        let mut system = lcp::Problem::new(
+        let mut system = lcp::LcpProblem::new(
             &self.weights,
-            Family::new(&self.contacts.rows, Schedule::coloured(&self.row_starts)),
-            Family::new(balls, Schedule::coloured(ball_starts)),
-            Family::serial(&self.contacts.friction),
+            ConstraintSet::new(&self.contacts.rows, Schedule::coloured(&self.row_starts)),
+            ConstraintSet::new(balls, Schedule::coloured(ball_starts)),
+            ConstraintSet::serial(&self.contacts.friction),
         )?;
         if !self.contacts.friction.is_empty() {
             system = system.attach_friction(&self.contacts.friction_of)?;
         }
         let forces = if balls.is_empty() { &mut [][..] } else { &mut self.forces[..] };
-        let mut multipliers =
-            lcp::State { y: &mut self.y, lambda: &mut self.lambda, forces, friction: &mut self.friction };
+        let mut multipliers = lcp::LcpState {
+            y: &mut self.y,
+            lambda: &mut self.lambda,
+            limit_multipliers: forces,
+            friction: &mut self.friction,
+        };
         lcp::apply_multipliers(&system, &mut multipliers)?;
         let rows = RowSystem { system, free: &self.free, edges: &self.edges, scene, state };
         self.solver.solve(&rows, &mut multipliers)

@@ -60,7 +60,7 @@ mod tests {
     #[test]
     fn the_factor_grows_where_the_target_oscillates_and_falls_elsewhere() {
         let x = vec![Point::origin(), Point::new(1.0, 0.0, 0.0)];
-        let topology = Topology::new(2, vec![], &[], &[0, 1]).unwrap();
+        let topology = Topology::builder(2).particles([0, 1]).build().unwrap();
         let model = CollisionModel::single_body(topology);
         let resolver = Resolver::new(model, &x, &[1.0; 2], Params::fast()).unwrap();
         let scene = resolver.scene();

@@ -9,7 +9,7 @@ use crate::scene::CollisionScene;
 use crate::state::ResolveState;
 use bowknot_constraints::EdgeForm;
 use bowknot_geometry::{PairKind, Point, Separation, Vector};
-use bowknot_lcp::BallRow;
+use bowknot_lcp::DistanceLimit;
 
 /// Largest proximal weight of a vertex, in its mass.
 ///
@@ -27,7 +27,7 @@ pub(crate) fn add_edges(
     proximal: &mut [f64],
     scene: &CollisionScene,
     state: &ResolveState,
-    balls: &[BallRow],
+    balls: &[DistanceLimit],
     forces: &[Vector],
     scalars: &[f64],
 ) {

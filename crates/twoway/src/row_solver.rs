@@ -16,7 +16,7 @@ const POLISH_BATCH: usize = 8;
 pub struct RowSystem<'a> {
     /// Inverse weights w, rows and colours. The first rows are contacts; in the linear form of edges, edges
     /// follow.
-    pub system: lcp::Problem<'a>,
+    pub system: lcp::LcpProblem<'a>,
     /// y', the value of y without multipliers [m].
     pub free: &'a [Vector],
     /// The edges and their limits.
@@ -39,7 +39,7 @@ pub trait RowSolver: Send {
     ///
     /// # Errors
     /// The solver refuses the rows; y' is then used as the target.
-    fn solve(&mut self, rows: &RowSystem<'_>, state: &mut lcp::State<'_>) -> Result<(), lcp::Error>;
+    fn solve(&mut self, rows: &RowSystem<'_>, state: &mut lcp::LcpState<'_>) -> Result<(), lcp::LcpError>;
 }
 
 /// Projected Gauss-Seidel by colours, with the coarse correction and the polishing that
@@ -54,18 +54,18 @@ impl RowSolver for ColouredSweeps {
         self.coarse.begin();
     }
 
-    fn solve(&mut self, rows: &RowSystem<'_>, state: &mut lcp::State<'_>) -> Result<(), lcp::Error> {
+    fn solve(&mut self, rows: &RowSystem<'_>, state: &mut lcp::LcpState<'_>) -> Result<(), lcp::LcpError> {
         let (system, scene) = (&rows.system, rows.scene);
         let params = &scene.params().solver.backward;
-        let one = lcp::Params { max_sweeps: 1, ..lcp::Params::default() };
-        let mut batch = |state: &mut lcp::State<'_>, sweeps: usize| -> Result<(), lcp::Error> {
+        let one = lcp::LcpParams { max_sweeps: 1, ..lcp::LcpParams::default() };
+        let mut batch = |state: &mut lcp::LcpState<'_>, sweeps: usize| -> Result<(), lcp::LcpError> {
             if params.coarse_correction {
                 for _ in 0..sweeps {
                     self.coarse.apply(system, rows.free, state);
                     lcp::solve_coloured(system, state, &one)?;
                 }
             } else {
-                let all = lcp::Params { max_sweeps: sweeps as u32, ..one };
+                let all = lcp::LcpParams { max_sweeps: sweeps as u32, ..one };
                 lcp::solve_coloured(system, state, &all)?;
             }
             Ok(())

@@ -1,7 +1,7 @@
 //! Why a simulation cannot begin or go on.
 
 use bowknot_check::{CheckError, Intersection};
-use bowknot_dynamics::{ParamsError, StepError};
+use bowknot_dynamics::{Errors, ParamError, StepError};
 use bowknot_io::IoError;
 use bowknot_scene::SceneError;
 use bowknot_scene::world::World;
@@ -18,8 +18,8 @@ pub enum SimulationError {
     #[error(transparent)]
     Scene(#[from] SceneError),
     /// Parameters of the dynamics are refused.
-    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
-    Dynamics(Vec<ParamsError>),
+    #[error(transparent)]
+    Dynamics(Errors<ParamError>),
     /// The state cannot be judged.
     #[error(transparent)]
     Check(#[from] CheckError),

@@ -192,7 +192,7 @@ impl Simulator {
         Ok(Self {
             dt: scene.simulation.dt,
             newton_iterations: scene.simulation.newton_iterations,
-            step_tolerance: scene.dynamics.step_tolerance,
+            step_tolerance: scene.dynamics.newton.step_tolerance,
             collision_every: scene.simulation.collision_every,
             dynamics,
             resolver,

@@ -34,7 +34,7 @@ fn every_fabric_is_held_at_its_limit_where_its_elasticity_would_give_way() {
         // Drawn along its length until its own stiffness would let the held side stretch by four times its limit.
         let strain = 4.0 * (material.stretch_limit - 1.0);
         let pull = strain * material.stretch_stiffness / (material.density * 0.3);
-        scene.dynamics.gravity = Vector::new(pull, 0.0, 0.0);
+        scene.dynamics.environment.gravity = Vector::new(pull, 0.0, 0.0);
         scene.simulation.dt = 0.002;
         let stretch = |scene: &Scene| {
             let mut simulator = Simulator::new(scene).unwrap_or_else(|error| panic!("{error}"));

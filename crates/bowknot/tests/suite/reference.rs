@@ -1,7 +1,9 @@
 //! Makes `docs/scene-reference.md` from the structs' documentation and defaults, and fails when the file
 //! differs. `BOWKNOT_ACCEPT=1 cargo test --release -p bowknot reference` writes it anew.
 
-use bowknot::dynamics::{ClothMaterial, DynamicsParams, ParticleMaterial, SolidMaterial, StrandMaterial};
+use bowknot::dynamics::{
+    ClothMaterial, Environment, NewtonParams, ParticleMaterial, SolidMaterial, StrandMaterial,
+};
 use bowknot::scene::{
     BodyKind, BodySpec, FrictionPair, Keyframe, Motion, ObstacleSpec, OutputParams, PinSpec, Region,
     RepulsionParams, SimulationParams,
@@ -46,7 +48,7 @@ const SOURCES: [&str; 34] = [
     "twoway/src/params.rs",
     "twoway/src/stop.rs",
     "dynamics/src/params.rs",
-    "dynamics/src/material/mod.rs",
+    "dynamics/src/material/rest_shape.rs",
     "dynamics/src/material/cloth.rs",
     "dynamics/src/material/solid.rs",
     "dynamics/src/material/strand.rs",
@@ -293,14 +295,11 @@ fn split_unit(doc: &str, kind: &str) -> (String, String) {
 fn page() -> String {
     let mut page = Page { sources: Sources::read(), text: HEAD.to_owned() };
     let all = |_: &str| true;
-    let in_simulation = |key: &str| {
-        ["gravity", "air_drag", "wind", "air_density", "drag_normal", "drag_tangential"].contains(&key)
-    };
 
     page.section("[simulation]", "Time and the order of work.");
     page.head(false);
     page.rows("SimulationParams", &SimulationParams::default(), None, all);
-    page.rows("DynamicsParams", &DynamicsParams::default(), None, in_simulation);
+    page.rows("Environment", &Environment::default(), None, all);
 
     page.section(
         "[contact]",
@@ -323,9 +322,9 @@ fn page() -> String {
     page.head(false);
     page.rows("FrictionPair", &FrictionPair::default(), None, all);
 
-    page.section("[solver]", "Newton's method and its linear solve.");
+    page.section("[solver.newton]", "Newton's method, its linear solve, and when a time step is solved.");
     page.head(false);
-    page.rows("DynamicsParams", &DynamicsParams::default(), None, |key| !in_simulation(key));
+    page.rows("NewtonParams", &NewtonParams::default(), None, all);
     let (fast, paper) = (&fast.solver, &paper.solver);
     page.section("[solver.backward]", "The backward step of the two-way method.");
     page.head(true);

@@ -21,14 +21,14 @@ fn a_run_writes_its_folder() {
             assert!(step.get(key).is_some(), "{key} is missing: {line}");
         }
     }
-    // The resolved scene is a scene: the same frames come of it.
+    // The scene file of the run makes the same frames.
     place.run("run out/drape/scene.toml --out again").ok();
     let frame = |run: &str| std::fs::read(place.path(&format!("{run}/frames/000003.ply"))).unwrap();
     assert!(frame("again") == frame("out/drape"), "scene.toml makes other frames");
 }
 
 #[test]
-fn json_is_all_that_stdout_holds() {
+fn json_is_the_only_output() {
     let place = Place::new();
     let ended = place.run(&format!("{SMALL} --json --check --threads 1")).ok();
     let summary = ended.json();
@@ -85,9 +85,9 @@ fn options_reach_the_scene() {
     }
 }
 
-/// The README's promise: any OBJ or PLY runs as cloth.
+/// Any OBJ or PLY runs as cloth, as the README says.
 #[test]
-fn a_loose_mesh_falls_on_a_ball() {
+fn a_bare_mesh_falls_on_a_ball() {
     let place = Place::new();
     let vertices: String =
         (0..49).map(|i| format!("v {} {} {}\n", 100 * (i % 7), 40, 100 * (i / 7))).collect();
@@ -106,7 +106,7 @@ fn a_loose_mesh_falls_on_a_ball() {
     assert_eq!(again["vertices"], 49);
 }
 
-/// The README's scene, but for the size of its mesh.
+/// The scene in the README, with a smaller mesh.
 #[test]
 fn the_scene_of_the_readme() {
     let readme = include_str!("../../../../README.md");

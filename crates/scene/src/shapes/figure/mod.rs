@@ -129,7 +129,8 @@ impl AnimatedFigure {
     /// Binds the mesh of [`Figure::mesh`] to the bones.
     pub fn new(figure: Figure) -> Self {
         let mesh = figure.mesh();
-        let topology = Topology::new(mesh.positions.len(), mesh.triangles.clone(), &[], &[]);
+        let topology =
+            Topology::builder(mesh.positions.len()).triangles(mesh.triangles.iter().copied()).build();
         // The mesh is our own, so there is a topology; without one the weights would only be rougher.
         let topology = topology.unwrap_or_default();
         let skin = Skin::new(&RestBody::new(), &mesh.positions, &topology, figure.edge);

@@ -18,7 +18,7 @@ fn volumes(mesh: &Mesh) -> Vec<f64> {
 /// Euler characteristic of the surface: 2 for anything without holes.
 fn surface_euler(mesh: &Mesh) -> i64 {
     let triangles = boundary_triangles(&mesh.tets);
-    let topology = Topology::new(mesh.positions.len(), triangles, &[], &[]).expect("topology");
+    let topology = Topology::builder(mesh.positions.len()).triangles(triangles).build().expect("topology");
     let vertices = topology.surface_vertices.len() as i64;
     vertices - topology.edges.len() as i64 + topology.triangles.len() as i64
 }

@@ -11,7 +11,10 @@ fn fields(shape: Shape) -> Vec<String> {
 }
 
 fn euler(mesh: &TriangleMesh) -> i64 {
-    let topology = Topology::new(mesh.positions.len(), mesh.triangles.clone(), &[], &[]).expect("topology");
+    let topology = Topology::builder(mesh.positions.len())
+        .triangles(mesh.triangles.iter().copied())
+        .build()
+        .expect("topology");
     mesh.positions.len() as i64 - topology.edges.len() as i64 + mesh.triangles.len() as i64
 }
 
@@ -67,7 +70,10 @@ fn closed_shapes_enclose_their_volume() {
 #[test]
 fn edges_have_about_the_length_asked_for() {
     let mesh = Ball { radius: 0.3, edge: 0.03 }.mesh();
-    let topology = Topology::new(mesh.positions.len(), mesh.triangles.clone(), &[], &[]).expect("topology");
+    let topology = Topology::builder(mesh.positions.len())
+        .triangles(mesh.triangles.iter().copied())
+        .build()
+        .expect("topology");
     for &[a, b] in &topology.edges {
         let length = (mesh.positions[a as usize] - mesh.positions[b as usize]).norm();
         assert!((0.02..0.045).contains(&length), "{length}");
@@ -92,7 +98,10 @@ fn lengths_out_of_range_are_named() {
 /// Largest departure of an edge from its length in the flat strip, relative.
 fn distortion(ribbon: &Ribbon) -> f64 {
     let mesh = ribbon.mesh();
-    let topology = Topology::new(mesh.positions.len(), mesh.triangles.clone(), &[], &[]).expect("topology");
+    let topology = Topology::builder(mesh.positions.len())
+        .triangles(mesh.triangles.iter().copied())
+        .build()
+        .expect("topology");
     let wide = segments(ribbon.width, ribbon.edge);
     let along = mesh.positions.len() as u32 / (wide + 1) - 1;
     let flat = |v: u32| {
