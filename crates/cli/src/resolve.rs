@@ -36,7 +36,7 @@ pub fn resolve(options: &ResolveOptions) -> Result<Exit, Failure> {
     setup::machine(&options.machine)?;
     let mut params = bowknot::scene::twoway_params(&options.method.assignments()).map_err(Failure::input)?;
     if options.max_seconds.is_some() {
-        params.stop.max_seconds = options.max_seconds;
+        params.solver.stop.max_seconds = options.max_seconds;
     }
     let states = States::read(&options.states)?;
     let bad_input = |message: String| Failure::input(format!("{}: {message}", options.states.display()));
@@ -51,7 +51,7 @@ pub fn resolve(options: &ResolveOptions) -> Result<Exit, Failure> {
     let mut x = states.x.clone();
     let cpu = bowknot::simulator::cpu_seconds();
     let statistics = resolver
-        .resolve(&mut x, &states.y, &states.call(), &mut watch)
+        .resolve_with(&mut x, &states.y, &states.input(), &mut watch)
         .map_err(|error| bad_input(error.to_string()))?;
     let summary = summarize(&statistics, bowknot::simulator::cpu_seconds() - cpu);
     write_result(&options.out, &x)?;

@@ -1,5 +1,7 @@
 //! Why a picture could not be made.
 
+use bowknot_geometry::VertexOutOfRange;
+
 /// Why there is no picture.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -43,17 +45,8 @@ pub enum RenderError {
         expected: usize,
     },
     /// An element names a vertex that does not exist.
-    #[error("{element} {index} names vertex {vertex}, but there are only {vertex_count} vertices")]
-    VertexOutOfRange {
-        /// "triangle", "strand edge" or "particle".
-        element: &'static str,
-        /// Its index.
-        index: usize,
-        /// The vertex that it names.
-        vertex: u32,
-        /// Number of vertices.
-        vertex_count: usize,
-    },
+    #[error(transparent)]
+    VertexOutOfRange(#[from] VertexOutOfRange),
     /// The eye of the camera is at its target, or a coordinate is not finite.
     #[error("the camera is at its target {0:?}: move one of them")]
     CameraAtTarget([f64; 3]),

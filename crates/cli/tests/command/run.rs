@@ -78,7 +78,7 @@ fn threads_do_not_change_the_bits() {
 #[test]
 fn options_reach_the_scene() {
     let place = Place::new();
-    place.run(&format!("{SMALL} --dt 0.002 --preset paper --set solver.sweeps=3 --out run")).ok();
+    place.run(&format!("{SMALL} --dt 0.002 --preset paper --set solver.backward.sweeps=3 --out run")).ok();
     let scene = place.read("run/scene.toml");
     for line in ["dt = 0.002", "frames = 3", "preset = \"paper\"", "sweeps = 3"] {
         assert!(scene.lines().any(|l| l.trim() == line), "{line:?} is not in\n{scene}");
@@ -141,7 +141,7 @@ fn a_pin_that_would_go_through_the_ground_waits_and_is_named() {
     let last: serde_json::Value = serde_json::from_str(statistics.lines().last().unwrap()).unwrap();
     let behind = last["waiting"]["pin[0] of flag"].as_f64().unwrap();
     assert!((behind - 0.1).abs() < 0.01, "the way goes on for 10 cm below the ground: {behind}");
-    assert_eq!(last["prescribed_behind_m"].as_f64().unwrap(), behind);
+    assert_eq!(last["prescribed_lag_m"].as_f64().unwrap(), behind);
     let free = place.run(&format!("{SMALL} --out free")).ok();
     assert!(!free.stdout.contains("waited") && !free.stdout.contains("ended at the limit"), "{free:#?}");
 }

@@ -241,8 +241,8 @@ impl World {
     }
 }
 
-fn joined<E: ToString>(errors: Vec<E>) -> SceneError {
-    let lines: Vec<String> = errors.iter().take(10).map(ToString::to_string).collect();
+fn joined<E: ToString>(errors: impl IntoIterator<Item = E>) -> SceneError {
+    let lines: Vec<String> = errors.into_iter().take(10).map(|error| error.to_string()).collect();
     SceneError::Model(lines.join("\n"))
 }
 
