@@ -1,4 +1,4 @@
-//! What the methods to compare with promise as well: no straight path of any step intersects, judged exactly.
+//! The baselines also guarantee that no straight path of any step intersects. The judge decides this exactly.
 
 use crate::safety::{seeds, watched};
 use bowknot_baselines::barrier::{BarrierParams, by_descent, by_newton};
@@ -8,9 +8,10 @@ use bowknot_twoway::{
     BudgetedSearch, ForwardStep, LcpBackward, Params, Problem, Resolver, Search, State, Statistics,
 };
 
-/// Presets and speeds in turn. With a floor: where a tenth of the gap is left step by step, it falls to 1e-12 m within these
-/// few steps, too near for the judge to tell a miss from a hit. With few iterations: along a kilometre there would be many,
-/// and stopping early is as safe.
+/// Checks both presets, each with one closing speed. There is a smallest separation, because a gap of which a
+/// tenth is left in each step falls to 1e-12 m within these few steps, too small for the judge to tell a miss
+/// from a hit. The number of iterations is limited, because a path of a kilometre would need many, and
+/// stopping early is as safe.
 fn with_impacts<F: ForwardStep>(forward: impl Fn(AdditiveCcd) -> F) {
     let settings = [(Params::fast(), ClosingSpeed::Slab), (Params::paper(), ClosingSpeed::Travel)];
     for (mut params, speed) in settings {
@@ -51,11 +52,11 @@ fn no_step_to_each_vertexs_impact_intersects() {
     with_impacts(PerVertexImpact::new);
 }
 
-/// Goes all the way, whatever is in it.
+/// Goes the whole way, whether or not anything is in it.
 #[derive(Default)]
-struct Heedless(Stepper);
+struct Unlimited(Stepper);
 
-impl ForwardStep for Heedless {
+impl ForwardStep for Unlimited {
     fn begin(&mut self, problem: &Problem, _: &State) {
         self.0.begin(problem.rest.len());
     }
@@ -74,13 +75,13 @@ impl ForwardStep for Heedless {
 }
 
 #[test]
-fn steps_that_heed_no_impact_are_caught() {
+fn steps_that_ignore_impacts_are_found() {
     let mut params = Params::fast();
     params.stepper.floor = Some(1e-8);
     let outcome = watched(&params, 1, |problem| {
         let search = BudgetedSearch::new(&problem);
         let backward: LcpBackward = LcpBackward::default();
-        Ok(Resolver::with_stages(problem, search, backward, Heedless::default()))
+        Ok(Resolver::with_stages(problem, search, backward, Unlimited::default()))
     });
     assert!(outcome.caught() >= 0.1, "{} of the runs", outcome.caught());
 }

@@ -1,5 +1,5 @@
-//! From hard intersection-free states toward any finite target, no straight path of any step
-//! intersects, judged exactly by code that the stepper does not share.
+//! From hard intersection-free states toward any finite target, no straight path of any step intersects. The
+//! judge decides this exactly and shares no code with the stepper.
 //!
 //! `BOWKNOT_SEEDS=20 cargo test --release -p bowknot-tests safety` runs ten times as many cases.
 
@@ -8,7 +8,7 @@ use bowknot_proximity::{PairList, ProximitySearch};
 use bowknot_stepper::{Budgets, Contacts, Stepper};
 use bowknot_tests::states::GENERATORS;
 use bowknot_tests::targets::Rule;
-use bowknot_tests::{Case, Random, Watch};
+use bowknot_tests::{Case, Random, StepChecker};
 use bowknot_twoway::{
     AcceptedState, BackwardStep, BodyContact, BudgetedSearch, Call, CertifiedForward, ForwardStep,
     LcpBackward, Params, Problem, ResolveError, Resolver, Search,
@@ -22,17 +22,17 @@ pub fn seeds() -> u64 {
     std::env::var("BOWKNOT_SEEDS").ok().and_then(|text| text.parse().ok()).unwrap_or(2)
 }
 
-/// What became of a check on every generator, every rule and a spread of magnitudes.
+/// The result of a check with every generator, every rule and various magnitudes.
 #[derive(Default)]
 pub struct Outcome {
     runs: usize,
-    /// Runs in which any vertex moved.
+    /// Number of runs in which a vertex moved.
     moved: usize,
     faults: Vec<String>,
 }
 
 impl Outcome {
-    /// `check` returns the largest move of any vertex, or what went wrong.
+    /// Runs `check`, which returns the largest move of any vertex, or a fault.
     pub fn of(seeds: u64, check: impl Fn(&Case, &[Point]) -> Result<f64, String>) -> Self {
         let mut outcome = Self::default();
         for (g, generator) in GENERATORS.iter().enumerate() {
@@ -63,12 +63,13 @@ impl Outcome {
     pub fn assert_safe(&self) {
         let Self { runs, moved, faults } = self;
         assert!(faults.is_empty(), "{} of {runs} runs:\n{}", faults.len(), faults.join("\n"));
-        // A step that never moves anything is safe, and useless.
+        // A step that never moves anything is safe but useless.
         assert!(10 * moved >= 9 * runs, "only {moved} of {runs} runs moved at all");
     }
 }
 
-/// The forward step by itself: search, bound, budgets, advance, with nothing to soften the target.
+/// The forward step alone: search, bounds, trust regions, advance. Targets are not changed by a backward
+/// step.
 struct Forward {
     search: ProximitySearch,
     stepper: Stepper,
@@ -127,9 +128,9 @@ impl Forward {
 fn forward_alone(seeds: u64, planes: bool, damping: f64) -> Outcome {
     Outcome::of(seeds, |case, targets| {
         let mut forward = Forward::new(case, planes, damping);
-        let mut watch = Watch::new(case);
-        watch.follow(case, targets, 8, |x, y| forward.step(case, x, y));
-        watch.fault.map_or(Ok(watch.largest_move), Err)
+        let mut checker = StepChecker::new(case);
+        checker.follow(case, targets, 8, |x, y| forward.step(case, x, y));
+        checker.fault.map_or(Ok(checker.largest_move), Err)
     })
 }
 
@@ -143,9 +144,9 @@ fn no_forward_step_by_distances_intersects() {
     forward_alone(seeds(), false, 0.9).assert_safe();
 }
 
-/// The judge and these cases are sharp: a step by planes that takes a tenth more than the whole gap is
-/// found out, and so is one by distances that takes twice the gap. (Two vertices seldom both use all that
-/// the isotropic bound grants them, so a tenth more goes unpunished there.)
+/// The judge finds unsafe steps in these cases: steps by planes that use a tenth more than the whole gap, and
+/// steps by distances that use twice the gap. (Two vertices rarely both use their whole isotropic bound, so a
+/// tenth more is not enough there.)
 #[test]
 fn greedy_steps_are_caught() {
     for (planes, damping) in [(true, 1.1), (false, 2.0)] {
@@ -163,14 +164,14 @@ fn whole_method(params: &Params, contact: impl Fn(f64) -> BodyContact + Sync) {
     .assert_safe();
 }
 
-/// Watches every step of a loop of stages, from everywhere to everywhere.
+/// Checks every step of a loop of stages, from all states to all targets.
 pub fn watched<S: Search, B: BackwardStep, F: ForwardStep>(
     params: &Params,
     seeds: u64,
     resolver: impl Fn(Problem) -> Result<Resolver<S, B, F>, ResolveError>,
 ) -> Outcome {
     Outcome::of(seeds, |case, targets| {
-        let mut watch = Watch::new(case);
+        let mut checker = StepChecker::new(case);
         let mut x = case.positions.clone();
         let mut params = params.clone();
         params.stop.max_steps = Some(12);
@@ -187,11 +188,11 @@ pub fn watched<S: Search, B: BackwardStep, F: ForwardStep>(
             let joined = state.previous == last.as_slice();
             last.copy_from_slice(state.positions);
             if !joined {
-                watch
+                checker
                     .fault
                     .get_or_insert(format!("step {} does not start where the last one ended", state.step));
             }
-            if watch.step(state.previous, state.positions) {
+            if checker.check_step(state.previous, state.positions) {
                 ControlFlow::Continue(())
             } else {
                 ControlFlow::Break(())
@@ -201,9 +202,9 @@ pub fn watched<S: Search, B: BackwardStep, F: ForwardStep>(
             .resolve(&mut x, targets, &Call::default(), &mut observe)
             .map_err(|error| format!("refused: {error}"))?;
         if x != last {
-            watch.fault.get_or_insert("the result is not the last accepted state".to_owned());
+            checker.fault.get_or_insert("the result is not the last accepted state".to_owned());
         }
-        watch.fault.map_or(Ok(watch.largest_move), Err)
+        checker.fault.map_or(Ok(checker.largest_move), Err)
     })
 }
 
@@ -220,7 +221,7 @@ fn no_step_of_the_paper_preset_intersects() {
 #[test]
 fn no_step_with_friction_and_thickness_intersects() {
     let rough = BodyContact { friction: 0.7, ..BodyContact::default() };
-    // Thin beside the mesh: where all gaps were below the thickness, nothing would move.
+    // Small compared with the mesh: if all gaps were below the thickness, nothing would move.
     let thick = |edge: f64| BodyContact {
         thickness: Some((1e-3 * edge).max(1e-8)),
         stretch_limit: Some(f64::INFINITY),

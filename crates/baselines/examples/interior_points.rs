@@ -116,7 +116,8 @@ fn scene(cells: usize) -> Result<Scene, Box<dyn std::error::Error>> {
     triangles.extend([[a, b, tip], [b, c, tip], [c, a, tip]]);
     target.extend_from_slice(&x[first..]);
     let bodies = (0..x.len()).map(|v| (v / (n * n)).min(2) as u32).collect();
-    let topology = Topology::new(x.len(), triangles, &[], &[]).map_err(|errors| format!("{errors:?}"))?;
+    let topology =
+        Topology::builder(x.len()).triangles(triangles).build().map_err(|errors| format!("{errors:?}"))?;
     let filters = vec![BodyFilter::DEFORMABLE, BodyFilter::DEFORMABLE, BodyFilter::OBSTACLE];
     Ok(Scene { x, target, model: CollisionModel::new(topology, bodies, filters, vec![])? })
 }

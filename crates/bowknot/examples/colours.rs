@@ -36,7 +36,11 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// The collision model of a problem. A body of obstacle vertices is an obstacle.
 fn model(states: &States) -> Result<CollisionModel, Box<dyn Error>> {
     let (triangles, count) = (states.triangles.clone(), states.x.len());
-    let topology = Topology::new(count, triangles, &states.strands, &states.particles)
+    let topology = Topology::builder(count)
+        .triangles(triangles)
+        .strand_edges(states.strands.iter().copied())
+        .particles(states.particles.iter().copied())
+        .build()
         .map_err(|errors| errors[0].clone())?;
     let bodies = states.body.iter().max().map_or(0, |&body| body as usize + 1);
     let mut filters = vec![BodyFilter::DEFORMABLE; bodies];

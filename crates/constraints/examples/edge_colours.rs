@@ -24,7 +24,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             triangles.extend([[a, a + 1, a + SIDE + 1], [a, a + SIDE + 1, a + SIDE]]);
         }
     }
-    let topology = Topology::new(rest.len(), triangles, &[], &[]).map_err(|errors| errors[0].clone())?;
+    let topology =
+        Topology::builder(rest.len()).triangles(triangles).build().map_err(|errors| errors[0].clone())?;
     // One side is held: edges between held vertices need no limit, and held vertices cause no conflict.
     let movable: Vec<bool> = (0..SIDE * SIDE).map(|v| v >= SIDE).collect();
 

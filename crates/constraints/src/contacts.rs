@@ -3,7 +3,7 @@
 
 use crate::{Colouring, ContactForm, face, friction_row, volume};
 use bowknot_geometry::{PairKind, Point, Separation};
-use bowknot_lcp::{FrictionRow, Problem, Row};
+use bowknot_lcp::{FrictionRow, LcpProblem, Row};
 use bowknot_proximity::PairList;
 
 /// The row of one pair with desired distance `desired` [m].
@@ -62,7 +62,7 @@ pub struct ContactRows {
     pub rows: Vec<Row>,
     /// Friction rows of the contacts that have friction, in the order of their normals' rows.
     pub friction: Vec<FrictionRow>,
-    /// Friction row of each row, or [`Problem::NO_FRICTION`]; empty: no contact has friction.
+    /// Friction row of each row, or [`LcpProblem::NO_FRICTION`]; empty: no contact has friction.
     pub friction_of: Vec<u32>,
     colouring: Colouring,
     selected: Vec<u32>,
@@ -124,7 +124,7 @@ impl ContactRows {
                 let friction = friction_row(kind, vertices, start, separation, coefficients[p], row as u32);
                 self.friction.push(friction);
             } else {
-                self.friction_of.push(Problem::NO_FRICTION);
+                self.friction_of.push(LcpProblem::NO_FRICTION);
             }
         }
         if self.friction.is_empty() {

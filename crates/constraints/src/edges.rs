@@ -2,7 +2,7 @@
 
 use crate::{Colouring, EdgeReference};
 use bowknot_geometry::{Point, Topology, Vector};
-use bowknot_lcp::{BallRow, Row};
+use bowknot_lcp::{DistanceLimit, Row};
 
 /// Share of the length at the start that an edge's limit never falls below: an edge that starts
 /// longer than its limit is brought back a little each time, because asking for the whole of it at
@@ -13,7 +13,7 @@ const START_SHARE: f64 = 0.97;
 #[derive(Clone, Debug, Default)]
 pub struct EdgeLimits {
     /// Vertices of each edge and its largest length in this call, L [m].
-    pub balls: Vec<BallRow>,
+    pub balls: Vec<DistanceLimit>,
     /// Rest length of each edge [m].
     pub rest_lengths: Vec<f64>,
     /// Length of each edge at the start of the call [m].
@@ -39,8 +39,8 @@ impl EdgeLimits {
         colouring
             .first_fit(movable.len(), edges.len(), |r| edges[r].into_iter().filter(|&v| movable[v as usize]));
         let vertices = colouring.order().iter().map(|&r| edges[r as usize]);
-        let balls: Vec<BallRow> =
-            vertices.map(|e| BallRow { vertices: e, limit: length(&e, rest) }).collect();
+        let balls: Vec<DistanceLimit> =
+            vertices.map(|e| DistanceLimit { vertices: e, limit: length(&e, rest) }).collect();
         let rest_lengths: Vec<f64> = balls.iter().map(|b| b.limit).collect();
         Self {
             stretch_limits: balls.iter().map(|b| stretch_limit(&b.vertices)).collect(),

@@ -240,7 +240,14 @@ mod tests {
             triangles.extend([[4, 6, 5], [4, 5, 7]]);
         }
         let particles: Vec<u32> = if others.len() == 4 { vec![] } else { (4..x.len() as u32).collect() };
-        (Topology::new(x.len(), triangles, &[], &particles).expect("valid"), x)
+        (
+            Topology::builder(x.len())
+                .triangles(triangles)
+                .particles(particles.iter().copied())
+                .build()
+                .expect("valid"),
+            x,
+        )
     }
 
     fn above(height: f64, point: [f64; 3]) -> Vec<bool> {

@@ -1,6 +1,7 @@
 //! Errors of models and of time steps. Each names the object and the place.
 
 use bowknot_errors::ParamError;
+use bowknot_geometry::VertexOutOfRange;
 
 /// Why a [`crate::DynamicsModel`] cannot be built. Elements are counted within their body.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -13,20 +14,12 @@ pub enum ModelError {
         vertex: usize,
     },
     /// An element names a vertex that does not exist.
-    #[error(
-        "body \"{body}\": {element} {index} names vertex {vertex}, but there are only {vertex_count} vertices"
-    )]
+    #[error("body \"{body}\": {error}")]
     VertexOutOfRange {
         /// Name of the body.
         body: String,
-        /// "triangle", "tet", "edge", "particle" or "vertex".
-        element: &'static str,
-        /// The index of the element.
-        index: usize,
-        /// The vertex that it names.
-        vertex: u32,
-        /// The number of vertices.
-        vertex_count: usize,
+        /// The element: "triangle", "tet", "edge", "particle" or "vertex".
+        error: VertexOutOfRange,
     },
     /// An element names a vertex twice.
     #[error("body \"{body}\": {element} {index} names vertex {vertex} twice")]

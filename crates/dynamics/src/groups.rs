@@ -1,31 +1,23 @@
 //! Union-find, with a mark for groups that something else holds.
 
-/// Disjoint sets of 0..n. The smallest member represents its set.
+use bowknot_geometry::UnionFind;
+
+/// Disjoint sets of 0..n; the smallest member represents its set.
 #[derive(Clone, Debug)]
 pub(crate) struct Groups {
-    parent: Vec<usize>,
+    sets: UnionFind,
     held: Vec<bool>,
 }
 
 impl Groups {
     /// Each of 0..`count` is a group of its own.
     pub fn new(count: usize) -> Self {
-        Self { parent: (0..count).collect(), held: vec![false; count] }
-    }
-
-    /// The smallest member of a group.
-    pub fn root(&mut self, mut member: usize) -> usize {
-        while self.parent[member] != member {
-            self.parent[member] = self.parent[self.parent[member]];
-            member = self.parent[member];
-        }
-        member
+        Self { sets: UnionFind::new(count), held: vec![false; count] }
     }
 
     /// Joins the groups of two members.
     pub fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.parent[a.max(b)] = a.min(b);
+        self.sets.join(a as u32, b as u32);
     }
 
     /// Marks a member, and thereby its group, as held by something else.
@@ -43,9 +35,9 @@ impl Groups {
 
     /// The members of each group that nothing holds, ascending, in the order of the smallest members.
     pub fn free(mut self) -> Vec<Vec<usize>> {
-        let mut lists: Vec<Vec<usize>> = vec![Vec::new(); self.parent.len()];
-        for member in 0..self.parent.len() {
-            let root = self.root(member);
+        let mut lists: Vec<Vec<usize>> = vec![Vec::new(); self.held.len()];
+        for member in 0..self.held.len() {
+            let root = self.sets.find(member as u32) as usize;
             lists[root].push(member);
         }
         lists.retain(|list| !list.is_empty() && list.iter().all(|&member| !self.held[member]));

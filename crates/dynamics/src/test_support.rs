@@ -23,13 +23,17 @@ pub(crate) fn grid_triangles(columns: usize, rows: usize, alternate: bool) -> Ve
     triangles
 }
 
-/// A repeatable stream of numbers in [-1, 1).
-pub(crate) struct Stream(pub u64);
+/// Seeded random numbers.
+pub(crate) struct Stream(fastrand::Rng);
 
 impl Stream {
+    pub fn new(seed: u64) -> Self {
+        Self(fastrand::Rng::with_seed(seed))
+    }
+
+    /// Uniform in [-1, 1).
     pub fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        2.0 * self.0.f64() - 1.0
     }
 
     pub fn vector(&mut self) -> Vector {

@@ -1,5 +1,7 @@
 //! What can keep a picture from being made.
 
+use bowknot_geometry::VertexOutOfRange;
+
 /// Why there is no picture.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -43,17 +45,8 @@ pub enum RenderError {
         expected: usize,
     },
     /// An element names a vertex that does not exist.
-    #[error("{element} {index} names vertex {vertex}, but there are only {vertex_count} vertices")]
-    VertexOutOfRange {
-        /// "triangle", "strand edge" or "particle".
-        element: &'static str,
-        /// Which of them.
-        index: usize,
-        /// The vertex it names.
-        vertex: u32,
-        /// How many vertices there are.
-        vertex_count: usize,
-    },
+    #[error(transparent)]
+    VertexOutOfRange(#[from] VertexOutOfRange),
     /// A camera that looks nowhere.
     #[error("the camera is at its target {0:?}: move one of them")]
     BlindCamera([f64; 3]),

@@ -4,7 +4,7 @@ use crate::RenderError;
 use crate::palette;
 use crate::surface::Surface;
 use crate::tubes::Tubes;
-use bowknot_geometry::Point;
+use bowknot_geometry::{Point, VertexOutOfRange};
 use bytemuck::{Pod, Zeroable};
 
 /// Elements over one array of vertices. Every slice may be empty.
@@ -196,8 +196,8 @@ fn check<const N: usize>(
     vertex_count: usize,
 ) -> Result<(), RenderError> {
     for (index, vertices) in elements.iter().enumerate() {
-        if let Some(&vertex) = vertices.iter().find(|&&v| v as usize >= vertex_count) {
-            return Err(RenderError::VertexOutOfRange { element, index, vertex, vertex_count });
+        if let Some(error) = VertexOutOfRange::of(element, index, vertices, vertex_count).next() {
+            return Err(error.into());
         }
     }
     Ok(())

@@ -3,7 +3,7 @@
 //! Neighbouring triangles share a normal at a vertex unless they meet at a crease when the surface is at rest: a cuboid
 //! keeps its edges, a sheet stays smooth however it folds, and nothing flickers from frame to frame.
 
-use bowknot_geometry::{Point, Vector};
+use bowknot_geometry::{Point, UnionFind, Vector};
 
 /// Cosine of the angle between two triangles' normals from which on their edge is a crease: 40 degrees.
 const CREASE: f64 = 0.766;
@@ -29,7 +29,7 @@ impl Surface {
             .collect();
 
         // Corners, three a triangle, are joined across edges that are no creases.
-        let mut joined = Sets::new(3 * triangles.len());
+        let mut joined = UnionFind::new(3 * triangles.len());
         let mut sides: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * triangles.len());
         for (t, corners) in triangles.iter().enumerate() {
             for k in 0..3 {
@@ -84,30 +84,6 @@ impl Surface {
 fn normal([i, j, k]: [u32; 3], positions: &[Point]) -> Vector {
     let [a, b, c] = [i, j, k].map(|v| positions[v as usize]);
     (b - a).cross(&(c - a))
-}
-
-/// Disjoint sets.
-struct Sets(Vec<u32>);
-
-impl Sets {
-    fn new(count: usize) -> Self {
-        Self((0..count as u32).collect())
-    }
-
-    fn find(&mut self, mut member: u32) -> u32 {
-        while self.0[member as usize] != member {
-            let parent = self.0[member as usize];
-            self.0[member as usize] = self.0[parent as usize];
-            member = parent;
-        }
-        member
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.find(a), self.find(b));
-        // The smaller index stays: the result does not depend on the order.
-        self.0[a.max(b) as usize] = a.min(b);
-    }
 }
 
 #[cfg(test)]

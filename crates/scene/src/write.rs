@@ -78,7 +78,8 @@ fn subtract(own: &mut Table, base: &Table) {
     });
 }
 
-fn fields(value: &impl Serialize) -> Table {
+/// A struct as a table.
+pub(super) fn fields(value: &impl Serialize) -> Table {
     // None of the structs has a field that TOML cannot hold; a test writes and reads all of them.
     Table::try_from(value).unwrap_or_default()
 }

@@ -20,7 +20,7 @@ const DAMPING: f64 = 0.9;
 fn forward_step(criterion: &mut Criterion) {
     let (start, triangles) = folded::folded_cloth(10_000, 0.0015);
     let target: Vec<Point> = start.iter().map(|p| Point::new(p.x, p.y, 0.5 * p.z)).collect();
-    let Ok(topology) = Topology::new(start.len(), triangles, &[], &[]) else { return };
+    let Ok(topology) = Topology::builder(start.len()).triangles(triangles).build() else { return };
     let model = CollisionModel::single_body(topology);
     let radii = vec![BUDGET + 0.5 * FLOOR; start.len()];
     let (mut pairs, mut separations) = (PairList::default(), Vec::new());

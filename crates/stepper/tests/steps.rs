@@ -106,11 +106,8 @@ fn a_target_that_is_not_finite_is_ignored_and_counted() {
 fn budgets_keep_a_vertex_in_its_ball_wherever_it_heads() {
     let mut budgets = Budgets { anchors: vec![Point::origin()], radii: vec![1.0] };
     let mut x = Point::origin();
-    let mut seed = 1u64;
-    let mut random = || {
-        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    };
+    let mut rng = fastrand::Rng::with_seed(1);
+    let mut random = || 2.0 * rng.f64() - 1.0;
     let mut reached: f64 = 0.0;
     for k in 0..10_000 {
         let scale = 10f64.powi(k % 9 - 4);
@@ -130,7 +127,7 @@ fn an_obstacle_moves_as_one() {
     use bowknot_geometry::Topology;
     use bowknot_proximity::BodyFilter;
     let x = vertex_over_triangle(0.5);
-    let topology = Topology::new(4, vec![[1, 2, 3]], &[], &[0]).unwrap();
+    let topology = Topology::builder(4).triangles([[1, 2, 3]]).particles([0]).build().unwrap();
     let filters = vec![BodyFilter::DEFORMABLE, BodyFilter::OBSTACLE];
     let model = CollisionModel::new(topology, vec![0, 1, 1, 1], filters, vec![]).unwrap();
     let y: Vec<Point> = x.iter().map(|p| p + Vector::z()).collect();

@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
 
     // Ten lines: the topology, who is an obstacle, and a resolver.
-    let topology = Topology::new(x.len(), triangles, &[], &[]).map_err(|e| format!("{e:?}"))?;
+    let topology = Topology::builder(x.len()).triangles(triangles).build().map_err(|e| format!("{e:?}"))?;
     let springs: Vec<([usize; 2], f64)> = (topology.edges.iter())
         .map(|e| e.map(|v| v as usize))
         .filter(|e| e[1] < cloth)

@@ -65,7 +65,7 @@ fn slide(
             }
         }
     }
-    let topology = Topology::new(x.len(), triangles, &[], &[]).map_err(|e| format!("{e:?}"))?;
+    let topology = Topology::builder(x.len()).triangles(triangles).build().map_err(|e| format!("{e:?}"))?;
     let springs: Vec<([usize; 2], f64)> = (topology.edges.iter())
         .map(|e| e.map(|v| v as usize))
         .map(|e| (e, (x[e[0]] - x[e[1]]).norm()))

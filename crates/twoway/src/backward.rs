@@ -12,7 +12,7 @@ use crate::row_solver::{ColouredSweeps, RowSolver, RowSystem};
 use crate::{BackwardStep, Problem, State, Statistics};
 use bowknot_constraints::{ContactRows, EdgeForm, EdgeLimits, predicted_gap};
 use bowknot_geometry::{PairKind, Vector};
-use bowknot_lcp::{self as lcp, Family, Schedule, TangentVector};
+use bowknot_lcp::{self as lcp, ConstraintSet, Schedule, TangentVector};
 
 /// Sine of the angle by which the normals of rows may leave their cones. Rows are made anew in each step: a wide cone keeps them
 /// from coming and going.
@@ -284,7 +284,7 @@ impl<K: RowSolver> LcpBackward<K> {
         if constraints.edge_form == EdgeForm::Linear {
             self.edges.linearise(&state.x, &mut self.contacts.rows);
             if !self.contacts.friction_of.is_empty() {
-                self.contacts.friction_of.resize(self.contacts.rows.len(), lcp::Problem::NO_FRICTION);
+                self.contacts.friction_of.resize(self.contacts.rows.len(), lcp::LcpProblem::NO_FRICTION);
             }
             self.lambda.extend_from_slice(&self.edge_multipliers);
             let starts = self.edges.colour_starts().iter().skip(1);
@@ -305,27 +305,31 @@ impl<K: RowSolver> LcpBackward<K> {
 
     /// Improves the kept multipliers, and y with them.
     fn solve(&mut self, problem: &Problem, state: &State, statistics: &mut Statistics) {
-        let balls: &[lcp::BallRow] = match problem.params.constraints.edge_form {
+        let balls: &[lcp::DistanceLimit] = match problem.params.constraints.edge_form {
             EdgeForm::Ball => &self.edges.balls,
             EdgeForm::Linear => &[],
         };
         let ball_starts = if balls.is_empty() { &[][..] } else { self.edges.colour_starts() };
         self.y.clone_from(&self.free);
-        let solve = || -> Result<(), lcp::Error> {
+        let solve = || -> Result<(), lcp::LcpError> {
             lcp::prepare_rows(&mut self.contacts.rows, &self.weights)?;
             lcp::prepare_friction(&mut self.contacts.friction, &self.weights)?;
-            let mut system = lcp::Problem::new(
+            let mut system = lcp::LcpProblem::new(
                 &self.weights,
-                Family::new(&self.contacts.rows, Schedule::coloured(&self.row_starts)),
-                Family::new(balls, Schedule::coloured(ball_starts)),
-                Family::serial(&self.contacts.friction),
+                ConstraintSet::new(&self.contacts.rows, Schedule::coloured(&self.row_starts)),
+                ConstraintSet::new(balls, Schedule::coloured(ball_starts)),
+                ConstraintSet::serial(&self.contacts.friction),
             )?;
             if !self.contacts.friction.is_empty() {
                 system = system.attach_friction(&self.contacts.friction_of)?;
             }
             let forces = if balls.is_empty() { &mut [][..] } else { &mut self.forces[..] };
-            let mut multipliers =
-                lcp::State { y: &mut self.y, lambda: &mut self.lambda, forces, friction: &mut self.friction };
+            let mut multipliers = lcp::LcpState {
+                y: &mut self.y,
+                lambda: &mut self.lambda,
+                limit_multipliers: forces,
+                friction: &mut self.friction,
+            };
             lcp::apply_multipliers(&system, &mut multipliers)?;
             let rows = RowSystem { system, free: &self.free, edges: &self.edges, problem, state };
             self.solver.solve(&rows, &mut multipliers)

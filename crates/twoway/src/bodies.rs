@@ -225,7 +225,7 @@ mod tests {
     use bowknot_proximity::BodyFilter;
 
     fn table() -> ContactTable {
-        let topology = Topology::new(2, Vec::new(), &[], &[0, 1]).expect("two particles");
+        let topology = Topology::builder(2).particles([0, 1]).build().expect("two particles");
         let ground = HalfSpace::new(Point::origin(), Vector::z()).expect("a plane");
         let filters = vec![BodyFilter::DEFORMABLE; 2];
         let model = CollisionModel::new(topology, vec![0, 1], filters, vec![ground]).expect("a model");

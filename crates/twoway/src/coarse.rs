@@ -46,7 +46,7 @@ impl CoarseCorrection {
     }
 
     /// Scales the multipliers, and y with them.
-    pub fn apply(&mut self, system: &lcp::Problem<'_>, free: &[Vector], state: &mut lcp::State<'_>) {
+    pub fn apply(&mut self, system: &lcp::LcpProblem<'_>, free: &[Vector], state: &mut lcp::LcpState<'_>) {
         let best = best_factor(system, free, state);
         if !best.is_finite() {
             return;
@@ -54,7 +54,7 @@ impl CoarseCorrection {
         let s = best.clamp(LEAST_FACTOR, LARGEST_FACTOR.min(self.growth_left).max(1.0));
         self.growth_left /= s;
         state.lambda.iter_mut().for_each(|l| *l *= s);
-        state.forces.iter_mut().for_each(|f| *f *= s);
+        state.limit_multipliers.iter_mut().for_each(|f| *f *= s);
         state.friction.iter_mut().for_each(|f| *f *= s);
         for ((y, free), &weight) in state.y.iter_mut().zip(free).zip(system.weights()) {
             if weight > 0.0 {
@@ -65,7 +65,7 @@ impl CoarseCorrection {
 }
 
 /// The maximiser; not finite where no multiplier acts.
-fn best_factor(system: &lcp::Problem<'_>, free: &[Vector], state: &lcp::State<'_>) -> f64 {
+fn best_factor(system: &lcp::LcpProblem<'_>, free: &[Vector], state: &lcp::LcpState<'_>) -> f64 {
     let mut slack = 0.0;
     for (row, &lambda) in system.rows().rows.iter().zip(&*state.lambda) {
         if lambda > 0.0 {
@@ -79,7 +79,7 @@ fn best_factor(system: &lcp::Problem<'_>, free: &[Vector], state: &lcp::State<'_
             slack += multiplier.dot(&row.slip(state.y));
         }
     }
-    for (ball, force) in system.balls().rows.iter().zip(&*state.forces) {
+    for (ball, force) in system.distance_limits().rows.iter().zip(&*state.limit_multipliers) {
         if *force != Vector::zeros() {
             let [a, b] = ball.vertices.map(|v| v as usize);
             slack += ball.limit * force.norm() - force.dot(&(state.y[a] - state.y[b]));

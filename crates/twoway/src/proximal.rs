@@ -7,7 +7,7 @@
 use crate::{Problem, State};
 use bowknot_constraints::EdgeForm;
 use bowknot_geometry::{PairKind, Point, Separation, Vector};
-use bowknot_lcp::BallRow;
+use bowknot_lcp::DistanceLimit;
 
 /// Most of the term, in the mass of its vertex. It is made of multipliers, and the heavier a vertex, the larger the multipliers
 /// that move it: without a bound both grow for ever where limits ask for more than a fraction of an edge, and x stays where
@@ -23,7 +23,7 @@ pub(crate) fn add_edges(
     proximal: &mut [f64],
     problem: &Problem,
     state: &State,
-    balls: &[BallRow],
+    balls: &[DistanceLimit],
     forces: &[Vector],
     scalars: &[f64],
 ) {
@@ -205,7 +205,7 @@ mod tests {
     #[test]
     fn caution_grows_where_the_target_swings_and_falls_where_it_does_not() {
         let x = vec![Point::origin(), Point::new(1.0, 0.0, 0.0)];
-        let topology = Topology::new(2, vec![], &[], &[0, 1]).unwrap();
+        let topology = Topology::builder(2).particles([0, 1]).build().unwrap();
         let model = CollisionModel::single_body(topology);
         let resolver = Resolver::new(model, &x, &[1.0; 2], Params::fast()).unwrap();
         let problem = resolver.problem();

@@ -13,7 +13,7 @@ const POLISH_BATCH: usize = 8;
 #[derive(Clone, Copy, Debug)]
 pub struct RowSystem<'a> {
     /// Inverse weights w, rows and colours. The first rows are contacts, in the linear form of edges the others edges.
-    pub system: lcp::Problem<'a>,
+    pub system: lcp::LcpProblem<'a>,
     /// y', where y is without any multiplier [m].
     pub free: &'a [Vector],
     /// The edges and their limits.
@@ -36,7 +36,7 @@ pub trait RowSolver: Send {
     ///
     /// # Errors
     /// A refusal of the rows; y' is then used for a target.
-    fn solve(&mut self, rows: &RowSystem<'_>, state: &mut lcp::State<'_>) -> Result<(), lcp::Error>;
+    fn solve(&mut self, rows: &RowSystem<'_>, state: &mut lcp::LcpState<'_>) -> Result<(), lcp::LcpError>;
 }
 
 /// Projected Gauss-Seidel by colours, with the coarse correction and the polishing that
@@ -51,18 +51,18 @@ impl RowSolver for ColouredSweeps {
         self.coarse.begin();
     }
 
-    fn solve(&mut self, rows: &RowSystem<'_>, state: &mut lcp::State<'_>) -> Result<(), lcp::Error> {
+    fn solve(&mut self, rows: &RowSystem<'_>, state: &mut lcp::LcpState<'_>) -> Result<(), lcp::LcpError> {
         let (system, problem) = (&rows.system, rows.problem);
         let params = &problem.params.backward;
-        let one = lcp::Params { max_sweeps: 1, ..lcp::Params::default() };
-        let mut batch = |state: &mut lcp::State<'_>, sweeps: usize| -> Result<(), lcp::Error> {
+        let one = lcp::LcpParams { max_sweeps: 1, ..lcp::LcpParams::default() };
+        let mut batch = |state: &mut lcp::LcpState<'_>, sweeps: usize| -> Result<(), lcp::LcpError> {
             if params.coarse_correction {
                 for _ in 0..sweeps {
                     self.coarse.apply(system, rows.free, state);
                     lcp::solve_coloured(system, state, &one)?;
                 }
             } else {
-                let all = lcp::Params { max_sweeps: sweeps as u32, ..one };
+                let all = lcp::LcpParams { max_sweeps: sweeps as u32, ..one };
                 lcp::solve_coloured(system, state, &all)?;
             }
             Ok(())

@@ -10,7 +10,7 @@ use super::function::{Jet, barrier};
 use super::{BarrierParams, element};
 use bowknot_twoway::constraints::EdgeLimits;
 use bowknot_twoway::geometry::{PairKind, Point, Separation, Vector};
-use bowknot_twoway::lcp::BallRow;
+use bowknot_twoway::lcp::DistanceLimit;
 use bowknot_twoway::{Problem, ResolveError, State, Statistics};
 use rayon::prelude::*;
 
@@ -132,7 +132,7 @@ impl Objective {
             energy += 0.5 * self.inertia(problem, state, v) * (x[v] - state.target[v]).norm_squared();
         }
         energy += contacts.iter().map(|contact| contact.jet.value).sum::<f64>();
-        let stretched = |ball: &BallRow| self.overlong(ball, x).map_or(0.0, |(over, _, _)| over * over);
+        let stretched = |ball: &DistanceLimit| self.overlong(ball, x).map_or(0.0, |(over, _, _)| over * over);
         energy + 0.5 * self.params.edge_stiffness * self.edges.balls.iter().map(stretched).sum::<f64>()
     }
 
@@ -226,7 +226,7 @@ impl Objective {
         (statistics.max_step_stretch, statistics.max_stretch) = self.stretch(&state.x);
     }
 
-    fn overlong(&self, ball: &BallRow, x: &[Point]) -> Option<(f64, f64, Vector)> {
+    fn overlong(&self, ball: &DistanceLimit, x: &[Point]) -> Option<(f64, f64, Vector)> {
         let [a, b] = ball.vertices;
         let edge = x[a as usize] - x[b as usize];
         let length = edge.norm();

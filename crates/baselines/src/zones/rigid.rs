@@ -4,7 +4,7 @@ use super::optimiser::growth;
 use super::rigid_motion::Motion;
 use super::{Impact, ImpactSearch};
 use crate::{Method, Outcome};
-use bowknot_twoway::geometry::{PairKind, Point, Vector};
+use bowknot_twoway::geometry::{PairKind, Point, UnionFind, Vector};
 use bowknot_twoway::{Call, Problem, ResolveError};
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -73,7 +73,7 @@ impl Method for RigidZones {
 /// A partition of vertices, and of half-spaces behind them, into zones.
 #[derive(Debug)]
 struct Zones {
-    parent: Vec<usize>,
+    sets: UnionFind,
     vertices: usize,
     /// Roots of the zones that something has met.
     met: Vec<bool>,
@@ -84,7 +84,7 @@ impl Zones {
     fn new(problem: &Problem) -> Self {
         let vertices = problem.rest.len();
         let nodes = vertices + problem.model.half_spaces().len();
-        let mut zones = Self { parent: (0..nodes).collect(), vertices, met: vec![false; nodes] };
+        let mut zones = Self { sets: UnionFind::new(nodes), vertices, met: vec![false; nodes] };
         let mut first = BTreeMap::new();
         for v in (0..vertices).filter(|&v| problem.prescribed[v]) {
             let who = match problem.model.is_obstacle(v as u32) {
@@ -113,18 +113,15 @@ impl Zones {
         roots.next().is_some_and(|first| self.met[first] && roots.all(|root| root == first))
     }
 
-    fn root(&self, mut node: usize) -> usize {
-        while self.parent[node] != node {
-            node = self.parent[node];
-        }
-        node
+    fn root(&self, node: usize) -> usize {
+        self.sets.root(node as u32) as usize
     }
 
     /// Makes one zone of two, named after its smallest node.
     fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.root(a), self.root(b));
         let (low, high) = (a.min(b), a.max(b));
-        self.parent[high] = low;
+        self.sets.join(low as u32, high as u32);
         self.met[low] |= self.met[high];
     }
 
@@ -139,9 +136,8 @@ impl Zones {
     /// Sets the paths of all zones that something has met.
     fn move_all(&mut self, problem: &Problem, x: &[Point], wanted: &[Vector], paths: &mut [Vector]) {
         let mut members: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for node in 0..self.parent.len() {
-            let root = self.root(node);
-            self.parent[node] = root;
+        for node in 0..self.sets.len() {
+            let root = self.sets.find(node as u32) as usize;
             if self.met[root] {
                 members.entry(root).or_default().push(node);
             }

@@ -5,7 +5,7 @@ use crate::rows::{AugmentedLagrangian, LinearSystem};
 use bowknot_twoway::Problem;
 use bowknot_twoway::constraints::{Colouring, ContactForm, contact_row};
 use bowknot_twoway::geometry::{PairKind, Point, Vector, separation};
-use bowknot_twoway::lcp::{self, Family, Row, Schedule, State};
+use bowknot_twoway::lcp::{self, ConstraintSet, LcpState, Row, Schedule};
 use std::collections::BTreeMap;
 
 /// One row a pair, from its latest impact.
@@ -50,7 +50,7 @@ impl ImpactRows {
         params: &ZoneParams,
         free: &[Vector],
         y: &mut Vec<Vector>,
-    ) -> Result<(), lcp::Error> {
+    ) -> Result<(), lcp::LcpError> {
         let weights: Vec<f64> = (0..free.len())
             .map(|v| if problem.movable(v) { 1.0 / problem.relative_mass[v] } else { 0.0 })
             .collect();
@@ -63,19 +63,23 @@ impl ImpactRows {
         let mut lambda: Vec<f64> = order.iter().map(|&r| list[r as usize].1).collect();
         lcp::prepare_rows(&mut rows, &weights)?;
         let schedule = Schedule::coloured(self.colouring.starts());
-        let system =
-            lcp::Problem::new(&weights, Family::new(&rows, schedule), Family::default(), Family::default())?;
+        let system = lcp::LcpProblem::new(
+            &weights,
+            ConstraintSet::new(&rows, schedule),
+            ConstraintSet::default(),
+            ConstraintSet::default(),
+        )?;
         y.clear();
         y.extend_from_slice(free);
-        let mut state = State { y, lambda: &mut lambda, ..State::default() };
+        let mut state = LcpState { y, lambda: &mut lambda, ..LcpState::default() };
         lcp::apply_multipliers(&system, &mut state)?;
         match params.solver {
             ZoneSolver::GaussSeidel => {
                 let tolerance = Some(params.tolerance * problem.lengths.delta);
                 let params =
-                    lcp::Params { max_sweeps: params.max_sweeps, tolerance, ..lcp::Params::default() };
+                    lcp::LcpParams { max_sweeps: params.max_sweeps, tolerance, ..lcp::LcpParams::default() };
                 match lcp::solve_coloured(&system, &mut state, &params) {
-                    Ok(_) | Err(lcp::Error::NotConverged { .. }) => {}
+                    Ok(_) | Err(lcp::LcpError::NotConverged { .. }) => {}
                     Err(error) => return Err(error),
                 }
             }

@@ -27,7 +27,7 @@ impl Scene {
     pub fn vertex_above_triangle(height: f64) -> Self {
         let mut x = [[-1.0, -1.0, 0.0], [2.0, -1.0, 0.0], [-1.0, 2.0, 0.0]].map(Point::from).to_vec();
         x.push(Point::new(0.1, 0.2, height));
-        let topology = Topology::new(4, vec![[0, 1, 2]], &[], &[3]).unwrap();
+        let topology = Topology::builder(4).triangles([[0, 1, 2]]).particles([3]).build().unwrap();
         let bodies = vec![BodyFilter::OBSTACLE, BodyFilter::DEFORMABLE];
         Self { x, model: CollisionModel::new(topology, vec![0, 0, 0, 1], bodies, vec![]).unwrap() }
     }
@@ -67,7 +67,12 @@ impl Scene {
         }
         triangles.push([first, first + 1, first + 2]);
         bodies.resize(x.len(), 4);
-        let topology = Topology::new(x.len(), triangles, &strands, &particles).unwrap();
+        let topology = Topology::builder(x.len())
+            .triangles(triangles)
+            .strand_edges(strands.iter().copied())
+            .particles(particles.iter().copied())
+            .build()
+            .unwrap();
         let mut filters = vec![BodyFilter::DEFORMABLE; 5];
         filters[4] = BodyFilter::OBSTACLE;
         let ground = HalfSpace::new(Point::origin(), Vector::z()).unwrap();
@@ -81,7 +86,7 @@ impl Scene {
         let n = x.len();
         sheet(cells, 0.1, gap, &mut x, &mut triangles);
         let bodies = (0..2 * n).map(|i| u32::from(i >= n)).collect();
-        let topology = Topology::new(2 * n, triangles, &[], &[]).unwrap();
+        let topology = Topology::builder(2 * n).triangles(triangles).build().unwrap();
         Self {
             x,
             model: CollisionModel::new(topology, bodies, vec![BodyFilter::DEFORMABLE; 2], vec![]).unwrap(),
@@ -104,7 +109,7 @@ impl Scene {
     /// Where two sheets want to be that change places, and crumple on the way.
     pub fn swapped(&self) -> Vec<Point> {
         let n = self.x.len() / 2;
-        let mut draw = Draw(5);
+        let mut draw = Draw::new(5);
         (0..2 * n)
             .map(|v| {
                 let other = self.x[(v + n) % (2 * n)];

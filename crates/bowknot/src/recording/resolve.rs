@@ -12,7 +12,11 @@ impl States {
     /// # Errors
     /// A mesh that is none, a body with obstacle and deformable vertices; in words.
     pub fn collision_model(&self) -> Result<CollisionModel, String> {
-        let topology = Topology::new(self.x.len(), self.triangles.clone(), &self.strands, &self.particles)
+        let topology = Topology::builder(self.x.len())
+            .triangles(self.triangles.iter().copied())
+            .strand_edges(self.strands.iter().copied())
+            .particles(self.particles.iter().copied())
+            .build()
             .map_err(|errors| first_of(&errors))?;
         let mut obstacle: BTreeMap<u32, bool> = BTreeMap::new();
         for (vertex, (&body, &flag)) in self.body.iter().zip(&self.obstacle).enumerate() {

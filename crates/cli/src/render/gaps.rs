@@ -28,7 +28,11 @@ impl Gaps {
         let body = (0..n).map(|v| u32::from(run.is_obstacle(v))).collect();
         let fault =
             |error: &dyn std::fmt::Display| Failure::input(format!("the frames cannot be searched: {error}"));
-        let topology = Topology::new(n, mesh.triangles.clone(), &mesh.strands, &mesh.particles)
+        let topology = Topology::builder(n)
+            .triangles(mesh.triangles.iter().copied())
+            .strand_edges(mesh.strands.iter().copied())
+            .particles(mesh.particles.iter().copied())
+            .build()
             .map_err(|errors| fault(&errors.first().map(ToString::to_string).unwrap_or_default()))?;
         let model =
             CollisionModel::new(topology, body, bodies, run.ground().to_vec()).map_err(|e| fault(&e))?;

@@ -93,7 +93,7 @@ mod tests {
 
     #[test]
     fn any_matrix_is_decomposed_into_rotations_and_singular_values() {
-        let mut stream = Stream(1);
+        let mut stream = Stream::new(1);
         for k in 0..1000 {
             let mut f = Matrix3::from_fn(|_, _| stream.next());
             match k % 8 {

@@ -3,8 +3,7 @@
 //! Nodes are sorted by connected component, then by recursive bisection of the rest positions at the median
 //! of the longest side. Neighbours are then close in memory, and the leaves serve as aggregates.
 
-use crate::groups::Groups;
-use bowknot_geometry::Vector;
+use bowknot_geometry::{UnionFind, Vector};
 use std::ops::Range;
 
 /// A numbering and its leaves.
@@ -25,11 +24,11 @@ pub(crate) fn order_nodes(
     for_each_link: impl FnOnce(&mut dyn FnMut(u32, u32)),
 ) -> Ordering {
     let count = positions.len();
-    let mut groups = Groups::new(count);
-    for_each_link(&mut |a, b| groups.join(a as usize, b as usize));
+    let mut sets = UnionFind::new(count);
+    // The smallest node represents a set, so that components are in the order of their first nodes.
+    for_each_link(&mut |a, b| sets.join(a, b));
     let mut order: Vec<u32> = (0..count as u32).collect();
-    // The smallest node represents a component, so that components are in the order of their first nodes.
-    let component: Vec<usize> = (0..count).map(|n| groups.root(n)).collect();
+    let component: Vec<u32> = (0..count as u32).map(|n| sets.find(n)).collect();
     order.sort_by_key(|&n| component[n as usize]);
 
     let (mut leaves, mut components) = (Vec::new(), Vec::new());

@@ -4,7 +4,7 @@ use super::measures::{area, longest_edge, volume};
 use crate::body::{Body, BodyShape};
 use crate::error::ModelError;
 use bowknot_errors::{Errors, ParamError, Parameters};
-use bowknot_geometry::Point;
+use bowknot_geometry::{Point, VertexOutOfRange};
 use std::collections::HashMap;
 
 /// Areas, volumes and lengths count as zero up to this share of the longest edge squared, of the longest edge
@@ -67,14 +67,8 @@ fn check_indices(body: &Body, vertex_count: usize, errors: &mut Vec<ModelError>)
     let mut index = 0;
     body.shape.for_each_element(|vertices| {
         for (k, &vertex) in vertices.iter().enumerate() {
-            if vertex as usize >= vertex_count {
-                errors.push(ModelError::VertexOutOfRange {
-                    body: name(),
-                    element,
-                    index,
-                    vertex,
-                    vertex_count,
-                });
+            for error in VertexOutOfRange::of(element, index, &[vertex], vertex_count) {
+                errors.push(ModelError::VertexOutOfRange { body: name(), error });
             }
             if vertices[..k].contains(&vertex) {
                 errors.push(ModelError::RepeatedVertex { body: name(), element, index, vertex });

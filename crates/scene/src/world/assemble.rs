@@ -191,8 +191,12 @@ impl Assembly {
     fn finish(mut self, scene: &Scene, deformable_vertices: usize) -> Result<World, SceneError> {
         let pins = pins(scene, &self.bodies, &self.positions)?;
         self.contact.pairs = self.friction_pairs(scene);
-        let topology =
-            Topology::new(self.base.len(), self.triangles, &self.strands, &self.particles).map_err(joined)?;
+        let topology = Topology::builder(self.base.len())
+            .triangles(self.triangles)
+            .strand_edges(self.strands.iter().copied())
+            .particles(self.particles.iter().copied())
+            .build()
+            .map_err(joined)?;
         let collision = CollisionModel::new(topology, self.vertex_body, self.filters, self.half_spaces)
             .map_err(|error| SceneError::Model(error.to_string()))?;
         for warning in &self.warnings {
@@ -219,7 +223,7 @@ impl Assembly {
             let plane = || self.half_space_names.iter().position(|n| n == name);
             body.or_else(|| plane().map(|h| ContactSide::HalfSpace(h as u32)))
         };
-        let pair = |spec: &crate::contact::FrictionPair| {
+        let pair = |spec: &crate::friction::FrictionPair| {
             let [a, b] = &spec.bodies;
             // Validation has refused names that do not exist.
             Some(PairFriction { sides: [side(a)?, side(b)?], friction: spec.friction })

@@ -53,7 +53,12 @@ fn zoo() -> Zoo {
     bodies.resize(x.len(), 3);
     sheet(1, 0.2, 0.08, &mut x, &mut triangles);
     bodies.resize(x.len(), OBSTACLE);
-    let topology = Topology::new(x.len(), triangles, &strands, &particles).unwrap();
+    let topology = Topology::builder(x.len())
+        .triangles(triangles)
+        .strand_edges(strands.iter().copied())
+        .particles(particles.iter().copied())
+        .build()
+        .unwrap();
     let mut filters = vec![BodyFilter::DEFORMABLE; 5];
     filters[OBSTACLE as usize] = BodyFilter::OBSTACLE;
     let ground = HalfSpace::new(Point::origin(), Vector::z()).unwrap();
@@ -110,7 +115,7 @@ fn however_violent_the_targets_bodies_of_all_kinds_keep_their_thickness() {
     for (preset, mut params) in [("fast", Params::fast()), ("paper", Params::paper())] {
         params.stop.max_steps = Some(40);
         let mut resolver = zoo.resolver(params);
-        let mut draw = Draw(7);
+        let mut draw = Draw::new(7);
         let mut x = zoo.x.clone();
         let mut met = [false; 5];
         for call_index in 0..12 {
@@ -146,7 +151,7 @@ fn a_long_step_without_contacts_in_sight_keeps_floors_too() {
     let side_by_side = 0.025;
     let mut x = vec![Point::new(-0.2, 0.0, 0.0), Point::new(0.2, side_by_side, 0.0)];
     let y = [Point::new(0.0, 0.0, 0.0), Point::new(0.0, side_by_side, 0.0)];
-    let topology = Topology::new(2, Vec::new(), &[], &[0, 1]).unwrap();
+    let topology = Topology::builder(2).particles([0, 1]).build().unwrap();
     let mut resolver = Resolver::new(CollisionModel::single_body(topology), &x, &[1.0; 2], Params::fast())
         .unwrap()
         .with_bodies(vec![BodyContact { delta: Some(0.04), ..thick(0.03) }])
@@ -170,7 +175,7 @@ fn a_start_tighter_than_the_thickness_grows_to_it_and_never_shrinks() {
     let n = x.len();
     sheet(3, 0.1, 0.2 + gap, &mut x, &mut triangles);
     let bodies: Vec<u32> = (0..2 * n).map(|i| u32::from(i >= n)).collect();
-    let topology = Topology::new(2 * n, triangles, &[], &[]).unwrap();
+    let topology = Topology::builder(2 * n).triangles(triangles).build().unwrap();
     let model =
         CollisionModel::new(topology.clone(), bodies.clone(), vec![BodyFilter::DEFORMABLE; 2], vec![])
             .unwrap();
@@ -221,7 +226,7 @@ fn grains_of_two_sizes_come_to_rest_at_the_sum_of_their_radii_and_on_the_ground_
         height += size + 0.05;
     }
     let bodies = vec![0, 1, 0, 1];
-    let topology = Topology::new(4, Vec::new(), &[], &[0, 1, 2, 3]).unwrap();
+    let topology = Topology::builder(4).particles([0, 1, 2, 3]).build().unwrap();
     let ground = HalfSpace::new(Point::origin(), Vector::z()).unwrap();
     let filters = vec![BodyFilter::DEFORMABLE; 2];
     let model = CollisionModel::new(topology, bodies, filters, vec![ground]).unwrap();
@@ -259,7 +264,8 @@ fn strands_rest_on_strands_and_particles_on_both() {
     }
     x.push(Point::new(0.003, 0.0, 0.08));
     let strands: Vec<[u32; 2]> = (0..4).chain(5..9).map(|i| [i, i + 1]).collect();
-    let topology = Topology::new(11, Vec::new(), &strands, &[10]).unwrap();
+    let topology =
+        Topology::builder(11).strand_edges(strands.iter().copied()).particles([10]).build().unwrap();
     let bodies: Vec<u32> = (0..11).map(|i| i / 5).collect();
     let model = CollisionModel::new(topology, bodies, vec![BodyFilter::DEFORMABLE; 3], vec![]).unwrap();
     let resolver = Resolver::new(model, &x, &[1.0; 11], Params::fast())
@@ -290,7 +296,7 @@ fn stretch_limits_are_those_of_each_body_and_none_costs_nothing() {
     sheet(3, 0.1, 1.0, &mut x, &mut triangles);
     sheet(3, 0.1, 2.0, &mut x, &mut triangles);
     let bodies: Vec<u32> = (0..3 * n).map(|i| (i / n) as u32).collect();
-    let topology = Topology::new(3 * n, triangles, &[], &[]).unwrap();
+    let topology = Topology::builder(3 * n).triangles(triangles).build().unwrap();
     let edges = topology.edges.clone();
     let filters = vec![BodyFilter::DEFORMABLE; 3];
     let model = CollisionModel::new(topology, bodies.clone(), filters, vec![]).unwrap();
@@ -315,8 +321,10 @@ fn stretch_limits_are_those_of_each_body_and_none_costs_nothing() {
     assert!(worst[2] > 1.05 && worst[2] < 1.1 * 1.02 + 1e-12, "{worst:?}");
 
     // Without any limit at all the rule that stops has no edge to look at.
-    let topology =
-        Topology::new(n, resolver.problem().model.topology().triangles[..18].to_vec(), &[], &[]).unwrap();
+    let topology = Topology::builder(n)
+        .triangles(resolver.problem().model.topology().triangles[..18].to_vec())
+        .build()
+        .unwrap();
     let mut resolver =
         Resolver::new(CollisionModel::single_body(topology), &x[..n], &vec![1.0; n], Params::fast())
             .unwrap()
@@ -335,7 +343,8 @@ fn a_group_of_pins_waits_as_a_whole_and_says_how_far_behind_it_is() {
     let n = x.len();
     x.extend([Point::new(0.2, 0.2, 0.1), Point::new(0.3, 0.2, 0.2), Point::new(2.0, 0.2, 0.3)]);
     let (a, b) = (n as u32, n as u32 + 2);
-    let topology = Topology::new(n + 3, triangles, &[[a, a + 1], [a + 1, b]], &[]).unwrap();
+    let topology =
+        Topology::builder(n + 3).triangles(triangles).strand_edges([[a, a + 1], [a + 1, b]]).build().unwrap();
     let bodies: Vec<u32> = (0..n + 3).map(|i| u32::from(i >= n)).collect();
     let model = CollisionModel::new(topology, bodies, vec![BodyFilter::DEFORMABLE; 2], vec![]).unwrap();
     let start = x.clone();
@@ -375,7 +384,7 @@ fn layers_within_a_group_do_not_hold_each_other_back() {
     sheet(4, 0.1, 0.0, &mut x, &mut triangles);
     let n = x.len();
     sheet(4, 0.1, 0.005, &mut x, &mut triangles);
-    let topology = Topology::new(2 * n, triangles, &[], &[]).unwrap();
+    let topology = Topology::builder(2 * n).triangles(triangles).build().unwrap();
     let bodies = (0..2 * n).map(|i| u32::from(i >= n)).collect();
     let model = CollisionModel::new(topology, bodies, vec![BodyFilter::DEFORMABLE; 2], vec![]).unwrap();
     let mut resolver = Resolver::new(model, &x, &vec![1.0; 2 * n], Params::fast()).unwrap();

@@ -30,7 +30,8 @@ fn incline(slope: f64, friction: f64, particle: bool, params: Params) -> (Flight
     let x: Vec<Point> =
         x.iter().map(|p| Point::origin() + p.x * down + p.y * side + delta * normal).collect();
     let particles: &[u32] = if particle { &[0] } else { &[] };
-    let topology = Topology::new(x.len(), triangles, &[], particles).unwrap();
+    let topology =
+        Topology::builder(x.len()).triangles(triangles).particles(particles.iter().copied()).build().unwrap();
     let plane = HalfSpace::new(Point::origin(), normal).unwrap();
     let bodies = vec![0; x.len()];
     let model = CollisionModel::new(topology, bodies, vec![BodyFilter::DEFORMABLE], vec![plane]).unwrap();
@@ -121,7 +122,7 @@ fn on_a_plate(friction: f64, model: FrictionModel) -> (Flight, usize) {
     let n = count as u32;
     triangles.extend([[n, n + 1, n + 2], [n, n + 2, n + 3]]);
     let bodies = (0..x.len()).map(|i| u32::from(i >= count)).collect();
-    let topology = Topology::new(x.len(), triangles, &[], &[]).unwrap();
+    let topology = Topology::builder(x.len()).triangles(triangles).build().unwrap();
     let filters = vec![BodyFilter::DEFORMABLE, BodyFilter::OBSTACLE];
     let collision = CollisionModel::new(topology, bodies, filters, vec![]).unwrap();
     let mut params = Params::fast();
@@ -206,7 +207,7 @@ fn friction_between_two_bodies_is_equal_and_opposite() {
     sheet(4, H, 0.12 * H, &mut x, &mut triangles);
     let masses: Vec<f64> = (0..2 * n).map(|i| if i < n { 1.0 } else { 2.0 }).collect();
     let bodies: Vec<u32> = (0..2 * n).map(|i| u32::from(i >= n)).collect();
-    let topology = Topology::new(2 * n, triangles, &[], &[]).unwrap();
+    let topology = Topology::builder(2 * n).triangles(triangles).build().unwrap();
     let mut given = [0.0; 2];
     for (k, friction) in [0.0, 0.4].into_iter().enumerate() {
         let filters = vec![BodyFilter::DEFORMABLE; 2];
@@ -246,7 +247,7 @@ fn frictional_results_have_the_same_bits_for_any_number_of_threads() {
         sheet(20, H, 0.11 * H * f64::from(layer), &mut x, &mut triangles);
         bodies.resize(x.len(), layer as u32);
     }
-    let topology = Topology::new(x.len(), triangles, &[], &[]).unwrap();
+    let topology = Topology::builder(x.len()).triangles(triangles).build().unwrap();
     let model = CollisionModel::new(topology, bodies, vec![BodyFilter::DEFORMABLE; 4], vec![]).unwrap();
     let y: Vec<Point> = x
         .iter()

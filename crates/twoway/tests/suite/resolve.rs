@@ -20,7 +20,7 @@ fn sheets(cells: usize, heights: &[f64], ground: bool) -> Scene {
         sheet(cells, 0.1, height, &mut x, &mut triangles);
         bodies.resize(x.len(), body as u32);
     }
-    let topology = Topology::new(x.len(), triangles, &[], &[]).unwrap();
+    let topology = Topology::builder(x.len()).triangles(triangles).build().unwrap();
     let half_spaces =
         if ground { vec![HalfSpace::new(Point::origin(), Vector::z()).unwrap()] } else { Vec::new() };
     let filters = vec![BodyFilter::DEFORMABLE; heights.len()];
@@ -231,7 +231,7 @@ fn an_obstacle_waits_as_one_body() {
     let n = x.len();
     sheet(1, 0.4, 0.0, &mut x, &mut triangles);
     let bodies = (0..x.len()).map(|v| u32::from(v >= n)).collect();
-    let topology = Topology::new(x.len(), triangles, &[], &[]).unwrap();
+    let topology = Topology::builder(x.len()).triangles(triangles).build().unwrap();
     let filters = vec![BodyFilter::DEFORMABLE, BodyFilter::OBSTACLE];
     let model = CollisionModel::new(topology, bodies, filters, vec![]).unwrap();
     let mut resolver = Resolver::new(model, &x, &vec![1.0; x.len()], Params::fast()).unwrap();
@@ -284,7 +284,7 @@ fn a_tight_start_opens_slowly() {
     sheet(4, 0.1, 0.0, &mut x, &mut triangles);
     let n = x.len();
     sheet(4, 0.1, 0.01 * delta, &mut x, &mut triangles);
-    let topology = Topology::new(x.len(), triangles, &[], &[]).unwrap();
+    let topology = Topology::builder(x.len()).triangles(triangles).build().unwrap();
     let bodies = (0..x.len()).map(|v| u32::from(v >= n)).collect();
     let model = CollisionModel::new(topology, bodies, vec![BodyFilter::DEFORMABLE; 2], vec![]).unwrap();
     let scene = Scene { x, model };

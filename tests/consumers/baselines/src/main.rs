@@ -1,4 +1,5 @@
-//! Two triangles whose targets swap them, by a method made of the default stages: they end up close, and still in order.
+//! Two triangles whose targets swap them, by a method made of the default stages: they end up close, and
+//! still in order.
 #![allow(clippy::print_stdout, reason = "a command")]
 
 use bowknot_baselines::twoway::geometry::{Point, Topology, Vector};
@@ -12,7 +13,7 @@ fn main() -> Result<(), ResolveError> {
     let mut x = [at(0.0), at(0.1)].concat();
     let y = [at(0.1), at(0.0)].concat();
 
-    let Ok(topology) = Topology::new(6, vec![[0, 1, 2], [3, 4, 5]], &[], &[]) else {
+    let Ok(topology) = Topology::builder(6).triangles([[0, 1, 2], [3, 4, 5]]).build() else {
         panic!("the triangles are sound")
     };
     let resolver = Resolver::new(CollisionModel::single_body(topology), &x, &[1.0; 6], Params::fast())?;

@@ -12,7 +12,7 @@ fn main() -> Result<(), ResolveError> {
     let mut x = [at(0.0), at(0.1)].concat();
     let y = [at(0.1), at(0.0)].concat();
 
-    let Ok(topology) = Topology::new(6, vec![[0, 1, 2], [3, 4, 5]], &[], &[]) else {
+    let Ok(topology) = Topology::builder(6).triangles([[0, 1, 2], [3, 4, 5]]).build() else {
         panic!("the triangles are sound")
     };
     let mut resolver = Resolver::new(CollisionModel::single_body(topology), &x, &[1.0; 6], Params::fast())?;

@@ -84,7 +84,7 @@ fn free_flight_takes_one_step_for_all_vertices_and_an_edge_at_a_time_for_each() 
 fn one_tight_pair_holds_up_all_vertices_or_its_own() {
     // Two particles that want to change places, and a third far away.
     let x = [[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [5.0, 0.0, 0.0]].map(Point::from).to_vec();
-    let topology = Topology::new(3, vec![], &[], &[0, 1, 2]).unwrap();
+    let topology = Topology::builder(3).particles([0, 1, 2]).build().unwrap();
     let model = CollisionModel::new(topology, vec![0; 3], vec![BodyFilter::DEFORMABLE], vec![]).unwrap();
     let scene = Scene { x, model };
     let target = [[0.02, 0.0, 0.0], [0.0, 0.0, 0.0], [5.0, 0.1, 0.0]].map(Point::from);

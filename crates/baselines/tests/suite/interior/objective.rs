@@ -17,7 +17,7 @@ fn gradient_is_that_of_the_value_for_every_kind_of_pair_and_long_edges() {
     scene.x.iter_mut().for_each(|p| p.coords *= 4.0);
     let problem = scene.problem(params);
     scene.x = place;
-    let mut draw = Draw(11);
+    let mut draw = Draw::new(11);
     scene.x.iter_mut().for_each(|p| *p += 1e-3 * draw.vector());
     let target: Vec<Point> = scene.x.iter().map(|p| p + 0.03 * draw.vector()).collect();
     let mut search = BudgetedSearch::new(&problem);
@@ -71,7 +71,7 @@ fn blocks_majorise_the_convex_part_along_any_direction() {
     let contacts = objective.contacts(&problem, &state);
     let mut derivatives = Derivatives::default();
     objective.derivatives(&problem, &state, &state.x, &contacts, &mut derivatives);
-    let mut draw = Draw(3);
+    let mut draw = Draw::new(3);
     for _ in 0..50 {
         let free = |v: usize| f64::from(u8::from(problem.movable(v)));
         let u: Vec<Vector> = (0..state.x.len()).map(|v| free(v) * draw.vector()).collect();

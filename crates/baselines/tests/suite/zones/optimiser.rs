@@ -90,7 +90,7 @@ fn vice() -> (Scene, Vec<Point>, Vec<bool>) {
         x.extend(corners.map(|[u, v]| Point::new(u, v, height)));
     }
     x.push(Point::new(0.1, 0.2, 0.5));
-    let topology = Topology::new(7, vec![[0, 1, 2], [3, 4, 5]], &[], &[6]).unwrap();
+    let topology = Topology::builder(7).triangles([[0, 1, 2], [3, 4, 5]]).particles([6]).build().unwrap();
     let bodies = vec![BodyFilter::OBSTACLE, BodyFilter::OBSTACLE, BodyFilter::DEFORMABLE];
     let model = CollisionModel::new(topology, vec![0, 0, 0, 1, 1, 1, 2], bodies, vec![]).unwrap();
     let scene = Scene { x, model };

@@ -110,7 +110,7 @@ fn pins_of_a_group_wait_together() {
 fn random_heaps_are_never_cut() {
     for seed in 0..20 {
         let scene = Scene::heap(0.02);
-        let mut draw = Draw(seed);
+        let mut draw = Draw::new(seed);
         let size = 10f64.powf(1.5 * draw.next() - 1.5);
         // The obstacle of three vertices at the end rests.
         let movable = scene.x.len() - 3;

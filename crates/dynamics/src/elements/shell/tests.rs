@@ -31,7 +31,7 @@ fn bend() -> CurvedBend<6> {
 
 #[test]
 fn the_gradient_matches_differences_and_the_hessian_at_rest_too() {
-    let mut stream = Stream(1);
+    let mut stream = Stream::new(1);
     let bend = bend();
     for (scale, amount) in [(1.0, 0.1), (1.3, 0.2), (0.7, 0.2)] {
         for _ in 0..20 {
@@ -46,7 +46,7 @@ fn the_gradient_matches_differences_and_the_hessian_at_rest_too() {
 
 #[test]
 fn rigid_motions_store_no_energy_forces_balance_and_hessians_are_positive() {
-    let mut stream = Stream(2);
+    let mut stream = Stream::new(2);
     let bend = bend();
     for k in 0..20 {
         let turn = Rotation3::new(stream.vector() * 3.0);
@@ -71,7 +71,7 @@ fn for_a_flat_rest_shape_it_equals_the_flat_form() {
     let form = form.build();
     let mut bends = CurvedBends::default();
     bends.add(&TRIANGLES, &flat, 3.0);
-    let mut stream = Stream(3);
+    let mut stream = Stream::new(3);
     for _ in 0..10 {
         let x = stream.deformed(&REST, 1.0, 0.3);
         let four = |n: [u32; 4]| n.map(|n| x[n as usize]);

@@ -16,7 +16,7 @@ fn turn(straight: bool, damping: f64) -> StrandTurn {
 
 #[test]
 fn derivatives_match_differences() {
-    let mut stream = Stream(1);
+    let mut stream = Stream::new(1);
     for scale in [0.6, 1.0, 1.7] {
         for _ in 0..20 {
             let (x0, x) = (stream.deformed(&BENT, 1.0, 0.1), stream.deformed(&BENT, scale, 0.1));
@@ -33,7 +33,7 @@ fn derivatives_match_differences() {
 
 #[test]
 fn rigid_motions_store_no_energy_and_forces_balance() {
-    let mut stream = Stream(2);
+    let mut stream = Stream::new(2);
     for _ in 0..20 {
         let rotation = Rotation3::new(stream.vector() * 3.0);
         let shift = stream.vector() * 100.0;
@@ -54,7 +54,7 @@ fn rigid_motions_store_no_energy_and_forces_balance() {
 
 #[test]
 fn filtered_hessians_are_positive_also_of_crushed_strands() {
-    let mut stream = Stream(3);
+    let mut stream = Stream::new(3);
     let mut states: Vec<[Vector; 3]> =
         (0..50).map(|k| stream.deformed(&BENT, 0.03 * k as f64, 0.2)).collect();
     states.push([Vector::zeros(); 3]);

@@ -45,7 +45,7 @@ fn states(stream: &mut Stream) -> Vec<[Vector; 4]> {
 
 #[test]
 fn elastic_derivatives_match_differences() {
-    let mut stream = Stream(1);
+    let mut stream = Stream::new(1);
     for x in states(&mut stream) {
         MODELS.iter().for_each(|model| check_derivatives(&tet(*model, 0.0), &x, NONE));
     }
@@ -53,7 +53,7 @@ fn elastic_derivatives_match_differences() {
 
 #[test]
 fn damping_derivatives_match_differences() {
-    let mut stream = Stream(2);
+    let mut stream = Stream::new(2);
     for x in states(&mut stream) {
         let x0 = stream.deformed(&REST, 1.0, 0.2);
         for model in MODELS {
@@ -64,7 +64,7 @@ fn damping_derivatives_match_differences() {
 
 #[test]
 fn filtered_hessians_are_positive_semi_definite() {
-    let mut stream = Stream(3);
+    let mut stream = Stream::new(3);
     let mut all = states(&mut stream);
     all.push([Vector::new(1.0, 2.0, 3.0); 4]);
     all.push([0.0, 1.0, 2.0, 3.0].map(|t| Vector::new(t, t, -t)));
@@ -89,7 +89,7 @@ fn filtered_hessians_are_positive_semi_definite() {
 
 #[test]
 fn the_clamped_hessian_is_the_nearest_positive_one() {
-    let mut stream = Stream(4);
+    let mut stream = Stream::new(4);
     for model in MODELS {
         for _ in 0..30 {
             let x = stream.deformed(&REST, 0.6, 0.15);
@@ -103,7 +103,7 @@ fn the_clamped_hessian_is_the_nearest_positive_one() {
 
 #[test]
 fn rigid_motions_store_no_energy_and_forces_balance() {
-    let mut stream = Stream(5);
+    let mut stream = Stream::new(5);
     for model in MODELS {
         for _ in 0..20 {
             let turn = Rotation3::new(stream.vector() * 3.0);
@@ -125,7 +125,7 @@ fn rigid_motions_store_no_energy_and_forces_balance() {
 fn the_hessian_at_rest_is_that_of_linear_elasticity() {
     // stress = lambda tr(e) I + 2 mu e for a small strain in any direction: exact moduli.
     let (lambda, mu) = material(SolidModel::Stvk, 0.0).lame();
-    let mut stream = Stream(6);
+    let mut stream = Stream::new(6);
     for model in MODELS {
         for _ in 0..10 {
             let strain = Matrix3::from_fn(|_, _| stream.next());
@@ -144,7 +144,7 @@ fn the_hessian_at_rest_is_that_of_linear_elasticity() {
 fn the_stress_of_uniform_strain_is_that_of_the_laws() {
     // Patch tests at finite strain, with the stresses of the papers.
     let (lambda, mu) = material(SolidModel::Stvk, 0.0).lame();
-    let mut stream = Stream(7);
+    let mut stream = Stream::new(7);
     for _ in 0..20 {
         let f = Matrix3::identity() + Matrix3::from_fn(|_, _| 0.4 * stream.next());
         let strain = (f.transpose() * f - Matrix3::identity()) * 0.5;

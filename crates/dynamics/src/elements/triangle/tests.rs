@@ -19,7 +19,7 @@ fn deformed(stream: &mut Stream, scale: f64, amount: f64) -> [Vector; 3] {
 
 #[test]
 fn elastic_derivatives_match_differences() {
-    let mut stream = Stream(1);
+    let mut stream = Stream::new(1);
     // Stretched, near rest, compressed; all states are far from equal and from vanishing singular values.
     for (scale, amount) in [(1.5, 0.2), (1.0, 0.1), (0.7, 0.1)] {
         for _ in 0..20 {
@@ -30,7 +30,7 @@ fn elastic_derivatives_match_differences() {
 
 #[test]
 fn damping_derivatives_match_differences() {
-    let mut stream = Stream(2);
+    let mut stream = Stream::new(2);
     for _ in 0..20 {
         let x0 = deformed(&mut stream, 1.0, 0.2);
         let x = x0.map(|x| x + stream.vector() * 0.2);
@@ -40,7 +40,7 @@ fn damping_derivatives_match_differences() {
 
 #[test]
 fn filtered_hessians_are_positive_semi_definite() {
-    let mut stream = Stream(3);
+    let mut stream = Stream::new(3);
     for filter in [Filter::Clamp, Filter::Absolute] {
         for (scale, amount) in [(1.3, 0.3), (0.5, 0.3), (0.1, 0.05), (0.0, 0.5)] {
             for _ in 0..50 {
@@ -57,7 +57,7 @@ fn filtered_hessians_are_positive_semi_definite() {
 fn the_clamped_hessian_is_the_nearest_positive_one() {
     // Its eigenvalues over F are those of the exact Hessian with the negative ones set to zero, so the
     // difference is negative semi-definite.
-    let mut stream = Stream(4);
+    let mut stream = Stream::new(4);
     for _ in 0..50 {
         let x = deformed(&mut stream, 0.8, 0.15);
         let exact = dense(&triangle(0.0).linearise(&x, NONE, Filter::Exact).hessian);
@@ -69,7 +69,7 @@ fn the_clamped_hessian_is_the_nearest_positive_one() {
 
 #[test]
 fn filters_change_nothing_at_rest_or_under_tension() {
-    let mut stream = Stream(5);
+    let mut stream = Stream::new(5);
     let turn = Rotation3::new(Vector::new(0.3, 2.0, -1.0));
     let mut states = vec![rest().map(|x| turn * x)];
     states.extend((0..20).map(|_| deformed(&mut stream, 2.0, 0.1)));
@@ -84,7 +84,7 @@ fn filters_change_nothing_at_rest_or_under_tension() {
 
 #[test]
 fn rigid_motions_store_no_energy() {
-    let mut stream = Stream(6);
+    let mut stream = Stream::new(6);
     for _ in 0..20 {
         let turn = Rotation3::new(stream.vector() * 3.0);
         let shift = stream.vector() * 100.0;
@@ -98,7 +98,7 @@ fn rigid_motions_store_no_energy() {
 
 #[test]
 fn forces_of_an_element_sum_to_zero_and_have_no_torque() {
-    let mut stream = Stream(7);
+    let mut stream = Stream::new(7);
     for _ in 0..50 {
         let x0 = deformed(&mut stream, 1.0, 0.3);
         let x = deformed(&mut stream, 0.8, 0.4);
@@ -148,7 +148,7 @@ fn crushed_triangles_give_finite_numbers() {
 
 #[test]
 fn scaling_lengths_scales_energy_by_area_and_forces_by_length() {
-    let mut stream = Stream(8);
+    let mut stream = Stream::new(8);
     let x = deformed(&mut stream, 1.1, 0.2);
     let k = 0.01;
     let small = Triangle::new([0, 1, 2], &rest().map(|x| x * k), (30.0, 50.0), 0.0).expect("area");

@@ -14,7 +14,7 @@ fn triangle(damping: f64) -> WovenTriangle {
 
 #[test]
 fn derivatives_match_differences() {
-    let mut stream = Stream(1);
+    let mut stream = Stream::new(1);
     for (scale, amount) in [(1.5, 0.2), (1.0, 0.1), (0.7, 0.1)] {
         for _ in 0..20 {
             let x = stream.deformed(&REST, scale, amount);
@@ -30,7 +30,7 @@ fn with_equal_stiffnesses_it_equals_the_isotropic_triangle() {
     let material = ClothMaterial { stretch_stiffness: 100.0, poisson_ratio: 0.3, ..ClothMaterial::cotton() };
     let isotropic = Triangle::new([0, 1, 2], &REST, material.lame(), 0.03).expect("area");
     let woven = WovenTriangle::new([0, 1, 2], &REST, &WARP, Weave::new(&material), 0.03).expect("area");
-    let mut stream = Stream(2);
+    let mut stream = Stream::new(2);
     for scale in [0.5, 1.0, 1.5] {
         let (x, x0) = (stream.deformed(&REST, scale, 0.2), stream.deformed(&REST, 1.0, 0.2));
         let start = Some(Start { x: &x0, rate: 20.0 });
@@ -45,7 +45,7 @@ fn with_equal_stiffnesses_it_equals_the_isotropic_triangle() {
 
 #[test]
 fn filtered_hessians_are_positive_also_of_crushed_triangles() {
-    let mut stream = Stream(3);
+    let mut stream = Stream::new(3);
     let mut states: Vec<[Vector; 3]> =
         (0..80).map(|k| stream.deformed(&REST, 0.02 * f64::from(k), 0.2)).collect();
     states.push([Vector::new(1.0, 2.0, 3.0); 3]);
@@ -62,7 +62,7 @@ fn filtered_hessians_are_positive_also_of_crushed_triangles() {
 
 #[test]
 fn rigid_motions_store_no_energy_and_forces_balance() {
-    let mut stream = Stream(4);
+    let mut stream = Stream::new(4);
     for _ in 0..20 {
         let turn = Rotation3::new(stream.vector() * 3.0);
         let shift = stream.vector() * 100.0;

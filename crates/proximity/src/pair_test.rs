@@ -1,36 +1,36 @@
 //! The kinds of pairs that trees search for, and the certified `f32` test of each.
 //!
-//! For any vector d, min over side a of d.x - max over side b of d.x <= |d| times the distance of
-//! the sides (weak duality), so a direction may be found carelessly: here d runs between closest
-//! points computed in `f32`. If the slab along d is wider than the radii by more than the rounding,
-//! the pair is farther apart for certain (`rejected`). If |d| is below the radii by more than the
-//! rounding, it is nearer for certain (`accepted`): d joins two points of the sides. The few pairs
-//! in between are left to `f64`.
+//! For any vector d, min over side a of d.x - max over side b of d.x <= |d| times the distance of the sides
+//! (weak duality). So d need not be accurate: here it joins closest points computed in `f32`. If the slab
+//! along d is wider than the radii by more than the rounding error, the pair is certainly farther apart than
+//! its radii (`rejected`). If |d| is below the radii by more than the rounding error, the pair is certainly
+//! nearer (`accepted`), because d joins two points of the sides. The few pairs in between are left to `f64`.
 //!
-//! **Rounding.** With u = 2^-24 and m the largest local coordinate of both elements, stored
-//! coordinates are off by u m, and so each of the differences r = a0 - b0, a1 - a0, .. as computed by
-//! 2 u m + u 2 m = 4 u m a coordinate. A dot product of one with d (exact as stored) adds 3 u (2 m)
-//! |d|_1, so each of the up to three products is off by 10 u m |d|_1, and their sums round by another
-//! 12 u m |d|_1: altogether 42 u m |d|_1 <= 73 u m |d|. The row's `reject` holds the radius with a
-//! factor 1 + 16 u (for the radius' own rounding and that of |d|) plus 80 u m, each side its own m.
-//! The other way, the point of a side with weights in [0, 1] as computed is off by 4 u m for each
-//! difference and 6 u (6 m) for its operations, together below 60 u m a coordinate and 104 u m in
-//! length, which `accept` subtracts as 128 u m. Products of tiny numbers may underflow: below a
-//! length |d| of 1e-12 m nothing is rejected, and above it 1e-18 m of slack covers errors of 1e-44.
+//! **Rounding.** With u = 2^-24 and m the largest local coordinate of both elements, stored coordinates are
+//! off by u m, and so each coordinate of the computed differences r = a0 - b0, a1 - a0, .. by 2 u m + u 2 m =
+//! 4 u m. A dot product of a difference with d (exact as stored) adds 3 u (2 m) |d|_1, so each of the up to
+//! three products is off by 10 u m |d|_1, and their sums round by another 12 u m |d|_1: altogether 42 u
+//! m |d|_1 <= 73 u m |d|. The row's `reject` holds the radius with a factor 1 + 16 u (for the rounding of the
+//! radius and of |d|) plus 80 u m, each side with its own m. For the other test, the point of a side with
+//! computed weights in [0, 1] is off by 4 u m for each difference and 6 u (6 m) for its operations, together
+//! below 60 u m per coordinate and 104 u m in length, which `accept` subtracts as 128 u m. Products of tiny
+//! numbers may underflow: below a length |d| of 1e-12 m nothing is rejected, and above it 1e-18 m of slack
+//! covers errors of 1e-44.
 
 use crate::bits::{bits, flag};
-use crate::frame::UNIT;
-use crate::tree::{LANES, greatest, least};
+use crate::frame::UNIT_ROUNDOFF;
+use crate::min_max::{larger, smaller};
+use crate::tree::LANES;
 use bowknot_geometry::PairKind;
 
-/// A kind of pair with `A` vertices on side *a* and `B` on side *b*.
-pub trait Kind<const A: usize, const B: usize>: Sync {
-    /// Which kind it is.
+/// The `f32` test of one kind of pair, with `A` vertices on side *a* and `B` on side *b*.
+pub trait PairTest<const A: usize, const B: usize>: Sync {
+    /// The kind of pair.
     const KIND: PairKind;
-    /// Whether both sides come from the same list, so that each pair would be met twice.
+    /// Whether both sides come from the same list, so that each pair would be found twice.
     const SYMMETRIC: bool;
 
-    /// A vector from side *b* to side *a* between points of the sides, closest up to rounding.
+    /// The vector from a point of side *b* to a point of side *a*; the points are closest up to rounding.
     fn direction(a: &[[f32; 3]; A], b: &[[f32; 3]; B]) -> [f32; 3];
 }
 
@@ -43,17 +43,17 @@ pub struct VertexTriangle;
 /// Two edges.
 pub struct EdgeEdge;
 
-/// What the `f32` test found for the elements of a leaf, one bit each.
+/// Results of the `f32` test for sixteen pairs, one bit each.
 #[derive(Clone, Copy, Debug)]
 pub struct Verdicts {
-    /// Farther apart than their radii for certain.
+    /// Pairs that are certainly farther apart than their radii.
     pub rejected: u32,
-    /// Nearer than their radii for certain.
+    /// Pairs that are certainly nearer than their radii.
     pub accepted: u32,
 }
 
-/// Sixteen pairs side by side: local coordinates of both sides' vertices [m], and the sums of the
-/// sides' `reject` and `accept` of [`crate::tree::Row`] [m].
+/// Sixteen pairs side by side: local coordinates of both sides' vertices [m], and the sums of the sides'
+/// `reject` and `accept` of [`crate::tree::ElementRow`] [m].
 #[repr(C, align(64))]
 pub struct Batch<const A: usize, const B: usize> {
     pub a: [[[f32; LANES]; 3]; A],
@@ -64,7 +64,7 @@ pub struct Batch<const A: usize, const B: usize> {
 
 /// Tests sixteen pairs.
 #[inline(always)]
-pub fn classify<K: Kind<A, B>, const A: usize, const B: usize>(batch: &Batch<A, B>) -> Verdicts {
+pub fn classify<K: PairTest<A, B>, const A: usize, const B: usize>(batch: &Batch<A, B>) -> Verdicts {
     let mut rejected = [0_u8; LANES];
     let mut accepted = [0_u8; LANES];
     for lane in 0..LANES {
@@ -82,23 +82,23 @@ pub fn classify<K: Kind<A, B>, const A: usize, const B: usize>(batch: &Batch<A, 
         let mut width = dot(d, sub(a[0], b[0]));
         let mut below = 0.0;
         for i in 1..A {
-            below = least(dot(d, sub(a[i], a[0])), below);
+            below = smaller(dot(d, sub(a[i], a[0])), below);
         }
         let mut above = 0.0;
         for j in 1..B {
-            above = greatest(dot(d, sub(b[j], b[0])), above);
+            above = larger(dot(d, sub(b[j], b[0])), above);
         }
         width = width + below - above;
         let squared = dot(d, d);
         let length = squared.sqrt();
-        let far = width > batch.reject[lane] * length * (1.0 + 16.0 * UNIT);
+        let far = width > batch.reject[lane] * length * (1.0 + 16.0 * UNIT_ROUNDOFF);
         rejected[lane] = flag(far & (squared > 1e-24));
         accepted[lane] = flag(length < batch.accept[lane]);
     }
     Verdicts { rejected: bits(&rejected), accepted: bits(&accepted) }
 }
 
-impl Kind<1, 1> for VertexVertex {
+impl PairTest<1, 1> for VertexVertex {
     const KIND: PairKind = PairKind::VertexVertex;
     const SYMMETRIC: bool = true;
 
@@ -108,7 +108,7 @@ impl Kind<1, 1> for VertexVertex {
     }
 }
 
-impl Kind<1, 2> for VertexEdge {
+impl PairTest<1, 2> for VertexEdge {
     const KIND: PairKind = PairKind::VertexEdge;
     const SYMMETRIC: bool = false;
 
@@ -118,12 +118,12 @@ impl Kind<1, 2> for VertexEdge {
     }
 }
 
-impl Kind<1, 3> for VertexTriangle {
+impl PairTest<1, 3> for VertexTriangle {
     const KIND: PairKind = PairKind::VertexTriangle;
     const SYMMETRIC: bool = false;
 
-    /// The shortest of four: to the nearest point of each edge, and to the foot in the plane where
-    /// that is inside.
+    /// The shortest of four vectors: from the nearest point of each edge, and from the foot in the plane if
+    /// that is inside the triangle.
     #[inline(always)]
     fn direction([p]: &[[f32; 3]; 1], [b0, b1, b2]: &[[f32; 3]; 3]) -> [f32; 3] {
         let (ab, ac, ap) = (sub(*b1, *b0), sub(*b2, *b0), sub(*p, *b0));
@@ -143,7 +143,7 @@ impl Kind<1, 3> for VertexTriangle {
     }
 }
 
-impl Kind<2, 2> for EdgeEdge {
+impl PairTest<2, 2> for EdgeEdge {
     const KIND: PairKind = PairKind::EdgeEdge;
     const SYMMETRIC: bool = true;
 
@@ -154,7 +154,7 @@ impl Kind<2, 2> for EdgeEdge {
         let (ee, ef, ff) = (dot(e, e), dot(e, f), dot(f, f));
         let (er, fr) = (dot(e, r), dot(f, r));
         let determinant = ee * ff - ef * ef;
-        // Nearly parallel: any start will do, the clamped ends settle it.
+        // For nearly parallel edges any start will do: the clamped ends decide.
         let steep = determinant > 1e-6 * ee * ff;
         let s = fraction(if steep { ef * fr - er * ff } else { 0.0 }, determinant);
         let t = fraction(ef * s + fr, ff);
@@ -173,7 +173,7 @@ fn from_segment(p: [f32; 3], segment: [f32; 3]) -> [f32; 3] {
 #[inline(always)]
 fn fraction(numerator: f32, denominator: f32) -> f32 {
     // Not-a-number fails the comparison and becomes 0.
-    least(greatest(numerator / denominator, 0.0), 1.0)
+    smaller(larger(numerator / denominator, 0.0), 1.0)
 }
 
 #[inline(always)]

@@ -1,30 +1,30 @@
-//! Judges every step of whatever moves a case.
+//! A check of every step that moves the vertices of a case.
 
 use crate::Case;
 use bowknot::check::{Judge, PathOptions, StateOptions};
 use bowknot_geometry::Point;
 
-/// Watches the steps of one case; keeps the first fault.
+/// Checks the steps of one case and keeps the first fault.
 #[derive(Debug)]
-pub struct Watch {
+pub struct StepChecker {
     judge: Judge,
-    /// Steps seen so far.
+    /// Number of steps checked.
     pub steps: usize,
-    /// Largest distance that any vertex moved in any step [m].
+    /// Largest distance that a vertex moved in a step [m].
     pub largest_move: f64,
-    /// What was wrong with the first bad step.
+    /// The first fault: a step that intersects or cannot be checked.
     pub fault: Option<String>,
 }
 
-impl Watch {
-    /// A watch over a case.
+impl StepChecker {
+    /// A checker of the steps of a case.
     pub fn new(case: &Case) -> Self {
         Self { judge: Judge::from_model(&case.model), steps: 0, largest_move: 0.0, fault: None }
     }
 
-    /// Judges the straight path from `previous` to `positions`, and the state reached; whether both are
-    /// free of intersections and an obstacle, if any, moved as one.
-    pub fn step(&mut self, previous: &[Point], positions: &[Point]) -> bool {
+    /// Checks the straight path from `previous` to `positions` and the state at its end. Returns whether both
+    /// are free of intersections and every obstacle moved rigidly.
+    pub fn check_step(&mut self, previous: &[Point], positions: &[Point]) -> bool {
         let path = self.judge.check_path(previous, positions, &PathOptions { limit: 1, skip_unmoved: true });
         let state = self.judge.check_state(positions, &StateOptions { limit: 1, distance: false });
         let fault = match (&path, &state) {
@@ -45,8 +45,8 @@ impl Watch {
         self.fault.is_none()
     }
 
-    /// Lets `step(x, y)`, which returns the next positions, move a case toward `targets`, until it stands
-    /// still, does wrong, or has taken `max_steps` steps. Returns the last positions.
+    /// Moves a case toward `targets` by `step(x, y)`, which returns the next positions, until nothing moves,
+    /// a step has a fault, or `max_steps` steps are done. Returns the last positions.
     pub fn follow(
         &mut self,
         case: &Case,
@@ -58,7 +58,7 @@ impl Watch {
         for _ in 0..max_steps {
             let next = step(&positions, targets);
             let still = next == positions;
-            let good = self.step(&positions, &next);
+            let good = self.check_step(&positions, &next);
             positions = next;
             if still || !good {
                 break;

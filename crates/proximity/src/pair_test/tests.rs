@@ -2,42 +2,39 @@ use super::*;
 use crate::frame::localize;
 use crate::tree::Tree;
 use bowknot_geometry::{Point, Vector, distance};
+use fastrand::Rng;
 
 /// Uniform in [-1, 1).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 11) as f64) / (1_u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(&mut self, size: f64) -> Vector {
-        Vector::new(self.next(), self.next(), self.next()) * size
-    }
+fn signed(random: &mut Rng) -> f64 {
+    2.0 * random.f64() - 1.0
 }
 
-/// Pairs whose radii are their distance but for a part of about the slack: what the test claims must
-/// be true, and it must not leave everything undecided.
-fn check<K: Kind<A, B>, const A: usize, const B: usize>(place: f64) {
-    let mut random = Random(K::KIND as u64 + 17);
+/// Uniform in the cube [-size, size)^3.
+fn vector(random: &mut Rng, size: f64) -> Vector {
+    Vector::new(signed(random), signed(random), signed(random)) * size
+}
+
+/// Pairs whose radii are their distance but for a part of about the slack: what the test claims must be true,
+/// and it must not leave everything undecided.
+fn check<K: PairTest<A, B>, const A: usize, const B: usize>(place: f64) {
+    let mut random = Rng::with_seed(K::KIND as u64 + 17);
     let origin = Point::new(1.0, 2.0, -1.0);
     let mut counts = [0; 3];
     for round in 0..20_000 {
-        let centre = origin + random.vector(place);
+        let centre = origin + vector(&mut random, place);
         // Some pairs are flat, aligned or nearly touching.
         let flat = if round % 3 == 0 { 1e-6 } else { 1.0 };
         let mut points = [centre; 4];
         for point in &mut points {
-            let step = random.vector(0.01);
+            let step = vector(&mut random, 0.01);
             *point += Vector::new(step.x, step.y, flat * step.z);
         }
         if round % 5 == 0 {
-            points[3] = points[2] + (points[1] - points[0]) * random.next();
+            points[3] = points[2] + (points[1] - points[0]) * signed(&mut random);
         }
         let distance = distance::closest(K::KIND, &points).distance;
-        let radii = distance * (1.0 + 2e-4 * place.max(0.01) * random.next() / distance.max(1e-3));
-        let share = 0.5 * random.next() + 0.5;
+        let radii = distance * (1.0 + 2e-4 * place.max(0.01) * signed(&mut random) / distance.max(1e-3));
+        let share = 0.5 * signed(&mut random) + 0.5;
 
         let local: Vec<_> = (0..4)
             .map(|i| {
