@@ -11,8 +11,8 @@ use super::taut::LimitedEdges;
 use bowknot_constraints::{Feature, FrictionModel};
 use bowknot_dynamics::{Dynamics, RepulsionSpring, StepError, Touching};
 use bowknot_geometry::{PairKind, Point, Vector};
-use bowknot_scene::world::World;
 use bowknot_scene::RepulsionParams;
+use bowknot_scene::world::World;
 use bowknot_twoway::{CollisionScene, Resolver};
 use rustc_hash::{FxHashMap, FxHashSet};
 
