@@ -29,6 +29,7 @@ mod short;
 mod source;
 #[cfg(test)]
 mod tests;
+mod validate;
 mod values;
 pub mod world;
 mod write;

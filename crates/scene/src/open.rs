@@ -4,7 +4,7 @@ use crate::builtin::{self, BUILTIN};
 use crate::description::Scene;
 use crate::error::{self, Problem, SceneError};
 use crate::source::Source;
-use crate::{read, short, write};
+use crate::{read, short, validate, write};
 use bowknot_io::IoError;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 use std::path::Path;
@@ -98,7 +98,7 @@ impl Scene {
     /// # Errors
     /// [`SceneError::Invalid`] with all problems, or [`SceneError::Empty`].
     pub fn validate(&self) -> Result<(), SceneError> {
-        read::validate(self, &Source::default())
+        validate::scene(self, &Source::default())
     }
 }
 
