@@ -5,13 +5,13 @@
 
 use bowknot_geometry::{Point, Separation};
 use bowknot_proximity::{PairList, ProximitySearch};
-use bowknot_stepper::{Budgets, Contacts, Stepper};
+use bowknot_stepper::{Contacts, Stepper, TrustRegions};
 use bowknot_tests::states::GENERATORS;
 use bowknot_tests::targets::Rule;
 use bowknot_tests::{Case, Random, StepChecker};
 use bowknot_twoway::{
-    AcceptedState, BackwardStep, BodyContact, BudgetedSearch, Call, CertifiedForward, ForwardStep,
-    LcpBackward, Params, Problem, ResolveError, Resolver, Search,
+    AcceptedState, BackwardStep, BodyContact, CertifiedForward, CollisionScene, ForwardStep, LcpBackward,
+    Params, ResolveError, ResolveInput, Resolver, Search, TrustRegionSearch,
 };
 use std::ops::ControlFlow;
 
@@ -68,8 +68,7 @@ impl Outcome {
     }
 }
 
-/// The forward step alone: search, bounds, trust regions, advance. Targets are not changed by a backward
-/// step.
+/// The forward step by itself: search, bound, trust regions, advance, with nothing to soften the target.
 struct Forward {
     search: ProximitySearch,
     stepper: Stepper,
@@ -82,8 +81,8 @@ struct Forward {
 }
 
 impl Forward {
-    /// Gap floor [m]: above 16 ulp at a kilometre.
-    const FLOOR: f64 = 1e-8;
+    /// Minimum separation [m]: above 16 ulp at a kilometre.
+    const MIN_SEPARATION: f64 = 1e-8;
 
     fn new(case: &Case, planes: bool, damping: f64) -> Self {
         let vertices = 0..case.positions.len() as u32;
@@ -102,22 +101,27 @@ impl Forward {
 
     fn step(&mut self, case: &Case, x: &[Point], y: &[Point]) -> Vec<Point> {
         let model = &case.model;
-        let budgets = Budgets {
-            anchors: x.to_vec(),
+        let trust_regions = TrustRegions {
+            centers: x.to_vec(),
             radii: x.iter().zip(y).map(|(x, y)| (y - x).norm().clamp(1e-7, 5e-3)).collect(),
         };
-        let radii: Vec<f64> = budgets.radii.iter().map(|radius| radius + 0.5 * Self::FLOOR).collect();
+        let radii: Vec<f64> =
+            trust_regions.radii.iter().map(|radius| radius + 0.5 * Self::MIN_SEPARATION).collect();
         self.search.search(model, x, &radii, &mut self.pairs, &mut self.separations);
-        let floors = vec![Self::FLOOR; self.pairs.len()];
-        let contacts = Contacts { pairs: &self.pairs, separations: &self.separations, floors: &floors };
+        let min_separations = vec![Self::MIN_SEPARATION; self.pairs.len()];
+        let contacts = Contacts {
+            pairs: &self.pairs,
+            separations: &self.separations,
+            min_separations: &min_separations,
+        };
 
-        self.stepper.aim(x, y);
+        self.stepper.set_target(x, y);
         if self.planes {
             self.stepper.limit_by_planes(&contacts, self.damping);
         } else {
             self.stepper.limit_by_distances(&contacts, self.damping);
         }
-        self.stepper.limit_by_budgets(x, &budgets);
+        self.stepper.limit_by_trust_regions(x, &trust_regions);
         self.stepper.limit_by_bodies(model, &self.obstacle_vertices);
         let mut next = x.to_vec();
         self.stepper.advance(&mut next);
@@ -155,11 +159,11 @@ fn greedy_steps_are_caught() {
 }
 
 fn whole_method(params: &Params, contact: impl Fn(f64) -> BodyContact + Sync) {
-    watched(params, seeds(), |problem| {
-        let bodies = vec![contact(problem.lengths.edge); problem.model.bodies().len()];
-        let search = BudgetedSearch::new(&problem);
+    watched(params, seeds(), |scene| {
+        let bodies = vec![contact(scene.lengths().edge); scene.model().bodies().len()];
+        let search = TrustRegionSearch::new(&scene);
         let backward: LcpBackward = LcpBackward::default();
-        Resolver::with_stages(problem, search, backward, CertifiedForward::default()).with_bodies(bodies)
+        Resolver::with_stages(scene, search, backward, CertifiedForward::default()).with_bodies(bodies)
     })
     .assert_safe();
 }
@@ -168,19 +172,19 @@ fn whole_method(params: &Params, contact: impl Fn(f64) -> BodyContact + Sync) {
 pub fn watched<S: Search, B: BackwardStep, F: ForwardStep>(
     params: &Params,
     seeds: u64,
-    resolver: impl Fn(Problem) -> Result<Resolver<S, B, F>, ResolveError>,
+    resolver: impl Fn(CollisionScene) -> Result<Resolver<S, B, F>, ResolveError>,
 ) -> Outcome {
     Outcome::of(seeds, |case, targets| {
         let mut checker = StepChecker::new(case);
         let mut x = case.positions.clone();
         let mut params = params.clone();
-        params.stop.max_steps = Some(12);
-        // Coordinates of a kilometre need a floor above their rounding.
-        if params.stepper.floor.is_none() {
-            params.stepper.floor = Some(1e-8);
+        params.solver.stop.max_steps = Some(12);
+        // Coordinates of a kilometre need a minimum separation above their rounding.
+        if params.contact.min_separation.is_none() {
+            params.contact.min_separation = Some(1e-8);
         }
         let masses = vec![1.0; x.len()];
-        let mut resolver = Problem::new(case.model.clone(), &case.positions, &masses, params)
+        let mut resolver = CollisionScene::new(case.model.clone(), &case.positions, &masses, params)
             .and_then(&resolver)
             .map_err(|error| format!("refused: {error}"))?;
         let mut last = x.clone();
@@ -199,7 +203,7 @@ pub fn watched<S: Search, B: BackwardStep, F: ForwardStep>(
             }
         };
         resolver
-            .resolve(&mut x, targets, &Call::default(), &mut observe)
+            .resolve_with(&mut x, targets, &ResolveInput::default(), &mut observe)
             .map_err(|error| format!("refused: {error}"))?;
         if x != last {
             checker.fault.get_or_insert("the result is not the last accepted state".to_owned());

@@ -80,7 +80,7 @@ fn both_forms_have_the_value_and_gradient_of_what_they_linearise() {
                     ContactForm::Gap => distance::closest(kind, x).distance,
                     _ => height(kind, x, base),
                 };
-                // DESIGN: gap c = d - delta; volume c = height (1 - delta/d), equal for interior points.
+                // Gap form: c = d - delta; volume c = height (1 - delta/d), equal for interior points.
                 let expected = quantity(&x) * (1.0 - desired / d);
                 assert!(
                     (value(&row, &x) - expected).abs() < 1e-9,
@@ -107,7 +107,7 @@ fn both_forms_have_the_value_and_gradient_of_what_they_linearise() {
 }
 
 #[test]
-fn the_face_form_is_the_gap_form_above_insides_and_a_wall_beside_them() {
+fn the_face_form_is_the_gap_form_above_interiors_and_blocks_motion_beside_them() {
     let mut random = Random::new(5);
     let mut compared = 0;
     for kind in KINDS {
@@ -127,7 +127,7 @@ fn the_face_form_is_the_gap_form_above_insides_and_a_wall_beside_them() {
         }
     }
     assert!(compared > 150, "{compared}");
-    // A vertex beside a triangle, all but in its plane: half a metre away, yet short of the distance.
+    // A vertex beside a triangle, almost in its plane: half a metre away, but the row asks for more height.
     let x = [[1.5, 0.0, -0.01], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point::from);
     let row = row_at(ContactForm::Face, PairKind::VertexTriangle, &x, 0.1);
     assert!((value(&row, &x) - (0.01 - 0.1)).abs() < 1e-12, "{}", value(&row, &x));
@@ -157,8 +157,8 @@ fn gradients_conserve_linear_momentum_and_unused_places_have_none() {
 }
 
 #[test]
-fn the_volume_form_gives_way_to_the_gap_form_where_the_closest_feature_is_not_the_interior() {
-    // A vertex beside a triangle, in its plane: its volume is 0 at any distance, a false wall.
+fn the_gap_form_replaces_the_volume_form_where_the_closest_feature_is_not_the_interior() {
+    // A vertex beside a triangle, in its plane: its volume is 0 at any distance.
     let x = [[2.0, 0.2, 0.001], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point::from);
     let row = row_at(ContactForm::Volume, PairKind::VertexTriangle, &x, 0.1);
     let d = distance::closest(PairKind::VertexTriangle, &x).distance;
@@ -194,7 +194,7 @@ fn linearised_edges_have_the_value_and_slope_of_their_length() {
 }
 
 #[test]
-fn limits_from_rest_bring_a_stretched_start_back_without_asking_for_all_at_once() {
+fn limits_from_rest_shorten_a_stretched_edge_by_a_bounded_share_per_call() {
     let topology = Topology::builder(2).strand_edges([[0, 1]]).build().unwrap();
     let rest = [Point::origin(), Point::new(1.0, 0.0, 0.0)];
     let mut edges = EdgeLimits::new(&topology, &rest, &[true; 2], |_| 1.1);
@@ -208,7 +208,7 @@ fn limits_from_rest_bring_a_stretched_start_back_without_asking_for_all_at_once(
 }
 
 #[test]
-fn the_desired_distance_respects_fine_meshes_and_tight_starts() {
+fn the_desired_distance_is_lower_in_fine_meshes_and_for_pairs_that_start_close() {
     let topology = Topology::builder(4).triangles([[1, 2, 3]]).particles([0]).build().unwrap();
     let model = CollisionModel::single_body(topology);
     let pair = Pair { elements: [0, 0], vertices: [0, 1, 2, 3] };

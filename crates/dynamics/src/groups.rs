@@ -2,7 +2,7 @@
 
 use bowknot_geometry::UnionFind;
 
-/// Disjoint sets of 0..n; the smallest member represents its set.
+/// Disjoint sets of 0..n. The smallest member represents its set.
 #[derive(Clone, Debug)]
 pub(crate) struct Groups {
     sets: UnionFind,

@@ -3,8 +3,8 @@
 //! | table | fields of |
 //! |---|---|
 //! | `[simulation]` | [`SimulationParams`], gravity and drag of [`DynamicsParams`] |
-//! | `[contact]` | `preset`, [`ConstraintParams`](bowknot_constraints::ConstraintParams), [`StepperParams`](bowknot_stepper::StepperParams), [`FrictionPair`]s |
-//! | `[solver]` | [`BackwardParams`](bowknot_twoway::BackwardParams), the rest of [`DynamicsParams`]; `[solver.stop]`: [`StopParams`](bowknot_twoway::StopParams); `[solver.repulsion]`: [`RepulsionParams`] |
+//! | `[contact]` | `preset`, [`ContactParams`](bowknot_twoway::ContactParams), [`FrictionPair`]s |
+//! | `[solver]` | [`SolverParams`](bowknot_twoway::SolverParams), the rest of [`DynamicsParams`]; `[solver.repulsion]`: [`RepulsionParams`] |
 //! | `[output]` | [`OutputParams`] |
 //! | `[[body]]`, `[[obstacle]]`, `[[pin]]` | [`BodySpec`], [`ObstacleSpec`], [`PinSpec`] |
 //!

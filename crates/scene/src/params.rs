@@ -15,7 +15,7 @@ pub struct SimulationParams {
     pub dt: f64,
     /// Number of time steps of a run [1]. Default 100.
     pub frames: usize,
-    /// Most Newton iterations per time step, each with a collision problem [1]; they end earlier at `solver.step_tolerance`.
+    /// Most Newton iterations per time step, each with a collision problem [1]; they end earlier at `solver.newton.step_tolerance`.
     /// More: contact and large deformation come nearer to the solution of the time step. Default 8.
     pub newton_iterations: usize,
     /// When collisions are resolved: after each Newton iteration, `newton`, or once at the end of the

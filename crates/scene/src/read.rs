@@ -17,13 +17,11 @@ use crate::shapes::{
 };
 use crate::source::Source;
 use crate::values::{describe, join};
-use bowknot_constraints::ConstraintParams;
 use bowknot_dynamics::{DynamicsParams, Environment, NewtonParams};
 use bowknot_errors::Parameters;
 use bowknot_geometry::Vector;
 use bowknot_io::Import;
-use bowknot_stepper::StepperParams;
-use bowknot_twoway::{BackwardParams, Params, StopParams};
+use bowknot_twoway::{ContactParams, Params, SolverParams};
 use std::collections::HashMap;
 use std::path::Path;
 use toml::{Table, Value};
@@ -46,7 +44,8 @@ pub(super) fn scene(source: &Source, folder: &Path, name: &str) -> Result<Scene,
     }
     let environment = reader.fields(&Environment::default(), &table, "simulation", &[]);
     let table = reader.table(root, "", "solver");
-    let newton = reader.fields(&NewtonParams::default(), &table, "solver", &[]);
+    let table = reader.table(&table, "solver", "newton");
+    let newton = reader.structure::<NewtonParams>(&table, "solver.newton", &[]);
     let dynamics = DynamicsParams { environment, newton };
     let (preset, twoway) = read_twoway(&mut reader, root);
 
@@ -87,15 +86,13 @@ pub(super) fn twoway(source: &Source) -> Result<Params, SceneError> {
     }
     let (_, params) = read_twoway(&mut reader, &source.table);
     let mut problems = reader.problems;
-    validate_twoway(&params, source, &mut problems);
+    report_errors(&mut problems, source, "", &params);
     if problems.is_empty() { Ok(params) } else { Err(SceneError::Invalid(problems)) }
 }
 
 fn read_twoway(reader: &mut Reader<'_>, root: &Table) -> (Preset, Params) {
     let contact = reader.table(root, "", "contact");
-    let known =
-        [&["preset", "friction_pairs"], field_names::<ConstraintParams>(), field_names::<StepperParams>()]
-            .concat();
+    let known = [&["preset", "friction_pairs"], field_names::<ContactParams>()].concat();
     reader.check_keys(&contact, "contact", &known);
     let preset = match contact.get("preset").map(|value| value.clone().try_into::<Preset>()) {
         None => Preset::default(),
@@ -106,22 +103,22 @@ fn read_twoway(reader: &mut Reader<'_>, root: &Table) -> (Preset, Params) {
         }
     };
     let base = preset.params();
-    let constraints = reader.fields(&base.constraints, &contact, "contact", &[]);
-    let stepper = reader.fields(&base.stepper, &contact, "contact", &[]);
+    let contact = reader.fields(&base.contact, &contact, "contact", &[]);
 
     let solver = reader.table(root, "", "solver");
-    let newton = field_names::<NewtonParams>();
-    let known = [field_names::<BackwardParams>(), newton, &["stop", "repulsion"]].concat();
+    let known = [field_names::<SolverParams>(), &["newton", "repulsion"]].concat();
     reader.check_keys(&solver, "solver", &known);
-    let mut backward = reader.fields(&base.backward, &solver, "solver", &[]);
-    // Who asks for more sweeps than a preset polishes with does not want fewer at the end.
-    if !solver.contains_key("polish_sweeps") {
+    let backward_table = reader.table(&solver, "solver", "backward");
+    let mut backward = reader.structure_over(&base.solver.backward, &backward_table, "solver.backward");
+    // A scene with more sweeps than the preset's polish_sweeps polishes with as many.
+    if !backward_table.contains_key("polish_sweeps") {
         backward.polish_sweeps = backward.polish_sweeps.max(backward.sweeps);
     }
-    let stop = reader.table(&solver, "solver", "stop");
-    reader.check_keys(&stop, "solver.stop", field_names::<StopParams>());
-    let stop = reader.fields(&base.stop, &stop, "solver.stop", &[]);
-    (preset, Params { constraints, backward, stepper, stop })
+    let table = reader.table(&solver, "solver", "forward");
+    let forward = reader.structure_over(&base.solver.forward, &table, "solver.forward");
+    let table = reader.table(&solver, "solver", "stop");
+    let stop = reader.structure_over(&base.solver.stop, &table, "solver.stop");
+    (preset, Params { contact, solver: SolverParams { backward, forward, stop } })
 }
 
 fn body(reader: &mut Reader<'_>, table: &Table, path: &str, index: usize) -> BodySpec {
@@ -225,10 +222,11 @@ fn shape(reader: &mut Reader<'_>, table: &Table, path: &str) -> Option<Shape> {
 pub(super) fn validate(scene: &Scene, source: &Source) -> Result<(), SceneError> {
     let mut problems = Vec::new();
     report_errors(&mut problems, source, "simulation", &scene.simulation);
-    report_errors(&mut problems, source, "output", &scene.output);
     report_errors(&mut problems, source, "simulation", &scene.dynamics.environment);
-    report_errors(&mut problems, source, "solver", &scene.dynamics.newton);
-    validate_twoway(&scene.twoway, source, &mut problems);
+    report_errors(&mut problems, source, "solver.newton", &scene.dynamics.newton);
+    report_errors(&mut problems, source, "output", &scene.output);
+    // The paths of these parameters are keys of the scene.
+    report_errors(&mut problems, source, "", &scene.twoway);
     validate_bodies(scene, source, &mut problems);
     contact::validate_pairs(scene, source, &mut problems);
     report_errors(&mut problems, source, "solver.repulsion", &scene.repulsion);
@@ -248,31 +246,6 @@ fn report(
     faults: &mut Vec<(&'static str, String)>,
 ) {
     problems.extend(faults.drain(..).map(|(key, message)| source.problem(&join(path, key), message)));
-}
-
-/// The messages of [`Params::validate`] begin with the field's path in `Params`.
-fn validate_twoway(params: &Params, source: &Source, problems: &mut Vec<Problem>) {
-    for message in params.validate().err().into_iter().flatten() {
-        let end = message.find([' ', '=']).unwrap_or(message.len());
-        let (field, rest) = message.split_at(end);
-        let key = scene_key(field);
-        let rest = rest
-            .trim_start_matches([' ', '='])
-            .replace("constraints.", "contact.")
-            .replace("stepper.", "contact.")
-            .replace("backward.", "solver.");
-        problems.push(source.problem(&key, rest));
-    }
-}
-
-/// The key of a scene for a field of [`Params`], such as `contact.floor` for `stepper.floor`.
-pub(crate) fn scene_key(field: &str) -> String {
-    match field.split_once('.') {
-        Some(("constraints" | "stepper", key)) => format!("contact.{key}"),
-        Some(("backward", key)) => format!("solver.{key}"),
-        Some(("stop", key)) => format!("solver.stop.{key}"),
-        _ => field.to_owned(),
-    }
 }
 
 fn validate_bodies(scene: &Scene, source: &Source, problems: &mut Vec<Problem>) {

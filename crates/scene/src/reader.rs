@@ -113,4 +113,13 @@ impl<'a> Reader<'a> {
         self.check_keys(table, path, field_names::<T>());
         self.fields(&T::default(), table, path, nested)
     }
+
+    /// Reads a whole table as a `T`, over `base`: unknown keys are problems.
+    pub fn structure_over<T>(&mut self, base: &T, table: &Table, path: &str) -> T
+    where
+        T: Serialize + DeserializeOwned + Default + Clone,
+    {
+        self.check_keys(table, path, field_names::<T>());
+        self.fields(base, table, path, &[])
+    }
 }

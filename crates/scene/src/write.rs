@@ -9,14 +9,12 @@ use toml::{Table, Value};
 pub(super) fn table(scene: &Scene) -> Table {
     let mut simulation = fields(&scene.simulation);
     simulation.extend(fields(&scene.dynamics.environment));
-    let mut solver = fields(&scene.twoway.backward);
-    solver.extend(fields(&scene.dynamics.newton));
-    solver.insert("stop".to_owned(), Value::Table(fields(&scene.twoway.stop)));
+    let mut solver = fields(&scene.twoway.solver);
+    solver.insert("newton".to_owned(), Value::Table(fields(&scene.dynamics.newton)));
     solver.insert("repulsion".to_owned(), Value::Table(fields(&scene.repulsion)));
     let mut contact = Table::new();
     insert(&mut contact, "preset", &scene.preset);
-    contact.extend(fields(&scene.twoway.constraints));
-    contact.extend(fields(&scene.twoway.stepper));
+    contact.extend(fields(&scene.twoway.contact));
     insert(&mut contact, "friction_pairs", &scene.friction_pairs);
 
     let mut root = Table::new();

@@ -6,7 +6,7 @@ use crate::{Case, StepChecker};
 use bowknot::check::{Judge, StateOptions};
 use bowknot_geometry::{HalfSpace, Point, Topology, Vector};
 use bowknot_proximity::{BodyFilter, CollisionModel};
-use bowknot_twoway::{AcceptedState, Call, Params, ResolveError, Resolver};
+use bowknot_twoway::{AcceptedState, Params, ResolveError, ResolveInput, Resolver};
 use std::ops::ControlFlow;
 
 /// Largest number of bodies.
@@ -25,9 +25,9 @@ const STEPS: usize = 8;
 pub fn resolve(data: &[u8]) -> bool {
     let mut draw = Draw::new(data);
     let mut params = if draw.below(3) == 0 { Params::paper() } else { Params::fast() };
-    params.stop.max_steps = Some(1 + draw.below(STEPS));
+    params.solver.stop.max_steps = Some(1 + draw.below(STEPS));
     if draw.below(2) == 0 {
-        params.stepper.floor = draw.pick(&[0.0, 1e-9, 1e-6, 1e-3]);
+        params.contact.min_separation = draw.pick(&[0.0, 1e-9, 1e-6, 1e-3]);
     }
     let Some(case) = case(&mut draw) else { return false };
     let start = &case.positions;
@@ -41,10 +41,10 @@ pub fn resolve(data: &[u8]) -> bool {
     let masses: Vec<f64> = start.iter().map(|_| mass(&mut draw)).collect();
     let pinned: Vec<bool> = start.iter().map(|_| draw.rarely(40)).collect();
     let time_step = draw.pick(&[None, Some(0.05), Some(1e-4)]).flatten();
-    let call = Call { prescribed: &pinned, time_step, ..Call::default() };
+    let input = ResolveInput { prescribed: &pinned, time_step, ..ResolveInput::default() };
 
     let mut x = start.clone();
-    match run(&case, params, &rest, &masses, &call, &mut x, &targets) {
+    match run(&case, params, &rest, &masses, &input, &mut x, &targets) {
         Ok(()) => true,
         Err(_) => {
             assert!(x == *start, "a refused call has moved the positions");
@@ -58,7 +58,7 @@ fn run(
     params: Params,
     rest: &[Point],
     masses: &[f64],
-    call: &Call<'_>,
+    call: &ResolveInput<'_>,
     x: &mut [Point],
     targets: &[Point],
 ) -> Result<(), ResolveError> {
@@ -76,7 +76,7 @@ fn run(
             ControlFlow::Break(())
         }
     };
-    let statistics = resolver.resolve(x, targets, call, &mut observer)?;
+    let statistics = resolver.resolve_with(x, targets, call, &mut observer)?;
     assert!(checker.fault.is_none(), "{:?}", checker.fault);
     assert!(x == last, "the result is not the last accepted state");
     assert!(statistics.remaining_m >= 0.0 && statistics.remaining_r >= 0.0, "{statistics:?}");

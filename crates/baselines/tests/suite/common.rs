@@ -3,7 +3,8 @@
 use bowknot_baselines::twoway::geometry::{HalfSpace, Point, Topology, Vector, intersection};
 use bowknot_baselines::twoway::proximity::{BodyFilter, CollisionModel};
 use bowknot_baselines::twoway::{
-    AcceptedState, BackwardStep, Call, ForwardStep, Params, Problem, Resolver, Search, State, Statistics,
+    AcceptedState, BackwardStep, CallInput, CollisionScene, ForwardStep, Params, ResolveInput, ResolveState,
+    Resolver, Search, Statistics,
 };
 use std::ops::ControlFlow;
 
@@ -118,24 +119,30 @@ impl Scene {
             .collect()
     }
 
-    pub fn problem(&self, params: Params) -> Problem {
-        Problem::new(self.model.clone(), &self.x, &vec![0.01; self.x.len()], params).unwrap()
+    pub fn collision_scene(&self, params: Params) -> CollisionScene {
+        CollisionScene::new(self.model.clone(), &self.x, &vec![0.01; self.x.len()], params).unwrap()
     }
 }
 
-/// The state that a call starts from, with the pairs that its first search lists.
-pub fn listed(problem: &Problem, search: &mut dyn Search, x: &[Point], target: &[Point]) -> State {
-    let mut state = State {
+/// The state that a call starts from, with the candidate pairs of its first search.
+pub fn listed(
+    collision: &CollisionScene,
+    search: &mut dyn Search,
+    x: &[Point],
+    target: &[Point],
+) -> ResolveState {
+    let input = ResolveInput { time_step: Some(0.01), ..ResolveInput::default() };
+    let mut state = ResolveState {
         start: x.to_vec(),
         target: target.to_vec(),
         x: x.to_vec(),
         previous: x.to_vec(),
         y: target.to_vec(),
-        time_step: Some(0.01),
-        ..State::default()
+        call: CallInput::new(collision, x, target, &input).unwrap(),
+        ..ResolveState::default()
     };
-    search.begin(problem, &mut state);
-    search.update(problem, &mut state, &mut Statistics::default());
+    search.begin(collision, &mut state);
+    search.update(collision, &mut state, &mut Statistics::default());
     state
 }
 
@@ -157,8 +164,8 @@ pub fn resolve_watched<S: Search, B: BackwardStep, F: ForwardStep>(
         }
         ControlFlow::Continue(())
     };
-    let call = Call { time_step: Some(0.01), ..Call::default() };
-    let statistics = resolver.resolve(&mut x, target, &call, &mut watch).unwrap();
+    let input = ResolveInput { time_step: Some(0.01), ..ResolveInput::default() };
+    let statistics = resolver.resolve_with(&mut x, target, &input, &mut watch).unwrap();
     (x, statistics)
 }
 

@@ -76,7 +76,7 @@ fn the_exact_solution_is_exact() {
     let mut resolver = case.states.resolver(case.model.clone(), exact::params(60.0)).expect("a resolver");
     let mut x = case.states.x.clone();
     resolver
-        .resolve(&mut x, &case.states.y, &case.states.call(), &mut exact::at_rest(&case))
+        .resolve_with(&mut x, &case.states.y, &case.states.input(), &mut exact::at_rest(&case))
         .expect("resolved");
     let solution = [Point::new(-0.0025, 0.0, 1e-3), Point::new(-0.0005, 0.0, 1e-3)];
     for (x, exact) in x.iter().zip(&solution) {

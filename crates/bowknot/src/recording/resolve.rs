@@ -3,7 +3,7 @@
 use crate::recording::states::States;
 use bowknot_geometry::Topology;
 use bowknot_proximity::{BodyFilter, CollisionModel};
-use bowknot_twoway::{Call, Params, ResolveError, Resolver};
+use bowknot_twoway::{Params, ResolveError, ResolveInput, Resolver};
 use std::collections::BTreeMap;
 
 impl States {
@@ -53,8 +53,8 @@ impl States {
     }
 
     /// The call that the problem stands for.
-    pub fn call(&self) -> Call<'_> {
-        Call {
+    pub fn input(&self) -> ResolveInput<'_> {
+        ResolveInput {
             prescribed: &self.fixed,
             time_step: self.time_step,
             start: (!self.start.is_empty()).then_some(&self.start),

@@ -1,11 +1,11 @@
 use super::*;
 use crate::Scene;
-use crate::simulator::Watcher;
+use crate::simulator::SimulationObserver;
 use crate::simulator::{CollisionProblem, Simulator};
 use bowknot_geometry::{HalfSpace, Point, Vector};
 use bowknot_io::{IoError, Mesh};
 use bowknot_twoway::Params;
-use bowknot_twoway::{BodyContact, Call, ContactSide, HalfSpaceContact, PairFriction};
+use bowknot_twoway::{BodyContact, ContactSide, HalfSpaceContact, PairFriction, ResolveInput};
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -19,7 +19,7 @@ struct Again {
     ends: Vec<Vec<Point>>,
 }
 
-impl Watcher for Again {
+impl SimulationObserver for Again {
     fn problem(&mut self, problem: &CollisionProblem<'_>) -> ControlFlow<()> {
         let states = self.recorder.states(problem);
         states.write(&self.path).expect("written");
@@ -27,7 +27,7 @@ impl Watcher for Again {
         let model = read.collision_model().expect("a model");
         let mut resolver = read.resolver(model, self.params.clone()).expect("a resolver");
         let mut x = read.x.clone();
-        resolver.resolve(&mut x, &read.y, &read.call(), &mut ()).expect("resolved");
+        resolver.resolve_with(&mut x, &read.y, &read.input(), &mut ()).expect("resolved");
         self.ends.push(x);
         ControlFlow::Continue(())
     }
@@ -69,7 +69,7 @@ fn a_recorded_problem_ends_where_the_simulation_did() {
         ends: Vec::new(),
     };
     for step in 0..8 {
-        simulator.step_watched(&mut again).expect("a step");
+        simulator.step_observed(&mut again).expect("a step");
         let count = simulator.world().collision_vertices();
         let end = again.ends.last().expect("a problem in each step");
         assert!(*end == simulator.positions()[..count], "step {step} ends elsewhere");
@@ -101,7 +101,7 @@ fn states() -> States {
             sides: [ContactSide::Body(1), ContactSide::HalfSpace(0)],
             friction: 0.75,
         }],
-        groups: vec![3, 3, Call::NO_GROUP, 0, Call::NO_GROUP, Call::NO_GROUP],
+        groups: vec![3, 3, ResolveInput::NO_GROUP, 0, ResolveInput::NO_GROUP, ResolveInput::NO_GROUP],
         start: sample().positions.iter().map(|p| p * 0.75).collect(),
     }
 }

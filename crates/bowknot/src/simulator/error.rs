@@ -69,7 +69,7 @@ pub enum SimulationError {
         /// Why not.
         message: String,
     },
-    /// A watcher stopped the time step; the simulator is as it was before the step.
+    /// An observer stopped the time step; the simulator is as it was before the step.
     #[error("interrupted")]
     Interrupted,
 }
@@ -114,9 +114,10 @@ fn start_message(lines: &[String], count: &usize) -> String {
 /// The messages of the collision stage, with the keys of a scene and the names of bodies.
 fn resolve_message(error: &ResolveError, body: &str) -> String {
     match error {
-        ResolveError::FloorBelowRounding { floor, coordinate, needed, .. } => format!(
-            "the gap floor of {floor:.3e} m is below 16 ulp of the largest coordinate ({coordinate:.3e} m, body \
-             {body}): move the scene nearer to the origin, or set contact.floor above {needed:.3e} m"
+        ResolveError::MinSeparationBelowRounding { min_separation, coordinate, needed, .. } => format!(
+            "the minimum separation of {min_separation:.3e} m is below 16 ulp of the largest coordinate \
+             ({coordinate:.3e} m, body {body}): move the scene closer to the origin, or set contact.min_separation above \
+             {needed:.3e} m"
         ),
         ResolveError::NonFinite { what, vertex, .. } => {
             format!("{what} of vertex {vertex} (body {body}) is not finite")

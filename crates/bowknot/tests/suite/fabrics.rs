@@ -5,7 +5,7 @@ use bowknot::recording::Recorder;
 use bowknot::recording::States;
 use bowknot::scene::Material;
 use bowknot::simulator::CollisionProblem;
-use bowknot::{Scene, Simulator, Watcher, World};
+use bowknot::{Scene, SimulationObserver, Simulator, World};
 use std::ops::ControlFlow;
 
 /// A sheet of 0.3 m that hangs from one side.
@@ -23,7 +23,7 @@ fn cloth(scene: &Scene) -> ClothMaterial {
 
 /// What the collision stage holds, of the first body.
 fn limit(scene: &Scene) -> f64 {
-    Simulator::new(scene).unwrap_or_else(|error| panic!("{error}")).resolver().problem().stretch_limit(0)
+    Simulator::new(scene).unwrap_or_else(|error| panic!("{error}")).resolver().scene().stretch_limit(0)
 }
 
 #[test]
@@ -42,7 +42,7 @@ fn every_fabric_is_held_at_its_limit_where_its_elasticity_would_give_way() {
             assert!(steps.iter().all(|s| s.converged), "{name}");
             (steps.iter().map(|s| s.max_stretch).fold(0.0, f64::max), steps[59].max_stretch)
         };
-        let tolerance = 1.0 + scene.twoway.stop.stretch_tolerance;
+        let tolerance = 1.0 + scene.twoway.solver.stop.stretch_tolerance;
         let (largest, last) = stretch(&scene);
         assert!(largest <= tolerance * material.stretch_limit + 1e-9, "{name}: {largest}");
         assert!(
@@ -106,7 +106,7 @@ fn what_is_no_cloth_takes_the_limit_of_the_scene() {
 /// Keeps the last collision problem, as a file holds it.
 struct Last(Recorder, Option<States>);
 
-impl Watcher for Last {
+impl SimulationObserver for Last {
     fn problem(&mut self, problem: &CollisionProblem<'_>) -> ControlFlow<()> {
         self.1 = Some(self.0.states(problem));
         ControlFlow::Continue(())
@@ -121,13 +121,13 @@ fn recorded_problems_hold_the_limit_of_the_fabric() {
         let scene = hanging("material = \"wool\"", contact);
         let mut simulator = Simulator::new(&scene).unwrap_or_else(|error| panic!("{error}"));
         let mut last = Last(Recorder::new(&simulator), None);
-        simulator.step_watched(&mut last).expect("a time step");
+        simulator.step_observed(&mut last).expect("a time step");
         last.1.expect("a problem").write(&path).expect("written");
         let states = States::read(&path).expect("read");
         assert_eq!(states.body_contacts.first().and_then(|b| b.stretch_limit), recorded, "{contact}");
         let model = states.collision_model().expect("a model");
         let resolver = states.resolver(model, scene.twoway.clone()).expect("a resolver");
-        assert_eq!(resolver.problem().stretch_limit(0), limit(&scene), "{contact}");
+        assert_eq!(resolver.scene().stretch_limit(0), limit(&scene), "{contact}");
     }
 }
 

@@ -25,7 +25,7 @@ pub(crate) fn order_nodes(
 ) -> Ordering {
     let count = positions.len();
     let mut sets = UnionFind::new(count);
-    // The smallest node represents a set, so that components are in the order of their first nodes.
+    // The smallest node represents a component, so that components are in the order of their first node.
     for_each_link(&mut |a, b| sets.join(a, b));
     let mut order: Vec<u32> = (0..count as u32).collect();
     let component: Vec<u32> = (0..count as u32).map(|n| sets.find(n)).collect();

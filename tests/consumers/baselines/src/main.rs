@@ -4,7 +4,7 @@
 
 use bowknot_baselines::twoway::geometry::{Point, Topology, Vector};
 use bowknot_baselines::twoway::proximity::CollisionModel;
-use bowknot_baselines::twoway::{Call, Params, ResolveError, Resolver};
+use bowknot_baselines::twoway::{Params, ResolveError, ResolveInput, Resolver};
 use bowknot_baselines::{Composed, Method};
 
 fn main() -> Result<(), ResolveError> {
@@ -18,7 +18,7 @@ fn main() -> Result<(), ResolveError> {
     };
     let resolver = Resolver::new(CollisionModel::single_body(topology), &x, &[1.0; 6], Params::fast())?;
     let mut method = Composed::new("two-way", resolver);
-    let outcome = method.solve(&mut x, &y, &Call::default())?;
+    let outcome = method.solve(&mut x, &y, &ResolveInput::default())?;
     println!("{}: {} steps", method.name(), outcome.steps);
     assert!(outcome.converged);
     assert!((0..3).all(|i| x[i].z < x[i + 3].z));

@@ -1,7 +1,7 @@
 //! Running a method, and judging its path.
 
 use crate::common::{Draw, Scene, assert_clear};
-use bowknot_baselines::twoway::Call;
+use bowknot_baselines::twoway::ResolveInput;
 use bowknot_baselines::twoway::geometry::{Point, Vector};
 use bowknot_baselines::{Method, Outcome};
 
@@ -14,8 +14,8 @@ pub fn solve_clear(
     prescribed: &[bool],
 ) -> (Vec<Point>, Outcome) {
     let mut x = scene.x.clone();
-    let call = Call { time_step: Some(0.01), prescribed, ..Call::default() };
-    let outcome = method.solve(&mut x, target, &call).unwrap();
+    let input = ResolveInput { time_step: Some(0.01), prescribed, ..ResolveInput::default() };
+    let outcome = method.solve(&mut x, target, &input).unwrap();
     for k in 0..=64 {
         let t = f64::from(k) / 64.0;
         let between: Vec<Point> = scene.x.iter().zip(&x).map(|(a, b)| a + t * (b - a)).collect();

@@ -1,12 +1,12 @@
-//! What friction costs and does: four sheets lie on each other on a slope of 20 degrees, tan = 0.36.
+//! Cost and effect of friction: four sheets on top of each other on a slope of 20 degrees, tan = 0.36.
 //!
-//! `cargo run --release -p bowknot-twoway --example rough_stack -- [cells] [frames]`
+//! `cargo run --release -p bowknot-twoway --example friction_slope -- [cells] [frames]`
 #![allow(clippy::print_stdout)] // an example's purpose is to print
 
 use bowknot_constraints::FrictionModel;
 use bowknot_geometry::{HalfSpace, Point, Topology, Vector};
 use bowknot_proximity::{BodyFilter, CollisionModel};
-use bowknot_twoway::{BodyContact, Call, HalfSpaceContact, Params, Resolver};
+use bowknot_twoway::{BodyContact, HalfSpaceContact, Params, ResolveInput, Resolver, StopRule};
 
 const DT: f64 = 0.01;
 const SUBSTEPS: usize = 20;
@@ -20,9 +20,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         "means over {frames} frames of {SHEETS} sheets of {cells} x {cells} cells; downhill: speed of each at the end"
     );
     println!(
-        "model    mu    steps  searches  rows  friction  backward ms  total ms  largest creep mm  downhill m/s"
+        "model    mu    steps  searches  rows  friction  backward ms  total ms  largest slip mm  downhill m/s"
     );
-    for (model, friction, drag) in [
+    for (model, friction, residual) in [
         (FrictionModel::None, 0.0, None),
         (FrictionModel::None, 0.0, Some(1e-4)),
         (FrictionModel::Filter, 0.2, None),
@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         (FrictionModel::Coulomb, 0.2, None),
         (FrictionModel::Coulomb, 0.6, None),
     ] {
-        slide(cells, frames, model, friction, drag)?;
+        slide(cells, frames, model, friction, residual)?;
     }
     Ok(())
 }
@@ -40,14 +40,14 @@ fn slide(
     frames: usize,
     model: FrictionModel,
     friction: f64,
-    drag: Option<f64>,
+    residual: Option<f64>,
 ) -> Result<(), Box<dyn std::error::Error>> {
     let (n, h) = (cells + 1, 0.5 / cells as f64);
     let delta = 0.1 * h;
     let (mut x, mut triangles) = (Vec::new(), Vec::new());
     for sheet in 0..SHEETS {
         let first = x.len();
-        // Each turned a little, so that no vertex lies on another.
+        // Each sheet is turned a little, so that no vertex lies on another.
         let (sin, cos) = (0.3 * sheet as f64).sin_cos();
         x.extend((0..n * n).map(|i| {
             let (u, v) = ((i % n) as f64 * h - 0.25, (i / n) as f64 * h - 0.25);
@@ -74,23 +74,27 @@ fn slide(
     let ground = HalfSpace::new(Point::origin(), Vector::z()).ok_or("no normal")?;
     let model_of = CollisionModel::new(topology, bodies, vec![BodyFilter::DEFORMABLE; SHEETS], vec![ground])?;
     let mut params = Params::fast();
-    params.constraints.friction_model = model;
-    params.stop.drag = drag;
+    params.contact.friction_model = model;
+    params.solver.stop.rule = StopRule::Travel { net_residual: 0.2, residual };
     let mut resolver = Resolver::new(model_of, &x, &vec![1.0; x.len()], params)?
         .with_bodies(vec![BodyContact { friction, ..BodyContact::default() }; SHEETS])?
         .with_half_spaces(vec![HalfSpaceContact { friction, ..HalfSpaceContact::default() }])?;
 
-    // The slope is in the gravity: x points downhill.
+    // Gravity has the slope: x points downhill.
     let slope = 20f64.to_radians();
     let gravity = 9.81 * Vector::new(slope.sin(), 0.0, -slope.cos());
     let mut v = vec![Vector::zeros(); x.len()];
     let mut sums = [0.0; 6];
-    let mut creep = 0.0f64;
+    let mut slip = 0.0f64;
     for _ in 0..frames {
         let start = x.clone();
         let y = integrate(&start, &v, &springs, &gravity);
-        let report =
-            resolver.resolve(&mut x, &y, &Call { time_step: Some(DT), ..Call::default() }, &mut ())?;
+        let report = resolver.resolve_with(
+            &mut x,
+            &y,
+            &ResolveInput { time_step: Some(DT), ..ResolveInput::default() },
+            &mut (),
+        )?;
         v.iter_mut().zip(x.iter().zip(&start)).for_each(|(v, (x, start))| *v = (x - start) / DT);
         let values = [
             report.steps as f64,
@@ -101,7 +105,7 @@ fn slide(
             1e3 * report.seconds.total,
         ];
         sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += value / frames as f64);
-        creep = creep.max(report.creep_m);
+        slip = slip.max(report.sticking_slip_m);
     }
     let speed = |sheet: &[Vector]| sheet.iter().map(|v| v.x).sum::<f64>() / sheet.len() as f64;
     let speeds: Vec<String> = v.chunks(n * n).map(|sheet| format!("{:.4}", speed(sheet))).collect();
@@ -109,15 +113,15 @@ fn slide(
     println!(
         "{:7} {friction:4.1} {steps:8.2} {searches:9.2} {rows:5.0} {rough:9.0} {backward:12.2} {total:9.2} {:17.4}  {}",
         format!("{model:?}"),
-        1e3 * creep,
+        1e3 * slip,
         speeds.join(" "),
     );
     Ok(())
 }
 
-/// Stiff springs by symplectic Euler with substeps: where the sheets would go if nothing were in their way.
+/// Positions after a frame without collisions: stiff springs by symplectic Euler with substeps.
 fn integrate(x: &[Point], v: &[Vector], springs: &[([usize; 2], f64)], gravity: &Vector) -> Vec<Point> {
-    // Gravity at once, so that the displacement has all of its impulse.
+    // Gravity acts before the substeps, so that the displacement has all of its impulse.
     let (mut y, mut v) = (x.to_vec(), v.iter().map(|v| v + gravity * DT).collect::<Vec<_>>());
     let dt = DT / SUBSTEPS as f64;
     for _ in 0..SUBSTEPS {

@@ -2,7 +2,7 @@ use crate::{Ended, Place, SMALL};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Frames of one run, one after the other.
+/// The bytes of the frames of a run.
 fn frames(place: &Place, run: &str, count: usize) -> Vec<Vec<u8>> {
     (0..=count).map(|f| std::fs::read(place.path(&format!("{run}/frames/{f:06}.ply"))).unwrap()).collect()
 }
@@ -20,7 +20,7 @@ fn a_resumed_run_has_the_same_bits() {
 }
 
 #[test]
-fn resuming_what_cannot_be() {
+fn runs_that_cannot_be_resumed() {
     let place = Place::new();
     place.run(&format!("{SMALL} --out none --resume")).refused(2, &["cannot resume none", "no run"]);
     place.run(&format!("{SMALL} --out run")).ok();
@@ -33,7 +33,7 @@ fn resuming_what_cannot_be() {
 
 #[cfg(unix)]
 #[test]
-fn an_interrupted_run_goes_on_where_it_was() {
+fn an_interrupted_run_continues_with_the_same_bits() {
     let place = Place::new();
     let words = "run drape --scale 0.5 --frames 30";
     let mut child = place
@@ -42,7 +42,7 @@ fn an_interrupted_run_goes_on_where_it_was() {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // Interrupted once it is under way.
+    // Interrupt it once it has written some frames.
     let start = Instant::now();
     while !place.path("cut/frames/000003.ply").exists() {
         assert!(start.elapsed() < Duration::from_secs(60) && child.try_wait().unwrap().is_none());
@@ -57,12 +57,13 @@ fn an_interrupted_run_goes_on_where_it_was() {
     assert!(frames(&place, "whole", 30) == frames(&place, "cut", 30), "the frames differ");
 }
 
-/// The system refuses to let any file grow beyond a limit, as a full disk would refuse; what was written stays whole.
+/// A limit on the size of files stands for a full disk: the files written so far stay complete.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_leaves_whole_frames() {
     let place = Place::new();
-    // The first whose limit lets frames through is `stats.jsonl`, which grows by about a kilobyte a frame.
+    // Frames stay below the larger limit; `stats.jsonl`, which grows by about a kilobyte per frame, reaches
+    // it.
     let script = "trap '' XFSZ; ulimit -f \"$1\"; shift; exec \"$@\"";
     let run = |blocks: &str, out: &str| {
         let words =
@@ -83,6 +84,6 @@ fn a_full_disk_leaves_whole_frames() {
     assert!(steps.len() > 5, "only {} steps before the limit", steps.len());
     assert!(place.files("some/frames").iter().all(|name| name.ends_with(".ply")), "no half-written file");
     place.run("check some/frames").ok();
-    // With room again the run goes on to its end.
+    // Without the limit the run continues.
     place.run("run drape --scale 0.16 --frames 400 --set output.checkpoint_every=400 --out some --resume --set simulation.frames=4").ok();
 }

@@ -2,33 +2,33 @@
 
 use bowknot_geometry::{Point, Vector};
 
-/// Share of its budget that a vertex may really use; the rest covers rounding of the bound itself.
+/// Share of its radius that a vertex may use; the rest covers the rounding of the bound itself.
 const USABLE: f64 = 1.0 - 1e-3;
 
-/// The ball around its place at the last search in which each vertex stays.
+/// The trust regions of the vertices: one ball per vertex, around its position at the last search.
 ///
-/// A pair that the search left out has, by a certified lower bound, a distance above the sum of its sides'
-/// largest budgets; as long as every vertex stays in its ball, such a pair cannot meet.
+/// The search leaves out a pair only if a certified lower bound of its distance exceeds the sum of the
+/// largest radii of its two sides. As long as every vertex stays in its ball, such a pair cannot meet.
 #[derive(Clone, Debug, Default)]
-pub struct Budgets {
-    /// Places at the last search [m].
-    pub anchors: Vec<Point>,
+pub struct TrustRegions {
+    /// Centres: positions at the last search [m].
+    pub centers: Vec<Point>,
     /// Radius of each ball, rho [m].
     pub radii: Vec<f64>,
 }
 
-impl Budgets {
-    /// Radius of the ball in which a vertex can go by `travel` [m] and arrive.
+impl TrustRegions {
+    /// Radius of the ball in which a vertex can travel by `travel` [m] and arrive.
     pub fn radius_for(travel: f64) -> f64 {
-        // As much again for the rounding of positions within the ball.
+        // The unusable share counts twice: the second time for the rounding of positions within the ball.
         travel / (USABLE - (1.0 - USABLE))
     }
 
-    /// Largest alpha in [0, 1] with which vertex `v` at `x`, wanting to move by `d`, stays in its ball.
+    /// Largest alpha in [0, 1] with which vertex `v` stays in its ball, when it moves from `x` by alpha `d`.
     #[inline]
     pub fn limit(&self, v: usize, x: &Point, d: &Vector) -> f64 {
         let radius = USABLE * self.radii[v];
-        let p = x - self.anchors[v];
+        let p = x - self.centers[v];
         if (p + d).norm_squared() <= radius * radius {
             return 1.0;
         }

@@ -1,24 +1,26 @@
-//! A loose mesh as a scene: it falls on a ball on the ground, in proportion to its size.
+//! A mesh file as a scene: the mesh falls on a ball that stands on the ground. Ball and gaps are sized to the
+//! mesh.
 
-use crate::failure::Failure;
+use crate::exit::Failure;
 use bowknot::geometry::{Point, Vector};
 use bowknot::io::{Import, MESH_ENDINGS, Mesh, read_mesh};
 use bowknot::scene::{BodyKind, BodySpec, Material, ObstacleSpec, Scene};
 use bowknot::shapes::{Ball, HalfSpaceShape, Shape};
 use std::path::Path;
 
-/// Radius of the ball, as a share of the mesh's larger horizontal extent.
-const BALL: f64 = 0.25;
-/// Gap between the ball and the lowest vertex at the start, as a share of the same.
+/// Radius of the ball, relative to the larger horizontal extent of the mesh.
+const BALL_RADIUS: f64 = 0.25;
+/// Gap between the ball and the lowest vertex at the start, relative to the same extent.
 const GAP: f64 = 0.05;
 
-/// Whether a SCENE argument is a mesh rather than a scene.
+/// Whether the argument SCENE names a mesh file rather than a scene.
 pub fn is_mesh(name: &str) -> bool {
-    let ending = Path::new(name).extension().unwrap_or_default().to_ascii_lowercase();
-    MESH_ENDINGS.iter().any(|known| ending == *known)
+    let extension = Path::new(name).extension().unwrap_or_default().to_ascii_lowercase();
+    MESH_ENDINGS.iter().any(|known| extension == *known)
 }
 
-/// The scene of a loose mesh. `sets` may say how to import it (`body.0.up=y`), so the size is taken after them.
+/// The scene of a mesh file. `sets` may change how it is imported (`body.0.up=y`), so its size is measured
+/// after them.
 pub fn scene(name: &str, sets: &[String]) -> Result<Scene, Failure> {
     let path = Path::new(name);
     let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -44,7 +46,7 @@ pub fn scene(name: &str, sets: &[String]) -> Result<Scene, Failure> {
     let (low, high) = extent(&mesh.positions);
     let size = (high.x - low.x).max(high.y - low.y).max((high.z - low.z) * 0.1);
 
-    let radius = BALL * size;
+    let radius = BALL_RADIUS * size;
     let center = Vector::new((low.x + high.x) / 2.0, (low.y + high.y) / 2.0, low.z - GAP * size - radius);
     let ball = ObstacleSpec {
         name: "ball".to_owned(),
@@ -62,7 +64,7 @@ pub fn scene(name: &str, sets: &[String]) -> Result<Scene, Failure> {
     scene.with_sets(sets).map_err(Failure::input)
 }
 
-/// What a mesh is of by its elements.
+/// The kind of body that the elements of a mesh suggest.
 fn kind(mesh: &Mesh) -> BodyKind {
     if !mesh.tets.is_empty() {
         BodyKind::Solid
@@ -75,6 +77,7 @@ fn kind(mesh: &Mesh) -> BodyKind {
     }
 }
 
+/// The lower and upper corner of the bounding box.
 fn extent(positions: &[Point]) -> (Point, Point) {
     let first = positions.first().copied().unwrap_or_default();
     positions.iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)))
