@@ -32,7 +32,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         ],
     ),
     ("bowknot-bench", &["bowknot", "bowknot-baselines"]),
-    ("bowknot-dynamics", &["bowknot-geometry", "bowknot-proximity"]),
+    ("bowknot-dynamics", &["bowknot-geometry"]),
     ("bowknot-io", &["bowknot-geometry"]),
     (
         "bowknot-scene",

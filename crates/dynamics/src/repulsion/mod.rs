@@ -13,22 +13,22 @@
 //! ```
 //!
 //! lambda and tau are its multipliers [N]. A contact whose multipliers are already the correct forces is not
-//! displaced: at the solution depth and slip vanish, however soft the spring is (Hestenes 1969 and Powell
-//! 1969; for friction Simo and Laursen 1992, "An augmented Lagrangian treatment of contact problems involving
-//! friction"). [`springs::Repulsion::update_active_set`] updates the multipliers after a solve: lambda <-
-//! max(0, lambda + k depth), tau <- tau - k slip, limited to mu lambda. Callers pass multipliers in and read
-//! them with [`springs::Repulsion::forces`]: thus they pass from one Newton iteration to the next and from
-//! one time step to the next, although the springs change.
+//! displaced: at the solution depth and slip vanish, however soft the spring is (Hestenes 1969 and Powell 1969;
+//! for friction Simo and Laursen 1992, "An augmented Lagrangian treatment of contact problems involving
+//! friction"). Multipliers are updated after a solve: lambda <- max(0, lambda + k depth), tau <- tau - k slip,
+//! limited to mu lambda. Callers pass them in as [`RepulsionSpring::force`] and read them with
+//! [`crate::Dynamics::contact_forces`]: thus they pass from one Newton iteration to the next and from one time
+//! step to the next, although the springs change.
 //!
 //! | file | holds |
 //! |---|---|
-//! | [`spring`] | [`RepulsionSpring`], the description of a contact |
-//! | [`state`] | multipliers and friction of a contact |
-//! | [`springs`] | [`springs::Repulsion`]: all springs, their depths, slips and forces |
-//! | [`prepare`] | stiffness and the initial active set |
-//! | [`linearise`] | force and Hessian of each active spring |
-//! | [`active_set`] | the update of active set and multipliers after a solve |
-//! | [`energy`] | energies |
+//! | `spring` | [`RepulsionSpring`], the description of a contact |
+//! | `state` | multipliers and friction of a contact |
+//! | `springs` | all springs, their depths, slips and forces |
+//! | `prepare` | stiffness and the initial active set |
+//! | `linearise` | force and Hessian of each active spring |
+//! | `active_set` | the update of active set and multipliers after a solve |
+//! | `energy` | energies |
 
 mod active_set;
 mod energy;
