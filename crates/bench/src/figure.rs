@@ -35,7 +35,7 @@ pub struct Report {
 /// A part of a report.
 #[derive(Clone, Debug)]
 pub enum Part {
-    /// A table, NAME.csv; `shows` says in one line what is in it.
+    /// A table, NAME.csv; `shows` says in one line what is in it, and may be empty for figures on the page.
     Table { name: String, shows: String, table: Table },
     /// A chart, NAME.svg.
     Chart { name: String, chart: Chart },

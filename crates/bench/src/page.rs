@@ -19,6 +19,7 @@ pub fn section(figure: &dyn Figure, report: &Report, conditions: &str) -> String
     );
     for part in &report.parts {
         let part = match part {
+            Part::Table { shows, table, .. } if shows.is_empty() => table.markdown().trim_end().to_owned(),
             Part::Table { shows, table, .. } => {
                 format!("{}:\n\n{}", wrap(shows), table.markdown().trim_end())
             }
@@ -26,7 +27,7 @@ pub fn section(figure: &dyn Figure, report: &Report, conditions: &str) -> String
         };
         text.push_str(&format!("\n{part}\n"));
     }
-    text.push_str(&format!("\n{}\n", wrap(&format!("`{}`. {conditions}", command(figure.name())))));
+    text.push_str(&format!("\n`{}`. {conditions}\n", command(figure.name())));
     text
 }
 

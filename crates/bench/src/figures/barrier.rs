@@ -96,7 +96,7 @@ impl Figure for Barrier {
                 ),
                 Part::Chart {
                     name: "barrier-seconds".to_owned(),
-                    chart: chart("log barrier: run time", "CPU seconds a problem", seconds),
+                    chart: chart("log barrier: run time", "CPU seconds per problem", seconds),
                 },
                 Part::Chart {
                     name: "barrier-error".to_owned(),

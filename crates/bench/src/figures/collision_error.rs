@@ -60,7 +60,10 @@ impl Figure for CollisionError {
 
     fn run(&self, bench: &Bench) -> Result<Report> {
         let compared = compared(bench, self.targets, &settings()?)?;
-        let mut report = Report { finding: finding(&compared), parts: Vec::new() };
+        let mut report = Report {
+            finding: format!("CPU time and error as multiples of those of `fast`: {}", finding(&compared)),
+            parts: Vec::new(),
+        };
         let shows = format!(
             "all methods, and changes of `fast` and `paper`, on contact-{} targets",
             self.targets.word()
@@ -188,7 +191,7 @@ fn chart(compared: &Compared) -> Chart {
     };
     Chart {
         title: format!("{}, {} vertices: error against run time", compared.scene, compared.vertices()),
-        x: Axis::log("CPU seconds a problem"),
+        x: Axis::log("CPU seconds per problem"),
         y: Axis::log(error),
         series: series.collect(),
         front: true,
@@ -217,8 +220,5 @@ pub fn finding(compared: &[Compared]) -> String {
         .filter_map(|entry| shown(entry.name))
         .collect();
     let faster = if faster.is_empty() { "no method".to_owned() } else { faster.join("; ") };
-    format!(
-        "CPU time and error as multiples of those of `fast`: {}. Faster than `fast`: {faster}.",
-        others.join("; ")
-    )
+    format!("{}. Faster than `fast`: {faster}.", others.join("; "))
 }

@@ -79,7 +79,7 @@ impl Figure for Defaults {
             finding: format!(
                 "Changes that are 5 % better in time or error on both kinds of targets, and at most 2 % worse in the other: {told}."
             ),
-            parts: vec![Part::table(self.name(), "`fast` with one setting changed", table)],
+            parts: vec![Part::table(self.name(), "", table)],
         })
     }
 }

@@ -95,7 +95,7 @@ impl Figure for LengthsSwept {
                 let cpu = lines(&swept, &values, |s, _| s.cpu);
                 let error = lines(&swept, &values, |s, referenced| 1e3 * s.error(referenced));
                 for (what, word, series) in
-                    [("CPU seconds a problem", "seconds", cpu), ("error [mm]", "error", error)]
+                    [("CPU seconds per problem", "seconds", cpu), ("error [mm]", "error", error)]
                 {
                     let chart = Chart {
                         title: format!("{method}: {what} by {}", sweep.symbol),

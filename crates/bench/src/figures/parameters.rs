@@ -106,7 +106,7 @@ impl Figure for Parameters {
             let chart = Chart {
                 title: format!("{method}: CPU seconds by {}", sweep.symbol),
                 x: Axis::log(&format!("{} [{}]", sweep.symbol, sweep.unit)),
-                y: Axis::log("CPU seconds a problem"),
+                y: Axis::log("CPU seconds per problem"),
                 series: lines(&compared, values, |s, _| s.cpu),
                 front: false,
             };

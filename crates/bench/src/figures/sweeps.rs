@@ -66,7 +66,7 @@ impl Figure for Sweeps {
         let mut holds = true;
         for (method, values) in ["paper", "fast"].iter().zip(&values) {
             for (what, word, series) in [
-                ("CPU seconds a problem", "seconds", lines(&compared, values, |s, _| s.cpu)),
+                ("CPU seconds per problem", "seconds", lines(&compared, values, |s, _| s.cpu)),
                 ("steps", "steps", lines(&compared, values, |s, _| s.steps)),
                 ("error [mm]", "error", lines(&compared, values, |s, referenced| 1e3 * s.error(referenced))),
             ] {
