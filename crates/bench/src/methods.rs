@@ -191,19 +191,19 @@ fn forward<F: ForwardStep + 'static>(problem: Problem, step: F) -> Built {
 }
 
 fn impact_zones(problem: Problem, solver: ZoneSolver) -> Built {
-    Ok(Box::new(ImpactZones::new(problem, ZoneParams { solver, ..ZoneParams::default() })))
+    Ok(Box::new(ImpactZones::new(problem, ZoneParams { solver, ..ZoneParams::default() })?))
 }
 
 /// Impact zones that keep 0.8 of the distance that the other methods keep. Zones as published keep no distance: they only
 /// prevent intersections.
 fn thick_zones(problem: Problem) -> Built {
-    Ok(Box::new(ImpactZones::new(problem, ZoneParams { thickness: 0.8, ..ZoneParams::default() })))
+    Ok(Box::new(ImpactZones::new(problem, ZoneParams { thickness: 0.8, ..ZoneParams::default() })?))
 }
 
 /// Wu et al. 2020: five rounds of impact zones, then a log barrier.
 fn two_phases(problem: Problem) -> Built {
     let hard = Composed::new("log barrier", by_descent(problem.clone(), BarrierParams::default())?);
-    Ok(Box::new(TwoPhase::new(problem, 5, hard)))
+    Ok(Box::new(TwoPhase::new(problem, 5, hard)?))
 }
 
 fn composed<S, B, F>(resolver: Resolver<S, B, F>) -> Built

@@ -1,19 +1,18 @@
-//! The log barrier by gradient descent (paper, section 3.4), as a backward step: y is where the descent step ends, and the
-//! forward step bounds how far each vertex goes there, as in the two-way method.
+//! The log barrier by gradient descent (paper, section 3.4), as a backward step: y is the end of the descent step, and the
+//! forward step bounds the motion of each vertex towards it, as in the two-way method.
 //!
-//! y = x - s D^-1 dE/dx, with D by [`Scaling`] and one factor s <= 1 for all vertices: halved after a step that raised the
-//! energy, raised by a tenth after one that lowered it (the rule of Wang and Yang 2016, applied each step). Vertices go
-//! different fractions of their way, so that no line search along one line could tell more.
+//! y = x - s D^-1 dE/dx, with D by [`Scaling`] and one factor s <= 1 for all vertices. s is halved after a step that raised
+//! the energy and raised by a tenth after one that lowered it (the rule of Wang and Yang 2016, applied in each step). A line
+//! search is of no use, because vertices move by different fractions of their way.
 
 use super::{BarrierParams, Derivatives, Objective, Scaling};
+use bowknot_errors::{Errors, ParamError};
 use bowknot_twoway::geometry::Vector;
-use bowknot_twoway::{
-    BackwardStep, BudgetedSearch, CertifiedForward, Problem, ResolveError, Resolver, State, Statistics,
-};
+use bowknot_twoway::{BackwardStep, BudgetedSearch, CertifiedForward, Problem, Resolver, State, Statistics};
 use nalgebra::Matrix3;
 
 /// Smallest step factor.
-const SMALLEST_FACTOR: f64 = 1e-6;
+const MIN_FACTOR: f64 = 1e-6;
 
 /// A descent step as [`BackwardStep`].
 #[derive(Debug, Default)]
@@ -24,18 +23,18 @@ pub struct DescentStep {
     /// Energy at the last x [J].
     energy: f64,
     /// Largest |D^-1 dE/dx| of the last step, by blocks [m].
-    wanted: f64,
+    newton_length: f64,
 }
 
-/// Gradient descent with the forward step and the search of the two-way method: what bounds its steps is
-/// `params.stepper` of the problem.
+/// Gradient descent with the forward step and the search of the two-way method; `params.stepper` of the problem bounds its
+/// steps.
 ///
 /// # Errors
 /// Parameters out of their range.
 pub fn by_descent(
     problem: Problem,
     params: BarrierParams,
-) -> Result<Resolver<BudgetedSearch, DescentStep, CertifiedForward>, ResolveError> {
+) -> Result<Resolver<BudgetedSearch, DescentStep, CertifiedForward>, Errors<ParamError>> {
     let step = DescentStep::new(&problem, params)?;
     let search = BudgetedSearch::new(&problem);
     Ok(Resolver::with_stages(problem, search, step, CertifiedForward::default()))
@@ -46,7 +45,7 @@ impl DescentStep {
     ///
     /// # Errors
     /// Parameters out of their range.
-    pub fn new(problem: &Problem, params: BarrierParams) -> Result<Self, ResolveError> {
+    pub fn new(problem: &Problem, params: BarrierParams) -> Result<Self, Errors<ParamError>> {
         Ok(Self { objective: Objective::new(problem, params)?, ..Self::default() })
     }
 
@@ -61,20 +60,20 @@ impl BackwardStep for DescentStep {
         self.objective.begin(problem, state);
         self.factor = 1.0;
         self.energy = f64::INFINITY;
-        self.wanted = f64::INFINITY;
+        self.newton_length = f64::INFINITY;
     }
 
     fn project(&mut self, problem: &Problem, state: &mut State, statistics: &mut Statistics) {
         let contacts = self.objective.contacts(problem, state);
         let energy = self.objective.value(problem, state, &state.x, &contacts);
         self.factor = if energy > self.energy {
-            (0.5 * self.factor).max(SMALLEST_FACTOR)
+            (0.5 * self.factor).max(MIN_FACTOR)
         } else {
             (1.1 * self.factor).min(1.0)
         };
         self.energy = energy;
         self.objective.derivatives(problem, state, &state.x, &contacts, &mut self.derivatives);
-        self.wanted = 0.0;
+        self.newton_length = 0.0;
         for v in 0..state.x.len() {
             if !problem.movable(v) {
                 state.y[v] = state.target[v];
@@ -82,7 +81,7 @@ impl BackwardStep for DescentStep {
             }
             let gradient = &self.derivatives.gradient[v];
             let newton = solve(&self.derivatives.blocks[v], gradient);
-            self.wanted = self.wanted.max(newton.norm());
+            self.newton_length = self.newton_length.max(newton.norm());
             let step = match self.objective.params().scaling {
                 Scaling::Blocks => newton,
                 Scaling::Mass => gradient / self.objective.inertia(problem, state, v),
@@ -95,7 +94,7 @@ impl BackwardStep for DescentStep {
 
     fn settled(&self, problem: &Problem, state: &State) -> Option<bool> {
         let tolerance = self.objective.params().tolerance * problem.lengths.edge;
-        Some(self.wanted <= tolerance && state.remaining <= tolerance)
+        Some(self.newton_length <= tolerance && state.remaining <= tolerance)
     }
 
     fn finish(&mut self, problem: &Problem, state: &State, statistics: &mut Statistics) {

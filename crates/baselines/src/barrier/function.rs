@@ -1,7 +1,7 @@
-//! The barrier of one distance (paper, Eq. 8).
+//! The barrier as a function of one distance (paper, Eq. 8).
 
-/// Smallest share of the range that a gap is taken for: a pair below it pushes as hard as one at it.
-const SMALLEST_SHARE: f64 = 1e-9;
+/// Smallest gap as a share of the range; a smaller gap counts as this one.
+const MIN_SHARE: f64 = 1e-9;
 
 /// Value and derivatives of a barrier.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -22,7 +22,7 @@ pub fn barrier(strength: f64, gap: f64, range: f64) -> Jet {
     if gap >= range {
         return Jet::default();
     }
-    let u = (gap / range).max(SMALLEST_SHARE);
+    let u = (gap / range).max(MIN_SHARE);
     let (log, below, ratio) = (u.ln(), u - 1.0, (u - 1.0) / u);
     Jet {
         value: -strength * range * range * below * below * log,

@@ -1,31 +1,32 @@
 //! Parameters of the log barrier.
 
-use bowknot_twoway::{Problem, ResolveError};
+use bowknot_errors::{Checks, Errors, ParamError, Parameters};
+use bowknot_twoway::Problem;
 use serde::{Deserialize, Serialize};
 
-/// Parameters of [`super::Objective`] and of the methods that minimise it.
+/// Parameters of [`super::Objective`], and of the methods that minimise it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct BarrierParams {
-    /// Strength k of the barrier [kg/s^2] (paper, Eq. 8). Larger: wider gaps, and a barrier that outweighs the way to the
-    /// target; smaller: tighter gaps and shorter steps. Default 20, the paper's.
+    /// Strength k of the barrier [kg/s^2] (paper, Eq. 8). A larger k makes gaps wider and slows the way to the target, a
+    /// smaller one makes gaps tighter and steps shorter. Default 20, the paper's.
     pub strength: f64,
-    /// Distance d at which the barrier sets in [m]. Default delta; the paper has 1 mm for both. Like delta it is lowered for
-    /// neighbours in fine meshes, and scaled by the bodies' own contact distances.
+    /// Distance d below which the barrier acts [m]. Default delta; in the paper both are 1 mm. Like delta it is lowered for
+    /// neighbours in fine meshes and scaled by the contact distances of the bodies.
     pub range: Option<f64>,
     /// Time step of the inertia term [s] for calls that state none. Default 1/100.
     pub time_step: f64,
-    /// Stiffness [kg/s^2] of a penalty 1/2 k_e max(|e| - L, 0)^2 on edges longer than their limit L in a call. The paper's
-    /// Eq. 7 has nothing of the kind, so that edges stretch: default 0, which switches it off.
+    /// Stiffness k_e [kg/s^2] of a penalty 1/2 k_e max(|e| - L, 0)^2 on edges longer than their limit L in a call. The
+    /// paper's Eq. 7 has no such term, so that edges stretch. Default 0: no penalty.
     pub edge_stiffness: f64,
-    /// What a descent step is scaled by. Default blocks.
+    /// The scaling of descent steps. Default blocks.
     pub scaling: Scaling,
-    /// A method stops once its step would move no vertex further than this, in mean edge lengths; Newton's method, once the
-    /// decrement is below it. Default 1e-3.
+    /// Gradient descent stops when its step would move no vertex further than this, in mean edge lengths; Newton's method
+    /// stops when its decrement is below it. Default 1e-3, a tenth of the two-way method's.
     pub tolerance: f64,
 }
 
-/// What the gradient is multiplied by to make a descent step.
+/// The matrix that the gradient is multiplied by in a descent step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Scaling {
@@ -49,35 +50,34 @@ impl Default for BarrierParams {
     }
 }
 
+impl Parameters for BarrierParams {
+    fn check(&self, checks: &mut Checks) {
+        let Self { strength, range, time_step, edge_stiffness, scaling: _, tolerance } = self;
+        checks.positive("strength", *strength);
+        if let Some(range) = range {
+            checks.positive("range", *range);
+        }
+        checks.positive("time_step", *time_step);
+        checks.non_negative("edge_stiffness", *edge_stiffness);
+        checks.positive("tolerance", *tolerance);
+    }
+}
+
 impl BarrierParams {
-    /// Checks every field, also against the problem: pairs within the barrier's range must be listed.
+    /// Checks every field, and that all pairs within the barrier's range are candidates of the problem.
     ///
     /// # Errors
-    /// [`ResolveError::Params`] with a line for each field out of its range.
-    pub fn validate(&self, problem: &Problem) -> Result<(), ResolveError> {
-        let mut problems = Vec::new();
-        for (key, value) in [
-            ("strength", self.strength),
-            ("range", self.range.unwrap_or(1.0)),
-            ("time_step", self.time_step),
-            ("tolerance", self.tolerance),
-        ] {
-            if !(value.is_finite() && value > 0.0) {
-                problems.push(format!("barrier.{key} = {value} must be finite and above 0"));
-            }
+    /// One error for each field out of its range.
+    pub fn validate_for(&self, problem: &Problem) -> Result<(), Errors<ParamError>> {
+        let mut checks = Checks::default();
+        self.check(&mut checks);
+        let largest = problem.lengths.contact_range;
+        if let Some(range) = self.range {
+            let fits = range <= largest || !range.is_finite();
+            let allowed =
+                format!("must be at most the contact range of the problem, {largest} m, or pairs are missed");
+            checks.require(fits, "range", range, allowed);
         }
-        if !(self.edge_stiffness.is_finite() && self.edge_stiffness >= 0.0) {
-            problems.push(format!(
-                "barrier.edge_stiffness = {} must be finite and at least 0",
-                self.edge_stiffness
-            ));
-        }
-        let listed = problem.lengths.contact_range;
-        if let Some(range) = self.range.filter(|range| *range > listed) {
-            problems.push(format!(
-                "barrier.range = {range} m must be at most constraints.range times delta = {listed} m, or pairs are missed"
-            ));
-        }
-        if problems.is_empty() { Ok(()) } else { Err(ResolveError::Params(problems)) }
+        checks.finish()
     }
 }

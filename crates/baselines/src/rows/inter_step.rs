@@ -8,7 +8,7 @@ use bowknot_twoway::{BackwardStep, Problem, State, Statistics};
 /// ineffective because contacts come and go): y^(l+1) <- y^(l-1) + omega (y^(l+1) - y^(l-1)), with
 /// omega_1 = 2/(2 - rho^2) and omega_(k+1) = 4/(4 - rho^2 omega_k) after `delay` plain steps.
 ///
-/// Multipliers are left to the inner step, and so are residuals.
+/// Multipliers and residuals are those of the inner step.
 #[derive(Clone, Debug)]
 pub struct InterStepChebyshev<B> {
     inner: B,
@@ -39,9 +39,10 @@ impl<B: BackwardStep> BackwardStep for InterStepChebyshev<B> {
         self.inner.project(problem, state, statistics);
         let square = self.spectral_radius * self.spectral_radius;
         if state.step >= self.delay {
-            self.omega = match state.step == self.delay {
-                true => 2.0 / (2.0 - square),
-                false => 4.0 / (4.0 - square * self.omega),
+            self.omega = if state.step == self.delay {
+                2.0 / (2.0 - square)
+            } else {
+                4.0 / (4.0 - square * self.omega)
             };
             for v in (0..state.y.len()).filter(|&v| problem.movable(v)) {
                 let before = self.before[v];

@@ -1,22 +1,22 @@
 //! Rigid impact zones.
 
+use super::impacts::{Impact, ImpactSearch};
 use super::optimiser::growth;
 use super::rigid_motion::Motion;
-use super::{Impact, ImpactSearch};
 use crate::{Method, Outcome};
 use bowknot_twoway::geometry::{PairKind, Point, Vector};
 use bowknot_twoway::{Call, Problem, ResolveError};
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-/// Rigid impact zones (Provot 1997; Bridson et al. 2002, section 7.4): vertices that meet on their way become a zone, zones
-/// that meet one; each moves like a rigid body with the linear and angular momentum of what it is made of, and detection is
-/// repeated until nothing meets. A zone with a prescribed vertex, or at a half-space, moves with it instead, and one whose
-/// prescribed vertices do not move as a rigid body waits, they with it.
+/// Rigid impact zones (Provot 1997; Bridson et al. 2002, section 7.4). Vertices that meet on their way become a zone, and
+/// zones that meet are merged. Each zone moves like a rigid body with the linear and angular momentum of its vertices, and
+/// detection is repeated until nothing meets. A zone with a prescribed vertex, or at a half-space, moves with it instead. If
+/// its prescribed vertices do not move as a rigid body, the zone and these vertices stay where they are.
 ///
-/// It never fails: pairs within a zone keep apart because its motion has an inverse at any time, and at worst everything is
-/// one zone. What it costs is motion: relative motion within a zone is lost. The 2002 method puts repulsions and some rounds
-/// of impulses before it; here it stands alone, as the two-way paper's Table 1 has it.
+/// It never fails: pairs within a zone stay apart because its motion can be inverted at any time, and in the worst case
+/// everything is one zone. Relative motion within a zone is lost. The method of 2002 applies repulsions and some rounds of
+/// impulses first; here zones stand alone, as in Table 1 of the two-way paper.
 #[derive(Debug)]
 pub struct RigidZones {
     problem: Problem,
@@ -24,7 +24,7 @@ pub struct RigidZones {
 }
 
 impl RigidZones {
-    /// Of the scene in `problem`.
+    /// For the scene in `problem`.
     pub fn new(problem: Problem) -> Self {
         let search = ImpactSearch::new(&problem.model);
         Self { problem, search }
@@ -42,7 +42,7 @@ impl Method for RigidZones {
         target: &[Point],
         call: &Call<'_>,
     ) -> Result<Outcome, ResolveError> {
-        let clock = Instant::now();
+        let timer = Instant::now();
         let Self { problem, search } = self;
         problem.begin(positions, target, call)?;
         let mut outcome = Outcome { converged: true, ..Outcome::default() };
@@ -51,8 +51,8 @@ impl Method for RigidZones {
         let mut paths = wanted.clone();
         let mut zones = Zones::new(problem);
         loop {
-            let judged = |impact: &Impact| !zones.hold(impact);
-            let impacts = search.find(problem, positions, &paths, growth, judged, &mut outcome);
+            let accept = |impact: &Impact| !zones.keep_apart(impact);
+            let impacts = search.find(problem, positions, &paths, growth, accept, &mut outcome);
             if impacts.is_empty() {
                 break;
             }
@@ -65,34 +65,35 @@ impl Method for RigidZones {
             outcome.seconds.backward += merging.elapsed().as_secs_f64();
         }
         positions.iter_mut().zip(&paths).for_each(|(x, path)| *x += path);
-        outcome.seconds.total = clock.elapsed().as_secs_f64();
+        outcome.seconds.total = timer.elapsed().as_secs_f64();
         Ok(outcome)
     }
 }
 
-/// A partition of vertices, and of half-spaces behind them, into zones.
+/// A partition of nodes into zones: vertices, followed by half-spaces.
 #[derive(Debug)]
 struct Zones {
     parent: Vec<usize>,
     vertices: usize,
-    /// Roots of the zones that something has met.
+    /// Whether the zone of a root contains an impact.
     met: Vec<bool>,
 }
 
 impl Zones {
-    /// Everything alone, but what goes as one: obstacles, groups of pins.
+    /// Every node is a zone of its own, except for obstacles and groups of pins, which are one zone each.
     fn new(problem: &Problem) -> Self {
         let vertices = problem.rest.len();
         let nodes = vertices + problem.model.half_spaces().len();
         let mut zones = Self { parent: (0..nodes).collect(), vertices, met: vec![false; nodes] };
         let mut first = BTreeMap::new();
         for v in (0..vertices).filter(|&v| problem.prescribed[v]) {
-            let who = match problem.model.is_obstacle(v as u32) {
-                true => (0, problem.model.vertex_body()[v]),
-                false => match problem.groups.get(v) {
+            let who = if problem.model.is_obstacle(v as u32) {
+                (0, problem.model.vertex_body()[v])
+            } else {
+                match problem.groups.get(v) {
                     Some(&group) if group != Call::NO_GROUP => (1, group),
                     _ => continue,
-                },
+                }
             };
             let leader = *first.entry(who).or_insert(v);
             zones.join(leader, v);
@@ -107,8 +108,8 @@ impl Zones {
         impact.vertices().iter().map(|&v| v as usize).chain(half_space)
     }
 
-    /// Whether the motion of a zone keeps the pair apart. Keyframes that were only joined need not.
-    fn hold(&self, impact: &Impact) -> bool {
+    /// Whether the motion of a zone keeps the pair apart. The keyframes of vertices in one zone without impacts need not.
+    fn keep_apart(&self, impact: &Impact) -> bool {
         let mut roots = self.nodes(impact).map(|node| self.root(node));
         roots.next().is_some_and(|first| self.met[first] && roots.all(|root| root == first))
     }
@@ -120,7 +121,7 @@ impl Zones {
         node
     }
 
-    /// Makes one zone of two, named after its smallest node.
+    /// Merges two zones; the smallest node is the root.
     fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.root(a), self.root(b));
         let (low, high) = (a.min(b), a.max(b));
@@ -128,7 +129,7 @@ impl Zones {
         self.met[low] |= self.met[high];
     }
 
-    /// Makes one zone of all that meets.
+    /// Merges the zones of an impact.
     fn unite(&mut self, impact: &Impact) {
         let nodes: Vec<usize> = self.nodes(impact).collect();
         nodes.iter().for_each(|&node| self.join(nodes[0], node));
@@ -136,7 +137,7 @@ impl Zones {
         self.met[root] = true;
     }
 
-    /// Sets the paths of all zones that something has met.
+    /// Sets the paths of all zones with impacts.
     fn move_all(&mut self, problem: &Problem, x: &[Point], wanted: &[Vector], paths: &mut [Vector]) {
         let mut members: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for node in 0..self.parent.len() {

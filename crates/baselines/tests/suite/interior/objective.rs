@@ -4,7 +4,7 @@ use crate::common::{Draw, Scene, listed};
 use bowknot_baselines::barrier::{BarrierParams, Derivatives, Objective};
 use bowknot_baselines::twoway::constraints::EdgeReference;
 use bowknot_baselines::twoway::geometry::{PairKind, Point, Vector};
-use bowknot_baselines::twoway::{BudgetedSearch, Params, ResolveError};
+use bowknot_baselines::twoway::{BudgetedSearch, Params};
 
 #[test]
 fn gradient_is_that_of_the_value_for_every_kind_of_pair_and_long_edges() {
@@ -104,6 +104,7 @@ fn every_wrong_parameter_is_named() {
         tolerance: f64::INFINITY,
         ..BarrierParams::default()
     };
-    let Err(ResolveError::Params(problems)) = Objective::new(&problem, params) else { panic!("accepted") };
-    assert_eq!(problems.len(), 5, "{problems:?}");
+    let errors = Objective::new(&problem, params).expect_err("five fields are out of their range");
+    let paths: Vec<&str> = errors.iter().map(|error| error.path.as_str()).collect();
+    assert_eq!(paths, ["strength", "time_step", "edge_stiffness", "tolerance", "range"]);
 }

@@ -12,9 +12,9 @@ fn results_have_the_same_bits_on_any_number_of_threads() {
         let problem = || scene.problem(Params::fast());
         let params = ZoneParams { max_iterations: 4, ..ZoneParams::default() };
         let methods: [Box<dyn Method>; 3] = [
-            Box::new(ImpactZones::new(problem(), params)),
+            Box::new(ImpactZones::new(problem(), params).unwrap()),
             Box::new(RigidZones::new(problem())),
-            Box::new(TwoPhase::new(problem(), 3, RigidZones::new(problem()))),
+            Box::new(TwoPhase::new(problem(), 3, RigidZones::new(problem())).unwrap()),
         ];
         methods.map(|mut method| {
             let mut x = scene.x.clone();

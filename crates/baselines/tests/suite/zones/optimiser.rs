@@ -6,7 +6,7 @@ use bowknot_baselines::twoway::{Call, Params, Resolver};
 use bowknot_baselines::zones::{ImpactZones, ZoneParams, ZoneSolver};
 
 fn zones(scene: &Scene, solver: ZoneSolver) -> ImpactZones {
-    ImpactZones::new(scene.problem(Params::fast()), ZoneParams { solver, ..ZoneParams::default() })
+    ImpactZones::new(scene.problem(Params::fast()), ZoneParams { solver, ..ZoneParams::default() }).unwrap()
 }
 
 const SOLVERS: [ZoneSolver; 3] =
@@ -165,7 +165,7 @@ fn a_limit_on_steps_counts_as_a_failure_and_bad_input_is_refused() {
     let (scene, target, _) = vice();
     let mut params = Params::fast();
     params.stop.max_steps = Some(3);
-    let mut zones = ImpactZones::new(scene.problem(params), ZoneParams::default());
+    let mut zones = ImpactZones::new(scene.problem(params), ZoneParams::default()).unwrap();
     let (_, outcome) = solve_clear(&mut zones, &scene, &target, &[]);
     assert!(outcome.failed && outcome.steps == 3);
     let mut x = scene.x.clone();
