@@ -1,9 +1,10 @@
 //! Judges additive CCD on queries with an exact ground truth, and times it.
 //!
-//! `cargo run --release -p bowknot-baselines --example ccd_queries -- FOLDER` reads every `FOLDER/*/{edge-edge,vertex-face}/*.csv`
-//! in the format of Wang, Ferguson, Schneider, Jiang, Attene and Panozzo (2021), "A Large-Scale Benchmark and an Inclusion-Based
-//! Algorithm for Continuous Collision Detection": eight lines a query, four vertices before and four after; numerator and
-//! denominator of each coordinate; 1 in the seventh column if they meet.
+//! `cargo run --release -p bowknot-baselines --example ccd_queries -- FOLDER` reads every
+//! `FOLDER/*/{edge-edge,vertex-face}/*.csv` in the format of Wang, Ferguson, Schneider, Jiang, Attene and
+//! Panozzo (2021), "A Large-Scale Benchmark and an Inclusion-Based Algorithm for Continuous Collision
+//! Detection": eight lines a query, four vertices before and four after; numerator and denominator of each
+//! coordinate; 1 in the seventh column if they meet.
 #![allow(clippy::print_stdout)] // it is a command
 
 use bowknot_baselines::ccd::{AdditiveCcd, ClosingSpeed};

@@ -1,8 +1,8 @@
 //! The methods that the two-way interior point method is compared with.
 //!
-//! Each is a [`Method`]: it moves positions from a state without intersections toward a target. A method that differs from
-//! the two-way method in one stage is its loop with that stage replaced ([`Composed`]), so that a comparison shows the
-//! effect of that stage.
+//! Each is a [`Method`]: it moves positions from a state without intersections toward a target. A method that
+//! differs from the two-way method in one stage is its loop with that stage replaced ([`Composed`]), so that
+//! a comparison shows the effect of that stage.
 //!
 //! | module | holds | knows nothing of |
 //! |---|---|---|

@@ -3,8 +3,8 @@
 //! ```text
 //! cargo run --release -p bowknot-bench --example peer_search -- STATE.npz --radius 0.002 --threads 2
 //! ```
-//! All vertices count as one deformable body, so that a program without obstacles and groups searches for the same
-//! pairs. Prints JSON.
+//! All vertices count as one deformable body, so that a program without obstacles and groups searches for the
+//! same pairs. Prints JSON.
 #![allow(clippy::print_stdout)]
 
 use anyhow::{Context, Result, anyhow};

@@ -83,8 +83,8 @@ impl Bench {
         self.figure_timer.get().elapsed().as_secs_f64()
     }
 
-    /// Whether the present figure may measure more. If not, what is missing is left out and the figure says so; another
-    /// run of the command continues from there.
+    /// Whether the present figure may measure more. If not, what is missing is left out and the figure says
+    /// so; another run of the command continues from there.
     pub fn has_time(&self) -> bool {
         let seconds = self.size.pick(17 * 60, 60, 15);
         // All quick figures together have ten minutes; recordings and figures that began late take the rest.
@@ -96,8 +96,8 @@ impl Bench {
         left
     }
 
-    /// The commits of the present figure's measurements, and the machine, in one line. `load` is the load average
-    /// before the figure.
+    /// The commits of the present figure's measurements, and the machine, in one line. `load` is the load
+    /// average before the figure.
     pub fn conditions(&self, load: &str) -> String {
         let Machine { cores, cpu, .. } = &self.machine;
         let mut commits = self.store.take_commits().join(", ");
@@ -110,7 +110,8 @@ impl Bench {
         };
         let missing = if self.out_of_time.get() { " Out of time: the rest was not measured." } else { "" };
         format!(
-            "Commit {commits}; {threads} of {cores} cores, {cpu}; load average {load} before, {} after.{missing}",
+            "Commit {commits}; {threads} of {cores} cores, {cpu}; load average {load} before, {} \
+             after.{missing}",
             Machine::load()
         )
     }

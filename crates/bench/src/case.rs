@@ -8,8 +8,8 @@ use bowknot::proximity::CollisionModel;
 use bowknot::twoway::{BodyContact, Params, Problem, Resolver};
 use std::path::Path;
 
-/// A collision problem without friction. Few of the methods that are compared have friction, and a problem with it is
-/// no projection of the target, so that distances to a projection would not measure the error.
+/// A collision problem without friction. Few of the methods that are compared have friction, and a problem
+/// with it is no projection of the target, so that distances to a projection would not measure the error.
 #[derive(Clone, Debug)]
 pub struct CollisionCase {
     /// `scene/step`.
@@ -45,7 +45,8 @@ impl CollisionCase {
         Ok(Self { name: name.to_owned(), states, model, lengths: ProblemLengths::default() })
     }
 
-    /// The problem with other lengths; `change` distinguishes its measurements from those of the recorded problem.
+    /// The problem with other lengths; `change` distinguishes its measurements from those of the recorded
+    /// problem.
     pub fn with_lengths(&self, change: &str, lengths: ProblemLengths) -> Self {
         let mut case = Self { name: format!("{}/{change}", self.name), lengths, ..self.clone() };
         if let Some(limit) = lengths.stretch_limit {
@@ -83,7 +84,8 @@ impl CollisionCase {
         Ok(self.resolver(params)?.problem().clone())
     }
 
-    /// The problem with the parameters that results are measured with, `fast`, and the prescribed vertices of the call.
+    /// The problem with the parameters that results are measured with, `fast`, and the prescribed vertices of
+    /// the call.
     pub fn reference(&self) -> Result<Problem> {
         let mut problem = self.problem(Params::fast())?;
         for (v, prescribed) in problem.prescribed.iter_mut().enumerate() {

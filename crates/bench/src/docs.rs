@@ -1,6 +1,7 @@
 //! Results in the documentation: the page docs/benchmarks.md, tables and charts in docs/benchmarks.
 //!
-//! They are written from a clean git tree only, so that the commit beside each result is the code that was measured.
+//! They are written from a clean git tree only, so that the commit beside each result is the code that was
+//! measured.
 
 use crate::chart;
 use crate::figure::{Figure, Part, Report};
@@ -26,8 +27,8 @@ impl Docs {
         Self { repository: repository.to_owned() }
     }
 
-    /// Refuses a tree with files that differ from the commit or are not tracked. Results that other figures have written
-    /// do not count.
+    /// Refuses a tree with files that differ from the commit or are not tracked. Results that other figures
+    /// have written do not count.
     ///
     /// # Errors
     /// If the tree is not clean, or is no git tree.
@@ -39,17 +40,18 @@ impl Docs {
         };
         ensure!(
             changes.is_empty(),
-            "{PAGE} is written from a clean git tree only, so that its commits are those of the code; commit these \
-             files first, or measure with --quick:\n{changes}"
+            "{PAGE} is written from a clean git tree only, so that its commits are those of the code; commit \
+             these files first, or measure with --quick:\n{changes}"
         );
         Ok(())
     }
 
-    /// Writes a figure's results: on the page its text and tables, or its rows of the index and the tables as CSV; the
-    /// charts as SVG. `order` has the names of all figures in the order of the index.
+    /// Writes a figure's results: on the page its text and tables, or its rows of the index and the tables as
+    /// CSV; the charts as SVG. `order` has the names of all figures in the order of the index.
     ///
     /// # Errors
-    /// If the tree is not clean, if something was measured in a tree that was not, or if a file cannot be written.
+    /// If the tree is not clean, if something was measured in a tree that was not, or if a file cannot be
+    /// written.
     pub fn publish(
         &self,
         figure: &dyn Figure,
@@ -60,7 +62,8 @@ impl Docs {
         self.ensure_clean()?;
         ensure!(
             !conditions.contains(WITH_CHANGES),
-            "{PAGE} is not written: measurements of {} come from a tree that was not clean ({conditions}); remove them",
+            "{PAGE} is not written: measurements of {} come from a tree that was not clean ({conditions}); \
+             remove them",
             figure.name()
         );
         let path = self.repository.join(PAGE);

@@ -1,11 +1,13 @@
-//! The `bowknot-bench` command: measures figures and tables, run time against error, methods against each other.
+//! The `bowknot-bench` command: measures figures and tables, run time against error, methods against each
+//! other.
 //!
 //! | module | holds |
 //! |---|---|
 //! | `figures` | one file per figure or table |
 //! | `figure` | the trait that they implement, and what they report |
-//! | `run`, `docs`, `page` | measuring a figure; writing its results into docs/benchmarks and docs/benchmarks.md |
-//! | `bench`, `store`, `machine` | size, folder and time of a run; measurements that are kept; machine and commit |
+//! | `run` | measuring a figure |
+//! | `docs`, `page` | writing its results into docs/benchmarks and docs/benchmarks.md |
+//! | `bench`, `store`, `machine` | size, folder and time of a run; kept measurements; machine, commit |
 //! | `record`, `case`, `targets` | collision problems: recorded from scenes, loaded to be solved |
 //! | `methods`, `solve` | the methods that are compared; timing one on one problem |
 //! | `simulate`, `memory` | whole simulations and the distances between them; memory of a run |
@@ -13,7 +15,8 @@
 //! | `measures` | the quality of a result, measured alike for every method |
 //! | `chart`, `table` | SVG, CSV and Markdown |
 //!
-//! Scripts in `crates/bench/peers` time other people's programs beside Bowknot and write block `peers` of the page.
+//! Scripts in `crates/bench/peers` time other people's programs beside Bowknot and write block `peers` of the
+//! page.
 
 // A command prints its results.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
@@ -47,7 +50,8 @@ use docs::Docs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Measures figures and tables. Full runs write docs/benchmarks.md and docs/benchmarks, from a clean git tree only.
+/// Measures figures and tables. Full runs write docs/benchmarks.md and docs/benchmarks, from a clean git tree
+/// only.
 #[derive(Debug, Parser)]
 #[command(name = "bowknot-bench")]
 struct Arguments {

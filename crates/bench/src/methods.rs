@@ -194,8 +194,8 @@ fn impact_zones(problem: Problem, solver: ZoneSolver) -> Built {
     Ok(Box::new(ImpactZones::new(problem, ZoneParams { solver, ..ZoneParams::default() })?))
 }
 
-/// Impact zones that keep 0.8 of the distance that the other methods keep. Zones as published keep no distance: they only
-/// prevent intersections.
+/// Impact zones that keep 0.8 of the distance that the other methods keep. Zones as published keep no
+/// distance: they only prevent intersections.
 fn thick_zones(problem: Problem) -> Built {
     Ok(Box::new(ImpactZones::new(problem, ZoneParams { thickness: 0.8, ..ZoneParams::default() })?))
 }
@@ -222,9 +222,9 @@ fn face_normals() -> Params {
     params
 }
 
-/// `paper` without edge limits, which a linear system of equations would turn into rigid links (paper, section 4.3.1).
-/// Only active pairs have rows, which is close to the collisions of Harmon et al.; equations for all pairs in range would
-/// glue them together.
+/// `paper` without edge limits, which a linear system of equations would turn into rigid links (paper,
+/// section 4.3.1). Only active pairs have rows, which is close to the collisions of Harmon et al.; equations
+/// for all pairs in range would glue them together.
 fn without_edges() -> Params {
     let mut params = Params::paper();
     params.backward.active_rows = true;

@@ -1,5 +1,5 @@
-//! The page docs/benchmarks.md: sections of the figures that it shows, and an index of the other figures' files. Blocks
-//! between markers are replaced, all other text is kept.
+//! The page docs/benchmarks.md: sections of the figures that it shows, and an index of the other figures'
+//! files. Blocks between markers are replaced, all other text is kept.
 
 use crate::figure::{Figure, Part, Report};
 use anyhow::{Result, bail};

@@ -57,8 +57,8 @@ const UNAWARE_STACK: ProblemSet = unaware("stack-unaware", STACK, [120, 70, 50])
 const UNAWARE_BOW_KNOT: ProblemSet = unaware("bow-knot-unaware", BOW_KNOT, [300, 160, 60]);
 const UNAWARE_REEF_KNOT: ProblemSet = unaware("reef-knot-unaware", REEF_KNOT, [280, 120, 60]);
 
-/// The sets that `record` writes. A full run of each takes from seconds to a few minutes; it ends where contact is
-/// hardest or the scene is at rest.
+/// The sets that `record` writes. A full run of each takes from seconds to a few minutes; it ends where
+/// contact is hardest or the scene is at rest.
 pub const PROBLEM_SETS: [ProblemSet; 17] = [
     BOW_KNOT,
     REEF_KNOT,
@@ -79,8 +79,8 @@ pub const PROBLEM_SETS: [ProblemSet; 17] = [
     unaware("dress-unaware", DRESS, [120, 30, 10]),
 ];
 
-/// Sets with other time steps, for single figures: knots at 1/1000 s (paper, section 3.3), the needle at 1/100 s and the
-/// stack at 1/20 s (Fig. 16).
+/// Sets with other time steps, for single figures: knots at 1/1000 s (paper, section 3.3), the needle at
+/// 1/100 s and the stack at 1/20 s (Fig. 16).
 const OTHER_TIME_STEPS: [ProblemSet; 6] = [
     stepped("bow-knot-1000", ProblemSet { scales: [0.12, 0.1, 0.1], ..BOW_KNOT }, 0.001, [1600, 900, 500]),
     stepped("reef-knot-1000", ProblemSet { scales: [0.2, 0.1, 0.1], ..REEF_KNOT }, 0.001, [1400, 700, 400]),
@@ -193,13 +193,14 @@ struct Kept {
     states: States,
 }
 
-/// Runs a scene and keeps `count` problems, spread evenly over the time steps with contact rows. A run without contact is
-/// an error: the number of frames or the scale is wrong.
+/// Runs a scene and keeps `count` problems, spread evenly over the time steps with contact rows. A run
+/// without contact is an error: the number of frames or the scale is wrong.
 fn in_contact(scene: &Scene, frames: usize, count: usize) -> Result<Vec<Kept>> {
     let mut simulator = Simulator::new(scene)?;
     let mut last = Last { recorder: Recorder::new(&simulator), problem: None };
     let mut kept: Vec<Kept> = Vec::new();
-    // Every `stride`th time step in contact is kept. The stride doubles when too many are kept, which bounds the memory.
+    // Every `stride`th time step in contact is kept. The stride doubles when too many are kept, which bounds
+    // the memory.
     let (mut seen, mut stride) = (0, 1);
     for step in 1..=frames {
         let statistics = simulator.step_watched(&mut last)?;

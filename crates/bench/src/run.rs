@@ -9,8 +9,8 @@ use crate::machine::Machine;
 use crate::page;
 use anyhow::{Context, Result};
 
-/// Measures a figure: tables as CSV, charts as SVG, all of it as `report.md`. A full run publishes it in `docs`; `order`
-/// has the names of all figures in the order of the page.
+/// Measures a figure: tables as CSV, charts as SVG, all of it as `report.md`. A full run publishes it in
+/// `docs`; `order` has the names of all figures in the order of the page.
 pub fn measure(bench: &Bench, docs: &Docs, figure: &dyn Figure, order: &[&str]) -> Result<()> {
     bench.begin_figure();
     let load = Machine::load();

@@ -48,8 +48,8 @@ pub struct Simulation {
     pub min_gap: Option<f64>,
 }
 
-/// Runs a scene for `frames` time steps once and keeps the result under `key`. `samples` states are sampled evenly; the
-/// last one is the end.
+/// Runs a scene for `frames` time steps once and keeps the result under `key`. `samples` states are sampled
+/// evenly; the last one is the end.
 pub fn simulate(
     bench: &Bench,
     key: &str,

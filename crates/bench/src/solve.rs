@@ -58,10 +58,10 @@ pub enum Against {
     Residuals,
 }
 
-/// Solves every case by every setting. Each solve is a measurement of its own that all figures share. In each of
-/// `rounds` rounds the settings take turns, so that a busy machine slows all of them alike; times are medians over
-/// rounds. A case that there was no time for has no result for any setting, so that settings are always compared on
-/// the same cases.
+/// Solves every case by every setting. Each solve is a measurement of its own that all figures share. In each
+/// of `rounds` rounds the settings take turns, so that a busy machine slows all of them alike; times are
+/// medians over rounds. A case that there was no time for has no result for any setting, so that settings are
+/// always compared on the same cases.
 pub fn compare(
     bench: &Bench,
     cases: &[&CollisionCase],

@@ -79,7 +79,8 @@ pub fn on_cases(
     rounds: usize,
     against: Against,
 ) -> Result<Vec<Compared>> {
-    // The first problem of each scene, then the second: if time runs out, the last problems of all scenes are left out.
+    // The first problem of each scene, then the second: if time runs out, the last problems of all scenes are
+    // left out.
     let mut order: Vec<(usize, usize)> =
         by_scene.iter().enumerate().flat_map(|(s, cases)| (0..cases.len()).map(move |k| (s, k))).collect();
     order.sort_by_key(|&(scene, case)| (case, scene));
@@ -120,7 +121,8 @@ impl Compared {
 }
 
 impl Summary {
-    /// The summary; none if nothing was solved. All `cases` are of one scene and have the same mean edge length.
+    /// The summary; none if nothing was solved. All `cases` are of one scene and have the same mean edge
+    /// length.
     pub fn of<'a>(
         setting: &Setting,
         cases: &[CollisionCase],
@@ -162,8 +164,8 @@ impl Summary {
     }
 
     /// The distance to the reference solution [m]. Without references: the root of the sum of squares of the
-    /// stationarity residual and the violations of contacts and edge limits, because each alone can be small while the
-    /// others are large.
+    /// stationarity residual and the violations of contacts and edge limits, because each alone can be small
+    /// while the others are large.
     pub fn error(&self, referenced: bool) -> f64 {
         if referenced {
             self.distance_to_reference.unwrap_or(f64::NAN)
@@ -248,8 +250,8 @@ pub fn ratios(
         .collect()
 }
 
-/// One line per scene: a quantity over the values of a parameter. `values` has each value with the method and the
-/// change of its setting.
+/// One line per scene: a quantity over the values of a parameter. `values` has each value with the method and
+/// the change of its setting.
 pub fn lines(
     compared: &[Compared],
     values: &[(f64, &str, String)],

@@ -5,8 +5,8 @@
 pub enum Targets {
     /// Bowknot's dynamics with its repulsion: few targets are deep in penetration.
     Aware,
-    /// Bowknot's dynamics without repulsion: targets lie deep in penetration. The paper's simulator has a repulsive
-    /// model (section 6.2), so these problems are harder than the paper's.
+    /// Bowknot's dynamics without repulsion: targets lie deep in penetration. The paper's simulator has a
+    /// repulsive model (section 6.2), so these are not the paper's targets.
     Unaware,
 }
 

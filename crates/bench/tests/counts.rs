@@ -1,6 +1,6 @@
-//! Counts that are the same in every run: steps, searches, pairs and rows of small scenes and problems. `counts.csv` has
-//! the accepted counts; `BOWKNOT_ACCEPT=1 cargo test -p bowknot-bench --test counts` rewrites it after an intended change.
-//! Times are never pinned.
+//! Counts that are the same in every run: steps, searches, pairs and rows of small scenes and problems.
+//! `counts.csv` has the accepted counts; `BOWKNOT_ACCEPT=1 cargo test -p bowknot-bench --test counts`
+//! rewrites it after an intended change. Times are never pinned.
 
 use bowknot::simulator::StepStatistics;
 use bowknot::{Scene, Simulator};
@@ -19,8 +19,8 @@ const SCENES: [(&str, f64, usize); 8] = [
     ("sand", 0.1, 40),
 ];
 
-/// A figure whose table has steps and searches of methods. Solves that fail may have reached their time limit: the failure
-/// is pinned, their steps are not.
+/// A figure whose table has steps and searches of methods. Solves that fail may have reached their time
+/// limit: the failure is pinned, their steps are not.
 const FIGURE: &str = "impact-zones";
 
 #[test]

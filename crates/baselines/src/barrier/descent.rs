@@ -1,9 +1,10 @@
-//! The log barrier by gradient descent (paper, section 3.4), as a backward step: y is the end of the descent step, and the
-//! forward step bounds the motion of each vertex towards it, as in the two-way method.
+//! The log barrier by gradient descent (paper, section 3.4), as a backward step: y is the end of the descent
+//! step, and the forward step bounds the motion of each vertex towards it, as in the two-way method.
 //!
-//! y = x - s D^-1 dE/dx, with D by [`Scaling`] and one factor s <= 1 for all vertices. s is halved after a step that raised
-//! the energy and raised by a tenth after one that lowered it (the rule of Wang and Yang 2016, applied in each step). A line
-//! search is of no use, because vertices move by different fractions of their way.
+//! y = x - s D^-1 dE/dx, with D by [`Scaling`] and one factor s <= 1 for all vertices. s is halved after a
+//! step that raised the energy and raised by a tenth after one that lowered it (the rule of Wang and Yang
+//! 2016, applied in each step). A line search is of no use, because vertices move by different fractions of
+//! their way.
 
 use super::{BarrierParams, Derivatives, Objective, Scaling};
 use bowknot_errors::{Errors, ParamError};
@@ -26,8 +27,8 @@ pub struct DescentStep {
     newton_length: f64,
 }
 
-/// Gradient descent with the forward step and the search of the two-way method; `params.stepper` of the problem bounds its
-/// steps.
+/// Gradient descent with the forward step and the search of the two-way method; `params.stepper` of the
+/// problem bounds its steps.
 ///
 /// # Errors
 /// Parameters out of their range.

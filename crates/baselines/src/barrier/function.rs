@@ -16,8 +16,9 @@ pub struct Jet {
 
 /// B(s) = -k (s - r)^2 ln(s/r) for a gap s [m] below the range r [m], 0 above; k is the strength [kg/s^2].
 ///
-/// With u = s/r: B = -k r^2 (u-1)^2 ln u, B' = -k r (u-1) [2 ln u + (u-1)/u], B'' = -k [2 ln u + 4 (u-1)/u - ((u-1)/u)^2].
-/// It is convex: ln u and (u-1)/u are negative below the range, so every term of B'' is at least 0.
+/// With u = s/r: B = -k r^2 (u-1)^2 ln u, B' = -k r (u-1) [2 ln u + (u-1)/u], B'' = -k [2 ln u + 4 (u-1)/u -
+/// ((u-1)/u)^2]. It is convex: ln u and (u-1)/u are negative below the range, so every term of B'' is at
+/// least 0.
 pub fn barrier(strength: f64, gap: f64, range: f64) -> Jet {
     if gap >= range {
         return Jet::default();

@@ -1,14 +1,16 @@
-//! Second derivatives of the objective, element by element; each is projected to a positive semidefinite matrix.
+//! Second derivatives of the objective, element by element; each is projected to a positive semidefinite
+//! matrix.
 //!
-//! A pair adds H = B'' g g^T + B' hess d, with g = W^T n the gradient of its distance d; W holds the signed weights sigma_k of
-//! its vertices. For the squared distance D(x) = min over b of |o|^2, o = W(b) x linear in the places b of the closest
-//! points, the implicit function theorem gives, over the places that are free to move,
+//! A pair adds H = B'' g g^T + B' hess d, with g = W^T n the gradient of its distance d; W holds the signed
+//! weights sigma_k of its vertices. For the squared distance D(x) = min over b of |o|^2, o = W(b) x linear in
+//! the places b of the closest points, the implicit function theorem gives, over the places that are free to
+//! move,
 //!
 //! hess D = 2 [W^T W - C (T^T T)^-1 C^T],   T_a = do/db_a,   C_a = (dW/db_a)^T o + W^T T_a,
 //!
-//! and hess d = (hess D / 2 - g g^T) / d. Eigenvalues of H below 0 are set to 0 (Teran et al. 2005; Li et al. 2020). For
-//! every pair H has rank 5 at most: it acts on W^T n, on W^T times both tangents, and on the C_a, so that a problem of
-//! eigenvalues of size 5 replaces one of size 12.
+//! and hess d = (hess D / 2 - g g^T) / d. Eigenvalues of H below 0 are set to 0 (Teran et al. 2005; Li et al.
+//! 2020). For every pair H has rank 5 at most: it acts on W^T n, on W^T times both tangents, and on the C_a,
+//! so that a problem of eigenvalues of size 5 replaces one of size 12.
 
 use super::objective::{Contact, Objective};
 use bowknot_twoway::geometry::{PairKind, Point, Vector};
@@ -154,7 +156,8 @@ impl Factors {
             1 => Matrix2::new(slides[0].norm_squared(), 0.0, 0.0, 1.0),
             _ => return factors,
         };
-        // Between parallel edges the closest points may slide together, and the distance has no second derivative.
+        // Between parallel edges the closest points may slide together, and the distance has no second
+        // derivative.
         if metric.determinant() > PARALLEL * metric[(0, 0)] * metric[(1, 1)]
             && let Some(inverse) = metric.try_inverse()
         {
@@ -169,7 +172,8 @@ impl Factors {
         for a in 0..5 {
             let column = self.v.column(a);
             let mut rest = column.into_owned();
-            // Two passes are enough (Kahan, in Parlett 1980): the second removes what rounding left in the first.
+            // Two passes are enough (Kahan, in Parlett 1980): the second removes what rounding left in the
+            // first.
             for _ in 0..2 {
                 for b in 0..a {
                     rest -= q.column(b) * q.column(b).dot(&rest);

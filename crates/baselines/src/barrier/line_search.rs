@@ -1,5 +1,5 @@
-//! One step size for all vertices: at most that of the earliest impact, then halved until the energy does not rise (Li et
-//! al. 2020, Algorithm 1).
+//! One step size for all vertices: at most that of the earliest impact, then halved until the energy does not
+//! rise (Li et al. 2020, Algorithm 1).
 
 use super::{BarrierParams, Objective};
 use crate::ccd::{AdditiveCcd, PathSearch, PathTime, earliest};
@@ -15,8 +15,8 @@ const ROUNDING: f64 = 1e-13;
 
 /// The forward step of [`super::by_newton`].
 ///
-/// While prescribed vertices move, the objective itself changes, and its values before and after a step cannot be compared.
-/// Such steps are limited by impacts alone.
+/// While prescribed vertices move, the objective itself changes, and its values before and after a step
+/// cannot be compared. Such steps are limited by impacts alone.
 #[derive(Debug, Default)]
 pub struct LineSearch {
     objective: Objective,

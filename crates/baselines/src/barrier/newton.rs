@@ -1,9 +1,10 @@
-//! The log barrier by projected Newton steps (Li et al. 2020, "Incremental Potential Contact"), as a backward step: y = x + p
-//! with H p = -dE/dx, H the Hessian with every element made positive semidefinite.
+//! The log barrier by projected Newton steps (Li et al. 2020, "Incremental Potential Contact"), as a backward
+//! step: y = x + p with H p = -dE/dx, H the Hessian with every element made positive semidefinite.
 //!
-//! Prescribed vertices in contact move by at most half of the barrier's range per step, and the step of the other vertices
-//! is solved for with this motion given: an obstacle pushes what is in its way. If prescribed vertices moved all the way,
-//! impacts would make the common step size too small for anything to get out of their way.
+//! Prescribed vertices in contact move by at most half of the barrier's range per step, and the step of the
+//! other vertices is solved for with this motion given: an obstacle pushes what is in its way. If prescribed
+//! vertices moved all the way, impacts would make the common step size too small for anything to get out of
+//! their way.
 
 use super::hessian::elements;
 use super::system::System;
@@ -29,8 +30,8 @@ pub struct NewtonStep {
     solver_iterations: usize,
 }
 
-/// Newton's method with the forward step of IPC: all vertices move up to the earliest impact, then half as far until the
-/// energy falls.
+/// Newton's method with the forward step of IPC: all vertices move up to the earliest impact, then half as
+/// far until the energy falls.
 ///
 /// # Errors
 /// Parameters out of their range.
@@ -55,8 +56,8 @@ impl NewtonStep {
         Ok(Self { objective: Objective::new(problem, params)?, ..Self::default() })
     }
 
-    /// Newton decrement of the last step as a length [m]: sqrt(-p . dE/dx / sum m/dt^2), the root mean square distance to
-    /// the minimum of the quadratic model, with the weights of the objective.
+    /// Newton decrement of the last step as a length [m]: sqrt(-p . dE/dx / sum m/dt^2), the root mean square
+    /// distance to the minimum of the quadratic model, with the weights of the objective.
     pub fn decrement(&self) -> f64 {
         self.decrement
     }

@@ -2,10 +2,10 @@
 //!
 //! E(x) = sum 1/2 m/dt^2 |x - y0|^2 + sum B(d_p(x) - xi_p) + sum 1/2 k_e max(|e| - L, 0)^2  [J]
 //!
-//! over the vertices that are not prescribed, the pairs nearer than the barrier's range and the edges beyond their limit.
-//! Gaps are measured from the minimum separation xi_p that the forward step keeps, as in Codim-IPC with thickness (Li et al.
-//! 2021). Otherwise a pair could reach its minimum separation, and the forward step instead of the barrier would hold it.
-//! Without minimum separations this is Eq. 8.
+//! over the vertices that are not prescribed, the pairs nearer than the barrier's range and the edges beyond
+//! their limit. Gaps are measured from the minimum separation xi_p that the forward step keeps, as in
+//! Codim-IPC with thickness (Li et al. 2021). Otherwise a pair could reach its minimum separation, and the
+//! forward step instead of the barrier would hold it. Without minimum separations this is Eq. 8.
 
 use super::function::{Jet, barrier};
 use super::{BarrierParams, element};
@@ -91,7 +91,8 @@ impl Objective {
         self.gather(problem, state, |_, p| state.contacts.separations[p])
     }
 
-    /// The candidate pairs within range at `x`. They are all pairs within range if the list was made for a path through x.
+    /// The candidate pairs within range at `x`. They are all pairs within range if the list was made for a
+    /// path through x.
     pub fn contacts_at(&self, problem: &Problem, state: &State, x: &[Point]) -> Vec<Contact> {
         let half_spaces = problem.model.half_spaces();
         self.gather(problem, state, |kind, p| {
@@ -114,7 +115,8 @@ impl Objective {
                 return None;
             }
             let separation = separation(kind, p);
-            // First the range that is not lowered for neighbours, which is cheaper: almost all pairs are farther apart.
+            // First the range that is not lowered for neighbours, which is cheaper: almost all pairs are
+            // farther apart.
             let largest = self.range_share * problem.spacing.of(&problem.model, kind, pair).delta;
             if separation.distance >= largest {
                 return None;
@@ -141,10 +143,10 @@ impl Objective {
 
     /// Gradient at `x` and blocks, given the pairs within range there.
     ///
-    /// A pair adds B'' g g^T with g the gradient of its distance, s_k beta_k n by vertex k. With weights that sum to 1 on
-    /// either side, (sum_k beta_k n.u_k)^2 <= 2 sum_k beta_k (n.u_k)^2: blocks 2 B'' beta_k n n^T majorise it, beta_k
-    /// against half-spaces. The rest, B' times the distance's own Hessian, is left out: it only lowers the energy where
-    /// that is positive semidefinite, as for two vertices.
+    /// A pair adds B'' g g^T with g the gradient of its distance, s_k beta_k n by vertex k. With weights that
+    /// sum to 1 on either side, (sum_k beta_k n.u_k)^2 <= 2 sum_k beta_k (n.u_k)^2: blocks 2 B'' beta_k n n^T
+    /// majorise it, beta_k against half-spaces. The rest, B' times the distance's own Hessian, is left out:
+    /// it only lowers the energy where that is positive semidefinite, as for two vertices.
     pub fn derivatives(
         &self,
         problem: &Problem,
@@ -190,7 +192,8 @@ impl Objective {
         }
     }
 
-    /// The edges beyond their limits at `x`: how far [m], 1 - L/|e|, and the direction from the second vertex to the first.
+    /// The edges beyond their limits at `x`: how far [m], 1 - L/|e|, and the direction from the second vertex
+    /// to the first.
     pub fn long_edges<'a>(
         &'a self,
         x: &'a [Point],
@@ -200,8 +203,8 @@ impl Objective {
         })
     }
 
-    /// Largest ratio of an edge's length to its length at the start of the call, and to its rest length; 0 where edges
-    /// have no penalty.
+    /// Largest ratio of an edge's length to its length at the start of the call, and to its rest length; 0
+    /// where edges have no penalty.
     pub fn stretch(&self, x: &[Point]) -> (f64, f64) {
         let stretch = self.edges.stretch(x);
         (stretch.to_start, stretch.to_rest)

@@ -8,21 +8,21 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct BarrierParams {
-    /// Strength k of the barrier [kg/s^2] (paper, Eq. 8). A larger k makes gaps wider and slows the way to the target, a
-    /// smaller one makes gaps tighter and steps shorter. Default 20, the paper's.
+    /// Strength k of the barrier [kg/s^2] (paper, Eq. 8). A larger k makes gaps wider and slows the way to
+    /// the target, a smaller one makes gaps tighter and steps shorter. Default 20, the paper's.
     pub strength: f64,
-    /// Distance d below which the barrier acts [m]. Default delta; in the paper both are 1 mm. Like delta it is lowered for
-    /// neighbours in fine meshes and scaled by the contact distances of the bodies.
+    /// Distance d below which the barrier acts [m]. Default delta; in the paper both are 1 mm. Like delta it
+    /// is lowered for neighbours in fine meshes and scaled by the contact distances of the bodies.
     pub range: Option<f64>,
     /// Time step of the inertia term [s] for calls that state none. Default 1/100.
     pub time_step: f64,
-    /// Stiffness k_e [kg/s^2] of a penalty 1/2 k_e max(|e| - L, 0)^2 on edges longer than their limit L in a call. The
-    /// paper's Eq. 7 has no such term, so that edges stretch. Default 0: no penalty.
+    /// Stiffness k_e [kg/s^2] of a penalty 1/2 k_e max(|e| - L, 0)^2 on edges longer than their limit L in a
+    /// call. The paper's Eq. 7 has no such term, so that edges stretch. Default 0: no penalty.
     pub edge_stiffness: f64,
     /// The scaling of descent steps. Default blocks.
     pub scaling: Scaling,
-    /// Gradient descent stops when its step would move no vertex further than this, in mean edge lengths; Newton's method
-    /// stops when its decrement is below it. Default 1e-3, a tenth of the two-way method's.
+    /// Gradient descent stops when its step would move no vertex further than this, in mean edge lengths;
+    /// Newton's method stops when its decrement is below it. Default 1e-3, a tenth of the two-way method's.
     pub tolerance: f64,
 }
 
@@ -30,8 +30,8 @@ pub struct BarrierParams {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Scaling {
-    /// dt^2/m of each vertex, the inverse of the inertia term: gradient descent in the metric of the objective (paper,
-    /// section 3.4), y = x - (x - y0) - dt^2/m dB/dx.
+    /// dt^2/m of each vertex, the inverse of the inertia term: gradient descent in the metric of the
+    /// objective (paper, section 3.4), y = x - (x - y0) - dt^2/m dB/dx.
     Mass,
     /// The inverse of each vertex's 3x3 block of a matrix that majorises the Hessian's convex part.
     Blocks,

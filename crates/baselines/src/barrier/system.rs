@@ -1,7 +1,9 @@
-//! The Newton system: inertia and elements, solved by conjugate gradients with 3x3 blocks of the diagonal as preconditioner.
+//! The Newton system: inertia and elements, solved by conjugate gradients with 3x3 blocks of the diagonal as
+//! preconditioner.
 //!
-//! The matrix is stored as sparse rows of 3x3 blocks, which are fewer than the blocks of the elements, because a vertex in
-//! contact has several pairs. Each row sums its elements in their order: the same bits for any number of threads.
+//! The matrix is stored as sparse rows of 3x3 blocks, which are fewer than the blocks of the elements,
+//! because a vertex in contact has several pairs. Each row sums its elements in their order: the same bits
+//! for any number of threads.
 
 use super::hessian::Element;
 use bowknot_twoway::geometry::Vector;
@@ -11,8 +13,8 @@ use rayon::prelude::*;
 /// Smallest number of vertices of a parallel task.
 const CHUNK: usize = 256;
 
-/// A symmetric positive definite matrix: inertia [N/m] of each vertex, and elements. Rows of vertices without inertia are
-/// zero: these vertices do not move.
+/// A symmetric positive definite matrix: inertia [N/m] of each vertex, and elements. Rows of vertices without
+/// inertia are zero: these vertices do not move.
 #[derive(Debug)]
 pub struct System {
     /// Starts of the rows, columns of their blocks, and the blocks.
@@ -93,7 +95,8 @@ impl System {
         });
     }
 
-    /// Solves A x = b to a residual of `tolerance` relative to b, from x = 0; `b` is 0 for vertices that do not move.
+    /// Solves A x = b to a residual of `tolerance` relative to b, from x = 0; `b` is 0 for vertices that do
+    /// not move.
     pub fn solve(
         &self,
         b: &[Vector],

@@ -1,13 +1,13 @@
-//! Additive continuous collision detection (Li, Kaufman, Jiang 2021, "Codimensional Incremental Potential Contact",
-//! Algorithm 1): how far along linear paths a pair is certain not to meet.
+//! Additive continuous collision detection (Li, Kaufman, Jiang 2021, "Codimensional Incremental Potential
+//! Contact", Algorithm 1): how far along linear paths a pair is certain not to meet.
 //!
-//! If the gap is g and c bounds the speed at which it closes, the pair cannot meet for another g/c. So time is advanced by
-//! 0.9 g/c again and again, until the gap falls below a share of the gap at the start. No roots are computed: the result is
-//! never too late, also in parallel and degenerate cases.
+//! If the gap is g and c bounds the speed at which it closes, the pair cannot meet for another g/c. So time
+//! is advanced by 0.9 g/c again and again, until the gap falls below a share of the gap at the start. No
+//! roots are computed: the result is never too late, also in parallel and degenerate cases.
 //!
-//! **Rounding.** Distances are certified lower bounds, the slab widths of `separation`. Positions x + t p are rounded, by less
-//! than 1.74 ulp(C) along any direction for coordinates up to C (see [`Rounding`]), and so is the update of a step: 4 ulp(C)
-//! per pair for each of the two. Speeds are rounded up.
+//! **Rounding.** Distances are certified lower bounds, the slab widths of `separation`. Positions x + t p are
+//! rounded, by less than 1.74 ulp(C) along any direction for coordinates up to C (see [`Rounding`]), and so
+//! is the update of a step: 4 ulp(C) per pair for each of the two. Speeds are rounded up.
 
 use bowknot_errors::{Checks, Parameters};
 use bowknot_twoway::geometry::{HalfSpace, PairKind, Point, Separation, Vector, separation};
@@ -23,8 +23,9 @@ const SPEED_ROUNDING: f64 = 1.0 + 16.0 * f64::EPSILON;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct AdditiveCcd {
-    /// A pair counts as meeting below this share of its gap at the start. A smaller share makes times of impact later and
-    /// false impacts of pairs that nearly meet rarer, and takes more iterations. Default 0.1, that of Li et al.
+    /// A pair counts as meeting below this share of its gap at the start. A smaller share makes times of
+    /// impact later and false impacts of pairs that nearly meet rarer, and takes more iterations. Default
+    /// 0.1, that of Li et al.
     pub slackness: f64,
     /// The bound of the speed at which a pair closes. Default travel, that of Li et al.
     pub speed: ClosingSpeed,
@@ -38,8 +39,8 @@ pub struct AdditiveCcd {
 pub enum ClosingSpeed {
     /// The largest speeds of both sides relative to their mean motion, whatever the direction.
     Travel,
-    /// The smaller of that and the speed at which the slab between the sides closes along its normal (Mirtich 1996).
-    /// Pairs that move apart or side by side take one distance computation.
+    /// The smaller of that and the speed at which the slab between the sides closes along its normal (Mirtich
+    /// 1996). Pairs that move apart or side by side take one distance computation.
     Slab,
 }
 
@@ -67,9 +68,9 @@ pub struct Clearance {
 }
 
 impl AdditiveCcd {
-    /// How far the pair at `x` stays farther apart than `min_separation` >= 0 [m] while its vertices move along `paths` [m]
-    /// with a common path time from 0 to 1; unused places are ignored. A result of `until` or later is returned as 1: to
-    /// find the smallest of many, pass the smallest so far.
+    /// How far the pair at `x` stays farther apart than `min_separation` >= 0 [m] while its vertices move
+    /// along `paths` [m] with a common path time from 0 to 1; unused places are ignored. A result of `until`
+    /// or later is returned as 1: to find the smallest of many, pass the smallest so far.
     pub fn clearance(
         &self,
         kind: PairKind,
@@ -100,7 +101,8 @@ impl AdditiveCcd {
         let mut free = (1.0 - self.slackness) * first / speed(&start);
         let mut time = 0.0;
         for iteration in 1..=self.max_iterations {
-            // The result would be no earlier than `until`. So the smallest of many does not depend on their order.
+            // The result would be no earlier than `until`. So the smallest of many does not depend on their
+            // order.
             if time + free > 1.0 || time >= until {
                 return done(1.0, iteration);
             }
@@ -153,7 +155,8 @@ fn closing_travel(kind: PairKind, paths: &[Vector; 4]) -> f64 {
     let (count, side_a) = (kind.vertex_count(), kind.side_a());
     let mean = paths[..count].iter().sum::<Vector>() / count as f64;
     let largest = |side: &[Vector]| side.iter().map(|p| (p - mean).norm()).fold(0.0, f64::max);
-    // The mean is the same for all vertices, however it is rounded; differences from it lose digits of the common motion.
+    // The mean is the same for all vertices, however it is rounded; differences from it lose digits of the
+    // common motion.
     let common = paths[..count].iter().map(|p| p.amax()).fold(mean.amax(), f64::max);
     let speed = largest(&paths[..side_a]) + largest(&paths[side_a..count]);
     if speed == 0.0 { 0.0 } else { speed * SPEED_ROUNDING + 4.0 * f64::EPSILON * common }

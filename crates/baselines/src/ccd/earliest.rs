@@ -1,4 +1,5 @@
-//! One step size for all vertices: that of the earliest impact (Li et al. 2020, "Incremental Potential Contact").
+//! One step size for all vertices: that of the earliest impact (Li et al. 2020, "Incremental Potential
+//! Contact").
 
 use super::additive::AdditiveCcd;
 use super::pairs::clearance;

@@ -1,8 +1,8 @@
 //! Step sizes by continuous collision detection in place of distances (paper, sections 5.1 and 5.2).
 //!
-//! [`AdditiveCcd`] computes how far a pair is certain not to meet. Two forward steps use it: all vertices move up to the
-//! earliest impact ([`EarliestImpact`]), or each vertex up to its own ([`PerVertexImpact`]). Both work with every backward
-//! step.
+//! [`AdditiveCcd`] computes how far a pair is certain not to meet. Two forward steps use it: all vertices
+//! move up to the earliest impact ([`EarliestImpact`]), or each vertex up to its own ([`PerVertexImpact`]).
+//! Both work with every backward step.
 
 mod additive;
 mod earliest;

@@ -4,7 +4,8 @@ use super::additive::{AdditiveCcd, Clearance};
 use bowknot_twoway::geometry::{PairKind, Vector};
 use bowknot_twoway::{Problem, State};
 
-/// How far the candidate pair `p` keeps its minimum separation while its vertices move from x along `paths` [m].
+/// How far the candidate pair `p` keeps its minimum separation while its vertices move from x along `paths`
+/// [m].
 pub(super) fn clearance(
     ccd: &AdditiveCcd,
     problem: &Problem,

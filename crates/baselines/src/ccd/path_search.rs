@@ -13,8 +13,8 @@ pub(crate) enum PathTime {
     PerVertex,
 }
 
-/// Fills `state.contacts` with every pair that may meet while vertices move from x along `paths` [m]. The present list is
-/// kept if it has all of them. Contact geometry stays that at x.
+/// Fills `state.contacts` with every pair that may meet while vertices move from x along `paths` [m]. The
+/// present list is kept if it has all of them. Contact geometry stays that at x.
 ///
 /// Tubes around the paths are as wide as the contact range, so that pairs within it keep their multipliers.
 #[derive(Debug, Default)]

@@ -1,10 +1,11 @@
-//! A step size for each vertex: that of its own first impact, verified and backtracked (paper, section 5; Wu et al. 2020 do
-//! so for vertex-vertex pairs).
+//! A step size for each vertex: that of its own first impact, verified and backtracked (paper, section 5; Wu
+//! et al. 2020 do so for vertex-vertex pairs).
 //!
-//! A time of impact is valid while both sides move with a common path time. If one vertex moves by a smaller fraction of its
-//! way than another, their pair moves along other paths, and may meet earlier than before. So the shortened paths are tested
-//! again, those of pairs that meet are shortened further, and so on until no pair meets. If that takes too many rounds, all
-//! vertices move by the fraction of their last paths up to the earliest impact.
+//! A time of impact is valid while both sides move with a common path time. If one vertex moves by a smaller
+//! fraction of its way than another, their pair moves along other paths, and may meet earlier than before. So
+//! the shortened paths are tested again, those of pairs that meet are shortened further, and so on until no
+//! pair meets. If that takes too many rounds, all vertices move by the fraction of their last paths up to the
+//! earliest impact.
 
 use super::additive::AdditiveCcd;
 use super::pairs::clearance;
@@ -63,8 +64,8 @@ impl PerVertexImpact {
         }
     }
 
-    /// Limits the vertices of all pairs with a changed path that meet along the present paths. Returns the fraction of these
-    /// paths by which all vertices can move.
+    /// Limits the vertices of all pairs with a changed path that meet along the present paths. Returns the
+    /// fraction of these paths by which all vertices can move.
     fn limit(&self, problem: &Problem, state: &State) -> f64 {
         let first = AtomicU64::new(1.0f64.to_bits());
         let pairs = &state.contacts.pairs;
@@ -131,8 +132,8 @@ impl ForwardStep for PerVertexImpact {
                 break;
             }
             if round == self.rounds {
-                // With a common path time along the paths just tested, every pair is clear up to here. Pairs without
-                // a changed path were tested in an earlier round and are clear all the way.
+                // With a common path time along the paths just tested, every pair is clear up to here. Pairs
+                // without a changed path were tested in an earlier round and are clear all the way.
                 for v in 0..self.paths.len() {
                     self.stepper.limit(v, common * self.fractions[v]);
                 }

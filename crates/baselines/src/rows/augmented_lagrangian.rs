@@ -7,23 +7,25 @@ use bowknot_twoway::lcp::{BallRow, Error, Problem, State, TangentVector};
 use bowknot_twoway::{RowSolver, RowSystem};
 use rayon::prelude::*;
 
-/// The augmented Lagrangian with gradient descent (Tang et al. 2018, "I-Cloth"; paper, section 4.3.2, Fig. 15). It only
-/// evaluates constraints and gradients and solves no system. For rows s(y) >= 0 and m = 1/w (Rockafellar 1973),
+/// The augmented Lagrangian with gradient descent (Tang et al. 2018, "I-Cloth"; paper, section 4.3.2, Fig.
+/// 15). It only evaluates constraints and gradients and solves no system. For rows s(y) >= 0 and m = 1/w
+/// (Rockafellar 1973),
 ///
 /// L(y, lambda) = 1/2 sum m |y - y'|^2 + 1/(2 rho) sum (max(0, lambda - rho s)^2 - lambda^2),
 ///
 /// y moves along -grad L, and every few steps lambda <- max(0, lambda - rho s).
 ///
-/// Each vertex has the largest step size that is certain to descend: 1/(m_v + rho h_v), where h bounds J^T J. This is a
-/// gradient descent with a diagonal preconditioner; one step size for all vertices would be that of the vertex with most
-/// rows. Distance limits have the vector form: f <- rho (z - projection of z onto the ball), z = y_a - y_b + f/rho. y starts
-/// at that of the last two-way step, as the paper says below Eq. 9. Friction rows get no force.
+/// Each vertex has the largest step size that is certain to descend: 1/(m_v + rho h_v), where h bounds J^T J.
+/// This is a gradient descent with a diagonal preconditioner; one step size for all vertices would be that of
+/// the vertex with most rows. Distance limits have the vector form: f <- rho (z - projection of z onto the
+/// ball), z = y_a - y_b + f/rho. y starts at that of the last two-way step, as the paper says below Eq. 9.
+/// Friction rows get no force.
 #[derive(Clone, Debug)]
 pub struct AugmentedLagrangian {
     /// Gradient steps per backward step: 20 or 100 in the paper. Default 20.
     pub iterations: usize,
-    /// Penalty rho, in units of the mean vertex mass [1]. With a larger penalty, constraints hold after fewer updates of
-    /// the multipliers, but each update needs more gradient steps. Default 1.
+    /// Penalty rho, in units of the mean vertex mass [1]. With a larger penalty, constraints hold after fewer
+    /// updates of the multipliers, but each update needs more gradient steps. Default 1.
     pub penalty: f64,
     /// Gradient steps between two updates of the multipliers. Default 1.
     pub gradient_steps: usize,

@@ -7,8 +7,8 @@ use rayon::prelude::*;
 /// Smallest number of nodes or rows of a parallel task.
 pub(crate) const MIN_SHARE: usize = 1024;
 
-/// The places of each movable node: 4r + k in row r; 2b + k after all rows for distance limit b. Places with a zero gradient
-/// are left out.
+/// The places of each movable node: 4r + k in row r; 2b + k after all rows for distance limit b. Places with
+/// a zero gradient are left out.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Incidence {
     starts: Vec<u32>,
@@ -71,8 +71,8 @@ impl Incidence {
         });
     }
 
-    /// For each node h_v = sum over its rows of |g_rv| sum_k |g_rk|: by Gershgorin's theorem in blocks J^T J is at most
-    /// the diagonal matrix of these.
+    /// For each node h_v = sum over its rows of |g_rv| sum_k |g_rk|: by Gershgorin's theorem in blocks J^T J
+    /// is at most the diagonal matrix of these.
     pub(crate) fn curvatures(&self, system: &Problem<'_>, curvatures: &mut Vec<f64>) {
         let rows = system.rows().rows;
         curvatures.clear();

@@ -4,9 +4,9 @@ use bowknot_twoway::geometry::Point;
 use bowknot_twoway::{BackwardStep, Problem, State, Statistics};
 
 /// Accelerates the targets of another backward step over the two-way steps of a call (Wang 2015, "A Chebyshev
-/// semi-iterative approach for accelerating projective and position-based dynamics"; paper, section 4.2.2, which finds it
-/// ineffective because contacts come and go): y^(l+1) <- y^(l-1) + omega (y^(l+1) - y^(l-1)), with
-/// omega_1 = 2/(2 - rho^2) and omega_(k+1) = 4/(4 - rho^2 omega_k) after `delay` plain steps.
+/// semi-iterative approach for accelerating projective and position-based dynamics"; paper, section 4.2.2,
+/// which finds it ineffective because contacts come and go): y^(l+1) <- y^(l-1) + omega (y^(l+1) - y^(l-1)),
+/// with omega_1 = 2/(2 - rho^2) and omega_(k+1) = 4/(4 - rho^2 omega_k) after `delay` plain steps.
 ///
 /// Multipliers and residuals are those of the inner step.
 #[derive(Clone, Debug)]
@@ -21,7 +21,8 @@ pub struct InterStepChebyshev<B> {
 }
 
 impl<B> InterStepChebyshev<B> {
-    /// Around `inner`, for an estimate of the spectral radius in [0, 1), after `delay` plain steps (Wang 2015: 10).
+    /// Around `inner`, for an estimate of the spectral radius in [0, 1), after `delay` plain steps (Wang
+    /// 2015: 10).
     pub fn new(inner: B, spectral_radius: f64, delay: usize) -> Self {
         Self { inner, spectral_radius, delay, omega: 1.0, before: Vec::new(), last: Vec::new() }
     }

@@ -6,17 +6,18 @@ use bowknot_twoway::{RowSolver, RowSystem};
 
 /// Projected Jacobi (paper, section 4.2.2, Fig. 11 and 12).
 ///
-/// The paper damps all rows by one factor, small enough for convergence. Here each row has its own factor, from the number
-/// of rows that share its nodes (mass splitting, see [`bowknot_twoway::lcp::Jacobi`]). This converges for any rows without
-/// tuning, and no slower.
+/// The paper damps all rows by one factor, small enough for convergence. Here each row has its own factor,
+/// from the number of rows that share its nodes (mass splitting, see [`bowknot_twoway::lcp::Jacobi`]). This
+/// converges for any rows without tuning, and no slower.
 #[derive(Clone, Debug)]
 pub struct ProjectedJacobi {
     /// Sweeps per backward step. Default 1; up to 800 in Fig. 12.
     pub sweeps: u32,
     /// Factor on each row's step, in (0, 2). Default 1.
     pub relaxation: f64,
-    /// Estimate of the iteration's spectral radius for Chebyshev weights within the step (Golub and Varga 1961), in [0, 1).
-    /// Default 0: no weights. It has no effect with one sweep per step; for weights between steps see [`crate::rows::InterStepChebyshev`].
+    /// Estimate of the iteration's spectral radius for Chebyshev weights within the step (Golub and Varga
+    /// 1961), in [0, 1). Default 0: no weights. It has no effect with one sweep per step; for weights between
+    /// steps see [`crate::rows::InterStepChebyshev`].
     pub spectral_radius: f64,
     solver: Jacobi,
 }

@@ -4,20 +4,20 @@ use bowknot_errors::{Checks, Parameters};
 use bowknot_twoway::lcp::{self, Error, Params, State, solve_coloured};
 use bowknot_twoway::{RowSolver, RowSystem};
 
-/// Gauss-Seidel on A lambda + q = 0 with all rows as equations (Harmon et al. 2008, "Robust treatment of simultaneous
-/// collisions"; paper, section 4.3.1, Fig. 13). Nothing can separate: contacts stick, and linear edge rows keep their
-/// lengths at the limit (Fig. 14), so that the paper leaves edges out (`constraints.edges = false`). Distance limits, which
-/// have no linear form, keep their projection.
+/// Gauss-Seidel on A lambda + q = 0 with all rows as equations (Harmon et al. 2008, "Robust treatment of
+/// simultaneous collisions"; paper, section 4.3.1, Fig. 13). Nothing can separate: contacts stick, and linear
+/// edge rows keep their lengths at the limit (Fig. 14), so that the paper leaves edges out
+/// (`constraints.edges = false`). Distance limits, which have no linear form, keep their projection.
 ///
-/// As in the paper, only the linear system of 2008 is compared, not the whole method, which works on velocities. With
-/// `backward.active_rows` the system has only active rows, which is close to the collisions of Harmon et al.; without it,
-/// every pair in range has one.
+/// As in the paper, only the linear system of 2008 is compared, not the whole method, which works on
+/// velocities. With `backward.active_rows` the system has only active rows, which is close to the collisions
+/// of Harmon et al.; without it, every pair in range has one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LinearSystem {
     /// Sweeps per backward step. Default 20, the paper's.
     pub sweeps: u32,
-    /// Whether every update is followed by lambda <- max(lambda, 0), the one line of Fig. 13. That makes it projected
-    /// Gauss-Seidel with so many sweeps. Default false.
+    /// Whether every update is followed by lambda <- max(lambda, 0), the one line of Fig. 13. That makes it
+    /// projected Gauss-Seidel with so many sweeps. Default false.
     pub projected: bool,
 }
 

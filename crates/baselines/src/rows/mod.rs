@@ -1,12 +1,13 @@
-//! Other solvers of the backward step's rows (paper, sections 4.2.2 and 4.3). All else is shared with the two-way method:
-//! rows, multipliers that are kept from step to step, search and forward step.
+//! Other solvers of the backward step's rows (paper, sections 4.2.2 and 4.3). All else is shared with the
+//! two-way method: rows, multipliers that are kept from step to step, search and forward step.
 //!
 //! - [`LinearSystem`]: Harmon et al. 2008, without and with the projection lambda >= 0 (Fig. 13, 14);
 //! - [`AugmentedLagrangian`]: Tang et al. 2018, by gradient descent (Fig. 15);
-//! - [`ProjectedJacobi`]: with Chebyshev weights within the step (Fig. 11, 12), or between steps ([`InterStepChebyshev`]).
+//! - [`ProjectedJacobi`]: with Chebyshev weights within the step (Fig. 11, 12), or between steps
+//!   ([`InterStepChebyshev`]).
 //!
-//! They are compared with projected Gauss-Seidel ([`bowknot_twoway::ColouredSweeps`]) and, for small problems, the exact
-//! [`bowknot_twoway::lcp::solve_exact`].
+//! They are compared with projected Gauss-Seidel ([`bowknot_twoway::ColouredSweeps`]) and, for small
+//! problems, the exact [`bowknot_twoway::lcp::solve_exact`].
 
 mod augmented_lagrangian;
 mod incidence;
@@ -42,10 +43,11 @@ pub fn two_way_with_stage<B: BackwardStep>(
     Resolver::with_stages(problem, search, backward, CertifiedForward::default())
 }
 
-/// Parameters under which contacts keep their volume, as in Sifakis et al. 2008 ("Globally coupled collision handling using
-/// volume preserving impulses"), and are not separated to the volume of the desired distance (paper, section 4.1): a pair
-/// below its desired distance keeps the gap at which it became a candidate in the call. Calls must have a time step, because
-/// the growth of gaps is switched off by a separation speed of almost 0.
+/// Parameters under which contacts keep their volume, as in Sifakis et al. 2008 ("Globally coupled collision
+/// handling using volume preserving impulses"), and are not separated to the volume of the desired distance
+/// (paper, section 4.1): a pair below its desired distance keeps the gap at which it became a candidate in
+/// the call. Calls must have a time step, because the growth of gaps is switched off by a separation speed of
+/// almost 0.
 #[must_use]
 pub fn preserving_volume(mut params: Params) -> Params {
     params.constraints.form = ContactForm::Volume;

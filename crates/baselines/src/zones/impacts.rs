@@ -13,8 +13,8 @@ use std::time::Instant;
 const SEPARATION_SHARE: f64 = 0.1;
 /// .. or above this share of its gap at the start, if that is less.
 const GAP_SHARE: f64 = 0.5;
-/// Detection may stop early by this share of the desired distance. A pair that ends at its desired distance must never
-/// count as meeting, however far apart it started.
+/// Detection may stop early by this share of the desired distance. A pair that ends at its desired distance
+/// must never count as meeting, however far apart it started.
 const SLACK_SHARE: f64 = 0.5;
 /// Smallest number of pairs of a parallel task.
 const CHUNK: usize = 256;
@@ -26,7 +26,8 @@ pub struct Impact {
     pub kind: PairKind,
     /// The pair.
     pub pair: Pair,
-    /// Until this time in [0, 1] the pair is certain to stay apart. 1: all the way, but it ends nearer than its thickness.
+    /// Until this time in [0, 1] the pair is certain to stay apart. 1: all the way, but it ends nearer than
+    /// its thickness.
     pub time: f64,
     /// Desired distance of the pair [m].
     pub desired: f64,
@@ -39,12 +40,12 @@ impl Impact {
     }
 }
 
-/// Finds impacts: candidates by swept boxes, then additive continuous detection. A pair that it does not find keeps a tenth
-/// of its desired distance on the whole way, or half of its gap at the start.
+/// Finds impacts: candidates by swept boxes, then additive continuous detection. A pair that it does not find
+/// keeps a tenth of its desired distance on the whole way, or half of its gap at the start.
 #[derive(Debug)]
 pub struct ImpactSearch {
-    /// A pair that does not meet, but ends at less than this share of its desired distance, is found too. 0, the default:
-    /// no such pair is.
+    /// A pair that does not meet, but ends at less than this share of its desired distance, is found too. 0,
+    /// the default: no such pair is.
     pub thickness: f64,
     search: ProximitySearch,
     ccd: AdditiveCcd,
@@ -66,9 +67,9 @@ impl ImpactSearch {
         }
     }
 
-    /// The impacts of vertices that move from `x` along `paths` [m] with a common path time, in the order of pair lists.
-    /// Pairs that `accept` refuses are left out. `growth` bounds the growth of a gap that a row asks for [m]. Adds a search
-    /// and its seconds to `outcome`; detection counts as evaluation.
+    /// The impacts of vertices that move from `x` along `paths` [m] with a common path time, in the order of
+    /// pair lists. Pairs that `accept` refuses are left out. `growth` bounds the growth of a gap that a row
+    /// asks for [m]. Adds a search and its seconds to `outcome`; detection counts as evaluation.
     pub fn find(
         &mut self,
         problem: &Problem,

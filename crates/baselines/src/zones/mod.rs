@@ -1,9 +1,11 @@
-//! Impact zones: collisions between a state x and its target y are found by continuous detection, and vertices that collide
-//! are handled together.
+//! Impact zones: collisions between a state x and its target y are found by continuous detection, and
+//! vertices that collide are handled together.
 //!
-//! - [`ImpactZones`]: the target is optimised until the straight path to it is free of impacts (Harmon et al. 2008, Tang et
+//! - [`ImpactZones`]: the target is optimised until the straight path to it is free of impacts (Harmon et al.
+//!   2008, Tang et
 //!   al. 2018). If that fails, nothing moves and the call counts as failed (paper, section 3.3).
-//! - [`RigidZones`]: vertices that collide move as one rigid body (Provot 1997, Bridson et al. 2002). This never fails.
+//! - [`RigidZones`]: vertices that collide move as one rigid body (Provot 1997, Bridson et al. 2002). This
+//!   never fails.
 //! - [`TwoPhase`]: impact zones first, then an interior point method if impacts remain (Wu et al. 2020).
 
 mod impacts;

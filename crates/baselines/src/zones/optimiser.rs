@@ -9,13 +9,15 @@ use bowknot_twoway::geometry::{Point, Vector};
 use bowknot_twoway::{Call, Problem, ResolveError};
 use std::time::Instant;
 
-/// Impact-zone optimisation alone (Harmon et al. 2008; Tang et al. 2018). Each round finds the target y nearest to y0 with
-/// n . (p - q)(y) >= delta for every pair that has met so far, with rows linearised at the impact; then impacts from x to y
-/// are detected again, until there are none. A pair that meets again gets a new row. Zones are the sets of vertices that
-/// rows connect. No row connects two zones, so that solving all rows at once solves each zone.
+/// Impact-zone optimisation alone (Harmon et al. 2008; Tang et al. 2018). Each round finds the target y
+/// nearest to y0 with n . (p - q)(y) >= delta for every pair that has met so far, with rows linearised at the
+/// impact; then impacts from x to y are detected again, until there are none. A pair that meets again gets a
+/// new row. Zones are the sets of vertices that rows connect. No row connects two zones, so that solving all
+/// rows at once solves each zone.
 ///
-/// It ends with a y that the straight path from x reaches without an impact, or fails ([`Outcome::failed`]) and leaves the
-/// positions unchanged. Prescribed vertices reach their keyframe, or the call fails. Edges have no limits.
+/// It ends with a y that the straight path from x reaches without an impact, or fails ([`Outcome::failed`])
+/// and leaves the positions unchanged. Prescribed vertices reach their keyframe, or the call fails. Edges
+/// have no limits.
 #[derive(Debug)]
 pub struct ImpactZones {
     problem: Problem,

@@ -15,9 +15,10 @@ pub struct ZoneParams {
     pub max_sweeps: u32,
     /// Gauss-Seidel stops when a sweep changes no row by more than this, in desired distances. Default 0.01.
     pub tolerance: f64,
-    /// A pair that does not meet, but ends at less than this share of its desired distance, gets a row too. Default 0, as
-    /// published: zones prevent intersections and keep no distance. With 0.8 they solve the problem of the methods that
-    /// keep a distance, up to a fifth of it. Closer to 1, rows that are linearised again and again may oscillate.
+    /// A pair that does not meet, but ends at less than this share of its desired distance, gets a row too.
+    /// Default 0, as published: zones prevent intersections and keep no distance. With 0.8 they solve the
+    /// problem of the methods that keep a distance, up to a fifth of it. Closer to 1, rows that are
+    /// linearised again and again may oscillate.
     pub thickness: f64,
 }
 
@@ -27,7 +28,8 @@ pub struct ZoneParams {
 pub enum ZoneSolver {
     /// Projected Gauss-Seidel, which fails least of the three.
     GaussSeidel,
-    /// Gauss-Seidel on equations, as in Harmon et al. 2008: a pair that has met once sticks for the rest of the call.
+    /// Gauss-Seidel on equations, as in Harmon et al. 2008: a pair that has met once sticks for the rest of
+    /// the call.
     LinearSystem,
     /// The augmented Lagrangian of Tang et al. 2018.
     AugmentedLagrangian,

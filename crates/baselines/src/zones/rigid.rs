@@ -9,14 +9,15 @@ use bowknot_twoway::{Call, Problem, ResolveError};
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-/// Rigid impact zones (Provot 1997; Bridson et al. 2002, section 7.4). Vertices that meet on their way become a zone, and
-/// zones that meet are merged. Each zone moves like a rigid body with the linear and angular momentum of its vertices, and
-/// detection is repeated until nothing meets. A zone with a prescribed vertex, or at a half-space, moves with it instead. If
-/// its prescribed vertices do not move as a rigid body, the zone and these vertices stay where they are.
+/// Rigid impact zones (Provot 1997; Bridson et al. 2002, section 7.4). Vertices that meet on their way become
+/// a zone, and zones that meet are merged. Each zone moves like a rigid body with the linear and angular
+/// momentum of its vertices, and detection is repeated until nothing meets. A zone with a prescribed vertex,
+/// or at a half-space, moves with it instead. If its prescribed vertices do not move as a rigid body, the
+/// zone and these vertices stay where they are.
 ///
-/// It never fails: pairs within a zone stay apart because its motion can be inverted at any time, and in the worst case
-/// everything is one zone. Relative motion within a zone is lost. The method of 2002 applies repulsions and some rounds of
-/// impulses first; here zones stand alone, as in Table 1 of the two-way paper.
+/// It never fails: pairs within a zone stay apart because its motion can be inverted at any time, and in the
+/// worst case everything is one zone. Relative motion within a zone is lost. The method of 2002 applies
+/// repulsions and some rounds of impulses first; here zones stand alone, as in Table 1 of the two-way paper.
 #[derive(Debug)]
 pub struct RigidZones {
     problem: Problem,
@@ -108,7 +109,8 @@ impl Zones {
         impact.vertices().iter().map(|&v| v as usize).chain(half_space)
     }
 
-    /// Whether the motion of a zone keeps the pair apart. The keyframes of vertices in one zone without impacts need not.
+    /// Whether the motion of a zone keeps the pair apart. The keyframes of vertices in one zone without
+    /// impacts need not.
     fn keep_apart(&self, impact: &Impact) -> bool {
         let mut roots = self.nodes(impact).map(|node| self.root(node));
         roots.next().is_some_and(|first| self.met[first] && roots.all(|root| root == first))

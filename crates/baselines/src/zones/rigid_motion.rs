@@ -1,12 +1,13 @@
-//! Motions that cause no intersections: the straight paths are those of an affine map that can be inverted at any time on
-//! the way.
+//! Motions that cause no intersections: the straight paths are those of an affine map that can be inverted at
+//! any time on the way.
 
 use bowknot_twoway::geometry::{Point, Vector};
 use nalgebra::{Matrix3, SymmetricEigen};
 
 /// A moment of inertia below this share of the largest one counts as 0: vertices on a line.
 const DEGENERATE: f64 = 1e-12;
-/// Largest distance of keyframes from a rigid motion, relative to the extent of their vertices and their travel.
+/// Largest distance of keyframes from a rigid motion, relative to the extent of their vertices and their
+/// travel.
 const RIGID: f64 = 1e-6;
 
 /// How a zone moves.
@@ -14,11 +15,12 @@ const RIGID: f64 = 1e-6;
 pub(crate) enum Motion {
     /// No motion.
     Rest,
-    /// d = v + omega x (x - centre), the velocities of a rigid body (Bridson et al. 2002). The paths are those of the map
-    /// 1 + s \[omega\], whose determinant 1 + s^2 |omega|^2 never vanishes. It stretches by sqrt(1 + omega^2), as theirs.
+    /// d = v + omega x (x - centre), the velocities of a rigid body (Bridson et al. 2002). The paths are
+    /// those of the map 1 + s \[omega\], whose determinant 1 + s^2 |omega|^2 never vanishes. It stretches by
+    /// sqrt(1 + omega^2), as theirs.
     Twist { centre: Vector, linear: Vector, angular: Vector },
-    /// x -> to + R (x - from), the motion of keyframes. The paths are those of (1 - s) + s R, which can be inverted for any
-    /// rotation by less than half a turn.
+    /// x -> to + R (x - from), the motion of keyframes. The paths are those of (1 - s) + s R, which can be
+    /// inverted for any rotation by less than half a turn.
     Rigid { from: Vector, to: Vector, rotation: Matrix3<f64> },
 }
 
@@ -35,7 +37,8 @@ impl Motion {
         }
     }
 
-    /// The motion that keeps the linear and angular momentum of vertices: position, desired path, and mass in any unit.
+    /// The motion that keeps the linear and angular momentum of vertices: position, desired path, and mass in
+    /// any unit.
     pub(crate) fn keeping_momentum(vertices: &[(Point, Vector, f64)]) -> Self {
         let total: f64 = vertices.iter().map(|(_, _, m)| m).sum();
         if total <= 0.0 {
@@ -64,8 +67,8 @@ impl Motion {
         Motion::Twist { centre, linear, angular }
     }
 
-    /// The rigid motion that moves vertices along the paths of their keyframes (Kabsch 1976); `None` if there is none. Fewer
-    /// than three vertices, or vertices on a line, move without turning.
+    /// The rigid motion that moves vertices along the paths of their keyframes (Kabsch 1976); `None` if there
+    /// is none. Fewer than three vertices, or vertices on a line, move without turning.
     pub(crate) fn following(vertices: &[(Point, Vector, f64)]) -> Option<Self> {
         let count = vertices.len() as f64;
         let from = vertices.iter().fold(Vector::zeros(), |sum, v| sum + v.0.coords) / count;

@@ -23,8 +23,9 @@ impl ImpactRows {
         self.rows.clear();
     }
 
-    /// Adds the row of an impact, or replaces the pair's row and keeps its multiplier. The row is linearised at the last
-    /// time at which the pair is certain not to meet: n . (p - q)(y) >= desired distance with the normal n there.
+    /// Adds the row of an impact, or replaces the pair's row and keeps its multiplier. The row is linearised
+    /// at the last time at which the pair is certain not to meet: n . (p - q)(y) >= desired distance with the
+    /// normal n there.
     pub(crate) fn add(&mut self, problem: &Problem, impact: &Impact, x: &[Point], paths: &[Vector]) {
         let kind = impact.kind;
         let mut vertices = impact.pair.vertices;
@@ -44,7 +45,8 @@ impl ImpactRows {
         self.rows.entry((kind, impact.pair.elements)).or_insert((row, 0.0)).0 = row;
     }
 
-    /// Moves `y` [m], one entry per vertex, from `free` to where the rows hold, as far as the solver converges.
+    /// Moves `y` [m], one entry per vertex, from `free` to where the rows hold, as far as the solver
+    /// converges.
     pub(crate) fn solve(
         &mut self,
         problem: &Problem,

@@ -8,12 +8,14 @@ use bowknot_twoway::geometry::Point;
 use bowknot_twoway::{Call, Problem, ResolveError};
 use std::time::Instant;
 
-/// The soft and the hard phase of Wu et al. 2020 ("A safe and fast repulsion method for GPU-based cloth self collisions";
-/// two-way paper, section 1.3). Some rounds of impact-zone optimisation move the target, without a guarantee. If the path to
-/// it still has impacts, an interior point method moves x towards it as far as it can.
+/// The soft and the hard phase of Wu et al. 2020 ("A safe and fast repulsion method for GPU-based cloth self
+/// collisions"; two-way paper, section 1.3). Some rounds of impact-zone optimisation move the target, without
+/// a guarantee. If the path to it still has impacts, an interior point method moves x towards it as far as it
+/// can.
 ///
-/// Their phases work on pairs of vertices of fine meshes. Here both work on all kinds of pairs, like all other compared
-/// methods. The hard phase is any method that never fails, such as their log barrier by gradient descent.
+/// Their phases work on pairs of vertices of fine meshes. Here both work on all kinds of pairs, like all
+/// other compared methods. The hard phase is any method that never fails, such as their log barrier by
+/// gradient descent.
 #[derive(Debug)]
 pub struct TwoPhase<H> {
     name: String,
@@ -23,8 +25,8 @@ pub struct TwoPhase<H> {
 }
 
 impl<H: Method> TwoPhase<H> {
-    /// For the scene in `problem`, with at most `soft_rounds` rounds in the soft phase; `hard` is a method for the same
-    /// scene.
+    /// For the scene in `problem`, with at most `soft_rounds` rounds in the soft phase; `hard` is a method
+    /// for the same scene.
     ///
     /// # Errors
     /// No round.

@@ -32,8 +32,8 @@ impl Scene {
         Self { x, model: CollisionModel::new(topology, vec![0, 0, 0, 1], bodies, vec![]).unwrap() }
     }
 
-    /// Two sheets `gap` apart, two strands across them, particles on top, ground below, an obstacle beside it: every
-    /// kind of pair, nearest neighbours `gap` apart.
+    /// Two sheets `gap` apart, two strands across them, particles on top, ground below, an obstacle beside
+    /// it: every kind of pair, nearest neighbours `gap` apart.
     pub fn heap(gap: f64) -> Self {
         let (mut x, mut triangles, mut bodies) = (Vec::new(), Vec::new(), Vec::new());
         let h = 0.1;
@@ -157,7 +157,8 @@ pub fn resolve_watched<S: Search, B: BackwardStep, F: ForwardStep>(
     (x, statistics)
 }
 
-/// Asserts by exact predicates, one pair after another, that no edge meets a triangle and nothing is below the ground.
+/// Asserts by exact predicates, one pair after another, that no edge meets a triangle and nothing is below
+/// the ground.
 pub fn assert_clear(model: &CollisionModel, x: &[Point], what: &str) {
     let topology = model.topology();
     let at = |v: u32| &x[v as usize];

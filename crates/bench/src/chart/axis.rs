@@ -19,8 +19,8 @@ pub struct Mapping {
 }
 
 impl Mapping {
-    /// An axis that shows all of `values` that it can show, with a margin. A linear axis of non-negative values begins
-    /// at 0.
+    /// An axis that shows all of `values` that it can show, with a margin. A linear axis of non-negative
+    /// values begins at 0.
     pub fn new(scale: Scale, values: impl Iterator<Item = f64>, [start, end]: [f64; 2]) -> Self {
         let inside = |v: &f64| v.is_finite() && (scale == Scale::Linear || *v > 0.0);
         let (low, high) = values

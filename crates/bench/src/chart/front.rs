@@ -1,6 +1,7 @@
 //! The Pareto front of points, smaller being better on both axes.
 
-/// Indices, by rising x, of the points that no other point dominates. Points that are not finite are on no front.
+/// Indices, by rising x, of the points that no other point dominates. Points that are not finite are on no
+/// front.
 pub fn pareto_front(points: &[(f64, f64)]) -> Vec<usize> {
     let mut order: Vec<usize> =
         (0..points.len()).filter(|&k| points[k].0.is_finite() && points[k].1.is_finite()).collect();

@@ -25,10 +25,11 @@ impl Figure for Barrier {
     }
 
     fn question(&self) -> &'static str {
-        "The paper's two-way method takes considerably fewer steps than gradient descent on Eq. 7-8 and is some five times \
-         faster on its bow knot (Fig. 5), and the barrier needs a suitable strength k (Fig. 6). Same search, same bounds on \
-         steps; the barrier has no edge limits, the objective of Eq. 7 with masses, 1/2 sum m/dt^2 |x - y|^2, and stops at 0.001 \
-         mean edge lengths. Five scenes with contact-unaware targets, two with contact-aware ones."
+        "The paper's two-way method takes considerably fewer steps than gradient descent on Eq. 7-8 and is \
+         some five times faster on its bow knot (Fig. 5), and the barrier needs a suitable strength k (Fig. \
+         6). Same search, same bounds on steps; the barrier has no edge limits, the objective of Eq. 7 with \
+         masses, 1/2 sum m/dt^2 |x - y|^2, and stops at 0.001 mean edge lengths. Five scenes with \
+         contact-unaware targets, two with contact-aware ones."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {

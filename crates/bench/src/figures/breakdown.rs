@@ -21,9 +21,10 @@ impl Figure for Breakdown {
     }
 
     fn question(&self) -> &'static str {
-        "In the paper's bow knot, the proximity search and the update of Jacobians take almost half of the time. Shares of the \
-         wall time of the recorded problems: *search* includes the distances of new pairs; *evaluate*: distances between \
-         searches; *backward*: rows, colours and sweeps; *forward*: the step and its certificates."
+        "In the paper's bow knot, the proximity search and the update of Jacobians take almost half of the \
+         time. Shares of the wall time of the recorded problems: *search* includes the distances of new \
+         pairs; *evaluate*: distances between searches; *backward*: rows, colours and sweeps; *forward*: the \
+         step and its certificates."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {
@@ -61,8 +62,8 @@ impl Figure for Breakdown {
         };
         Ok(Report {
             finding: format!(
-                "Search and evaluation of pairs take {} of the time of `paper` and {} of `fast`, means over the scenes. (The \
-                 paper: almost half, on its GPU.)",
+                "Search and evaluation of pairs take {} of the time of `paper` and {} of `fast`, means over \
+                 the scenes. (The paper: almost half, on its GPU.)",
                 share("paper"),
                 share("fast")
             ),

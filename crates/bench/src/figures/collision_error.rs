@@ -35,25 +35,30 @@ impl Figure for CollisionError {
     fn question(&self) -> &'static str {
         match self.targets {
             Targets::Aware => {
-                "How close does each method come to the reference solution, and in how many CPU seconds? Recorded problems of \
-                 each scene, without friction. Every method solves the same problems, in turns, within 4 s each. The error is \
-                 the distance to the reference solution, root mean square over mass, mean over the problems. If a problem of the \
-                 scene has no reference, it is the root of the sum of squares of three quantities: the stationarity residual \
-                 (the motion that would still bring x closer to its target and that no active row forbids), the largest \
-                 violation of a contact, and the largest excess of an edge over its limit, as a share, times the edge length. \
-                 The reference is `fast` with 200 sweeps, iterated to rest and checked by its residuals. The problems are not \
-                 convex: a method may end in another good minimum. All results are measured with the rows of `fast`, whose edge \
-                 limits refer to the rest lengths. `paper` limits edges against the start of the call and so solves another \
-                 problem; `paper, edges from rest` solves the same one. Barriers and impact zones have no edge limits. Impact \
-                 zones only prevent intersections and keep no distance: a target without intersections on the way is returned \
-                 unchanged; with 0.8 delta they solve the problem of the other methods up to a fifth of the distance. The \
-                 barriers stop at 0.001 mean edge lengths, `fast` at 0.01."
+                "How close does each method come to the reference solution, and in how many CPU seconds? \
+                 Recorded problems of each scene, without friction. Every method solves the same problems, \
+                 in turns, within 4 s each. The error is the distance to the reference solution, root mean \
+                 square over mass, mean over the problems. If a problem of the scene has no reference, it is \
+                 the root of the sum of squares of three quantities: the stationarity residual (the motion \
+                 that would still bring x closer to its target and that no active row forbids), the largest \
+                 violation of a contact, and the largest excess of an edge over its limit, as a share, times \
+                 the edge length. The reference is `fast` with 200 sweeps, iterated to rest and checked by \
+                 its residuals. The problems are not convex: a method may end in another good minimum. All \
+                 results are measured with the rows of `fast`, whose edge limits refer to the rest lengths. \
+                 `paper` limits edges against the start of the call and so solves another problem; `paper, \
+                 edges from rest` solves the same one. Barriers and impact zones have no edge limits. Impact \
+                 zones only prevent intersections and keep no distance: a target without intersections on \
+                 the way is returned unchanged; with 0.8 delta they solve the problem of the other methods \
+                 up to a fifth of the distance. The barriers stop at 0.001 mean edge lengths, `fast` at \
+                 0.01."
             }
             Targets::Unaware => {
-                "The same with targets of a dynamics without repulsion (`--set solver.repulsion.stiffness=0`), which lie deep in \
-                 penetration. The paper's simulator has a repulsive model (section 6.2), so its targets are less deep. Hard \
-                 problems have no reference solution: their linearisation does not come to rest within a minute. Barriers and \
-                 impact zones have no edge limits, which is part of their error here; `contacts-alone` compares without limits."
+                "The same with targets of a dynamics without repulsion (`--set \
+                 solver.repulsion.stiffness=0`), which lie deep in penetration. The paper's simulator has a \
+                 repulsive model (section 6.2), so these are not the paper's targets. Hard problems have no \
+                 reference solution: their linearisation does not come to rest within a minute. Barriers and \
+                 impact zones have no edge limits, which is part of their error here; `contacts-alone` \
+                 compares without limits."
             }
         }
     }
@@ -198,7 +203,8 @@ fn chart(compared: &Compared) -> Chart {
     }
 }
 
-/// The CPU time and error of a method over those of `fast`, geometric means over the scenes; none if there are none.
+/// The CPU time and error of a method over those of `fast`, geometric means over the scenes; none if there
+/// are none.
 pub fn over_fast(compared: &[Compared], method: &str) -> Option<[f64; 2]> {
     let (method, fast) = ((method, ""), ("fast", ""));
     let cpu = ratios(compared, method, fast, |s, _| s.cpu);

@@ -35,9 +35,10 @@ impl Figure for ContactsAlone {
     }
 
     fn question(&self) -> &'static str {
-        "Barriers and impact zones have no edge limits. In the comparison of all methods, edges that they stretch to several \
-         times their length are part of their error. Here no method has edge limits (sigma infinite), and the problems have \
-         reference solutions of their own. Contact-unaware targets; all else as in `collision-error-unaware`."
+        "Barriers and impact zones have no edge limits. In the comparison of all methods, edges that they \
+         stretch to several times their length are part of their error. Here no method has edge limits \
+         (sigma infinite), and the problems have reference solutions of their own. Contact-unaware targets; \
+         all else as in `collision-error-unaware`."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {
@@ -61,7 +62,7 @@ impl Figure for ContactsAlone {
             by_scene.push(cases.iter().map(|case| case.with_lengths("contacts alone", unlimited)).collect());
         }
         let compared = on_cases(bench, scenes, by_scene, &settings, 1, Against::Reference)?;
-        let told = METHODS[1..].iter().map(|method| {
+        let texts = METHODS[1..].iter().map(|method| {
             let mean = |values: Vec<f64>| times(geometric_mean(&values));
             let (other, fast) = ((*method, ""), ("fast", ""));
             format!(
@@ -73,12 +74,13 @@ impl Figure for ContactsAlone {
         Ok(Report {
             finding: format!(
                 "CPU time and error as multiples of those of `fast`, geometric means over the scenes: {}.",
-                told.collect::<Vec<_>>().join("; ")
+                texts.collect::<Vec<_>>().join("; ")
             ),
             parts: vec![
                 Part::table(
                     format!("{}-ratios", self.name()),
-                    "CPU time and error over those of `fast` without edge limits: geometric means over the scenes, smallest and largest",
+                    "CPU time and error over those of `fast` without edge limits: geometric means over the \
+                     scenes, smallest and largest",
                     ratio_table(&against_fast(&compared, &METHODS)),
                 ),
                 Part::table(

@@ -1,4 +1,5 @@
-//! The solution of a time step: its residual over iterations, and the cost of coming close to a converged solution.
+//! The solution of a time step: its residual over iterations, and the cost of coming close to a converged
+//! solution.
 
 use crate::bench::Bench;
 use crate::chart::{Axis, Chart, Mark, Series, Style};
@@ -69,19 +70,19 @@ impl Figure for Convergence {
     }
 
     fn question(&self) -> &'static str {
-        "A time step alternates Newton iterations and collision stages. First part: the residual after k of 16 iterations \
-         (`solver.step_tolerance=0`), medians and quartiles over the time steps of the second half of small runs. The residual \
-         is the net force of inertia, elasticity, contact and friction, converted to a distance in mean edge lengths. By \
-         default a time step ends at 0.003 (at time steps of 1/20 s: 0.015), when three iterations in a row do not reduce the \
-         residual by 30 %, or after 8 iterations. \
-         \n\n\
-         Second part: the distance of a time step from a converged one, and its CPU time. From four states of each scene, the \
-         one before the first contact and three more up to the end of the run, four time steps are made with each setting. \
-         Their positions are compared with those of 32 iterations: root mean squares over states and vertices. That reference \
-         is the method's own most exact run: distances show that it agrees with itself, not that it is right. If distances \
-         fall while the residual stalls, iterations approach a state that does not solve the time step. All settings start \
-         from the same states. The chart shows the end of the first time step, because contact amplifies small differences; \
-         the table has all four time steps."
+        "A time step alternates Newton iterations and collision stages. First part: the residual after k of \
+         16 iterations (`solver.step_tolerance=0`), medians and quartiles over the time steps of the second \
+         half of small runs. The residual is the net force of inertia, elasticity, contact and friction, \
+         converted to a distance in mean edge lengths. By default a time step ends at 0.003 (at time steps \
+         of 1/20 s: 0.015), when three iterations in a row do not reduce the residual by 30 %, or after 8 \
+         iterations. \n\nSecond part: the distance of a time step from a converged one, and its CPU time. \
+         From four states of each scene, the one before the first contact and three more up to the end of \
+         the run, four time steps are made with each setting. Their positions are compared with those of 32 \
+         iterations: root mean squares over states and vertices. That reference is the method's own most \
+         exact run: distances show that it agrees with itself, not that it is right. If distances fall while \
+         the residual stalls, iterations approach a state that does not solve the time step. All settings \
+         start from the same states. The chart shows the end of the first time step, because contact \
+         amplifies small differences; the table has all four time steps."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {
@@ -195,16 +196,16 @@ fn costs(bench: &Bench, subjects: &[Subject]) -> Result<(Vec<Part>, String)> {
         front: false,
     };
     let shows = format!(
-        "RMS distance from {REFERENCE} iterations after 1, 2 and 4 time steps; CPU time of a time step; `default`: default \
-         tolerance and limit"
+        "RMS distance from {REFERENCE} iterations after 1, 2 and 4 time steps; CPU time of a time step; \
+         `default`: default tolerance and limit"
     );
     let parts = vec![
         Part::Chart { name: "convergence-cost".to_owned(), chart },
         Part::table("convergence-cost", shows, table),
     ];
     let finding = format!(
-        "Distance of one time step from that of {REFERENCE} iterations, in mean edge lengths, and its CPU time, with 1 \
-         iteration, the default, and {} iterations: {}.",
+        "Distance of one time step from that of {REFERENCE} iterations, in mean edge lengths, and its CPU \
+         time, with 1 iteration, the default, and {} iterations: {}.",
         COMPARED[COMPARED.len() - 1],
         texts.join("; ")
     );
@@ -237,8 +238,8 @@ impl Subject {
         Ok(seen.residuals)
     }
 
-    /// Mean edge length [m], and states of the scene under default settings: the one before the first time step with
-    /// contact, and others from there to the end of the run.
+    /// Mean edge length [m], and states of the scene under default settings: the one before the first time
+    /// step with contact, and others from there to the end of the run.
     fn states(&self, bench: &Bench) -> Result<(f64, Vec<Checkpoint>)> {
         let mut simulator = Simulator::new(&self.scene(None)?)?;
         let (mut states, mut first) = (vec![simulator.checkpoint()], None);
@@ -294,7 +295,8 @@ impl Watcher for Seen {
     }
 }
 
-/// Root mean square distance over states and vertices, after the number of time steps in place `after` of [`AFTER`] [m].
+/// Root mean square distance over states and vertices, after the number of time steps in place `after` of
+/// [`AFTER`] [m].
 fn distance(a: &[Again], b: &[Again], after: usize) -> f64 {
     let square = |(a, b): (&[f64; 3], &[f64; 3])| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>();
     let pairs = a.iter().zip(b).flat_map(|(a, b)| a.positions[after].iter().zip(&b.positions[after]));

@@ -26,10 +26,11 @@ impl Figure for Defaults {
     }
 
     fn question(&self) -> &'static str {
-        "`fast` with one setting changed, CPU time and error as multiples of those of `fast`: geometric means over six scenes. \
-         The defaults are 8 sweeps, stop at 0.01 edge lengths (h), kappa 0.1, edge proximal 0.1, the gap form, a minimum separation \
-         of a tenth of delta, growth up to 32. A default should change if another value is faster or more exact on both kinds of \
-         targets without a loss in the other quantity. *Not met*: calls that did not meet their stopping rule."
+        "`fast` with one setting changed, CPU time and error as multiples of those of `fast`: geometric \
+         means over six scenes. The defaults are 8 sweeps, stop at 0.01 edge lengths (h), kappa 0.1, edge \
+         proximal 0.1, the gap form, a minimum separation of a tenth of delta, growth up to 32. A default \
+         should change if another value is faster or more exact on both kinds of targets without a loss in \
+         the other quantity. *Not met*: calls that did not meet their stopping rule."
     }
 
     fn on_page(&self) -> bool {
@@ -74,10 +75,11 @@ impl Figure for Defaults {
                 unmet.to_string().into(),
             ]);
         }
-        let told = if better.is_empty() { "none".to_owned() } else { better.join(", ") };
+        let texts = if better.is_empty() { "none".to_owned() } else { better.join(", ") };
         Ok(Report {
             finding: format!(
-                "Changes that are 5 % better in time or error on both kinds of targets, and at most 2 % worse in the other: {told}."
+                "Changes that are 5 % better in time or error on both kinds of targets, and at most 2 % \
+                 worse in the other: {texts}."
             ),
             parts: vec![Part::table(self.name(), "", table)],
         })

@@ -25,8 +25,9 @@ impl Figure for EarlyContact {
     }
 
     fn question(&self) -> &'static str {
-        "delta is the distance that contacts are separated to. A large delta makes collisions early, the paper says. A sheet with \
-         edges of 5 cm falls flat by 10 cm onto the ground. How high does it rest, and what does a smaller delta cost in `drape`?"
+        "delta is the distance that contacts are separated to. A large delta makes collisions early, the \
+         paper says. A sheet with edges of 5 cm falls flat by 10 cm onto the ground. How high does it rest, \
+         and what does a smaller delta cost in `drape`?"
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {
@@ -75,14 +76,14 @@ impl Figure for EarlyContact {
                 costs.push((preset, delta, height / (delta * EDGE), drape.cpu_seconds()));
             }
         }
-        let told: Vec<String> = ["fast", "paper"]
+        let texts: Vec<String> = ["fast", "paper"]
             .iter()
             .filter_map(|preset| {
                 let of = |delta: f64| costs.iter().find(|c| c.0 == *preset && c.1 == delta);
                 let (small, usual) = (of(DELTAS[0])?, of(0.1)?);
                 Some(format!(
-                    "With `{preset}` the sheet rests at {} delta, and a quarter of the default delta takes {} times the CPU time \
-                     in `drape`",
+                    "With `{preset}` the sheet rests at {} delta, and a quarter of the default delta takes \
+                     {} times the CPU time in `drape`",
                     short(usual.2),
                     short(small.3 / usual.3)
                 ))
@@ -96,7 +97,7 @@ impl Figure for EarlyContact {
                 verdict(low > 0.9 && high < 1.1),
                 short(low),
                 short(high),
-                told.join("; ")
+                texts.join("; ")
             ),
             parts: vec![Part::table(
                 self.name(),

@@ -19,8 +19,8 @@ impl Figure for EdgeLimits {
     }
 
     fn question(&self) -> &'static str {
-        "Without edge-length constraints the backward step cannot keep cloth on a needle from being severely deformed, the paper \
-         says. The needle at dt = 1/20 s, with limits and without, up to 5 s per call."
+        "Without edge-length constraints the backward step cannot keep cloth on a needle from being severely \
+         deformed, the paper says. The needle at dt = 1/20 s, with limits and without, up to 5 s per call."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {
@@ -38,7 +38,7 @@ impl Figure for EdgeLimits {
             "min_gap_mm",
             "intersections",
         ]);
-        let mut told = Vec::new();
+        let mut texts = Vec::new();
         let mut holds = true;
         for preset in ["fast", "paper"] {
             let mut stretches = Vec::new();
@@ -66,14 +66,14 @@ impl Figure for EdgeLimits {
                 ]);
             }
             holds &= stretches[1] > stretches[0];
-            told.push(format!(
+            texts.push(format!(
                 "`{preset}` stretches edges to {} times their rest length at most, and to {} without limits",
                 short(stretches[0]),
                 short(stretches[1])
             ));
         }
         Ok(Report {
-            finding: format!("{}: {}.", verdict(holds), told.join("; ")),
+            finding: format!("{}: {}.", verdict(holds), texts.join("; ")),
             parts: vec![Part::table(
                 self.name(),
                 "the needle with and without edge limits, by preset",

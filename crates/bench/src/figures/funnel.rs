@@ -19,9 +19,10 @@ impl Figure for Funnel {
     }
 
     fn question(&self) -> &'static str {
-        "The paper runs its funnel with time steps of 1/20 to 1/160 s and L = 65536. A smaller time step takes fewer steps (mean \
-         and largest number: 27 and 675, 23 and 437, 12 and 165, 10 and 95), but the largest time step is the most efficient for \
-         the whole simulation. Here the shape at 0.5 s is compared with that of the smallest time step. `paper` has 5 s per call."
+        "The paper runs its funnel with time steps of 1/20 to 1/160 s and L = 65536. A smaller time step \
+         takes fewer steps (mean and largest number: 27 and 675, 23 and 437, 12 and 165, 10 and 95), but the \
+         largest time step is the most efficient for the whole simulation. Here the shape at 0.5 s is \
+         compared with that of the smallest time step. `paper` has 5 s per call."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {
@@ -41,7 +42,7 @@ impl Figure for Funnel {
             "max_stretch",
             "intersections",
         ]);
-        let mut told = Vec::new();
+        let mut texts = Vec::new();
         for preset in ["fast", "paper"] {
             let mut runs = Vec::new();
             for rate in [20, 40, 80, 160] {
@@ -85,8 +86,9 @@ impl Figure for Funnel {
                 let steps = |done: &crate::simulate::Simulation| {
                     mean(&done.steps.iter().map(|&s| s as f64).collect::<Vec<_>>())
                 };
-                told.push(format!(
-                    "`{preset}` takes {} steps at 1/{slow} s and {} at 1/{fast} s, and {} times the CPU time in total at 1/{fast} s",
+                texts.push(format!(
+                    "`{preset}` takes {} steps at 1/{slow} s and {} at 1/{fast} s, and {} times the CPU \
+                     time in total at 1/{fast} s",
                     short(steps(coarse)),
                     short(steps(fine)),
                     short(fine.cpu_seconds() / coarse.cpu_seconds())
@@ -96,11 +98,12 @@ impl Figure for Funnel {
         Ok(Report {
             finding: format!(
                 "{}. (The paper: 27 and 10 steps; 2.7 times the collision time, of 8 times the time steps.)",
-                told.join("; ")
+                texts.join("; ")
             ),
             parts: vec![Part::table(
                 self.name(),
-                "the funnel at four time steps: steps, times, distance of the shape at 0.5 s from that at 1/160 s",
+                "the funnel at four time steps: steps, times, distance of the shape at 0.5 s from that at \
+                 1/160 s",
                 table,
             )],
         })

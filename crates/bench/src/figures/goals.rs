@@ -66,12 +66,13 @@ impl Figure for Goals {
     }
 
     fn question(&self) -> &'static str {
-        "`fast` against `paper` and the log barrier on recorded problems with contact-unaware targets: ratios of the mean steps \
-         and of the mean CPU seconds of two problems, at most 4 s per solve. `sphere` at scale 1, 50,176 vertices: one thread \
-         against two, medians of time steps in contact, and the share of the collision stage in flight. Knots at the paper's \
-         size: wall seconds of the collision stage on two threads, as multiples of the paper's on a GPU. Memory: peak of a run \
-         less that of a very small run, dynamics included, per surface vertex. The proximity search is compared with the IPC \
-         Toolkit's in the section on peers."
+        "`fast` against `paper` and the log barrier on recorded problems with contact-unaware targets: \
+         ratios of the mean steps and of the mean CPU seconds of two problems, at most 4 s per solve. \
+         `sphere` at scale 1, 50,176 vertices: one thread against two, medians of time steps in contact, and \
+         the share of the collision stage in flight. Knots at the paper's size: wall seconds of the \
+         collision stage on two threads, as multiples of the paper's on a GPU. Memory: peak of a run less \
+         that of a very small run, dynamics included, per surface vertex. The proximity search is compared \
+         with the IPC Toolkit's in the section on peers."
     }
 
     fn on_page(&self) -> bool {
@@ -95,7 +96,8 @@ impl Figure for Goals {
 }
 
 impl Goal {
-    /// Whether the measured value is at least as good as `value`; the aim tells whether larger or smaller is better.
+    /// Whether the measured value is at least as good as `value`; the aim tells whether larger or smaller is
+    /// better.
     fn is_met(&self, value: f64) -> bool {
         if self.aim >= self.required { self.measured >= value } else { self.measured <= value }
     }

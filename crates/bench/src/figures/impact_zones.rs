@@ -23,11 +23,11 @@ impl Figure for ImpactZones {
     }
 
     fn question(&self) -> &'static str {
-        "In the paper, I-Cloth fails in the knots even at 1/1000 s, while the two-way method cannot fail. The target is optimised \
-         until the straight path to it is free of impacts, in at most 100 rounds: by projected Gauss-Seidel, by the linear system \
-         of Harmon et al. 2008, by the augmented Lagrangian of Tang et al. 2018, and by Gauss-Seidel to 0.8 of the distance that \
-         the other methods keep. *-1000* are the knots at 1/1000 s. A solve that fails leaves x unchanged; its error is that of \
-         the start."
+        "In the paper, I-Cloth fails in the knots even at 1/1000 s, while the two-way method cannot fail. \
+         The target is optimised until the straight path to it is free of impacts, in at most 100 rounds: by \
+         projected Gauss-Seidel, by the linear system of Harmon et al. 2008, by the augmented Lagrangian of \
+         Tang et al. 2018, and by Gauss-Seidel to 0.8 of the distance that the other methods keep. *-1000* \
+         are the knots at 1/1000 s. A solve that fails leaves x unchanged; its error is that of the start."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {
@@ -74,10 +74,11 @@ impl Figure for ImpactZones {
         let unsafe_ends: usize = compared.iter().flat_map(|c| &c.summaries).map(|s| s.intersections).sum();
         Ok(Report {
             finding: format!(
-                "{}. Failures of impact zones by Gauss-Seidel / linear system / augmented Lagrangian / Gauss-Seidel to 0.8 delta: with \
-                 contact-unaware targets {} problems at the scenes' time steps and {} at 1/1000 s; with contact-aware targets, \
-                 few of which penetrate, {} and {}. `fast` fails in {} of {}. (The paper: the augmented Lagrangian fails in \
-                 knots of 70,000 vertices; these have up to 5,136.) {unsafe_ends} intersections in all results.",
+                "{}. Failures of impact zones by Gauss-Seidel / linear system / augmented Lagrangian / \
+                 Gauss-Seidel to 0.8 delta: with contact-unaware targets {} problems at the scenes' time \
+                 steps and {} at 1/1000 s; with contact-aware targets, few of which penetrate, {} and {}. \
+                 `fast` fails in {} of {}. (The paper: the augmented Lagrangian fails in knots of 70,000 \
+                 vertices; these have up to 5,136.) {unsafe_ends} intersections in all results.",
                 verdict(in_knots && fast.0 == 0),
                 counts(&|scene| is_unaware(scene) && !small(scene)),
                 counts(&|scene| is_unaware(scene) && small(scene)),
@@ -88,7 +89,8 @@ impl Figure for ImpactZones {
             ),
             parts: vec![Part::table(
                 self.name(),
-                "impact zones with three solvers, rigid zones, two phases and `fast`: failures, time, residuals",
+                "impact zones with three solvers, rigid zones, two phases and `fast`: failures, time, \
+                 residuals",
                 table(&compared, |_| true),
             )],
         })

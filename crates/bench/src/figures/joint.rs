@@ -58,12 +58,13 @@ impl Figure for Joint {
     }
 
     fn question(&self) -> &'static str {
-        "The paper describes a joint method, whose backward step handles dynamics and contact together, and does not recommend \
-         it. The cheapest form of it: one backward and one forward step after each Newton iteration of the whole time step \
-         (`solver.stop.max_steps=1`), so that one loop reduces the incremental potential and keeps the rows. It is compared with \
-         the two-way method as a post-process, which runs until its own rule is met, after each of fewer Newton iterations. \
-         One time step from each of four states in contact. The distance is the root mean square over the positions from \
-         those after 64 Newton iterations with the post-process. One step seldom meets the stopping rule."
+        "The paper describes a joint method, whose backward step handles dynamics and contact together, and \
+         does not recommend it. The cheapest form of it: one backward and one forward step after each Newton \
+         iteration of the whole time step (`solver.stop.max_steps=1`), so that one loop reduces the \
+         incremental potential and keeps the rows. It is compared with the two-way method as a post-process, \
+         which runs until its own rule is met, after each of fewer Newton iterations. One time step from \
+         each of four states in contact. The distance is the root mean square over the positions from those \
+         after 64 Newton iterations with the post-process. One step seldom meets the stopping rule."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {
@@ -115,7 +116,8 @@ impl Figure for Joint {
             ),
             parts: vec![Part::table(
                 self.name(),
-                "one time step by the joint loop and by the post-process: CPU time, distance from 64 iterations",
+                "one time step by the joint loop and by the post-process: CPU time, distance from 64 \
+                 iterations",
                 table,
             )],
         })

@@ -1,5 +1,5 @@
-//! delta, sigma and the minimum separation swept. Each value defines a problem with a reference solution of its own (paper,
-//! Table 3 and section 7.3).
+//! delta, sigma and the minimum separation swept. Each value defines a problem with a reference solution of
+//! its own (paper, Table 3 and section 7.3).
 
 use crate::bench::Bench;
 use crate::case::{CollisionCase, ProblemLengths, cases};
@@ -67,10 +67,11 @@ impl Figure for LengthsSwept {
     }
 
     fn question(&self) -> &'static str {
-        "The distance delta that contacts keep, the stretch limit sigma and the minimum separation define the problem. So each \
-         value has a reference solution of its own. The states were recorded with a delta of a tenth of the edge length, sigma = \
-         1.1 and a minimum separation of a tenth of delta. Another delta starts from gaps that were made with the recorded one, \
-         as in a scene whose settings change. Three scenes with contact-unaware targets, one with contact-aware ones."
+        "The distance delta that contacts keep, the stretch limit sigma and the minimum separation define \
+         the problem. So each value has a reference solution of its own. The states were recorded with a \
+         delta of a tenth of the edge length, sigma = 1.1 and a minimum separation of a tenth of delta. \
+         Another delta starts from gaps that were made with the recorded one, as in a scene whose settings \
+         change. Three scenes with contact-unaware targets, one with contact-aware ones."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {
@@ -133,7 +134,8 @@ fn change(sweep: &Sweep, value: f64) -> String {
     format!("{} = {value}", sweep.symbol)
 }
 
-/// The problems of a scene under every value of a length, with one summary per method and value; none if there was no time.
+/// The problems of a scene under every value of a length, with one summary per method and value; none if
+/// there was no time.
 fn on_scene(
     bench: &Bench,
     scene: &'static str,

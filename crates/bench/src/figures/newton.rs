@@ -19,10 +19,11 @@ impl Figure for Newton {
     }
 
     fn question(&self) -> &'static str {
-        "The paper's needle at dt = 1/20 s. The paper says that more Newton iterations make the dynamics more accurate, that \
-         collisions are handled safely with any number of them, and that handling collisions after each iteration is more \
-         plausible than once per time step (section 6.1). Measured here: intersections of ten states per run, stretch, elastic \
-         energy and gap. Whether a result is plausible is not tested. A call of `paper` ends after 1 s even if its rule is not met."
+        "The paper's needle at dt = 1/20 s. The paper says that more Newton iterations make the dynamics \
+         more accurate, that collisions are handled safely with any number of them, and that handling \
+         collisions after each iteration is more plausible than once per time step (section 6.1). Measured \
+         here: intersections of ten states per run, stretch, elastic energy and gap. Whether a result is \
+         plausible is not tested. A call of `paper` ends after 1 s even if its rule is not met."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {
@@ -97,8 +98,8 @@ impl Figure for Newton {
             stretches.iter().map(|(preset, stretch)| format!("{stretch:.2} with `{preset}`")).collect();
         Ok(Report {
             finding: format!(
-                "{intersections} intersections in ten states of each of {runs} runs; nothing else of the paper's finding is \
-                 tested. Edges stretch up to {} times their rest length.{ratio}",
+                "{intersections} intersections in ten states of each of {runs} runs; nothing else of the \
+                 paper's finding is tested. Edges stretch up to {} times their rest length.{ratio}",
                 stretches.join(" and ")
             ),
             parts: vec![Part::table(

@@ -21,11 +21,12 @@ impl Figure for Overview {
     }
 
     fn question(&self) -> &'static str {
-        "CPU time and error of the collision stage as multiples of those of `fast`, the default: geometric mean over six scenes \
-         (smallest to largest). Above 1 is worse. Not all methods solve the same problem. The barriers and the impact zones have \
-         no edge limits, and their stretched edges count as error. Impact zones keep no distance, except those with 0.8 delta. \
-         The barriers stop at 0.001 mean edge lengths, a tolerance ten times tighter than the 0.01 of `fast`. `contacts-alone` \
-         compares without edge limits."
+        "CPU time and error of the collision stage as multiples of those of `fast`, the default: geometric \
+         mean over six scenes (smallest to largest). Above 1 is worse. Not all methods solve the same \
+         problem. The barriers and the impact zones have no edge limits, and their stretched edges count as \
+         error. Impact zones keep no distance, except those with 0.8 delta. The barriers stop at 0.001 mean \
+         edge lengths, a tolerance ten times tighter than the 0.01 of `fast`. `contacts-alone` compares \
+         without edge limits."
     }
 
     fn on_page(&self) -> bool {
@@ -40,7 +41,8 @@ impl Figure for Overview {
         let table = table(&against_fast(&unaware, &names), &against_fast(&aware, &names));
         Ok(Report {
             finding: format!(
-                "CPU time and error as multiples of those of `fast`. Contact-unaware targets: {} Contact-aware targets: {}",
+                "CPU time and error as multiples of those of `fast`. Contact-unaware targets: {} \
+                 Contact-aware targets: {}",
                 finding(&unaware),
                 finding(&aware)
             ),
@@ -49,7 +51,8 @@ impl Figure for Overview {
     }
 }
 
-/// A method against `fast`: ratios as geometric mean, smallest and largest over the scenes; counts over all problems.
+/// A method against `fast`: ratios as geometric mean, smallest and largest over the scenes; counts over all
+/// problems.
 pub struct OverFast {
     pub name: String,
     pub cpu: [f64; 3],

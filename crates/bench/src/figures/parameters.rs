@@ -68,9 +68,9 @@ impl Figure for Parameters {
     }
 
     fn question(&self) -> &'static str {
-        "The paper calls its method insensitive to parameters. One parameter is changed at a time: the bounds of the search \
-         D_min and D_max (2 and 4 delta), the damping gamma (0.9), and the largest trust region of `fast` (0.25 edge lengths). \
-         delta and sigma define another problem; see `lengths`."
+        "The paper calls its method insensitive to parameters. One parameter is changed at a time: the \
+         bounds of the search D_min and D_max (2 and 4 delta), the damping gamma (0.9), and the largest \
+         trust region of `fast` (0.25 edge lengths). delta and sigma define another problem; see `lengths`."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {

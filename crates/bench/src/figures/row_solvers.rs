@@ -25,10 +25,11 @@ impl Figure for RowSolvers {
     }
 
     fn question(&self) -> &'static str {
-        "`paper` with another solver in place of one sweep of projected Gauss-Seidel: projected Jacobi, also with Chebyshev \
-         weights between steps (Fig. 11) and with up to 800 sweeps (Fig. 12); the linear system without lambda >= 0 of Harmon \
-         et al. 2008, 20 sweeps and no edge limits, and with the one-line projection (Fig. 13, 14); the augmented Lagrangian of Tang \
-         et al. 2018 by gradient descent, 20 and 100 iterations (Fig. 15). With edge limits the linear system makes edges rigid \
+        "`paper` with another solver in place of one sweep of projected Gauss-Seidel: projected Jacobi, also \
+         with Chebyshev weights between steps (Fig. 11) and with up to 800 sweeps (Fig. 12); the linear \
+         system without lambda >= 0 of Harmon et al. 2008, 20 sweeps and no edge limits, and with the \
+         one-line projection (Fig. 13, 14); the augmented Lagrangian of Tang et al. 2018 by gradient \
+         descent, 20 and 100 iterations (Fig. 15). With edge limits the linear system makes edges rigid \
          (Fig. 14). Five scenes with contact-unaware targets, two with contact-aware ones."
     }
 
@@ -78,8 +79,9 @@ impl Figure for RowSolvers {
             .collect();
         Ok(Report {
             finding: format!(
-                "{}. Against one sweep of projected Gauss-Seidel, geometric means over the scenes: {}. (The paper: all of them take \
-                 more of both.) A ratio of two solves that were cut off by a limit means nothing; see `met_rule`.",
+                "{}. Against one sweep of projected Gauss-Seidel, geometric means over the scenes: {}. (The \
+                 paper: all of them take more of both.) A ratio of two solves that were cut off by a limit \
+                 means nothing; see `met_rule`.",
                 verdict(holds),
                 texts.join("; ")
             ),

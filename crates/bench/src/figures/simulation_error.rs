@@ -34,8 +34,8 @@ const SHOWS: &str =
     "distances of simulations from the reference by setting and time step; `end_mm`: of the last positions";
 /// Number of samples at which simulations are compared.
 const SAMPLES: usize = 4;
-/// Smallest ratio of a time step to that of the reference at which an order is observed: the reference's own error then
-/// turns an order of 1 into 1.05.
+/// Smallest ratio of a time step to that of the reference at which an order is observed: the reference's own
+/// error then turns an order of 1 into 1.05.
 const RESOLVED: usize = 16;
 /// Newton iterations of the reference; they converge long before.
 const CONVERGED: usize = 8;
@@ -50,13 +50,14 @@ impl Figure for SimulationError {
     }
 
     fn question(&self) -> &'static str {
-        "The reference is a simulation of the same mesh with 1/64 of the largest time step (`swing`: 1/256) and converged Newton \
-         iterations. How far from it are energy, centre of mass, mean stretch, positions and the last shape, and at what CPU time? \
-         Root mean squares over four times. `swing`, a sheet held along one side, has no contact: implicit Euler has order 1 \
-         there. `block`, a cube of jelly, drops onto the ground; how high it bounces depends on the time step. `drape` and `stack` \
-         fold, and folds amplify small differences: their positions show how far any two runs diverge, their energies the effect \
-         of a setting. Presets, time steps, Newton iterations, sweeps, stopping rules, and a dynamics without repulsion are \
-         compared. sigma and delta define the problem and stay fixed."
+        "The reference is a simulation of the same mesh with 1/64 of the largest time step (`swing`: 1/256) \
+         and converged Newton iterations. How far from it are energy, centre of mass, mean stretch, \
+         positions and the last shape, and at what CPU time? Root mean squares over four times. `swing`, a \
+         sheet held along one side, has no contact: implicit Euler has order 1 there. `block`, a cube of \
+         jelly, drops onto the ground; how high it bounces depends on the time step. `drape` and `stack` \
+         fold, and folds amplify small differences: their positions show how far any two runs diverge, their \
+         energies the effect of a setting. Presets, time steps, Newton iterations, sweeps, stopping rules, \
+         and a dynamics without repulsion are compared. sigma and delta define the problem and stay fixed."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {
@@ -151,8 +152,9 @@ impl Figure for SimulationError {
             compared.extend(against_fast(subject, &errors_of));
         }
         report.finding = format!(
-            "Observed orders, of energy / centre of mass / positions: {}. (Implicit Euler: 1.) Against `fast` with one Newton iteration, geometric means over \
-             the time steps, CPU time / error of the energy / of the centre of mass: {}.",
+            "Observed orders, of energy / centre of mass / positions: {}. (Implicit Euler: 1.) Against \
+             `fast` with one Newton iteration, geometric means over the time steps, CPU time / error of the \
+             energy / of the centre of mass: {}.",
             orders.join("; "),
             compared.join("; ")
         );

@@ -23,12 +23,13 @@ impl Figure for StepSizes {
     }
 
     fn question(&self) -> &'static str {
-        "In the paper, step sizes without CCD are five times faster at 1/100 s and seven times at 1/20 s, for 10 to 20 % more \
-         steps. Here `paper` runs with its own bound on steps, and with conservative additive CCD (Li et al. 2021): all vertices \
-         by the earliest impact, as in IPC, or each vertex by its own. (The bound of offset geometric contact, Chen et al. 2025, \
-         used by the trust region of ipctk and by NVIDIA Newton, is that of `paper`: `bound = \"isotropic\"`.) Contact-unaware \
-         targets; needle and stack at both time steps. Wall seconds per problem: *broad*: searches, also those of CCD along \
-         paths; *narrow*: distances, and CCD tests in the forward step."
+        "In the paper, step sizes without CCD are five times faster at 1/100 s and seven times at 1/20 s, \
+         for 10 to 20 % more steps. Here `paper` runs with its own bound on steps, and with conservative \
+         additive CCD (Li et al. 2021): all vertices by the earliest impact, as in IPC, or each vertex by \
+         its own. (The bound of offset geometric contact, Chen et al. 2025, used by the trust region of \
+         ipctk and by NVIDIA Newton, is that of `paper`: `bound = \"isotropic\"`.) Contact-unaware targets; \
+         needle and stack at both time steps. Wall seconds per problem: *broad*: searches, also those of \
+         CCD along paths; *narrow*: distances, and CCD tests in the forward step."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {
@@ -89,8 +90,9 @@ impl Figure for StepSizes {
         };
         Ok(Report {
             finding: format!(
-                "{} for the total time.{why} As multiples of `paper`, CCD by the earliest impact takes {} at 1/100 s and {} at 1/20 s; \
-                 per vertex it takes {} and {}. (The paper: 5x and 7x the time of bounding steps.)",
+                "{} for the total time.{why} As multiples of `paper`, CCD by the earliest impact takes {} at \
+                 1/100 s and {} at 1/20 s; per vertex it takes {} and {}. (The paper: 5x and 7x the time of \
+                 bounding steps.)",
                 verdict(dearer && slower),
                 over(&fast, "CCD, earliest"),
                 over(&slow, "CCD, earliest"),

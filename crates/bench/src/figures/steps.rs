@@ -26,9 +26,9 @@ impl Figure for Steps {
     }
 
     fn question(&self) -> &'static str {
-        "The paper says that its method \"is able to converge within 64 steps most of the time\" (section 7) with \
-         \"approximately one proximity search every three steps\" (section 3.1). All recorded problems of all scenes, with \
-         either preset."
+        "The paper says that its method \"is able to converge within 64 steps most of the time\" \
+         (section 7) with \"approximately one proximity search every three steps\" (section 3.1). All \
+         recorded problems of all scenes, with either preset."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {
@@ -104,7 +104,8 @@ fn finding(compared: &[Compared]) -> String {
         let total = steps.iter().sum::<usize>().max(1);
         let every = total as f64 / searches.max(1) as f64;
         format!(
-            "`{name}` takes at most 64 steps in {within} of {} problems (median {}) and searches once in {} steps",
+            "`{name}` takes at most 64 steps in {within} of {} problems (median {}) and searches once in {} \
+             steps",
             steps.len(),
             short(middle),
             short(every)
@@ -114,7 +115,8 @@ fn finding(compared: &[Compared]) -> String {
     let all: Vec<usize> = steps(compared, 1).collect();
     let most = 2 * all.iter().filter(|&&s| s <= 64).count() > all.len();
     format!(
-        "{} for steps. Contact-unaware targets: {}. Contact-aware targets: {}. (The paper: most of the time, once in three.)",
+        "{} for steps. Contact-unaware targets: {}. Contact-aware targets: {}. (The paper: most of the \
+         time, once in three.)",
         verdict(most),
         both(&unaware),
         both(&aware)

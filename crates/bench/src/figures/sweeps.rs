@@ -23,8 +23,8 @@ impl Figure for Sweeps {
     }
 
     fn question(&self) -> &'static str {
-        "The paper finds one sweep per backward step most efficient: more sweeps do not necessarily save steps. Either preset \
-         with 1 to 32 sweeps, on contact-unaware and contact-aware targets."
+        "The paper finds one sweep per backward step most efficient: more sweeps do not necessarily save \
+         steps. Either preset with 1 to 32 sweeps, on contact-unaware and contact-aware targets."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {

@@ -1,4 +1,5 @@
-//! The effect of each difference between `fast` and `paper`: switched off in `fast`, and switched on in `paper`.
+//! The effect of each difference between `fast` and `paper`: switched off in `fast`, and switched on in
+//! `paper`.
 
 use crate::bench::Bench;
 use crate::figure::{Figure, Part, Report};
@@ -84,9 +85,10 @@ impl Figure for Switches {
     }
 
     fn question(&self) -> &'static str {
-        "`fast` with one setting of `paper` (off alone), and `paper` with one setting of `fast` (on alone), on problems of five \
-         scenes with contact-unaware and contact-aware targets. CPU time and error are multiples of those of the unchanged \
-         preset. A setting is worth keeping if switching it off costs more time or error than it saves elsewhere."
+        "`fast` with one setting of `paper` (off alone), and `paper` with one setting of `fast` (on alone), \
+         on problems of five scenes with contact-unaware and contact-aware targets. CPU time and error are \
+         multiples of those of the unchanged preset. A setting is worth keeping if switching it off costs \
+         more time or error than it saves elsewhere."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {
@@ -118,7 +120,8 @@ impl Figure for Switches {
         let compared = on_scenes(bench, scenes, count, &settings, rounds, Against::Reference)?;
         let (unaware, aware): (Vec<Compared>, Vec<Compared>) =
             compared.iter().cloned().partition(|c| Targets::of(c.scene) == Targets::Unaware);
-        let shows = "each setting switched off in `fast` and on in `paper`: CPU time and error over the unchanged preset";
+        let shows = "each setting switched off in `fast` and on in `paper`: CPU time and error over the \
+                     unchanged preset";
         Ok(Report {
             finding: format!(
                 "Contact-unaware targets. {} Contact-aware targets. {}",
@@ -186,8 +189,8 @@ fn finding(compared: &[Compared]) -> String {
         if kept.is_empty() { "none".to_owned() } else { kept.join(", ") }
     };
     format!(
-        "`fast` is slower without these, geometric mean over the scenes: {}. It is faster without these, at the errors in the \
-         table: {}.",
+        "`fast` is slower without these, geometric mean over the scenes: {}. It is faster without these, at \
+         the errors in the table: {}.",
         list(&|cost| cost > 1.1),
         list(&|cost| cost < 0.95)
     )

@@ -32,10 +32,11 @@ impl Figure for Table1 {
     }
 
     fn question(&self) -> &'static str {
-        "According to the paper, impact zone optimizers are accurate and either safe or efficient, interior point methods are \
-         safe and either efficient or accurate, and its own method is all three. Safety: solves that did not fail, and results \
-         without intersections. Efficiency: CPU seconds as multiples of those of `fast`. Accuracy: error as a multiple of that of \
-         `fast`. Geometric means over scenes. The methods do not solve quite the same problem; see `overview`."
+        "According to the paper, impact zone optimizers are accurate and either safe or efficient, interior \
+         point methods are safe and either efficient or accurate, and its own method is all three. Safety: \
+         solves that did not fail, and results without intersections. Efficiency: CPU seconds as multiples \
+         of those of `fast`. Accuracy: error as a multiple of that of `fast`. Geometric means over scenes. \
+         The methods do not solve quite the same problem; see `overview`."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {

@@ -17,7 +17,8 @@ struct Row {
     /// Scale, and number of time steps, which lead into contact.
     scale: f64,
     frames: usize,
-    /// The paper's steps per time step, and its seconds per time step of the collision stage on a GPU: mean and largest.
+    /// The paper's steps per time step, and its seconds per time step of the collision stage on a GPU: mean
+    /// and largest.
     steps: [f64; 2],
     seconds: [f64; 2],
 }
@@ -58,9 +59,10 @@ impl Figure for Table2 {
     }
 
     fn question(&self) -> &'static str {
-        "Whole simulations into contact, on small meshes to limit the time; `docs/scenes.md` has the scenes at the paper's size. \
-         `fast`, and `paper` with at most 2 s per call. All time steps count, also those before contact. Small meshes take \
-         fewer steps because motions span fewer edges. The paper's seconds are those of a GPU, for 25 to 70 thousand vertices."
+        "Whole simulations into contact, on small meshes to limit the time; `docs/scenes.md` has the scenes \
+         at the paper's size. `fast`, and `paper` with at most 2 s per call. All time steps count, also \
+         those before contact. Small meshes take fewer steps because motions span fewer edges. The paper's \
+         seconds are those of a GPU, for 25 to 70 thousand vertices."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {
@@ -125,8 +127,8 @@ impl Figure for Table2 {
         }
         Ok(Report {
             finding: format!(
-                "`paper` takes {} times as many steps as `fast`, geometric mean over {} scenes; {intersections} intersections in {states} \
-                 states.",
+                "`paper` takes {} times as many steps as `fast`, geometric mean over {} scenes; \
+                 {intersections} intersections in {states} states.",
                 short(geometric_mean(&ratios)),
                 ratios.len()
             ),

@@ -19,10 +19,11 @@ pub struct Quality {
     pub distance: f64,
     /// Largest violation of a contact row, delta_p less the gap [m]; 0 if none is violated.
     pub violation: f64,
-    /// Largest excess of an edge over its limit, as a share of the limit [1]; negative if no edge reaches its limit.
+    /// Largest excess of an edge over its limit, as a share of the limit [1]; negative if no edge reaches its
+    /// limit.
     pub stretch_violation: f64,
-    /// Stationarity residual, root mean square over mass [m]: the motion from x that lessens the objective and that no
-    /// active row forbids.
+    /// Stationarity residual, root mean square over mass [m]: the motion from x that lessens the objective
+    /// and that no active row forbids.
     pub stationarity: f64,
     /// Largest stationarity residual of a vertex [m].
     pub stationarity_max: f64,
@@ -34,12 +35,13 @@ pub struct Quality {
     pub rest_stretch: f64,
     /// Intersecting pairs, by exact predicates.
     pub intersections: usize,
-    /// Distance to the reference solution, root mean square over mass [m]; none if there is no reference solution.
+    /// Distance to the reference solution, root mean square over mass [m]; none if there is no reference
+    /// solution.
     pub error: Option<f64>,
 }
 
-/// Largest number of iterations for multipliers: of results, whose residual may be an upper bound, and of candidates for
-/// the reference solution.
+/// Largest number of iterations for multipliers: of results, whose residual may be an upper bound, and of
+/// candidates for the reference solution.
 const ITERATIONS: [usize; 2] = [400, 6000];
 
 /// Measures the quality of the results of a case.

@@ -1,10 +1,12 @@
-//! Non-negative least squares over rows: the lambda >= 0 that minimises |d + W J^T lambda| in the metric of W^-1.
+//! Non-negative least squares over rows: the lambda >= 0 that minimises |d + W J^T lambda| in the metric of
+//! W^-1.
 //!
-//! That is a quadratic program with matrix A = J W J^T and bounds at 0. It is solved by modified proportioning with
-//! reduced gradient projections (MPRGP; Dostal and Schoeberl, Computational Optimization and Applications 30, 2005):
-//! conjugate gradients on the free multipliers, a projected gradient step where one reaches its bound, and a step that
-//! frees multipliers where the bounds hold back too much. Rows are scaled to a unit diagonal. Any lambda >= 0 gives an
-//! upper bound of the residual, and the method never raises it: stopping early overestimates the residual.
+//! That is a quadratic program with matrix A = J W J^T and bounds at 0. It is solved by modified
+//! proportioning with reduced gradient projections (MPRGP; Dostal and Schoeberl, Computational Optimization
+//! and Applications 30, 2005): conjugate gradients on the free multipliers, a projected gradient step where
+//! one reaches its bound, and a step that frees multipliers where the bounds hold back too much. Rows are
+//! scaled to a unit diagonal. Any lambda >= 0 gives an upper bound of the residual, and the method never
+//! raises it: stopping early overestimates the residual.
 
 use bowknot::geometry::Vector;
 use bowknot::lcp::Row;
@@ -14,8 +16,8 @@ const TOLERANCE: f64 = 1e-8;
 /// Largest ratio of the chopped to the free gradient; above it multipliers are freed from their bounds.
 const PROPORTION: f64 = 1.0;
 
-/// The residual d + W J^T lambda after at most `iterations`, each a product with A. `weights` are inverse masses, 0 for
-/// vertices that cannot move; `wanted` is d.
+/// The residual d + W J^T lambda after at most `iterations`, each a product with A. `weights` are inverse
+/// masses, 0 for vertices that cannot move; `wanted` is d.
 pub fn residual(rows: &[Row], weights: &[f64], wanted: Vec<Vector>, iterations: usize) -> Vec<Vector> {
     let system = System::new(rows, weights);
     let mut product = vec![0.0; system.rows.len()];

@@ -1,13 +1,14 @@
 //! The reference solution of a small problem: `fast` iterated to a fixed point of the linearisation.
 //!
-//! With 200 sweeps and rows for all pairs, `fast` runs until a step moves nothing any more, without ever intersecting. Its
-//! proximal term vanishes at such a fixed point, which is then a KKT point of the problem with its rows linearised there.
-//! So the reference comes from the method that is compared, not from independent code. Two checks guard it, otherwise the
-//! case has no reference: violations are small against delta, and the stationarity residual, whose multipliers come from a
-//! solver of their own (`nonnegative`), is small against the distance to the target.
+//! With 200 sweeps and rows for all pairs, `fast` runs until a step moves nothing any more, without ever
+//! intersecting. Its proximal term vanishes at such a fixed point, which is then a KKT point of the problem
+//! with its rows linearised there. So the reference comes from the method that is compared, not from
+//! independent code. Two checks guard it, otherwise the case has no reference: violations are small against
+//! delta, and the stationarity residual, whose multipliers come from a solver of their own (`nonnegative`),
+//! is small against the distance to the target.
 //!
-//! The problems are not convex. A method may end in another minimum; its error is then large however good that minimum
-//! is.
+//! The problems are not convex. A method may end in another minimum; its error is then large however good
+//! that minimum is.
 
 use super::evaluator::CaseEvaluator;
 use crate::bench::Bench;
@@ -22,7 +23,8 @@ use std::ops::ControlFlow;
 const MAX_VERTICES: usize = 6000;
 /// Largest motion of a vertex in a step that counts as at rest, in mean edge lengths.
 const REST: f64 = 1e-7;
-/// Largest stationarity residual, as a share of the distance to the target, or in mean edge lengths, whichever allows more.
+/// Largest stationarity residual, as a share of the distance to the target, or in mean edge lengths,
+/// whichever allows more.
 const RESIDUAL: [f64; 2] = [0.01, 1e-4];
 /// Largest violation of a contact, as a share of delta.
 const VIOLATION: f64 = 0.05;

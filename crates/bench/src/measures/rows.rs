@@ -1,7 +1,7 @@
 //! The rows of a state: contacts within range and edge limits, linearised there.
 //!
-//! Contacts are in gap form. The desired distance of a pair follows from its gap at the start of the call; a pair that
-//! started out of range is asked for all of delta.
+//! Contacts are in gap form. The desired distance of a pair follows from its gap at the start of the call; a
+//! pair that started out of range is asked for all of delta.
 
 use super::nonnegative;
 use bowknot::constraints::{ContactForm, DesiredDistance, EdgeLimits, EdgeReference, contact_row};
@@ -11,8 +11,8 @@ use bowknot::lcp::Row;
 use bowknot::proximity::{Pair, PairList, ProximitySearch};
 use bowknot::twoway::Problem;
 
-/// Slack below which a row counts as active: of contacts in desired distances, of edges in limits. Methods stop that far
-/// from their active rows.
+/// Slack below which a row counts as active: of contacts in desired distances, of edges in limits. Methods
+/// stop that far from their active rows.
 const ACTIVE: [f64; 2] = [0.1, 0.02];
 
 /// Rows at a state.
@@ -110,9 +110,9 @@ impl RowSet {
         rows.filter(|((_, value), active)| *value <= *active).map(|((row, _), _)| *row).collect()
     }
 
-    /// The projection of y0 - x onto the motions that no active row forbids, in the metric of mass: 0 if x solves the
-    /// problem. By Moreau's decomposition it is y0 - x + M^-1 J^T lambda with the non-negative multipliers that minimise
-    /// it. If at most `iterations` do not suffice, the result is an upper bound.
+    /// The projection of y0 - x onto the motions that no active row forbids, in the metric of mass: 0 if x
+    /// solves the problem. By Moreau's decomposition it is y0 - x + M^-1 J^T lambda with the non-negative
+    /// multipliers that minimise it. If at most `iterations` do not suffice, the result is an upper bound.
     pub fn stationarity(
         &self,
         problem: &Problem,

@@ -7,7 +7,8 @@ use bowknot::geometry::{HalfSpace, Point, Vector};
 use bowknot::io::States;
 use bowknot::lcp::{self, Family, Row};
 
-/// Particles above the ground, 2 mm across: their distances are 2 mm from each other and 1 mm from the ground.
+/// Particles above the ground, 2 mm across: their distances are 2 mm from each other and 1 mm from the
+/// ground.
 fn particles(x: Vec<Point>, y: Vec<Point>, masses: Vec<f64>) -> CollisionCase {
     let count = x.len();
     let states = States {
@@ -30,7 +31,8 @@ fn quality(case: &CollisionCase, x: &[Point]) -> Quality {
     CaseEvaluator::of_candidate(case).expect("a sound case").evaluate(x).expect("a result that fits")
 }
 
-/// A particle pressed on the ground and slid along it: the solution is right above its target at distance delta.
+/// A particle pressed on the ground and slid along it: the solution is right above its target at distance
+/// delta.
 #[test]
 fn a_particle_on_the_ground() {
     let target = Point::new(0.01, 0.0, -0.02);

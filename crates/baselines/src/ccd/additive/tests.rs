@@ -55,8 +55,9 @@ fn meeting(kind: PairKind, time: f64, draw: &mut Draw) -> ([Point; 4], [Vector; 
     (std::array::from_fn(|k| place[k] - time * paths[k]), paths)
 }
 
-/// The first time on a fine grid at which the vertices of a 4-vertex pair change the sign of their volume with the closest
-/// points all but at one place: where the pair surely has met, found without any distance bound.
+/// The first time on a fine grid at which the vertices of a 4-vertex pair change the sign of their volume
+/// with the closest points all but at one place: where the pair surely has met, found without any distance
+/// bound.
 fn first_crossing(kind: PairKind, x: &[Point; 4], paths: &[Vector; 4]) -> Option<f64> {
     let volume = |t: f64| {
         let q: [Point; 4] = std::array::from_fn(|k| x[k] + t * paths[k]);
@@ -95,8 +96,8 @@ fn no_impact_is_missed_nor_reported_late_and_the_gap_left_is_small() {
                 let found = ccd(speed, slackness).clearance(kind, &x, &paths, 0.0, 1.0).time;
                 let what = format!("{kind:?} {speed:?} {slackness} {x:?} {paths:?}");
                 assert!(found < first, "{found} after the impact at {first}: {what}");
-                // One step of 0.9 gap/speed brought it below the slackness: it was ten times that at most. The time
-                // may still be an earlier approach as near as that.
+                // One step of 0.9 gap/speed brought it below the slackness: it was ten times that at most.
+                // The time may still be an earlier approach as near as that.
                 let left = distance_at(kind, &x, &paths, found);
                 if speed == ClosingSpeed::Travel {
                     assert!(

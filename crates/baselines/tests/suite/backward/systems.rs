@@ -33,8 +33,8 @@ impl System {
         Self::new(vec![1.0], vec![Vector::new(free[0], free[1], 0.0)], rows)
     }
 
-    /// Beads on a vertical wire, the lowest over the floor, each at least 1 above the last, all of which have sunk by
-    /// the square of their number: what a column of beads under its weight asks of a solver.
+    /// Beads on a vertical wire, the lowest over the floor, each at least 1 above the last, all of which have
+    /// sunk by the square of their number: what a column of beads under its weight asks of a solver.
     pub fn column(beads: u32) -> Self {
         let zero = Vector::zeros();
         let above = |i: u32| Row::new([i + 1, i, i, i], [Vector::z(), -Vector::z(), zero, zero], -1.0);
@@ -44,8 +44,8 @@ impl System {
         Self::new(vec![1.0; beads as usize], free, rows)
     }
 
-    /// Rows of three nodes each over a few, with weights and gradients that look random; fewer rows than coordinates,
-    /// hence with one lambda only.
+    /// Rows of three nodes each over a few, with weights and gradients that look random; fewer rows than
+    /// coordinates, hence with one lambda only.
     pub fn random(seed: u64) -> Self {
         let mut draw = Draw(seed);
         let nodes = 6;

@@ -142,7 +142,8 @@ fn failures(scene: &Scene, target: &[Point], max_iterations: usize) -> [bool; 3]
 
 #[test]
 fn sheets_that_change_places_and_crumple_are_resolved_as_long_as_what_met_may_part() {
-    // Held together for the rest of the call, as by the linear system, what has met in a crumple cannot be parted.
+    // Held together for the rest of the call, as by the linear system, what has met in a crumple cannot be
+    // parted.
     let scene = Scene::two_sheets(6, 0.02);
     assert_eq!(failures(&scene, &crumpled(&scene, 0.05, 100), 30), [false, false, false]);
     assert_eq!(failures(&scene, &crumpled(&scene, 0.2, 100), 30), [false, true, false]);

@@ -5,7 +5,8 @@ use bowknot_baselines::twoway::Call;
 use bowknot_baselines::twoway::geometry::{Point, Vector};
 use bowknot_baselines::{Method, Outcome};
 
-/// Runs a method from the scene's positions, and asserts that no state on the straight path to where it ends intersects.
+/// Runs a method from the scene's positions, and asserts that no state on the straight path to where it ends
+/// intersects.
 #[track_caller]
 pub fn solve_clear(
     method: &mut dyn Method,
@@ -30,7 +31,8 @@ pub fn momenta(start: &[Point], end: &[Point]) -> [Vector; 2] {
     [paths().map(|(_, d)| d).sum(), paths().map(|(x, d)| x.coords.cross(&d)).sum()]
 }
 
-/// Where two sheets want to be that come toward each other, through each other by a little, with some noise [m].
+/// Where two sheets want to be that come toward each other, through each other by a little, with some noise
+/// [m].
 pub fn nearing(scene: &Scene) -> Vec<Point> {
     let n = scene.x.len() / 2;
     let mut draw = Draw(3);
