@@ -1,4 +1,4 @@
-//! Scenes, and an oracle for intersections.
+//! Scenes, and exact checks for intersections.
 
 use bowknot_baselines::twoway::geometry::{HalfSpace, Point, Topology, Vector, intersection};
 use bowknot_baselines::twoway::proximity::{BodyFilter, CollisionModel};
@@ -15,7 +15,7 @@ mod sheet;
 pub use draw::Draw;
 use sheet::sheet;
 
-/// Vertices, what they make, and the bodies that they belong to.
+/// Vertices and a collision model of them.
 #[derive(Clone)]
 pub struct Scene {
     pub x: Vec<Point>,
@@ -23,7 +23,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// A fixed triangle in the plane z = 0, and a particle at `height` above its inside.
+    /// A fixed triangle in the plane z = 0, and a particle at `height` above its interior.
     pub fn vertex_above_triangle(height: f64) -> Self {
         let mut x = [[-1.0, -1.0, 0.0], [2.0, -1.0, 0.0], [-1.0, 2.0, 0.0]].map(Point::from).to_vec();
         x.push(Point::new(0.1, 0.2, height));
@@ -74,7 +74,7 @@ impl Scene {
         Self { x, model: CollisionModel::new(topology, bodies, filters, vec![ground]).unwrap() }
     }
 
-    /// Two sheets of `cells` x `cells`, 0.1 m a cell, `gap` apart.
+    /// Two sheets of `cells` x `cells` cells of 0.1 m, `gap` apart.
     pub fn two_sheets(cells: usize, gap: f64) -> Self {
         let (mut x, mut triangles) = (Vec::new(), Vec::new());
         sheet(cells, 0.1, 0.0, &mut x, &mut triangles);
@@ -101,7 +101,7 @@ impl Scene {
         scene
     }
 
-    /// Where two sheets want to be that change places, and crumple on the way.
+    /// Targets of two sheets that change places and crumple on the way.
     pub fn swapped(&self) -> Vec<Point> {
         let n = self.x.len() / 2;
         let mut draw = Draw(5);
@@ -118,8 +118,8 @@ impl Scene {
     }
 }
 
-/// The state that a call starts from, with the pairs that its first search lists.
-pub fn listed(problem: &Problem, search: &mut dyn Search, x: &[Point], target: &[Point]) -> State {
+/// The state at the start of a call, with the candidate pairs of its first search.
+pub fn with_candidates(problem: &Problem, search: &mut dyn Search, x: &[Point], target: &[Point]) -> State {
     let mut state = State {
         start: x.to_vec(),
         target: target.to_vec(),
@@ -157,8 +157,8 @@ pub fn resolve_watched<S: Search, B: BackwardStep, F: ForwardStep>(
     (x, statistics)
 }
 
-/// Asserts by exact predicates, one pair after another, that no edge meets a triangle and nothing is below
-/// the ground.
+/// Asserts by exact predicates on all pairs that no edge meets a triangle and that nothing is below the
+/// ground.
 pub fn assert_clear(model: &CollisionModel, x: &[Point], what: &str) {
     let topology = model.topology();
     let at = |v: u32| &x[v as usize];
@@ -177,7 +177,7 @@ pub fn assert_clear(model: &CollisionModel, x: &[Point], what: &str) {
     }
 }
 
-/// Asserts that `solve` gives the same on one thread and on more.
+/// Asserts that `solve` has the same result on any number of threads.
 pub fn assert_same_on_any_number_of_threads<R: PartialEq + Send>(solve: impl Fn() -> R + Send + Sync) {
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

@@ -1,6 +1,6 @@
 //! The log-barrier objective against finite differences.
 
-use crate::common::{Draw, Scene, listed};
+use crate::common::{Draw, Scene, with_candidates};
 use bowknot_baselines::barrier::{BarrierParams, Derivatives, Objective};
 use bowknot_baselines::twoway::constraints::EdgeReference;
 use bowknot_baselines::twoway::geometry::{PairKind, Point, Vector};
@@ -24,10 +24,10 @@ fn gradient_is_that_of_the_value_for_every_kind_of_pair_and_long_edges() {
     // Edges are measured against a start where they were shorter than now.
     let barrier = BarrierParams { edge_stiffness: 50.0, ..BarrierParams::default() };
     let mut objective = Objective::new(&problem, barrier).unwrap();
-    let mut start = listed(&problem, &mut search, &scene.x, &target);
+    let mut start = with_candidates(&problem, &mut search, &scene.x, &target);
     start.x.iter_mut().for_each(|p| *p = Point::from(0.85 * p.coords));
     objective.begin(&problem, &start);
-    let state = listed(&problem, &mut search, &scene.x, &target);
+    let state = with_candidates(&problem, &mut search, &scene.x, &target);
 
     let contacts = objective.contacts(&problem, &state);
     for kind in PairKind::ALL {
@@ -65,7 +65,7 @@ fn blocks_majorise_the_convex_part_along_any_direction() {
     params.constraints.delta = Some(0.01);
     let problem = scene.problem(params);
     let mut search = BudgetedSearch::new(&problem);
-    let state = listed(&problem, &mut search, &scene.x, &scene.x);
+    let state = with_candidates(&problem, &mut search, &scene.x, &scene.x);
     let mut objective = Objective::new(&problem, BarrierParams::default()).unwrap();
     objective.begin(&problem, &state);
     let contacts = objective.contacts(&problem, &state);

@@ -82,7 +82,7 @@ fn without_thickness_what_does_not_meet_may_end_near_and_with_it_keeps_its_dista
     assert!(gap(0.0) < 0.7 * delta && gap(0.8) > 0.799 * delta);
 }
 
-/// A vertex between two plates that come together, nearer than twice its desired distance: what a vice holds.
+/// A vertex between two plates that close to less than twice its desired distance, as in a vice.
 fn vice() -> (Scene, Vec<Point>, Vec<bool>) {
     let mut x = Vec::new();
     let corners = [[-1.0, -1.0], [2.0, -1.0], [-1.0, 2.0]];
@@ -127,7 +127,7 @@ fn keyframes_that_cut_through_a_pinned_vertex_make_it_fail() {
     assert!(outcome.converged && x[3].z > 1.0);
 }
 
-/// Whether each solver fails within so many rounds; where it does, nothing has moved.
+/// Whether each solver fails within `max_iterations` rounds; a failed call moves nothing.
 fn failures(scene: &Scene, target: &[Point], max_iterations: usize) -> [bool; 3] {
     SOLVERS.map(|solver| {
         let mut zones = zones(scene, solver);
@@ -142,8 +142,8 @@ fn failures(scene: &Scene, target: &[Point], max_iterations: usize) -> [bool; 3]
 
 #[test]
 fn sheets_that_change_places_and_crumple_are_resolved_as_long_as_what_met_may_part() {
-    // Held together for the rest of the call, as by the linear system, what has met in a crumple cannot be
-    // parted.
+    // With the linear system, pairs that have met stick for the rest of the call, and crumpled sheets cannot
+    // separate.
     let scene = Scene::two_sheets(6, 0.02);
     assert_eq!(failures(&scene, &crumpled(&scene, 0.05, 100), 30), [false, false, false]);
     assert_eq!(failures(&scene, &crumpled(&scene, 0.2, 100), 30), [false, true, false]);
@@ -151,7 +151,7 @@ fn sheets_that_change_places_and_crumple_are_resolved_as_long_as_what_met_may_pa
 
 #[test]
 fn a_target_far_from_anything_possible_is_too_much_for_projected_zones_too() {
-    // Noise of four edge lengths. It has not got there after 100 rounds either.
+    // Noise of four edge lengths; 100 rounds are not enough either.
     let scene = Scene::two_sheets(12, 0.02);
     let target = crumpled(&scene, 0.4, 100);
     let mut zones = zones(&scene, ZoneSolver::GaussSeidel);
