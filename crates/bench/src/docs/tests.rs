@@ -11,7 +11,7 @@ struct Example {
 
 impl Figure for Example {
     fn name(&self) -> &'static str {
-        if self.on_page { "shown" } else { "listed" }
+        if self.on_page { "shown" } else { "indexed" }
     }
 
     fn title(&self) -> &'static str {
@@ -34,7 +34,7 @@ impl Figure for Example {
 }
 
 fn report(table: Table) -> Report {
-    Report { finding: "So much.".to_owned(), parts: vec![Part::table("listed", "times", table)] }
+    Report { finding: "So much.".to_owned(), parts: vec![Part::table("indexed", "times", table)] }
 }
 
 fn example() -> Report {
@@ -62,7 +62,7 @@ fn repository() -> TempDir {
 }
 
 fn publish(folder: &TempDir, on_page: bool, conditions: &str) -> Result<()> {
-    Docs::new(folder.path()).publish(&Example { on_page }, &example(), conditions, &["shown", "listed"])
+    Docs::new(folder.path()).publish(&Example { on_page }, &example(), conditions, &["shown", "indexed"])
 }
 
 #[test]
@@ -74,8 +74,8 @@ fn results_are_written_from_a_clean_tree() {
     let read = |path: &str| fs::read_to_string(folder.path().join(path)).expect("a file");
     let page = read(PAGE);
     assert!(page.contains("## An example") && page.contains("| fast | 1.25 |"), "{page}");
-    assert!(page.contains("| [listed.csv](benchmarks/listed.csv) | times |"), "{page}");
-    assert_eq!(read("docs/benchmarks/listed.csv"), "method,cpu_s\nfast,1.25\n");
+    assert!(page.contains("| [indexed.csv](benchmarks/indexed.csv) | times |"), "{page}");
+    assert_eq!(read("docs/benchmarks/indexed.csv"), "method,cpu_s\nfast,1.25\n");
 }
 
 #[test]

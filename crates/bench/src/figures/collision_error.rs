@@ -153,8 +153,8 @@ pub fn settings() -> Result<Vec<Setting>> {
     vary("fast", "volume form".to_owned(), &|p| p.constraints.form = ContactForm::Volume)?;
     vary("fast", "no minimum separation".to_owned(), &|p| p.stepper.floor = Some(0.0))?;
     vary("paper", "edges from rest".to_owned(), &|p| p.constraints.edge_reference = EdgeReference::Rest)?;
-    for clock in [1e-1, 1e-2] {
-        vary("paper", format!("epsilon {clock}"), &|p| p.stop.clock = clock)?;
+    for epsilon in [1e-1, 1e-2] {
+        vary("paper", format!("epsilon {epsilon}"), &|p| p.stop.clock = epsilon)?;
     }
     for sweeps in [4, 16] {
         vary("paper", format!("{sweeps} sweeps"), &|p| {

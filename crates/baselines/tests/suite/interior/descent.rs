@@ -45,7 +45,7 @@ fn a_vertex_pushed_against_a_triangle_ends_where_the_barrier_balances_its_inerti
 }
 
 #[test]
-fn sheets_that_want_to_change_places_never_intersect_on_the_way() {
+fn sheets_that_change_places_never_intersect_on_the_way() {
     let scene = Scene::two_sheets(4, 0.04);
     let target = scene.swapped();
     for (name, mut params) in [("fast", Params::fast()), ("paper", Params::paper())] {
