@@ -4,7 +4,8 @@
 //! `BOWKNOT_SEEDS=20 cargo test --release -p bowknot-tests fuzz_bodies` tries ten times as many.
 
 use crate::safety::seeds;
-use bowknot::io::{MeshView, States, write_obj, write_ply};
+use bowknot::io::{MeshView, write_obj, write_ply};
+use bowknot::recording::States;
 use bowknot_tests::states::GENERATORS;
 use bowknot_tests::{Random, fuzz};
 use std::fs;

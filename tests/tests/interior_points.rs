@@ -28,7 +28,9 @@ fn with_impacts<F: ForwardStep>(forward: impl Fn(AdditiveCcd) -> F) {
 #[test]
 fn no_step_of_the_log_barrier_by_descent_intersects() {
     for params in [Params::fast(), Params::paper()] {
-        watched(&params, seeds(), |problem| by_descent(problem, BarrierParams::default())).assert_safe();
+        let descent =
+            |problem| by_descent(problem, BarrierParams::default()).expect("the defaults are sound");
+        watched(&params, seeds(), |problem| Ok(descent(problem))).assert_safe();
     }
 }
 
@@ -37,8 +39,9 @@ fn no_step_of_the_log_barrier_by_newtons_method_intersects() {
     let mut params = Params::fast();
     params.stepper.floor = Some(1e-8);
     let ccd = AdditiveCcd { speed: ClosingSpeed::Slab, max_iterations: 50, ..AdditiveCcd::default() };
-    watched(&params, seeds().div_ceil(2), |problem| by_newton(problem, BarrierParams::default(), ccd))
-        .assert_safe();
+    let newton =
+        |problem| by_newton(problem, BarrierParams::default(), ccd).expect("the parameters are sound");
+    watched(&params, seeds().div_ceil(2), |problem| Ok(newton(problem))).assert_safe();
 }
 
 #[test]

@@ -9,8 +9,8 @@
 
 use anyhow::{Context, Result, anyhow};
 use bowknot::geometry::{PairKind, Separation, Topology};
-use bowknot::io::States;
 use bowknot::proximity::{CollisionModel, PairList, ProximitySearch};
+use bowknot::recording::States;
 use bowknot::simulator::cpu_seconds;
 use clap::Parser;
 use serde::Serialize;

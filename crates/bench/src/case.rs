@@ -3,8 +3,8 @@
 use crate::bench::Bench;
 use crate::record::ProblemSet;
 use anyhow::{Context, Result, anyhow};
-use bowknot::io::States;
-use bowknot::proximity::CollisionModel;
+use bowknot::geometry::CollisionModel;
+use bowknot::recording::States;
 use bowknot::twoway::{BodyContact, Params, Problem, Resolver};
 use std::path::Path;
 

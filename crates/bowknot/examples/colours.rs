@@ -6,8 +6,8 @@
 #![allow(clippy::print_stdout)]
 
 use bowknot::geometry::Topology;
-use bowknot::io::States;
 use bowknot::proximity::{BodyFilter, CollisionModel};
+use bowknot::recording::States;
 use bowknot::twoway::{AcceptedState, Call, Params, Resolver};
 use std::error::Error;
 use std::ops::ControlFlow;

@@ -15,36 +15,44 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | [`scene`] | the description of a scene, TOML files, built-in scenes |
-//! | [`shapes`] | generated meshes |
-//! | [`world`] | a scene's meshes, loaded and put together |
 //! | [`simulator`] | the time-step loop, its statistics, checkpoints |
-//! | [`run`] | whole runs: the output folder, resuming, checking as it goes |
-//! | [`recording`] | collision problems, recorded and solved again |
-//! | [`report`] | one HTML page of a run |
-//! | [`check`] | the exact judge of states and paths |
+//! | `run` | whole runs: the output folder, resuming, checking as it goes (feature `files`) |
+//! | `recording` | collision problems, recorded and solved again (feature `files`) |
+//! | `repair` | cleaning of meshes whose seams intersect (feature `files`) |
+//! | [`scene`], [`shapes`], [`world`] | scene files, built-in scenes, generated meshes, the assembled world |
 //! | [`io`] | mesh files, archives, atomic writes |
-//! | [`repair`] | cleaning of meshes whose seams intersect |
+//! | [`check`] | the exact judge of states and paths |
+//! | `report` | one HTML page of a run (feature `report`) |
+//!
+//! | feature | adds | costs |
+//! |---|---|---|
+//! | `files` | NumPy archives, checkpoint files, runs, recordings, repair | ndarray, zip, flate2 |
+//! | `report` | the HTML page | `files`, and 1 MB of scripts |
+//!
+//! Neither is on by default; the command has both. A feature never changes a result.
 //!
 //! The crates below are re-exported under short names. This crate does not know terminals: it never
 //! prints, it logs through `tracing`.
 
-pub mod check;
-pub mod io;
+#[cfg(feature = "files")]
 pub mod recording;
+#[cfg(feature = "files")]
 pub mod repair;
-pub mod report;
+#[cfg(feature = "files")]
 pub mod run;
-pub mod scene;
-pub mod shapes;
 pub mod simulator;
-pub mod world;
 
+pub use bowknot_check as check;
 pub use bowknot_constraints as constraints;
 pub use bowknot_dynamics as dynamics;
 pub use bowknot_geometry as geometry;
+pub use bowknot_io as io;
 pub use bowknot_lcp as lcp;
 pub use bowknot_proximity as proximity;
+#[cfg(feature = "report")]
+pub use bowknot_report as report;
+pub use bowknot_scene as scene;
+pub use bowknot_scene::{shapes, world};
 pub use bowknot_stepper as stepper;
 pub use bowknot_twoway as twoway;
 

@@ -6,7 +6,8 @@ use crate::output;
 use crate::progress::Bar;
 use bowknot::check::{Judge, Parts, PathOptions, StateOptions};
 use bowknot::geometry::Point;
-use bowknot::io::{FrameStack, Import, Mesh, MeshView, States, files_in, read_mesh};
+use bowknot::io::{FrameStack, Import, Mesh, MeshView, files_in, read_mesh};
+use bowknot::recording::States;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 

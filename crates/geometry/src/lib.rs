@@ -18,6 +18,7 @@
 //! Function names follow one pattern: `module::pair_kind`, for example [`distance::vertex_triangle`].
 
 pub mod bounds;
+mod collision_model;
 pub mod distance;
 pub mod half_space;
 pub mod intersection;
@@ -36,6 +37,7 @@ pub type Point = nalgebra::Point3<f64>;
 pub type Vector = nalgebra::Vector3<f64>;
 
 pub use bounds::Aabb;
+pub use collision_model::{BodyFilter, CollisionModel, ModelError};
 pub use distance::Closest;
 pub use half_space::HalfSpace;
 pub use mesh_check::{MeshProblem, check_mesh};

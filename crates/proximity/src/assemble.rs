@@ -1,9 +1,9 @@
 //! The pairs in order, with their contact geometry.
 
+use crate::Pair;
 use crate::narrow::separate_all;
 use crate::traverse::{Found, Run};
-use crate::{CollisionModel, Pair};
-use bowknot_geometry::{PairKind, Point, Separation};
+use bowknot_geometry::{CollisionModel, PairKind, Point, Separation};
 use rayon::prelude::*;
 
 /// Elements whose pairs one task writes.

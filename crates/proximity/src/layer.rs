@@ -1,8 +1,8 @@
 //! The trees of a part of the scene that is kept up together.
 
-use crate::CollisionModel;
 use crate::frame::LocalVertex;
 use crate::tree::Tree;
+use bowknot_geometry::CollisionModel;
 
 /// The trees of some bodies. Trees that no pair kind needs stay empty.
 #[derive(Debug, Default)]

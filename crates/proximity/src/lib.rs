@@ -16,7 +16,6 @@ mod frame;
 mod half_spaces;
 mod kinds;
 mod layer;
-mod model;
 mod narrow;
 mod obstacles;
 mod order;
@@ -29,7 +28,7 @@ mod tree;
 /// Points, topology and separations: the types of this crate's arguments and results.
 pub use bowknot_geometry as geometry;
 
-pub use model::{BodyFilter, CollisionModel, ModelError};
+pub use bowknot_geometry::{BodyFilter, CollisionModel, ModelError};
 pub use pairs::{Pair, PairList};
 pub use search::ProximitySearch;
 pub use statistics::SearchStatistics;

@@ -1,7 +1,6 @@
 //! Which obstacles moved since they were last seen.
 
-use crate::CollisionModel;
-use bowknot_geometry::{Point, Vector};
+use bowknot_geometry::{CollisionModel, Point, Vector};
 
 /// Searches without motion after which an obstacle counts as being at rest again. Each change of an
 /// obstacle's layer makes two spatial orders anew, so one that waits now and then stays where it is.

@@ -9,8 +9,8 @@ use crate::narrow::BLANK;
 use crate::obstacles::Watch;
 use crate::traverse::{Found, Query, Scene, Scratch, TASK_LEAVES, leaves_meeting, search_leaves};
 use crate::tree::Tree;
-use crate::{CollisionModel, Pair, PairList, SearchStatistics};
-use bowknot_geometry::{PairKind, Point, Separation, Vector, separation};
+use crate::{Pair, PairList, SearchStatistics};
+use bowknot_geometry::{CollisionModel, PairKind, Point, Separation, Vector, separation};
 use rayon::prelude::*;
 
 /// Vertices that one task brings to the local frame.

@@ -1,12 +1,11 @@
 //! Elements against trees: which pairs are listed.
 
-use crate::CollisionModel;
 use crate::bits::{append_places, append_sorted, bits, flag};
 use crate::frame::UNIT;
 use crate::kinds::{Batch, Kind, classify};
 use crate::narrow::separate_one;
 use crate::tree::{LANES, Leaf, Node, Tree};
-use bowknot_geometry::Point;
+use bowknot_geometry::{CollisionModel, Point};
 
 /// Leaves of querying elements that one task handles.
 pub const TASK_LEAVES: usize = 8;

@@ -15,7 +15,7 @@ Usage: cargo xtask check [--fast]
 
 check   run what CI runs, in named steps: format, clippy, docs, wasm, a small run, its exports read back, tests
         --fast   format, clippy and unit tests only
-pictures run built-in scenes, all or those named, and draw them into docs/pictures: needs a graphics driver";
+pictures run built-in scenes, all or those named, and draw them into assets/pictures: needs a graphics driver";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

@@ -1,4 +1,4 @@
-//! `cargo xtask pictures`: a small picture of each built-in scene, in `docs/pictures`.
+//! `cargo xtask pictures`: a small picture of each built-in scene, in `assets/pictures`.
 //!
 //! A scene that is added to the facade is added to [`PICTURES`] as well; `cargo xtask pictures NAME` then draws it.
 

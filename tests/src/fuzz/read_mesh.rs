@@ -3,8 +3,9 @@
 use super::Draw;
 use bowknot::check::{Judge, Parts, StateOptions};
 use bowknot::io::{
-    FrameStack, Import, IoError, Mesh, States, read_mesh as read, read_obj, read_ply, write_obj, write_ply,
+    FrameStack, Import, IoError, Mesh, read_mesh as read, read_obj, read_ply, write_obj, write_ply,
 };
+use bowknot::recording::States;
 use bowknot_geometry::{Topology, check_mesh};
 use ndarray::ArrayD;
 use ndarray_npy::{NpzWriter, WriteNpzError};

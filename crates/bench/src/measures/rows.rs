@@ -6,9 +6,9 @@
 use super::nonnegative;
 use bowknot::constraints::{ContactForm, DesiredDistance, EdgeLimits, EdgeReference, contact_row};
 use bowknot::geometry::{PairKind, Point, Vector, separation};
-use bowknot::io::States;
 use bowknot::lcp::Row;
 use bowknot::proximity::{Pair, PairList, ProximitySearch};
+use bowknot::recording::States;
 use bowknot::twoway::Problem;
 
 /// Slack below which a row counts as active: of contacts in desired distances, of edges in limits. Methods

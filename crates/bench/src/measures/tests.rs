@@ -4,8 +4,8 @@ use super::reference::{at_rest, params};
 use super::*;
 use crate::case::CollisionCase;
 use bowknot::geometry::{HalfSpace, Point, Vector};
-use bowknot::io::States;
 use bowknot::lcp::{self, Family, Row};
+use bowknot::recording::States;
 
 /// Particles above the ground, 2 mm across: their distances are 2 mm from each other and 1 mm from the
 /// ground.

@@ -1,8 +1,8 @@
 //! Elements that stand for nothing.
 
 use super::{RepairReport, droppable};
-use crate::io::Mesh;
 use bowknot_geometry::MeshProblem;
+use bowknot_io::Mesh;
 
 /// Drops triangles without area or given twice, and strand edges likewise. The first of each stays where it was.
 pub(super) fn drop_bad_elements(mesh: &mut Mesh, report: &mut RepairReport) {

@@ -11,9 +11,9 @@ mod seams;
 mod tests;
 mod weld;
 
-use crate::check::{CheckError, Judge, Parts, StateOptions};
-use crate::io::Mesh;
+use bowknot_check::{CheckError, Judge, Parts, StateOptions};
 use bowknot_geometry::{MeshProblem, Point, Topology, check_mesh};
+use bowknot_io::Mesh;
 use serde::Serialize;
 
 /// The default weld distance over the mean edge of the triangles at open borders.

@@ -1,8 +1,8 @@
 //! T-seams: a vertex of one panel on an edge of another.
 
 use super::{RepairReport, border_edges, border_vertices};
-use crate::io::Mesh;
 use bowknot_geometry::{Point, distance};
+use bowknot_io::Mesh;
 
 /// Rounds of splitting: a new border edge may have vertices on it that the old one had not.
 const ROUNDS: usize = 3;

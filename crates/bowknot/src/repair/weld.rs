@@ -1,8 +1,8 @@
 //! Border vertices that lie together become one.
 
 use super::{RepairReport, border_vertices, near_pairs};
-use crate::io::Mesh;
 use bowknot_geometry::{Point, Vector};
+use bowknot_io::Mesh;
 
 /// Places that the report lists.
 const LISTED: usize = 10;

@@ -4,7 +4,7 @@
 //! predicates for that.** The first state, and the one that each time step ends with, are judged by
 //! themselves; of every two-way step the straight path is, both its ends included. Let the start of a
 //! path be clear and the path certified. Then so is its end, class by class of what
-//! [`crate::check::Judge::check_state`] looks at:
+//! [`bowknot_check::Judge::check_state`] looks at:
 //!
 //! - half-spaces, two particles, a particle and a strand edge or triangle, two strand edges, and the few
 //!   touching pairs of meshes that no edge-triangle pair stands for are classes that a path is judged
@@ -20,10 +20,10 @@
 //! argument needs is asked for: a path must start, to the bit, where the last one ended, or its start is
 //! judged by itself; and after a finding, states are judged one by one until one is clear.
 
-use crate::check::{CheckError, MotionJudge, PathOptions, StateOptions};
 use crate::simulator::{AcceptedStep, Simulator, describe_intersections};
-use crate::world::World;
+use bowknot_check::{CheckError, MotionJudge, PathOptions, StateOptions};
 use bowknot_geometry::Point;
+use bowknot_scene::world::World;
 
 /// How many findings are kept in words.
 const KEPT: usize = 10;

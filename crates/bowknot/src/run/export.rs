@@ -2,10 +2,10 @@
 
 use super::frames::FrameWriter;
 use super::layout::Layout;
-use crate::io::{FrameSource, IoError, Mesh, Place, create_folder};
-use crate::scene::{Format, Scene};
-use crate::shapes::Shape;
 use bowknot_geometry::Point;
+use bowknot_io::{FrameSource, IoError, Mesh, Place, create_folder};
+use bowknot_scene::shapes::Shape;
+use bowknot_scene::{Format, Scene};
 use std::path::{Path, PathBuf};
 
 /// What becomes of the frames.

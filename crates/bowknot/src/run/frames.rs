@@ -12,12 +12,12 @@
 
 use super::layout::{Layout, Part};
 use super::spool::Spool;
-use crate::io::{
-    self, Import, IoError, MeshView, Place, UsdBody, create_folder, write_frame_stack, write_obj, write_ply,
-    write_usda, write_vtu,
-};
-use crate::scene::Format;
 use bowknot_geometry::Point;
+use bowknot_io::{
+    self as io, Import, IoError, MeshView, Place, UsdBody, create_folder, write_frame_stack, write_obj,
+    write_ply, write_usda, write_vtu,
+};
+use bowknot_scene::Format;
 use std::path::{Path, PathBuf};
 
 /// Formats that are made from the spool.

@@ -1,8 +1,8 @@
 //! What is the same in all frames of a run.
 
-use crate::io::{Mesh, MeshView};
-use crate::world::World;
 use bowknot_geometry::{HalfSpace, Point, Vector};
+use bowknot_io::{Mesh, MeshView};
+use bowknot_scene::world::World;
 
 /// Elements, bodies and their names; half-spaces as quads.
 #[derive(Clone, Debug)]

@@ -1,6 +1,7 @@
 //! Whole runs: a scene in, a folder of frames and statistics out.
 
 mod checker;
+mod checkpoint;
 mod export;
 mod frames;
 mod layout;
@@ -13,18 +14,18 @@ pub use export::{ExportOptions, Exported, export};
 pub use summary::Summary;
 pub use writer::RunWriter;
 
-use crate::io::{IoError, write_text};
-use crate::scene::Scene;
 use crate::simulator::{
     AcceptedStep, CollisionProblem, SimulationError, Simulator, StepStatistics, Watcher, peak_memory_bytes,
 };
-use crate::world::{SceneInfo, World};
+use bowknot_io::{IoError, write_text};
+use bowknot_scene::Scene;
+use bowknot_scene::world::{SceneInfo, World};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// How a scene is run; what is written is said by the scene's [`crate::scene::OutputParams`].
+/// How a scene is run; what is written is said by the scene's [`bowknot_scene::OutputParams`].
 #[derive(Clone, Debug, Default)]
 pub struct RunOptions {
     /// Output folder.

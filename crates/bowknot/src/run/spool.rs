@@ -1,7 +1,7 @@
 //! The positions of all frames so far on disk, for formats that are one file in the end: memory holds one frame.
 
-use crate::io::IoError;
 use bowknot_geometry::Point;
+use bowknot_io::IoError;
 use std::fs::{File, OpenOptions};
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};

@@ -1,7 +1,7 @@
 //! What a run adds up to: `summary.json`.
 
 use crate::simulator::StepStatistics;
-use crate::world::SceneInfo;
+use bowknot_scene::world::SceneInfo;
 use serde::Serialize;
 use serde_json::{Map, Value};
 

@@ -18,11 +18,11 @@
 use super::frames::FrameWriter;
 use super::layout::Layout;
 use super::summary::Totals;
-use crate::io::{self, IoError, create_folder, write_ply};
 use crate::recording::Recorder;
-use crate::scene::Scene;
 use crate::simulator::{Checkpoint, CollisionProblem, SimulationError, Simulator, StepStatistics};
 use bowknot_geometry::Point;
+use bowknot_io::{self as io, IoError, create_folder, write_ply};
+use bowknot_scene::Scene;
 use std::fs::{self, File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -7,11 +7,11 @@
 
 use super::RELAXATION;
 use super::taut::LimitedEdges;
-use crate::scene::{BodyKind, RepulsionParams};
-use crate::world::World;
 use bowknot_constraints::{Feature, FrictionModel};
 use bowknot_dynamics::{Dynamics, RepulsionSpring, StepError, Touching};
 use bowknot_geometry::{PairKind, Point, Vector};
+use bowknot_scene::world::World;
+use bowknot_scene::{BodyKind, RepulsionParams};
 use bowknot_twoway::{Problem, Resolver};
 use rustc_hash::{FxHashMap, FxHashSet};
 

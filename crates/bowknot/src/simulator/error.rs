@@ -1,10 +1,10 @@
 //! Why a simulation cannot begin or go on.
 
-use crate::check::{CheckError, Intersection};
-use crate::io::IoError;
-use crate::scene::SceneError;
-use crate::world::World;
+use bowknot_check::{CheckError, Intersection};
 use bowknot_dynamics::{ParamsError, StepError};
+use bowknot_io::IoError;
+use bowknot_scene::SceneError;
+use bowknot_scene::world::World;
 use bowknot_twoway::ResolveError;
 use std::path::PathBuf;
 

@@ -11,10 +11,10 @@
 //!
 //! `docs/ARCHITECTURE.md` has the figures by which the default was chosen.
 
-use crate::scene::InteriorFollows;
-use crate::world::World;
 use bowknot_dynamics::{Dynamics, StepError};
 use bowknot_geometry::{Point, Vector};
+use bowknot_scene::InteriorFollows;
+use bowknot_scene::world::World;
 
 /// Sweeps of the average; corrections reach about as many layers of vertices deep as this number's root.
 const SWEEPS: usize = 24;

@@ -22,11 +22,11 @@ pub use error::{SimulationError, describe_intersections};
 pub use process::{cpu_seconds, peak_memory_bytes};
 pub use statistics::{Energy, StepSeconds, StepStatistics};
 
-use crate::check::{Judge, StateOptions, StateReport};
-use crate::scene::{CollisionEvery, Scene};
-use crate::world::{Attachment, World};
+use bowknot_check::{Judge, StateOptions, StateReport};
 use bowknot_dynamics::{Dynamics, DynamicsModel, Residual};
 use bowknot_geometry::{Point, Vector};
+use bowknot_scene::world::{Attachment, World};
+use bowknot_scene::{CollisionEvery, Scene};
 use bowknot_twoway::{AcceptedState, Call, Observer, ResolveError, Resolver};
 use contacts::Contacts;
 use interior::Interior;

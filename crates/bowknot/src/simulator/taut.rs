@@ -5,11 +5,11 @@
 //! crushes. A taut edge is a one-sided spring like a contact: it pulls from its limit on, and the force that its spring has come to
 //! is that of the next one. What rows of the collision stage add to it is not handed on.
 
-use crate::scene::BodyKind;
-use crate::world::World;
 use bowknot_constraints::{EdgeLimits, EdgeReference, Feature};
 use bowknot_dynamics::RepulsionSpring;
 use bowknot_geometry::{Point, Vector};
+use bowknot_scene::BodyKind;
+use bowknot_scene::world::World;
 use bowknot_twoway::Problem;
 use rustc_hash::FxHashSet;
 

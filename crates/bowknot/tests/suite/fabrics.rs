@@ -1,8 +1,8 @@
 use super::scene;
 use bowknot::dynamics::ClothMaterial;
 use bowknot::geometry::Vector;
-use bowknot::io::States;
 use bowknot::recording::Recorder;
+use bowknot::recording::States;
 use bowknot::scene::Material;
 use bowknot::simulator::CollisionProblem;
 use bowknot::{Scene, Simulator, Watcher, World};

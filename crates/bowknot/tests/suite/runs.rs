@@ -1,5 +1,6 @@
 use bowknot::check::{Judge, PathOptions, StateOptions};
-use bowknot::io::{FrameStack, Import, States, read_mesh};
+use bowknot::io::{FrameStack, Import, read_mesh};
+use bowknot::recording::States;
 use bowknot::run::{Outcome, Progress, RunOptions, run};
 use bowknot::simulator::SimulationError;
 use bowknot::{Scene, World};

@@ -1,0 +1,10 @@
+//! Collision problems: recorded from a simulation, solved again outside of it.
+
+mod recorder;
+mod resolve;
+mod states;
+#[cfg(test)]
+mod tests;
+
+pub use recorder::Recorder;
+pub use states::{States, write_result};

@@ -1,0 +1,50 @@
+//! Makes files of the collision problems of a simulation.
+
+use crate::recording::states::States;
+use crate::simulator::{CollisionProblem, Simulator};
+
+/// Makes files of the collision problems of one simulation.
+#[derive(Clone, Debug)]
+pub struct Recorder {
+    /// All but what moves.
+    fixed: States,
+}
+
+impl Recorder {
+    /// A recorder of the simulation's problems.
+    pub fn new(simulator: &Simulator) -> Self {
+        let world = simulator.world();
+        let count = world.collision_vertices();
+        let topology = world.collision.topology();
+        let contact = &world.contact;
+        Self {
+            fixed: States {
+                triangles: topology.triangles.clone(),
+                strands: topology.strand_edges.iter().map(|&e| topology.edges[e as usize]).collect(),
+                particles: topology.particles.clone(),
+                rest: world.positions[..count].to_vec(),
+                masses: simulator.dynamics_model().masses()[..count].to_vec(),
+                obstacle: (0..count as u32).map(|v| world.collision.is_obstacle(v)).collect(),
+                body: world.collision.vertex_body().to_vec(),
+                half_spaces: world.collision.half_spaces().to_vec(),
+                body_contacts: contact.bodies.clone(),
+                half_space_contacts: contact.half_spaces.clone(),
+                pair_frictions: contact.pairs.clone(),
+                ..States::default()
+            },
+        }
+    }
+
+    /// The problem as a file holds it: all that its solution depends on but the parameters of the method.
+    pub fn states(&self, problem: &CollisionProblem<'_>) -> States {
+        States {
+            x: problem.positions.to_vec(),
+            y: problem.target.to_vec(),
+            fixed: problem.prescribed.to_vec(),
+            time_step: Some(problem.time_step),
+            groups: problem.groups.to_vec(),
+            start: problem.start.to_vec(),
+            ..self.fixed.clone()
+        }
+    }
+}

@@ -1,0 +1,312 @@
+//! Collision problems: a state x, a target y, and what collides.
+
+use bowknot_geometry::{HalfSpace, Point, Vector};
+use bowknot_io::IoError;
+use bowknot_io::npz::{Archive, write_archive};
+use bowknot_twoway::{BodyContact, Call, ContactSide, HalfSpaceContact, PairFriction};
+use ndarray::{Array0, Array1, Array2};
+use ndarray_npy::{NpzWriter, WriteNpzError};
+use std::io::{Seek, Write};
+use std::path::Path;
+
+/// One collision problem as `--record` writes it and `resolve` reads it.
+///
+/// In the archive: `x[n,3]`, `y[n,3]` [m], `F[m,3]`, and optionally `E[k,2]` (strands), `P[p]` (particles),
+/// `rest[n,3]` [m], `mass[n]` [kg], `fixed[n]`, `O[n]` (obstacle), `body[n]`, `planes[h,4]` (unit normal, offset [m]),
+/// `dt` [s]; stored or deflated, f32 or f64, integers of any width.
+///
+/// What bodies bring into their contacts, optional as well, with one entry a body of `body`: `thickness`, `delta` [m],
+/// `friction`, `stretch_limit` [1], each nan where the body leaves it open; `plane_thickness[h]` [m] and
+/// `plane_friction[h]` likewise; `pair_friction[k,3]`: two bodies, half-spaces numbered after the bodies, and their
+/// coefficient. `group[n]`: pins that go as one, -1 for none. `start[n,3]` [m]: what friction measures slip from.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct States {
+    /// The state, free of intersections.
+    pub x: Vec<Point>,
+    /// The target.
+    pub y: Vec<Point>,
+    /// Triangles (`F`).
+    pub triangles: Vec<[u32; 3]>,
+    /// Strand edges (`E`).
+    pub strands: Vec<[u32; 2]>,
+    /// Particles (`P`).
+    pub particles: Vec<u32>,
+    /// Rest positions (`rest`); those of `x` if the archive has none.
+    pub rest: Vec<Point>,
+    /// Masses (`mass`); 1 if the archive has none.
+    pub masses: Vec<f64>,
+    /// Prescribed vertices (`fixed`); none if the archive has none.
+    pub fixed: Vec<bool>,
+    /// Obstacle vertices (`O`); none if the archive has none.
+    pub obstacle: Vec<bool>,
+    /// Body of each vertex (`body`); if the archive has none, 0 for deformable and 1 for obstacle vertices.
+    pub body: Vec<u32>,
+    /// Half-spaces (`planes`).
+    pub half_spaces: Vec<HalfSpace>,
+    /// Time step that the problem stands for (`dt`).
+    pub time_step: Option<f64>,
+    /// What each body brings into its contacts; empty: nothing.
+    pub body_contacts: Vec<BodyContact>,
+    /// What each half-space brings into its contacts; empty: nothing.
+    pub half_space_contacts: Vec<HalfSpaceContact>,
+    /// Friction of pairs of bodies and half-spaces.
+    pub pair_frictions: Vec<PairFriction>,
+    /// Group of each vertex, [`Call::NO_GROUP`] for none; empty: no groups.
+    pub groups: Vec<u32>,
+    /// Positions at the start of the time step; empty: those of `x`.
+    pub start: Vec<Point>,
+}
+
+impl States {
+    /// Reads a problem.
+    ///
+    /// # Errors
+    /// A missing or malformed archive, a missing or misshapen array, numbers out of range; with the array.
+    pub fn read(path: &Path) -> Result<Self, IoError> {
+        let mut archive = Archive::open(path)?;
+        let missing = |archive: &Archive<'_>, name: &str| {
+            let names = archive.names().join(", ");
+            archive.file_fault(format!("array {name} is missing; the archive has: {names}"))
+        };
+        let x = archive.points("x", None)?.ok_or_else(|| missing(&archive, "x"))?;
+        let n = x.len();
+        if n == 0 {
+            return Err(archive.fault("x", "it has no vertices"));
+        }
+        if n > u32::MAX as usize {
+            return Err(archive.fault("x", format!("{n} vertices; at most {} are possible", u32::MAX)));
+        }
+        let y = archive.points("y", Some(n))?.ok_or_else(|| missing(&archive, "y"))?;
+        let rest = archive.points("rest", Some(n))?.unwrap_or_else(|| x.clone());
+        let masses = archive.column("mass", Some(n))?.unwrap_or_else(|| vec![1.0; n]);
+        let fixed = flags(&mut archive, "fixed", n)?;
+        let obstacle = flags(&mut archive, "O", n)?;
+        let body = bodies(&mut archive, &obstacle)?;
+        let particles = archive.elements::<1>("P", n)?.into_iter().flatten().collect();
+        let half_spaces = planes(&mut archive)?;
+        let count = body.iter().max().map_or(0, |&b| b as usize + 1);
+        Ok(Self {
+            body_contacts: body_contacts(&mut archive, count)?,
+            half_space_contacts: half_space_contacts(&mut archive, half_spaces.len())?,
+            pair_frictions: pair_frictions(&mut archive, count, half_spaces.len())?,
+            groups: groups(&mut archive, n)?,
+            start: archive.points("start", Some(n))?.unwrap_or_default(),
+            triangles: archive.elements("F", n)?,
+            strands: archive.elements("E", n)?,
+            particles,
+            half_spaces,
+            time_step: time_step(&mut archive)?,
+            x,
+            y,
+            rest,
+            masses,
+            fixed,
+            obstacle,
+            body,
+        })
+    }
+
+    /// Writes the problem, deflated and atomically; f64 and i32, so that it reads back to the same bits.
+    ///
+    /// # Errors
+    /// The system's refusal, with the path.
+    pub fn write(&self, path: &Path) -> Result<(), IoError> {
+        write_archive(path, true, |archive| {
+            archive.add_array("x", &points(&self.x))?;
+            archive.add_array("y", &points(&self.y))?;
+            archive.add_array("F", &elements(&self.triangles))?;
+            archive.add_array("E", &elements(&self.strands))?;
+            archive.add_array("P", &Array1::from_iter(self.particles.iter().map(|&p| p as i32)))?;
+            archive.add_array("rest", &points(&self.rest))?;
+            archive.add_array("mass", &Array1::from_iter(self.masses.iter().copied()))?;
+            archive.add_array("fixed", &Array1::from_iter(self.fixed.iter().copied()))?;
+            archive.add_array("O", &Array1::from_iter(self.obstacle.iter().copied()))?;
+            archive.add_array("body", &Array1::from_iter(self.body.iter().map(|&b| b as i32)))?;
+            let rows: Vec<[f64; 4]> =
+                self.half_spaces.iter().map(|h| [h.normal.x, h.normal.y, h.normal.z, h.offset]).collect();
+            archive.add_array("planes", &table(&rows, |v| v))?;
+            if let Some(dt) = self.time_step {
+                archive.add_array("dt", &Array0::from_elem((), dt))?;
+            }
+            self.write_contacts(archive)
+        })
+    }
+
+    /// What the problem has beyond geometry, each array only where it says something.
+    fn write_contacts<W: Write + Seek>(&self, archive: &mut NpzWriter<W>) -> Result<(), WriteNpzError> {
+        let mut column =
+            |name: &str, values: Vec<f64>, open: fn(f64) -> bool| match values.iter().all(|&v| open(v)) {
+                true => Ok(()),
+                false => archive.add_array(name, &Array1::from(values)),
+            };
+        let given = |value: Option<f64>| value.unwrap_or(f64::NAN);
+        let (bodies, planes) = (&self.body_contacts, &self.half_space_contacts);
+        column("thickness", bodies.iter().map(|b| given(b.thickness)).collect(), f64::is_nan)?;
+        column("delta", bodies.iter().map(|b| given(b.delta)).collect(), f64::is_nan)?;
+        column("friction", bodies.iter().map(|b| b.friction).collect(), |f| f == 0.0)?;
+        column("stretch_limit", bodies.iter().map(|b| given(b.stretch_limit)).collect(), f64::is_nan)?;
+        column("plane_thickness", planes.iter().map(|h| given(h.thickness)).collect(), f64::is_nan)?;
+        column("plane_friction", planes.iter().map(|h| h.friction).collect(), |f| f == 0.0)?;
+        if !self.pair_frictions.is_empty() {
+            let count = self.body.iter().max().map_or(0, |&b| b + 1);
+            let number = |side| match side {
+                ContactSide::Body(body) => f64::from(body),
+                ContactSide::HalfSpace(plane) => f64::from(count + plane),
+            };
+            let row = |pair: &PairFriction| [number(pair.sides[0]), number(pair.sides[1]), pair.friction];
+            let rows: Vec<[f64; 3]> = self.pair_frictions.iter().map(row).collect();
+            archive.add_array("pair_friction", &table(&rows, |v| v))?;
+        }
+        if self.groups.iter().any(|&g| g != Call::NO_GROUP) {
+            let number = |&g: &u32| if g == Call::NO_GROUP { -1 } else { g as i32 };
+            archive.add_array("group", &Array1::from_iter(self.groups.iter().map(number)))?;
+        }
+        if !self.start.is_empty() && self.start != self.x {
+            archive.add_array("start", &points(&self.start))?;
+        }
+        Ok(())
+    }
+}
+
+/// Writes the answer of `resolve`: `x[n,3]` as f64, atomically.
+///
+/// # Errors
+/// The system's refusal, with the path.
+pub fn write_result(path: &Path, x: &[Point]) -> Result<(), IoError> {
+    write_archive(path, false, |archive| archive.add_array("x", &points(x)))
+}
+
+fn flags(archive: &mut Archive<'_>, name: &str, n: usize) -> Result<Vec<bool>, IoError> {
+    let values = archive.column(name, Some(n))?;
+    Ok(values.map_or_else(|| vec![false; n], |v| v.into_iter().map(|flag| flag != 0.0).collect()))
+}
+
+fn bodies(archive: &mut Archive<'_>, obstacle: &[bool]) -> Result<Vec<u32>, IoError> {
+    let Some(values) = archive.column("body", Some(obstacle.len()))? else {
+        return Ok(obstacle.iter().map(|&o| u32::from(o)).collect());
+    };
+    // Bodies are counted, so that a stray large number would cost memory; none has more bodies than vertices, but that
+    // of obstacles is 1 by default even where there is no deformable vertex.
+    let limit = values.len().max(2) as f64;
+    if let Some(vertex) = values.iter().position(|&b| !(b >= 0.0 && b < limit && b.fract() == 0.0)) {
+        let body = values[vertex];
+        return Err(
+            archive.fault("body", format!("vertex {vertex} has body {body}; bodies are numbered from 0 up"))
+        );
+    }
+    Ok(values.into_iter().map(|b| b as u32).collect())
+}
+
+fn planes(archive: &mut Archive<'_>) -> Result<Vec<HalfSpace>, IoError> {
+    let mut half_spaces = Vec::new();
+    for (index, [x, y, z, offset]) in archive.rows::<4>("planes")?.unwrap_or_default().into_iter().enumerate()
+    {
+        let normal = Vector::new(x, y, z);
+        let length = normal.norm();
+        if !(length.is_finite() && length > 0.0 && offset.is_finite()) {
+            return Err(archive.fault(
+                "planes",
+                format!("row {index} needs a normal (not zero) and an offset, all finite"),
+            ));
+        }
+        // A normal that is a unit to rounding is kept bit by bit, so that a recorded problem is the one that was run.
+        let scale = if (length - 1.0).abs() < 1e-12 { 1.0 } else { length };
+        half_spaces.push(HalfSpace { normal: normal / scale, offset: offset / scale });
+    }
+    Ok(half_spaces)
+}
+
+fn time_step(archive: &mut Archive<'_>) -> Result<Option<f64>, IoError> {
+    let Some((values, _)) = archive.array("dt")? else { return Ok(None) };
+    match values.as_slice() {
+        [dt] if dt.is_finite() && *dt > 0.0 => Ok(Some(*dt)),
+        _ => Err(archive.fault("dt", format!("{values:?} must be one finite number above 0"))),
+    }
+}
+
+/// A column of one number for each of `count` things; nan for all if the archive has none.
+fn per(archive: &mut Archive<'_>, name: &str, count: usize, what: &str) -> Result<Vec<Option<f64>>, IoError> {
+    let Some(values) = archive.column(name, None)? else { return Ok(vec![None; count]) };
+    if values.len() != count {
+        return Err(archive.fault(name, format!("it has {} entries for {count} {what}", values.len())));
+    }
+    Ok(values.into_iter().map(|v| Some(v).filter(|v| !v.is_nan())).collect())
+}
+
+/// Ranges are checked where the numbers are used, by [`bowknot_twoway::Resolver::with_bodies`].
+fn body_contacts(archive: &mut Archive<'_>, count: usize) -> Result<Vec<BodyContact>, IoError> {
+    let mut column = |name| per(archive, name, count, "bodies");
+    let (thickness, delta) = (column("thickness")?, column("delta")?);
+    let (friction, stretch_limit) = (column("friction")?, column("stretch_limit")?);
+    let body = |b: usize| BodyContact {
+        thickness: thickness[b],
+        delta: delta[b],
+        friction: friction[b].unwrap_or(0.0),
+        stretch_limit: stretch_limit[b],
+    };
+    let contacts: Vec<BodyContact> = (0..count).map(body).collect();
+    let given = contacts.iter().any(|c| *c != BodyContact::default());
+    Ok(if given { contacts } else { Vec::new() })
+}
+
+fn half_space_contacts(archive: &mut Archive<'_>, count: usize) -> Result<Vec<HalfSpaceContact>, IoError> {
+    let thickness = per(archive, "plane_thickness", count, "planes")?;
+    let friction = per(archive, "plane_friction", count, "planes")?;
+    let plane = |h: usize| HalfSpaceContact { thickness: thickness[h], friction: friction[h].unwrap_or(0.0) };
+    let contacts: Vec<HalfSpaceContact> = (0..count).map(plane).collect();
+    let given = contacts.iter().any(|c| *c != HalfSpaceContact::default());
+    Ok(if given { contacts } else { Vec::new() })
+}
+
+fn pair_frictions(
+    archive: &mut Archive<'_>,
+    bodies: usize,
+    planes: usize,
+) -> Result<Vec<PairFriction>, IoError> {
+    let mut pairs = Vec::new();
+    for (index, row) in archive.rows::<3>("pair_friction")?.unwrap_or_default().into_iter().enumerate() {
+        let count = (bodies + planes) as f64;
+        if let Some(side) = row[..2].iter().find(|&&s| !(s >= 0.0 && s < count && s.fract() == 0.0)) {
+            let message =
+                format!("row {index} names side {side}, but there are {bodies} bodies and {planes} planes");
+            return Err(archive.fault("pair_friction", message));
+        }
+        if !row[2].is_finite() {
+            let friction = row[2];
+            return Err(archive.fault("pair_friction", format!("row {index} has coefficient {friction}")));
+        }
+        let side = |number: f64| match (number as usize).checked_sub(bodies) {
+            None => ContactSide::Body(number as u32),
+            Some(plane) => ContactSide::HalfSpace(plane as u32),
+        };
+        pairs.push(PairFriction { sides: [side(row[0]), side(row[1])], friction: row[2] });
+    }
+    Ok(pairs)
+}
+
+fn groups(archive: &mut Archive<'_>, n: usize) -> Result<Vec<u32>, IoError> {
+    let Some(values) = archive.column("group", Some(n))? else { return Ok(Vec::new()) };
+    let allowed = |g: f64| g == -1.0 || (g >= 0.0 && g < f64::from(u32::MAX) && g.fract() == 0.0);
+    if let Some(vertex) = values.iter().position(|&g| !allowed(g)) {
+        let group = values[vertex];
+        return Err(archive.fault(
+            "group",
+            format!("vertex {vertex} has group {group}; groups are numbered from 0 up, -1 is none"),
+        ));
+    }
+    let groups: Vec<u32> =
+        values.into_iter().map(|g| if g < 0.0 { Call::NO_GROUP } else { g as u32 }).collect();
+    Ok(if groups.iter().any(|&g| g != Call::NO_GROUP) { groups } else { Vec::new() })
+}
+
+fn points(points: &[Point]) -> Array2<f64> {
+    Array2::from_shape_fn((points.len(), 3), |(i, k)| points[i][k])
+}
+
+fn elements<const N: usize>(rows: &[[u32; N]]) -> Array2<i32> {
+    table(rows, |v| v as i32)
+}
+
+fn table<A: Copy, B, const N: usize>(rows: &[[A; N]], convert: impl Fn(A) -> B) -> Array2<B> {
+    Array2::from_shape_fn((rows.len(), N), |(i, k)| convert(rows[i][k]))
+}

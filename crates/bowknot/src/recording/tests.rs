@@ -1,0 +1,208 @@
+use super::*;
+use crate::Scene;
+use crate::simulator::Watcher;
+use crate::simulator::{CollisionProblem, Simulator};
+use bowknot_geometry::{HalfSpace, Point, Vector};
+use bowknot_io::{IoError, Mesh};
+use bowknot_twoway::Params;
+use bowknot_twoway::{BodyContact, Call, ContactSide, HalfSpaceContact, PairFriction};
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use tempfile::TempDir;
+
+/// Solves each problem again from its file, and keeps both ends.
+struct Again {
+    recorder: Recorder,
+    params: Params,
+    path: std::path::PathBuf,
+    ends: Vec<Vec<Point>>,
+}
+
+impl Watcher for Again {
+    fn problem(&mut self, problem: &CollisionProblem<'_>) -> ControlFlow<()> {
+        let states = self.recorder.states(problem);
+        states.write(&self.path).expect("written");
+        let read = States::read(&self.path).expect("read");
+        let model = read.collision_model().expect("a model");
+        let mut resolver = read.resolver(model, self.params.clone()).expect("a resolver");
+        let mut x = read.x.clone();
+        resolver.resolve(&mut x, &read.y, &read.call(), &mut ()).expect("resolved");
+        self.ends.push(x);
+        ControlFlow::Continue(())
+    }
+}
+
+/// Grains of their own size with friction on a plane, and a sheet with pins: the file holds all that matters.
+#[test]
+fn a_recorded_problem_ends_where_the_simulation_did() {
+    let text = r#"
+        [[body]]
+        kind = "particles"
+        shape = { type = "grains", count = [5, 5, 4], spacing = 0.0045 }
+        delta = 0.004
+        thickness = 0.003
+        friction = 0.4
+        translate = [0.0, 0.0, 0.012]
+
+        [[body]]
+        name = "sheet"
+        shape = { type = "sheet", size = [0.1, 0.1], edge = 0.02 }
+        translate = [0.0, 0.0, 0.06]
+
+        [[pin]]
+        body = "sheet"
+        side = "x-max"
+        motion = { keyframes = [{ time = 0.0 }, { time = 1.0, translate = [0.1, 0.0, -0.5] }] }
+
+        [[obstacle]]
+        shape = { type = "half-space" }
+        friction = 0.3
+    "#;
+    let scene = Scene::from_toml(text, ".").expect("a scene");
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut simulator = Simulator::new(&scene).expect("a simulator");
+    let mut again = Again {
+        recorder: Recorder::new(&simulator),
+        params: scene.twoway.clone(),
+        path: folder.path().join("problem.npz"),
+        ends: Vec::new(),
+    };
+    for step in 0..8 {
+        simulator.step_watched(&mut again).expect("a step");
+        let count = simulator.world().collision_vertices();
+        let end = again.ends.last().expect("a problem in each step");
+        assert!(*end == simulator.positions()[..count], "step {step} ends elsewhere");
+    }
+}
+
+fn states() -> States {
+    let mesh = sample();
+    States {
+        y: mesh.positions.iter().map(|p| p + Vector::new(0.1, 0.2, 0.3)).collect(),
+        rest: mesh.positions.iter().map(|p| p * 0.5).collect(),
+        x: mesh.positions,
+        triangles: mesh.triangles,
+        strands: mesh.strands,
+        particles: mesh.particles,
+        masses: vec![0.1, 0.2, 0.3, 0.4, 0.5, 0.6],
+        fixed: vec![true, false, false, false, false, false],
+        obstacle: vec![false, false, false, false, false, true],
+        body: vec![0, 0, 0, 0, 1, 2],
+        half_spaces: vec![HalfSpace { normal: Vector::new(0.6, 0.0, 0.8), offset: -0.25 }],
+        time_step: Some(0.01),
+        body_contacts: vec![
+            BodyContact { thickness: Some(1e-3), friction: 0.25, ..BodyContact::default() },
+            BodyContact { stretch_limit: Some(f64::INFINITY), ..BodyContact::default() },
+            BodyContact { delta: Some(4e-3), ..BodyContact::default() },
+        ],
+        half_space_contacts: vec![HalfSpaceContact { thickness: Some(2e-3), friction: 0.5 }],
+        pair_frictions: vec![PairFriction {
+            sides: [ContactSide::Body(1), ContactSide::HalfSpace(0)],
+            friction: 0.75,
+        }],
+        groups: vec![3, 3, Call::NO_GROUP, 0, Call::NO_GROUP, Call::NO_GROUP],
+        start: sample().positions.iter().map(|p| p * 0.75).collect(),
+    }
+}
+
+#[test]
+fn states_round_trip_to_the_same_bits() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("states.npz");
+    states().write(&path).unwrap();
+    assert_eq!(States::read(&path).unwrap(), states());
+}
+
+#[test]
+fn states_of_any_number_type_with_defaults() {
+    use ndarray::{Array1, Array2, ShapeBuilder};
+    use ndarray_npy::NpzWriter;
+    let folder = tempfile::tempdir().unwrap();
+    let write_with = |name: &str, compressed: bool, bad: Option<(&str, Array2<f64>)>| {
+        let path = folder.path().join(name);
+        let file = fs::File::create(&path).unwrap();
+        let mut npz = if compressed { NpzWriter::new_compressed(file) } else { NpzWriter::new(file) };
+        let x = Array2::from_shape_fn((4, 3), |(i, k)| (i * 3 + k) as f32);
+        // Column-major, as numpy writes transposed arrays.
+        let y = Array2::from_shape_fn((4, 3).f(), |(i, k)| (i * 3 + k) as f64);
+        let arrays = ["x", "y", "F", "O"];
+        if let Some((name, array)) = &bad {
+            npz.add_array(*name, array).unwrap();
+        }
+        for array in arrays.iter().filter(|a| bad.as_ref().is_none_or(|(name, _)| name != *a)) {
+            match *array {
+                "x" => npz.add_array("x", &x),
+                "y" => npz.add_array("y", &y),
+                "F" => npz.add_array("F", &Array2::<i64>::from_shape_fn((1, 3), |(_, k)| k as i64)),
+                _ => npz.add_array("O", &Array1::from_vec(vec![0_u8, 0, 0, 1])),
+            }
+            .unwrap();
+        }
+        npz.finish().unwrap();
+        path
+    };
+    for compressed in [false, true] {
+        let states = States::read(&write_with("a.npz", compressed, None)).unwrap();
+        assert_eq!(states.x[1], Point::new(3.0, 4.0, 5.0));
+        assert_eq!(states.x, states.y, "row-major f32 and column-major f64 hold the same numbers");
+        assert_eq!((states.rest.clone(), states.masses), (states.x.clone(), vec![1.0; 4]));
+        assert_eq!(states.body, [0, 0, 0, 1]);
+        assert_eq!((states.fixed, states.time_step), (vec![false; 4], None));
+    }
+    let row = |values: &[f64]| Array2::from_shape_vec((1, values.len()), values.to_vec()).unwrap();
+    for (name, array, words) in [
+        ("y", row(&[0.0, 0.0, 0.0]), "array y: it has 1 rows for 4 vertices"),
+        ("y", Array2::zeros((4, 2)), "array y: its shape is [4, 2], it must be [n, 3]"),
+        ("y", Array2::from_elem((4, 3), f64::NAN), "array y: row 0 is not finite"),
+        ("x", Array2::zeros((0, 3)), "array x: it has no vertices"),
+        ("F", row(&[0.0, 1.0, 4.0]), "array F: row 0 names vertex 4, but there are 4 vertices"),
+        ("F", row(&[0.0, 1.0, -1.0]), "names vertex -1"),
+        ("E", row(&[0.0, 0.5]), "array E: row 0 names vertex 0.5"),
+        ("P", row(&[7.0]), "array P: row 0 names vertex 7"),
+        ("mass", row(&[1.0]), "array mass: it has 1 entries for 4 vertices"),
+        ("body", row(&[0.0, 0.0, 0.0, 9.0]), "vertex 3 has body 9"),
+        ("planes", row(&[0.0, 0.0, 0.0, 1.0]), "array planes: row 0 needs a normal"),
+        ("dt", row(&[-1.0]), "array dt"),
+        ("thickness", row(&[0.0, 0.0, 0.0]), "array thickness: it has 3 entries for 2 bodies"),
+        ("plane_friction", row(&[0.5]), "array plane_friction: it has 1 entries for 0 planes"),
+        ("pair_friction", row(&[0.0, 2.0, 0.5]), "names side 2, but there are 2 bodies and 0 planes"),
+        ("group", row(&[-2.0, 0.0, 0.0, 0.0]), "vertex 0 has group -2"),
+        ("start", row(&[0.0, 0.0, 0.0]), "array start: it has 1 rows for 4 vertices"),
+    ] {
+        let text = message(States::read(&write_with("bad.npz", true, Some((name, array)))));
+        assert!(text.contains("bad.npz") && text.contains(words), "{name}: {text}");
+    }
+    let path = folder.path().join("few.npz");
+    write_result(&path, &states().x).unwrap();
+    assert!(message(States::read(&path)).contains("array y is missing; the archive has: x"));
+    assert!(message(States::read(&write(&folder, "text.npz", "hello"))).contains("not an NPZ archive"));
+}
+
+fn write(folder: &TempDir, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
+    let path = folder.path().join(name);
+    fs::write(&path, content).unwrap();
+    path
+}
+fn sample() -> Mesh {
+    let p = |x: f64, y: f64, z: f64| Point::new(x, y, z);
+    Mesh {
+        positions: vec![
+            p(0.1, 1.0 / 3.0, -2.5e-7),
+            p(1e10, 0.0, -0.0),
+            p(f64::MIN_POSITIVE, 0.3, 0.7),
+            p(1.0, 2.0, 3.0),
+            p(-1.0, -2.0, -3.0),
+            p(4.0, 5.0, 6.0),
+        ],
+        triangles: vec![[0, 1, 2], [2, 1, 3]],
+        strands: vec![[3, 4]],
+        tets: Vec::new(),
+        particles: vec![5],
+        obstacle: Some(vec![false, false, false, false, false, true]),
+        body: Some(vec![0, 0, 0, 0, 1, 2]),
+    }
+}
+fn message(result: Result<impl std::fmt::Debug, IoError>) -> String {
+    result.unwrap_err().to_string()
+}

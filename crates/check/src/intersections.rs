@@ -1,0 +1,129 @@
+//! Intersections of a state, by exact predicates.
+
+use crate::error::CheckError;
+use crate::judge::Judge;
+use crate::path::is_above;
+use crate::primitives::{Scene, closest_points, gather, pairs};
+use crate::report::{Intersection, PairClass, StateOptions, StateReport};
+use crate::walk::Meeting;
+use bowknot_geometry::{Point, intersection};
+use rayon::prelude::*;
+
+/// A pair that intersects.
+type Found = (PairClass, [u32; 2]);
+
+impl Judge {
+    /// Judges the state `x` [m], one point a vertex.
+    ///
+    /// Intersections are decided exactly, but for half-spaces: a vertex that is not certainly above one,
+    /// given rounding, counts as touching it. So that one place is not counted several times, two edges
+    /// of a mesh, or a vertex of one and a triangle, are listed only where no edge-triangle pair stands
+    /// for them (all of those share a vertex). The result does not depend on the number of threads.
+    ///
+    /// # Errors
+    /// A wrong number of points, or coordinates that are not finite.
+    pub fn check_state(&self, x: &[Point], options: &StateOptions) -> Result<StateReport, CheckError> {
+        self.check_positions("state", x)?;
+        let mut scene = Scene::new(self);
+        scene.arrange([x]);
+        scene.fit([x], false);
+        let Scene { edges, particles, strands, triangles, .. } = &scene;
+        let mut found = pairs(
+            self,
+            PairClass::EdgeTriangle,
+            edges,
+            triangles,
+            &Meeting,
+            |class, elements, [edge, triangle], found: &mut Vec<Found>| {
+                let point = |v: u32| &x[v as usize];
+                let (e, t) = ([edge[0], edge[1]], [triangle[0], triangle[1], triangle[2]]);
+                if intersection::edge_triangle(e.map(point), t.map(point)) {
+                    found.push((class, elements));
+                }
+            },
+        )
+        .concat();
+        let edge_triangle_count = found.len();
+        let test = |class: PairClass, elements: [u32; 2], [a, b]: [&[u32]; 2], found: &mut Vec<Found>| {
+            if touch(x, a, b) {
+                found.push((class, elements));
+            }
+        };
+        let others = [
+            pairs(self, PairClass::EdgeEdge, strands, strands, &Meeting, test),
+            pairs(self, PairClass::VertexTriangle, particles, triangles, &Meeting, test),
+            pairs(self, PairClass::VertexEdge, particles, strands, &Meeting, test),
+            pairs(self, PairClass::VertexVertex, particles, particles, &Meeting, test),
+        ];
+        found.extend(others.into_iter().flatten().flatten());
+        for &(class, elements) in &self.uncovered {
+            let sides = self.sides(class, elements);
+            let obstacles = sides.iter().all(|side| side.iter().all(|&v| self.obstacle[v as usize]));
+            if !obstacles && self.may_meet(sides[0], sides[1]) {
+                test(class, elements, sides, &mut found);
+            }
+        }
+        found.par_extend(self.vertices.par_iter().filter(|&&v| self.meets_half_spaces(v)).flat_map_iter(
+            |&v| {
+                let below = move |h: &usize| !is_above(&self.half_spaces[*h], &x[v as usize]);
+                (0..self.half_spaces.len())
+                    .filter(below)
+                    .map(move |h| (PairClass::VertexHalfSpace, [v, h as u32]))
+            },
+        ));
+        found.par_sort_unstable();
+
+        let intersections = found.iter().take(options.limit).map(|found| self.describe(x, found)).collect();
+        let nearest = if options.distance { self.nearest(x, &scene) } else { None };
+        Ok(StateReport { intersections, intersection_count: found.len(), edge_triangle_count, nearest })
+    }
+
+    fn describe(&self, x: &[Point], &(class, elements): &Found) -> Intersection {
+        let sides = self.sides(class, elements);
+        let place = match class {
+            PairClass::EdgeTriangle => {
+                let point = |v: u32| x[v as usize];
+                let [edge, triangle] = sides;
+                crossing([edge[0], edge[1]].map(point), [triangle[0], triangle[1], triangle[2]].map(point))
+            }
+            PairClass::VertexHalfSpace => x[elements[0] as usize],
+            _ => closest_points(class, &gather(x, sides)).0[0],
+        };
+        let vertices = sides.map(<[u32]>::to_vec);
+        Intersection { class, elements, vertices, bodies: self.side_bodies(sides), place }
+    }
+}
+
+/// Whether two closed primitives, other than an edge and a triangle, share a point: exact.
+fn touch(x: &[Point], a: &[u32], b: &[u32]) -> bool {
+    let point = |v: u32| &x[v as usize];
+    match (a, b) {
+        (&[p], &[i, j, k]) => intersection::point_on_triangle(point(p), [i, j, k].map(point)),
+        (&[i, j], &[k, l]) => intersection::edge_edge([i, j].map(point), [k, l].map(point)),
+        (&[p], &[i, j]) => intersection::point_on_edge(point(p), [i, j].map(point)),
+        (&[p], &[q]) => point(p) == point(q),
+        _ => false,
+    }
+}
+
+/// A point of the overlap of an edge and a triangle, to rounding: where the edge crosses the triangle's
+/// plane, or if it runs along that, the best of the closest points of the edge with the triangle's edges
+/// and of its ends with the triangle.
+fn crossing(edge: [Point; 2], triangle: [Point; 3]) -> Point {
+    let normal = (triangle[1] - triangle[0]).cross(&(triangle[2] - triangle[0]));
+    let heights = edge.map(|p| normal.dot(&(p - triangle[0])));
+    let [p, q] = edge;
+    if heights[0] * heights[1] < 0.0 {
+        return p + (q - p) * (heights[0] / (heights[0] - heights[1]));
+    }
+    let [a, b, c] = triangle;
+    let candidates = [
+        (PairClass::VertexTriangle, [p, a, b, c]),
+        (PairClass::VertexTriangle, [q, a, b, c]),
+        (PairClass::EdgeEdge, [p, q, a, b]),
+        (PairClass::EdgeEdge, [p, q, b, c]),
+        (PairClass::EdgeEdge, [p, q, c, a]),
+    ];
+    let measured = candidates.map(|(class, points)| closest_points(class, &points));
+    measured.iter().fold(&measured[0], |best, next| if next.1 < best.1 { next } else { best }).0[0]
+}

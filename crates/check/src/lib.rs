@@ -1,0 +1,57 @@
+//! The judge: are states, and straight paths between states, free of intersections?
+//!
+//! It shares no code with the solver, so that a mistake there cannot hide itself here: it has its own broad phase (a
+//! tree over moving boxes), its own closest points, and a certificate of its own for paths (see [`Judge::check_path`]).
+//! States are decided by the exact predicates of `bowknot-geometry`, which the solver does not use.
+//!
+//! ```text
+//! Judge::new(&Parts) -> Result<Judge, CheckError>                       loose meshes
+//! Judge::from_model(&CollisionModel) -> Judge                           a scene
+//! judge.check_state(&x, &StateOptions)  -> Result<StateReport, CheckError>
+//! judge.check_path(&x0, &x1, &PathOptions) -> Result<PathReport, CheckError>
+//! MotionJudge::new(judge)                                               many paths, one after another
+//! judge.offending_mesh(&x, &[Intersection]) -> OffendingMesh            for a dump
+//! ```
+//!
+//! **What is judged.** In a state: every edge against every triangle (closed, so touching and coplanar
+//! overlap count), every two edges, every vertex against every triangle, every particle against every
+//! strand edge and particle, every vertex against every half-space. On a path: the same kinds but
+//! edge-triangle, at every time; a path that starts free of intersections cannot come to have an edge
+//! through a triangle without a vertex meeting a triangle or an edge an edge first. Left out are pairs
+//! that share a vertex, pairs of two obstacle primitives, and pairs that the bodies' filters exclude.
+//!
+//! **What is not judged:** two edges that share a vertex folded exactly onto each other, as no pair
+//! kind covers them; and which side of a surface a body is on.
+
+mod closest;
+mod dump;
+mod error;
+mod exceptions;
+mod intersections;
+mod judge;
+mod motion;
+mod nearest;
+mod path;
+mod primitives;
+mod report;
+mod sweep;
+mod tree;
+mod walk;
+
+#[cfg(test)]
+mod tests;
+
+/// Points and half-spaces: what states are made of.
+pub use bowknot_geometry as geometry;
+pub use dump::OffendingMesh;
+pub use error::CheckError;
+pub use judge::{Judge, Parts};
+pub use motion::MotionJudge;
+pub use report::{
+    Intersection, Nearest, PairClass, PathHit, PathOptions, PathReport, StateOptions, StateReport,
+};
+
+/// The README's example is tested with the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;

@@ -1,0 +1,52 @@
+//! From a file's axes and unit to ours: z up, metres.
+
+use bowknot_errors::{Checks, Parameters};
+use bowknot_geometry::Point;
+use serde::{Deserialize, Serialize};
+
+/// Which axis of a file points up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Up {
+    /// The x axis: x becomes z, y becomes x, z becomes y.
+    X,
+    /// The y axis, as most modelling tools have it: y becomes z, z becomes -y.
+    Y,
+    /// The z axis, ours: nothing changes.
+    #[default]
+    Z,
+}
+
+/// How coordinates of a file become ours.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Import {
+    /// Which axis of the file points up. Default z.
+    pub up: Up,
+    /// Length of the file's unit [m]: 0.001 for millimetres. Default 1.
+    pub scale: f64,
+}
+
+impl Default for Import {
+    fn default() -> Self {
+        Self { up: Up::Z, scale: 1.0 }
+    }
+}
+
+impl Import {
+    /// A point of the file in our axes [m]. Both conversions are rotations: no mesh is turned inside out.
+    pub fn point(&self, [x, y, z]: [f64; 3]) -> Point {
+        let [x, y, z] = match self.up {
+            Up::X => [y, z, x],
+            Up::Y => [x, -z, y],
+            Up::Z => [x, y, z],
+        };
+        Point::new(self.scale * x, self.scale * y, self.scale * z)
+    }
+}
+
+impl Parameters for Import {
+    fn check(&self, checks: &mut Checks) {
+        checks.positive("scale", self.scale);
+    }
+}

@@ -1,0 +1,56 @@
+//! Files in and out: meshes (OBJ, PLY; MSH, lists of tetrahedra and segments in only), NumPy archives and frame
+//! stacks (NPZ), what other programs play (PC2, USD, VTU), atomic writes.
+//!
+//! Everything in memory is in metres with z up; [`Import`] converts on the way in. Readers never panic and never
+//! allocate on the word of a header: a malformed file gives an [`IoError`] that names the file and the line, element
+//! or array. Elements are kept as they stand in the file, degenerate ones too; whether a triangle of zero area is an
+//! error or a warning depends on the body, which the scene knows and a file does not.
+//!
+//! The readers are our own because the crates at hand do not say where a file is wrong (`tobj`) or refuse numbers
+//! that exporters write, such as `1.` (`ply-rs-bw`); both serve as oracles in the tests. `mshio` is not kept up.
+
+mod atomic;
+mod error;
+mod folder;
+mod frame_source;
+mod import;
+mod mesh;
+mod msh;
+#[cfg(feature = "npz")]
+pub mod npz;
+mod numbering;
+mod obj;
+mod pc2;
+mod ply;
+mod read;
+mod tet_list;
+mod usd;
+mod vtu;
+
+/// Points and topology, the types that meshes are made of.
+pub use bowknot_geometry as geometry;
+
+pub use atomic::{create_folder, write_atomic, write_text};
+pub use error::{IoError, Place};
+pub use folder::{files_in, natural_order};
+pub use frame_source::FrameSource;
+pub use import::{Import, Up};
+pub use mesh::{Mesh, MeshView};
+pub use msh::read_msh;
+#[cfg(feature = "npz")]
+pub use npz::{FrameStack, write_frame_stack};
+pub use obj::{read_obj, read_segments, write_obj};
+pub use pc2::{truncate_pc2, write_pc2_frame};
+pub use ply::{read_ply, write_ply};
+pub use read::{MESH_ENDINGS, read_mesh};
+pub use tet_list::read_tet_list;
+pub use usd::{UsdBody, write_usda};
+pub use vtu::{write_pvd, write_vtu};
+
+#[cfg(all(test, feature = "npz"))]
+mod tests;
+
+/// The README's example is tested with the documentation.
+#[cfg(all(doctest, feature = "npz"))]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;

@@ -1,0 +1,234 @@
+//! Arrays of any number type, by name.
+
+use crate::atomic::write_atomic;
+use crate::error::{IoError, Place};
+use bowknot_geometry::Point;
+use ndarray::ArrayD;
+use ndarray_npy::{NpzReader, NpzWriter, ReadDataError, ReadableElement};
+use py_literal::Value as PyValue;
+use std::fs::File;
+use std::io::{BufReader, BufWriter, ErrorKind, Read};
+use std::path::Path;
+
+/// A number of an archive, widened from whatever type it was stored as. Integers above 2^53 lose their last digits;
+/// none that we read are indices.
+#[derive(Clone, Copy)]
+struct Number(f64);
+
+impl ReadableElement for Number {
+    fn read_to_end_exact_vec<R: Read>(
+        mut reader: R,
+        descriptor: &PyValue,
+        len: usize,
+    ) -> Result<Vec<Self>, ReadDataError> {
+        let unknown = || ReadDataError::WrongDescriptor(descriptor.clone());
+        let PyValue::String(name) = descriptor else { return Err(unknown()) };
+        let big_endian = name.starts_with('>');
+        let kind = name.trim_start_matches(['<', '>', '|', '=']);
+        macro_rules! widen {
+            ($type:ty) => {
+                read_numbers(&mut reader, len, |bytes| {
+                    (if big_endian { <$type>::from_be_bytes(bytes) } else { <$type>::from_le_bytes(bytes) })
+                        as f64
+                })
+            };
+        }
+        let values = match kind {
+            "f4" => widen!(f32),
+            "f8" => widen!(f64),
+            "i1" => widen!(i8),
+            "i2" => widen!(i16),
+            "i4" => widen!(i32),
+            "i8" => widen!(i64),
+            "u1" | "b1" => widen!(u8),
+            "u2" => widen!(u16),
+            "u4" => widen!(u32),
+            "u8" => widen!(u64),
+            _ => return Err(unknown()),
+        }?;
+        // What follows the last number is not part of the array; reading on also checks the archive's checksum.
+        let extra = std::io::copy(&mut reader, &mut std::io::sink())?;
+        if extra > 0 { Err(ReadDataError::ExtraBytes(extra as usize)) } else { Ok(values) }
+    }
+}
+
+/// Reads `len` numbers of `N` bytes. Memory grows with what was read, never with what the header claims.
+fn read_numbers<R: Read, const N: usize>(
+    reader: &mut R,
+    len: usize,
+    widen: impl Fn([u8; N]) -> f64,
+) -> Result<Vec<Number>, ReadDataError> {
+    let mut values = Vec::new();
+    let mut buffer = Vec::new();
+    while values.len() < len {
+        let chunk = (len - values.len()).min(1 << 16);
+        buffer.resize(chunk * N, 0);
+        reader.read_exact(&mut buffer)?;
+        values.extend(buffer.chunks_exact(N).filter_map(|bytes| Some(Number(widen(bytes.try_into().ok()?)))));
+    }
+    Ok(values)
+}
+
+/// Lengths of an array's axes.
+pub type Shape = Vec<usize>;
+
+/// An open archive. Arrays may be stored or deflated, of any number type, in either byte order; every refusal names the
+/// file and the array.
+pub struct Archive<'a> {
+    path: &'a Path,
+    reader: NpzReader<BufReader<File>>,
+    names: Vec<String>,
+}
+
+impl<'a> Archive<'a> {
+    /// Opens an archive.
+    ///
+    /// # Errors
+    /// A missing file, or one that is not an archive.
+    pub fn open(path: &'a Path) -> Result<Self, IoError> {
+        let file = File::open(path).map_err(|source| IoError::system("read", path, source))?;
+        // A folder opens, but does not read; say so in the system's words.
+        if file.metadata().is_ok_and(|m| m.is_dir()) {
+            return Err(IoError::system("read", path, ErrorKind::IsADirectory.into()));
+        }
+        let not_npz = |error| IoError::content(path, Place::File, format!("not an NPZ archive: {error}"));
+        let mut reader = NpzReader::new(BufReader::new(file)).map_err(not_npz)?;
+        let names = reader.names().map_err(not_npz)?;
+        Ok(Self { path, reader, names })
+    }
+
+    /// Whether the archive has an array of this name.
+    pub fn has(&self, name: &str) -> bool {
+        self.names.iter().any(|n| n == name)
+    }
+
+    /// Names of all arrays.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// The array of this name in row-major order, with its shape; none if the archive has none.
+    ///
+    /// # Errors
+    /// An unreadable array.
+    pub fn array(&mut self, name: &str) -> Result<Option<(Vec<f64>, Shape)>, IoError> {
+        if !self.has(name) {
+            return Ok(None);
+        }
+        let array: ArrayD<Number> = match self.reader.by_name::<ndarray::OwnedRepr<Number>, _>(name) {
+            Ok(array) => array,
+            Err(error) => return Err(self.fault(name, format!("unreadable: {error}"))),
+        };
+        let shape = array.shape().to_vec();
+        Ok(Some((array.iter().map(|number| number.0).collect(), shape)))
+    }
+
+    /// An array of rows of `N` numbers. One of no numbers at all may have any shape.
+    ///
+    /// # Errors
+    /// An unreadable array, another shape.
+    pub fn rows<const N: usize>(&mut self, name: &str) -> Result<Option<Vec<[f64; N]>>, IoError> {
+        let Some((values, shape)) = self.array(name)? else { return Ok(None) };
+        if !values.is_empty() && (shape.len() != 2 || shape[1] != N) {
+            return Err(self.fault(name, format!("its shape is {shape:?}, it must be [n, {N}]")));
+        }
+        Ok(Some(values.as_chunks::<N>().0.to_vec()))
+    }
+
+    /// An array of `count` numbers.
+    ///
+    /// # Errors
+    /// An unreadable array, another shape or length.
+    pub fn column(&mut self, name: &str, count: Option<usize>) -> Result<Option<Vec<f64>>, IoError> {
+        let Some((values, shape)) = self.array(name)? else { return Ok(None) };
+        if let Some(count) = count
+            && values.len() != count
+        {
+            return Err(self.fault(name, format!("it has {} entries for {count} vertices", values.len())));
+        }
+        if shape.iter().filter(|&&n| n != 1).count() > 1 {
+            return Err(self.fault(name, format!("its shape is {shape:?}, it must be [n]")));
+        }
+        Ok(Some(values))
+    }
+
+    /// An array of finite points; `count` of them, if given.
+    ///
+    /// # Errors
+    /// An unreadable array, another shape or length, coordinates that are not finite.
+    pub fn points(&mut self, name: &str, count: Option<usize>) -> Result<Option<Vec<Point>>, IoError> {
+        let Some(rows) = self.rows::<3>(name)? else { return Ok(None) };
+        if let Some(count) = count
+            && rows.len() != count
+        {
+            return Err(self.fault(name, format!("it has {} rows for {count} vertices", rows.len())));
+        }
+        if let Some(vertex) = rows.iter().position(|row| !row.iter().all(|c| c.is_finite())) {
+            return Err(self.fault(name, format!("row {vertex} is not finite: {:?}", rows[vertex])));
+        }
+        Ok(Some(rows.into_iter().map(Point::from).collect()))
+    }
+
+    /// An array of elements that name vertices below `count`.
+    ///
+    /// # Errors
+    /// An unreadable array, another shape, vertices that do not exist.
+    pub fn elements<const N: usize>(&mut self, name: &str, count: usize) -> Result<Vec<[u32; N]>, IoError> {
+        let rows = if N == 1 {
+            self.column(name, None)?.map(|values| values.as_chunks::<N>().0.to_vec())
+        } else {
+            self.rows::<N>(name)?
+        };
+        let mut elements = Vec::new();
+        for (index, row) in rows.unwrap_or_default().into_iter().enumerate() {
+            if let Some(bad) = row.iter().find(|&&v| !(v >= 0.0 && v < count as f64 && v.fract() == 0.0)) {
+                return Err(self
+                    .fault(name, format!("row {index} names vertex {bad}, but there are {count} vertices")));
+            }
+            elements.push(row.map(|v| v as u32));
+        }
+        Ok(elements)
+    }
+
+    /// What is wrong with an array.
+    pub fn fault(&self, name: &str, message: impl Into<String>) -> IoError {
+        IoError::content(self.path, Place::Array(name.to_owned()), message)
+    }
+
+    /// What is wrong with the archive as a whole.
+    pub fn file_fault(&self, message: impl Into<String>) -> IoError {
+        IoError::content(self.path, Place::File, message)
+    }
+}
+
+/// Writes an archive atomically; `fill` adds the arrays.
+///
+/// # Errors
+/// The system's refusal, with the path.
+pub fn write_archive(
+    path: &Path,
+    compressed: bool,
+    fill: impl FnOnce(&mut NpzWriter<&mut BufWriter<File>>) -> Result<(), ndarray_npy::WriteNpzError>,
+) -> Result<(), IoError> {
+    write_atomic(path, |out| {
+        let mut writer = if compressed { NpzWriter::new_compressed(out) } else { NpzWriter::new(out) };
+        fill(&mut writer).map_err(as_system_error)?;
+        writer.finish().map_err(as_system_error)?;
+        Ok(())
+    })
+}
+
+/// The system's error inside the archive writer's, so that a full disk is called one.
+fn as_system_error(error: ndarray_npy::WriteNpzError) -> std::io::Error {
+    use ndarray_npy::{WriteNpyError, WriteNpzError};
+    match error {
+        WriteNpzError::Npy(WriteNpyError::Io(source)) => source,
+        WriteNpzError::Zip(zip) => {
+            match std::error::Error::source(&zip).and_then(|s| s.downcast_ref::<std::io::Error>()) {
+                Some(source) => std::io::Error::new(source.kind(), source.to_string()),
+                None => std::io::Error::other(zip.to_string()),
+            }
+        }
+        other => std::io::Error::other(other.to_string()),
+    }
+}

@@ -1,0 +1,217 @@
+//! Universal Scene Description as text, `.usda`: meshes, curves and points that move.
+//!
+//! Sources: the USD glossary and the schema pages of UsdGeom (Mesh, BasisCurves, Points). Topology is constant, `points`
+//! and `extent` are time samples, one time code a frame. USD's points are single-precision.
+
+mod chains;
+
+use crate::atomic::write_atomic;
+use crate::error::IoError;
+use crate::mesh::MeshView;
+use bowknot_geometry::Point;
+use std::io::Write;
+use std::path::Path;
+
+/// A body of a stage.
+#[derive(Clone, Copy, Debug)]
+pub struct UsdBody<'a> {
+    /// Its name; characters that USD does not allow become underscores, names given twice get a number.
+    pub name: &'a str,
+    /// Elements, over its own vertices; positions are not looked at.
+    pub elements: MeshView<'a>,
+    /// Whether it is an obstacle, which is shown in a muted colour.
+    pub obstacle: bool,
+    /// Thickness of its strands and particles [m].
+    pub width: f64,
+}
+
+/// Writes a stage of all `frames`, atomically. `read(body, frame)` gives the positions of a body [m]; only one frame of
+/// one body is held at a time, but that each is asked for in turn, body by body.
+///
+/// Time code k is frame k, at k / `rate` seconds; z is up, one unit a metre.
+///
+/// # Errors
+/// The system's refusal, with the path; what `read` reports.
+pub fn write_usda(
+    path: &Path,
+    bodies: &[UsdBody<'_>],
+    frames: usize,
+    rate: f64,
+    mut read: impl FnMut(usize, usize) -> std::io::Result<Vec<Point>>,
+) -> Result<(), IoError> {
+    let names = identifiers(bodies.iter().map(|body| body.name));
+    write_atomic(path, |out| {
+        write!(
+            out,
+            "#usda 1.0\n(\n    defaultPrim = \"World\"\n    doc = \"Written by Bowknot {}\"\n    endTimeCode = {}\n    \
+             framesPerSecond = {rate}\n    metersPerUnit = 1\n    startTimeCode = 0\n    timeCodesPerSecond = {rate}\n    \
+             upAxis = \"Z\"\n)\n\ndef Xform \"World\"\n{{\n",
+            env!("CARGO_PKG_VERSION"),
+            frames.saturating_sub(1)
+        )?;
+        for (index, (body, name)) in bodies.iter().zip(&names).enumerate() {
+            for prim in Prim::of_body(body, name) {
+                prim.begin(out, body)?;
+                let pad = if prim.kind == Kind::Mesh { 0.0 } else { body.width / 2.0 };
+                let mut extents = Vec::with_capacity(frames);
+                out.write_all(b"        point3f[] points.timeSamples = {\n")?;
+                for frame in 0..frames {
+                    let positions = read(index, frame)?;
+                    let points = || prim.vertices.iter().filter_map(|&v| positions.get(v as usize));
+                    extents.push(extent(points(), pad));
+                    write!(out, "            {frame}: [")?;
+                    for (k, point) in points().enumerate() {
+                        write_point(out, k, point)?;
+                    }
+                    out.write_all(b"],\n")?;
+                }
+                out.write_all(b"        }\n        float3[] extent.timeSamples = {\n")?;
+                for (frame, [low, high]) in extents.iter().enumerate() {
+                    write!(out, "            {frame}: [")?;
+                    write_point(out, 0, low)?;
+                    write_point(out, 1, high)?;
+                    out.write_all(b"],\n")?;
+                }
+                out.write_all(b"        }\n    }\n\n")?;
+            }
+        }
+        out.write_all(b"}\n")
+    })
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Mesh,
+    BasisCurves,
+    Points,
+}
+
+/// A primitive of a body: its surface, strands or particles.
+struct Prim {
+    kind: Kind,
+    name: String,
+    /// The body's vertices that are its points, in this order.
+    vertices: Vec<u32>,
+    /// Of a mesh the vertices of each face, of curves those of each curve.
+    counts: Vec<usize>,
+    /// Of a mesh: the points of each face.
+    indices: Vec<u32>,
+}
+
+impl Prim {
+    fn of_body(body: &UsdBody<'_>, name: &str) -> Vec<Self> {
+        let elements = &body.elements;
+        let mut prims = Vec::new();
+        if !elements.triangles.is_empty() || !elements.quads.is_empty() {
+            let mut vertices: Vec<u32> = elements
+                .triangles
+                .as_flattened()
+                .iter()
+                .chain(elements.quads.as_flattened())
+                .copied()
+                .collect();
+            let mut indices = vertices.clone();
+            vertices.sort_unstable();
+            vertices.dedup();
+            indices.iter_mut().for_each(|v| *v = vertices.partition_point(|w| w < v) as u32);
+            let mut counts = vec![3; elements.triangles.len()];
+            counts.resize(counts.len() + elements.quads.len(), 4);
+            prims.push(Self { kind: Kind::Mesh, name: name.to_owned(), vertices, counts, indices });
+        }
+        if !elements.strands.is_empty() {
+            let chains = chains::chains(elements.strands);
+            prims.push(Self {
+                kind: Kind::BasisCurves,
+                name: if prims.is_empty() { name.to_owned() } else { format!("{name}_strands") },
+                counts: chains.iter().map(Vec::len).collect(),
+                vertices: chains.concat(),
+                indices: Vec::new(),
+            });
+        }
+        if !elements.particles.is_empty() {
+            prims.push(Self {
+                kind: Kind::Points,
+                name: if prims.is_empty() { name.to_owned() } else { format!("{name}_particles") },
+                vertices: elements.particles.to_vec(),
+                counts: Vec::new(),
+                indices: Vec::new(),
+            });
+        }
+        prims
+    }
+
+    /// All that does not move.
+    fn begin(&self, out: &mut impl Write, body: &UsdBody<'_>) -> std::io::Result<()> {
+        write!(out, "    def {:?} \"{}\"\n    {{\n", self.kind, self.name)?;
+        match self.kind {
+            Kind::Mesh => {
+                out.write_all(b"        uniform bool doubleSided = 1\n")?;
+                write_list(out, "int[] faceVertexCounts", &self.counts)?;
+                write_list(out, "int[] faceVertexIndices", &self.indices)?;
+                out.write_all(b"        uniform token subdivisionScheme = \"none\"\n")?;
+            }
+            Kind::BasisCurves => {
+                write_list(out, "int[] curveVertexCounts", &self.counts)?;
+                out.write_all(b"        uniform token type = \"linear\"\n")?;
+                let width = body.width as f32;
+                write!(
+                    out,
+                    "        float[] widths = [{width:?}] (\n            interpolation = \"constant\"\n        )\n"
+                )?;
+            }
+            // A constant width is read by some programs as that of the first point only.
+            Kind::Points => write_list(out, "float[] widths", &vec![body.width as f32; self.vertices.len()])?,
+        }
+        let color = if body.obstacle { "(0.6, 0.6, 0.62)" } else { "(0.75, 0.35, 0.25)" };
+        writeln!(out, "        color3f[] primvars:displayColor = [{color}]")
+    }
+}
+
+fn write_list(out: &mut impl Write, name: &str, values: &[impl std::fmt::Debug]) -> std::io::Result<()> {
+    write!(out, "        {name} = [")?;
+    for (k, value) in values.iter().enumerate() {
+        write!(out, "{}{value:?}", if k == 0 { "" } else { ", " })?;
+    }
+    out.write_all(b"]\n")
+}
+
+/// Single precision, in the fewest digits that are read back the same.
+fn write_point(out: &mut impl Write, index: usize, point: &Point) -> std::io::Result<()> {
+    let [x, y, z] = [point.x as f32, point.y as f32, point.z as f32];
+    write!(out, "{}({x:?}, {y:?}, {z:?})", if index == 0 { "" } else { ", " })
+}
+
+/// Corners of the box around points and their thickness.
+fn extent<'a>(points: impl Iterator<Item = &'a Point>, pad: f64) -> [Point; 2] {
+    let bounds = points.fold(None, |bounds: Option<(Point, Point)>, p| {
+        Some(bounds.map_or((*p, *p), |(low, high)| (low.inf(p), high.sup(p))))
+    });
+    let (low, high) = bounds.unwrap_or_default();
+    [low.map(|x| x - pad), high.map(|x| x + pad)]
+}
+
+/// Names that USD allows, all different.
+fn identifiers<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut taken: Vec<String> = Vec::new();
+    for name in names {
+        let mut id: String =
+            name.chars().map(|c| if c.is_ascii_alphanumeric() || c == '_' { c } else { '_' }).collect();
+        if id.is_empty() || id.starts_with(|c: char| c.is_ascii_digit()) {
+            id.insert(0, '_');
+        }
+        let mut unique = id.clone();
+        let mut number = 2;
+        // `cloth_strands` may be the name of another body, or that of the strands of `cloth`.
+        let clashes = |id: &String, taken: &[String]| {
+            let kin =
+                |a: &str, b: &str| ["", "_strands", "_particles"].iter().any(|end| a == format!("{b}{end}"));
+            taken.iter().any(|other| kin(id, other) || kin(other, id))
+        };
+        while clashes(&unique, &taken) {
+            unique = format!("{id}_{number}");
+            number += 1;
+        }
+        taken.push(unique);
+    }
+    taken
+}

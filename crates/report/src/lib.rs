@@ -1,0 +1,37 @@
+//! One self-contained HTML page of a run: it plays the frames beside plots of the statistics, from a file, without a
+//! network.
+//!
+//! ```text
+//! frames.rs    where the frames of a run's folder are
+//! bodies.rs    the first frame split into bodies, with names from scene.toml
+//! codec.rs     quantised positions, predicted, deflated, base64
+//! pack.rs      which frames go in: two passes over the folder, the budget kept by a stride
+//! columns.rs   stats.jsonl as columns
+//! facts.rs     what the page says in words: scene, counts, machine, what was left out
+//! page.rs      the parts put together
+//! assets/      the page itself (HTML, CSS, scripts) and the libraries in it, with their licences
+//! ```
+//!
+//! Only what the page keeps is held in memory: at most [`ReportOptions::max_bytes`], and two frames.
+
+mod bodies;
+mod codec;
+mod columns;
+mod error;
+mod facts;
+mod frames;
+mod options;
+mod pack;
+mod page;
+#[cfg(test)]
+mod tests;
+mod write;
+
+pub use error::ReportError;
+pub use options::{ReportInfo, ReportOptions};
+pub use write::write_report;
+
+/// The README's example is tested with the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;

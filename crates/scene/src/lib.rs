@@ -1,0 +1,55 @@
+//! The scene description: what a TOML file holds, as structs with every default filled in.
+//!
+//! | table | fields of |
+//! |---|---|
+//! | `[simulation]` | [`SimulationParams`], gravity and drag of [`DynamicsParams`] |
+//! | `[contact]` | `preset`, [`ConstraintParams`](bowknot_constraints::ConstraintParams), [`StepperParams`](bowknot_stepper::StepperParams), [`FrictionPair`]s |
+//! | `[solver]` | [`BackwardParams`](bowknot_twoway::BackwardParams), the rest of [`DynamicsParams`]; `[solver.stop]`: [`StopParams`](bowknot_twoway::StopParams); `[solver.repulsion]`: [`RepulsionParams`] |
+//! | `[output]` | [`OutputParams`] |
+//! | `[[body]]`, `[[obstacle]]`, `[[pin]]` | [`BodySpec`], [`ObstacleSpec`], [`PinSpec`] |
+//!
+//! `docs/scene-reference.md` lists every key; a test keeps it in step with the structs.
+
+mod body;
+mod builtin;
+mod contact;
+mod description;
+mod error;
+mod fields;
+mod kind;
+mod material;
+mod motion;
+mod params;
+mod read;
+mod reader;
+pub mod shapes;
+mod source;
+#[cfg(test)]
+mod tests;
+pub mod world;
+mod write;
+
+/// Points and vectors, the types of places.
+pub use bowknot_geometry as geometry;
+/// Mesh files and the frames of sequences.
+pub use bowknot_io as io;
+/// Parameters of the collision stage.
+pub use bowknot_twoway as twoway;
+
+pub use body::{BodySpec, ObstacleSpec, PinSpec, Region, Side};
+pub use builtin::{BUILTIN, Builtin};
+pub use contact::FrictionPair;
+pub use description::{Scene, twoway_params};
+pub use error::{Origin, Problem, SceneError};
+pub use kind::BodyKind;
+pub use material::Material;
+pub use motion::{Keyframe, Motion, Placement};
+pub use params::{
+    CollisionEvery, Format, InteriorFollows, OutputParams, Preset, RepulsionParams, SimulationParams,
+};
+pub use world::{SceneInfo, World};
+
+/// The README's example is tested with the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;

@@ -1,0 +1,86 @@
+//! A box of tetrahedra.
+
+use super::{above_0, segments, too_many};
+use bowknot_geometry::Point;
+use bowknot_io::Mesh;
+use serde::{Deserialize, Serialize};
+
+/// A box about the origin, filled with tetrahedra: a grid of cells, each divided into six.
+///
+/// Each cell has a diagonal that its six tetrahedra share (Kuhn 1960, "Some combinatorial lemmas in topology"). The
+/// diagonals of all cells point to the middle of the box, so that the mesh is symmetric, no tetrahedron has two faces
+/// on the surface where there are two cells or more each way, and neighbouring cells agree.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Block {
+    /// Lengths along x, y and z [m]. Default (0.2, 0.2, 0.2).
+    pub size: [f64; 3],
+    /// Length of the edges along the axes [m], rounded so that whole numbers fit. Default 0.04.
+    pub edge: f64,
+}
+
+impl Default for Block {
+    fn default() -> Self {
+        Self { size: [0.2; 3], edge: 0.04 }
+    }
+}
+
+/// Orders in which a path from a cell's corner to the opposite one takes the axes.
+const PATHS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];
+
+impl Block {
+    /// The mesh: tetrahedra of positive volume, vertices along x fastest, then y, then z.
+    pub fn mesh(&self) -> Mesh {
+        let n = self.cells();
+        grid(n, |at| {
+            let place = |c: usize| self.size[c] * (f64::from(at[c]) / f64::from(n[c]) - 0.5);
+            Point::new(place(0), place(1), place(2))
+        })
+    }
+
+    fn cells(&self) -> [u32; 3] {
+        self.size.map(|length| segments(length, self.edge))
+    }
+
+    pub(super) fn validate(&self, problems: &mut Vec<(&'static str, String)>) {
+        let lengths = self.size.iter().map(|&s| ("size", s)).chain([("edge", self.edge)]);
+        if above_0(lengths, problems) {
+            too_many(self.size.iter().map(|s| s / self.edge + 1.0).product(), self.edge, problems);
+        }
+    }
+}
+
+/// A grid of cells, each of six tetrahedra, its vertices placed by `place`, which must keep orientations.
+pub(super) fn grid(n: [u32; 3], place: impl Fn([u32; 3]) -> Point) -> Mesh {
+    let vertex = |at: [u32; 3]| at[0] + (n[0] + 1) * (at[1] + (n[1] + 1) * at[2]);
+    let mut mesh = Mesh::default();
+    for z in 0..=n[2] {
+        for y in 0..=n[1] {
+            mesh.positions.extend((0..=n[0]).map(|x| place([x, y, z])));
+        }
+    }
+    for z in 0..n[2] {
+        for y in 0..n[1] {
+            for x in 0..n[0] {
+                // The path starts at the corner that is farthest from the middle of the grid.
+                let cell = [x, y, z];
+                let upper: [bool; 3] = std::array::from_fn(|c| 2 * cell[c] >= n[c]);
+                let odd = upper.iter().filter(|u| **u).count() % 2 == 1;
+                for (index, path) in PATHS.iter().enumerate() {
+                    let mut at: [u32; 3] = std::array::from_fn(|c| cell[c] + u32::from(upper[c]));
+                    let mut tet = [vertex(at); 4];
+                    for (corner, &axis) in tet[1..].iter_mut().zip(path) {
+                        at[axis] = if upper[axis] { at[axis] - 1 } else { at[axis] + 1 };
+                        *corner = vertex(at);
+                    }
+                    // Even permutations and even numbers of mirrored axes keep the orientation.
+                    if (index >= 3) != odd {
+                        tet.swap(2, 3);
+                    }
+                    mesh.tets.push(tet);
+                }
+            }
+        }
+    }
+    mesh
+}

@@ -1,0 +1,131 @@
+//! A bundle of strands.
+
+use super::{MOST_VERTICES, above_0};
+use bowknot_geometry::{Point, Vector};
+use bowknot_io::Mesh;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// Strands of equal length, straight or curled, rooted on a plane or on a sphere.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Strands {
+    /// Number of strands [1]. Default 25.
+    pub count: usize,
+    /// Length of each along its axis [m]; a curled one is longer along itself. Default 0.3.
+    pub length: f64,
+    /// Number of edges of each [1]. Default 20.
+    pub segments: usize,
+    /// What the roots are on. Default `plane`.
+    pub root: Root,
+    /// Distance of neighbouring roots on the plane [m]. Default 0.01.
+    pub spacing: f64,
+    /// Radius of the sphere [m]. Default 0.1.
+    pub radius: f64,
+    /// Angle from the sphere's top to the edge of the patch that carries roots [deg], at most 180. Default 60.
+    pub patch: f64,
+    /// Radius of the curls [m]; 0 makes straight strands. Default 0.
+    pub curl: f64,
+    /// Number of turns that a curl makes [1]. Default 5.
+    pub turns: f64,
+}
+
+/// Where the roots of [`Strands`] are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Root {
+    /// On the xy plane, on a square grid about the origin; strands hang down.
+    #[default]
+    Plane,
+    /// On a sphere about the origin, evenly over a patch about its top; strands stand out from it.
+    Sphere,
+}
+
+impl Default for Strands {
+    fn default() -> Self {
+        Self {
+            count: 25,
+            length: 0.3,
+            segments: 20,
+            root: Root::default(),
+            spacing: 0.01,
+            radius: 0.1,
+            patch: 60.0,
+            curl: 0.0,
+            turns: 5.0,
+        }
+    }
+}
+
+impl Strands {
+    /// The mesh: strand after strand, each from its root on.
+    pub fn mesh(&self) -> Mesh {
+        let mut mesh = Mesh::default();
+        for index in 0..self.count {
+            let (root, along) = self.root(index);
+            // Any direction across will do; curls of neighbours are in step.
+            let helper = if along.x.abs() < 0.6 { Vector::x() } else { Vector::y() };
+            let across = (helper - along * along.dot(&helper)).normalize();
+            let other = along.cross(&across);
+            let first = mesh.positions.len() as u32;
+            for k in 0..=self.segments {
+                let share = k as f64 / self.segments as f64;
+                let (sin, cos) = (TAU * self.turns * share).sin_cos();
+                // The helix begins at the root.
+                let curl = (across * (cos - 1.0) + other * sin) * self.curl;
+                mesh.positions.push(root + along * (self.length * share) + curl);
+            }
+            mesh.strands.extend((first..first + self.segments as u32).map(|v| [v, v + 1]));
+        }
+        mesh
+    }
+
+    /// Root and direction of a strand.
+    fn root(&self, index: usize) -> (Point, Vector) {
+        match self.root {
+            Root::Plane => {
+                let columns = (self.count as f64).sqrt().ceil() as usize;
+                let rows = self.count.div_ceil(columns);
+                let place = |i: usize, n: usize| (i as f64 - 0.5 * (n as f64 - 1.0)) * self.spacing;
+                let root = Point::new(place(index % columns, columns), place(index / columns, rows), 0.0);
+                (root, -Vector::z())
+            }
+            Root::Sphere => {
+                // A spiral of equal areas: every golden angle a root (Vogel 1979, on the sphere).
+                let golden = TAU * (1.0 - 2.0 / (1.0 + 5.0f64.sqrt()));
+                let depth = 1.0 - self.patch.to_radians().cos();
+                let z = 1.0 - depth * (index as f64 + 0.5) / self.count as f64;
+                let (sin, cos) = (golden * index as f64).sin_cos();
+                let r = (1.0 - z * z).max(0.0).sqrt();
+                let along = Vector::new(r * cos, r * sin, z);
+                (Point::from(along * self.radius), along)
+            }
+        }
+    }
+
+    pub(super) fn validate(&self, problems: &mut Vec<(&'static str, String)>) {
+        let mut lengths = vec![("length", self.length)];
+        match self.root {
+            Root::Plane => lengths.push(("spacing", self.spacing)),
+            Root::Sphere => lengths.push(("radius", self.radius)),
+        }
+        above_0(lengths.into_iter(), problems);
+        for (key, count) in [("count", self.count), ("segments", self.segments)] {
+            if count == 0 {
+                problems.push((key, "must be at least 1".to_owned()));
+            }
+        }
+        if self.count as f64 * (self.segments as f64 + 1.0) > MOST_VERTICES {
+            problems.push(("count", format!("would make more than {MOST_VERTICES:e} vertices")));
+        }
+        if !(self.curl.is_finite() && self.curl >= 0.0) {
+            problems.push(("curl", format!("{} must be a length in metres from 0 on", self.curl)));
+        }
+        if !self.turns.is_finite() {
+            problems.push(("turns", format!("{} must be finite", self.turns)));
+        }
+        if !(self.patch > 0.0 && self.patch <= 180.0) {
+            problems.push(("patch", format!("{} must lie above 0 and be at most 180 degrees", self.patch)));
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! A ball of tetrahedra.
+
+use super::{above_0, block::grid, too_many};
+use bowknot_geometry::{Point, Vector};
+use bowknot_io::Mesh;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
+/// A ball about the origin, filled with tetrahedra: the grid of a cube, each of its shells moved to a sphere.
+///
+/// On a shell the grid's lines are equal angles apart (the equiangular cubed sphere, Ronchi, Iacono and Paolucci
+/// 1996), so that edges differ by less than a factor of two.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct TetBall {
+    /// Radius [m]. Default 0.1.
+    pub radius: f64,
+    /// Length of the edges along the surface [m], rounded so that an even number fits a quarter circle. Default 0.03.
+    pub edge: f64,
+}
+
+impl Default for TetBall {
+    fn default() -> Self {
+        Self { radius: 0.1, edge: 0.03 }
+    }
+}
+
+impl TetBall {
+    /// The mesh: tetrahedra of positive volume.
+    pub fn mesh(&self) -> Mesh {
+        let half = (FRAC_PI_4 * self.radius / self.edge).round().clamp(1.0, 1e6);
+        let n = 2 * half as u32;
+        grid([n; 3], |at| {
+            let place = Vector::from(at.map(|i| f64::from(i) / half - 1.0));
+            let shell = place.amax();
+            if shell == 0.0 {
+                return Point::origin();
+            }
+            let direction = place.map(|c| (FRAC_PI_4 * c / shell).tan());
+            Point::from(direction * (self.radius * shell / direction.norm()))
+        })
+    }
+
+    pub(super) fn validate(&self, problems: &mut Vec<(&'static str, String)>) {
+        if above_0([("radius", self.radius), ("edge", self.edge)].into_iter(), problems) {
+            too_many((FRAC_PI_2 * self.radius / self.edge + 1.0).powi(3), self.edge, problems);
+        }
+    }
+}

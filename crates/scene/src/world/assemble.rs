@@ -1,0 +1,262 @@
+//! Puts a scene's meshes together.
+
+use super::part::Part;
+use super::pins::pins;
+use super::{ObstacleMotion, Placing, Procedural, World, WorldBody, WorldContact, joined, sequence};
+use crate::body::{BodySpec, ObstacleSpec};
+use crate::description::Scene;
+use crate::error::SceneError;
+use crate::material::Material;
+use crate::shapes::Shape;
+use bowknot_dynamics::{Body, BodyShape};
+use bowknot_geometry::{HalfSpace, Point, Topology, Vector};
+use bowknot_io::Import;
+use bowknot_proximity::{BodyFilter, CollisionModel};
+use bowknot_twoway::{BodyContact, ContactSide, HalfSpaceContact, PairFriction};
+use std::ops::Range;
+
+impl World {
+    /// Loads and places the meshes of a scene.
+    ///
+    /// # Errors
+    /// What [`Scene::validate`] refuses; meshes that are missing, malformed, or of other elements than their body is
+    /// made of; triangles of a deformable body without area or repeated; tetrahedra that are inverted or flat; strand
+    /// edges whose points coincide; sequences whose topology changes; pins without vertices.
+    pub fn new(scene: &Scene) -> Result<Self, SceneError> {
+        scene.validate()?;
+        let mut assembly = Assembly::default();
+        for body in &scene.bodies {
+            assembly.body(scene, body)?;
+        }
+        let deformable_vertices = assembly.base.len();
+        assembly.positions.clone_from(&assembly.base);
+        for obstacle in &scene.obstacles {
+            assembly.obstacle(scene, obstacle)?;
+        }
+        assembly.interior();
+        assembly.finish(scene, deformable_vertices)
+    }
+}
+
+#[derive(Default)]
+struct Assembly {
+    bodies: Vec<WorldBody>,
+    models: Vec<Body>,
+    filters: Vec<BodyFilter>,
+    contact: WorldContact,
+    base: Vec<Point>,
+    positions: Vec<Point>,
+    velocities: Vec<Vector>,
+    vertex_body: Vec<u32>,
+    triangles: Vec<[u32; 3]>,
+    strands: Vec<[u32; 2]>,
+    particles: Vec<u32>,
+    half_spaces: Vec<HalfSpace>,
+    half_space_names: Vec<String>,
+    /// Positions and velocities of vertices inside of each body.
+    insides: Vec<(Vec<Point>, Vec<Vector>)>,
+    warnings: Vec<String>,
+}
+
+impl Assembly {
+    fn body(&mut self, scene: &Scene, body: &BodySpec) -> Result<(), SceneError> {
+        let import = Import { up: body.up, scale: body.scale };
+        let placing = Placing { import, rotate: body.rotate, translate: body.translate };
+        let part = Part::load(&scene.folder, body.mesh.as_deref(), body.shape.as_ref(), &import)?;
+        let mut part = part.into_body(body.kind, &body.name, &mut self.warnings)?;
+        placing.place(&mut part.positions);
+        let mut velocities = initial_velocities(body, &part.positions);
+
+        let outside = part.positions.len() - part.interior;
+        self.insides.push((part.positions.split_off(outside), velocities.split_off(outside)));
+        let filter = filter(&body.groups, body.collides_with.as_deref(), false, body.self_collision);
+        // Numbered within the part; those of the world follow when all of it is known.
+        let tets = std::mem::take(&mut part.tets);
+        let (vertices, elements) = self.append(part, filter);
+        self.velocities.extend(velocities);
+        let shape = match body.material {
+            Material::Cloth(material) => BodyShape::Cloth { triangles: elements.triangles, material },
+            Material::Solid(material) => BodyShape::Solid { tets: Vec::new(), material },
+            Material::Strands(material) => BodyShape::Strands { edges: elements.strands.clone(), material },
+            Material::Particles(material) => {
+                BodyShape::Particles { vertices: vertices.clone().collect(), material }
+            }
+        };
+        self.models.push(Body { gravity: body.gravity, ..Body::new(&*body.name, shape) });
+        let grain = match body.material {
+            Material::Particles(material) => Some(2.0 * material.radius),
+            _ => None,
+        };
+        self.contact.bodies.push(BodyContact {
+            thickness: body.thickness,
+            delta: body.delta.or(grain),
+            friction: body.friction,
+            stretch_limit: stretch_limit(scene, body),
+        });
+        self.bodies.push(WorldBody {
+            name: body.name.clone(),
+            kind: Some(body.kind),
+            vertices,
+            interior: 0..0,
+            tets,
+            strands: elements.strands,
+            motion: ObstacleMotion::Rest,
+            numbers: elements.numbers,
+            mesh_vertices: elements.mesh_vertices,
+        });
+        Ok(())
+    }
+
+    fn obstacle(&mut self, scene: &Scene, obstacle: &ObstacleSpec) -> Result<(), SceneError> {
+        let import = Import { up: obstacle.up, scale: obstacle.scale };
+        let placing = Placing { import, rotate: obstacle.rotate, translate: obstacle.translate };
+        if let Some(Shape::HalfSpace(shape)) = &obstacle.shape {
+            let normal = placing.rotation() * shape.normal;
+            // Validation has refused a normal of no length.
+            self.half_spaces.extend(HalfSpace::new(Point::from(obstacle.translate), normal));
+            self.half_space_names.push(obstacle.name.clone());
+            let (thickness, friction) = (obstacle.thickness, obstacle.friction);
+            self.contact.half_spaces.push(HalfSpaceContact { thickness, friction });
+            return Ok(());
+        }
+        let (part, motion) = if let Some(path) = &obstacle.sequence {
+            let (part, frames) = sequence::load(&scene.folder, path, obstacle, &placing, &mut self.warnings)?;
+            (part, ObstacleMotion::Sequence(frames))
+        } else {
+            let (mesh, shape) = (obstacle.mesh.as_deref(), obstacle.shape.as_ref());
+            let part = Part::load(&scene.folder, mesh, shape, &import)?;
+            let mut part = part.into_obstacle(&format!("obstacle {}", obstacle.name), &mut self.warnings)?;
+            placing.place(&mut part.positions);
+            (part, motion(obstacle, placing))
+        };
+        let mut start = part.positions.clone();
+        motion.positions(&part.positions, 0.0, &mut start);
+        self.positions.extend(start);
+        let filter = filter(&obstacle.groups, obstacle.collides_with.as_deref(), true, false);
+        let (vertices, elements) = self.append(part, filter);
+        self.velocities.resize(vertices.end as usize, Vector::zeros());
+        self.models.push(Body::obstacle(&*obstacle.name, vertices.clone().collect()));
+        self.contact.bodies.push(BodyContact {
+            thickness: obstacle.thickness,
+            friction: obstacle.friction,
+            ..BodyContact::default()
+        });
+        self.insides.push((Vec::new(), Vec::new()));
+        self.bodies.push(WorldBody {
+            name: obstacle.name.clone(),
+            kind: None,
+            vertices,
+            interior: 0..0,
+            tets: Vec::new(),
+            strands: elements.strands,
+            motion,
+            numbers: elements.numbers,
+            mesh_vertices: elements.mesh_vertices,
+        });
+        Ok(())
+    }
+
+    /// Appends what collides of a part as the next body; its vertices, and its elements in the world's numbering.
+    fn append(&mut self, mut part: Part, filter: BodyFilter) -> (Range<u32>, Part) {
+        let first = self.base.len() as u32;
+        part.triangles.iter_mut().flatten().for_each(|v| *v += first);
+        part.strands.iter_mut().flatten().for_each(|v| *v += first);
+        part.particles.iter_mut().for_each(|v| *v += first);
+        self.triangles.extend_from_slice(&part.triangles);
+        self.strands.extend_from_slice(&part.strands);
+        self.particles.extend_from_slice(&part.particles);
+        self.vertex_body.resize(self.base.len() + part.positions.len(), self.filters.len() as u32);
+        self.base.append(&mut part.positions);
+        self.filters.push(filter);
+        (first..self.base.len() as u32, part)
+    }
+
+    /// Appends the vertices inside of solids behind all others, and numbers tetrahedra.
+    fn interior(&mut self) {
+        for (index, (positions, velocities)) in std::mem::take(&mut self.insides).into_iter().enumerate() {
+            let body = &mut self.bodies[index];
+            let first = self.positions.len() as u32;
+            body.interior = first..first + positions.len() as u32;
+            let (start, outside) = (body.vertices.start, body.vertices.len() as u32);
+            let number = |v: &mut u32| *v = if *v < outside { *v + start } else { *v - outside + first };
+            body.tets.iter_mut().flatten().for_each(number);
+            if let BodyShape::Solid { tets, .. } = &mut self.models[index].shape {
+                tets.clone_from(&body.tets);
+            }
+            self.positions.extend(positions);
+            self.velocities.extend(velocities);
+        }
+    }
+
+    fn finish(mut self, scene: &Scene, deformable_vertices: usize) -> Result<World, SceneError> {
+        let pins = pins(scene, &self.bodies, &self.positions)?;
+        self.contact.pairs = self.friction_pairs(scene);
+        let topology =
+            Topology::new(self.base.len(), self.triangles, &self.strands, &self.particles).map_err(joined)?;
+        let collision = CollisionModel::new(topology, self.vertex_body, self.filters, self.half_spaces)
+            .map_err(|error| SceneError::Model(error.to_string()))?;
+        for warning in &self.warnings {
+            tracing::warn!("{warning}");
+        }
+        Ok(World {
+            bodies: self.bodies,
+            half_space_names: self.half_space_names,
+            deformable_vertices,
+            positions: self.positions,
+            velocities: self.velocities,
+            collision,
+            contact: self.contact,
+            materials: self.models,
+            pins,
+            warnings: self.warnings,
+            base: self.base,
+        })
+    }
+
+    fn friction_pairs(&self, scene: &Scene) -> Vec<PairFriction> {
+        let side = |name: &String| {
+            let body = self.bodies.iter().position(|b| b.name == *name).map(|b| ContactSide::Body(b as u32));
+            let plane = || self.half_space_names.iter().position(|n| n == name);
+            body.or_else(|| plane().map(|h| ContactSide::HalfSpace(h as u32)))
+        };
+        let pair = |spec: &crate::contact::FrictionPair| {
+            let [a, b] = &spec.bodies;
+            // Validation has refused names that do not exist.
+            Some(PairFriction { sides: [side(a)?, side(b)?], friction: spec.friction })
+        };
+        scene.friction_pairs.iter().filter_map(pair).collect()
+    }
+}
+
+/// Stretch limit of a body: its own, or that of its material unless the scene has one for all, which is left to
+/// `constraints.stretch_limit`.
+fn stretch_limit(scene: &Scene, body: &BodySpec) -> Option<f64> {
+    let for_all = scene.twoway.constraints.stretch_limit.is_some();
+    body.stretch_limit.or_else(|| if for_all { None } else { body.material.stretch_limit() })
+}
+
+fn motion(obstacle: &ObstacleSpec, placing: Placing) -> ObstacleMotion {
+    let animated = obstacle.shape.as_ref().and_then(Shape::animated);
+    match (animated, &obstacle.motion) {
+        (Some(shape), _) => ObstacleMotion::Procedural(Procedural { shape, placing }),
+        (None, Some(motion)) => ObstacleMotion::Rigid(motion.clone()),
+        (None, None) => ObstacleMotion::Rest,
+    }
+}
+
+/// Velocities of a body that moves as a rigid one [m/s].
+fn initial_velocities(body: &BodySpec, positions: &[Point]) -> Vec<Vector> {
+    let turn = body.angular_velocity.map(f64::to_radians);
+    if turn == Vector::zeros() {
+        return vec![body.velocity; positions.len()];
+    }
+    let sum: Vector = positions.iter().map(|p| p.coords).sum();
+    let center = Point::from(sum / positions.len().max(1) as f64);
+    positions.iter().map(|p| body.velocity + turn.cross(&(p - center))).collect()
+}
+
+fn filter(groups: &[u32], collides_with: Option<&[u32]>, obstacle: bool, self_collision: bool) -> BodyFilter {
+    let bits =
+        |list: &[u32]| list.iter().fold(0u32, |bits, group| bits | 1u32.checked_shl(*group).unwrap_or(0));
+    BodyFilter { obstacle, groups: bits(groups), mask: collides_with.map_or(u32::MAX, bits), self_collision }
+}

@@ -1,0 +1,252 @@
+//! A scene's meshes, loaded and put together.
+//!
+//! The vertices of a world stand in this order:
+//!
+//! | vertices | who knows them |
+//! |---|---|
+//! | of deformable bodies that collide: cloth, the surface of solids, strands, particles | all |
+//! | of obstacles | all |
+//! | inside of solids | the dynamics alone |
+//!
+//! The collision model, the judge and the frames cover the first two groups, [`World::collision_vertices`] of them.
+
+mod assemble;
+mod follow;
+mod motion;
+mod part;
+mod pins;
+mod sequence;
+
+pub use follow::Attachment;
+pub use motion::{ObstacleMotion, Placing, Procedural, Sequence};
+
+use crate::description::Scene;
+use crate::error::SceneError;
+use crate::kind::BodyKind;
+use crate::motion::Motion;
+use bowknot_dynamics::{Body, DynamicsModel};
+use bowknot_geometry::{Point, Vector};
+use bowknot_proximity::CollisionModel;
+use bowknot_twoway::{BodyContact, HalfSpaceContact, PairFriction};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::ops::Range;
+
+/// A scene's bodies over one array of vertices.
+#[derive(Clone, Debug)]
+pub struct World {
+    /// Deformable bodies, then obstacles with a mesh, each in the scene's order.
+    pub bodies: Vec<WorldBody>,
+    /// Names of the half-spaces, in the order of [`CollisionModel::half_spaces`].
+    pub half_space_names: Vec<String>,
+    /// Number of deformable vertices that collide; those of obstacles follow.
+    pub deformable_vertices: usize,
+    /// Positions of all vertices at time 0 [m].
+    pub positions: Vec<Point>,
+    /// Velocities at time 0 [m/s].
+    pub velocities: Vec<Vector>,
+    /// Topology, bodies, filters, half-spaces.
+    pub collision: CollisionModel,
+    /// Contact data of the bodies and half-spaces of the collision model.
+    pub contact: WorldContact,
+    /// The bodies for the dynamics, in the order of `bodies`.
+    pub materials: Vec<Body>,
+    /// Held or led vertices.
+    pub pins: Vec<Pin>,
+    /// What was repaired or left out on the way, in words.
+    pub warnings: Vec<String>,
+    /// Positions of obstacle vertices without their motion [m]; of the other vertices that collide, those at time 0.
+    pub base: Vec<Point>,
+}
+
+/// What bodies bring into their contacts, for the two-way method.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WorldContact {
+    /// One entry a body.
+    pub bodies: Vec<BodyContact>,
+    /// One entry a half-space.
+    pub half_spaces: Vec<HalfSpaceContact>,
+    /// Friction of pairs.
+    pub pairs: Vec<PairFriction>,
+}
+
+/// A body of a [`World`].
+#[derive(Clone, Debug)]
+pub struct WorldBody {
+    /// Its name.
+    pub name: String,
+    /// What it is made of; `None` for an obstacle.
+    pub kind: Option<BodyKind>,
+    /// Its vertices that collide.
+    pub vertices: Range<u32>,
+    /// Its vertices inside of a solid.
+    pub interior: Range<u32>,
+    /// Its tetrahedra, of positive volume at time 0, if it is a solid.
+    pub tets: Vec<[u32; 4]>,
+    /// Its edges, if it is made of strands.
+    pub strands: Vec<[u32; 2]>,
+    /// How it moves, if it is an obstacle.
+    pub motion: ObstacleMotion,
+    /// Number in the mesh of each vertex, `vertices` first.
+    numbers: Vec<u32>,
+    /// Vertices that the mesh has, those left out counted.
+    mesh_vertices: usize,
+}
+
+impl WorldBody {
+    /// Number of one of its vertices in the mesh that it was made of, from 0.
+    pub fn mesh_number(&self, vertex: u32) -> u32 {
+        let local = if vertex < self.vertices.end {
+            vertex.checked_sub(self.vertices.start)
+        } else {
+            vertex.checked_sub(self.interior.start).map(|v| v + self.vertices.len() as u32)
+        };
+        local.and_then(|local| self.numbers.get(local as usize)).copied().unwrap_or(vertex)
+    }
+}
+
+/// Held or led vertices of a body.
+#[derive(Clone, Debug)]
+pub struct Pin {
+    /// Its name in reports, such as `pin[0] of sheet`.
+    pub name: String,
+    /// The vertices, ascending.
+    pub vertices: Vec<u32>,
+    /// How they move.
+    pub motion: Option<Motion>,
+    /// The body, an obstacle, whose surface they follow; then there is no motion.
+    pub follow: Option<u32>,
+    /// When the pin takes hold [s].
+    pub start: f64,
+    /// When it lets go [s].
+    pub end: f64,
+}
+
+/// Counts of a scene, as `bowknot info --json` prints them.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SceneInfo {
+    /// Deformable vertices, those inside of solids included.
+    pub vertices: usize,
+    /// Edges of deformable bodies that collide.
+    pub edges: usize,
+    /// Triangles of deformable bodies: of cloth, and of the surfaces of solids.
+    pub triangles: usize,
+    /// Tetrahedra.
+    pub tets: usize,
+    /// Strand edges of deformable bodies.
+    pub strand_edges: usize,
+    /// Deformable particles.
+    pub particles: usize,
+    /// Vertices of obstacles.
+    pub obstacle_vertices: usize,
+    /// Time step [s].
+    pub time_step: f64,
+    /// Size of the bounding box of all vertices at time 0 [m].
+    pub extent: [f64; 3],
+}
+
+impl Pin {
+    /// Whether it holds its vertices at the end of a time step, at `time` [s].
+    pub fn holds(&self, time: f64, dt: f64) -> bool {
+        // Times are multiples of dt, rounded.
+        let tolerance = 1e-9 * dt;
+        self.start < time - tolerance && time <= self.end + tolerance
+    }
+}
+
+impl Scene {
+    /// Loads the meshes and counts.
+    ///
+    /// # Errors
+    /// As [`World::new`].
+    pub fn info(&self) -> Result<SceneInfo, SceneError> {
+        Ok(World::new(self)?.info(self.simulation.dt))
+    }
+}
+
+impl World {
+    /// Number of vertices that collide: all but those inside of solids. They come first.
+    pub fn collision_vertices(&self) -> usize {
+        self.collision.topology().vertex_count
+    }
+
+    fn obstacle_vertices(&self) -> usize {
+        self.collision_vertices() - self.deformable_vertices
+    }
+
+    /// Counts.
+    pub fn info(&self, time_step: f64) -> SceneInfo {
+        let topology = self.collision.topology();
+        let deformable = |v: u32| (v as usize) < self.deformable_vertices;
+        let (low, high) = self.bounds();
+        SceneInfo {
+            vertices: self.positions.len() - self.obstacle_vertices(),
+            edges: topology.edges.iter().filter(|e| deformable(e[0])).count(),
+            triangles: topology.triangles.iter().filter(|t| deformable(t[0])).count(),
+            tets: self.bodies.iter().map(|body| body.tets.len()).sum(),
+            strand_edges: topology
+                .strand_edges
+                .iter()
+                .filter(|&&e| deformable(topology.edges[e as usize][0]))
+                .count(),
+            particles: topology.particles.iter().filter(|&&v| deformable(v)).count(),
+            obstacle_vertices: self.obstacle_vertices(),
+            time_step,
+            extent: (high - low).into(),
+        }
+    }
+
+    /// Corners of the bounding box of all vertices at time 0 [m].
+    pub fn bounds(&self) -> (Point, Point) {
+        bounds(&self.positions)
+    }
+
+    /// Masses and elements; their rest state is that at time 0.
+    ///
+    /// # Errors
+    /// What the dynamics refuses, in words.
+    pub fn dynamics_model(&self) -> Result<DynamicsModel, SceneError> {
+        DynamicsModel::new(self.positions.clone(), self.materials.clone()).map_err(joined)
+    }
+
+    /// Ties the vertices of a pin that follows an obstacle, when they are at `homes`, to it: one entry
+    /// a vertex, none where the obstacle has no triangle with an area.
+    pub fn attach(&self, pin: &Pin, homes: &[Point]) -> Vec<Option<Attachment>> {
+        let Some(body) = pin.follow.and_then(|body| self.bodies.get(body as usize)) else {
+            return vec![None; homes.len()];
+        };
+        let range = body.vertices.start as usize..body.vertices.end as usize;
+        let mut positions = self.positions.clone();
+        body.motion.positions(&self.base[range.clone()], pin.start, &mut positions[range]);
+        let triangles = &self.collision.topology().triangles;
+        let own: Vec<[u32; 3]> =
+            triangles.iter().filter(|t| body.vertices.contains(&t[0])).copied().collect();
+        homes.par_iter().map(|x| Attachment::new(x, &own, &positions)).collect()
+    }
+
+    /// Name of the body of a vertex.
+    pub fn body_name(&self, vertex: usize) -> &str {
+        match self.collision.vertex_body().get(vertex) {
+            Some(&body) => self.name_of(body),
+            None => {
+                let inside = |body: &&WorldBody| body.interior.contains(&(vertex as u32));
+                self.bodies.iter().find(inside).map_or("", |body| &body.name)
+            }
+        }
+    }
+
+    /// Name of a body by index; half-spaces and bodies that do not exist have none.
+    pub fn name_of(&self, body: u32) -> &str {
+        self.bodies.get(body as usize).map_or("", |b| &b.name)
+    }
+}
+
+fn joined<E: ToString>(errors: Vec<E>) -> SceneError {
+    let lines: Vec<String> = errors.iter().take(10).map(ToString::to_string).collect();
+    SceneError::Model(lines.join("\n"))
+}
+
+fn bounds(positions: &[Point]) -> (Point, Point) {
+    let start = positions.first().copied().unwrap_or_else(Point::origin);
+    positions.iter().fold((start, start), |(low, high), p| (low.inf(p), high.sup(p)))
+}

@@ -1,0 +1,274 @@
+//! A mesh on its way into the world: loaded, cleaned, its vertices ordered.
+
+use crate::error::SceneError;
+use crate::kind::BodyKind;
+use crate::shapes::Shape;
+use bowknot_geometry::{MeshProblem, Point, boundary_triangles, check_mesh};
+use bowknot_io::{self as io, Import, Mesh};
+use std::collections::HashMap;
+use std::path::Path;
+
+/// How many faulty elements a message lists.
+const LISTED: usize = 20;
+/// A volume below this share of the longest edge cubed is none.
+const FLAT: f64 = 1e-12;
+
+/// A mesh on its way into the world.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Part {
+    pub positions: Vec<Point>,
+    pub triangles: Vec<[u32; 3]>,
+    pub tets: Vec<[u32; 4]>,
+    pub strands: Vec<[u32; 2]>,
+    pub particles: Vec<u32>,
+    /// Number in the mesh of each vertex.
+    pub numbers: Vec<u32>,
+    /// Vertices of the mesh, those left out counted.
+    pub mesh_vertices: usize,
+    /// How many vertices, the last ones, are inside of a solid.
+    pub interior: usize,
+}
+
+impl Part {
+    pub fn from_mesh(mesh: Mesh) -> Self {
+        let mesh_vertices = mesh.positions.len();
+        let Mesh { positions, triangles, tets, strands, particles, .. } = mesh;
+        let numbers = (0..mesh_vertices as u32).collect();
+        Self { positions, triangles, tets, strands, particles, numbers, mesh_vertices, interior: 0 }
+    }
+
+    /// Loads a mesh file or makes a shape.
+    pub fn load(
+        folder: &Path,
+        mesh: Option<&Path>,
+        shape: Option<&Shape>,
+        import: &Import,
+    ) -> Result<Self, SceneError> {
+        let mesh = match (mesh, shape.and_then(Shape::elements)) {
+            (Some(path), _) => io::read_mesh(&folder.join(path), import)?,
+            (None, Some(mut mesh)) => {
+                mesh.positions.iter_mut().for_each(|p| *p = import.point(p.coords.into()));
+                mesh
+            }
+            (None, None) => Mesh::default(),
+        };
+        Ok(Self::from_mesh(mesh))
+    }
+
+    /// Keeps the vertices that elements name.
+    fn drop_unused(&mut self) {
+        let mut mesh = Mesh {
+            positions: std::mem::take(&mut self.positions),
+            triangles: std::mem::take(&mut self.triangles),
+            tets: std::mem::take(&mut self.tets),
+            strands: std::mem::take(&mut self.strands),
+            particles: std::mem::take(&mut self.particles),
+            ..Mesh::default()
+        };
+        let unused = mesh.unused_vertices();
+        mesh.drop_unused_vertices();
+        let mut drop = vec![false; self.numbers.len()];
+        unused.iter().for_each(|&v| drop[v as usize] = true);
+        let mut index = 0;
+        self.numbers.retain(|_| {
+            index += 1;
+            !drop[index - 1]
+        });
+        let Mesh { positions, triangles, tets, strands, particles, .. } = mesh;
+        (self.positions, self.triangles, self.tets) = (positions, triangles, tets);
+        (self.strands, self.particles) = (strands, particles);
+    }
+
+    /// Makes a body of the mesh: refuses elements of other kinds and faulty ones, drops loose vertices.
+    pub fn into_body(
+        mut self,
+        kind: BodyKind,
+        name: &str,
+        warnings: &mut Vec<String>,
+    ) -> Result<Self, SceneError> {
+        // Loose vertices of a PLY come as particles; where there are other elements they are leftovers.
+        if kind != BodyKind::Particles {
+            self.particles.clear();
+        }
+        self.drop_unused();
+        let fault = |message: String| SceneError::Body { body: format!("body {name}"), message };
+        let (own, others) = self.elements(kind);
+        if let Some((count, what)) = others.into_iter().find(|(count, _)| *count > 0) {
+            let only = match kind {
+                BodyKind::Cloth => "a cloth is made of triangles only",
+                BodyKind::Solid => "a solid is made of tetrahedra only",
+                BodyKind::Strands => "strands are made of edges only",
+                BodyKind::Particles => "particles are loose points only",
+            };
+            let hint = if what == "tetrahedra" { "; set kind = \"solid\"" } else { "" };
+            return Err(fault(format!("the mesh has {count} {what}, but {only}{hint}")));
+        }
+        if own == 0 {
+            return Err(fault(format!("the mesh has no {}", element_of(kind).1)));
+        }
+        match kind {
+            BodyKind::Cloth => {
+                let problems = check_mesh(&self.positions, &self.triangles);
+                if !problems.is_empty() {
+                    return Err(SceneError::Mesh { body: name.to_owned(), problems });
+                }
+            }
+            BodyKind::Solid => {
+                self.check_tets().map_err(fault)?;
+                self.split_surface();
+            }
+            BodyKind::Strands => self.check_strands().map_err(fault)?,
+            BodyKind::Particles => {}
+        }
+        let left_out = self.mesh_vertices - self.numbers.len();
+        if left_out > 0 {
+            let mut sorted = self.numbers.clone();
+            sorted.sort_unstable();
+            let first = sorted.iter().enumerate().find(|(k, number)| *k as u32 != **number);
+            let first = first.map_or(sorted.len(), |(k, _)| k);
+            let element = element_of(kind).0;
+            warnings.push(format!(
+                "body {name}: left out {left_out} vertices that belong to no {element}, the first is vertex {first}"
+            ));
+        }
+        Ok(self)
+    }
+
+    /// Number of elements of a kind, and of the others with their names.
+    fn elements(&self, kind: BodyKind) -> (usize, Vec<(usize, &'static str)>) {
+        let mut counts = vec![
+            (self.triangles.len(), BodyKind::Cloth, "triangles"),
+            (self.tets.len(), BodyKind::Solid, "tetrahedra"),
+            (self.strands.len(), BodyKind::Strands, "strand edges"),
+            (self.particles.len(), BodyKind::Particles, "particles"),
+        ];
+        let own = counts.iter().find(|c| c.1 == kind).map_or(0, |c| c.0);
+        counts.retain(|c| c.1 != kind);
+        (own, counts.into_iter().map(|(count, _, what)| (count, what)).collect())
+    }
+
+    fn check_tets(&self) -> Result<(), String> {
+        let (mut inverted, mut flat) = (Vec::new(), Vec::new());
+        for (index, tet) in self.tets.iter().enumerate() {
+            let [a, b, c, d] = tet.map(|v| self.positions[v as usize]);
+            let edges = [b - a, c - a, d - a, c - b, d - b, d - c];
+            let longest = edges.iter().map(|e| e.norm()).fold(0.0, f64::max);
+            let volume = edges[0].cross(&edges[1]).dot(&edges[2]);
+            if volume.abs() <= FLAT * longest.powi(3) {
+                flat.push(index);
+            } else if volume < 0.0 {
+                inverted.push(index);
+            }
+        }
+        if inverted.is_empty() && flat.is_empty() {
+            return Ok(());
+        }
+        let listed = |list: &[usize], what: &str| match list {
+            [] => None,
+            list => Some(format!("{} {what}: {}", list.len(), first(list.iter()))),
+        };
+        let lists: Vec<String> =
+            [listed(&inverted, "inverted"), listed(&flat, "flat")].into_iter().flatten().collect();
+        let hint = if inverted.len() == self.tets.len() {
+            "swap two vertices of every tetrahedron"
+        } else {
+            "mend or remove them"
+        };
+        Err(format!("of {} tetrahedra, {}; {hint}", self.tets.len(), lists.join("; ")))
+    }
+
+    fn check_strands(&self) -> Result<(), String> {
+        let mut seen: HashMap<[u32; 2], usize> = HashMap::new();
+        let mut faults = Vec::new();
+        for (index, &[a, b]) in self.strands.iter().enumerate() {
+            let (p, q) = (self.positions[a as usize], self.positions[b as usize]);
+            let [i, j] = [a, b].map(|v| self.numbers[v as usize]);
+            if p == q {
+                faults.push(format!(
+                    "edge {index} joins vertices {i} and {j}, both at ({}, {}, {})",
+                    p.x, p.y, p.z
+                ));
+            } else if let Some(earlier) = seen.insert([a.min(b), a.max(b)], index) {
+                faults.push(format!("edge {index} repeats edge {earlier} (vertices {i}, {j})"));
+            }
+        }
+        if faults.is_empty() {
+            return Ok(());
+        }
+        let count = faults.len();
+        Err(format!("{count} strand edges are faulty: {}; merge repeated points", first(faults.iter())))
+    }
+
+    /// Finds the surface of the tetrahedra and moves the vertices inside behind those on it.
+    fn split_surface(&mut self) {
+        self.triangles = boundary_triangles(&self.tets);
+        let mut outside = vec![false; self.positions.len()];
+        self.triangles.iter().flatten().for_each(|&v| outside[v as usize] = true);
+        let (surface, inside): (Vec<u32>, Vec<u32>) =
+            (0..self.positions.len() as u32).partition(|&v| outside[v as usize]);
+        self.interior = inside.len();
+        let order = [surface, inside].concat();
+        let mut place = vec![0; order.len()];
+        order.iter().enumerate().for_each(|(k, &v)| place[v as usize] = k as u32);
+        let renumber = |v: &mut u32| *v = place[*v as usize];
+        self.triangles.iter_mut().flatten().for_each(renumber);
+        self.tets.iter_mut().flatten().for_each(renumber);
+        self.positions = order.iter().map(|&v| self.positions[v as usize]).collect();
+        self.numbers = order.iter().map(|&v| self.numbers[v as usize]).collect();
+    }
+
+    /// Makes an obstacle of the mesh: the surface of tetrahedra, without triangles that have no area or are repeated.
+    pub fn into_obstacle(mut self, owner: &str, warnings: &mut Vec<String>) -> Result<Self, SceneError> {
+        let mut surface = boundary_triangles(&std::mem::take(&mut self.tets));
+        surface.append(&mut self.triangles);
+        self.triangles = surface;
+        self.particles.clear();
+        self.drop_unused();
+        let fault = |message: &str| SceneError::Body { body: owner.to_owned(), message: message.to_owned() };
+        if self.triangles.is_empty() && self.strands.is_empty() {
+            return Err(fault("the mesh has no triangles"));
+        }
+        let mut drop = vec![false; self.triangles.len()];
+        let mut first = None;
+        for problem in check_mesh(&self.positions, &self.triangles) {
+            match problem {
+                MeshProblem::ZeroArea { triangle, .. } | MeshProblem::RepeatedTriangle { triangle, .. } => {
+                    drop[triangle as usize] = true;
+                    first = first.or(Some(problem));
+                }
+                // Of a strand, or of triangles that are dropped.
+                MeshProblem::UnreferencedVertex { .. } => {}
+                other => return Err(SceneError::Mesh { body: owner.to_owned(), problems: vec![other] }),
+            }
+        }
+        let Some(first) = first else { return Ok(self) };
+        let count = drop.iter().filter(|d| **d).count();
+        warnings.push(format!("{owner}: dropped {count} triangles that are no obstacle: {first}"));
+        let mut index = 0;
+        self.triangles.retain(|_| {
+            index += 1;
+            !drop[index - 1]
+        });
+        self.drop_unused();
+        if self.triangles.is_empty() && self.strands.is_empty() {
+            return Err(fault("no triangle of the mesh has an area"));
+        }
+        Ok(self)
+    }
+}
+
+/// The elements of a kind, one and many.
+pub(super) fn element_of(kind: BodyKind) -> (&'static str, &'static str) {
+    match kind {
+        BodyKind::Cloth => ("triangle", "triangles"),
+        BodyKind::Solid => ("tetrahedron", "tetrahedra"),
+        BodyKind::Strands => ("strand edge", "strand edges"),
+        BodyKind::Particles => ("particle", "particles"),
+    }
+}
+
+/// The first entries of a list in words, and that there are more.
+fn first<T: ToString>(list: impl ExactSizeIterator<Item = T>) -> String {
+    let more = if list.len() > LISTED { ", .." } else { "" };
+    list.take(LISTED).map(|entry| entry.to_string()).collect::<Vec<_>>().join(", ") + more
+}

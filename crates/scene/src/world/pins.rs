@@ -1,0 +1,123 @@
+//! Which vertices pins hold.
+
+use super::part::element_of;
+use super::{Pin, WorldBody, bounds};
+use crate::body::PinSpec;
+use crate::description::Scene;
+use crate::error::SceneError;
+use crate::kind::BodyKind;
+use bowknot_geometry::Point;
+
+/// The pins of a scene, given its bodies and the positions at time 0.
+pub(super) fn pins(scene: &Scene, bodies: &[WorldBody], positions: &[Point]) -> Result<Vec<Pin>, SceneError> {
+    let mut pins: Vec<Pin> = Vec::new();
+    for (index, spec) in scene.pins.iter().enumerate() {
+        let fault = |message: String| SceneError::Body { body: format!("pin[{index}]"), message };
+        let Some(body) = bodies.iter().find(|b| b.kind.is_some() && b.name == spec.body) else {
+            return Err(fault(format!("no body {:?}", spec.body)));
+        };
+        let vertices = pinned(spec, body, positions).map_err(fault)?;
+        if vertices.is_empty() {
+            return Err(fault(format!("it selects no vertex of body {}", spec.body)));
+        }
+        for (other, pin) in pins.iter().enumerate() {
+            let apart = pin.end < spec.start || spec.end < pin.start;
+            let shared = vertices.iter().find(|v| pin.vertices.binary_search(v).is_ok());
+            if let (false, Some(&vertex)) = (apart, shared) {
+                return Err(fault(format!(
+                    "vertex {} of body {} is held by pin[{other}] at the same time",
+                    body.mesh_number(vertex),
+                    spec.body
+                )));
+            }
+        }
+        let (motion, start, end) = (spec.motion.clone(), spec.start, spec.end);
+        let name = format!("pin[{index}] of {}", spec.body);
+        // Names of bodies and obstacles differ.
+        let obstacle = |name: &String| bodies.iter().position(|b| b.name == *name);
+        let follow = spec.follow.as_ref().and_then(obstacle).map(|body| body as u32);
+        pins.push(Pin { name, vertices, motion, follow, start, end });
+    }
+    Ok(pins)
+}
+
+fn pinned(spec: &PinSpec, body: &WorldBody, positions: &[Point]) -> Result<Vec<u32>, String> {
+    let at = |v: u32| &positions[v as usize];
+    let all = || body.vertices.clone().chain(body.interior.clone());
+    let mut vertices = Vec::new();
+    if !spec.vertices.is_empty() {
+        let mut by_number = vec![None; body.mesh_vertices];
+        all().for_each(|v| by_number[body.mesh_number(v) as usize] = Some(v));
+        for &v in &spec.vertices {
+            match by_number.get(v as usize) {
+                Some(Some(vertex)) => vertices.push(*vertex),
+                Some(None) => {
+                    let element = body.kind.map_or("element", |kind| element_of(kind).0);
+                    return Err(format!("vertex {v} belongs to no {element} of body {}", spec.body));
+                }
+                None => {
+                    let count = body.mesh_vertices;
+                    return Err(format!(
+                        "vertex {v}, but body {} has {count} vertices, counted from 0",
+                        spec.body
+                    ));
+                }
+            }
+        }
+    }
+    if let Some(region) = &spec.region {
+        vertices.extend(all().filter(|&v| region.contains(at(v))));
+    }
+    if let Some(side) = spec.side {
+        let own: Vec<Point> = all().map(|v| *at(v)).collect();
+        let (low, high) = bounds(&own);
+        let (axis, upper) = side.axis();
+        // Vertices that rounding, by a rotation for instance, moved off the side belong to it.
+        let tolerance = 1e-9 * (high - low).norm();
+        let on = |v: &u32| {
+            let x = at(*v)[axis];
+            if upper { x >= high[axis] - tolerance } else { x <= low[axis] + tolerance }
+        };
+        vertices.extend(all().filter(on));
+    }
+    if spec.roots > 0 && body.kind == Some(BodyKind::Strands) {
+        vertices.extend(roots(body, spec.roots));
+    }
+    vertices.sort_unstable();
+    vertices.dedup();
+    Ok(vertices)
+}
+
+/// The vertices of strands within `count - 1` edges of their root, the vertex of each strand that comes first.
+fn roots(body: &WorldBody, count: usize) -> Vec<u32> {
+    let first = body.vertices.start;
+    let n = body.vertices.len();
+    let mut neighbours = vec![Vec::new(); n];
+    for &[a, b] in &body.strands {
+        neighbours[(a - first) as usize].push((b - first) as usize);
+        neighbours[(b - first) as usize].push((a - first) as usize);
+    }
+    let mut seen = vec![false; n];
+    let mut held = Vec::new();
+    for root in 0..n {
+        if seen[root] {
+            continue;
+        }
+        // Breadth first: vertices come in the order of their distance along the strand.
+        seen[root] = true;
+        let mut queue = vec![(root, 0)];
+        let mut next = 0;
+        while let Some(&(v, distance)) = queue.get(next) {
+            next += 1;
+            if distance < count {
+                held.push(first + v as u32);
+            }
+            for &w in &neighbours[v] {
+                if !std::mem::replace(&mut seen[w], true) {
+                    queue.push((w, distance + 1));
+                }
+            }
+        }
+    }
+    held
+}
