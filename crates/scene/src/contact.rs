@@ -3,8 +3,8 @@
 use crate::body::{BodySpec, ObstacleSpec};
 use crate::description::Scene;
 use crate::error::{Problem, nearest};
-use crate::reader::join;
 use crate::source::Source;
+use crate::values::join;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 

@@ -26,6 +26,7 @@ pub mod shapes;
 mod source;
 #[cfg(test)]
 mod tests;
+mod values;
 pub mod world;
 mod write;
 

@@ -2,7 +2,8 @@
 
 use crate::error::nearest;
 use crate::kind::BodyKind;
-use crate::reader::{Reader, describe, join};
+use crate::reader::Reader;
+use crate::values::{describe, join};
 use bowknot_dynamics::{ClothMaterial, MaterialError, ParticleMaterial, SolidMaterial, StrandMaterial};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};

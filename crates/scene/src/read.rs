@@ -9,12 +9,13 @@ use crate::kind::BodyKind;
 use crate::material;
 use crate::motion::Motion;
 use crate::params::{OutputParams, Preset, RepulsionParams, SimulationParams};
-use crate::reader::{Reader, describe, join};
+use crate::reader::Reader;
 use crate::shapes::{
     Ball, Block, Cone, Cuboid, Figure, Garment, Grains, HalfSpaceShape, Lathe, Ribbon, Shape, Sheet, Strands,
     TetBall, Tube, Wedge, Woven,
 };
 use crate::source::Source;
+use crate::values::{describe, join};
 use bowknot_constraints::ConstraintParams;
 use bowknot_dynamics::DynamicsParams;
 use bowknot_errors::Parameters;
@@ -232,11 +233,8 @@ fn shape(reader: &mut Reader<'_>, table: &Table, path: &str) -> Option<Shape> {
 /// Checks the values of a scene that has been read or made in code.
 pub(super) fn validate(scene: &Scene, source: &Source) -> Result<(), SceneError> {
     let mut problems = Vec::new();
-    let mut faults = Vec::new();
-    scene.simulation.validate(&mut faults);
-    report(&mut problems, source, "simulation", &mut faults);
-    scene.output.validate(&mut faults);
-    report(&mut problems, source, "output", &mut faults);
+    report_errors(&mut problems, source, "simulation", &scene.simulation);
+    report_errors(&mut problems, source, "output", &scene.output);
     for error in scene.dynamics.validate().err().into_iter().flatten() {
         let table = if SIMULATION_DYNAMICS.contains(&error.field) { "simulation" } else { "solver" };
         let message = format!("{}: {}", error.value, error.allowed);
@@ -245,8 +243,7 @@ pub(super) fn validate(scene: &Scene, source: &Source) -> Result<(), SceneError>
     validate_twoway(&scene.twoway, source, &mut problems);
     validate_bodies(scene, source, &mut problems);
     contact::validate_pairs(scene, source, &mut problems);
-    scene.repulsion.validate(&mut faults);
-    report(&mut problems, source, "solver.repulsion", &mut faults);
+    report_errors(&mut problems, source, "solver.repulsion", &scene.repulsion);
     for (index, pin) in scene.pins.iter().enumerate() {
         validate_pin(scene, pin, source, &format!("pin[{index}]"), &mut problems);
     }
@@ -381,19 +378,23 @@ fn validate_bodies(scene: &Scene, source: &Source, problems: &mut Vec<Problem>) 
 }
 
 fn validate_shape(shape: Option<&Shape>, source: &Source, path: &str, problems: &mut Vec<Problem>) {
-    let mut faults = Vec::new();
     if let Some(shape) = shape {
-        shape.validate(&mut faults);
+        report_errors(problems, source, &join(path, "shape"), shape);
     }
-    report(problems, source, &join(path, "shape"), &mut faults);
 }
 
 fn validate_motion(motion: Option<&Motion>, source: &Source, path: &str, problems: &mut Vec<Problem>) {
-    let mut faults = Vec::new();
     if let Some(motion) = motion {
-        motion.validate(&mut faults);
+        report_errors(problems, source, &join(path, "motion"), motion);
     }
-    report(problems, source, &join(path, "motion"), &mut faults);
+}
+
+/// Reports the fields of a struct that are out of their range, with the struct's place in the scene.
+fn report_errors(problems: &mut Vec<Problem>, source: &Source, path: &str, parameters: &impl Parameters) {
+    for error in parameters.validate().err().into_iter().flatten() {
+        let message = format!("{} {}", error.value, error.allowed);
+        problems.push(source.problem(&join(path, &error.path), message));
+    }
 }
 
 fn validate_pin(scene: &Scene, pin: &PinSpec, source: &Source, path: &str, problems: &mut Vec<Problem>) {

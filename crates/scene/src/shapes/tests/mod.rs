@@ -1,5 +1,14 @@
+mod elements;
+
+use super::mesh::segments;
 use super::*;
-use bowknot_geometry::{Topology, check_mesh};
+use bowknot_errors::Parameters;
+use bowknot_geometry::{Point, Topology, Vector, check_mesh};
+
+/// Fields out of their range.
+fn fields(shape: Shape) -> Vec<String> {
+    shape.validate().err().into_iter().flatten().map(|error| error.path).collect()
+}
 
 fn euler(mesh: &TriangleMesh) -> i64 {
     let topology = Topology::new(mesh.positions.len(), mesh.triangles.clone(), &[], &[]).expect("topology");
@@ -70,21 +79,14 @@ fn edges_have_about_the_length_asked_for() {
 
 #[test]
 fn lengths_out_of_range_are_named() {
-    let mut problems = Vec::new();
-    Shape::Ball(Ball { radius: -1.0, edge: f64::NAN }).validate(&mut problems);
-    assert_eq!(problems.iter().map(|p| p.0).collect::<Vec<_>>(), ["radius", "edge"]);
-    problems.clear();
-    Shape::Sheet(Sheet { edge: 1e-6, ..Sheet::default() }).validate(&mut problems);
-    assert!(problems[0].1.contains("must be larger"));
-    problems.clear();
-    Shape::Lathe(Lathe { profile: vec![[0.1, 0.0], [0.0, 1.0]], edge: 0.0, closed: false })
-        .validate(&mut problems);
-    assert_eq!(problems.iter().map(|p| p.0).collect::<Vec<_>>(), ["profile", "edge"]);
-    problems.clear();
+    let sheet = Shape::Sheet(Sheet { edge: 1e-6, ..Sheet::default() });
+    assert!(sheet.validate().expect_err("too fine")[0].allowed.contains("must be larger"));
+    assert_eq!(fields(Shape::Ball(Ball { radius: -1.0, edge: f64::NAN })), ["radius", "edge"]);
+    let lathe = Lathe { profile: vec![[0.1, 0.0], [0.0, 1.0]], edge: 0.0, closed: false };
+    assert_eq!(fields(Shape::Lathe(lathe)), ["profile", "edge"]);
     let points = vec![Point::origin(); 2];
-    Shape::Ribbon(Ribbon { points, across: vec![Vector::zeros()], width: 0.0, edge: 0.1 })
-        .validate(&mut problems);
-    assert_eq!(problems.iter().map(|p| p.0).collect::<Vec<_>>(), ["points", "across", "across", "width"]);
+    let ribbon = Ribbon { points, across: vec![Vector::zeros()], width: 0.0, edge: 0.1 };
+    assert_eq!(fields(Shape::Ribbon(ribbon)), ["points", "across", "across", "width"]);
 }
 
 /// Largest departure of an edge from its length in the flat strip, relative.
@@ -134,11 +136,6 @@ fn a_ribbon_starts_and_ends_at_its_outer_points_and_runs_straight_between_two() 
 
 #[test]
 fn figures_and_garments_out_of_range_are_named() {
-    let fields = |shape: Shape| {
-        let mut problems = Vec::new();
-        shape.validate(&mut problems);
-        problems.into_iter().map(|p| p.0).collect::<Vec<_>>()
-    };
     assert!(fields(Shape::Figure(Figure::default())).is_empty());
     let figure = Figure { edge: 0.05, cadence: f64::NAN, end: 0.1, ..Figure::default() };
     assert_eq!(fields(Shape::Figure(figure)), ["edge", "cadence", "end"]);
