@@ -1,9 +1,10 @@
-//! Judges additive CCD on queries with an exact ground truth, and times it.
+//! Checks additive CCD on queries with an exact ground truth, and times it.
 //!
-//! `cargo run --release -p bowknot-baselines --example ccd_queries -- FOLDER` reads every `FOLDER/*/{edge-edge,vertex-face}/*.csv`
-//! in the format of Wang, Ferguson, Schneider, Jiang, Attene and Panozzo (2021), "A Large-Scale Benchmark and an Inclusion-Based
-//! Algorithm for Continuous Collision Detection": eight lines a query, four vertices before and four after; numerator and
-//! denominator of each coordinate; 1 in the seventh column if they meet.
+//! `cargo run --release -p bowknot-baselines --example ccd_queries -- FOLDER` reads every
+//! `FOLDER/*/{edge-edge,vertex-face}/*.csv` in the format of Wang, Ferguson, Schneider, Jiang, Attene and
+//! Panozzo (2021), "A Large-Scale Benchmark and an Inclusion-Based Algorithm for Continuous Collision
+//! Detection": eight lines a query, four vertices before and four after; numerator and denominator of each
+//! coordinate; 1 in the seventh column if they meet.
 #![allow(clippy::print_stdout)] // it is a command
 
 use bowknot_baselines::ccd::{AdditiveCcd, ClosingSpeed};
@@ -36,7 +37,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             println!("{set}, {name}, {}, {meet}", queries.len());
             for slackness in [0.1, 1e-3, 1e-6] {
                 for speed in [ClosingSpeed::Travel, ClosingSpeed::Slab] {
-                    judge(kind, &queries, AdditiveCcd { slackness, speed, ..AdditiveCcd::default() });
+                    check(kind, &queries, AdditiveCcd { slackness, speed, ..AdditiveCcd::default() });
                 }
             }
         }
@@ -44,9 +45,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-fn judge(kind: PairKind, queries: &[Query], ccd: AdditiveCcd) {
+fn check(kind: PairKind, queries: &[Query], ccd: AdditiveCcd) {
     let (mut missed, mut alarms, mut distances) = (0, 0, 0);
-    let clock = Instant::now();
+    let timer = Instant::now();
     for query in queries {
         let found = ccd.clearance(kind, &query.x, &query.paths, 0.0, 1.0);
         missed += u32::from(query.meets && found.time >= 1.0);
@@ -54,7 +55,7 @@ fn judge(kind: PairKind, queries: &[Query], ccd: AdditiveCcd) {
         distances += u64::from(found.iterations);
     }
     let count = queries.len() as f64;
-    let nanoseconds = clock.elapsed().as_secs_f64() * 1e9 / count;
+    let nanoseconds = timer.elapsed().as_secs_f64() * 1e9 / count;
     let mean = distances as f64 / count;
     let speed = ccd.speed;
     println!("  {:e}, {speed:?}: {missed}, {alarms}, {mean:.1}, {nanoseconds:.0}", ccd.slackness);
@@ -79,7 +80,7 @@ fn read(file: &Path, queries: &mut Vec<Query>) -> Result<(), Box<dyn std::error:
     }
     for query in rows.chunks_exact(8) {
         let x = std::array::from_fn(|k| query[k].0);
-        // Paths are rounded where the ends are exact; that moves a time of impact by rounding alone.
+        // Ends are exact, paths are rounded; this changes a time of impact by rounding only.
         let paths = std::array::from_fn(|k| query[k + 4].0 - query[k].0);
         queries.push(Query { x, paths, meets: query[0].1 });
     }

@@ -1,7 +1,8 @@
 //! Interior point methods side by side: two sheets pressed into each other and onto a spike.
 //!
-//! `cargo run --release -p bowknot-baselines --example interior_points -- [CELLS]`; every method starts from the same state and
-//! wants the same target. One run each: for figures that can be relied on see `bowknot-bench`.
+//! `cargo run --release -p bowknot-baselines --example interior_points -- [CELLS]`. Every method starts from
+//! the same state and wants the same target. One run each; for reliable figures see
+//! `bowknot-bench`.
 #![allow(clippy::print_stdout)] // it is a command
 
 use bowknot_baselines::barrier::{BarrierParams, Scaling, by_descent, by_newton};

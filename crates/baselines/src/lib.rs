@@ -1,8 +1,15 @@
 //! The methods that the two-way interior point method is compared with.
 //!
-//! Each is a [`Method`]: it moves positions from an intersection-free state toward a target. Methods that differ from the
-//! two-way method in one stage are its loop with another stage ([`Composed`]), so that a comparison tells what that stage
-//! makes of it.
+//! Each is a [`Method`]: it moves positions from a state without intersections toward a target. A method that
+//! differs from the two-way method in one stage is its loop with that stage replaced ([`Composed`]), so that
+//! a comparison shows the effect of that stage.
+//!
+//! | module | holds | knows nothing of |
+//! |---|---|---|
+//! | [`barrier`] | the log-barrier interior point method | rows, zones |
+//! | [`ccd`] | forward steps by continuous collision detection | rows, zones, barriers |
+//! | [`rows`] | other solvers of the backward step's rows | impacts, barriers |
+//! | [`zones`] | impact zones | barriers |
 
 pub mod barrier;
 pub mod ccd;
@@ -10,6 +17,7 @@ mod method;
 pub mod rows;
 pub mod zones;
 
+pub use bowknot_errors::{Errors, ParamError, Parameters};
 pub use method::{Composed, Method, Outcome};
 
 /// The two-way method, its problems and stages.

@@ -1,16 +1,16 @@
-//! What all methods have in common.
+//! The trait of all methods, and its result.
 
 use bowknot_twoway::geometry::Point;
 use bowknot_twoway::{
     BackwardStep, ForwardStep, ResolveError, ResolveInput, Resolver, Search, StageSeconds, Statistics,
 };
 
-/// A way to move positions from an intersection-free state toward a target.
+/// A method that moves positions from a state without intersections toward a target.
 pub trait Method: Send {
     /// The name that tables show.
     fn name(&self) -> &str;
 
-    /// Moves `positions` toward `target`, one entry a vertex [m].
+    /// Moves `positions` toward `target`, one entry per vertex [m].
     ///
     /// # Errors
     /// As [`Resolver::resolve`].
@@ -22,18 +22,18 @@ pub trait Method: Send {
     ) -> Result<Outcome, ResolveError>;
 }
 
-/// What a solve did. How good the positions are that it ended with is measured from outside, alike for all methods.
+/// Counts and times of a solve. The quality of the result is measured elsewhere, alike for all methods.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outcome {
-    /// Steps taken: two-way steps, descent steps, zone iterations.
+    /// Number of steps: two-way steps, descent steps, rounds of zones.
     pub steps: usize,
-    /// Searches for pairs or impacts.
+    /// Number of searches for pairs or impacts.
     pub searches: usize,
     /// Whether the method's own stopping rule was met.
     pub converged: bool,
-    /// Whether the method gave up: it found no way to go on that is free of intersections.
+    /// Whether the method failed: it found no way without intersections.
     pub failed: bool,
-    /// Wall seconds by stage; stages that a method lacks are 0.
+    /// Wall seconds by stage; 0 for stages that a method does not have.
     pub seconds: StageSeconds,
 }
 
@@ -49,7 +49,7 @@ impl From<Statistics> for Outcome {
     }
 }
 
-/// The two-way loop with stages of one's choice.
+/// The two-way loop with chosen stages.
 #[derive(Debug)]
 pub struct Composed<S, B, F> {
     name: String,

@@ -3,8 +3,8 @@
 //! ```text
 //! cargo run --release -p bowknot-bench --example peer_search -- STATE.npz --radius 0.002 --threads 2
 //! ```
-//! All vertices count as one deformable body, so that a program without obstacles and groups searches for the same
-//! pairs. Prints JSON.
+//! All vertices count as one deformable body, so that a program without obstacles and groups searches for the
+//! same pairs. Prints JSON.
 #![allow(clippy::print_stdout)]
 
 use anyhow::{Context, Result, anyhow};
@@ -21,12 +21,12 @@ use std::time::Instant;
 struct Arguments {
     /// An archive with x, y (not used), F.
     state: PathBuf,
-    /// Pairs nearer than this are listed [m].
+    /// Largest distance of the pairs [m].
     #[arg(long)]
     radius: f64,
     #[arg(long, default_value_t = 1)]
     threads: usize,
-    /// Searches that are timed, after one that is not.
+    /// Number of timed searches, after an untimed one.
     #[arg(long, default_value_t = 10)]
     repeats: usize,
     /// Writes the pairs as little-endian u32: kind (0 vertex-triangle, 1 edge-edge) and the four vertices.
@@ -51,9 +51,9 @@ struct Report {
     vertex_triangle: usize,
     edge_edge: usize,
     min_distance: Option<f64>,
-    /// Trees are made anew by each search.
+    /// Each search builds its trees.
     fresh: Times,
-    /// Trees are kept and refitted, as within a simulation.
+    /// Trees are kept and refitted, as in a simulation.
     kept: Times,
 }
 
@@ -79,7 +79,7 @@ fn main() -> Result<()> {
         times.wall.push(wall.elapsed().as_secs_f64());
         search.statistics().candidates
     };
-    // The first brings memory and caches to where they stay.
+    // The first search warms memory and caches.
     let mut kept_search = None;
     let candidates = timed(&mut kept_search, &mut Times::default());
     let (mut fresh, mut kept) = (Times::default(), Times::default());

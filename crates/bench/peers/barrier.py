@@ -1,4 +1,4 @@
-"""The projection onto states free of intersections by a log barrier, made of ipctk's parts.
+"""The projection onto states without intersections by a log barrier made of ipctk's parts.
 
 Minimises 1/2 sum m |x - y|^2 + kappa b(x) from a state x without intersections: Newton's method on
 the projected Hessian, each step cut by continuous collision detection and halved until the energy
@@ -12,7 +12,7 @@ import scipy.sparse as sparse
 import scipy.sparse.linalg as linear
 
 import toolkit
-from measure import Clock
+from measure import Timer
 
 
 @dataclass
@@ -28,10 +28,10 @@ class Outcome:
 
 
 class Barrier:
-    """The energy of one problem: what pulls to the target, and the barrier of what is near."""
+    """The energy of one problem: the distance to the target, and the barrier of near pairs."""
 
-    def __init__(self, ipctk, problem, reach):
-        self.ipctk, self.reach = ipctk, reach
+    def __init__(self, ipctk, problem, barrier_range):
+        self.ipctk, self.barrier_range = ipctk, barrier_range
         self.held = (problem["fixed"] | problem["O"]).astype(bool)
         self.x = toolkit.positions(problem["x"])
         self.target = problem["y"].copy()
@@ -44,11 +44,11 @@ class Barrier:
     def near(self, x):
         """The collisions that the barrier acts on."""
         found = self.ipctk.NormalCollisions()
-        found.build(self.mesh, x, self.reach, 0.0, self.ipctk.LBVH())
+        found.build(self.mesh, x, self.barrier_range, 0.0, self.ipctk.LBVH())
         return found
 
     def potential(self):
-        return self.ipctk.BarrierPotential(self.reach, self.stiffness)
+        return self.ipctk.BarrierPotential(self.barrier_range, self.stiffness)
 
     def pull(self, x):
         """Gradient of the distance to the target."""
@@ -67,22 +67,22 @@ class Barrier:
         return (sparse.diags(self.masses) + curvature).tocsc()
 
     def balance(self, x, near):
-        """Sets the stiffness by ipctk's own rule; gives the largest one that it allows."""
+        """Sets the stiffness by ipctk's rule; returns the largest one that it allows."""
         size = float(np.linalg.norm(np.ptp(x, axis=0)))
         mean_mass = float(self.masses[self.free].mean())
-        # With stiffness 1, as it stands until here.
+        # The stiffness is still 1 here.
         forces = self.potential().gradient(near, self.mesh, x)
         barrier = self.ipctk.ClampedLogBarrier()
         self.stiffness, most = self.ipctk.initial_barrier_stiffness(
-            size, barrier, self.reach, mean_mass, self.pull(x), forces
+            size, barrier, self.barrier_range, mean_mass, self.pull(x), forces
         )
         return most
 
 
-def project(ipctk, problem, reach, tolerance, max_iterations, max_seconds):
-    """Goes on until no vertex wants to move by more than `tolerance` [m]."""
-    energy = Barrier(ipctk, problem, reach)
-    clock = Clock()
+def project(ipctk, problem, barrier_range, tolerance, max_iterations, max_seconds):
+    """Iterates until no vertex would move by more than `tolerance` [m]."""
+    energy = Barrier(ipctk, problem, barrier_range)
+    timer = Timer()
     x = energy.x
     out = Outcome(x)
     near = energy.near(x)
@@ -103,33 +103,33 @@ def project(ipctk, problem, reach, tolerance, max_iterations, max_seconds):
         last, gap = gap, _gap(energy, near, x)
         energy.stiffness = ipctk.update_barrier_stiffness(last, gap, most, energy.stiffness, size)
         out.stiffness.append(energy.stiffness)
-        if clock.wall() > max_seconds:
+        if timer.wall() > max_seconds:
             out.end = "out of time"
             break
-    out.x, out.cpu, out.wall = x, clock.cpu(), clock.wall()
+    out.x, out.cpu, out.wall = x, timer.cpu(), timer.wall()
     return out
 
 
 def _gap(energy, near, x):
-    """The smallest distance, or the barrier's reach where nothing is within it."""
-    return near.compute_minimum_distance(energy.mesh, x) ** 0.5 if len(near) else energy.reach
+    """The smallest distance, or the barrier's range if no pair is within it."""
+    return near.compute_minimum_distance(energy.mesh, x) ** 0.5 if len(near) else energy.barrier_range
 
 
 def _newton_step(energy, x, near, gradient, out):
     free = energy.free
     hessian = energy.hessian(x, near)[free][:, free].tocsc()
-    clock = Clock()
-    # Orderings and options for symmetric matrices: the fastest that SuperLU has for them.
+    timer = Timer()
+    # The fastest ordering and options of SuperLU for symmetric matrices.
     options = {"SymmetricMode": True}
     factors = linear.splu(hessian, "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
     step = np.zeros(len(gradient))
     step[free] = -factors.solve(gradient[free])
-    out.solves += clock.cpu()
+    out.solves += timer.cpu()
     return step.reshape(-1, 3)
 
 
 def _descend(energy, x, near, step, slope):
-    """The longest step by halves that is free of collisions and lowers the energy enough."""
+    """The longest step, halved again and again, that has no collisions and lowers the energy enough."""
     candidates = energy.ipctk.Candidates()
     end = toolkit.positions(x + step)
     candidates.build(energy.mesh, x, end, 0.0, energy.ipctk.LBVH())

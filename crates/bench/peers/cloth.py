@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Runs the same falling sheet in NVIDIA Newton's VBD solver, on the CPU, and by `bowknot run`:
-times, frames with intersections, and how far the sheet fell while nothing was in its way.
+"""Runs a falling sheet in NVIDIA Newton's VBD solver on the CPU, and by `bowknot run`: times, frames
+with intersections, and the distance that the sheet falls before its first contact.
 
-Newton's kernels are compiled the first time, which takes a minute and is not counted.
+Newton compiles its kernels the first time, which takes a minute and is not counted.
 """
 
 import json
@@ -18,7 +18,7 @@ import results
 import toolkit
 import vbd
 from fall import Fall, Motion
-from measure import Times, median, number, with_spread
+from measure import Times, median, number, plain, spread
 
 NAME = "cloth"
 OURS = "Bowknot"
@@ -40,18 +40,18 @@ def run_bowknot(scene, threads, folder):
 
 
 class Judges:
-    """Which frames intersect: by `bowknot check`, and by ipctk where it is installed."""
+    """Frames that intersect, according to `bowknot check`, and to ipctk if it is installed."""
 
     def __init__(self, folder):
         self.file = folder / "frames.npz"
         try:
             self.ipctk = toolkit.start(1)
         except setting.PeerMissing as missing:
-            print(f"frames are judged by Bowknot alone: {missing}")
+            print(f"frames are checked by Bowknot alone: {missing}")
             self.ipctk = None
 
     def count(self, scene, sheets):
-        """Frames that intersect, by each judge; None for one that is not there."""
+        """Number of frames that intersect, by each judge; None for a missing one."""
         frames = scene.archive(sheets, self.file)
         text = setting.call([setting.program("bowknot"), "check", self.file, "--json"], (0, 1))
         ours = sum(verdict["intersections"] > 0 for verdict in json.loads(text)["files"])
@@ -59,7 +59,7 @@ class Judges:
         self.file.unlink()
         return ours, theirs
 
-    def prove(self, scene):
+    def verify(self, scene):
         """Both must find a sheet that cuts through the obstacle, and nothing at the start."""
         start, _ = scene.sheet
         through = start - [0.0, 0.0, fall.DROP + 0.05]
@@ -77,7 +77,7 @@ class Judges:
 
 
 def describe(scene, motion, judges):
-    """How the sheet moved."""
+    """Quantities of the motion."""
     heights = motion.sheets[..., 2]
     fell = float((heights[0] - heights[scene.flight]).mean())
     ours, theirs = judges.count(scene, motion.sheets)
@@ -99,9 +99,9 @@ def _max_stretch(scene, motion):
 
 
 def measure_scene(scene, threads, turns, folder):
-    """A record for each solver: the last turn's motion, times of all turns."""
+    """One record per solver: the motion of the last turn, times of all turns."""
     judges = Judges(folder)
-    judges.prove(scene)
+    judges.verify(scene)
     runs = {OURS: lambda: run_bowknot(scene, threads, folder)}
     for settings in SETTINGS:
         runs[settings.name] = lambda s=settings: vbd.run(scene, s, scene.frames)
@@ -117,29 +117,25 @@ def measure_scene(scene, threads, turns, folder):
     for name, record in records.items():
         record.update(cpu_s=median(times[name].cpu), wall_s=median(times[name].wall))
         quotients = measure.ratios(times[name].cpu, times[OURS].cpu)
-        record.update(cpu=with_spread(times[name].cpu), ratio=median(quotients))
-        record["ratios"] = with_spread(quotients)
+        record.update(cpu=spread(times[name].cpu), ratio=median(quotients))
+        record["ratios"] = spread(quotients)
     common = {"scene": scene.name, "frames": scene.frames, "flight_frames": scene.flight}
     return [{**common, "solver": name, **record} for name, record in records.items()]
 
 
 def table(records):
-    columns = ["scene", "solver", "CPU s", "ratio", "frames that intersect", "by ipctk"]
-    columns += ["fell in flight, mm", "of g h² n (n + 1)/2, %", "lowest point, mm", "stretch"]
+    columns = ["scene", "solver", "cpu_s", "ratio", "intersecting_frames"]
+    columns += ["intersecting_frames_by_ipctk", "fell_in_flight_mm", "fell_percent"]
+    columns += ["lowest_point_mm", "max_stretch"]
     rows = []
     for r in records:
-        by_ipctk = "" if r["intersecting_by_ipctk"] is None else str(r["intersecting_by_ipctk"])
+        by_ipctk = "" if r["intersecting_by_ipctk"] is None else r["intersecting_by_ipctk"]
         rows.append(
             [r["scene"], r["solver"], r["cpu"], "" if r["solver"] == OURS else r["ratios"]]
-            + [str(r["intersecting"]), by_ipctk, number(1e3 * r["fell_m"])]
-            + [
-                number(100.0 * r["fell_share"]),
-                number(1e3 * r["lowest_m"]),
-                f"{r['max_stretch']:.3f}",
-            ]
+            + [r["intersecting"], by_ipctk, plain(1e3 * r["fell_m"])]
+            + [plain(100.0 * r["fell_share"]), plain(1e3 * r["lowest_m"]), f"{r['max_stretch']:.3f}"]
         )
-    frames = f"{records[0]['frames']} frames of 1/60 s"
-    return results.Table(f"{frames}: CPU seconds of all time steps.", columns, rows, plain=2)
+    return results.Table("peers-cloth", columns, rows)
 
 
 def section(records, versions, threads, load_before):
@@ -159,32 +155,20 @@ def section(records, versions, threads, load_before):
     return results.Section(
         name=NAME,
         title="Falling cloth: NVIDIA Newton's VBD on the CPU",
-        question="""One sheet, 1 m wide, falls 12 cm onto a ball of 25 cm radius or onto a
-            needle: same mesh, masses, membrane, bending and frames. What does it cost, which
-            frames intersect, and does the sheet fall as far as gravity says while it is in the
-            air?""",
+        question=f"""A sheet 1 m wide falls 12 cm onto a ball of 25 cm radius or onto a needle:
+            {ours[0]["frames"]} frames of 1/60 s, with the same mesh, masses, membrane and bending.
+            What does it cost, which frames intersect, and does the sheet fall as far as gravity
+            says during its first {flight} frames, before contact?""",
         finding=f"""Bowknot has {ours_crossing} intersecting frames of {frames} and falls
-            {ours_share} % of the way; Newton has some in {len(crossing)} of the {runs} runs
+            {ours_share} % of the way. Newton has some in {len(crossing)} of the {runs} runs
             that reach the obstacle (up to {worst} of {per_run} frames) and falls {least} to
-            {most} %, least with one step a frame, where its bound on motion stops it. The runs
+            {most} %, least with one step per frame, where its bound on motion stops it. The runs
             that reach the obstacle take {cheapest} to {dearest} times Bowknot's CPU time.""",
+        caveats="""Newton is made for GPUs; its CPU kernels run on one thread, and their times say
+            little about a GPU. Materials are similar, not equal. Bowknot has a stretch limit of 1.1,
+            which Newton has not. Bowknot's shortfall comes mostly from its stopping rule, which
+            accepts a vertex within 0.01 edge lengths of its place.""",
         tables=[table(records)],
-        notes=f"""Seconds are of the time steps alone: no scene, files, nor compilation
-            (Newton's kernels, up to a minute the first time). Newton is driven from Python,
-            which launches compiled kernels; on a CPU they run on one thread and Newton is made
-            for GPUs, so that its times say little about it there. Bowknot takes one implicit
-            Euler step a frame with its defaults, a stretch limit of 1.1 among them, which
-            Newton does not have. Newton's settings are those of its examples (contacts act at 2
-            mm, pairs are sought 1.5 mm beyond, buffers twice the default) or, to raise its
-            bound on motion, pairs to 12 mm with buffers of 512 and 1024; *cut at obstacles* is
-            `rigid_soft_enable_dat`, off by default. Materials are alike, not equal: both
-            membranes have the same Lame parameters at small strain, Newton's iterations do not
-            reach the equilibrium of a step. *Fell in flight* is the mean over the sheet after
-            {flight} frames, compared with implicit Euler of as many steps; most of what Bowknot
-            lacks is its stopping rule, which counts a step as solved when no vertex is farther
-            than 0.01 of an edge from where it should be. All frames, the start too, were judged
-            by `bowknot check`, again by ipctk; both were first shown a sheet through the
-            obstacle, and found it.""",
         conditions=measure.conditions(versions, f"{threads} thread", load_before),
     )
 

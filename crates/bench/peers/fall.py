@@ -11,8 +11,8 @@ GRAVITY = 9.81
 SIDE = 1.0
 DROP = 0.12
 
-# Bowknot's first cloth material. Newton gets the Lame parameters of its membrane in plane stress,
-# and a stiffness of hinges that bends a grid of this edge length about alike.
+# The first cloth material of Bowknot. Newton gets the Lame parameters of the membrane in plane stress, and a hinge
+# stiffness with which a grid of this edge length bends about as much.
 DENSITY, YOUNG, POISSON, BEND = 0.1503, 261.078, 0.243, 2.34e-6
 
 
@@ -35,7 +35,7 @@ class Fall:
     def sheet(self):
         """Points and triangles where it starts, above the obstacle's top at z = 0."""
         points, faces = meshes.flat_sheet(SIDE, self.side_vertices)
-        # Off the middle, so that the sheet does not stand on a tip under one of its vertices.
+        # Off the centre, so that no vertex is right above a tip.
         return points + [0.004, 0.002, DROP], faces
 
     @property
@@ -56,14 +56,14 @@ class Fall:
 
     @property
     def flight(self):
-        """Time steps that end in the air: before the sheet has fallen nine tenths of the way."""
+        """Number of time steps before the sheet has fallen nine tenths of the way."""
         frames = 0
         while self.fallen(frames + 1) < 0.9 * DROP:
             frames += 1
         return frames
 
     def fallen(self, frames, substeps=1):
-        """How far implicit Euler falls [m]: g h² n (n + 1) / 2."""
+        """The distance that implicit Euler falls [m]: g h² n (n + 1) / 2."""
         steps, h = frames * substeps, self.dt / substeps
         return 0.5 * GRAVITY * h * h * steps * (steps + 1)
 
@@ -100,7 +100,7 @@ class Fall:
 
 @dataclass
 class Motion:
-    """What a solver made: frames of the sheet, with the start; seconds of each time step."""
+    """A motion: frames of the sheet, the start included; seconds of each time step."""
 
     sheets: np.ndarray
     cpu: list

@@ -1,4 +1,4 @@
-"""Timing two programs in turn, and what the machine was."""
+"""Times two programs in turns, and describes the machine."""
 
 import os
 import platform
@@ -22,7 +22,7 @@ class Times:
         self.wall.append(wall)
 
 
-class Clock:
+class Timer:
     """CPU and wall seconds of this process since it was made."""
 
     def __init__(self):
@@ -36,7 +36,7 @@ class Clock:
 
 
 def in_turn(first, second, turns):
-    """Calls both, in the other order every second time: a machine that slows down slows both."""
+    """Calls both, in reverse order every second time: a machine that slows down slows both."""
     for turn in range(turns):
         for run in (first, second) if turn % 2 == 0 else (second, first):
             run()
@@ -50,10 +50,26 @@ def ratios(above, below):
 median = statistics.median
 
 
-def with_spread(values, digits=3):
-    """The median, and the least and largest where they differ visibly."""
-    middle, low, high = (number(v, digits) for v in (median(values), min(values), max(values)))
-    return middle if low == high else f"{middle} ({low} to {high})"
+@dataclass(frozen=True)
+class Spread:
+    """The median of several values, and the smallest and largest, as text."""
+
+    median: str
+    low: str
+    high: str
+
+    def __str__(self):
+        return self.median if self.low == self.high else f"{self.median} ({self.low} to {self.high})"
+
+
+def spread(values):
+    """The spread of values with three significant digits."""
+    return Spread(*(plain(value) for value in (median(values), min(values), max(values))))
+
+
+def plain(value, digits=3):
+    """A number for a CSV file, with so many significant digits."""
+    return number(value, digits).replace(",", "")
 
 
 def number(value, digits=3):
@@ -70,7 +86,7 @@ def number(value, digits=3):
 
 
 def conditions(versions, threads, load_before):
-    """One line: what was measured, with what, on what."""
+    """The commit, the versions and the machine, in one line."""
     info = _lines("/proc/cpuinfo")
     cpu = next((line.split(":", 1)[1].strip() for line in info if "model name" in line), None)
     peers = ", ".join(f"{name} {version}" for name, version in versions.items())

@@ -6,9 +6,9 @@ import numpy as np
 def folded_sheet(vertices, gap, seed=1):
     """About `vertices` vertices of a sheet 20 cm wide, folded into layers `gap` [m] apart.
 
-    The profile goes to and fro at even heights, joined by half circles. All layers share the same
+    The profile runs back and forth at even heights, joined by half circles. All layers share the same
     waves, a shear along z, which keeps their distances along z; small random offsets, an eighth of
-    the gap at most, break the regularity. Free of intersections: the caller has it judged.
+    the gap at most, break the regularity. The sheet is free of intersections; the caller checks it.
     """
     width, turn = 0.2, 8
     layers = max(4, round(2.0 * (vertices / 1000.0) ** 0.5))

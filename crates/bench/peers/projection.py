@@ -2,8 +2,8 @@
 """Solves recorded collision problems (x, y) by a log barrier made of ipctk's parts, and by
 `bowknot resolve`: times, distances to the target, gaps.
 
-Obstacles and pins are held, half-spaces left out, for both. The barrier pays for SciPy's SuperLU
-and for Python around ipctk: a weak baseline.
+Obstacles and pins are held, and half-spaces are left out, for both. The barrier includes SciPy's
+SuperLU and Python code around ipctk: a weak baseline.
 """
 
 import json
@@ -17,16 +17,16 @@ import meshes
 import recorded
 import results
 import toolkit
-from measure import Times, median, number, with_spread
+from measure import Times, median, number, plain, spread
 
 NAME = "projection"
 
-# In mean edge lengths, Bowknot's own defaults: the distance of contacts, and how far from where
-# they want to be vertices may stop.
+# Bowknot's defaults, in mean edge lengths: the contact distance, and the largest distance from the
+# solution at which vertices may stop.
 DELTA = 0.1
 TOLERANCE = 0.01
 
-# Variants of `bowknot resolve`: the problem that the barrier solves, and the one of simulations.
+# Variants of `bowknot resolve`: the problem that the barrier solves, and that of simulations.
 VARIANTS = {
     "Bowknot, contacts alone": ["--set", "contact.edges=false"],
     "Bowknot, with stretch limits": [],
@@ -34,7 +34,7 @@ VARIANTS = {
 
 
 def problem_of(recording, out, folder):
-    """The recorded problem reduced to what both solve, and its file."""
+    """The part of the recorded problem that both solve, and its file."""
     full = recorded.load(recorded.path_of(recording, out))
     kept = ("x", "y", "F", "rest", "mass", "fixed", "O", "body", "dt")
     problem = {name: full[name] for name in kept}
@@ -46,7 +46,7 @@ def problem_of(recording, out, folder):
 
 
 def resolve(path, delta, variant, threads, folder):
-    """The report of `bowknot resolve` and the state that it made."""
+    """The report of `bowknot resolve`, and its result."""
     result = folder / "resolved.npz"
     options = ["--set", f"contact.delta={delta!r}", "--set", f"solver.stop.distance={TOLERANCE}"]
     options += [*VARIANTS[variant], "--threads", threads]
@@ -57,7 +57,7 @@ def resolve(path, delta, variant, threads, folder):
 
 
 class Judge:
-    """Measures states of one problem alike, whoever made them."""
+    """Measures all states of one problem alike."""
 
     def __init__(self, ipctk, problem, edge):
         self.ipctk, self.problem, self.edge = ipctk, problem, edge
@@ -89,7 +89,7 @@ class Judge:
 
 
 def measure_problem(recording, options, turns, folder):
-    """Records of the start, the barrier and Bowknot's variants on one problem."""
+    """Records of the start, the barrier and the variants of Bowknot on one problem."""
     import barrier
 
     threads = options.threads[0]
@@ -122,26 +122,27 @@ def measure_problem(recording, options, turns, folder):
     for name, record in records.items():
         if times[name].cpu:
             record.update(cpu_s=median(times[name].cpu), wall_s=median(times[name].wall))
-            record["cpu"] = with_spread(times[name].cpu)
+            record["cpu"] = spread(times[name].cpu)
             quotients = measure.ratios(times["log barrier, ipctk"].cpu, times[name].cpu)
-            record.update(ratio=median(quotients), ratios=with_spread(quotients))
+            record.update(ratio=median(quotients), ratios=spread(quotients))
     return [{**common, **record} for record in records.values()]
 
 
 def table(records):
-    columns = ["problem", "method", "vertices", "CPU s", "ratio", "iterations", "of it SuperLU, %"]
-    columns += ["RMS to target, mm", "1/2 m (x-y)²/dt², mJ", "gap, mm", "stretch", "end"]
+    columns = ["problem", "method", "vertices", "cpu_s", "ratio", "iterations", "superlu_percent"]
+    columns += ["rms_to_target_mm", "objective_mj", "min_gap_mm", "max_stretch", "end"]
     rows = []
     for r in records:
-        share = number(100.0 * r["solves_cpu_s"] / r["cpu_s"], 2) if "solves_cpu_s" in r else ""
+        share = plain(100.0 * r["solves_cpu_s"] / r["cpu_s"], 2) if "solves_cpu_s" in r else ""
         end = "intersects" if r["intersects"] else r.get("end", "")
-        gap = "above an edge" if r["min_gap_m"] is None else number(1e3 * r["min_gap_m"])
+        # Empty: no pair is nearer than a mean edge length.
+        gap = "" if r["min_gap_m"] is None else plain(1e3 * r["min_gap_m"])
         rows.append(
-            [r["problem"], r["method"], f"{r['vertices']:,}", r.get("cpu", ""), r.get("ratios", "")]
-            + [str(r.get("iterations", "")), share, number(1e3 * r["distance_rms_m"], 4)]
-            + [number(1e3 * r["objective_J"], 4), gap, f"{r['max_stretch']:.3f}", end]
+            [r["problem"], r["method"], r["vertices"], r.get("cpu", ""), r.get("ratios", "")]
+            + [r.get("iterations", ""), share, plain(1e3 * r["distance_rms_m"], 4)]
+            + [plain(1e3 * r["objective_J"], 4), gap, f"{r['max_stretch']:.3f}", end]
         )
-    return results.Table("CPU seconds of one problem.", columns, rows, plain=2)
+    return results.Table("peers-projection", columns, rows)
 
 
 def section(records, versions, options, load_before):
@@ -164,28 +165,21 @@ def section(records, versions, options, load_before):
     threads = options.threads[0]
     return results.Section(
         name=NAME,
-        title="Projection by a log barrier of ipctk's parts",
-        question=f"""A state x, a target y, both from recorded scenes: what does the state cost
-            that is nearest to y without intersections? Contacts count from the same distance, a
-            tenth of a mean edge length, and both stop when no vertex wants to move by more than
+        title="Projection by a log barrier made of ipctk's parts",
+        question=f"""What does the state cost that is nearest to a target y without
+            intersections? States and targets recorded from scenes. For both, contacts act below a
+            tenth of a mean edge length, and both stop when no vertex would move by more than
             {TOLERANCE:g} of one.""",
         finding=f"""The barrier takes {least} to {most} times the CPU time of `bowknot resolve`
             with contacts alone, and ends nearer to the target in {nearer} of {len(both)}
             problems{closer}. {clear}{unfinished}""",
+        caveats="""The two allow different states: Bowknot separates contacts to the distance
+            below which the barrier acts, while the barrier lets them come nearer under load. The
+            barrier's time includes SciPy's SuperLU and Python between ipctk's parts: it does not
+            show what a barrier written as one program would take. *Contacts alone* is the
+            problem that the barrier solves; *with stretch limits* adds edges of at most 1.1 times
+            their rest length, as in simulations.""",
         tables=[table(records)],
-        notes=f"""*1/2 m (x-y)²/dt²* is what is to be small. The two allow different states: the
-            barrier acts below the distance that Bowknot separates contacts to, and lets them
-            come nearer under load. It is ipctk's, with its stiffness rules, its projected
-            Hessian, its LBVH and its Tight-Inclusion collision detection, in Newton's method
-            from Python. Its time holds all of that, with SciPy's SuperLU for the linear systems
-            (its share is in the table) and Python between the parts: it is no figure for what a
-            barrier written as one program would take. Bowknot's time is the call of the
-            resolver within the command. Neither holds reading files. *Contacts alone* is the
-            same problem; *with stretch limits* is what simulations ask, edges at most 1.1 of
-            their rest length, and another minimum (figure *barrier* above has barriers on
-            stretch as well). Pins and obstacles are held where they are and half-spaces left
-            out for all. All states are measured by ipctk: gap, intersections. At most
-            {options.max_iterations} iterations and {options.max_seconds:g} s for the barrier.""",
         conditions=measure.conditions(
             versions, f"{threads} thread{'s' if threads > 1 else ''}", load_before
         ),

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Times the search for all pairs within a radius: ipctk's, candidates and distances, and Bowknot's.
+"""Times the search for all pairs within a radius by ipctk (candidates and distances) and by Bowknot.
 
-Both get the same triangles and list vertex-triangle and edge-edge pairs that share no vertex; the
-sets of pairs are compared as well. Folded sheets, and states recorded from scenes.
+Both get the same triangles and find vertex-triangle and edge-edge pairs that share no vertex; the
+sets of pairs are compared too. Folded sheets, and states recorded from scenes.
 """
 
 import json
@@ -17,7 +17,7 @@ import meshes
 import recorded
 import results
 import toolkit
-from measure import Clock, Times, median, number, with_spread
+from measure import Timer, Times, median, number, plain, spread
 
 NAME = "proximity"
 
@@ -51,7 +51,7 @@ class Peer:
         self.radius = case.radius
 
     def refuse_intersections(self, name):
-        """A state with intersections is no state that either program works on."""
+        """Neither program works on a state with intersections."""
         if self.ipctk.has_intersections(self.mesh, self.points):
             raise setting.Unusable(f"{name}: the state intersects itself; report it as a bug")
 
@@ -68,19 +68,19 @@ class Peer:
         return collisions
 
     def time(self, repeats, method="LBVH"):
-        """Times of candidates alone, with their distances, and with the list of those within."""
+        """Times of the candidates, with their distances, and with the list of those within the radius."""
         boxes, near, listed = Times(), Times(), Times()
         for _ in range(repeats):
-            clock = Clock()
+            timer = Timer()
             candidates = self.candidates(method)
-            cpu, wall = clock.cpu(), clock.wall()
+            cpu, wall = timer.cpu(), timer.wall()
             boxes.add(cpu, wall)
-            clock = Clock()
+            timer = Timer()
             candidates.compute_per_vertex_safe_distances(self.mesh, self.points, self.radius)
-            near.add(cpu + clock.cpu(), wall + clock.wall())
-            clock = Clock()
+            near.add(cpu + timer.cpu(), wall + timer.wall())
+            timer = Timer()
             self.collisions(candidates)
-            listed.add(cpu + clock.cpu(), wall + clock.wall())
+            listed.add(cpu + timer.cpu(), wall + timer.wall())
         return boxes, near, listed
 
     def pairs(self):
@@ -91,7 +91,7 @@ class Peer:
         for kind, group in enumerate((candidates.fv_candidates, candidates.ee_candidates)):
             for candidate in group:
                 squared = candidate.compute_distance(candidate.dof(self.points, edges, faces))
-                # Slightly more: pairs at the radius can be told from pairs that are missing.
+                # Slightly more than the radius, to distinguish pairs at the radius from missing ones.
                 if squared <= (self.radius * (1.0 + 1e-6)) ** 2:
                     found.append((kind, *candidate.vertex_ids(edges, faces)))
                     distances.append(squared**0.5)
@@ -106,7 +106,7 @@ def bowknot_search(state, case, threads, repeats, pairs=None):
 
 
 def keys(pairs):
-    """Rows in one form whatever the order of sides and of vertices within a side."""
+    """Rows in a form that does not depend on the order of sides or of vertices within a side."""
     kinds, ids = pairs[:, :1], pairs[:, 1:]
     triangle = np.concatenate([ids[:, :1], np.sort(ids[:, 1:], axis=1)], axis=1)
     first, second = np.sort(ids[:, :2], axis=1), np.sort(ids[:, 2:], axis=1)
@@ -119,7 +119,7 @@ def keys(pairs):
 
 
 def compare_pairs(peer, case, state, folder):
-    """Pairs that one lists and the other does not; a difference is allowed at the radius itself."""
+    """Counts pairs that only one program finds; pairs at the radius itself may differ."""
     file = folder / "pairs.u32"
     bowknot_search(state, case, 1, 1, file)
     ours = keys(np.fromfile(file, dtype="<u4").astype(np.int64).reshape(-1, 5))
@@ -138,7 +138,7 @@ def compare_pairs(peer, case, state, folder):
 
 
 def measure_case(case, threads, turns, folder, counts, state):
-    """One record: medians over the turns, and the ratios of each turn."""
+    """One record: medians and ratios over the turns."""
     peer = Peer(case, threads)
     boxes, near, listed, kept, fresh = Times(), Times(), Times(), Times(), Times()
 
@@ -170,10 +170,10 @@ def measure_case(case, threads, turns, folder, counts, state):
         "bowknot_made_cpu_s": median(fresh.cpu),
         "bowknot_kept_cpu_s": median(kept.cpu),
         "bowknot_kept_wall_s": median(kept.wall),
-        "ratio_list": with_spread(measure.ratios(listed.cpu, kept.cpu)),
-        "ratio_list_made": with_spread(measure.ratios(listed.cpu, fresh.cpu)),
-        "ratio_list_wall": with_spread(measure.ratios(listed.wall, kept.wall)),
-        "ratio_distances": with_spread(measure.ratios(near.cpu, kept.cpu)),
+        "ratio_list": spread(measure.ratios(listed.cpu, kept.cpu)),
+        "ratio_list_made": spread(measure.ratios(listed.cpu, fresh.cpu)),
+        "ratio_list_wall": spread(measure.ratios(listed.wall, kept.wall)),
+        "ratio_distances": spread(measure.ratios(near.cpu, kept.cpu)),
         "turns": turns,
     }
 
@@ -187,28 +187,32 @@ def other_methods(case, threads):
     return {name: 1e3 * peer.time(2, name)[2].cpu[1] for name in names}
 
 
-COLUMNS = {
-    "ipctk, list, ms": "ipctk_list_cpu_s",
-    "ipctk, distances, ms": "ipctk_distances_cpu_s",
-    "Bowknot, trees made, ms": "bowknot_made_cpu_s",
-    "Bowknot, trees kept, ms": "bowknot_kept_cpu_s",
+TIMES = {
+    "ipctk_list_ms": "ipctk_list_cpu_s",
+    "ipctk_distances_ms": "ipctk_distances_cpu_s",
+    "bowknot_made_ms": "bowknot_made_cpu_s",
+    "bowknot_kept_ms": "bowknot_kept_cpu_s",
 }
 RATIOS = {
-    "list to made": "ratio_list_made",
-    "list to kept": "ratio_list",
-    "distances to kept": "ratio_distances",
-    "list to kept, wall": "ratio_list_wall",
+    "list_to_made": "ratio_list_made",
+    "list_to_kept": "ratio_list",
+    "distances_to_kept": "ratio_distances",
+    "list_to_kept_wall": "ratio_list_wall",
 }
 
 
-def table(records):
+def tables(records, others):
     rows = []
     for r in records:
-        row = [r["state"], f"{r['vertices']:,}", f"{r['pairs_bowknot']:,}", str(r["threads"])]
-        row += [number(1e3 * r[name]) for name in COLUMNS.values()]
+        row = [r["state"], r["vertices"], r["pairs_bowknot"], r["threads"]]
+        row += [plain(1e3 * r[name]) for name in TIMES.values()]
         rows.append(row + [r[name] for name in RATIOS.values()])
-    columns = ["state", "vertices", "pairs", "threads", *COLUMNS, *RATIOS]
-    return results.Table("CPU milliseconds of one search, medians, and ratios.", columns, rows)
+    columns = ["state", "vertices", "pairs", "threads", *TIMES, *RATIOS]
+    methods = [[name, plain(ms)] for name, ms in others.items()]
+    return [
+        results.Table("peers-proximity", columns, rows),
+        results.Table("peers-proximity-broad-phases", ["method", "ipctk_list_ms"], methods),
+    ]
 
 
 def section(records, others, versions, threads, load_before):
@@ -222,30 +226,19 @@ def section(records, others, versions, threads, load_before):
     scenes_list, scenes_near = (span(f"ipctk_{n}_cpu_s", scenes) for n in ("list", "distances"))
     differing = sum(r["only_ipctk"] + r["only_bowknot"] for r in records)
     sets = "The sets of pairs are equal" if differing == 0 else f"{differing} pairs differ"
-    times = ", ".join(f"{name} {number(ms)} ms" for name, ms in others.items())
     return results.Section(
         name=NAME,
-        title="All pairs within a radius: ipctk's search",
-        question="""How long do vertex-triangle and edge-edge pairs within a radius take,
-            distances included? Folded sheets in layers 1.5 mm apart at 2 mm; states recorded
-            from scenes at half a mean edge length. All vertices are one body to both.""",
+        title="Search for all pairs within a radius: ipctk",
+        question="""How long do the vertex-triangle and edge-edge pairs within a radius take,
+            distances included? Folded sheets in layers 1.5 mm apart with a radius of 2 mm, and
+            states recorded from scenes with half a mean edge length.""",
         finding=f"""ipctk's LBVH with its list of collisions takes {folded_list} times the CPU
-            time of Bowknot's search on folded sheets, where most of it goes into making the
-            list, and {scenes_list} times on recorded states. Its candidates with a distance of
-            each, without a list, take {folded_near} and {scenes_near} times. {sets}.""",
-        tables=[table(records)],
-        notes=f"""*ipctk, list*: building its LBVH, the candidates, and
-            `NormalCollisions.build`, type and distance of each candidate, those within the
-            radius listed, those of equal closest features merged, which Bowknot's search does
-            not do. *ipctk, distances*: the LBVH, the candidates, and
-            `Candidates.compute_per_vertex_safe_distances`, the distance of each candidate, of
-            which it keeps the least at each vertex. *Bowknot*: trees fitted to the positions
-            (*kept*, as from step to step) or sorted and built (*made*), the candidates, and the
-            list of pairs with normal, weights, distance and certified width. None holds reading
-            the state or the mesh's edges; ipctk's calls from Python do their work in C++.
-            ipctk's other broad phases with the list, first state, {threads[0]} threads, once:
-            {times}. Sets of pairs were compared by the vertices of each pair, distances of
-            ipctk's candidates taken one by one, not timed.""",
+            time of Bowknot's search on folded sheets and {scenes_list} times on recorded states.
+            Its candidates with a distance each, without a list, take {folded_near} and
+            {scenes_near} times. {sets}.""",
+        caveats="""On folded sheets most of ipctk's time goes into the list, in which it merges
+            pairs with equal closest features; Bowknot's search does not.""",
+        tables=tables(records, others),
         conditions=measure.conditions(versions, _words(threads), load_before),
     )
 

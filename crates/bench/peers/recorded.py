@@ -9,7 +9,7 @@ from setting import Unusable, call, clear, program
 
 @dataclass(frozen=True)
 class Recording:
-    """Which problem of which scene: the first one of the last of `frames` time steps."""
+    """A problem of a scene: the first one of the last of `frames` time steps."""
 
     scene: str
     scale: float
@@ -20,8 +20,8 @@ class Recording:
         return f"{self.scene} {self.scale:g}, time step {self.frames}"
 
 
-# A sheet hits the needle's tip, another is drawn into the funnel: targets are hard to reach. Four
-# sheets fall on each other and on a ball, a tube is wound up: many contacts, near targets.
+# Hard targets: a sheet hits the needle's tip, another is drawn into the funnel. Many contacts and
+# near targets: four sheets fall on each other and on a ball, a tube is wound up.
 FULL = [
     Recording("needle", 0.52, 9),
     Recording("funnel", 0.2, 33),
@@ -32,7 +32,7 @@ QUICK = [Recording("needle", 0.25, 9), Recording("funnel", 0.2, 27)]
 
 
 def path_of(recording, out):
-    """The archive of the problem, recorded now if it is not there."""
+    """The archive of the problem, recorded now if it does not exist."""
     folder = out / "recorded" / f"{recording.scene}-{recording.scale:g}-{recording.frames}"
     states = folder / "states"
     if not (folder / "summary.json").exists():

@@ -1,30 +1,45 @@
-"""Tables as CSV and Markdown, sections of the page."""
+"""Tables as CSV, and the block on peers of docs/benchmarks.md."""
 
 import csv
 import io
+import shutil
+import subprocess
 import textwrap
 from dataclasses import dataclass
 
+from measure import Spread
 from setting import REPOSITORY, Unusable
 
 PAGE = REPOSITORY / "docs" / "benchmarks.md"
-WIDTH = 120
+TABLES = REPOSITORY / "docs" / "benchmarks"
+WIDTH = 110
+BEGIN, END = "<!-- begin peers -->\n", "<!-- end peers -->\n"
 
 
 @dataclass
 class Table:
-    """Rows of text; `plain` columns are words, the others numbers, to the right."""
+    """Rows of text for NAME.csv. A spread takes three columns: median, smallest, largest."""
 
-    caption: str
+    name: str
     columns: list
     rows: list
-    plain: int = 1
 
-    def markdown(self):
-        marks = ["---" if k < self.plain else "--:" for k in range(len(self.columns))]
-        lines = [" | ".join(row) for row in (self.columns, *self.rows)]
-        lines = [f"| {lines[0]} |", f"|{'|'.join(marks)}|", *(f"| {line} |" for line in lines[1:])]
-        return f"{_wrap(self.caption)}\n\n" + "\n".join(lines)
+    def csv(self):
+        spread = [any(isinstance(row[k], Spread) for row in self.rows) for k in range(len(self.columns))]
+        lines = [[]]
+        for name, wide in zip(self.columns, spread, strict=True):
+            lines[0] += [name, f"{name}_min", f"{name}_max"] if wide else [name]
+        for row in self.rows:
+            line = []
+            for cell, wide in zip(row, spread, strict=True):
+                if isinstance(cell, Spread):
+                    line += [cell.median, cell.low, cell.high]
+                else:
+                    line += [cell, "", ""] if wide else [cell]
+            lines.append(line)
+        text = io.StringIO()
+        csv.writer(text, lineterminator="\n").writerows(lines)
+        return text.getvalue()
 
 
 @dataclass
@@ -35,20 +50,22 @@ class Section:
     title: str
     question: str
     finding: str
+    caveats: str
     tables: list
-    notes: str
     conditions: str
 
     def markdown(self):
-        parts = [f"### {self.title}", _wrap(self.question), f"**{_wrap(self.finding)}**"]
-        parts += [table.markdown() for table in self.tables]
-        parts += [_wrap(self.notes)]
-        parts += [f"`python crates/bench/peers/{self.name}.py`. {self.conditions}"]
-        return "\n\n".join(parts) + "\n"
+        files = [f"[{table.name}.csv](benchmarks/{table.name}.csv)" for table in self.tables]
+        end = f"{', '.join(files)}; `python crates/bench/peers/{self.name}.py`. {self.conditions}"
+        # The commit stands beside the figures: it may be older than that of other results.
+        commit = self.conditions.split(";")[0].lower()
+        result = f"**Result, {commit}:** {self.finding}"
+        parts = [_wrap(part) for part in (self.question, result, self.caveats)]
+        return "\n\n".join([f"### {self.title}", *parts, end]) + "\n"
 
 
 def keep(section, records, folder):
-    """Writes the section, and `records`, all that was measured, as CSV; says where."""
+    """Writes the section, its tables, and `records`, all that was measured, as CSV."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "section.md").write_text(section.markdown(), encoding="utf-8")
     names = list(dict.fromkeys(key for record in records for key in record))
@@ -56,33 +73,49 @@ def keep(section, records, folder):
     writer = csv.DictWriter(text, names, lineterminator="\n")
     writer.writeheader()
     writer.writerows(records)
-    (folder / f"{section.name}.csv").write_text(text.getvalue(), encoding="utf-8")
+    (folder / "records.csv").write_text(text.getvalue(), encoding="utf-8")
+    for table in section.tables:
+        (folder / f"{table.name}.csv").write_text(table.csv(), encoding="utf-8")
+        print(table.csv())
     print(section.markdown())
     print(f"{folder}")
 
 
-HEADING = """Other people's programs beside Bowknot on the same input, one after the other and
-back, on the same number of threads. CPU seconds are user and system time of all threads; with
-several turns the median stands with the least and largest. A ratio is the peer's seconds over
-Bowknot's, turn by turn. `crates/bench/peers/README.md` says how to repeat it."""
+HEADING = """Other programs run beside Bowknot on the same input, in turns, on the same number of
+threads. CPU seconds are user and system time of all threads; medians over the turns, with the
+smallest and largest in the tables. A ratio is the peer's seconds over Bowknot's, turn by turn. Each
+comparison names the commit that was measured; see `crates/bench/peers/README.md` for how to repeat
+it and for what the times include."""
 
 
-def rewrite(sections):
-    """Puts the texts of sections between the markers of the page, or at its end."""
-    text = "\n".join([f"## Peers, timed in the same run\n\n{_wrap(HEADING)}\n", *sections])
-    block = f"<!-- begin peers -->\n{text}<!-- end peers -->\n"
+def ensure_clean():
+    """Refuses a git tree with changes, so that the commit beside each result is the code."""
+    command = ["git", "status", "--porcelain", "--", "."]
+    command += [f":(exclude){path.relative_to(REPOSITORY)}" for path in (PAGE, TABLES)]
+    done = subprocess.run(command, cwd=REPOSITORY, capture_output=True, text=True, check=False)
+    if done.returncode != 0 or done.stdout.strip():
+        raise Unusable(
+            f"{PAGE} is written from a clean git tree only; commit these files first, or use --quick:\n"
+            f"{done.stdout or done.stderr}"
+        )
+
+
+def publish(folders):
+    """Puts the results that full runs left in `folders` between the markers of the page."""
+    ensure_clean()
+    sections = [(folder / "section.md").read_text(encoding="utf-8") for folder in folders]
+    text = "\n".join([f"## Peers\n\n{_wrap(HEADING)}\n", *sections])
     page = PAGE.read_text(encoding="utf-8")
-    start, end = page.find("<!-- begin peers -->\n"), page.find("<!-- end peers -->\n")
-    if start < 0 and end < 0:
-        page = f"{page.rstrip()}\n\n{block}"
-    elif 0 <= start < end:
-        page = page[:start] + block + page[end + len("<!-- end peers -->\n") :]
-    else:
-        raise Unusable(f"{PAGE}: the markers of section peers do not belong together; mend them")
-    PAGE.write_text(page, encoding="utf-8")
+    start, end = page.find(BEGIN), page.find(END)
+    if not 0 <= start < end:
+        raise Unusable(f"{PAGE} lacks the lines {BEGIN.strip()} and {END.strip()}")
+    PAGE.write_text(page[: start + len(BEGIN)] + text + page[end:], encoding="utf-8")
+    for folder in folders:
+        for table in folder.glob("peers-*.csv"):
+            shutil.copyfile(table, TABLES / table.name)
 
 
 def _wrap(text):
-    """Lines of at most 120 characters; words are never split."""
+    """Lines of limited length; words are never split."""
     filler = textwrap.TextWrapper(WIDTH, break_long_words=False, break_on_hyphens=False)
     return "\n\n".join(filler.fill(" ".join(p.split())) for p in text.split("\n\n"))

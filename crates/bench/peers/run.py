@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-"""Makes all comparisons, or the ones named; full runs rewrite section peers of docs/benchmarks.md.
+"""Makes all comparisons, or the ones named. Full runs write the block on peers of docs/benchmarks.md
+and the tables peers-*.csv, from a clean git tree only.
 
-A peer that is not installed is skipped. The page takes each comparison from its last full run.
+A comparison is skipped with a message if its peer is not installed. The page shows the last full run of
+each comparison.
 """
 
 import subprocess
@@ -15,23 +17,23 @@ NAMES = ["proximity", "projection", "cloth"]
 
 
 def compare(name, options):
-    """Makes one comparison in a process of its own; whether it came to an end."""
+    """Makes one comparison in a process of its own; returns whether it succeeded."""
     command = [sys.executable, Path(__file__).with_name(f"{name}.py"), "--out", options.out]
     command += ["--quick"] if options.quick else []
     command += ["--turns", str(options.turns)] if options.turns else []
-    # Its figures go to the terminal as they come; a reason to skip it comes last, on stderr.
+    # It prints its results as they come, and a reason to skip it last, on stderr.
     return subprocess.run(command, check=False).returncode == 0
 
 
-def rewrite_page(out):
-    """From the sections that full runs left."""
-    files = {name: out / "full" / name / "section.md" for name in NAMES}
-    missing = [name for name, file in files.items() if not file.exists()]
+def publish(out):
+    """Writes the page from the results of full runs."""
+    folders = {name: out / "full" / name for name in NAMES}
+    missing = [name for name, folder in folders.items() if not (folder / "section.md").exists()]
     if missing:
-        print(f"{results.PAGE} is left alone: no full run of {', '.join(missing)} in {out} yet")
+        print(f"{results.PAGE} is not written: no full run of {', '.join(missing)} in {out} yet")
         return
-    results.rewrite([file.read_text(encoding="utf-8") for file in files.values()])
-    print(f"rewrote section peers of {results.PAGE}")
+    results.publish(folders.values())
+    print(f"wrote the block on peers of {results.PAGE}")
 
 
 def main():
@@ -43,11 +45,14 @@ def main():
     unknown = [name for name in options.names if name not in NAMES]
     if unknown:
         parser.error(f"no comparison {unknown[0]!r}; there are {', '.join(NAMES)}")
+    if not options.quick:
+        # Before the measurements, not after them.
+        results.ensure_clean()
     skipped = [name for name in options.names or NAMES if not compare(name, options)]
     if not options.quick:
-        rewrite_page(options.out)
+        publish(options.out)
     if skipped:
-        sys.exit(f"error: not made, see above: {', '.join(skipped)}")
+        sys.exit(f"error: skipped or failed, see above: {', '.join(skipped)}")
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Where things are, and what has to be there: the repository, its programs, the peers."""
+"""The repository, its programs, the peers, and the options of all comparisons."""
 
 import argparse
 import importlib.util
@@ -10,8 +10,8 @@ from pathlib import Path
 REPOSITORY = Path(__file__).resolve().parents[3]
 REQUIREMENTS = "crates/bench/peers/requirements.txt"
 
-# Libraries below NumPy and SciPy read these when they are loaded: CPU seconds must not hold threads
-# that only wait. So this module is imported before NumPy.
+# The libraries below NumPy and SciPy read these when they are loaded. CPU seconds must not include
+# threads that only wait. So this module is imported before NumPy.
 for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
 
@@ -20,7 +20,7 @@ if importlib.util.find_spec("numpy") is None:
 
 
 class Unusable(Exception):
-    """A comparison that cannot be made; the text says what is missing and how to get it."""
+    """A comparison that cannot be made; the message says what is missing and how to get it."""
 
 
 class PeerMissing(Unusable):
@@ -64,7 +64,7 @@ def call(command, accept=(0,)):
 
 
 def clear(folder):
-    """Removes what an earlier run left: `bowknot run` refuses a folder that holds one."""
+    """Removes the files of an earlier run: `bowknot run` refuses a folder with a run in it."""
     for path in sorted(folder.rglob("*"), reverse=True):
         if path.is_dir():
             path.rmdir()
@@ -79,7 +79,7 @@ def arguments(description, threads):
     )
     parser.add_argument("--quick", action="store_true", help="smaller inputs, about a minute")
     parser.add_argument(
-        "--turns", type=_count, help="how often both are timed, in turn [default: 1 to 5]"
+        "--turns", type=_count, help="number of turns in which both are timed [default: 1 to 5]"
     )
     parser.add_argument(
         "--out",

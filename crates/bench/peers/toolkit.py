@@ -1,4 +1,4 @@
-"""What the comparisons need of ipctk: meshes, distances, its judge."""
+"""The parts of ipctk that the comparisons use: meshes, distances, intersections."""
 
 import numpy as np
 
@@ -15,7 +15,7 @@ def start(threads):
 
 
 def mesh_of(ipctk, points, faces, held=None):
-    """A collision mesh; vertices that are `held` do not collide with each other."""
+    """A collision mesh; `held` vertices do not collide with each other."""
     edges = np.asfortranarray(edges_of(faces), dtype=np.int32)
     faces = np.asfortranarray(faces, dtype=np.int32)
     mesh = ipctk.CollisionMesh(positions(points), edges, faces)
@@ -27,12 +27,12 @@ def mesh_of(ipctk, points, faces, held=None):
 
 
 def positions(points):
-    """As ipctk takes them without a copy."""
+    """Positions in the layout that ipctk takes without a copy."""
     return np.asfortranarray(points, dtype=np.float64)
 
 
 def smallest_distance(ipctk, mesh, points, within):
-    """The smallest distance of two primitives; None if all are farther apart than `within`."""
+    """The smallest distance of two primitives; None if all distances exceed `within`."""
     collisions = ipctk.NormalCollisions()
     collisions.build(mesh, points, within)
     return collisions.compute_minimum_distance(mesh, points) ** 0.5 if len(collisions) else None

@@ -1,4 +1,4 @@
-"""The falling sheet in NVIDIA Newton: its VBD solver on the CPU, driven as in its examples."""
+"""The falling sheet in NVIDIA Newton: its VBD solver on the CPU, called as in its examples."""
 
 import io
 from contextlib import redirect_stdout
@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from fall import DENSITY, GRAVITY, Motion
-from measure import Clock
+from measure import Timer
 from setting import peer
 
-# Lengths of Newton's own cloth examples [m]: where contacts act, how much farther pairs are sought,
-# and the thickness of the sheet towards obstacles.
+# Lengths of Newton's cloth examples [m]: the distance at which contacts act, how much farther pairs
+# are searched, and the thickness of the sheet towards obstacles.
 MARGIN, GAP, RADIUS = 0.002, 0.0015, 0.002
 
 
@@ -22,9 +22,9 @@ class Settings:
     iterations: int
     # Whether motion is cut at planes against the obstacle too; Newton's default is not to.
     cut_at_obstacle: bool = False
-    # How much farther than the margin pairs are sought [m]; a step is bounded by a part of it.
+    # How much farther than the margin pairs are searched [m]; a part of it bounds a step.
     gap: float = GAP
-    # Pairs that a vertex can hold, twice as many an edge: more are dropped silently.
+    # Number of pairs that a vertex can hold; an edge can hold twice as many. More are dropped silently.
     buffer: int = 64
 
 
@@ -35,7 +35,7 @@ WIDE = Settings("Newton, 10 steps of 4, cut, pairs to 12 mm", 10, 4, True, 0.01,
 
 
 def run(scene, settings, frames):
-    """Moves the sheet; kernels are compiled, and one step thrown away, before time is taken."""
+    """Moves the sheet. Before the timing, one discarded step compiles the kernels."""
     newton, wp = peer("newton"), peer("warp")
     wp.config.quiet = True
     with redirect_stdout(io.StringIO()), wp.ScopedDevice("cpu"):
@@ -50,14 +50,14 @@ def _steps(newton, wp, scene, settings, frames):
     motion = Motion([now.particle_q.numpy().copy()], [], [], settings.substeps)
     h = scene.dt / settings.substeps
     for _ in range(frames):
-        clock = Clock()
+        timer = Timer()
         solver.rebuild_bvh(now)
         for _ in range(settings.substeps):
             now.clear_forces()
             solver.step(now, following, control, None, h)
             now, following = following, now
-        motion.cpu.append(clock.cpu())
-        motion.wall.append(clock.wall())
+        motion.cpu.append(timer.cpu())
+        motion.wall.append(timer.wall())
         motion.sheets.append(now.particle_q.numpy().copy())
     motion.sheets = np.array(motion.sheets, dtype=np.float64)
     return motion

@@ -1,38 +1,38 @@
-//! Collision problems, loaded to be solved.
+//! Recorded collision problems, loaded to be solved.
 
 use crate::bench::Bench;
-use crate::record::Spec;
+use crate::record::ProblemSet;
 use anyhow::{Context, Result, anyhow};
-use bowknot::proximity::CollisionModel;
+use bowknot::geometry::CollisionModel;
 use bowknot::recording::States;
 use bowknot::twoway::{BodyContact, CallInput, CollisionScene, Params, Resolver};
 use std::path::Path;
 
-/// A collision problem. Friction is left out: few of the methods that are compared have any, and what it adds to the
-/// target is no projection, so that an error would be of something else.
+/// A collision problem without friction. Few of the methods that are compared have friction, and a problem
+/// with it is no projection of the target, so that distances to a projection would not measure the error.
 #[derive(Clone, Debug)]
-pub struct Case {
+pub struct CollisionCase {
     /// `scene/step`.
     pub name: String,
-    /// What it is made of, without friction.
+    /// The recorded state and target, without friction.
     pub states: States,
     pub model: CollisionModel,
-    /// What sets the problem apart from the one that was recorded, for all methods alike.
+    /// How its lengths differ from the recorded problem's, for all methods alike.
     lengths: ProblemLengths,
 }
 
-/// Parameters that make another problem of a recorded one; none: as recorded.
+/// Lengths that define the problem; none: as recorded.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ProblemLengths {
-    /// Desired distance, in that of the recorded problem.
+    /// Desired distance delta, as a multiple of the recorded problem's.
     pub delta: Option<f64>,
-    /// Minimum separation, in desired distances of the recorded problem.
+    /// Minimum separation, as a multiple of the recorded problem's delta.
     pub min_separation: Option<f64>,
     /// Stretch limit sigma; infinite: edges have none.
     pub stretch_limit: Option<f64>,
 }
 
-impl Case {
+impl CollisionCase {
     pub fn read(name: &str, path: &Path) -> Result<Self> {
         Self::new(name, States::read(path)?).with_context(|| path.display().to_string())
     }
@@ -45,8 +45,9 @@ impl Case {
         Ok(Self { name: name.to_owned(), states, model, lengths: ProblemLengths::default() })
     }
 
-    /// The problem with other lengths; `change` tells its measurements from those of the recorded one.
-    pub fn under(&self, change: &str, lengths: ProblemLengths) -> Self {
+    /// The problem with other lengths; `change` distinguishes its measurements from those of the recorded
+    /// problem.
+    pub fn with_lengths(&self, change: &str, lengths: ProblemLengths) -> Self {
         let mut case = Self { name: format!("{}/{change}", self.name), lengths, ..self.clone() };
         if let Some(limit) = lengths.stretch_limit {
             case.states.body_contacts.resize(self.model.bodies().len(), BodyContact::default());
@@ -55,7 +56,7 @@ impl Case {
         case
     }
 
-    /// Makes a resolver of the problem: parameters of a method, lengths of the case.
+    /// A resolver of the problem, with the parameters of a method and the lengths of the case.
     pub fn resolver(&self, mut params: Params) -> Result<Resolver> {
         let recorded = |params: &Params| -> Result<f64> {
             let resolver = self.states.resolver(self.model.clone(), params.clone())?;
@@ -71,7 +72,7 @@ impl Case {
         Ok(self.states.resolver(self.model.clone(), params)?)
     }
 
-    /// Mean rest length of the edges [m]; none where there are none, as among grains.
+    /// Mean rest length of the edges [m]; none if there are no edges, as in sand.
     pub fn mean_edge(&self) -> Option<f64> {
         let rest = &self.states.rest;
         let edges = &self.model.topology().edges;
@@ -79,12 +80,13 @@ impl Case {
         (!edges.is_empty()).then(|| lengths.sum::<f64>() / edges.len() as f64)
     }
 
-    /// The scene of the problem, as the stages of a method see it.
+    /// The scene of the problem, with the parameters of a method, as its stages take it.
     pub fn scene(&self, params: Params) -> Result<CollisionScene> {
         Ok(self.resolver(params)?.scene().clone())
     }
 
-    /// The scene under the parameters that results are judged by, and the input of the call.
+    /// The scene with the parameters that results are measured with, `fast`, and the input of
+    /// the call.
     pub fn reference(&self) -> Result<(CollisionScene, CallInput)> {
         let scene = self.scene(Params::fast())?;
         let call = CallInput::new(&scene, &self.states.x, &self.states.y, &self.states.input())?;
@@ -92,15 +94,15 @@ impl Case {
     }
 }
 
-/// Problems of a scene: `count` of those recorded, spread over them.
-pub fn cases(bench: &Bench, scene: &str, count: usize) -> Result<Vec<Case>> {
-    let files = Spec::of(scene)?.files(bench)?;
+/// `count` of the recorded problems of a set, spread evenly over them.
+pub fn cases(bench: &Bench, scene: &str, count: usize) -> Result<Vec<CollisionCase>> {
+    let files = ProblemSet::of(scene)?.files(bench)?;
     let count = count.min(files.len());
     (0..count)
         .map(|k| {
             let file = &files[(2 * k + 1) * files.len() / (2 * count)];
             let step = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            Case::read(&format!("{scene}/{step}"), file)
+            CollisionCase::read(&format!("{scene}/{step}"), file)
         })
         .collect()
 }

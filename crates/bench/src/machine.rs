@@ -1,7 +1,7 @@
-//! What was measured with.
+//! The machine and the commit that measurements are made with.
 
+use crate::git;
 use std::path::Path;
-use std::process::Command;
 
 /// The machine and the state of the repository.
 #[derive(Clone, Debug)]
@@ -11,7 +11,11 @@ pub struct Machine {
     pub commit: String,
 }
 
+/// End of the name of a commit if files of the code differ from it.
+pub const WITH_CHANGES: &str = " with changes";
+
 impl Machine {
+    /// This machine, and the repository at `root`.
     pub fn now(root: &Path) -> Self {
         let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
         let cpu = info.lines().find_map(|line| line.strip_prefix("model name")).unwrap_or("an unknown CPU");
@@ -29,15 +33,13 @@ impl Machine {
     }
 }
 
-/// The commit, and whether files differ from it.
+/// The commit, and whether files of the code differ from it.
 fn commit(root: &Path) -> String {
-    let git = |arguments: &[&str]| {
-        let output = Command::new("git").args(arguments).current_dir(root).output().ok()?;
-        output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
+    let Some(hash) = git::output(root, &["rev-parse", "--short", "HEAD"]) else {
+        return "unknown".to_owned();
     };
-    let Some(hash) = git(&["rev-parse", "--short", "HEAD"]) else { return "unknown".to_owned() };
-    match git(&["status", "--porcelain", "--", "crates", "Cargo.toml", "Cargo.lock"]) {
+    match git::output(root, &["status", "--porcelain", "--", "crates", "Cargo.toml", "Cargo.lock"]) {
         Some(changes) if changes.is_empty() => hash,
-        _ => format!("{hash} with changes"),
+        _ => format!("{hash}{WITH_CHANGES}"),
     }
 }

@@ -1,69 +1,81 @@
-//! The `bowknot-bench` command: measures figures and tables, run time against error, methods against each other.
+//! The `bowknot-bench` command: measures figures and tables, run time against error, methods against each
+//! other.
 //!
 //! | module | holds |
 //! |---|---|
-//! | `figures` | a file for each figure or table |
-//! | `bench` | what all of them use: size, output folder, what has been measured already |
-//! | `record`, `case` | collision problems: recorded from scenes, loaded to be solved |
+//! | `figures` | one file per figure or table |
+//! | `figure` | the trait that they implement, and what they report |
+//! | `run` | measuring a figure |
+//! | `docs`, `page` | writing its results into docs/benchmarks and docs/benchmarks.md |
+//! | `bench`, `store`, `machine` | size, folder and time of a run; kept measurements; machine, commit |
+//! | `record`, `case`, `targets` | collision problems: recorded from scenes, loaded to be solved |
 //! | `methods`, `solve` | the methods that are compared; timing one on one problem |
-//! | `simulate`, `memory` | whole simulations, how far they are apart, what memory they take |
-//! | `summary` | what settings did with the problems of scenes |
-//! | `measures` | how good a result is, alike for every method |
-//! | `chart`, `table`, `page` | SVG, CSV and Markdown |
+//! | `simulate`, `memory` | whole simulations and the distances between them; memory of a run |
+//! | `summary` | results of settings on the problems of scenes |
+//! | `measures` | the quality of a result, measured alike for every method |
+//! | `chart`, `table` | SVG, CSV and Markdown |
 //!
-//! Other people's programs are timed beside Bowknot by scripts in `crates/bench/peers`, which write section `peers` of
-//! the same page.
+//! Scripts in `crates/bench/peers` time other people's programs beside Bowknot and write block `peers` of the
+//! page.
 
-// A command's output is what it is for.
+// A command prints its results.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod bench;
 mod case;
 mod chart;
+mod docs;
+mod figure;
 mod figures;
+mod files;
+mod git;
 mod machine;
 mod measures;
 mod memory;
 mod methods;
 mod page;
 mod record;
+mod run;
 mod simulate;
 mod solve;
 mod store;
 mod summary;
 mod table;
+mod targets;
 
 use anyhow::{Result, bail};
 use bench::{Bench, Size};
 use clap::Parser;
-use std::path::PathBuf;
+use docs::Docs;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Measures figures and tables; full runs rewrite their section of docs/benchmarks.md.
+/// Measures figures and tables. Full runs write docs/benchmarks.md and docs/benchmarks, from a clean git tree
+/// only.
 #[derive(Debug, Parser)]
 #[command(name = "bowknot-bench")]
 struct Arguments {
-    /// A figure, `all`, `record` (collision problems for anyone's solver), or `list`.
+    /// A figure, `all`, `record` (collision problems as NPZ files), or `list`.
     name: String,
-    /// Smaller scenes; writes to DIR alone, and leaves docs/benchmarks.md as it is.
+    /// Measures smaller scenes and writes to DIR alone.
     #[arg(long)]
     quick: bool,
-    /// Smallest scenes, for tests of the command itself; as --quick otherwise.
+    /// Measures the smallest scenes, for tests of the command itself; else as --quick.
     #[arg(long, hide = true)]
     tiny: bool,
-    /// Where problems, measurements and results stay; what is measured there already is not measured again.
+    /// Folder of problems, measurements and results. Measurements that are there are not made again.
     #[arg(long, default_value = "out/bench")]
     out: PathBuf,
-    /// Threads; with one, CPU seconds hold no waiting for others.
+    /// Number of threads. With one, CPU seconds contain no waiting for other threads.
     #[arg(long, default_value_t = 1)]
     threads: usize,
-    /// The scene of `footprint`, which another process of this command asks for.
+    /// The scene of `footprint`, which the command runs in a process of its own.
     #[arg(long, hide = true, default_value = "drape")]
     of: String,
     /// Its scale.
     #[arg(long, hide = true, default_value_t = 1.0)]
     scale: f64,
-    /// Its time steps.
+    /// Its number of time steps.
     #[arg(long, hide = true, default_value_t = 1)]
     frames: usize,
 }
@@ -83,7 +95,7 @@ fn run(arguments: &Arguments) -> Result<()> {
         for figure in figures::ALL {
             println!("{:<22} {}", figure.name(), figure.title());
         }
-        println!("{:<22} collision problems in {} sets, as NPZ files", "record", record::SPECS.len());
+        println!("{:<22} collision problems in {} sets, as NPZ files", "record", record::PROBLEM_SETS.len());
         return Ok(());
     }
     rayon::ThreadPoolBuilder::new().num_threads(arguments.threads).build_global()?;
@@ -95,24 +107,29 @@ fn run(arguments: &Arguments) -> Result<()> {
         (false, true) => Size::Quick,
         (false, false) => Size::Full,
     };
-    let bench = Bench::new(size, &arguments.out)?;
+    // The repository that the command was built from.
+    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let docs = Docs::new(&repository);
+    if size == Size::Full && arguments.name != "record" {
+        // Before hours of measurements, not after them.
+        docs.ensure_clean()?;
+    }
+    let bench = Bench::new(size, &arguments.out, &repository)?;
+    let names: Vec<&str> = figures::ALL.iter().map(|figure| figure.name()).collect();
     match arguments.name.as_str() {
         "record" => record::all(&bench),
         "all" => {
-            // One that fails keeps no other from being measured.
+            // A figure that fails does not keep the others from being measured.
             let failed: Vec<String> = figures::ALL
                 .iter()
-                .filter_map(|figure| bench.figure(*figure).err())
+                .filter_map(|figure| run::measure(&bench, &docs, *figure, &names).err())
                 .map(|error| format!("{error:#}"))
                 .collect();
             if failed.is_empty() { Ok(()) } else { bail!("{}", failed.join("\n")) }
         }
         name => match figures::ALL.iter().find(|figure| figure.name() == name) {
-            Some(figure) => bench.figure(*figure),
-            None => {
-                let names: Vec<&str> = figures::ALL.iter().map(|figure| figure.name()).collect();
-                bail!("no figure {name:?}; there are all, record, list, {}", names.join(", "))
-            }
+            Some(figure) => run::measure(&bench, &docs, *figure, &names),
+            None => bail!("no figure {name:?}; there are all, record, list, {}", names.join(", ")),
         },
     }
 }

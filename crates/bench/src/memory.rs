@@ -1,4 +1,4 @@
-//! The memory of a run, measured in a process of its own: a process only tells the most that it has ever had.
+//! The memory of a run, measured in a process of its own, because a process reports only its own peak.
 
 use anyhow::{Context, Result, ensure};
 use bowknot::simulator::peak_memory_bytes;
@@ -6,14 +6,14 @@ use bowknot::{Scene, Simulator};
 use serde::{Deserialize, Serialize};
 use std::process::Command;
 
-/// What a run took.
+/// Memory and size of a run.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Footprint {
     /// Largest resident memory.
     pub bytes: u64,
     /// Deformable vertices.
     pub vertices: usize,
-    /// Most pairs listed after a search.
+    /// Largest number of candidate pairs after a search.
     pub pairs: usize,
 }
 
@@ -27,14 +27,14 @@ pub fn footprint(scene: &str, scale: f64, frames: usize) -> Result<Footprint> {
     Ok(serde_json::from_slice(&output.stdout)?)
 }
 
-/// What that process does: runs the scene and prints its footprint as JSON.
+/// The work of that process: runs the scene and prints its footprint as JSON.
 pub fn print_footprint(scene: &str, scale: f64, frames: usize) -> Result<()> {
     let mut simulator = Simulator::new(&Scene::builtin(scene, scale)?)?;
     let mut pairs = 0;
     for _ in 0..frames {
         pairs = pairs.max(simulator.step()?.pairs);
     }
-    let bytes = peak_memory_bytes().context("this system does not tell how much memory a process has had")?;
+    let bytes = peak_memory_bytes().context("this system does not report the peak memory of a process")?;
     let vertices = simulator.world().deformable_vertices;
     println!("{}", serde_json::to_string(&Footprint { bytes, vertices, pairs })?);
     Ok(())

@@ -1,4 +1,4 @@
-//! The methods that are compared. A method joins by a line in [`METHODS`].
+//! The methods that are compared. Another method takes a line in [`METHODS`].
 
 use crate::bench::Size;
 use anyhow::{Context, Result};
@@ -17,10 +17,10 @@ use bowknot_baselines::zones::{ImpactZones, RigidZones, TwoPhase, ZoneParams, Zo
 use bowknot_baselines::{Composed, Method};
 use std::sync::Arc;
 
-/// A method made of a problem, which holds the parameters.
+/// A method built from a problem, which holds the parameters.
 type Built = Result<Box<dyn Method>>;
 
-/// A method by name: its parameters, and how it is made.
+/// A method by name: its parameters, and the function that builds it.
 pub struct Entry {
     pub name: &'static str,
     params: fn() -> Params,
@@ -71,21 +71,21 @@ pub const METHODS: &[Entry] = &[
     Entry { name: "two phases", params: Params::paper, build: two_phases },
 ];
 
-/// A method with parameters of one's choice.
+/// A method with chosen parameters.
 #[derive(Clone)]
 pub struct Setting {
-    /// Name of the method, a series in charts.
+    /// Name of the method; charts have one series per method.
     pub method: &'static str,
-    /// What differs from the method as it is; empty: nothing.
+    /// What differs from the method's own parameters; empty: nothing.
     pub change: String,
     pub params: Params,
     pub build: Arc<dyn Fn(CollisionScene) -> Built>,
-    /// Seconds of a solve in a full run; none: 4.
+    /// Time limit of a solve in a full run [s]; none: 4 s.
     limit: Option<f64>,
 }
 
 impl Setting {
-    /// A method as it is.
+    /// A method with its own parameters.
     pub fn plain(entry: &Entry) -> Self {
         let build = entry.build;
         Self {
@@ -97,7 +97,7 @@ impl Setting {
         }
     }
 
-    /// The method of that name as it is.
+    /// The method of that name with its own parameters.
     pub fn of(method: &str) -> Result<Self> {
         let entry = METHODS.iter().find(|e| e.name == method);
         entry.map(Self::plain).with_context(|| format!("no method {method}"))
@@ -111,7 +111,7 @@ impl Setting {
         self
     }
 
-    /// The method, made in another way.
+    /// The method, built by another function.
     #[must_use]
     pub fn built(
         mut self,
@@ -123,19 +123,19 @@ impl Setting {
         self
     }
 
-    /// The same with another limit on the seconds of a solve in a full run.
+    /// The same with another time limit of a solve in a full run [s].
     #[must_use]
     pub fn within(mut self, seconds: f64) -> Self {
         self.limit = Some(seconds);
         self
     }
 
-    /// Seconds that a solve may take.
+    /// Time limit of a solve [s].
     pub fn limit(&self, size: Size) -> f64 {
         size.pick(self.limit.unwrap_or(4.0), 2.0, 1.0)
     }
 
-    /// What tells its measurements from those of others.
+    /// A key that distinguishes its measurements from those of other settings.
     pub fn key(&self) -> String {
         match self.limit {
             Some(seconds) => format!("{} within {seconds} s", self.name()),
@@ -150,14 +150,16 @@ impl Setting {
 
     /// Method and change.
     pub fn name(&self) -> String {
-        match self.change.is_empty() {
-            true => self.method.to_owned(),
-            false => format!("{}, {}", self.method, self.change),
-        }
+        name_of(self.method, &self.change)
     }
 }
 
-/// The two-way method of this project; its parameters make the presets.
+/// The name of a method with a change.
+pub fn name_of(method: &str, change: &str) -> String {
+    if change.is_empty() { method.to_owned() } else { format!("{method}, {change}") }
+}
+
+/// The two-way method of this project; its parameters define the presets.
 fn two_way(scene: CollisionScene) -> Built {
     let search = TrustRegionSearch::new(&scene);
     let backward: LcpBackward = LcpBackward::default();
@@ -169,12 +171,12 @@ pub fn log_barrier(scene: CollisionScene, params: BarrierParams) -> Built {
     composed(by_descent(scene, params)?)
 }
 
-/// Eq. 7-8 by projected Newton steps with a line search behind CCD, as IPC does (Li et al. 2020).
+/// Eq. 7-8 by projected Newton steps, with CCD and a line search as in IPC (Li et al. 2020).
 fn newton_barrier(scene: CollisionScene) -> Built {
     composed(by_newton(scene, BarrierParams::default(), AdditiveCcd::default())?)
 }
 
-/// The two-way method with another solver of its rows.
+/// The two-way method with another row solver.
 pub fn rows<K: bowknot::twoway::RowSolver + Default + 'static>(scene: CollisionScene, solver: K) -> Built {
     composed(two_way_with(scene, solver))
 }
@@ -193,18 +195,19 @@ fn forward<F: ForwardStep + 'static>(scene: CollisionScene, step: F) -> Built {
 }
 
 fn impact_zones(scene: CollisionScene, solver: ZoneSolver) -> Built {
-    Ok(Box::new(ImpactZones::new(scene, ZoneParams { solver, ..ZoneParams::default() })))
+    Ok(Box::new(ImpactZones::new(scene, ZoneParams { solver, ..ZoneParams::default() })?))
 }
 
-/// Impact zones that keep pairs at most of the distance that the other methods keep: zones proper only keep them from meeting.
+/// Impact zones that keep 0.8 of the distance that the other methods keep. Zones as published keep no
+/// distance: they only prevent intersections.
 fn thick_zones(scene: CollisionScene) -> Built {
-    Ok(Box::new(ImpactZones::new(scene, ZoneParams { thickness: 0.8, ..ZoneParams::default() })))
+    Ok(Box::new(ImpactZones::new(scene, ZoneParams { thickness: 0.8, ..ZoneParams::default() })?))
 }
 
 /// Wu et al. 2020: five rounds of impact zones, then a log barrier.
 fn two_phases(scene: CollisionScene) -> Built {
     let hard = Composed::new("log barrier", by_descent(scene.clone(), BarrierParams::default())?);
-    Ok(Box::new(TwoPhase::new(scene, 5, hard)))
+    Ok(Box::new(TwoPhase::new(scene, 5, hard)?))
 }
 
 fn composed<S, B, F>(resolver: Resolver<S, B, F>) -> Built
@@ -216,15 +219,16 @@ where
     Ok(Box::new(Composed::new("", resolver)))
 }
 
-/// `paper` with contacts along the normals of faces, as Harmon et al. 2008 and Tang et al. 2018 have them.
+/// `paper` with contacts along the normals of faces, as in Harmon et al. 2008 and Tang et al. 2018.
 fn face_normals() -> Params {
     let mut params = Params::paper();
     params.contact.form = ContactForm::Face;
     params
 }
 
-/// `paper` without edge limits, which equations would turn into rigid links (paper, section 4.3.1), and with rows for pairs
-/// that press or are about to, near to the collisions that Harmon et al. take: all pairs in range would be glued.
+/// `paper` without edge limits, which a linear system of equations would turn into rigid links (paper,
+/// section 4.3.1). Only active pairs have rows, which is close to the collisions of Harmon et al.; equations
+/// for all pairs in range would glue them together.
 fn without_edges() -> Params {
     let mut params = Params::paper();
     params.solver.backward.active_rows = true;

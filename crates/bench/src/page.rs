@@ -1,72 +1,117 @@
-//! The page of results: a section for each figure between markers, each written by its own run.
+//! The page docs/benchmarks.md: sections of the figures that it shows, and an index of the other figures'
+//! files. Blocks between markers are replaced, all other text is kept.
 
-use crate::figures::{self, Figure, Part, Section};
-use anyhow::{Context, Result, bail};
-use std::fs;
-use std::path::Path;
+use crate::figure::{Figure, Part, Report};
+use anyhow::{Result, bail};
 
-/// What stands before the first section of a new page.
-const HEAD: &str = "# Benchmarks\n\n\
-    `cargo run --release -p bowknot-bench -- NAME` measures a figure and rewrites its section here, texts included: edit\n\
-    `crates/bench/src/figures`, not this file. `list` names all, `all --quick` is a look at all of them, and leaves this page alone.\n";
+/// Longest line of text [characters].
+const LINE: usize = 110;
+/// Name of the block with the index.
+const INDEX: &str = "index";
 
-/// The section of a figure.
-pub fn section(figure: &dyn Figure, section: &Section, conditions: &str) -> String {
-    let mut text =
-        format!("## {}\n\n{}\n\n**{}**\n", figure.title(), wrap(figure.question()), wrap(&section.finding));
-    for part in &section.parts {
+/// The section of a figure: text, tables, charts, conditions.
+pub fn section(figure: &dyn Figure, report: &Report, conditions: &str) -> String {
+    let mut text = format!(
+        "## {}\n\n{}\n\n{}\n",
+        figure.title(),
+        wrap(figure.question()),
+        wrap(&format!("**Result:** {}", report.finding))
+    );
+    for part in &report.parts {
         let part = match part {
-            Part::Table { caption, table, .. } => {
-                format!("{}\n\n{}", wrap(caption), table.markdown()).trim().to_owned()
+            Part::Table { shows, table, .. } if shows.is_empty() => table.markdown().trim_end().to_owned(),
+            Part::Table { shows, table, .. } => {
+                format!("{}:\n\n{}", wrap(shows), table.markdown().trim_end())
             }
             Part::Chart { name, chart } => format!("![{}](benchmarks/{name}.svg)", chart.title),
-            Part::Data { .. } => continue,
         };
         text.push_str(&format!("\n{part}\n"));
     }
-    text.push_str(&format!("\n`bowknot-bench {}`. {conditions}\n", figure.name()));
+    text.push_str(&format!("\n`{}`. {conditions}\n", command(figure.name())));
     text
 }
 
-/// Puts the section of figure `name` into the page, in the order of [`figures::ALL`].
-pub fn rewrite(path: &Path, name: &str, section: &str) -> Result<()> {
-    let page = match fs::read_to_string(path) {
-        Ok(page) => page,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => HEAD.to_owned(),
-        Err(error) => return Err(error).with_context(|| format!("cannot read {}", path.display())),
+/// The rows of a figure in the index, one per table. The first row links the figure's charts.
+pub fn index_rows(figure: &dyn Figure, report: &Report, conditions: &str) -> Vec<String> {
+    let charts: Vec<String> = report
+        .parts
+        .iter()
+        .filter_map(|part| match part {
+            Part::Chart { name, .. } => {
+                let short = name.strip_prefix(figure.name()).unwrap_or(name).trim_start_matches('-');
+                let short = if short.is_empty() { "chart" } else { short };
+                Some(format!("[{short}](benchmarks/{name}.svg)"))
+            }
+            Part::Table { .. } => None,
+        })
+        .collect();
+    let mut charts = charts.join(", ");
+    let tables = report.parts.iter().filter_map(|part| match part {
+        Part::Table { name, shows, .. } => Some((name, shows)),
+        Part::Chart { .. } => None,
+    });
+    tables
+        .map(|(name, shows)| {
+            let charts = std::mem::take(&mut charts);
+            let command = command(figure.name());
+            format!(
+                "| [{name}.csv](benchmarks/{name}.csv) | {shows} | {charts} | `{command}` | {conditions} |"
+            )
+        })
+        .collect()
+}
+
+fn command(figure: &str) -> String {
+    format!("bowknot-bench {figure}")
+}
+
+/// The page with another section `name`.
+///
+/// # Errors
+/// If the markers of the section are not both there.
+pub fn with_section(page: &str, name: &str, section: &str) -> Result<String> {
+    let [from, to] = block(page, name)?;
+    Ok(format!("{}{section}{}", &page[..from], &page[to..]))
+}
+
+/// The page with other rows of a figure in its index, at the figure's place in `order`.
+///
+/// # Errors
+/// If the markers of the index are not both there.
+pub fn with_index_rows(page: &str, figure: &str, rows: &[String], order: &[&str]) -> Result<String> {
+    let place = |name: &str| order.iter().position(|other| *other == name).unwrap_or(order.len());
+    let figure_of = |row: &str| -> Option<String> {
+        let (_, rest) = row.split_once("`bowknot-bench ")?;
+        rest.split_once('`').map(|(name, _)| name.to_owned())
     };
-    let order: Vec<&str> = figures::ALL.iter().map(|figure| figure.name()).collect();
-    let page = replaced(&page, name, section, &order).with_context(|| path.display().to_string())?;
-    fs::write(path, page).with_context(|| format!("cannot write {}", path.display()))
+    let [from, to] = block(page, INDEX)?;
+    let mut lines: Vec<&str> =
+        page[from..to].lines().filter(|line| figure_of(line).as_deref() != Some(figure)).collect();
+    let next = lines.iter().position(|line| figure_of(line).is_some_and(|name| place(&name) > place(figure)));
+    let next = next.unwrap_or(lines.len());
+    lines.splice(next..next, rows.iter().map(String::as_str));
+    with_section(page, INDEX, &(lines.join("\n") + "\n"))
 }
 
-fn replaced(page: &str, name: &str, section: &str, order: &[&str]) -> Result<String> {
-    let begin = |name: &str| format!("<!-- begin {name} -->\n");
-    let end = |name: &str| format!("<!-- end {name} -->\n");
-    let block = format!("{}{section}{}", begin(name), end(name));
-    if let Some(from) = page.find(&begin(name)) {
-        let Some(length) = page[from..].find(&end(name)) else {
-            bail!("section {name} begins but has no line {:?}", end(name).trim_end());
-        };
-        let to = from + length + end(name).len();
-        return Ok(format!("{}{block}{}", &page[..from], &page[to..]));
-    }
-    // Before the first later figure that is there, or else at the end.
-    let place = order.iter().position(|n| *n == name).map_or(order.len(), |k| k + 1);
-    let next = order[place..].iter().find_map(|later| page.find(&begin(later)));
-    Ok(match next {
-        Some(at) => format!("{}{block}\n{}", &page[..at], &page[at..]),
-        None => format!("{}\n\n{block}", page.trim_end()),
-    })
+/// Where the text between the markers of a block begins and ends.
+fn block(page: &str, name: &str) -> Result<[usize; 2]> {
+    let [begin, end] = ["begin", "end"].map(|word| format!("<!-- {word} {name} -->\n"));
+    let Some(from) = page.find(&begin).map(|at| at + begin.len()) else {
+        bail!("there is no line {:?}", begin.trim_end());
+    };
+    let Some(length) = page[from..].find(&end) else {
+        bail!("there is no line {:?} after {:?}", end.trim_end(), begin.trim_end());
+    };
+    Ok([from, from + length])
 }
 
-/// Lines of at most 120 characters.
+/// Breaks lines; keeps paragraphs.
 fn wrap(text: &str) -> String {
     let mut lines: Vec<String> = Vec::new();
     for paragraph in text.split("\n\n") {
         let mut line = String::new();
         for word in paragraph.split_whitespace() {
-            if !line.is_empty() && line.len() + 1 + word.len() > 120 {
+            if !line.is_empty() && line.len() + 1 + word.len() > LINE {
                 lines.push(std::mem::take(&mut line));
             }
             if !line.is_empty() {
@@ -85,21 +130,31 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sections_are_put_in_order_and_replaced() {
-        let order = ["a", "b", "c"];
-        let mut page = "# Page\n".to_owned();
-        for (name, text) in [("b", "old\n"), ("c", "C\n"), ("a", "A\n"), ("b", "B\n")] {
-            page = replaced(&page, name, text, &order).expect("sound markers");
+    fn sections_are_replaced_between_their_markers() {
+        let page = "# Page\n\n<!-- begin a -->\nold\n<!-- end a -->\n\nend\n";
+        let expected = "# Page\n\n<!-- begin a -->\nnew\n<!-- end a -->\n\nend\n";
+        assert_eq!(with_section(page, "a", "new\n").expect("sound markers"), expected);
+        assert!(with_section(page, "b", "new\n").is_err());
+        assert!(with_section("<!-- begin a -->\n", "a", "new\n").is_err());
+    }
+
+    #[test]
+    fn rows_of_the_index_are_replaced_and_in_order() {
+        let row = |name: &str, shows: &str| format!("| {shows} | `bowknot-bench {name}` |");
+        let mut page =
+            "<!-- begin index -->\n| shows | command |\n|---|---|\n<!-- end index -->\n".to_owned();
+        for (name, shows) in [("b", "old"), ("c", "C"), ("a", "A"), ("b", "B")] {
+            page =
+                with_index_rows(&page, name, &[row(name, shows)], &["a", "b", "c"]).expect("sound markers");
         }
-        let block = |name: &str, text: &str| format!("<!-- begin {name} -->\n{text}\n<!-- end {name} -->\n");
-        assert_eq!(page, format!("# Page\n\n{}\n{}\n{}", block("a", "A"), block("b", "B"), block("c", "C")));
-        assert!(replaced("<!-- begin a -->\n", "a", "", &order).is_err());
+        let rows: Vec<&str> = page.lines().skip(3).take(3).collect();
+        assert_eq!(rows, [row("a", "A"), row("b", "B"), row("c", "C")]);
     }
 
     #[test]
     fn lines_are_wrapped_and_paragraphs_kept() {
         let long = "word ".repeat(30);
         let text = wrap(&format!("{long}\n\nsecond"));
-        assert!(text.lines().all(|line| line.len() <= 120) && text.ends_with("word\n\nsecond"), "{text}");
+        assert!(text.lines().all(|line| line.len() <= LINE) && text.ends_with("word\n\nsecond"), "{text}");
     }
 }

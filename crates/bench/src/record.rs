@@ -1,7 +1,9 @@
-//! Collision problems of scenes: at most ten each, spread over the time steps in contact.
+//! Records collision problems of scenes: at most ten per scene, spread over the time steps in contact.
 
 use crate::bench::{Bench, Size};
+use crate::files::write;
 use crate::table::Table;
+use crate::targets::Targets;
 use anyhow::{Context, Result};
 use bowknot::constraints::STRETCH_LIMIT;
 use bowknot::recording::Recorder;
@@ -12,53 +14,52 @@ use std::fs;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-/// A scene that problems are recorded of.
+/// The collision problems of a scene, and how they are recorded.
 #[derive(Clone, Copy, Debug)]
-pub struct Spec {
-    /// Its name here, that of its folder.
+pub struct ProblemSet {
+    /// Its name, which is also that of its folder.
     pub name: &'static str,
     /// The built-in scene.
     scene: &'static str,
-    /// Time step, if not the scene's own [s].
+    /// Time step [s]; none: the scene's own.
     time_step: Option<f64>,
-    /// Whether the dynamics knows of no contact, as the paper's: targets then go deep through what is in the way. Bowknot's
-    /// own guesses contacts, so that its targets meet little.
-    blind: bool,
-    /// Scale of a full, a quick and a tiny run.
+    /// Whether the dynamics has repulsion.
+    targets: Targets,
+    /// Scales of a full, a quick and a tiny run.
     scales: [f64; 3],
     /// Time steps of a full, a quick and a tiny run.
     frames: [usize; 3],
 }
 
-const fn spec(scene: &'static str, scales: [f64; 3], frames: [usize; 3]) -> Spec {
-    Spec { name: scene, scene, time_step: None, blind: false, scales, frames }
+const fn set(scene: &'static str, scales: [f64; 3], frames: [usize; 3]) -> ProblemSet {
+    ProblemSet { name: scene, scene, time_step: None, targets: Targets::Aware, scales, frames }
 }
 
-/// The scene of another with a dynamics that is blind to contact, for `frames` time steps.
-const fn blind(name: &'static str, spec: Spec, frames: [usize; 3]) -> Spec {
-    Spec { name, blind: true, frames, ..spec }
+/// The scene of another set with contact-unaware targets, for `frames` time steps.
+const fn unaware(name: &'static str, set: ProblemSet, frames: [usize; 3]) -> ProblemSet {
+    ProblemSet { name, targets: Targets::Unaware, frames, ..set }
 }
 
-/// The scene of another at another time step, for `frames` of them.
-const fn stepped(name: &'static str, spec: Spec, time_step: f64, frames: [usize; 3]) -> Spec {
-    Spec { name, time_step: Some(time_step), frames, ..spec }
+/// The scene of another set with another time step, for `frames` of them.
+const fn stepped(name: &'static str, set: ProblemSet, time_step: f64, frames: [usize; 3]) -> ProblemSet {
+    ProblemSet { name, time_step: Some(time_step), frames, ..set }
 }
 
-const BOW_KNOT: Spec = spec("bow-knot", [0.25, 0.1, 0.1], [300, 160, 60]);
-const REEF_KNOT: Spec = spec("reef-knot", [0.35, 0.15, 0.1], [280, 120, 60]);
-const NEEDLE: Spec = spec("needle", [0.52, 0.25, 0.15], [40, 25, 20]);
-const FUNNEL: Spec = spec("funnel", [0.2, 0.2, 0.2], [60, 20, 8]);
-const STACK: Spec = spec("stack", [0.5, 0.2, 0.1], [120, 70, 50]);
-const TUBE: Spec = spec("tube", [0.45, 0.2, 0.15], [150, 100, 90]);
-const DRESS: Spec = spec("dress", [0.2, 0.1, 0.08], [120, 30, 10]);
-const BLIND_NEEDLE: Spec = blind("needle-blind", NEEDLE, [40, 25, 20]);
-const BLIND_STACK: Spec = blind("stack-blind", STACK, [120, 70, 50]);
-const BLIND_BOW_KNOT: Spec = blind("bow-knot-blind", BOW_KNOT, [300, 160, 60]);
-const BLIND_REEF_KNOT: Spec = blind("reef-knot-blind", REEF_KNOT, [280, 120, 60]);
+const BOW_KNOT: ProblemSet = set("bow-knot", [0.25, 0.1, 0.1], [300, 160, 60]);
+const REEF_KNOT: ProblemSet = set("reef-knot", [0.35, 0.15, 0.1], [280, 120, 60]);
+const NEEDLE: ProblemSet = set("needle", [0.52, 0.25, 0.15], [40, 25, 20]);
+const FUNNEL: ProblemSet = set("funnel", [0.2, 0.2, 0.2], [60, 20, 8]);
+const STACK: ProblemSet = set("stack", [0.5, 0.2, 0.1], [120, 70, 50]);
+const TUBE: ProblemSet = set("tube", [0.45, 0.2, 0.15], [150, 100, 90]);
+const DRESS: ProblemSet = set("dress", [0.2, 0.1, 0.08], [120, 30, 10]);
+const UNAWARE_NEEDLE: ProblemSet = unaware("needle-unaware", NEEDLE, [40, 25, 20]);
+const UNAWARE_STACK: ProblemSet = unaware("stack-unaware", STACK, [120, 70, 50]);
+const UNAWARE_BOW_KNOT: ProblemSet = unaware("bow-knot-unaware", BOW_KNOT, [300, 160, 60]);
+const UNAWARE_REEF_KNOT: ProblemSet = unaware("reef-knot-unaware", REEF_KNOT, [280, 120, 60]);
 
-/// All that are recorded for anyone. A full run of each takes from seconds to a few minutes; frames end where contact is at
-/// its hardest or the scene is at rest.
-pub const SPECS: [Spec; 17] = [
+/// The sets that `record` writes. A full run of each takes from seconds to a few minutes; it ends where
+/// contact is hardest or the scene is at rest.
+pub const PROBLEM_SETS: [ProblemSet; 17] = [
     BOW_KNOT,
     REEF_KNOT,
     NEEDLE,
@@ -66,47 +67,47 @@ pub const SPECS: [Spec; 17] = [
     STACK,
     TUBE,
     DRESS,
-    spec("mat", [0.3, 0.12, 0.1], [220, 200, 190]),
-    spec("hair", [0.12, 0.05, 0.05], [200, 60, 40]),
-    spec("sand", [0.25, 0.1, 0.08], [200, 80, 50]),
-    BLIND_BOW_KNOT,
-    BLIND_REEF_KNOT,
-    BLIND_NEEDLE,
-    blind("funnel-blind", FUNNEL, [40, 20, 8]),
-    BLIND_STACK,
-    blind("tube-blind", TUBE, [150, 100, 90]),
-    blind("dress-blind", DRESS, [120, 30, 10]),
+    set("mat", [0.3, 0.12, 0.1], [220, 200, 190]),
+    set("hair", [0.12, 0.05, 0.05], [200, 60, 40]),
+    set("sand", [0.25, 0.1, 0.08], [200, 80, 50]),
+    UNAWARE_BOW_KNOT,
+    UNAWARE_REEF_KNOT,
+    UNAWARE_NEEDLE,
+    unaware("funnel-unaware", FUNNEL, [40, 20, 8]),
+    UNAWARE_STACK,
+    unaware("tube-unaware", TUBE, [150, 100, 90]),
+    unaware("dress-unaware", DRESS, [120, 30, 10]),
 ];
 
-/// For figures alone, at other time steps: knots at 1/1000 s (paper, section 3.3), the needle at 1/100 s and the stack at
-/// 1/20 s (Fig. 16).
-const OTHER_STEPS: [Spec; 6] = [
-    stepped("bow-knot-1000", Spec { scales: [0.12, 0.1, 0.1], ..BOW_KNOT }, 0.001, [1600, 900, 500]),
-    stepped("reef-knot-1000", Spec { scales: [0.2, 0.1, 0.1], ..REEF_KNOT }, 0.001, [1400, 700, 400]),
+/// Sets with other time steps, for single figures: knots at 1/1000 s (paper, section 3.3), the needle at
+/// 1/100 s and the stack at 1/20 s (Fig. 16).
+const OTHER_TIME_STEPS: [ProblemSet; 6] = [
+    stepped("bow-knot-1000", ProblemSet { scales: [0.12, 0.1, 0.1], ..BOW_KNOT }, 0.001, [1600, 900, 500]),
+    stepped("reef-knot-1000", ProblemSet { scales: [0.2, 0.1, 0.1], ..REEF_KNOT }, 0.001, [1400, 700, 400]),
     stepped(
-        "bow-knot-blind-1000",
-        Spec { scales: [0.12, 0.1, 0.1], ..BLIND_BOW_KNOT },
+        "bow-knot-unaware-1000",
+        ProblemSet { scales: [0.12, 0.1, 0.1], ..UNAWARE_BOW_KNOT },
         0.001,
         [1600, 900, 500],
     ),
     stepped(
-        "reef-knot-blind-1000",
-        Spec { scales: [0.2, 0.1, 0.1], ..BLIND_REEF_KNOT },
+        "reef-knot-unaware-1000",
+        ProblemSet { scales: [0.2, 0.1, 0.1], ..UNAWARE_REEF_KNOT },
         0.001,
         [1400, 700, 400],
     ),
-    stepped("needle-blind-100", BLIND_NEEDLE, 0.01, [100, 80, 60]),
-    stepped("stack-blind-20", BLIND_STACK, 0.05, [24, 14, 10]),
+    stepped("needle-unaware-100", UNAWARE_NEEDLE, 0.01, [100, 80, 60]),
+    stepped("stack-unaware-20", UNAWARE_STACK, 0.05, [24, 14, 10]),
 ];
 
-/// Problems kept of each scene.
+/// Number of problems kept of each scene.
 const KEPT: usize = 10;
 
-impl Spec {
-    /// The one of that name.
-    pub fn of(name: &str) -> Result<&'static Spec> {
-        let mut all = SPECS.iter().chain(&OTHER_STEPS);
-        all.find(|spec| spec.name == name).with_context(|| format!("no problems of {name}"))
+impl ProblemSet {
+    /// The set of that name.
+    pub fn of(name: &str) -> Result<&'static ProblemSet> {
+        let mut all = PROBLEM_SETS.iter().chain(&OTHER_TIME_STEPS);
+        all.find(|set| set.name == name).with_context(|| format!("no problems of {name}"))
     }
 
     fn scale(&self, size: Size) -> f64 {
@@ -119,13 +120,16 @@ impl Spec {
         let [full, quick, tiny] = self.frames;
         let frames = size.pick(full, quick, tiny);
         let time_step = self.time_step.map_or_else(String::new, |dt| format!(" --dt {dt}"));
-        let blind = if self.blind { " --set solver.repulsion.stiffness=0" } else { "" };
+        let repulsion = match self.targets {
+            Targets::Aware => "",
+            Targets::Unaware => " --set solver.repulsion.stiffness=0",
+        };
         let sigma = format!(" --set contact.stretch_limit={STRETCH_LIMIT}");
         let (scene, scale) = (self.scene, self.scale(size));
-        format!("bowknot run {scene} --scale {scale} --frames {frames}{time_step}{blind}{sigma}")
+        format!("bowknot run {scene} --scale {scale} --frames {frames}{time_step}{repulsion}{sigma}")
     }
 
-    /// Files of the scene's problems in the order of time, recorded now if they are not there.
+    /// Files of the problems in the order of time, recorded now if they do not exist.
     pub fn files(&self, bench: &Bench) -> Result<Vec<PathBuf>> {
         let folder = bench.out().join("states").join(self.name);
         let done = folder.join("done.txt");
@@ -140,9 +144,9 @@ impl Spec {
     fn record(&self, bench: &Bench, folder: &std::path::Path) -> Result<()> {
         let mut scene = Scene::builtin(self.scene, self.scale(bench.size))?;
         scene.simulation.dt = self.time_step.unwrap_or(scene.simulation.dt);
-        // The paper's for every fabric, so that its own method meets the problems that it is made for.
+        // The paper's limit for every fabric, so that its method gets the problems that it was made for.
         scene.twoway.contact.stretch_limit = Some(STRETCH_LIMIT);
-        if self.blind {
+        if self.targets == Targets::Unaware {
             scene.repulsion.stiffness = 0.0;
         }
         let [full, quick, tiny] = self.frames;
@@ -155,47 +159,48 @@ impl Spec {
             states.write(&folder.join(&name))?;
             names.push(name);
         }
-        // Last: its being there tells that all are.
-        crate::bench::write(&folder.join("done.txt"), &(names.join("\n") + "\n"))
+        // Written last: if it exists, all problems do.
+        write(&folder.join("done.txt"), &(names.join("\n") + "\n"))
     }
 }
 
-/// Records what is missing and writes a list of all.
+/// Records the problems that are missing and writes a list of all.
 pub fn all(bench: &Bench) -> Result<()> {
     let mut table = Table::new(["file", "scene", "time step", "vertices", "triangles", "command"]);
-    for spec in &SPECS {
-        for file in spec.files(bench)? {
+    for set in &PROBLEM_SETS {
+        for file in set.files(bench)? {
             let states = States::read(&file)?;
             let step = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             table.row([
-                format!("{}/{step}.npz", spec.name).into(),
-                spec.scene.into(),
+                format!("{}/{step}.npz", set.name).into(),
+                set.scene.into(),
                 step.trim_start_matches('0').into(),
                 states.x.len().into(),
                 states.triangles.len().into(),
-                spec.command(bench.size).into(),
+                set.command(bench.size).into(),
             ]);
         }
     }
     let folder = bench.out().join("states");
-    crate::bench::write(&folder.join("states.csv"), &table.csv())?;
+    write(&folder.join("states.csv"), &table.csv())?;
     println!("{}", folder.display());
     Ok(())
 }
 
-/// A problem and the time step that it is of.
+/// A problem and its time step.
 struct Kept {
     step: usize,
     states: States,
 }
 
-/// Runs a scene and keeps `count` problems, spread evenly over the time steps with contact rows. A run without any is an
-/// error: its frames or its scale are wrong.
+/// Runs a scene and keeps `count` problems, spread evenly over the time steps with contact rows. A run
+/// without contact is an error: the number of frames or the scale is wrong.
 fn in_contact(scene: &Scene, frames: usize, count: usize) -> Result<Vec<Kept>> {
     let mut simulator = Simulator::new(scene)?;
     let mut last = Last { recorder: Recorder::new(&simulator), problem: None };
     let mut kept: Vec<Kept> = Vec::new();
-    // Every `stride`th time step in contact is kept; it doubles when too many are, so that memory holds few.
+    // Every `stride`th time step in contact is kept. The stride doubles when too many are kept, which bounds
+    // the memory.
     let (mut seen, mut stride) = (0, 1);
     for step in 1..=frames {
         let statistics = simulator.step_observed(&mut last)?;
@@ -249,7 +254,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn problems_are_of_steps_in_contact() {
+    fn problems_come_from_time_steps_in_contact() {
         let scene = Scene::builtin("needle", 0.1).expect("a scene");
         let kept = in_contact(&scene, 14, 3).expect("contact");
         assert_eq!(kept.len(), 3);

@@ -1,4 +1,4 @@
-//! Whole simulations: samples of the motion, and what they took.
+//! Whole simulations: samples of the motion, counts and times, and distances between simulations.
 
 use crate::bench::Bench;
 use anyhow::Result;
@@ -19,7 +19,7 @@ pub struct Sample {
     pub center: [f64; 3],
     /// Mean ratio of edge lengths to those at the start.
     pub stretch: f64,
-    /// Smallest gap of listed pairs [m]; none if no pair is listed.
+    /// Smallest gap of candidate pairs [m]; none if there are none.
     pub gap: Option<f64>,
     /// Intersecting pairs, by exact predicates.
     pub intersections: usize,
@@ -31,7 +31,7 @@ pub struct Sample {
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Simulation {
     pub samples: Vec<Sample>,
-    /// Of each time step.
+    /// Two-way steps of each time step.
     pub steps: Vec<usize>,
     pub searches: Vec<usize>,
     pub contact_rows: Vec<usize>,
@@ -40,7 +40,7 @@ pub struct Simulation {
     /// Wall seconds of the dynamics.
     pub dynamics: Vec<f64>,
     pub cpu: Vec<f64>,
-    /// Time steps whose collision problems all met their stopping rule.
+    /// Number of time steps whose collision problems all met their stopping rule.
     pub met: usize,
     /// Largest stretch against rest.
     pub max_stretch: f64,
@@ -48,8 +48,8 @@ pub struct Simulation {
     pub min_gap: Option<f64>,
 }
 
-/// Runs a scene once, and keeps what came out under `key`: `samples` of them, evenly over `frames` time steps, the last one
-/// at the end.
+/// Runs a scene for `frames` time steps once and keeps the result under `key`. `samples` states are sampled
+/// evenly; the last one is the end.
 pub fn simulate(
     bench: &Bench,
     key: &str,
@@ -60,7 +60,7 @@ pub fn simulate(
     bench.store.measured(&format!("simulate/{key}"), || run(scene, frames, samples))
 }
 
-/// As [`simulate`], without keeping.
+/// As [`simulate`], but the result is not kept.
 pub fn run(scene: &Scene, frames: usize, samples: usize) -> Result<Simulation> {
     let mut simulator = Simulator::new(scene)?;
     let judge = simulator.judge();

@@ -1,8 +1,8 @@
-//! Solving problems by methods, and timing it.
+//! Solves problems by methods and times the solves.
 
 use crate::bench::Bench;
-use crate::case::Case;
-use crate::measures::{Judged, Judgement};
+use crate::case::CollisionCase;
+use crate::measures::{CaseEvaluator, Quality, with_reference};
 use crate::methods::Setting;
 use crate::table::median;
 use anyhow::Result;
@@ -12,14 +12,14 @@ use bowknot_baselines::Outcome;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
-/// CPU seconds below which a solve is repeated, with warm buffers, until that many have passed.
+/// A solve that takes fewer CPU seconds is repeated, with warm buffers, until so many have passed in total.
 const SHORT: f64 = 0.1;
-/// Solves at most for that.
-const REPEATS: usize = 20;
-/// CPU seconds above which a solve is measured in the first round alone.
+/// Largest number of such solves.
+const MAX_REPEATS: usize = 20;
+/// A solve that takes more CPU seconds is measured in the first round only.
 const LONG: f64 = 1.0;
 
-/// What a method did with a problem, and how good its result is.
+/// A method's solve of a problem, and the quality of its result.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Solved {
     pub steps: usize,
@@ -31,10 +31,10 @@ pub struct Solved {
     /// Processor time of all threads.
     pub cpu_seconds: f64,
     pub wall_seconds: f64,
-    pub judged: Judged,
+    pub quality: Quality,
 }
 
-/// [`StageSeconds`].
+/// Wall seconds by stage, see [`StageSeconds`].
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Stages {
     pub search: f64,
@@ -49,21 +49,22 @@ impl From<StageSeconds> for Stages {
     }
 }
 
-/// What results are judged against.
+/// What results are compared with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Against {
-    /// The exact solution where there is one: up to a minute a problem.
-    Exact,
-    /// Nothing but themselves: stationarity and violation.
+    /// The reference solution if there is one; finding it takes up to a minute per problem.
+    Reference,
+    /// Nothing: only stationarity and violations are measured.
     Residuals,
 }
 
-/// Solves every case by every setting, each solve a measurement of its own that all figures share. In each of `rounds`
-/// the settings take turns, so that a busy machine slows all alike; times are medians over rounds. Of a case for which
-/// there was no time nothing is returned, so that settings are always compared on the same cases.
+/// Solves every case by every setting. Each solve is a measurement of its own that all figures share. In each
+/// of `rounds` rounds the settings take turns, so that a busy machine slows all of them alike; times are
+/// medians over rounds. A case that there was no time for has no result for any setting, so that settings are
+/// always compared on the same cases.
 pub fn compare(
     bench: &Bench,
-    cases: &[&Case],
+    cases: &[&CollisionCase],
     settings: &[Setting],
     rounds: usize,
     against: Against,
@@ -71,16 +72,16 @@ pub fn compare(
     let mut solved: Vec<Vec<Vec<Solved>>> = vec![vec![Vec::new(); settings.len()]; cases.len()];
     for round in 0..rounds {
         for (case, solved) in cases.iter().zip(&mut solved) {
-            let mut judgement = None;
+            let mut evaluator = None;
             for (setting, solved) in settings.iter().zip(solved) {
                 if solved.first().is_some_and(|first| first.cpu_seconds > LONG) {
                     continue;
                 }
                 let key = |kind: &str| format!("{kind}/{}/{}/{round}", case.name, setting.key());
                 let found = bench.store.find(&key("solve"));
-                // What was judged by the exact solution is as good as what was not.
+                // A result that was compared with the reference has residuals too.
                 let (found, key) = match against {
-                    Against::Exact => (found, key("solve")),
+                    Against::Reference => (found, key("solve")),
                     Against::Residuals => {
                         (found.or_else(|| bench.store.find(&key("residuals"))), key("residuals"))
                     }
@@ -88,14 +89,14 @@ pub fn compare(
                 if let Some(found) = found {
                     solved.push(found);
                 } else if bench.has_time() {
-                    let judgement = match &judgement {
-                        Some(judgement) => judgement,
-                        None => judgement.insert(match against {
-                            Against::Exact => Judgement::new(bench, case)?,
-                            Against::Residuals => Judgement::of_residuals(case)?,
+                    let evaluator = match &evaluator {
+                        Some(evaluator) => evaluator,
+                        None => evaluator.insert(match against {
+                            Against::Reference => with_reference(bench, case)?,
+                            Against::Residuals => CaseEvaluator::of_residuals(case)?,
                         }),
                     };
-                    solved.push(bench.store.measured(&key, || solve(bench, case, setting, judgement))?);
+                    solved.push(bench.store.measured(&key, || solve(bench, case, setting, evaluator))?);
                 }
             }
         }
@@ -110,20 +111,25 @@ fn summary(rounds: Vec<Solved>) -> Option<Solved> {
     rounds.into_iter().next().map(|first| Solved { cpu_seconds, wall_seconds, ..first })
 }
 
-fn solve(bench: &Bench, case: &Case, setting: &Setting, judgement: &Judgement) -> Result<Solved> {
+fn solve(
+    bench: &Bench,
+    case: &CollisionCase,
+    setting: &Setting,
+    evaluator: &CaseEvaluator,
+) -> Result<Solved> {
     let mut params = setting.params.clone();
     params.solver.stop.max_seconds = Some(setting.limit(bench.size));
     let mut method = (setting.build)(case.scene(params)?)?;
     let call = case.states.input();
     let (mut cpu, mut wall) = (Vec::new(), Vec::new());
     let mut ended: (Outcome, Vec<_>) = (Outcome::default(), Vec::new());
-    // The first solve of a short one is to warm caches and buffers.
-    while cpu.len() < 2 || (cpu.iter().sum::<f64>() < SHORT && cpu.len() < REPEATS) {
+    // The first of several short solves warms caches and buffers.
+    while cpu.len() < 2 || (cpu.iter().sum::<f64>() < SHORT && cpu.len() < MAX_REPEATS) {
         let mut x = case.states.x.clone();
-        let (wall_clock, cpu_clock) = (Instant::now(), cpu_seconds());
+        let (timer, cpu_before) = (Instant::now(), cpu_seconds());
         let outcome = method.solve(&mut x, &case.states.y, &call)?;
-        cpu.push(cpu_seconds() - cpu_clock);
-        wall.push(wall_clock.elapsed().as_secs_f64());
+        cpu.push(cpu_seconds() - cpu_before);
+        wall.push(timer.elapsed().as_secs_f64());
         ended = (outcome, x);
         if cpu[0] > SHORT {
             break;
@@ -142,6 +148,6 @@ fn solve(bench: &Bench, case: &Case, setting: &Setting, judgement: &Judgement) -
         stages: outcome.seconds.into(),
         cpu_seconds: median(&cpu),
         wall_seconds: median(&wall),
-        judged: judgement.judge(&x)?,
+        quality: evaluator.evaluate(&x)?,
     })
 }

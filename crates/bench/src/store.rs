@@ -1,4 +1,4 @@
-//! What has been measured: a file for each measurement, so that a run that was stopped goes on where it was.
+//! Measurements that are kept, one file each, so that a run that was stopped can continue.
 
 use anyhow::{Context, Result};
 use serde::de::DeserializeOwned;
@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 pub struct Store {
     folder: PathBuf,
     commit: String,
-    /// Commits of the measurements asked for since [`Store::forget_commits`].
+    /// Commits of the measurements asked for since [`Store::take_commits`].
     commits: RefCell<BTreeSet<String>>,
 }
 
@@ -37,7 +37,7 @@ impl Store {
         Some(cell.value)
     }
 
-    /// The measurement of that key: the one that is there, or else made now and kept.
+    /// The measurement of that key: the kept one, or one that is made now and kept.
     pub fn measured<T: Serialize + DeserializeOwned>(
         &self,
         key: &str,
@@ -53,7 +53,7 @@ impl Store {
         }
         let cell = Cell { commit: self.commit.clone(), value };
         let text = serde_json::to_string(&cell)?;
-        // Under another name first: a run that is killed leaves no half file to be read later.
+        // Written under another name first, so that a run that is killed leaves no incomplete file.
         let partial = path.with_extension("partial");
         fs::write(&partial, text).with_context(|| format!("cannot write {}", partial.display()))?;
         fs::rename(&partial, &path).with_context(|| format!("cannot write {}", path.display()))?;
@@ -66,7 +66,7 @@ impl Store {
         std::mem::take(&mut *self.commits.borrow_mut()).into_iter().collect()
     }
 
-    /// Keys are paths with `/`; whatever no file name should have becomes `_`.
+    /// Keys are paths with `/`; characters that file names should not have become `_`.
     fn path(&self, key: &str) -> PathBuf {
         let plain = |c: char| if c.is_ascii_alphanumeric() || "/.-=+".contains(c) { c } else { '_' };
         self.folder.join(format!("{}.json", key.chars().map(plain).collect::<String>()))

@@ -1,53 +1,56 @@
-//! What a setting did with the problems of a scene.
+//! Results of settings on the problems of scenes, summed up.
 
 use crate::bench::Bench;
-use crate::case::{Case, cases};
+use crate::case::{CollisionCase, cases};
 use crate::chart::{Series, Style};
-use crate::methods::Setting;
+use crate::methods::{Setting, name_of};
 use crate::solve::{Against, Solved, compare};
-use crate::table::{Entry, Table, largest, mean, short, smallest};
+use crate::table::{Entry, Table, largest, mean, smallest};
 use anyhow::Result;
 
-/// Means over the problems of a scene, unless said otherwise.
+/// Results of one setting on the problems of a scene: means over the problems, unless a field says otherwise.
 #[derive(Clone, Debug)]
 pub struct Summary {
     pub method: &'static str,
     pub change: String,
     pub cpu: f64,
-    /// Distance to the exact solution [m]; none if a problem has none.
-    pub exact: Option<f64>,
+    /// Distance to the reference solution [m]; none if one of the problems has no reference solution.
+    pub distance_to_reference: Option<f64>,
     pub stationarity: f64,
     /// Violation of contacts [m].
     pub violation: f64,
-    /// Largest share by which an edge exceeds its limit, times the mean edge length [m].
+    /// Largest excess of an edge over its limit as a share of the limit, times the mean edge length [m].
     pub excess: f64,
     /// Distance to the target [m].
     pub distance: f64,
     pub steps: f64,
+    /// Largest number of steps.
     pub most_steps: f64,
     pub searches: f64,
-    /// Largest stretch against rest.
+    /// Largest ratio of an edge's length to its rest length.
     pub stretch: f64,
-    /// Smallest gap [m]; infinite if nothing was near.
+    /// Smallest gap [m]; infinite if no pair was in range.
     pub gap: f64,
-    /// Calls that met the method's own stopping rule.
+    /// Number of calls that met the method's own stopping rule.
     pub met: usize,
+    /// Number of calls that failed.
     pub failed: usize,
-    pub of: usize,
+    /// Number of calls, one per problem.
+    pub problems: usize,
     /// Sum over the problems.
     pub intersections: usize,
     /// Wall seconds of search, evaluation, backward step, forward step.
     pub stages: [f64; 4],
 }
 
-/// A scene's problems solved by several settings.
+/// The problems of a scene, solved by several settings.
 #[derive(Clone, Debug)]
 pub struct Compared {
     pub scene: &'static str,
-    pub cases: Vec<Case>,
-    /// One entry a problem that there was time for, and setting.
+    pub cases: Vec<CollisionCase>,
+    /// One entry per problem that there was time for, and setting.
     pub solved: Vec<Vec<Solved>>,
-    /// One entry a setting.
+    /// One entry per setting.
     pub summaries: Vec<Summary>,
 }
 
@@ -71,16 +74,17 @@ pub fn on_scenes(
 pub fn on_cases(
     bench: &Bench,
     scenes: &[&'static str],
-    by_scene: Vec<Vec<Case>>,
+    by_scene: Vec<Vec<CollisionCase>>,
     settings: &[Setting],
     rounds: usize,
     against: Against,
 ) -> Result<Vec<Compared>> {
-    // The first problem of each scene, then the second: time that runs out takes the last ones of all scenes.
+    // The first problem of each scene, then the second: if time runs out, the last problems of all scenes are
+    // left out.
     let mut order: Vec<(usize, usize)> =
         by_scene.iter().enumerate().flat_map(|(s, cases)| (0..cases.len()).map(move |k| (s, k))).collect();
     order.sort_by_key(|&(scene, case)| (case, scene));
-    let flat: Vec<&Case> = order.iter().map(|&(s, k)| &by_scene[s][k]).collect();
+    let flat: Vec<&CollisionCase> = order.iter().map(|&(s, k)| &by_scene[s][k]).collect();
     let solved = compare(bench, &flat, settings, rounds, against)?;
     let mut solved_of: Vec<Vec<Vec<Solved>>> = vec![Vec::new(); scenes.len()];
     for (&(scene, _), solved) in order.iter().zip(solved) {
@@ -105,9 +109,9 @@ impl Compared {
         self.summaries.iter().find(|s| s.method == method && s.change == change)
     }
 
-    /// Whether every problem has an exact solution that errors are measured against.
-    pub fn is_exact(&self) -> bool {
-        self.summaries.iter().all(|s| s.exact.is_some())
+    /// Whether every problem has a reference solution that errors are distances to.
+    pub fn has_references(&self) -> bool {
+        self.summaries.iter().all(|s| s.distance_to_reference.is_some())
     }
 
     /// Vertices of the scene.
@@ -117,10 +121,11 @@ impl Compared {
 }
 
 impl Summary {
-    /// None of no solves. The problems are those of one scene, whose edges are as long in all of `cases`.
+    /// The summary; none if nothing was solved. All `cases` are of one scene and have the same mean edge
+    /// length.
     pub fn of<'a>(
         setting: &Setting,
-        cases: &[Case],
+        cases: &[CollisionCase],
         solved: impl Iterator<Item = &'a Solved>,
     ) -> Option<Self> {
         let solved: Vec<&Solved> = solved.collect();
@@ -129,26 +134,26 @@ impl Summary {
         }
         let all = |value: &dyn Fn(&Solved) -> f64| solved.iter().map(|s| value(s)).collect::<Vec<f64>>();
         let of = |value: &dyn Fn(&Solved) -> f64| mean(&all(value));
-        let exact = solved.iter().all(|s| s.judged.error.is_some());
-        let edge = cases.first().and_then(Case::mean_edge).unwrap_or(0.0);
+        let referenced = solved.iter().all(|s| s.quality.error.is_some());
+        let edge = cases.first().and_then(CollisionCase::mean_edge).unwrap_or(0.0);
         Some(Self {
             method: setting.method,
             change: setting.change.clone(),
             cpu: of(&|s| s.cpu_seconds),
-            exact: exact.then(|| of(&|s| s.judged.error.unwrap_or(f64::NAN))),
-            stationarity: of(&|s| s.judged.stationarity),
-            violation: of(&|s| s.judged.violation),
-            excess: of(&|s| s.judged.stretch_violation.max(0.0)) * edge,
-            distance: of(&|s| s.judged.distance),
+            distance_to_reference: referenced.then(|| of(&|s| s.quality.error.unwrap_or(f64::NAN))),
+            stationarity: of(&|s| s.quality.stationarity),
+            violation: of(&|s| s.quality.violation),
+            excess: of(&|s| s.quality.stretch_violation.max(0.0)) * edge,
+            distance: of(&|s| s.quality.distance),
             steps: of(&|s| s.steps as f64),
             most_steps: largest(&all(&|s| s.steps as f64)),
             searches: of(&|s| s.searches as f64),
-            stretch: largest(&all(&|s| s.judged.rest_stretch)),
-            gap: smallest(&all(&|s| s.judged.min_gap.unwrap_or(f64::INFINITY))),
+            stretch: largest(&all(&|s| s.quality.rest_stretch)),
+            gap: smallest(&all(&|s| s.quality.min_gap.unwrap_or(f64::INFINITY))),
             met: solved.iter().filter(|s| s.converged).count(),
             failed: solved.iter().filter(|s| s.failed).count(),
-            of: solved.len(),
-            intersections: solved.iter().map(|s| s.judged.intersections).sum(),
+            problems: solved.len(),
+            intersections: solved.iter().map(|s| s.quality.intersections).sum(),
             stages: [
                 of(&|s| s.stages.search),
                 of(&|s| s.stages.evaluate),
@@ -158,34 +163,35 @@ impl Summary {
         })
     }
 
-    /// Distance to the exact solution; or else the stationarity residual with the violations of contacts and of edge limits,
-    /// as the root of the sum of squares: each alone is small where the others are large [m].
-    pub fn error(&self, exact: bool) -> f64 {
-        match exact {
-            true => self.exact.unwrap_or(f64::NAN),
-            false => self.stationarity.hypot(self.violation).hypot(self.excess),
+    /// The distance to the reference solution [m]. Without references: the root of the sum of squares of the
+    /// stationarity residual and the violations of contacts and edge limits, because each alone can be small
+    /// while the others are large.
+    pub fn error(&self, referenced: bool) -> f64 {
+        if referenced {
+            self.distance_to_reference.unwrap_or(f64::NAN)
+        } else {
+            self.stationarity.hypot(self.violation).hypot(self.excess)
         }
     }
 
     /// Method and change.
     pub fn name(&self) -> String {
-        match self.change.is_empty() {
-            true => self.method.to_owned(),
-            false => format!("{}, {}", self.method, self.change),
-        }
+        name_of(self.method, &self.change)
     }
 
-    fn row(&self, scene: &str, exact: bool) -> Vec<Entry> {
-        let star = if exact { "" } else { "\\*" };
-        let failed = if self.failed > 0 { format!(", {} failed", self.failed) } else { String::new() };
+    fn row(&self, scene: &str, referenced: bool) -> Vec<Entry> {
         vec![
             scene.into(),
             self.name().into(),
             self.cpu.into(),
-            format!("{}{star}", short(1e3 * self.error(exact))).into(),
-            format!("{} ({})", short(self.steps), short(self.most_steps)).into(),
+            (1e3 * self.error(referenced)).into(),
+            if referenced { "distance".into() } else { "residuals".into() },
+            self.steps.into(),
+            self.most_steps.into(),
             self.searches.into(),
-            format!("{} of {}{failed}", self.met, self.of).into(),
+            self.problems.into(),
+            self.met.into(),
+            self.failed.into(),
             (1e3 * self.violation).into(),
             (1e3 * self.distance).into(),
             self.stretch.into(),
@@ -195,38 +201,39 @@ impl Summary {
     }
 }
 
-/// What the columns of [`table`] mean.
-pub const COLUMNS: &str = "Means over the problems of a scene. *Error*: distance to the exact solution, RMS; a star: not all \
-    problems have one, stationarity residual and violations of contacts and edge limits instead. *Steps*: mean (max). *Met*: calls that met the method's own stopping \
-    rule. *Violation*: largest by which a contact is nearer than it should be. *To target*: what is minimised. *Stretch* \
-    against rest, largest; *gap*, smallest; *X*: intersecting pairs.";
+/// Columns of [`table`]; the page explains them.
+const COLUMNS: [&str; 16] = [
+    "scene",
+    "method",
+    "cpu_s",
+    "error_mm",
+    "error_is",
+    "steps",
+    "most_steps",
+    "searches",
+    "problems",
+    "met_rule",
+    "failed",
+    "violation_mm",
+    "to_target_mm",
+    "max_stretch",
+    "min_gap_mm",
+    "intersections",
+];
 
 /// The summaries that `keep` accepts, scene by scene.
 pub fn table(compared: &[Compared], keep: impl Fn(&Summary) -> bool) -> Table {
-    let mut table = Table::new([
-        "scene",
-        "method",
-        "CPU s",
-        "error, mm",
-        "steps",
-        "searches",
-        "met",
-        "violation, mm",
-        "to target, mm",
-        "stretch",
-        "gap, mm",
-        "X",
-    ]);
+    let mut table = Table::new(COLUMNS);
     for compared in compared {
-        let exact = compared.is_exact();
+        let referenced = compared.has_references();
         for summary in compared.summaries.iter().filter(|s| keep(s)) {
-            table.row(summary.row(compared.scene, exact));
+            table.row(summary.row(compared.scene, referenced));
         }
     }
     table
 }
 
-/// Ratios of a quantity of one setting to that of another, scene by scene, where both are positive.
+/// Ratios of a quantity of one setting to that of another, one per scene in which the ratio is positive.
 pub fn ratios(
     compared: &[Compared],
     more: (&str, &str),
@@ -236,15 +243,15 @@ pub fn ratios(
     compared
         .iter()
         .filter_map(|c| {
-            let exact = c.is_exact();
-            Some(value(c.find(more.0, more.1)?, exact) / value(c.find(less.0, less.1)?, exact))
+            let referenced = c.has_references();
+            Some(value(c.find(more.0, more.1)?, referenced) / value(c.find(less.0, less.1)?, referenced))
         })
         .filter(|ratio| ratio.is_finite() && *ratio > 0.0)
         .collect()
 }
 
-/// For each scene a line of a quantity over the values of a parameter: `values` has each value with the method and
-/// change that it belongs to.
+/// One line per scene: a quantity over the values of a parameter. `values` has each value with the method and
+/// the change of its setting.
 pub fn lines(
     compared: &[Compared],
     values: &[(f64, &str, String)],
@@ -253,9 +260,9 @@ pub fn lines(
     compared
         .iter()
         .map(|c| {
-            let exact = c.is_exact();
+            let referenced = c.has_references();
             let point = |(value, method, change): &(f64, &str, String)| {
-                c.find(method, change).map(|summary| (*value, quantity(summary, exact)))
+                c.find(method, change).map(|summary| (*value, quantity(summary, referenced)))
             };
             Series::new(c.scene, Style::Line, values.iter().filter_map(point))
         })

@@ -1,13 +1,13 @@
-//! Tables: numbers for CSV files, short ones for the page.
+//! Tables, as CSV with all digits and as Markdown with three; means and medians.
 
-/// A table; its first columns are text, the others numbers.
+/// A table; each column has text or numbers.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     header: Vec<String>,
     rows: Vec<Vec<Entry>>,
 }
 
-/// One entry of a table.
+/// A cell of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Entry {
     Text(String),
@@ -47,7 +47,7 @@ impl Table {
         self.rows.push(entries.into_iter().collect());
     }
 
-    /// Markdown with short numbers, numbers to the right.
+    /// Markdown with short numbers; columns of numbers are aligned to the right.
     pub fn markdown(&self) -> String {
         let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
         let is_text = |k: usize| self.rows.first().is_some_and(|row| matches!(row[k], Entry::Text(_)));
@@ -68,11 +68,14 @@ impl Table {
         text
     }
 
-    /// Comma-separated values with all digits.
+    /// Comma-separated values with all digits and one header line.
     pub fn csv(&self) -> String {
-        let quoted = |text: &str| match text.contains([',', '"', '\n']) {
-            true => format!("\"{}\"", text.replace('"', "\"\"")),
-            false => text.to_owned(),
+        let quoted = |text: &str| {
+            if text.contains([',', '"', '\n']) {
+                format!("\"{}\"", text.replace('"', "\"\""))
+            } else {
+                text.to_owned()
+            }
         };
         let mut lines = vec![self.header.iter().map(|h| quoted(h)).collect::<Vec<_>>().join(",")];
         for row in &self.rows {
@@ -87,7 +90,7 @@ impl Table {
     }
 }
 
-/// Three significant digits, without an exponent from 0.001 on; `-` for what is not finite.
+/// A number with three significant digits, without an exponent from 0.001 on; `-` if it is not finite.
 pub fn short(value: f64) -> String {
     let size = value.abs();
     match size {
@@ -116,7 +119,7 @@ fn thousands(value: f64) -> String {
     if value < 0.0 { format!("-{text}") } else { text }
 }
 
-/// `3.4x`.
+/// A ratio as `3.40x`.
 pub fn times(ratio: f64) -> String {
     format!("{}x", short(ratio))
 }
@@ -138,7 +141,7 @@ pub fn smallest(values: &[f64]) -> f64 {
     values.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
-/// The middle one of odd many, the mean of the two in the middle of even many; nan of none.
+/// The middle value, or the mean of the two middle values of an even number; NaN of no values.
 pub fn median(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);

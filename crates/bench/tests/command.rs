@@ -1,4 +1,4 @@
-//! The command at its smallest: figures are measured, kept, and written.
+//! The command on the smallest scenes: figures are measured, kept and written.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -16,7 +16,7 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// The first run records and measures, the second takes what is there, to the same tables.
+/// The first run records and measures; the second one reuses all of it and writes the same tables.
 #[test]
 fn a_figure_is_measured_once() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -27,11 +27,11 @@ fn a_figure_is_measured_once() {
         let path = folder.path().join("tiny/steps").join(name);
         std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
     };
-    let (table, chart, page) = (read("steps.csv"), read("steps.svg"), read("section.md"));
+    let (table, chart, page) = (read("steps.csv"), read("steps.svg"), read("report.md"));
     assert_eq!(table.lines().count(), 5, "a header and two presets on two kinds of targets:\n{table}");
     assert!(table.lines().skip(1).all(|line| line.ends_with(",0")), "a result intersects:\n{table}");
     assert!(chart.starts_with("<svg") && !chart.contains("NaN"));
-    assert!(page.starts_with("## Steps of a problem") && page.contains("Commit "), "{page}");
+    assert!(page.starts_with("## Steps per problem") && page.contains("Commit "), "{page}");
 
     let again = bench(&["steps", "--tiny"], folder.path());
     assert!(again.status.success() && !text(&again.stdout).contains("recording"));

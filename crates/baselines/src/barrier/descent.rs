@@ -1,20 +1,21 @@
-//! The log barrier by gradient descent (paper, section 3.4), as a backward step: y is where the descent step ends, and the
-//! forward step bounds how far each vertex goes there, as in the two-way method.
+//! The log barrier by gradient descent (paper, section 3.4), as a backward step: y is the end of the descent
+//! step, and the forward step bounds the motion of each vertex towards it, as in the two-way method.
 //!
-//! y = x - s D^-1 dE/dx, with D by [`Scaling`] and one factor s <= 1 for all vertices: halved after a step that raised the
-//! energy, raised by a tenth after one that lowered it (the rule of Wang and Yang 2016, applied each step). Vertices go
-//! different fractions of their way, so that no line search along one line could tell more.
+//! y = x - s D^-1 dE/dx, with D by [`Scaling`] and one factor s <= 1 for all vertices. s is halved after a
+//! step that raised the energy and raised by a tenth after one that lowered it (the rule of Wang and Yang
+//! 2016, applied in each step). A line search is of no use, because vertices move by different fractions of
+//! their way.
 
 use super::{BarrierParams, Derivatives, Objective, Scaling};
+use bowknot_errors::{Errors, ParamError};
 use bowknot_twoway::geometry::Vector;
 use bowknot_twoway::{
-    BackwardStep, CertifiedForward, CollisionScene, ResolveError, ResolveState, Resolver, Statistics,
-    TrustRegionSearch,
+    BackwardStep, CertifiedForward, CollisionScene, ResolveState, Resolver, Statistics, TrustRegionSearch,
 };
 use nalgebra::Matrix3;
 
 /// Smallest step factor.
-const SMALLEST_FACTOR: f64 = 1e-6;
+const MIN_FACTOR: f64 = 1e-6;
 
 /// A descent step as [`BackwardStep`].
 #[derive(Debug, Default)]
@@ -25,29 +26,29 @@ pub struct DescentStep {
     /// Energy at the last x [J].
     energy: f64,
     /// Largest |D^-1 dE/dx| of the last step, by blocks [m].
-    wanted: f64,
+    newton_length: f64,
 }
 
-/// Gradient descent with the forward step and the search of the two-way method: what bounds its steps is
-/// `params.solver.forward` of the scene.
+/// Gradient descent with the forward step and the search of the two-way method; `params.solver.forward`
+/// of the scene bounds its steps.
 ///
 /// # Errors
 /// Parameters out of their range.
 pub fn by_descent(
     scene: CollisionScene,
     params: BarrierParams,
-) -> Result<Resolver<TrustRegionSearch, DescentStep, CertifiedForward>, ResolveError> {
+) -> Result<Resolver<TrustRegionSearch, DescentStep, CertifiedForward>, Errors<ParamError>> {
     let step = DescentStep::new(&scene, params)?;
     let search = TrustRegionSearch::new(&scene);
     Ok(Resolver::with_stages(scene, search, step, CertifiedForward::default()))
 }
 
 impl DescentStep {
-    /// Descent steps for the problem's pairs.
+    /// Descent steps for the pairs of the scene.
     ///
     /// # Errors
     /// Parameters out of their range.
-    pub fn new(scene: &CollisionScene, params: BarrierParams) -> Result<Self, ResolveError> {
+    pub fn new(scene: &CollisionScene, params: BarrierParams) -> Result<Self, Errors<ParamError>> {
         Ok(Self { objective: Objective::new(scene, params)?, ..Self::default() })
     }
 
@@ -62,20 +63,20 @@ impl BackwardStep for DescentStep {
         self.objective.begin(scene, state);
         self.factor = 1.0;
         self.energy = f64::INFINITY;
-        self.wanted = f64::INFINITY;
+        self.newton_length = f64::INFINITY;
     }
 
     fn project(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
         let contacts = self.objective.contacts(scene, state);
         let energy = self.objective.value(scene, state, &state.x, &contacts);
         self.factor = if energy > self.energy {
-            (0.5 * self.factor).max(SMALLEST_FACTOR)
+            (0.5 * self.factor).max(MIN_FACTOR)
         } else {
             (1.1 * self.factor).min(1.0)
         };
         self.energy = energy;
         self.objective.derivatives(scene, state, &state.x, &contacts, &mut self.derivatives);
-        self.wanted = 0.0;
+        self.newton_length = 0.0;
         for v in 0..state.x.len() {
             if !state.is_movable(v) {
                 state.y[v] = state.target[v];
@@ -83,7 +84,7 @@ impl BackwardStep for DescentStep {
             }
             let gradient = &self.derivatives.gradient[v];
             let newton = solve(&self.derivatives.blocks[v], gradient);
-            self.wanted = self.wanted.max(newton.norm());
+            self.newton_length = self.newton_length.max(newton.norm());
             let step = match self.objective.params().scaling {
                 Scaling::Blocks => newton,
                 Scaling::Mass => gradient / self.objective.inertia(scene, state, v),
@@ -96,7 +97,7 @@ impl BackwardStep for DescentStep {
 
     fn converged(&self, scene: &CollisionScene, state: &ResolveState) -> Option<bool> {
         let tolerance = self.objective.params().tolerance * scene.lengths().edge;
-        Some(self.wanted <= tolerance && state.remaining <= tolerance)
+        Some(self.newton_length <= tolerance && state.remaining <= tolerance)
     }
 
     fn finish(&mut self, scene: &CollisionScene, state: &ResolveState, statistics: &mut Statistics) {

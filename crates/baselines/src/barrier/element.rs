@@ -2,7 +2,7 @@
 
 use bowknot_twoway::geometry::{HalfSpace, PairKind, Point, Separation, separation};
 
-/// Contact geometry of the pair with these vertices at `x`; `half_space` is the index of the other side of a
+/// Contact geometry of the pair with these vertices at `x`; `half_space` is the index of the half-space of a
 /// [`PairKind::VertexHalfSpace`].
 pub fn separation(
     kind: PairKind,

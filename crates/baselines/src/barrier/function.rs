@@ -1,7 +1,7 @@
-//! The barrier of one distance (paper, Eq. 8).
+//! The barrier as a function of one distance (paper, Eq. 8).
 
-/// Smallest share of the range that a gap is taken for: a pair below it pushes as hard as one at it.
-const SMALLEST_SHARE: f64 = 1e-9;
+/// Smallest gap as a share of the range; a smaller gap counts as this one.
+const MIN_SHARE: f64 = 1e-9;
 
 /// Value and derivatives of a barrier.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -16,13 +16,14 @@ pub struct Jet {
 
 /// B(s) = -k (s - r)^2 ln(s/r) for a gap s [m] below the range r [m], 0 above; k is the strength [kg/s^2].
 ///
-/// With u = s/r: B = -k r^2 (u-1)^2 ln u, B' = -k r (u-1) [2 ln u + (u-1)/u], B'' = -k [2 ln u + 4 (u-1)/u - ((u-1)/u)^2].
-/// It is convex: ln u and (u-1)/u are negative below the range, so every term of B'' is at least 0.
+/// With u = s/r: B = -k r^2 (u-1)^2 ln u, B' = -k r (u-1) [2 ln u + (u-1)/u], B'' = -k [2 ln u + 4 (u-1)/u -
+/// ((u-1)/u)^2]. It is convex: ln u and (u-1)/u are negative below the range, so every term of B'' is at
+/// least 0.
 pub fn barrier(strength: f64, gap: f64, range: f64) -> Jet {
     if gap >= range {
         return Jet::default();
     }
-    let u = (gap / range).max(SMALLEST_SHARE);
+    let u = (gap / range).max(MIN_SHARE);
     let (log, below, ratio) = (u.ln(), u - 1.0, (u - 1.0) / u);
     Jet {
         value: -strength * range * range * below * below * log,

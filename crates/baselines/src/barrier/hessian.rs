@@ -1,28 +1,30 @@
-//! Second derivatives of the objective, element by element, each made positive semidefinite.
+//! Second derivatives of the objective, element by element; each is projected to a positive semidefinite
+//! matrix.
 //!
-//! A pair adds H = B'' g g^T + B' hess d, with g = W^T n the gradient of its distance d; W holds the signed weights sigma_k of
-//! its vertices. For the squared distance D(x) = min over b of |o|^2, o = W(b) x linear in the places b of the closest
-//! points, the implicit function theorem gives, over the places that are free to move,
+//! A pair adds H = B'' g g^T + B' hess d, with g = W^T n the gradient of its distance d; W holds the signed
+//! weights sigma_k of its vertices. For the squared distance D(x) = min over b of |o|^2, o = W(b) x linear in
+//! the places b of the closest points, the implicit function theorem gives, over the places that are free to
+//! move,
 //!
 //! hess D = 2 [W^T W - C (T^T T)^-1 C^T],   T_a = do/db_a,   C_a = (dW/db_a)^T o + W^T T_a,
 //!
-//! and hess d = (hess D / 2 - g g^T) / d. Eigenvalues of H below 0 are set to 0 (Teran et al. 2005; Li et al. 2020). Whatever
-//! the pair, H has rank 5 at most: it acts on W^T n, on W^T times both tangents, and on the C_a, so that a problem of
-//! eigenvalues of size 5 replaces one of size 12.
+//! and hess d = (hess D / 2 - g g^T) / d. Eigenvalues of H below 0 are set to 0 (Teran et al. 2005; Li et al.
+//! 2020). For every pair H has rank 5 at most: it acts on W^T n, on W^T times both tangents, and on the C_a,
+//! so that a problem of eigenvalues of size 5 replaces one of size 12.
 
 use super::objective::{Contact, Objective};
 use bowknot_twoway::geometry::{PairKind, Point, Vector};
 use nalgebra::{Matrix2, SMatrix, SVector};
 use rayon::prelude::*;
 
-/// Elements that one parallel task handles at least.
+/// Smallest number of elements of a parallel task.
 const CHUNK: usize = 64;
-/// Weights nearer than this to 0 are of points that cannot slide on.
+/// A weight below this is 0: the closest point is at its bound and cannot slide.
 const FREE: f64 = 1e-9;
 
 /// Squared sine of the angle between edges below which they count as parallel.
 const PARALLEL: f64 = 1e-12;
-/// Share of a column that must be left beside the others, or it adds no direction.
+/// A column with a smaller share outside the span of the others adds no direction.
 const DEPENDENT: f64 = 1e-12;
 
 /// Second derivatives of up to four vertices [N/m], three rows each.
@@ -33,7 +35,7 @@ pub type Block12 = SMatrix<f64, 12, 12>;
 pub struct Element {
     /// Its vertices; unused places repeat one of them.
     pub vertices: [u32; 4],
-    /// How many it has.
+    /// Number of its vertices.
     pub count: usize,
     /// Positive semidefinite; 0 in unused places.
     pub matrix: Block12,
@@ -64,7 +66,7 @@ pub fn elements(objective: &Objective, x: &[Point], contacts: &[Contact]) -> Vec
     elements
 }
 
-/// How the signed weights change with each place that is free to move; and how many there are.
+/// The changes of the signed weights with each place that is free to move, and the number of such places.
 fn places(kind: PairKind, weights: &[f64; 4]) -> ([[f64; 4]; 2], usize) {
     let free = |w: f64| w > FREE;
     let mut places = [[0.0; 4]; 2];
@@ -154,7 +156,8 @@ impl Factors {
             1 => Matrix2::new(slides[0].norm_squared(), 0.0, 0.0, 1.0),
             _ => return factors,
         };
-        // Parallel edges: where one slides the other may follow, and the distance has no second derivative.
+        // Between parallel edges the closest points may slide together, and the distance has no second
+        // derivative.
         if metric.determinant() > PARALLEL * metric[(0, 0)] * metric[(1, 1)]
             && let Some(inverse) = metric.try_inverse()
         {
@@ -163,13 +166,14 @@ impl Factors {
         factors
     }
 
-    /// The Hessian with its eigenvalues below 0 set to 0: V = Q R with orthonormal Q, then R K R^T is made so.
+    /// The Hessian with its negative eigenvalues set to 0: with V = Q R and orthonormal Q, those of R K R^T.
     fn positive_part(&self) -> Block12 {
         let mut q = SMatrix::<f64, 12, 5>::zeros();
         for a in 0..5 {
             let column = self.v.column(a);
             let mut rest = column.into_owned();
-            // Twice is enough (Kahan, in Parlett 1980): what one pass leaves by rounding, the second takes.
+            // Two passes are enough (Kahan, in Parlett 1980): the second removes what rounding left in the
+            // first.
             for _ in 0..2 {
                 for b in 0..a {
                     rest -= q.column(b) * q.column(b).dot(&rest);

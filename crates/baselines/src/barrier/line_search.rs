@@ -1,21 +1,22 @@
-//! One step size for all vertices: at most that of the earliest impact, then halved until the energy does not rise (Li et
-//! al. 2020, Algorithm 1).
+//! One step size for all vertices: at most that of the earliest impact, then halved until the energy does not
+//! rise (Li et al. 2020, Algorithm 1).
 
 use super::{BarrierParams, Objective};
-use crate::ccd::{AdditiveCcd, Clocks, PathSearch, earliest};
+use crate::ccd::{AdditiveCcd, PathSearch, PathTime, earliest};
+use bowknot_errors::{Errors, ParamError};
 use bowknot_twoway::geometry::{Point, Vector};
 use bowknot_twoway::stepper::{StepReport, Stepper};
-use bowknot_twoway::{CollisionScene, ForwardStep, ResolveError, ResolveState, Search, Statistics};
+use bowknot_twoway::{CollisionScene, ForwardStep, ResolveState, Search, Statistics};
 
-/// Halvings after which nothing moves.
-const HALVINGS: usize = 40;
+/// Largest number of halvings; then nothing moves.
+const MAX_HALVINGS: usize = 40;
 /// Relative rounding of the energy.
 const ROUNDING: f64 = 1e-13;
 
 /// The forward step of [`super::by_newton`].
 ///
-/// While prescribed vertices are on their way, the objective itself changes, so that its values before and after say nothing:
-/// such steps are limited by impacts alone.
+/// While prescribed vertices move, the objective itself changes, and its values before and after a step
+/// cannot be compared. Such steps are limited by impacts alone.
 #[derive(Debug, Default)]
 pub struct LineSearch {
     objective: Objective,
@@ -34,11 +35,11 @@ impl LineSearch {
         scene: &CollisionScene,
         params: BarrierParams,
         ccd: AdditiveCcd,
-    ) -> Result<Self, ResolveError> {
+    ) -> Result<Self, Errors<ParamError>> {
         Ok(Self { objective: Objective::new(scene, params)?, ccd, ..Self::default() })
     }
 
-    /// The largest of `step`, half of it, .. that does not raise the energy; 0 where none of 40 does.
+    /// The largest of `step`, half of it, .. that does not raise the energy; 0 after too many halvings.
     fn backtrack(&self, scene: &CollisionScene, state: &ResolveState, mut step: f64) -> f64 {
         let value = |x: &[Point]| {
             let contacts = self.objective.contacts_at(scene, state, x);
@@ -46,7 +47,7 @@ impl LineSearch {
         };
         let contacts = self.objective.contacts(scene, state);
         let before = self.objective.value(scene, state, &state.x, &contacts);
-        for _ in 0..HALVINGS {
+        for _ in 0..MAX_HALVINGS {
             let x: Vec<Point> = state.x.iter().zip(&self.paths).map(|(x, p)| x + step * p).collect();
             if value(&x) <= before * (1.0 + ROUNDING) {
                 return step;
@@ -74,7 +75,7 @@ impl ForwardStep for LineSearch {
         self.paths.clear();
         self.paths.extend_from_slice(self.stepper.displacements());
         let range = self.objective.largest_range(scene);
-        self.search.list(scene, state, search, &self.paths, Clocks::Common, range, statistics);
+        self.search.list(scene, state, search, &self.paths, PathTime::Common, range, statistics);
         let mut step = earliest(&self.ccd, scene, state, &self.paths);
         let still = |v: usize| state.is_movable(v) || self.paths[v] == Vector::zeros();
         if (0..self.paths.len()).all(still) {

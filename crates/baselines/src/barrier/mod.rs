@@ -1,8 +1,9 @@
-//! The log-barrier interior point method (paper, Eq. 7-8; after Li et al. 2020, "Incremental Potential Contact", and Wu et
-//! al. 2020).
+//! The log-barrier interior point method (paper, Eq. 7-8; after Li et al. 2020, "Incremental Potential
+//! Contact", and Wu et al. 2020).
 //!
-//! The targets' distance and a barrier on gaps are one [`Objective`], minimised by gradient descent with the step bounds of the
-//! two-way method ([`by_descent`]), or by Newton's method with a line search ([`by_newton`]).
+//! The distance to the target and a barrier on gaps form one [`Objective`]. It is minimised by gradient
+//! descent with the step bounds of the two-way method ([`by_descent`]), or by Newton's method with a line
+//! search ([`by_newton`]).
 
 mod descent;
 mod element;

@@ -1,18 +1,18 @@
-//! The log barrier by projected Newton steps (Li et al. 2020, "Incremental Potential Contact"), as a backward step: y = x + p
-//! with H p = -dE/dx, H the Hessian with every element made positive semidefinite.
+//! The log barrier by projected Newton steps (Li et al. 2020, "Incremental Potential Contact"), as a backward
+//! step: y = x + p with H p = -dE/dx, H the Hessian with every element made positive semidefinite.
 //!
-//! Prescribed vertices that are in contact come by at most half of the barrier's range a step, and the others' step is solved for
-//! with theirs given: what is in the way of an obstacle goes along with it. Going all their way, they would leave a step
-//! size for all that lets nothing get out of their way.
+//! Prescribed vertices in contact move by at most half of the barrier's range per step, and the step of the
+//! other vertices is solved for with this motion given: an obstacle pushes what is in its way. If prescribed
+//! vertices moved all the way, impacts would make the common step size too small for anything to get out of
+//! their way.
 
 use super::hessian::elements;
 use super::system::System;
 use super::{BarrierParams, Contact, Derivatives, LineSearch, Objective};
 use crate::ccd::AdditiveCcd;
+use bowknot_errors::{Errors, ParamError, Parameters};
 use bowknot_twoway::geometry::Vector;
-use bowknot_twoway::{
-    BackwardStep, CollisionScene, ResolveError, ResolveState, Resolver, Statistics, TrustRegionSearch,
-};
+use bowknot_twoway::{BackwardStep, CollisionScene, ResolveState, Resolver, Statistics, TrustRegionSearch};
 
 /// Relative residual of the Newton systems.
 const TOLERANCE: f64 = 1e-4;
@@ -30,7 +30,8 @@ pub struct NewtonStep {
     solver_iterations: usize,
 }
 
-/// Newton's method with IPC's forward step: all vertices by the earliest impact, then half as far until the energy falls.
+/// Newton's method with the forward step of IPC: all vertices move up to the earliest impact, then half as
+/// far until the energy falls.
 ///
 /// # Errors
 /// Parameters out of their range.
@@ -38,7 +39,8 @@ pub fn by_newton(
     scene: CollisionScene,
     params: BarrierParams,
     ccd: AdditiveCcd,
-) -> Result<Resolver<TrustRegionSearch, NewtonStep, LineSearch>, ResolveError> {
+) -> Result<Resolver<TrustRegionSearch, NewtonStep, LineSearch>, Errors<ParamError>> {
+    ccd.validate()?;
     let step = NewtonStep::new(&scene, params.clone())?;
     let line_search = LineSearch::new(&scene, params, ccd)?;
     let search = TrustRegionSearch::new(&scene);
@@ -46,32 +48,31 @@ pub fn by_newton(
 }
 
 impl NewtonStep {
-    /// Newton steps for the problem's pairs.
+    /// Newton steps for the pairs of the scene.
     ///
     /// # Errors
     /// Parameters out of their range.
-    pub fn new(scene: &CollisionScene, params: BarrierParams) -> Result<Self, ResolveError> {
+    pub fn new(scene: &CollisionScene, params: BarrierParams) -> Result<Self, Errors<ParamError>> {
         Ok(Self { objective: Objective::new(scene, params)?, ..Self::default() })
     }
 
-    /// Newton decrement of the last step as a length [m]: sqrt(-p . dE/dx / sum m/dt^2), the root mean square of the way to
-    /// the minimum that the quadratic model promises, weighted as the objective weighs it.
+    /// Newton decrement of the last step as a length [m]: sqrt(-p . dE/dx / sum m/dt^2), the root mean square
+    /// distance to the minimum of the quadratic model, with the weights of the objective.
     pub fn decrement(&self) -> f64 {
         self.decrement
     }
 
-    /// Iterations of conjugate gradients in the present call.
+    /// Number of iterations of conjugate gradients in the present call.
     pub fn solver_iterations(&self) -> usize {
         self.solver_iterations
     }
 }
 
 impl NewtonStep {
-    /// Where prescribed vertices go in this step [m]; 0 for the others.
+    /// Displacements of prescribed vertices in this step [m]; 0 for the others.
     fn given(&self, scene: &CollisionScene, state: &ResolveState, contacts: &[Contact]) -> Vec<Vector> {
-        let way = |v: usize| match state.is_movable(v) {
-            true => Vector::zeros(),
-            false => state.target[v] - state.x[v],
+        let way = |v: usize| {
+            if state.is_movable(v) { Vector::zeros() } else { state.target[v] - state.x[v] }
         };
         let mut given: Vec<Vector> = (0..state.x.len()).map(way).collect();
         let moves = |v: &u32| given[*v as usize] != Vector::zeros();
@@ -95,10 +96,8 @@ impl BackwardStep for NewtonStep {
         let contacts = self.objective.contacts(scene, state);
         self.objective.derivatives(scene, state, &state.x, &contacts, &mut self.derivatives);
         let elements = elements(&self.objective, &state.x, &contacts);
-        let inertia = |v: usize| match state.is_movable(v) {
-            true => self.objective.inertia(scene, state, v),
-            false => 0.0,
-        };
+        let inertia =
+            |v: usize| if state.is_movable(v) { self.objective.inertia(scene, state, v) } else { 0.0 };
         let inertia: Vec<f64> = (0..state.x.len()).map(inertia).collect();
         let mut down: Vec<Vector> = self.derivatives.gradient.iter().map(|g| -g).collect();
         let system = System::new(&inertia, &elements);

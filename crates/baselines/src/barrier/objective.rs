@@ -1,20 +1,22 @@
-//! What the log-barrier methods minimise (paper, Eq. 7-8, with the inertia term in units of energy).
+//! The objective of the log-barrier methods (paper, Eq. 7-8, with the inertia term in units of energy).
 //!
 //! E(x) = sum 1/2 m/dt^2 |x - y0|^2 + sum B(d_p(x) - xi_p) + sum 1/2 k_e max(|e| - L, 0)^2  [J]
 //!
-//! over the vertices that are not prescribed, the pairs nearer than the barrier's range and the edges beyond their limit.
-//! Gaps are measured from the floor xi_p that the forward step keeps (as Codim-IPC does with thickness; Li et al. 2021): a
-//! barrier that lets a pair come down to its floor would no longer be what holds it. Without floors this is Eq. 8.
+//! over the vertices that are not prescribed, the pairs nearer than the barrier's range and the edges beyond
+//! their limit. Gaps are measured from the minimum separation xi_p that the forward step keeps, as in
+//! Codim-IPC with thickness (Li et al. 2021). Otherwise a pair could reach its minimum separation, and the
+//! forward step instead of the barrier would hold it. Without minimum separations this is Eq. 8.
 
 use super::function::{Jet, barrier};
 use super::{BarrierParams, element};
+use bowknot_errors::{Errors, ParamError};
 use bowknot_twoway::constraints::EdgeLimits;
 use bowknot_twoway::geometry::{PairKind, Point, Separation, Vector};
 use bowknot_twoway::lcp::DistanceLimit;
-use bowknot_twoway::{CollisionScene, ResolveError, ResolveState, Statistics};
+use bowknot_twoway::{CollisionScene, ResolveState, Statistics};
 use rayon::prelude::*;
 
-/// Pairs that one parallel task handles at least.
+/// Smallest number of pairs of a parallel task.
 const CHUNK: usize = 512;
 
 /// A pair within the barrier's range.
@@ -43,17 +45,17 @@ pub struct Derivatives {
 #[derive(Debug, Default)]
 pub struct Objective {
     params: BarrierParams,
-    /// Range of the barrier in the pair's desired distance.
+    /// Range of the barrier over the desired distance of the pair.
     range_share: f64,
     edges: EdgeLimits,
 }
 
 impl Objective {
-    /// An objective for the problem's pairs.
+    /// An objective for the pairs of the scene.
     ///
     /// # Errors
     /// Parameters out of their range, see [`BarrierParams::validate_for`].
-    pub fn new(scene: &CollisionScene, params: BarrierParams) -> Result<Self, ResolveError> {
+    pub fn new(scene: &CollisionScene, params: BarrierParams) -> Result<Self, Errors<ParamError>> {
         params.validate_for(scene)?;
         Ok(Self { params, ..Self::default() })
     }
@@ -63,7 +65,7 @@ impl Objective {
         &self.params
     }
 
-    /// Starts a call from `state.x`: takes down the edges' limits (paper, Eq. 17).
+    /// Starts a call from `state.x`: computes the limits of the edges (paper, Eq. 17).
     pub fn begin(&mut self, scene: &CollisionScene, state: &ResolveState) {
         self.range_share = self.params.range.map_or(1.0, |range| range / scene.lengths().delta);
         let constraints = &scene.params().contact;
@@ -88,7 +90,8 @@ impl Objective {
         self.gather(scene, state, |_, p| state.contacts.separations[p])
     }
 
-    /// The listed pairs within range at `x`: all that there are, where x is on a way that the list was made for.
+    /// The candidate pairs within range at `x`. They are all pairs within range if the list was made for a
+    /// path through x.
     pub fn contacts_at(&self, scene: &CollisionScene, state: &ResolveState, x: &[Point]) -> Vec<Contact> {
         let half_spaces = scene.model().half_spaces();
         self.gather(scene, state, |kind, p| {
@@ -103,25 +106,27 @@ impl Objective {
         state: &ResolveState,
         separation: impl Fn(PairKind, usize) -> Separation + Sync,
     ) -> Vec<Contact> {
-        let listed = &state.contacts;
+        let candidates = &state.contacts;
         let contact = |p: usize| -> Option<Contact> {
-            let (kind, pair) = (listed.pairs.kind(p), &listed.pairs.pairs()[p]);
+            let (kind, pair) = (candidates.pairs.kind(p), &candidates.pairs.pairs()[p]);
             let vertices = pair.vertices;
             if !vertices[..kind.vertex_count()].iter().any(|&v| state.is_movable(v as usize)) {
                 return None;
             }
             let separation = separation(kind, p);
-            // Before neighbours' ranges are lowered, which takes longer to find out: almost all pairs are farther apart.
+            // First the range that is not lowered for neighbours, which is cheaper: almost all pairs are
+            // farther apart.
             let largest = self.range_share * scene.spacing().of(scene.model(), kind, pair).delta;
             if separation.distance >= largest {
                 return None;
             }
             let range = self.range_share * scene.desired_distance(kind, pair);
-            let floor = listed.min_separations[p].min(0.9 * range);
-            let jet = barrier(self.params.strength, separation.distance - floor, range - floor);
+            let min_separation = candidates.min_separations[p].min(0.9 * range);
+            let gap = separation.distance - min_separation;
+            let jet = barrier(self.params.strength, gap, range - min_separation);
             (jet.value > 0.0).then_some(Contact { kind, vertices, separation, jet })
         };
-        (0..listed.pairs.len()).into_par_iter().with_min_len(CHUNK).filter_map(contact).collect()
+        (0..candidates.pairs.len()).into_par_iter().with_min_len(CHUNK).filter_map(contact).collect()
     }
 
     /// E at `x` [J], given the pairs within range there.
@@ -143,10 +148,10 @@ impl Objective {
 
     /// Gradient at `x` and blocks, given the pairs within range there.
     ///
-    /// A pair adds B'' g g^T with g the gradient of its distance, s_k beta_k n by vertex k. With weights that sum to 1 on
-    /// either side, (sum_k beta_k n.u_k)^2 <= 2 sum_k beta_k (n.u_k)^2: blocks 2 B'' beta_k n n^T majorise it, beta_k
-    /// against half-spaces. The rest, B' times the distance's own Hessian, is left out: it only lowers the energy where
-    /// that is positive semidefinite, as for two vertices.
+    /// A pair adds B'' g g^T with g the gradient of its distance, s_k beta_k n by vertex k. With weights that
+    /// sum to 1 on either side, (sum_k beta_k n.u_k)^2 <= 2 sum_k beta_k (n.u_k)^2: blocks 2 B'' beta_k n n^T
+    /// majorise it, beta_k against half-spaces. The rest, B' times the distance's own Hessian, is left out:
+    /// it only lowers the energy where that is positive semidefinite, as for two vertices.
     pub fn derivatives(
         &self,
         scene: &CollisionScene,
@@ -192,7 +197,8 @@ impl Objective {
         }
     }
 
-    /// The edges beyond their limits at `x`: how far [m], 1 - L/|e|, and the direction from the second vertex to the first.
+    /// The edges beyond their limits at `x`: how far [m], 1 - L/|e|, and the direction from the second vertex
+    /// to the first.
     pub fn long_edges<'a>(
         &'a self,
         x: &'a [Point],
@@ -202,8 +208,8 @@ impl Objective {
         })
     }
 
-    /// Largest ratio of an edge's length to its length at the start of the call, and to its rest length; 0 where edges
-    /// have no penalty.
+    /// Largest ratio of an edge's length to its length at the start of the call, and to its rest length; 0
+    /// where edges have no penalty.
     pub fn stretch(&self, x: &[Point]) -> (f64, f64) {
         let stretch = self.edges.stretch(x);
         (stretch.to_start, stretch.to_rest)
@@ -214,7 +220,7 @@ impl Objective {
         self.range_share * scene.spacing().largest_delta()
     }
 
-    /// Fills in what is known at the end of a call.
+    /// Fills in the statistics at the end of a call.
     pub(super) fn report(
         &self,
         scene: &CollisionScene,

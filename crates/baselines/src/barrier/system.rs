@@ -1,29 +1,31 @@
-//! The Newton system: inertia and elements, solved by conjugate gradients with 3x3 blocks of the diagonal as preconditioner.
+//! The Newton system: inertia and elements, solved by conjugate gradients with 3x3 blocks of the diagonal as
+//! preconditioner.
 //!
-//! The matrix is kept as sparse rows of 3x3 blocks: in contact there are several pairs a vertex, so that this is shorter than
-//! their elements. Each row sums its elements in their order: the same bits for any number of threads.
+//! The matrix is stored as sparse rows of 3x3 blocks, which are fewer than the blocks of the elements,
+//! because a vertex in contact has several pairs. Each row sums its elements in their order: the same bits
+//! for any number of threads.
 
 use super::hessian::Element;
 use bowknot_twoway::geometry::Vector;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
-/// Vertices that one parallel task handles at least.
+/// Smallest number of vertices of a parallel task.
 const CHUNK: usize = 256;
 
-/// A symmetric positive definite matrix: inertia [N/m] of each vertex and elements. Rows of vertices without inertia are
-/// zero: those stay.
+/// A symmetric positive definite matrix: inertia [N/m] of each vertex, and elements. Rows of vertices without
+/// inertia are zero: these vertices do not move.
 #[derive(Debug)]
 pub struct System {
-    /// Where the blocks of each row start, their columns, and what they are.
+    /// Starts of the rows, columns of their blocks, and the blocks.
     starts: Vec<u32>,
     columns: Vec<u32>,
     blocks: Vec<Matrix3<f64>>,
-    /// Inverses of the diagonal's blocks; 0 for vertices that stay.
+    /// Inverses of the diagonal blocks; 0 for vertices that do not move.
     inverses: Vec<Matrix3<f64>>,
 }
 
-/// How a solve went.
+/// Iterations and residual of a solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolveReport {
     /// Iterations made.
@@ -33,7 +35,7 @@ pub struct SolveReport {
 }
 
 impl System {
-    /// The system of `elements` over vertices with this `inertia`, 0 for those that stay.
+    /// The system of `elements` over vertices with this `inertia`, 0 for vertices that do not move.
     pub fn new(inertia: &[f64], elements: &[Element]) -> Self {
         let mut incidence = vec![Vec::new(); inertia.len()];
         for element in elements {
@@ -52,7 +54,7 @@ impl System {
                     row.push((element.vertices[k], block.into_owned()));
                 }
             }
-            // Stable: what is summed keeps its order.
+            // A stable sort keeps the order of the sums.
             row.sort_by_key(|(column, _)| *column);
             row.dedup_by(|next, sum| {
                 let same = next.0 == sum.0;
@@ -80,7 +82,7 @@ impl System {
         Self { starts, columns, blocks, inverses }
     }
 
-    /// A x; 0 for vertices that stay, whose entries of `x` act on the others all the same.
+    /// A x; 0 for vertices that do not move. Their entries of `x` still act on the others.
     pub fn multiply(&self, x: &[Vector], product: &mut [Vector]) {
         product.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(|(v, row)| {
             let entries = self.starts[v] as usize..self.starts[v + 1] as usize;
@@ -93,7 +95,8 @@ impl System {
         });
     }
 
-    /// Solves A x = b to a residual of `tolerance` relative to b, from x = 0; `b` is 0 for vertices that stay.
+    /// Solves A x = b to a residual of `tolerance` relative to b, from x = 0; `b` is 0 for vertices that do
+    /// not move.
     pub fn solve(
         &self,
         b: &[Vector],
@@ -145,51 +148,4 @@ fn dot(a: &[Vector], b: &[Vector]) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::barrier::hessian::Block12;
-    use nalgebra::{DMatrix, DVector};
-
-    #[test]
-    fn a_solve_is_that_of_the_dense_matrix() {
-        let inertia = [1.0, 2.0, 0.5, 0.0, 3.0, 1.0];
-        let mut random = fastrand::Rng::with_seed(7);
-        let mut draw = || 2.0 * random.f64() - 1.0;
-        let elements: Vec<Element> = [[0, 1, 2, 3], [2, 4, 5, 0], [5, 3, 2, 1], [1, 4, 1, 1]]
-            .into_iter()
-            .map(|vertices| {
-                let count = if vertices == [1, 4, 1, 1] { 2 } else { 4 };
-                let factor = Block12::from_fn(|i, j| if i.max(j) < 3 * count { draw() } else { 0.0 });
-                Element { vertices, count, matrix: 3.0 * factor * factor.transpose() }
-            })
-            .collect();
-        let free = |v: usize| inertia[v] > 0.0;
-        let mut dense = DMatrix::<f64>::zeros(18, 18);
-        for v in 0..6 {
-            for c in 0..3 {
-                dense[(3 * v + c, 3 * v + c)] += if free(v) { inertia[v] } else { 1.0 };
-            }
-        }
-        for element in &elements {
-            for i in 0..3 * element.count {
-                for j in 0..3 * element.count {
-                    let [a, b] = [i, j].map(|i| element.vertices[i / 3] as usize);
-                    if free(a) && free(b) {
-                        dense[(3 * a + i % 3, 3 * b + j % 3)] += element.matrix[(i, j)];
-                    }
-                }
-            }
-        }
-        let b: Vec<Vector> = (0..6)
-            .map(|v| if free(v) { Vector::new(draw(), draw(), draw()) } else { Vector::zeros() })
-            .collect();
-        let flat = DVector::from_iterator(18, b.iter().flat_map(|b| b.iter().copied()));
-        let expected = dense.lu().solve(&flat).expect("positive definite");
-        let mut x = Vec::new();
-        let report = System::new(&inertia, &elements).solve(&b, 1e-13, 200, &mut x);
-        assert!(report.residual <= 1e-13 && report.iterations > 3, "{report:?}");
-        for (i, expected) in expected.iter().enumerate() {
-            assert!((x[i / 3][i % 3] - expected).abs() < 1e-9, "{i}: {x:?} {expected}");
-        }
-    }
-}
+mod tests;

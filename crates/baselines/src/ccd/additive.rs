@@ -1,33 +1,35 @@
-//! Additive continuous collision detection (Li, Kaufman, Jiang 2021, "Codimensional Incremental Potential Contact",
-//! Algorithm 1): how far along linear paths a pair surely does not meet.
+//! Additive continuous collision detection (Li, Kaufman, Jiang 2021, "Codimensional Incremental Potential
+//! Contact", Algorithm 1): how far along linear paths a pair is certain not to meet.
 //!
-//! From a time at which the gap is g a pair cannot meet for another g/c, c a bound of the speed at which it closes; so time is
-//! advanced by 0.9 g/c again and again, until the gap falls below a share of what it was at first. No root is sought: the
-//! result is never late, in parallel and degenerate cases either.
+//! If the gap is g and c bounds the speed at which it closes, the pair cannot meet for another g/c. So time
+//! is advanced by 0.9 g/c again and again, until the gap falls below a share of the gap at the start. No
+//! roots are computed: the result is never too late, also in parallel and degenerate cases.
 //!
-//! **Rounding.** Distances are certified lower bounds, the slab widths of `separation`. Positions x + t p are rounded, by less
-//! than 1.74 ulp(C) along any direction for coordinates up to C (see [`Rounding`]), and so is the update that a step makes in
-//! the end: 4 ulp(C) a pair for each of both. Speeds are rounded up.
+//! **Rounding.** Distances are certified lower bounds, the slab widths of `separation`. Positions x + t p are
+//! rounded, by less than 1.74 ulp(C) along any direction for coordinates up to C (see [`Rounding`]), and so
+//! is the update of a step: 4 ulp(C) per pair for each of the two. Speeds are rounded up.
 
+use bowknot_errors::{Checks, Parameters};
 use bowknot_twoway::geometry::{HalfSpace, PairKind, Point, Separation, Vector, separation};
 use bowknot_twoway::stepper::Rounding;
 use serde::{Deserialize, Serialize};
 
-/// Share of the time that is surely free which one iteration goes (the 0.9 of Li et al.).
+/// Share of the time without impact that one iteration advances (the 0.9 of Li et al.).
 const ADVANCE: f64 = 0.9;
 /// Factor that covers the rounding of a speed: some ten operations.
 const SPEED_ROUNDING: f64 = 1.0 + 16.0 * f64::EPSILON;
 
-/// Additive CCD with its settings.
+/// Additive CCD with its parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct AdditiveCcd {
-    /// Share of the first gap at which a pair counts as meeting, s. Smaller: later times of impact, fewer pairs that nearly
-    /// meet taken for such that do, more iterations. Default 0.1, that of Li et al.
+    /// A pair counts as meeting below this share of its gap at the start. A smaller share makes times of
+    /// impact later and false impacts of pairs that nearly meet rarer, and takes more iterations. Default
+    /// 0.1, that of Li et al.
     pub slackness: f64,
-    /// What bounds the speed at which a pair closes. Default travel, that of Li et al.
+    /// The bound of the speed at which a pair closes. Default travel, that of Li et al.
     pub speed: ClosingSpeed,
-    /// Iterations after which the time reached so far is returned, which is safe. Default 1000.
+    /// Largest number of iterations; then the time so far is returned, which is safe. Default 1000.
     pub max_iterations: u32,
 }
 
@@ -37,8 +39,8 @@ pub struct AdditiveCcd {
 pub enum ClosingSpeed {
     /// The largest speeds of both sides relative to their mean motion, whatever the direction.
     Travel,
-    /// The smaller of that and the speed at which the slab between the sides closes along its normal (Mirtich 1996).
-    /// Pairs that move apart or side by side take one distance.
+    /// The smaller of that and the speed at which the slab between the sides closes along its normal (Mirtich
+    /// 1996). Pairs that move apart or side by side take one distance computation.
     Slab,
 }
 
@@ -48,25 +50,33 @@ impl Default for AdditiveCcd {
     }
 }
 
-/// How far a pair surely does not meet.
+impl Parameters for AdditiveCcd {
+    fn check(&self, checks: &mut Checks) {
+        let Self { slackness, speed: _, max_iterations } = self;
+        checks.between("slackness", *slackness, 0.0, 1.0);
+        checks.count_at_least("max_iterations", *max_iterations as usize, 1);
+    }
+}
+
+/// How far a pair is certain not to meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clearance {
-    /// Until this time in [0, 1] the pair stays farther apart than its floor; 1: all the way.
+    /// Until this time in [0, 1] the pair stays farther apart than its minimum separation; 1: all the way.
     pub time: f64,
-    /// Distances measured.
+    /// Number of distances computed.
     pub iterations: u32,
 }
 
 impl AdditiveCcd {
-    /// How far the pair at `x` stays farther apart than `floor` >= 0 [m] while its vertices move along `paths` [m] on a
-    /// common clock from 0 to 1; unused places are ignored. A result that would be `until` or later is 1: who asks for the
-    /// smallest of many passes the smallest so far.
+    /// How far the pair at `x` stays farther apart than `min_separation` >= 0 [m] while its vertices move
+    /// along `paths` [m] with a common path time from 0 to 1; unused places are ignored. A result of `until`
+    /// or later is returned as 1: to find the smallest of many, pass the smallest so far.
     pub fn clearance(
         &self,
         kind: PairKind,
         x: &[Point; 4],
         paths: &[Vector; 4],
-        floor: f64,
+        min_separation: f64,
         until: f64,
     ) -> Clearance {
         let count = kind.vertex_count();
@@ -78,11 +88,11 @@ impl AdditiveCcd {
             ClosingSpeed::Travel => travel,
             ClosingSpeed::Slab => travel.min(closing_slab(kind, &separation.normal, paths)).max(0.0),
         };
-        let gap_of = |separation: &Separation| separation.width - floor - rounding;
+        let gap_of = |separation: &Separation| separation.width - min_separation - rounding;
         let first = gap_of(&start);
         let done = |time: f64, iterations: u32| Clearance { time, iterations };
         if first.is_nan() || first <= 0.0 {
-            // At its floor already: it may move as long as its slab does not close, but for rounding.
+            // The pair is at its minimum separation: it may move if its slab does not close, up to rounding.
             let closing = closing_slab(kind, &start.normal, paths);
             let opening = start.width > 4.0 * rounding && closing <= 2.0 * rounding;
             return done(if opening { 1.0 } else { 0.0 }, 1);
@@ -91,8 +101,8 @@ impl AdditiveCcd {
         let mut free = (1.0 - self.slackness) * first / speed(&start);
         let mut time = 0.0;
         for iteration in 1..=self.max_iterations {
-            // The end would be no earlier than this: where the smallest of many is asked for, it does not matter in
-            // which order they are looked at.
+            // The result would be no earlier than `until`. So the smallest of many does not depend on their
+            // order.
             if time + free > 1.0 || time >= until {
                 return done(1.0, iteration);
             }
@@ -110,17 +120,17 @@ impl AdditiveCcd {
         done(time, self.max_iterations)
     }
 
-    /// As [`Self::clearance`], for a vertex above a half-space that rests.
+    /// As [`Self::clearance`], for a vertex above a half-space at rest.
     pub fn half_space_clearance(
         &self,
         half_space: &HalfSpace,
         x: &Point,
         path: &Vector,
-        floor: f64,
+        min_separation: f64,
     ) -> Clearance {
         let separation = separation::separate_half_space(x, half_space);
         let rounding = rounding(&[*x], &[*path]);
-        let gap = separation.width - floor - rounding;
+        let gap = separation.width - min_separation - rounding;
         let approach = -separation.normal.dot(path);
         let closing = approach + path.norm() * (SPEED_ROUNDING - 1.0);
         let time = if approach <= 0.0 && separation.width > rounding {
@@ -134,7 +144,7 @@ impl AdditiveCcd {
     }
 }
 
-/// What rounding may take from a gap: of positions on the way, and of the update that is made in the end.
+/// Largest loss of a gap by rounding: of positions on the way, and of the final update.
 fn rounding(x: &[Point], paths: &[Vector]) -> f64 {
     let largest = x.iter().zip(paths).map(|(x, p)| x.coords.amax() + p.amax()).fold(0.0, f64::max);
     2.0 * Rounding::new(largest).step
@@ -145,20 +155,23 @@ fn closing_travel(kind: PairKind, paths: &[Vector; 4]) -> f64 {
     let (count, side_a) = (kind.vertex_count(), kind.side_a());
     let mean = paths[..count].iter().sum::<Vector>() / count as f64;
     let largest = |side: &[Vector]| side.iter().map(|p| (p - mean).norm()).fold(0.0, f64::max);
-    // The mean is the same for all, however rounded; the differences from it lose digits of the motion in common.
+    // The mean is the same for all vertices, however it is rounded; differences from it lose digits of the
+    // common motion.
     let common = paths[..count].iter().map(|p| p.amax()).fold(mean.amax(), f64::max);
     let speed = largest(&paths[..side_a]) + largest(&paths[side_a..count]);
     if speed == 0.0 { 0.0 } else { speed * SPEED_ROUNDING + 4.0 * f64::EPSILON * common }
 }
 
-/// Speed at which the slab along `normal` closes when it is carried along: negative where it opens.
+/// Speed at which the moving slab along `normal` closes; negative if it opens.
 fn closing_slab(kind: PairKind, normal: &Vector, paths: &[Vector; 4]) -> f64 {
     let (count, side_a) = (kind.vertex_count(), kind.side_a());
-    let most = |side: &[Vector], sign: f64| {
+    let largest_along = |side: &[Vector], sign: f64| {
         side.iter().map(|p| sign * normal.dot(p)).fold(f64::NEG_INFINITY, f64::max)
     };
     let largest = paths[..count].iter().map(|p| p.amax()).fold(0.0, f64::max);
-    most(&paths[..side_a], -1.0) + most(&paths[side_a..count], 1.0) + 16.0 * f64::EPSILON * largest
+    largest_along(&paths[..side_a], -1.0)
+        + largest_along(&paths[side_a..count], 1.0)
+        + 16.0 * f64::EPSILON * largest
 }
 
 #[cfg(test)]

@@ -1,18 +1,19 @@
-//! One step size for all vertices: that of the earliest impact (Li et al. 2020, "Incremental Potential Contact").
+//! One step size for all vertices: that of the earliest impact (Li et al. 2020, "Incremental Potential
+//! Contact").
 
-use super::AdditiveCcd;
+use super::additive::AdditiveCcd;
 use super::pairs::clearance;
-use super::reach::{Clocks, PathSearch};
+use super::path_search::{PathSearch, PathTime};
 use bowknot_twoway::geometry::Vector;
 use bowknot_twoway::stepper::{StepReport, Stepper};
 use bowknot_twoway::{CollisionScene, ForwardStep, ResolveState, Search, Statistics};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Pairs that one parallel task handles at least.
+/// Smallest number of pairs of a parallel task.
 const CHUNK: usize = 256;
 
-/// Moves all vertices by the fraction of their ways at which the first pair would meet.
+/// Moves all vertices by one fraction of their ways: that at which the first pair would meet.
 #[derive(Debug, Default)]
 pub struct EarliestImpact {
     ccd: AdditiveCcd,
@@ -22,20 +23,20 @@ pub struct EarliestImpact {
 }
 
 impl EarliestImpact {
-    /// With these settings of the CCD.
+    /// With these parameters of the CCD.
     pub fn new(ccd: AdditiveCcd) -> Self {
         Self { ccd, ..Self::default() }
     }
 }
 
-/// The smallest clearance of all listed pairs along `paths` [m]; 1 without impact.
+/// The smallest clearance of all candidate pairs along `paths` [m]; 1 without impact.
 pub(crate) fn earliest(
     ccd: &AdditiveCcd,
     scene: &CollisionScene,
     state: &ResolveState,
     paths: &[Vector],
 ) -> f64 {
-    // Nonnegative floats are ordered as their bits are.
+    // Non-negative floats have the order of their bits.
     let first = AtomicU64::new(1.0f64.to_bits());
     (0..state.contacts.pairs.len()).into_par_iter().with_min_len(CHUNK).for_each(|p| {
         let until = f64::from_bits(first.load(Ordering::Relaxed));
@@ -60,7 +61,7 @@ impl ForwardStep for EarliestImpact {
         self.stepper.set_target(&state.x, &state.y);
         self.paths.clear();
         self.paths.extend_from_slice(self.stepper.displacements());
-        self.search.list(scene, state, search, &self.paths, Clocks::Common, 0.0, statistics);
+        self.search.list(scene, state, search, &self.paths, PathTime::Common, 0.0, statistics);
         let time = earliest(&self.ccd, scene, state, &self.paths);
         for v in 0..self.paths.len() {
             self.stepper.limit(v, time);

@@ -1,17 +1,17 @@
 //! Step sizes by continuous collision detection in place of distances (paper, sections 5.1 and 5.2).
 //!
-//! [`AdditiveCcd`] tells how far a pair surely does not meet. Two forward steps are made of it: all vertices go as far as the
-//! earliest impact lets them ([`EarliestImpact`]), or each as far as its own does ([`PerVertexImpact`]). Either fits every
-//! backward step.
+//! [`AdditiveCcd`] computes how far a pair is certain not to meet. Two forward steps use it: all vertices
+//! move up to the earliest impact ([`EarliestImpact`]), or each vertex up to its own ([`PerVertexImpact`]).
+//! Both work with every backward step.
 
 mod additive;
 mod earliest;
 mod pairs;
+mod path_search;
 mod per_vertex;
-mod reach;
 
 pub use additive::{AdditiveCcd, Clearance, ClosingSpeed};
 pub use earliest::EarliestImpact;
 pub(crate) use earliest::earliest;
+pub(crate) use path_search::{PathSearch, PathTime};
 pub use per_vertex::PerVertexImpact;
-pub(crate) use reach::{Clocks, PathSearch};

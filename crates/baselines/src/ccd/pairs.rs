@@ -1,10 +1,11 @@
-//! CCD of listed pairs.
+//! CCD of candidate pairs.
 
-use super::{AdditiveCcd, Clearance};
+use super::additive::{AdditiveCcd, Clearance};
 use bowknot_twoway::geometry::{PairKind, Vector};
 use bowknot_twoway::{CollisionScene, ResolveState};
 
-/// How far the listed pair `p` stays farther apart than its floor while its vertices move from x along `paths` [m].
+/// How far the candidate pair `p` keeps its minimum separation while its vertices move from x along `paths`
+/// [m].
 pub(super) fn clearance(
     ccd: &AdditiveCcd,
     scene: &CollisionScene,
@@ -14,12 +15,12 @@ pub(super) fn clearance(
     until: f64,
 ) -> Clearance {
     let (kind, pair) = (state.contacts.pairs.kind(p), &state.contacts.pairs.pairs()[p]);
-    let floor = state.contacts.min_separations[p];
+    let min_separation = state.contacts.min_separations[p];
     if kind == PairKind::VertexHalfSpace {
         let [vertex, half_space] = pair.elements.map(|e| e as usize);
         let half_space = &scene.model().half_spaces()[half_space];
-        return ccd.half_space_clearance(half_space, &state.x[vertex], &paths[vertex], floor);
+        return ccd.half_space_clearance(half_space, &state.x[vertex], &paths[vertex], min_separation);
     }
     let x = pair.vertices.map(|v| state.x[v as usize]);
-    ccd.clearance(kind, &x, &pair.vertices.map(|v| paths[v as usize]), floor, until)
+    ccd.clearance(kind, &x, &pair.vertices.map(|v| paths[v as usize]), min_separation, until)
 }

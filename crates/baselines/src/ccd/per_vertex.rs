@@ -1,24 +1,25 @@
-//! A step size for each vertex: that of its own first impact, verified and backtracked (paper, section 5; Wu et al. 2020 do
-//! so for vertex-vertex pairs).
+//! A step size for each vertex: that of its own first impact, verified and backtracked (paper, section 5; Wu
+//! et al. 2020 do so for vertex-vertex pairs).
 //!
-//! A time of impact holds while both sides move on one clock. Once a vertex goes a smaller fraction of its way than another,
-//! their pair moves along other paths, and may meet earlier or at all: so the paths as shortened are tested again, those of
-//! pairs that meet are shortened further, and so on until none does. Where that does not end soon, all vertices go the
-//! fraction of their last paths that the earliest impact leaves.
+//! A time of impact is valid while both sides move with a common path time. If one vertex moves by a smaller
+//! fraction of its way than another, their pair moves along other paths, and may meet earlier than before. So
+//! the shortened paths are tested again, those of pairs that meet are shortened further, and so on until no
+//! pair meets. If that takes too many rounds, all vertices move by the fraction of their last paths up to the
+//! earliest impact.
 
-use super::AdditiveCcd;
+use super::additive::AdditiveCcd;
 use super::pairs::clearance;
-use super::reach::{Clocks, PathSearch};
+use super::path_search::{PathSearch, PathTime};
 use bowknot_twoway::geometry::Vector;
 use bowknot_twoway::stepper::{StepReport, Stepper};
 use bowknot_twoway::{CollisionScene, ForwardStep, ResolveState, Search, Statistics};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Pairs that one parallel task handles at least.
+/// Smallest number of pairs of a parallel task.
 const CHUNK: usize = 256;
 
-/// Moves each vertex by the fraction of its way at which it would first meet something.
+/// Moves each vertex by the fraction of its way at which its first pair would meet.
 #[derive(Debug)]
 pub struct PerVertexImpact {
     ccd: AdditiveCcd,
@@ -26,24 +27,25 @@ pub struct PerVertexImpact {
     rounds: usize,
     stepper: Stepper,
     search: PathSearch,
-    /// Paths of the present round, and whether each differs from the last round's.
+    /// Paths of the present round.
     paths: Vec<Vector>,
     fractions: Vec<f64>,
+    /// Whether each path differs from that of the last round.
     changed: Vec<bool>,
 }
 
 impl PerVertexImpact {
-    /// Longest way of one step, in local edge lengths: pairs that may meet on clocks of their own multiply with it.
-    const LONGEST: f64 = 1.0;
-    /// Rounds of verification.
-    const ROUNDS: usize = 20;
+    /// Longest way of one step, in local edge lengths. Longer ways need many more candidate pairs.
+    const MAX_LENGTH: f64 = 1.0;
+    /// Largest number of rounds of verification.
+    const MAX_ROUNDS: usize = 20;
 
-    /// With these settings of the CCD.
+    /// With these parameters of the CCD.
     pub fn new(ccd: AdditiveCcd) -> Self {
         Self {
             ccd,
-            longest: Self::LONGEST,
-            rounds: Self::ROUNDS,
+            longest: Self::MAX_LENGTH,
+            rounds: Self::MAX_ROUNDS,
             stepper: Stepper::default(),
             search: PathSearch::default(),
             paths: Vec::new(),
@@ -52,7 +54,7 @@ impl PerVertexImpact {
         }
     }
 
-    /// Paths from the fractions as limited so far; which of them are new.
+    /// Shortens the paths to the fractions so far, and marks those that change.
     fn shorten(&mut self) {
         for (v, d) in self.stepper.displacements().iter().enumerate() {
             let fraction = self.stepper.alpha(v);
@@ -62,8 +64,8 @@ impl PerVertexImpact {
         }
     }
 
-    /// Limits the vertices of all pairs that meet along the present paths, of those that have a new one. Returns how far
-    /// all vertices can go along them.
+    /// Limits the vertices of all pairs with a changed path that meet along the present paths. Returns the
+    /// fraction of these paths by which all vertices can move.
     fn limit(&self, scene: &CollisionScene, state: &ResolveState) -> f64 {
         let first = AtomicU64::new(1.0f64.to_bits());
         let pairs = &state.contacts.pairs;
@@ -122,7 +124,7 @@ impl ForwardStep for PerVertexImpact {
         }
         self.limit_bodies(scene, state);
         self.shorten();
-        self.search.list(scene, state, search, &self.paths, Clocks::Own, 0.0, statistics);
+        self.search.list(scene, state, search, &self.paths, PathTime::PerVertex, 0.0, statistics);
         self.changed.fill(true);
         for round in 1..=self.rounds {
             let common = self.limit(scene, state);
@@ -130,8 +132,8 @@ impl ForwardStep for PerVertexImpact {
                 break;
             }
             if round == self.rounds {
-                // On one clock along the paths just tested, every pair is clear up to here: those that were tested
-                // before, all the way.
+                // With a common path time along the paths just tested, every pair is clear up to here. Pairs
+                // without a changed path were tested in an earlier round and are clear all the way.
                 for v in 0..self.paths.len() {
                     self.stepper.limit(v, common * self.fractions[v]);
                 }

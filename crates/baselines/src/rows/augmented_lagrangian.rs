@@ -1,35 +1,38 @@
 //! The augmented Lagrangian of Tang et al. 2018 in place of the complementarity problem.
 
 use super::incidence::{Incidence, MIN_SHARE};
+use bowknot_errors::{Checks, Parameters};
 use bowknot_twoway::geometry::Vector;
 use bowknot_twoway::lcp::{DistanceLimit, LcpError, LcpProblem, LcpState, TangentVector};
 use bowknot_twoway::{RowSolver, RowSystem};
 use rayon::prelude::*;
 
-/// The augmented Lagrangian with gradient descent (Tang et al. 2018, "I-Cloth"; paper, section 4.3.2, Fig. 15): nothing is
-/// solved, constraints and gradients are evaluated only. For rows s(y) >= 0 and m = 1/w (Rockafellar 1973),
+/// The augmented Lagrangian with gradient descent (Tang et al. 2018, "I-Cloth"; paper, section 4.3.2, Fig.
+/// 15). It only evaluates constraints and gradients and solves no system. For rows s(y) >= 0 and m = 1/w
+/// (Rockafellar 1973),
 ///
 /// L(y, lambda) = 1/2 sum m |y - y'|^2 + 1/(2 rho) sum (max(0, lambda - rho s)^2 - lambda^2),
 ///
-/// y is moved along -grad L, and from time to time lambda <- max(0, lambda - rho s).
+/// y moves along -grad L, and every few steps lambda <- max(0, lambda - rho s).
 ///
-/// The step is the largest that is certain to descend, a vertex each: 1/(m_v + rho h_v), where h bounds J^T J (a gradient
-/// descent with a diagonal preconditioner; one step for all vertices would be that of the most crowded one). Ball rows
-/// have the vector form of the same: f <- rho (z - projection of z onto the ball), z = y_a - y_b + f/rho. y starts at that
-/// of the last two-way step, as the paper says below Eq. 9. Friction rows are left without force.
+/// Each vertex has the largest step size that is certain to descend: 1/(m_v + rho h_v), where h bounds J^T J.
+/// This is a gradient descent with a diagonal preconditioner; one step size for all vertices would be that of
+/// the vertex with most rows. Distance limits have the vector form: f <- rho (z - projection of z onto the
+/// ball), z = y_a - y_b + f/rho. y starts at that of the last two-way step, as the paper says below Eq. 9.
+/// Friction rows get no force.
 #[derive(Clone, Debug)]
 pub struct AugmentedLagrangian {
-    /// Gradient steps a backward step: 20 or 100 in the paper. Default 20.
+    /// Gradient steps per backward step: 20 or 100 in the paper. Default 20.
     pub iterations: usize,
-    /// Penalty rho, in units of the mean vertex mass [1]. Larger: constraints hold after fewer updates of the multipliers,
-    /// each of which takes more gradient steps. Default 1.
+    /// Penalty rho, in units of the mean vertex mass [1]. With a larger penalty, constraints hold after fewer
+    /// updates of the multipliers, but each update needs more gradient steps. Default 1.
     pub penalty: f64,
     /// Gradient steps between two updates of the multipliers. Default 1.
     pub gradient_steps: usize,
     incidence: Incidence,
     /// 1/(m_v + rho h_v); 0 for vertices that cannot move.
     steps: Vec<f64>,
-    /// lambda - rho s, projected: of rows and of ball rows.
+    /// Multipliers that the next update takes, of rows and of distance limits.
     trial: Vec<f64>,
     trial_forces: Vec<Vector>,
 }
@@ -48,13 +51,21 @@ impl Default for AugmentedLagrangian {
     }
 }
 
+impl Parameters for AugmentedLagrangian {
+    fn check(&self, checks: &mut Checks) {
+        checks.count_at_least("iterations", self.iterations, 1);
+        checks.positive("penalty", self.penalty);
+        checks.count_at_least("gradient_steps", self.gradient_steps, 1);
+    }
+}
+
 impl AugmentedLagrangian {
-    /// So many gradient steps a backward step.
+    /// With so many gradient steps per backward step.
     pub fn new(iterations: usize) -> Self {
         Self { iterations, ..Self::default() }
     }
 
-    /// Descends from `state.y`, which may be anywhere; `free` is y'. The multipliers are those of the last update.
+    /// Descends from any `state.y`; `free` is y'. The multipliers start at those of the last update.
     ///
     /// # Panics
     /// If a slice does not fit the system.

@@ -1,14 +1,14 @@
-//! In which places of which rows each node stands, to gather forces by node in a fixed order.
+//! The rows of each node, to sum up forces by node in a fixed order.
 
 use bowknot_twoway::geometry::Vector;
 use bowknot_twoway::lcp::LcpProblem;
 use rayon::prelude::*;
 
-/// Fewest nodes or rows that a thread takes.
+/// Smallest number of nodes or rows of a parallel task.
 pub(crate) const MIN_SHARE: usize = 1024;
 
-/// The places (4r + k) of rows, and (2b + k, after all rows) of ball rows, of each node that can move. Places with a zero
-/// gradient are left out.
+/// The places of each movable node: 4r + k in row r; 2b + k after all rows for distance limit b. Places with
+/// a zero gradient are left out.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Incidence {
     starts: Vec<u32>,
@@ -37,7 +37,7 @@ impl Incidence {
         });
     }
 
-    /// The places of a node, each as a row's or a ball row's.
+    /// The places of a node.
     fn of(&self, node: usize) -> impl Iterator<Item = Place> + '_ {
         self.places[self.starts[node] as usize..self.starts[node + 1] as usize].iter().map(|&place| {
             let place = place as usize;
@@ -48,7 +48,7 @@ impl Incidence {
         })
     }
 
-    /// For each node, J^T lambda + the forces of ball rows, or anything else that adds up so: `each(node, sum)`.
+    /// Calls `each(node, sum)` for each node, with the sum J^T lambda plus the forces of distance limits.
     pub(crate) fn gather<T: Send>(
         &self,
         system: &LcpProblem<'_>,
@@ -71,8 +71,8 @@ impl Incidence {
         });
     }
 
-    /// For each node h_v = sum over its rows of |g_rv| sum_k |g_rk|: by Gershgorin's theorem in blocks J^T J is at most
-    /// the diagonal matrix of these.
+    /// For each node h_v = sum over its rows of |g_rv| sum_k |g_rk|: by Gershgorin's theorem in blocks J^T J
+    /// is at most the diagonal matrix of these.
     pub(crate) fn curvatures(&self, system: &LcpProblem<'_>, curvatures: &mut Vec<f64>) {
         let rows = system.rows().rows;
         curvatures.clear();

@@ -4,11 +4,11 @@ use bowknot_twoway::geometry::Point;
 use bowknot_twoway::{BackwardStep, CollisionScene, Residuals, ResolveState, Statistics};
 
 /// Accelerates the targets of another backward step over the two-way steps of a call (Wang 2015, "A Chebyshev
-/// semi-iterative approach for accelerating projective and position-based dynamics"; paper, section 4.2.2, which finds it
-/// ineffective because contacts come and go): y^(l+1) <- y^(l-1) + omega (y^(l+1) - y^(l-1)), with
-/// omega_1 = 2/(2 - rho^2) and omega_(k+1) = 4/(4 - rho^2 omega_k) after `delay` plain steps.
+/// semi-iterative approach for accelerating projective and position-based dynamics"; paper, section 4.2.2,
+/// which finds it ineffective because contacts come and go): y^(l+1) <- y^(l-1) + omega (y^(l+1) - y^(l-1)),
+/// with omega_1 = 2/(2 - rho^2) and omega_(k+1) = 4/(4 - rho^2 omega_k) after `delay` plain steps.
 ///
-/// Multipliers are left to the inner step, and so are residuals.
+/// Multipliers and residuals are those of the inner step.
 #[derive(Clone, Debug)]
 pub struct InterStepChebyshev<B> {
     inner: B,
@@ -21,7 +21,8 @@ pub struct InterStepChebyshev<B> {
 }
 
 impl<B> InterStepChebyshev<B> {
-    /// Around `inner`, for an estimate of the spectral radius in [0, 1), after `delay` plain steps (Wang 2015: 10).
+    /// Around `inner`, for an estimate of the spectral radius in [0, 1), after `delay` plain steps (Wang
+    /// 2015: 10).
     pub fn new(inner: B, spectral_radius: f64, delay: usize) -> Self {
         Self { inner, spectral_radius, delay, omega: 1.0, before: Vec::new(), last: Vec::new() }
     }
@@ -39,9 +40,10 @@ impl<B: BackwardStep> BackwardStep for InterStepChebyshev<B> {
         self.inner.project(scene, state, statistics);
         let square = self.spectral_radius * self.spectral_radius;
         if state.step >= self.delay {
-            self.omega = match state.step == self.delay {
-                true => 2.0 / (2.0 - square),
-                false => 4.0 / (4.0 - square * self.omega),
+            self.omega = if state.step == self.delay {
+                2.0 / (2.0 - square)
+            } else {
+                4.0 / (4.0 - square * self.omega)
             };
             for v in 0..state.y.len() {
                 if state.is_movable(v) {

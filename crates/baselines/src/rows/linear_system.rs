@@ -1,22 +1,23 @@
 //! The linear system of Harmon et al. 2008 in place of the complementarity problem.
 
+use bowknot_errors::{Checks, Parameters};
 use bowknot_twoway::lcp::{self, LcpError, LcpParams, LcpState, solve_coloured};
 use bowknot_twoway::{RowSolver, RowSystem};
 
-/// Gauss-Seidel on A lambda + q = 0, all rows taken for equations (Harmon et al. 2008, "Robust treatment of simultaneous
-/// collisions"; paper, section 4.3.1, Fig. 13). What should let go is held: contacts stick, and linear edge rows keep
-/// their lengths at the limit (Fig. 14), so that the paper leaves edges out (`constraints.edges = false`). Ball rows, which
-/// have no linear form, keep their projection.
+/// Gauss-Seidel on A lambda + q = 0 with all rows as equations (Harmon et al. 2008, "Robust treatment of
+/// simultaneous collisions"; paper, section 4.3.1, Fig. 13). Nothing can separate: contacts stick, and linear
+/// edge rows keep their lengths at the limit (Fig. 14), so that the paper leaves edges out
+/// (`constraints.edges = false`). Distance limits, which have no linear form, keep their projection.
 ///
-/// As in the paper this is not the whole method of 2008, which works on velocities: the system alone is compared.
-/// It holds the rows that it is given: with `backward.active_rows` those that press or are about to, near to the
-/// collisions that Harmon et al. take; without, every pair in range.
+/// As in the paper, only the linear system of 2008 is compared, not the whole method, which works on
+/// velocities. With `backward.active_rows` the system has only active rows, which is close to the collisions
+/// of Harmon et al.; without it, every pair in range has one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LinearSystem {
-    /// Sweeps a backward step. Default 20, the paper's.
+    /// Sweeps per backward step. Default 20, the paper's.
     pub sweeps: u32,
-    /// Whether every update is followed by lambda <- max(lambda, 0), the one line of Fig. 13. That makes it projected
-    /// Gauss-Seidel with so many sweeps. Default false.
+    /// Whether every update is followed by lambda <- max(lambda, 0), the one line of Fig. 13. That makes it
+    /// projected Gauss-Seidel with so many sweeps. Default false.
     pub projected: bool,
 }
 
@@ -26,13 +27,19 @@ impl Default for LinearSystem {
     }
 }
 
+impl Parameters for LinearSystem {
+    fn check(&self, checks: &mut Checks) {
+        checks.count_at_least("sweeps", self.sweeps as usize, 1);
+    }
+}
+
 impl LinearSystem {
     /// The same with the one-line projection.
     pub fn projected() -> Self {
         Self { projected: true, ..Self::default() }
     }
 
-    /// Sweeps over rows, whoever made them.
+    /// Sweeps over any rows.
     ///
     /// # Errors
     /// As [`lcp::solve_coloured`].

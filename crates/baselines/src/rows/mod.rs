@@ -1,12 +1,13 @@
-//! Other solvers of the backward step's rows (paper, sections 4.2.2 and 4.3): the two-way method with them differs from
-//! ours in nothing else, since rows, multipliers kept from step to step, search and forward step are shared.
+//! Other solvers of the backward step's rows (paper, sections 4.2.2 and 4.3). All else is shared with the
+//! two-way method: rows, multipliers that are kept from step to step, search and forward step.
 //!
 //! - [`LinearSystem`]: Harmon et al. 2008, without and with the projection lambda >= 0 (Fig. 13, 14);
 //! - [`AugmentedLagrangian`]: Tang et al. 2018, by gradient descent (Fig. 15);
-//! - [`ProjectedJacobi`]: with Chebyshev weights within the step (Fig. 11, 12), or between steps ([`InterStepChebyshev`]).
+//! - [`ProjectedJacobi`]: with Chebyshev weights within the step (Fig. 11, 12), or between steps
+//!   ([`InterStepChebyshev`]).
 //!
-//! The yardsticks are projected Gauss-Seidel ([`bowknot_twoway::ColouredSweeps`]) and, for small problems, the exact
-//! [`bowknot_twoway::lcp::solve_exact`].
+//! They are compared with projected Gauss-Seidel ([`bowknot_twoway::ColouredSweeps`]) and, for small
+//! problems, the exact [`bowknot_twoway::lcp::solve_exact`].
 
 mod augmented_lagrangian;
 mod incidence;
@@ -25,7 +26,7 @@ use bowknot_twoway::{
     TrustRegionSearch,
 };
 
-/// The two-way method with another solver of its rows; `problem` has the parameters, as a rule those of
+/// The two-way method with another row solver; `scene` has the parameters, usually those of
 /// [`bowknot_twoway::Params::paper`].
 pub fn two_way_with<K: RowSolver + Default>(
     scene: CollisionScene,
@@ -43,10 +44,11 @@ pub fn two_way_with_stage<B: BackwardStep>(
     Resolver::with_stages(scene, search, backward, CertifiedForward::default())
 }
 
-/// Parameters under which contacts keep the volume that they have, as Sifakis et al. 2008 ("Globally coupled collision handling
-/// using volume preserving impulses") have it, instead of being brought to the volume of the desired distance (paper,
-/// section 4.1): a pair below it is asked for no more than the gap with which it was first listed in the call. Calls must
-/// have a time step, whose separation speed is what this takes away.
+/// Parameters under which contacts keep their volume, as in Sifakis et al. 2008 ("Globally coupled collision
+/// handling using volume preserving impulses"), and are not separated to the volume of the desired distance
+/// (paper, section 4.1): a pair below its desired distance keeps the gap at which it became a candidate in
+/// the call. Calls must have a time step, because the growth of gaps is switched off by a separation speed of
+/// almost 0.
 #[must_use]
 pub fn preserving_volume(mut params: Params) -> Params {
     params.contact.form = ContactForm::Volume;

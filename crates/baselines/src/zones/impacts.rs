@@ -1,4 +1,4 @@
-//! Finding impacts on straight paths.
+//! Detection of impacts on straight paths.
 
 use crate::Outcome;
 use crate::ccd::AdditiveCcd;
@@ -9,42 +9,43 @@ use bowknot_twoway::proximity::{CollisionModel, Pair, PairList, ProximitySearch}
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Share of its desired distance above which a pair counts as apart.
-const FLOOR_SHARE: f64 = 0.1;
-/// Share of the gap that a pair starts with above which it counts as apart, where that is less.
+/// A pair counts as apart above this share of its desired distance, ..
+const SEPARATION_SHARE: f64 = 0.1;
+/// .. or above this share of its gap at the start, if that is less.
 const GAP_SHARE: f64 = 0.5;
-/// The detection may stop early by this share of the desired distance: a pair that ends at its desired distance must never
-/// count as one that meets, however far apart it started.
+/// Detection may stop early by this share of the desired distance. A pair that ends at its desired distance
+/// must never count as meeting, however far apart it started.
 const SLACK_SHARE: f64 = 0.5;
-/// Pairs that one parallel task tests at least.
+/// Smallest number of pairs of a parallel task.
 const CHUNK: usize = 256;
 
-/// A pair that meets, or nearly, or ends too near.
+/// A pair that meets or nearly meets, or that ends too near.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
     /// Kind of the pair.
     pub kind: PairKind,
     /// The pair.
     pub pair: Pair,
-    /// Until this time in [0, 1] the pair surely keeps apart; 1: all the way, but it ends nearer than its thickness.
+    /// Until this time in [0, 1] the pair is certain to stay apart. 1: all the way, but it ends nearer than
+    /// its thickness.
     pub time: f64,
-    /// Distance that it is to be separated to [m].
+    /// Desired distance of the pair [m].
     pub desired: f64,
 }
 
 impl Impact {
-    /// The vertices that take part.
+    /// The vertices of the pair.
     pub fn vertices(&self) -> &[u32] {
         &self.pair.vertices[..self.kind.vertex_count()]
     }
 }
 
-/// Finds impacts: candidates by swept boxes, then additive continuous detection. What it does not find keeps a tenth of its
-/// desired distance on the whole way, or half of the gap that it started with.
+/// Finds impacts: candidates by swept boxes, then additive continuous detection. A pair that it does not find
+/// keeps a tenth of its desired distance on the whole way, or half of its gap at the start.
 #[derive(Debug)]
 pub struct ImpactSearch {
-    /// Share of its desired distance below which a pair that does not meet, but ends there, is found too; 0, the default:
-    /// none is.
+    /// A pair that does not meet, but ends at less than this share of its desired distance, is found too. 0,
+    /// the default: no such pair is.
     pub thickness: f64,
     search: ProximitySearch,
     ccd: AdditiveCcd,
@@ -66,28 +67,28 @@ impl ImpactSearch {
         }
     }
 
-    /// The impacts of vertices that go from `x` along `paths` [m] on a common clock, in the order of pair lists; pairs that
-    /// `judged` refuses are left out. `growth` bounds by how much a gap is asked to grow [m]. Counts a search and its
-    /// seconds (detection as evaluation).
+    /// The impacts of vertices that move from `x` along `paths` [m] with a common path time, in the order of
+    /// pair lists. Pairs that `accept` refuses are left out. `growth` bounds the growth of a gap that a row
+    /// asks for [m]. Adds a search and its seconds to `outcome`; detection counts as evaluation.
     pub fn find(
         &mut self,
         scene: &CollisionScene,
         x: &[Point],
         paths: &[Vector],
         growth: f64,
-        judged: impl Fn(&Impact) -> bool + Sync,
+        accept: impl Fn(&Impact) -> bool + Sync,
         outcome: &mut Outcome,
     ) -> Vec<Impact> {
-        let clock = Instant::now();
+        let timer = Instant::now();
         let Self { thickness, search, pairs, separations, radii, ccd } = self;
         let thickness = *thickness;
         radii.clear();
-        radii.resize(x.len(), FLOOR_SHARE.max(thickness) * scene.spacing().largest_delta());
+        radii.resize(x.len(), SEPARATION_SHARE.max(thickness) * scene.spacing().largest_delta());
         search.search_swept(scene.model(), x, paths, radii, pairs, separations);
         outcome.searches += 1;
-        outcome.seconds.search += clock.elapsed().as_secs_f64();
+        outcome.seconds.search += timer.elapsed().as_secs_f64();
 
-        let clock = Instant::now();
+        let timer = Instant::now();
         let mut impacts = Vec::new();
         for kind in PairKind::ALL {
             let range = pairs.range(kind);
@@ -101,19 +102,19 @@ impl ImpactSearch {
                     let gap = separation.distance;
                     let (desired, _) = rule.of(scene.model(), kind, &pair, scene.rest(), gap);
                     let impact = Impact { kind, pair, time: 0.0, desired };
-                    if !judged(&impact) {
+                    if !accept(&impact) {
                         return None;
                     }
-                    let floor = (FLOOR_SHARE * desired).min(GAP_SHARE * gap);
+                    let min_separation = (SEPARATION_SHARE * desired).min(GAP_SHARE * gap);
                     let slackness = (SLACK_SHARE * desired / gap).min(ccd.slackness);
                     let ccd = AdditiveCcd { slackness, ..*ccd };
-                    let time = clearance(&ccd, scene, kind, &pair, x, paths, floor);
+                    let time = clearance(&ccd, scene, kind, &pair, x, paths, min_separation);
                     let near = || end_distance(scene, kind, &pair, x, paths) < thickness * desired;
                     (time < 1.0 || (thickness > 0.0 && near())).then_some(Impact { time, ..impact })
                 });
             impacts.par_extend(found);
         }
-        outcome.seconds.evaluate += clock.elapsed().as_secs_f64();
+        outcome.seconds.evaluate += timer.elapsed().as_secs_f64();
         impacts
     }
 }
@@ -136,12 +137,14 @@ fn clearance(
     pair: &Pair,
     x: &[Point],
     paths: &[Vector],
-    floor: f64,
+    min_separation: f64,
 ) -> f64 {
     let vertices = pair.vertices.map(|v| v as usize);
     if kind == PairKind::VertexHalfSpace {
         let half_space = &scene.model().half_spaces()[pair.elements[1] as usize];
-        return ccd.half_space_clearance(half_space, &x[vertices[0]], &paths[vertices[0]], floor).time;
+        return ccd
+            .half_space_clearance(half_space, &x[vertices[0]], &paths[vertices[0]], min_separation)
+            .time;
     }
-    ccd.clearance(kind, &vertices.map(|v| x[v]), &vertices.map(|v| paths[v]), floor, 1.0).time
+    ccd.clearance(kind, &vertices.map(|v| x[v]), &vertices.map(|v| paths[v]), min_separation, 1.0).time
 }

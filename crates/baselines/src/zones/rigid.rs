@@ -1,22 +1,23 @@
 //! Rigid impact zones.
 
+use super::impacts::{Impact, ImpactSearch};
 use super::optimiser::growth;
 use super::rigid_motion::Motion;
-use super::{Impact, ImpactSearch};
 use crate::{Method, Outcome};
 use bowknot_twoway::geometry::{PairKind, Point, UnionFind, Vector};
 use bowknot_twoway::{CallInput, CollisionScene, ResolveError, ResolveInput};
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-/// Rigid impact zones (Provot 1997; Bridson et al. 2002, section 7.4): vertices that meet on their way become a zone, zones
-/// that meet one; each moves like a rigid body with the linear and angular momentum of what it is made of, and detection is
-/// repeated until nothing meets. A zone with a prescribed vertex, or at a half-space, moves with it instead, and one whose
-/// prescribed vertices do not move as a rigid body waits, they with it.
+/// Rigid impact zones (Provot 1997; Bridson et al. 2002, section 7.4). Vertices that meet on their way become
+/// a zone, and zones that meet are merged. Each zone moves like a rigid body with the linear and angular
+/// momentum of its vertices, and detection is repeated until nothing meets. A zone with a prescribed vertex,
+/// or at a half-space, moves with it instead. If its prescribed vertices do not move as a rigid body, the
+/// zone and these vertices stay where they are.
 ///
-/// It never fails: pairs within a zone keep apart because its motion has an inverse at any time, and at worst everything is
-/// one zone. What it costs is motion: relative motion within a zone is lost. The 2002 method puts repulsions and some rounds
-/// of impulses before it; here it stands alone, as the two-way paper's Table 1 has it.
+/// It never fails: pairs within a zone stay apart because its motion can be inverted at any time, and in the
+/// worst case everything is one zone. Relative motion within a zone is lost. The method of 2002 applies
+/// repulsions and some rounds of impulses first; here zones stand alone, as in Table 1 of the two-way paper.
 #[derive(Debug)]
 pub struct RigidZones {
     scene: CollisionScene,
@@ -24,7 +25,7 @@ pub struct RigidZones {
 }
 
 impl RigidZones {
-    /// Of the scene in `problem`.
+    /// For `scene`.
     pub fn new(scene: CollisionScene) -> Self {
         let search = ImpactSearch::new(scene.model());
         Self { scene, search }
@@ -42,7 +43,7 @@ impl Method for RigidZones {
         target: &[Point],
         input: &ResolveInput<'_>,
     ) -> Result<Outcome, ResolveError> {
-        let clock = Instant::now();
+        let timer = Instant::now();
         let Self { scene, search } = self;
         let call = CallInput::new(scene, positions, target, input)?;
         let mut outcome = Outcome { converged: true, ..Outcome::default() };
@@ -51,8 +52,8 @@ impl Method for RigidZones {
         let mut paths = wanted.clone();
         let mut zones = Zones::new(scene, &call);
         loop {
-            let judged = |impact: &Impact| !zones.hold(impact);
-            let impacts = search.find(scene, positions, &paths, growth, judged, &mut outcome);
+            let accept = |impact: &Impact| !zones.keep_apart(impact);
+            let impacts = search.find(scene, positions, &paths, growth, accept, &mut outcome);
             if impacts.is_empty() {
                 break;
             }
@@ -65,34 +66,35 @@ impl Method for RigidZones {
             outcome.seconds.backward += merging.elapsed().as_secs_f64();
         }
         positions.iter_mut().zip(&paths).for_each(|(x, path)| *x += path);
-        outcome.seconds.total = clock.elapsed().as_secs_f64();
+        outcome.seconds.total = timer.elapsed().as_secs_f64();
         Ok(outcome)
     }
 }
 
-/// A partition of vertices, and of half-spaces behind them, into zones.
+/// A partition of nodes into zones: vertices, followed by half-spaces.
 #[derive(Debug)]
 struct Zones {
     sets: UnionFind,
     vertices: usize,
-    /// Roots of the zones that something has met.
+    /// Whether the zone of a root contains an impact.
     met: Vec<bool>,
 }
 
 impl Zones {
-    /// Everything alone, but what goes as one: obstacles, groups of pins.
+    /// Every node is a zone of its own, except for obstacles and groups of pins, which are one zone each.
     fn new(scene: &CollisionScene, call: &CallInput) -> Self {
         let vertices = scene.rest().len();
         let nodes = vertices + scene.model().half_spaces().len();
         let mut zones = Self { sets: UnionFind::new(nodes), vertices, met: vec![false; nodes] };
         let mut first = BTreeMap::new();
         for v in (0..vertices).filter(|&v| call.is_prescribed(v)) {
-            let who = match scene.model().is_obstacle(v as u32) {
-                true => (0, scene.model().vertex_body()[v]),
-                false => match call.groups().of(v) {
+            let who = if scene.model().is_obstacle(v as u32) {
+                (0, scene.model().vertex_body()[v])
+            } else {
+                match call.groups().of(v) {
                     Some(group) => (1, group),
                     None => continue,
-                },
+                }
             };
             let leader = *first.entry(who).or_insert(v);
             zones.join(leader, v);
@@ -107,8 +109,9 @@ impl Zones {
         impact.vertices().iter().map(|&v| v as usize).chain(half_space)
     }
 
-    /// Whether the motion of a zone keeps the pair apart. Keyframes that were only joined need not.
-    fn hold(&self, impact: &Impact) -> bool {
+    /// Whether the motion of a zone keeps the pair apart. The keyframes of vertices in one zone without
+    /// impacts need not.
+    fn keep_apart(&self, impact: &Impact) -> bool {
         let mut roots = self.nodes(impact).map(|node| self.root(node));
         roots.next().is_some_and(|first| self.met[first] && roots.all(|root| root == first))
     }
@@ -117,7 +120,7 @@ impl Zones {
         self.sets.root(node as u32) as usize
     }
 
-    /// Makes one zone of two, named after its smallest node.
+    /// Merges two zones; the smallest node is the root.
     fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.root(a), self.root(b));
         let (low, high) = (a.min(b), a.max(b));
@@ -125,7 +128,7 @@ impl Zones {
         self.met[low] |= self.met[high];
     }
 
-    /// Makes one zone of all that meets.
+    /// Merges the zones of an impact.
     fn unite(&mut self, impact: &Impact) {
         let nodes: Vec<usize> = self.nodes(impact).collect();
         nodes.iter().for_each(|&node| self.join(nodes[0], node));
@@ -133,7 +136,7 @@ impl Zones {
         self.met[root] = true;
     }
 
-    /// Sets the paths of all zones that something has met.
+    /// Sets the paths of all zones with impacts.
     fn move_all(
         &mut self,
         scene: &CollisionScene,

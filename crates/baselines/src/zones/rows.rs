@@ -1,6 +1,7 @@
-//! The rows of impacts, collected over the iterations of a call.
+//! The rows of impacts, collected over the rounds of a call.
 
-use super::{Impact, ZoneParams, ZoneSolver};
+use super::impacts::Impact;
+use super::params::{ZoneParams, ZoneSolver};
 use crate::rows::{AugmentedLagrangian, LinearSystem};
 use bowknot_twoway::constraints::{Colouring, ContactForm, contact_row};
 use bowknot_twoway::geometry::{PairKind, Point, Vector, separation};
@@ -8,10 +9,10 @@ use bowknot_twoway::lcp::{self, ConstraintSet, LcpState, Row, Schedule};
 use bowknot_twoway::{CallInput, CollisionScene};
 use std::collections::BTreeMap;
 
-/// One row a pair, from its latest impact.
+/// One row per pair, from its latest impact.
 #[derive(Debug, Default)]
 pub(crate) struct ImpactRows {
-    /// By kind and elements.
+    /// Row and multiplier by kind and elements.
     rows: BTreeMap<(PairKind, [u32; 2]), (Row, f64)>,
     colouring: Colouring,
     descent: AugmentedLagrangian,
@@ -22,8 +23,9 @@ impl ImpactRows {
         self.rows.clear();
     }
 
-    /// Adds the row of an impact, or replaces the pair's and keeps its multiplier: where the pair surely is still
-    /// apart, along its normal there, n . (p - q)(y) >= desired distance.
+    /// Adds the row of an impact, or replaces the pair's row and keeps its multiplier. The row is linearised
+    /// at the last time at which the pair is certain not to meet: n . (p - q)(y) >= desired distance with the
+    /// normal n there.
     pub(crate) fn add(&mut self, scene: &CollisionScene, impact: &Impact, x: &[Point], paths: &[Vector]) {
         let kind = impact.kind;
         let mut vertices = impact.pair.vertices;
@@ -43,7 +45,8 @@ impl ImpactRows {
         self.rows.entry((kind, impact.pair.elements)).or_insert((row, 0.0)).0 = row;
     }
 
-    /// Moves `y` [m], one entry a vertex, from `free` to where the rows hold, as far as the solver gets.
+    /// Moves `y` [m], one entry per vertex, from `free` to where the rows hold, as far as the solver
+    /// converges.
     pub(crate) fn solve(
         &mut self,
         scene: &CollisionScene,

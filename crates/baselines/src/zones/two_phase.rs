@@ -1,18 +1,21 @@
 //! The two-phase scheme of Wu et al. 2020: soft, then hard.
 
-use super::{ImpactZones, ZoneParams};
+use super::optimiser::ImpactZones;
+use super::params::ZoneParams;
 use crate::{Method, Outcome};
+use bowknot_errors::{Errors, ParamError};
 use bowknot_twoway::geometry::Point;
 use bowknot_twoway::{CollisionScene, ResolveError, ResolveInput};
 use std::time::Instant;
 
-/// The soft and the hard phase of Wu et al. 2020 ("A safe and fast repulsion method for GPU-based cloth self collisions";
-/// two-way paper, section 1.3): some rounds of impact-zone optimisation move the target without a promise; where the path
-/// to it is still not free, an interior point method goes from x towards it and stops wherever it gets.
+/// The soft and the hard phase of Wu et al. 2020 ("A safe and fast repulsion method for GPU-based cloth self
+/// collisions"; two-way paper, section 1.3). Some rounds of impact-zone optimisation move the target, without
+/// a guarantee. If the path to it still has impacts, an interior point method moves x towards it as far as it
+/// can.
 ///
-/// Theirs works on pairs of vertices of fine meshes, in both phases; here both work on all kinds of pairs, as
-/// everything else that is compared. The hard phase is any method that never fails: a log barrier by gradient descent, as
-/// theirs.
+/// Their phases work on pairs of vertices of fine meshes. Here both work on all kinds of pairs, like all
+/// other compared methods. The hard phase is any method that never fails, such as their log barrier by
+/// gradient descent.
 #[derive(Debug)]
 pub struct TwoPhase<H> {
     name: String,
@@ -22,14 +25,18 @@ pub struct TwoPhase<H> {
 }
 
 impl<H: Method> TwoPhase<H> {
-    /// Of the scene in `problem`, with so many rounds at most in the soft phase; `hard` is a method for the same scene.
-    pub fn new(scene: CollisionScene, soft_rounds: usize, hard: H) -> Self {
+    /// For `scene`, with at most `soft_rounds` rounds in the soft phase; `hard` is a method
+    /// for the same scene.
+    ///
+    /// # Errors
+    /// No round.
+    pub fn new(scene: CollisionScene, soft_rounds: usize, hard: H) -> Result<Self, Errors<ParamError>> {
         let params = ZoneParams { max_iterations: soft_rounds, ..ZoneParams::default() };
         let name = format!("two phases, hard: {}", hard.name());
-        Self { name, soft: ImpactZones::new(scene, params), hard, fallbacks: 0 }
+        Ok(Self { name, soft: ImpactZones::new(scene, params)?, hard, fallbacks: 0 })
     }
 
-    /// Calls so far that needed the hard phase.
+    /// Number of calls so far that needed the hard phase.
     pub fn fallbacks(&self) -> usize {
         self.fallbacks
     }
@@ -46,7 +53,7 @@ impl<H: Method> Method for TwoPhase<H> {
         target: &[Point],
         input: &ResolveInput<'_>,
     ) -> Result<Outcome, ResolveError> {
-        let clock = Instant::now();
+        let timer = Instant::now();
         let mut outcome = Outcome::default();
         let attempt = self.soft.optimise(positions, target, input, &mut outcome)?;
         if attempt.clear {
@@ -54,7 +61,7 @@ impl<H: Method> Method for TwoPhase<H> {
             outcome.converged = true;
         } else {
             self.fallbacks += 1;
-            // Rows that contradict each other may have sent it far; beyond all bounds it is of no use.
+            // Contradicting rows may have moved the target to infinity.
             let finite = attempt.target.iter().all(|y| y.iter().all(|c| c.is_finite()));
             let target = if finite { &attempt.target } else { target };
             let hard = self.hard.solve(positions, target, input)?;
@@ -68,7 +75,7 @@ impl<H: Method> Method for TwoPhase<H> {
             sum.backward += more.backward;
             sum.forward += more.forward;
         }
-        outcome.seconds.total = clock.elapsed().as_secs_f64();
+        outcome.seconds.total = timer.elapsed().as_secs_f64();
         Ok(outcome)
     }
 }

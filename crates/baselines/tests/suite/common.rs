@@ -1,4 +1,4 @@
-//! Scenes, and an oracle for intersections.
+//! Scenes, and exact checks for intersections.
 
 use bowknot_baselines::twoway::geometry::{HalfSpace, Point, Topology, Vector, intersection};
 use bowknot_baselines::twoway::proximity::{BodyFilter, CollisionModel};
@@ -16,7 +16,7 @@ mod sheet;
 pub use draw::Draw;
 use sheet::sheet;
 
-/// Vertices, what they make, and the bodies that they belong to.
+/// Vertices and a collision model of them.
 #[derive(Clone)]
 pub struct Scene {
     pub x: Vec<Point>,
@@ -24,7 +24,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// A fixed triangle in the plane z = 0, and a particle at `height` above its inside.
+    /// A fixed triangle in the plane z = 0, and a particle at `height` above its interior.
     pub fn vertex_above_triangle(height: f64) -> Self {
         let mut x = [[-1.0, -1.0, 0.0], [2.0, -1.0, 0.0], [-1.0, 2.0, 0.0]].map(Point::from).to_vec();
         x.push(Point::new(0.1, 0.2, height));
@@ -33,8 +33,8 @@ impl Scene {
         Self { x, model: CollisionModel::new(topology, vec![0, 0, 0, 1], bodies, vec![]).unwrap() }
     }
 
-    /// Two sheets `gap` apart, two strands across them, particles on top, ground below, an obstacle beside it: every
-    /// kind of pair, nearest neighbours `gap` apart.
+    /// Two sheets `gap` apart, two strands across them, particles on top, ground below, an obstacle beside
+    /// it: every kind of pair, nearest neighbours `gap` apart.
     pub fn heap(gap: f64) -> Self {
         let (mut x, mut triangles, mut bodies) = (Vec::new(), Vec::new(), Vec::new());
         let h = 0.1;
@@ -80,7 +80,7 @@ impl Scene {
         Self { x, model: CollisionModel::new(topology, bodies, filters, vec![ground]).unwrap() }
     }
 
-    /// Two sheets of `cells` x `cells`, 0.1 m a cell, `gap` apart.
+    /// Two sheets of `cells` x `cells` cells of 0.1 m, `gap` apart.
     pub fn two_sheets(cells: usize, gap: f64) -> Self {
         let (mut x, mut triangles) = (Vec::new(), Vec::new());
         sheet(cells, 0.1, 0.0, &mut x, &mut triangles);
@@ -107,7 +107,7 @@ impl Scene {
         scene
     }
 
-    /// Where two sheets want to be that change places, and crumple on the way.
+    /// Targets of two sheets that change places and crumple on the way.
     pub fn swapped(&self) -> Vec<Point> {
         let n = self.x.len() / 2;
         let mut draw = Draw::new(5);
@@ -124,8 +124,8 @@ impl Scene {
     }
 }
 
-/// The state that a call starts from, with the candidate pairs of its first search.
-pub fn listed(
+/// The state at the start of a call, with the candidate pairs of its first search.
+pub fn with_candidates(
     collision: &CollisionScene,
     search: &mut dyn Search,
     x: &[Point],
@@ -169,7 +169,8 @@ pub fn resolve_watched<S: Search, B: BackwardStep, F: ForwardStep>(
     (x, statistics)
 }
 
-/// Asserts by exact predicates, one pair after another, that no edge meets a triangle and nothing is below the ground.
+/// Asserts by exact predicates on all pairs that no edge meets a triangle and that nothing is below the
+/// ground.
 pub fn assert_clear(model: &CollisionModel, x: &[Point], what: &str) {
     let topology = model.topology();
     let at = |v: u32| &x[v as usize];
@@ -188,7 +189,7 @@ pub fn assert_clear(model: &CollisionModel, x: &[Point], what: &str) {
     }
 }
 
-/// Asserts that `solve` gives the same on one thread and on more.
+/// Asserts that `solve` has the same result on any number of threads.
 pub fn assert_same_on_any_number_of_threads<R: PartialEq + Send>(solve: impl Fn() -> R + Send + Sync) {
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

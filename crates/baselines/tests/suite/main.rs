@@ -4,4 +4,5 @@
 mod backward;
 mod common;
 mod interior;
+mod parameters;
 mod zones;

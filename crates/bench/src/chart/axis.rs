@@ -1,4 +1,4 @@
-//! Axes: from values to places, and where the ticks stand.
+//! Axes: the map from values to pixels, and the ticks.
 
 /// How values are spread along an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -19,8 +19,8 @@ pub struct Mapping {
 }
 
 impl Mapping {
-    /// An axis that shows all of `values` that it can show, with some air around them. A linear axis of values that are
-    /// not negative begins at 0.
+    /// An axis that shows all of `values` that it can show, with a margin. A linear axis of non-negative
+    /// values begins at 0.
     pub fn new(scale: Scale, values: impl Iterator<Item = f64>, [start, end]: [f64; 2]) -> Self {
         let inside = |v: &f64| v.is_finite() && (scale == Scale::Linear || *v > 0.0);
         let (low, high) = values
@@ -28,15 +28,15 @@ impl Mapping {
             .filter(|v| v.is_finite())
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         let (low, high) = if low <= high { (low, high) } else { (0.0, 1.0) };
-        let air = match high - low {
+        let margin = match high - low {
             0.0 => 0.5,
             range => 0.06 * range,
         };
-        let bottom = if scale == Scale::Linear && low >= 0.0 { 0.0 } else { low - air };
-        Self { scale, low: bottom, high: high + air, start, end }
+        let bottom = if scale == Scale::Linear && low >= 0.0 { 0.0 } else { low - margin };
+        Self { scale, low: bottom, high: high + margin, start, end }
     }
 
-    /// Where a value stands; none if the axis cannot show it.
+    /// The pixel of a value; none if the axis cannot show it.
     pub fn place(&self, value: f64) -> Option<f64> {
         if !value.is_finite() || (self.scale == Scale::Log && value <= 0.0) {
             return None;
@@ -45,7 +45,7 @@ impl Mapping {
         Some(self.start + share * (self.end - self.start))
     }
 
-    /// Values with a tick, and what is written there.
+    /// Values with a tick, and their labels.
     pub fn ticks(&self) -> Vec<(f64, String)> {
         let values = match self.scale {
             Scale::Linear => linear_ticks(self.low, self.high),
@@ -72,17 +72,15 @@ fn linear_ticks(low: f64, high: f64) -> Vec<f64> {
     (first..=last).map(|k| k as f64 * step).collect()
 }
 
-/// Powers of ten; with 2 and 5 times them where there are few, every other one where there are many.
+/// Powers of ten. If they are few, also 2 and 5 times them; if they are many, every second one or fewer.
 fn log_ticks(low: f64, high: f64) -> Vec<f64> {
     let (first, last) = (low.floor() as i32, high.ceil() as i32);
     let inside = |v: f64| (low..=high).contains(&v.log10());
     let powers: Vec<f64> = (first..=last).map(|p| 10f64.powi(p)).filter(|v| inside(*v)).collect();
     match powers.len() {
         0..=2 => {
-            let multiples: &[f64] = match high - low < 0.8 {
-                true => &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0],
-                false => &[1.0, 2.0, 5.0],
-            };
+            let multiples: &[f64] =
+                if high - low < 0.8 { &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0] } else { &[1.0, 2.0, 5.0] };
             let finer = |p: i32| multiples.iter().map(move |m| m * 10f64.powi(p));
             (first..=last).flat_map(finer).filter(|v| inside(*v)).collect()
         }
@@ -97,13 +95,10 @@ fn label(value: f64) -> String {
         return "0".to_owned();
     }
     if (1e-3..1e5).contains(&size) {
-        // Enough digits for the second one, no zeros behind.
+        // Two significant digits, without zeros at the end.
         let digits = (1 - size.log10().floor() as i32).max(0) as usize;
         let text = format!("{value:.digits$}");
-        match text.contains('.') {
-            true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-            false => text,
-        }
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
     } else {
         format!("{value:.0e}")
     }

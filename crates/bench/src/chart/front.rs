@@ -1,7 +1,7 @@
 //! The Pareto front of points, smaller being better on both axes.
 
-/// Indices, by rising x, of the points that no other one beats on one axis without being beaten on the other. Points that are not finite are
-/// on no front.
+/// Indices, by rising x, of the points that no other point dominates. Points that are not finite are on no
+/// front.
 pub fn pareto_front(points: &[(f64, f64)]) -> Vec<usize> {
     let mut order: Vec<usize> =
         (0..points.len()).filter(|&k| points[k].0.is_finite() && points[k].1.is_finite()).collect();
@@ -20,7 +20,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_what_nothing_beats() {
+    fn only_points_that_nothing_dominates() {
         let points = [(3.0, 1.0), (1.0, 5.0), (2.0, 5.0), (2.0, 3.0), (4.0, 2.0), (0.5, f64::NAN)];
         assert_eq!(pareto_front(&points), [1, 3, 0]);
         assert!(pareto_front(&[]).is_empty());

@@ -1,4 +1,4 @@
-//! Places for the labels of points, beside them and off each other.
+//! Positions of the labels of points: beside the points and clear of each other.
 
 /// Width of a character and height of a line in labels [px]; an estimate, fonts differ.
 const CHARACTER: f64 = 5.6;
@@ -14,7 +14,7 @@ pub struct Anchor {
     pub y: f64,
 }
 
-/// Finds places for labels, one after the other.
+/// Finds positions for labels, one after another.
 #[derive(Debug, Default)]
 pub struct Placer {
     taken: Vec<Rectangle>,
@@ -22,13 +22,13 @@ pub struct Placer {
 }
 
 impl Placer {
-    /// Labels stay within `bounds` and off the `points`.
+    /// Labels stay within `bounds` and clear of the `points`.
     pub fn new(bounds: Rectangle, points: &[(f64, f64)]) -> Self {
         let around = |&(x, y): &(f64, f64)| [x - 4.0, y - 4.0, x + 4.0, y + 4.0];
         Self { taken: points.iter().map(around).collect(), bounds }
     }
 
-    /// A place near the point, the nearest that is free; none if all are taken.
+    /// The nearest free position beside the point; none if all are taken.
     pub fn place(&mut self, (x, y): (f64, f64), text: &str) -> Option<Anchor> {
         let width = CHARACTER * text.chars().count() as f64;
         for ring in [6.0, 15.0, 26.0] {
@@ -68,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn labels_keep_off_each_other() {
+    fn labels_do_not_overlap() {
         let points = [(50.0, 50.0), (54.0, 50.0)];
         let mut placer = Placer::new([0.0, 0.0, 200.0, 100.0], &points);
         let first = placer.place(points[0], "first").expect("a place");

@@ -1,18 +1,19 @@
 //! The drawing of a chart.
 
-use super::axis::Mapping;
+use super::axis::{Mapping, Scale};
+use super::data::{Chart, Series, Style};
+use super::front::pareto_front;
 use super::labels::Placer;
-use super::{Chart, Scale, Series, Style, pareto_front};
 use std::fmt::Write;
 
 const WIDTH: f64 = 860.0;
 const HEIGHT: f64 = 470.0;
 /// Left, top, right, bottom of the area within the axes [px].
 const AREA: [f64; 4] = [72.0, 34.0, 660.0, 416.0];
-/// Colours that the colour-blind tell apart (Okabe and Ito 2008), light ones last.
+/// Colours that colour-blind readers can tell apart (Okabe and Ito 2008), light ones last.
 const COLOURS: [&str; 8] =
     ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#000000", "#e69f00", "#56b4e9", "#8c564b"];
-/// Marks go on with another shape where the colours begin anew.
+/// Number of shapes of marks. The shape changes when the colours start again.
 const SHAPES: usize = 4;
 
 /// The chart as an SVG file.
@@ -20,7 +21,7 @@ pub fn svg(chart: &Chart) -> String {
     let marks = || chart.series.iter().flat_map(|series| &series.points);
     let [left, top, right, bottom] = AREA;
     let x = Mapping::new(chart.x.scale, marks().map(|m| m.x), [left, right]);
-    // Bars stand on the axis.
+    // Bars start at zero.
     let foot = chart.series.iter().any(|s| s.style == Style::Bars && chart.y.scale == Scale::Linear);
     let y = Mapping::new(chart.y.scale, marks().map(|m| m.y).chain(foot.then_some(0.0)), [bottom, top]);
     let place = |px: f64, py: f64| Some((x.place(px)?, y.place(py)?));
@@ -81,7 +82,7 @@ fn axes(chart: &Chart, x: &Mapping, y: &Mapping, add: &mut impl FnMut(String)) {
 fn front(chart: &Chart, place: impl Fn(f64, f64) -> Option<(f64, f64)>, add: &mut impl FnMut(String)) {
     let points: Vec<(f64, f64)> =
         chart.series.iter().flat_map(|s| &s.points).filter_map(|m| place(m.x, m.y)).collect();
-    // Up is down on the screen: the front is sought in values that fall.
+    // On the screen y points down: the front is computed with -y.
     let values: Vec<(f64, f64)> = points.iter().map(|&(x, y)| (x, -y)).collect();
     let front = pareto_front(&values);
     let mut path = String::new();
@@ -89,7 +90,7 @@ fn front(chart: &Chart, place: impl Fn(f64, f64) -> Option<(f64, f64)>, add: &mu
         let (x, y) = points[index];
         let _ = match k {
             0 => write!(path, "M{x:.1} {y:.1}"),
-            // What can be had for the time of x is the error of the point before, up to x.
+            // Up to x the smallest error is that of the point before.
             _ => write!(path, "H{x:.1}V{y:.1}"),
         };
     }
@@ -190,43 +191,4 @@ fn escape(text: &str) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::{Axis, Mark};
-    use super::*;
-
-    fn chart() -> Chart {
-        let mark = |x, y, label: &str| Mark { x, y, label: label.to_owned() };
-        Chart {
-            title: "error & time".to_owned(),
-            x: Axis::log("CPU seconds"),
-            y: Axis::log("error [mm]"),
-            series: vec![
-                Series {
-                    name: "a < b".to_owned(),
-                    points: vec![mark(1.0, 1.0, "x"), mark(10.0, 0.1, "y"), mark(20.0, 0.0, "not shown")],
-                    style: Style::Line,
-                },
-                Series::new("bars", Style::Bars, [(2.0, 0.5), (5.0, 5.0)]),
-            ],
-            front: true,
-        }
-    }
-
-    #[test]
-    fn charts_show_what_they_can_and_escape_the_rest() {
-        let text = svg(&chart());
-        assert!(text.starts_with("<svg") && text.ends_with("</svg>\n"));
-        assert!(text.contains("error &amp; time") && text.contains("a &lt; b"));
-        assert_eq!(text.matches("<circle").count(), 2 + 2, "two marks, one key for each series");
-        assert!(!text.contains("not shown") && !text.contains("NaN"));
-    }
-
-    /// The front goes down in steps from the fastest to the most exact point.
-    #[test]
-    fn the_front_goes_through_the_best_points() {
-        let text = svg(&chart());
-        let dashed: Vec<&str> = text.lines().filter(|l| l.contains("stroke-dasharray")).collect();
-        assert_eq!(dashed.len(), 2, "the front and its key");
-        assert_eq!(dashed[0].matches('H').count(), 2, "{}", dashed[0]);
-    }
-}
+mod tests;

@@ -1,9 +1,9 @@
-//! Where the time of the collision stage goes (paper, section 7.2, Fig. 20).
+//! The time of the collision stage by part (paper, section 7.2, Fig. 20).
 
-use super::{Figure, Part, Section};
 use crate::bench::Bench;
+use crate::figure::{Figure, Part, Report};
 use crate::methods::Setting;
-use crate::record::SPECS;
+use crate::record::PROBLEM_SETS;
 use crate::solve::Against;
 use crate::summary::{Compared, on_scenes};
 use crate::table::{Entry, Table, mean};
@@ -21,21 +21,29 @@ impl Figure for Breakdown {
     }
 
     fn question(&self) -> &'static str {
-        "In the paper's bow knot the proximity search, with the update of Jacobians, takes almost half of the time. Shares of \
-         the wall time of the recorded problems: *search*, with the distances of fresh pairs; *evaluate*, distances between \
-         searches; *backward*, rows, colours and sweeps; *forward*, the step and its certificates."
+        "In the paper's bow knot, the proximity search and the update of Jacobians take almost half of the \
+         time. Shares of the wall time of the recorded problems: *search* includes the distances of new \
+         pairs; *evaluate*: distances between searches; *backward*: rows, colours and sweeps; *forward*: the \
+         step and its certificates."
     }
 
-    fn run(&self, bench: &Bench) -> Result<Section> {
+    fn run(&self, bench: &Bench) -> Result<Report> {
         let scenes: Vec<&'static str> = bench.size.pick(
-            SPECS.iter().map(|spec| spec.name).collect(),
-            vec!["needle", "stack", "tube", "reef-knot", "sand", "needle-blind", "stack-blind"],
-            vec!["needle", "needle-blind"],
+            PROBLEM_SETS.iter().map(|set| set.name).collect(),
+            vec!["needle", "stack", "tube", "reef-knot", "sand", "needle-unaware", "stack-unaware"],
+            vec!["needle", "needle-unaware"],
         );
         let settings = [Setting::of("fast")?, Setting::of("paper")?];
         let compared =
             on_scenes(bench, &scenes, bench.size.pick(10, 3, 2), &settings, 1, Against::Residuals)?;
-        let mut table = Table::new(["scene", "preset", "search %", "evaluate %", "backward %", "forward %"]);
+        let mut table = Table::new([
+            "scene",
+            "preset",
+            "search_percent",
+            "evaluate_percent",
+            "backward_percent",
+            "forward_percent",
+        ]);
         for c in &compared {
             for summary in &c.summaries {
                 let total: f64 = summary.stages.iter().sum();
@@ -52,14 +60,18 @@ impl Figure for Breakdown {
             let knot = knot.map_or_else(String::new, |s| format!(" ({:.0} % in the knot)", 100.0 * s));
             format!("{:.0} %{knot}", 100.0 * mean(&shares))
         };
-        Ok(Section {
+        Ok(Report {
             finding: format!(
-                "Search and evaluation of pairs take {} of `paper` and {} of `fast`, means over the scenes. (The paper: almost \
-                 half, on its GPU.)",
+                "Search and evaluation of pairs take {} of the time of `paper` and {} of `fast`, means over \
+                 the scenes. (The paper: almost half, on its GPU.)",
                 share("paper"),
                 share("fast")
             ),
-            parts: vec![Part::Table { name: self.name().to_owned(), caption: String::new(), table }],
+            parts: vec![Part::table(
+                self.name(),
+                "shares of the stages in the wall time of the collision stage, by scene and preset",
+                table,
+            )],
         })
     }
 }

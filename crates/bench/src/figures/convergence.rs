@@ -1,8 +1,9 @@
-//! How a time step is solved: its residual over iterations, and what it costs to end near a converged one.
+//! The solution of a time step: its residual over iterations, and the cost of coming close to a converged
+//! solution.
 
-use super::{Figure, Part, Section};
 use crate::bench::Bench;
 use crate::chart::{Axis, Chart, Mark, Series, Style};
+use crate::figure::{Figure, Part, Report};
 use crate::table::{Table, mean, median, short};
 use anyhow::{Result, anyhow};
 use bowknot::simulator::{Checkpoint, Iterated, SimulationObserver};
@@ -33,21 +34,22 @@ const SUBJECTS: [Subject; 5] = [
 
 /// Iterations of each time step whose residuals are shown.
 const SHOWN: usize = 16;
-/// Iterations of the reference of the second part, of those that are compared with it.
+/// Iterations of the reference of the second part.
 const REFERENCE: usize = 32;
+/// Iterations that are compared with it.
 const COMPARED: [usize; 5] = [1, 2, 4, 8, 16];
-/// States of each scene that time steps are made from.
+/// Number of states of each scene from which time steps are made.
 const STATES: usize = 4;
 /// Time steps made from each state, and those of them after which positions are compared.
 const AGAIN: usize = 4;
 const AFTER: [usize; 3] = [1, 2, AGAIN];
-/// Residual below that of the last iteration shown by less than this factor: the floor is reached.
-const FLOOR: f64 = 1.5;
+/// A residual stalls if it is less than this multiple of the median of the last iterations.
+const STALL_FACTOR: f64 = 1.5;
 
 /// Residuals of time steps [mean edge lengths], by time step and iteration.
 type Residuals = Vec<Vec<f64>>;
 
-/// What a setting did from one state.
+/// Time steps from one state with one setting.
 #[derive(Debug, Serialize, Deserialize)]
 struct Again {
     /// CPU seconds of the time steps.
@@ -64,39 +66,43 @@ impl Figure for Convergence {
     }
 
     fn title(&self) -> &'static str {
-        "How a time step is solved: residual and cost over iterations"
+        "Residual and cost of a time step over iterations"
     }
 
     fn question(&self) -> &'static str {
-        "A time step alternates Newton iterations and collision stages. First: its residual after k iterations, all 16 made \
-         (`solver.newton.step_tolerance=0`), medians and quartiles over the time steps of the second half of small runs. The residual is the \
-         distance, in mean edge lengths, that the forces left over are worth: inertia, elasticity, contact and friction. The \
-         default ends a time step at 0.003 (in time steps of 1/20 s at 0.015), when three iterations in a row do not take off 30 %, or after 8 iterations. \
-         \n\n\
-         Second: how far time steps end from converged ones, and at what CPU time. From four states of each scene, the one before the \
-         first contact and three more up to the end of the run, four time steps are made with each setting. Their positions are \
-         compared with those of 32 iterations: root mean squares over states and vertices. That reference is the method's \
-         own most exact run: distances tell how consistent it is with itself, not whether it is right. Where they fall and the residual \
-         stalls, iterations settle on a state that does not solve the time step. All settings start from the same states, and the chart shows the end of the first time step, because contact amplifies small differences until runs \
-         lie elsewhere; the table has the growth over four time steps."
+        "A time step alternates Newton iterations and collision stages. First part: the residual after k of \
+         16 iterations (`solver.newton.step_tolerance=0`), medians and quartiles over the time steps of the \
+         second half of small runs. The residual is the net force of inertia, elasticity, contact and friction, \
+         converted to a distance in mean edge lengths. By default a time step ends at 0.003 (at time steps \
+         of 1/20 s: 0.015), when three iterations in a row do not reduce the residual by 30 %, or after 8 \
+         iterations. \n\nSecond part: the distance of a time step from a converged one, and its CPU time. \
+         From four states of each scene, the one before the first contact and three more up to the end of \
+         the run, four time steps are made with each setting. Their positions are compared with those of 32 \
+         iterations: root mean squares over states and vertices. That reference is the method's own most \
+         exact run: distances show that it agrees with itself, not that it is right. If distances fall while \
+         the residual stalls, iterations approach a state that does not solve the time step. All settings \
+         start from the same states. The chart shows the end of the first time step, because contact \
+         amplifies small differences; the table has all four time steps."
     }
 
-    fn run(&self, bench: &Bench) -> Result<Section> {
+    fn run(&self, bench: &Bench) -> Result<Report> {
         let subjects = bench.size.pick(&SUBJECTS[..], &SUBJECTS[..2], &SUBJECTS[..1]);
-        let (residuals, floors) = residuals(bench, subjects)?;
+        let (residuals, stalls) = residuals(bench, subjects)?;
         let (costs, ratios) = costs(bench, subjects)?;
-        let mut section = Section { finding: format!("{floors} {ratios}"), parts: residuals };
-        section.parts.extend(costs);
-        Ok(section)
+        let mut report = Report { finding: format!("{stalls} {ratios}"), parts: residuals };
+        report.parts.extend(costs);
+        Ok(report)
     }
 }
 
 /// Residual against iterations: a chart, a table, and what they show.
 fn residuals(bench: &Bench, subjects: &[Subject]) -> Result<(Vec<Part>, String)> {
     let mut table = Table::new(
-        ["scene".to_owned(), "residual".to_owned()].into_iter().chain((1..=SHOWN).map(|k| k.to_string())),
+        ["scene".to_owned(), "statistic".to_owned()]
+            .into_iter()
+            .chain((1..=SHOWN).map(|k| format!("residual_{k}"))),
     );
-    let (mut series, mut told) = (Vec::new(), Vec::new());
+    let (mut series, mut texts) = (Vec::new(), Vec::new());
     for subject in subjects {
         if !bench.has_time() {
             break;
@@ -116,7 +122,7 @@ fn residuals(bench: &Bench, subjects: &[Subject]) -> Result<(Vec<Part>, String)>
         let medians = at(0.5);
         let points = medians.iter().enumerate().map(|(k, residual)| ((k + 1) as f64, *residual));
         series.push(Series::new(subject.scene, Style::Line, points));
-        told.push(floor(subject.scene, &medians));
+        texts.push(stall(subject.scene, &medians));
     }
     let chart = Chart {
         title: "Residual of the time step against iterations, medians".to_owned(),
@@ -125,18 +131,17 @@ fn residuals(bench: &Bench, subjects: &[Subject]) -> Result<(Vec<Part>, String)>
         series,
         front: false,
     };
-    let caption = "Residual of the time step after k iterations [mean edge lengths].".to_owned();
     let parts = vec![
         Part::Chart { name: "convergence-residual".to_owned(), chart },
-        Part::Table { name: "convergence".to_owned(), caption, table },
+        Part::table("convergence", "residual of a time step after k iterations [mean edge lengths]", table),
     ];
-    Ok((parts, format!("Residuals, medians, in mean edge lengths: {}.", told.join("; "))))
+    Ok((parts, format!("Residuals, medians, in mean edge lengths: {}.", texts.join("; "))))
 }
 
-/// Where residuals over iterations come to their floor.
-fn floor(scene: &str, medians: &[f64]) -> String {
+/// The iteration from which on residuals stall.
+fn stall(scene: &str, medians: &[f64]) -> String {
     let (first, end) = (medians[0], median(&medians[SHOWN / 2..]));
-    let from = medians.iter().position(|residual| *residual < FLOOR * end).map_or(SHOWN, |k| k + 1);
+    let from = medians.iter().position(|residual| *residual < STALL_FACTOR * end).map_or(SHOWN, |k| k + 1);
     let lowest = medians.iter().copied().fold(f64::INFINITY, f64::min);
     if from > SHOWN / 2 {
         return format!("`{scene}` falls from {} to {} in {SHOWN} iterations", short(first), short(lowest));
@@ -146,12 +151,11 @@ fn floor(scene: &str, medians: &[f64]) -> String {
 
 /// Distance from the reference against CPU time: a chart, a table, and what they show.
 fn costs(bench: &Bench, subjects: &[Subject]) -> Result<(Vec<Part>, String)> {
-    let mut header = vec!["scene".to_owned(), "Newton iterations".to_owned(), "made".to_owned()];
-    header.push("CPU ms a time step".to_owned());
-    header.extend(AFTER.iter().map(|n| format!("off after {n}, mm")));
-    header.extend(AFTER.iter().map(|n| format!("after {n}, edges")));
+    let mut header = ["scene", "newton_iterations", "mean_iterations", "cpu_ms"].map(str::to_owned).to_vec();
+    header.extend(AFTER.iter().map(|n| format!("distance_{n}_mm")));
+    header.extend(AFTER.iter().map(|n| format!("distance_{n}_edges")));
     let mut table = Table::new(header);
-    let (mut series, mut told) = (Vec::new(), Vec::new());
+    let (mut series, mut texts) = (Vec::new(), Vec::new());
     for subject in subjects {
         if !bench.has_time() {
             break;
@@ -178,7 +182,7 @@ fn costs(bench: &Bench, subjects: &[Subject]) -> Result<(Vec<Part>, String)> {
         }
         if let [.., most, default] = &marks[..] {
             let text = |mark: &Mark| format!("{} in {} ms", short(mark.y), short(1e3 * mark.x));
-            told.push(format!("`{}` {}, {}, {}", subject.scene, text(&marks[0]), text(default), text(most)));
+            texts.push(format!("`{}` {}, {}, {}", subject.scene, text(&marks[0]), text(default), text(most)));
         }
         // Marks are joined in the order of their cost.
         marks.sort_by(|a, b| a.x.total_cmp(&b.x));
@@ -191,19 +195,19 @@ fn costs(bench: &Bench, subjects: &[Subject]) -> Result<(Vec<Part>, String)> {
         series,
         front: false,
     };
-    let caption = format!(
-        "Distance from {REFERENCE} iterations after so many time steps, root mean square. *Made*: mean of the iterations of a \
-         time step; *default*: default tolerance and limit."
+    let shows = format!(
+        "RMS distance from {REFERENCE} iterations after 1, 2 and 4 time steps; CPU time of a time step; \
+         `default`: default tolerance and limit"
     );
     let parts = vec![
         Part::Chart { name: "convergence-cost".to_owned(), chart },
-        Part::Table { name: "convergence-cost".to_owned(), caption, table },
+        Part::table("convergence-cost", shows, table),
     ];
     let finding = format!(
-        "Distance of one time step from that of {REFERENCE} iterations, in mean edge lengths, and its CPU time, with 1 \
-         iteration, the default, and {} iterations: {}.",
+        "Distance of one time step from that of {REFERENCE} iterations, in mean edge lengths, and its CPU \
+         time, with 1 iteration, the default, and {} iterations: {}.",
         COMPARED[COMPARED.len() - 1],
-        told.join("; ")
+        texts.join("; ")
     );
     Ok((parts, finding))
 }
@@ -214,7 +218,7 @@ impl Subject {
         bench.size.pick(full, quick, tiny)
     }
 
-    /// The scene with so many iterations in each time step, all of them made; none: as it is by default.
+    /// The scene with exactly so many iterations in each time step; none: the default rule.
     fn scene(&self, iterations: Option<usize>) -> Result<Scene> {
         let mut sets: Vec<String> = Vec::new();
         if let Some(count) = iterations {
@@ -234,8 +238,8 @@ impl Subject {
         Ok(seen.residuals)
     }
 
-    /// Mean edge length [m]; states of the scene by default settings: the one before the first time step with contact, others from there
-    /// to the end of the run.
+    /// Mean edge length [m], and states of the scene under default settings: the one before the first time
+    /// step with contact, and others from there to the end of the run.
     fn states(&self, bench: &Bench) -> Result<(f64, Vec<Checkpoint>)> {
         let mut simulator = Simulator::new(&self.scene(None)?)?;
         let (mut states, mut first) = (vec![simulator.checkpoint()], None);
@@ -277,7 +281,7 @@ impl Subject {
     }
 }
 
-/// Takes down residuals, in mean edge lengths.
+/// Records residuals, in mean edge lengths.
 struct Seen {
     edge: f64,
     residuals: Residuals,
@@ -291,14 +295,15 @@ impl SimulationObserver for Seen {
     }
 }
 
-/// Root mean square over states and vertices, after the time steps of place `after` in [`AFTER`] [m].
+/// Root mean square distance over states and vertices, after the number of time steps in place `after` of
+/// [`AFTER`] [m].
 fn distance(a: &[Again], b: &[Again], after: usize) -> f64 {
     let square = |(a, b): (&[f64; 3], &[f64; 3])| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>();
     let pairs = a.iter().zip(b).flat_map(|(a, b)| a.positions[after].iter().zip(&b.positions[after]));
     mean(&pairs.map(square).collect::<Vec<f64>>()).sqrt()
 }
 
-/// The value below which a share of the values lies; nan of none.
+/// The value below which a share of the values lies; NaN of no values.
 fn quantile(values: &[f64], share: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -315,11 +320,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn floors_are_told_from_steady_falls() {
+    fn stalls_are_distinguished_from_steady_falls() {
         let stalls: Vec<f64> = (0..SHOWN).map(|k| if k < 2 { 0.5 } else { 0.01 }).collect();
-        assert_eq!(floor("a", &stalls), "`a` falls from 0.500 and stalls at 0.0100 from iteration 3 on");
+        assert_eq!(stall("a", &stalls), "`a` falls from 0.500 and stalls at 0.0100 from iteration 3 on");
         let falls: Vec<f64> = (0..SHOWN).map(|k| 0.5f64.powi(k as i32)).collect();
-        assert!(floor("b", &falls).starts_with("`b` falls from 1.00 to 3.1e-5"), "{}", floor("b", &falls));
+        assert!(stall("b", &falls).starts_with("`b` falls from 1.00 to 3.1e-5"), "{}", stall("b", &falls));
         assert_eq!(quantile(&[3.0, 1.0, 2.0, 4.0, 5.0], 0.25), 2.0);
     }
 }

@@ -1,7 +1,7 @@
 //! Early contact by a large delta (paper, section 7.3).
 
-use super::{Figure, Part, Section, verdict};
 use crate::bench::Bench;
+use crate::figure::{Figure, Part, Report, verdict};
 use crate::simulate::simulate;
 use crate::table::{Table, mean, short};
 use anyhow::Result;
@@ -25,19 +25,20 @@ impl Figure for EarlyContact {
     }
 
     fn question(&self) -> &'static str {
-        "delta is the distance that contacts are brought to: a large one makes early collisions, the paper says. A sheet with edges of 5 cm \
-         falls flat by 10 cm onto the ground; how high does it rest, and what does a smaller delta cost in `drape`?"
+        "delta is the distance that contacts are separated to. A large delta makes collisions early, the \
+         paper says. A sheet with edges of 5 cm falls flat by 10 cm onto the ground. How high does it rest, \
+         and what does a smaller delta cost in `drape`?"
     }
 
-    fn run(&self, bench: &Bench) -> Result<Section> {
+    fn run(&self, bench: &Bench) -> Result<Report> {
         let mut table = Table::new([
             "preset",
-            "delta, edge lengths",
-            "rests at, mm",
-            "rests at, deltas",
-            "drape: steps a time step",
-            "drape: CPU s",
-            "drape: gap, mm",
+            "delta_edges",
+            "rest_height_mm",
+            "rest_height_deltas",
+            "drape_steps",
+            "drape_cpu_s",
+            "drape_min_gap_mm",
         ]);
         let mut costs = Vec::new();
         for preset in ["fast", "paper"] {
@@ -75,14 +76,14 @@ impl Figure for EarlyContact {
                 costs.push((preset, delta, height / (delta * EDGE), drape.cpu_seconds()));
             }
         }
-        let told: Vec<String> = ["fast", "paper"]
+        let texts: Vec<String> = ["fast", "paper"]
             .iter()
             .filter_map(|preset| {
                 let of = |delta: f64| costs.iter().find(|c| c.0 == *preset && c.1 == delta);
                 let (small, usual) = (of(DELTAS[0])?, of(0.1)?);
                 Some(format!(
-                    "With `{preset}` the sheet rests at {} delta, and a quarter of the default delta takes {} times the CPU time \
-                     in `drape`",
+                    "With `{preset}` the sheet rests at {} delta, and a quarter of the default delta takes \
+                     {} times the CPU time in `drape`",
                     short(usual.2),
                     short(small.3 / usual.3)
                 ))
@@ -90,15 +91,19 @@ impl Figure for EarlyContact {
             .collect();
         let (low, high) =
             costs.iter().fold((f64::INFINITY, 0.0f64), |(low, high), c| (low.min(c.2), high.max(c.2)));
-        Ok(Section {
+        Ok(Report {
             finding: format!(
-                "{}: a sheet rests at {} to {} delta, so that contact is as early as delta is large. {}.",
+                "{}: a sheet rests at {} to {} delta. {}.",
                 verdict(low > 0.9 && high < 1.1),
                 short(low),
                 short(high),
-                told.join("; ")
+                texts.join("; ")
             ),
-            parts: vec![Part::Table { name: self.name().to_owned(), caption: String::new(), table }],
+            parts: vec![Part::table(
+                self.name(),
+                "rest height of a sheet, and cost of `drape`, by delta",
+                table,
+            )],
         })
     }
 }

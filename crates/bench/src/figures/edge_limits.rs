@@ -1,7 +1,7 @@
-//! What edge-length limits do (paper, section 4.1.1, Fig. 9).
+//! The effect of edge-length limits (paper, section 4.1.1, Fig. 9).
 
-use super::{Figure, Part, Section, verdict};
 use crate::bench::Bench;
+use crate::figure::{Figure, Part, Report, verdict};
 use crate::simulate::simulate;
 use crate::table::{Table, largest, mean, short};
 use anyhow::Result;
@@ -19,25 +19,26 @@ impl Figure for EdgeLimits {
     }
 
     fn question(&self) -> &'static str {
-        "Without edge-length constraints the backward step cannot keep cloth on a needle from being severely deformed, the paper \
-         says. The needle at dt = 1/20 s, with limits and without, up to 5 s a call."
+        "Without edge-length constraints the backward step cannot keep cloth on a needle from being severely \
+         deformed, the paper says. The needle at dt = 1/20 s, with limits and without, up to 5 s per call."
     }
 
-    fn run(&self, bench: &Bench) -> Result<Section> {
+    fn run(&self, bench: &Bench) -> Result<Report> {
         let scale = bench.size.pick(0.4, 0.2, 0.15);
         let frames = bench.size.pick(40, 20, 14);
         let mut table = Table::new([
             "preset",
-            "edge limits",
-            "stretch",
-            "steps a time step",
-            "most",
-            "CPU s",
-            "met",
-            "gap, mm",
-            "X",
+            "edge_limits",
+            "max_stretch",
+            "steps",
+            "most_steps",
+            "cpu_s",
+            "time_steps",
+            "met_rule",
+            "min_gap_mm",
+            "intersections",
         ]);
-        let mut told = Vec::new();
+        let mut texts = Vec::new();
         let mut holds = true;
         for preset in ["fast", "paper"] {
             let mut stretches = Vec::new();
@@ -58,21 +59,26 @@ impl Figure for EdgeLimits {
                     mean(&steps).into(),
                     largest(&steps).into(),
                     done.cpu_seconds().into(),
-                    format!("{} of {}", done.met, steps.len()).into(),
+                    steps.len().into(),
+                    done.met.into(),
                     (1e3 * done.min_gap.unwrap_or(f64::NAN)).into(),
                     done.intersections().into(),
                 ]);
             }
             holds &= stretches[1] > stretches[0];
-            told.push(format!(
+            texts.push(format!(
                 "`{preset}` stretches edges to {} times their rest length at most, and to {} without limits",
                 short(stretches[0]),
                 short(stretches[1])
             ));
         }
-        Ok(Section {
-            finding: format!("{}: {}.", verdict(holds), told.join("; ")),
-            parts: vec![Part::Table { name: self.name().to_owned(), caption: String::new(), table }],
+        Ok(Report {
+            finding: format!("{}: {}.", verdict(holds), texts.join("; ")),
+            parts: vec![Part::table(
+                self.name(),
+                "the needle with and without edge limits, by preset",
+                table,
+            )],
         })
     }
 }

@@ -1,7 +1,7 @@
-//! Dynamics and contact in one loop (paper, Eq. 5-6, Fig. 4d), tried in the cheapest way.
+//! Dynamics and contact in one loop (paper, Eq. 5-6, Fig. 4d), in its cheapest form.
 
-use super::{Figure, Part, Section};
 use crate::bench::Bench;
+use crate::figure::{Figure, Part, Report};
 use crate::table::{Table, mean, times};
 use anyhow::{Result, anyhow};
 use bowknot::check::StateOptions;
@@ -11,12 +11,12 @@ use serde::{Deserialize, Serialize};
 
 pub struct Joint;
 
-/// A scene and the time steps that are made again.
+/// A scene, and the time steps that are compared.
 struct Subject {
     scene: &'static str,
     /// Scale of a full and of a smaller run.
     scales: [f64; 2],
-    /// Time steps before each of those, all in contact.
+    /// Number of time steps before each of them; all are in contact.
     before: [usize; 4],
 }
 
@@ -32,10 +32,10 @@ const CONVERGED: usize = 64;
 const POST: [usize; 5] = [1, 2, 4, 8, 16];
 const JOINT: [usize; 6] = [2, 4, 8, 16, 32, 64];
 
-/// Newton iterations that the finding is about.
+/// Number of Newton iterations in the finding.
 const COMPARED: usize = 8;
 
-/// Where one time step ended, from each of a scene's states.
+/// The end of one time step from each state of a scene.
 #[derive(Debug, Serialize, Deserialize)]
 struct Ends {
     positions: Vec<Vec<[f64; 3]>>,
@@ -58,27 +58,29 @@ impl Figure for Joint {
     }
 
     fn question(&self) -> &'static str {
-        "The paper describes a joint method, whose backward step handles dynamics and contact together, and does not recommend \
-         it. The cheapest form of it: one backward and one forward step after each Newton iteration of the whole time step \
-         (`solver.stop.max_steps=1`), so that one loop lessens the incremental potential and keeps the rows. Against the \
-         two-way method as a post-process, which goes on until its own rule is met, after each of fewer Newton iterations. \
-         One time step from each of four states in contact; *off*: distance of its positions, root mean square, from those \
-         that 64 Newton iterations with the post-process lead to. *Met*: calls that met their rule; one step seldom does."
+        "The paper describes a joint method, whose backward step handles dynamics and contact together, and \
+         does not recommend it. The cheapest form of it: one backward and one forward step after each Newton \
+         iteration of the whole time step (`solver.stop.max_steps=1`), so that one loop reduces the \
+         incremental potential and keeps the rows. It is compared with the two-way method as a post-process, \
+         which runs until its own rule is met, after each of fewer Newton iterations. One time step from \
+         each of four states in contact. The distance is the root mean square over the positions from those \
+         after 64 Newton iterations with the post-process. One step seldom meets the stopping rule."
     }
 
-    fn run(&self, bench: &Bench) -> Result<Section> {
+    fn run(&self, bench: &Bench) -> Result<Report> {
         let mut table = Table::new([
             "scene",
             "method",
-            "Newton iterations",
-            "CPU s",
-            "two-way steps",
-            "off, mm",
-            "met",
-            "stretch",
-            "X",
+            "newton_iterations",
+            "cpu_s",
+            "two_way_steps",
+            "distance_mm",
+            "time_steps",
+            "met_rule",
+            "max_stretch",
+            "intersections",
         ]);
-        let mut told = Vec::new();
+        let mut texts = Vec::new();
         for subject in bench.size.pick(&SUBJECTS[..], &SUBJECTS[..2], &SUBJECTS[..1]) {
             let reference = ends(bench, subject, false, CONVERGED)?;
             // Joint or not, Newton iterations, CPU seconds, distance.
@@ -89,42 +91,52 @@ impl Figure for Joint {
                         break;
                     }
                     let done = ends(bench, subject, joint, iterations)?;
-                    let off = distance(&done, &reference);
-                    rows.push((joint, iterations, done.cpu, off));
+                    let distance = rms_distance(&done, &reference);
+                    rows.push((joint, iterations, done.cpu, distance));
                     table.row([
                         subject.scene.into(),
                         if joint { "joint".into() } else { "post-process".into() },
                         iterations.to_string().into(),
                         done.cpu.into(),
                         done.two_way_steps.into(),
-                        (1e3 * off).into(),
-                        format!("{} of {}", done.met, done.positions.len()).into(),
+                        (1e3 * distance).into(),
+                        done.positions.len().into(),
+                        done.met.into(),
                         done.stretch.into(),
                         done.intersections.into(),
                     ]);
                 }
             }
-            told.extend(verdict(subject.scene, &rows));
+            texts.extend(ratios(subject.scene, &rows));
         }
-        Ok(Section {
+        Ok(Report {
             finding: format!(
                 "The joint loop with {COMPARED} Newton iterations against the post-process with as many: {}.",
-                told.join("; ")
+                texts.join("; ")
             ),
-            parts: vec![Part::Table { name: self.name().to_owned(), caption: String::new(), table }],
+            parts: vec![Part::table(
+                self.name(),
+                "one time step by the joint loop and by the post-process: CPU time, distance from 64 \
+                 iterations",
+                table,
+            )],
         })
     }
 }
 
-/// The joint loop against the post-process at equal Newton iterations.
-fn verdict(scene: &str, rows: &[(bool, usize, f64, f64)]) -> Option<String> {
+/// The joint loop over the post-process with as many Newton iterations.
+fn ratios(scene: &str, rows: &[(bool, usize, f64, f64)]) -> Option<String> {
     let find = |joint: bool| rows.iter().find(|row| row.0 == joint && row.1 == COMPARED);
-    let ((.., post_cpu, post_off), (.., cpu, off)) = (find(false)?, find(true)?);
-    Some(format!("{scene}: {} the CPU time, {} the distance", times(cpu / post_cpu), times(off / post_off)))
+    let ((.., post_cpu, post_distance), (.., cpu, distance)) = (find(false)?, find(true)?);
+    Some(format!(
+        "{scene}: {} the CPU time, {} the distance",
+        times(cpu / post_cpu),
+        times(distance / post_distance)
+    ))
 }
 
-/// Root mean square over all states and vertices [m].
-fn distance(a: &Ends, b: &Ends) -> f64 {
+/// Root mean square distance over all states and vertices [m].
+fn rms_distance(a: &Ends, b: &Ends) -> f64 {
     let square = |(a, b): (&[f64; 3], &[f64; 3])| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>();
     let pairs = a.positions.iter().flatten().zip(b.positions.iter().flatten());
     let squares: Vec<f64> = pairs.map(square).collect();
@@ -176,7 +188,7 @@ fn ends(bench: &Bench, subject: &Subject, joint: bool, iterations: usize) -> Res
     })
 }
 
-/// The states before the time steps that are made again, from the scene as it is.
+/// The states before the compared time steps, under the scene's own settings.
 fn states(bench: &Bench, subject: &Subject) -> Result<Vec<Checkpoint>> {
     let mut simulator = Simulator::new(&scene(bench, subject, &[])?)?;
     let mut states = Vec::new();

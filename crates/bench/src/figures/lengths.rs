@@ -1,13 +1,13 @@
-//! delta, sigma and the floor swept: each value is a problem of its own, with an exact solution of its own (paper, Table 3
-//! and section 7.3).
+//! delta, sigma and the minimum separation swept. Each value defines a problem with a reference solution of
+//! its own (paper, Table 3 and section 7.3).
 
-use super::{Figure, Part, Section};
 use crate::bench::Bench;
-use crate::case::{Case, ProblemLengths, cases};
+use crate::case::{CollisionCase, ProblemLengths, cases};
 use crate::chart::{Axis, Chart};
+use crate::figure::{Figure, Part, Report};
 use crate::methods::Setting;
 use crate::solve::{Against, compare};
-use crate::summary::{COLUMNS, Compared, Summary, lines, table};
+use crate::summary::{Compared, Summary, lines, table};
 use crate::table::short;
 use anyhow::Result;
 
@@ -18,10 +18,11 @@ struct Sweep {
     symbol: &'static str,
     file: &'static str,
     unit: &'static str,
-    /// The presets that it is swept of; `paper` has no floor.
+    /// The presets with which it is swept; `paper` has no minimum separation.
     methods: &'static [&'static str],
-    /// Its values; the one that makes the problem as it was recorded is among them.
+    /// Its values; `recorded` is among them.
     values: &'static [f64],
+    /// The value of the recorded problem.
     recorded: f64,
     set: fn(f64) -> ProblemLengths,
 }
@@ -46,8 +47,8 @@ const SWEEPS: [Sweep; 3] = [
         set: |v| ProblemLengths { stretch_limit: Some(v), ..ProblemLengths::default() },
     },
     Sweep {
-        symbol: "floor",
-        file: "floor",
+        symbol: "minimum separation",
+        file: "min-separation",
         unit: "delta",
         methods: &["fast"],
         values: &[0.01, 0.03, 0.1, 0.3],
@@ -62,25 +63,26 @@ impl Figure for LengthsSwept {
     }
 
     fn title(&self) -> &'static str {
-        "Table 3, continued: delta, sigma and the floor"
+        "Table 3, continued: delta, sigma and the minimum separation"
     }
 
     fn question(&self) -> &'static str {
-        "The distance delta that contacts keep, the stretch limit sigma and the floor of gaps are part of the problem: each value \
-         has an exact solution of its own, which results are held against. States were recorded with delta of a tenth of the edge \
-         length, sigma = 1.1 and a floor of a tenth of delta; another delta finds gaps that are not its own, as a scene whose \
-         settings change. All in targets of a dynamics that is blind to contact, one of Bowknot's."
+        "The distance delta that contacts keep, the stretch limit sigma and the minimum separation define \
+         the problem. So each value has a reference solution of its own. The states were recorded with a \
+         delta of a tenth of the edge length, sigma = 1.1 and a minimum separation of a tenth of delta. \
+         Another delta starts from gaps that were made with the recorded one, as in a scene whose settings \
+         change. Three scenes with contact-unaware targets, one with contact-aware ones."
     }
 
-    fn run(&self, bench: &Bench) -> Result<Section> {
+    fn run(&self, bench: &Bench) -> Result<Report> {
         let scenes: &[&'static str] = bench.size.pick(
-            &["needle-blind", "stack-blind", "reef-knot-blind", "stack"][..],
-            &["stack-blind"],
-            &["needle-blind"],
+            &["needle-unaware", "stack-unaware", "reef-knot-unaware", "stack"][..],
+            &["stack-unaware"],
+            &["needle-unaware"],
         );
         let count = bench.size.pick(2, 1, 1);
-        let mut section = Section::default();
-        let mut told = Vec::new();
+        let mut report = Report::default();
+        let mut texts = Vec::new();
         let mut all = Vec::new();
         for sweep in &SWEEPS {
             let settings = sweep.methods.iter().map(|m| Setting::of(m)).collect::<Result<Vec<_>>>()?;
@@ -92,9 +94,9 @@ impl Figure for LengthsSwept {
                 let values: Vec<(f64, &str, String)> =
                     sweep.values.iter().map(|&v| (v, *method, change(sweep, v))).collect();
                 let cpu = lines(&swept, &values, |s, _| s.cpu);
-                let error = lines(&swept, &values, |s, exact| 1e3 * s.error(exact));
+                let error = lines(&swept, &values, |s, referenced| 1e3 * s.error(referenced));
                 for (what, word, series) in
-                    [("CPU seconds a problem", "seconds", cpu), ("error [mm]", "error", error)]
+                    [("CPU seconds per problem", "seconds", cpu), ("error [mm]", "error", error)]
                 {
                     let chart = Chart {
                         title: format!("{method}: {what} by {}", sweep.symbol),
@@ -104,27 +106,27 @@ impl Figure for LengthsSwept {
                         front: false,
                     };
                     let name = format!("lengths-{method}-{}-{word}", sweep.file);
-                    section.parts.push(Part::Chart { name, chart });
+                    report.parts.push(Part::Chart { name, chart });
                 }
-                told.push(format!(
+                texts.push(format!(
                     "{} in `{method}`: time {}x, error {}x",
                     sweep.symbol,
                     short(spread(&swept, &values, |s, _| s.cpu)),
-                    short(spread(&swept, &values, |s, exact| s.error(exact)))
+                    short(spread(&swept, &values, |s, referenced| s.error(referenced)))
                 ));
             }
             all.extend(swept);
         }
-        section.finding = format!(
+        report.finding = format!(
             "Factor between the largest and the smallest over the values, largest over the scenes. {}.",
-            told.join("; ")
+            texts.join("; ")
         );
-        section.parts.push(Part::Table {
-            name: self.name().to_owned(),
-            caption: COLUMNS.to_owned(),
-            table: table(&all, |_| true),
-        });
-        Ok(section)
+        report.parts.push(Part::table(
+            self.name(),
+            "delta, sigma and the minimum separation swept, each value with a reference solution of its own",
+            table(&all, |_| true),
+        ));
+        Ok(report)
     }
 }
 
@@ -132,23 +134,25 @@ fn change(sweep: &Sweep, value: f64) -> String {
     format!("{} = {value}", sweep.symbol)
 }
 
-/// The problems of a scene under every value of a length, one summary a method and value; none if there was no time.
+/// The problems of a scene under every value of a length, with one summary per method and value; none if
+/// there was no time.
 fn on_scene(
     bench: &Bench,
     scene: &'static str,
-    cases: &[Case],
+    cases: &[CollisionCase],
     sweep: &Sweep,
     settings: &[Setting],
 ) -> Result<Option<Compared>> {
     let mut summaries = Vec::new();
     for &value in sweep.values {
-        let changed: Vec<Case> = match value == sweep.recorded {
-            true => cases.to_vec(),
-            false => cases.iter().map(|c| c.under(&change(sweep, value), (sweep.set)(value))).collect(),
+        let changed: Vec<CollisionCase> = if value == sweep.recorded {
+            cases.to_vec()
+        } else {
+            cases.iter().map(|c| c.with_lengths(&change(sweep, value), (sweep.set)(value))).collect()
         };
-        let solved = compare(bench, &changed.iter().collect::<Vec<_>>(), settings, 1, Against::Exact)?;
+        let solved = compare(bench, &changed.iter().collect::<Vec<_>>(), settings, 1, Against::Reference)?;
         for (s, setting) in settings.iter().enumerate() {
-            // Not `Setting::with`: it is the problem that changes.
+            // Not `Setting::with`, because the problem changes and not the setting.
             let rows = solved.iter().flatten().map(|row| &row[s]);
             summaries.extend(
                 Summary::of(setting, cases, rows).map(|s| Summary { change: change(sweep, value), ..s }),
@@ -159,17 +163,17 @@ fn on_scene(
     Ok((!compared.summaries.is_empty()).then_some(compared))
 }
 
-/// Largest over scenes of the ratio of a quantity's extremes.
+/// Largest ratio of a quantity's extremes over the values, over all scenes.
 fn spread(
     compared: &[Compared],
     values: &[(f64, &str, String)],
     quantity: impl Fn(&Summary, bool) -> f64,
 ) -> f64 {
     let of_scene = |c: &Compared| {
-        let exact = c.is_exact();
+        let referenced = c.has_references();
         let all = values.iter().filter_map(|(_, method, change)| c.find(method, change));
         let (low, high) = all
-            .map(|s| quantity(s, exact))
+            .map(|s| quantity(s, referenced))
             .fold((f64::INFINITY, 0.0f64), |(low, high), v| (low.min(v), high.max(v)));
         high / low
     };

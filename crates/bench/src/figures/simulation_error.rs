@@ -1,8 +1,8 @@
-//! Run time against error of whole simulations, and the order of the time integration.
+//! Run time against error of whole simulations, and the observed order of the time integration.
 
-use super::{Figure, Part, Section};
 use crate::bench::Bench;
 use crate::chart::{Axis, Chart, Mark, Series, Style};
+use crate::figure::{Figure, Part, Report};
 use crate::simulate::{Distances, Simulation, simulate};
 use crate::table::{Table, geometric_mean, short, times};
 use anyhow::Result;
@@ -10,7 +10,7 @@ use bowknot::Scene;
 
 pub struct SimulationError;
 
-/// CPU seconds of a simulation, and how far off it is.
+/// CPU seconds of a simulation, and its distances from the reference.
 type Timed = (f64, Distances);
 
 /// A scene with its time.
@@ -18,25 +18,26 @@ struct Subject {
     name: &'static str,
     /// Time simulated [s].
     time: f64,
-    /// Time steps of the coarsest simulation; each next has twice as many.
+    /// Number of time steps of the coarsest simulation; each next one has twice as many.
     coarsest: usize,
-    /// How many simulations, each with half of the time step of the one before.
+    /// Number of simulations, each with half of the time step of the previous one.
     halvings: usize,
     /// Time step of the coarsest simulation over that of the reference.
     reference: usize,
     scene: fn() -> Result<Scene>,
     contact: bool,
-    /// Whether small differences stay small, so that there is an order to observe: folds amplify them.
+    /// Whether small differences stay small, so that an order can be observed. Folds amplify them.
     smooth: bool,
 }
 
-const CAPTION: &str =
-    "Distances from the reference; *end*: of the last positions. *X*: intersections of the four states.";
-/// Samples that simulations are compared at.
+const SHOWS: &str =
+    "distances of simulations from the reference by setting and time step; `end_mm`: of the last positions";
+/// Number of samples at which simulations are compared.
 const SAMPLES: usize = 4;
-/// Time steps over that of the reference from which on an order is taken: the reference's own error then makes 1 into 1.05.
+/// Smallest ratio of a time step to that of the reference at which an order is observed: the reference's own
+/// error then turns an order of 1 into 1.05.
 const RESOLVED: usize = 16;
-/// Newton iterations of the reference: its line search and linear solves are converged long before.
+/// Newton iterations of the reference; they converge long before.
 const CONVERGED: usize = 8;
 
 impl Figure for SimulationError {
@@ -49,15 +50,17 @@ impl Figure for SimulationError {
     }
 
     fn question(&self) -> &'static str {
-        "Against a simulation of the same mesh with 1/64 of the largest time step (`swing`: 1/256) and converged Newton iterations: how far off \
-         are energy, centre of mass, mean stretch, positions and the shape at the end, and at what CPU time? Root mean squares \
-         over four times. `swing`, a sheet held along one side, has no contact: implicit Euler is of order 1 there. `block`, a cube of \
-         jelly, drops onto the ground; how high it bounces depends on the time step. `drape` and `stack` fold, and folds amplify every difference until they lie elsewhere: \
-         their positions tell how far apart two runs of anything end, their energies what a setting does. Presets, time steps, Newton iterations, sweeps, stopping \
-         rules, and a dynamics that is blind to contact. sigma and delta are part of the problem."
+        "The reference is a simulation of the same mesh with 1/64 of the largest time step (`swing`: 1/256) \
+         and converged Newton iterations. How far from it are energy, centre of mass, mean stretch, \
+         positions and the last shape, and at what CPU time? Root mean squares over four times. `swing`, a \
+         sheet held along one side, has no contact: implicit Euler has order 1 there. `block`, a cube of \
+         jelly, drops onto the ground; how high it bounces depends on the time step. `drape` and `stack` \
+         fold, and folds amplify small differences: their positions show how far any two runs diverge, their \
+         energies the effect of a setting. Presets, time steps, Newton iterations, sweeps, stopping rules, \
+         and a dynamics without repulsion are compared. sigma and delta define the problem and stay fixed."
     }
 
-    fn run(&self, bench: &Bench) -> Result<Section> {
+    fn run(&self, bench: &Bench) -> Result<Report> {
         let size = bench.size;
         let full = size == crate::bench::Size::Full;
         let mut subjects = vec![Subject {
@@ -85,20 +88,20 @@ impl Figure for SimulationError {
             subjects.push(of("drape", 0.64, 4, || Ok(Scene::builtin("drape", 0.25)?), false));
             subjects.push(of("stack", 0.64, 4, || Ok(Scene::builtin("stack", 0.15)?), false));
         }
-        let mut section = Section::default();
+        let mut report = Report::default();
         let mut table = Table::new([
             "scene",
             "setting",
-            "dt, ms",
-            "CPU s",
-            "energy, J",
-            "centre, mm",
-            "stretch, 1e-3",
-            "positions, mm",
-            "end, mm",
-            "X",
+            "dt_ms",
+            "cpu_s",
+            "energy_j",
+            "centre_of_mass_mm",
+            "mean_stretch_permille",
+            "positions_mm",
+            "end_mm",
+            "intersections",
         ]);
-        let (mut told, mut compared) = (Vec::new(), Vec::new());
+        let (mut orders, mut compared) = (Vec::new(), Vec::new());
         for subject in &subjects {
             let reference = reference(bench, subject)?;
             let mut series = Vec::new();
@@ -133,7 +136,7 @@ impl Figure for SimulationError {
                 if let Some(order) =
                     subject.order(&errors).filter(|_| !sets.iter().any(|s| s.contains("solver")))
                 {
-                    told.push(format!("{} {name}: {order}", subject.name));
+                    orders.push(format!("{} {name}: {order}", subject.name));
                 }
                 errors_of.push((name.clone(), errors));
                 series.push(Series { name, points: marks, style: Style::Line });
@@ -145,17 +148,18 @@ impl Figure for SimulationError {
                 series,
                 front: true,
             };
-            section.parts.push(Part::Chart { name: format!("simulation-error-{}", subject.name), chart });
+            report.parts.push(Part::Chart { name: format!("simulation-error-{}", subject.name), chart });
             compared.extend(against_fast(subject, &errors_of));
         }
-        section.finding = format!(
-            "Observed orders, of energy / centre of mass / positions: {}. (Implicit Euler: 1.) Against `fast` with one Newton iteration, geometric means over \
-             the time steps, CPU time / error of the energy / of the centre of mass: {}.",
-            told.join("; "),
+        report.finding = format!(
+            "Observed orders, of energy / centre of mass / positions: {}. (Implicit Euler: 1.) Against \
+             `fast` with one Newton iteration, geometric means over the time steps, CPU time / error of the \
+             energy / of the centre of mass: {}.",
+            orders.join("; "),
             compared.join("; ")
         );
-        section.parts.push(Part::Table { name: self.name().to_owned(), caption: CAPTION.to_owned(), table });
-        Ok(section)
+        report.parts.push(Part::table(self.name(), SHOWS, table));
+        Ok(report)
     }
 }
 
@@ -191,7 +195,7 @@ fn reference(bench: &Bench, subject: &Subject) -> Result<Simulation> {
     at(bench, subject, "reference", &sets, subject.coarsest * subject.reference)
 }
 
-/// The scene's simulation in that many time steps.
+/// The scene, simulated in so many time steps.
 fn at(bench: &Bench, subject: &Subject, name: &str, sets: &[String], steps: usize) -> Result<Simulation> {
     let key = format!("{}/{name}/{steps}", subject.name);
     let mut sets = sets.to_vec();
@@ -199,7 +203,7 @@ fn at(bench: &Bench, subject: &Subject, name: &str, sets: &[String], steps: usiz
     simulate(bench, &key, &(subject.scene)()?.with_sets(&sets)?, steps, SAMPLES)
 }
 
-/// A sheet held along one side swings down; it touches nothing and no edge is limited, so that it is all dynamics.
+/// A sheet held along one side swings down. There is no contact and no edge limit: dynamics alone.
 fn swing() -> Result<Scene> {
     let text = r#"
         [[body]]
@@ -233,7 +237,7 @@ fn block() -> Result<Scene> {
 }
 
 impl Subject {
-    /// log2(error / error at half the time step), of the last halving that is coarse against the reference.
+    /// log2(error / error at half the time step), of the last halving that the reference resolves.
     fn order(&self, errors: &[Timed]) -> Option<String> {
         let resolved = (self.reference / RESOLVED).ilog2() as usize + 1;
         let [.., (_, coarse), (_, fine)] = &errors[..errors.len().min(resolved)] else { return None };
@@ -242,13 +246,13 @@ impl Subject {
     }
 }
 
-/// The settings that differ most from the default, against it.
+/// The settings that differ most from the default, compared with it.
 fn against_fast(subject: &Subject, errors_of: &[(String, Vec<Timed>)]) -> Vec<String> {
     let Some((_, fast)) = errors_of.first() else { return Vec::new() };
     let others = errors_of.iter().filter(|(name, _)| {
         ["paper, 1 Newton iteration", "fast, 1, no repulsion", "fast, 4"].contains(&name.as_str())
     });
-    let told = others.map(|(name, errors)| {
+    let texts = others.map(|(name, errors)| {
         let mean = |ratio: &dyn Fn(&Timed, &Timed) -> f64| {
             let ratios: Vec<f64> = errors.iter().zip(fast).map(|(a, b)| ratio(a, b)).collect();
             times(geometric_mean(&ratios))
@@ -261,7 +265,7 @@ fn against_fast(subject: &Subject, errors_of: &[(String, Vec<Timed>)]) -> Vec<St
             mean(&|a, b| a.1.center / b.1.center)
         )
     });
-    told.collect()
+    texts.collect()
 }
 
 #[cfg(test)]
@@ -289,7 +293,7 @@ mod tests {
             ("centre", errors[0].center / errors[1].center),
             ("positions", errors[0].positions / errors[1].positions),
         ] {
-            // The reference's own error of 1/16 makes 2 into 32/15 - 1/15.. : 2.07.
+            // The reference has an error too: (1/20 - 1/640)/(1/40 - 1/640) = 2.07.
             assert!((1.8..2.4).contains(&ratio), "{what} goes down by {ratio}");
         }
     }

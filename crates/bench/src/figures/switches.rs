@@ -1,17 +1,19 @@
-//! What each point of `fast` is worth: off alone, and on alone in `paper`.
+//! The effect of each difference between `fast` and `paper`: switched off in `fast`, and switched on in
+//! `paper`.
 
-use super::{Figure, Part, Section, is_blind};
 use crate::bench::Bench;
+use crate::figure::{Figure, Part, Report};
 use crate::methods::Setting;
 use crate::solve::Against;
-use crate::summary::{Compared, Summary, on_scenes, table};
-use crate::table::{Entry, Table, geometric_mean, short};
+use crate::summary::{Compared, on_scenes, table};
+use crate::table::{Table, geometric_mean, times};
+use crate::targets::Targets;
 use anyhow::Result;
 use bowknot::twoway::Params;
 
 pub struct Switches;
 
-/// What a switch takes from the other preset.
+/// A difference between the presets, and how it is copied from one to the other.
 struct Switch {
     name: &'static str,
     copy: fn(&mut Params, &Params),
@@ -19,21 +21,27 @@ struct Switch {
 
 const SWITCHES: [Switch; 16] = [
     Switch { name: "gap form", copy: |to, from| to.contact.form = from.contact.form },
-    Switch { name: "edges as balls", copy: |to, from| to.contact.edge_form = from.contact.edge_form },
+    Switch {
+        name: "edges as distance limits",
+        copy: |to, from| to.contact.edge_form = from.contact.edge_form,
+    },
     Switch {
         name: "edges limited from rest",
         copy: |to, from| to.contact.edge_reference = from.contact.edge_reference,
     },
-    Switch { name: "planes", copy: |to, from| to.solver.forward.bound = from.solver.forward.bound },
+    Switch { name: "moving planes", copy: |to, from| to.solver.forward.bound = from.solver.forward.bound },
     Switch {
-        name: "budgets",
+        name: "trust regions per vertex",
         copy: |to, from| {
             to.solver.forward.trust_region = from.solver.forward.trust_region;
             to.solver.forward.trust_region_min = from.solver.forward.trust_region_min;
             to.solver.forward.trust_region_max = from.solver.forward.trust_region_max;
         },
     },
-    Switch { name: "floor", copy: |to, from| to.contact.min_separation = from.contact.min_separation },
+    Switch {
+        name: "minimum separation",
+        copy: |to, from| to.contact.min_separation = from.contact.min_separation,
+    },
     Switch {
         name: "swept search",
         copy: |to, from| to.solver.forward.swept_travel = from.solver.forward.swept_travel,
@@ -48,7 +56,7 @@ const SWITCHES: [Switch; 16] = [
         },
     },
     Switch {
-        name: "further sweeps at the end",
+        name: "more sweeps at the end",
         copy: |to, from| {
             to.solver.backward.polish_sweeps =
                 from.solver.backward.polish_sweeps.max(to.solver.backward.sweeps)
@@ -77,7 +85,7 @@ const SWITCHES: [Switch; 16] = [
     Switch { name: "stop by travel", copy: |to, from| to.solver.stop.rule = from.solver.stop.rule },
 ];
 
-/// Seconds of a solve: without some points there is no end.
+/// Time limit of a solve [s]: without some of them a solve does not end.
 const LIMIT: f64 = 2.0;
 
 impl Figure for Switches {
@@ -86,32 +94,32 @@ impl Figure for Switches {
     }
 
     fn title(&self) -> &'static str {
-        "What each point of `fast` is worth"
+        "The effect of each difference between `fast` and `paper`"
     }
 
     fn question(&self) -> &'static str {
-        "`fast` with one point as in `paper` (off alone), and `paper` with one point as in `fast` (on alone), on problems of \
-         five scenes, with targets of a dynamics that is blind to contact and with Bowknot's own. Each cell: CPU seconds and error as multiples of those of the unchanged preset, and the stretch against \
-         rest; a star where not all calls met their stopping rule within the limits on steps and seconds. A point pays if \
-         switching it off takes more time, or leaves more error, than it costs elsewhere."
+        "`fast` with one setting of `paper` (off alone), and `paper` with one setting of `fast` (on alone), \
+         on problems of five scenes with contact-unaware and contact-aware targets. CPU time and error are \
+         multiples of those of the unchanged preset. A setting is worth keeping if switching it off costs \
+         more time or error than it saves elsewhere."
     }
 
-    fn run(&self, bench: &Bench) -> Result<Section> {
+    fn run(&self, bench: &Bench) -> Result<Report> {
         let scenes: &[&'static str] = bench.size.pick(
             &[
-                "needle-blind",
-                "stack-blind",
-                "tube-blind",
-                "bow-knot-blind",
-                "reef-knot-blind",
+                "needle-unaware",
+                "stack-unaware",
+                "tube-unaware",
+                "bow-knot-unaware",
+                "reef-knot-unaware",
                 "needle",
                 "stack",
                 "tube",
                 "bow-knot",
                 "reef-knot",
             ][..],
-            &["needle-blind", "stack"],
-            &["needle-blind"],
+            &["needle-unaware", "stack"],
+            &["needle-unaware"],
         );
         let (fast, paper) = (Params::fast(), Params::paper());
         let mut settings = vec![Setting::of("fast")?.within(LIMIT), Setting::of("paper")?.within(LIMIT)];
@@ -122,50 +130,56 @@ impl Figure for Switches {
             settings.extend([off.within(LIMIT), on.within(LIMIT)]);
         }
         let (count, rounds) = (bench.size.pick(2, 1, 1), 1);
-        let compared = on_scenes(bench, scenes, count, &settings, rounds, Against::Exact)?;
-        let (blind, own): (Vec<Compared>, Vec<Compared>) =
-            compared.iter().cloned().partition(|c| is_blind(c.scene));
-        let mut parts = Vec::new();
-        for (group, whose) in [(&blind, "blind"), (&own, "own")] {
-            for (method, word, what) in
-                [("fast", "without", "`fast`, off alone"), ("paper", "with", "`paper`, on alone")]
-            {
-                parts.push(Part::Table {
-                    name: format!("switches-{whose}-{word}"),
-                    caption: format!("{what}, {whose} targets:"),
-                    table: changes(group, method, word),
-                });
-            }
-        }
-        parts.push(Part::Data { name: "switches-all".to_owned(), table: table(&compared, |_| true) });
-        Ok(Section {
-            finding: format!("Blind targets: {} Own targets: {}", finding(&blind), finding(&own)),
-            parts,
+        let compared = on_scenes(bench, scenes, count, &settings, rounds, Against::Reference)?;
+        let (unaware, aware): (Vec<Compared>, Vec<Compared>) =
+            compared.iter().cloned().partition(|c| Targets::of(c.scene) == Targets::Unaware);
+        let shows = "each setting switched off in `fast` and on in `paper`: CPU time and error over the \
+                     unchanged preset";
+        Ok(Report {
+            finding: format!(
+                "Contact-unaware targets. {} Contact-aware targets. {}",
+                finding(&unaware),
+                finding(&aware)
+            ),
+            parts: vec![
+                Part::table(self.name(), shows, ratio_table(&compared)),
+                Part::table(
+                    "switches-all",
+                    "the same solves, with all quantities",
+                    table(&compared, |_| true),
+                ),
+            ],
         })
     }
 }
 
-fn changes(compared: &[Compared], method: &str, word: &str) -> Table {
-    let mut table = Table::new(std::iter::once("").chain(compared.iter().map(|c| c.scene)));
-    for switch in &SWITCHES {
-        let change = format!("{word} {}", switch.name);
-        let cells = compared.iter().map(|c| cell(c, method, &change));
-        table.row(std::iter::once(Entry::from(switch.name)).chain(cells));
+/// One row per preset, setting and scene.
+fn ratio_table(compared: &[Compared]) -> Table {
+    let mut table =
+        Table::new(["change", "scene", "cpu_ratio", "error_ratio", "max_stretch", "all_met_rule"]);
+    for (method, word) in [("fast", "without"), ("paper", "with")] {
+        for switch in &SWITCHES {
+            let change = format!("{word} {}", switch.name);
+            for c in compared {
+                let referenced = c.has_references();
+                let (Some(plain), Some(changed)) = (c.find(method, ""), c.find(method, &change)) else {
+                    continue;
+                };
+                table.row([
+                    changed.name().into(),
+                    c.scene.into(),
+                    (changed.cpu / plain.cpu).into(),
+                    (changed.error(referenced) / plain.error(referenced)).into(),
+                    changed.stretch.into(),
+                    if changed.met == changed.problems { "yes".into() } else { "no".into() },
+                ]);
+            }
+        }
     }
     table
 }
 
-fn cell(compared: &Compared, method: &str, change: &str) -> Entry {
-    let exact = compared.is_exact();
-    let (Some(plain), Some(changed)) = (compared.find(method, ""), compared.find(method, change)) else {
-        return "not measured".into();
-    };
-    let star = if changed.met < changed.of { "\\*" } else { "" };
-    let ratio = |value: &dyn Fn(&Summary) -> f64| short(value(changed) / value(plain));
-    format!("{}{star}, {}, {}", ratio(&|s| s.cpu), ratio(&|s| s.error(exact)), short(changed.stretch)).into()
-}
-
-/// The points by what switching them off costs.
+/// The settings by the CPU time of `fast` without them.
 fn finding(compared: &[Compared]) -> String {
     let mut costs: Vec<(&str, f64)> = SWITCHES
         .iter()
@@ -179,15 +193,18 @@ fn finding(compared: &[Compared]) -> String {
         })
         .collect();
     costs.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let told = |costs: &[(&str, f64)]| {
-        costs.iter().map(|(name, cost)| format!("{name} ({}x)", short(*cost))).collect::<Vec<_>>().join(", ")
+    let list = |keep: &dyn Fn(f64) -> bool| {
+        let kept: Vec<String> = costs
+            .iter()
+            .filter(|(_, cost)| keep(*cost))
+            .map(|(name, cost)| format!("{name} ({})", times(*cost)))
+            .collect();
+        if kept.is_empty() { "none".to_owned() } else { kept.join(", ") }
     };
-    let dear: Vec<(&str, f64)> = costs.iter().copied().filter(|c| c.1 > 1.1).collect();
-    let cheap: Vec<(&str, f64)> = costs.iter().copied().filter(|c| c.1 < 0.95).collect();
     format!(
-        "Without them `fast` takes longer, geometric mean over the scenes: {}. Without these it is faster, at the errors in \
-         the table: {}.",
-        if dear.is_empty() { "none".to_owned() } else { told(&dear) },
-        if cheap.is_empty() { "none".to_owned() } else { told(&cheap) }
+        "`fast` is slower without these, geometric mean over the scenes: {}. It is faster without these, at \
+         the errors in the table: {}.",
+        list(&|cost| cost > 1.1),
+        list(&|cost| cost < 0.95)
     )
 }

@@ -1,20 +1,23 @@
-//! Non-negative least squares over rows: lambda >= 0 that makes |d + W J^T lambda| smallest in the metric of W^-1.
+//! Non-negative least squares over rows: the lambda >= 0 that minimises |d + W J^T lambda| in the metric of
+//! W^-1.
 //!
-//! That is a quadratic program with matrix A = J W J^T and bounds at 0. It is solved by modified proportioning with
-//! reduced gradient projections (MPRGP; Dostal and Schoeberl, Computational Optimization and Applications 30, 2005):
-//! conjugate gradients on the free multipliers, a projected gradient step where one reaches its bound, and a step that
-//! frees multipliers where the bounds hold back too much. Rows are scaled to a unit diagonal. Any lambda >= 0 gives an
-//! upper bound of the residual, and the method never raises it, so that stopping early errs to one side.
+//! That is a quadratic program with matrix A = J W J^T and bounds at 0. It is solved by modified
+//! proportioning with reduced gradient projections (MPRGP; Dostal and Schoeberl, Computational Optimization
+//! and Applications 30, 2005): conjugate gradients on the free multipliers, a projected gradient step where
+//! one reaches its bound, and a step that frees multipliers where the bounds hold back too much. Rows are
+//! scaled to a unit diagonal. Any lambda >= 0 gives an upper bound of the residual, and the method never
+//! raises it: stopping early overestimates the residual.
 
 use bowknot::geometry::Vector;
 use bowknot::lcp::Row;
 
-/// Projected gradient at which to stop, relative to that at lambda = 0.
+/// The solve stops when the projected gradient is this share of that at lambda = 0.
 const TOLERANCE: f64 = 1e-8;
-/// Largest ratio of what bounds hold back to what is free, before multipliers are freed.
+/// Largest ratio of the chopped to the free gradient; above it multipliers are freed from their bounds.
 const PROPORTION: f64 = 1.0;
 
-/// The residual d + W J^T lambda after so many iterations at most, each a product with A. `weights` are inverse masses, 0 for vertices that cannot move.
+/// The residual d + W J^T lambda after at most `iterations`, each a product with A. `weights` are inverse
+/// masses, 0 for vertices that cannot move; `wanted` is d.
 pub fn residual(rows: &[Row], weights: &[f64], wanted: Vec<Vector>, iterations: usize) -> Vec<Vector> {
     let system = System::new(rows, weights);
     let mut product = vec![0.0; system.rows.len()];
@@ -25,7 +28,7 @@ pub fn residual(rows: &[Row], weights: &[f64], wanted: Vec<Vector>, iterations: 
     result
 }
 
-/// Rows with a motion to forbid, scaled.
+/// Rows that some vertex can violate, scaled.
 struct System<'a> {
     rows: Vec<&'a Row>,
     /// 1/sqrt of each row's diagonal of J W J^T.
@@ -38,7 +41,7 @@ impl<'a> System<'a> {
         let mut system = Self { rows: Vec::new(), scales: Vec::new(), weights };
         for row in rows {
             let mut row_of_one = *row;
-            // Rows come from the measures themselves, so that every vertex has a weight.
+            // The rows are made by the measures, so that every vertex has a weight.
             if row_of_one.prepare(weights).is_ok() && row_of_one.inverse_diagonal > 0.0 {
                 system.rows.push(row);
                 system.scales.push(row_of_one.inverse_diagonal.sqrt());
@@ -100,17 +103,17 @@ impl<'a> System<'a> {
             self.multiply(&direction, &mut space, &mut product);
             let curvature = dot(&direction, &product);
             if curvature <= f64::MIN_POSITIVE {
-                // A move of multipliers that leaves J^T lambda as it is (redundant rows) gains nothing.
+                // Along redundant rows J^T lambda does not change: nothing is gained.
                 direction = loose;
                 self.multiply(&direction, &mut space, &mut product);
             }
             let curvature = dot(&direction, &product).max(f64::MIN_POSITIVE);
             let length = dot(&gradient, &direction) / curvature;
-            let reach = (0..n)
+            let longest = (0..n)
                 .filter(|&i| direction[i] > 0.0)
                 .map(|i| lambda[i] / direction[i])
                 .fold(f64::INFINITY, f64::min);
-            if length <= reach {
+            if length <= longest {
                 add(&mut lambda, -length, &direction);
                 lambda.iter_mut().for_each(|l| *l = l.max(0.0));
                 add(&mut gradient, -length, &product);
@@ -119,8 +122,8 @@ impl<'a> System<'a> {
                 let previous = std::mem::replace(&mut direction, loose);
                 add(&mut direction, -share, &previous);
             } else {
-                add(&mut lambda, -reach, &direction);
-                add(&mut gradient, -reach, &product);
+                add(&mut lambda, -longest, &direction);
+                add(&mut gradient, -longest, &product);
                 let loose = free(&lambda, &gradient);
                 let before = lambda.clone();
                 for i in 0..n {

@@ -1,7 +1,7 @@
-//! The row set of a state: contacts within range and edge limits, linearised there.
+//! The rows of a state: contacts within range and edge limits, linearised there.
 //!
-//! Contacts are in gap form, desired distances those that the method's own parameters would give a pair with the gap
-//! that it starts the call with: a row that was out of reach at first is asked for all of delta.
+//! Contacts are in gap form. The desired distance of a pair follows from its gap at the start of the call; a
+//! pair that started out of range is asked for all of delta.
 
 use super::nonnegative;
 use bowknot::constraints::{ContactForm, DesiredDistance, EdgeLimits, EdgeReference, contact_row};
@@ -11,8 +11,8 @@ use bowknot::proximity::{Pair, PairList, ProximitySearch};
 use bowknot::recording::States;
 use bowknot::twoway::{CallInput, CollisionScene};
 
-/// Slack below which a row counts as active: of contacts in desired distances, of edges in limits. Methods stop that far
-/// from the rows that they push against.
+/// Slack below which a row counts as active: of contacts in desired distances, of edges in limits. Methods
+/// stop that far from their active rows.
 const ACTIVE: [f64; 2] = [0.1, 0.02];
 
 /// Rows at a state.
@@ -23,7 +23,7 @@ pub struct RowSet {
     values: Vec<f64>,
     /// Slack below which each row is active [m].
     active: Vec<f64>,
-    /// How many rows are contacts; edges follow.
+    /// Number of contact rows; edge rows follow.
     contacts: usize,
     pub min_gap: Option<f64>,
     pub stretch: Stretch,
@@ -48,7 +48,7 @@ impl RowSet {
     ) -> Self {
         let (mut pairs, mut separations) = (PairList::default(), Vec::new());
         let bodies = scene.model().vertex_body();
-        // A vertex and a half-space have one radius between them, which must be the whole range.
+        // A vertex and a half-space have only the vertex's radius, which must then be the whole range.
         let planes = !scene.model().half_spaces().is_empty();
         let share = if planes { 2.0 } else { 1.0 };
         let radii: Vec<f64> = bodies.iter().map(|&b| share * scene.spacing().margin(b)).collect();
@@ -123,10 +123,9 @@ impl RowSet {
         rows.filter(|((_, value), active)| *value <= *active).map(|((row, _), _)| *row).collect()
     }
 
-    /// The projection of y0 - x onto the motions that no active row forbids, in the metric of mass: 0 where x solves the
-    /// scene. By Moreau's decomposition it is y0 - x + M^-1 J^T lambda with the non-negative multipliers that make it
-    /// smallest.
-    /// After so many `iterations` at most; fewer give an upper bound.
+    /// The projection of y0 - x onto the motions that no active row forbids, in the metric of mass: 0 if x
+    /// solves the scene. By Moreau's decomposition it is y0 - x + M^-1 J^T lambda with the non-negative
+    /// multipliers that minimise it. If at most `iterations` do not suffice, the result is an upper bound.
     pub fn stationarity(
         &self,
         scene: &CollisionScene,

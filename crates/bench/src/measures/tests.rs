@@ -1,12 +1,15 @@
-//! Measures against answers that are known.
+//! Measured quality against known answers.
 
+use super::reference::{at_rest, params};
 use super::*;
-use bowknot::geometry::{HalfSpace, Vector};
+use crate::case::CollisionCase;
+use bowknot::geometry::{HalfSpace, Point, Vector};
 use bowknot::lcp::{self, ConstraintSet, Row};
 use bowknot::recording::States;
 
-/// Particles above the ground, 2 mm across: their distances are 2 mm from each other and 1 mm from the ground.
-fn particles(x: Vec<Point>, y: Vec<Point>, masses: Vec<f64>) -> Case {
+/// Particles above the ground, 2 mm across: their distances are 2 mm from each other and 1 mm from the
+/// ground.
+fn particles(x: Vec<Point>, y: Vec<Point>, masses: Vec<f64>) -> CollisionCase {
     let count = x.len();
     let states = States {
         particles: (0..count as u32).collect(),
@@ -21,38 +24,39 @@ fn particles(x: Vec<Point>, y: Vec<Point>, masses: Vec<f64>) -> Case {
         masses,
         ..States::default()
     };
-    Case::new("particles", states).expect("a sound case")
+    CollisionCase::new("particles", states).expect("a sound case")
 }
 
-fn judged(case: &Case, x: &[Point]) -> Judged {
-    Judgement::without_exact(case).expect("a sound case").judge(x).expect("judged")
+fn quality(case: &CollisionCase, x: &[Point]) -> Quality {
+    CaseEvaluator::of_candidate(case).expect("a sound case").evaluate(x).expect("a result that fits")
 }
 
-/// A particle pressed on the ground and slid along it: the solution is right above its target at distance delta.
+/// A particle pressed on the ground and slid along it: the solution is right above its target at distance
+/// delta.
 #[test]
 fn a_particle_on_the_ground() {
     let target = Point::new(0.01, 0.0, -0.02);
     let case = particles(vec![Point::new(0.0, 0.0, 0.0015)], vec![target], vec![2.0]);
-    let at = |x: f64, z: f64| judged(&case, &[Point::new(x, 0.0, z)]);
+    let at = |x: f64, z: f64| quality(&case, &[Point::new(x, 0.0, z)]);
 
     let solved = at(0.01, 1e-3);
     assert!(solved.stationarity < 1e-9 && solved.violation < 1e-12, "{solved:?}");
     assert!((solved.objective - 0.5 * 2.0 * 0.021f64.powi(2)).abs() < 1e-15);
     assert!((solved.distance - 0.021).abs() < 1e-15);
     assert_eq!((solved.intersections, solved.min_gap), (0, Some(1e-3)));
-    // Short of it along the ground: just that way is left.
+    // Short of it along the ground: the rest of the way is the residual.
     let short = at(0.004, 1e-3);
     assert!((short.stationarity - 0.006).abs() < 1e-9 && short.violation < 1e-12, "{short:?}");
-    // Too near, and through.
+    // Too near, and below the ground.
     let near = at(0.01, 4e-4);
     assert!((near.violation - 6e-4).abs() < 1e-12 && near.stationarity < 1e-9, "{near:?}");
     assert_eq!(at(0.01, -1e-4).intersections, 1);
-    // Far above the ground nothing is active and all of the way is left.
+    // Far above the ground no row is active, and the residual is the whole way.
     let free = at(0.01, 0.5);
     assert!((free.stationarity - 0.52).abs() < 1e-12 && free.min_gap.is_none(), "{free:?}");
 }
 
-/// Two particles pressed against each other end with their centre of mass where their targets' is.
+/// Two particles pressed against each other end with the centre of mass of their targets.
 #[test]
 fn two_particles_of_different_mass() {
     let start = vec![Point::new(-0.01, 0.0, 1.0), Point::new(0.01, 0.0, 1.0)];
@@ -60,23 +64,22 @@ fn two_particles_of_different_mass() {
     let case = particles(start, target, vec![1.0, 3.0]);
     // Centre (0.008 - 3 * 0.004)/4 = -0.001, distance 2 mm shared 3 to 1.
     let solution = [Point::new(-0.001 - 1.5e-3, 0.0, 1.0), Point::new(-0.001 + 0.5e-3, 0.0, 1.0)];
-    let solved = judged(&case, &solution);
+    let solved = quality(&case, &solution);
     assert!(solved.stationarity < 1e-9 && solved.violation < 1e-12, "{solved:?}");
-    // Moved together by 1 mm: that is what is left, and no more.
+    // Moved together by 1 mm: the residual is 1 mm.
     let moved = solution.map(|p| p + Vector::new(0.001, 0.0, 0.0));
-    assert!((judged(&case, &moved).stationarity - 0.001).abs() < 1e-9);
+    assert!((quality(&case, &moved).stationarity - 0.001).abs() < 1e-9);
 }
 
-/// The iterated solution meets the analytic one.
 #[test]
-fn the_exact_solution_is_exact() {
+fn the_reference_solution_is_the_analytic_one() {
     let start = vec![Point::new(-0.01, 0.0, 0.002), Point::new(0.01, 0.0, 0.002)];
     let target = vec![Point::new(0.008, 0.0, -0.01), Point::new(-0.004, 0.0, -0.01)];
     let case = particles(start, target, vec![1.0, 3.0]);
-    let mut resolver = case.states.resolver(case.model.clone(), exact::params(60.0)).expect("a resolver");
+    let mut resolver = case.states.resolver(case.model.clone(), params(60.0)).expect("a resolver");
     let mut x = case.states.x.clone();
     resolver
-        .resolve_with(&mut x, &case.states.y, &case.states.input(), &mut exact::at_rest(&case))
+        .resolve_with(&mut x, &case.states.y, &case.states.input(), &mut at_rest(&case))
         .expect("resolved");
     let solution = [Point::new(-0.0025, 0.0, 1e-3), Point::new(-0.0005, 0.0, 1e-3)];
     for (x, exact) in x.iter().zip(&solution) {
@@ -127,9 +130,9 @@ fn multipliers_equal_those_of_the_reference() {
     }
 }
 
-/// A sheet held by nothing, wanted twice as large: edges stop at their limit and the judge says so.
+/// A free sheet whose target is twice as large.
 #[test]
-fn stretch_is_judged_against_its_limit() {
+fn stretch_is_measured_against_its_limit() {
     let square = |s: f64| {
         vec![
             Point::new(0.0, 0.0, 1.0),
@@ -149,14 +152,14 @@ fn stretch_is_judged_against_its_limit() {
         body: vec![0; 4],
         ..States::default()
     };
-    let case = Case::new("sheet", states).expect("a sound case");
+    let case = CollisionCase::new("sheet", states).expect("a sound case");
     let centred = |s: f64| -> Vec<Point> {
         square(s).iter().map(|p| p + Vector::new(0.1 - s / 2.0, 0.1 - s / 2.0, 0.0)).collect()
     };
-    let at_limit = judged(&case, &centred(0.11));
+    let at_limit = quality(&case, &centred(0.11));
     assert!(at_limit.stretch_violation.abs() < 1e-9 && at_limit.stationarity < 1e-6, "{at_limit:?}");
-    let beyond = judged(&case, &centred(0.121));
+    let beyond = quality(&case, &centred(0.121));
     assert!((beyond.stretch_violation - 0.1).abs() < 1e-9, "{beyond:?}");
-    let before = judged(&case, &centred(0.1));
-    assert!(before.stationarity > 0.01, "no edge is at its limit: all of the way is left");
+    let before = quality(&case, &centred(0.1));
+    assert!(before.stationarity > 0.01, "no edge is at its limit");
 }

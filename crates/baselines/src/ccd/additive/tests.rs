@@ -59,8 +59,9 @@ fn meeting(kind: PairKind, time: f64, draw: &mut Draw) -> ([Point; 4], [Vector; 
     (std::array::from_fn(|k| place[k] - time * paths[k]), paths)
 }
 
-/// The first time on a fine grid at which the vertices of a 4-vertex pair change the sign of their volume with the closest
-/// points all but at one place: where the pair surely has met, found without any distance bound.
+/// The first time on a fine grid at which the vertices of a 4-vertex pair change the sign of their volume
+/// with the closest points all but at one place: where the pair surely has met, found without any distance
+/// bound.
 fn first_crossing(kind: PairKind, x: &[Point; 4], paths: &[Vector; 4]) -> Option<f64> {
     let volume = |t: f64| {
         let q: [Point; 4] = std::array::from_fn(|k| x[k] + t * paths[k]);
@@ -99,8 +100,8 @@ fn no_impact_is_missed_nor_reported_late_and_the_gap_left_is_small() {
                 let found = ccd(speed, slackness).clearance(kind, &x, &paths, 0.0, 1.0).time;
                 let what = format!("{kind:?} {speed:?} {slackness} {x:?} {paths:?}");
                 assert!(found < first, "{found} after the impact at {first}: {what}");
-                // One step of 0.9 gap/speed brought it below the slackness: it was ten times that at most. The time
-                // may still be an earlier approach as near as that.
+                // One step of 0.9 gap/speed brought it below the slackness: it was ten times that at most.
+                // The time may still be an earlier approach as near as that.
                 let left = distance_at(kind, &x, &paths, found);
                 if speed == ClosingSpeed::Travel {
                     assert!(
@@ -132,8 +133,9 @@ fn a_head_on_approach_stops_at_the_slackness_exactly() {
             assert_eq!(found.iterations, 3);
         }
     }
-    let floor = 0.2;
-    let found = ccd(ClosingSpeed::Travel, 0.1).clearance(PairKind::VertexTriangle, &x, &paths, floor, 1.0);
+    let min_separation = 0.2;
+    let found =
+        ccd(ClosingSpeed::Travel, 0.1).clearance(PairKind::VertexTriangle, &x, &paths, min_separation, 1.0);
     assert!((found.time - 0.9 * 0.3).abs() < 1e-12, "{found:?}");
 }
 
@@ -275,7 +277,7 @@ fn what_stays_clear_goes_all_the_way() {
 }
 
 #[test]
-fn pairs_that_touch_or_are_at_their_floor_may_only_open() {
+fn pairs_that_touch_or_are_at_their_minimum_separation_may_only_open() {
     let x = [p(0.25, 0.25, 0.0), p(0.0, 0.0, 0.0), p(1.0, 0.0, 0.0), p(0.0, 1.0, 0.0)];
     let up = [v(0.0, 0.0, 1.0), Vector::zeros(), Vector::zeros(), Vector::zeros()];
     let kind = PairKind::VertexTriangle;
@@ -315,8 +317,8 @@ fn the_iteration_limit_returns_what_is_safe_so_far() {
 fn half_spaces_are_met_when_the_path_does() {
     let ground = HalfSpace::new(p(0.0, 0.0, 1.0), v(0.0, 0.0, 2.0)).expect("a normal");
     let ccd = ccd(ClosingSpeed::Travel, 0.1);
-    let time = |z: f64, path: Vector, floor: f64| {
-        ccd.half_space_clearance(&ground, &p(3.0, 4.0, z), &path, floor).time
+    let time = |z: f64, path: Vector, min_separation: f64| {
+        ccd.half_space_clearance(&ground, &p(3.0, 4.0, z), &path, min_separation).time
     };
     assert!((time(2.0, v(5.0, 0.0, -4.0), 0.0) - 0.9 * 0.25).abs() < 1e-12);
     assert!((time(2.0, v(5.0, 0.0, -4.0), 0.5) - 0.9 * 0.125).abs() < 1e-12);

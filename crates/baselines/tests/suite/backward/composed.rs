@@ -10,7 +10,7 @@ use bowknot_baselines::twoway::{
 };
 use bowknot_baselines::{Composed, Method};
 
-/// The paper's parameters without edges, so many steps at most.
+/// The paper's parameters without edge limits, with at most `steps` steps.
 fn params(steps: usize) -> Params {
     let mut params = Params::paper();
     params.contact.edges = false;
@@ -74,7 +74,7 @@ fn sheets_that_change_places_stay_apart_whatever_solves_the_rows() {
 }
 
 #[test]
-fn sheets_that_want_apart_stick_to_the_linear_system_alone() {
+fn sheets_with_separating_targets_stick_with_the_linear_system_only() {
     let scene = Scene::two_sheets(4, 0.015);
     let n = scene.x.len() / 2;
     let target: Vec<Point> =

@@ -1,4 +1,5 @@
-//! Other solvers of the backward step's rows: alone on small systems with known answers, and within the two-way method.
+//! Other solvers of the backward step's rows: alone on small systems with known answers, and within the
+//! two-way method.
 
 mod augmented_lagrangian;
 mod composed;

@@ -6,7 +6,7 @@ use bowknot_baselines::twoway::lcp::{
     ConstraintSet, FrictionBound, LcpProblem, LcpState, Row, prepare_rows, residuals,
 };
 
-/// Rows over nodes, and where the nodes would be without them.
+/// Rows over nodes, and the positions of the nodes without them.
 #[derive(Clone)]
 pub struct System {
     pub weights: Vec<f64>,
@@ -14,7 +14,7 @@ pub struct System {
     pub rows: Vec<Row>,
 }
 
-/// Where a solver left a system.
+/// The result of a solver.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
     pub y: Vec<Vector>,
@@ -35,8 +35,8 @@ impl System {
         Self::new(vec![1.0], vec![Vector::new(free[0], free[1], 0.0)], rows)
     }
 
-    /// Beads on a vertical wire, the lowest over the floor, each at least 1 above the last, all of which have sunk by
-    /// the square of their number: what a column of beads under its weight asks of a solver.
+    /// A column of beads under its weight, on a vertical wire: the lowest above the ground, each at least 1
+    /// above the previous one. Each has sunk in proportion to its height.
     pub fn column(beads: u32) -> Self {
         let zero = Vector::zeros();
         let above = |i: u32| Row::new([i + 1, i, i, i], [Vector::z(), -Vector::z(), zero, zero], -1.0);
@@ -46,8 +46,8 @@ impl System {
         Self::new(vec![1.0; beads as usize], free, rows)
     }
 
-    /// Rows of three nodes each over a few, with weights and gradients that look random; fewer rows than coordinates,
-    /// hence with one lambda only.
+    /// Rows of three nodes each over a few, with weights and gradients that look random; fewer rows than
+    /// coordinates, hence with one lambda only.
     pub fn random(seed: u64) -> Self {
         let mut draw = Draw::new(seed);
         let nodes = 6;

@@ -5,12 +5,13 @@ use bowknot_baselines::barrier::{BarrierParams, Scaling, barrier, by_descent};
 use bowknot_baselines::twoway::Params;
 use bowknot_baselines::twoway::geometry::Vector;
 
-/// Where m/dt^2 (z - z0) + B'(z - floor) vanishes, by bisection.
-fn analytic_height(stiffness: f64, wanted: f64, floor: f64, range: f64, strength: f64) -> f64 {
-    let (mut low, mut high) = (floor, range);
+/// Where m/dt^2 (z - z0) + B'(z - min_separation) vanishes, by bisection.
+fn analytic_height(stiffness: f64, wanted: f64, min_separation: f64, range: f64, strength: f64) -> f64 {
+    let (mut low, mut high) = (min_separation, range);
     for _ in 0..200 {
         let z = 0.5 * (low + high);
-        let force = stiffness * (z - wanted) + barrier(strength, z - floor, range - floor).slope;
+        let force =
+            stiffness * (z - wanted) + barrier(strength, z - min_separation, range - min_separation).slope;
         if force < 0.0 { low = z } else { high = z }
     }
     0.5 * (low + high)
@@ -34,9 +35,9 @@ fn a_vertex_pushed_against_a_triangle_ends_where_the_barrier_balances_its_inerti
                 let what = format!("{name}, {scaling:?}, {strength}");
                 let (x, report) = resolve_watched(&mut resolver, &scene, &target, &what);
                 assert!(report.converged, "{what}: {report:?}");
-                let floor = resolver.state().contacts.min_separations[0];
-                assert!((floor > 0.0) == (name == "fast"), "{what}: {floor}");
-                let expected = analytic_height(0.01 / 1e-4, -0.03, floor, 0.01, strength);
+                let min_separation = resolver.state().contacts.min_separations[0];
+                assert!((min_separation > 0.0) == (name == "fast"), "{what}: {min_separation}");
+                let expected = analytic_height(0.01 / 1e-4, -0.03, min_separation, 0.01, strength);
                 assert!((x[3].z - expected).abs() < 1e-8, "{what}: {} m, expected {expected} m", x[3].z);
                 assert!((x[3].xy() - scene.x[3].xy()).norm() < 1e-12, "{what}");
             }
@@ -45,7 +46,7 @@ fn a_vertex_pushed_against_a_triangle_ends_where_the_barrier_balances_its_inerti
 }
 
 #[test]
-fn sheets_that_want_to_change_places_never_intersect_on_the_way() {
+fn sheets_that_change_places_never_intersect_on_the_way() {
     let scene = Scene::two_sheets(4, 0.04);
     let target = scene.swapped();
     for (name, mut params) in [("fast", Params::fast()), ("paper", Params::paper())] {

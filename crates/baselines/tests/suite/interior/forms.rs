@@ -5,7 +5,7 @@ use bowknot_baselines::twoway::constraints::ContactForm;
 use bowknot_baselines::twoway::{Params, Resolver};
 
 #[test]
-fn sheets_that_want_to_change_places_never_intersect_with_rows_along_faces() {
+fn sheets_that_change_places_never_intersect_with_rows_along_faces() {
     let scene = Scene::turned_sheets(4, 0.04);
     let target = scene.swapped();
     let mut params = Params::paper();

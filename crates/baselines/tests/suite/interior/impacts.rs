@@ -30,7 +30,7 @@ fn check(name: &str, scene: &Scene, x: &[Point], report: &Statistics) {
 }
 
 #[test]
-fn sheets_that_want_to_change_places_never_intersect_on_the_way() {
+fn sheets_that_change_places_never_intersect_on_the_way() {
     let scene = Scene::two_sheets(4, 0.04);
     let target = scene.swapped();
     for (name, mut params) in [("fast", Params::fast()), ("paper", Params::paper())] {

@@ -25,9 +25,9 @@ fn a_vertex_pushed_against_a_triangle_ends_where_the_barrier_balances_its_inerti
             by_newton(scene.collision_scene(params), settings, AdditiveCcd::default()).unwrap();
         let (x, report) = resolve_watched(&mut resolver, &scene, &target, "newton");
         assert!(report.converged && report.steps < 40, "{report:?}");
-        let floor = resolver.state().contacts.min_separations[0];
+        let min_separation = resolver.state().contacts.min_separations[0];
         let force = 0.01 / 1e-4 * (x[3].z + 0.03);
-        let push = barrier(200.0, x[3].z - floor, 0.01 - floor).slope;
+        let push = barrier(200.0, x[3].z - min_separation, 0.01 - min_separation).slope;
         assert!((force + push).abs() < 1e-6 * force, "{force} N, {push} N at {} m", x[3].z);
         assert!((x[3].xy() - scene.x[3].xy()).norm() < 1e-12);
     }
@@ -37,7 +37,8 @@ fn a_vertex_pushed_against_a_triangle_ends_where_the_barrier_balances_its_inerti
 fn newton_and_gradient_descent_reach_the_same_minimum() {
     let scene = Scene::turned_sheets(3, 0.008);
     let target = pressed(&scene, 0.006);
-    // An edge penalty that pulls as well, and no floor, which would depend on where a pair was first seen.
+    // An edge penalty that pulls as well, and no minimum separation, which would depend on where a pair was
+    // first seen.
     let mut params = Params::paper();
     params.contact.delta = Some(0.01);
     params.solver.stop.max_steps = Some(20_000);
@@ -60,7 +61,7 @@ fn newton_and_gradient_descent_reach_the_same_minimum() {
 }
 
 #[test]
-fn sheets_that_want_to_change_places_never_intersect_on_the_way() {
+fn sheets_that_change_places_never_intersect_on_the_way() {
     let scene = Scene::two_sheets(4, 0.04);
     let target = scene.swapped();
     for (name, mut params) in [("fast", Params::fast()), ("paper", Params::paper())] {

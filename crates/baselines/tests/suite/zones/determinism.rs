@@ -12,9 +12,9 @@ fn results_have_the_same_bits_on_any_number_of_threads() {
         let collision = || scene.collision_scene(Params::fast());
         let params = ZoneParams { max_iterations: 4, ..ZoneParams::default() };
         let methods: [Box<dyn Method>; 3] = [
-            Box::new(ImpactZones::new(collision(), params)),
+            Box::new(ImpactZones::new(collision(), params).unwrap()),
             Box::new(RigidZones::new(collision())),
-            Box::new(TwoPhase::new(collision(), 3, RigidZones::new(collision()))),
+            Box::new(TwoPhase::new(collision(), 3, RigidZones::new(collision())).unwrap()),
         ];
         methods.map(|mut method| {
             let mut x = scene.x.clone();

@@ -7,6 +7,7 @@ use bowknot_baselines::zones::{ImpactZones, ZoneParams, ZoneSolver};
 
 fn zones(scene: &Scene, solver: ZoneSolver) -> ImpactZones {
     ImpactZones::new(scene.collision_scene(Params::fast()), ZoneParams { solver, ..ZoneParams::default() })
+        .unwrap()
 }
 
 const SOLVERS: [ZoneSolver; 3] =
@@ -82,7 +83,7 @@ fn without_thickness_what_does_not_meet_may_end_near_and_with_it_keeps_its_dista
     assert!(gap(0.0) < 0.7 * delta && gap(0.8) > 0.799 * delta);
 }
 
-/// A vertex between two plates that come together, nearer than twice its desired distance: what a vice holds.
+/// A vertex between two plates that close to less than twice its desired distance, as in a vice.
 fn vice() -> (Scene, Vec<Point>, Vec<bool>) {
     let mut x = Vec::new();
     let corners = [[-1.0, -1.0], [2.0, -1.0], [-1.0, 2.0]];
@@ -127,7 +128,7 @@ fn keyframes_that_cut_through_a_pinned_vertex_make_it_fail() {
     assert!(outcome.converged && x[3].z > 1.0);
 }
 
-/// Whether each solver fails within so many rounds; where it does, nothing has moved.
+/// Whether each solver fails within `max_iterations` rounds; a failed call moves nothing.
 fn failures(scene: &Scene, target: &[Point], max_iterations: usize) -> [bool; 3] {
     SOLVERS.map(|solver| {
         let mut zones = zones(scene, solver);
@@ -142,7 +143,8 @@ fn failures(scene: &Scene, target: &[Point], max_iterations: usize) -> [bool; 3]
 
 #[test]
 fn sheets_that_change_places_and_crumple_are_resolved_as_long_as_what_met_may_part() {
-    // Held together for the rest of the call, as by the linear system, what has met in a crumple cannot be parted.
+    // With the linear system, pairs that have met stick for the rest of the call, and crumpled sheets cannot
+    // separate.
     let scene = Scene::two_sheets(6, 0.02);
     assert_eq!(failures(&scene, &crumpled(&scene, 0.05, 100), 30), [false, false, false]);
     assert_eq!(failures(&scene, &crumpled(&scene, 0.2, 100), 30), [false, true, false]);
@@ -150,7 +152,7 @@ fn sheets_that_change_places_and_crumple_are_resolved_as_long_as_what_met_may_pa
 
 #[test]
 fn a_target_far_from_anything_possible_is_too_much_for_projected_zones_too() {
-    // Noise of four edge lengths. It has not got there after 100 rounds either.
+    // Noise of four edge lengths; 100 rounds are not enough either.
     let scene = Scene::two_sheets(12, 0.02);
     let target = crumpled(&scene, 0.4, 100);
     let mut zones = zones(&scene, ZoneSolver::GaussSeidel);
@@ -165,7 +167,7 @@ fn a_limit_on_steps_counts_as_a_failure_and_bad_input_is_refused() {
     let (scene, target, _) = vice();
     let mut params = Params::fast();
     params.solver.stop.max_steps = Some(3);
-    let mut zones = ImpactZones::new(scene.collision_scene(params), ZoneParams::default());
+    let mut zones = ImpactZones::new(scene.collision_scene(params), ZoneParams::default()).unwrap();
     let (_, outcome) = solve_clear(&mut zones, &scene, &target, &[]);
     assert!(outcome.failed && outcome.steps == 3);
     let mut x = scene.x.clone();

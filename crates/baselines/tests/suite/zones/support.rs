@@ -1,11 +1,12 @@
-//! Running a method, and judging its path.
+//! Runs a method and checks its path.
 
 use crate::common::{Draw, Scene, assert_clear};
 use bowknot_baselines::twoway::ResolveInput;
 use bowknot_baselines::twoway::geometry::{Point, Vector};
 use bowknot_baselines::{Method, Outcome};
 
-/// Runs a method from the scene's positions, and asserts that no state on the straight path to where it ends intersects.
+/// Runs a method from the scene's positions, and asserts that no state on the straight path to its result
+/// intersects.
 #[track_caller]
 pub fn solve_clear(
     method: &mut dyn Method,
@@ -30,7 +31,7 @@ pub fn momenta(start: &[Point], end: &[Point]) -> [Vector; 2] {
     [paths().map(|(_, d)| d).sum(), paths().map(|(x, d)| x.coords.cross(&d)).sum()]
 }
 
-/// Where two sheets want to be that come toward each other, through each other by a little, with some noise [m].
+/// Targets of two sheets that move toward each other and slightly through each other, with noise [m].
 pub fn nearing(scene: &Scene) -> Vec<Point> {
     let n = scene.x.len() / 2;
     let mut draw = Draw::new(3);
@@ -38,7 +39,7 @@ pub fn nearing(scene: &Scene) -> Vec<Point> {
     (0..2 * n).map(|v| scene.x[v] + Vector::z() * way(v) + 2e-3 * draw.vector()).collect()
 }
 
-/// Where two sheets want to be that change places, with so much noise [m].
+/// Targets of two sheets that change places, with so much noise [m].
 pub fn crumpled(scene: &Scene, noise: f64, seed: u64) -> Vec<Point> {
     let n = scene.x.len() / 2;
     let mut draw = Draw::new(seed);

@@ -11,10 +11,10 @@ fn easy_calls_need_the_soft_phase_only_and_end_where_it_does() {
     let scene = Scene::two_sheets(4, 0.05);
     let target = nearing(&scene);
     let collision = || scene.collision_scene(Params::fast());
-    let mut two = TwoPhase::new(collision(), 100, RigidZones::new(collision()));
+    let mut two = TwoPhase::new(collision(), 100, RigidZones::new(collision())).unwrap();
     let (x, outcome) = solve_clear(&mut two, &scene, &target, &[]);
     assert!(outcome.converged && two.fallbacks() == 0);
-    let mut alone = ImpactZones::new(collision(), ZoneParams::default());
+    let mut alone = ImpactZones::new(collision(), ZoneParams::default()).unwrap();
     assert_eq!(solve_clear(&mut alone, &scene, &target, &[]).0, x);
 }
 
@@ -26,7 +26,7 @@ fn what_the_soft_phase_leaves_the_hard_phase_brings_on_its_way() {
     params.solver.stop.max_steps = Some(100);
     let collision = || scene.collision_scene(params.clone());
     let hard = Composed::new("log barrier", by_descent(collision(), BarrierParams::default()).unwrap());
-    let mut two = TwoPhase::new(collision(), 2, hard);
+    let mut two = TwoPhase::new(collision(), 2, hard).unwrap();
     assert_eq!(two.name(), "two phases, hard: log barrier");
     let mut x = scene.x.clone();
     let input = ResolveInput { time_step: Some(0.01), ..ResolveInput::default() };

@@ -1,22 +1,22 @@
-//! Lists the pairs that may meet while vertices move.
+//! Finds the candidate pairs that may meet while vertices move.
 
 use bowknot_twoway::geometry::Vector;
 use bowknot_twoway::stepper::Rounding;
 use bowknot_twoway::{CollisionScene, Coverage, ResolveState, Search, Statistics};
 
-/// In which order vertices may go their ways.
+/// The times at which vertices are along their paths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Clocks {
-    /// All on one clock: each is at the same fraction of its way.
+pub(crate) enum PathTime {
+    /// One path time: all vertices are at the same fraction of their paths.
     Common,
-    /// Each on a clock of its own.
-    Own,
+    /// A path time per vertex: each vertex may be at another fraction.
+    PerVertex,
 }
 
-/// Makes `state.contacts` hold every pair that may meet while vertices move from x along `paths` [m]; the present list is
-/// kept where it holds them anyway. Contact geometry stays that at x.
+/// Fills `state.contacts` with every pair that may meet while vertices move from x along `paths` [m]. The
+/// present list is kept if it has all of them. Contact geometry stays that at x.
 ///
-/// Tubes around the paths are as wide as contacts are seen from, so that pairs in contact range keep their multipliers.
+/// Tubes around the paths are as wide as the contact range, so that pairs within it keep their multipliers.
 #[derive(Debug, Default)]
 pub(crate) struct PathSearch {
     displacements: Vec<Vector>,
@@ -24,14 +24,14 @@ pub(crate) struct PathSearch {
 }
 
 impl PathSearch {
-    /// `nearest` is the distance [m] below which pairs must be listed on the way, beyond those that may meet.
+    /// Pairs that come nearer than `nearest` [m] on the way become candidates too.
     pub(crate) fn list(
         &mut self,
         scene: &CollisionScene,
         state: &mut ResolveState,
         search: &mut dyn Search,
         paths: &[Vector],
-        clocks: Clocks,
+        path_time: PathTime,
         nearest: f64,
         statistics: &mut Statistics,
     ) {
@@ -50,18 +50,19 @@ impl PathSearch {
         if within {
             return;
         }
-        let share = match clocks {
-            Clocks::Common => 1.0,
-            // Halfway along, all of the path is within half of its length.
-            Clocks::Own => 0.5,
+        let share = match path_time {
+            PathTime::Common => 1.0,
+            // The whole path is within half of its length of its middle.
+            PathTime::PerVertex => 0.5,
         };
         let bodies = scene.model().vertex_body();
         self.displacements.clear();
         self.displacements.extend(paths.iter().map(|p| share * p));
         self.deviations.clear();
         self.deviations.extend(paths.iter().zip(bodies).map(|(p, body)| {
-            let strayed = if clocks == Clocks::Own { 0.5 * p.norm() * (1.0 + 1e-12) } else { 0.0 };
-            strayed + scene.spacing().margin(*body) + rounding
+            let deviation =
+                if path_time == PathTime::PerVertex { 0.5 * p.norm() * (1.0 + 1e-12) } else { 0.0 };
+            deviation + scene.spacing().margin(*body) + rounding
         }));
         search.update_swept(scene, state, &self.displacements, &self.deviations, statistics);
     }

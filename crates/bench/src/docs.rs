@@ -1,0 +1,94 @@
+//! Results in the documentation: the page docs/benchmarks.md, tables and charts in docs/benchmarks.
+//!
+//! They are written from a clean git tree only, so that the commit beside each result is the code that was
+//! measured.
+
+use crate::chart;
+use crate::figure::{Figure, Part, Report};
+use crate::files::write;
+use crate::machine::WITH_CHANGES;
+use crate::{git, page};
+use anyhow::{Context, Result, bail, ensure};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+const PAGE: &str = "docs/benchmarks.md";
+const FOLDER: &str = "docs/benchmarks";
+
+/// The documentation in a repository.
+#[derive(Debug)]
+pub struct Docs {
+    repository: PathBuf,
+}
+
+impl Docs {
+    /// The documentation of the repository in `repository`.
+    pub fn new(repository: &Path) -> Self {
+        Self { repository: repository.to_owned() }
+    }
+
+    /// Refuses a tree with files that differ from the commit or are not tracked. Results that other figures
+    /// have written do not count.
+    ///
+    /// # Errors
+    /// If the tree is not clean, or is no git tree.
+    pub fn ensure_clean(&self) -> Result<()> {
+        let exclude = [PAGE, FOLDER].map(|path| format!(":(exclude){path}"));
+        let arguments = ["status", "--porcelain", "--", ".", &exclude[0], &exclude[1]];
+        let Some(changes) = git::output(&self.repository, &arguments) else {
+            bail!("{} is no git tree: {PAGE} has to name the commit", self.repository.display());
+        };
+        ensure!(
+            changes.is_empty(),
+            "{PAGE} is written from a clean git tree only, so that its commits are those of the code; commit \
+             these files first, or measure with --quick:\n{changes}"
+        );
+        Ok(())
+    }
+
+    /// Writes a figure's results: on the page its text and tables, or its rows of the index and the tables as
+    /// CSV; the charts as SVG. `order` has the names of all figures in the order of the index.
+    ///
+    /// # Errors
+    /// If the tree is not clean, if something was measured in a tree that was not, or if a file cannot be
+    /// written.
+    pub fn publish(
+        &self,
+        figure: &dyn Figure,
+        report: &Report,
+        conditions: &str,
+        order: &[&str],
+    ) -> Result<()> {
+        self.ensure_clean()?;
+        ensure!(
+            !conditions.contains(WITH_CHANGES),
+            "{PAGE} is not written: measurements of {} come from a tree that was not clean ({conditions}); \
+             remove them",
+            figure.name()
+        );
+        let path = self.repository.join(PAGE);
+        let page = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
+        let page = if figure.on_page() {
+            page::with_section(&page, figure.name(), &page::section(figure, report, conditions))
+        } else {
+            page::with_index_rows(&page, figure.name(), &page::index_rows(figure, report, conditions), order)
+        };
+        let page = page.with_context(|| path.display().to_string())?;
+        let folder = self.repository.join(FOLDER);
+        for part in &report.parts {
+            match part {
+                Part::Table { name, table, .. } if !figure.on_page() => {
+                    write(&folder.join(format!("{name}.csv")), &table.csv())?;
+                }
+                Part::Table { .. } => {}
+                Part::Chart { name, chart } => {
+                    write(&folder.join(format!("{name}.svg")), &chart::svg(chart))?;
+                }
+            }
+        }
+        write(&path, &page)
+    }
+}
+
+#[cfg(test)]
+mod tests;
