@@ -11,7 +11,7 @@ use bowknot_scene::shapes::RoundCones;
 use std::collections::BTreeMap;
 
 /// Side of the lattice's cubes [m].
-const SPACING: f64 = 0.016;
+const SPACING: f64 = 0.0165;
 /// Lattice points nearer to the surface than this share of the spacing are moved onto it.
 const SNAP: f64 = 0.25;
 
@@ -29,8 +29,9 @@ fn solid() -> RoundCones {
         // Beak.
         bar([0.08, 0.007, 0.114], 0.014, 0.008),
     ];
-    // Wings.
+    // Wings, and a flat underside that it sits on.
     parts.extend(pair([[0.0, 0.052, 0.054], [-0.045, 0.05, 0.066]], [0.019, 0.013], 0.012));
+    parts.extend(pair([[-0.045, 0.022, 0.034], [0.048, 0.022, 0.034]], [0.034, 0.034], 0.01));
     RoundCones { parts }
 }
 

@@ -4,8 +4,7 @@
 //! cargo run --release -p bowknot-scene --example meshes -- assets/meshes
 //! ```
 //!
-//! All three are made from round cones. The same version of the program writes the same files: coordinates are
-//! rounded to micrometers, so that the last bits of a machine's sine do not matter.
+//! All three are made from round cones. Coordinates are rounded to micrometers.
 #![allow(clippy::print_stdout, reason = "an example reports what it did")]
 
 mod character;
