@@ -1,11 +1,10 @@
 //! The meshes and scenes of `assets` are what `assets/README.md` says.
 
-use bowknot::Scene;
 use bowknot::check::{Judge, Parts, StateOptions};
 use bowknot::geometry::check_mesh;
 use bowknot::io::{Import, Mesh, read_mesh};
 use bowknot::repair::{RepairParams, repair};
-use bowknot::world::World;
+use bowknot::{Scene, Simulator};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};

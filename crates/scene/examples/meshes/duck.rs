@@ -15,7 +15,7 @@ const SPACING: f64 = 0.0165;
 /// Lattice points nearer to the surface than this share of the spacing are moved onto it.
 const SNAP: f64 = 0.25;
 
-/// The duck: 20 cm long, it looks along x and sits on the xy plane.
+/// The duck: 20 cm long, it looks along x, and its flat underside is near z = 0.
 fn solid() -> RoundCones {
     let mut parts = vec![
         // Body.

@@ -20,6 +20,7 @@ const GAP: f64 = 0.022;
 const ARMHOLE: f64 = 0.2;
 /// How far a border vertex is moved at most along each axis [m].
 const ROUNDING: f64 = 1e-5;
+
 /// What cuts the surface: front from back, sleeves from trunk; then what is dropped where the function is above 0:
 /// below the hem, above the neckline, beyond the cuffs.
 const CUTS: [Cut; 5] = [
@@ -32,9 +33,13 @@ const CUTS: [Cut; 5] = [
         (wrist - elbow).normalize().dot(&(Point::new(p.x, p.y.abs(), p.z) - wrist)) + 0.045
     },
 ];
+
 /// One entry per cut.
 type OnCuts = [bool; CUTS.len()];
+
+/// Index of the cut between front and back.
 const FRONT: usize = 0;
+/// Index of the cut between sleeves and trunk.
 const SLEEVE: usize = 1;
 /// The first of the cuts beyond which the surface is dropped.
 const DROPPED: usize = 2;
