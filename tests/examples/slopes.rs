@@ -1,5 +1,5 @@
-//! Prints how bodies slide on grounds of all tessellations, beside Coulomb's law:
-//! `cargo run --release -p bowknot-tests --example slopes [-- BODY [GROUND [SETTING ...]]]`.
+//! Prints speeds of bodies on slopes with grounds of all tessellations, and those by Coulomb's law: `cargo
+//! run --release -p bowknot-tests --example slopes [-- BODY [GROUND [SETTING ...]]]`.
 
 #![allow(clippy::print_stdout, reason = "a table is what it is for")]
 

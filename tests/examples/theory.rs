@@ -1,5 +1,5 @@
-//! Prints what came of scenes beside what theory has for them:
-//! `cargo run --release -p bowknot-tests --example theory [-- SCENE [SETTING ...]]`.
+//! Prints measurements of scenes whose outcome is known from theory: `cargo run --release -p
+//! bowknot-tests --example theory [-- SCENE [SETTING ...]]`.
 
 #![allow(clippy::print_stdout, reason = "a table is what it is for")]
 

@@ -1,8 +1,8 @@
-//! Scenes whose motion in contact theory knows: bodies on grounds of all tessellations, in a gravity that is tilted
-//! in place of the ground.
+//! Scenes with a known motion: bodies that slide on grounds of different tessellations. Gravity is tilted
+//! instead of the ground.
 //!
-//! A ground's surface is the plane z = 0, wide enough for a second of sliding. A body starts at the origin, at the
-//! contact distance above it, so that it neither falls nor is lifted.
+//! The surface of a ground is the plane z = 0, wide enough for a second of sliding. A body starts at the
+//! origin, at the contact distance above the ground, so that it neither falls nor is lifted.
 
 use crate::Random;
 use bowknot::geometry::{Point, Vector};
@@ -17,7 +17,7 @@ pub const GRAVITY: f64 = 9.81;
 /// Contact distance of all these scenes [m].
 pub const DELTA: f64 = 1e-3;
 
-/// What a body stands on.
+/// The ground below a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ground {
     /// An analytic half-space.
@@ -30,15 +30,15 @@ pub enum Ground {
     Irregular,
     /// A mesh of triangles of 3 by 60 mm.
     Slivers,
-    /// Two boxes side by side, flush, the seam across the way, 5 cm ahead.
+    /// Two boxes side by side, flush, with the seam across the way, 5 cm ahead.
     Flush,
-    /// One plane whose mesh has edges of 3 cm before the seam, 5 cm ahead, and of 7 mm behind it.
+    /// One plane whose mesh has edges of 3 cm before a seam, 5 cm ahead, and of 7 mm behind it.
     Seam,
     /// A block of jelly, held at its lower side.
     Slab,
 }
 
-/// What slides.
+/// The body that slides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slider {
     /// A cube of 8 cm, E = 100 kPa.
@@ -51,12 +51,12 @@ pub enum Slider {
     Layers,
     /// Nine straws of 10 cm, side by side.
     Strands,
-    /// Sixteen grains of gravel, apart from each other.
+    /// Sixteen separate grains of gravel.
     Grains,
 }
 
 impl Slider {
-    /// All of them.
+    /// All bodies.
     pub const ALL: [Self; 6] =
         [Self::JellyCube, Self::StiffCube, Self::Patch, Self::Layers, Self::Strands, Self::Grains];
 
@@ -102,7 +102,7 @@ impl Slider {
 }
 
 impl Ground {
-    /// All on which a body slides as on one plane.
+    /// All grounds on which a body slides as on one plane.
     pub const ALL: [Self; 8] = [
         Self::HalfSpace,
         Self::Box,
@@ -162,8 +162,8 @@ impl Ground {
     }
 }
 
-/// A grid of triangles in the plane z = 0 over `x` by `y`, cells of about `size`; inner vertices are moved by up to `jitter` of
-/// a cell, diagonals then go either way.
+/// A grid of triangles in the plane z = 0 over `x` by `y`, with cells of about `size`. Inner vertices are
+/// moved by up to `jitter` of a cell. With jitter, diagonals have random directions.
 fn grid(x: [f64; 2], y: [f64; 2], size: [f64; 2], jitter: f64) -> (Vec<Point>, Vec<[u32; 3]>) {
     let mut random = Random::new(1);
     let count = |range: [f64; 2], size: f64| ((range[1] - range[0]) / size).round() as usize;
@@ -197,13 +197,13 @@ fn grid(x: [f64; 2], y: [f64; 2], size: [f64; 2], jitter: f64) -> (Vec<Point>, V
 /// A body on a ground.
 #[derive(Clone, Debug)]
 pub struct Slope {
-    /// What slides.
+    /// The body that slides.
     pub slider: Slider,
-    /// On what.
+    /// The ground.
     pub ground: Ground,
     /// Angle of the slope [deg].
     pub degrees: f64,
-    /// Direction of the way down in the plane, from the x axis [deg].
+    /// Downhill direction in the plane, from the x axis [deg].
     pub heading: f64,
     /// Coefficient of friction [1].
     pub friction: f64,
@@ -211,7 +211,7 @@ pub struct Slope {
     pub dt: f64,
     /// Speed at the start, along the heading [m/s].
     pub speed: f64,
-    /// More settings, as `--set` takes them.
+    /// More settings, as for `--set`.
     pub settings: Vec<String>,
 }
 
@@ -230,13 +230,13 @@ impl Slope {
         }
     }
 
-    /// Acceleration down the slope as Coulomb's law has it for a body that starts from rest or slides down [m/s^2].
+    /// Acceleration down the slope by Coulomb's law, for a body that starts from rest or slides down [m/s^2].
     pub fn acceleration(&self) -> f64 {
         let (sine, cosine) = self.degrees.to_radians().sin_cos();
         GRAVITY * (sine - self.friction * cosine).max(0.0)
     }
 
-    /// The scene; meshes of the ground are written to `folder`.
+    /// The scene. Meshes of the ground are written to `folder`.
     pub fn scene(&self, folder: &Path) -> Scene {
         let (sine, cosine) = self.degrees.to_radians().sin_cos();
         let heading = self.heading.to_radians();
@@ -283,7 +283,7 @@ impl Slope {
     }
 }
 
-/// Where a slider's centre of mass was after each time step, the start included.
+/// Centre of mass of a slider at the start and after each time step.
 #[derive(Clone, Debug)]
 pub struct Track {
     /// Unit vector down the slope.

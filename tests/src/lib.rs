@@ -1,18 +1,19 @@
-//! Shared helpers of the integration tests: hard states, far targets, and a watch over steps.
+//! Shared helpers of the integration tests: hard states, far targets, and a check of every step.
 //!
-//! - [`states`]: seeded generators of states that are free of intersections, but only just;
-//! - [`targets`]: where their vertices are asked to go, from a micrometre to a kilometre away;
-//! - [`watch`]: judges every step of whatever moves them;
-//! - [`fuzz`]: what must hold for any bytes, driven by the fuzz targets and by a test.
+//! - [`states`]: seeded generators of states that are nearly intersecting;
+//! - [`targets`]: targets of their vertices, from a micrometre to a kilometre away;
+//! - [`step_checker`]: checks every step that moves them;
+//! - [`contact`], [`theory`]: scenes whose outcome is known from theory;
+//! - [`fuzz`]: properties that hold for any bytes, for the fuzz targets and a test.
 
 pub mod contact;
 pub mod fuzz;
 pub mod random;
 pub mod states;
+pub mod step_checker;
 pub mod targets;
 pub mod theory;
-pub mod watch;
 
 pub use random::Random;
 pub use states::Case;
-pub use watch::Watch;
+pub use step_checker::StepChecker;

@@ -1,36 +1,31 @@
-//! A small deterministic generator (splitmix64, Steele, Lea and Flood 2014).
+//! Seeded random numbers, vectors and points.
 
 use bowknot_geometry::{Point, Vector};
+use fastrand::Rng;
 
 /// Random numbers from a seed, the same on every machine.
 #[derive(Clone, Debug)]
-pub struct Random(u64);
+pub struct Random(Rng);
 
 impl Random {
-    /// A generator; different seeds give unrelated numbers.
+    /// A generator. Different seeds give unrelated numbers.
     pub fn new(seed: u64) -> Self {
-        let mut random = Self(seed);
-        random.bits();
-        random
+        Self(Rng::with_seed(seed))
     }
 
     /// 64 random bits.
     pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        self.0.u64(..)
     }
 
-    /// Uniform in [0, `end`).
+    /// Uniform in [0, `end`); 0 if `end` is 0.
     pub fn below(&mut self, end: usize) -> usize {
-        (self.bits() % end.max(1) as u64) as usize
+        self.0.usize(..end.max(1))
     }
 
     /// Uniform in [`low`, `high`).
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * ((self.bits() >> 11) as f64 / (1u64 << 53) as f64)
+        low + (high - low) * self.0.f64()
     }
 
     /// Log-uniform in [`low`, `high`), both positive.
@@ -43,7 +38,7 @@ impl Random {
         Vector::new(self.between(-half, half), self.between(-half, half), self.between(-half, half))
     }
 
-    /// A unit vector, uniform to the bias of a cube's corners.
+    /// A unit vector. Directions toward the corners of a cube are more frequent.
     pub fn direction(&mut self) -> Vector {
         loop {
             let v = self.vector(1.0);

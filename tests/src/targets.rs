@@ -1,20 +1,20 @@
-//! Where vertices are asked to go: from a micrometre to a kilometre away, mostly into one another.
+//! Targets of vertices, from a micrometre to a kilometre away. Most lead through other elements.
 
 use crate::{Case, Random};
 use bowknot_geometry::{Point, Vector};
 
-/// A rule for targets; distances are about the `magnitude` it is used with.
+/// A rule for targets. Their distances are about the given `magnitude`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
-    /// Every vertex its own way.
+    /// Every vertex goes in its own direction.
     Scattered,
-    /// All the same way, but for a thousandth.
+    /// All vertices go in the same direction, up to a thousandth.
     Together,
-    /// Through the center and out on the other side.
+    /// Every vertex goes through the center to the other side.
     Inverted,
-    /// Through a plane, mirrored.
+    /// Every vertex goes to the other side of a plane through the center.
     Mirrored,
-    /// Toward another vertex's place, and beyond.
+    /// Every vertex goes toward the position of another one, or beyond it.
     Swapped,
     /// Half of the vertices go, the others stay.
     Halved,

@@ -1,6 +1,6 @@
-//! Scenes in contact or collision whose outcome theory knows, and what came of them.
+//! Scenes with contacts or collisions whose outcome is known from theory, and measurements of them.
 //!
-//! Each function runs a scene with more `settings`, as `--set` takes them, and returns what was measured.
+//! Each function runs a scene with additional `settings`, as for `--set`, and returns the measurements.
 
 use crate::contact::{GRAVITY, Slope, velocity};
 use bowknot::geometry::{Point, Vector};
@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 use std::ops::Range;
 use std::path::Path;
 
-/// A simulator of a scene as text.
+/// A simulator of a scene that is given as text.
 pub fn simulator(text: &str, folder: &Path, settings: &[String]) -> Simulator {
     let scene = Scene::from_toml(text, folder)
         .and_then(|scene| scene.with_sets(settings))
@@ -61,19 +61,22 @@ fn step(simulator: &mut Simulator) -> StepStatistics {
 /// Two cubes that meet in free space, without gravity.
 #[derive(Clone, Copy, Debug)]
 pub struct Meeting {
-    /// Largest change of the momentum, by one cube's at the start [1].
+    /// Largest change of the momentum, relative to that of one cube at the start [1].
     pub momentum: f64,
-    /// Largest change of the angular momentum about the common centre, by one cube's momentum times its size [1].
+    /// Largest change of the angular momentum about the common centre, relative to the momentum of one cube
+    /// times its size [1].
     pub angular: f64,
-    /// Largest kinetic and elastic energy of any later state, by that at the start [1].
+    /// Largest kinetic and elastic energy of any later state, relative to that at the start [1].
     pub energy: f64,
-    /// The same at the end.
+    /// Kinetic and elastic energy at the end, relative to that at the start [1].
     pub energy_left: f64,
-    /// Relative velocity along the way at the end, by that at the start: minus the coefficient of restitution [1].
+    /// Relative velocity along the way at the end, relative to that at the start: minus the coefficient of
+    /// restitution [1].
     pub restitution: f64,
 }
 
-/// Two cubes of 8 cm that meet at 1 m/s each, `offset` [m] beside each other's centre, with friction.
+/// Two cubes of 8 cm that collide at 1 m/s each with friction; their centres are offset sideways by `offset`
+/// [m].
 pub fn meeting(offset: [f64; 2], modulus: f64, steps: usize, settings: &[String]) -> Meeting {
     let folder = tempfile::tempdir().expect("a folder");
     let cube = |name: &str, x: f64, y: f64, z: f64, speed: f64| {
@@ -114,8 +117,8 @@ fn floor(mesh: bool) -> &'static str {
     }
 }
 
-/// A cube of jelly falls by 5 cm on a floor; the largest horizontal velocity of its centre of mass [m/s] and the largest gain
-/// of energy over that at the start [J].
+/// A cube of jelly falls by 5 cm on a floor. Returns the largest horizontal velocity of its centre of mass
+/// [m/s] and the largest gain of energy since the start [J].
 pub fn dropped_cube(
     rotate: [f64; 3],
     friction: f64,
@@ -148,8 +151,8 @@ pub fn dropped_cube(
     [aside, gain]
 }
 
-/// A cube of 8 cm is thrown at a floor at 3 m/s without gravity: its velocity away from the floor after each of `steps` time
-/// steps, by that at the start [1].
+/// A cube of 8 cm is thrown at a floor at 3 m/s without gravity. Returns its velocity away from the floor
+/// after each of `steps` time steps, relative to the speed at the start [1].
 pub fn thrown_cube(modulus: f64, mesh: bool, steps: usize, settings: &[String]) -> Vec<f64> {
     let folder = tempfile::tempdir().expect("a folder");
     let text = format!(
@@ -169,8 +172,8 @@ pub fn thrown_cube(modulus: f64, mesh: bool, steps: usize, settings: &[String]) 
     (0..steps).map(|_| velocity()).collect()
 }
 
-/// Spins a cube in free space for `steps` steps at `rate` [rad/s]; the share of its angular momentum that is lost, and of its
-/// energy.
+/// Spins a cube in free space for `steps` steps at `rate` [rad/s]. Returns the shares of its angular momentum
+/// and of its energy that are lost.
 pub fn spinning_cube(rate: f64, steps: usize, settings: &[String]) -> [f64; 2] {
     let folder = tempfile::tempdir().expect("a folder");
     let text = format!(
@@ -191,8 +194,8 @@ pub fn spinning_cube(rate: f64, steps: usize, settings: &[String]) -> [f64; 2] {
     [(start.angular - end.angular).norm() / start.angular.norm(), 1.0 - energy / start.kinetic]
 }
 
-/// A ball of 5 cm on a slope of `degrees`, friction 0.5: mean acceleration down the slope over the time steps of `range`, by
-/// the 5/7 g sin a of a ball that rolls [1].
+/// A ball of 5 cm on a slope of `degrees` with friction 0.5: mean acceleration down the slope over the time
+/// steps of `range`, relative to the 5/7 g sin a of a ball that rolls [1].
 pub fn rolling_ball(degrees: f64, edge: f64, dt: f64, range: Range<usize>, settings: &[String]) -> f64 {
     let folder = tempfile::tempdir().expect("a folder");
     let (sine, cosine) = degrees.to_radians().sin_cos();
@@ -216,15 +219,16 @@ pub fn rolling_ball(degrees: f64, edge: f64, dt: f64, range: Range<usize>, setti
     found / (5.0 / 7.0 * GRAVITY * sine)
 }
 
-/// A belt of cotton around a fixed cylinder through `degrees`, drawn at one end against the other, which is held: ratio of
-/// the tensions of its straight ends, and what Euler and Eytelwein have for it, exp(mu theta).
+/// A belt of cotton around a fixed cylinder through `degrees`. One end is pulled, the other is held. Returns
+/// the ratio of the tensions of its straight ends, and the one by Euler and Eytelwein, exp(mu theta).
 pub fn belt(degrees: f64, friction: f64, settings: &[String]) -> [f64; 2] {
     const RADIUS: f64 = 0.05;
     const EDGE: f64 = 0.005;
     const END: f64 = 0.06;
     let folder = tempfile::tempdir().expect("a folder");
     let theta = degrees.to_radians();
-    // A strip along the y axis in width; a full turn climbs along it so as not to meet itself.
+    // The width of the strip is along the y axis. A full turn climbs along y, so that it does not touch
+    // itself.
     let radius = RADIUS + 1.05e-3;
     let climb = if degrees > 300.0 { 0.03 } else { 0.0 };
     let width = 0.015;
@@ -279,11 +283,12 @@ pub fn belt(degrees: f64, friction: f64, settings: &[String]) -> [f64; 2] {
     [pulled / held, (friction * theta).exp()]
 }
 
-/// A sheet on a table with a rounded edge, over which it hangs by `pull` times what friction can just hold: how far it has
-/// slid after `steps` time steps [m].
+/// A sheet on a table with a rounded edge. It hangs over the edge by `pull` times the length that friction
+/// can just hold. Returns how far it has slid after `steps` time steps [m].
 ///
-/// Per width and weight w, tension T grows around an edge of radius R by dT/dtheta = mu (T + w R cos theta) - w R sin theta at
-/// most, from the mu w L that the lying part L holds to the w H of what hangs.
+/// Per width, with weight w per area, the tension T grows around an edge of radius R by at most dT/dtheta =
+/// mu (T + w R cos theta) - w R sin theta, from the mu w L that the lying part of length L holds to the w H
+/// of the hanging part of length H.
 pub fn table_edge(pull: f64, friction: f64, steps: usize, settings: &[String]) -> f64 {
     const RADIUS: f64 = 0.03;
     const LENGTH: f64 = 0.3;
@@ -292,7 +297,7 @@ pub fn table_edge(pull: f64, friction: f64, steps: usize, settings: &[String]) -
     let folder = tempfile::tempdir().expect("a folder");
     let delta = 1e-3;
     let around = RADIUS + delta;
-    // T at the end of the arc is affine in T at its beginning.
+    // T at the end of the arc is an affine function of T at its start.
     let carried = |start: f64| {
         let count = 1000;
         let dt = 0.5 * PI / f64::from(count);
@@ -347,7 +352,7 @@ pub fn table_edge(pull: f64, friction: f64, steps: usize, settings: &[String]) -
     moved.sum::<f64>() / (columns + 1) as f64
 }
 
-/// Writes a strip of `rows` by `columns` quadrangles, cut into triangles, vertices row by row.
+/// Writes a strip of `rows` by `columns` quadrangles, cut into triangles, with vertices row by row.
 fn write_strip(path: &Path, positions: &[Point], rows: usize, columns: usize) {
     let at = |row: usize, column: usize| (row * (columns + 1) + column) as u32;
     let mut triangles = Vec::new();
@@ -363,8 +368,8 @@ fn write_strip(path: &Path, positions: &[Point], rows: usize, columns: usize) {
     write_obj(path, &view).unwrap_or_else(|error| panic!("{error}"));
 }
 
-/// Slides a body over a level ground from `slope.speed` until it stops: its way by v^2 / (2 mu g) [1], less what the time step
-/// takes off that: implicit Euler has no motion at the speed of the start, v dt / 2.
+/// Slides a body over a level ground from `slope.speed` until it stops. Returns its way relative to v^2 / (2
+/// mu g) less v dt / 2 [1]: implicit Euler has no motion at the speed of the start.
 pub fn stopping_distance(slope: &Slope) -> f64 {
     let theory = slope.speed * slope.speed / (2.0 * slope.friction * GRAVITY);
     let steps = (1.3 * slope.speed / (slope.friction * GRAVITY) / slope.dt).ceil() as usize;

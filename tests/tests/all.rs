@@ -1,17 +1,18 @@
 //! Integration tests that span several crates, in one binary.
 
-// Manifests keep to the layers, and named paths exist.
+// Manifests keep to the layers, no files import each other in a circle, and named paths exist.
+mod imports;
 mod layers;
 mod paths;
-// The generators of hard states do what they say.
+// The generators of hard states draw what they claim.
 mod generators;
-// No step of the forward step, alone or within the two-way loop, ever intersects.
+// No step of the forward stage, alone or within the two-way loop, intersects.
 mod safety;
-// Nor does one of the interior point methods to compare with.
+// No step of the interior point baselines intersects.
 mod interior_points;
-// What the fuzz targets check holds for seeded random bytes.
+// The properties of the fuzz targets hold for seeded random bytes.
 mod fuzz_bodies;
-// Contact moves bodies as theory has it, and crushes none.
+// Bodies in contact move as theory predicts, and none is crushed.
 mod folds;
 mod friction;
 mod momentum;

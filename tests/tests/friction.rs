@@ -1,4 +1,4 @@
-//! Friction of belts, balls, and sheets that hang, and the ways that bodies slide, as theory has them.
+//! Friction of belts, balls and hanging sheets, and the distances that bodies slide, compared with theory.
 
 use bowknot_tests::contact::{Ground, Slider, Slope};
 use bowknot_tests::theory;

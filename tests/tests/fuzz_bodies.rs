@@ -1,5 +1,5 @@
-//! What the fuzz targets of `tests/fuzz` check holds for seeded random bytes, and for valid files with some bytes
-//! changed; and enough of both lead far enough to mean something.
+//! The properties of the fuzz targets in `tests/fuzz` hold for seeded random bytes and for valid files with
+//! some bytes changed. Enough of both lead to a check of the property.
 //!
 //! `BOWKNOT_SEEDS=20 cargo test --release -p bowknot-tests fuzz_bodies` tries ten times as many.
 
@@ -14,14 +14,15 @@ fn bytes(random: &mut Random, length: usize) -> Vec<u8> {
     (0..length).map(|_| random.bits() as u8).collect()
 }
 
-/// Runs a body on random bytes; the share that led as far as its promise.
+/// Runs the body of a fuzz target on random bytes. Returns the share of runs that led to a check of its
+/// property.
 fn share(body: fn(&[u8]) -> bool, cases: u64, length: usize) -> f64 {
     let mut random = Random::new(cases);
     let reached = (0..cases).filter(|_| body(&bytes(&mut random, length))).count();
     reached as f64 / cases as f64
 }
 
-/// One tetrahedron in files of kinds that are only read, behind the byte that chooses the kind.
+/// One tetrahedron in files of the formats that are only read, behind the byte that chooses the format.
 const SOLID: &[u8] =
     b"\x04$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n9 0 0 1\n\
     $EndNodes\n$Elements\n3\n1 15 2 0 1 1\n2 2 2 0 1 1 2 3\n3 4 2 0 1 1 2 3 9\n$EndElements\n";
@@ -118,7 +119,7 @@ fn damaged_files_are_read_or_refused() {
         assert!(fuzz::read_mesh(file), "a sound file is refused");
         for _ in 0..10 * seeds() {
             let mut damaged = file.clone();
-            // Where the file begins is what decides how the rest is read.
+            // The beginning of a file decides how the rest is read.
             let reach = if random.below(2) == 0 { damaged.len().min(400) } else { damaged.len() };
             for _ in 0..1 + random.below(3) {
                 let place = 1 + random.below(reach - 1);

@@ -1,12 +1,13 @@
-//! The hard states are clear, hard, and the same every time; the targets lead through one another.
+//! The hard states are free of intersections, nearly intersecting, and the same in every run. The targets
+//! lead through other elements.
 
 use bowknot::check::{Judge, PathOptions, StateOptions};
 use bowknot_tests::states::GENERATORS;
 use bowknot_tests::targets::Rule;
-use bowknot_tests::{Random, Watch};
+use bowknot_tests::{Random, StepChecker};
 
 #[test]
-fn states_are_clear_but_only_just() {
+fn states_are_clear_but_nearly_intersecting() {
     for generator in GENERATORS {
         let mut smallest = f64::INFINITY;
         for seed in 0..6 {
@@ -25,9 +26,9 @@ fn states_are_clear_but_only_just() {
     }
 }
 
-/// Going straight to the target is mostly wrong, so a step that is not is worth something.
+/// Most straight paths to the targets intersect. Otherwise a step that does not would prove little.
 #[test]
-fn targets_lead_through_one_another() {
+fn most_targets_lead_through_other_elements() {
     let (mut cases, mut crossings) = (0, 0);
     for generator in GENERATORS {
         for rule in Rule::ALL {
@@ -44,16 +45,16 @@ fn targets_lead_through_one_another() {
 }
 
 #[test]
-fn the_watch_catches_a_careless_step() {
+fn the_checker_finds_a_step_that_intersects() {
     let case = bowknot_tests::states::folded_sheet(3);
     let targets = Rule::Scattered.targets(&case, 1e-2, &mut Random::new(3));
-    let mut watch = Watch::new(&case);
-    watch.follow(&case, &targets, 10, |_, y| y.to_vec());
-    let fault = watch.fault.expect("the whole way at once must be seen");
+    let mut checker = StepChecker::new(&case);
+    checker.follow(&case, &targets, 10, |_, y| y.to_vec());
+    let fault = checker.fault.expect("the whole way at once must be found");
     assert!(fault.starts_with("step 0: "), "{fault}");
 
-    // And lets a step pass that does nothing.
-    let mut watch = Watch::new(&case);
-    watch.follow(&case, &targets, 10, |x, _| x.to_vec());
-    assert_eq!((watch.fault, watch.steps), (None, 1));
+    // A step that moves nothing has no fault.
+    let mut checker = StepChecker::new(&case);
+    checker.follow(&case, &targets, 10, |x, _| x.to_vec());
+    assert_eq!((checker.fault, checker.steps), (None, 1));
 }

@@ -1,25 +1,26 @@
-//! What the methods to compare with promise as well: no straight path of any step intersects, judged exactly.
+//! The baselines also guarantee that no straight path of any step intersects. The judge decides this exactly.
 
 use crate::safety::{seeds, watched};
 use bowknot_baselines::barrier::{BarrierParams, by_descent, by_newton};
 use bowknot_baselines::ccd::{AdditiveCcd, ClosingSpeed, EarliestImpact, PerVertexImpact};
 use bowknot_stepper::{StepReport, Stepper};
 use bowknot_twoway::{
-    BudgetedSearch, ForwardStep, LcpBackward, Params, Problem, Resolver, Search, State, Statistics,
+    CollisionScene, ForwardStep, LcpBackward, Params, ResolveState, Resolver, Search, Statistics,
+    TrustRegionSearch,
 };
 
-/// Presets and speeds in turn. With a floor: where a tenth of the gap is left step by step, it falls to 1e-12 m within these
+/// Presets and speeds in turn. With a minimum separation: where a tenth of the gap is left step by step, it falls to 1e-12 m within these
 /// few steps, too near for the judge to tell a miss from a hit. With few iterations: along a kilometre there would be many,
 /// and stopping early is as safe.
 fn with_impacts<F: ForwardStep>(forward: impl Fn(AdditiveCcd) -> F) {
     let settings = [(Params::fast(), ClosingSpeed::Slab), (Params::paper(), ClosingSpeed::Travel)];
     for (mut params, speed) in settings {
-        params.stepper.floor = Some(1e-8);
+        params.contact.min_separation = Some(1e-8);
         let ccd = AdditiveCcd { speed, max_iterations: 50, ..AdditiveCcd::default() };
-        watched(&params, seeds().div_ceil(2), |problem| {
-            let search = BudgetedSearch::new(&problem);
+        watched(&params, seeds().div_ceil(2), |scene| {
+            let search = TrustRegionSearch::new(&scene);
             let backward: LcpBackward = LcpBackward::default();
-            Ok(Resolver::with_stages(problem, search, backward, forward(ccd)))
+            Ok(Resolver::with_stages(scene, search, backward, forward(ccd)))
         })
         .assert_safe();
     }
@@ -28,16 +29,16 @@ fn with_impacts<F: ForwardStep>(forward: impl Fn(AdditiveCcd) -> F) {
 #[test]
 fn no_step_of_the_log_barrier_by_descent_intersects() {
     for params in [Params::fast(), Params::paper()] {
-        watched(&params, seeds(), |problem| by_descent(problem, BarrierParams::default())).assert_safe();
+        watched(&params, seeds(), |scene| by_descent(scene, BarrierParams::default())).assert_safe();
     }
 }
 
 #[test]
 fn no_step_of_the_log_barrier_by_newtons_method_intersects() {
     let mut params = Params::fast();
-    params.stepper.floor = Some(1e-8);
+    params.contact.min_separation = Some(1e-8);
     let ccd = AdditiveCcd { speed: ClosingSpeed::Slab, max_iterations: 50, ..AdditiveCcd::default() };
-    watched(&params, seeds().div_ceil(2), |problem| by_newton(problem, BarrierParams::default(), ccd))
+    watched(&params, seeds().div_ceil(2), |scene| by_newton(scene, BarrierParams::default(), ccd))
         .assert_safe();
 }
 
@@ -51,36 +52,36 @@ fn no_step_to_each_vertexs_impact_intersects() {
     with_impacts(PerVertexImpact::new);
 }
 
-/// Goes all the way, whatever is in it.
+/// Goes the whole way, whether or not anything is in it.
 #[derive(Default)]
-struct Heedless(Stepper);
+struct Unlimited(Stepper);
 
-impl ForwardStep for Heedless {
-    fn begin(&mut self, problem: &Problem, _: &State) {
-        self.0.begin(problem.rest.len());
+impl ForwardStep for Unlimited {
+    fn begin(&mut self, scene: &CollisionScene, _: &ResolveState) {
+        self.0.begin(scene.vertex_count());
     }
 
     fn advance(
         &mut self,
-        _: &Problem,
-        state: &mut State,
+        _: &CollisionScene,
+        state: &mut ResolveState,
         _: &mut dyn Search,
         _: &mut Statistics,
     ) -> StepReport {
-        self.0.aim(&state.x, &state.y);
+        self.0.set_target(&state.x, &state.y);
         state.previous.clone_from(&state.x);
         self.0.advance(&mut state.x)
     }
 }
 
 #[test]
-fn steps_that_heed_no_impact_are_caught() {
+fn steps_that_ignore_impacts_are_found() {
     let mut params = Params::fast();
-    params.stepper.floor = Some(1e-8);
-    let outcome = watched(&params, 1, |problem| {
-        let search = BudgetedSearch::new(&problem);
+    params.contact.min_separation = Some(1e-8);
+    let outcome = watched(&params, 1, |scene| {
+        let search = TrustRegionSearch::new(&scene);
         let backward: LcpBackward = LcpBackward::default();
-        Ok(Resolver::with_stages(problem, search, backward, Heedless::default()))
+        Ok(Resolver::with_stages(scene, search, backward, Unlimited::default()))
     });
     assert!(outcome.caught() >= 0.1, "{} of the runs", outcome.caught());
 }

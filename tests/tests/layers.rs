@@ -1,13 +1,14 @@
-//! The manifests keep to the layers: arrows point one way.
+//! The manifests respect the layers: dependencies point one way.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use toml::Table;
 
-/// What every crate may depend on.
+/// The crate that every crate may depend on.
 const SHARED: &str = "bowknot-errors";
 
-/// What each crate may depend on, of ours, beside [`SHARED`]. A crate that is not listed fails the test.
+/// The crates of the workspace that each crate may depend on, beside [`SHARED`]. A crate that is not listed
+/// fails the test.
 const ALLOWED: &[(&str, &[&str])] = &[
     ("bowknot-errors", &[]),
     ("bowknot-geometry", &[]),
@@ -97,7 +98,7 @@ fn folders(parent: &Path) -> Vec<PathBuf> {
     folders
 }
 
-/// Names of our packages on which a package depends in any way: for building, testing, on some target,
+/// Names of our packages on which a package depends in any way: for building, for testing, on some target,
 /// under another name.
 fn our_dependencies(manifest: &Table) -> Vec<String> {
     let mut tables = vec![manifest];
@@ -110,7 +111,7 @@ fn our_dependencies(manifest: &Table) -> Vec<String> {
             let Some(dependencies) = table.get(key).and_then(|value| value.as_table()) else { continue };
             for (key, value) in dependencies {
                 let package = value.get("package").and_then(|value| value.as_str()).unwrap_or(key);
-                // What is named by a path is ours whatever it is called.
+                // A dependency with a path is ours, whatever its name.
                 if package.starts_with("bowknot") || package == "xtask" || value.get("path").is_some() {
                     found.push(package.to_owned());
                 }
@@ -153,21 +154,21 @@ fn dependencies_point_down() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// What is wrong with a consumer of a library: it needs that, and nothing else of ours.
+/// Faults of a consumer of a library: it must use the library and no other package of ours.
 fn consumer_faults(short: &str, library: &str, consumer: &Table) -> Vec<String> {
     let used = our_dependencies(consumer);
     let mut faults = Vec::new();
     if !used.iter().any(|package| package == library) {
         faults.push(format!("tests/consumers/{short} does not use {library}"));
     }
-    // What a library's signatures take from the layers below, it re-exports.
+    // A library re-exports the types of lower layers that its signatures use.
     for other in used.iter().filter(|other| *other != library) {
         faults.push(format!("tests/consumers/{short} must not need {other}"));
     }
     faults
 }
 
-/// Each library has a consumer that needs it and nothing else of ours.
+/// Every library has a consumer that uses it and no other package of ours.
 #[test]
 fn every_library_is_usable_alone() {
     let consumers = root().join("tests/consumers");

@@ -1,10 +1,10 @@
-//! Momentum and energy of bodies that fly, meet and fall.
+//! Momentum and energy of bodies that fly, collide and fall.
 
 use bowknot_tests::theory;
 
 #[test]
 fn bodies_that_meet_keep_both_momenta_and_gain_no_energy() {
-    // Head on, and off centre two ways; with friction.
+    // Head on, and with two offsets; with friction.
     for offset in [[0.0, 0.0], [0.03, 0.0], [0.031, 0.017]] {
         for modulus in [1e5, 1e7] {
             let found = theory::meeting(offset, modulus, 40, &[]);
@@ -16,7 +16,7 @@ fn bodies_that_meet_keep_both_momenta_and_gain_no_energy() {
 
 #[test]
 fn a_body_that_spins_keeps_spinning() {
-    // 0.2 rad a step, where implicit Euler loses 2 % each time.
+    // 0.2 rad per step; implicit Euler would lose 2 % in each step.
     let [angular, energy] = theory::spinning_cube(20.0, 100, &[]);
     assert!(angular < 1e-8, "lost {angular} of its angular momentum");
     assert!((0.0..1e-3).contains(&energy), "lost {energy} of its energy");
@@ -40,7 +40,7 @@ fn a_cube_that_falls_is_not_kicked_aside() {
 fn a_cube_thrown_at_a_floor_comes_back_alike_from_a_mesh_and_a_half_space() {
     for modulus in [2e4, 1e5, 1e6] {
         let [plane, mesh] = [false, true].map(|mesh| theory::thrown_cube(modulus, mesh, 16, &[])[15]);
-        // It may lose all of its speed, but never the impulse of the floor.
+        // It may lose all of its speed, but must not go on into the floor.
         assert!((0.0..1.0).contains(&plane) && (plane - mesh).abs() < 0.02, "{modulus} Pa: {plane}, {mesh}");
     }
 }

@@ -1,12 +1,12 @@
-//! Each path that the documentation names exists.
+//! Every path that the documentation names exists.
 
 use crate::layers::root;
 use std::path::{Path, PathBuf};
 
-/// Tops of the paths that are looked for between backticks.
+/// Beginnings of the paths that are checked between backticks.
 const TOPS: [&str; 5] = ["crates/", "assets/", "docs/", "tests/", ".ci/"];
 
-/// All Markdown and Rust files of the repository, and what else explains it.
+/// All Markdown files, Rust files and manifests of the repository.
 fn documents() -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut open = vec![root()];
@@ -30,7 +30,7 @@ fn documents() -> Vec<PathBuf> {
     found
 }
 
-/// What stands between single backticks on one line.
+/// The texts between single backticks on one line.
 fn quoted(text: &str) -> impl Iterator<Item = &str> {
     text.lines().flat_map(|line| line.split('`').skip(1).step_by(2))
 }
@@ -54,7 +54,7 @@ fn missing(document: &Path, text: &str) -> Vec<String> {
     let is_markdown = document.extension().is_some_and(|extension| extension == "md");
     let mut missing = Vec::new();
     for path in quoted(text) {
-        // Patterns, places to fill in, and commands are not paths.
+        // Patterns, placeholders and commands are not paths.
         let plain =
             path.chars().all(|c| c.is_ascii_alphanumeric() || "/._-".contains(c)) && !path.contains("..");
         if plain && TOPS.iter().any(|top| path.starts_with(top)) && !exists(document, path) {

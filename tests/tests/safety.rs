@@ -1,17 +1,17 @@
-//! From hard intersection-free states toward any finite target, no straight path of any step
-//! intersects, judged exactly by code that the stepper does not share.
+//! From hard intersection-free states toward any finite target, no straight path of any step intersects. The
+//! judge decides this exactly and shares no code with the stepper.
 //!
 //! `BOWKNOT_SEEDS=20 cargo test --release -p bowknot-tests safety` runs ten times as many cases.
 
 use bowknot_geometry::{Point, Separation};
 use bowknot_proximity::{PairList, ProximitySearch};
-use bowknot_stepper::{Budgets, Contacts, Stepper};
+use bowknot_stepper::{Contacts, Stepper, TrustRegions};
 use bowknot_tests::states::GENERATORS;
 use bowknot_tests::targets::Rule;
-use bowknot_tests::{Case, Random, Watch};
+use bowknot_tests::{Case, Random, StepChecker};
 use bowknot_twoway::{
-    AcceptedState, BackwardStep, BodyContact, BudgetedSearch, Call, CertifiedForward, ForwardStep,
-    LcpBackward, Params, Problem, ResolveError, Resolver, Search,
+    AcceptedState, BackwardStep, BodyContact, CertifiedForward, CollisionScene, ForwardStep, LcpBackward,
+    Params, ResolveError, ResolveInput, Resolver, Search, TrustRegionSearch,
 };
 use std::ops::ControlFlow;
 
@@ -22,17 +22,17 @@ pub fn seeds() -> u64 {
     std::env::var("BOWKNOT_SEEDS").ok().and_then(|text| text.parse().ok()).unwrap_or(2)
 }
 
-/// What became of a check on every generator, every rule and a spread of magnitudes.
+/// The result of a check with every generator, every rule and various magnitudes.
 #[derive(Default)]
 pub struct Outcome {
     runs: usize,
-    /// Runs in which any vertex moved.
+    /// Number of runs in which a vertex moved.
     moved: usize,
     faults: Vec<String>,
 }
 
 impl Outcome {
-    /// `check` returns the largest move of any vertex, or what went wrong.
+    /// Runs `check`, which returns the largest move of any vertex, or a fault.
     pub fn of(seeds: u64, check: impl Fn(&Case, &[Point]) -> Result<f64, String>) -> Self {
         let mut outcome = Self::default();
         for (g, generator) in GENERATORS.iter().enumerate() {
@@ -63,12 +63,12 @@ impl Outcome {
     pub fn assert_safe(&self) {
         let Self { runs, moved, faults } = self;
         assert!(faults.is_empty(), "{} of {runs} runs:\n{}", faults.len(), faults.join("\n"));
-        // A step that never moves anything is safe, and useless.
+        // A step that never moves anything is safe but useless.
         assert!(10 * moved >= 9 * runs, "only {moved} of {runs} runs moved at all");
     }
 }
 
-/// The forward step by itself: search, bound, budgets, advance, with nothing to soften the target.
+/// The forward step by itself: search, bound, trust regions, advance, with nothing to soften the target.
 struct Forward {
     search: ProximitySearch,
     stepper: Stepper,
@@ -81,8 +81,8 @@ struct Forward {
 }
 
 impl Forward {
-    /// Gap floor [m]: above 16 ulp at a kilometre.
-    const FLOOR: f64 = 1e-8;
+    /// Minimum separation [m]: above 16 ulp at a kilometre.
+    const MIN_SEPARATION: f64 = 1e-8;
 
     fn new(case: &Case, planes: bool, damping: f64) -> Self {
         let vertices = 0..case.positions.len() as u32;
@@ -101,22 +101,27 @@ impl Forward {
 
     fn step(&mut self, case: &Case, x: &[Point], y: &[Point]) -> Vec<Point> {
         let model = &case.model;
-        let budgets = Budgets {
-            anchors: x.to_vec(),
+        let trust_regions = TrustRegions {
+            centers: x.to_vec(),
             radii: x.iter().zip(y).map(|(x, y)| (y - x).norm().clamp(1e-7, 5e-3)).collect(),
         };
-        let radii: Vec<f64> = budgets.radii.iter().map(|radius| radius + 0.5 * Self::FLOOR).collect();
+        let radii: Vec<f64> =
+            trust_regions.radii.iter().map(|radius| radius + 0.5 * Self::MIN_SEPARATION).collect();
         self.search.search(model, x, &radii, &mut self.pairs, &mut self.separations);
-        let floors = vec![Self::FLOOR; self.pairs.len()];
-        let contacts = Contacts { pairs: &self.pairs, separations: &self.separations, floors: &floors };
+        let min_separations = vec![Self::MIN_SEPARATION; self.pairs.len()];
+        let contacts = Contacts {
+            pairs: &self.pairs,
+            separations: &self.separations,
+            min_separations: &min_separations,
+        };
 
-        self.stepper.aim(x, y);
+        self.stepper.set_target(x, y);
         if self.planes {
             self.stepper.limit_by_planes(&contacts, self.damping);
         } else {
             self.stepper.limit_by_distances(&contacts, self.damping);
         }
-        self.stepper.limit_by_budgets(x, &budgets);
+        self.stepper.limit_by_trust_regions(x, &trust_regions);
         self.stepper.limit_by_bodies(model, &self.obstacle_vertices);
         let mut next = x.to_vec();
         self.stepper.advance(&mut next);
@@ -127,9 +132,9 @@ impl Forward {
 fn forward_alone(seeds: u64, planes: bool, damping: f64) -> Outcome {
     Outcome::of(seeds, |case, targets| {
         let mut forward = Forward::new(case, planes, damping);
-        let mut watch = Watch::new(case);
-        watch.follow(case, targets, 8, |x, y| forward.step(case, x, y));
-        watch.fault.map_or(Ok(watch.largest_move), Err)
+        let mut checker = StepChecker::new(case);
+        checker.follow(case, targets, 8, |x, y| forward.step(case, x, y));
+        checker.fault.map_or(Ok(checker.largest_move), Err)
     })
 }
 
@@ -143,9 +148,9 @@ fn no_forward_step_by_distances_intersects() {
     forward_alone(seeds(), false, 0.9).assert_safe();
 }
 
-/// The judge and these cases are sharp: a step by planes that takes a tenth more than the whole gap is
-/// found out, and so is one by distances that takes twice the gap. (Two vertices seldom both use all that
-/// the isotropic bound grants them, so a tenth more goes unpunished there.)
+/// The judge finds unsafe steps in these cases: steps by planes that use a tenth more than the whole gap, and
+/// steps by distances that use twice the gap. (Two vertices rarely both use their whole isotropic bound, so a
+/// tenth more is not enough there.)
 #[test]
 fn greedy_steps_are_caught() {
     for (planes, damping) in [(true, 1.1), (false, 2.0)] {
@@ -154,32 +159,32 @@ fn greedy_steps_are_caught() {
 }
 
 fn whole_method(params: &Params, contact: impl Fn(f64) -> BodyContact + Sync) {
-    watched(params, seeds(), |problem| {
-        let bodies = vec![contact(problem.lengths.edge); problem.model.bodies().len()];
-        let search = BudgetedSearch::new(&problem);
+    watched(params, seeds(), |scene| {
+        let bodies = vec![contact(scene.lengths().edge); scene.model().bodies().len()];
+        let search = TrustRegionSearch::new(&scene);
         let backward: LcpBackward = LcpBackward::default();
-        Resolver::with_stages(problem, search, backward, CertifiedForward::default()).with_bodies(bodies)
+        Resolver::with_stages(scene, search, backward, CertifiedForward::default()).with_bodies(bodies)
     })
     .assert_safe();
 }
 
-/// Watches every step of a loop of stages, from everywhere to everywhere.
+/// Checks every step of a loop of stages, from all states to all targets.
 pub fn watched<S: Search, B: BackwardStep, F: ForwardStep>(
     params: &Params,
     seeds: u64,
-    resolver: impl Fn(Problem) -> Result<Resolver<S, B, F>, ResolveError>,
+    resolver: impl Fn(CollisionScene) -> Result<Resolver<S, B, F>, ResolveError>,
 ) -> Outcome {
     Outcome::of(seeds, |case, targets| {
-        let mut watch = Watch::new(case);
+        let mut checker = StepChecker::new(case);
         let mut x = case.positions.clone();
         let mut params = params.clone();
-        params.stop.max_steps = Some(12);
-        // Coordinates of a kilometre need a floor above their rounding.
-        if params.stepper.floor.is_none() {
-            params.stepper.floor = Some(1e-8);
+        params.solver.stop.max_steps = Some(12);
+        // Coordinates of a kilometre need a minimum separation above their rounding.
+        if params.contact.min_separation.is_none() {
+            params.contact.min_separation = Some(1e-8);
         }
         let masses = vec![1.0; x.len()];
-        let mut resolver = Problem::new(case.model.clone(), &case.positions, &masses, params)
+        let mut resolver = CollisionScene::new(case.model.clone(), &case.positions, &masses, params)
             .and_then(&resolver)
             .map_err(|error| format!("refused: {error}"))?;
         let mut last = x.clone();
@@ -187,23 +192,23 @@ pub fn watched<S: Search, B: BackwardStep, F: ForwardStep>(
             let joined = state.previous == last.as_slice();
             last.copy_from_slice(state.positions);
             if !joined {
-                watch
+                checker
                     .fault
                     .get_or_insert(format!("step {} does not start where the last one ended", state.step));
             }
-            if watch.step(state.previous, state.positions) {
+            if checker.check_step(state.previous, state.positions) {
                 ControlFlow::Continue(())
             } else {
                 ControlFlow::Break(())
             }
         };
         resolver
-            .resolve(&mut x, targets, &Call::default(), &mut observe)
+            .resolve_with(&mut x, targets, &ResolveInput::default(), &mut observe)
             .map_err(|error| format!("refused: {error}"))?;
         if x != last {
-            watch.fault.get_or_insert("the result is not the last accepted state".to_owned());
+            checker.fault.get_or_insert("the result is not the last accepted state".to_owned());
         }
-        watch.fault.map_or(Ok(watch.largest_move), Err)
+        checker.fault.map_or(Ok(checker.largest_move), Err)
     })
 }
 
@@ -220,7 +225,7 @@ fn no_step_of_the_paper_preset_intersects() {
 #[test]
 fn no_step_with_friction_and_thickness_intersects() {
     let rough = BodyContact { friction: 0.7, ..BodyContact::default() };
-    // Thin beside the mesh: where all gaps were below the thickness, nothing would move.
+    // Small compared with the mesh: if all gaps were below the thickness, nothing would move.
     let thick = |edge: f64| BodyContact {
         thickness: Some((1e-3 * edge).max(1e-8)),
         stretch_limit: Some(f64::INFINITY),

@@ -1,8 +1,9 @@
-//! Bodies slide on slopes as Coulomb's law has it, whatever the ground's tessellation.
+//! Bodies slide on slopes as Coulomb's law predicts, for all tessellations of the ground.
 
 use bowknot_tests::contact::{Ground, Slider, Slope};
 
-/// Speeds over the time steps 23 to 25 at 1/100 s: theory's within `share` of it where bodies slide; a stop where they stick.
+/// Checks speeds over the time steps 23 to 25 at 1/100 s: those of sliding bodies are within a share of
+/// theory, and those of sticking bodies are nearly zero.
 fn check(slider: Slider, grounds: &[Ground]) {
     for &ground in grounds {
         for (friction, share) in [(0.0, 0.02), (0.1, 0.03)] {
@@ -56,7 +57,7 @@ fn grains_slide_on_meshes_as_on_a_plane() {
 
 #[test]
 fn at_mu_0_3_speeds_are_right_within_what_one_percent_of_friction_makes_of_them() {
-    // An error of friction of 1 % is one of 4.7 % of the acceleration here.
+    // An error of 1 % of friction gives one of 4.7 % of the acceleration here.
     for (slider, grounds, share) in [
         (Slider::Patch, &[Ground::HalfSpace, Ground::Box, Ground::Irregular, Ground::Seam][..], 0.03),
         (Slider::Layers, &[Ground::HalfSpace, Ground::Irregular], 0.03),
@@ -77,7 +78,8 @@ fn at_mu_0_3_speeds_are_right_within_what_one_percent_of_friction_makes_of_them(
 
 #[test]
 fn cubes_accelerate_at_mu_0_3_as_coulombs_law_has_it() {
-    // Speeds hold how a soft cube begins to slide; accelerations do not. On a soft slab it swings with its ground.
+    // Unlike speeds, accelerations do not depend on how a soft cube begins to slide. On a soft slab it
+    // oscillates with its ground.
     for (slider, grounds) in [(Slider::JellyCube, &Ground::ALL[..7]), (Slider::StiffCube, &Ground::ALL)] {
         for &ground in grounds {
             let slope = Slope::new(slider, ground, 0.3);

@@ -9,7 +9,8 @@ use bowknot_baselines::ccd::{AdditiveCcd, ClosingSpeed, EarliestImpact, PerVerte
 use bowknot_baselines::twoway::geometry::{Point, Topology, Vector};
 use bowknot_baselines::twoway::proximity::{BodyFilter, CollisionModel};
 use bowknot_baselines::twoway::{
-    BudgetedSearch, Call, CertifiedForward, ForwardStep, LcpBackward, Params, Problem, Resolver,
+    CertifiedForward, CollisionScene, ForwardStep, LcpBackward, Params, ResolveInput, Resolver,
+    TrustRegionSearch,
 };
 use bowknot_baselines::{Composed, Method};
 
@@ -26,7 +27,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let cells = std::env::args().nth(1).map_or(Ok(12), |text| text.parse())?;
     let Scene { x, target, model } = scene(cells)?;
     let masses = vec![1e-4; x.len()];
-    let problem = |params: Params| Problem::new(model.clone(), &x, &masses, params);
+    let collision_scene = |params: Params| CollisionScene::new(model.clone(), &x, &masses, params);
     let slab = AdditiveCcd { speed: ClosingSpeed::Slab, ..AdditiveCcd::default() };
     let travel = AdditiveCcd::default();
     let barrier = BarrierParams::default();
@@ -34,32 +35,32 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (fast, paper) = (Params::fast, Params::paper);
 
     let mut methods: Vec<Box<dyn Method>> = vec![
-        two_way("two-way, fast", problem(fast())?, CertifiedForward::default()),
-        two_way("two-way, paper", problem(paper())?, CertifiedForward::default()),
-        two_way("two-way, fast, earliest impact", problem(fast())?, EarliestImpact::new(travel)),
-        two_way("the same, slab speeds", problem(fast())?, EarliestImpact::new(slab)),
-        two_way("two-way, fast, impact per vertex", problem(fast())?, PerVertexImpact::new(travel)),
-        two_way("the same, slab speeds", problem(fast())?, PerVertexImpact::new(slab)),
+        two_way("two-way, fast", collision_scene(fast())?, CertifiedForward::default()),
+        two_way("two-way, paper", collision_scene(paper())?, CertifiedForward::default()),
+        two_way("two-way, fast, earliest impact", collision_scene(fast())?, EarliestImpact::new(travel)),
+        two_way("the same, slab speeds", collision_scene(fast())?, EarliestImpact::new(slab)),
+        two_way("two-way, fast, impact per vertex", collision_scene(fast())?, PerVertexImpact::new(travel)),
+        two_way("the same, slab speeds", collision_scene(fast())?, PerVertexImpact::new(slab)),
     ];
     for (bound, params) in [("planes", fast()), ("isotropic", paper())] {
         for (scaling, barrier) in [("blocks", &barrier), ("mass", &plain)] {
-            let resolver = by_descent(problem(params.clone())?, barrier.clone())?;
+            let resolver = by_descent(collision_scene(params.clone())?, barrier.clone())?;
             let name = format!("log barrier, descent by {scaling}, {bound}");
             methods.push(Box::new(Composed::new(name, resolver)));
         }
     }
-    let newton = by_newton(problem(paper())?, barrier.clone(), travel)?;
+    let newton = by_newton(collision_scene(paper())?, barrier.clone(), travel)?;
     methods.push(Box::new(Composed::new("log barrier, Newton", newton)));
     let edges = BarrierParams { edge_stiffness: 1000.0, ..barrier };
-    let newton = by_newton(problem(paper())?, edges, travel)?;
+    let newton = by_newton(collision_scene(paper())?, edges, travel)?;
     methods.push(Box::new(Composed::new("the same, edges by penalty", newton)));
 
     println!("{} vertices", x.len());
     println!("{:36} steps searches seconds  to target mm  stretch  converged", "");
-    let call = Call { time_step: Some(0.01), ..Call::default() };
+    let input = ResolveInput { time_step: Some(0.01), ..ResolveInput::default() };
     for method in &mut methods {
         let mut end = x.clone();
-        let outcome = method.solve(&mut end, &target, &call)?;
+        let outcome = method.solve(&mut end, &target, &input)?;
         let squares: f64 = end.iter().zip(&target).map(|(a, b)| (a - b).norm_squared()).sum();
         let stretch = model.topology().edges.iter().map(|&[a, b]| {
             let length = |x: &[Point]| (x[a as usize] - x[b as usize]).norm();
@@ -79,10 +80,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-fn two_way<F: ForwardStep + 'static>(name: &str, problem: Problem, forward: F) -> Box<dyn Method> {
-    let search = BudgetedSearch::new(&problem);
+fn two_way<F: ForwardStep + 'static>(name: &str, scene: CollisionScene, forward: F) -> Box<dyn Method> {
+    let search = TrustRegionSearch::new(&scene);
     let backward: LcpBackward = LcpBackward::default();
-    Box::new(Composed::new(name, Resolver::with_stages(problem, search, backward, forward)))
+    Box::new(Composed::new(name, Resolver::with_stages(scene, search, backward, forward)))
 }
 
 /// Two sheets, the upper one turned, and a spike below; the target presses them together and down.
@@ -116,7 +117,8 @@ fn scene(cells: usize) -> Result<Scene, Box<dyn std::error::Error>> {
     triangles.extend([[a, b, tip], [b, c, tip], [c, a, tip]]);
     target.extend_from_slice(&x[first..]);
     let bodies = (0..x.len()).map(|v| (v / (n * n)).min(2) as u32).collect();
-    let topology = Topology::new(x.len(), triangles, &[], &[]).map_err(|errors| format!("{errors:?}"))?;
+    let topology =
+        Topology::builder(x.len()).triangles(triangles).build().map_err(|errors| format!("{errors:?}"))?;
     let filters = vec![BodyFilter::DEFORMABLE, BodyFilter::DEFORMABLE, BodyFilter::OBSTACLE];
     Ok(Scene { x, target, model: CollisionModel::new(topology, bodies, filters, vec![])? })
 }

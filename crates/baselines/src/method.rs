@@ -2,7 +2,7 @@
 
 use bowknot_twoway::geometry::Point;
 use bowknot_twoway::{
-    BackwardStep, Call, ForwardStep, ResolveError, Resolver, Search, StageSeconds, Statistics,
+    BackwardStep, ForwardStep, ResolveError, ResolveInput, Resolver, Search, StageSeconds, Statistics,
 };
 
 /// A way to move positions from an intersection-free state toward a target.
@@ -18,7 +18,7 @@ pub trait Method: Send {
         &mut self,
         positions: &mut [Point],
         target: &[Point],
-        call: &Call<'_>,
+        input: &ResolveInput<'_>,
     ) -> Result<Outcome, ResolveError>;
 }
 
@@ -72,8 +72,8 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Method for Composed<S, B, F> {
         &mut self,
         positions: &mut [Point],
         target: &[Point],
-        call: &Call<'_>,
+        input: &ResolveInput<'_>,
     ) -> Result<Outcome, ResolveError> {
-        Ok(self.resolver.resolve(positions, target, call, &mut ())?.into())
+        Ok(self.resolver.resolve_with(positions, target, input, &mut ())?.into())
     }
 }

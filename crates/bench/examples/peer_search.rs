@@ -60,7 +60,10 @@ struct Report {
 fn main() -> Result<()> {
     let arguments = Arguments::parse();
     let states = States::read(&arguments.state)?;
-    let topology = Topology::new(states.x.len(), states.triangles.clone(), &states.strands, &[])
+    let topology = Topology::builder(states.x.len())
+        .triangles(states.triangles.iter().copied())
+        .strand_edges(states.strands.iter().copied())
+        .build()
         .map_err(|errors| anyhow!("{} faults, {}", errors.len(), errors[0]))?;
     let (edges, triangles) = (topology.edges.len(), topology.triangles.len());
     let model = CollisionModel::single_body(topology);

@@ -5,7 +5,7 @@ use crate::record::Spec;
 use anyhow::{Context, Result, anyhow};
 use bowknot::proximity::CollisionModel;
 use bowknot::recording::States;
-use bowknot::twoway::{BodyContact, Params, Problem, Resolver};
+use bowknot::twoway::{BodyContact, CallInput, CollisionScene, Params, Resolver};
 use std::path::Path;
 
 /// A collision problem. Friction is left out: few of the methods that are compared have any, and what it adds to the
@@ -26,8 +26,8 @@ pub struct Case {
 pub struct ProblemLengths {
     /// Desired distance, in that of the recorded problem.
     pub delta: Option<f64>,
-    /// Gap floor, in desired distances of the recorded problem.
-    pub floor: Option<f64>,
+    /// Minimum separation, in desired distances of the recorded problem.
+    pub min_separation: Option<f64>,
     /// Stretch limit sigma; infinite: edges have none.
     pub stretch_limit: Option<f64>,
 }
@@ -59,13 +59,14 @@ impl Case {
     pub fn resolver(&self, mut params: Params) -> Result<Resolver> {
         let recorded = |params: &Params| -> Result<f64> {
             let resolver = self.states.resolver(self.model.clone(), params.clone())?;
-            Ok(resolver.problem().lengths.delta)
+            Ok(resolver.scene().lengths().delta)
         };
-        let ProblemLengths { delta, floor, .. } = self.lengths;
-        if delta.is_some() || floor.is_some() {
+        let ProblemLengths { delta, min_separation, .. } = self.lengths;
+        if delta.is_some() || min_separation.is_some() {
             let of = recorded(&params)?;
-            params.constraints.delta = delta.map(|share| share * of).or(params.constraints.delta);
-            params.stepper.floor = floor.map(|share| share * of).or(params.stepper.floor);
+            params.contact.delta = delta.map(|share| share * of).or(params.contact.delta);
+            let own = params.contact.min_separation;
+            params.contact.min_separation = min_separation.map(|share| share * of).or(own);
         }
         Ok(self.states.resolver(self.model.clone(), params)?)
     }
@@ -78,18 +79,16 @@ impl Case {
         (!edges.is_empty()).then(|| lengths.sum::<f64>() / edges.len() as f64)
     }
 
-    /// The problem as the stages of a method see it.
-    pub fn problem(&self, params: Params) -> Result<Problem> {
-        Ok(self.resolver(params)?.problem().clone())
+    /// The scene of the problem, as the stages of a method see it.
+    pub fn scene(&self, params: Params) -> Result<CollisionScene> {
+        Ok(self.resolver(params)?.scene().clone())
     }
 
-    /// The problem under the parameters that results are judged by, with the prescribed vertices of the call.
-    pub fn reference(&self) -> Result<Problem> {
-        let mut problem = self.problem(Params::fast())?;
-        for (v, prescribed) in problem.prescribed.iter_mut().enumerate() {
-            *prescribed |= self.states.fixed.get(v).copied().unwrap_or(false);
-        }
-        Ok(problem)
+    /// The scene under the parameters that results are judged by, and the input of the call.
+    pub fn reference(&self) -> Result<(CollisionScene, CallInput)> {
+        let scene = self.scene(Params::fast())?;
+        let call = CallInput::new(&scene, &self.states.x, &self.states.y, &self.states.input())?;
+        Ok((scene, call))
     }
 }
 

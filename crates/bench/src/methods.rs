@@ -4,8 +4,8 @@ use crate::bench::Size;
 use anyhow::{Context, Result};
 use bowknot::constraints::ContactForm;
 use bowknot::twoway::{
-    BackwardStep, BudgetedSearch, CertifiedForward, ForwardStep, LcpBackward, Params, Problem, Resolver,
-    Search,
+    BackwardStep, CertifiedForward, CollisionScene, ForwardStep, LcpBackward, Params, Resolver, Search,
+    TrustRegionSearch,
 };
 use bowknot_baselines::barrier::{BarrierParams, by_descent, by_newton};
 use bowknot_baselines::ccd::{AdditiveCcd, EarliestImpact, PerVertexImpact};
@@ -24,7 +24,7 @@ type Built = Result<Box<dyn Method>>;
 pub struct Entry {
     pub name: &'static str,
     params: fn() -> Params,
-    build: fn(Problem) -> Built,
+    build: fn(CollisionScene) -> Built,
 }
 
 /// All of them.
@@ -79,7 +79,7 @@ pub struct Setting {
     /// What differs from the method as it is; empty: nothing.
     pub change: String,
     pub params: Params,
-    pub build: Arc<dyn Fn(Problem) -> Built>,
+    pub build: Arc<dyn Fn(CollisionScene) -> Built>,
     /// Seconds of a solve in a full run; none: 4.
     limit: Option<f64>,
 }
@@ -113,7 +113,11 @@ impl Setting {
 
     /// The method, made in another way.
     #[must_use]
-    pub fn built(mut self, change: impl Into<String>, build: impl Fn(Problem) -> Built + 'static) -> Self {
+    pub fn built(
+        mut self,
+        change: impl Into<String>,
+        build: impl Fn(CollisionScene) -> Built + 'static,
+    ) -> Self {
         self.add(change.into());
         self.build = Arc::new(build);
         self
@@ -154,53 +158,53 @@ impl Setting {
 }
 
 /// The two-way method of this project; its parameters make the presets.
-fn two_way(problem: Problem) -> Built {
-    let search = BudgetedSearch::new(&problem);
+fn two_way(scene: CollisionScene) -> Built {
+    let search = TrustRegionSearch::new(&scene);
     let backward: LcpBackward = LcpBackward::default();
-    composed(Resolver::with_stages(problem, search, backward, CertifiedForward::default()))
+    composed(Resolver::with_stages(scene, search, backward, CertifiedForward::default()))
 }
 
 /// Eq. 7-8 by gradient descent.
-pub fn log_barrier(problem: Problem, params: BarrierParams) -> Built {
-    composed(by_descent(problem, params)?)
+pub fn log_barrier(scene: CollisionScene, params: BarrierParams) -> Built {
+    composed(by_descent(scene, params)?)
 }
 
 /// Eq. 7-8 by projected Newton steps with a line search behind CCD, as IPC does (Li et al. 2020).
-fn newton_barrier(problem: Problem) -> Built {
-    composed(by_newton(problem, BarrierParams::default(), AdditiveCcd::default())?)
+fn newton_barrier(scene: CollisionScene) -> Built {
+    composed(by_newton(scene, BarrierParams::default(), AdditiveCcd::default())?)
 }
 
 /// The two-way method with another solver of its rows.
-pub fn rows<K: bowknot::twoway::RowSolver + Default + 'static>(problem: Problem, solver: K) -> Built {
-    composed(two_way_with(problem, solver))
+pub fn rows<K: bowknot::twoway::RowSolver + Default + 'static>(scene: CollisionScene, solver: K) -> Built {
+    composed(two_way_with(scene, solver))
 }
 
 /// Projected Jacobi with Chebyshev weights between two-way steps (Wang 2015).
-fn chebyshev(problem: Problem) -> Built {
+fn chebyshev(scene: CollisionScene) -> Built {
     let jacobi = LcpBackward::with_solver(ProjectedJacobi::new(1, 0.0));
-    composed(two_way_with_stage(problem, InterStepChebyshev::new(jacobi, 0.9, 5)))
+    composed(two_way_with_stage(scene, InterStepChebyshev::new(jacobi, 0.9, 5)))
 }
 
 /// The two-way method with another forward step.
-fn forward<F: ForwardStep + 'static>(problem: Problem, step: F) -> Built {
-    let search = BudgetedSearch::new(&problem);
+fn forward<F: ForwardStep + 'static>(scene: CollisionScene, step: F) -> Built {
+    let search = TrustRegionSearch::new(&scene);
     let backward: LcpBackward = LcpBackward::default();
-    composed(Resolver::with_stages(problem, search, backward, step))
+    composed(Resolver::with_stages(scene, search, backward, step))
 }
 
-fn impact_zones(problem: Problem, solver: ZoneSolver) -> Built {
-    Ok(Box::new(ImpactZones::new(problem, ZoneParams { solver, ..ZoneParams::default() })))
+fn impact_zones(scene: CollisionScene, solver: ZoneSolver) -> Built {
+    Ok(Box::new(ImpactZones::new(scene, ZoneParams { solver, ..ZoneParams::default() })))
 }
 
 /// Impact zones that keep pairs at most of the distance that the other methods keep: zones proper only keep them from meeting.
-fn thick_zones(problem: Problem) -> Built {
-    Ok(Box::new(ImpactZones::new(problem, ZoneParams { thickness: 0.8, ..ZoneParams::default() })))
+fn thick_zones(scene: CollisionScene) -> Built {
+    Ok(Box::new(ImpactZones::new(scene, ZoneParams { thickness: 0.8, ..ZoneParams::default() })))
 }
 
 /// Wu et al. 2020: five rounds of impact zones, then a log barrier.
-fn two_phases(problem: Problem) -> Built {
-    let hard = Composed::new("log barrier", by_descent(problem.clone(), BarrierParams::default())?);
-    Ok(Box::new(TwoPhase::new(problem, 5, hard)))
+fn two_phases(scene: CollisionScene) -> Built {
+    let hard = Composed::new("log barrier", by_descent(scene.clone(), BarrierParams::default())?);
+    Ok(Box::new(TwoPhase::new(scene, 5, hard)))
 }
 
 fn composed<S, B, F>(resolver: Resolver<S, B, F>) -> Built
@@ -215,7 +219,7 @@ where
 /// `paper` with contacts along the normals of faces, as Harmon et al. 2008 and Tang et al. 2018 have them.
 fn face_normals() -> Params {
     let mut params = Params::paper();
-    params.constraints.form = ContactForm::Face;
+    params.contact.form = ContactForm::Face;
     params
 }
 
@@ -223,7 +227,7 @@ fn face_normals() -> Params {
 /// that press or are about to, near to the collisions that Harmon et al. take: all pairs in range would be glued.
 fn without_edges() -> Params {
     let mut params = Params::paper();
-    params.backward.active_rows = true;
-    params.constraints.edges = false;
+    params.solver.backward.active_rows = true;
+    params.contact.edges = false;
     params
 }

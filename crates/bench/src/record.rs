@@ -141,7 +141,7 @@ impl Spec {
         let mut scene = Scene::builtin(self.scene, self.scale(bench.size))?;
         scene.simulation.dt = self.time_step.unwrap_or(scene.simulation.dt);
         // The paper's for every fabric, so that its own method meets the problems that it is made for.
-        scene.twoway.constraints.stretch_limit = Some(STRETCH_LIMIT);
+        scene.twoway.contact.stretch_limit = Some(STRETCH_LIMIT);
         if self.blind {
             scene.repulsion.stiffness = 0.0;
         }

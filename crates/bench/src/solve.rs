@@ -7,7 +7,7 @@ use crate::methods::Setting;
 use crate::table::median;
 use anyhow::Result;
 use bowknot::simulator::cpu_seconds;
-use bowknot::twoway::{Problem, StageSeconds};
+use bowknot::twoway::StageSeconds;
 use bowknot_baselines::Outcome;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
@@ -112,10 +112,9 @@ fn summary(rounds: Vec<Solved>) -> Option<Solved> {
 
 fn solve(bench: &Bench, case: &Case, setting: &Setting, judgement: &Judgement) -> Result<Solved> {
     let mut params = setting.params.clone();
-    params.stop.max_seconds = Some(setting.limit(bench.size));
-    let problem: Problem = case.problem(params)?;
-    let mut method = (setting.build)(problem)?;
-    let call = case.states.call();
+    params.solver.stop.max_seconds = Some(setting.limit(bench.size));
+    let mut method = (setting.build)(case.scene(params)?)?;
+    let call = case.states.input();
     let (mut cpu, mut wall) = (Vec::new(), Vec::new());
     let mut ended: (Outcome, Vec<_>) = (Outcome::default(), Vec::new());
     // The first solve of a short one is to warm caches and buffers.

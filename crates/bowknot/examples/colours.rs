@@ -8,7 +8,7 @@
 use bowknot::geometry::Topology;
 use bowknot::proximity::{BodyFilter, CollisionModel};
 use bowknot::recording::States;
-use bowknot::twoway::{AcceptedState, Call, Params, Resolver};
+use bowknot::twoway::{AcceptedState, Params, ResolveInput, Resolver};
 use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -21,9 +21,13 @@ fn main() -> Result<(), Box<dyn Error>> {
             // The colours of the first backward step; later ones have like rows.
             let mut resolver = Resolver::new(model(&states)?, &states.rest, &states.masses, params)?;
             let mut x = states.x.clone();
-            let call = Call { prescribed: &states.fixed, time_step: states.time_step, ..Call::default() };
+            let input = ResolveInput {
+                prescribed: &states.fixed,
+                time_step: states.time_step,
+                ..ResolveInput::default()
+            };
             let mut stop = |_: &AcceptedState<'_>| ControlFlow::Break(());
-            let s = resolver.resolve(&mut x, &states.y, &call, &mut stop)?;
+            let s = resolver.resolve_with(&mut x, &states.y, &input, &mut stop)?;
             println!(
                 "{name:6}  {:7} {:5}  {:7} {:5}",
                 s.contact_rows, s.contact_colours, s.edge_rows, s.edge_colours
@@ -36,7 +40,11 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// The collision model of a problem. A body of obstacle vertices is an obstacle.
 fn model(states: &States) -> Result<CollisionModel, Box<dyn Error>> {
     let (triangles, count) = (states.triangles.clone(), states.x.len());
-    let topology = Topology::new(count, triangles, &states.strands, &states.particles)
+    let topology = Topology::builder(count)
+        .triangles(triangles)
+        .strand_edges(states.strands.iter().copied())
+        .particles(states.particles.iter().copied())
+        .build()
         .map_err(|errors| errors[0].clone())?;
     let bodies = states.body.iter().max().map_or(0, |&body| body as usize + 1);
     let mut filters = vec![BodyFilter::DEFORMABLE; bodies];

@@ -1,31 +1,14 @@
 //! Why something cannot be judged.
 
+use bowknot_geometry::TopologyError;
+
 /// Why something cannot be judged.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckError {
-    /// An element names a vertex that does not exist.
-    #[error("{element} {index} names vertex {vertex}, but there are only {vertex_count} vertices")]
-    VertexOutOfRange {
-        /// "triangle", "strand edge" or "particle".
-        element: &'static str,
-        /// Which of them.
-        index: usize,
-        /// The vertex it names.
-        vertex: u32,
-        /// How many vertices there are.
-        vertex_count: usize,
-    },
-    /// An element names the same vertex twice.
-    #[error("{element} {index} names vertex {vertex} twice")]
-    RepeatedVertex {
-        /// "triangle" or "strand edge".
-        element: &'static str,
-        /// Which of them.
-        index: usize,
-        /// The vertex it repeats.
-        vertex: u32,
-    },
+    /// An element names a vertex that does not exist, or a vertex twice.
+    #[error(transparent)]
+    Topology(#[from] TopologyError),
     /// An array has another length than there are vertices.
     #[error("{what} has {given} entries for {vertex_count} vertices")]
     WrongLength {

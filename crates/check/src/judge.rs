@@ -3,8 +3,7 @@
 use crate::error::CheckError;
 use crate::exceptions::uncovered_pairs;
 use crate::report::PairClass;
-use bowknot_geometry::{BodyFilter, CollisionModel};
-use bowknot_geometry::{HalfSpace, Point};
+use bowknot_geometry::{BodyFilter, CollisionModel, HalfSpace, Point, check_elements};
 
 /// Coordinates from here on are refused: exact predicates multiply three differences of them [m].
 const LARGEST_COORDINATE: f64 = 1e60;
@@ -62,17 +61,11 @@ impl Judge {
                 return Err(CheckError::WrongLength { what, given, vertex_count });
             }
         }
-        check_elements("triangle", parts.triangles, vertex_count)?;
-        check_elements("strand edge", parts.strands, vertex_count)?;
-        for (index, &vertex) in parts.particles.iter().enumerate() {
-            if vertex as usize >= vertex_count {
-                return Err(CheckError::VertexOutOfRange {
-                    element: "particle",
-                    index,
-                    vertex,
-                    vertex_count,
-                });
-            }
+        let mut faults = check_elements("triangle", parts.triangles, vertex_count)
+            .chain(check_elements("strand edge", parts.strands, vertex_count))
+            .chain(check_elements("particle", parts.particles.as_chunks::<1>().0, vertex_count));
+        if let Some(fault) = faults.next() {
+            return Err(fault.into());
         }
 
         let ascending = |[i, j]: [u32; 2]| [i.min(j), i.max(j)];
@@ -202,22 +195,4 @@ impl Judge {
     pub(super) fn meets_half_spaces(&self, v: u32) -> bool {
         !self.obstacle[v as usize]
     }
-}
-
-fn check_elements<const N: usize>(
-    element: &'static str,
-    elements: &[[u32; N]],
-    vertex_count: usize,
-) -> Result<(), CheckError> {
-    for (index, vertices) in elements.iter().enumerate() {
-        for (k, &vertex) in vertices.iter().enumerate() {
-            if vertex as usize >= vertex_count {
-                return Err(CheckError::VertexOutOfRange { element, index, vertex, vertex_count });
-            }
-            if vertices[..k].contains(&vertex) {
-                return Err(CheckError::RepeatedVertex { element, index, vertex });
-            }
-        }
-    }
-    Ok(())
 }

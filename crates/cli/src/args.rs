@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 /// Simulates deformable bodies that never intersect.
 ///
-/// Exit codes: 0 done; 1 a check found an intersection or too small a distance; 2 bad input; 3 no such backend or
-/// device; 130 interrupted, with a valid checkpoint.
+/// Exit codes: 0 done; 1 a check found an intersection or too small a distance; 2 bad input; 3 no such
+/// backend or device; 130 interrupted, with a valid checkpoint.
 #[derive(Debug, Parser)]
 #[command(name = "bowknot", version, arg_required_else_help = true)]
 pub struct Arguments {
@@ -22,9 +22,9 @@ pub enum Command {
     Run(RunOptions),
     /// Resolve a recorded collision problem
     Resolve(ResolveOptions),
-    /// Judge states, and the paths of a trace: exit code 1 if anything intersects
+    /// Check states, and the paths of a trace, for intersections: exit code 1 if there are any
     Check(CheckOptions),
-    /// Weld the seams of a mesh and drop elements that stand for nothing: exit code 1 if intersections remain
+    /// Weld the seams of a mesh and drop degenerate elements: exit code 1 if intersections remain
     Repair(RepairOptions),
     /// Write the frames of a run in other formats
     Export(ExportOptions),
@@ -33,7 +33,7 @@ pub enum Command {
     /// Draw the frames of a run: a picture, an animation, or a folder of pictures
     #[cfg(feature = "render")]
     Render(RenderOptions),
-    /// Say what a scene or a mesh holds
+    /// Print the counts and the size of a scene or a mesh
     Info(InfoOptions),
 }
 
@@ -46,18 +46,19 @@ pub struct ScenesOptions {
 
 #[derive(Debug, Args)]
 pub struct RunOptions {
-    /// A built-in scene (see `bowknot scenes`), a scene file (.toml), or a mesh (.obj, .ply) to drop on a ball as cloth
+    /// A built-in scene (see `bowknot scenes`), a scene file (.toml), or a mesh (.obj, .ply) to drop on a
+    /// ball as cloth
     pub scene: String,
-    /// Number of time steps; the scene has a default
+    /// Number of time steps [default: that of the scene]
     #[arg(long, value_name = "N")]
     pub frames: Option<usize>,
     /// Folder of the run [default: out/SCENE]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Time step [s]; the scene has a default
+    /// Time step [s; default: that of the scene]
     #[arg(long, value_name = "S", value_parser = positive)]
     pub dt: Option<f64>,
-    /// Factor on a built-in scene's resolution: vertices of sheets grow with its square
+    /// Factor on the resolution of a built-in scene: the number of vertices of sheets grows with its square
     #[arg(long, value_name = "F", value_parser = positive)]
     pub scale: Option<f64>,
     #[command(flatten)]
@@ -67,23 +68,23 @@ pub struct RunOptions {
     /// Formats of the frames
     #[arg(long, value_name = "FORMATS", value_delimiter = ',')]
     pub format: Vec<Format>,
-    /// Write every accepted state of every time step to trace/
+    /// Write each accepted state of each time step to trace/
     #[arg(long)]
     pub trace: bool,
     /// Write the collision problems to states/, for `bowknot resolve`
     #[arg(long)]
     pub record: bool,
-    /// Judge the path to every accepted state by a certificate, and the state that each time step ends
-    /// with by exact tests: exit code 1 if anything intersects
+    /// Check the path to every accepted state by a certificate, and the state at the end of each time step by
+    /// exact tests: exit code 1 if anything intersects
     #[arg(long)]
     pub check: bool,
-    /// If the start intersects, write the offending triangles to this file (.ply or .obj)
+    /// If the start intersects, write the triangles that do to this file (.ply or .obj)
     #[arg(long, value_name = "FILE")]
     pub dump: Option<PathBuf>,
     /// Continue the run in the folder from its checkpoint
     #[arg(long)]
     pub resume: bool,
-    /// Print the summary as JSON to stdout, and nothing else
+    /// Print the summary as JSON to stdout and nothing else
     #[arg(long)]
     pub json: bool,
     /// Print errors only
@@ -95,7 +96,7 @@ pub struct RunOptions {
 pub struct ResolveOptions {
     /// The problem: an NPZ archive with x, y, F and optionally E, P, rest, mass, fixed, O, body, planes, dt
     pub states: PathBuf,
-    /// Archive for the resolved positions x
+    /// File for the resolved positions x
     #[arg(long, value_name = "RESULT.npz")]
     pub out: PathBuf,
     #[command(flatten)]
@@ -112,16 +113,18 @@ pub struct ResolveOptions {
 
 #[derive(Debug, Args)]
 pub struct CheckOptions {
-    /// States (.ply, .obj, .npz, .msh, .t, .seg), folders of frames, or folders of runs; files of a folder `trace` are joined by paths
+    /// States (.ply, .obj, .npz, .msh, .t, .seg), folders of frames, or folders of runs; in a folder `trace`
+    /// the path between successive files is checked too
     #[arg(required = true, value_name = "PATH")]
     pub paths: Vec<PathBuf>,
-    /// Fail as well if any two primitives are nearer than this [m]
+    /// Also fail if two primitives are nearer than this [m]
     #[arg(long, value_name = "D", value_parser = positive)]
     pub min_distance: Option<f64>,
-    /// Write out at most this many intersections of each state and path; all are counted
+    /// Print at most this many intersections of each state and path; all are counted
     #[arg(long, value_name = "N", default_value_t = 5)]
     pub list: usize,
-    /// Write the triangles and strands that intersect, of the first state where any do, to this file (.ply or .obj)
+    /// Write the triangles and strands that intersect to this file (.ply or .obj), for the first state where
+    /// any do
     #[arg(long, value_name = "FILE")]
     pub dump: Option<PathBuf>,
     /// Print JSON
@@ -140,35 +143,35 @@ pub struct RenderOptions {
     /// The frame to draw [default for a picture: the last]
     #[arg(long, value_name = "K", conflicts_with = "frames")]
     pub frame: Option<usize>,
-    /// Frames to draw, both ends included; an end that is left out is the first or last [default: all, an animation as
-    /// many of them as play at the speed of the simulation with at most 30 a second]
+    /// Frames to draw, both ends included; an omitted end is the first or last [default: all; for an
+    /// animation as many as play at the speed of the simulation with at most 30 frames per second]
     #[arg(long, value_name = "A..B[:STEP]", value_parser = frames)]
     pub frames: Option<FrameRange>,
-    /// Frames a second of an animation [default: the speed of the simulation]
+    /// Frames per second of an animation [default: the speed of the simulation]
     #[arg(long, value_name = "N", value_parser = positive)]
     pub fps: Option<f64>,
-    /// Width and height [pixels; default: 960x720, of an animation 640x480]
+    /// Width and height [pixels; default: 960x720, for an animation 640x480]
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
-    /// What to show by colours, with a legend; without it bodies have colours of their own
+    /// What colours show, with a legend [default: each body has a colour of its own, without a legend]
     #[arg(long, value_enum)]
     pub color: Option<Color>,
-    /// Ends of the colours' scale, in the legend's unit [default: what the frames hold]
+    /// Ends of the colour scale, in the unit of the legend [default: from the values in the frames]
     #[arg(long, value_name = "LOW..HIGH", value_parser = range, allow_hyphen_values = true)]
     pub range: Option<[f64; 2]>,
-    /// Direction to look from; the camera stands where it sees the whole run
+    /// Direction to look from; the camera is placed so that it sees the whole run
     #[arg(long, value_enum, default_value_t = Direction::ThreeQuarter, conflicts_with = "camera")]
     pub view: Direction,
-    /// Where the camera stands [m]
+    /// Position of the camera [m]
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub camera: Option<[f64; 3]>,
-    /// What the camera looks at [m; default: the middle of the run]
+    /// Point that the camera looks at [m; default: the middle of the run]
     #[arg(long, value_name = "X,Y,Z", value_parser = point, requires = "camera", allow_hyphen_values = true)]
     pub target: Option<[f64; 3]>,
     /// Vertical field of view [deg]
     #[arg(long, value_name = "DEG", value_parser = angle, default_value_t = 26.0)]
     pub fov: f64,
-    /// Reduce a picture to 256 colours: a third of the size
+    /// Reduce a picture to 256 colours, which makes the file a third of the size
     #[arg(long)]
     pub indexed: bool,
     /// Print errors only
@@ -176,23 +179,32 @@ pub struct RenderOptions {
     pub quiet: bool,
 }
 
-/// What colours show.
+/// The quantity that colours show.
 #[cfg(feature = "render")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Color {
     /// Largest ratio of the length of an edge at a vertex to its length in the first frame
     Stretch,
-    /// Distance of the elements at a vertex to the nearest that they share no vertex with
+    /// Distance from the elements at a vertex to the nearest element that shares no vertex with them
     Gap,
     /// Speed between frames
     Speed,
-    /// Distance to what was asked for: of each vertex after `run --record`, else the largest of each time step
+    /// Distance to the target: of each vertex if the run was made with --record, else the largest of each
+    /// time step
     Remaining,
-    /// Bodies, by name
+    /// The body, by name
     Body,
 }
 
-/// Where to look from.
+#[cfg(feature = "render")]
+impl Color {
+    /// Whether the quantity is a number, so that the legend is a scale.
+    pub fn is_number(self) -> bool {
+        self != Self::Body
+    }
+}
+
+/// The direction to look from.
 #[cfg(feature = "render")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Direction {
@@ -202,7 +214,7 @@ pub enum Direction {
     Side,
     /// From above
     Top,
-    /// From above the left corner in front
+    /// From the left in front, and above
     ThreeQuarter,
 }
 
@@ -222,7 +234,7 @@ pub struct RepairOptions {
     /// File for the repaired mesh (.obj, .ply)
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
-    /// Weld border vertices nearer than this [m]; by default a hundredth of the mean border edge
+    /// Weld border vertices nearer than this [m; default: a hundredth of the mean length of border edges]
     #[arg(long, value_name = "D", value_parser = positive)]
     pub weld_distance: Option<f64>,
     /// Print JSON
@@ -241,7 +253,7 @@ pub struct ExportOptions {
     /// Folder to write to [default: DIR]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Time from frame to frame [s]; that of the run, if DIR is the folder of one
+    /// Time between frames [s; default: that of the run, if DIR is the folder of a run]
     #[arg(long, value_name = "S", value_parser = positive)]
     pub dt: Option<f64>,
 }
@@ -251,10 +263,10 @@ pub struct ReportOptions {
     /// Folder of a run
     #[arg(value_name = "DIR")]
     pub folder: PathBuf,
-    /// The page [default: DIR/report.html]
+    /// File of the page [default: DIR/report.html]
     #[arg(long, value_name = "FILE.html")]
     pub out: Option<PathBuf>,
-    /// Show every N-th frame, and the last [default: as many as --max-megabytes takes]
+    /// Show every N-th frame and the last [default: as many frames as --max-megabytes allows]
     #[arg(long, value_name = "N", value_parser = stride)]
     pub stride: Option<usize>,
     /// Largest size of the page [default: 30]
@@ -275,7 +287,7 @@ pub struct InfoOptions {
     pub json: bool,
 }
 
-/// Where the work is done.
+/// Threads and backend.
 #[derive(Debug, Args)]
 pub struct Machine {
     /// Number of threads [default: all cores]; results do not depend on it
@@ -289,12 +301,23 @@ pub struct Machine {
 /// How collisions are resolved.
 #[derive(Debug, Args)]
 pub struct Method {
-    /// Set of defaults for the tables [contact] and [solver]
+    /// Set of defaults for the tables [contact] and [solver] of a scene
     #[arg(long, value_enum)]
     pub preset: Option<Preset>,
     /// Set one key of the scene, as in a scene file: contact.delta=0.001
     #[arg(long = "set", value_name = "KEY.PATH=VALUE")]
     pub sets: Vec<String>,
+}
+
+impl Method {
+    /// The options as assignments to keys of a scene. Those of `--set` come last and override the others.
+    pub fn assignments(&self) -> Vec<String> {
+        let preset = self.preset.map(|preset| match preset {
+            Preset::Fast => "contact.preset=\"fast\"".to_owned(),
+            Preset::Paper => "contact.preset=\"paper\"".to_owned(),
+        });
+        preset.into_iter().chain(self.sets.iter().cloned()).collect()
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -309,7 +332,7 @@ pub enum Backend {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Preset {
-    /// Everything that measurements showed to pay
+    /// All improvements on the paper that measurements support
     Fast,
     /// The method as the paper describes it
     Paper,
@@ -317,22 +340,22 @@ pub enum Preset {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Format {
-    /// Binary PLY, one file a frame
+    /// Binary PLY, one file per frame
     Ply,
-    /// Wavefront OBJ, one file a frame
+    /// Wavefront OBJ, one file per frame
     Obj,
     /// One NPZ archive of all frames
     Npz,
-    /// Point caches, one a body, for Blender's Mesh Cache modifier and others
+    /// Point caches, one per body, for Blender's Mesh Cache modifier and others
     Pc2,
     /// One USD stage of all frames, as text
     Usd,
-    /// VTK XML, one file a frame, for ParaView
+    /// VTK XML, one file per frame, for ParaView
     Vtu,
 }
 
 impl Format {
-    /// As scenes call it.
+    /// The name in scene files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ply => "ply",
@@ -344,7 +367,7 @@ impl Format {
         }
     }
 
-    /// As the facade calls it.
+    /// The same format in the library.
     pub fn of_scene(self) -> bowknot::scene::Format {
         use bowknot::scene::Format;
         match self {
@@ -367,7 +390,7 @@ fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A whole number from 1.
+/// A whole number, at least 1.
 fn stride(text: &str) -> Result<usize, String> {
     match text.parse::<usize>() {
         Ok(value) if value >= 1 => Ok(value),
@@ -375,22 +398,22 @@ fn stride(text: &str) -> Result<usize, String> {
     }
 }
 
-/// A number of threads that a machine can have.
+/// A number of threads.
 fn threads(text: &str) -> Result<usize, String> {
-    const MOST: usize = 4096;
+    const MAX: usize = 4096;
     match text.parse::<usize>() {
-        Ok(value) if (1..=MOST).contains(&value) => Ok(value),
-        _ => Err(format!("must be a whole number from 1 to {MOST}")),
+        Ok(value) if (1..=MAX).contains(&value) => Ok(value),
+        _ => Err(format!("must be a whole number from 1 to {MAX}")),
     }
 }
 
 /// A range of frames: `10..60`, `..60:5`, `10..`.
 #[cfg(feature = "render")]
 fn frames(text: &str) -> Result<FrameRange, String> {
-    let fault = || "must be A..B or A..B:STEP, whole numbers".to_owned();
+    let malformed = || "must be A..B or A..B:STEP, whole numbers".to_owned();
     let (ends, step) = text.split_once(':').unwrap_or((text, "1"));
-    let (first, last) = ends.split_once("..").ok_or_else(fault)?;
-    let number = |text: &str| text.parse::<usize>().map_err(|_| fault());
+    let (first, last) = ends.split_once("..").ok_or_else(malformed)?;
+    let number = |text: &str| text.parse::<usize>().map_err(|_| malformed());
     let first = if first.is_empty() { 0 } else { number(first)? };
     let last = if last.is_empty() { None } else { Some(number(last)?) };
     match number(step)? {
@@ -412,7 +435,7 @@ fn point(text: &str) -> Result<[f64; 3], String> {
     let numbers: Vec<f64> = text.split(',').filter_map(|word| word.trim().parse().ok()).collect();
     match numbers[..] {
         [x, y, z] if text.split(',').count() == 3 && [x, y, z].iter().all(|c| c.abs() < 1e9) => Ok([x, y, z]),
-        _ => Err("must be three finite numbers with commas between".to_owned()),
+        _ => Err("must be three finite numbers separated by commas, X,Y,Z".to_owned()),
     }
 }
 

@@ -1,7 +1,7 @@
-//! `bowknot check`: judge states, and the straight paths of a trace.
+//! `bowknot check`: checks states, and the straight paths between the states of a trace, for intersections.
 
 use crate::args::CheckOptions;
-use crate::failure::{Done, Failure};
+use crate::exit::{Exit, Failure};
 use crate::output;
 use crate::progress::Bar;
 use bowknot::check::{Judge, Parts, PathOptions, StateOptions};
@@ -11,7 +11,7 @@ use bowknot::recording::States;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// The verdict, as `--json` prints it.
+/// The result, as `--json` prints it.
 #[derive(Debug, Default, Serialize)]
 struct Report {
     /// Whether nothing intersects and nothing is too near.
@@ -20,35 +20,35 @@ struct Report {
     paths: usize,
     /// Intersecting pairs over all states.
     intersections: usize,
-    /// Pairs that meet, or are not certified not to, over all paths.
+    /// Pairs that meet, or are not certified to stay apart, over all paths.
     path_hits: usize,
-    /// Over all states [m].
+    /// Smallest distance over all states [m].
     min_distance_m: Option<f64>,
     /// Whether a distance is below `--min-distance`.
     too_near: bool,
-    files: Vec<Verdict>,
+    files: Vec<Entry>,
 }
 
-/// The verdict on one state and the path that leads to it.
+/// The result for one state and the path that leads to it.
 #[derive(Debug, Serialize)]
-struct Verdict {
+struct Entry {
     file: String,
     intersections: usize,
-    /// None if no path leads here.
+    /// None if no path leads to it.
     path_hits: Option<usize>,
     min_distance_m: Option<f64>,
-    /// The first findings in words.
+    /// The first intersections, as text.
     findings: Vec<String>,
 }
 
-pub fn check(options: &CheckOptions) -> Result<Done, Failure> {
-    let groups = options.paths.iter().map(|path| expand(path)).collect::<Result<Vec<_>, _>>()?.concat();
+pub fn check(options: &CheckOptions) -> Result<Exit, Failure> {
+    let groups = options.paths.iter().map(|path| groups_of(path)).collect::<Result<Vec<_>, _>>()?.concat();
     let mut checker = Checker {
         min_distance: options.min_distance,
         list: options.list,
         dump: options.dump.as_deref(),
         dumped: None,
-        judged: None,
+        previous: None,
         report: Report::default(),
         bar: Bar::new(groups.iter().map(|g| g.files.len()).sum(), "files", false),
     };
@@ -63,34 +63,34 @@ pub fn check(options: &CheckOptions) -> Result<Done, Failure> {
     if options.json {
         output::print_json(&report)?;
     } else {
-        output::print(&in_words(&report, options.min_distance))?;
+        output::print(&to_text(&report, options.min_distance))?;
         if let (Some(triangles), Some(path)) = (dumped, &options.dump) {
             output::print(&format!("wrote {triangles} triangles to {}", path.display()))?;
         }
     }
-    Ok(if report.clear { Done::Fine } else { Done::Found })
+    Ok(if report.clear { Exit::Success } else { Exit::CheckFailed })
 }
 
-/// Files that are judged in order; joined by straight paths if they are a trace.
+/// Files that are checked in order. If they are a trace, the straight paths between them are checked too.
 #[derive(Clone, Debug)]
 struct Group {
     files: Vec<PathBuf>,
     trace: bool,
 }
 
-/// A file by itself, the frames of a folder, or the frames and the trace of a run.
-fn expand(path: &Path) -> Result<Vec<Group>, Failure> {
+/// The groups of an argument: a single file, the frames of a folder, or the frames and the trace of a run.
+fn groups_of(path: &Path) -> Result<Vec<Group>, Failure> {
     if !path.is_dir() {
         return Ok(vec![Group { files: vec![path.to_owned()], trace: false }]);
     }
     let mut groups = Vec::new();
     for folder in [path.join("frames"), path.join("trace")] {
         if folder.is_dir() {
-            groups.extend(group_of(&folder)?);
+            groups.extend(frames_in(&folder)?);
         }
     }
-    // Of a run this is `frames.npz`; of any other folder its frames.
-    groups.extend(group_of(path)?);
+    // In the folder of a run this finds `frames.npz`, in any other folder its frames.
+    groups.extend(frames_in(path)?);
     if groups.is_empty() {
         let message = "no frames (.ply, .obj, .npz) in it, nor in frames/ or trace/ below it";
         return Err(Failure::input(format!("{}: {message}", path.display())));
@@ -98,44 +98,46 @@ fn expand(path: &Path) -> Result<Vec<Group>, Failure> {
     Ok(groups)
 }
 
-/// The frames that lie directly in a folder, in natural order.
-fn group_of(folder: &Path) -> Result<Option<Group>, Failure> {
+/// The frames directly in a folder, in natural order.
+fn frames_in(folder: &Path) -> Result<Option<Group>, Failure> {
     let files = files_in(folder, &["ply", "obj", "npz"])?;
-    // `trace/.` names the folder as well.
+    // The canonical path has a file name even where the argument ends with a dot, as `trace/.` does.
     let real = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     let trace = real.file_name().is_some_and(|n| n == "trace");
     Ok((!files.is_empty()).then_some(Group { files, trace }))
 }
 
-fn ending(path: &Path) -> String {
+fn extension(path: &Path) -> String {
     path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
 }
 
-/// What is fixed about the states that were judged last.
-struct Judged {
+/// The state that was checked last, with the judge for its elements.
+struct PreviousState {
+    /// The mesh without its positions.
     elements: Mesh,
     judge: Judge,
-    last: Vec<Point>,
+    positions: Vec<Point>,
 }
 
 struct Checker<'a> {
     min_distance: Option<f64>,
-    /// Most findings that are written out for a state or path.
+    /// Largest number of intersections that are printed per state and path.
     list: usize,
-    /// Where the offending elements go.
+    /// File for the elements that intersect.
     dump: Option<&'a Path>,
-    /// Triangles written there.
+    /// Number of triangles written there.
     dumped: Option<usize>,
-    judged: Option<Judged>,
+    previous: Option<PreviousState>,
     report: Report,
     bar: Bar,
 }
 
 impl Checker<'_> {
+    /// Checks the files of a group.
     fn group(&mut self, group: &Group) -> Result<(), Failure> {
         let mut joined = false;
         for file in &group.files {
-            if ending(file) == "npz" {
+            if extension(file) == "npz" {
                 self.archive(file)?;
                 joined = false;
             } else {
@@ -148,7 +150,7 @@ impl Checker<'_> {
         Ok(())
     }
 
-    /// Frames of an `X`, or the start of a recorded problem.
+    /// Checks an archive: its frames `X`, or the start of a recorded problem.
     fn archive(&mut self, file: &Path) -> Result<(), Failure> {
         let frames = FrameStack::read(file).or_else(|error| match States::read(file) {
             Ok(states) => {
@@ -161,7 +163,7 @@ impl Checker<'_> {
                     ..MeshView::default()
                 };
                 let mut stack = FrameStack::new(&view, &[]);
-                // The stack was made for as many vertices as there are.
+                // This cannot fail: the stack is for meshes of this number of vertices.
                 let _ = stack.push(&states.x);
                 Ok(stack)
             }
@@ -182,18 +184,20 @@ impl Checker<'_> {
         Ok(())
     }
 
-    /// Judges a state, and the path from the last one if they are joined.
+    /// Checks a state, and the path from the previous one if `joined`.
     fn state(&mut self, file: &Path, name: String, mut mesh: Mesh, joined: bool) -> Result<(), Failure> {
-        let fault = |error| Failure::judge(file, &error);
+        let bad_input = |error| Failure::check(file, &error);
         let positions = std::mem::take(&mut mesh.positions);
-        let previous = self.judged.take();
-        let same = previous.as_ref().is_some_and(|j| j.last.len() == positions.len() && j.elements == mesh);
+        let previous = self.previous.take();
+        let same =
+            previous.as_ref().is_some_and(|p| p.positions.len() == positions.len() && p.elements == mesh);
         if joined && !same {
-            let message = "its elements differ from those of the file before it, so that no path joins them";
+            let message =
+                "its elements differ from those of the file before it, so that there is no path between them";
             return Err(Failure::input(format!("{}: {message}", file.display())));
         }
         let (judge, last) = match previous {
-            Some(previous) if same => (previous.judge, Some(previous.last)),
+            Some(previous) if same => (previous.judge, Some(previous.positions)),
             _ => {
                 let parts = Parts {
                     vertex_count: positions.len(),
@@ -204,42 +208,45 @@ impl Checker<'_> {
                     body: mesh.body.as_deref().unwrap_or(&[]),
                     half_spaces: &[],
                 };
-                (Judge::new(&parts).map_err(fault)?, None)
+                (Judge::new(&parts).map_err(bad_input)?, None)
             }
         };
 
         let dump = self.dump.filter(|_| self.dumped.is_none());
         let limit = if dump.is_some() { usize::MAX } else { self.list };
-        let state = judge.check_state(&positions, &StateOptions { limit, distance: true }).map_err(fault)?;
+        let state =
+            judge.check_state(&positions, &StateOptions { limit, distance: true }).map_err(bad_input)?;
         let listed = state.intersections.iter().take(self.list);
         let mut findings: Vec<String> = listed.map(ToString::to_string).collect();
         findings.extend(more(state.intersection_count, findings.len()));
         if let Some(path) = dump.filter(|_| !state.is_clear()) {
             let offending = judge.offending_mesh(&positions, &state.intersections);
-            let of = |v: &u32| *v as usize;
             let obstacle: Vec<bool> = offending
                 .vertices
                 .iter()
-                .filter_map(|v| mesh.obstacle.as_ref()?.get(of(v)).copied())
+                .filter_map(|v| mesh.obstacle.as_ref()?.get(*v as usize).copied())
                 .collect();
-            let body: Vec<u32> =
-                offending.vertices.iter().filter_map(|v| mesh.body.as_ref()?.get(of(v)).copied()).collect();
+            let body: Vec<u32> = offending
+                .vertices
+                .iter()
+                .filter_map(|v| mesh.body.as_ref()?.get(*v as usize).copied())
+                .collect();
             crate::dump::write(path, &offending, &obstacle, &body)?;
             self.dumped = Some(offending.triangles.len());
         }
         let distance = state.nearest.as_ref().map(|nearest| nearest.distance);
-        if let (Some(least), Some(nearest)) = (self.min_distance, &state.nearest)
-            && nearest.distance < least
+        if let (Some(limit), Some(nearest)) = (self.min_distance, &state.nearest)
+            && nearest.distance < limit
             && state.is_clear()
         {
-            findings.push(format!("{nearest}, below {least:.3e} m"));
+            findings.push(format!("{nearest}, below {limit:.3e} m"));
         }
-        self.report.too_near |= distance.zip(self.min_distance).is_some_and(|(found, least)| found < least);
+        self.report.too_near |= distance.zip(self.min_distance).is_some_and(|(found, limit)| found < limit);
 
         let mut path_hits = None;
         if let Some(last) = last.filter(|_| joined) {
             let options = PathOptions { limit: self.list, ..PathOptions::default() };
-            let path = judge.check_path(&last, &positions, &options).map_err(fault)?;
+            let path = judge.check_path(&last, &positions, &options).map_err(bad_input)?;
             findings.extend(path.hits.iter().map(ToString::to_string));
             findings.extend(more(path.hit_count, path.hits.len()));
             path_hits = Some(path.hit_count);
@@ -253,30 +260,29 @@ impl Checker<'_> {
             (Some(a), Some(b)) => Some(a.min(b)),
             (a, b) => a.or(b),
         };
-        let verdict = Verdict {
+        let entry = Entry {
             file: name,
             intersections: state.intersection_count,
             path_hits,
             min_distance_m: distance,
             findings,
         };
-        self.report.files.push(verdict);
-        self.judged = Some(Judged { elements: mesh, judge, last: positions });
+        self.report.files.push(entry);
+        self.previous = Some(PreviousState { elements: mesh, judge, positions });
         Ok(())
     }
 }
 
+/// A line for the intersections that are not listed.
 fn more(count: usize, listed: usize) -> Option<String> {
     (count > listed).then(|| format!("and {} more", count - listed))
 }
 
-fn in_words(report: &Report, min_distance: Option<f64>) -> String {
+fn to_text(report: &Report, min_distance: Option<f64>) -> String {
     let mut lines: Vec<String> = report
         .files
         .iter()
-        .flat_map(|verdict| {
-            verdict.findings.iter().map(move |finding| format!("{}: {finding}", verdict.file))
-        })
+        .flat_map(|entry| entry.findings.iter().map(move |finding| format!("{}: {finding}", entry.file)))
         .collect();
     let counted = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
     let mut summary = counted(report.states, "state");
@@ -290,8 +296,8 @@ fn in_words(report: &Report, min_distance: Option<f64>) -> String {
     if let Some(distance) = report.min_distance_m {
         summary += &format!("; smallest distance {distance:.3e} m");
     }
-    if let Some(least) = min_distance.filter(|_| report.too_near) {
-        summary += &format!(", below {least:.3e} m");
+    if let Some(limit) = min_distance.filter(|_| report.too_near) {
+        summary += &format!(", below {limit:.3e} m");
     }
     lines.push(summary);
     lines.join("\n")

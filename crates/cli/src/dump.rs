@@ -1,10 +1,11 @@
-//! Offending elements as a mesh to look at.
+//! Intersecting elements as a mesh file.
 
 use bowknot::check::OffendingMesh;
 use bowknot::io::{IoError, MeshView, write_obj, write_ply};
 use std::path::Path;
 
-/// Writes the elements, with what is known of their vertices, as OBJ if the file is called so and as PLY otherwise.
+/// Writes the elements with the attributes of their vertices, as OBJ if the file has that extension and as
+/// PLY otherwise.
 pub fn write(path: &Path, mesh: &OffendingMesh, obstacle: &[bool], body: &[u32]) -> Result<(), IoError> {
     let view = MeshView {
         positions: &mesh.positions,
@@ -17,7 +18,7 @@ pub fn write(path: &Path, mesh: &OffendingMesh, obstacle: &[bool], body: &[u32])
     write_view(path, &view)
 }
 
-/// Writes a mesh in the format that its name asks for.
+/// Writes a mesh, as OBJ if the file has that extension and as PLY otherwise.
 pub fn write_view(path: &Path, view: &MeshView<'_>) -> Result<(), IoError> {
     if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj")) {
         write_obj(path, view)

@@ -1,14 +1,14 @@
-//! `bowknot export`: the frames of a run in other formats.
+//! `bowknot export`: writes the frames of a run in other formats.
 
 use crate::args::ExportOptions;
-use crate::failure::{Done, Failure};
+use crate::exit::{Exit, Failure};
 use crate::output;
 use crate::progress::Bar;
 
-pub fn export(options: &ExportOptions) -> Result<Done, Failure> {
+pub fn export(options: &ExportOptions) -> Result<Exit, Failure> {
     let out = match &options.out {
         Some(out) => out.clone(),
-        // An archive has no inside: what is made of it stands beside it.
+        // The exports of an archive are written beside it.
         None if options.source.is_file() => {
             options.source.parent().map(ToOwned::to_owned).unwrap_or_default()
         }
@@ -22,7 +22,7 @@ pub fn export(options: &ExportOptions) -> Result<Done, Failure> {
     };
     let mut bar: Option<Bar> = None;
     let result = bowknot::run::export(&options.source, &export_options, &mut |done, frames| {
-        bar.get_or_insert_with(|| Bar::new(frames, "frames", false)).at(done, "");
+        bar.get_or_insert_with(|| Bar::new(frames, "frames", false)).set_position(done, "");
     });
     if let Some(bar) = bar {
         bar.finish();
@@ -36,5 +36,5 @@ pub fn export(options: &ExportOptions) -> Result<Done, Failure> {
         names.join(", "),
         out.display()
     ))?;
-    Ok(Done::Fine)
+    Ok(Exit::Success)
 }

@@ -1,16 +1,15 @@
-//! `bowknot info`: what a scene or a mesh holds.
+//! `bowknot info`: counts and size of a scene or a mesh.
 
 use crate::args::InfoOptions;
-use crate::failure::{Done, Failure};
-use crate::loose::is_mesh;
-use crate::{output, setup};
+use crate::exit::{Exit, Failure};
+use crate::{bare_mesh, output, setup};
 use bowknot::io::{Import, Mesh, read_mesh};
 use bowknot::{Scene, SceneInfo};
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Counts of a scene or a mesh; a mesh has no time step.
+/// Counts and size of a scene or a mesh; a mesh has no time step.
 #[derive(Debug, Serialize)]
 struct Info {
     vertices: usize,
@@ -24,25 +23,25 @@ struct Info {
     extent: [f64; 3],
 }
 
-pub fn info(options: &InfoOptions) -> Result<Done, Failure> {
+pub fn info(options: &InfoOptions) -> Result<Exit, Failure> {
     let Some(name) = options.scene.as_deref().filter(|_| !options.gpus) else {
         return Err(setup::no_gpu());
     };
-    let info = if is_mesh(name) {
-        of_mesh(read_mesh(Path::new(name), &Import::default())?)
+    let info = if bare_mesh::is_mesh(name) {
+        info_of_mesh(read_mesh(Path::new(name), &Import::default())?)
     } else {
         let sets: [&str; 0] = [];
-        of_scene(Scene::open(name, None, &sets).and_then(|scene| scene.info()).map_err(Failure::input)?)
+        info_of_scene(Scene::open(name, None, &sets).and_then(|scene| scene.info()).map_err(Failure::input)?)
     };
     if options.json {
         output::print_json(&info)?;
     } else {
-        output::print(&in_words(name, &info))?;
+        output::print(&to_text(name, &info))?;
     }
-    Ok(Done::Fine)
+    Ok(Exit::Success)
 }
 
-fn of_scene(info: SceneInfo) -> Info {
+fn info_of_scene(info: SceneInfo) -> Info {
     Info {
         vertices: info.vertices,
         edges: info.edges,
@@ -56,9 +55,9 @@ fn of_scene(info: SceneInfo) -> Info {
     }
 }
 
-/// Counts of a mesh as it stands in its file, with the surface of its tetrahedra; elements with an obstacle vertex, of a
-/// frame, are not counted.
-fn of_mesh(mesh: Mesh) -> Info {
+/// Counts of a mesh as its file holds it, with the surface of its tetrahedra. In a frame, elements with an
+/// obstacle vertex are not counted.
+fn info_of_mesh(mesh: Mesh) -> Info {
     let tets = mesh.tets.len();
     let mesh = mesh.into_surface();
     let obstacle = |v: &u32| mesh.obstacle.as_ref().is_some_and(|o| o[*v as usize]);
@@ -90,7 +89,7 @@ fn of_mesh(mesh: Mesh) -> Info {
     }
 }
 
-fn in_words(name: &str, info: &Info) -> String {
+fn to_text(name: &str, info: &Info) -> String {
     let mut lines = vec![format!("{name}:")];
     let counts = [
         ("vertices", info.vertices),
@@ -101,7 +100,7 @@ fn in_words(name: &str, info: &Info) -> String {
         ("particles", info.particles),
         ("obstacle vertices", info.obstacle_vertices),
     ];
-    // What a scene does not have needs no line, but for what everyone asks for first.
+    // Counts of zero are left out, except that of the vertices.
     let shown = counts.iter().filter(|(what, count)| *count > 0 || *what == "vertices");
     lines.extend(shown.map(|(what, count)| format!("  {what:<18} {count}")));
     if let Some(dt) = info.time_step {

@@ -1,14 +1,14 @@
-//! Ctrl-C and SIGTERM: the first asks for an orderly end, the second ends at once.
+//! Ctrl-C and SIGTERM: the first signal ends the command in order, the second ends it at once.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Set once the user wants the command to end.
+/// A flag that is set once the user wants the command to end.
 #[derive(Clone, Debug, Default)]
 pub struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
-    /// Starts to listen. Where that is impossible the signals keep ending the process at once.
+    /// Starts to listen. If that fails, a signal ends the process at once, as it does by default.
     pub fn listen() -> Self {
         let interrupt = Self::default();
         let flag = interrupt.clone();
@@ -16,12 +16,12 @@ impl Interrupt {
             if flag.0.swap(true, Ordering::Relaxed) {
                 std::process::exit(130);
             }
-            eprintln!("stopping after the accepted state at hand; once more to stop at once");
+            eprintln!("stopping after the current accepted state; interrupt again to stop at once");
         });
         interrupt
     }
 
-    /// The flag itself, for those who look at it on their own.
+    /// The flag itself.
     pub fn flag(&self) -> Arc<AtomicBool> {
         Arc::clone(&self.0)
     }

@@ -1,17 +1,17 @@
-//! The `bowknot` command: arguments, messages and exit codes around the facade.
+//! The `bowknot` command: arguments, messages and exit codes around the library.
 //!
 //! Results go to stdout; progress, warnings and errors to stderr.
-// A command: printing is what it does.
+// A command prints its results.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod args;
+mod bare_mesh;
 mod check;
 mod dump;
+mod exit;
 mod export;
-mod failure;
 mod info;
 mod interrupt;
-mod loose;
 mod output;
 mod progress;
 #[cfg(feature = "render")]
@@ -25,14 +25,14 @@ mod setup;
 
 use args::{Arguments, Command};
 use clap::Parser;
-use failure::{Done, Failure};
+use exit::{Exit, Failure};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    // A wrong option ends here, with clap's own message and code 2.
+    // With a wrong option clap prints a message and exits with code 2.
     let arguments = Arguments::parse();
     setup::logging(matches!(&arguments.command, Command::Run(options) if options.quiet));
-    let done = match arguments.command {
+    let result = match arguments.command {
         Command::Scenes(options) => scenes::scenes(&options),
         Command::Run(options) => run::run(&options),
         Command::Resolve(options) => resolve::resolve(&options),
@@ -44,10 +44,10 @@ fn main() -> ExitCode {
         Command::Render(options) => render::render(&options),
         Command::Info(options) => info::info(&options),
     };
-    match done {
-        Ok(Done::Fine) => ExitCode::SUCCESS,
-        Ok(Done::Found) => ExitCode::from(1),
-        Ok(Done::Interrupted) => ExitCode::from(130),
+    match result {
+        Ok(Exit::Success) => ExitCode::SUCCESS,
+        Ok(Exit::CheckFailed) => ExitCode::from(1),
+        Ok(Exit::Interrupted) => ExitCode::from(130),
         Err(Failure { code, message }) => {
             eprintln!("error: {message}");
             ExitCode::from(code)

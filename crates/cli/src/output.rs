@@ -1,10 +1,10 @@
 //! Results on stdout.
 
-use crate::failure::Failure;
+use crate::exit::Failure;
 use serde::Serialize;
 use std::io::{ErrorKind, Write};
 
-/// Prints lines of results. A reader that has closed its end, such as `head`, has had enough: no error.
+/// Prints lines of results. It is not an error if the reader, such as `head`, has closed the pipe.
 pub fn print(text: &str) -> Result<(), Failure> {
     let mut stdout = std::io::stdout().lock();
     match writeln!(stdout, "{text}").and_then(|()| stdout.flush()) {

@@ -1,13 +1,13 @@
-//! Progress on stderr: a bar with the time left on a terminal, a plain line now and then otherwise.
+//! Progress on stderr: on a terminal a bar with the time left, otherwise a plain line every few seconds.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
-/// Least time between two plain lines.
+/// Smallest time between two plain lines.
 const PLAIN_INTERVAL: Duration = Duration::from_secs(5);
 
-/// Shows how far a command is.
+/// Shows the progress of a command.
 pub struct Bar {
     bar: ProgressBar,
     plain: bool,
@@ -17,7 +17,7 @@ pub struct Bar {
 }
 
 impl Bar {
-    /// Progress over `total` things; nothing is shown if `quiet`.
+    /// Progress over `total` items, named by `what`; nothing is shown if `quiet`.
     pub fn new(total: usize, what: &'static str, quiet: bool) -> Self {
         let terminal = std::io::stderr().is_terminal();
         let bar = ProgressBar::new(total as u64);
@@ -26,7 +26,7 @@ impl Bar {
         } else {
             ProgressDrawTarget::hidden()
         });
-        // A malformed template would be our own mistake; the default style is then shown.
+        // The template is fixed and well formed; otherwise the default style would be shown.
         if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg} [{elapsed}, {eta} left]")
         {
             bar.set_style(style);
@@ -35,18 +35,18 @@ impl Bar {
         Self { bar, plain: !terminal && !quiet, what, started: now, last_line: Some(now) }
     }
 
-    /// There are `total` things after all.
-    pub fn of(&self, total: usize) {
+    /// Changes the total.
+    pub fn set_total(&self, total: usize) {
         self.bar.set_length(total as u64);
     }
 
-    /// `count` more are done.
+    /// Marks `count` more items as done.
     pub fn advance(&mut self, count: usize) {
-        self.at(self.bar.position() as usize + count, "");
+        self.set_position(self.bar.position() as usize + count, "");
     }
 
-    /// `position` are done; `message` says what is notable.
-    pub fn at(&mut self, position: usize, message: &str) {
+    /// Sets the number of items that are done, and a message beside it.
+    pub fn set_position(&mut self, position: usize, message: &str) {
         self.bar.set_position(position as u64);
         self.bar.set_message(message.to_owned());
         let due = self.last_line.is_none_or(|last| last.elapsed() >= PLAIN_INTERVAL);

@@ -1,16 +1,19 @@
-//! `bowknot repair`: weld the seams of a mesh.
+//! `bowknot repair`: welds the seams of a mesh.
 
 use crate::args::RepairOptions;
-use crate::failure::{Done, Failure};
+use crate::exit::{Exit, Failure};
 use crate::{dump, output};
 use bowknot::io::{Import, read_mesh};
 use bowknot::repair::{RepairParams, RepairReport, Verdict};
 use std::path::Path;
 
-pub fn repair(options: &RepairOptions) -> Result<Done, Failure> {
-    let ending = options.out.extension().unwrap_or_default().to_ascii_lowercase();
-    if ending != "obj" && ending != "ply" {
-        return Err(Failure::input(format!("{}: name a file .obj or .ply", options.out.display())));
+pub fn repair(options: &RepairOptions) -> Result<Exit, Failure> {
+    let extension = options.out.extension().unwrap_or_default().to_ascii_lowercase();
+    if extension != "obj" && extension != "ply" {
+        return Err(Failure::input(format!(
+            "{}: a repaired mesh is written as .obj or .ply",
+            options.out.display()
+        )));
     }
     let mesh = read_mesh(&options.mesh, &Import::default())?;
     let params = RepairParams { weld_distance: options.weld_distance };
@@ -20,16 +23,16 @@ pub fn repair(options: &RepairOptions) -> Result<Done, Failure> {
     if options.json {
         output::print_json(&report)?;
     } else {
-        output::print(&in_words(&report, &options.out))?;
+        output::print(&to_text(&report, &options.out))?;
     }
-    Ok(if report.after.intersections == 0 { Done::Fine } else { Done::Found })
+    Ok(if report.after.intersections == 0 { Exit::Success } else { Exit::CheckFailed })
 }
 
-fn in_words(report: &RepairReport, out: &Path) -> String {
+fn to_text(report: &RepairReport, out: &Path) -> String {
     let mut lines = Vec::new();
     lines.push(match &report.before {
         Some(before) => format!("before: {}", counts(before)),
-        None => "before: cannot be judged, a triangle or strand names a vertex twice".to_owned(),
+        None => "before: cannot be checked, because a triangle or strand names a vertex twice".to_owned(),
     });
     let mut welds = format!(
         "welded {} border vertices nearer than {:.3e} m, moving none by more than {:.3e} m",
@@ -44,7 +47,7 @@ fn in_words(report: &RepairReport, out: &Path) -> String {
         (report.zero_area_triangles, "dropped triangles without area"),
         (report.repeated_triangles, "dropped triangles given twice"),
         (report.dropped_strands, "dropped strand edges given twice or without length"),
-        (report.unused_vertices, "dropped vertices that nothing used"),
+        (report.unused_vertices, "dropped vertices that no element used"),
     ] {
         if count > 0 {
             lines.push(format!("{what}: {count}"));
@@ -62,8 +65,9 @@ fn in_words(report: &RepairReport, out: &Path) -> String {
     lines.extend(report.after.findings.iter().map(|finding| format!("  {finding}")));
     lines.push(format!("wrote {}", out.display()));
     if report.after.intersections > 0 {
-        let remedy = "a larger --weld-distance closes wider seams; `bowknot check --dump FILE` shows what remains; what is \
-                      no cloth may stay as it is: obstacles may intersect themselves";
+        let remedy = "a larger --weld-distance closes wider seams; `bowknot check --dump FILE` writes the \
+                      triangles that intersect; a mesh for an obstacle needs no further repair, since obstacles \
+                      may intersect themselves";
         lines.push(remedy.to_owned());
     }
     lines.join("\n")

@@ -1,12 +1,12 @@
-//! `bowknot report`: one HTML page of a run.
+//! `bowknot report`: writes one HTML page of a run.
 
 use crate::args::ReportOptions;
-use crate::failure::{Done, Failure};
+use crate::exit::{Exit, Failure};
 use crate::output;
 use crate::progress::Bar;
 use bowknot::report::{ReportInfo, write_report};
 
-pub fn report(options: &ReportOptions) -> Result<Done, Failure> {
+pub fn report(options: &ReportOptions) -> Result<Exit, Failure> {
     let out = options.out.clone().unwrap_or_else(|| options.folder.join("report.html"));
     let defaults = bowknot::report::ReportOptions::default();
     let report = bowknot::report::ReportOptions {
@@ -16,19 +16,19 @@ pub fn report(options: &ReportOptions) -> Result<Done, Failure> {
     let mut bar: Option<Bar> = None;
     let mut show = |read: usize, planned: usize| {
         let bar = bar.get_or_insert_with(|| Bar::new(planned, "frames read", false));
-        bar.of(planned);
-        bar.at(read, "");
+        bar.set_total(planned);
+        bar.set_position(read, "");
     };
     let result = write_report(&options.folder, &out, &report, &mut show);
     if let Some(bar) = bar {
         bar.finish();
     }
     let info = result.map_err(Failure::input)?;
-    output::print(&in_words(&info))?;
-    Ok(Done::Fine)
+    output::print(&to_text(&info))?;
+    Ok(Exit::Success)
 }
 
-fn in_words(info: &ReportInfo) -> String {
+fn to_text(info: &ReportInfo) -> String {
     let mut lines = vec![format!(
         "wrote {}: {} of {} frames, {:.1} MB, positions within {:.1e} m; open it in a browser",
         info.path.display(),

@@ -1,9 +1,8 @@
-//! `bowknot resolve`: one collision problem from a file to a file.
+//! `bowknot resolve`: resolves one recorded collision problem.
 
 use crate::args::ResolveOptions;
-use crate::failure::{Done, Failure};
+use crate::exit::{Exit, Failure};
 use crate::interrupt::Interrupt;
-use crate::run::method_sets;
 use crate::{output, setup};
 use bowknot::check::{Judge, StateOptions};
 use bowknot::proximity::CollisionModel;
@@ -12,10 +11,10 @@ use bowknot::twoway::{AcceptedState, Statistics};
 use serde::Serialize;
 use std::ops::ControlFlow;
 
-/// Intersections of a refused start that are written out.
-const LISTED: usize = 5;
+/// Largest number of intersections that are printed when the start is refused.
+const MAX_LISTED: usize = 5;
 
-/// What `--json` prints.
+/// The result, as `--json` prints it.
 #[derive(Debug, Serialize)]
 struct Summary {
     steps: usize,
@@ -33,18 +32,18 @@ struct Summary {
     converged: bool,
 }
 
-pub fn resolve(options: &ResolveOptions) -> Result<Done, Failure> {
+pub fn resolve(options: &ResolveOptions) -> Result<Exit, Failure> {
     setup::machine(&options.machine)?;
-    let mut params = bowknot::scene::twoway_params(&method_sets(&options.method)).map_err(Failure::input)?;
+    let mut params = bowknot::scene::twoway_params(&options.method.assignments()).map_err(Failure::input)?;
     if options.max_seconds.is_some() {
-        params.stop.max_seconds = options.max_seconds;
+        params.solver.stop.max_seconds = options.max_seconds;
     }
     let states = States::read(&options.states)?;
-    let fault = |message: String| Failure::input(format!("{}: {message}", options.states.display()));
-    let model = states.collision_model().map_err(fault)?;
-    refuse_intersections(&model, &states).map_err(fault)?;
+    let bad_input = |message: String| Failure::input(format!("{}: {message}", options.states.display()));
+    let model = states.collision_model().map_err(bad_input)?;
+    refuse_intersections(&model, &states).map_err(bad_input)?;
 
-    let mut resolver = states.resolver(model, params).map_err(|error| fault(error.to_string()))?;
+    let mut resolver = states.resolver(model, params).map_err(|error| bad_input(error.to_string()))?;
     let interrupt = Interrupt::listen();
     let mut watch = |_: &AcceptedState<'_>| {
         if interrupt.is_set() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
@@ -52,22 +51,23 @@ pub fn resolve(options: &ResolveOptions) -> Result<Done, Failure> {
     let mut x = states.x.clone();
     let cpu = bowknot::simulator::cpu_seconds();
     let statistics = resolver
-        .resolve(&mut x, &states.y, &states.call(), &mut watch)
-        .map_err(|error| fault(error.to_string()))?;
-    let summary = summarise(&statistics, bowknot::simulator::cpu_seconds() - cpu);
+        .resolve_with(&mut x, &states.y, &states.input(), &mut watch)
+        .map_err(|error| bad_input(error.to_string()))?;
+    let summary = summarize(&statistics, bowknot::simulator::cpu_seconds() - cpu);
     write_result(&options.out, &x)?;
 
     if options.json {
         output::print_json(&summary)?;
     } else {
-        output::print(&in_words(&summary, options))?;
+        output::print(&to_text(&summary, options))?;
     }
-    Ok(if interrupt.is_set() { Done::Interrupted } else { Done::Fine })
+    Ok(if interrupt.is_set() { Exit::Interrupted } else { Exit::Success })
 }
 
+/// Refuses a start that intersects.
 fn refuse_intersections(model: &CollisionModel, states: &States) -> Result<(), String> {
     let report = Judge::from_model(model)
-        .check_state(&states.x, &StateOptions { limit: LISTED, distance: false })
+        .check_state(&states.x, &StateOptions { limit: MAX_LISTED, distance: false })
         .map_err(|error| error.to_string())?;
     if report.is_clear() {
         return Ok(());
@@ -81,7 +81,7 @@ fn refuse_intersections(model: &CollisionModel, states: &States) -> Result<(), S
     Err(lines.join("\n"))
 }
 
-fn summarise(statistics: &Statistics, cpu_seconds: f64) -> Summary {
+fn summarize(statistics: &Statistics, cpu_seconds: f64) -> Summary {
     Summary {
         steps: statistics.steps,
         searches: statistics.searches,
@@ -96,9 +96,10 @@ fn summarise(statistics: &Statistics, cpu_seconds: f64) -> Summary {
     }
 }
 
-fn in_words(summary: &Summary, options: &ResolveOptions) -> String {
+fn to_text(summary: &Summary, options: &ResolveOptions) -> String {
     let end = if summary.converged { "converged" } else { "stopped early, with a valid state" };
-    let gap = summary.min_gap_m.map_or_else(|| "none in reach".to_owned(), |gap| format!("{gap:.3e} m"));
+    let gap =
+        summary.min_gap_m.map_or_else(|| "no pair within reach".to_owned(), |gap| format!("{gap:.3e} m"));
     format!(
         "{end} after {} steps and {} searches in {:.3} s ({:.3} s of CPU)\n\
          distance to target {:.3e} m (RMS), not travelled {:.3e} m, stationarity {:.3e} m\n\

@@ -1,7 +1,7 @@
-//! `bowknot scenes`: the built-in scenes with their sizes.
+//! `bowknot scenes`: lists the built-in scenes with their sizes.
 
 use crate::args::ScenesOptions;
-use crate::failure::{Done, Failure};
+use crate::exit::{Exit, Failure};
 use crate::output;
 use bowknot::{BUILTIN, Scene, SceneInfo};
 use serde::Serialize;
@@ -16,7 +16,7 @@ struct Entry {
     info: SceneInfo,
 }
 
-pub fn scenes(options: &ScenesOptions) -> Result<Done, Failure> {
+pub fn scenes(options: &ScenesOptions) -> Result<Exit, Failure> {
     let entry = |name, summary| -> Result<Entry, Failure> {
         let scene = Scene::builtin(name, 1.0).map_err(Failure::input)?;
         let info = scene.info().map_err(Failure::input)?;
@@ -25,7 +25,7 @@ pub fn scenes(options: &ScenesOptions) -> Result<Done, Failure> {
     let entries: Vec<Entry> = BUILTIN.iter().map(|b| entry(b.name, b.summary)).collect::<Result<_, _>>()?;
     if options.json {
         output::print_json(&entries)?;
-        return Ok(Done::Fine);
+        return Ok(Exit::Success);
     }
     let mut lines = vec![format!(
         "{:<10} {:>9} {:>10} {:>9} {:>7}",
@@ -38,7 +38,9 @@ pub fn scenes(options: &ScenesOptions) -> Result<Done, Failure> {
             e.name, e.frames, e.summary
         )
     }));
-    lines.push("(vertices and triangles that deform, vertices of obstacles, time steps of a run)".to_owned());
+    let note =
+        "(vertices and triangles of deformable bodies, vertices of obstacles, default number of time steps)";
+    lines.push(note.to_owned());
     output::print(&lines.join("\n"))?;
-    Ok(Done::Fine)
+    Ok(Exit::Success)
 }

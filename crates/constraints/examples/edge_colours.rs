@@ -1,5 +1,5 @@
-//! Colours of a sheet's edges: how many there are, how large, and that edges of one colour share no vertex that
-//! can move.
+//! Colours of a sheet's edges: their number, their sizes, and a check that edges of one colour share no
+//! movable vertex.
 //!
 //! `cargo run --release -p bowknot-constraints --example edge_colours`
 #![allow(clippy::print_stdout)]
@@ -10,7 +10,7 @@ use std::error::Error;
 
 /// Vertices along each side.
 const SIDE: u32 = 40;
-/// Largest length of an edge against its rest length.
+/// Largest ratio of an edge's length to its rest length.
 const STRETCH: f64 = 1.1;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -24,13 +24,14 @@ fn main() -> Result<(), Box<dyn Error>> {
             triangles.extend([[a, a + 1, a + SIDE + 1], [a, a + SIDE + 1, a + SIDE]]);
         }
     }
-    let topology = Topology::new(rest.len(), triangles, &[], &[]).map_err(|errors| errors[0].clone())?;
-    // One side is held: edges between held vertices need no limit, and held vertices cause no conflict.
+    let topology = Topology::builder(rest.len()).triangles(triangles).build()?;
+    // One side is held. Edges between held vertices need no limit, and edges that share a held vertex may
+    // have one colour.
     let movable: Vec<bool> = (0..SIDE * SIDE).map(|v| v >= SIDE).collect();
 
     let mut limits = EdgeLimits::new(&topology, &rest, &movable, |_| STRETCH);
     let (edges, rows) = (topology.edges.len(), limits.balls.len());
-    println!("{edges} edges, {rows} of them with a vertex that can move, {} colours", limits.colour_count());
+    println!("{edges} edges, {rows} of them with a movable vertex, {} colours", limits.colour_count());
     for (colour, range) in limits.colour_starts().windows(2).enumerate() {
         let (start, end) = (range[0] as usize, range[1] as usize);
         println!("  colour {colour:2}: {:5} edges", end - start);
@@ -45,12 +46,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
 
-    // A call that starts from the sheet drawn out by a twentieth, and would draw it out by a fifth.
-    let drawn = |factor: f64| rest.iter().map(|p| Point::new(factor * p.x, p.y, p.z)).collect::<Vec<_>>();
-    limits.begin(&drawn(1.05), EdgeReference::Rest);
-    let stretch = limits.stretch(&drawn(1.2));
+    // A call that starts from the sheet stretched by a twentieth, with a target stretched by a fifth.
+    let stretched = |factor: f64| rest.iter().map(|p| Point::new(factor * p.x, p.y, p.z)).collect::<Vec<_>>();
+    limits.begin(&stretched(1.05), EdgeReference::Rest);
+    let stretch = limits.stretch(&stretched(1.2));
     println!(
-        "drawn out by a fifth: {:.3} of the limit, {:.3} of the start, {:.3} of the rest length",
+        "stretched by a fifth: {:.3} of the limit, {:.3} of the start, {:.3} of the rest length",
         stretch.to_limit, stretch.to_start, stretch.to_rest
     );
     Ok(())

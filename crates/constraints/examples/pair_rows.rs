@@ -1,5 +1,5 @@
-//! Contact rows of a vertex above a triangle, in both forms: values and gradients where they were linearised, and
-//! what they say about targets on either side.
+//! Contact rows of a vertex above a triangle, in both forms: values and gradients at the linearisation point,
+//! and values at targets on both sides.
 //!
 //! `cargo run --release -p bowknot-constraints --example pair_rows`
 #![allow(clippy::print_stdout)]
@@ -15,8 +15,8 @@ fn main() {
     let vertices = [0, 1, 2, 3];
     let triangle = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point::from);
 
-    // Over the inside the two differ only in what they ask of the triangle's vertices; beside the triangle
-    // the volume would be a false wall in its whole plane, so that the gap form stands in.
+    // Above the interior the two forms differ only in the gradients of the triangle's vertices. Beside the
+    // triangle the volume form would block the whole plane of the triangle, so the gap form applies.
     for (place, vertex) in [("over the inside", [0.25, 0.25, 0.05]), ("beside an edge", [0.5, -0.04, 0.005])]
     {
         let x = [Point::from(vertex), triangle[0], triangle[1], triangle[2]];
@@ -35,7 +35,7 @@ fn main() {
                 let verdict = if value < 0.0 { "violated" } else { "met" };
                 println!("    {fall:.2} m lower: value {value:+.5} m, {verdict}; predicted gap {gap:+.5} m");
             }
-            // No row pushes a pair as a whole: the gradients cancel.
+            // No row pushes the pair as a whole: the gradients sum to zero.
             assert!(row.gradients.iter().sum::<Vector>().norm() < 1e-12);
         }
     }

@@ -1,12 +1,13 @@
 //! Greedy colouring of rows: rows of one colour share no movable vertex, so a sweep may treat
-//! them in any order or in parallel with one and the same result.
+//! them in any order, or in parallel, with the same result.
 //!
 //! The paper colours randomly (section 4.2); first-fit over rows in their listed order needs fewer
-//! colours, is deterministic, and costs tens of nanoseconds a row.
+//! colours, is deterministic, and costs tens of nanoseconds per row.
 
 use std::ops::Range;
 
-/// Words of the mask of colours in use at a vertex; rows beyond their colours get one colour each.
+/// Words of the mask of the colours in use at a vertex. Rows that find no free colour get a colour of their
+/// own.
 const WORDS: usize = 4;
 const COLOURS: usize = WORDS * 64;
 const NONE: u32 = u32::MAX;
@@ -58,7 +59,7 @@ impl Colouring {
             self.colours.push(colour as u32);
             self.starts[colour + 1] += 1;
         }
-        // Clear what was touched only: most vertices of a scene are in no contact.
+        // Clears only the touched entries: most vertices of a scene are in no contact.
         for row in 0..row_count {
             for v in vertices(row) {
                 self.used[v as usize] = [0; WORDS];
@@ -89,7 +90,7 @@ impl Colouring {
         &self.order
     }
 
-    /// Where each colour starts in [`Self::order`], and the end: one entry more than colours.
+    /// Where each colour starts in [`Self::order`], and the end: one entry more than there are colours.
     pub fn starts(&self) -> &[u32] {
         &self.starts
     }
@@ -106,47 +107,4 @@ impl Colouring {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn check(rows: &[Vec<u32>], vertex_count: usize) -> usize {
-        let mut colouring = Colouring::default();
-        for _ in 0..2 {
-            // Twice: scratch must come back clean.
-            colouring.first_fit(vertex_count, rows.len(), |r| rows[r].iter().copied());
-            let mut seen: Vec<u32> = colouring.order().to_vec();
-            seen.sort_unstable();
-            assert_eq!(seen, (0..rows.len() as u32).collect::<Vec<_>>());
-            for range in colouring.ranges() {
-                let mut used = vec![false; vertex_count];
-                for &row in &colouring.order()[range] {
-                    for &v in &rows[row as usize] {
-                        assert!(
-                            !std::mem::replace(&mut used[v as usize], true),
-                            "two rows of a colour share {v}"
-                        );
-                    }
-                }
-            }
-        }
-        colouring.colour_count()
-    }
-
-    #[test]
-    fn a_path_needs_two_colours() {
-        let rows: Vec<Vec<u32>> = (0..100).map(|i| vec![i, i + 1]).collect();
-        assert_eq!(check(&rows, 101), 2);
-    }
-
-    #[test]
-    fn a_star_needs_one_colour_a_row_even_beyond_the_mask() {
-        let rows: Vec<Vec<u32>> = (0..300).map(|i| vec![0, i + 1]).collect();
-        assert_eq!(check(&rows, 301), 300);
-    }
-
-    #[test]
-    fn rows_without_movable_vertices_and_no_rows_are_fine() {
-        assert_eq!(check(&[vec![], vec![], vec![3]], 4), 1);
-        assert_eq!(check(&[], 0), 0);
-    }
-}
+mod tests;

@@ -1,9 +1,9 @@
-//! Contact rows: one inequality a pair, linearised at the current positions x:
+//! Contact rows: one inequality per pair, linearised at the current positions x:
 //! s(y) = c(x) + J (y - x) >= 0 [m].
 
 use crate::{Colouring, ContactForm, face, friction_row, volume};
 use bowknot_geometry::{PairKind, Point, Separation};
-use bowknot_lcp::{FrictionRow, Problem, Row};
+use bowknot_lcp::{FrictionRow, LcpProblem, Row};
 use bowknot_proximity::PairList;
 
 /// The row of one pair with desired distance `desired` [m].
@@ -26,8 +26,8 @@ pub fn contact_row(
     }
     .unwrap_or_else(|| {
         let gradients = separation.signed_weights(kind).map(|beta| separation.normal * beta);
-        // The slab is what the forward step has to open: where the normal is not that of the closest
-        // points, the computed distance would promise a gap that the step cannot use.
+        // The forward step can use no more than the slab. Where the normal is not that of the closest points,
+        // the slab is narrower than the computed distance.
         (separation.distance.min(separation.width.max(0.0)) - desired, gradients)
     });
     let linear: f64 = gradients.iter().zip(&points).map(|(g, x)| g.dot(&x.coords)).sum();
@@ -53,7 +53,7 @@ pub fn predicted_gap(
     separation.distance.min(separation.width.max(0.0)) + change
 }
 
-/// Contact rows in colour order; refilled in every backward step, keeping its buffers.
+/// Contact rows in colour order. They are refilled in every backward step and keep their buffers.
 #[derive(Clone, Debug, Default)]
 pub struct ContactRows {
     /// Index of each row's pair in the pair list.
@@ -62,15 +62,15 @@ pub struct ContactRows {
     pub rows: Vec<Row>,
     /// Friction rows of the contacts that have friction, in the order of their normals' rows.
     pub friction: Vec<FrictionRow>,
-    /// Friction row of each row, or [`Problem::NO_FRICTION`]; empty: no contact has friction.
+    /// Index of the friction row of each row, or [`LcpProblem::NO_FRICTION`]. Empty: no contact has friction.
     pub friction_of: Vec<u32>,
     colouring: Colouring,
     selected: Vec<u32>,
 }
 
 impl ContactRows {
-    /// Fills rows for the pairs that `keep` accepts, ordered by colour. `movable[v]` says which vertices a
-    /// row may move; only they count for colours.
+    /// Fills in the rows of the pairs that `keep` accepts, ordered by colour. `movable[v]` tells which
+    /// vertices a row may move; only they count for colours.
     pub fn fill(
         &mut self,
         form: ContactForm,
@@ -101,8 +101,8 @@ impl ContactRows {
         }));
     }
 
-    /// Adds friction rows to the rows just filled, where a pair's `coefficients` entry is above 0; `start` are the
-    /// positions that slip is measured from. Without entries, and where all are 0, there are none.
+    /// Adds friction rows to the rows of pairs whose entry in `coefficients` is above 0. Slip is measured
+    /// from the positions `start`. Without entries, or if all are 0, there are no friction rows.
     pub fn fill_friction(
         &mut self,
         pairs: &PairList,
@@ -124,7 +124,7 @@ impl ContactRows {
                 let friction = friction_row(kind, vertices, start, separation, coefficients[p], row as u32);
                 self.friction.push(friction);
             } else {
-                self.friction_of.push(Problem::NO_FRICTION);
+                self.friction_of.push(LcpProblem::NO_FRICTION);
             }
         }
         if self.friction.is_empty() {

@@ -8,16 +8,17 @@ use bowknot_proximity::{CollisionModel, Pair};
 pub struct DesiredDistance {
     /// Largest desired distance, delta [m].
     pub delta: f64,
-    /// How much a gap below `delta` may be asked to grow during the call [m].
+    /// By how much, at most, the rows of a call ask a gap below `delta` to grow [m].
     pub growth: f64,
 }
 
 impl DesiredDistance {
-    /// The desired distance [m] of a pair whose distance is `gap` where it is first listed in a call, and
-    /// whether it was lowered because the pair are neighbours in a fine mesh.
+    /// The desired distance [m] of a pair that has the distance `gap` when it first becomes a candidate in a
+    /// call, and whether it was lowered because the pair are neighbours in a fine mesh.
     ///
-    /// Neighbours keep at most half of their rest distance, or a fine mesh would be torn apart by its own
-    /// `delta`; and a tight start opens by `growth` a call instead of exploding.
+    /// The desired distance of neighbours is at most half of their rest distance: otherwise `delta` would
+    /// tear a fine mesh apart. A pair that starts closer than its desired distance opens by at most `growth`
+    /// per call.
     pub fn of(
         &self,
         model: &CollisionModel,
@@ -26,13 +27,13 @@ impl DesiredDistance {
         rest: &[Point],
         gap: f64,
     ) -> (f64, bool) {
-        let (desired, lowered) = self.at_ease(model, kind, pair, rest);
+        let (desired, lowered) = self.without_growth_limit(model, kind, pair, rest);
         (desired.min(gap.max(0.0) + self.growth), lowered)
     }
 
-    /// The desired distance [m] that a pair comes to in the end, however tight it starts; and whether it was lowered
-    /// because the pair are neighbours in a fine mesh.
-    pub fn at_ease(
+    /// The desired distance [m] that a pair reaches in the end, however close it starts, and whether it was
+    /// lowered because the pair are neighbours in a fine mesh.
+    pub fn without_growth_limit(
         &self,
         model: &CollisionModel,
         kind: PairKind,

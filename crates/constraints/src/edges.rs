@@ -2,30 +2,30 @@
 
 use crate::{Colouring, EdgeReference};
 use bowknot_geometry::{Point, Topology, Vector};
-use bowknot_lcp::{BallRow, Row};
+use bowknot_lcp::{DistanceLimit, Row};
 
-/// Share of the length at the start that an edge's limit never falls below: an edge that starts
-/// longer than its limit is brought back a little each time, because asking for the whole of it at
-/// once is infeasible and blows up.
+/// Smallest ratio of an edge's limit to its length at the start of the call. An edge that starts longer than
+/// its limit is shortened a little in each call, because asking for all of it at once is infeasible and
+/// diverges.
 const START_SHARE: f64 = 0.97;
 
 /// Edge-length limits in colour order.
 #[derive(Clone, Debug, Default)]
 pub struct EdgeLimits {
     /// Vertices of each edge and its largest length in this call, L [m].
-    pub balls: Vec<BallRow>,
+    pub balls: Vec<DistanceLimit>,
     /// Rest length of each edge [m].
     pub rest_lengths: Vec<f64>,
     /// Length of each edge at the start of the call [m].
     pub start_lengths: Vec<f64>,
-    /// Largest ratio of each edge's length to its reference, sigma [1].
+    /// Largest ratio of each edge's length to its reference length, sigma [1].
     pub stretch_limits: Vec<f64>,
     colour_starts: Vec<u32>,
 }
 
 impl EdgeLimits {
-    /// Collects and colours the edges with at least one movable vertex and a finite `stretch_limit`, the largest ratio
-    /// of an edge's length to its reference; the others have no row.
+    /// Collects and colours the edges with at least one movable vertex and a finite `stretch_limit`, the
+    /// largest ratio of an edge's length to its reference length. Other edges have no row.
     pub fn new(
         topology: &Topology,
         rest: &[Point],
@@ -39,8 +39,8 @@ impl EdgeLimits {
         colouring
             .first_fit(movable.len(), edges.len(), |r| edges[r].into_iter().filter(|&v| movable[v as usize]));
         let vertices = colouring.order().iter().map(|&r| edges[r as usize]);
-        let balls: Vec<BallRow> =
-            vertices.map(|e| BallRow { vertices: e, limit: length(&e, rest) }).collect();
+        let balls: Vec<DistanceLimit> =
+            vertices.map(|e| DistanceLimit { vertices: e, limit: length(&e, rest) }).collect();
         let rest_lengths: Vec<f64> = balls.iter().map(|b| b.limit).collect();
         Self {
             stretch_limits: balls.iter().map(|b| stretch_limit(&b.vertices)).collect(),
@@ -51,7 +51,8 @@ impl EdgeLimits {
         }
     }
 
-    /// Limit of an edge [m] whose length is `start` at the start [m] and that is to come to `limit` [m], its rest length times sigma.
+    /// Limit of an edge in a call [m]. Its length at the start is `start` [m]; `limit` is its rest length
+    /// times sigma [m].
     pub fn of_rest(limit: f64, start: f64) -> f64 {
         limit.max(START_SHARE * start)
     }
@@ -83,8 +84,8 @@ impl EdgeLimits {
         }));
     }
 
-    /// Largest ratio of an edge's length at `positions` to its limit, to its length at the start, and to its
-    /// rest length; each 1 where there is no edge.
+    /// Largest ratios of an edge's length at `positions` to its limit, to its length at the start, and to its
+    /// rest length. Each is 1 if there is no edge.
     pub fn stretch(&self, positions: &[Point]) -> Stretch {
         let mut stretch = Stretch { to_limit: 0.0, to_start: 0.0, to_rest: 0.0 };
         for k in 0..self.balls.len() {

@@ -1,16 +1,17 @@
-//! Contact constraints along the normals of faces (Harmon et al. 2008, "Robust Treatment of Simultaneous Collisions"; Tang et al.
-//! 2018, "I-Cloth"): what the volume form is compared with (paper, section 4.1).
+//! Contact constraints along the normals of faces (Harmon et al. 2008, "Robust Treatment of Simultaneous
+//! Collisions"; Tang et al. 2018, "I-Cloth"): what the volume form is compared with (paper, section 4.1).
 //!
-//! c(x) = m . (sum_k s_k beta_k x_k) - delta, with m the triangle's unit normal, or that of both edges, and the weights of the
-//! closest points, all constant. Both works linearise at a time of impact, where the closest points are inside of the
-//! primitives and m is the direction between them; for a pair that is only near, m may be across it.
+//! c(x) = m . (sum_k s_k beta_k x_k) - delta, with m the triangle's unit normal, or the common normal of both
+//! edges, and the weights of the closest points, all constant. Both papers linearise at a time of impact,
+//! where the closest points are inside of the primitives and m is the direction between them. For a pair that
+//! is only close, m may have any direction.
 
 use bowknot_geometry::{PairKind, Point, Separation, Vector};
 
 /// Smallest sine of the angle between two sides that have a common normal.
-const SMALLEST_SINE: f64 = 1e-6;
+const MIN_SINE: f64 = 1e-6;
 
-/// Value [m] and gradients, or `None` where there is no face and the gap form must stand in.
+/// Value [m] and gradients, or `None` where there is no face and the gap form applies instead.
 pub(crate) fn row(
     kind: PairKind,
     points: &[Point; 4],
@@ -25,10 +26,10 @@ pub(crate) fn row(
     };
     let normal = u.cross(&v);
     let length = normal.norm();
-    if length <= SMALLEST_SINE * u.norm() * v.norm() {
+    if length <= MIN_SINE * u.norm() * v.norm() {
         return None;
     }
-    // To the side that the pair is on.
+    // Points to the side that the pair is on.
     let normal = normal * (normal.dot(&separation.normal).signum() / length);
     let gradients = separation.signed_weights(kind).map(|beta| normal * beta);
     let height: f64 = gradients.iter().zip(points).map(|(g, x)| g.dot(&(x - p0))).sum();

@@ -1,27 +1,28 @@
-//! Which of the pairs that are near are contacts.
+//! Which of the close pairs are contacts.
 //!
-//! Around a place where two surfaces touch, many pairs of primitives are near each other, but the distance of the
-//! surfaces has a minimum at few of them. The others have tilted normals, and a constraint along such a normal is a wall in
-//! the way of whatever slides past: the ghost collisions at internal edges of meshes. A pair is a contact if its normal lies
-//! in the normal cone of the feature of either side, that is, if no neighbouring feature is nearer to the other side. Offset
-//! geometric contact (Chen et al. 2025) sorts contacts by the same blocks: those above faces, edges and vertices.
+//! Where two surfaces touch, many pairs of primitives are close to each other, but the distance of the
+//! surfaces has a minimum at few of them. The others have tilted normals, and a constraint along such a
+//! normal blocks bodies that slide past: these are the ghost collisions at internal edges of meshes. A pair
+//! is a contact if its normal lies in the normal cones of the features of both sides, that is, if no
+//! neighbouring feature is closer to the other side. Offset geometric contact (Chen et al. 2025) sorts
+//! contacts by the same blocks: those above faces, edges and vertices.
 
 use bowknot_geometry::{EdgeTriangles, PairKind, Point, Separation, Topology, Vector};
 use bowknot_proximity::Pair;
 
-/// A closest point is on the boundary of its primitive where a weight is below this.
+/// A closest point is on the boundary of its primitive if one of its weights is at most this.
 const ON_BOUNDARY: f64 = 1e-9;
 
-/// Sine of the angle between the faces of an edge within which they are one flat surface.
+/// Largest sine of the angle between the faces of an edge that count as one flat surface.
 const FLAT: f64 = 2e-3;
 
-/// Passes over the neighbours of a pair's features at most, in turning its normal into their cones.
-const TURNS: usize = 4;
+/// Largest number of passes over the neighbours of a pair's features that turn its normal into their cones.
+const MAX_TURNS: usize = 4;
 
-/// Length below which what is left of a normal has no direction.
-const LEAST_SHARE: f64 = 0.1;
+/// Smallest length of a turned normal that has a direction.
+const MIN_TURNED_LENGTH: f64 = 0.1;
 
-/// Tells contacts from pairs that are merely near; made once for a topology.
+/// Tells contacts from pairs that are only close. Made once per topology.
 #[derive(Clone, Debug, Default)]
 pub struct Facing {
     triangles: EdgeTriangles,
@@ -43,18 +44,18 @@ pub enum Feature {
     HalfSpace(u32),
 }
 
-/// How a direction lies to the normal cone of a feature.
+/// Position of a direction relative to the normal cone of a feature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Place {
     Outside,
-    /// Within it; the cone is not just one direction and its opposite.
+    /// Inside of the cone, which has more than one direction and its opposite.
     Inside,
-    /// Across a surface that is flat there: the cone is one direction and its opposite.
+    /// Along the normal of a flat surface: the cone is this direction and its opposite.
     Flat,
 }
 
 impl Facing {
-    /// Prepares the neighbourhoods. O(n).
+    /// Collects the neighbours of all vertices and edges, in linear time.
     pub fn new(topology: &Topology) -> Self {
         let triangles = topology.edge_triangles();
         let of_surfaces = || (0..topology.edges.len()).filter(|&e| triangles.count(e as u32) > 0);
@@ -94,7 +95,7 @@ impl Facing {
             PairKind::VertexHalfSpace => [Feature::Vertex(v[0]), Feature::HalfSpace(b)],
             PairKind::VertexTriangle => {
                 let edge = |place: usize| Feature::Edge(topology.triangle_edges[b as usize][place]);
-                // Edges of a triangle stand in the order 0-1, 1-2, 2-0 of its vertices.
+                // The edges of a triangle are in the order 0-1, 1-2, 2-0 of its vertices.
                 let second = match [1, 2, 3].map(|k| w[k] > ON_BOUNDARY) {
                     [true, true, false] => edge(0),
                     [false, true, true] => edge(1),
@@ -109,11 +110,11 @@ impl Facing {
         }
     }
 
-    /// Whether a pair is a contact: its normal lies in the normal cones of both `features` at `positions`, or leaves them by an
-    /// angle whose sine is at most the `tolerance`: cones above flat surfaces are single directions. Strands, which have no
-    /// inside to slide past, have all directions. Two edges within
-    /// flat surfaces are none: their vertices and faces tell all about such a contact. A vertex above a face always is one, as
-    /// the face is where it is.
+    /// Whether a pair is a contact: its normal lies in the normal cones of both `features` at `positions`, or
+    /// leaves them by an angle with a sine of at most `tolerance`. The tolerance is needed because cones
+    /// above flat surfaces are single directions. The cones of strands have all directions. Two edges within
+    /// flat surfaces are no contact: vertices and faces represent it completely. A vertex above the interior
+    /// of a face always is a contact.
     pub fn is_contact(
         &self,
         topology: &Topology,
@@ -136,8 +137,8 @@ impl Facing {
         }
     }
 
-    /// The direction nearest to `normal`, about, that lies in the normal cones of both `features` at `positions`: what a contact is
-    /// pushed along whose normal has left its cones a little. Unit vectors.
+    /// The direction in the normal cones of both `features` at `positions` that is closest to `normal`,
+    /// approximately. A contact is pushed along it if its normal has left the cones a little. Unit vectors.
     pub fn turned(
         &self,
         topology: &Topology,
@@ -149,7 +150,7 @@ impl Facing {
             return *normal;
         }
         let mut turned = *normal;
-        for _ in 0..TURNS {
+        for _ in 0..MAX_TURNS {
             let before = turned;
             for (feature, sign) in [(features[0], -1.0), (features[1], 1.0)] {
                 self.for_each_neighbour(topology, feature, positions, |to| {
@@ -163,10 +164,10 @@ impl Facing {
                 break;
             }
         }
-        turned.try_normalize(LEAST_SHARE).unwrap_or(*normal)
+        turned.try_normalize(MIN_TURNED_LENGTH).unwrap_or(*normal)
     }
 
-    /// Directions in which the surface goes on from a feature, of any length.
+    /// Visits the directions in which the surface continues from a feature; they have any length.
     fn for_each_neighbour(
         &self,
         topology: &Topology,
@@ -225,88 +226,4 @@ fn above_a_face(features: &[Feature; 2]) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use bowknot_geometry::separation;
-
-    /// Two triangles that share the edge 0-1 along y, at x = +-1, `height` below it; and free vertices.
-    fn roof(height: f64, others: &[[f64; 3]]) -> (Topology, Vec<Point>) {
-        let mut x: Vec<Point> = [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.5, -height], [-1.0, 0.5, -height]]
-            .map(Point::from)
-            .to_vec();
-        x.extend(others.iter().map(|p| Point::from(*p)));
-        let mut triangles = vec![[0, 2, 1], [0, 1, 3]];
-        if others.len() == 4 {
-            triangles.extend([[4, 6, 5], [4, 5, 7]]);
-        }
-        let particles: Vec<u32> = if others.len() == 4 { vec![] } else { (4..x.len() as u32).collect() };
-        (Topology::new(x.len(), triangles, &[], &particles).expect("valid"), x)
-    }
-
-    fn above(height: f64, point: [f64; 3]) -> Vec<bool> {
-        let (topology, x) = roof(height, &[point]);
-        let facing = Facing::new(&topology);
-        (0..2u32)
-            .map(|t| {
-                let [a, b, c] = topology.triangles[t as usize];
-                let pair = Pair { elements: [4, t], vertices: [4, a, b, c] };
-                let kind = PairKind::VertexTriangle;
-                let s = separation::separate(kind, &pair.vertices.map(|v| x[v as usize]));
-                let features = Facing::features(&topology, kind, &pair, &s);
-                facing.is_contact(&topology, features, &s.normal, &x, 0.01)
-            })
-            .collect()
-    }
-
-    #[test]
-    fn above_a_flat_surface_only_the_face_below_is_a_contact() {
-        assert_eq!(above(0.0, [0.1, 0.5, 0.1]), [true, false]);
-        assert_eq!(above(0.0, [-0.1, 0.5, 0.1]), [false, true]);
-        // Exactly above the edge either will do.
-        assert_eq!(above(0.0, [0.0, 0.5, 0.1]), [true, true]);
-    }
-
-    #[test]
-    fn a_tilted_normal_turns_into_the_cone_and_one_within_stays() {
-        let (topology, x) = roof(0.0, &[[0.1, 0.5, 0.1]]);
-        let facing = Facing::new(&topology);
-        let edge = topology.edges.iter().position(|e| *e == [0, 1]).expect("an edge") as u32;
-        let turned = |x: &[Point], n: Vector| {
-            facing.turned(&topology, [Feature::Vertex(4), Feature::Edge(edge)], &n.normalize(), x)
-        };
-        assert!((turned(&x, Vector::new(0.1, 0.0, 1.0)) - Vector::z()).norm() < 1e-12);
-        let (_, ridge) = roof(0.5, &[[0.1, 0.5, 0.1]]);
-        let within = Vector::new(0.1, 0.0, 1.0).normalize();
-        assert_eq!(turned(&ridge, within), within);
-        let leaned = turned(&ridge, Vector::new(1.0, 0.0, 1.0));
-        assert!((leaned - Vector::new(0.5, 0.0, 1.0).normalize()).norm() < 1e-12, "{leaned}");
-    }
-
-    #[test]
-    fn above_a_ridge_the_edge_is_a_contact_and_in_a_valley_both_faces_are() {
-        assert_eq!(above(0.5, [0.01, 0.5, 0.1]), [true, true]);
-        assert_eq!(above(-0.5, [0.01, 0.5, 0.1]), [true, true]);
-        assert_eq!(above(0.5, [0.1, 0.5, 0.02]), [true, false]);
-    }
-
-    #[test]
-    fn edges_that_cross_are_contacts_where_one_of_them_is_a_ridge() {
-        let crossing = |lower: f64, upper: f64| {
-            let h = 0.05;
-            // A second roof turned by 90 degrees about the vertical, upside down.
-            let over = [[-0.5, 0.5, h], [0.5, 0.5, h], [0.0, 1.5, h + upper], [0.0, -0.5, h + upper]];
-            let (topology, x) = roof(lower, &over);
-            let facing = Facing::new(&topology);
-            let edge = |v: [u32; 2]| topology.edges.iter().position(|e| *e == v).expect("an edge") as u32;
-            let (a, b) = (edge([0, 1]), edge([4, 5]));
-            let pair = Pair { elements: [a, b], vertices: [0, 1, 4, 5] };
-            let s = separation::separate(PairKind::EdgeEdge, &pair.vertices.map(|v| x[v as usize]));
-            let features = Facing::features(&topology, PairKind::EdgeEdge, &pair, &s);
-            assert_eq!(features, [Feature::Edge(a), Feature::Edge(b)]);
-            facing.is_contact(&topology, features, &s.normal, &x, 0.01)
-        };
-        assert!(crossing(0.5, 0.5) && crossing(0.5, 0.0) && crossing(0.0, 0.5));
-        assert!(!crossing(0.0, 0.0), "within flat surfaces vertices and faces tell all");
-        assert!(!crossing(-0.5, 0.5), "a valley is no contact");
-    }
-}
+mod tests;

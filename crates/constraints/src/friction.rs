@@ -1,10 +1,10 @@
 //! Friction rows: the slip of a contact along its two tangents since the start of the time step,
 //! u = T^T sum_k s_k beta_k (y_k - start_k), s_k = +1 on side a and -1 on side b.
 //!
-//! Bounding the multiplier along the slip by mu times the normal's is Coulomb's law at the level of positions: over a time
-//! step dt the slip is dt times the relative velocity at its end (implicit Euler). Weights are those of
-//! the closest points at the linearisation point, so that the motion of every vertex of the pair counts, prescribed
-//! or not: a moving obstacle drags.
+//! Coulomb's law at the level of positions bounds the multiplier along the slip by mu times the normal's:
+//! over a time step dt the slip is dt times the relative velocity at its end (implicit Euler). The weights
+//! are those of the closest points at the linearisation point. The motion of every vertex of the pair counts,
+//! prescribed or not, so a moving obstacle drags what it touches.
 
 use bowknot_geometry::{PairKind, Point, Separation, Vector};
 use bowknot_lcp::FrictionRow;
@@ -35,9 +35,10 @@ pub fn friction_row(
     }
 }
 
-/// Two unit vectors that with the unit `normal` are a right-handed frame.
+/// Two unit vectors that form a right-handed frame with the unit `normal`.
 pub fn tangents(normal: &Vector) -> [Vector; 2] {
-    // The axis least along the normal: its part across it is at least sqrt(2/3) long.
+    // The coordinate axis with the smallest component along the normal: its part across is at least sqrt(2/3)
+    // long.
     let axis = Vector::ith(normal.iamin(), 1.0);
     let first = (axis - *normal * normal.dot(&axis)).normalize();
     [first, normal.cross(&first)]
@@ -67,11 +68,11 @@ mod tests {
         };
         let (along, up) = (Vector::new(0.03, -0.04, 0.0), 0.5 * Vector::z());
         assert!(at([Vector::zeros(); 4]).norm() < 1e-15);
-        // Moving together is no slip; moving apart along the normal is none either.
+        // Common motion is no slip, and neither is motion along the normal.
         assert!(at([along; 4]).norm() < 1e-15);
         let only_a = [along + up, Vector::zeros(), Vector::zeros(), Vector::zeros()];
         assert!((at(only_a) - along).norm() < 1e-15);
-        // One corner of the triangle counts by its weight, backwards.
+        // A corner of the triangle counts with its weight and the opposite sign.
         let corner = at([Vector::zeros(), along, Vector::zeros(), Vector::zeros()]);
         assert!((corner + 0.5 * along).norm() < 1e-15, "{corner}");
     }

@@ -1,6 +1,6 @@
 //! Contact and edge-length constraints: values, Jacobians, colours.
 //!
-//! It turns pairs and their contact geometry into the rows that `bowknot-lcp` solves; it knows no
+//! The crate turns pairs and their contact geometry into the rows that `bowknot-lcp` solves. It knows no
 //! solver.
 
 mod colouring;
@@ -15,18 +15,19 @@ mod volume;
 
 /// Points, pair kinds and separations, from which rows are made.
 pub use bowknot_geometry as geometry;
-/// The rows that are made, and the solvers that take them.
+/// The rows, and the solvers that take them.
 pub use bowknot_lcp as lcp;
 /// Lists of pairs, from which rows are made.
 pub use bowknot_proximity as proximity;
 
+pub use bowknot_errors::{Errors, ParamError, Parameters};
 pub use colouring::Colouring;
 pub use contacts::{ContactRows, contact_row, predicted_gap};
 pub use desired::DesiredDistance;
 pub use edges::{EdgeLimits, Stretch};
 pub use facing::{Facing, Feature};
 pub use friction::{friction_row, tangents};
-pub use params::{ConstraintParams, ContactForm, EdgeForm, EdgeReference, FrictionModel, STRETCH_LIMIT};
+pub use params::{ContactForm, ContactParams, EdgeForm, EdgeReference, FrictionModel, STRETCH_LIMIT};
 
 /// The README's example is tested with the documentation.
 #[cfg(doctest)]

@@ -1,41 +1,47 @@
-//! Parameters of the contact and edge-length constraints.
+//! Parameters of contacts and edge-length limits.
 
+use bowknot_errors::{Checks, Parameters};
 use serde::{Deserialize, Serialize};
 
 /// Largest ratio of an edge's length to its reference [1] where neither a body nor
-/// [`ConstraintParams::stretch_limit`] gives one.
+/// [`ContactParams::stretch_limit`] gives one.
 pub const STRETCH_LIMIT: f64 = 1.1;
 
-/// Parameters of the constraints.
+/// Parameters of contacts and edge-length limits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct ConstraintParams {
-    /// Distance [m] that contacts are separated to, delta. Default a tenth of the mean edge length.
-    /// Larger: faster, rounder contacts with a visible gap; smaller: tighter and slower.
+pub struct ContactParams {
+    /// Desired distance of contacts [m], delta. Default a tenth of the mean edge length. Larger: faster,
+    /// rounder contacts with a visible gap; smaller: tighter contacts, more steps.
     pub delta: Option<f64>,
-    /// Distance within which a pair is listed and becomes a contact row, in `delta`. Larger: contacts are seen
-    /// earlier; pairs multiply with its square. Default 2 (paper: 4).
+    /// Minimum separation [m], xi: no step makes a smaller gap. Default a tenth of `delta`; 0 switches it
+    /// off, so that gaps are bounded by rounding alone. Refused below 16 ulp of the largest coordinate.
+    pub min_separation: Option<f64>,
+    /// Distance within which a pair is a candidate and becomes a contact row, in `delta`. Larger: contacts
+    /// are found earlier, and the number of pairs grows with its square. Default 2 (paper: 4).
     pub range: f64,
-    /// Predicted gap below which a row is swept, in `delta`. Larger: more rows for few steps less. Default 1.1.
+    /// Predicted gap below which the solver sweeps a row, in `delta`. Larger: more rows, slightly fewer
+    /// steps. Default 1.1.
     pub active: f64,
-    /// Speed [m/s] at which pairs that start nearer than `delta` are separated; the default is 20 `delta` a second.
-    /// Larger: tight starts open faster and fling the cloth.
+    /// Speed [m/s] at which pairs are separated that start closer than `delta`. Default 20 `delta` per
+    /// second. Larger: pairs that start close open faster, and the cloth is thrown.
     pub separation_speed: Option<f64>,
-    /// Whether rows are made of contacts alone, pairs whose normal lies in the normal cones of both features, and not of all
-    /// that are near: those ahead of a vertex that slides on a mesh are walls in its way. Default true (paper: false).
+    /// Whether only contacts become rows: pairs whose normal lies in the normal cones of both features. If
+    /// false, all pairs in range do; the rows of those ahead of a vertex that slides on a mesh block its way.
+    /// Default true (paper: false).
     pub contacts_only: bool,
     /// Form of the contact constraint. Default gap.
     pub form: ContactForm,
-    /// How friction acts where bodies have it: `coulomb`, within the backward step; `filter`, on the target before each
-    /// call as in the paper, cheaper and coarser; or `none`. Without coefficients of friction all three cost nothing.
-    /// Default coulomb.
+    /// How friction acts where bodies have it: `coulomb`, in the backward step; `filter`, on the target
+    /// before each call as in the paper, cheaper and less accurate; or `none`. Without coefficients of
+    /// friction all three cost nothing. Default coulomb.
     pub friction_model: FrictionModel,
     /// Whether edge lengths are limited at all. Default true.
     pub edges: bool,
-    /// Largest ratio of an edge's length to its reference, sigma, of every body that has none of its own. Default: that of
-    /// the body's material if it is a cloth, otherwise 1.1 (paper: 1.1 for all).
+    /// Largest ratio of an edge's length to its reference length, sigma, for every body without its own.
+    /// Default: the limit of the body's material if it is a cloth, otherwise 1.1 (paper: 1.1 for all).
     pub stretch_limit: Option<f64>,
-    /// What an edge's reference is. Default rest.
+    /// The reference length of an edge. Default rest.
     pub edge_reference: EdgeReference,
     /// How an edge's limit is solved. Default ball.
     pub edge_form: EdgeForm,
@@ -47,11 +53,12 @@ pub struct ConstraintParams {
 pub enum ContactForm {
     /// Signed distance along the normal: c = n . (p - q) - delta.
     Gap,
-    /// Volume of the pair against that of the separated pair (paper, Eq. 14-16), in units of length;
-    /// falls back to the gap where the closest features are not the interiors.
+    /// Volume of the pair less that of the separated pair (paper, Eq. 14-16), in units of length. It
+    /// falls back to the gap form where the closest features are not the interiors.
     Volume,
-    /// Distance along the triangle's normal or the edges' common normal, wherever the closest features are (Harmon et al.
-    /// 2008; Tang et al. 2018): a wall beside the primitive as well as above it. To compare with.
+    /// Distance along the triangle's normal or the edges' common normal, wherever the closest features are
+    /// (Harmon et al. 2008; Tang et al. 2018). It also constrains vertices that pass beside the primitive.
+    /// For comparison.
     Face,
 }
 
@@ -59,12 +66,14 @@ pub enum ContactForm {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FrictionModel {
-    /// Coulomb's law in every backward step: tangential multipliers bounded by mu times the normal's, solved with it.
+    /// Coulomb's law in every backward step: tangential multipliers are at most mu times the normal's and
+    /// solved with it.
     Coulomb,
-    /// The velocity filter of Bridson et al. 2002 (paper, section 6.3): penetration depths at the target estimate the
-    /// normal impulses, and the target's slip is reduced by mu times them before collisions are handled.
+    /// The velocity filter of Bridson et al. 2002 (paper, section 6.3): penetration depths at the target
+    /// estimate the normal impulses, and the target's slip is reduced by mu times them before collisions are
+    /// handled.
     Filter,
-    /// None.
+    /// No friction.
     None,
 }
 
@@ -84,14 +93,15 @@ pub enum EdgeReference {
 pub enum EdgeForm {
     /// A row linearised at the current state (paper, Eq. 17).
     Linear,
-    /// The convex ball |y_a - y_b| <= L with a vector multiplier, nothing to linearise.
+    /// The convex ball |y_a - y_b| <= L with a vector multiplier, without linearisation.
     Ball,
 }
 
-impl Default for ConstraintParams {
+impl Default for ContactParams {
     fn default() -> Self {
         Self {
             delta: None,
+            min_separation: None,
             range: 2.0,
             active: 1.1,
             separation_speed: None,
@@ -106,10 +116,11 @@ impl Default for ConstraintParams {
     }
 }
 
-impl ConstraintParams {
-    /// As the paper has it.
+impl ContactParams {
+    /// The values of the paper.
     pub fn paper() -> Self {
         Self {
+            min_separation: Some(0.0),
             range: 4.0,
             contacts_only: false,
             form: ContactForm::Volume,
@@ -120,37 +131,49 @@ impl ConstraintParams {
             ..Self::default()
         }
     }
+}
 
-    /// Appends a line for each field out of its range.
-    pub fn validate(&self, problems: &mut Vec<String>) {
-        let mut check = |ok: bool, message: String| {
-            if !ok {
-                problems.push(message);
-            }
-        };
-        for (key, value) in
-            [("constraints.delta", self.delta), ("constraints.separation_speed", self.separation_speed)]
-        {
-            if let Some(value) = value {
-                check(
-                    value.is_finite() && value > 0.0,
-                    format!("{key} = {value} must be finite and above 0"),
-                );
-            }
+impl Parameters for ContactParams {
+    fn check(&self, checks: &mut Checks) {
+        if let Some(delta) = self.delta {
+            checks.positive("delta", delta);
         }
-        check(
-            self.range.is_finite() && self.range >= 1.0,
-            format!("constraints.range = {} must be finite and at least 1", self.range),
-        );
-        check(
-            self.active.is_finite() && self.active >= 1.0,
-            format!("constraints.active = {} must be finite and at least 1", self.active),
-        );
+        if let Some(min_separation) = self.min_separation {
+            checks.non_negative("min_separation", min_separation);
+        }
+        checks.at_least("range", self.range, 1.0);
+        checks.at_least("active", self.active, 1.0);
+        if let Some(speed) = self.separation_speed {
+            checks.positive("separation_speed", speed);
+        }
         if let Some(limit) = self.stretch_limit {
-            check(
-                limit.is_finite() && limit > 1.0,
-                format!("constraints.stretch_limit = {limit} must be finite and above 1"),
-            );
+            checks.above("stretch_limit", limit, 1.0);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_must_be_in_range_and_nan_is_refused() {
+        assert!(ContactParams::default().validate().is_ok() && ContactParams::paper().validate().is_ok());
+        let fields: [(&str, fn(&mut ContactParams, f64)); 6] = [
+            ("delta", |p, value| p.delta = Some(value)),
+            ("min_separation", |p, value| p.min_separation = Some(value)),
+            ("range", |p, value| p.range = value),
+            ("active", |p, value| p.active = value),
+            ("separation_speed", |p, value| p.separation_speed = Some(value)),
+            ("stretch_limit", |p, value| p.stretch_limit = Some(value)),
+        ];
+        for (path, set) in fields {
+            for value in [f64::NAN, f64::INFINITY, -1.0] {
+                let mut params = ContactParams::default();
+                set(&mut params, value);
+                let errors = params.validate().expect_err(path);
+                assert_eq!((errors.len(), errors[0].path.as_str()), (1, path), "{value}");
+            }
         }
     }
 }

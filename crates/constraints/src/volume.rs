@@ -1,9 +1,9 @@
 //! The volume form of contact constraints (paper, Eq. 14-16).
 //!
-//! The paper asks for V(x) >= V(r), with r the positions after pushing the pair apart along the normal n
-//! to the desired distance; V(r)/V(x) = delta/d exactly, because the closest points lie on the primitives.
-//! Dividing by the area |N| of the base at the linearisation point gives a length, so that multipliers
-//! keep their meaning when rows are linearised anew:
+//! The paper asks for V(x) >= V(r), with r the positions after pushing the pair apart along the normal n to
+//! the desired distance. V(r)/V(x) = delta/d holds exactly, because the closest points lie on the primitives.
+//! Dividing by the area |N| of the base at the linearisation point gives a length, so that multipliers keep
+//! their meaning from one linearisation to the next:
 //!
 //! c(x) = (6 V(x) - 6 V(r)) / |N|, hence at the linearisation point c = (6|V|/|N|) (1 - delta/d).
 //!
@@ -12,17 +12,17 @@
 //! - vertex-edge: the area 2A = |(x_a - x_0) x e| over |e|, e = x_1 - x_0;
 //! - vertex-vertex: the length, which is the gap form.
 //!
-//! Where the closest feature is not the interior, d and the height above the base differ and the
-//! constraint becomes a false wall; there the gap form stands in, see [`row`].
+//! Where the closest feature is not the interior, d differs from the height above the base, and the
+//! constraint would block motion beside the primitive. The gap form applies there instead, see [`row`].
 
 use bowknot_geometry::{PairKind, Point, Separation, Vector};
 
 /// Smallest |n . N| / |N| at which the volume form is used.
-const SMALLEST_ALIGNMENT: f64 = 0.3;
+const MIN_ALIGNMENT: f64 = 0.3;
 /// Smallest sine of the angle between two edges at which the volume form is used.
-const SMALLEST_SINE: f64 = 0.05;
+const MIN_SINE: f64 = 0.05;
 
-/// Value [m] and gradients of the volume form, or `None` where the gap form must stand in.
+/// Value [m] and gradients of the volume form, or `None` where the gap form applies instead.
 pub(crate) fn row(
     kind: PairKind,
     points: &[Point; 4],
@@ -45,7 +45,7 @@ pub(crate) fn row(
             let [x0, x1, x2, x3] = points;
             let (r, u, v) = (x0 - x2, x1 - x0, x3 - x2);
             let n = u.cross(&v);
-            if n.norm() < SMALLEST_SINE * u.norm() * v.norm() {
+            if n.norm() < MIN_SINE * u.norm() * v.norm() {
                 return None;
             }
             let (g1, g3) = (v.cross(&r), r.cross(&u));
@@ -65,7 +65,7 @@ pub(crate) fn row(
         }
         PairKind::VertexVertex | PairKind::VertexHalfSpace => return None,
     };
-    if base <= 0.0 || separation.normal.dot(&normal).abs() < SMALLEST_ALIGNMENT * normal.norm() {
+    if base <= 0.0 || separation.normal.dot(&normal).abs() < MIN_ALIGNMENT * normal.norm() {
         return None;
     }
     let scale = volume.signum() / base;

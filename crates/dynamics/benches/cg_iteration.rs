@@ -1,18 +1,18 @@
-//! A target of a cloth of 10,201 vertices at dt = 1/20 s, crumpled, in free flight.
+//! A target of a crumpled cloth of 10,201 vertices in free flight at dt = 1/20 s.
 //!
 //! ```text
 //! cargo bench -p bowknot-dynamics
 //! ```
 //!
-//! `target/PRECONDITIONER/1` is assembly, preconditioner, one CG iteration and the line search;
-//! `/101` has a hundred iterations more, so that their difference over 100 is one iteration.
+//! `target/PRECONDITIONER/1` is assembly, preconditioner, one CG iteration and the line search; `/101` has a
+//! hundred more iterations, so that a hundredth of the difference is the time of one iteration.
 
 #[path = "../tests/suite/common/cloth.rs"]
 mod cloth;
 #[path = "../tests/suite/common/sheet.rs"]
 mod sheet;
 
-use bowknot_dynamics::{ClothMaterial, Dynamics, DynamicsParams, Preconditioner};
+use bowknot_dynamics::{ClothMaterial, Dynamics, DynamicsParams, NewtonParams, PreconditionerKind};
 use bowknot_geometry::{Point, Vector};
 use cloth::cloth_model;
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -29,16 +29,17 @@ fn targets(criterion: &mut Criterion) {
     let free = vec![false; rest.len()];
     let mut group = criterion.benchmark_group("target");
     group.sample_size(20).measurement_time(Duration::from_secs(4));
-    for preconditioner in [Preconditioner::BlockJacobi, Preconditioner::TwoLevel] {
+    for preconditioner in [PreconditionerKind::BlockJacobi, PreconditionerKind::TwoLevel] {
         for iterations in [1, 101] {
             let model = cloth_model(&rest, triangles.clone(), ClothMaterial::cotton());
-            let params = DynamicsParams {
+            let newton = NewtonParams {
                 preconditioner,
                 cg_tolerance: 1e-14,
                 cg_max_iterations: iterations,
-                ..DynamicsParams::default()
+                ..NewtonParams::default()
             };
-            let Ok(mut dynamics) = Dynamics::new(model, params) else { continue };
+            let params = DynamicsParams { newton, ..DynamicsParams::default() };
+            let mut dynamics = Dynamics::new(model, params).expect("valid");
             let mut y = x.clone();
             group.bench_function(format!("{preconditioner:?}/{iterations}"), |bencher| {
                 bencher.iter(|| {

@@ -1,13 +1,13 @@
-//! How small must the residual of CG be? Targets of a cloth of about 10,000 vertices at dt = 1/20 s,
-//! solved to several tolerances, against the converged one.
+//! How small must the residual of CG be? Compares targets of a cloth of about 10,000 vertices at dt = 1/20 s,
+//! solved to several tolerances, with the converged target.
 //!
 //! ```text
 //! cargo run --release -p bowknot-dynamics --example cg_tolerance [-- cells [preconditioner..]]
 //! ```
 //!
-//! Three states, each after some steps of simulation: a crumpled sheet in free flight; a sheet held at
-//! two corners; a sheet draped over a ball by plain projection (no real contact resolution, but
-//! iterates x that contact has pushed away from the last target).
+//! There are three states, each after some time steps: a crumpled sheet in free flight; a sheet held at two
+//! corners; a sheet draped over a ball by plain projection. The projection is no real contact resolution, but
+//! it moves iterates x away from the last target as contact does.
 #![allow(clippy::print_stdout, reason = "an experiment prints its table")]
 
 #[path = "../tests/suite/common/cloth.rs"]
@@ -15,7 +15,7 @@ mod cloth;
 #[path = "../tests/suite/common/sheet.rs"]
 mod sheet;
 
-use bowknot_dynamics::{ClothMaterial, Dynamics, DynamicsParams, Preconditioner};
+use bowknot_dynamics::{ClothMaterial, Dynamics, DynamicsParams, NewtonParams, PreconditionerKind};
 use bowknot_geometry::{Point, Vector};
 use cloth::cloth_model;
 use sheet::sheet;
@@ -34,27 +34,27 @@ struct State {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let cells: usize = arguments.next().map_or(Ok(100), |a| a.parse())?;
-    let mut preconditioners: Vec<Preconditioner> = Vec::new();
+    let mut preconditioners: Vec<PreconditionerKind> = Vec::new();
     for name in arguments {
         preconditioners.push(serde_json::from_value(name.into())?);
     }
     if preconditioners.is_empty() {
-        preconditioners.push(Preconditioner::default());
+        preconditioners.push(PreconditionerKind::default());
     }
     let (rest, triangles) = sheet(1.0, 1.0, cells, cells);
     let material = ClothMaterial::cotton();
-    let dynamics = |params: DynamicsParams| {
+    let dynamics = |newton: NewtonParams| {
         let model = cloth_model(&rest, triangles.clone(), material);
-        Dynamics::new(model, params).map_err(|e| format!("{e:?}"))
+        Dynamics::new(model, DynamicsParams { newton, ..DynamicsParams::default() })
     };
     println!("{} vertices, dt = 1/20 s, cotton", rest.len());
 
     for state in
-        states(&rest, cells, &mut dynamics(DynamicsParams { cg_tolerance: 1e-7, ..Default::default() })?)?
+        states(&rest, cells, &mut dynamics(NewtonParams { cg_tolerance: 1e-7, ..Default::default() })?)?
     {
         println!("\n{}", state.name);
         let solve = |dynamics: &mut Dynamics| -> Result<_, Box<dyn std::error::Error>> {
-            // The second iteration of the step, from where the first and contact left it.
+            // Two iterations of a step: the second one starts from the target of the first, moved by contact.
             let mut target = state.x.clone();
             dynamics.begin_step(&state.x, &state.v, DT)?;
             let begin = Instant::now();
@@ -68,11 +68,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let second = dynamics.newton_target(&x, &state.prescribed, &state.x, &mut second_target)?;
             Ok((target, first, second, seconds))
         };
-        let mut exact = dynamics(DynamicsParams {
-            cg_tolerance: 1e-11,
-            cg_max_iterations: 100_000,
-            ..Default::default()
-        })?;
+        let mut exact =
+            dynamics(NewtonParams { cg_tolerance: 1e-11, cg_max_iterations: 100_000, ..Default::default() })?;
         let (exact_target, exact_info, _, _) = solve(&mut exact)?;
         println!(
             "converged: {} iterations, stretch {:.4}, step kept {}",
@@ -86,17 +83,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for &preconditioner in &preconditioners {
             for exponent in [1, 2, 3, 4, 5, 6, 7, 8] {
                 let cg_tolerance = 10f64.powi(-exponent);
-                let params = DynamicsParams { cg_tolerance, preconditioner, ..Default::default() };
-                let mut dynamics = dynamics(params)?;
+                let mut dynamics =
+                    dynamics(NewtonParams { cg_tolerance, preconditioner, ..Default::default() })?;
                 let (target, first, second, seconds) = solve(&mut dynamics)?;
                 let errors = target.iter().zip(&exact_target).map(|(a, b)| (a - b).norm() * 1e3);
-                let (mut most, mut squares) = (0.0f64, 0.0);
+                let (mut largest, mut squares) = (0.0f64, 0.0);
                 for error in errors {
-                    most = most.max(error);
+                    largest = largest.max(error);
                     squares += error * error;
                 }
                 println!(
-                    "{cg_tolerance:9.0e}  {:14}  {:14} {:4}   {seconds:11.3}   {most:14.4}   {:8.4}   {:7.4}",
+                    "{cg_tolerance:9.0e}  {:14}  {:14} {:4}   {seconds:11.3}   {largest:14.4}   {:8.4}   {:7.4}",
                     format!("{preconditioner:?}"),
                     first.cg.iterations,
                     second.cg.iterations,
@@ -109,7 +106,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Moves what is inside of a ball to its surface.
+/// Moves vertices inside of a ball to its surface.
 fn project(x: &mut [Point]) {
     let (center, radius) = (Point::new(0.5, 0.5, -0.35), 0.25);
     for p in x {

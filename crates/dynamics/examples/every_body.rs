@@ -1,5 +1,5 @@
-//! Every kind of body for a second: a jelly cube held at its top, a flag of woven cloth in the wind, hair, and grains
-//! that repulsion keeps above a plane. Energies by kind, without any contact but that.
+//! Every kind of body for a second: a jelly cube held at its top, a flag of woven cloth in the wind, hair,
+//! and grains that springs keep above a plane. It prints energies by kind. There are no other contacts.
 //!
 //! ```text
 //! cargo run --release -p bowknot-dynamics --example every_body
@@ -15,8 +15,8 @@ mod sheet;
 mod strands;
 
 use bowknot_dynamics::{
-    Body, ClothMaterial, Dynamics, DynamicsModel, DynamicsParams, ParticleMaterial, RepulsionSpring,
-    SolidMaterial, StrandMaterial,
+    Body, ClothMaterial, Dynamics, DynamicsModel, DynamicsParams, Environment, ParticleMaterial,
+    RepulsionSpring, SolidMaterial, StrandMaterial,
 };
 use bowknot_geometry::{Point, Vector};
 use std::error::Error;
@@ -45,10 +45,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         Body::strands("hair", edges.iter().map(|e| e.map(|v| v + hair)).collect(), StrandMaterial::hair()),
         Body::particles("sand", (grains..grains + 100).collect(), ParticleMaterial::sand()),
     ];
-    let model = DynamicsModel::new(rest.clone(), bodies).map_err(|errors| format!("{errors:?}"))?;
-    let params =
-        DynamicsParams { air_density: 1.2, wind: Vector::new(4.0, 0.5, 0.0), ..DynamicsParams::default() };
-    let mut dynamics = Dynamics::new(model, params).map_err(|errors| format!("{errors:?}"))?;
+    let model = DynamicsModel::new(rest.clone(), bodies)?;
+    let environment =
+        Environment { air_density: 1.2, wind: Vector::new(4.0, 0.5, 0.0), ..Environment::default() };
+    let mut dynamics = Dynamics::new(model, DynamicsParams { environment, ..DynamicsParams::default() })?;
 
     let held: Vec<bool> = (0..rest.len() as u32)
         .map(|v| {
@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             root || (v < cube && p.x < 1.0 + 1e-9) || (v >= cube && v < hair && p.z > 1.2 - 1e-9)
         })
         .collect();
-    // Grains above the plane z = 0: 1 mm above it a spring starts to push.
+    // Grains stay above the plane z = 0: springs push below a gap of 1 mm.
     let springs: Vec<RepulsionSpring> = (grains..grains + 100)
         .map(|v| RepulsionSpring {
             vertices: [v, 0, 0, 0],

@@ -19,9 +19,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let cells = 40;
     let (rest, triangles) = sheet(1.0, 1.0, cells, cells);
     let model = cloth_model(&rest, triangles, ClothMaterial::cotton());
-    let mut dynamics = Dynamics::new(model, DynamicsParams::default()).map_err(|e| format!("{e:?}"))?;
+    let mut dynamics = Dynamics::new(model, DynamicsParams::default())?;
 
-    // Two corners of one side are held where they are.
+    // Two corners of one side are held.
     let mut prescribed = vec![false; rest.len()];
     (prescribed[0], prescribed[cells]) = (true, true);
     let (mut x, mut v) = (rest.clone(), vec![Vector::zeros(); rest.len()]);

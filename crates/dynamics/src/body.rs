@@ -1,6 +1,9 @@
 //! Bodies as the caller describes them.
 
-use crate::{ClothMaterial, ParticleMaterial, SolidMaterial, StrandMaterial};
+use crate::material::cloth::ClothMaterial;
+use crate::material::particle::ParticleMaterial;
+use crate::material::solid::SolidMaterial;
+use crate::material::strand::StrandMaterial;
 use bowknot_geometry::Vector;
 
 /// A body of the scene.
@@ -10,11 +13,11 @@ pub struct Body {
     pub name: String,
     /// What it is made of.
     pub shape: BodyShape,
-    /// Acceleration of gravity on it [m/s^2]; None: [`crate::DynamicsParams::gravity`].
+    /// Acceleration of gravity on it [m/s^2]; None: [`crate::Environment::gravity`].
     pub gravity: Option<Vector>,
 }
 
-/// What a body is made of; vertices are those of the scene.
+/// What a body is made of. Vertices are indices into those of the scene.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum BodyShape {
@@ -27,8 +30,7 @@ pub enum BodyShape {
     },
     /// A solid.
     Solid {
-        /// Its tets, positive: from vertex 0, the vertices 1, 2, 3 turn right-handedly about their normal,
-        /// (x1 - x0) x (x2 - x0) . (x3 - x0) > 0.
+        /// Its tets, with positive volume: (x1 - x0) x (x2 - x0) . (x3 - x0) > 0.
         tets: Vec<[u32; 4]>,
         /// Its material.
         material: SolidMaterial,
@@ -42,12 +44,12 @@ pub enum BodyShape {
     },
     /// Grains.
     Particles {
-        /// The vertices, one a grain.
+        /// Its vertices, one per grain.
         vertices: Vec<u32>,
         /// Their material.
         material: ParticleMaterial,
     },
-    /// An obstacle: its vertices have no mass and are prescribed always.
+    /// An obstacle: its vertices have no mass and are always prescribed.
     Obstacle {
         /// Its vertices.
         vertices: Vec<u32>,
@@ -75,7 +77,7 @@ impl Body {
         Self::new(name, BodyShape::Strands { edges, material })
     }
 
-    /// Grains, one a vertex.
+    /// Grains, one per vertex.
     pub fn particles(name: impl Into<String>, vertices: Vec<u32>, material: ParticleMaterial) -> Self {
         Self::new(name, BodyShape::Particles { vertices, material })
     }
@@ -93,7 +95,7 @@ impl Body {
 }
 
 impl BodyShape {
-    /// Calls `visit` with the vertices of every element.
+    /// Calls `visit` with the vertices of every element: of a triangle, tet or edge, or a single vertex.
     pub fn for_each_element(&self, mut visit: impl FnMut(&[u32])) {
         match self {
             Self::Cloth { triangles, .. } => triangles.iter().for_each(|t| visit(t)),
@@ -105,7 +107,7 @@ impl BodyShape {
         }
     }
 
-    /// Whether its vertices have no mass and are prescribed always.
+    /// Whether it is an obstacle, whose vertices have no mass and are always prescribed.
     pub fn is_obstacle(&self) -> bool {
         matches!(self, Self::Obstacle { .. })
     }

@@ -1,7 +1,8 @@
 //! Wind and the drag of air: forces on surfaces, strands and grains that grow with the square of the velocity
 //! relative to the wind.
 //!
-//! With u = wind - v at an element, split along its normal n (across a strand) and in its plane (along it),
+//! The relative velocity u = wind - v of an element is split into its component u_n along the normal (for a
+//! strand: across it) and u_t in the plane (along the strand):
 //!
 //! ```text
 //! F = rho/2 (A_n c_n |u_n| u_n + A_t c_t |u_t| u_t)
@@ -14,38 +15,42 @@
 //! | strand edge | diameter times length, `drag_normal` | half of its circumference times length, `drag_tangential` |
 //! | grain | cross-section, 0.47, a sphere at Re of 10^3 to 10^5; isotropic | |
 //!
-//! F is linear-implicit: F(v) = F(v0) - K (v - v0), K = -dF/dv at the start of the step, positive semi-definite, so
-//! that it is the gradient of a quadratic form of positions, never more than the step's own matrix has room for,
-//! and tends to the terminal velocity without overshoot however long the step (Rosenbrock's Euler method).
+//! F is linearised at the start of the step (Rosenbrock's Euler method): F(v) = F(v0) - K (v - v0), with
+//! K = -dF/dv positive semi-definite. It is then the gradient of a quadratic form of positions, has its place
+//! in the diagonal blocks of the Newton matrix, and velocities tend to the terminal velocity without overshoot
+//! at any time step.
 
-use crate::{BodyShape, DynamicsModel, DynamicsParams};
+use crate::body::BodyShape;
+use crate::model::DynamicsModel;
+use crate::params::Environment;
 use bowknot_geometry::{Vector, boundary_triangles};
 use nalgebra::Matrix3;
 
 /// Drag coefficient of a sphere.
-const SPHERE: f64 = 0.47;
+const SPHERE_DRAG: f64 = 0.47;
 
-/// What the air pushes on, over nodes.
+/// The elements that feel drag, over nodes.
 #[derive(Debug, Default)]
 pub(crate) struct DragSurfaces {
-    /// With the share of their area that counts.
+    /// Triangles with the share of their area that counts.
     triangles: Vec<([u32; 3], f64)>,
-    /// With their radius [m].
+    /// Edges of strands with their radius [m].
     edges: Vec<([u32; 2], f64)>,
-    /// With their cross-section [m^2].
+    /// Grains with their cross-section [m^2].
     grains: Vec<(u32, f64)>,
 }
 
-/// Drag over a step by node: force [N] on velocity v is `push - matrix v`.
+/// Drag in a time step by node: the force at velocity v is `push - matrix v` [N].
 #[derive(Debug, Default)]
 pub(crate) struct Drag {
+    /// Force at velocity 0 [N].
     pub push: Vec<Vector>,
-    /// [N s/m].
+    /// K [N s/m].
     pub matrix: Vec<Matrix3<f64>>,
 }
 
 impl DragSurfaces {
-    /// The surfaces of a model.
+    /// The elements of a model.
     pub fn new(model: &DynamicsModel) -> Self {
         let mut surfaces = Self::default();
         let node = |v: u32| model.vertex_node[v as usize];
@@ -70,13 +75,13 @@ impl DragSurfaces {
         surfaces
     }
 
-    /// Drag at positions `x` [m] and velocities `v` [m/s] of nodes, in `drag`.
-    pub fn fill(&self, params: &DynamicsParams, x: &[Vector], v: &[Vector], drag: &mut Drag) {
+    /// Computes the drag at positions `x` [m] and velocities `v` [m/s] of nodes, in `drag`.
+    pub fn fill(&self, environment: &Environment, x: &[Vector], v: &[Vector], drag: &mut Drag) {
         drag.push.clear();
         drag.push.resize(x.len(), Vector::zeros());
         drag.matrix.clear();
         drag.matrix.resize(x.len(), Matrix3::zeros());
-        let half = 0.5 * params.air_density;
+        let half = 0.5 * environment.air_density;
         for &(nodes, share) in &self.triangles {
             let [a, b, c] = nodes.map(|n| x[n as usize]);
             let cross = (b - a).cross(&(c - a));
@@ -84,8 +89,8 @@ impl DragSurfaces {
             if twice > 0.0 {
                 let normal = cross / twice;
                 let area = half * 0.5 * twice * share;
-                let (across, along) = (area * params.drag_normal, area * params.drag_tangential);
-                drag.add(&nodes, v, params.wind, &(normal * normal.transpose()), across, along);
+                let (across, along) = (area * environment.drag_normal, area * environment.drag_tangential);
+                drag.add(&nodes, v, environment.wind, &(normal * normal.transpose()), across, along);
             }
         }
         for &(nodes, radius) in &self.edges {
@@ -94,20 +99,20 @@ impl DragSurfaces {
             if length > 0.0 {
                 let axis = edge / length;
                 let normal = Matrix3::identity() - axis * axis.transpose();
-                let across = half * 2.0 * radius * length * params.drag_normal;
-                let along = half * std::f64::consts::PI * radius * length * params.drag_tangential;
-                drag.add(&nodes, v, params.wind, &normal, across, along);
+                let across = half * 2.0 * radius * length * environment.drag_normal;
+                let along = half * std::f64::consts::PI * radius * length * environment.drag_tangential;
+                drag.add(&nodes, v, environment.wind, &normal, across, along);
             }
         }
         for &(node, section) in &self.grains {
-            drag.add(&[node], v, params.wind, &Matrix3::identity(), half * section * SPHERE, 0.0);
+            drag.add(&[node], v, environment.wind, &Matrix3::identity(), half * section * SPHERE_DRAG, 0.0);
         }
     }
 }
 
 impl Drag {
-    /// Adds an element that feels drag across its `normal` directions (a projection) and along the others, in equal
-    /// shares to its nodes.
+    /// Adds the drag of an element in equal shares to its nodes. `normal` is the projection on its normal
+    /// directions, in which the factor is `across`; in the other directions it is `along`.
     fn add<const N: usize>(
         &mut self,
         nodes: &[u32; N],
@@ -132,7 +137,7 @@ impl Drag {
     }
 }
 
-/// c |u| u and its derivative c (|u| P + u u^T/|u|) within the space of the projection P.
+/// The force c |u| u and its derivative c (|u| P + u u^T/|u|) in the space of the projection P.
 #[inline]
 fn quadratic(u: &Vector, projection: &Matrix3<f64>, c: f64) -> (Vector, Matrix3<f64>) {
     let speed = u.norm();
@@ -147,7 +152,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_matrix_is_the_derivative_of_the_force_and_positive() {
+    fn the_matrix_is_positive_definite_and_the_derivative_of_the_force() {
         let normal = Vector::new(0.6, 0.0, 0.8);
         let projection = normal * normal.transpose();
         let force = |v: Vector| {
@@ -163,7 +168,7 @@ mod tests {
             assert!((slope + matrix.column(axis)).norm() < 1e-8, "{slope} {matrix}");
         }
         assert!(matrix.symmetric_eigenvalues().min() > 0.0);
-        // Against a plate, rho/2 A c u^2.
+        // On a plate across the flow the force is rho/2 A c u^2.
         let (push, _) = {
             let mut drag = Drag { push: vec![Vector::zeros()], matrix: vec![Matrix3::zeros()] };
             drag.add(&[0], &[Vector::zeros()], normal * 3.0, &projection, 1.3, 0.2);

@@ -1,44 +1,7 @@
-//! What can go wrong, each with the object and the place.
+//! Errors of models and of time steps. Each names the object and the place.
 
-/// Why a material is refused.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum MaterialError {
-    /// A value must be finite and greater than zero.
-    #[error("{field} = {value} {unit}: it must be a finite number greater than 0")]
-    NotPositive {
-        /// The field of the material.
-        field: &'static str,
-        /// Its value.
-        value: f64,
-        /// Its unit.
-        unit: &'static str,
-    },
-    /// A value must be finite and not negative.
-    #[error("{field} = {value} {unit}: it must be a finite number, 0 or more")]
-    Negative {
-        /// The field of the material.
-        field: &'static str,
-        /// Its value.
-        value: f64,
-        /// Its unit.
-        unit: &'static str,
-    },
-    /// Poisson's ratio is outside of its stable range.
-    #[error("poisson_ratio = {value}: it must lie in {range}")]
-    PoissonRatio {
-        /// Its value.
-        value: f64,
-        /// Where it must lie.
-        range: &'static str,
-    },
-    /// A stretch limit leaves an edge no room.
-    #[error("stretch_limit = {value}: it must be above 1, or inf for no limit")]
-    StretchLimit {
-        /// Its value.
-        value: f64,
-    },
-}
+use bowknot_errors::ParamError;
+use bowknot_geometry::VertexOutOfRange;
 
 /// Why a [`crate::DynamicsModel`] cannot be built. Elements are counted within their body.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -51,20 +14,12 @@ pub enum ModelError {
         vertex: usize,
     },
     /// An element names a vertex that does not exist.
-    #[error(
-        "body \"{body}\": {element} {index} names vertex {vertex}, but there are only {vertex_count} vertices"
-    )]
+    #[error("body \"{body}\": {error}")]
     VertexOutOfRange {
         /// Name of the body.
         body: String,
-        /// "triangle", "tet", "edge", "particle" or "vertex".
-        element: &'static str,
-        /// Which of them.
-        index: usize,
-        /// The vertex that it names.
-        vertex: u32,
-        /// How many vertices there are.
-        vertex_count: usize,
+        /// The element: "triangle", "tet", "edge", "particle" or "vertex".
+        error: VertexOutOfRange,
     },
     /// An element names a vertex twice.
     #[error("body \"{body}\": {element} {index} names vertex {vertex} twice")]
@@ -73,7 +28,7 @@ pub enum ModelError {
         body: String,
         /// "triangle", "tet" or "edge".
         element: &'static str,
-        /// Which of them.
+        /// The index of the element.
         index: usize,
         /// The vertex that it repeats.
         vertex: u32,
@@ -85,12 +40,12 @@ pub enum ModelError {
         body: String,
         /// "triangle", "tet", "edge" or "particle".
         element: &'static str,
-        /// The one.
+        /// The first of both elements.
         first: usize,
-        /// The other.
+        /// The second of both elements.
         second: usize,
     },
-    /// A triangle has no area at rest, so it has neither mass nor a rest shape.
+    /// A triangle has no area at rest, and therefore neither mass nor a rest shape.
     #[error("body \"{body}\": triangle {index} has no area at rest ({area:e} m2)")]
     ZeroArea {
         /// Name of the body.
@@ -109,9 +64,9 @@ pub enum ModelError {
         body: String,
         /// The edge.
         index: usize,
-        /// Its one vertex.
+        /// Its first vertex.
         a: u32,
-        /// Its other vertex.
+        /// Its second vertex.
         b: u32,
     },
     /// Tets are inverted or flat at rest.
@@ -123,14 +78,14 @@ pub enum ModelError {
     BadTets {
         /// Name of the body.
         body: String,
-        /// How many tets it has.
+        /// The number of its tets.
         tets: usize,
         /// Tets of negative volume.
         inverted: Vec<usize>,
-        /// Tets of no volume.
+        /// Tets without volume.
         flat: Vec<usize>,
     },
-    /// The warp direction is normal to triangles, so that it has no projection there.
+    /// The warp direction is normal to triangles, so that it has no projection into them.
     #[error(
         "body \"{body}\": warp_direction is normal to {} of its triangles{}: choose a direction along the cloth",
         triangles.len(), first_ten(triangles)
@@ -147,7 +102,7 @@ pub enum ModelError {
         /// Name of the body.
         body: String,
     },
-    /// A vertex belongs to no body, so it has no mass.
+    /// A vertex belongs to no body and therefore has no mass.
     #[error("vertex {vertex} belongs to no body, so it has no mass")]
     NoMass {
         /// The vertex.
@@ -163,17 +118,17 @@ pub enum ModelError {
         /// The vertex.
         vertex: u32,
     },
-    /// A material is refused.
+    /// A value of a material is out of its range.
     #[error("body \"{body}\": {error}")]
     Material {
         /// Name of the body.
         body: String,
-        /// What is wrong with it.
-        error: MaterialError,
+        /// The value.
+        error: ParamError,
     },
 }
 
-/// " (3, 17, ..)", or nothing.
+/// The first ten indices as " (3, 17, ..)", or an empty text if there are none.
 fn first_ten(indices: &[usize]) -> String {
     if indices.is_empty() {
         return String::new();
@@ -183,19 +138,7 @@ fn first_ten(indices: &[usize]) -> String {
     format!(" ({}{more})", shown.join(", "))
 }
 
-/// Why [`crate::DynamicsParams`] are refused.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{field} = {value}: {allowed}")]
-pub struct ParamsError {
-    /// The field of [`crate::DynamicsParams`].
-    pub field: &'static str,
-    /// Its value.
-    pub value: f64,
-    /// What is allowed.
-    pub allowed: &'static str,
-}
-
-/// Why a step cannot be made.
+/// Why a time step is not possible.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StepError {
@@ -215,7 +158,7 @@ pub enum StepError {
         /// The time step [s].
         dt: f64,
     },
-    /// An entry is not finite.
+    /// An entry of an argument or of the result is not finite.
     #[error("{array} of vertex {vertex} (body \"{body}\") is not finite")]
     NonFinite {
         /// The argument or the result.
@@ -230,7 +173,7 @@ pub enum StepError {
     Repulsion {
         /// The spring.
         spring: usize,
-        /// What is wrong with it.
+        /// The reason.
         problem: &'static str,
     },
     /// A Newton iteration was asked for before [`crate::Dynamics::begin_step`].

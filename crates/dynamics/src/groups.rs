@@ -1,50 +1,43 @@
-//! Groups of things that are joined pair by pair, and which of them something else holds.
+//! Union-find, with a mark for groups that something else holds.
 
-/// Disjoint sets of 0..n; the smallest member stands for its set.
+use bowknot_geometry::UnionFind;
+
+/// Disjoint sets of 0..n. The smallest member represents its set.
 #[derive(Clone, Debug)]
 pub(crate) struct Groups {
-    parent: Vec<usize>,
+    sets: UnionFind,
     held: Vec<bool>,
 }
 
 impl Groups {
-    /// Each of 0..`count` on its own.
+    /// Each of 0..`count` is a group of its own.
     pub fn new(count: usize) -> Self {
-        Self { parent: (0..count).collect(), held: vec![false; count] }
+        Self { sets: UnionFind::new(count), held: vec![false; count] }
     }
 
-    fn root(&mut self, mut member: usize) -> usize {
-        while self.parent[member] != member {
-            self.parent[member] = self.parent[self.parent[member]];
-            member = self.parent[member];
-        }
-        member
-    }
-
-    /// Makes the groups of two members one.
+    /// Joins the groups of two members.
     pub fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.parent[a.max(b)] = a.min(b);
+        self.sets.join(a as u32, b as u32);
     }
 
-    /// Says that something holds a member, and so its group.
+    /// Marks a member, and thereby its group, as held by something else.
     pub fn hold(&mut self, member: usize) {
         self.held[member] = true;
     }
 
-    /// Joins all of `members`; `holds` says whether something holds them.
-    pub fn join_all(&mut self, members: impl IntoIterator<Item = usize>, holds: bool) {
+    /// Joins all of `members`; `held` says whether something else holds them.
+    pub fn join_all(&mut self, members: impl IntoIterator<Item = usize>, held: bool) {
         let mut members = members.into_iter();
         let Some(first) = members.next() else { return };
-        self.held[first] |= holds;
+        self.held[first] |= held;
         members.for_each(|member| self.join(first, member));
     }
 
-    /// The members of each group that nothing holds, ascending, in the order of their first.
+    /// The members of each group that nothing holds, ascending, in the order of the smallest members.
     pub fn free(mut self) -> Vec<Vec<usize>> {
-        let mut lists: Vec<Vec<usize>> = vec![Vec::new(); self.parent.len()];
-        for member in 0..self.parent.len() {
-            let root = self.root(member);
+        let mut lists: Vec<Vec<usize>> = vec![Vec::new(); self.held.len()];
+        for member in 0..self.held.len() {
+            let root = self.sets.find(member as u32) as usize;
             lists[root].push(member);
         }
         lists.retain(|list| !list.is_empty() && list.iter().all(|&member| !self.held[member]));
@@ -57,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_joined_stands_together_in_order() {
+    fn groups_are_sorted_and_held_ones_are_left_out() {
         let mut groups = Groups::new(6);
         groups.join(4, 1);
         groups.join(5, 4);

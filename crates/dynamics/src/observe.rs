@@ -1,14 +1,18 @@
-//! What is reported about a state: energies, momenta, stretch.
+//! Reports about a state: energies, momenta, stretch, volumes.
 //!
-//! Sums run serially in vertex order: the same bits for any number of threads.
+//! Sums run serially in vertex order: they have the same bits for any number of threads.
 
-use crate::elements::{CHUNK, Kind, Motion};
-use crate::{Dynamics, DynamicsModel};
+use crate::body::BodyShape;
+use crate::dynamics::Dynamics;
+use crate::elements::set::{ElementKind, Motion};
+use crate::model::DynamicsModel;
+use crate::model::measures::volume;
+use crate::nodes::CHUNK;
 use bowknot_geometry::{Point, Vector};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// Elastic energy of all deformable bodies [J] by what stores it.
+/// Elastic energy of all deformable bodies [J] by the kind of element that stores it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ElasticEnergies {
     /// Stretching and shearing of cloth.
@@ -24,7 +28,7 @@ pub struct ElasticEnergies {
 }
 
 impl ElasticEnergies {
-    /// Their sum.
+    /// The sum [J].
     pub fn total(&self) -> f64 {
         self.membrane + self.bending + self.solid + self.strand_stretching + self.strand_bending
     }
@@ -33,16 +37,16 @@ impl ElasticEnergies {
 /// Energies of all deformable bodies [J].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energies {
-    /// 1/2 sum m |v|^2.
+    /// Kinetic energy, 1/2 sum m |v|^2.
     pub kinetic: f64,
-    /// That of strain and bending, see [`DynamicsModel::elastic_energies`].
+    /// Energy of strain and bending, see [`DynamicsModel::elastic_energies`].
     pub elastic: f64,
-    /// Gravity's, - sum m g.x: zero at the origin.
+    /// Potential energy of gravity, - sum m g.x: zero at the origin.
     pub potential: f64,
 }
 
 impl Energies {
-    /// Their sum.
+    /// The sum [J].
     pub fn total(&self) -> f64 {
         self.kinetic + self.elastic + self.potential
     }
@@ -54,7 +58,7 @@ impl DynamicsModel {
         self.masses().iter().zip(v).map(|(&m, v)| v * m).sum()
     }
 
-    /// Angular momentum [kg m^2/s] about the origin.
+    /// Angular momentum about the origin [kg m^2/s].
     pub fn angular_momentum(&self, x: &[Point], v: &[Vector]) -> Vector {
         self.masses().iter().zip(x.iter().zip(v)).map(|(&m, (x, v))| x.coords.cross(v) * m).sum()
     }
@@ -66,7 +70,7 @@ impl DynamicsModel {
         if total > 0.0 { Point::from(moment / total) } else { Point::origin() }
     }
 
-    /// Largest length / rest length over all edges of cloth and strands; 0 if there is none.
+    /// Largest ratio of length to rest length over all edges of cloth and strands [1]; 0 if there are none.
     pub fn max_stretch(&self, x: &[Point]) -> f64 {
         let position = |node: u32| x[self.node_vertex[node as usize] as usize];
         // A maximum is the same in any order.
@@ -77,27 +81,27 @@ impl DynamicsModel {
             .reduce(|| 0.0, f64::max)
     }
 
-    /// Elastic energy [J] at `x`, of strain and bending.
+    /// Elastic energy at `x` [J], of strain and bending.
     pub fn elastic_energy(&self, x: &[Point]) -> f64 {
         self.elastic_energies(x).total()
     }
 
-    /// Elastic energy [J] at `x` by kind.
+    /// Elastic energy at `x` [J] by kind of element.
     pub fn elastic_energies(&self, x: &[Point]) -> ElasticEnergies {
         let x: Vec<Vector> = self.node_vertex.iter().map(|&v| x[v as usize].coords).collect();
         let motion = Motion { x: &x, start: &x, rate: 0.0 };
         let mut energies = ElasticEnergies { bending: self.bending.energy(&x), ..Default::default() };
-        for family in &self.families {
-            let sum = match family.kind() {
-                Kind::Membrane => &mut energies.membrane,
-                Kind::Bending => &mut energies.bending,
-                Kind::Solid => &mut energies.solid,
-                Kind::StrandStretching => &mut energies.strand_stretching,
-                Kind::StrandBending => &mut energies.strand_bending,
+        for set in &self.element_sets {
+            let sum = match set.kind() {
+                ElementKind::Membrane => &mut energies.membrane,
+                ElementKind::Bending => &mut energies.bending,
+                ElementKind::Solid => &mut energies.solid,
+                ElementKind::StrandStretching => &mut energies.strand_stretching,
+                ElementKind::StrandBending => &mut energies.strand_bending,
             };
             let chunks = x.len().div_ceil(CHUNK);
             let partial: Vec<f64> =
-                (0..chunks).into_par_iter().map(|chunk| family.energy(chunk, motion)).collect();
+                (0..chunks).into_par_iter().map(|chunk| set.energy(chunk, motion)).collect();
             *sum += partial.iter().sum::<f64>();
         }
         energies
@@ -110,20 +114,45 @@ impl DynamicsModel {
             .iter()
             .map(|c| self.bending.rows_energy(c.start as usize..c.end as usize, x))
             .collect();
-        for family in &self.families {
-            family.for_each_energy(x, &mut |node, energy| {
+        for set in &self.element_sets {
+            set.for_each_energy(x, &mut |node, energy| {
                 energies[self.component(node)] += energy;
             });
         }
         energies
     }
+
+    /// Signed volume [m^3] of all tets at positions `x` [m].
+    pub fn volume(&self, x: &[Point]) -> f64 {
+        self.solids().flat_map(|(_, tets)| tets).map(|tet| volume(&tet.map(|v| x[v as usize].coords))).sum()
+    }
+
+    /// Tets without positive volume at positions `x` [m]: body and index of each tet, ascending.
+    pub fn inverted_tets(&self, x: &[Point]) -> Vec<[usize; 2]> {
+        let mut inverted = Vec::new();
+        for (body, tets) in self.solids() {
+            let found = tets.par_iter().enumerate().with_min_len(1024).filter_map(|(index, tet)| {
+                (volume(&tet.map(|v| x[v as usize].coords)) <= 0.0).then_some([body, index])
+            });
+            inverted.par_extend(found);
+        }
+        inverted
+    }
+
+    /// Tets of each solid, with the index of its body.
+    fn solids(&self) -> impl Iterator<Item = (usize, &[[u32; 4]])> {
+        self.bodies().iter().enumerate().filter_map(|(index, body)| match &body.shape {
+            BodyShape::Solid { tets, .. } => Some((index, tets.as_slice())),
+            _ => None,
+        })
+    }
 }
 
 impl Dynamics {
-    /// Energies at positions `x` [m] and velocities `v` [m/s], one entry a vertex.
+    /// Energies at positions `x` [m] and velocities `v` [m/s], which have one entry per vertex.
     pub fn energies(&self, x: &[Point], v: &[Vector]) -> Energies {
         let model = self.model();
-        let gravity = self.params().gravity;
+        let gravity = self.params().environment.gravity;
         Energies {
             kinetic: model.masses().iter().zip(v).map(|(&m, v)| 0.5 * m * v.norm_squared()).sum(),
             elastic: model.elastic_energy(x),

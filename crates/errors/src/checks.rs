@@ -56,6 +56,16 @@ impl Checks {
         }
     }
 
+    /// Refuses `value`; `allowed` says what is allowed, "must be ...".
+    pub fn refuse(&mut self, field: &str, value: impl fmt::Display, allowed: impl Into<String>) {
+        self.require(false, field, value, allowed);
+    }
+
+    /// Number of errors so far, in all structs that have been checked.
+    pub fn error_count(&self) -> usize {
+        self.errors.len()
+    }
+
     /// The value must be finite.
     pub fn finite(&mut self, field: &str, value: f64) {
         self.require(value.is_finite(), field, value, "must be finite");

@@ -1,37 +1,26 @@
 //! Nanoseconds per call of the closest points and the certified separation, each kind.
 //!
-//! `cargo bench -p bowknot-geometry`. Pairs are drawn as a proximity search meets them: elements of
-//! about 1 cm, a few millimetres apart, all regions of closest features mixed; throughput over a list.
+//! `cargo bench -p bowknot-geometry`. Pairs are drawn as a proximity search meets them: elements of about 1
+//! cm, a few millimetres apart, all regions of closest features mixed; throughput over a list.
 
 use bowknot_geometry::{HalfSpace, PairKind, Point, Vector, distance, separation};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use fastrand::Rng;
 use std::hint::black_box;
 
 const PAIRS: usize = 4096;
 
-/// A small generator of pseudo-random numbers in [-1, 1] (Steele, Lea and Flood 2014, SplitMix).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (z ^ (z >> 31)) as i64 as f64 / i64::MAX as f64
-    }
-
-    fn vector(&mut self, size: f64) -> Vector {
-        Vector::new(self.next(), self.next(), self.next()) * size
-    }
+/// A vector in the cube [-size, size)^3.
+fn vector(random: &mut Rng, size: f64) -> Vector {
+    [0; 3].map(|_| size * (2.0 * random.f64() - 1.0)).into()
 }
 
 fn pairs(kind: PairKind, parallel: bool) -> Vec<[Point; 4]> {
-    let mut random = Random(kind as u64 + 1);
+    let mut random = Rng::with_seed(kind as u64 + 1);
     (0..PAIRS)
         .map(|_| {
-            let centre = Point::from(random.vector(1.0));
-            let mut points = [0; 4].map(|_| centre + random.vector(0.008));
+            let centre = Point::from(vector(&mut random, 1.0));
+            let mut points = [0; 4].map(|_| centre + vector(&mut random, 0.008));
             if parallel {
                 points[3] = points[2] + (points[1] - points[0]);
             }

@@ -1,9 +1,9 @@
 //! Axis-aligned boxes rounded outward, and certified lower bounds of distances from them.
 //!
-//! Every operation rounds so that what it promises holds in exact arithmetic: inflated boxes contain
-//! the exact ones, distances never exceed the exact ones.
+//! Every operation rounds so that its guarantee holds in exact arithmetic: inflated boxes contain the exact
+//! ones, and distances never exceed the exact ones.
 
-use crate::Point;
+use crate::point::Point;
 
 /// An axis-aligned box [m]; empty where any `min` exceeds its `max`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,8 +39,8 @@ impl Aabb {
         Self { min: self.min.inf(&other.min), max: self.max.sup(&other.max) }
     }
 
-    /// A box that contains every point within `radius` >= 0 [m] of this one along each axis; at most
-    /// one rounding unit larger than need be.
+    /// A box that contains every point within `radius` >= 0 [m] of this box along each axis. It is at most
+    /// one rounding unit larger than necessary.
     #[inline]
     pub fn inflated(&self, radius: f64) -> Self {
         Self {
@@ -61,20 +61,20 @@ impl Aabb {
         (0..3).all(|k| self.min[k] <= point[k] && point[k] <= self.max[k])
     }
 
-    /// A lower bound of the distance between two boxes that are not empty [m]; zero where they
-    /// overlap, otherwise below the distance by at most a few rounding units.
+    /// A lower bound of the distance between two boxes that are not empty [m]. It is zero if they overlap;
+    /// otherwise it is below the distance by at most a few rounding units.
     #[inline]
     pub fn distance_lower_bound(&self, other: &Self) -> f64 {
         let gap = |k: usize| (self.min[k] - other.max[k]).max(other.min[k] - self.max[k]).max(0.0);
         let (x, y, z) = (gap(0), gap(1), gap(2));
         let squared = x * x + y * y + z * z;
-        // With u = 2^-53: differences are off by u, so squares by 2 u + u, sums by 2 u more; the root
-        // halves these 5 u and adds u, the product below adds u. Altogether 4.5 u (and squares of u).
+        // Relative errors with u = 2^-53: differences u, so squares 2 u + u, sums 2 u more; the root halves
+        // these 5 u and adds u, the product below adds u. Altogether 4.5 u (and squares of u).
         const SHRINK: f64 = 1.0 - 4.0 * f64::EPSILON;
         if squared > 1e-280 && squared < f64::INFINITY {
             squared.sqrt() * SHRINK
         } else {
-            // Squares have left the range of f64: the largest gap alone is a bound as well.
+            // Squares have left the range of f64. The largest gap alone is also a bound.
             (x.max(y).max(z) * SHRINK).next_down().clamp(0.0, f64::MAX)
         }
     }

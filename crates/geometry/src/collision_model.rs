@@ -7,11 +7,13 @@ use serde::{Deserialize, Serialize};
 /// Which bodies a body collides with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BodyFilter {
-    /// Obstacles have no freedom; pairs of two obstacle primitives are never formed.
+    /// Whether the body is an obstacle. Obstacles have no degrees of freedom; two obstacles never form a
+    /// pair.
     pub obstacle: bool,
     /// Bits of the collision groups that the body is in.
     pub groups: u32,
-    /// Bits of the groups that it collides with; both sides must agree.
+    /// Bits of the groups that it collides with. Two bodies collide if the mask of each has a group of the
+    /// other.
     pub mask: u32,
     /// Whether the body collides with itself.
     pub self_collision: bool,
@@ -70,7 +72,7 @@ pub struct CollisionModel {
 }
 
 impl CollisionModel {
-    /// Checks and keeps the parts. `vertex_body[i]` is the body of vertex i.
+    /// A model of the given parts, which are checked. `vertex_body[i]` is the body of vertex i.
     ///
     /// # Errors
     /// The first inconsistency, see [`ModelError`].

@@ -1,6 +1,6 @@
 //! Analytic half-spaces: grounds and walls.
 
-use crate::{Point, Vector};
+use crate::point::{Point, Vector};
 use serde::{Deserialize, Serialize};
 
 /// The solid below a plane: points with `normal . x < offset` are inside.
@@ -13,13 +13,13 @@ pub struct HalfSpace {
 }
 
 impl HalfSpace {
-    /// The half-space below the plane through `point` with outward `normal`, of any length but zero;
-    /// `None` where the normal has no direction or something is not finite.
+    /// The half-space below the plane through `point` with outward `normal` of any length but zero. `None` if
+    /// the normal has no direction or a number is not finite.
     pub fn new(point: Point, normal: Vector) -> Option<Self> {
         let length = normal.norm();
         let normal = normal / length;
         let offset = normal.dot(&point.coords);
-        // The offset is not a number wherever the normal is not.
+        // The offset is not-a-number if the normal is.
         (length.is_finite() && length > 0.0 && offset.is_finite()).then_some(Self { normal, offset })
     }
 

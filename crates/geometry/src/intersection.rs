@@ -1,20 +1,20 @@
 //! Exact intersection tests on `robust`'s predicates.
 //!
-//! All sets are closed: touching counts. Elements may be degenerate and are then the set that they
-//! span: an edge of zero length is a point, a triangle of zero area is the union of its edges. The
-//! answers are those of exact arithmetic on the coordinates as they are stored, with no tolerance.
+//! All sets are closed: touching counts as intersecting. A degenerate element is the set that it spans: an
+//! edge of zero length is a point, a triangle of zero area is the union of its edges. The answers are those
+//! of exact arithmetic on the coordinates as they are stored, with no tolerance.
 //!
-//! **Range.** The predicates (Shewchuk 1997) are exact as long as nothing overflows or underflows:
-//! every coordinate must be finite and zero or of magnitude between 1e-90 and 1e100. (A nonzero
-//! coordinate of at least 2^-300 is a multiple of 2^-352, so are the differences; products of three
-//! of them are multiples of 2^-1056, above the smallest subnormal 2^-1074. Products of three
-//! differences below 2^334 stay below 2^1005, which leaves room for sums and for splitting.)
+//! **Range.** The predicates (Shewchuk 1997) are exact as long as nothing overflows or underflows: every
+//! coordinate must be finite and zero or of magnitude between 1e-90 and 1e100. (A nonzero coordinate of at
+//! least 2^-300 is a multiple of 2^-352, so are the differences; products of three of them are multiples of
+//! 2^-1056, above the smallest subnormal 2^-1074. Products of three differences below 2^334 stay below
+//! 2^1005, which leaves room for sums and for splitting.)
 
-use crate::Point;
+use crate::point::Point;
 use robust::{Coord, Coord3D};
 
-/// Whether the closed segment `edge` and the closed triangle `triangle` share a point, decided
-/// exactly. Touching and coplanar overlap count as intersecting.
+/// Whether the closed segment `edge` and the closed triangle `triangle` share a point, decided exactly.
+/// Touching and coplanar overlap count as intersecting.
 pub fn edge_triangle(edge: [&Point; 2], triangle: [&Point; 3]) -> bool {
     let [p, q] = edge;
     let [a, b, c] = triangle;
@@ -23,13 +23,13 @@ pub fn edge_triangle(edge: [&Point; 2], triangle: [&Point; 3]) -> bool {
         return false;
     }
     if p_side != 0 || q_side != 0 {
-        // The triangle has area and the edge crosses or touches its plane in one point, that of the
-        // edge's line: it is in the triangle unless the line passes two sides differently.
+        // The triangle has area, and the edge crosses or touches its plane in one point. This point is in the
+        // triangle unless the line of the edge passes two sides of the triangle differently.
         return same_sign([side(p, q, a, b), side(p, q, b, c), side(p, q, c, a)]);
     }
     match projection([a, b, c]) {
-        // All five points lie in the triangle's plane, on which the projection is one-to-one. With
-        // one end outside, the edge can only enter across a side.
+        // All five points lie in the plane of the triangle, on which the projection is one-to-one. An edge
+        // with an end outside can only enter across a side.
         Some(axis) => {
             in_triangle(axis, p, triangle)
                 || [[a, b], [b, c], [c, a]].iter().any(|&side| edges_cross(axis, edge, side))
@@ -47,7 +47,7 @@ pub fn edge_edge(edge_a: [&Point; 2], edge_b: [&Point; 2]) -> bool {
     let triples = [[a0, a1, b0], [a0, a1, b1], [b0, b1, a0], [b0, b1, a1]];
     match triples.iter().find_map(|&triple| projection(triple)) {
         Some(axis) => edges_cross(axis, edge_a, edge_b),
-        // All four points lie on one line (or are one point), where segments meet if their boxes do.
+        // All four points lie on one line (or are one point): the segments share a point if their boxes do.
         None => boxes_overlap(edge_a, edge_b),
     }
 }
@@ -80,7 +80,7 @@ fn side(a: &Point, b: &Point, c: &Point, d: &Point) -> i8 {
     sign(robust::orient3d(coord(a), coord(b), coord(c), coord(d)))
 }
 
-/// Sign of the area of a triangle seen along an axis.
+/// Sign of the area of a triangle projected along an axis.
 fn turn(axis: usize, a: &Point, b: &Point, c: &Point) -> i8 {
     let coord = |p: &Point| Coord { x: p[(axis + 1) % 3], y: p[(axis + 2) % 3] };
     sign(robust::orient2d(coord(a), coord(b), coord(c)))
@@ -90,7 +90,7 @@ fn sign(x: f64) -> i8 {
     i8::from(x > 0.0) - i8::from(x < 0.0)
 }
 
-/// An axis along which the triangle is seen with nonzero area; `None` if the points are collinear.
+/// An axis along which the projection of the triangle has nonzero area; `None` if the points are collinear.
 /// (The three areas are the coordinates of the cross product of its edges.)
 fn projection([a, b, c]: [&Point; 3]) -> Option<usize> {
     (0..3).find(|&axis| turn(axis, a, b, c) != 0)
@@ -101,12 +101,13 @@ fn same_sign(signs: [i8; 3]) -> bool {
     signs.iter().all(|&s| s >= 0) || signs.iter().all(|&s| s <= 0)
 }
 
-/// Whether a point of the triangle's plane lies in it, seen along an axis in which it has area.
+/// Whether a point of the plane of a triangle lies in the triangle, projected along an axis with nonzero
+/// area.
 fn in_triangle(axis: usize, p: &Point, [a, b, c]: [&Point; 3]) -> bool {
     same_sign([turn(axis, a, b, p), turn(axis, b, c, p), turn(axis, c, a, p)])
 }
 
-/// Whether two coplanar segments meet, seen along an axis in which their plane is seen as a plane.
+/// Whether two coplanar segments share a point, projected along an axis that does not lie in their plane.
 fn edges_cross(axis: usize, [a0, a1]: [&Point; 2], [b0, b1]: [&Point; 2]) -> bool {
     let (b0_turn, b1_turn) = (turn(axis, a0, a1, b0), turn(axis, a0, a1, b1));
     let (a0_turn, a1_turn) = (turn(axis, b0, b1, a0), turn(axis, b0, b1, a1));
@@ -114,8 +115,8 @@ fn edges_cross(axis: usize, [a0, a1]: [&Point; 2], [b0, b1]: [&Point; 2]) -> boo
         // On one line, or points.
         return boxes_overlap([a0, a1], [b0, b1]);
     }
-    // Each segment meets the line of the other, and the lines are not parallel: for parallel lines,
-    // and for an edge that is a point beside the other's line, two of the signs are equal and not 0.
+    // Each segment intersects the line of the other, and the lines are not parallel: for parallel lines, and
+    // for an edge that is a point beside the line of the other, two of the signs are equal and not 0.
     b0_turn * b1_turn <= 0 && a0_turn * a1_turn <= 0
 }
 

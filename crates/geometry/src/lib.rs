@@ -1,9 +1,9 @@
 //! Geometry of simplices for collision handling.
 //!
-//! What it knows: points and simplices, closest points and distances of the pair kinds
-//! (vertex-vertex, vertex-edge, vertex-triangle, edge-edge, vertex-half-space), *certified* lower
-//! bounds of distances, exact intersection predicates, and the topology of triangle meshes,
-//! strands and particles. It does not know files, threads or time.
+//! The crate knows points and simplices, closest points and distances of the pair kinds (vertex-vertex,
+//! vertex-edge, vertex-triangle, edge-edge, vertex-half-space), *certified* lower bounds of distances, exact
+//! intersection predicates, the topology of triangle meshes, strands and particles, and which bodies may
+//! collide. It does not know files, threads or time.
 //!
 //! ```
 //! use bowknot_geometry::{PairKind, Point, separation::separate};
@@ -24,17 +24,17 @@ pub mod half_space;
 pub mod intersection;
 pub mod mesh_check;
 pub mod pair;
+mod point;
 pub mod separation;
 pub mod topology;
+mod union_find;
+mod vertex_range;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-/// A position [m].
-pub type Point = nalgebra::Point3<f64>;
-/// A displacement, direction or force; the unit stands where it is used.
-pub type Vector = nalgebra::Vector3<f64>;
+pub use bowknot_errors::Errors;
 
 pub use bounds::Aabb;
 pub use collision_model::{BodyFilter, CollisionModel, ModelError};
@@ -42,5 +42,10 @@ pub use distance::Closest;
 pub use half_space::HalfSpace;
 pub use mesh_check::{MeshProblem, check_mesh};
 pub use pair::PairKind;
+pub use point::{Point, Vector};
 pub use separation::Separation;
-pub use topology::{Components, EdgeTriangles, Topology, TopologyError, boundary_triangles};
+pub use topology::{
+    Components, EdgeTriangles, Topology, TopologyBuilder, TopologyError, boundary_triangles, check_elements,
+};
+pub use union_find::UnionFind;
+pub use vertex_range::VertexOutOfRange;

@@ -1,12 +1,13 @@
-//! What is wrong with a triangle mesh that someone hands in.
+//! Faults of triangle meshes.
 
-use crate::{Point, Vector};
+use crate::point::{Point, Vector};
+use crate::vertex_range::VertexOutOfRange;
 
-/// The height of a triangle over its longest edge, as a part of that edge, at which its area cannot
-/// be told from rounding: its computed normal may then point anywhere.
+/// The height of a triangle over its longest edge, relative to that edge, at which its area is of the size of
+/// rounding errors: the computed normal may then have any direction.
 const ZERO_HEIGHT: f64 = 4.0 * f64::EPSILON;
 
-/// Something in a mesh that simulating it would trip over.
+/// A fault of a mesh that may disturb a simulation.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshProblem {
@@ -19,16 +20,9 @@ pub enum MeshProblem {
         position: Point,
     },
     /// A triangle names a vertex that does not exist.
-    #[error("triangle {triangle} names vertex {vertex}, but there are only {vertex_count} vertices")]
-    VertexOutOfRange {
-        /// Which triangle.
-        triangle: u32,
-        /// The vertex it names.
-        vertex: u32,
-        /// How many vertices there are.
-        vertex_count: usize,
-    },
-    /// A triangle has zero area, exactly or within rounding: collinear, coincident or repeated
+    #[error(transparent)]
+    VertexOutOfRange(#[from] VertexOutOfRange),
+    /// A triangle has zero area, exactly or within rounding, because of collinear, coincident or repeated
     /// vertices.
     #[error("triangle {triangle} (vertices {}, {}, {}) has zero area, at {}", vertices[0], vertices[1], vertices[2], place(centre))]
     ZeroArea {
@@ -39,7 +33,7 @@ pub enum MeshProblem {
         /// Its centre [m].
         centre: Point,
     },
-    /// A triangle has the same three vertices as an earlier one, in whatever order.
+    /// A triangle has the same three vertices as an earlier one, in any order.
     #[error("triangle {triangle} repeats triangle {first} (vertices {}, {}, {}), at {}", vertices[0], vertices[1], vertices[2], place(centre))]
     RepeatedTriangle {
         /// The later triangle.
@@ -61,9 +55,9 @@ pub enum MeshProblem {
     },
 }
 
-/// Every problem of a triangle mesh: by kind in the order of [`MeshProblem`], then by index.
+/// All problems of a triangle mesh: by type in the order of [`MeshProblem`], then by index.
 ///
-/// A triangle with vertices out of range or not finite is not judged further. O(n log n).
+/// A triangle with vertices out of range or not finite is not checked further. O(n log n).
 pub fn check_mesh(positions: &[Point], triangles: &[[u32; 3]]) -> Vec<MeshProblem> {
     let vertices = || positions.iter().enumerate().map(|(vertex, position)| (vertex as u32, *position));
     let mut problems: Vec<MeshProblem> = vertices()
@@ -72,29 +66,28 @@ pub fn check_mesh(positions: &[Point], triangles: &[[u32; 3]]) -> Vec<MeshProble
         .collect();
 
     let mut referenced = vec![false; positions.len()];
-    for (triangle, &vertex) in triangles.iter().enumerate().flat_map(|(t, vs)| vs.iter().map(move |v| (t, v)))
-    {
-        match referenced.get_mut(vertex as usize) {
-            Some(seen) => *seen = true,
-            None => problems.push(MeshProblem::VertexOutOfRange {
-                triangle: triangle as u32,
-                vertex,
-                vertex_count: positions.len(),
-            }),
+    for (index, vertices) in triangles.iter().enumerate() {
+        problems.extend(
+            VertexOutOfRange::of("triangle", index, vertices, positions.len()).map(MeshProblem::from),
+        );
+        for &vertex in vertices {
+            if let Some(seen) = referenced.get_mut(vertex as usize) {
+                *seen = true;
+            }
         }
     }
 
-    // Triangles that can be judged, with their corners.
-    let judged: Vec<(u32, [u32; 3], [Point; 3])> = triangles
+    // Triangles that can be checked, with their corners.
+    let checked: Vec<(u32, [u32; 3], [Point; 3])> = triangles
         .iter()
         .enumerate()
         .filter(|(_, vs)| vs.iter().all(|&v| positions.get(v as usize).is_some_and(is_finite)))
         .map(|(t, vs)| (t as u32, *vs, vs.map(|v| positions[v as usize])))
         .collect();
-    for &(triangle, vertices, corners) in judged.iter().filter(|(_, _, corners)| has_zero_area(corners)) {
+    for &(triangle, vertices, corners) in checked.iter().filter(|(_, _, corners)| has_zero_area(corners)) {
         problems.push(MeshProblem::ZeroArea { triangle, vertices, centre: centre(&corners) });
     }
-    problems.extend(repeated(&judged));
+    problems.extend(repeated(&checked));
 
     let unreferenced = vertices().filter(|(vertex, _)| !referenced[*vertex as usize]);
     problems
@@ -102,8 +95,8 @@ pub fn check_mesh(positions: &[Point], triangles: &[[u32; 3]]) -> Vec<MeshProble
     problems
 }
 
-fn repeated(judged: &[(u32, [u32; 3], [Point; 3])]) -> Vec<MeshProblem> {
-    let mut keyed: Vec<([u32; 3], usize)> = judged
+fn repeated(checked: &[(u32, [u32; 3], [Point; 3])]) -> Vec<MeshProblem> {
+    let mut keyed: Vec<([u32; 3], usize)> = checked
         .iter()
         .enumerate()
         .map(|(place, &(_, mut vertices, _))| {
@@ -120,10 +113,10 @@ fn repeated(judged: &[(u32, [u32; 3], [Point; 3])]) -> Vec<MeshProblem> {
     later
         .into_iter()
         .map(|(place, first)| {
-            let (triangle, vertices, corners) = judged[place];
+            let (triangle, vertices, corners) = checked[place];
             MeshProblem::RepeatedTriangle {
                 triangle,
-                first: judged[first].0,
+                first: checked[first].0,
                 vertices,
                 centre: centre(&corners),
             }
@@ -148,7 +141,7 @@ fn has_zero_area([a, b, c]: &[Point; 3]) -> bool {
     ab.cross(&ca).norm() <= ZERO_HEIGHT * longest_squared
 }
 
-/// The mean of the corners; each is divided first, for the sum may overflow.
+/// The mean of the corners. Each is divided first, because the sum may overflow.
 fn centre(corners: &[Point; 3]) -> Point {
     Point::from(corners.iter().fold(Vector::zeros(), |sum, p| sum + p.coords / 3.0))
 }
@@ -158,57 +151,4 @@ fn place(p: &Point) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn square() -> (Vec<Point>, Vec<[u32; 3]>) {
-        let positions = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-        (positions.map(|[x, y]| Point::new(x, y, 0.5)).to_vec(), vec![[0, 1, 2], [0, 2, 3]])
-    }
-
-    fn messages(positions: &[Point], triangles: &[[u32; 3]]) -> Vec<String> {
-        check_mesh(positions, triangles).iter().map(ToString::to_string).collect()
-    }
-
-    #[test]
-    fn a_good_mesh_has_no_problem() {
-        let (positions, triangles) = square();
-        assert_eq!(check_mesh(&positions, &triangles), []);
-        // Neither far away, nor tiny, nor as a needle that is still a triangle.
-        for (scale, shift) in [(1.0, 1e4), (1e-200, 0.0), (1e200, 0.0)] {
-            let moved: Vec<Point> = positions.iter().map(|p| p.map(|x| x * scale + shift)).collect();
-            assert_eq!(check_mesh(&moved, &triangles), []);
-        }
-        let needle: Vec<Point> = positions.iter().map(|p| Point::new(p.x, p.y * 1e-12, p.z)).collect();
-        assert_eq!(check_mesh(&needle, &triangles), []);
-    }
-
-    #[test]
-    fn every_problem_names_its_element_and_place() {
-        let (mut positions, mut triangles) = square();
-        positions.push(Point::new(2.0, 2.0, 0.5));
-        positions.push(Point::new(f64::NAN, 0.0, 0.0));
-        triangles.extend([[0, 2, 4], [3, 0, 2], [1, 1, 2], [0, 1, 9], [2, 3, 0]]);
-        assert_eq!(
-            messages(&positions, &triangles),
-            [
-                "vertex 5 has a coordinate that is not finite: (NaN, 0, 0)",
-                "triangle 5 names vertex 9, but there are only 6 vertices",
-                "triangle 2 (vertices 0, 2, 4) has zero area, at (1, 1, 0.5)",
-                "triangle 4 (vertices 1, 1, 2) has zero area, at (1, 0.3333333333333333, 0.5)",
-                "triangle 3 repeats triangle 1 (vertices 3, 0, 2), at (0.3333333333333333, 0.6666666666666666, 0.5)",
-                "triangle 6 repeats triangle 1 (vertices 2, 3, 0), at (0.3333333333333333, 0.6666666666666666, 0.5)",
-                "vertex 5 belongs to no triangle, at (NaN, 0, 0)",
-            ]
-        );
-    }
-
-    #[test]
-    fn zero_area_is_found_where_rounding_hides_it() {
-        // Collinear exactly in decimal, but not as stored.
-        let line = [0.1, 0.2, 0.7].map(|t| Point::new(t, 3.0 * t, 0.3 * t));
-        assert_eq!(messages(&line, &[[0, 1, 2]]).len(), 1);
-        let point = [Point::new(1e4, 0.0, 1.0); 3];
-        assert_eq!(messages(&point, &[[0, 1, 2]]).len(), 1);
-    }
-}
+mod tests;

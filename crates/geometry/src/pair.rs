@@ -1,12 +1,12 @@
-//! The kinds of primitive pairs, and how their vertices are laid out.
+//! The kinds of pairs of primitives, and the layout of their vertices.
 
 use serde::{Deserialize, Serialize};
 
-/// The kinds of primitive pairs between which distances are measured.
+/// The kinds of pairs of primitives between which distances are measured.
 ///
-/// Every pair kind lists its vertices in an array of four: first those of side *a*, then those of
-/// side *b*; unused places hold no meaning. Signs of gradients follow from that: moving a vertex of
-/// side *a* along the normal opens the gap, moving one of side *b* closes it.
+/// Every pair kind lists its vertices in an array of four: first those of side *a*, then those of side *b*.
+/// Unused places have no meaning. The signs of gradients follow: moving a vertex of side *a* along the normal
+/// opens the gap, moving one of side *b* closes it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[repr(u8)]
@@ -24,7 +24,7 @@ pub enum PairKind {
 }
 
 impl PairKind {
-    /// All kinds, in the order in which pair lists hold them.
+    /// All kinds, in the order of pair lists.
     pub const ALL: [PairKind; 5] = [
         PairKind::VertexVertex,
         PairKind::VertexEdge,

@@ -1,33 +1,34 @@
 //! Certified separation: a direction and a slab width that never exceeds the true distance.
 //!
-//! For a unit vector n the slab width w(n) = min over side a of n.x - max over side b of n.x is at
-//! most the true distance of the sides, however n was found (weak duality: for any p in a, q in b,
-//! |p - q| >= n.(p - q) >= w). At the direction of the closest points it equals the distance. So a
-//! direction may be computed carelessly, and only the evaluation of w needs care:
+//! For a unit vector n the slab width w(n) = min over side a of n.x - max over side b of n.x is at most the
+//! true distance of the sides, for any n (weak duality: for any p in a, q in b,
+//! |p - q| >= n.(p - q) >= w). In the direction of the closest points it equals the distance. So the direction need not
+//! be accurate; only the evaluation of w must be:
 //!
-//! **Rounding of the width.** Let u = 2^-53 and m the largest absolute coordinate of the differences
-//! x_a - x_b over all vertices a, b of the two sides. A computed difference is the true one up to a
-//! factor 1 + e, |e| <= u, in each coordinate; the dot product with the vector n as it is stored adds
-//! three more such factors, so each n.(x_a - x_b) is off by at most
-//! 4u/(1 - 4u) * sum |n_j| |x_a - x_b|_j <= 4.01 u * sqrt(3) |n| m, and so is their minimum. Further,
-//! n = v / |v| as `unit` computes it has | |n| - 1 | <= 5u (sum of squares 3u, halved by the root,
-//! root u, reciprocal u, product u), and dividing by the true |n| moves the width by at most
-//! 5.01 u * sqrt(3) m. Subtracting the bound rounds by 1.8 u m. Altogether less than 17.5 u m;
-//! `WIDTH_ROUNDING` is 20 u. Differences beyond [1e-70, 1e70] m are scaled by a power of two, so
-//! that underflow (errors of 2^-1074) stays far below that.
+//! **Rounding of the width.** Let u = 2^-53 and m the largest absolute coordinate of the differences x_a -
+//! x_b over all vertices a, b of the two sides. A computed difference is the true one up to a factor 1 +
+//! e, |e| <= u, in each coordinate; the dot product with the vector n as it is stored adds three more such
+//! factors, so each n.(x_a - x_b) is off by at most 4u/(1 - 4u) * sum |n_j| |x_a - x_b|_j <= 4.01 u *
+//! sqrt(3) |n| m, and so is their minimum. Further, n = v / |v| as `unit` computes it has | |n| - 1 | <= 5u
+//! (sum of squares 3u, halved by the root, root u, reciprocal u, product u), and dividing by the true |n|
+//! moves the width by at most 5.01 u * sqrt(3) m. Subtracting the bound rounds by 1.8 u m. Altogether less
+//! than 17.5 u m; `WIDTH_ROUNDING` is 20 u. Differences beyond [1e-70, 1e70] m are scaled by a power of two,
+//! so that underflow (errors of 2^-1074) stays far below that.
 
 use crate::distance::{self, Local, MAX_SCALE, MIN_SCALE};
-use crate::{HalfSpace, PairKind, Point, Vector};
+use crate::half_space::HalfSpace;
+use crate::pair::PairKind;
+use crate::point::{Point, Vector};
 
 /// Bound of the rounding of a slab width, per largest coordinate difference; see the module.
 const WIDTH_ROUNDING: f64 = 10.0 * f64::EPSILON;
 
-/// The same for a pair that was moved to its first vertex: two more roundings of each difference,
-/// 2 u * sqrt(3) m, before all others.
+/// The same for a pair that was moved to its first vertex: two more roundings of each difference, 2 u *
+/// sqrt(3) m, before all others.
 const MOVED_WIDTH_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// A width below this part of the computed distance is worth trying other directions.
-const GOOD: f64 = 0.9;
+/// If the width is below this part of the computed distance, other directions are tried.
+const MIN_WIDTH_RATIO: f64 = 0.9;
 
 /// A pair's contact geometry, with a certified lower bound of its distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,17 +37,17 @@ pub struct Separation {
     pub normal: Vector,
     /// Barycentric weights of the closest points, see [`crate::Closest::weights`].
     pub weights: [f64; 4],
-    /// Computed distance of the closest points [m]; may be slightly off in either direction.
+    /// Computed distance of the closest points [m]; it may be slightly too small or too large.
     pub distance: f64,
-    /// Certified width of the slab between the sides along `normal` [m]: in exact arithmetic
-    /// min over side a of n.x - max over side b of n.x is at least `width` for a unit n parallel
-    /// to `normal`, hence the true distance is too. May be negative where no direction certifies.
+    /// Certified width of the slab between the sides along `normal` [m]: in exact arithmetic min over side a
+    /// of n.x - max over side b of n.x is at least `width` for a unit n parallel to `normal`, hence so is the
+    /// true distance. It may be negative if no direction certifies a gap.
     pub width: f64,
 }
 
 impl Separation {
-    /// Weights with the sign of the gap's change: + on side *a*, - on side *b*. The gradient of the
-    /// gap by vertex i is `signed_weights[i] * normal`.
+    /// Weights with the sign of the change of the gap: + on side *a*, - on side *b*. The gradient of the gap
+    /// by vertex i is `signed_weights[i] * normal`.
     #[inline]
     pub fn signed_weights(&self, kind: PairKind) -> [f64; 4] {
         let [w0, w1, w2, w3] = self.weights;
@@ -60,14 +61,14 @@ impl Separation {
 
 /// Contact geometry of any pair kind but [`PairKind::VertexHalfSpace`]; unused points are ignored.
 ///
-/// The normal is the direction of the closest points, unless its slab is narrower than 0.9 times
-/// their distance (which happens when they are nearer than about 1e-7 element sizes, where their
-/// difference is mostly rounding) and another direction certifies more: the face normal, the common
-/// normal of two edges, or that of some of the pair's vertices and edges. `weights` and `distance`
-/// are those of the closest points in any case. Touching and intersecting pairs have `width <= 0`
-/// and the best direction found. Finite input never gives not-a-number.
+/// The normal is the direction of the closest points, unless its slab is narrower than 0.9 times their
+/// distance and another direction certifies more: the face normal, the common normal of two edges, or the
+/// direction between some of the pair's vertices and edges. (The slab is that narrow if the points are nearer
+/// than about 1e-7 element sizes, where their difference is mostly rounding.) `weights` and `distance` are
+/// always those of the closest points. Touching and intersecting pairs have `width <= 0` and the best
+/// direction found. Finite input never gives not-a-number.
 ///
-/// Asked for [`PairKind::VertexHalfSpace`] it returns a width of zero; see [`separate_half_space`].
+/// For [`PairKind::VertexHalfSpace`] the width is zero; see [`separate_half_space`].
 #[inline]
 pub fn separate(kind: PairKind, points: &[Point; 4]) -> Separation {
     let [p0, p1, p2, p3] = points;
@@ -82,16 +83,16 @@ pub fn separate(kind: PairKind, points: &[Point; 4]) -> Separation {
 
 /// Contact geometry of a vertex above a half-space.
 ///
-/// `normal` is the plane's, made unit; `distance` is signed, negative inside the solid; `width` is a
-/// lower bound of (n.x - offset)/|n| in exact arithmetic for n and offset as they are stored.
+/// `normal` is the normalised normal of the plane. `distance` is signed, negative inside the solid. `width`
+/// is a lower bound of (n.x - offset)/|n| in exact arithmetic, for n and offset as they are stored.
 pub fn separate_half_space(point: &Point, half_space: &HalfSpace) -> Separation {
     let weights = [1.0, 0.0, 0.0, 0.0];
     let HalfSpace { normal: n, offset } = half_space;
     let length = n.norm();
-    // Four factors 1 + e on each product and two on the offset at most, see the module; `magnitude`
-    // itself is low by at most four, hence 5 u. Scaling by the length and the last two operations
-    // are relative errors of the result: 2.5 u of the length, 1 u each of division and product,
-    // rounded up to 8 u. MIN_POSITIVE covers underflow of the products.
+    // At most four factors 1 + e on each product and two on the offset, see the module; `magnitude` itself is
+    // too small by at most four, hence 5 u. The length and the last two operations give relative errors of
+    // the result: 2.5 u of the length, 1 u each of division and product, rounded up to 8 u. MIN_POSITIVE
+    // covers underflow of the products.
     let value = n.dot(&point.coords) - offset;
     let magnitude = n.abs().dot(&point.coords.abs()) + offset.abs();
     let lowest = (value - (2.5 * f64::EPSILON * magnitude + f64::MIN_POSITIVE)) / length;
@@ -102,12 +103,12 @@ pub fn separate_half_space(point: &Point, half_space: &HalfSpace) -> Separation 
     Separation { normal: n / length, weights, distance: value / length, width }
 }
 
-/// What is said of a pair about which nothing can be said.
+/// The result for a pair of which nothing can be certified.
 fn undecided(weights: [f64; 4]) -> Separation {
     Separation { normal: Vector::z(), weights, distance: 0.0, width: 0.0 }
 }
 
-/// The certified separation, given all differences of a vertex of side *a* and one of side *b*.
+/// The certified separation, given the differences of all vertices of side *a* and all vertices of side *b*.
 #[inline(always)]
 fn certify<const N: usize>(kind: PairKind, points: &[Point; 4], differences: [Vector; N]) -> Separation {
     let scale = largest_coordinate(&differences);
@@ -124,8 +125,8 @@ fn certify<const N: usize>(kind: PairKind, points: &[Point; 4], differences: [Ve
     };
     if let Some(normal) = unit(&closest.offset, closest.distance) {
         separation.normal = normal;
-        separation.width = least(&normal, &differences) - slack;
-        if separation.width >= GOOD * closest.distance {
+        separation.width = smallest_dot(&normal, &differences) - slack;
+        if separation.width >= MIN_WIDTH_RATIO * closest.distance {
             return separation;
         }
     }
@@ -133,8 +134,8 @@ fn certify<const N: usize>(kind: PairKind, points: &[Point; 4], differences: [Ve
     separation
 }
 
-/// Largest absolute coordinate. (Plain comparisons, here and below: `f64::max` and `min` spend
-/// instructions on not-a-number, which differences of finite numbers never are.)
+/// Largest absolute coordinate. Plain comparisons suffice, here and below: `f64::max` and `min` need more
+/// instructions to treat not-a-number, which differences of finite numbers never are.
 #[inline(always)]
 fn largest_coordinate(vectors: &[Vector]) -> f64 {
     let larger = |m: f64, x: f64| if m > x { m } else { x };
@@ -144,11 +145,11 @@ fn largest_coordinate(vectors: &[Vector]) -> f64 {
 
 /// Smallest dot product.
 #[inline(always)]
-fn least(normal: &Vector, differences: &[Vector]) -> f64 {
+fn smallest_dot(normal: &Vector, differences: &[Vector]) -> f64 {
     differences
         .iter()
         .map(|d| normal.dot(d))
-        .fold(f64::INFINITY, |least, x| if least < x { least } else { x })
+        .fold(f64::INFINITY, |smallest, x| if smallest < x { smallest } else { x })
 }
 
 /// v / |v| with a length within 5 u of 1, given |v| as [`distance::norm`] computes it.
@@ -158,8 +159,8 @@ fn unit(v: &Vector, norm: f64) -> Option<Vector> {
     if norm > 1e-140 && norm < f64::INFINITY { Some(v * (1.0 / norm)) } else { None }
 }
 
-/// Tries every direction in which two features of the pair can face each other, both ways, and
-/// keeps the widest slab.
+/// Tries every direction in which two features of the pair can face each other, with both signs, and keeps
+/// the widest slab.
 #[cold]
 #[inline(never)]
 fn try_other_directions(
@@ -176,7 +177,7 @@ fn try_other_directions(
         };
         let Some(normal) = unit(&direction, direction.norm()) else { return };
         for normal in [normal, -normal] {
-            let width = least(&normal, differences) - slack;
+            let width = smallest_dot(&normal, differences) - slack;
             if width > separation.width {
                 separation.normal = normal;
                 separation.width = width;
@@ -203,23 +204,23 @@ fn try_other_directions(
     }
     for d in differences {
         attempt(*d);
-        // Where everything is on one line, no other direction is across it.
+        // If all points are on one line, only this direction is perpendicular to it.
         attempt(d.cross(&Vector::ith(d.iamin(), 1.0)));
     }
-    // All differences are zero, or too short to normalise: nothing was tried.
+    // All differences are zero or too short to normalise, so no direction was tried.
     if separation.width == f64::NEG_INFINITY {
         separation.width = -slack;
     }
 }
 
-/// A vector perpendicular to both to rounding, however near parallel they are: the part of v along u
-/// would add nothing to the cross product but its rounding.
+/// A vector perpendicular to both up to rounding, however nearly parallel they are. The part of v along u is
+/// subtracted, because it would only add its rounding error to the cross product.
 fn common_normal(u: &Vector, v: &Vector) -> Vector {
     u.cross(&(v - u * (u.dot(v) / u.norm_squared())))
 }
 
-/// The direction from an edge to a vertex, perpendicular to the edge to rounding even where the
-/// vertex is all but on the edge.
+/// The direction from an edge to a vertex, perpendicular to the edge up to rounding even if the vertex is
+/// almost on the edge.
 fn across(p: &Point, edge: [&Point; 2]) -> Vector {
     let along = edge[1] - edge[0];
     along.cross(&(p - edge[0]).cross(&along))
@@ -249,7 +250,7 @@ fn separate_rescaled(kind: PairKind, points: &[Point; 4]) -> Separation {
         width: f64::NEG_INFINITY,
     };
     try_other_directions(kind, &local.points, &differences, slack, &mut separation);
-    // Going back may round where the width is subnormal.
+    // Unscaling may round if the width is subnormal.
     separation.width = local.unscale(separation.width).next_down();
     separation
 }

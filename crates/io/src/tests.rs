@@ -266,16 +266,12 @@ fn damaged_files_are_read_or_refused_but_never_panic() {
     let npz = folder.path().join("whole.npz");
     stack().write(&npz).unwrap();
     let sources = [fs::read(&ply).unwrap(), fs::read(&npz).unwrap(), ASCII.as_bytes().to_vec()];
-    let mut seed = 1_u64;
-    let mut random = || {
-        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (seed >> 33) as usize
-    };
+    let mut random = fastrand::Rng::with_seed(1);
     for round in 0..900 {
         let mut bytes = sources[round % 3].clone();
-        for _ in 0..1 + random() % 4 {
-            let at = random() % bytes.len();
-            bytes[at] = random() as u8;
+        for _ in 0..1 + random.usize(..4) {
+            let at = random.usize(..bytes.len());
+            bytes[at] = random.u8(..);
         }
         let (name, is_npz) = [("d.ply", false), ("d.npz", true), ("d.ply", false)][round % 3];
         let path = write(&folder, name, &bytes);

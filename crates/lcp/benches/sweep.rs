@@ -1,4 +1,5 @@
-//! A sweep over a cloth-like grid: ball rows on its edges in 12 colours, random contact rows in about 40.
+//! A sweep over a cloth-like grid: distance limits on its edges in 12 colours, random contact rows in
+//! about 40.
 //!
 //! `cargo bench -p bowknot-lcp --bench sweep`
 
@@ -10,35 +11,39 @@ use std::hint::black_box;
 mod common;
 use common::{Case, cloth};
 
-fn problem(case: &Case) -> Problem<'_> {
-    Problem::new(
+fn problem(case: &Case) -> LcpProblem<'_> {
+    LcpProblem::new(
         &case.weights,
-        Family::new(&case.rows, Schedule::coloured(&case.row_starts)),
-        Family::new(&case.balls, Schedule::coloured(&case.ball_starts)),
-        Family::default(),
+        ConstraintSet::new(&case.rows, Schedule::coloured(&case.row_starts)),
+        ConstraintSet::new(&case.limits, Schedule::coloured(&case.limit_starts)),
+        ConstraintSet::default(),
     )
     .expect("the case is valid")
 }
 
 fn sweeps(criterion: &mut Criterion) {
     let case = cloth(100, 20_000, 1);
-    let (rows, balls) = (case.rows.len(), case.balls.len());
+    let (rows, limits) = (case.rows.len(), case.limits.len());
     let mut group = criterion.benchmark_group("8 sweeps");
-    group.throughput(Throughput::Elements(8 * (rows + balls) as u64));
+    group.throughput(Throughput::Elements(8 * (rows + limits) as u64));
     group.sample_size(30);
-    let params = Params { max_sweeps: 8, ..Params::default() };
+    let params = LcpParams { max_sweeps: 8, ..LcpParams::default() };
     let problem = problem(&case);
     for threads in [0, 1, 2] {
         let name = if threads == 0 { "serial".to_owned() } else { format!("coloured, {threads} threads") };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.max(1)).build().expect("a pool");
-        group.bench_function(BenchmarkId::new(name, format!("{balls}+{rows}")), |bench| {
-            let (mut y, mut lambda, mut forces) = case.start();
+        group.bench_function(BenchmarkId::new(name, format!("{limits}+{rows}")), |bench| {
+            let (mut y, mut lambda, mut limit_multipliers) = case.start();
             bench.iter(|| {
                 y.copy_from_slice(&case.y_free);
                 lambda.fill(0.0);
-                forces.fill(Vector::zeros());
-                let mut state =
-                    State { y: &mut y, lambda: &mut lambda, forces: &mut forces, friction: &mut [] };
+                limit_multipliers.fill(Vector::zeros());
+                let mut state = LcpState {
+                    y: &mut y,
+                    lambda: &mut lambda,
+                    limit_multipliers: &mut limit_multipliers,
+                    friction: &mut [],
+                };
                 let info = if threads == 0 {
                     solve_serial(&problem, &mut state, &params)
                 } else {

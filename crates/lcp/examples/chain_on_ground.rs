@@ -1,5 +1,5 @@
-//! A chain of nodes, hung from one pinned end and thrown below the ground: limits on the links as ball
-//! rows, the ground as rows, friction on the ground.
+//! A chain of nodes hangs from one pinned end and is thrown below the ground: distance limits for the links,
+//! rows for the ground, friction on the ground.
 //!
 //! `cargo run --release -p bowknot-lcp --example chain_on_ground`
 #![allow(clippy::print_stdout)] // an example shows something
@@ -7,21 +7,22 @@
 use bowknot_lcp::*;
 use nalgebra::Vector2;
 
-fn main() -> Result<(), Error> {
+fn main() -> Result<(), LcpError> {
     let (nodes, link) = (12_u32, 0.1);
     // The first node is pinned 0.4 m above the ground.
     let weights: Vec<f64> = (0..nodes).map(|i| if i == 0 { 0.0 } else { 1.0 }).collect();
     let start = |i: u32| Vector::new(f64::from(i) * link, 0.0, 0.4);
-    // Where the nodes would go by themselves: sideways and 0.6 m down, through the ground.
+    // The unconstrained positions: sideways and 0.6 m down, through the ground.
     let mut y: Vec<Vector> =
         (0..nodes).map(|i| if i == 0 { start(0) } else { start(i) + Vector::new(0.0, 0.05, -0.6) }).collect();
 
-    // One row a node: z >= 0. Unused places repeat the node, with a zero gradient.
+    // One row per node: z >= 0. Unused places repeat the node, with a zero gradient.
     let zero = Vector::zeros();
     let mut rows: Vec<Row> =
         (0..nodes).map(|i| Row::new([i; 4], [Vector::z(), zero, zero, zero], 0.0)).collect();
     prepare_rows(&mut rows, &weights)?;
-    let balls: Vec<BallRow> = (1..nodes).map(|i| BallRow { vertices: [i - 1, i], limit: link }).collect();
+    let limits: Vec<DistanceLimit> =
+        (1..nodes).map(|i| DistanceLimit { vertices: [i - 1, i], limit: link }).collect();
     let mut friction: Vec<FrictionRow> = (0..nodes)
         .map(|i| FrictionRow {
             tangents: [Vector::x(), Vector::y()],
@@ -39,18 +40,23 @@ fn main() -> Result<(), Error> {
     let order: Vec<u32> = (0..nodes - 1).step_by(2).chain((1..nodes - 1).step_by(2)).collect();
     let link_starts = [0, nodes / 2, nodes - 1];
     let ground = [0, nodes];
-    let problem = Problem::new(
+    let problem = LcpProblem::new(
         &weights,
-        Family::new(&rows, Schedule::coloured(&ground)),
-        Family::new(&balls, Schedule::active(&order, &link_starts)),
-        Family::new(&friction, Schedule::coloured(&ground)),
+        ConstraintSet::new(&rows, Schedule::coloured(&ground)),
+        ConstraintSet::new(&limits, Schedule::active(&order, &link_starts)),
+        ConstraintSet::new(&friction, Schedule::coloured(&ground)),
     )?;
     validate_colours(&problem)?;
 
-    let (mut lambda, mut forces) = (vec![0.0; rows.len()], vec![zero; balls.len()]);
+    let (mut lambda, mut limit_multipliers) = (vec![0.0; rows.len()], vec![zero; limits.len()]);
     let mut multipliers = vec![Vector2::zeros(); friction.len()];
-    let mut state = State { y: &mut y, lambda: &mut lambda, forces: &mut forces, friction: &mut multipliers };
-    let params = Params { max_sweeps: 5000, tolerance: Some(1e-9), ..Params::default() };
+    let mut state = LcpState {
+        y: &mut y,
+        lambda: &mut lambda,
+        limit_multipliers: &mut limit_multipliers,
+        friction: &mut multipliers,
+    };
+    let params = LcpParams { max_sweeps: 5000, tolerance: Some(1e-9), ..LcpParams::default() };
     let info = solve_coloured(&problem, &mut state, &params)?;
     let left = residuals(&problem, &state, params.friction_bound)?;
     println!(

@@ -1,39 +1,41 @@
-//! Checking colours.
+//! The check of colours.
 
-use crate::Error;
-use crate::problem::{AnyRow, Family, Problem};
+use crate::error::LcpError;
+use crate::problem::LcpProblem;
+use crate::rows::Constraint;
+use crate::schedule::ConstraintSet;
 
-/// Checks that no two rows of a colour, of any family, share a node that can move. A node that stands
-/// in several places of one row is no clash. Cost: one pass and two numbers a node.
+/// Checks that no two constraints of one colour share a node that can move. A constraint may name a node
+/// several times. Cost: one pass, and two numbers per node.
 ///
 /// # Errors
-/// [`Error::Colour`] for the first clash.
-pub fn validate_colours(problem: &Problem<'_>) -> Result<(), Error> {
+/// [`LcpError::Colour`] for the first clash.
+pub fn validate_colours(problem: &LcpProblem<'_>) -> Result<(), LcpError> {
     let weights = problem.weights();
-    // Stamp and row that last used each node; stamps go on over families.
+    // Stamp and place that last used each node. Every colour of every set has a stamp of its own.
     let mut last = vec![(0_usize, 0_usize); weights.len()];
     let mut stamp = 0;
-    validate_family(problem.balls(), weights, &mut last, &mut stamp)?;
-    validate_family(problem.rows(), weights, &mut last, &mut stamp)?;
-    validate_family(problem.friction(), weights, &mut last, &mut stamp)
+    validate_set(problem.distance_limits(), weights, &mut last, &mut stamp)?;
+    validate_set(problem.rows(), weights, &mut last, &mut stamp)?;
+    validate_set(problem.friction(), weights, &mut last, &mut stamp)
 }
 
-fn validate_family<T: AnyRow>(
-    family: Family<'_, T>,
+fn validate_set<T: Constraint>(
+    set: ConstraintSet<'_, T>,
     weights: &[f64],
     last: &mut [(usize, usize)],
     stamp: &mut usize,
-) -> Result<(), Error> {
-    for (colour, ends) in family.schedule.starts.windows(2).enumerate() {
+) -> Result<(), LcpError> {
+    for (colour, ends) in set.schedule.starts.windows(2).enumerate() {
         *stamp += 1;
         for place in ends[0] as usize..ends[1] as usize {
-            let second = family.schedule.row(place);
-            // The same row twice in a colour is a clash too: places tell them apart.
-            for &node in family.rows[second].nodes() {
+            let second = set.schedule.row(place);
+            // The same constraint twice in a colour is a clash too, so places are compared.
+            for &node in set.rows[second].nodes() {
                 let seen = &mut last[node as usize];
                 if weights[node as usize] != 0.0 && seen.0 == *stamp && seen.1 != place {
-                    let first = family.schedule.row(seen.1);
-                    return Err(Error::Colour { family: T::NAME, colour, first, second, node });
+                    let first = set.schedule.row(seen.1);
+                    return Err(LcpError::Colour { constraint: T::NAME, colour, first, second, node });
                 }
                 *seen = (*stamp, place);
             }

@@ -1,9 +1,13 @@
-//! What can be wrong with a problem, and what a solver can fail at.
+//! Faults of a problem, and failures of the solvers.
+
+use bowknot_errors::{Errors, ParamError};
 
 /// Why a problem is refused or was not solved.
+///
+/// `constraint` is "row", "distance limit" or "friction row".
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum Error {
+pub enum LcpError {
     /// Two arrays that belong together have different lengths.
     #[error("{what} has {given} entries where {expected} are needed")]
     Length {
@@ -14,23 +18,23 @@ pub enum Error {
         /// The length it should have.
         expected: usize,
     },
-    /// A row names a node that does not exist.
-    #[error("{family} {row} names node {node}, but there are only {nodes} nodes")]
+    /// A constraint names a node that does not exist.
+    #[error("{constraint} {index} names node {node}, but there are only {nodes} nodes")]
     UnknownNode {
-        /// "row", "ball row" or "friction row".
-        family: &'static str,
-        /// Index of the row.
-        row: usize,
+        /// Type of the constraint.
+        constraint: &'static str,
+        /// Index of the constraint.
+        index: usize,
         /// The node it names.
         node: u32,
         /// How many nodes there are.
         nodes: usize,
     },
     /// A friction row names a normal row that does not exist.
-    #[error("friction row {row} names row {normal} as its normal, but there are only {rows} rows")]
+    #[error("friction row {index} names row {normal} as its normal, but there are only {rows} rows")]
     UnknownNormal {
         /// Index of the friction row.
-        row: usize,
+        index: usize,
         /// The normal row it names.
         normal: u32,
         /// How many rows there are.
@@ -54,57 +58,50 @@ pub enum Error {
         /// Its inverse weight.
         value: f64,
     },
-    /// A row's `inverse_diagonal` was never computed; see [`crate::prepare_rows`].
-    #[error("{family} {row} was not prepared: its inverse diagonal is NaN")]
+    /// The `inverse_diagonal` of a constraint was never computed; see [`crate::prepare_rows`].
+    #[error("{constraint} {index} was not prepared: its inverse diagonal is NaN")]
     NotPrepared {
-        /// "row" or "friction row".
-        family: &'static str,
-        /// Index of the row.
-        row: usize,
+        /// Type of the constraint.
+        constraint: &'static str,
+        /// Index of the constraint.
+        index: usize,
     },
-    /// A schedule's `starts` decrease or do not end where the list ends.
-    #[error("the colour starts of the {family}s must rise from 0 to {expected}")]
+    /// The `starts` of a schedule decrease or do not end where the list ends.
+    #[error("the colour starts of the {constraint}s must rise from 0 to {expected}")]
     Starts {
-        /// "row", "ball row" or "friction row".
-        family: &'static str,
+        /// Type of the constraints.
+        constraint: &'static str,
         /// Where the last colour must end.
         expected: usize,
     },
-    /// A schedule's `order` names a row that does not exist.
-    #[error("the order of the {family}s names {index}, but there are only {rows}")]
+    /// The `order` of a schedule names a constraint that does not exist.
+    #[error("the order of the {constraint}s names {index}, but there are only {count}")]
     Order {
-        /// "row", "ball row" or "friction row".
-        family: &'static str,
+        /// Type of the constraints.
+        constraint: &'static str,
         /// The index it names.
         index: u32,
-        /// How many rows there are.
-        rows: usize,
+        /// How many of these constraints there are.
+        count: usize,
     },
-    /// Two rows of one colour share a node that can move.
-    #[error("{family}s {first} and {second} of colour {colour} share node {node}, which can move")]
+    /// Two constraints of one colour share a node that can move.
+    #[error("{constraint}s {first} and {second} of colour {colour} share node {node}, which can move")]
     Colour {
-        /// "row", "ball row" or "friction row".
-        family: &'static str,
+        /// Type of the constraints.
+        constraint: &'static str,
         /// The colour.
         colour: usize,
-        /// The row met first.
+        /// The constraint that comes first.
         first: usize,
-        /// The row that clashes with it.
+        /// The constraint that clashes with it.
         second: usize,
         /// The node that they share.
         node: u32,
     },
-    /// A parameter is out of range.
-    #[error("{name} is {value}; it must be {allowed}")]
-    Parameter {
-        /// The parameter.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-        /// The values that it may have.
-        allowed: &'static str,
-    },
-    /// A solver stopped at its limit; the state holds the last iterate.
+    /// Parameters are out of range.
+    #[error(transparent)]
+    Parameters(#[from] Errors<ParamError>),
+    /// A solver stopped at its largest number of sweeps. The state holds the last iterate.
     #[error("not converged: after {sweeps} sweeps the residual is {residual:e}")]
     NotConverged {
         /// Sweeps done.
@@ -112,7 +109,7 @@ pub enum Error {
         /// Residual of the last one, in the unit of the row values.
         residual: f64,
     },
-    /// No node positions satisfy the rows together; only the exact solver tells.
+    /// No node positions satisfy all rows together. Only the exact solver can find this out.
     #[error("infeasible: row {row} contradicts others")]
     Infeasible {
         /// The row that could not be added.

@@ -1,28 +1,30 @@
-//! An exact solver for small problems: the reference that the iterative ones are tested against.
+//! An exact solver for small problems: the reference for tests of the iterative solvers.
 //!
-//! With the ball rows' and friction's multipliers held, the rows' multipliers minimise the convex
-//! quadratic lambda^T A lambda / 2 + q^T lambda over the box 0 <= lambda <= upper, where A = J W J^T
-//! is the Delassus matrix and q the row values at lambda = 0: its gradient A lambda + q is s. This is
-//! a primal active-set method in the manner of Lawson and Hanson (1974, ch. 23), with upper bounds
-//! as in Stark and Parker (1995), on normal equations that are given. They assume independent columns;
-//! redundant rows are the rule here (a vertex on a flat patch touches six triangles). So the set of
-//! free multipliers is kept independent: a row that depends on it enters along the direction that
-//! leaves J^T lambda as it is, which costs no curvature, until another multiplier reaches a bound
-//! and leaves. If none ever does, the rows contradict each other (Farkas).
+//! With the multipliers of distance limits and friction fixed, the rows' multipliers minimise the convex
+//! quadratic lambda^T A lambda / 2 + q^T lambda over the box 0 <= lambda <= upper. Here A = J W J^T is the
+//! Delassus matrix and q the row values at lambda = 0; the gradient A lambda + q is s. This is a primal
+//! active-set method in the manner of Lawson and Hanson (1974, ch. 23), with upper bounds as in Stark and
+//! Parker (1995), on given normal equations. They assume independent columns, but here redundant rows are
+//! common: a vertex on a flat patch touches six triangles. So the set of free multipliers is kept
+//! independent. A row that depends on this set enters along the direction that does not change J^T lambda and
+//! has no curvature, until another multiplier reaches a bound and leaves the set. If none does, the rows
+//! contradict each other (Farkas).
 
-use crate::Error;
-use crate::params::Info;
-use crate::problem::{Problem, Row, State};
+use crate::error::LcpError;
+use crate::info::LcpInfo;
+use crate::problem::LcpProblem;
+use crate::rows::Row;
+use crate::state::LcpState;
 use nalgebra::DMatrix;
 
-/// Share of a diagonal entry below which what is left of it after eliminating the free rows counts as
-/// rounding: some hundred rows lose about 1e-13 of it.
+/// A pivot, which is what is left of a diagonal entry after eliminating the free rows, counts as rounding
+/// below this share of the entry. With some hundred rows rounding is about 1e-13 of it.
 const DEPENDENT: f64 = 1e-12;
-/// Rounding of a row value, relative to the sum of its terms' magnitudes.
+/// Rounding of a row value, relative to the sum of the magnitudes of its terms.
 const ROUNDING: f64 = 1e-13;
 
 /// The Delassus matrix A = J W J^T of the rows, n x n for n rows; symmetric, positive semi-definite.
-pub fn delassus(problem: &Problem<'_>) -> DMatrix<f64> {
+pub fn delassus(problem: &LcpProblem<'_>) -> DMatrix<f64> {
     let (rows, weights) = (problem.rows().rows, problem.weights());
     let entry = |a: &Row, b: &Row| {
         let mut sum = 0.0;
@@ -38,13 +40,13 @@ pub fn delassus(problem: &Problem<'_>) -> DMatrix<f64> {
     DMatrix::from_fn(rows.len(), rows.len(), |i, j| entry(&rows[i], &rows[j]))
 }
 
-/// Solves the rows (all, whatever their schedule) to rounding, holding ball forces and friction as they
-/// are. For up to a few hundred rows: memory n^2, time about n^4 at worst.
+/// Solves the rows (all, whatever their schedule) to rounding, with the multipliers of distance limits and
+/// friction fixed. For up to a few hundred rows: memory n^2, time about n^4 at worst.
 ///
 /// # Errors
-/// [`Error::Length`] if the state does not fit the problem; otherwise as [`solve_dense`], with the state
+/// [`LcpError::Length`] if the state does not fit the problem; otherwise as [`solve_dense`], with the state
 /// untouched.
-pub fn solve_exact(problem: &Problem<'_>, state: &mut State<'_>) -> Result<Info, Error> {
+pub fn solve_exact(problem: &LcpProblem<'_>, state: &mut LcpState<'_>) -> Result<LcpInfo, LcpError> {
     state.check(problem)?;
     let (rows, weights) = (problem.rows().rows, problem.weights());
     let matrix = delassus(problem);
@@ -67,15 +69,15 @@ pub fn solve_exact(problem: &Problem<'_>, state: &mut State<'_>) -> Result<Info,
     Ok(info)
 }
 
-/// Solves 0 <= lambda <= upper, s = A lambda + q: s >= 0 where lambda = 0, s = 0 between the bounds,
-/// s <= 0 where lambda = upper. A is n x n, symmetric and positive semi-definite; rows with a zero
-/// diagonal are left out (lambda = 0). `Info::sweeps` counts steps, `Info::residual` is the largest
+/// Solves 0 <= lambda <= upper, s = A lambda + q: s >= 0 where lambda = 0, s = 0 between the bounds, s <= 0
+/// where lambda = upper. A is n x n, symmetric and positive semi-definite; rows with a zero diagonal are left
+/// out (lambda = 0). `LcpInfo::sweeps` counts steps, `LcpInfo::residual` is the largest
 /// |lambda - clamp(lambda - s, 0, upper)|.
 ///
 /// # Errors
-/// [`Error::Length`]; [`Error::NotFinite`]; [`Error::Infeasible`] if no finite lambda solves it;
-/// [`Error::NotConverged`] if rounding makes the method walk in circles.
-pub fn solve_dense(matrix: &DMatrix<f64>, q: &[f64], upper: &[f64]) -> Result<(Vec<f64>, Info), Error> {
+/// [`LcpError::Length`]; [`LcpError::NotFinite`]; [`LcpError::Infeasible`] if no finite lambda solves it;
+/// [`LcpError::NotConverged`] if rounding makes the method cycle.
+pub fn solve_dense(matrix: &DMatrix<f64>, q: &[f64], upper: &[f64]) -> Result<(Vec<f64>, LcpInfo), LcpError> {
     let n = q.len();
     for (what, given) in [
         ("the matrix's rows", matrix.nrows()),
@@ -83,12 +85,12 @@ pub fn solve_dense(matrix: &DMatrix<f64>, q: &[f64], upper: &[f64]) -> Result<(V
         ("upper", upper.len()),
     ] {
         if given != n {
-            return Err(Error::Length { what, given, expected: n });
+            return Err(LcpError::Length { what, given, expected: n });
         }
     }
     for i in 0..n {
         if !q[i].is_finite() || upper[i].is_nan() || matrix.row(i).iter().any(|a| !a.is_finite()) {
-            return Err(Error::NotFinite { what: "row", index: i });
+            return Err(LcpError::NotFinite { what: "row", index: i });
         }
     }
     let upper = upper.iter().map(|u| u.max(0.0)).collect();
@@ -98,14 +100,15 @@ pub fn solve_dense(matrix: &DMatrix<f64>, q: &[f64], upper: &[f64]) -> Result<(V
         upper,
         lambda: vec![0.0; n],
         free: Factor::default(),
-        settled: vec![false; n],
+        within_rounding: vec![false; n],
     };
     let limit = 100 + 50 * n as u32;
-    // Entering rows of which none could move, in a row.
+    // How many rows entered in succession without any multiplier changing.
     let mut stalled = 0;
     for sweeps in 0..limit {
         let values = solver.values();
-        // After many empty steps the lowest index rather than the worst row: it cannot cycle (Bland).
+        // After many steps without a change the lowest index, rather than the worst row: this rule cannot
+        // cycle (Bland).
         let Some(entering) = solver.violated(&values, stalled > 2 * n) else {
             let residual = (0..n)
                 .filter(|&i| matrix[(i, i)] > 0.0)
@@ -113,11 +116,11 @@ pub fn solve_dense(matrix: &DMatrix<f64>, q: &[f64], upper: &[f64]) -> Result<(V
                     (solver.lambda[i] - (solver.lambda[i] - values[i]).max(0.0).min(solver.upper[i])).abs()
                 })
                 .fold(0.0, f64::max);
-            return Ok((solver.lambda, Info { sweeps, residual }));
+            return Ok((solver.lambda, LcpInfo { sweeps, residual }));
         };
         let before = solver.lambda.clone();
         if !solver.enter(entering, &values)? {
-            solver.settled[entering] = true;
+            solver.within_rounding[entering] = true;
             continue;
         }
         solver.minimise();
@@ -125,12 +128,12 @@ pub fn solve_dense(matrix: &DMatrix<f64>, q: &[f64], upper: &[f64]) -> Result<(V
             stalled += 1;
         } else {
             stalled = 0;
-            solver.settled.fill(false);
+            solver.within_rounding.fill(false);
         }
     }
     let values = solver.values();
     let residual = (0..n).map(|i| -values[i]).fold(0.0, f64::max);
-    Err(Error::NotConverged { sweeps: limit, residual })
+    Err(LcpError::NotConverged { sweeps: limit, residual })
 }
 
 struct ActiveSet<'a> {
@@ -140,8 +143,8 @@ struct ActiveSet<'a> {
     lambda: Vec<f64>,
     /// The multipliers that may lie between their bounds; the others are at one.
     free: Factor,
-    /// Rows at a bound whose value is wrong by no more than the rounding of those that they depend on.
-    settled: Vec<bool>,
+    /// Rows at a bound whose value has the wrong sign only by the rounding of the rows that they depend on.
+    within_rounding: Vec<bool>,
 }
 
 impl ActiveSet<'_> {
@@ -165,7 +168,7 @@ impl ActiveSet<'_> {
         let mut worst = 0.0;
         for (i, &value) in values.iter().enumerate() {
             let diagonal = self.matrix[(i, i)];
-            if diagonal <= 0.0 || self.settled[i] || self.free.members.contains(&i) {
+            if diagonal <= 0.0 || self.within_rounding[i] || self.free.members.contains(&i) {
                 continue;
             }
             let wrong = if self.lambda[i] > 0.0 { value } else { -value };
@@ -183,19 +186,19 @@ impl ActiveSet<'_> {
         found
     }
 
-    /// Frees a row at a bound; says false, and does nothing, if only rounding asks for it.
-    fn enter(&mut self, row: usize, values: &[f64]) -> Result<bool, Error> {
+    /// Frees a row at a bound. Returns false and does nothing if the row's value is wrong only by rounding.
+    fn enter(&mut self, row: usize, values: &[f64]) -> Result<bool, LcpError> {
         let rising = values[row] < 0.0;
-        let (line, left) = self.free.eliminate(self.matrix, row);
-        if left > DEPENDENT * self.matrix[(row, row)] {
-            self.free.push(row, line, left);
+        let (line, pivot) = self.free.eliminate(self.matrix, row);
+        if pivot > DEPENDENT * self.matrix[(row, row)] {
+            self.free.push(row, line, pivot);
             return Ok(true);
         }
-        // A move of the row's multiplier that the free ones make up for: J^T lambda stays.
+        // A change of the row's multiplier that the free multipliers balance: J^T lambda stays.
         let sign = if rising { 1.0 } else { -1.0 };
         let mut direction = self.free.back_substitute(line);
         direction.iter_mut().for_each(|d| *d *= -sign);
-        // The slope along it, which is s of the entering row but for what is left of the free rows' values.
+        // The slope along it: s of the entering row, plus what the remaining values of the free rows add.
         let (mut slope, mut rounding) = (sign * values[row], self.rounding(row));
         for (&member, d) in self.free.members.iter().zip(&direction) {
             slope += d * values[member];
@@ -204,36 +207,36 @@ impl ActiveSet<'_> {
         if slope >= -rounding {
             return Ok(false);
         }
-        let mut reach = if rising { self.upper[row] - self.lambda[row] } else { self.lambda[row] };
+        let mut step = if rising { self.upper[row] - self.lambda[row] } else { self.lambda[row] };
         let mut blocking = None;
         for (place, &member) in self.free.members.iter().enumerate() {
-            let reaches = self.reach(member, direction[place]);
-            if reaches < reach {
-                (reach, blocking) = (reaches, Some(place));
+            let member_step = self.max_step(member, direction[place]);
+            if member_step < step {
+                (step, blocking) = (member_step, Some(place));
             }
         }
-        if reach == f64::INFINITY {
-            return Err(Error::Infeasible { row });
+        if step == f64::INFINITY {
+            return Err(LcpError::Infeasible { row });
         }
         for (place, &member) in self.free.members.iter().enumerate() {
             self.lambda[member] =
-                (self.lambda[member] + reach * direction[place]).clamp(0.0, self.upper[member]);
+                (self.lambda[member] + step * direction[place]).clamp(0.0, self.upper[member]);
         }
         let Some(place) = blocking else {
             self.lambda[row] = if rising { self.upper[row] } else { 0.0 };
             return Ok(true);
         };
-        self.lambda[row] += sign * reach;
+        self.lambda[row] += sign * step;
         self.leave(place, direction[place] > 0.0);
-        let (line, left) = self.free.eliminate(self.matrix, row);
-        // It took the place of a row that it depended on, so it is independent now; the floor only
-        // guards the square root against rounding.
-        self.free.push(row, line, left.max(DEPENDENT * self.matrix[(row, row)]));
+        let (line, pivot) = self.free.eliminate(self.matrix, row);
+        // It replaces a row that it depended on, so it is independent now; the lower bound only guards the
+        // square root against rounding.
+        self.free.push(row, line, pivot.max(DEPENDENT * self.matrix[(row, row)]));
         Ok(true)
     }
 
-    /// How far a multiplier may go along `direction` times.
-    fn reach(&self, row: usize, direction: f64) -> f64 {
+    /// The largest step along `direction` that keeps a multiplier within its bounds.
+    fn max_step(&self, row: usize, direction: f64) -> f64 {
         if direction < 0.0 {
             self.lambda[row] / -direction
         } else if direction > 0.0 {
@@ -243,30 +246,30 @@ impl ActiveSet<'_> {
         }
     }
 
-    /// Puts a free multiplier onto a bound.
+    /// Moves a free multiplier to a bound; it is no longer free.
     fn leave(&mut self, place: usize, at_upper: bool) {
         let member = self.free.members[place];
         self.lambda[member] = if at_upper { self.upper[member] } else { 0.0 };
         self.free.remove(self.matrix, place);
     }
 
-    /// Minimises over the free multipliers; those that reach a bound on the way leave.
+    /// Minimises over the free multipliers; those that reach a bound leave the free set.
     fn minimise(&mut self) {
-        // Each blocked step removes a member; two full ones, of which the second refines, end it.
+        // Each blocked step removes a member. Two full steps end the loop; the second refines the first.
         let mut full = 0;
         while full < 2 && !self.free.members.is_empty() {
             let downhill: Vec<f64> = self.free.members.iter().map(|&i| -self.terms(i).sum::<f64>()).collect();
             let direction = self.free.solve(downhill);
-            let mut reach = 1.0;
+            let mut step = 1.0;
             let mut blocking = None;
             for (place, &member) in self.free.members.iter().enumerate() {
-                let reaches = self.reach(member, direction[place]);
-                if reaches < reach {
-                    (reach, blocking) = (reaches, Some(place));
+                let member_step = self.max_step(member, direction[place]);
+                if member_step < step {
+                    (step, blocking) = (member_step, Some(place));
                 }
             }
             for (place, &member) in self.free.members.iter().enumerate() {
-                let moved = self.lambda[member] + reach * direction[place];
+                let moved = self.lambda[member] + step * direction[place];
                 self.lambda[member] = moved.clamp(0.0, self.upper[member]);
             }
             match blocking {
@@ -277,7 +280,7 @@ impl ActiveSet<'_> {
     }
 }
 
-/// Cholesky factor of the free rows' block, grown row by row: A_FF = L L^T.
+/// Cholesky factor of the block of the free rows, extended row by row: A_FF = L L^T.
 #[derive(Default)]
 struct Factor {
     members: Vec<usize>,
@@ -286,16 +289,16 @@ struct Factor {
 }
 
 impl Factor {
-    /// The line of L that `row` would get, without its diagonal, and the square of that diagonal.
+    /// The line of L that `row` would get, without its diagonal, and the pivot: the square of that diagonal.
     fn eliminate(&self, matrix: &DMatrix<f64>, row: usize) -> (Vec<f64>, f64) {
         let mut line: Vec<f64> = self.members.iter().map(|&member| matrix[(row, member)]).collect();
         self.forward_substitute(&mut line);
-        let left = matrix[(row, row)] - line.iter().map(|l| l * l).sum::<f64>();
-        (line, left)
+        let pivot = matrix[(row, row)] - line.iter().map(|l| l * l).sum::<f64>();
+        (line, pivot)
     }
 
-    fn push(&mut self, row: usize, mut line: Vec<f64>, left: f64) {
-        line.push(left.sqrt());
+    fn push(&mut self, row: usize, mut line: Vec<f64>, pivot: f64) {
+        line.push(pivot.sqrt());
         self.members.push(row);
         self.lines.push(line);
     }
@@ -304,8 +307,8 @@ impl Factor {
         let later = self.members.split_off(place);
         self.lines.truncate(place);
         for &row in &later[1..] {
-            let (line, left) = self.eliminate(matrix, row);
-            self.push(row, line, left.max(DEPENDENT * matrix[(row, row)]));
+            let (line, pivot) = self.eliminate(matrix, row);
+            self.push(row, line, pivot.max(DEPENDENT * matrix[(row, row)]));
         }
     }
 

@@ -1,31 +1,39 @@
 //! Projected Gauss-Seidel: one row after the other, or colour by colour with the rows of a colour in
 //! parallel.
 //!
-//! Both visit the rows in the order of the schedule and compute each alike, so they give the same
-//! bits, whatever the number of threads: rows of a colour share no node that moves.
+//! Both visit the rows in the order of the schedule and compute each row in the same way. Rows of a colour
+//! share no node that moves, so both give the same bits for any number of threads.
 
-use crate::kernels::{relax_ball, relax_friction, relax_row};
-use crate::params::{Info, Params};
-use crate::problem::{Problem, Schedule, State};
+use crate::error::LcpError;
+use crate::info::LcpInfo;
+use crate::kernels::{relax_friction, relax_limit, relax_row};
+use crate::params::LcpParams;
+use crate::problem::LcpProblem;
+use crate::schedule::Schedule;
 use crate::slots::{Slots, atomics, cells};
+use crate::state::LcpState;
 use crate::team::{self, Phases};
-use crate::{Error, Vector};
-use nalgebra::Vector2;
+use crate::vector::{TangentVector, Vector};
+use bowknot_errors::Parameters;
 use std::ops::Range;
 
-/// Rows a thread takes at once: enough to drown the counter's cost (50 ns), few enough that
-/// a colour of some hundred is shared evenly.
+/// Rows that a thread takes at once: so many that the cost of the counter (50 ns) is small, and so few that
+/// threads share a colour of some hundred rows evenly.
 const ROW_CHUNK: usize = 64;
-/// Ball rows are cheaper than rows.
-const BALL_CHUNK: usize = 128;
-/// Below this many rows of all kinds a sweep takes less time than waking a thread.
+/// Distance limits that a thread takes at once; they are cheaper than rows.
+const LIMIT_CHUNK: usize = 128;
+/// With fewer constraints than this a sweep takes less time than waking a thread.
 const PARALLEL_MIN: usize = 1024;
 
 /// One sweep in the order of the schedules, on this thread.
 ///
 /// # Errors
-/// [`Error::Length`] if the state does not fit the problem; [`Error::Parameter`].
-pub fn sweep_serial(problem: &Problem<'_>, state: &mut State<'_>, params: &Params) -> Result<(), Error> {
+/// [`LcpError::Length`] if the state does not fit the problem; [`LcpError::Parameters`].
+pub fn sweep_serial(
+    problem: &LcpProblem<'_>,
+    state: &mut LcpState<'_>,
+    params: &LcpParams,
+) -> Result<(), LcpError> {
     params.validate()?;
     state.check(problem)?;
     serial::<false>(problem, state, params, 1);
@@ -35,23 +43,34 @@ pub fn sweep_serial(problem: &Problem<'_>, state: &mut State<'_>, params: &Param
 /// Sweeps in the order of the schedules, on this thread.
 ///
 /// # Errors
-/// [`Error::Length`] if the state does not fit the problem; [`Error::Parameter`]; [`Error::NotConverged`] if
-/// [`Params::tolerance`] asks for more than `max_sweeps` give.
-pub fn solve_serial(problem: &Problem<'_>, state: &mut State<'_>, params: &Params) -> Result<Info, Error> {
+/// [`LcpError::Length`] if the state does not fit the problem; [`LcpError::Parameters`];
+/// [`LcpError::NotConverged`] if [`LcpParams::tolerance`] asks for more than `max_sweeps` give.
+pub fn solve_serial(
+    problem: &LcpProblem<'_>,
+    state: &mut LcpState<'_>,
+    params: &LcpParams,
+) -> Result<LcpInfo, LcpError> {
     params.validate()?;
     state.check(problem)?;
-    repeat(params, |residual, sweeps| match residual {
-        true => serial::<true>(problem, state, params, sweeps),
-        false => serial::<false>(problem, state, params, sweeps),
+    repeat(params, |residual, sweeps| {
+        if residual {
+            serial::<true>(problem, state, params, sweeps)
+        } else {
+            serial::<false>(problem, state, params, sweeps)
+        }
     })
 }
 
-/// One sweep, the rows of a colour in parallel on the threads of the current rayon pool. The same
-/// bits as [`sweep_serial`] if the colours are valid ([`crate::validate_colours`]).
+/// One sweep, the rows of a colour in parallel on the threads of the current rayon pool. The same bits as
+/// [`sweep_serial`] if the colours are valid ([`crate::validate_colours`]).
 ///
 /// # Errors
-/// [`Error::Length`] if the state does not fit the problem; [`Error::Parameter`].
-pub fn sweep_coloured(problem: &Problem<'_>, state: &mut State<'_>, params: &Params) -> Result<(), Error> {
+/// [`LcpError::Length`] if the state does not fit the problem; [`LcpError::Parameters`].
+pub fn sweep_coloured(
+    problem: &LcpProblem<'_>,
+    state: &mut LcpState<'_>,
+    params: &LcpParams,
+) -> Result<(), LcpError> {
     params.validate()?;
     state.check(problem)?;
     coloured::<false>(problem, state, params, 1);
@@ -63,36 +82,44 @@ pub fn sweep_coloured(problem: &Problem<'_>, state: &mut State<'_>, params: &Par
 ///
 /// # Errors
 /// As [`solve_serial`].
-pub fn solve_coloured(problem: &Problem<'_>, state: &mut State<'_>, params: &Params) -> Result<Info, Error> {
+pub fn solve_coloured(
+    problem: &LcpProblem<'_>,
+    state: &mut LcpState<'_>,
+    params: &LcpParams,
+) -> Result<LcpInfo, LcpError> {
     params.validate()?;
     state.check(problem)?;
-    repeat(params, |residual, sweeps| match residual {
-        true => coloured::<true>(problem, state, params, sweeps),
-        false => coloured::<false>(problem, state, params, sweeps),
+    repeat(params, |residual, sweeps| {
+        if residual {
+            coloured::<true>(problem, state, params, sweeps)
+        } else {
+            coloured::<false>(problem, state, params, sweeps)
+        }
     })
 }
 
-/// Runs sweeps with as few calls, and asking for as few residuals, as the tolerance allows.
-fn repeat(params: &Params, mut sweep: impl FnMut(bool, u32) -> f64) -> Result<Info, Error> {
+/// Repeats `sweep(whether to compute the residual, number of sweeps)`, which returns the residual of the last
+/// sweep. It makes as few calls, and computes as few residuals, as the tolerance allows.
+fn repeat(params: &LcpParams, mut sweep: impl FnMut(bool, u32) -> f64) -> Result<LcpInfo, LcpError> {
     let sweeps = params.max_sweeps;
     let Some(tolerance) = params.tolerance else {
         sweep(false, sweeps.saturating_sub(1));
-        return Ok(Info { sweeps, residual: sweep(true, sweeps.min(1)) });
+        return Ok(LcpInfo { sweeps, residual: sweep(true, sweeps.min(1)) });
     };
     let mut residual = f64::INFINITY;
     for sweeps in 1..=sweeps {
         residual = sweep(true, 1);
         if residual <= tolerance {
-            return Ok(Info { sweeps, residual });
+            return Ok(LcpInfo { sweeps, residual });
         }
     }
-    Err(Error::NotConverged { sweeps, residual })
+    Err(LcpError::NotConverged { sweeps, residual })
 }
 
 fn serial<const RESIDUAL: bool>(
-    problem: &Problem<'_>,
-    state: &mut State<'_>,
-    params: &Params,
+    problem: &LcpProblem<'_>,
+    state: &mut LcpState<'_>,
+    params: &LcpParams,
     sweeps: u32,
 ) -> f64 {
     let sweep = Sweep::<_, _, _, _, RESIDUAL> {
@@ -102,12 +129,12 @@ fn serial<const RESIDUAL: bool>(
         sweeps: sweeps as usize,
         y: cells(state.y),
         lambda: cells(state.lambda),
-        forces: cells(state.forces),
+        limit_multipliers: cells(state.limit_multipliers),
         friction: cells(state.friction),
     };
     let mut residual = 0.0;
     for _ in 0..sweeps {
-        for kind in [Kind::Ball, Kind::Row, Kind::Friction] {
+        for kind in [ConstraintKind::Limit, ConstraintKind::Row, ConstraintKind::Friction] {
             sweep.run(kind, 0, sweep.swept(kind), &mut residual);
         }
     }
@@ -115,18 +142,19 @@ fn serial<const RESIDUAL: bool>(
 }
 
 fn coloured<const RESIDUAL: bool>(
-    problem: &Problem<'_>,
-    state: &mut State<'_>,
-    params: &Params,
+    problem: &LcpProblem<'_>,
+    state: &mut LcpState<'_>,
+    params: &LcpParams,
     sweeps: u32,
 ) -> f64 {
-    let rows = problem.balls().swept() + problem.rows().swept() + problem.friction().swept();
+    let rows = problem.distance_limits().swept() + problem.rows().swept() + problem.friction().swept();
     let threads = rayon::current_num_threads();
     if threads == 1 || rows < PARALLEL_MIN || sweeps == 0 {
         return serial::<RESIDUAL>(problem, state, params, sweeps);
     }
-    let views = (atomics(state.y), atomics(state.lambda), atomics(state.forces), atomics(state.friction));
-    let (Some(y), Some(lambda), Some(forces), Some(friction)) = views else {
+    let views =
+        (atomics(state.y), atomics(state.lambda), atomics(state.limit_multipliers), atomics(state.friction));
+    let (Some(y), Some(lambda), Some(limit_multipliers), Some(friction)) = views else {
         return serial::<RESIDUAL>(problem, state, params, sweeps);
     };
     let sweep = Sweep::<_, _, _, _, RESIDUAL> {
@@ -136,7 +164,7 @@ fn coloured<const RESIDUAL: bool>(
         sweeps: sweeps as usize,
         y,
         lambda,
-        forces,
+        limit_multipliers,
         friction,
     };
     team::run(&sweep, threads)
@@ -148,24 +176,24 @@ fn larger(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
 }
 
-/// The families in the order of a sweep.
+/// The types of constraints, in the order of a sweep.
 #[derive(Clone, Copy)]
-enum Kind {
-    Ball,
+enum ConstraintKind {
+    Limit,
     Row,
     Friction,
 }
 
 /// Sweeps over views of the state.
 struct Sweep<'a, Y, L, F, T, const RESIDUAL: bool> {
-    problem: &'a Problem<'a>,
-    params: &'a Params,
+    problem: &'a LcpProblem<'a>,
+    params: &'a LcpParams,
     /// The phases of one sweep, where threads share it.
     phases: Vec<Phase>,
     sweeps: usize,
     y: Y,
     lambda: L,
-    forces: F,
+    limit_multipliers: F,
     friction: T,
 }
 
@@ -174,43 +202,50 @@ where
     Y: Slots<Vector>,
     L: Slots<f64>,
     F: Slots<Vector>,
-    T: Slots<Vector2<f64>>,
+    T: Slots<TangentVector>,
 {
-    fn schedule(&self, kind: Kind) -> Schedule<'_> {
+    fn schedule(&self, kind: ConstraintKind) -> Schedule<'_> {
         match kind {
-            Kind::Ball => self.problem.balls().schedule,
-            Kind::Row => self.problem.rows().schedule,
-            Kind::Friction => self.problem.friction().schedule,
+            ConstraintKind::Limit => self.problem.distance_limits().schedule,
+            ConstraintKind::Row => self.problem.rows().schedule,
+            ConstraintKind::Friction => self.problem.friction().schedule,
         }
     }
 
-    fn swept(&self, kind: Kind) -> usize {
+    fn swept(&self, kind: ConstraintKind) -> usize {
         match kind {
-            Kind::Ball => self.problem.balls().swept(),
-            Kind::Row => self.problem.rows().swept(),
-            Kind::Friction => friction_swept(self.problem),
+            ConstraintKind::Limit => self.problem.distance_limits().swept(),
+            ConstraintKind::Row => self.problem.rows().swept(),
+            ConstraintKind::Friction => friction_swept(self.problem),
         }
     }
 
-    /// Visits places `begin..end` of a family's schedule.
-    fn run(&self, kind: Kind, begin: usize, end: usize, residual: &mut f64) {
+    /// Visits places `begin..end` of one schedule.
+    fn run(&self, kind: ConstraintKind, begin: usize, end: usize, residual: &mut f64) {
         let schedule = self.schedule(kind);
         let (weights, relaxation) = (self.problem.weights(), self.params.relaxation);
         let mut largest = *residual;
         match kind {
-            Kind::Ball => {
-                let rows = self.problem.balls().rows;
+            ConstraintKind::Limit => {
+                let rows = self.problem.distance_limits().rows;
                 for place in begin..end {
                     let i = schedule.row(place);
                     largest = larger(
                         largest,
-                        relax_ball::<RESIDUAL>(&rows[i], weights, relaxation, &self.y, &self.forces, i),
+                        relax_limit::<RESIDUAL>(
+                            &rows[i],
+                            weights,
+                            relaxation,
+                            &self.y,
+                            &self.limit_multipliers,
+                            i,
+                        ),
                     );
                 }
             }
-            Kind::Row if self.params.equations => self.run_rows::<true>(begin, end, &mut largest),
-            Kind::Row => self.run_rows::<false>(begin, end, &mut largest),
-            Kind::Friction => {
+            ConstraintKind::Row if self.params.equations => self.run_rows::<true>(begin, end, &mut largest),
+            ConstraintKind::Row => self.run_rows::<false>(begin, end, &mut largest),
+            ConstraintKind::Friction => {
                 for place in begin..end {
                     largest = larger(largest, self.relax_friction(schedule.row(place)));
                 }
@@ -221,7 +256,7 @@ where
 
     #[inline(always)]
     fn run_rows<const EQUATION: bool>(&self, begin: usize, end: usize, largest: &mut f64) {
-        let schedule = self.schedule(Kind::Row);
+        let schedule = self.schedule(ConstraintKind::Row);
         let (weights, relaxation) = (self.problem.weights(), self.params.relaxation);
         let (rows, attached) = (self.problem.rows().rows, self.problem.attached());
         for place in begin..end {
@@ -232,7 +267,7 @@ where
                 relax_row::<RESIDUAL, EQUATION>(row, weights, relaxation, &self.y, &self.lambda, i),
             );
             if let Some(&friction) = attached.get(i)
-                && friction != Problem::NO_FRICTION
+                && friction != LcpProblem::NO_FRICTION
             {
                 *largest = larger(*largest, self.relax_friction(friction as usize));
             }
@@ -254,31 +289,37 @@ where
     }
 }
 
-/// Friction rows that have a turn of their own, rather than one with their normals.
-fn friction_swept(problem: &Problem<'_>) -> usize {
+/// How many friction rows are swept by their own schedule rather than with their normals.
+fn friction_swept(problem: &LcpProblem<'_>) -> usize {
     if problem.attached().is_empty() { problem.friction().swept() } else { 0 }
 }
 
-/// Places of one family's schedule between two waits of all threads.
+/// Places of one schedule between two points at which all threads wait.
 #[derive(Clone, Copy)]
 struct Phase {
-    kind: Kind,
+    kind: ConstraintKind,
     begin: usize,
     end: usize,
-    /// Places that a thread takes at once; all of them where they depend on each other.
+    /// Places that a thread takes at once; all of them if they depend on each other.
     chunk: usize,
 }
 
-/// The phases of one sweep: a colour each, but colours so small that one thread takes them whole are joined with
-/// their like. Contacts have a long tail of such colours, and waiting for the others costs as much as a dozen rows.
-fn phases(problem: &Problem<'_>) -> Vec<Phase> {
+/// The phases of one sweep. Each colour is a phase, but successive colours that one thread takes whole are
+/// joined into one. Contacts have many such small colours, and waiting for the other threads costs as much as
+/// a dozen rows.
+fn phases(problem: &LcpProblem<'_>) -> Vec<Phase> {
     let mut phases = Vec::new();
-    let families = [
-        (Kind::Ball, problem.balls().schedule, problem.balls().swept(), BALL_CHUNK),
-        (Kind::Row, problem.rows().schedule, problem.rows().swept(), ROW_CHUNK),
-        (Kind::Friction, problem.friction().schedule, friction_swept(problem), ROW_CHUNK),
+    let sets = [
+        (
+            ConstraintKind::Limit,
+            problem.distance_limits().schedule,
+            problem.distance_limits().swept(),
+            LIMIT_CHUNK,
+        ),
+        (ConstraintKind::Row, problem.rows().schedule, problem.rows().swept(), ROW_CHUNK),
+        (ConstraintKind::Friction, problem.friction().schedule, friction_swept(problem), ROW_CHUNK),
     ];
-    for (kind, schedule, swept, chunk) in families.into_iter().filter(|family| family.2 > 0) {
+    for (kind, schedule, swept, chunk) in sets.into_iter().filter(|set| set.2 > 0) {
         if schedule.starts.is_empty() {
             phases.push(Phase { kind, begin: 0, end: swept, chunk: swept.max(1) });
             continue;
@@ -304,7 +345,7 @@ where
     Y: Slots<Vector> + Sync,
     L: Slots<f64> + Sync,
     F: Slots<Vector> + Sync,
-    T: Slots<Vector2<f64>> + Sync,
+    T: Slots<TangentVector> + Sync,
 {
     fn count(&self) -> usize {
         self.sweeps * self.phases.len()

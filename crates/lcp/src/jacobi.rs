@@ -1,40 +1,45 @@
 //! Projected Jacobi: all rows at once from the same positions. It needs no colours.
 //!
-//! Solving every row by itself and adding up the moves overshoots where rows share nodes, without
-//! bound. So each row is told that its nodes are lighter by the number n_v of rows that share them
-//! ("mass splitting", Tonge, Benevolenski and Voroshilov 2012): its diagonal is
-//! D_r = sum over nodes of n_v w_v |g_rv|^2. By Cauchy-Schwarz, for any multipliers x,
+//! If every row is solved by itself and the moves are added up, rows that share nodes overshoot without
+//! bound. So each row takes its nodes to be lighter by the number n_v of rows that share them ("mass
+//! splitting", Tonge, Benevolenski and Voroshilov 2012): its diagonal is D_r = sum over nodes of n_v
+//! w_v |g_rv|^2. By Cauchy-Schwarz, for any multipliers x,
 //!
 //! ```text
 //! x^T A x = sum_v w_v |sum_r g_rv x_r|^2 <= sum_v w_v n_v sum_r |g_rv|^2 |x_r|^2 = x^T D x,
 //! ```
 //!
-//! so D - A is positive semi-definite and the step is a proximal gradient step in the metric D: the
-//! dual decreases for relaxations in (0, 2), for rows and ball rows alike. (Friction, whose bound moves
-//! with the normal multiplier, has no such proof in any of the solvers.) Moves are gathered by node,
-//! in the order of the rows, so that results do not depend on the number of threads.
+//! so D - A is positive semi-definite and the step is a proximal gradient step in the metric D: the dual
+//! decreases for relaxations in (0, 2), for rows and distance limits alike. (None of the solvers has such a
+//! proof for friction, whose bound depends on the normal multiplier.) Moves are gathered by node, in the
+//! order of the rows, so results do not depend on the number of threads.
 
-use crate::kernels::{ball_multiplier, equation_multiplier, friction_multiplier, row_multiplier};
-use crate::params::{Info, Params};
-use crate::problem::{AnyRow, Family, Problem, State, invert};
-use crate::{Error, Vector};
-use nalgebra::Vector2;
+use crate::error::LcpError;
+use crate::info::LcpInfo;
+use crate::kernels::{equation_multiplier, friction_multiplier, limit_multiplier, row_multiplier};
+use crate::params::LcpParams;
+use crate::problem::LcpProblem;
+use crate::rows::{Constraint, invert};
+use crate::schedule::ConstraintSet;
+use crate::state::LcpState;
+use crate::vector::{TangentVector, Vector};
+use bowknot_errors::Parameters;
 use rayon::prelude::*;
 
 /// Fewest rows or nodes that a thread takes.
 const MIN_SHARE: usize = 1024;
 
-/// The projected Jacobi solver with its scratch memory, which may be dropped at any time.
+/// The projected Jacobi solver. It holds scratch memory only and may be dropped at any time.
 #[derive(Clone, Debug, Default)]
 pub struct Jacobi {
     /// Where the places of each node start in `places`, and the end.
     starts: Vec<u32>,
-    /// Places of rows (4r + k), of ball rows (2b + k, after all rows) and friction rows (4f + k, after
-    /// these) in which each node that can move stands.
+    /// The places at which each node that can move is named: 4r + k in rows, 2b + k in distance limits (after
+    /// all rows), 4f + k in friction rows (after all distance limits).
     places: Vec<u32>,
     rows: Scratch<f64>,
-    balls: Scratch<Vector>,
-    friction: Scratch<Vector2<f64>>,
+    limits: Scratch<Vector>,
+    friction: Scratch<TangentVector>,
 }
 
 #[derive(Clone, Debug)]
@@ -54,27 +59,27 @@ impl<T> Default for Scratch<T> {
 }
 
 impl Jacobi {
-    /// A solver without memory yet.
+    /// A solver with empty scratch memory.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Sweeps on the threads of the current rayon pool, to the same bits for any number of them.
-    /// [`Params::relaxation`] and [`Params::spectral_radius`] apply.
+    /// Sweeps on the threads of the current rayon pool, with the same bits for any number of them.
+    /// [`LcpParams::relaxation`] and [`LcpParams::spectral_radius`] apply.
     ///
     /// # Errors
     /// As [`crate::solve_serial`].
     pub fn solve(
         &mut self,
-        problem: &Problem<'_>,
-        state: &mut State<'_>,
-        params: &Params,
-    ) -> Result<Info, Error> {
+        problem: &LcpProblem<'_>,
+        state: &mut LcpState<'_>,
+        params: &LcpParams,
+    ) -> Result<LcpInfo, LcpError> {
         params.validate()?;
         state.check(problem)?;
         self.prepare(problem);
         self.rows.previous.copy_from_slice(state.lambda);
-        self.balls.previous.copy_from_slice(state.forces);
+        self.limits.previous.copy_from_slice(state.limit_multipliers);
         self.friction.previous.copy_from_slice(state.friction);
         let mut residual = 0.0;
         let mut omega = 1.0;
@@ -82,24 +87,24 @@ impl Jacobi {
         for sweep in 1..=params.max_sweeps {
             residual = self.sweep(problem, state, params, omega);
             if params.tolerance.is_some_and(|tolerance| residual <= tolerance) {
-                return Ok(Info { sweeps: sweep, residual });
+                return Ok(LcpInfo { sweeps: sweep, residual });
             }
             // Golub and Varga (1961): the weights of the Chebyshev semi-iterative method.
             omega = if sweep == 1 { 2.0 / (2.0 - square) } else { 4.0 / (4.0 - square * omega) };
         }
         match params.tolerance {
-            None => Ok(Info { sweeps: params.max_sweeps, residual }),
-            Some(_) => Err(Error::NotConverged { sweeps: params.max_sweeps, residual }),
+            None => Ok(LcpInfo { sweeps: params.max_sweeps, residual }),
+            Some(_) => Err(LcpError::NotConverged { sweeps: params.max_sweeps, residual }),
         }
     }
 
-    /// Counts the rows at each node, lists its places and computes the split diagonals.
-    fn prepare(&mut self, problem: &Problem<'_>) {
+    /// Counts the constraints at each node, lists its places and computes the split diagonals.
+    fn prepare(&mut self, problem: &LcpProblem<'_>) {
         let weights = problem.weights();
-        let (rows, balls, friction) = (problem.rows(), problem.balls(), problem.friction());
+        let (rows, limits, friction) = (problem.rows(), problem.distance_limits(), problem.friction());
         self.rows.reset(rows.rows.len(), 0.0);
-        self.balls.reset(balls.rows.len(), Vector::zeros());
-        self.friction.reset(friction.rows.len(), Vector2::zeros());
+        self.limits.reset(limits.rows.len(), Vector::zeros());
+        self.friction.reset(friction.rows.len(), TangentVector::zeros());
 
         let mut shares = vec![0_u32; weights.len()];
         self.starts.clear();
@@ -111,7 +116,7 @@ impl Jacobi {
             }
         };
         for_places(rows, |_, _, node, first| count(node, first));
-        for_places(balls, |_, _, node, first| count(node, first));
+        for_places(limits, |_, _, node, first| count(node, first));
         for_places(friction, |_, _, node, first| count(node, first));
 
         for node in 0..weights.len() {
@@ -128,23 +133,29 @@ impl Jacobi {
             }
         };
         let after_rows = 4 * rows.rows.len();
-        let after_balls = after_rows + 2 * balls.rows.len();
+        let after_limits = after_rows + 2 * limits.rows.len();
         for_places(rows, |r, k, node, _| list(4 * r + k, node));
-        for_places(balls, |b, k, node, _| list(after_rows + 2 * b + k, node));
-        for_places(friction, |f, k, node, _| list(after_balls + 4 * f + k, node));
+        for_places(limits, |b, k, node, _| list(after_rows + 2 * b + k, node));
+        for_places(friction, |f, k, node, _| list(after_limits + 4 * f + k, node));
 
         // Rows that are not swept keep 0.
         let split = |node: u32| weights[node as usize] * f64::from(shares[node as usize]);
         for_swept(rows, |r| self.rows.inverse[r] = invert(rows.rows[r].diagonal(split)));
-        for_swept(balls, |b| {
-            let [a, c] = balls.rows[b].vertices;
-            self.balls.inverse[b] = if a == c { 0.0 } else { invert(split(a) + split(c)) };
+        for_swept(limits, |b| {
+            let [a, c] = limits.rows[b].vertices;
+            self.limits.inverse[b] = if a == c { 0.0 } else { invert(split(a) + split(c)) };
         });
         for_swept(friction, |f| self.friction.inverse[f] = invert(friction.rows[f].diagonal(split)));
     }
 
     /// One sweep; `omega` is the Chebyshev weight, 1 for a plain one.
-    fn sweep(&mut self, problem: &Problem<'_>, state: &mut State<'_>, params: &Params, omega: f64) -> f64 {
+    fn sweep(
+        &mut self,
+        problem: &LcpProblem<'_>,
+        state: &mut LcpState<'_>,
+        params: &LcpParams,
+        omega: f64,
+    ) -> f64 {
         let relaxation = params.relaxation;
         let y = &*state.y;
         let rows = problem.rows().rows;
@@ -159,16 +170,16 @@ impl Jacobi {
         };
         let of_rows = self.rows.update(state.lambda, propose, f64::abs);
 
-        let balls = problem.balls().rows;
+        let limits = problem.distance_limits().rows;
         let propose = |b: usize, old: Vector, previous: Vector, inverse: f64| {
-            let [a, c] = balls[b].vertices.map(|v| y[v as usize]);
-            let new = old + relaxation * (ball_multiplier(&balls[b], a - c, old, 1.0 / inverse) - old);
+            let [a, c] = limits[b].vertices.map(|v| y[v as usize]);
+            let new = old + relaxation * (limit_multiplier(&limits[b], a - c, old, 1.0 / inverse) - old);
             if omega == 1.0 { new } else { previous + omega * (new - previous) }
         };
-        let of_balls = self.balls.update(state.forces, propose, |c| c.norm());
+        let of_limits = self.limits.update(state.limit_multipliers, propose, |c| c.norm());
 
         let (friction, lambda, bound) = (problem.friction().rows, &*state.lambda, params.friction_bound);
-        let propose = |f: usize, old: Vector2<f64>, previous: Vector2<f64>, inverse: f64| {
+        let propose = |f: usize, old: TangentVector, previous: TangentVector, inverse: f64| {
             let row = &friction[f];
             let normal = lambda[row.normal as usize];
             let new = friction_multiplier(row, row.point(y), old, normal, relaxation * inverse, bound);
@@ -181,14 +192,15 @@ impl Jacobi {
         let of_friction = self.friction.update(state.friction, propose, |c| c.norm());
 
         self.gather(problem, state.y);
-        of_rows.max(of_balls).max(of_friction)
+        of_rows.max(of_limits).max(of_friction)
     }
 
     /// y += W J^T change.
-    fn gather(&self, problem: &Problem<'_>, y: &mut [Vector]) {
-        let (rows, balls, friction) = (problem.rows().rows, problem.balls().rows, problem.friction().rows);
+    fn gather(&self, problem: &LcpProblem<'_>, y: &mut [Vector]) {
+        let (rows, limits, friction) =
+            (problem.rows().rows, problem.distance_limits().rows, problem.friction().rows);
         let after_rows = 4 * rows.len();
-        let after_balls = after_rows + 2 * balls.len();
+        let after_limits = after_rows + 2 * limits.len();
         y.par_iter_mut().with_min_len(MIN_SHARE).enumerate().for_each(|(node, y)| {
             let mut force = Vector::zeros();
             for &place in &self.places[self.starts[node] as usize..self.starts[node + 1] as usize] {
@@ -196,11 +208,11 @@ impl Jacobi {
                 if place < after_rows {
                     let (r, k) = (place / 4, place % 4);
                     force += rows[r].gradients[k] * self.rows.change[r];
-                } else if place < after_balls {
+                } else if place < after_limits {
                     let (b, k) = ((place - after_rows) / 2, (place - after_rows) % 2);
-                    if k == 0 { force -= self.balls.change[b] } else { force += self.balls.change[b] }
+                    if k == 0 { force -= self.limits.change[b] } else { force += self.limits.change[b] }
                 } else {
-                    let (f, k) = ((place - after_balls) / 4, (place - after_balls) % 4);
+                    let (f, k) = ((place - after_limits) / 4, (place - after_limits) % 4);
                     force += friction[f].direction(self.friction.change[f]) * friction[f].coefficients[k];
                 }
             }
@@ -219,8 +231,8 @@ impl<T: Copy + Send + Sync + std::ops::Sub<Output = T>> Scratch<T> {
         self.previous.resize(count, zero);
     }
 
-    /// Replaces each multiplier by what `propose(row, now, before the last sweep, inverse)` says; returns the
-    /// largest correction of a row value.
+    /// Replaces each multiplier by `propose(row, multiplier, multiplier before the last sweep, inverse)`;
+    /// returns the largest correction of a row value.
     fn update(
         &mut self,
         multipliers: &mut [T],
@@ -249,14 +261,14 @@ impl<T: Copy + Send + Sync + std::ops::Sub<Output = T>> Scratch<T> {
 }
 
 /// Calls `visit(row)` for each row that is swept.
-fn for_swept<T: Copy>(family: Family<'_, T>, visit: impl FnMut(usize)) {
-    (0..family.swept()).map(|place| family.schedule.row(place)).for_each(visit);
+fn for_swept<T: Copy>(set: ConstraintSet<'_, T>, visit: impl FnMut(usize)) {
+    (0..set.swept()).map(|place| set.schedule.row(place)).for_each(visit);
 }
 
-/// Calls `visit(row, place, node, whether it is the node's first place in the row)`.
-fn for_places<T: AnyRow>(family: Family<'_, T>, mut visit: impl FnMut(usize, usize, u32, bool)) {
-    for_swept(family, |row| {
-        let nodes = family.rows[row].nodes();
+/// Calls `visit(row, place, node, whether the row has no earlier place with this node)`.
+fn for_places<T: Constraint>(set: ConstraintSet<'_, T>, mut visit: impl FnMut(usize, usize, u32, bool)) {
+    for_swept(set, |row| {
+        let nodes = set.rows[row].nodes();
         for (k, node) in nodes.iter().enumerate() {
             visit(row, k, *node, !nodes[..k].contains(node));
         }

@@ -1,22 +1,24 @@
-//! From multipliers to positions.
+//! Positions from multipliers.
 
-use crate::Error;
-use crate::problem::{Problem, State};
+use crate::error::LcpError;
+use crate::problem::LcpProblem;
+use crate::state::LcpState;
 
-/// y += W (J^T lambda + ball forces + friction), with all rows, scheduled or not. Give `y` = y_free to
-/// start the solvers from kept multipliers. Multipliers of rows none of whose nodes can move do
-/// nothing.
+/// y += W (J^T lambda + multipliers of distance limits + friction), over all constraints, scheduled or not.
+///
+/// Call it with `y` = y_free to start the solvers from kept multipliers. The multiplier of a row does nothing
+/// if none of its nodes can move.
 ///
 /// # Errors
-/// [`Error::Length`] if the state does not fit the problem.
-pub fn apply_multipliers(problem: &Problem<'_>, state: &mut State<'_>) -> Result<(), Error> {
+/// [`LcpError::Length`] if the state does not fit the problem.
+pub fn apply_multipliers(problem: &LcpProblem<'_>, state: &mut LcpState<'_>) -> Result<(), LcpError> {
     state.check(problem)?;
     let weights = problem.weights();
     let y = &mut *state.y;
-    for (ball, force) in problem.balls().rows.iter().zip(&*state.forces) {
-        let [a, b] = ball.vertices.map(|v| v as usize);
-        y[a] -= weights[a] * force;
-        y[b] += weights[b] * force;
+    for (edge, multiplier) in problem.distance_limits().rows.iter().zip(&*state.limit_multipliers) {
+        let [a, b] = edge.vertices.map(|v| v as usize);
+        y[a] -= weights[a] * multiplier;
+        y[b] += weights[b] * multiplier;
     }
     for (row, &lambda) in problem.rows().rows.iter().zip(&*state.lambda) {
         if lambda != 0.0 {

@@ -1,39 +1,40 @@
-//! How far a state is from solving its problem.
+//! Residuals: how far a state is from solving its problem.
 
-use crate::Error;
-use crate::kernels::{ball_multiplier, friction_multiplier, row_multiplier};
+use crate::error::LcpError;
+use crate::kernels::{friction_multiplier, limit_multiplier, row_multiplier};
 use crate::params::FrictionBound;
-use crate::problem::{Problem, State};
+use crate::problem::LcpProblem;
+use crate::state::LcpState;
 use serde::{Deserialize, Serialize};
 
-/// What is violated, over all rows, scheduled or not; rows none of whose nodes can move are left out,
-/// as nothing can be done about them.
+/// Largest residuals over all constraints, scheduled or not. A constraint is left out if none of its nodes
+/// can move: no solver could change it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Residuals {
-    /// Largest |lambda - clamp(lambda - s, 0, upper)| of a row, which is |min(lambda, s)| for a hard
-    /// row: zero exactly where 0 <= lambda, s >= 0 and lambda s = 0. It mixes lambda and s as the
-    /// paper does: inverse weights near 1 give both one unit.
+    /// Largest |lambda - clamp(lambda - s, 0, upper)| of a row, which is |min(lambda, s)| for a hard row: it
+    /// is zero exactly where lambda >= 0, s >= 0 and lambda s = 0. It compares lambda with s as the paper
+    /// does: with inverse weights near 1 both have the same unit.
     pub complementarity: f64,
     /// Largest violation of a row: max(0, -s).
     pub penetration: f64,
-    /// Largest |y_a - y_b| - L of a ball row, or 0.
-    pub ball_violation: f64,
-    /// Largest correction that a ball row alone would make to y_a - y_b: unlike the violation it also
-    /// sees forces on slack or turned edges.
-    pub ball_correction: f64,
+    /// Largest |y_a - y_b| - L of a distance limit, or 0.
+    pub limit_violation: f64,
+    /// Largest correction that a distance limit alone would make to y_a - y_b. Unlike the violation it also
+    /// counts multipliers of limits that are slack or whose direction has changed.
+    pub limit_correction: f64,
     /// Largest correction that a friction row alone would make to its slip.
     pub friction_correction: f64,
 }
 
-/// Judges a state. Cost: a sweep without writes.
+/// The residuals of a state. Cost: a sweep without writes.
 ///
 /// # Errors
-/// [`Error::Length`] if the state does not fit the problem.
+/// [`LcpError::Length`] if the state does not fit the problem.
 pub fn residuals(
-    problem: &Problem<'_>,
-    state: &State<'_>,
+    problem: &LcpProblem<'_>,
+    state: &LcpState<'_>,
     friction_bound: FrictionBound,
-) -> Result<Residuals, Error> {
+) -> Result<Residuals, LcpError> {
     state.check(problem)?;
     let (weights, y) = (problem.weights(), &*state.y);
     let mut result = Residuals::default();
@@ -45,14 +46,14 @@ pub fn residuals(
             raise(&mut result.complementarity, (lambda - row_multiplier(row, value, lambda, 1.0)).abs());
         }
     }
-    for (ball, &force) in problem.balls().rows.iter().zip(&*state.forces) {
-        let [a, b] = ball.vertices.map(|v| v as usize);
+    for (edge, &multiplier) in problem.distance_limits().rows.iter().zip(&*state.limit_multipliers) {
+        let [a, b] = edge.vertices.map(|v| v as usize);
         let total = weights[a] + weights[b];
         if total != 0.0 && a != b {
             let difference = y[a] - y[b];
-            raise(&mut result.ball_violation, difference.norm() - ball.limit);
-            let change = ball_multiplier(ball, difference, force, total) - force;
-            raise(&mut result.ball_correction, change.norm() * total);
+            raise(&mut result.limit_violation, difference.norm() - edge.limit);
+            let change = limit_multiplier(edge, difference, multiplier, total) - multiplier;
+            raise(&mut result.limit_correction, change.norm() * total);
         }
     }
     for (row, &old) in problem.friction().rows.iter().zip(&*state.friction) {

@@ -1,17 +1,16 @@
 //! Arrays that several rows write through shared references, one element at a time.
 //!
-//! Rows of a colour write disjoint nodes, which safe Rust cannot see. Two views of a `&mut [T]` give
-//! kernels shared access, so that one kernel serves both ways of running it: `Cell`s on one thread,
-//! relaxed atomics on several. A wrong colouring can then spoil a result but never memory safety:
-//! soundness needs no check of the colours, and the only unsafe line is a change of type.
+//! Rows of a colour write disjoint nodes, which the compiler cannot prove. Two views of a `&mut [T]` give
+//! kernels shared access: `Cell`s on one thread, relaxed atomics on several. One kernel serves both. A wrong
+//! colouring can then spoil a result but never memory safety: soundness needs no check of the colours, and
+//! the only unsafe line is a change of type.
 //!
-//! Weighed against it, on 30k ball rows and 20k rows over 10k nodes (8 sweeps, one thread of a 2-core
-//! x86-64): 3.7 ms with cells, 4.7 ms with atomics, whose loads the compiler does not combine, 2.6 ms
-//! with atomics on two threads. Raw
-//! pointers behind checked colours would save that quarter, but the proof that no two threads meet would
-//! spread over the check, the kernels and the schedules, and the check costs 0.1 ms a problem.
-//! Computing changes in parallel and scattering them serially, in safe code alone, took 2.7 ms on two
-//! threads and cannot scale beyond: the serial half is a third of the work.
+//! The cost, on 30k distance limits and 20k rows over 10k nodes (8 sweeps, one thread of a 2-core
+//! x86-64): 3.7 ms with cells, 4.7 ms with atomics, whose loads the compiler does not combine, and 2.6 ms
+//! with atomics on two threads. Raw pointers with checked colours would save that quarter. But the proof that
+//! no two threads access the same node would then involve the check, the kernels and the schedules, and the
+//! check costs 0.1 ms per problem. Computing changes in parallel and scattering them serially needs safe code
+//! only, took 2.7 ms on two threads, and does not scale beyond two: the serial half is a third of the work.
 #![allow(unsafe_code)]
 #![deny(clippy::undocumented_unsafe_blocks)]
 
@@ -41,7 +40,7 @@ impl<T: Copy> Slots<T> for &[Cell<T>] {
     }
 }
 
-/// A type of N `f64`s in a row and nothing else.
+/// A type that consists of N consecutive `f64`s.
 ///
 /// # Safety
 /// `Self` must have the layout of `[f64; N]`.
@@ -50,7 +49,7 @@ pub(crate) unsafe trait Reals<const N: usize>: Copy {
     fn from_array(array: [f64; N]) -> Self;
 }
 
-// SAFETY: f64 and [f64; 1] have one layout.
+// SAFETY: f64 and [f64; 1] have the same layout.
 unsafe impl Reals<1> for f64 {
     #[inline(always)]
     fn to_array(self) -> [f64; 1] {
@@ -62,8 +61,8 @@ unsafe impl Reals<1> for f64 {
     }
 }
 
-// SAFETY: nalgebra's matrix is repr(C) over its storage and a zero-sized marker, and array storage
-// is repr(transparent) over [[f64; N]; 1].
+// SAFETY: nalgebra's matrix is repr(C) over its storage and a zero-sized marker, and array storage is
+// repr(transparent) over [[f64; N]; 1].
 unsafe impl<const N: usize> Reals<N> for SVector<f64, N> {
     #[inline(always)]
     fn to_array(self) -> [f64; N] {
@@ -75,16 +74,16 @@ unsafe impl<const N: usize> Reals<N> for SVector<f64, N> {
     }
 }
 
-/// The view for several threads; `None` on a target whose atomics are aligned more strictly than
-/// `f64` (32-bit x86), where callers stay on one thread.
+/// The view for several threads. It is `None` on a target whose atomics are aligned more strictly than `f64`
+/// (32-bit x86); callers then use one thread.
 pub(crate) fn atomics<const N: usize, T: Reals<N>>(values: &mut [T]) -> Option<&[[AtomicU64; N]]> {
     const { assert!(size_of::<T>() == size_of::<[AtomicU64; N]>()) };
     if align_of::<T>() < align_of::<AtomicU64>() {
         return None;
     }
-    // SAFETY: T has the layout of [f64; N], the sizes agree (asserted), and T is aligned enough, so
-    // the memory holds as many [AtomicU64; N]; every bit pattern is valid for both types. The
-    // exclusive borrow of `values` lasts as long as the result: all access goes through the atomics.
+    // SAFETY: T has the layout of [f64; N], the sizes agree (asserted), and T is aligned enough, so the
+    // memory holds as many [AtomicU64; N]; every bit pattern is valid for both types. The exclusive borrow of
+    // `values` lasts as long as the result: all access goes through the atomics.
     Some(unsafe { std::slice::from_raw_parts(values.as_mut_ptr().cast(), values.len()) })
 }
 

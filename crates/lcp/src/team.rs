@@ -1,15 +1,15 @@
-//! Several threads through one sequence of phases, each phase in parallel, with no fork between them.
+//! Several threads run one sequence of phases, each phase in parallel, without a fork between phases.
 //!
-//! A sweep has dozens of colours of a few hundred rows, some microseconds of work each; forking and
-//! joining anew for each costs as much. So one fork covers all sweeps: each thread walks the
-//! same sequence of phases (colours) and waits, spinning, until all places of the earlier phases are
-//! done. Each thread has its own share of every phase, the same fraction of the places: where rows
-//! are stored in spatial order it meets the same nodes in every colour, in its own cache. A thread that
-//! is through takes chunks of the others' shares.
+//! A sweep has dozens of colours of a few hundred rows. One colour is some microseconds of work, and a fork
+//! and join would cost as much. So one fork covers all sweeps. Each thread goes through the same sequence of
+//! phases (colours) and waits, spinning, until all places of the earlier phases are done. Each thread has its
+//! own share of every phase, the same fraction of the places: if rows are stored in spatial order, it
+//! accesses the same nodes in every colour, in its own cache. A thread that has finished its share takes
+//! chunks of the shares of others.
 //!
-//! No thread waits in vain: a chunk is only ever claimed by a thread that is running, which does it
-//! at once, and chunks that nobody claimed are taken by whoever arrives. If no other thread ever
-//! comes to help, the first does everything. Who runs a chunk has no influence on results.
+//! There is no deadlock. Only a running thread claims a chunk, and it runs the chunk at once; any thread may
+//! claim a chunk that is not claimed yet. If no other thread ever runs, the first does everything. Results do
+//! not depend on which thread runs a chunk.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -18,17 +18,18 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 pub(crate) trait Phases: Sync {
     /// How many phases there are.
     fn count(&self) -> usize;
-    /// How many places a phase has, and how many make a chunk (at least 1). A phase whose chunk is
-    /// its size is run by one thread.
+    /// The number of places of a phase and of a chunk (at least 1). One thread runs a phase that is a single
+    /// chunk.
     fn size(&self, phase: usize) -> (usize, usize);
-    /// Runs places of a phase; raises `residual` to the largest seen.
+    /// Runs places of a phase; raises `residual` to the largest residual among them.
     fn run(&self, phase: usize, places: Range<usize>, residual: &mut f64);
 }
 
-/// More threads than this would find no work in a colour.
+/// A colour has no work for more threads than this.
 const MAX_THREADS: usize = 32;
 
-/// Alone on its cache lines (pairs of 64 bytes, as neighbours are prefetched).
+/// A counter that shares its cache lines with nothing else. Lines come in pairs of 64 bytes, because the
+/// processor prefetches the neighbour.
 #[derive(Default)]
 #[repr(align(128))]
 struct Counter(AtomicUsize);
@@ -37,8 +38,8 @@ struct Counter(AtomicUsize);
 struct Progress {
     /// Chunks claimed of each thread's shares, over all phases.
     claimed: [Counter; MAX_THREADS],
-    /// Chunks done, over all shares and phases. Since no chunk begins before the earlier phases are
-    /// done, it tells which these are.
+    /// Chunks done, over all shares and phases. No chunk begins before the earlier phases are done, so the
+    /// count tells which phases are done.
     done: Counter,
 }
 
@@ -65,7 +66,7 @@ fn work(phases: &impl Phases, progress: &Progress, own: usize, threads: usize) -
     let mut all_before = 0;
     for phase in 0..phases.count() {
         let (size, chunk) = phases.size(phase);
-        // A phase that is one chunk goes to the first share, whole.
+        // A phase that is one chunk belongs to the first share.
         let shares = if size <= chunk { 1 } else { threads };
         wait(|| progress.done.0.load(Ordering::Acquire) >= all_before);
         let mut all = 0;
@@ -98,7 +99,8 @@ fn claim(claimed: &AtomicUsize, end: usize) -> Option<usize> {
     None
 }
 
-/// Spins until `ready`; yields once that takes long, as when there are more threads than cores.
+/// Spins until `ready`; yields to other threads if that takes long, as when there are more threads than
+/// cores.
 fn wait(ready: impl Fn() -> bool) {
     let mut spins = 0_u32;
     while !ready() {
@@ -108,69 +110,4 @@ fn wait(ready: impl Fn() -> bool) {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use std::sync::Mutex;
-
-    /// Records, for each place, when it was run, and checks that earlier phases are done.
-    struct Recorder {
-        sizes: Vec<(usize, usize)>,
-        runs: Vec<Vec<AtomicUsize>>,
-        chunks: Mutex<Vec<(usize, usize)>>,
-    }
-
-    impl Recorder {
-        fn new(sizes: Vec<(usize, usize)>) -> Self {
-            let runs =
-                sizes.iter().map(|&(size, _)| (0..size).map(|_| AtomicUsize::new(0)).collect()).collect();
-            Self { sizes, runs, chunks: Mutex::default() }
-        }
-    }
-
-    impl Phases for Recorder {
-        fn count(&self) -> usize {
-            self.sizes.len()
-        }
-        fn size(&self, phase: usize) -> (usize, usize) {
-            self.sizes[phase]
-        }
-        fn run(&self, phase: usize, places: Range<usize>, residual: &mut f64) {
-            for earlier in &self.runs[..phase] {
-                assert!(
-                    earlier.iter().all(|run| run.load(Ordering::Relaxed) == 1),
-                    "phase {phase} began early"
-                );
-            }
-            self.chunks.lock().expect("no panic yet").push((phase, places.len()));
-            for place in places {
-                self.runs[phase][place].fetch_add(1, Ordering::Relaxed);
-                *residual = residual.max((phase * 1000 + place) as f64);
-            }
-        }
-    }
-
-    #[test]
-    fn every_place_runs_once_and_phases_in_order_on_any_number_of_threads() {
-        let sizes = vec![(100, 7), (0, 5), (3, 5), (64, 64), (65, 64), (1, 1), (200, 1), (90, 16)];
-        for threads in [1, 2, 3, 8, 40] {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.min(8)).build().expect("a pool");
-            for _ in 0..20 {
-                let recorder = Recorder::new(sizes.clone());
-                assert_eq!(pool.install(|| run(&recorder, threads)), 7089.0);
-                assert!(recorder.runs.iter().flatten().all(|run| run.load(Ordering::Relaxed) == 1));
-                let chunks = recorder.chunks.into_inner().expect("no panic");
-                for (phase, size) in chunks {
-                    assert!(size > 0 && size <= sizes[phase].1);
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn one_thread_finishes_alone_what_many_share() {
-        // The pool has one thread, so nobody ever comes to help.
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
-        let recorder = Recorder::new(vec![(1000, 10), (500, 10)]);
-        assert_eq!(pool.install(|| run(&recorder, 16)), 1499.0);
-    }
-}
+mod tests;

@@ -1,5 +1,5 @@
-//! A search on folded cloth: every vertex-triangle and edge-edge pair nearer than 2 mm, with its
-//! contact geometry, of layers 1.5 mm apart.
+//! A search on folded cloth: every vertex-triangle and edge-edge pair nearer than 2 mm, with its contact
+//! geometry, of layers 1.5 mm apart.
 
 #[path = "../tests/suite/scenes/folded.rs"]
 mod folded;
@@ -11,7 +11,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 fn search(criterion: &mut Criterion) {
     for vertices in [10_000, 50_000] {
         let (positions, triangles) = folded::folded_cloth(vertices, 0.0015);
-        let Ok(topology) = Topology::new(positions.len(), triangles, &[], &[]) else { continue };
+        let Ok(topology) = Topology::builder(positions.len()).triangles(triangles).build() else { continue };
         let model = CollisionModel::single_body(topology);
         let radii = vec![0.001; positions.len()];
         let displacements = vec![Vector::new(0.0, 0.0, 0.001); positions.len()];

@@ -4,8 +4,8 @@
 //! cargo run --release -p bowknot-proximity --example time_search -- [VERTICES [THREADS [REPEATS]]]
 //! cargo run --release -p bowknot-proximity --example time_search -- POSITIONS TRIANGLES [THREADS [REPEATS]]
 //! ```
-//! POSITIONS holds little-endian f64 triples, TRIANGLES little-endian u32 triples. Pairs nearer than
-//! 2 mm are listed with their contact geometry.
+//! POSITIONS holds little-endian f64 triples, TRIANGLES little-endian u32 triples. Pairs nearer than 2 mm are
+//! listed with their contact geometry.
 #![allow(clippy::print_stdout)]
 
 #[path = "../tests/suite/scenes/folded.rs"]
@@ -31,7 +31,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let threads = number(next, 2)?;
     let repeats = number(next + 1, 20)?.max(1);
 
-    let topology = Topology::new(positions.len(), triangles, &[], &[])
+    let topology = Topology::builder(positions.len())
+        .triangles(triangles)
+        .build()
         .map_err(|errors| format!("{} faults, {}", errors.len(), errors[0]))?;
     println!(
         "{} vertices, {} edges, {} triangles, {threads} threads",

@@ -1,27 +1,27 @@
 //! The pairs in order, with their contact geometry.
 
-use crate::Pair;
 use crate::narrow::separate_all;
-use crate::traverse::{Found, Run};
+use crate::pairs::Pair;
+use crate::traverse::{PartnerRange, TaskResult};
 use bowknot_geometry::{CollisionModel, PairKind, Point, Separation};
 use rayon::prelude::*;
 
 /// Elements whose pairs one task writes.
 const CHUNK: usize = 256;
 
-/// Where the partners of each element of a kind stand.
+/// Where the partners of each element of one kind of pair are stored.
 #[derive(Debug, Default)]
-pub struct Table {
-    /// Task and run of each element of side *a*; count 0 where there is none.
-    entries: Vec<(u32, Run)>,
+pub struct PartnerTable {
+    /// Task and range of partners of each element of side *a*; the count is 0 if it has none.
+    entries: Vec<(u32, PartnerRange)>,
     /// Pairs of each chunk of elements.
     chunk_pairs: Vec<usize>,
 }
 
-impl Table {
-    /// Enters what the tasks found for elements `0..elements`; returns the number of pairs.
-    pub fn fill(&mut self, elements: usize, tasks: &[Found]) -> usize {
-        let none = (0, Run { element: 0, start: 0, count: 0 });
+impl PartnerTable {
+    /// Enters the results of the tasks for elements `0..elements`; returns the number of pairs.
+    pub fn fill(&mut self, elements: usize, tasks: &[TaskResult]) -> usize {
+        let none = (0, PartnerRange { element: 0, start: 0, count: 0 });
         self.entries.clear();
         self.chunk_pairs.clear();
         if tasks.is_empty() {
@@ -42,7 +42,7 @@ impl Table {
     pub fn write(
         &self,
         kind: PairKind,
-        tasks: &[Found],
+        tasks: &[TaskResult],
         model: &CollisionModel,
         positions: &[Point],
         mut pairs: &mut [Pair],
@@ -94,7 +94,7 @@ fn write_pairs(kind: PairKind, model: &CollisionModel, a: u32, partners: &[u32],
                 *pair = Pair { elements: [a, b], vertices: [a0, a1, b0, b1] };
             });
         }
-        // No tree searches for these.
+        // Not found by trees.
         PairKind::VertexHalfSpace => {}
     }
 }

@@ -1,5 +1,5 @@
-//! Flags of sixteen lanes as bits, lists of bits, and short sorts: the parts of the traversal whose
-//! plain form would stall on branches that cannot be predicted.
+//! Flags of sixteen lanes as bits, lists of bits, and short sorts, without branches. In their usual form
+//! these parts of the traversal would stall on branches that cannot be predicted.
 
 use crate::tree::LANES;
 
@@ -14,8 +14,8 @@ pub fn flag(set: bool) -> u8 {
 #[allow(unsafe_code)]
 #[inline(always)]
 pub fn bits(flags: &[u8; LANES]) -> u32 {
-    // With AVX-512 the compiler turns this into a move of the mask register.
-    // SAFETY: the instruction belongs to SSE2, which every x86-64 has.
+    // With AVX-512 the compiler turns this into a move of the mask register. SAFETY: the instruction belongs
+    // to SSE2, which every x86-64 has.
     unsafe { std::arch::x86_64::_mm_movemask_epi8(bytemuck::cast(*flags)) as u32 }
 }
 
@@ -57,8 +57,8 @@ static PLACES: [[u8; 8]; 256] = {
     table
 };
 
-/// Writes `base` plus the place of each of the sixteen bits that is set to `list` at `end`; returns
-/// the new end. Sixteen entries beyond `end` are needed and may be overwritten.
+/// Writes `base` plus the place of each set bit of sixteen to `list` at `end`; returns the new end. The list
+/// must have sixteen entries beyond `end`, which may be overwritten.
 #[inline(always)]
 pub fn append_places(list: &mut [u32], mut end: usize, mask: u32, base: u32) -> usize {
     for half in 0..2 {
@@ -74,8 +74,7 @@ pub fn append_places(list: &mut [u32], mut end: usize, mask: u32, base: u32) -> 
 /// Longest list that is sorted by counting smaller entries.
 const SHORT: usize = 64;
 
-/// Appends `list`, whose entries differ from each other and from `u32::MAX`, to `sorted` in
-/// ascending order.
+/// Appends `list`, whose entries differ from each other and from `u32::MAX`, to `sorted` in ascending order.
 #[inline(always)]
 pub fn append_sorted(list: &[u32], sorted: &mut Vec<u32>) {
     let start = sorted.len();

@@ -1,15 +1,16 @@
-//! Vertices near analytic half-spaces: a linear pass. A half-space has no radius, so that of the vertex
-//! counts twice.
+//! Vertices near analytic half-spaces, found in a linear pass. A half-space has no radius, so the radius of
+//! the vertex counts twice.
 
-use crate::Pair;
+use crate::pairs::Pair;
 use bowknot_geometry::{HalfSpace, Point, Vector, separation};
 use rayon::prelude::*;
 
-/// Vertices that one task looks at.
+/// Vertices that one task tests.
 const CHUNK: usize = 4096;
 
-/// Lists the pairs of `vertices` (ascending) and half-spaces, in order. With `displacements`, those
-/// that come near at some time of the motion: the distance is linear in time, so at one of its ends.
+/// Lists the pairs of `vertices` (ascending) and half-spaces, in order. With `displacements` it lists the
+/// pairs that come near at some time of the motion: the distance is linear in time, so it is smallest at the
+/// start or at the end.
 pub fn near_half_spaces(
     half_spaces: &[HalfSpace],
     vertices: &[u32],
@@ -26,7 +27,7 @@ pub fn near_half_spaces(
             let end = displacements.map(|u| start + u[v as usize]);
             let radius = 2.0 * radii[v as usize];
             for (half_space, index) in half_spaces.iter().zip(0..) {
-                // The end itself is rounded to half a unit in each coordinate.
+                // Each coordinate of the end is off by up to half a unit in its last place.
                 let reaches =
                     |end: Point| is_near(half_space, &end, radius + f64::EPSILON * end.coords.abs().sum());
                 if is_near(half_space, &start, radius) || end.is_some_and(reaches) {
@@ -39,7 +40,7 @@ pub fn near_half_spaces(
 
 #[inline]
 fn is_near(half_space: &HalfSpace, point: &Point, radius: f64) -> bool {
-    // Far above what rounding can be: most vertices need no certificate.
+    // Far above any rounding error, so most vertices need no certified width.
     let slack = 1e-9 * (1.0 + half_space.offset.abs() + point.coords.abs().sum());
     let distance = half_space.signed_distance(point);
     distance <= 2.0 * (radius + slack) && separation::separate_half_space(point, half_space).width <= radius

@@ -1,4 +1,4 @@
-//! The trees of a part of the scene that is kept up together.
+//! The trees of a part of the scene whose primitives are rebuilt and refitted together.
 
 use crate::frame::LocalVertex;
 use crate::tree::Tree;
@@ -11,15 +11,17 @@ pub struct Layer {
     pub vertices: Tree<1>,
     /// Edges of triangles and strands.
     pub edges: Tree<2>,
+    /// Triangles.
     pub triangles: Tree<3>,
+    /// Particles.
     pub particles: Tree<1>,
     /// Strand edges; empty in a scene without particles.
     pub strands: Tree<2>,
 }
 
 impl Layer {
-    /// Takes up the primitives whose vertices `belongs` to it, in spatial order; returns how many
-    /// orders were made. [`Self::refit`] must follow.
+    /// Builds the trees of the primitives whose vertices satisfy `belongs`, in spatial order; returns how
+    /// many trees that were. [`Self::refit`] must follow.
     pub fn build(
         &mut self,
         model: &CollisionModel,
@@ -50,7 +52,7 @@ impl Layer {
         built
     }
 
-    /// Fits all boxes; returns how many trees that were.
+    /// Refits all boxes; returns how many trees that were.
     pub fn refit(&mut self, local: &[LocalVertex], end: Option<&[LocalVertex]>) -> u32 {
         self.vertices.refit(local, end);
         self.edges.refit(local, end);
@@ -60,16 +62,16 @@ impl Layer {
         self.trees()
     }
 
-    /// Makes the order of stale trees anew and fits their boxes; returns how many trees that were.
-    pub fn freshen(&mut self, local: &[LocalVertex], end: Option<&[LocalVertex]>) -> u32 {
-        freshen(&mut self.vertices, local, end)
-            + freshen(&mut self.edges, local, end)
-            + freshen(&mut self.triangles, local, end)
-            + freshen(&mut self.particles, local, end)
-            + freshen(&mut self.strands, local, end)
+    /// Rebuilds trees whose order is stale, and refits their boxes; returns how many trees that were.
+    pub fn rebuild_stale(&mut self, local: &[LocalVertex], end: Option<&[LocalVertex]>) -> u32 {
+        rebuild_stale(&mut self.vertices, local, end)
+            + rebuild_stale(&mut self.edges, local, end)
+            + rebuild_stale(&mut self.triangles, local, end)
+            + rebuild_stale(&mut self.particles, local, end)
+            + rebuild_stale(&mut self.strands, local, end)
     }
 
-    /// Trees that are not empty.
+    /// Number of trees that are not empty.
     fn trees(&self) -> u32 {
         let present = [
             !self.vertices.is_empty(),
@@ -87,7 +89,11 @@ fn build<const V: usize>(tree: &mut Tree<V>, elements: &[(u32, [u32; V])], local
     u32::from(!elements.is_empty())
 }
 
-fn freshen<const V: usize>(tree: &mut Tree<V>, local: &[LocalVertex], end: Option<&[LocalVertex]>) -> u32 {
+fn rebuild_stale<const V: usize>(
+    tree: &mut Tree<V>,
+    local: &[LocalVertex],
+    end: Option<&[LocalVertex]>,
+) -> u32 {
     let stale = tree.is_stale();
     if stale {
         tree.build(&tree.elements(), local);

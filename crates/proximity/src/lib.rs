@@ -1,24 +1,26 @@
 //! Broad and narrow phase: every pair of non-adjacent primitives nearer than their radii.
 //!
-//! It knows positions, radii and who may meet whom; it does not know forces or constraints.
+//! The crate knows positions, radii and which bodies may collide; it does not know forces or constraints.
 //!
-//! One search goes through these stages, each in its own module:
+//! One search has these stages, each in its own modules:
 //! 1. `frame`: positions relative to a local origin, in `f32`, with their radii;
-//! 2. `layer`, `tree`, `order`: packed 16-ary trees of the deformable primitives (refitted), of
+//! 2. `obstacles`, `layer`, `tree`, `order`: packed 16-ary trees of the deformable primitives (refitted), of
 //!    obstacles that move (refitted) and of obstacles at rest (kept);
-//! 3. `traverse`, `kinds`: every element against the trees; a certified `f32` test decides all but
-//!    a few pairs, those few by [`bowknot_geometry::separation::separate`];
-//! 4. `assemble`: the pairs in order, with their contact geometry.
+//! 3. `traverse`, `pair_test`: every element against the trees; a certified `f32` test decides all but a few
+//!    pairs, and [`bowknot_geometry::separation::separate`] decides those;
+//! 4. `assemble`, `narrow`: the pairs in order, with their contact geometry.
 
 mod assemble;
 mod bits;
+mod collision_matrix;
 mod frame;
 mod half_spaces;
-mod kinds;
 mod layer;
+mod min_max;
 mod narrow;
 mod obstacles;
 mod order;
+mod pair_test;
 mod pairs;
 mod search;
 mod statistics;

@@ -1,31 +1,31 @@
 //! Contact geometry of many pairs of one kind at once.
 //!
-//! The arithmetic is that of `bowknot_geometry`'s distances and separations, operation by operation,
-//! written without branches over [`BATCH`] pairs side by side so that it compiles to vector
-//! instructions. What needs a branch there (near parallel edges, a slab much narrower than the
-//! distance, differences beyond [1e-60, 1e60] m) is marked and left to
-//! [`bowknot_geometry::separation::separate`]. A width is certified by the derivation in that module,
-//! whatever the closest points: it holds for the same operations.
+//! The arithmetic is that of `bowknot_geometry`'s distances and separations, operation by operation, without
+//! branches over [`BATCH`] pairs side by side, so that it compiles to vector instructions. Pairs that need a
+//! branch there (nearly parallel edges, a slab much narrower than the distance, differences beyond [1e-60,
+//! 1e60] m) are marked and left to [`bowknot_geometry::separation::separate`]. The derivation in that module
+//! certifies a width whatever the closest points, and it holds here because the operations are the same.
 
-use crate::Pair;
-use crate::kinds::{EdgeEdge, Kind, VertexEdge, VertexTriangle, VertexVertex};
+use crate::min_max::{larger, smaller};
+use crate::pair_test::{EdgeEdge, PairTest, VertexEdge, VertexTriangle, VertexVertex};
+use crate::pairs::Pair;
 use bowknot_geometry::{PairKind, Point, Separation, Vector, separation};
 
-/// Pairs that go side by side.
+/// Pairs that are computed side by side.
 const BATCH: usize = 8;
 
-/// Bound of the rounding of a width per largest coordinate difference, see
+/// Bound of the rounding error of a width per largest coordinate difference, see
 /// `bowknot_geometry::separation`.
 const WIDTH_ROUNDING: f64 = 10.0 * f64::EPSILON;
 
-/// A width below this part of the distance is worth trying other directions.
-const GOOD: f64 = 0.9;
+/// If the width is below this part of the distance, other directions are tried.
+const MIN_WIDTH_RATIO: f64 = 0.9;
 
-/// What fills a list of separations before they are written.
+/// Fills a list of separations before they are written.
 pub const BLANK: Separation =
     Separation { normal: Vector::new(0.0, 0.0, 0.0), weights: [0.0; 4], distance: 0.0, width: 0.0 };
 
-/// Contact geometry of pairs of one kind; a half-space is none that it knows.
+/// Contact geometry of pairs of one kind. It does nothing for half-spaces.
 pub fn separate_all(kind: PairKind, pairs: &[Pair], positions: &[Point], separations: &mut [Separation]) {
     match kind {
         PairKind::VertexVertex => separate_kind::<VertexVertex, 1, 1>(pairs, positions, separations),
@@ -36,7 +36,7 @@ pub fn separate_all(kind: PairKind, pairs: &[Pair], positions: &[Point], separat
     }
 }
 
-/// Contact geometry of one pair, the same bits as among many.
+/// Contact geometry of one pair, with the same bits as among many.
 pub fn separate_one(kind: PairKind, vertices: [u32; 4], positions: &[Point]) -> Separation {
     let mut separation = [BLANK];
     separate_all(kind, &[Pair { elements: [0; 2], vertices }], positions, &mut separation);
@@ -53,8 +53,8 @@ pub struct Nearest {
     trusted: bool,
 }
 
-/// The `f64` side of a kind of pair.
-pub trait Nearby {
+/// The closest points of one kind of pair, in `f64`.
+pub trait ClosestPoints {
     /// Closest points, as `bowknot_geometry::distance` finds them.
     fn nearest(points: &[V3; 4]) -> Nearest;
 }
@@ -66,7 +66,7 @@ struct Lanes<const N: usize>([[f64; BATCH]; N]);
     "x86_64+avx512f+avx512bw+avx512cd+avx512dq+avx512vl+avx2+bmi1+bmi2+lzcnt+popcnt",
     "x86_64+avx2+bmi1+bmi2+lzcnt+popcnt",
 ))]
-fn separate_kind<K: Kind<A, B> + Nearby, const A: usize, const B: usize>(
+fn separate_kind<K: PairTest<A, B> + ClosestPoints, const A: usize, const B: usize>(
     pairs: &[Pair],
     positions: &[Point],
     separations: &mut [Separation],
@@ -102,14 +102,14 @@ fn separate_kind<K: Kind<A, B> + Nearby, const A: usize, const B: usize>(
             for i in 0..A {
                 for j in A..A + B {
                     let difference = sub(at[i], at[j]);
-                    width = least(dot(n, difference), width);
+                    width = smaller(dot(n, difference), width);
                     for x in difference {
-                        scale = greatest(x.abs(), scale);
+                        scale = larger(x.abs(), scale);
                     }
                 }
             }
             width -= WIDTH_ROUNDING * scale;
-            let certain = (width >= GOOD * distance) & (squared > 1e-120) & (scale < 1e60);
+            let certain = (width >= MIN_WIDTH_RATIO * distance) & (squared > 1e-120) & (scale < 1e60);
             trusted[lane] = u8::from(certain & nearest.trusted);
             for k in 0..3 {
                 normal.0[k][lane] = n[k];
@@ -120,10 +120,10 @@ fn separate_kind<K: Kind<A, B> + Nearby, const A: usize, const B: usize>(
             measures.0[0][lane] = distance;
             measures.0[1][lane] = width;
         }
-        let mut doubtful = false;
+        let mut any_untrusted = false;
         for (lane, separation) in separations.iter_mut().enumerate() {
-            // Field by field: a value put together on the stack would be copied by wider loads than
-            // it was stored by, which stalls.
+            // Field by field: a value assembled on the stack would be read by wider loads than the stores
+            // that wrote it, which stalls.
             for k in 0..3 {
                 separation.normal[k] = normal.0[k][lane];
             }
@@ -132,12 +132,12 @@ fn separate_kind<K: Kind<A, B> + Nearby, const A: usize, const B: usize>(
             }
             separation.distance = measures.0[0][lane];
             separation.width = measures.0[1][lane];
-            doubtful |= trusted[lane] == 0;
+            any_untrusted |= trusted[lane] == 0;
         }
-        if doubtful {
+        if any_untrusted {
             for (lane, (pair, separation)) in pairs.iter().zip(separations).enumerate() {
                 if trusted[lane] == 0 {
-                    *separation = separate_with_care(K::KIND, pair, positions);
+                    *separation = separate_scalar(K::KIND, pair, positions);
                 }
             }
         }
@@ -146,18 +146,18 @@ fn separate_kind<K: Kind<A, B> + Nearby, const A: usize, const B: usize>(
 
 #[cold]
 #[inline(never)]
-fn separate_with_care(kind: PairKind, pair: &Pair, positions: &[Point]) -> Separation {
+fn separate_scalar(kind: PairKind, pair: &Pair, positions: &[Point]) -> Separation {
     separation::separate(kind, &pair.vertices.map(|v| positions[v as usize]))
 }
 
-impl Nearby for VertexVertex {
+impl ClosestPoints for VertexVertex {
     #[inline(always)]
     fn nearest([a, b, ..]: &[V3; 4]) -> Nearest {
         Nearest { weights: [1.0, 1.0, 0.0, 0.0], offset: sub(*a, *b), trusted: true }
     }
 }
 
-impl Nearby for VertexEdge {
+impl ClosestPoints for VertexEdge {
     #[inline(always)]
     fn nearest([p, b0, b1, _]: &[V3; 4]) -> Nearest {
         let (t, offset) = foot(p, b0, b1);
@@ -165,7 +165,7 @@ impl Nearby for VertexEdge {
     }
 }
 
-impl Nearby for VertexTriangle {
+impl ClosestPoints for VertexTriangle {
     #[inline(always)]
     fn nearest([p, b0, b1, b2]: &[V3; 4]) -> Nearest {
         let (e1, e2, r) = (sub(*b1, *b0), sub(*b2, *b0), sub(*p, *b0));
@@ -197,7 +197,7 @@ impl Nearby for VertexTriangle {
         weights = select(closer, [t20, 0.0, 1.0 - t20], weights);
         offset = select(closer, o20, offset);
         squared = if closer { next } else { squared };
-        // In a sliver the foot in the plane is one candidate among others.
+        // In a sliver the foot in the plane is only one of the candidates.
         let plane_wins = inside & ((hh > 1e-6 * e2e2) | (dot(in_plane, in_plane) <= squared));
         let weights = select(plane_wins, [w0, w1, w2], weights);
         let offset = select(plane_wins, in_plane, offset);
@@ -205,7 +205,7 @@ impl Nearby for VertexTriangle {
     }
 }
 
-impl Nearby for EdgeEdge {
+impl ClosestPoints for EdgeEdge {
     #[inline(always)]
     fn nearest([a0, a1, b0, b1]: &[V3; 4]) -> Nearest {
         let (d1, d2, r) = (sub(*a1, *a0), sub(*b1, *b0), sub(*a0, *b0));
@@ -227,7 +227,7 @@ impl Nearby for EdgeEdge {
     }
 }
 
-/// The place in [0, 1] of the edge's point that is closest to p, and p minus that point, measured
+/// The parameter in [0, 1] of the point of an edge that is closest to p, and p minus that point, measured
 /// from the nearer end.
 #[inline(always)]
 fn foot(p: &V3, start: &V3, end: &V3) -> (f64, V3) {
@@ -242,7 +242,7 @@ fn foot(p: &V3, start: &V3, end: &V3) -> (f64, V3) {
 /// Clamps to [0, 1]; not-a-number becomes 0.
 #[inline(always)]
 fn clamp_unit(t: f64) -> f64 {
-    least(greatest(t, 0.0), 1.0)
+    smaller(larger(t, 0.0), 1.0)
 }
 
 /// p - t v.
@@ -265,15 +265,4 @@ fn sub(a: V3, b: V3) -> V3 {
 #[inline(always)]
 fn dot(a: V3, b: V3) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// The smaller of two numbers as one instruction; `b` where one is not a number.
-#[inline(always)]
-fn least(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
-}
-
-#[inline(always)]
-fn greatest(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
 }

@@ -1,6 +1,6 @@
-//! Spatial order of elements: a kd tree's leaves, aligned to groups of 16, 256, 4096, ..
+//! Spatial order of elements: the leaves of a kd tree, aligned to groups of 16, 256, 4096, ..
 
-/// Elements below which a subtree is not worth a thread of its own.
+/// A subtree of no more elements than this is ordered on one thread.
 const PARALLEL: usize = 4096;
 
 /// An element's centre and its place in the caller's list.
@@ -14,8 +14,8 @@ pub struct Centre {
 
 /// Reorders `centres` so that consecutive groups of `group` are compact, for every power of it.
 ///
-/// Halves are split along the longest side of the centres' box, at a multiple of the largest power
-/// of `group` below their number. Ties are broken by index: the order depends on the input alone.
+/// Halves are split along the longest side of the centres' box, at a multiple of the largest power of `group`
+/// below their number. Ties are broken by index: the order depends on the input alone.
 pub fn kd_order(centres: &mut [Centre], group: usize) {
     let n = centres.len();
     if n <= group {

@@ -6,9 +6,9 @@ use std::ops::Range;
 /// A pair of primitives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Pair {
-    /// The primitives' indices: vertices, edges or triangles of the topology by the pair's kind
-    /// (for [`PairKind::VertexHalfSpace`] the vertex and the half-space). In edge-edge and
-    /// vertex-vertex pairs the smaller index comes first.
+    /// The primitives' indices: vertices, edges or triangles of the topology by the pair's kind (for
+    /// [`PairKind::VertexHalfSpace`] the vertex and the half-space). In edge-edge and vertex-vertex pairs the
+    /// smaller index comes first.
     pub elements: [u32; 2],
     /// Vertices in [`PairKind`] order; unused places repeat the first vertex.
     pub vertices: [u32; 4],
@@ -30,7 +30,7 @@ impl PairList {
         list
     }
 
-    /// Replaces the content, keeping the allocation. `kinds` yields five slices, one a kind.
+    /// Replaces the content and keeps the allocation. `kinds` yields five slices, one per kind.
     pub fn refill<'a>(&mut self, kinds: impl Iterator<Item = &'a [Pair]>) {
         self.pairs.clear();
         self.starts = [0; 6];
@@ -42,7 +42,7 @@ impl PairList {
         }
     }
 
-    /// Makes room for so many pairs of each kind, to be written by the caller in order.
+    /// Resizes the list to the given number of pairs of each kind; the caller writes them in order.
     pub(crate) fn resize_kinds(&mut self, counts: [usize; 5]) -> &mut [Pair] {
         const BLANK: Pair = Pair { elements: [0; 2], vertices: [0; 4] };
         self.starts = [0; 6];
@@ -53,9 +53,10 @@ impl PairList {
         &mut self.pairs
     }
 
-    /// For each pair the index of the same pair in another list, or `u32::MAX` where that lacks it.
+    /// For each pair, the index of the same pair in another list, or `u32::MAX` if that list does not have
+    /// it.
     ///
-    /// One pass over both lists, which are sorted: what belongs to pairs, as multipliers, is carried
+    /// One pass over both lists, which are sorted. It serves to carry data of pairs, such as multipliers,
     /// from an old list to a new one.
     pub fn match_with(&self, old: &PairList) -> Vec<u32> {
         let mut matches = Vec::with_capacity(self.len());
@@ -83,7 +84,7 @@ impl PairList {
         self.starts[kind as usize]..self.starts[kind as usize + 1]
     }
 
-    /// Kind of the pair at `index` of [`Self::pairs`].
+    /// PairTest of the pair at `index` of [`Self::pairs`].
     #[inline]
     pub fn kind(&self, index: usize) -> PairKind {
         let k = self.starts[1..5].iter().filter(|&&start| start <= index).count();

@@ -1,39 +1,37 @@
 //! The proximity search.
 
-use crate::assemble::Table;
+use crate::assemble::PartnerTable;
+use crate::collision_matrix::CollisionMatrix;
 use crate::frame::{self, LocalVertex};
 use crate::half_spaces::near_half_spaces;
-use crate::kinds::{EdgeEdge, Kind, VertexEdge, VertexTriangle, VertexVertex};
 use crate::layer::Layer;
 use crate::narrow::BLANK;
-use crate::obstacles::Watch;
-use crate::traverse::{Found, Query, Scene, Scratch, TASK_LEAVES, leaves_meeting, search_leaves};
+use crate::obstacles::ObstacleTracker;
+use crate::pair_test::{EdgeEdge, PairTest, VertexEdge, VertexTriangle, VertexVertex};
+use crate::pairs::{Pair, PairList};
+use crate::statistics::SearchStatistics;
+use crate::traverse::{Query, Scene, Scratch, TASK_LEAVES, TaskResult, overlapping_leaves, search_leaves};
 use crate::tree::Tree;
-use crate::{Pair, PairList, SearchStatistics};
 use bowknot_geometry::{CollisionModel, PairKind, Point, Separation, Vector, separation};
 use rayon::prelude::*;
 
 /// Vertices that one task brings to the local frame.
 const LOCAL_CHUNK: usize = 4096;
 
-/// The layers: what belongs to them is kept up together.
+/// The layers: the primitives of a layer are rebuilt and refitted together.
 const DEFORMABLE: u8 = 0;
 const MOVING: u8 = 1;
 const RESTING: u8 = 2;
 
-/// Finds pairs; keeps its trees and buffers between calls.
+/// Finds pairs. It keeps its trees and buffers between calls.
 #[derive(Debug, Default)]
 pub struct ProximitySearch {
     /// Deformable surface vertices, ascending.
     deformable: Vec<u32>,
     /// Layer of each vertex.
     layer_of_vertex: Vec<u8>,
-    watch: Watch,
-    /// Whether some pairs of bodies that meet in the trees may not collide.
-    filtered: bool,
-    /// Whether any pair of two deformable primitives may collide; with an obstacle.
-    meets_deformable: bool,
-    meets_obstacle: bool,
+    obstacles: ObstacleTracker,
+    collisions: CollisionMatrix,
 
     origin: Option<Point>,
     local: Vec<LocalVertex>,
@@ -41,14 +39,14 @@ pub struct ProximitySearch {
     layers: [Layer; 3],
 
     leaves: Leaves,
-    tasks: [Vec<Found>; 4],
-    tables: [Table; 4],
+    tasks: [Vec<TaskResult>; 4],
+    tables: [PartnerTable; 4],
     half_space_pairs: Vec<Vec<Pair>>,
     statistics: SearchStatistics,
 }
 
-/// Which leaves of which trees query others: all deformable ones, and the obstacles' ones that are
-/// near any deformable primitive.
+/// The leaves that query other trees: all leaves of deformable primitives, and for each layer of obstacles
+/// the leaves that overlap the box of the deformable primitives.
 #[derive(Debug, Default)]
 struct Leaves {
     all: Vec<u32>,
@@ -67,29 +65,26 @@ impl ProximitySearch {
         let layer_of_vertex = (0..topology.vertex_count as u32)
             .map(|v| if model.is_obstacle(v) { RESTING } else { DEFORMABLE })
             .collect();
-        let encounters = Encounters::of(model);
         Self {
             deformable,
             layer_of_vertex,
-            watch: Watch::new(model),
-            filtered: encounters.some_forbidden,
-            meets_deformable: encounters.deformable,
-            meets_obstacle: encounters.obstacle,
+            obstacles: ObstacleTracker::new(model),
+            collisions: CollisionMatrix::new(model),
             local: vec![[0.0; 4]; topology.vertex_count],
             ..Self::default()
         }
     }
 
-    /// Lists every pair that may collide whose certified lower bound of the distance is at most
-    /// max over side a of `radii` + max over side b of `radii` (half-spaces, which have no radius: twice the
-    /// vertex's).
+    /// Lists every pair that may collide whose certified lower bound of the distance is at most max over side
+    /// a of `radii` + max over side b of `radii`. A half-space has no radius; for its pairs twice the radius
+    /// of the vertex counts.
     ///
-    /// `radii` [m], one a vertex, finite and >= 0. `separations` gets each listed pair's contact
-    /// geometry at `positions`, in the order of `pairs`. The result depends on the input alone,
-    /// never on the number of threads nor on earlier searches.
+    /// There is one radius [m] per vertex, finite and >= 0. `separations` gets the contact geometry of each
+    /// listed pair at `positions`, in the order of `pairs`. The result depends on the input alone, not on the
+    /// number of threads or on earlier searches.
     ///
-    /// Vertices whose position or radius is not finite or beyond 1e15 m are in no pair, nor are the
-    /// elements that they belong to; all other pairs are listed as usual.
+    /// A vertex whose position or radius is not finite or beyond 1e15 m is in no pair, and neither are the
+    /// elements that it belongs to. All other pairs are listed as usual.
     ///
     /// # Panics
     /// If a slice has another length than the model has vertices.
@@ -104,13 +99,13 @@ impl ProximitySearch {
         self.run::<false>(model, positions, None, radii, pairs, separations);
     }
 
-    /// As [`Self::search`], for vertices that move from x to x + u on a common clock: lists every
-    /// pair whose boxes, moving linearly and inflated by their radii, meet at one and the same time
-    /// in [0, 1]. Contact geometry is at the start, `positions`.
+    /// As [`Self::search`], for vertices that move linearly from x to x + u over the path time [0, 1]: lists
+    /// every pair whose boxes, moving linearly and inflated by their radii, overlap at some time. Contact
+    /// geometry is that of the start, `positions`.
     ///
-    /// Since the boxes contain the elements at any time, a pair that is not listed stays farther
-    /// apart than the sum of its radii all the way. Nothing else drops a pair: that the sides are
-    /// far apart at the start says nothing about later.
+    /// The boxes contain the elements at any time, so the distance of a pair that is not listed always
+    /// exceeds the sum of its radii. The test of distances is not applied, because the distance at the start
+    /// says nothing about later times.
     ///
     /// # Panics
     /// If a slice has another length than the model has vertices.
@@ -123,11 +118,11 @@ impl ProximitySearch {
         pairs: &mut PairList,
         separations: &mut Vec<Separation>,
     ) {
-        assert_eq!(displacements.len(), positions.len(), "one displacement a vertex");
+        assert_eq!(displacements.len(), positions.len(), "one displacement per vertex");
         self.run::<true>(model, positions, Some(displacements), radii, pairs, separations);
     }
 
-    /// What the last search did.
+    /// Counts of the last search.
     pub fn statistics(&self) -> SearchStatistics {
         self.statistics
     }
@@ -142,14 +137,14 @@ impl ProximitySearch {
         separations: &mut Vec<Separation>,
     ) {
         let count = model.topology().vertex_count;
-        assert_eq!(count, self.layer_of_vertex.len(), "the model must be the one given at first");
-        assert_eq!(positions.len(), count, "one position a vertex");
-        assert_eq!(radii.len(), count, "one radius a vertex");
+        assert_eq!(count, self.layer_of_vertex.len(), "the model must be the one given to `new`");
+        assert_eq!(positions.len(), count, "one position per vertex");
+        assert_eq!(radii.len(), count, "one radius per vertex");
         self.statistics = SearchStatistics::default();
 
         self.update_trees(model, positions, displacements, radii);
 
-        let scene = Scene { model, positions, radii, filtered: self.filtered };
+        let scene = Scene { model, positions, radii, filtered: self.collisions.some_forbidden };
         self.search_kinds::<SWEPT>(&scene);
         near_half_spaces(
             model.half_spaces(),
@@ -168,7 +163,7 @@ impl ProximitySearch {
         self.statistics.pairs = pairs.len() as u64;
     }
 
-    /// Brings local positions and trees to the state given.
+    /// Updates local positions and trees to the given state.
     fn update_trees(
         &mut self,
         model: &CollisionModel,
@@ -178,17 +173,17 @@ impl ProximitySearch {
     ) {
         let first = self.origin.is_none();
         let origin = frame::origin(positions, &self.deformable);
-        let everything = self.origin.replace(origin) != Some(origin);
-        let changes = self.watch.look(model, positions, displacements, radii);
+        let origin_moved = self.origin.replace(origin) != Some(origin);
+        let changes = self.obstacles.update(model, positions, displacements, radii);
         if changes.layers {
             for (v, layer) in self.layer_of_vertex.iter_mut().enumerate() {
                 let body = model.vertex_body()[v] as usize;
                 if model.bodies()[body].obstacle {
-                    *layer = if self.watch.moving[body] { MOVING } else { RESTING };
+                    *layer = if self.obstacles.moving[body] { MOVING } else { RESTING };
                 }
             }
         }
-        let refit = [true, everything || changes.moved || changes.layers, everything || changes.layers];
+        let refit = [true, origin_moved || changes.moved || changes.layers, origin_moved || changes.layers];
 
         let layer_of_vertex = &self.layer_of_vertex;
         let localize = |local: &mut [LocalVertex], displacements: Option<&[Vector]>| {
@@ -216,10 +211,10 @@ impl ProximitySearch {
                     layer.build(model, &self.local, |v| layer_of_vertex[v as usize] == index);
             }
             if refit[index as usize] {
-                // An obstacle at rest has no sweep: its boxes hold for the whole motion.
+                // Obstacles at rest have no motion: their boxes hold for the whole path.
                 let end = if index == RESTING { None } else { end };
                 self.statistics.refits += layer.refit(&self.local, end);
-                self.statistics.rebuilds += layer.freshen(&self.local, end);
+                self.statistics.rebuilds += layer.rebuild_stale(&self.local, end);
             }
         }
     }
@@ -232,20 +227,20 @@ impl ProximitySearch {
         leaves.all.clear();
         leaves.all.extend(0..all_leaves as u32);
         for (k, obstacle) in obstacles.iter().enumerate() {
-            leaves_meeting(&obstacle.vertices, &deformable.triangles.bounds(), &mut leaves.vertices[k]);
-            leaves_meeting(&obstacle.edges, &deformable.edges.bounds(), &mut leaves.edges[k]);
-            leaves_meeting(&obstacle.particles, &deformable.particles.bounds(), &mut leaves.particles[k]);
-            leaves_meeting(
+            overlapping_leaves(&obstacle.vertices, &deformable.triangles.bounds(), &mut leaves.vertices[k]);
+            overlapping_leaves(&obstacle.edges, &deformable.edges.bounds(), &mut leaves.edges[k]);
+            overlapping_leaves(&obstacle.particles, &deformable.particles.bounds(), &mut leaves.particles[k]);
+            overlapping_leaves(
                 &obstacle.particles,
                 &deformable.strands.bounds(),
                 &mut leaves.particles_near_strands[k],
             );
         }
-        let meets = [self.meets_deformable, self.meets_obstacle];
+        let collisions = self.collisions;
         let [vertex_vertex, vertex_edge, vertex_triangle, edge_edge] = tasks;
         search_kind::<VertexVertex, 1, 1, SWEPT>(
             scene,
-            meets,
+            collisions,
             &leaves.all,
             (&deformable.particles, &deformable.particles),
             obstacles.map(|o| (&o.particles, &o.particles)),
@@ -254,7 +249,7 @@ impl ProximitySearch {
         );
         search_kind::<VertexEdge, 1, 2, SWEPT>(
             scene,
-            meets,
+            collisions,
             &leaves.all,
             (&deformable.particles, &deformable.strands),
             obstacles.map(|o| (&o.particles, &o.strands)),
@@ -263,7 +258,7 @@ impl ProximitySearch {
         );
         search_kind::<VertexTriangle, 1, 3, SWEPT>(
             scene,
-            meets,
+            collisions,
             &leaves.all,
             (&deformable.vertices, &deformable.triangles),
             obstacles.map(|o| (&o.vertices, &o.triangles)),
@@ -272,7 +267,7 @@ impl ProximitySearch {
         );
         search_kind::<EdgeEdge, 2, 2, SWEPT>(
             scene,
-            meets,
+            collisions,
             &leaves.all,
             (&deformable.edges, &deformable.edges),
             obstacles.map(|o| (&o.edges, &o.edges)),
@@ -281,7 +276,7 @@ impl ProximitySearch {
         );
     }
 
-    /// Writes what the tasks found into the caller's lists.
+    /// Writes the results of the tasks into the caller's lists.
     fn write(
         &mut self,
         model: &CollisionModel,
@@ -321,22 +316,22 @@ impl ProximitySearch {
     }
 }
 
-/// Searches for one kind of pair: deformable elements of side *a* against all of side *b*, and
-/// obstacles' elements of side *a* against deformable ones. Trees come as (side a, side b).
-fn search_kind<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT: bool>(
+/// Searches for one kind of pair: deformable elements of side *a* against all elements of side *b*, and
+/// elements of obstacles of side *a* against deformable ones. Trees are given as (side a, side b).
+fn search_kind<K: PairTest<A, B>, const A: usize, const B: usize, const SWEPT: bool>(
     scene: &Scene<'_>,
-    [meets_deformable, meets_obstacle]: [bool; 2],
+    collisions: CollisionMatrix,
     all_leaves: &[u32],
     deformable: (&Tree<A>, &Tree<B>),
     obstacles: [(&Tree<A>, &Tree<B>); 2],
     obstacle_leaves: &[Vec<u32>; 2],
-    tasks: &mut Vec<Found>,
+    tasks: &mut Vec<TaskResult>,
 ) {
     let mut targets = Vec::with_capacity(3);
-    if meets_deformable {
+    if collisions.deformable {
         targets.push(deformable.1);
     }
-    if meets_obstacle {
+    if collisions.obstacle {
         targets.extend(obstacles.iter().map(|o| o.1));
     }
     targets.retain(|tree| !tree.is_empty());
@@ -349,7 +344,7 @@ fn search_kind<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT: bool>
             targets: &targets,
         });
     }
-    if meets_obstacle && !deformable.1.is_empty() {
+    if collisions.obstacle && !deformable.1.is_empty() {
         queries.extend((0..2).map(|k| Query {
             tree: obstacles[k].0,
             leaves: &obstacle_leaves[k],
@@ -368,40 +363,8 @@ fn search_kind<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT: bool>
         })
         .collect();
     tasks.truncate(jobs.len());
-    tasks.resize_with(jobs.len(), Found::default);
+    tasks.resize_with(jobs.len(), TaskResult::default);
     jobs.par_iter().zip(tasks).for_each_init(Scratch::default, |scratch, (query, found)| {
         search_leaves::<K, A, B, SWEPT>(scene, query, scratch, found);
     });
-}
-
-/// Which pairs of bodies may collide.
-struct Encounters {
-    deformable: bool,
-    obstacle: bool,
-    some_forbidden: bool,
-}
-
-impl Encounters {
-    fn of(model: &CollisionModel) -> Self {
-        let mut filters: Vec<_> =
-            model.bodies().iter().map(|b| (b.obstacle, b.groups, b.mask, b.self_collision)).collect();
-        filters.sort_unstable();
-        filters.dedup();
-        let mut encounters = Self { deformable: false, obstacle: false, some_forbidden: false };
-        for a in filters.iter().filter(|a| !a.0) {
-            encounters.deformable |= a.3;
-            encounters.some_forbidden |= !a.3;
-            // Two bodies with one and the same filter may not exist; then this only costs time.
-            for b in &filters {
-                let allowed = a.1 & b.2 != 0 && b.1 & a.2 != 0;
-                encounters.some_forbidden |= !allowed;
-                if b.0 {
-                    encounters.obstacle |= allowed;
-                } else {
-                    encounters.deformable |= allowed;
-                }
-            }
-        }
-        encounters
-    }
 }

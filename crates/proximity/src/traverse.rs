@@ -1,71 +1,75 @@
-//! Elements against trees: which pairs are listed.
+//! Tests of elements against trees: which pairs are listed.
 
 use crate::bits::{append_places, append_sorted, bits, flag};
-use crate::frame::UNIT;
-use crate::kinds::{Batch, Kind, classify};
+use crate::frame::UNIT_ROUNDOFF;
 use crate::narrow::separate_one;
+use crate::pair_test::{Batch, PairTest, classify};
 use crate::tree::{LANES, Leaf, Node, Tree};
 use bowknot_geometry::{CollisionModel, Point};
 
 /// Leaves of querying elements that one task handles.
 pub const TASK_LEAVES: usize = 8;
 
-/// Everything a traversal reads beside the trees.
+/// Everything that a traversal reads beside the trees.
 #[derive(Clone, Copy)]
 pub struct Scene<'a> {
     pub model: &'a CollisionModel,
     pub positions: &'a [Point],
     pub radii: &'a [f64],
-    /// Whether some pairs of bodies that meet in the trees may not collide.
+    /// Whether some pairs of bodies that are searched together may not collide.
     pub filtered: bool,
 }
 
-/// Leaves of a tree, to be searched for in others.
+/// Leaves of a tree whose elements are searched for in other trees.
 pub struct Query<'a, const A: usize, const B: usize> {
+    /// The tree of the leaves.
     pub tree: &'a Tree<A>,
+    /// Indices of the leaves.
     pub leaves: &'a [u32],
+    /// The trees that are searched.
     pub targets: &'a [&'a Tree<B>],
 }
 
 /// The listed partners of one element.
 #[derive(Clone, Copy, Debug)]
-pub struct Run {
+pub struct PartnerRange {
     pub element: u32,
-    /// Where its partners begin in [`Found::partners`].
+    /// Where its partners begin in [`TaskResult::partners`].
     pub start: u32,
     pub count: u32,
 }
 
-/// What one task found; its buffers are kept between searches.
+/// The result of one task. Its buffers are kept between searches.
 #[derive(Debug, Default)]
-pub struct Found {
-    pub runs: Vec<Run>,
+pub struct TaskResult {
+    pub runs: Vec<PartnerRange>,
     /// Partners of the elements of `runs`, ascending within each.
     pub partners: Vec<u32>,
     pub candidates: u64,
     pub undecided: u64,
 }
 
-/// What a thread needs for the leaf at work.
+/// What a thread needs for the current leaf.
 #[derive(Debug, Default)]
 pub struct Scratch {
-    /// Leaves of a target tree that it meets.
+    /// Leaves of a target tree whose boxes overlap that of the current leaf.
     near_leaves: Vec<u32>,
-    /// Pairs whose boxes meet, as [`code`]s; only the first so many are valid.
+    /// Pairs whose boxes overlap, as [`code`]s. The valid ones come first; their number is kept outside.
     queue: Vec<u32>,
-    /// Partners of each lane; only the first so many of each are valid.
+    /// Partners of each lane; only the first `lengths[lane]` are valid.
     lists: [Vec<u32>; LANES],
     lengths: [usize; LANES],
 }
 
-/// Queued pairs beyond which they are decided, and the room that two leaves may need beyond that.
+/// Number of queued pairs at which they are tested.
 const QUEUE: usize = 2048;
+/// Room in the queue beyond that, for all pairs of two leaves.
 const QUEUE_ROOM: usize = LANES * LANES + LANES;
 
-/// A pair of an element of the leaf at work (its lane) and one of another leaf.
+/// A pair of an element of the current leaf (its lane) and an element of another leaf.
 #[inline(always)]
 const fn code(other_leaf: u32, lane: u32, other_lane: u32) -> u32 {
-    // Leaves are numbered below 2^24, for elements are below 2^28 (as many as memory holds).
+    // Leaves are numbered below 2^24, because elements are numbered below 2^28 (as many as memory holds).
     other_leaf << 8 | lane << 4 | other_lane
 }
 
@@ -75,8 +79,8 @@ const fn decode(code: u32) -> (usize, usize, usize) {
     ((code >> 8) as usize, (code >> 4) as usize % LANES, code as usize % LANES)
 }
 
-/// Leaves of `tree` whose boxes meet `bounds`, ascending.
-pub fn leaves_meeting<const V: usize>(tree: &Tree<V>, bounds: &[[f32; 3]; 2], out: &mut Vec<u32>) {
+/// Leaves of `tree` whose boxes overlap `bounds`, ascending.
+pub fn overlapping_leaves<const V: usize>(tree: &Tree<V>, bounds: &[[f32; 3]; 2], out: &mut Vec<u32>) {
     gather_leaves(tree, bounds, out, |_| true);
     out.sort_unstable();
 }
@@ -88,11 +92,11 @@ pub fn leaves_meeting<const V: usize>(tree: &Tree<V>, bounds: &[[f32; 3]; 2], ou
     "x86_64+avx512f+avx512bw+avx512cd+avx512dq+avx512vl+avx2+bmi1+bmi2+lzcnt+popcnt",
     "x86_64+avx2+bmi1+bmi2+lzcnt+popcnt",
 ))]
-pub fn search_leaves<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT: bool>(
+pub fn search_leaves<K: PairTest<A, B>, const A: usize, const B: usize, const SWEPT: bool>(
     scene: &Scene<'_>,
     query: &Query<'_, A, B>,
     scratch: &mut Scratch,
-    found: &mut Found,
+    found: &mut TaskResult,
 ) {
     found.runs.clear();
     found.partners.clear();
@@ -104,25 +108,25 @@ pub fn search_leaves<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT:
 }
 
 #[inline(always)]
-fn search_leaf<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT: bool>(
+fn search_leaf<K: PairTest<A, B>, const A: usize, const B: usize, const SWEPT: bool>(
     scene: &Scene<'_>,
     query: &Query<'_, A, B>,
     index: usize,
     scratch: &mut Scratch,
-    found: &mut Found,
+    found: &mut TaskResult,
 ) {
     let leaf = &query.tree.leaves[index];
     for target in query.targets {
         let mut near_leaves = std::mem::take(&mut scratch.near_leaves);
         let first_element = leaf.elements.iter().fold(u32::MAX, |first, &e| first.min(e));
         gather_leaves(target, &query.tree.leaf_bounds(index), &mut near_leaves, |leaf| {
-            // Where each pair would be met twice the larger index is the partner.
+            // If each pair would be found twice, the larger index is the partner.
             !K::SYMMETRIC || leaf.last_element > first_element
         });
         scratch.queue.resize(QUEUE + QUEUE_ROOM, 0);
         let mut queued = 0;
         for (done, &other) in near_leaves.iter().enumerate() {
-            queued = meet::<K, A, B, SWEPT>(
+            queued = queue_candidates::<K, A, B, SWEPT>(
                 scene,
                 query.tree,
                 index,
@@ -132,7 +136,7 @@ fn search_leaf<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT: bool>
                 queued,
             );
             if queued >= QUEUE || done + 1 == near_leaves.len() {
-                decide::<K, A, B, SWEPT>(scene, leaf, target, queued, scratch, found);
+                test_queue::<K, A, B, SWEPT>(scene, leaf, target, queued, scratch, found);
                 queued = 0;
             }
         }
@@ -143,13 +147,13 @@ fn search_leaf<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT: bool>
         let count = std::mem::take(&mut scratch.lengths[lane]);
         if count > 0 {
             let start = found.partners.len() as u32;
-            found.runs.push(Run { element: leaf.elements[lane], start, count: count as u32 });
+            found.runs.push(PartnerRange { element: leaf.elements[lane], start, count: count as u32 });
             append_sorted(&scratch.lists[lane][..count], &mut found.partners);
         }
     }
 }
 
-/// Leaves whose boxes meet `bounds` and that are `wanted`.
+/// Leaves whose boxes overlap `bounds` and that are `wanted`.
 #[inline(always)]
 fn gather_leaves<const V: usize>(
     tree: &Tree<V>,
@@ -180,9 +184,9 @@ fn gather_leaves<const V: usize>(
     }
 }
 
-/// Queues the pairs of elements of two leaves whose boxes meet; returns the new end of the queue.
+/// Queues the pairs of elements of two leaves whose boxes overlap; returns the new end of the queue.
 #[inline(always)]
-fn meet<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT: bool>(
+fn queue_candidates<K: PairTest<A, B>, const A: usize, const B: usize, const SWEPT: bool>(
     scene: &Scene<'_>,
     query: &Tree<A>,
     index: usize,
@@ -211,8 +215,8 @@ fn meet<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT: bool>(
         if SWEPT && mask != 0 {
             let own = moving_box(query, index, lane);
             mask &= match target.sweep.get(other) {
-                Some([first, last]) => sweeps_meet(first, last, &own),
-                None => sweeps_meet(other_boxes, other_boxes, &own),
+                Some([first, last]) => moving_boxes_overlap(first, last, &own),
+                None => moving_boxes_overlap(other_boxes, other_boxes, &own),
             };
         }
         queued = append_places(queue, queued, mask, code(other as u32, lane as u32, 0));
@@ -220,18 +224,18 @@ fn meet<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT: bool>(
     queued
 }
 
-/// Decides the first `queued` pairs of the queue.
+/// Tests the first `queued` pairs of the queue, and lists the partners that are near.
 #[inline(always)]
-fn decide<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT: bool>(
+fn test_queue<K: PairTest<A, B>, const A: usize, const B: usize, const SWEPT: bool>(
     scene: &Scene<'_>,
     leaf: &Leaf<A>,
     target: &Tree<B>,
     queued: usize,
     scratch: &mut Scratch,
-    found: &mut Found,
+    found: &mut TaskResult,
 ) {
     found.candidates += queued as u64;
-    // The last batch is filled up with a valid pair.
+    // The last batch is filled with a valid pair.
     let filler = scratch.queue[0];
     scratch.queue[queued..queued.next_multiple_of(LANES)].fill(filler);
     let mut batch = Batch {
@@ -274,7 +278,7 @@ fn decide<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT: bool>(
                 near |= u32::from(is_near::<K, A, B>(scene, a, b)) << slot;
             }
         }
-        // Every pair is written, those that are not near to be overwritten by the next.
+        // Every pair is written; a pair that is not near is overwritten by the next.
         for slot in 0..LANES {
             let (other_leaf, lane, other_lane) = decode(codes[slot]);
             let (list, length) = (&mut scratch.lists[lane], &mut scratch.lengths[lane]);
@@ -287,28 +291,28 @@ fn decide<K: Kind<A, B>, const A: usize, const B: usize, const SWEPT: bool>(
     }
 }
 
-/// The boxes of a node that meet a box, one bit each.
+/// The boxes of a node that overlap a box, one bit each.
 #[inline(always)]
 fn overlap(node: &Node, bounds: &[[f32; 3]; 2]) -> u32 {
     let mut flags = [0_u8; LANES];
     for lane in 0..LANES {
-        flags[lane] = flag(lane_meets(node, lane, bounds));
+        flags[lane] = flag(lane_overlaps(node, lane, bounds));
     }
     bits(&flags)
 }
 
 #[inline(always)]
-fn lane_meets(node: &Node, lane: usize, [low, high]: &[[f32; 3]; 2]) -> bool {
+fn lane_overlaps(node: &Node, lane: usize, [low, high]: &[[f32; 3]; 2]) -> bool {
     let x = (node.low[0][lane] <= high[0]) & (low[0] <= node.high[0][lane]);
     let y = (node.low[1][lane] <= high[1]) & (low[1] <= node.high[1][lane]);
     let z = (node.low[2][lane] <= high[2]) & (low[2] <= node.high[2][lane]);
     x & y & z
 }
 
-/// Elements of a leaf whose boxes meet that of another element, that share no vertex with it, and,
-/// where each pair would be met twice, have the larger index.
+/// Elements of a leaf whose boxes overlap that of another element, that share no vertex with it, and that
+/// have the larger index if each pair would be found twice.
 #[inline(always)]
-fn candidates<K: Kind<A, B>, const A: usize, const B: usize>(
+fn candidates<K: PairTest<A, B>, const A: usize, const B: usize>(
     node: &Node,
     leaf: &Leaf<B>,
     bounds: &[[f32; 3]; 2],
@@ -317,7 +321,7 @@ fn candidates<K: Kind<A, B>, const A: usize, const B: usize>(
 ) -> u32 {
     let mut flags = [0_u8; LANES];
     for lane in 0..LANES {
-        let mut candidate = lane_meets(node, lane, bounds);
+        let mut candidate = lane_overlaps(node, lane, bounds);
         candidate &= !K::SYMMETRIC | (leaf.elements[lane] > element);
         for i in 0..A {
             for j in 0..B {
@@ -329,7 +333,7 @@ fn candidates<K: Kind<A, B>, const A: usize, const B: usize>(
     bits(&flags)
 }
 
-/// Drops the pairs whose bodies do not collide.
+/// Drops the pairs whose bodies may not collide.
 #[inline(never)]
 fn filter(model: &CollisionModel, vertex: u32, others: &[u32; LANES], mask: u32) -> u32 {
     let body = |v: u32| model.vertex_body()[v as usize];
@@ -341,7 +345,7 @@ fn filter(model: &CollisionModel, vertex: u32, others: &[u32; LANES], mask: u32)
 
 /// Whether the certified width of a pair is within its radii.
 #[inline(never)]
-fn is_near<K: Kind<A, B>, const A: usize, const B: usize>(
+fn is_near<K: PairTest<A, B>, const A: usize, const B: usize>(
     scene: &Scene<'_>,
     a: [u32; A],
     b: [u32; B],
@@ -349,11 +353,11 @@ fn is_near<K: Kind<A, B>, const A: usize, const B: usize>(
     let mut vertices = [a[0]; 4];
     a.iter().chain(&b).zip(&mut vertices).for_each(|(&v, vertex)| *vertex = v);
     let largest = |side: &[u32]| side.iter().map(|&v| scene.radii[v as usize]).fold(0.0, f64::max);
-    // Rounded up: a pair exactly at the radii must not be lost.
+    // Rounded up: a pair at exactly the sum of its radii must be listed.
     separate_one(K::KIND, vertices, scene.positions).width <= (largest(&a) + largest(&b)).next_up()
 }
 
-/// The boxes of an element at the start and at the end of the sweep.
+/// The boxes of an element at the start and at the end of the motion.
 #[inline(always)]
 fn moving_box<const V: usize>(tree: &Tree<V>, leaf: usize, lane: usize) -> [[[f32; 3]; 2]; 2] {
     match tree.sweep.get(leaf) {
@@ -362,21 +366,20 @@ fn moving_box<const V: usize>(tree: &Tree<V>, leaf: usize, lane: usize) -> [[[f3
     }
 }
 
-/// The elements of a leaf whose moving boxes meet another moving box at one and the same time.
+/// The elements of a leaf whose moving boxes overlap another moving box at some time, one bit each.
 ///
-/// A vertex goes from x to x + u in a straight line, so a bound of its element (the least of linear
-/// functions of time is concave) never falls below the straight line between the bound at the start
-/// and that at the end: the box whose corners move linearly from the first to the last contains the
-/// element all the time, inflated by its radius. Two such boxes are apart along an axis while a gap,
-/// linear in time, is positive. A gap positive at both ends is so always. One that changes sign
-/// does it at g0 / (g0 - g1); both ends are right to u = 2^-24 of themselves, as the corners are
-/// exact data, and the denominator adds numbers of one sign, so the time is right to 4 u and is
-/// moved outward by 16 u. The pair is dropped where the six intervals of no gap and [0, 1] have no
-/// time in common.
+/// A vertex moves from x to x + u in a straight line. The lower bound of an element is the minimum of linear
+/// functions of time, hence concave: it never falls below the straight line between the bounds at the start
+/// and at the end. So the box whose corners move linearly from the first to the last box contains the
+/// element, inflated by its radius, at any time. Two such boxes are apart along an axis while a gap, linear
+/// in time, is positive. A gap that is positive at both ends is always positive. A gap that changes sign does
+/// so at g0 / (g0 - g1). Both ends have a relative error of u = 2^-24, as the corners are exact data, and the
+/// denominator adds numbers of one sign, so the time has a relative error of 4 u; it is moved outward by 16
+/// u. The pair is dropped if the six intervals without a gap and [0, 1] have no time in common.
 #[inline(always)]
-fn sweeps_meet(first: &Node, last: &Node, [own_first, own_last]: &[[[f32; 3]; 2]; 2]) -> u32 {
-    const EARLIER: f32 = 1.0 - 16.0 * UNIT;
-    const LATER: f32 = 1.0 + 16.0 * UNIT;
+fn moving_boxes_overlap(first: &Node, last: &Node, [own_first, own_last]: &[[[f32; 3]; 2]; 2]) -> u32 {
+    const EARLIER: f32 = 1.0 - 16.0 * UNIT_ROUNDOFF;
+    const LATER: f32 = 1.0 + 16.0 * UNIT_ROUNDOFF;
     let mut flags = [0_u8; LANES];
     for lane in 0..LANES {
         let mut enter = 0.0;

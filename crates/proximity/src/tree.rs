@@ -1,17 +1,18 @@
 //! A packed implicit 16-ary tree of boxes over elements of `V` vertices.
 //!
-//! Elements stand in a spatial order; each 16 of them make a leaf, each 16 leaves a node, and so on:
-//! the children of node i of a level are 16 i .. 16 i + 15 of the level below, without pointers. A
-//! node holds the boxes of its 16 children side by side, so that one box meets all in a few vector
-//! instructions. When things move the order stays and the boxes are refitted; a stale order costs
-//! some time and no correctness, and is redone when the leaves have grown.
+//! Elements are stored in a spatial order. Each 16 of them make a leaf, each 16 leaves a node, and so on: the
+//! children of node i of a level are 16 i .. 16 i + 15 of the level below, without pointers. A node holds the
+//! boxes of its 16 children side by side, so that one box is tested against all of them in a few vector
+//! instructions. When elements move, the order stays and the boxes are refitted. A stale order costs time but
+//! no correctness; it is rebuilt when the leaves have grown.
 //!
 //! **Rounding.** With u = 2^-24, local coordinates x and radii r are off by u|x| and u r (see
-//! [`crate::frame`]). Let m be the largest |x| of an element. A box bound x - r as computed is off by
-//! at most u m + u r + u (m + r), and moving it outward by 8 u (m + r) rounds once more: the
-//! inflated box is contained for certain, with f32 rounding to spare for underflow by 1e-30 m.
+//! [`crate::frame`]). Let m be the largest |x| of an element. A computed box bound x - r is off by at most u
+//! m + u r + u (m + r), and moving it outward by 8 u (m + r) rounds once more: the computed box certainly
+//! contains the exact one. 1e-30 m more covers underflow.
 
-use crate::frame::{LocalVertex, UNIT};
+use crate::frame::{LocalVertex, UNIT_ROUNDOFF};
+use crate::min_max::{larger, smaller};
 use crate::order::{Centre, kd_order};
 use rayon::prelude::*;
 
@@ -21,8 +22,8 @@ pub const LANES: usize = 16;
 /// Leaves that one task refits.
 const REFIT_CHUNK: usize = 64;
 
-/// Growth of the leaves' boxes at which the order is redone.
-const STALE: f64 = 1.4;
+/// Growth of the boxes of the leaves at which the tree is rebuilt.
+const STALE_GROWTH: f64 = 1.4;
 
 /// Sixteen boxes [m], local coordinates. Lanes without a box are empty: +inf .. -inf.
 #[derive(Clone, Copy, Debug)]
@@ -57,26 +58,26 @@ impl Node {
     pub fn bounds(&self) -> [[f32; 3]; 2] {
         let mut bounds = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
         for k in 0..3 {
-            bounds[0][k] = self.low[k].iter().fold(f32::INFINITY, |m, &x| least(m, x));
-            bounds[1][k] = self.high[k].iter().fold(f32::NEG_INFINITY, |m, &x| greatest(m, x));
+            bounds[0][k] = self.low[k].iter().fold(f32::INFINITY, |m, &x| smaller(m, x));
+            bounds[1][k] = self.high[k].iter().fold(f32::NEG_INFINITY, |m, &x| larger(m, x));
         }
         bounds
     }
 }
 
-/// What the distance test needs of an element. In one place each, not side by side as the boxes are:
-/// the test picks single elements of many leaves.
+/// What the distance test needs of an element. Each element is stored in one place, not side by side as the
+/// boxes are, because the test reads single elements of many leaves.
 #[derive(Clone, Copy, Debug)]
-pub struct Row<const V: usize> {
+pub struct ElementRow<const V: usize> {
     /// Local coordinates of the vertices [m].
     pub positions: [[f32; 3]; V],
-    /// Radius plus the slack that certifies a rejection [m], see [`crate::kinds`].
+    /// Radius plus the slack that certifies a rejection [m], see [`crate::pair_test`].
     pub reject: f32,
-    /// Radius less the slack that certifies a pair's nearness [m].
+    /// Radius less the slack that certifies that a pair is near [m].
     pub accept: f32,
 }
 
-/// What is known of the sixteen elements of a leaf, beside their boxes.
+/// The sixteen elements of a leaf, without their boxes.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct Leaf<const V: usize> {
@@ -84,10 +85,11 @@ pub struct Leaf<const V: usize> {
     pub elements: [u32; LANES],
     /// Their vertices; `u32::MAX` in lanes without an element.
     pub vertices: [[u32; LANES]; V],
-    pub rows: [Row<V>; LANES],
+    /// Input of the distance test for each element.
+    pub rows: [ElementRow<V>; LANES],
     /// Largest index of an element.
     pub last_element: u32,
-    /// Sum of the sides of the box of all vertices, radii left out [m].
+    /// Sum of the side lengths of the box of all vertices, without radii [m].
     extent: f32,
 }
 
@@ -95,24 +97,26 @@ impl<const V: usize> Leaf<V> {
     const EMPTY: Self = Self {
         elements: [u32::MAX; LANES],
         vertices: [[u32::MAX; LANES]; V],
-        rows: [Row { positions: [[0.0; 3]; V], reject: 0.0, accept: 0.0 }; LANES],
+        rows: [ElementRow { positions: [[0.0; 3]; V], reject: 0.0, accept: 0.0 }; LANES],
         last_element: 0,
         extent: 0.0,
     };
 }
 
-/// The tree. Level 0 holds the elements' boxes, the last level is the root alone; there are at
-/// least two levels unless the tree is empty.
+/// The tree. Level 0 holds the boxes of the elements, the last level only the root. There are at least two
+/// levels unless the tree is empty.
 #[derive(Debug, Default)]
 pub struct Tree<const V: usize> {
+    /// Nodes of each level.
     pub levels: Vec<Vec<Node>>,
+    /// Leaves, in spatial order.
     pub leaves: Vec<Leaf<V>>,
-    /// Boxes at the start and the end of a sweep; level 0 then holds their hull. Empty when the last
-    /// refit was not swept.
+    /// Boxes at the start and the end of a motion; level 0 then holds their hull. Empty if the last refit was
+    /// without motion.
     pub sweep: Vec<[Node; 2]>,
     len: usize,
-    /// Sum of the leaves' extents when the order was made.
-    fresh_extent: f64,
+    /// Sum of the extents of the leaves when the tree was built.
+    built_extent: f64,
 }
 
 impl<const V: usize> Tree<V> {
@@ -132,9 +136,8 @@ impl<const V: usize> Tree<V> {
         self.levels.last().map_or(Node::EMPTY, |root| root[0]).bounds()
     }
 
-    /// Puts `elements` in spatial order. The boxes are those of a following [`Self::refit`].
-    ///
-    /// `elements` yields index and vertices of each.
+    /// Builds the tree of `elements` (index and vertices of each) in spatial order. [`Self::refit`] must
+    /// follow: it sets the boxes.
     pub fn build(&mut self, elements: &[(u32, [u32; V])], local: &[LocalVertex]) {
         let mut centres: Vec<Centre> = elements
             .iter()
@@ -172,7 +175,7 @@ impl<const V: usize> Tree<V> {
             }
             count = count.div_ceil(LANES);
         }
-        self.fresh_extent = f64::NAN;
+        self.built_extent = f64::NAN;
     }
 
     /// Index and vertices of each element, in the tree's order.
@@ -183,7 +186,7 @@ impl<const V: usize> Tree<V> {
         lanes.take(self.len).collect()
     }
 
-    /// Fits all boxes to the local positions; with `end`, to the motion from `local` to `end`.
+    /// Refits all boxes to the local positions or, with `end`, to the motion from `local` to `end`.
     pub fn refit(&mut self, local: &[LocalVertex], end: Option<&[LocalVertex]>) {
         if self.is_empty() {
             return;
@@ -210,7 +213,7 @@ impl<const V: usize> Tree<V> {
                     .for_each(|((nodes, leaves), sweeps)| {
                         for ((node, leaf), [first, last]) in nodes.iter_mut().zip(leaves).zip(sweeps) {
                             refit_leaf(end, last, leaf);
-                            // Last, for what the leaf holds belongs to the start.
+                            // The start comes last, because the leaf keeps the state of the start.
                             refit_leaf(local, first, leaf);
                             *node = hull(first, last);
                         }
@@ -230,14 +233,14 @@ impl<const V: usize> Tree<V> {
             );
             below = level;
         }
-        if self.fresh_extent.is_nan() {
-            self.fresh_extent = self.extent();
+        if self.built_extent.is_nan() {
+            self.built_extent = self.extent();
         }
     }
 
-    /// Whether the leaves have grown so much that a new order pays.
+    /// Whether the leaves have grown so much that rebuilding is worth its cost.
     pub fn is_stale(&self) -> bool {
-        self.extent() > STALE * self.fresh_extent
+        self.extent() > STALE_GROWTH * self.built_extent
     }
 
     fn extent(&self) -> f64 {
@@ -259,54 +262,44 @@ fn refit_leaf<const V: usize>(local: &[LocalVertex], node: &mut Node, leaf: &mut
         for j in 0..V {
             let vertex = local[leaf.vertices[j][lane] as usize];
             for k in 0..4 {
-                low[k] = least(low[k], vertex[k]);
-                high[k] = greatest(high[k], vertex[k]);
+                low[k] = smaller(low[k], vertex[k]);
+                high[k] = larger(high[k], vertex[k]);
             }
             leaf.rows[lane].positions[j].copy_from_slice(&vertex[..3]);
             check += vertex[3];
         }
         if check.is_nan() {
-            // Not-a-number would hide in some comparisons and spoil the boxes above.
+            // Comparisons would drop some not-a-numbers and pass others on to the boxes above.
             node.set_lane(lane, [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]]);
             continue;
         }
         let radius = high[3];
         let mut largest = 0.0;
         for k in 0..3 {
-            all[0][k] = least(all[0][k], low[k]);
-            all[1][k] = greatest(all[1][k], high[k]);
-            largest = greatest(largest, greatest(low[k].abs(), high[k].abs()));
+            all[0][k] = smaller(all[0][k], low[k]);
+            all[1][k] = larger(all[1][k], high[k]);
+            largest = larger(largest, larger(low[k].abs(), high[k].abs()));
         }
-        let margin = 8.0 * UNIT * (largest + radius) + 1e-30;
+        let margin = 8.0 * UNIT_ROUNDOFF * (largest + radius) + 1e-30;
         for k in 0..3 {
             node.low[k][lane] = (low[k] - radius) - margin;
             node.high[k][lane] = (high[k] + radius) + margin;
         }
-        leaf.rows[lane].reject = radius * (1.0 + 16.0 * UNIT) + (80.0 * UNIT * largest + 1e-18);
-        leaf.rows[lane].accept = radius * (1.0 - 16.0 * UNIT) - (128.0 * UNIT * largest + 1e-18);
+        leaf.rows[lane].reject =
+            radius * (1.0 + 16.0 * UNIT_ROUNDOFF) + (80.0 * UNIT_ROUNDOFF * largest + 1e-18);
+        leaf.rows[lane].accept =
+            radius * (1.0 - 16.0 * UNIT_ROUNDOFF) - (128.0 * UNIT_ROUNDOFF * largest + 1e-18);
     }
-    leaf.extent = greatest(0.0, (0..3).map(|k| all[1][k] - all[0][k]).sum());
+    leaf.extent = larger(0.0, (0..3).map(|k| all[1][k] - all[0][k]).sum());
 }
 
 fn hull(a: &Node, b: &Node) -> Node {
     let mut node = *a;
     for k in 0..3 {
         for lane in 0..LANES {
-            node.low[k][lane] = least(a.low[k][lane], b.low[k][lane]);
-            node.high[k][lane] = greatest(a.high[k][lane], b.high[k][lane]);
+            node.low[k][lane] = smaller(a.low[k][lane], b.low[k][lane]);
+            node.high[k][lane] = larger(a.high[k][lane], b.high[k][lane]);
         }
     }
     node
-}
-
-/// The smaller of two numbers as one instruction; `b` where one is not a number.
-#[inline(always)]
-pub fn least(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
-/// The larger of two numbers as one instruction; `b` where one is not a number.
-#[inline(always)]
-pub fn greatest(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
 }

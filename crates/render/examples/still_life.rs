@@ -82,11 +82,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         beyond: [false; 2],
     });
     let size = [800, 600];
-    let free = legend.width(size[1]);
-    let mut fit = Fit::new(View::ThreeQuarter, 26.0, f64::from(size[0] - free) / f64::from(size[1]));
+    let legend_width = legend.width(size[1]);
+    let mut fit = Fit::new(View::ThreeQuarter, 26.0, f64::from(size[0] - legend_width) / f64::from(size[1]));
     points.iter().for_each(|p| fit.add(p, 0.02));
     let ground = vec![HalfSpace { normal: Vector::z(), offset: 0.0 }];
-    let shot = Shot { free, ground, ..Shot::new(fit.camera(), size) };
+    let shot = Shot { legend_width, ground, ..Shot::new(fit.camera(), size) };
 
     let mut renderer = Renderer::new(Quality::FINE)?;
     let mut picture = renderer.render(&model, &Frame { positions: &points, values: &values }, &shot)?;

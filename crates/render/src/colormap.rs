@@ -1,8 +1,8 @@
-//! From numbers to colours: a perceptually uniform map.
+//! The map from numbers to colours, which is perceptually uniform.
 
 /// Coefficients of t^0 .. t^6 for red, green and blue of viridis: a fit by Matt Zucker (2019, CC0,
-/// <https://www.shadertoy.com/view/WlfXRN>) to the map of Stéfan van der Walt and Nathaniel Smith (2015, CC0). It is
-/// off by at most 0.013 of full intensity.
+/// <https://www.shadertoy.com/view/WlfXRN>) to the map of Stéfan van der Walt and Nathaniel Smith (2015,
+/// CC0). Its error is at most 0.013 of full intensity.
 const VIRIDIS: [[f64; 3]; 7] = [
     [0.277_727_327_223_417_7, 0.005_407_344_544_966_578, 0.334_099_805_335_306_1],
     [0.105_093_043_108_577_4, 1.404_613_529_898_575, 1.384_590_162_594_685],
@@ -13,7 +13,8 @@ const VIRIDIS: [[f64; 3]; 7] = [
     [-5.435_455_855_934_631, 4.645_852_612_178_535, 26.312_435_249_583_2],
 ];
 
-/// The colour of `t` in [0, 1], dark violet to yellow, as sRGB in [0, 1]; values outside take the ends' colours.
+/// The colour of `t` in [0, 1], from dark violet to yellow, as sRGB in [0, 1]. Values outside have the
+/// colours of the ends.
 pub fn viridis(t: f64) -> [f64; 3] {
     let t = t.clamp(0.0, 1.0);
     let channel = |c: usize| VIRIDIS.iter().rev().fold(0.0, |sum, row| sum * t + row[c]).clamp(0.0, 1.0);
@@ -31,47 +32,4 @@ pub fn to_srgb(linear: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// From the original table (matplotlib's `_cm_listed.py`, CC0): 0, 64, 128, 192 and 255.
-    #[test]
-    fn follows_the_original_table() {
-        let table = [
-            (0.0, [0.267_004, 0.004_874, 0.329_415]),
-            (64.0 / 255.0, [0.229_739, 0.322_361, 0.545_706]),
-            (128.0 / 255.0, [0.127_568, 0.566_949, 0.550_556]),
-            (192.0 / 255.0, [0.369_214, 0.788_888, 0.382_914]),
-            (1.0, [0.993_248, 0.906_157, 0.143_936]),
-        ];
-        for (t, expected) in table {
-            let color = viridis(t);
-            for c in 0..3 {
-                assert!((color[c] - expected[c]).abs() < 0.014, "t = {t}: {color:?} for {expected:?}");
-            }
-        }
-    }
-
-    /// Perceived lightness grows steadily, so that the map reads in grey as well.
-    #[test]
-    fn grows_lighter() {
-        let luminance = |t: f64| {
-            let [r, g, b] = viridis(t).map(to_linear);
-            0.2126 * r + 0.7152 * g + 0.0722 * b
-        };
-        for k in 0..100 {
-            let (a, b) = (luminance(k as f64 / 100.0), luminance((k + 1) as f64 / 100.0));
-            assert!(b > a, "t = {k} %: {b} after {a}");
-        }
-        assert_eq!(viridis(-3.0), viridis(0.0));
-        assert_eq!(viridis(7.0), viridis(1.0));
-    }
-
-    #[test]
-    fn transfer_functions_are_inverse() {
-        for k in 0..=255 {
-            let srgb = f64::from(k) / 255.0;
-            assert!((to_srgb(to_linear(srgb)) - srgb).abs() < 1e-6);
-        }
-    }
-}
+mod tests;

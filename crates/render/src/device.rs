@@ -1,4 +1,4 @@
-//! The device and the pipelines: what does not depend on a picture.
+//! The device and the pipelines, which do not depend on the picture.
 
 use crate::RenderError;
 use crate::model::{Ball, SurfaceVertex};
@@ -10,12 +10,12 @@ use wgpu::util::{BufferInitDescriptor, DeviceExt};
 pub const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// Format of the picture's depth.
 pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-/// Format of the shadow maps: a step of depth is far below the width of a texel.
+/// Format of the shadow maps. Its step of depth is far below the width of a texel.
 pub const SHADOW: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
-/// Samples a pixel: every device has 4.
+/// Samples per pixel: every device supports 4.
 pub const SAMPLES: u32 = 4;
 
-/// An opened device, with everything compiled.
+/// An opened device with all pipelines.
 #[derive(Debug)]
 pub struct Device {
     pub adapter_name: String,
@@ -91,7 +91,7 @@ impl Device {
                 immediate_size: 0,
             })
         };
-        let seen = layout("seen", &[Some(&view_layout), Some(&scene_layout)]);
+        let picture = layout("picture", &[Some(&view_layout), Some(&scene_layout)]);
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("shadows"),
             mag_filter: wgpu::FilterMode::Linear,
@@ -99,7 +99,7 @@ impl Device {
             compare: Some(wgpu::CompareFunction::LessEqual),
             ..wgpu::SamplerDescriptor::default()
         });
-        let cast = layout("cast", &[Some(&view_layout)]);
+        let shadow = layout("shadow", &[Some(&view_layout)]);
         let make = |recipe: Recipe<'_>| recipe.pipeline(&device, &shader);
         let surface_buffer = || wgpu::VertexBufferLayout {
             array_stride: size_of::<SurfaceVertex>() as u64,
@@ -112,7 +112,7 @@ impl Device {
             attributes: &BALL_ATTRIBUTES,
         };
         let strip = wgpu::PrimitiveTopology::TriangleStrip;
-        let plain = Recipe { layout: &seen, ..Recipe::new("", &cast) };
+        let plain = Recipe { layout: &picture, ..Recipe::new("", &shadow) };
         let backdrop = make(Recipe {
             label: "backdrop",
             vertex: "backdrop_vertex",
@@ -127,12 +127,12 @@ impl Device {
         let balls =
             make(Recipe { label: "balls", fragment: Some("ball_fragment"), coverage: true, ..ball.clone() });
         let surface_shadow =
-            make(Recipe { label: "surface shadows", layout: &cast, shadow: true, ..surface.clone() });
+            make(Recipe { label: "surface shadows", layout: &shadow, shadow: true, ..surface.clone() });
         let ball_shadow = make(Recipe {
             label: "ball shadows",
             vertex: "ball_outline_vertex",
             fragment: Some("ball_shadow"),
-            layout: &cast,
+            layout: &shadow,
             shadow: true,
             ..ball
         });
@@ -153,7 +153,7 @@ impl Device {
         }
     }
 
-    /// A buffer with this content; an empty one holds a few zeros, since none may be empty.
+    /// A buffer with this content. No buffer may be empty, so an empty one holds a few zeros.
     pub fn buffer<T: bytemuck::NoUninit>(
         &self,
         label: &str,
@@ -165,8 +165,8 @@ impl Device {
         self.device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents, usage })
     }
 
-    /// What the driver says went wrong, as an error.
-    pub fn fault(&self, message: impl std::fmt::Display) -> RenderError {
+    /// An error of the driver, with its message.
+    pub fn error(&self, message: impl std::fmt::Display) -> RenderError {
         RenderError::Device { adapter: self.adapter_name.clone(), message: message.to_string() }
     }
 }
@@ -189,7 +189,7 @@ fn uniform(binding: u32, has_dynamic_offset: bool) -> wgpu::BindGroupLayoutEntry
     }
 }
 
-/// What pipelines differ in.
+/// The settings in which the pipelines differ.
 #[derive(Clone)]
 struct Recipe<'a> {
     label: &'a str,
@@ -198,11 +198,11 @@ struct Recipe<'a> {
     fragment: Option<&'a str>,
     buffer: Option<wgpu::VertexBufferLayout<'a>>,
     topology: wgpu::PrimitiveTopology,
-    /// Whether it draws into a shadow map: depth alone, one sample.
+    /// Whether it draws into a shadow map: depth only, one sample.
     shadow: bool,
-    /// Whether it looks at depth and writes it.
+    /// Whether it tests and writes depth.
     depth: bool,
-    /// Whether alpha masks samples.
+    /// Whether alpha masks the samples of a pixel.
     coverage: bool,
 }
 
@@ -260,7 +260,7 @@ impl<'a> Recipe<'a> {
     }
 }
 
-/// Waits for a future of wgpu. On the backends that are built in they are ready at once; a spin costs nothing.
+/// Waits for a future of wgpu. With the native backends these are ready at once, so the loop does not spin.
 pub fn wait<T>(future: impl Future<Output = T>) -> T {
     let mut future = pin!(future);
     let mut context = Context::from_waker(Waker::noop());

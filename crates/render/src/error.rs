@@ -1,4 +1,6 @@
-//! What can keep a picture from being made.
+//! Why a picture could not be made.
+
+use bowknot_geometry::VertexOutOfRange;
 
 /// Why there is no picture.
 #[derive(Debug, thiserror::Error)]
@@ -11,7 +13,7 @@ pub enum RenderError {
         driver_remedy()
     )]
     NoDriver {
-        /// What the system says, in one line.
+        /// The system's reason, in one line.
         reason: Option<String>,
     },
     /// The driver refused a device or lost it.
@@ -19,18 +21,18 @@ pub enum RenderError {
     Device {
         /// The device's name.
         adapter: String,
-        /// What the driver says.
+        /// The driver's message.
         message: String,
     },
     /// The picture has no pixels or more than the device can draw.
-    #[error("a picture of {width} x {height} pixels: each side must lie from 16 to {most}")]
+    #[error("a picture of {width} x {height} pixels: each side must lie from 16 to {largest}")]
     Size {
         /// Width [pixels].
         width: u32,
         /// Height [pixels].
         height: u32,
         /// Largest side that the device can draw [pixels].
-        most: u32,
+        largest: u32,
     },
     /// A frame does not fit its model.
     #[error("{what} has {given} entries for {expected} vertices")]
@@ -43,26 +45,17 @@ pub enum RenderError {
         expected: usize,
     },
     /// An element names a vertex that does not exist.
-    #[error("{element} {index} names vertex {vertex}, but there are only {vertex_count} vertices")]
-    VertexOutOfRange {
-        /// "triangle", "strand edge" or "particle".
-        element: &'static str,
-        /// Which of them.
-        index: usize,
-        /// The vertex it names.
-        vertex: u32,
-        /// How many vertices there are.
-        vertex_count: usize,
-    },
-    /// A camera that looks nowhere.
+    #[error(transparent)]
+    VertexOutOfRange(#[from] VertexOutOfRange),
+    /// The eye of the camera is at its target, or a coordinate is not finite.
     #[error("the camera is at its target {0:?}: move one of them")]
-    BlindCamera([f64; 3]),
+    CameraAtTarget([f64; 3]),
     /// A picture cannot be encoded or written.
     #[error("cannot encode the picture: {0}")]
     Encode(#[from] std::io::Error),
 }
 
-/// Which package brings a driver, by system. Mesa's software driver, lavapipe, serves everywhere on Linux.
+/// How to install a driver on this system. Mesa's software driver, lavapipe, works on every Linux machine.
 fn driver_remedy() -> &'static str {
     if cfg!(target_os = "linux") {
         "Install a Vulkan driver; without a GPU a software driver serves: Debian, Ubuntu: apt install \

@@ -1,42 +1,42 @@
-//! The key to a picture's colours: a bar with ticks, or a name beside each colour.
+//! The legend of a picture: a bar with ticks, or a name beside each colour.
 
 use crate::Picture;
 use crate::colormap::viridis;
 use crate::palette::INK;
 use crate::text::Pen;
 
-/// What colours stand for.
+/// The meaning of colours.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Legend {
-    /// Numbers from low to high.
+    /// Colours show numbers.
     Scale(Scale),
-    /// Names of colours.
+    /// Colours show named things.
     Names(Vec<(String, [u8; 3])>),
 }
 
-/// Numbers that colours stand for.
+/// A scale of numbers that are shown by colours.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {
-    /// What is shown, without its unit.
+    /// Name of the quantity.
     pub title: String,
-    /// Its unit; empty if it has none.
+    /// Its unit; empty for a pure number.
     pub unit: String,
-    /// What the lowest colour stands for, and all below.
+    /// The number that the first colour shows; smaller numbers have the same colour.
     pub low: f64,
-    /// What the highest colour stands for, and all above.
+    /// The number that the last colour shows; larger numbers have the same colour.
     pub high: f64,
-    /// Whether values below `low` or above `high` occur: the ticks at the ends then say so.
+    /// Whether numbers below `low`, and above `high`, occur. The ticks at the ends then show ≤ and ≥.
     pub beyond: [bool; 2],
 }
 
 impl Scale {
-    /// Where a value lies between the ends, in [0, 1].
+    /// Position of a value on the scale, from 0 at `low` to 1 at `high`.
     pub fn share(&self, value: f64) -> f64 {
         let span = self.high - self.low;
         if span > 0.0 { ((value - self.low) / span).clamp(0.0, 1.0) } else { 0.5 }
     }
 
-    /// The same scale with its ends moved outward to round numbers; a scale without length gets some.
+    /// The same scale with its ends moved outward to round numbers. A scale of length 0 is lengthened first.
     pub fn rounded(&self) -> Self {
         let (mut low, mut high) = (self.low, self.high);
         if high - low <= 1e-9 * high.abs().max(low.abs()) {
@@ -51,7 +51,7 @@ impl Scale {
         }
     }
 
-    /// Ticks: where each lies, in [0, 1], and its number.
+    /// The ticks: their positions in [0, 1] and their labels.
     pub fn ticks(&self) -> Vec<(f64, String)> {
         let span = self.high - self.low;
         if !(span.is_finite() && span > 0.0) {
@@ -80,7 +80,7 @@ impl Scale {
     }
 }
 
-/// 1, 2 or 5 times a power of ten, for four to nine steps over a span.
+/// A step of 1, 2 or 5 times a power of ten that divides the span into four to nine parts.
 fn step(span: f64) -> f64 {
     let rough = span / 5.0;
     let power = 10.0_f64.powf(rough.log10().floor());
@@ -99,7 +99,7 @@ fn number(value: f64, digits: usize) -> String {
 }
 
 impl Legend {
-    /// Width that the legend takes at the right of a picture of this height [pixels].
+    /// Width of the legend at the right of a picture of this height [pixels].
     pub fn width(&self, height: u32) -> u32 {
         let pen = Pen::new(text_size(height));
         let inner = match self {
@@ -167,64 +167,4 @@ fn tick_length(height: u32) -> f32 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn scale(low: f64, high: f64) -> Scale {
-        Scale { title: "gap".to_owned(), unit: "mm".to_owned(), low, high, beyond: [false; 2] }
-    }
-
-    #[test]
-    fn ticks_are_round_numbers_within_the_ends() {
-        let texts = |s: &Scale| s.ticks().into_iter().map(|(_, text)| text).collect::<Vec<_>>();
-        assert_eq!(texts(&scale(0.0, 1.0)), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
-        assert_eq!(texts(&scale(1.0, 1.137)), ["1.00", "1.02", "1.04", "1.06", "1.08", "1.10", "1.12"]);
-        assert_eq!(texts(&scale(-60.0, 130.0)), ["−50", "0", "50", "100"]);
-        let beyond = Scale { beyond: [true, true], ..scale(0.0, 5.0) };
-        assert_eq!(texts(&beyond), ["≤ 0", "1", "2", "3", "4", "≥ 5"]);
-    }
-
-    #[test]
-    fn rounding_moves_the_ends_outward() {
-        for (low, high) in [(0.013, 0.87), (1.0, 1.137), (-3.2, 911.0), (2.0, 2.0), (0.0, 0.0), (1e-9, 2e-9)]
-        {
-            let s = scale(low, high).rounded();
-            assert!(s.low <= low && s.high >= high && s.low < s.high, "{s:?}");
-            assert!(s.high - s.low <= 1.45 * (high - low) || high == low, "{s:?}");
-            let ticks = s.ticks();
-            assert!((3..=12).contains(&ticks.len()), "{ticks:?}");
-            assert!(ticks.windows(2).all(|pair| pair[0].0 < pair[1].0));
-        }
-    }
-
-    /// The bar shows at each height the colour that the number there has.
-    #[test]
-    fn the_bar_agrees_with_the_map() {
-        let legend = Legend::Scale(scale(0.0, 1.0));
-        let mut picture = Picture::new(400, 320, [255; 3]);
-        legend.draw(&mut picture);
-        let x = 400 - legend.width(320) + text_size(320) as u32 + 3;
-        let (top, bottom) = (64, 272);
-        for (y, t) in [(top, 1.0), ((top + bottom) / 2, 0.5), (bottom, 0.0)] {
-            let (color, expected) = (picture.at(x, y), viridis(t));
-            for c in 0..3 {
-                assert!((f64::from(color[c]) / 255.0 - expected[c]).abs() < 0.01, "{color:?} {expected:?}");
-            }
-        }
-        // Nothing reaches the picture's edge nor leaves the legend's own strip.
-        let strip = 400 - legend.width(320);
-        for y in 0..320 {
-            assert!((0..strip).chain([399]).all(|x| picture.at(x, y) == [255; 3]), "row {y}");
-        }
-    }
-
-    #[test]
-    fn names_stand_beside_their_colours() {
-        let legend = Legend::Names(vec![("cloth".to_owned(), [200, 0, 0]), ("ball".to_owned(), [0, 0, 200])]);
-        let mut picture = Picture::new(300, 200, [255; 3]);
-        legend.draw(&mut picture);
-        let count = |color| picture.pixels.iter().filter(|p| **p == color).count();
-        assert_eq!(count([200, 0, 0]), count([0, 0, 200]));
-        assert!(count([200, 0, 0]) >= 64);
-    }
-}
+mod tests;

@@ -1,4 +1,5 @@
-//! Offscreen pictures of triangles, strands and particles, through wgpu: no window, any driver, a software one too.
+//! Offscreen pictures of triangles, strands and particles through wgpu. No window is needed, and any driver
+//! will do, a software driver included.
 //!
 //! ```no_run
 //! use bowknot_render::geometry::{HalfSpace, Point, Vector};
@@ -13,7 +14,7 @@
 //! let ground = HalfSpace { normal: Vector::z(), offset: -0.1 };
 //! let shot = Shot { ground: vec![ground], ..Shot::new(fit.camera(), [640, 480]) };
 //!
-//! let mut renderer = Renderer::new(Quality::FINE)?; // without any driver an error that names the package
+//! let mut renderer = Renderer::new(Quality::FINE)?; // without a driver, an error that names the package to install
 //! let picture = renderer.render(&model, &Frame { positions: &points, values: &[] }, &shot)?;
 //! write_png(std::fs::File::create("triangle.png")?, &picture)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -21,14 +22,14 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | `model` | elements and frames, laid out for the device |
+//! | `model` | elements and frames in the layout of the device |
 //! | `surface`, `tubes` | normals with creases; strands as closed tubes |
-//! | `camera`, `lights` | the fitted camera; key light and sky as many small lights |
-//! | `renderer`, `shader.wgsl` | the device, shadow maps, the picture |
-//! | `colormap`, `palette`, `legend`, `text` | numbers to colours, and the key to them |
-//! | `encode` | PNG and GIF |
+//! | `camera`, `lights` | the camera and its fit; key light and sky as many small lights |
+//! | `device`, `renderer`, `shader.wgsl` | the device and its pipelines; the passes of a picture; the shaders |
+//! | `colormap`, `palette`, `legend`, `text` | colours of numbers and bodies, and their legend |
+//! | `picture`, `encode` | pixels in memory; PNG and GIF |
 //!
-//! It does not know solvers, scenes or files' formats but those of pictures.
+//! The crate knows no solvers, no scenes, and no file formats other than PNG and GIF.
 
 mod camera;
 mod colormap;

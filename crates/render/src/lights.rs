@@ -1,35 +1,36 @@
-//! The light of a picture: a soft key light and a sky, both as many small lights.
+//! The light of a picture: a soft key light and a sky, both sampled by many small lights.
 //!
-//! Each small light casts hard shadows by a shadow map; together they make soft shadows and ambient occlusion: an area
-//! light and a dome, sampled. This is the many-light view of global illumination (Keller, "Instant Radiosity", SIGGRAPH
-//! 1997) with one bounce of sky light only.
+//! Each small light casts hard shadows through a shadow map. The sum of many samples of an area light and of
+//! a dome gives soft shadows and ambient occlusion. This is the many-light view of global illumination
+//! (Keller, "Instant Radiosity", SIGGRAPH 1997) with a single bounce of sky light.
 
 use bowknot_geometry::Vector;
 use std::f64::consts::{PI, TAU};
 
 /// Share of the light on a level ground that comes from the key light.
 const KEY_SHARE: f64 = 0.55;
-/// Half angle under which the key light is seen [deg]: the width of its penumbras.
+/// Half the angle that the key light subtends [deg]; it sets the width of the penumbras.
 const KEY_HALF_ANGLE: f64 = 7.0;
 /// Height of the key light above the horizon [deg].
 const KEY_HEIGHT: f64 = 48.0;
-/// How far to the left of the camera the key light stands [deg].
+/// Angle between the camera and the key light, which stands to the left of it [deg].
 const KEY_TURN: f64 = 56.0;
-/// Angle by which one point of a spiral is turned against the one before: the golden angle.
+/// Angle between one point of a spiral and the next: the golden angle [rad].
 const GOLDEN: f64 = 2.399_963_229_728_653;
 
 /// A small light, infinitely far away.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// Toward it, a unit vector.
+    /// Unit vector toward the light.
     pub direction: Vector,
-    /// What a surface that faces it gets; over all lights a level ground gets 1.
+    /// Irradiance of a surface that faces the light. All lights together give 1 on a level ground.
     pub weight: f64,
     /// Whether it belongs to the key light.
     pub key: bool,
 }
 
-/// Lights for a camera whose axis back, from the target to the eye, is given: the key light stands to its left.
+/// The lights for a camera. `back` points from its target to its eye; the key light stands to the left of the
+/// camera.
 pub fn lights(back: &Vector, key_count: usize, sky_count: usize) -> Vec<Light> {
     let around = if back.x.hypot(back.y) > 1e-3 { back.y.atan2(back.x) } else { -PI / 2.0 };
     let (azimuth, height) = (around - KEY_TURN.to_radians(), KEY_HEIGHT.to_radians());
@@ -37,7 +38,7 @@ pub fn lights(back: &Vector, key_count: usize, sky_count: usize) -> Vec<Light> {
     let [right, up, _] = crate::camera::axes(&center);
 
     let mut lights = Vec::with_capacity(key_count + sky_count);
-    // A spiral of points evenly over a disc.
+    // A spiral spreads the points evenly over a disc.
     for k in 0..key_count {
         let radius = KEY_HALF_ANGLE.to_radians().tan() * ((k as f64 + 0.5) / key_count as f64).sqrt();
         let (s, c) = (k as f64 * GOLDEN).sin_cos();
@@ -46,8 +47,9 @@ pub fn lights(back: &Vector, key_count: usize, sky_count: usize) -> Vec<Light> {
     }
     normalise(&mut lights, KEY_SHARE);
 
-    // The same over a hemisphere by equal area (Archimedes: equal bands of z), brighter toward the zenith as an overcast
-    // sky is (Moon and Spencer, "Illumination from a nonuniform sky", 1942).
+    // A spiral spreads the points over a hemisphere by equal area (Archimedes: bands of equal height in z).
+    // The sky is brighter toward the zenith, as an overcast sky is (Moon and Spencer, "Illumination from a
+    // nonuniform sky", 1942).
     let mut sky = Vec::with_capacity(sky_count);
     for k in 0..sky_count {
         let z = 0.06 + 0.94 * (k as f64 + 0.5) / sky_count as f64;
@@ -61,7 +63,7 @@ pub fn lights(back: &Vector, key_count: usize, sky_count: usize) -> Vec<Light> {
     lights
 }
 
-/// Scales the weights so that a level ground gets `total`.
+/// Scales the weights so that the lights give `total` on a level ground.
 fn normalise(lights: &mut [Light], total: f64) {
     let sum: f64 = lights.iter().map(|l| l.weight * l.direction.z).sum();
     lights.iter_mut().for_each(|l| l.weight *= total / sum);
@@ -72,7 +74,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_level_ground_gets_one() {
+    fn the_irradiance_of_a_level_ground_is_one() {
         for back in [Vector::new(-0.5, -1.0, 0.5), Vector::z(), Vector::y()] {
             let lights = lights(&back.normalize(), 12, 40);
             assert_eq!(lights.len(), 52);
@@ -92,7 +94,7 @@ mod tests {
         assert!(key.iter().all(|l| l.direction.dot(&right) < 0.0 && l.direction.dot(&back) > 0.0));
     }
 
-    /// A dome of lights has no side: the sky's mean direction is up.
+    /// The mean direction of the sky is up.
     #[test]
     fn the_sky_is_even() {
         let sky: Vec<Light> = lights(&Vector::y(), 4, 64).into_iter().filter(|l| !l.key).collect();

@@ -1,46 +1,48 @@
-//! What is drawn: elements that stay the same, and frames in which their vertices move.
+//! What is drawn: elements, which stay the same, and frames, in which their vertices move.
 
 use crate::RenderError;
 use crate::palette;
 use crate::surface::Surface;
 use crate::tubes::Tubes;
-use bowknot_geometry::Point;
+use bowknot_geometry::{Point, VertexOutOfRange};
 use bytemuck::{Pod, Zeroable};
 
-/// Elements over one array of vertices. Every slice may be empty.
+/// Elements over one array of vertices. Each slice may be empty.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Elements<'a> {
     /// Vertices of each triangle.
     pub triangles: &'a [[u32; 3]],
     /// Vertices of each strand edge.
     pub strands: &'a [[u32; 2]],
-    /// Vertices that are drawn as balls.
+    /// Vertex of each particle; it is drawn as a ball.
     pub particles: &'a [u32],
-    /// Whether each vertex is of an obstacle; empty: none is. An element is as its first vertex.
+    /// Whether each vertex belongs to an obstacle; empty if none does. The first vertex of an element
+    /// decides.
     pub obstacle: &'a [bool],
-    /// Body of each vertex, for its colour; empty: all are of body 0.
+    /// Body of each vertex, which gives its colour; empty if all belong to body 0.
     pub body: &'a [u32],
 }
 
-/// How thick what has no thickness is drawn.
+/// The thickness of strands and particles in pictures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Style {
-    /// Radius of the tubes about strands [m].
+    /// Radius of the tubes around strands [m].
     pub strand_radius: f64,
-    /// Radius of the balls about particles [m].
+    /// Radius of the balls around particles [m].
     pub particle_radius: f64,
 }
 
 /// A frame of a model.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<'a> {
-    /// Where the vertices are [m].
+    /// Positions of the vertices [m].
     pub positions: &'a [Point],
-    /// A share in [0, 1] of each vertex that the colour map shows; NaN shows the body's own colour. Empty: all NaN.
+    /// A value in [0, 1] per vertex, which the colour map shows; a vertex with NaN has the colour of its
+    /// body. Empty: all are NaN.
     pub values: &'a [f32],
 }
 
-/// What is the same in all frames, prepared for drawing.
+/// Elements prepared for drawing: everything that is the same in all frames.
 #[derive(Clone, Debug)]
 pub struct Model {
     vertex_count: usize,
@@ -48,7 +50,7 @@ pub struct Model {
     tubes: Tubes,
     particles: Vec<u32>,
     style: Style,
-    /// Of each vertex; alpha 255: its two sides differ.
+    /// Colour of each vertex. Alpha is 255 where the two sides of a surface differ, else 0.
     colors: Vec<[u8; 4]>,
 }
 
@@ -56,7 +58,7 @@ pub struct Model {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct SurfaceVertex {
-    pub place: [f32; 3],
+    pub point: [f32; 3],
     pub value: f32,
     pub normal: [f32; 3],
     pub color: [u8; 4],
@@ -72,11 +74,11 @@ pub(crate) struct Ball {
     pub color: [u8; 4],
 }
 
-/// A frame as the shaders read it, relative to `origin`.
+/// A frame in the layout of the shader, with positions relative to `origin`.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Drawing {
     pub origin: Point,
-    /// Radius about the origin that holds everything [m].
+    /// Radius of a ball around `origin` that contains everything [m].
     pub radius: f64,
     pub vertices: Vec<SurfaceVertex>,
     pub indices: Vec<u32>,
@@ -84,10 +86,10 @@ pub(crate) struct Drawing {
 }
 
 impl Model {
-    /// Prepares elements. Creases of surfaces are found at `rest`, positions of all vertices [m].
+    /// Prepares elements. The creases of surfaces are those at the positions `rest` [m].
     ///
     /// # Errors
-    /// Elements that name vertices which do not exist, arrays of the wrong length.
+    /// [`RenderError::VertexOutOfRange`] and [`RenderError::Length`].
     pub fn new(elements: &Elements<'_>, rest: &[Point], style: &Style) -> Result<Self, RenderError> {
         let n = rest.len();
         check("triangle", elements.triangles, n)?;
@@ -106,7 +108,7 @@ impl Model {
                 [r, g, b, if is_obstacle { 0 } else { 255 }]
             })
             .collect();
-        // Many strands are thin ones, on which nobody sees corners.
+        // Where there are many strands they are thin, and corners are not seen.
         let sides = match elements.strands.len() {
             0..4_000 => 14,
             4_000..20_000 => 8,
@@ -122,7 +124,7 @@ impl Model {
         })
     }
 
-    /// The frame in the shaders' layout.
+    /// The frame in the layout of the shader.
     pub(crate) fn drawing(&self, frame: &Frame<'_>) -> Result<Drawing, RenderError> {
         let n = self.vertex_count;
         if frame.positions.len() != n {
@@ -145,14 +147,14 @@ impl Model {
             (low, high) = (Point::origin(), Point::origin());
         }
         let origin = nalgebra::center(&low, &high);
-        let reach = drawn().map(|v| (frame.positions[v as usize] - origin).norm()).fold(0.0, f64::max);
+        let extent = drawn().map(|v| (frame.positions[v as usize] - origin).norm()).fold(0.0, f64::max);
         let thickness = if strand_vertices.is_empty() { 0.0 } else { self.style.strand_radius };
         let grain = if self.particles.is_empty() { 0.0 } else { self.style.particle_radius };
-        let radius = (reach + thickness.max(grain)).max(1e-6) * 1.02;
+        let radius = (extent + thickness.max(grain)).max(1e-6) * 1.02;
 
-        // Offsets from a near origin keep the device's single precision far below a pixel.
-        let place = |p: &Point| [0, 1, 2].map(|c| (p[c] - origin[c]) as f32);
-        // A shader cannot be relied on to tell NaN: below zero means none.
+        // Relative to a near origin, the rounding error of single precision is far below a pixel.
+        let point = |p: &Point| [0, 1, 2].map(|c| (p[c] - origin[c]) as f32);
+        // Shaders need not preserve NaN, so a negative number stands for it.
         let value = |v: u32| {
             let value = frame.values.get(v as usize).copied().unwrap_or(f32::NAN);
             if value.is_nan() { -1.0 } else { value.clamp(0.0, 1.0) }
@@ -160,13 +162,13 @@ impl Model {
         let color = |v: u32| self.colors[v as usize];
         let normals = self.surface.normals(frame.positions);
         let surface = self.surface.sources.iter().zip(&normals).map(|(&v, normal)| SurfaceVertex {
-            place: place(&frame.positions[v as usize]),
+            point: point(&frame.positions[v as usize]),
             value: value(v),
             normal: [0, 1, 2].map(|c| normal[c] as f32),
             color: color(v),
         });
         let tubes = strand_vertices.iter().map(|vertex| SurfaceVertex {
-            place: place(&vertex.position),
+            point: point(&vertex.position),
             value: value(vertex.source),
             normal: [0, 1, 2].map(|c| vertex.normal[c] as f32),
             color: color(vertex.source),
@@ -175,7 +177,7 @@ impl Model {
         let triangles = self.surface.triangles.iter().flatten().copied();
         let tube_triangles = self.tubes.triangles.iter().flatten().map(|v| v + first);
         let ball = |&v: &u32| Ball {
-            center: place(&frame.positions[v as usize]),
+            center: point(&frame.positions[v as usize]),
             radius: self.style.particle_radius as f32,
             value: value(v),
             color: color(v),
@@ -196,61 +198,12 @@ fn check<const N: usize>(
     vertex_count: usize,
 ) -> Result<(), RenderError> {
     for (index, vertices) in elements.iter().enumerate() {
-        if let Some(&vertex) = vertices.iter().find(|&&v| v as usize >= vertex_count) {
-            return Err(RenderError::VertexOutOfRange { element, index, vertex, vertex_count });
+        if let Some(error) = VertexOutOfRange::of(element, index, vertices, vertex_count).next() {
+            return Err(error.into());
         }
     }
     Ok(())
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    const STYLE: Style = Style { strand_radius: 0.05, particle_radius: 0.2 };
-
-    fn points() -> Vec<Point> {
-        (0..7).map(|k| Point::new(1000.0 + f64::from(k), f64::from(k % 2), f64::from(k / 3))).collect()
-    }
-
-    #[test]
-    fn a_drawing_holds_everything_about_its_origin() {
-        let elements = Elements {
-            triangles: &[[0, 1, 2]],
-            strands: &[[3, 4], [4, 5]],
-            particles: &[6],
-            obstacle: &[false, false, false, true, true, true, false],
-            body: &[0, 0, 0, 1, 1, 1, 2],
-        };
-        let points = points();
-        let model = Model::new(&elements, &points, &STYLE).unwrap();
-        let values = [0.5, 2.0, f32::NAN, 0.0, 0.0, 0.0, -3.0];
-        let drawing = model.drawing(&Frame { positions: &points, values: &values }).unwrap();
-        assert_eq!((drawing.balls.len(), drawing.indices.len() % 3), (1, 0));
-        assert!(drawing.indices.iter().all(|&v| (v as usize) < drawing.vertices.len()));
-        for vertex in &drawing.vertices {
-            let distance = vertex.place.iter().map(|c| c * c).sum::<f32>().sqrt();
-            assert!(f64::from(distance) <= drawing.radius);
-        }
-        let shown: Vec<f32> = drawing.vertices[..3].iter().map(|v| v.value).collect();
-        assert_eq!(shown, [0.5, 1.0, -1.0]);
-        assert_eq!(drawing.balls[0].value, 0.0);
-        assert_eq!(drawing.vertices[0].color[..3], palette::body(0));
-        assert_eq!(drawing.vertices[3].color, [176, 178, 182, 0]);
-    }
-
-    #[test]
-    fn what_does_not_fit_is_refused() {
-        let points = points();
-        let wrong = Elements { strands: &[[0, 1], [2, 7]], ..Elements::default() };
-        let error = Model::new(&wrong, &points, &STYLE).unwrap_err().to_string();
-        assert_eq!(error, "strand edge 1 names vertex 7, but there are only 7 vertices");
-        let short = Elements { body: &[0], ..Elements::default() };
-        assert!(Model::new(&short, &points, &STYLE).is_err());
-        let model = Model::new(&Elements::default(), &points, &STYLE).unwrap();
-        assert!(model.drawing(&Frame { positions: &points[1..], values: &[] }).is_err());
-        assert!(model.drawing(&Frame { positions: &points, values: &[0.0] }).is_err());
-        // Nothing to draw is no error.
-        assert!(model.drawing(&Frame { positions: &points, values: &[] }).unwrap().radius > 0.0);
-    }
-}
+mod tests;

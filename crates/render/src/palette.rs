@@ -1,8 +1,8 @@
 //! Colours of bodies, obstacles and the backdrop, as sRGB.
 
-/// Colours of deformable bodies in turn: distinct for colour-blind readers too, muted enough to shade well. The hues are
-/// those of Paul Tol's qualitative scheme "muted" (SRON/EPS/TN/09-002, issue 3.2, 2021), in an order that puts the most
-/// distinct first, some lightened.
+/// Colours of deformable bodies, used in turn. They are distinct for colour-blind readers too, and muted
+/// enough to shade well. The hues are those of Paul Tol's qualitative scheme "muted" (SRON/EPS/TN/09-002,
+/// issue 3.2, 2021), some of them lightened, with the most distinct first.
 const BODIES: [[u8; 3]; 9] = [
     [201, 102, 92],
     [68, 142, 176],
@@ -18,10 +18,10 @@ const BODIES: [[u8; 3]; 9] = [
 /// The colour of obstacles.
 pub const OBSTACLE: [u8; 3] = [176, 178, 182];
 
-/// The backdrop at its upper and lower edge.
+/// Colours of the backdrop at its upper and lower edge.
 pub const BACKDROP: [[u8; 3]; 2] = [[236, 239, 243], [250, 250, 249]];
 
-/// What text and ticks are drawn in.
+/// The colour of text and ticks.
 pub const INK: [u8; 3] = [45, 48, 54];
 
 /// The colour of a deformable body.

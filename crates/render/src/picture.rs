@@ -2,7 +2,7 @@
 
 use crate::colormap::{to_linear, to_srgb};
 
-/// Pixels from the upper left, row by row, as sRGB.
+/// Pixels in sRGB, row by row from the upper left.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Picture {
     /// Width [pixels].
@@ -19,16 +19,17 @@ impl Picture {
         Self { width, height, pixels: vec![color; width as usize * height as usize] }
     }
 
-    /// The pixel in column x and row y.
+    /// The pixel in column `x` and row `y`.
     ///
     /// # Panics
-    /// If it lies outside.
+    /// If it lies outside of the picture.
     pub fn at(&self, x: u32, y: u32) -> [u8; 3] {
         assert!(x < self.width && y < self.height, "pixel ({x}, {y}) of {} x {}", self.width, self.height);
         self.pixels[(y * self.width + x) as usize]
     }
 
-    /// Lays a colour over a pixel, opaque to the degree `coverage` in [0, 1]. Outside nothing happens.
+    /// Blends a colour into a pixel, with opacity `coverage` in [0, 1]. Pixels outside of the picture are
+    /// ignored.
     pub fn blend(&mut self, x: i64, y: i64, color: [u8; 3], coverage: f32) {
         if (0..i64::from(self.width)).contains(&x) && (0..i64::from(self.height)).contains(&y) {
             let pixel = &mut self.pixels[(y * i64::from(self.width) + x) as usize];
@@ -39,7 +40,8 @@ impl Picture {
         }
     }
 
-    /// Fills a rectangle.
+    /// Fills a rectangle, given its upper left corner and its size. The part outside of the picture is
+    /// ignored.
     pub fn fill(&mut self, [x, y]: [i64; 2], [width, height]: [i64; 2], color: [u8; 3]) {
         for row in y..y + height {
             for column in x..x + width {
@@ -48,7 +50,8 @@ impl Picture {
         }
     }
 
-    /// The picture at a `factor`-th of its size: means of linear light. What is left over at the edges is dropped.
+    /// The picture reduced to a `factor`-th of its size by means of linear light. Incomplete blocks at the
+    /// right and lower edges are dropped.
     pub fn shrink(&self, factor: u32) -> Self {
         if factor <= 1 {
             return self.clone();

@@ -1,30 +1,31 @@
-// Surfaces, balls and ground under many small lights, each with a shadow map; see lights.rs and renderer.rs.
+// Surfaces, balls and ground under many small lights, each with a shadow map; see lights.rs and
+// renderer/mod.rs.
 
-// Who looks: the camera, or one of the lights.
+// The view of the camera or of a light.
 struct View {
     matrix: mat4x4<f32>,
-    // The eye, w = 1; or the direction toward a light, w = 0.
+    // The eye of the camera with w = 1, or the direction toward a light with w = 0.
     eye: vec4<f32>,
 }
 
 struct Light {
-    // To the light's shadow map: texture coordinates and depth in [0, 1].
+    // To texture coordinates and depth in the shadow map, in [0, 1].
     matrix: mat4x4<f32>,
-    // Toward it; w: 1 if it belongs to the key light.
+    // Direction toward the light; w: 1 if it belongs to the key light.
     direction: vec4<f32>,
     // Linear light; w: unused.
     radiance: vec4<f32>,
 }
 
 struct Scene {
-    // Linear colours of the backdrop at the upper and lower edge; w of the first: height of the picture [pixels].
+    // Linear colours of the backdrop at the upper and lower edge; upper.w: height of the picture [pixels].
     upper: vec4<f32>,
     lower: vec4<f32>,
-    // What a level ground gets without anything on it, linear.
+    // Irradiance of a level ground with nothing on it.
     open_sky: vec4<f32>,
-    // Middle and radius of what casts shadows.
+    // Centre and radius of a ball that contains all casters of shadows.
     bound: vec4<f32>,
-    // Number of lights; width of a texel of the shadow maps as f32 bits; 0; 0.
+    // Number of lights; width of a texel of the shadow maps [m] as the bits of an f32; 0; 0.
     counts: vec4<u32>,
     palette: array<vec4<f32>, 256>,
     lights: array<Light, 96>,
@@ -35,18 +36,18 @@ struct Scene {
 @group(1) @binding(1) var shadows: texture_depth_2d_array;
 @group(1) @binding(2) var shadow_sampler: sampler_comparison;
 
-// Light that is everywhere, so that nothing is black; more from below, where the ground throws it back.
+// Light from everywhere, so that nothing is black, and more of it from below, reflected by the ground.
 const AMBIENT: f32 = 0.05;
 const BOUNCE: f32 = 0.16;
 
-// What light comes to a place: diffuse, and how much of the key light is seen.
+// Light at a point: the irradiance, and the visible share and mean direction of the key light.
 struct Received {
     diffuse: vec3<f32>,
     key: f32,
     key_direction: vec3<f32>,
 }
 
-fn received(place: vec3<f32>, normal: vec3<f32>) -> Received {
+fn received(point: vec3<f32>, normal: vec3<f32>) -> Received {
     let texel = bitcast<f32>(scene.counts.y);
     var sum = vec3<f32>(0.0);
     var key_seen = 0.0;
@@ -58,12 +59,13 @@ fn received(place: vec3<f32>, normal: vec3<f32>) -> Received {
         key_count += direction.w;
         key_direction += direction.w * direction.xyz;
         if cosine > 0.0 {
-            // Moved off the surface by some texels, more where the light grazes, so that it does not shade itself.
-            let start = place + normal * (texel * (1.0 + 1.5 * (1.0 - cosine))) + direction.xyz * texel;
+            // Offset from the surface by some texels, more at grazing angles, so that it does not shade
+            // itself.
+            let start = point + normal * (texel * (1.0 + 1.5 * (1.0 - cosine))) + direction.xyz * texel;
             let at = (scene.lights[k].matrix * vec4<f32>(start, 1.0)).xyz;
             var seen = 1.0;
             if all(at.xy > vec2<f32>(0.0)) && all(at.xy < vec2<f32>(1.0)) {
-                // Beyond the map's depth lies ground, which what is in the map may shade.
+                // Only ground lies beyond the depth of the map; casters in the map may shade it.
                 seen = textureSampleCompareLevel(shadows, shadow_sampler, at.xy, k, clamp(at.z, 0.0, 1.0));
             }
             sum += scene.lights[k].radiance.rgb * (cosine * seen);
@@ -73,22 +75,22 @@ fn received(place: vec3<f32>, normal: vec3<f32>) -> Received {
     return Received(sum, key_seen / max(key_count, 1.0), normalize(key_direction + vec3<f32>(0.0, 0.0, 1e-6)));
 }
 
-// What comes from a surface of this colour to the eye.
-fn shade(color: vec3<f32>, place: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
-    let light = received(place, normal);
+// Light that a surface of this colour sends to the eye.
+fn shade(color: vec3<f32>, point: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
+    let light = received(point, normal);
     let ambient = AMBIENT + BOUNCE * (0.5 - 0.5 * normal.z);
     var out = color * (light.diffuse + ambient);
-    // A little gloss (Blinn, 1977) shows the shape.
-    let to_eye = normalize(view.eye.xyz - place);
+    // A weak highlight (Blinn, 1977) shows the shape.
+    let to_eye = normalize(view.eye.xyz - point);
     let middle = normalize(light.key_direction + to_eye);
     out += vec3<f32>(0.07 * light.key * pow(max(dot(normal, middle), 0.0), 28.0));
-    // Bright colours end softly instead of being cut off.
+    // Bright colours are compressed instead of clipped.
     let knee = vec3<f32>(0.7);
     let over = max(out - knee, vec3<f32>(0.0));
     return min(out, knee) + 0.3 * (1.0 - exp(-over / 0.3));
 }
 
-// The colour of a value in [0, 1]; below that the body's own.
+// The colour of a value in [0, 1]; a negative value has the colour of the body.
 fn colored(value: f32, own: vec3<f32>) -> vec3<f32> {
     if value < 0.0 {
         return own;
@@ -105,7 +107,7 @@ fn linear(srgb: vec3<f32>) -> vec3<f32> {
 // ---- surfaces and tubes
 
 struct SurfaceIn {
-    @location(0) place: vec3<f32>,
+    @location(0) point: vec3<f32>,
     @location(1) value: f32,
     @location(2) normal: vec3<f32>,
     @location(3) color: vec4<f32>,
@@ -113,17 +115,17 @@ struct SurfaceIn {
 
 struct SurfaceOut {
     @builtin(position) position: vec4<f32>,
-    @location(0) place: vec3<f32>,
+    @location(0) point: vec3<f32>,
     @location(1) normal: vec3<f32>,
     @location(2) value: f32,
-    // w: 1 if the two sides differ.
+    // w: 1 if the colours of the two sides differ.
     @location(3) color: vec4<f32>,
 }
 
 @vertex
 fn surface_vertex(in: SurfaceIn) -> SurfaceOut {
-    let position = view.matrix * vec4<f32>(in.place, 1.0);
-    return SurfaceOut(position, in.place, in.normal, in.value, vec4<f32>(linear(in.color.rgb), in.color.a));
+    let position = view.matrix * vec4<f32>(in.point, 1.0);
+    return SurfaceOut(position, in.point, in.normal, in.value, vec4<f32>(linear(in.color.rgb), in.color.a));
 }
 
 @fragment
@@ -132,14 +134,14 @@ fn surface_fragment(in: SurfaceOut, @builtin(front_facing) front: bool) -> @loca
     var own = in.color.rgb;
     if !front {
         normal = -normal;
-        // The back is paler, so that folds are told apart.
+        // The back is paler, so that folds can be seen.
         let grey = vec3<f32>(dot(own, vec3<f32>(0.2126, 0.7152, 0.0722)));
         own = mix(own, mix(own, grey, 0.35) * 0.55 + 0.3, in.color.a);
     }
-    return vec4<f32>(shade(colored(in.value, own), in.place, normal), 1.0);
+    return vec4<f32>(shade(colored(in.value, own), in.point, normal), 1.0);
 }
 
-// ---- balls: squares that face the viewer, on which a ray finds the ball
+// ---- balls: squares that face the viewer; each fragment intersects its ray with the ball
 
 struct BallIn {
     @location(0) center: vec3<f32>,
@@ -150,14 +152,15 @@ struct BallIn {
 
 struct BallOut {
     @builtin(position) position: vec4<f32>,
-    @location(0) place: vec3<f32>,
+    @location(0) point: vec3<f32>,
     @location(1) @interpolate(flat) ball: vec4<f32>,
     @location(2) @interpolate(flat) color: vec4<f32>,
 }
 
-// The square of a ball, without colours: those stand in the scene, which a light does not have.
+// The square of a ball without its colour: the pass of a light has no access to the palette.
 fn ball_square(in: BallIn, index: u32) -> BallOut {
-    // Toward the viewer from the ball's middle, and how much larger than the ball its outline is.
+    // Direction from the centre of the ball toward the viewer, and the radius of its outline in the plane of
+    // the square.
     var toward = view.eye.xyz;
     var size = in.radius;
     if view.eye.w > 0.5 {
@@ -166,15 +169,15 @@ fn ball_square(in: BallIn, index: u32) -> BallOut {
         toward = way / distance;
         size = in.radius * distance / sqrt(distance * distance - in.radius * in.radius);
     }
-    // Room for soft edges.
+    // Room for smooth edges.
     size *= 1.15;
     let axis = select(vec3<f32>(0.0, 0.0, 1.0), vec3<f32>(1.0, 0.0, 0.0), abs(toward.z) > 0.7);
     let right = normalize(cross(axis, toward));
     let up = cross(toward, right);
     let corner = vec2<f32>(vec2<u32>(index & 1u, index >> 1u)) * 2.0 - 1.0;
-    let place = in.center + (right * corner.x + up * corner.y) * size;
-    let position = view.matrix * vec4<f32>(place, 1.0);
-    return BallOut(position, place, vec4<f32>(in.center, in.radius), vec4<f32>(0.0));
+    let point = in.center + (right * corner.x + up * corner.y) * size;
+    let position = view.matrix * vec4<f32>(point, 1.0);
+    return BallOut(position, point, vec4<f32>(in.center, in.radius), vec4<f32>(0.0));
 }
 
 @vertex
@@ -189,14 +192,14 @@ fn ball_outline_vertex(in: BallIn, @builtin(vertex_index) index: u32) -> BallOut
     return ball_square(in, index);
 }
 
-// Where the ray through a place of the square meets the ball; w: distance of the ray from the middle. Rays that miss get
-// the point of the ball nearest to them.
-fn ball_hit(place: vec3<f32>, ball: vec4<f32>) -> vec4<f32> {
+// The point where the ray through a point of the square meets the ball; w: distance of the ray from the
+// centre. A ray that misses gives the point of the ball nearest to it.
+fn ball_hit(point: vec3<f32>, ball: vec4<f32>) -> vec4<f32> {
     var along = -view.eye.xyz;
     if view.eye.w > 0.5 {
-        along = normalize(place - view.eye.xyz);
+        along = normalize(point - view.eye.xyz);
     }
-    let relative = place - ball.xyz;
+    let relative = point - ball.xyz;
     let nearest = relative - along * dot(relative, along);
     let aside = length(nearest);
     let back = sqrt(max(ball.w * ball.w - aside * aside, 0.0));
@@ -211,8 +214,8 @@ struct BallPixel {
 
 @fragment
 fn ball_fragment(in: BallOut) -> BallPixel {
-    let hit = ball_hit(in.place, in.ball);
-    // The share of the pixel that the ball covers; the samples are masked by it.
+    let hit = ball_hit(in.point, in.ball);
+    // The share of the pixel that the ball covers; it masks the samples.
     let coverage = clamp(0.5 + (in.ball.w - hit.w) / max(fwidth(hit.w), 1e-12), 0.0, 1.0);
     let clip = view.matrix * vec4<f32>(hit.xyz, 1.0);
     if coverage <= 0.0 {
@@ -224,7 +227,7 @@ fn ball_fragment(in: BallOut) -> BallPixel {
 
 @fragment
 fn ball_shadow(in: BallOut) -> @builtin(frag_depth) f32 {
-    let hit = ball_hit(in.place, in.ball);
+    let hit = ball_hit(in.point, in.ball);
     if hit.w > in.ball.w {
         discard;
     }
@@ -249,13 +252,13 @@ fn backdrop_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec
     return vec4<f32>(backdrop(position.y), 1.0);
 }
 
-// The ground is the backdrop, less the light that is kept from it: it has no edge and no horizon. What is not level gets
-// as much less as it turns away from the light.
+// The ground has the colour of the backdrop, darkened by the light that is blocked, so that it has no edge
+// and no horizon. Ground that is not level is darker as far as it faces away from the light.
 @fragment
 fn ground_fragment(in: SurfaceOut) -> @location(0) vec4<f32> {
-    let light = received(in.place, normalize(in.normal)).diffuse;
+    let light = received(in.point, normalize(in.normal)).diffuse;
     let share = (light + AMBIENT) / (scene.open_sky.rgb + AMBIENT);
-    let distance = length(in.place - scene.bound.xyz) / scene.bound.w;
+    let distance = length(in.point - scene.bound.xyz) / scene.bound.w;
     let fade = 1.0 - smoothstep(2.5, 6.0, distance);
     return vec4<f32>(backdrop(in.position.y) * mix(vec3<f32>(1.0), min(share, vec3<f32>(1.0)), fade), 1.0);
 }

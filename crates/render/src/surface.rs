@@ -1,17 +1,17 @@
-//! Surfaces with smooth normals, but for creases.
+//! Normals of surfaces: smooth, except at creases.
 //!
-//! Neighbouring triangles share a normal at a vertex unless they meet at a crease when the surface is at rest: a cuboid
-//! keeps its edges, a sheet stays smooth however it folds, and nothing flickers from frame to frame.
+//! Neighbouring triangles share a normal at a vertex unless their edge is a crease of the surface at rest. So
+//! a cuboid keeps its edges, a sheet stays smooth however it folds, and nothing flickers from frame to frame.
 
-use bowknot_geometry::{Point, Vector};
+use bowknot_geometry::{Point, UnionFind, Vector};
 
-/// Cosine of the angle between two triangles' normals from which on their edge is a crease: 40 degrees.
+/// Cosine of the angle between the normals of two triangles above which their edge is a crease: 40 degrees.
 const CREASE: f64 = 0.766;
 
-/// Triangles whose corners are vertices with one normal each.
+/// Triangles over vertices that are split at creases, so that each has one normal.
 #[derive(Clone, Debug, Default)]
 pub struct Surface {
-    /// Vertex of the mesh that each split vertex stands for.
+    /// For each split vertex, the vertex of the mesh that it comes from.
     pub sources: Vec<u32>,
     /// Triangles over the split vertices, in the order given.
     pub triangles: Vec<[u32; 3]>,
@@ -28,8 +28,8 @@ impl Surface {
             })
             .collect();
 
-        // Corners, three a triangle, are joined across edges that are no creases.
-        let mut joined = Sets::new(3 * triangles.len());
+        // The corners, three per triangle, are joined across edges that are not creases.
+        let mut joined = UnionFind::new(3 * triangles.len());
         let mut sides: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * triangles.len());
         for (t, corners) in triangles.iter().enumerate() {
             for k in 0..3 {
@@ -69,7 +69,7 @@ impl Surface {
         surface
     }
 
-    /// Unit normals of the split vertices: those of their triangles, weighted by area.
+    /// Unit normals of the split vertices: the mean of the normals of their triangles, weighted by area.
     pub fn normals(&self, positions: &[Point]) -> Vec<Vector> {
         let mut normals = vec![Vector::zeros(); self.sources.len()];
         for &triangle in &self.triangles {
@@ -86,87 +86,5 @@ fn normal([i, j, k]: [u32; 3], positions: &[Point]) -> Vector {
     (b - a).cross(&(c - a))
 }
 
-/// Disjoint sets.
-struct Sets(Vec<u32>);
-
-impl Sets {
-    fn new(count: usize) -> Self {
-        Self((0..count as u32).collect())
-    }
-
-    fn find(&mut self, mut member: u32) -> u32 {
-        while self.0[member as usize] != member {
-            let parent = self.0[member as usize];
-            self.0[member as usize] = self.0[parent as usize];
-            member = parent;
-        }
-        member
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.find(a), self.find(b));
-        // The smaller index stays: the result does not depend on the order.
-        self.0[a.max(b) as usize] = a.min(b);
-    }
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Two triangles that share an edge, the second turned up by an angle [deg].
-    fn hinge(angle: f64) -> ([[u32; 3]; 2], Vec<Point>) {
-        let (s, c) = angle.to_radians().sin_cos();
-        let points = [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [c, 0.0, s]].map(Point::from);
-        ([[0, 1, 2], [1, 0, 3]], points.to_vec())
-    }
-
-    #[test]
-    fn smooth_edges_share_normals_and_creases_do_not() {
-        let (triangles, points) = hinge(30.0);
-        let smooth = Surface::new(&triangles, &points);
-        assert_eq!(smooth.sources, [0, 1, 2, 3]);
-        let n = smooth.normals(&points);
-        assert!((n[0] - n[1]).norm() < 1e-12);
-        // Half way between the two triangles' normals.
-        assert!((n[0].angle(&n[2]).to_degrees() - 15.0).abs() < 1e-9, "{n:?}");
-
-        let (triangles, points) = hinge(90.0);
-        let crease = Surface::new(&triangles, &points);
-        assert_eq!(crease.sources, [0, 1, 2, 1, 0, 3]);
-        let n = crease.normals(&points);
-        assert!((n[0] - n[2]).norm() < 1e-12 && n[0].dot(&n[3]).abs() < 1e-12);
-    }
-
-    /// What is smooth at rest stays smooth however it folds.
-    #[test]
-    fn creases_are_those_at_rest() {
-        let (triangles, flat) = hinge(0.0);
-        let surface = Surface::new(&triangles, &flat);
-        let (_, folded) = hinge(120.0);
-        let n = surface.normals(&folded);
-        assert!((n[0].angle(&n[2]).to_degrees() - 60.0).abs() < 1e-9);
-    }
-
-    #[test]
-    fn a_cube_keeps_its_edges() {
-        let points: Vec<Point> =
-            (0..8).map(|k| Point::new(f64::from(k & 1), f64::from(k >> 1 & 1), f64::from(k >> 2))).collect();
-        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-        let triangles: Vec<[u32; 3]> =
-            quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-        let surface = Surface::new(&triangles, &points);
-        assert_eq!(surface.sources.len(), 24);
-        for (n, &v) in surface.normals(&points).iter().zip(&surface.sources) {
-            assert!((n.abs().max() - 1.0).abs() < 1e-12);
-            assert!(n.dot(&(points[v as usize] - Point::new(0.5, 0.5, 0.5))) > 0.0, "it points outward");
-        }
-    }
-
-    #[test]
-    fn flat_triangles_get_a_normal() {
-        let points = vec![Point::origin(); 3];
-        let surface = Surface::new(&[[0, 1, 2]], &points);
-        assert!(surface.normals(&points).iter().all(|n| (n.norm() - 1.0).abs() < 1e-12));
-    }
-}
+mod tests;

@@ -1,9 +1,9 @@
-//! Text in pictures: DejaVu Sans, reduced to the characters that legends need.
+//! Text in pictures, in DejaVu Sans reduced to the characters that legends need.
 
 use crate::Picture;
 use ab_glyph::{Font, FontRef, PxScale, ScaleFont};
 
-/// The font; its licence lies beside it.
+/// The font; its licence is in the same folder.
 const FONT: &[u8] = include_bytes!("../assets/DejaVuSans-subset.ttf");
 
 /// Writes lines of one size.
@@ -14,9 +14,9 @@ pub struct Pen {
 }
 
 impl Pen {
-    /// A pen for text of so many pixels from the highest to the lowest letter.
+    /// A pen for text of this size, from the highest to the lowest letter [pixels].
     pub fn new(size: f32) -> Self {
-        // The font is part of the program: the tests see that it is read.
+        // The font is part of the program; a test checks that it can be read.
         Self { font: FontRef::try_from_slice(FONT).ok(), size }
     }
 
@@ -29,11 +29,11 @@ impl Pen {
 
     /// Height of a capital letter [pixels].
     pub fn capital_height(&self) -> f32 {
-        // Of DejaVu Sans: 1493 of 2384 units from ascent to descent.
+        // In DejaVu Sans: 1493 of the 2384 units from ascent to descent.
         self.size * 0.626
     }
 
-    /// Writes a text from `x` on, whose capitals stand between `middle` -+ half their height.
+    /// Writes a text that begins at column `x` and whose capitals are centred on row `middle`.
     pub fn write(&self, picture: &mut Picture, x: f32, middle: f32, color: [u8; 3], text: &str) {
         let Some(font) = &self.font else { return };
         let scaled = font.as_scaled(PxScale::from(self.size));
@@ -58,7 +58,7 @@ impl Pen {
 mod tests {
     use super::*;
 
-    /// Rows and columns that hold ink.
+    /// First and last column, first and last row that are not blank.
     fn extent(picture: &Picture) -> [u32; 4] {
         let mut extent = [u32::MAX, 0, u32::MAX, 0];
         for y in 0..picture.height {
@@ -72,21 +72,21 @@ mod tests {
     }
 
     #[test]
-    fn text_hangs_where_it_should() {
+    fn text_stands_at_its_place() {
         let pen = Pen::new(40.0);
         let width = pen.width("H0.25");
         let mut picture = Picture::new(300, 100, [255; 3]);
         pen.write(&mut picture, 100.0, 50.0, [0; 3], "H0.25");
         let [x0, x1, y0, y1] = extent(&picture);
         assert!((x0 as f32 - 100.0).abs() < 6.0 && (x1 as f32 - 100.0 - width).abs() < 6.0, "{x0} to {x1}");
-        // Capitals and digits are centred on the middle.
+        // Capitals and digits are centred on row 50.
         assert!(((y0 + y1 + 1) as f32 / 2.0 - 50.0).abs() <= 1.5, "{y0} to {y1}");
         assert!(((y1 + 1 - y0) as f32 - pen.capital_height()).abs() < 2.5);
     }
 
-    /// Whatever a legend writes is in the font: nothing comes out as an empty box.
+    /// The font has every character that a legend writes.
     #[test]
-    fn the_font_has_what_legends_need() {
+    fn the_font_has_the_characters_of_legends() {
         let font = FontRef::try_from_slice(FONT).unwrap();
         let needed = (' '..='~').filter(|c| !"`'\"\\".contains(*c)).chain("µ×≥≤−°²³·".chars());
         for character in needed {

@@ -1,23 +1,24 @@
 //! Strands as tubes with round ends.
 //!
-//! Edges are joined into chains at vertices where two of them meet. Along a chain a frame is carried without twist
-//! (parallel transport by double reflection: Wang, Jüttler, Zheng and Liu, "Computation of Rotation Minimizing Frames",
-//! ACM Transactions on Graphics 27, 2008), so that the rings of a tube do not turn against each other.
+//! Edges are joined into chains at the vertices where exactly two of them meet. A frame is transported along
+//! each chain without twist, so that neighbouring rings of a tube do not turn against each other (parallel
+//! transport by double reflection: Wang, Jüttler, Zheng and Liu, "Computation of Rotation Minimizing Frames",
+//! ACM Transactions on Graphics 27, 2008).
 
 use bowknot_geometry::{Point, Vector};
 use std::f64::consts::TAU;
 
-/// Rings that round an end off, beyond the last point of the chain.
+/// Number of rings that round off an end, beyond the last point of the chain.
 const CAP_RINGS: usize = 2;
 
 /// A vertex of a tube.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TubeVertex {
-    /// Where it is [m].
+    /// Its position [m].
     pub position: Point,
-    /// Outward, a unit vector.
+    /// Outward unit normal.
     pub normal: Vector,
-    /// Vertex of the strand that it belongs to.
+    /// The vertex of the strand that it belongs to.
     pub source: u32,
 }
 
@@ -26,7 +27,7 @@ pub struct TubeVertex {
 pub struct Tubes {
     chains: Vec<Chain>,
     sides: usize,
-    /// Triangles over the vertices that [`Self::vertices`] gives, outward.
+    /// Triangles over the result of [`Self::vertices`], facing outward.
     pub triangles: Vec<[u32; 3]>,
 }
 
@@ -34,12 +35,13 @@ pub struct Tubes {
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Chain {
     vertices: Vec<u32>,
-    /// Whether the last vertex is joined to the first.
+    /// Whether an edge joins the last vertex to the first.
     closed: bool,
 }
 
 impl Tubes {
-    /// Joins edges into chains and lays triangles over their rings of `sides` vertices, at least 3.
+    /// Joins edges into chains and triangulates their tubes, which have rings of `sides` vertices, at least
+    /// 3.
     pub fn new(edges: &[[u32; 2]], sides: usize) -> Self {
         let mut tubes = Self { chains: chains(edges), sides: sides.max(3), triangles: Vec::new() };
         let sides = tubes.sides as u32;
@@ -61,7 +63,7 @@ impl Tubes {
         tubes
     }
 
-    /// The vertices of tubes of this radius [m] about the strands.
+    /// The vertices of tubes with this radius [m] around the strands.
     pub fn vertices(&self, positions: &[Point], radius: f64) -> Vec<TubeVertex> {
         let mut out = Vec::new();
         for chain in &self.chains {
@@ -81,7 +83,7 @@ impl Tubes {
                     });
                 }
             };
-            // An end is half a ball: rings at growing angles beyond the last, the outermost all but a point.
+            // An end is half a ball: its rings stand at growing angles, and the outermost is almost a point.
             let cap = |k: usize| {
                 let (s, c) = (TAU / 4.0 * k as f64 / CAP_RINGS as f64).sin_cos();
                 (s, c.max(1e-3))
@@ -112,7 +114,8 @@ impl Tubes {
     }
 }
 
-/// Chains of edges: they end where other than two edges meet. In the order of their first edges.
+/// Chains of edges, in the order of their first edges. A chain ends at a vertex where the number of edges is
+/// not two.
 fn chains(edges: &[[u32; 2]]) -> Vec<Chain> {
     let count = edges.iter().flatten().max().map_or(0, |&v| v as usize + 1);
     let mut at: Vec<Vec<u32>> = vec![Vec::new(); count];
@@ -143,7 +146,7 @@ fn chains(edges: &[[u32; 2]]) -> Vec<Chain> {
             }
         }
     };
-    // From the ends first; what is left are loops.
+    // Chains with ends come first; the remaining edges form loops.
     for (e, &[i, j]) in edges.iter().enumerate() {
         for start in [i, j] {
             if !used[e] && i != j && at[start as usize].len() != 2 {
@@ -170,7 +173,7 @@ fn tangents(points: &[Point], closed: bool) -> Vec<Vector> {
             } else {
                 (k.saturating_sub(1), (k + 1).min(n - 1))
             };
-            // Directions of both edges, each a unit: the ring halves the angle between them.
+            // The sum of the unit directions of both edges, so that the ring halves the angle between them.
             let unit = |a: usize, b: usize| (points[b] - points[a]).try_normalize(0.0).unwrap_or_default();
             let sum = unit(before, k) + unit(k, after);
             last = sum.try_normalize(1e-9).unwrap_or(last);
@@ -179,7 +182,8 @@ fn tangents(points: &[Point], closed: bool) -> Vec<Vector> {
         .collect()
 }
 
-/// Unit vectors across the tangents, carried along without twist; around a loop the rest of the turn is spread evenly.
+/// Unit vectors perpendicular to the tangents, transported without twist. Around a loop, the angle between
+/// the first vector and its transport is spread evenly over all points.
 fn frames(points: &[Point], tangents: &[Vector], closed: bool) -> Vec<Vector> {
     let across = |t: &Vector| {
         let axis = if t.z.abs() < 0.9 { Vector::z() } else { Vector::x() };
@@ -211,104 +215,13 @@ fn transport(u: &Vector, from: &Point, to: &Point, t0: &Vector, t1: &Vector) -> 
     let step = to - from;
     let (left, tangent) = (reflect(u, &step), reflect(t0, &step));
     let moved = reflect(&left, &(t1 - tangent));
-    // Rounding and repeated points may leave it askew.
-    let askew = moved - t1 * t1.dot(&moved);
-    askew.try_normalize(1e-9).unwrap_or_else(|| {
+    // Rounding and repeated points may leave it not perpendicular to the tangent.
+    let perpendicular = moved - t1 * t1.dot(&moved);
+    perpendicular.try_normalize(1e-9).unwrap_or_else(|| {
         let axis = if t1.z.abs() < 0.9 { Vector::z() } else { Vector::x() };
         (axis - t1 * t1.dot(&axis)).normalize()
     })
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn edges_are_joined_into_chains() {
-        // A path of three edges given out of order, a fork at 5, a loop.
-        let edges = [[2, 3], [0, 1], [2, 1], [4, 5], [5, 6], [5, 7], [8, 9], [9, 10], [10, 8]];
-        let found = chains(&edges);
-        let open = |vertices: &[u32]| Chain { vertices: vertices.to_vec(), closed: false };
-        assert_eq!(
-            found,
-            [
-                open(&[3, 2, 1, 0]),
-                open(&[4, 5]),
-                open(&[5, 6]),
-                open(&[5, 7]),
-                Chain { vertices: vec![8, 9, 10], closed: true }
-            ]
-        );
-    }
-
-    fn helix() -> Vec<Point> {
-        (0..40).map(|k| f64::from(k) * 0.3).map(|a| Point::new(a.cos(), a.sin(), 0.1 * a)).collect()
-    }
-
-    #[test]
-    fn rings_lie_on_the_tube_and_do_not_twist() {
-        let points = helix();
-        let edges: Vec<[u32; 2]> = (1..points.len() as u32).map(|k| [k - 1, k]).collect();
-        let (sides, radius) = (8, 0.05);
-        let tubes = Tubes::new(&edges, sides);
-        let vertices = tubes.vertices(&points, radius);
-        assert_eq!(vertices.len(), (points.len() + 2 * CAP_RINGS) * sides);
-        for v in &vertices {
-            let distance = (v.position - points[v.source as usize]).norm();
-            assert!((distance - radius).abs() < 1e-6 * radius + 2e-6, "{distance}");
-            assert!((v.normal.norm() - 1.0).abs() < 1e-12);
-        }
-        // Neighbouring rings face each other: the way from a vertex to the same one of the next ring runs along the strand.
-        let body = &vertices[CAP_RINGS * sides..(points.len() + CAP_RINGS) * sides];
-        for k in 0..body.len() - sides {
-            let (a, b) = (&body[k], &body[k + sides]);
-            let along = points[b.source as usize] - points[a.source as usize];
-            assert!((b.position - a.position).angle(&along) < 0.1);
-        }
-    }
-
-    /// A closed surface: every edge has two triangles with opposite windings, and the volume is that of the tube.
-    fn check_closed(tubes: &Tubes, vertices: &[TubeVertex], volume: f64) {
-        let mut seen = std::collections::BTreeMap::new();
-        let mut measured = 0.0;
-        for &[i, j, k] in &tubes.triangles {
-            for side in [[i, j], [j, k], [k, i]] {
-                assert!(seen.insert(side, ()).is_none(), "{side:?} twice in the same direction");
-            }
-            let [a, b, c] = [i, j, k].map(|v| vertices[v as usize].position.coords);
-            measured += a.dot(&b.cross(&c)) / 6.0;
-        }
-        let open = seen.keys().filter(|[a, b]| !seen.contains_key(&[*b, *a])).count();
-        // The two outermost rings of each open chain bound a hole of a thousandth of the radius.
-        let ends = tubes.chains.iter().filter(|c| !c.closed).count();
-        assert_eq!(open, 2 * ends * tubes.sides);
-        assert!((measured / volume - 1.0).abs() < 0.03, "{measured} m3 for {volume} m3");
-    }
-
-    #[test]
-    fn tubes_are_closed_and_face_outward() {
-        let radius = 0.1;
-        let straight: Vec<Point> = (0..5).map(|k| Point::new(f64::from(k), 0.3, 0.0)).collect();
-        let tubes = Tubes::new(&[[0, 1], [1, 2], [2, 3], [3, 4]], 32);
-        let area = TAU / 2.0 * radius * radius;
-        // Half a ball at each end, coarsely: two thirds of a radius each, less what two rings miss.
-        check_closed(&tubes, &tubes.vertices(&straight, radius), area * (4.0 + 2.0 * radius * 0.6));
-
-        let n = 60;
-        let ring: Vec<Point> = (0..n)
-            .map(|k| (TAU * f64::from(k) / f64::from(n)).sin_cos())
-            .map(|(s, c)| Point::new(c, s, 0.2 * c))
-            .collect();
-        let edges: Vec<[u32; 2]> = (0..n as u32).map(|k| [k, (k + 1) % n as u32]).collect();
-        let tubes = Tubes::new(&edges, 16);
-        let length: f64 = edges.iter().map(|&[a, b]| (ring[a as usize] - ring[b as usize]).norm()).sum();
-        check_closed(&tubes, &tubes.vertices(&ring, radius), area * 0.974 * length);
-    }
-
-    #[test]
-    fn repeated_points_do_no_harm() {
-        let points = [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]].map(Point::from);
-        let tubes = Tubes::new(&[[0, 1], [1, 2], [2, 3], [3, 3]], 6);
-        assert!(tubes.vertices(&points, 0.1).iter().all(|v| v.position.iter().all(|c| c.is_finite())));
-    }
-}
+mod tests;

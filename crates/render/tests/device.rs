@@ -85,7 +85,8 @@ fn a_sheet_stands_where_it_is_and_throws_a_soft_shadow() {
         assert_eq!(tint(with.at(x, y)) > 40, inside, "{p}: {:?}", with.at(x, y));
     }
 
-    // Below it the ground is darker, from the middle of the shadow outward less and less, far away not at all.
+    // Below it the ground is darker, from the middle of the shadow outward less and less, far away not at
+    // all.
     let ground = |x: f64, y: f64| {
         let [x, y] = at(Point::new(x, y, -0.5));
         light(with.at(x, y)) - light(empty.at(x, y))
@@ -216,5 +217,5 @@ fn impossible_sizes_and_cameras_are_refused() {
     }
     let blind = Camera { target: camera().eye, ..camera() };
     let refused = renderer.render(&model, &frame, &Shot::new(blind, SIZE));
-    assert!(matches!(refused, Err(RenderError::BlindCamera(_))));
+    assert!(matches!(refused, Err(RenderError::CameraAtTarget(_))));
 }

@@ -1,22 +1,11 @@
-//! What a scene says about contacts beside the parameters of the collision stage.
+//! Checks what a scene says about contacts beside the parameters of the collision stage.
 
 use crate::body::{BodySpec, ObstacleSpec};
 use crate::description::Scene;
 use crate::error::{Problem, nearest};
-use crate::reader::join;
 use crate::source::Source;
-use serde::{Deserialize, Serialize};
+use crate::values::join;
 use std::collections::BTreeSet;
-
-/// Friction between two bodies, `[[contact.friction_pairs]]`.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct FrictionPair {
-    /// Names of two bodies or obstacles; twice the same for a body's contacts with itself.
-    pub bodies: [String; 2],
-    /// Coefficient of Coulomb friction between them [1], at least 0, in place of the mean of their own. Default 0.
-    pub friction: f64,
-}
 
 type Faults = Vec<(&'static str, String)>;
 

@@ -60,7 +60,7 @@ mod tests {
 
     #[test]
     fn fields_are_those_of_the_struct() {
-        assert!(field_names::<bowknot_constraints::ConstraintParams>().contains(&"stretch_limit"));
+        assert!(field_names::<bowknot_constraints::ContactParams>().contains(&"stretch_limit"));
         assert!(field_names::<f64>().is_empty());
     }
 }

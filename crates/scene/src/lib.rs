@@ -3,8 +3,8 @@
 //! | table | fields of |
 //! |---|---|
 //! | `[simulation]` | [`SimulationParams`], gravity and drag of [`DynamicsParams`] |
-//! | `[contact]` | `preset`, [`ConstraintParams`](bowknot_constraints::ConstraintParams), [`StepperParams`](bowknot_stepper::StepperParams), [`FrictionPair`]s |
-//! | `[solver]` | [`BackwardParams`](bowknot_twoway::BackwardParams), the rest of [`DynamicsParams`]; `[solver.stop]`: [`StopParams`](bowknot_twoway::StopParams); `[solver.repulsion]`: [`RepulsionParams`] |
+//! | `[contact]` | `preset`, [`ContactParams`](bowknot_twoway::ContactParams), [`FrictionPair`]s |
+//! | `[solver]` | [`SolverParams`](bowknot_twoway::SolverParams), the rest of [`DynamicsParams`]; `[solver.repulsion]`: [`RepulsionParams`] |
 //! | `[output]` | [`OutputParams`] |
 //! | `[[body]]`, `[[obstacle]]`, `[[pin]]` | [`BodySpec`], [`ObstacleSpec`], [`PinSpec`] |
 //!
@@ -16,16 +16,20 @@ mod contact;
 mod description;
 mod error;
 mod fields;
+mod friction;
 mod kind;
 mod material;
 mod motion;
+mod open;
 mod params;
 mod read;
 mod reader;
 pub mod shapes;
+mod short;
 mod source;
 #[cfg(test)]
 mod tests;
+mod values;
 pub mod world;
 mod write;
 
@@ -38,12 +42,13 @@ pub use bowknot_twoway as twoway;
 
 pub use body::{BodySpec, ObstacleSpec, PinSpec, Region, Side};
 pub use builtin::{BUILTIN, Builtin};
-pub use contact::FrictionPair;
-pub use description::{Scene, twoway_params};
+pub use description::Scene;
 pub use error::{Origin, Problem, SceneError};
+pub use friction::FrictionPair;
 pub use kind::BodyKind;
 pub use material::Material;
 pub use motion::{Keyframe, Motion, Placement};
+pub use open::twoway_params;
 pub use params::{
     CollisionEvery, Format, InteriorFollows, OutputParams, Preset, RepulsionParams, SimulationParams,
 };

@@ -2,8 +2,10 @@
 
 use crate::error::nearest;
 use crate::kind::BodyKind;
-use crate::reader::{Reader, describe, join};
-use bowknot_dynamics::{ClothMaterial, MaterialError, ParticleMaterial, SolidMaterial, StrandMaterial};
+use crate::reader::Reader;
+use crate::values::{describe, join};
+use bowknot_dynamics::{ClothMaterial, ParticleMaterial, SolidMaterial, StrandMaterial};
+use bowknot_errors::{Errors, ParamError, Parameters};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
@@ -79,7 +81,7 @@ impl Material {
     ///
     /// # Errors
     /// All that is wrong, by field name.
-    pub fn validate(&self) -> Result<(), Vec<MaterialError>> {
+    pub fn validate(&self) -> Result<(), Errors<ParamError>> {
         match self {
             Self::Cloth(material) => material.validate(),
             Self::Solid(material) => material.validate(),

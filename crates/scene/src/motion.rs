@@ -1,5 +1,6 @@
 //! Prescribed rigid motion of obstacles and pins.
 
+use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::{Point, Vector};
 use nalgebra::{Rotation3, Unit};
 use serde::{Deserialize, Serialize};
@@ -69,32 +70,26 @@ impl Motion {
         let s = ((time - last.time) / (next.time - last.time)).clamp(0.0, 1.0);
         (last.translate + (next.translate - last.translate) * s, last.angle + (next.angle - last.angle) * s)
     }
+}
 
-    /// Appends the field and what is wrong with it.
-    pub(crate) fn validate(&self, problems: &mut Vec<(&'static str, String)>) {
+impl Parameters for Motion {
+    fn check(&self, checks: &mut Checks) {
         let finite = |v: &Vector| v.iter().all(|c| c.is_finite());
         if !(finite(&self.axis) && self.axis.norm() > 0.0) {
-            problems.push(("axis", "must be finite and not zero".to_owned()));
+            checks.refuse("axis", format!("{:?}", self.axis.as_slice()), "must be finite and not zero");
         }
-        if !finite(&self.center.coords) {
-            problems.push(("center", "must be finite".to_owned()));
-        }
-        if !self.spin.is_finite() {
-            problems.push(("spin", format!("{} must be finite", self.spin)));
-        }
+        checks.all_finite("center", &self.center.coords);
+        checks.finite("spin", self.spin);
         for (index, k) in self.keyframes.iter().enumerate() {
             if !(k.time.is_finite() && k.time >= 0.0 && k.angle.is_finite() && finite(&k.translate)) {
-                problems.push(("keyframes", format!("keyframe {index} must be finite, its time at least 0")));
+                let allowed = "must be finite, its time at least 0";
+                checks.refuse("keyframes", format!("keyframe {index}"), allowed);
             }
         }
         if let Some(index) = self.keyframes.windows(2).position(|w| w[0].time >= w[1].time) {
-            let message = format!(
-                "times must ascend, but keyframe {} is at {} s and the next at {} s",
-                index,
-                self.keyframes[index].time,
-                self.keyframes[index + 1].time
-            );
-            problems.push(("keyframes", message));
+            let [time, next] = [index, index + 1].map(|index| self.keyframes[index].time);
+            let given = format!("keyframe {index} at {time} s, the next at {next} s");
+            checks.refuse("keyframes", given, "must ascend in time");
         }
     }
 }
@@ -166,9 +161,8 @@ mod tests {
     fn times_must_ascend() {
         let mut motion = motion();
         motion.keyframes.swap(0, 1);
-        let mut problems = Vec::new();
-        motion.validate(&mut problems);
-        assert_eq!(problems.len(), 1);
-        assert!(problems[0].1.contains("must ascend"));
+        let errors = motion.validate().expect_err("times that do not ascend");
+        assert_eq!(errors.len(), 1);
+        assert!(errors[0].allowed.contains("must ascend"));
     }
 }

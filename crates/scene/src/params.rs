@@ -1,5 +1,6 @@
 //! The tables of a scene that belong to the facade itself; the others are the crates' own parameters.
 
+use bowknot_errors::{Checks, Parameters};
 use serde::{Deserialize, Serialize};
 
 /// Time and the order of work within a time step; with the gravity and drag of
@@ -14,7 +15,7 @@ pub struct SimulationParams {
     pub dt: f64,
     /// Number of time steps of a run [1]. Default 100.
     pub frames: usize,
-    /// Most Newton iterations per time step, each with a collision problem [1]; they end earlier at `solver.step_tolerance`.
+    /// Most Newton iterations per time step, each with a collision problem [1]; they end earlier at `solver.newton.step_tolerance`.
     /// More: contact and large deformation come nearer to the solution of the time step. Default 8.
     pub newton_iterations: usize,
     /// When collisions are resolved: after each Newton iteration, `newton`, or once at the end of the
@@ -69,10 +70,11 @@ impl Preset {
     }
 }
 
-/// Quadratic repulsion, `[solver.repulsion]` (paper, section 6.2): springs between surfaces that are near at the start of a
-/// time step, in the linear system of the dynamics, by which it knows of contacts and their friction. Without them what
-/// rests on something is deformed within each time step, as if it fell on. The guarantee does not rest on them. Pairs with
-/// a strand have none, nor have grains among themselves.
+/// Contact forces of the dynamics, `[solver.repulsion]` (paper, section 6.2): springs between surfaces that are near, in
+/// the linear system of the dynamics, by which it knows of contacts and their friction. Without them the collision stage
+/// alone holds bodies apart, and what rests on something is deformed within each time step. The guarantee does not rest
+/// on them. Grains have none where they touch grains or obstacles. With `contact.friction_model = "filter"`, and so with
+/// the preset `paper`, there are no springs whatever the stiffness.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RepulsionParams {
@@ -141,36 +143,25 @@ impl Default for OutputParams {
     }
 }
 
-impl SimulationParams {
-    /// Appends the field and what is wrong with it, for each field out of its range.
-    pub(crate) fn validate(&self, problems: &mut Vec<(&'static str, String)>) {
-        if !(self.dt.is_finite() && (1e-6..=1.0).contains(&self.dt)) {
-            problems.push(("dt", format!("{} must be a number of seconds from 1e-6 to 1", self.dt)));
-        }
-        if self.frames > 1_000_000 {
-            problems.push(("frames", format!("{} must be at most 1000000", self.frames)));
-        }
-        if !(1..=1000).contains(&self.newton_iterations) {
-            problems
-                .push(("newton_iterations", format!("{} must lie from 1 to 1000", self.newton_iterations)));
-        }
+impl Parameters for SimulationParams {
+    fn check(&self, checks: &mut Checks) {
+        let fits = (1e-6..=1.0).contains(&self.dt);
+        checks.require(fits, "dt", self.dt, "must be a number of seconds from 1e-6 to 1");
+        checks.require(self.frames <= 1_000_000, "frames", self.frames, "must be at most 1000000");
+        let (iterations, fits) = (self.newton_iterations, (1..=1000).contains(&self.newton_iterations));
+        checks.require(fits, "newton_iterations", iterations, "must lie from 1 to 1000");
     }
 }
 
-impl RepulsionParams {
-    /// As [`SimulationParams::validate`].
-    pub(crate) fn validate(&self, problems: &mut Vec<(&'static str, String)>) {
-        if !(self.stiffness.is_finite() && self.stiffness >= 0.0) {
-            problems.push(("stiffness", format!("{} must be finite and at least 0", self.stiffness)));
-        }
+impl Parameters for RepulsionParams {
+    fn check(&self, checks: &mut Checks) {
+        checks.non_negative("stiffness", self.stiffness);
     }
 }
 
-impl OutputParams {
-    /// As [`SimulationParams::validate`].
-    pub(crate) fn validate(&self, problems: &mut Vec<(&'static str, String)>) {
-        if self.formats.is_empty() {
-            problems.push(("formats", "must name at least one of ply, obj, npz, pc2, usd, vtu".to_owned()));
-        }
+impl Parameters for OutputParams {
+    fn check(&self, checks: &mut Checks) {
+        let fits = !self.formats.is_empty();
+        checks.require(fits, "formats", "[]", "must name at least one of ply, obj, npz, pc2, usd, vtu");
     }
 }

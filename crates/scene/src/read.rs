@@ -1,34 +1,30 @@
 //! From a parsed description to a [`Scene`].
 
 use crate::body::{BodySpec, ObstacleSpec, PinSpec, Region};
-use crate::contact::{self, FrictionPair};
+use crate::contact;
 use crate::description::Scene;
 use crate::error::{Problem, SceneError, nearest};
 use crate::fields::field_names;
+use crate::friction::FrictionPair;
 use crate::kind::BodyKind;
 use crate::material;
 use crate::motion::Motion;
 use crate::params::{OutputParams, Preset, RepulsionParams, SimulationParams};
-use crate::reader::{Reader, describe, join};
+use crate::reader::Reader;
 use crate::shapes::{
     Ball, Block, Cone, Cuboid, Figure, Garment, Grains, HalfSpaceShape, Lathe, Ribbon, Shape, Sheet, Strands,
     TetBall, Tube, Wedge, Woven,
 };
 use crate::source::Source;
-use bowknot_constraints::ConstraintParams;
-use bowknot_dynamics::DynamicsParams;
+use crate::values::{describe, join};
+use bowknot_dynamics::{DynamicsParams, Environment, NewtonParams};
 use bowknot_errors::Parameters;
 use bowknot_geometry::Vector;
 use bowknot_io::Import;
-use bowknot_stepper::StepperParams;
-use bowknot_twoway::{BackwardParams, Params, StopParams};
+use bowknot_twoway::{ContactParams, Params, SolverParams};
 use std::collections::HashMap;
 use std::path::Path;
 use toml::{Table, Value};
-
-/// Fields of [`DynamicsParams`] that stand in `[simulation]`; the others stand in `[solver]`.
-pub(super) const SIMULATION_DYNAMICS: [&str; 6] =
-    ["gravity", "air_drag", "wind", "air_density", "drag_normal", "drag_tangential"];
 
 /// Top-level keys.
 const TABLES: [&str; 7] = ["simulation", "contact", "solver", "output", "body", "obstacle", "pin"];
@@ -40,18 +36,18 @@ pub(super) fn scene(source: &Source, folder: &Path, name: &str) -> Result<Scene,
     reader.check_keys(root, "", &TABLES);
 
     let table = reader.table(root, "", "simulation");
-    let known = [field_names::<SimulationParams>(), &SIMULATION_DYNAMICS].concat();
+    let known = [field_names::<SimulationParams>(), field_names::<Environment>()].concat();
     reader.check_keys(&table, "simulation", &known);
     let mut simulation = reader.fields(&SimulationParams::default(), &table, "simulation", &[]);
     if simulation.name.is_empty() {
         simulation.name = name.to_owned();
     }
-    let solver_dynamics = solver_dynamics();
-    let dynamics = reader.fields(&DynamicsParams::default(), &table, "simulation", &solver_dynamics);
+    let environment = reader.fields(&Environment::default(), &table, "simulation", &[]);
     let table = reader.table(root, "", "solver");
-    let dynamics = reader.fields(&dynamics, &table, "solver", &[]);
+    let table = reader.table(&table, "solver", "newton");
+    let newton = reader.structure::<NewtonParams>(&table, "solver.newton", &[]);
+    let dynamics = DynamicsParams { environment, newton };
     let (preset, twoway) = read_twoway(&mut reader, root);
-    // `fields` read gravity and drag from [solver] too, but there `read_twoway` has refused them.
 
     let table = reader.table(root, "", "output");
     let output = reader.structure::<OutputParams>(&table, "output", &[]);
@@ -90,20 +86,13 @@ pub(super) fn twoway(source: &Source) -> Result<Params, SceneError> {
     }
     let (_, params) = read_twoway(&mut reader, &source.table);
     let mut problems = reader.problems;
-    validate_twoway(&params, source, &mut problems);
+    report_errors(&mut problems, source, "", &params);
     if problems.is_empty() { Ok(params) } else { Err(SceneError::Invalid(problems)) }
-}
-
-fn solver_dynamics() -> Vec<&'static str> {
-    let here = |field: &&&str| !SIMULATION_DYNAMICS.contains(*field);
-    field_names::<DynamicsParams>().iter().filter(here).copied().collect()
 }
 
 fn read_twoway(reader: &mut Reader<'_>, root: &Table) -> (Preset, Params) {
     let contact = reader.table(root, "", "contact");
-    let known =
-        [&["preset", "friction_pairs"], field_names::<ConstraintParams>(), field_names::<StepperParams>()]
-            .concat();
+    let known = [&["preset", "friction_pairs"], field_names::<ContactParams>()].concat();
     reader.check_keys(&contact, "contact", &known);
     let preset = match contact.get("preset").map(|value| value.clone().try_into::<Preset>()) {
         None => Preset::default(),
@@ -114,22 +103,22 @@ fn read_twoway(reader: &mut Reader<'_>, root: &Table) -> (Preset, Params) {
         }
     };
     let base = preset.params();
-    let constraints = reader.fields(&base.constraints, &contact, "contact", &[]);
-    let stepper = reader.fields(&base.stepper, &contact, "contact", &[]);
+    let contact = reader.fields(&base.contact, &contact, "contact", &[]);
 
     let solver = reader.table(root, "", "solver");
-    let dynamics = solver_dynamics();
-    let known = [field_names::<BackwardParams>(), &dynamics, &["stop", "repulsion"]].concat();
+    let known = [field_names::<SolverParams>(), &["newton", "repulsion"]].concat();
     reader.check_keys(&solver, "solver", &known);
-    let mut backward = reader.fields(&base.backward, &solver, "solver", &[]);
-    // Who asks for more sweeps than a preset polishes with does not want fewer at the end.
-    if !solver.contains_key("polish_sweeps") {
+    let backward_table = reader.table(&solver, "solver", "backward");
+    let mut backward = reader.structure_over(&base.solver.backward, &backward_table, "solver.backward");
+    // A scene with more sweeps than the preset's polish_sweeps polishes with as many.
+    if !backward_table.contains_key("polish_sweeps") {
         backward.polish_sweeps = backward.polish_sweeps.max(backward.sweeps);
     }
-    let stop = reader.table(&solver, "solver", "stop");
-    reader.check_keys(&stop, "solver.stop", field_names::<StopParams>());
-    let stop = reader.fields(&base.stop, &stop, "solver.stop", &[]);
-    (preset, Params { constraints, backward, stepper, stop })
+    let table = reader.table(&solver, "solver", "forward");
+    let forward = reader.structure_over(&base.solver.forward, &table, "solver.forward");
+    let table = reader.table(&solver, "solver", "stop");
+    let stop = reader.structure_over(&base.solver.stop, &table, "solver.stop");
+    (preset, Params { contact, solver: SolverParams { backward, forward, stop } })
 }
 
 fn body(reader: &mut Reader<'_>, table: &Table, path: &str, index: usize) -> BodySpec {
@@ -232,21 +221,15 @@ fn shape(reader: &mut Reader<'_>, table: &Table, path: &str) -> Option<Shape> {
 /// Checks the values of a scene that has been read or made in code.
 pub(super) fn validate(scene: &Scene, source: &Source) -> Result<(), SceneError> {
     let mut problems = Vec::new();
-    let mut faults = Vec::new();
-    scene.simulation.validate(&mut faults);
-    report(&mut problems, source, "simulation", &mut faults);
-    scene.output.validate(&mut faults);
-    report(&mut problems, source, "output", &mut faults);
-    for error in scene.dynamics.validate().err().into_iter().flatten() {
-        let table = if SIMULATION_DYNAMICS.contains(&error.field) { "simulation" } else { "solver" };
-        let message = format!("{}: {}", error.value, error.allowed);
-        problems.push(source.problem(&join(table, error.field), message));
-    }
-    validate_twoway(&scene.twoway, source, &mut problems);
+    report_errors(&mut problems, source, "simulation", &scene.simulation);
+    report_errors(&mut problems, source, "simulation", &scene.dynamics.environment);
+    report_errors(&mut problems, source, "solver.newton", &scene.dynamics.newton);
+    report_errors(&mut problems, source, "output", &scene.output);
+    // The paths of these parameters are keys of the scene.
+    report_errors(&mut problems, source, "", &scene.twoway);
     validate_bodies(scene, source, &mut problems);
     contact::validate_pairs(scene, source, &mut problems);
-    scene.repulsion.validate(&mut faults);
-    report(&mut problems, source, "solver.repulsion", &mut faults);
+    report_errors(&mut problems, source, "solver.repulsion", &scene.repulsion);
     for (index, pin) in scene.pins.iter().enumerate() {
         validate_pin(scene, pin, source, &format!("pin[{index}]"), &mut problems);
     }
@@ -263,31 +246,6 @@ fn report(
     faults: &mut Vec<(&'static str, String)>,
 ) {
     problems.extend(faults.drain(..).map(|(key, message)| source.problem(&join(path, key), message)));
-}
-
-/// The messages of [`Params::validate`] begin with the field's path in `Params`.
-fn validate_twoway(params: &Params, source: &Source, problems: &mut Vec<Problem>) {
-    for message in params.validate().err().into_iter().flatten() {
-        let end = message.find([' ', '=']).unwrap_or(message.len());
-        let (field, rest) = message.split_at(end);
-        let key = scene_key(field);
-        let rest = rest
-            .trim_start_matches([' ', '='])
-            .replace("constraints.", "contact.")
-            .replace("stepper.", "contact.")
-            .replace("backward.", "solver.");
-        problems.push(source.problem(&key, rest));
-    }
-}
-
-/// The key of a scene for a field of [`Params`], such as `contact.floor` for `stepper.floor`.
-pub(crate) fn scene_key(field: &str) -> String {
-    match field.split_once('.') {
-        Some(("constraints" | "stepper", key)) => format!("contact.{key}"),
-        Some(("backward", key)) => format!("solver.{key}"),
-        Some(("stop", key)) => format!("solver.stop.{key}"),
-        _ => field.to_owned(),
-    }
 }
 
 fn validate_bodies(scene: &Scene, source: &Source, problems: &mut Vec<Problem>) {
@@ -334,11 +292,8 @@ fn validate_bodies(scene: &Scene, source: &Source, problems: &mut Vec<Problem>) 
         report(problems, source, &path, &mut faults);
         validate_shape(body.shape.as_ref(), source, &path, problems);
         for error in body.material.validate().err().into_iter().flatten() {
-            // The messages have the form "field = value: what is allowed".
-            let message = error.to_string();
-            let (field, rest) = message.split_once(" = ").unwrap_or(("", &message));
-            let key = join(&path, &format!("material.{field}"));
-            problems.push(source.problem(&key, rest));
+            let key = join(&path, &format!("material.{}", error.path));
+            problems.push(source.problem(&key, format!("{} {}", error.value, error.allowed)));
         }
     }
     for (index, obstacle) in scene.obstacles.iter().enumerate() {
@@ -381,19 +336,23 @@ fn validate_bodies(scene: &Scene, source: &Source, problems: &mut Vec<Problem>) 
 }
 
 fn validate_shape(shape: Option<&Shape>, source: &Source, path: &str, problems: &mut Vec<Problem>) {
-    let mut faults = Vec::new();
     if let Some(shape) = shape {
-        shape.validate(&mut faults);
+        report_errors(problems, source, &join(path, "shape"), shape);
     }
-    report(problems, source, &join(path, "shape"), &mut faults);
 }
 
 fn validate_motion(motion: Option<&Motion>, source: &Source, path: &str, problems: &mut Vec<Problem>) {
-    let mut faults = Vec::new();
     if let Some(motion) = motion {
-        motion.validate(&mut faults);
+        report_errors(problems, source, &join(path, "motion"), motion);
     }
-    report(problems, source, &join(path, "motion"), &mut faults);
+}
+
+/// Reports the fields of a struct that are out of their range, with the struct's place in the scene.
+fn report_errors(problems: &mut Vec<Problem>, source: &Source, path: &str, parameters: &impl Parameters) {
+    for error in parameters.validate().err().into_iter().flatten() {
+        let message = format!("{} {}", error.value, error.allowed);
+        problems.push(source.problem(&join(path, &error.path), message));
+    }
 }
 
 fn validate_pin(scene: &Scene, pin: &PinSpec, source: &Source, path: &str, problems: &mut Vec<Problem>) {

@@ -3,6 +3,7 @@
 use crate::error::{Problem, nearest};
 use crate::fields::field_names;
 use crate::source::Source;
+use crate::values::{describe, join};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use toml::{Table, Value};
@@ -112,21 +113,13 @@ impl<'a> Reader<'a> {
         self.check_keys(table, path, field_names::<T>());
         self.fields(&T::default(), table, path, nested)
     }
-}
 
-/// A key below a path.
-pub(crate) fn join(path: &str, key: &str) -> String {
-    if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
-}
-
-pub(crate) fn describe(value: &Value) -> String {
-    match value {
-        Value::String(text) => format!("the string {text:?}"),
-        Value::Integer(number) => format!("the number {number}"),
-        Value::Float(number) => format!("the number {number}"),
-        Value::Boolean(flag) => format!("{flag}"),
-        Value::Datetime(_) => "a date".to_owned(),
-        Value::Array(_) => "an array".to_owned(),
-        Value::Table(_) => "a table".to_owned(),
+    /// Reads a whole table as a `T`, over `base`: unknown keys are problems.
+    pub fn structure_over<T>(&mut self, base: &T, table: &Table, path: &str) -> T
+    where
+        T: Serialize + DeserializeOwned + Default + Clone,
+    {
+        self.check_keys(table, path, field_names::<T>());
+        self.fields(base, table, path, &[])
     }
 }

@@ -1,7 +1,7 @@
 //! Where each value of a scene description came from: the file's lines and the `--set` options.
 
 use crate::error::{Origin, Problem, SceneError, nearest};
-use crate::reader::describe;
+use crate::values::describe;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use toml::de::{DeTable, DeValue};

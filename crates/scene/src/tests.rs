@@ -12,8 +12,8 @@ gravity = [0, 0, -1.62]
 delta = 0.002
 
 [solver]
-sweeps = 4
-cg_tolerance = 1e-6
+backward = { sweeps = 4 }
+newton = { cg_tolerance = 1e-6 }
 stop = { max_steps = 100 }
 
 [[body]]
@@ -53,11 +53,11 @@ fn values_reach_their_structs() {
     let scene = Scene::from_toml(SMALL, "").expect("a scene");
     assert_eq!(scene.simulation.dt, 0.02);
     assert_eq!(scene.simulation.frames, SimulationParams::default().frames);
-    assert_eq!(scene.dynamics.gravity, Vector::new(0.0, 0.0, -1.62));
-    assert_eq!(scene.dynamics.cg_tolerance, 1e-6);
-    assert_eq!(scene.twoway.constraints.delta, Some(0.002));
-    assert_eq!(scene.twoway.backward.sweeps, 4);
-    assert_eq!(scene.twoway.stop.max_steps, Some(100));
+    assert_eq!(scene.dynamics.environment.gravity, Vector::new(0.0, 0.0, -1.62));
+    assert_eq!(scene.dynamics.newton.cg_tolerance, 1e-6);
+    assert_eq!(scene.twoway.contact.delta, Some(0.002));
+    assert_eq!(scene.twoway.solver.backward.sweeps, 4);
+    assert_eq!(scene.twoway.solver.stop.max_steps, Some(100));
     let Material::Cloth(material) = scene.bodies[0].material else { panic!("no cloth") };
     assert_eq!(material, ClothMaterial { density: 0.1, ..ClothMaterial::silk() });
     assert!(matches!(scene.obstacles[0].shape, Some(Shape::HalfSpace(_))));
@@ -106,12 +106,16 @@ fn problems_name_file_line_key_and_what_is_allowed() {
             "scene.toml:3: simulation.dt: -1 must be a number of seconds from 1e-6 to 1",
         ),
         ("delta = 0.002", "delta = 0", "scene.toml:7: contact.delta: 0 must be finite and above 0"),
-        ("sweeps = 4", "sweeps = 0", "scene.toml:10: solver.sweeps: 0 must be at least 1"),
-        ("sweeps = 4", "gravity = [0, 0, 0]", "scene.toml:10: solver.gravity: unknown key; known here:"),
+        ("sweeps = 4", "sweeps = 0", "scene.toml:10: solver.backward.sweeps: 0 must be at least 1"),
+        (
+            "cg_tolerance = 1e-6",
+            "gravity = [0, 0, 0]",
+            "scene.toml:11: solver.newton.gravity: unknown key; known here:",
+        ),
         (
             "cg_tolerance = 1e-6",
             "cg_tolerance = 2",
-            "scene.toml:11: solver.cg_tolerance: 2: it must lie in (0, 1)",
+            "scene.toml:11: solver.newton.cg_tolerance: 2 must lie between 0 and 1",
         ),
         ("max_steps = 100", "max_steps = 0", "scene.toml:12: solver.stop.max_steps: 0 must be at least 1"),
         (
@@ -123,7 +127,7 @@ fn problems_name_file_line_key_and_what_is_allowed() {
         (
             "density = 0.1",
             "density = 0",
-            "scene.toml:17: body[0].material.density: 0 kg/m2: it must be a finite number greater than 0",
+            "scene.toml:17: body[0].material.density: 0 kg/m2 must be finite and above 0",
         ),
         (
             "type = \"sheet\"",
@@ -167,6 +171,29 @@ fn problems_name_file_line_key_and_what_is_allowed() {
 }
 
 #[test]
+fn polish_sweeps_follow_sweeps_unless_they_are_given() {
+    let polish_sweeps = |sets: &[&str]| {
+        twoway_params(sets).map(|params| params.solver.backward.polish_sweeps).map_err(|e| e.to_string())
+    };
+    assert_eq!(polish_sweeps(&["solver.backward.sweeps=100"]), Ok(100));
+    assert_eq!(polish_sweeps(&["solver.backward.sweeps=10"]), Ok(64));
+    let error = polish_sweeps(&["solver.backward.sweeps=100", "solver.backward.polish_sweeps=64"]);
+    assert!(error.is_err_and(|error| error.starts_with("--set: solver.backward.polish_sweeps: 64 must be")));
+}
+
+#[test]
+fn the_keys_of_a_stopping_rule_stand_beside_it() {
+    let sets = ["contact.preset=paper", "solver.stop.rule=travel", "solver.stop.net_residual=0.1"];
+    let params = twoway_params(&sets).expect("parameters");
+    let rule = bowknot_twoway::StopRule::Travel { net_residual: 0.1, residual: None };
+    assert_eq!(params.solver.stop.rule, rule);
+    let error = twoway_params(&["solver.stop.net_residual=nan"]).expect_err("NaN").to_string();
+    assert!(error.starts_with("--set: solver.stop.net_residual: NaN must be"), "{error}");
+    let error = twoway_params(&["solver.stop.imbalance=1"]).expect_err("unknown").to_string();
+    assert!(error.starts_with("--set: solver.stop.imbalance: unknown key"), "{error}");
+}
+
+#[test]
 fn every_problem_is_reported_not_only_the_first() {
     let text = changed("dt = 0.02", "dt = true").replace("sweeps = 4", "sweps = 4").replace("0.002", "[]");
     assert_eq!(problems(&text).len(), 3);
@@ -190,8 +217,8 @@ fn sets_override_before_anything_is_interpreted() {
     assert_eq!(scene, "--set: simulation.dt: invalid type: string \"1/50\", expected f64");
     let scene =
         set(&["simulation.dt = 0.05", "solver.stop.max_steps=7", "contact.form=volume"]).expect("sets");
-    assert_eq!((scene.simulation.dt, scene.twoway.stop.max_steps), (0.05, Some(7)));
-    assert_eq!(scene.twoway.constraints.form, bowknot_constraints::ContactForm::Volume);
+    assert_eq!((scene.simulation.dt, scene.twoway.solver.stop.max_steps), (0.05, Some(7)));
+    assert_eq!(scene.twoway.contact.form, bowknot_constraints::ContactForm::Volume);
     let scene = set(&["body.sheet.material.density=2", "obstacle.0.shape.radius=0.2"]).expect("sets");
     let Material::Cloth(material) = scene.bodies[0].material else { panic!("no cloth") };
     assert_eq!(material, ClothMaterial { density: 2.0, ..ClothMaterial::cotton() });
@@ -214,22 +241,22 @@ fn sets_override_before_anything_is_interpreted() {
 fn a_preset_changes_defaults_and_keeps_what_was_stated() {
     let stated = Scene::from_toml(&changed("delta = 0.002", "delta = 0.002\npreset = \"paper\""), "")
         .expect("a scene");
-    assert_eq!(stated.twoway.backward.sweeps, 4);
-    assert_eq!(stated.twoway.constraints.delta, Some(0.002));
-    assert_eq!(stated.twoway.stepper, bowknot_stepper::StepperParams::paper());
+    assert_eq!(stated.twoway.solver.backward.sweeps, 4);
+    assert_eq!(stated.twoway.contact.delta, Some(0.002));
+    assert_eq!(stated.twoway.solver.forward, bowknot_twoway::ForwardParams::paper());
     let set =
         Scene::builtin("drape", 0.1).expect("a scene").with_sets(&["contact.preset=paper"]).expect("a set");
     assert_eq!(set.twoway, bowknot_twoway::Params::paper());
-    let sets = ["contact.preset=paper", "contact.bound=planes"];
+    let sets = ["contact.preset=paper", "solver.forward.bound=planes"];
     let params = twoway_params(&sets).expect("parameters");
-    assert_eq!(params.stepper.bound, bowknot_stepper::Bound::Planes);
-    assert_eq!(params.backward, bowknot_twoway::Params::paper().backward);
+    assert_eq!(params.solver.forward.bound, bowknot_twoway::stepper::Bound::Planes);
+    assert_eq!(params.solver.backward, bowknot_twoway::Params::paper().solver.backward);
     assert!(twoway_params(&["simulation.dt=1"]).is_err());
     assert!(
-        twoway_params(&["contact.damping=2"])
+        twoway_params(&["solver.forward.damping=2"])
             .expect_err("range")
             .to_string()
-            .starts_with("--set: contact.damping")
+            .starts_with("--set: solver.forward.damping")
     );
 }
 

@@ -1,7 +1,6 @@
 //! From a [`Scene`] to TOML.
 
 use crate::description::Scene;
-use crate::read::SIMULATION_DYNAMICS;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
@@ -9,17 +8,13 @@ use toml::{Table, Value};
 /// The scene as tables, every default filled in.
 pub(super) fn table(scene: &Scene) -> Table {
     let mut simulation = fields(&scene.simulation);
-    let mut solver = fields(&scene.twoway.backward);
-    for (key, value) in fields(&scene.dynamics) {
-        let table = if SIMULATION_DYNAMICS.contains(&key.as_str()) { &mut simulation } else { &mut solver };
-        table.insert(key, value);
-    }
-    solver.insert("stop".to_owned(), Value::Table(fields(&scene.twoway.stop)));
+    simulation.extend(fields(&scene.dynamics.environment));
+    let mut solver = fields(&scene.twoway.solver);
+    solver.insert("newton".to_owned(), Value::Table(fields(&scene.dynamics.newton)));
     solver.insert("repulsion".to_owned(), Value::Table(fields(&scene.repulsion)));
     let mut contact = Table::new();
     insert(&mut contact, "preset", &scene.preset);
-    contact.extend(fields(&scene.twoway.constraints));
-    contact.extend(fields(&scene.twoway.stepper));
+    contact.extend(fields(&scene.twoway.contact));
     insert(&mut contact, "friction_pairs", &scene.friction_pairs);
 
     let mut root = Table::new();
@@ -81,7 +76,8 @@ fn subtract(own: &mut Table, base: &Table) {
     });
 }
 
-fn fields(value: &impl Serialize) -> Table {
+/// A struct as a table.
+pub(super) fn fields(value: &impl Serialize) -> Table {
     // None of the structs has a field that TOML cannot hold; a test writes and reads all of them.
     Table::try_from(value).unwrap_or_default()
 }

@@ -1,18 +1,19 @@
-//! What floating point may take away from a certified gap in one step.
+//! By how much floating point may reduce a certified gap in one step.
 
 /// Absolute rounding bounds at the scale of a scene's coordinates.
 ///
-/// With u = 2^-53 and C the largest coordinate before or after a step: the update x + alpha d is rounded
-/// twice, by at most u |alpha d| + u |x'| <= 2 u C in each component where |alpha d| <= C, hence by less than
-/// 2 sqrt(3) u C = 1.74 ulp(C) along any unit vector, where ulp(C) = 2 u C; the closing speed n . d that a share
-/// was computed from is itself off by at most 4 u |d|, scaled by alpha to the travel of one step, which budgets
-/// keep below C. `step` = 4 ulp(C) covers both, and the division that makes alpha from a share.
+/// Let u = 2^-53 and C the largest coordinate before or after a step. The update x + alpha d is rounded
+/// twice, by at most u |alpha d| + u |x'| <= 2 u C in each component where |alpha d| <= C. Along any unit
+/// vector this is less than 2 sqrt(3) u C = 1.74 ulp(C), where ulp(C) = 2 u C. The closing speed n . d, from
+/// which a share is computed, is itself off by at most 4 u |d|, scaled by alpha to the travel of one step,
+/// which trust regions keep below C. `step` = 4 ulp(C) covers both, and the division that makes alpha from a
+/// share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rounding {
-    /// Bound of how much one side may close a gap beyond its share in one step [m].
+    /// By how much, at most, one side closes a gap beyond its share in one step [m].
     pub step: f64,
-    /// Gap at or below which a pair's vertices must not move at all [m]: above it a step that closes nothing on
-    /// purpose cannot reach zero by rounding.
+    /// Gap at or below which a pair's vertices must not move at all [m]. Above it, a step that is not meant
+    /// to close the gap cannot close it by rounding.
     pub frozen: f64,
 }
 
@@ -28,8 +29,8 @@ impl Rounding {
         16.0 * self.step
     }
 
-    /// Smallest gap floor that stands out of rounding [m]: 16 ulp.
-    pub fn smallest_floor(largest_coordinate: f64) -> f64 {
+    /// Smallest value of a minimum separation that exceeds rounding: 16 ulp [m].
+    pub fn smallest_min_separation(largest_coordinate: f64) -> f64 {
         16.0 * f64::EPSILON * largest_coordinate
     }
 }

@@ -1,55 +1,56 @@
 //! The forward step (paper, Eq. 3, 18-20), with separating planes in place of the isotropic bound.
 //!
 //! For a pair with unit normal n and certified slab width w, side *a* may close at most a share of
-//! G = gamma max(0, w - xi) and side *b* the rest. Each side then stays in its own half-space, and
-//! half-spaces are convex, so no straight path of any vertex crosses, whatever the speeds: a smaller
-//! alpha is always safe too. The isotropic bound is the paper's: no vertex moves by more than half of the
-//! smallest distance of its pairs.
+//! G = gamma max(0, w - xi), where xi is the pair's minimum separation, and side *b* the rest. Each side then
+//! stays in its own half-space. Half-spaces are convex, so no straight path of any vertex crosses, whatever the
+//! speeds, and a smaller alpha is always safe too. The isotropic bound is the paper's: no vertex moves by
+//! more than half of the smallest distance of its pairs.
 
-use crate::{Budgets, Rounding};
+use crate::rounding::Rounding;
+use crate::trust_regions::TrustRegions;
 use bowknot_geometry::{PairKind, Point, Separation, Vector};
 use bowknot_proximity::{CollisionModel, PairList};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
-/// Elements that one parallel task handles at least.
+/// Smallest number of elements in one parallel task.
 const CHUNK: usize = 2048;
 
-/// The listed pairs with their contact geometry at the current positions.
+/// The candidate pairs with their contact geometry at the current positions.
 #[derive(Clone, Copy, Debug)]
 pub struct Contacts<'a> {
     /// The pairs.
     pub pairs: &'a PairList,
-    /// Contact geometry of each.
+    /// Contact geometry of each pair.
     pub separations: &'a [Separation],
-    /// Gap floor of each, xi [m].
-    pub floors: &'a [f64],
+    /// Minimum separation of each pair, xi [m]: no step makes its gap smaller.
+    pub min_separations: &'a [f64],
 }
 
 /// What a step did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepReport {
-    /// Largest clock r.
-    pub remaining_r: f64,
-    /// Largest |(1 - alpha) (y - x)| [m].
+    /// Largest remaining fraction r of any vertex [1].
+    pub remaining_fraction: f64,
+    /// Largest remaining distance |(1 - alpha) (y - x)| of any vertex [m].
     pub remaining: f64,
-    /// Vertex that has it.
+    /// The vertex with the largest remaining distance.
     pub slowest: Option<u32>,
     /// Largest |alpha (y - x)| [m].
     pub largest_move: f64,
 }
 
-/// Workspace of the forward step: wanted displacements, step sizes, clocks.
+/// Workspace of the forward step: wanted displacements, step sizes, remaining fractions.
 #[derive(Debug, Default)]
 pub struct Stepper {
     /// d = y - x [m].
     displacements: Vec<Vector>,
-    /// Bits of alpha; nonnegative floats are ordered as their bits are, so that an atomic minimum
-    /// of bits is one of numbers, and gives the same result in any order.
+    /// Bits of alpha. Nonnegative floats are ordered as their bits are, so an atomic minimum of bits is a
+    /// minimum of the numbers, and it gives the same result in any order.
     alphas: Vec<AtomicU64>,
-    /// The paper's r.
-    clocks: Vec<f64>,
-    /// Group of each vertex, [`Self::NO_GROUP`] for none; empty: no groups.
+    /// The paper's r of each vertex.
+    remaining_fractions: Vec<f64>,
+    /// Group of each vertex, [`Self::NO_GROUP`] for none. Empty: no groups.
     groups: Vec<u32>,
     rounding: Option<Rounding>,
 }
@@ -58,28 +59,29 @@ impl Stepper {
     /// Group of a vertex that is in none.
     pub const NO_GROUP: u32 = u32::MAX;
 
-    /// Starts a call: all clocks are 1, and there are no groups.
+    /// Starts a call: all remaining fractions are 1, and there are no groups.
     pub fn begin(&mut self, vertex_count: usize) {
         self.groups.clear();
-        self.clocks.clear();
-        self.clocks.resize(vertex_count, 1.0);
+        self.remaining_fractions.clear();
+        self.remaining_fractions.resize(vertex_count, 1.0);
         self.alphas.clear();
         self.alphas.resize_with(vertex_count, || AtomicU64::new(1.0f64.to_bits()));
     }
 
-    /// Makes the vertices of a group move by one fraction of their ways, see [`Self::limit_by_groups`]; one entry a
-    /// vertex, [`Self::NO_GROUP`] for none. Pairs within a group are then limited by their relative motion alone.
+    /// Sets the group of each vertex, one entry per vertex, [`Self::NO_GROUP`] for none. All vertices of a
+    /// group move by the same fraction of their displacements, see [`Self::limit_by_groups`]; pairs within a
+    /// group are then limited by their relative motion alone.
     pub fn set_groups(&mut self, groups: &[u32]) {
         self.groups.clear();
         self.groups.extend_from_slice(groups);
     }
 
-    /// Starts a step from `positions` toward `target`. A vertex whose target is not finite stays where it
-    /// is; returns how many such there were.
-    pub fn aim(&mut self, positions: &[Point], target: &[Point]) -> usize {
+    /// Starts a step from `positions` toward `target`. A vertex whose target is not finite does not move;
+    /// returns the number of these vertices.
+    pub fn set_target(&mut self, positions: &[Point], target: &[Point]) -> usize {
         self.displacements.resize(positions.len(), Vector::zeros());
         let mut largest = 0.0f64;
-        let mut broken = 0;
+        let mut not_finite = 0;
         for (d, (x, y)) in self.displacements.iter_mut().zip(positions.iter().zip(target)) {
             *d = y - x;
             if d.iter().all(|c| c.is_finite()) {
@@ -87,12 +89,12 @@ impl Stepper {
             } else {
                 *d = Vector::zeros();
                 largest = largest.max(x.coords.amax());
-                broken += 1;
+                not_finite += 1;
             }
         }
         self.alphas.iter_mut().for_each(|a| *a.get_mut() = 1.0f64.to_bits());
         self.rounding = Some(Rounding::new(largest));
-        broken
+        not_finite
     }
 
     /// Wanted displacements d = y - x of this step [m].
@@ -109,7 +111,8 @@ impl Stepper {
     /// Lowers the step size of a vertex to at most `alpha`.
     #[inline]
     pub fn limit(&self, vertex: usize, alpha: f64) {
-        // NaN never gets in: it would compare as larger than every number and be lost without a trace.
+        // NaN becomes 0: its bits would compare as larger than those of every number, and the limit would be
+        // lost.
         let alpha = if alpha >= 0.0 { alpha } else { 0.0 };
         let bits = alpha.to_bits();
         if self.alphas[vertex].load(Ordering::Relaxed) > bits {
@@ -118,12 +121,12 @@ impl Stepper {
     }
 
     fn rounding(&self) -> Rounding {
-        // Without `aim` nothing may move at all.
+        // Without a target nothing may move at all.
         self.rounding.unwrap_or(Rounding { step: f64::INFINITY, frozen: f64::INFINITY })
     }
 
-    /// Limits every pair's vertices by the pair's slab. Returns the number of pairs frozen because no
-    /// direction certifies a gap above rounding.
+    /// Limits the vertices of every pair by the pair's slab. Returns the number of frozen pairs: those for
+    /// which no direction certifies a gap above rounding.
     pub fn limit_by_planes(&self, contacts: &Contacts<'_>, damping: f64) -> usize {
         let rounding = self.rounding();
         let frozen = AtomicUsize::new(0);
@@ -132,7 +135,8 @@ impl Stepper {
                 let vertices = &contacts.pairs.pairs()[p].vertices;
                 let separation = &contacts.separations[p];
                 if separation.width > rounding.frozen {
-                    self.limit_pair(kind, vertices, separation, contacts.floors[p], damping, rounding.step);
+                    let min_separation = contacts.min_separations[p];
+                    self.limit_pair(kind, vertices, separation, min_separation, damping, rounding.step);
                 } else if self.freeze(kind, vertices) {
                     frozen.fetch_add(1, Ordering::Relaxed);
                 }
@@ -141,13 +145,14 @@ impl Stepper {
         frozen.into_inner()
     }
 
-    /// As [`Self::limit_by_planes`], for vertices that move along `paths` [m] on a clock common to all, straying from
-    /// there by at most their `tubes` [m]: pairs whose slab, carried along, stays open are left alone, so that motion
-    /// common to both sides is free.
+    /// As [`Self::limit_by_planes`], for vertices that move along `paths` [m], all at the same path time t in
+    /// [0, 1], and deviate from there by at most the radius of their `tubes` [m]. A pair whose slab stays
+    /// open while it moves along is not limited, so that motion common to both sides is free.
     ///
-    /// With a slab that moves by t f, side *a* closes it by at most t max over a of -n.(u_i - f) plus its tube, side
-    /// *b* by t max over b of n.(u_j - f) plus its own; f cancels in the sum, which is linear in t and so largest at an end.
-    pub fn limit_by_carried_planes(
+    /// Let the slab move by t f. Side *a* closes it by at most t max over a of -n.(u_i - f) plus its tube,
+    /// side *b* by at most t max over b of n.(u_j - f) plus its own. In the sum f cancels; the sum is linear
+    /// in t, so it is largest at an end.
+    pub fn limit_by_moving_planes(
         &self,
         contacts: &Contacts<'_>,
         paths: &[Vector],
@@ -177,12 +182,13 @@ impl Stepper {
                     (closing, tube)
                 };
                 let (closing_a, tube_a) = side(0..side_a, -1.0);
-                // A half-space rests.
+                // A half-space does not move.
                 let (closing_b, tube_b) = if side_a < count { side(side_a..count, 1.0) } else { (0.0, 0.0) };
                 let closing = (closing_a + closing_b).max(0.0) + tube_a + tube_b;
-                let budget = damping * (separation.width - contacts.floors[p]) - 2.0 * rounding.step;
-                if closing > budget {
-                    self.limit_pair(kind, vertices, separation, contacts.floors[p], damping, rounding.step);
+                let min_separation = contacts.min_separations[p];
+                let allowed = damping * (separation.width - min_separation) - 2.0 * rounding.step;
+                if closing > allowed {
+                    self.limit_pair(kind, vertices, separation, min_separation, damping, rounding.step);
                 }
             });
         }
@@ -195,18 +201,18 @@ impl Stepper {
         kind: PairKind,
         vertices: &[u32; 4],
         separation: &Separation,
-        floor: f64,
+        min_separation: f64,
         damping: f64,
         step_rounding: f64,
     ) {
         let (count, side_a) = (kind.vertex_count(), kind.side_a());
         let n = separation.normal;
-        let budget = (damping * (separation.width - floor) - 2.0 * step_rounding).max(0.0);
+        let allowed = (damping * (separation.width - min_separation) - 2.0 * step_rounding).max(0.0);
         if let Some(&group) = self.groups.get(vertices[0] as usize)
             && group != Self::NO_GROUP
             && vertices[..count].iter().all(|&v| self.groups[v as usize] == group)
         {
-            return self.limit_within_group(&vertices[..count], side_a, &n, budget);
+            return self.limit_within_group(&vertices[..count], side_a, &n, allowed);
         }
         let mut closing = [0.0f64; 4];
         let mut speeds = [0.0f64; 2];
@@ -217,33 +223,34 @@ impl Stepper {
             speeds[side] = speeds[side].max(closing[k]);
         }
         let total = speeds[0] + speeds[1];
-        if total <= budget {
+        if total <= allowed {
             return;
         }
         for k in 0..count {
             if closing[k] > 0.0 {
                 let share = speeds[usize::from(k >= side_a)] / total;
-                self.limit(vertices[k] as usize, (budget * share / closing[k]).min(1.0));
+                self.limit(vertices[k] as usize, (allowed * share / closing[k]).min(1.0));
             }
         }
     }
 
-    /// Limits a pair whose vertices share one clock: with the slab carried along, what closes it is the difference of both
-    /// sides' motion, linear in the clock (see [`Self::limit_by_carried_planes`]). Motion in common is free.
-    fn limit_within_group(&self, vertices: &[u32], side_a: usize, n: &Vector, budget: f64) {
-        let most = |side: &[u32], sign: f64| {
+    /// Limits a pair whose vertices move by the same fraction. If the slab moves with the pair, only the
+    /// difference of both sides' motion closes it, and that is linear in the fraction (see
+    /// [`Self::limit_by_moving_planes`]). Common motion is free.
+    fn limit_within_group(&self, vertices: &[u32], side_a: usize, n: &Vector, allowed: f64) {
+        let largest = |side: &[u32], sign: f64| {
             let along = side.iter().map(|&v| sign * n.dot(&self.displacements[v as usize]));
             along.fold(f64::NEG_INFINITY, f64::max)
         };
-        // A half-space rests.
-        let other = if side_a < vertices.len() { most(&vertices[side_a..], 1.0) } else { 0.0 };
-        let closing = most(&vertices[..side_a], -1.0) + other;
-        if closing > budget {
-            vertices.iter().for_each(|&v| self.limit(v as usize, budget / closing));
+        // A half-space does not move.
+        let other = if side_a < vertices.len() { largest(&vertices[side_a..], 1.0) } else { 0.0 };
+        let closing = largest(&vertices[..side_a], -1.0) + other;
+        if closing > allowed {
+            vertices.iter().for_each(|&v| self.limit(v as usize, allowed / closing));
         }
     }
 
-    /// Stops all vertices of a pair; whether any of them wanted to move.
+    /// Stops all vertices of a pair. Returns whether any of them wanted to move.
     fn freeze(&self, kind: PairKind, vertices: &[u32; 4]) -> bool {
         let mut moving = false;
         for &v in &vertices[..kind.vertex_count()] {
@@ -255,8 +262,8 @@ impl Stepper {
         moving
     }
 
-    /// Limits every pair's vertices to half of the pair's certified distance, whatever the direction (paper, Eq.
-    /// 18-20). Returns the number of pairs frozen.
+    /// Limits the vertices of every pair to half of the pair's certified distance, whatever the direction
+    /// (paper, Eq. 18-20). Returns the number of frozen pairs.
     pub fn limit_by_distances(&self, contacts: &Contacts<'_>, damping: f64) -> usize {
         let rounding = self.rounding();
         let frozen = AtomicUsize::new(0);
@@ -270,16 +277,16 @@ impl Stepper {
                     }
                     return;
                 }
-                let room = (0.5 * damping * (width - contacts.floors[p]) - rounding.step).max(0.0);
+                let room = (0.5 * damping * (width - contacts.min_separations[p]) - rounding.step).max(0.0);
                 vertices[..kind.vertex_count()].iter().for_each(|&v| self.limit_length(v as usize, room));
             });
         }
         frozen.into_inner()
     }
 
-    /// Limits every vertex's move to half of the distance [m] that unlisted pairs are known to have at least, the
-    /// paper's D^(l).
-    pub fn limit_by_unlisted(&self, distance: f64, damping: f64) {
+    /// Limits the move of every vertex to half of `distance` [m], a lower bound of the distances of all pairs
+    /// that are no candidates: the paper's D^(l).
+    pub fn limit_by_non_candidates(&self, distance: f64, damping: f64) {
         let room = (0.5 * damping * distance - self.rounding().step).max(0.0);
         (0..self.displacements.len())
             .into_par_iter()
@@ -295,14 +302,14 @@ impl Stepper {
         }
     }
 
-    /// Keeps every vertex in its ball. Returns whether a ball, rather than a pair, limits some vertex: then the
-    /// pairs should be searched again.
-    pub fn limit_by_budgets(&self, positions: &[Point], budgets: &Budgets) -> bool {
+    /// Keeps every vertex in its trust region. Returns whether a trust region, rather than a pair, limits
+    /// some vertex: then the pairs should be searched again.
+    pub fn limit_by_trust_regions(&self, positions: &[Point], trust_regions: &TrustRegions) -> bool {
         (0..positions.len())
             .into_par_iter()
             .with_min_len(CHUNK)
             .map(|v| {
-                let alpha = budgets.limit(v, &positions[v], &self.displacements[v]);
+                let alpha = trust_regions.limit(v, &positions[v], &self.displacements[v]);
                 let limited = alpha < self.alpha(v);
                 self.limit(v, alpha);
                 limited
@@ -311,7 +318,7 @@ impl Stepper {
     }
 
     /// Makes every obstacle move as one: all its vertices take the smallest step size among them. Returns
-    /// the smallest of all.
+    /// the smallest step size of all obstacles.
     pub fn limit_by_bodies(&self, model: &CollisionModel, obstacle_vertices: &[u32]) -> f64 {
         if obstacle_vertices.is_empty() {
             return 1.0;
@@ -327,8 +334,8 @@ impl Stepper {
         smallest.into_iter().fold(1.0, f64::min)
     }
 
-    /// Makes every group move as one, as [`Self::limit_by_bodies`] does with obstacles; `group_count` is one more than the
-    /// largest group.
+    /// Makes every group move as one, as [`Self::limit_by_bodies`] does with obstacles. `group_count` is one
+    /// more than the largest group.
     pub fn limit_by_groups(&self, group_count: usize) {
         if self.groups.is_empty() {
             return;
@@ -342,7 +349,8 @@ impl Stepper {
         members().for_each(|v| self.limit(v, smallest[self.groups[v] as usize]));
     }
 
-    /// Takes the step: x <- x + alpha d, to rounding y where alpha = 1 and exactly x where it is 0.
+    /// Takes the step x <- x + alpha d. The result is y up to rounding where alpha = 1, and exactly x where
+    /// alpha = 0.
     pub fn advance(&mut self, positions: &mut [Point]) -> StepReport {
         let mut report = StepReport::default();
         for v in 0..positions.len() {
@@ -351,10 +359,10 @@ impl Stepper {
             if alpha > 0.0 {
                 positions[v] += alpha * d;
             }
-            self.clocks[v] *= 1.0 - alpha;
+            self.remaining_fractions[v] *= 1.0 - alpha;
             let length = d.norm();
             let remaining = (1.0 - alpha) * length;
-            report.remaining_r = report.remaining_r.max(self.clocks[v]);
+            report.remaining_fraction = report.remaining_fraction.max(self.remaining_fractions[v]);
             report.largest_move = report.largest_move.max(alpha * length);
             if remaining > report.remaining {
                 report.remaining = remaining;
@@ -364,8 +372,9 @@ impl Stepper {
         report
     }
 
-    /// Clocks r of the vertices: the product of (1 - alpha) over the steps of a call (paper, Eq. 20).
-    pub fn clocks(&self) -> &[f64] {
-        &self.clocks
+    /// Remaining fraction r of each vertex: the product of (1 - alpha) over the steps of a call (paper, Eq.
+    /// 20).
+    pub fn remaining_fractions(&self) -> &[f64] {
+        &self.remaining_fractions
     }
 }

@@ -1,8 +1,8 @@
-//! Steps of single pairs: what may close, what must not, and where rounding would bite.
+//! Steps of single pairs: how far gaps may close, and the cases in which rounding matters.
 
 use bowknot_geometry::{PairKind, Point, Vector, separation};
 use bowknot_proximity::{CollisionModel, Pair, PairList};
-use bowknot_stepper::{Budgets, Contacts, Rounding, Stepper};
+use bowknot_stepper::{Contacts, Rounding, Stepper, TrustRegions};
 
 fn vertex_over_triangle(height: f64) -> Vec<Point> {
     [[0.2, 0.2, height], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point::from).to_vec()
@@ -13,16 +13,16 @@ fn list() -> PairList {
     PairList::from_kinds([vec![], vec![], vec![pair], vec![], vec![]])
 }
 
-/// One step of the pair toward x + d with a floor; the positions after it and the frozen pairs.
-fn step(x: &[Point], d: &[Vector], floor: f64, planes: bool) -> (Vec<Point>, usize) {
-    let (pairs, floors) = (list(), [floor]);
+/// One step of the pair toward x + d with a minimum separation; the positions after it and the frozen pairs.
+fn step(x: &[Point], d: &[Vector], min_separation: f64, planes: bool) -> (Vec<Point>, usize) {
+    let (pairs, min_separations) = (list(), [min_separation]);
     let points = [x[0], x[1], x[2], x[3]];
     let separations = [separation::separate(PairKind::VertexTriangle, &points)];
-    let contacts = Contacts { pairs: &pairs, separations: &separations, floors: &floors };
+    let contacts = Contacts { pairs: &pairs, separations: &separations, min_separations: &min_separations };
     let y: Vec<Point> = x.iter().zip(d).map(|(x, d)| x + d).collect();
     let mut stepper = Stepper::default();
     stepper.begin(x.len());
-    stepper.aim(x, &y);
+    stepper.set_target(x, &y);
     let frozen = if planes {
         stepper.limit_by_planes(&contacts, 0.9)
     } else {
@@ -34,7 +34,7 @@ fn step(x: &[Point], d: &[Vector], floor: f64, planes: bool) -> (Vec<Point>, usi
 }
 
 #[test]
-fn a_closing_pair_keeps_a_tenth_of_its_gap_above_the_floor() {
+fn a_closing_pair_keeps_a_tenth_of_its_gap_above_the_minimum_separation() {
     let x = vertex_over_triangle(0.5);
     let d = [Vector::new(0.0, 0.0, -7.0), Vector::zeros(), Vector::zeros(), Vector::zeros()];
     let (next, frozen) = step(&x, &d, 0.1, true);
@@ -52,7 +52,7 @@ fn sides_share_the_gap_by_their_speeds() {
 }
 
 #[test]
-fn tangential_and_parting_motion_is_free_with_planes_and_bounded_without() {
+fn tangential_and_opening_motion_is_free_with_planes_and_bounded_without() {
     let x = vertex_over_triangle(0.01);
     let d = [Vector::new(0.1, 0.1, 0.2), Vector::zeros(), Vector::zeros(), Vector::zeros()];
     let (free, _) = step(&x, &d, 0.001, true);
@@ -63,7 +63,7 @@ fn tangential_and_parting_motion_is_free_with_planes_and_bounded_without() {
 }
 
 #[test]
-fn a_pair_within_rounding_is_frozen_even_when_it_wants_apart() {
+fn a_pair_within_rounding_is_frozen_even_when_it_would_open() {
     let x = vertex_over_triangle(1e-17);
     let d = [Vector::new(0.0, 0.0, 1.0), Vector::zeros(), Vector::zeros(), Vector::zeros()];
     for planes in [true, false] {
@@ -74,7 +74,7 @@ fn a_pair_within_rounding_is_frozen_even_when_it_wants_apart() {
 }
 
 #[test]
-fn no_number_of_steps_closes_the_gap_without_a_floor() {
+fn no_number_of_steps_closes_the_gap_without_a_minimum_separation() {
     // Far from the origin, where each update is rounded coarsely.
     let far = Vector::new(1e4, 1e4, 1e4);
     let mut x: Vec<Point> = vertex_over_triangle(1e-3).iter().map(|p| p + far).collect();
@@ -96,33 +96,30 @@ fn a_target_that_is_not_finite_is_ignored_and_counted() {
     let mut stepper = Stepper::default();
     stepper.begin(4);
     let y = [Point::new(f64::NAN, 0.0, 0.0), x[1], Point::new(0.0, f64::INFINITY, 0.0), x[3]];
-    assert_eq!(stepper.aim(&x, &y), 2);
+    assert_eq!(stepper.set_target(&x, &y), 2);
     let mut next = x.clone();
     stepper.advance(&mut next);
     assert_eq!(next, x);
 }
 
 #[test]
-fn budgets_keep_a_vertex_in_its_ball_wherever_it_heads() {
-    let mut budgets = Budgets { anchors: vec![Point::origin()], radii: vec![1.0] };
+fn trust_regions_keep_a_vertex_in_its_ball_in_every_direction() {
+    let mut trust_regions = TrustRegions { centers: vec![Point::origin()], radii: vec![1.0] };
     let mut x = Point::origin();
-    let mut seed = 1u64;
-    let mut random = || {
-        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    };
+    let mut rng = fastrand::Rng::with_seed(1);
+    let mut random = || 2.0 * rng.f64() - 1.0;
     let mut reached: f64 = 0.0;
     for k in 0..10_000 {
         let scale = 10f64.powi(k % 9 - 4);
         let d = Vector::new(random(), random(), random()) * scale;
-        x += budgets.limit(0, &x, &d) * d;
+        x += trust_regions.limit(0, &x, &d) * d;
         assert!(x.coords.norm() <= 1.0);
         reached = reached.max(x.coords.norm());
     }
-    assert!(reached > 0.99, "the budget should be usable: {reached}");
-    budgets.radii[0] = 0.0;
-    assert_eq!(budgets.limit(0, &Point::origin(), &Vector::x()), 0.0);
-    assert_eq!(budgets.limit(0, &Point::origin(), &Vector::zeros()), 1.0);
+    assert!(reached > 0.99, "the trust region should be usable: {reached}");
+    trust_regions.radii[0] = 0.0;
+    assert_eq!(trust_regions.limit(0, &Point::origin(), &Vector::x()), 0.0);
+    assert_eq!(trust_regions.limit(0, &Point::origin(), &Vector::zeros()), 1.0);
 }
 
 #[test]
@@ -130,13 +127,13 @@ fn an_obstacle_moves_as_one() {
     use bowknot_geometry::Topology;
     use bowknot_proximity::BodyFilter;
     let x = vertex_over_triangle(0.5);
-    let topology = Topology::new(4, vec![[1, 2, 3]], &[], &[0]).unwrap();
+    let topology = Topology::builder(4).triangles([[1, 2, 3]]).particles([0]).build().unwrap();
     let filters = vec![BodyFilter::DEFORMABLE, BodyFilter::OBSTACLE];
     let model = CollisionModel::new(topology, vec![0, 1, 1, 1], filters, vec![]).unwrap();
     let y: Vec<Point> = x.iter().map(|p| p + Vector::z()).collect();
     let mut stepper = Stepper::default();
     stepper.begin(4);
-    stepper.aim(&x, &y);
+    stepper.set_target(&x, &y);
     stepper.limit(2, 0.25);
     assert_eq!(stepper.limit_by_bodies(&model, &[1, 2, 3]), 0.25);
     let mut next = x.clone();

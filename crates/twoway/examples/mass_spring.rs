@@ -1,11 +1,11 @@
-//! A mass-spring cloth of a few lines that never intersects: the resolver behind somebody's own dynamics.
+//! A mass-spring cloth in a few lines that never intersects: the resolver after any dynamics.
 //!
 //! `cargo run --release -p bowknot-twoway --example mass_spring -- [cells] [frames]`
 #![allow(clippy::print_stdout)] // an example's purpose is to print
 
 use bowknot_geometry::{HalfSpace, Point, Topology, Vector};
 use bowknot_proximity::{BodyFilter, CollisionModel};
-use bowknot_twoway::{Call, Params, Resolver};
+use bowknot_twoway::{Params, ResolveInput, Resolver};
 
 const DT: f64 = 0.01;
 const SUBSTEPS: usize = 20;
@@ -40,8 +40,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         triangles.push([tip, tip + 1 + k as u32, tip + 1 + (k as u32 + 1) % base as u32]);
     }
 
-    // Ten lines: the topology, who is an obstacle, and a resolver.
-    let topology = Topology::new(x.len(), triangles, &[], &[]).map_err(|e| format!("{e:?}"))?;
+    // The topology, the obstacle, and a resolver.
+    let topology = Topology::builder(x.len()).triangles(triangles).build()?;
     let springs: Vec<([usize; 2], f64)> = (topology.edges.iter())
         .map(|e| e.map(|v| v as usize))
         .filter(|e| e[1] < cloth)
@@ -58,8 +58,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for frame in 0..frames {
         let start = x.clone();
         let y = integrate(&start, &v, cloth, &springs);
-        let call = Call { time_step: Some(DT), ..Call::default() };
-        let report = resolver.resolve(&mut x, &y, &call, &mut ())?;
+        let input = ResolveInput { time_step: Some(DT), ..ResolveInput::default() };
+        let report = resolver.resolve_with(&mut x, &y, &input, &mut ())?;
         for i in 0..cloth {
             v[i] = (x[i] - start[i]) / DT;
         }
@@ -79,7 +79,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Stiff springs by symplectic Euler with substeps: where the cloth would go if nothing were in its way.
+/// Positions after a frame without collisions: stiff springs by symplectic Euler with substeps.
 fn integrate(x: &[Point], v: &[Vector], cloth: usize, springs: &[([usize; 2], f64)]) -> Vec<Point> {
     let (mut y, mut v) = (x.to_vec(), v.to_vec());
     let dt = DT / SUBSTEPS as f64;

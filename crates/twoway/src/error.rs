@@ -1,6 +1,8 @@
 //! Why a call is refused.
 
-/// Why a call is refused; the positions are then unchanged.
+use bowknot_errors::{Errors, ParamError};
+
+/// Why a scene or a call is refused. The positions are unchanged then.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ResolveError {
@@ -17,7 +19,7 @@ pub enum ResolveError {
     /// A coordinate is NaN or infinite.
     #[error("{what} of vertex {vertex} (body {body}) is not finite")]
     NonFinite {
-        /// "the position" or "the target".
+        /// "the position", "the target" and the like.
         what: &'static str,
         /// The vertex.
         vertex: usize,
@@ -37,24 +39,24 @@ pub enum ResolveError {
         mass: f64,
     },
     /// Contact data of bodies, half-spaces or pairs out of their range.
-    #[error("contact data out of range: {}", .0.join("; "))]
-    Contact(Vec<String>),
+    #[error("contact data out of range:\n{0}")]
+    Contact(Errors<ParamError>),
     /// Parameters out of their range.
-    #[error("parameters out of range: {}", .0.join("; "))]
-    Params(Vec<String>),
-    /// Coordinates so large that the floor drowns in rounding.
+    #[error("parameters out of range:\n{0}")]
+    Params(Errors<ParamError>),
+    /// Coordinates so large that their rounding exceeds the minimum separation.
     #[error(
-        "the gap floor of {floor:.3e} m is below 16 ulp of the largest coordinate ({coordinate:.3e} m, vertex {vertex}): \
-         move the scene nearer to the origin, or raise stepper.floor above {needed:.3e} m"
+        "the minimum separation of {min_separation:.3e} m is below 16 ulp of the largest coordinate ({coordinate:.3e} m, \
+         vertex {vertex}): move the scene closer to the origin, or raise contact.min_separation above {needed:.3e} m"
     )]
-    FloorBelowRounding {
-        /// The floor [m].
-        floor: f64,
+    MinSeparationBelowRounding {
+        /// The minimum separation [m].
+        min_separation: f64,
         /// The largest coordinate [m].
         coordinate: f64,
         /// The vertex that has it.
         vertex: usize,
-        /// The smallest floor allowed [m].
+        /// The smallest minimum separation allowed [m].
         needed: f64,
     },
 }

@@ -1,20 +1,22 @@
 //! The velocity filter for friction (Bridson, Fedkiw and Anderson 2002; paper, section 6.3).
 //!
-//! The target comes from dynamics without friction. Where it would bring a listed pair nearer than its desired
-//! distance, the depth stands for the normal impulse that collision handling is going to apply, and the slip since the start of
-//! the time step shrinks by mu times that depth, at most to nothing. Normal motion is left to collision handling.
+//! The target comes from dynamics without friction. Where it would bring a candidate pair closer than its
+//! desired distance, the depth estimates the normal impulse that collision handling will apply. The slip
+//! since the start of the time step shrinks by mu times that depth, at most to zero. Collision handling takes
+//! care of the normal motion.
 //!
-//! It stands here rather than with the dynamics because only the resolver has the pairs, their closest points and
-//! normals; a filter of the dynamics would have to search them again. It costs one pass over the pairs a call, and is
-//! as coarse as the depths are: a vertex that several pairs catch takes the mean of what they ask for, impulses that
-//! contacts pass on to each other are not seen.
+//! The filter is here and not in the dynamics because only the resolver has the pairs, their closest points
+//! and normals. It costs one pass over the pairs per call. It is only as accurate as the depths: a vertex of
+//! several pairs takes the mean of their changes, and impulses that contacts pass on to each other are not
+//! counted.
 
-use crate::{Problem, State};
+use crate::scene::CollisionScene;
+use crate::state::ResolveState;
 use bowknot_constraints::predicted_gap;
 use bowknot_geometry::{PairKind, Vector};
 
 /// Changes `state.target`, and `state.y` with it. Needs the pairs at `state.x`.
-pub(crate) fn filter_slip(problem: &Problem, state: &mut State) {
+pub(crate) fn filter_slip(scene: &CollisionScene, state: &mut ResolveState) {
     let contacts = &state.contacts;
     let mut changes = vec![(Vector::zeros(), 0u32); state.x.len()];
     for kind in PairKind::ALL {
@@ -26,14 +28,14 @@ pub(crate) fn filter_slip(problem: &Problem, state: &mut State) {
             if depth <= 0.0 {
                 continue;
             }
-            let friction = problem.contact.friction_of_pair(&problem.model, kind, pair);
+            let friction = scene.contact().friction_of_pair(scene.model(), kind, pair);
             let beta = separation.signed_weights(kind);
             let mut motion = Vector::zeros();
             let mut diagonal = 0.0;
             for (&v, beta) in pair.vertices[..kind.vertex_count()].iter().zip(beta) {
                 let v = v as usize;
-                motion += beta * (state.target[v] - state.slip_start[v]);
-                diagonal += beta * beta * inverse_mass(problem, v);
+                motion += beta * (state.target[v] - state.call.slip_start()[v]);
+                diagonal += beta * beta * inverse_mass(scene, state, v);
             }
             let slip = motion - separation.normal * separation.normal.dot(&motion);
             let length = slip.norm();
@@ -44,7 +46,7 @@ pub(crate) fn filter_slip(problem: &Problem, state: &mut State) {
             let impulse = -(1.0 - kept) / diagonal * slip;
             for (&v, beta) in pair.vertices[..kind.vertex_count()].iter().zip(beta) {
                 let (sum, count) = &mut changes[v as usize];
-                *sum += beta * inverse_mass(problem, v as usize) * impulse;
+                *sum += beta * inverse_mass(scene, state, v as usize) * impulse;
                 *count += u32::from(beta != 0.0);
             }
         }
@@ -56,6 +58,6 @@ pub(crate) fn filter_slip(problem: &Problem, state: &mut State) {
     }
 }
 
-fn inverse_mass(problem: &Problem, vertex: usize) -> f64 {
-    if problem.movable(vertex) { 1.0 / problem.relative_mass[vertex] } else { 0.0 }
+fn inverse_mass(scene: &CollisionScene, state: &ResolveState, vertex: usize) -> f64 {
+    if state.is_movable(vertex) { 1.0 / scene.relative_mass(vertex) } else { 0.0 }
 }

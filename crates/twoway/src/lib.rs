@@ -1,56 +1,71 @@
 //! The two-way interior point method: `resolve(x, y)` without intersections.
 //!
-//! Given an intersection-free state x and a target y that some dynamics wants, [`Resolver::resolve`] moves x
-//! toward y. Each two-way step lists the pairs that could meet ([`Search`]), modifies the target so that
-//! it does not want to intersect ([`BackwardStep`]), and moves the vertices toward it along paths that are
-//! certified free of intersections ([`ForwardStep`]). Friction changes the target alone, so it cannot touch that
-//! certificate. The stages are traits; other methods plug in.
+//! Given an intersection-free state x and a target y from any dynamics, [`Resolver::resolve`] moves x toward
+//! y. Each two-way step finds the candidate pairs, those that could meet ([`Search`]), removes intersections
+//! from the target ([`BackwardStep`]), and moves the vertices toward it on paths that are certified free of
+//! intersections ([`ForwardStep`]). Friction changes the target alone, so it does not affect that
+//! certificate. The stages are traits, and other methods implement them.
 
 mod backward;
 mod bodies;
+mod call;
 mod coarse;
 mod error;
 mod filter;
 mod forward;
+mod groups;
 mod injection;
+mod input;
+mod lag;
 mod observer;
+mod oscillation;
 mod params;
-mod problem;
 mod proximal;
 mod resolver;
 mod row_solver;
+mod scene;
 mod search;
 mod spacing;
 mod stages;
+mod stall;
 mod state;
 mod statistics;
-mod waiting;
+mod stop;
+mod validation;
 
 /// Contact rows and edge limits, and their part of the parameters.
 pub use bowknot_constraints as constraints;
 /// Points, topology and separations.
 pub use bowknot_geometry as geometry;
-/// Rows and solvers, for backward steps of one's own.
+/// Rows and solvers, for other backward steps.
 pub use bowknot_lcp as lcp;
-/// Pairs and the model of who collides with whom.
+/// Pairs, and the model of which bodies collide.
 pub use bowknot_proximity as proximity;
 /// The certified forward step, and its part of the parameters.
 pub use bowknot_stepper as stepper;
 
 pub use backward::LcpBackward;
 pub use bodies::{BodyContact, ContactSide, ContactTable, HalfSpaceContact, PairFriction};
+pub use bowknot_constraints::ContactParams;
+pub use bowknot_errors::{Errors, ParamError, Parameters};
+pub use bowknot_stepper::ForwardParams;
+pub use call::CallInput;
 pub use error::ResolveError;
 pub use forward::CertifiedForward;
+pub use groups::Groups;
+pub use input::ResolveInput;
+pub use lag::{Lag, PrescribedEntity};
 pub use observer::{AcceptedState, Observer};
-pub use params::{BackwardParams, Params, StopParams, StopRule};
-pub use problem::{Lengths, Problem};
-pub use resolver::{Call, Resolver};
+pub use params::{BackwardParams, Params, SolverParams};
+pub use resolver::Resolver;
 pub use row_solver::{ColouredSweeps, RowSolver, RowSystem};
-pub use search::BudgetedSearch;
-pub use spacing::{FLOOR_MARGIN, PairSpacing, Spacing};
-pub use stages::{BackwardStep, ForwardStep, Reach, Search};
-pub use state::{ContactSet, State};
-pub use statistics::{Behind, Follower, Skipped, StageSeconds, Statistics};
+pub use scene::{CollisionScene, Lengths};
+pub use search::TrustRegionSearch;
+pub use spacing::{MIN_SEPARATION_MARGIN, PairSpacing, Spacing};
+pub use stages::{BackwardStep, Coverage, ForwardStep, Search};
+pub use state::{ContactSet, ResolveState};
+pub use statistics::{Skipped, StageSeconds, Statistics};
+pub use stop::{Residuals, StopParams, StopRule};
 
 /// The README's example is tested with the documentation.
 #[cfg(doctest)]

@@ -1,16 +1,16 @@
-//! Watching, and stopping, the loop.
+//! Observes the loop, and may stop it.
 
 use bowknot_geometry::Point;
 use std::ops::ControlFlow;
 
-/// What an observer is shown after every forward step.
+/// The state after a forward step, as an observer sees it.
 #[derive(Clone, Copy, Debug)]
 pub struct AcceptedState<'a> {
     /// Index of the two-way step in the call, from 0.
     pub step: usize,
     /// Positions before the step [m].
     pub previous: &'a [Point],
-    /// Positions after it [m]; the straight paths from `previous` are free of intersections.
+    /// Positions after it [m]. The straight paths from `previous` are free of intersections.
     pub positions: &'a [Point],
     /// The modified target y that the step moved toward [m].
     pub target: &'a [Point],
@@ -22,7 +22,7 @@ pub trait Observer {
     fn accepted(&mut self, state: &AcceptedState<'_>) -> ControlFlow<()>;
 }
 
-/// Watches nothing.
+/// Observes nothing.
 impl Observer for () {
     fn accepted(&mut self, _: &AcceptedState<'_>) -> ControlFlow<()> {
         ControlFlow::Continue(())

@@ -1,91 +1,98 @@
-//! The default search stage: searches when budgets are used up, and only refreshes contact geometry otherwise.
+//! The default search stage: it searches when a vertex has used up its trust region, and otherwise only
+//! refreshes the contact geometry.
 
-use crate::{FLOOR_MARGIN, Problem, Reach, Search, State, Statistics};
+use crate::scene::CollisionScene;
+use crate::spacing::MIN_SEPARATION_MARGIN;
+use crate::stages::{Coverage, Search};
+use crate::state::ResolveState;
+use crate::statistics::Statistics;
 use bowknot_constraints::{DesiredDistance, FrictionModel};
 use bowknot_geometry::{PairKind, Separation, Vector, separation};
 use bowknot_proximity::{PairList, ProximitySearch};
-use bowknot_stepper::{Budget, Budgets};
+use bowknot_stepper::{TrustRegionRule, TrustRegions};
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Pairs that one parallel task evaluates at least.
+/// Smallest number of pairs in one parallel task.
 const CHUNK: usize = 1024;
 
 /// The default [`Search`].
 #[derive(Debug)]
-pub struct BudgetedSearch {
+pub struct TrustRegionSearch {
     search: ProximitySearch,
-    budget: Budget,
-    budgets: Budgets,
-    /// Search radii handed down: budget plus half of the range within which pairs matter.
+    rule: TrustRegionRule,
+    trust_regions: TrustRegions,
+    /// Search radius of each vertex: that of its trust region plus half of the range within which pairs
+    /// matter.
     radii: Vec<f64>,
-    /// The paper's D^(l), for the uniform budget.
-    unlisted: f64,
+    /// The paper's D^(l), for the rule `uniform`.
+    covered_distance: f64,
+    /// Whether the next update searches.
     requested: bool,
-    /// The list before the present one, to carry over what belongs to pairs.
+    /// The previous list, from which the data of pairs are carried over.
     old: PairList,
     moved: Vec<bool>,
 }
 
-impl BudgetedSearch {
-    /// A search over the problem's primitives.
-    pub fn new(problem: &Problem) -> Self {
+impl TrustRegionSearch {
+    /// A search over the primitives of the scene.
+    pub fn new(scene: &CollisionScene) -> Self {
         Self {
-            search: ProximitySearch::new(&problem.model),
-            budget: problem.params.stepper.budget,
-            budgets: Budgets::default(),
+            search: ProximitySearch::new(scene.model()),
+            rule: scene.params().solver.forward.trust_region,
+            trust_regions: TrustRegions::default(),
             radii: Vec::new(),
-            unlisted: 0.0,
+            covered_distance: 0.0,
             requested: true,
             old: PairList::default(),
             moved: Vec::new(),
         }
     }
 
-    fn set_budgets(&mut self, problem: &Problem, state: &State) {
-        let params = &problem.params.stepper;
-        self.budgets.anchors.clone_from(&state.x);
-        self.budgets.radii.clear();
-        match params.budget {
-            Budget::PerVertex => {
-                let (low, high) = (params.budget_min, params.budget_max);
-                self.budgets.radii.extend(
-                    state.x.iter().zip(&state.y).zip(&problem.local_edge).enumerate().map(
-                        |(v, ((x, y), h))| {
-                            let wanted = Budgets::radius_for((y - x).norm());
-                            // A prescribed vertex with nowhere to go, such as an obstacle at rest, stays put.
-                            if wanted == 0.0 && problem.prescribed[v] {
-                                0.0
-                            } else {
-                                wanted.clamp(low * h, high * h)
-                            }
-                        },
-                    ),
-                );
-                let bodies = problem.model.vertex_body();
-                let margin = |body: &u32| problem.spacing.margin(*body);
+    fn set_trust_regions(&mut self, scene: &CollisionScene, state: &ResolveState) {
+        let params = &scene.params().solver.forward;
+        self.trust_regions.centers.clone_from(&state.x);
+        self.trust_regions.radii.clear();
+        match params.trust_region {
+            TrustRegionRule::PerVertex => {
+                let (low, high) = (params.trust_region_min, params.trust_region_max);
+                self.trust_regions.radii.extend(state.x.iter().zip(&state.y).enumerate().map(
+                    |(v, (x, y))| {
+                        let (wanted, h) = (TrustRegions::radius_for((y - x).norm()), scene.local_edge(v));
+                        // A prescribed vertex that is at its target, such as one of an obstacle at rest, does
+                        // not move.
+                        if wanted == 0.0 && state.call.is_prescribed(v) {
+                            0.0
+                        } else {
+                            wanted.clamp(low * h, high * h)
+                        }
+                    },
+                ));
+                let bodies = scene.model().vertex_body();
+                let margin = |body: &u32| scene.spacing().margin(*body);
                 self.radii.clear();
-                self.radii.extend(self.budgets.radii.iter().zip(bodies).map(|(r, body)| r + margin(body)));
+                self.radii
+                    .extend(self.trust_regions.radii.iter().zip(bodies).map(|(r, body)| r + margin(body)));
             }
-            Budget::Uniform => {
-                let radius = params.budget_max * problem.spacing.largest_delta();
-                self.unlisted = 2.0 * radius;
-                self.budgets.radii.resize(state.x.len(), radius);
+            TrustRegionRule::Uniform => {
+                let radius = params.trust_region_max * scene.spacing().largest_delta();
+                self.covered_distance = 2.0 * radius;
+                self.trust_regions.radii.resize(state.x.len(), radius);
                 self.radii.clear();
-                self.radii.extend_from_slice(&self.budgets.radii);
+                self.radii.extend_from_slice(&self.trust_regions.radii);
             }
         }
     }
 
-    /// Carries what belongs to pairs over to the new list, and sets it up for new ones.
-    fn inherit(&mut self, problem: &Problem, state: &mut State, statistics: &mut Statistics) {
+    /// Carries the data of pairs over to the new list, and initialises those of new pairs.
+    fn inherit(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
         let contacts = &mut state.contacts;
         let inherited = contacts.pairs.match_with(&self.old);
-        let growth = state.time_step.map_or(f64::INFINITY, |dt| problem.lengths.separation_speed * dt);
-        let model = &problem.model;
+        let growth = state.call.time_step().map_or(f64::INFINITY, |dt| scene.lengths().separation_speed * dt);
+        let model = scene.model();
         let (pairs, separations) = (&contacts.pairs, &contacts.separations);
         let (old_desired, old_multipliers) = (&contacts.desired, &contacts.multipliers);
-        let old_floors = &contacts.floors;
+        let old_min_separations = &contacts.min_separations;
         let values: Vec<Inherited> = inherited
             .par_iter()
             .enumerate()
@@ -93,26 +100,27 @@ impl BudgetedSearch {
             .map(|(p, &old)| match old_desired.get(old as usize) {
                 Some(&desired) => Inherited {
                     desired,
-                    floor: old_floors[old as usize],
+                    min_separation: old_min_separations[old as usize],
                     multiplier: old_multipliers[old as usize],
                     lowered: false,
                 },
                 None => {
                     let (kind, pair) = (pairs.kind(p), &pairs.pairs()[p]);
-                    let spacing = problem.spacing.of(model, kind, pair);
+                    let spacing = scene.spacing().of(model, kind, pair);
                     let rule = DesiredDistance { delta: spacing.delta, growth };
                     let separation = &separations[p];
-                    let (desired, lowered) = rule.of(model, kind, pair, &problem.rest, separation.distance);
-                    let floor = match spacing.floor {
-                        None => problem.lengths.floor.min(0.1 * desired),
-                        Some(floor) => {
-                            // Neighbours have the floor that their rest distance has room for; a tighter start
-                            // has its own gap for a floor, from which it grows call by call.
-                            let (at_ease, _) = rule.at_ease(model, kind, pair, &problem.rest);
-                            floor.min(at_ease / FLOOR_MARGIN).min(separation.width.max(0.0))
+                    let (desired, lowered) = rule.of(model, kind, pair, scene.rest(), separation.distance);
+                    let min_separation = match spacing.min_separation {
+                        None => scene.lengths().min_separation.min(0.1 * desired),
+                        Some(guaranteed) => {
+                            // The rest distance of neighbours bounds their minimum separation. A pair that
+                            // starts closer has its own gap as minimum separation, which grows from call to
+                            // call.
+                            let (unlimited, _) = rule.without_growth_limit(model, kind, pair, scene.rest());
+                            guaranteed.min(unlimited / MIN_SEPARATION_MARGIN).min(separation.width.max(0.0))
                         }
                     };
-                    Inherited { desired, floor, multiplier: 0.0, lowered }
+                    Inherited { desired, min_separation, multiplier: 0.0, lowered }
                 }
             })
             .collect();
@@ -121,7 +129,7 @@ impl BudgetedSearch {
         contacts.desired.extend(values.iter().map(|v| v.desired));
         contacts.multipliers.clear();
         contacts.multipliers.extend(values.iter().map(|v| v.multiplier));
-        if problem.friction_model() == FrictionModel::Coulomb {
+        if scene.friction_model() == FrictionModel::Coulomb {
             let old = std::mem::take(&mut contacts.friction_multipliers);
             contacts.friction_multipliers.extend(
                 inherited.iter().map(|&p| old.get(p as usize).copied().unwrap_or_else(Vector::zeros)),
@@ -129,20 +137,25 @@ impl BudgetedSearch {
             contacts.frictions.clear();
             for kind in PairKind::ALL {
                 let list = &contacts.pairs.pairs()[contacts.pairs.range(kind)];
-                let friction = |pair| problem.contact.friction_of_pair(model, kind, pair);
+                let friction = |pair| scene.contact().friction_of_pair(model, kind, pair);
                 contacts.frictions.extend(list.iter().map(friction));
             }
         }
-        contacts.floors.clear();
-        contacts.floors.extend(values.iter().map(|v| v.floor));
+        contacts.min_separations.clear();
+        contacts.min_separations.extend(values.iter().map(|v| v.min_separation));
     }
 
-    fn evaluate_moved(&mut self, problem: &Problem, state: &mut State, statistics: &mut Statistics) {
+    fn evaluate_moved(
+        &mut self,
+        scene: &CollisionScene,
+        state: &mut ResolveState,
+        statistics: &mut Statistics,
+    ) {
         self.moved.clear();
         self.moved.extend(state.x.iter().zip(&state.previous).map(|(a, b)| a != b));
         let (moved, x) = (&self.moved, &state.x);
         let pairs = &state.contacts.pairs;
-        let half_spaces = problem.model.half_spaces();
+        let half_spaces = scene.model().half_spaces();
         let mut reused = 0;
         for kind in PairKind::ALL {
             let range = pairs.range(kind);
@@ -165,10 +178,10 @@ impl BudgetedSearch {
     }
 }
 
-/// What belongs to a pair from search to search.
+/// The data of a pair that are carried over from search to search.
 struct Inherited {
     desired: f64,
-    floor: f64,
+    min_separation: f64,
     multiplier: f64,
     lowered: bool,
 }
@@ -189,8 +202,8 @@ pub(crate) fn evaluate(
     }
 }
 
-impl Search for BudgetedSearch {
-    fn begin(&mut self, _: &Problem, state: &mut State) {
+impl Search for TrustRegionSearch {
+    fn begin(&mut self, _: &CollisionScene, state: &mut ResolveState) {
         self.requested = true;
         self.old = PairList::default();
         state.contacts.pairs = PairList::default();
@@ -200,79 +213,80 @@ impl Search for BudgetedSearch {
         state.contacts.friction_multipliers.clear();
     }
 
-    fn update(&mut self, problem: &Problem, state: &mut State, statistics: &mut Statistics) {
-        let params = &problem.params.stepper;
-        if params.budget == Budget::Uniform && !self.requested {
+    fn update(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
+        let params = &scene.params().solver.forward;
+        if params.trust_region == TrustRegionRule::Uniform && !self.requested {
             let moved = state.x.iter().zip(&state.previous).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
-            self.unlisted -= 2.0 * moved * (1.0 + 1e-12);
-            self.requested = self.unlisted < 2.0 * params.budget_min * problem.spacing.largest_delta();
+            self.covered_distance -= 2.0 * moved * (1.0 + 1e-12);
+            self.requested =
+                self.covered_distance < 2.0 * params.trust_region_min * scene.spacing().largest_delta();
         }
         if !self.requested {
             statistics.skipped.searches += 1;
-            return self.refresh(problem, state, statistics);
+            return self.refresh(scene, state, statistics);
         }
-        let clock = Instant::now();
-        self.set_budgets(problem, state);
+        let timer = Instant::now();
+        self.set_trust_regions(scene, state);
         std::mem::swap(&mut self.old, &mut state.contacts.pairs);
         let contacts = &mut state.contacts;
         self.search.search(
-            &problem.model,
+            scene.model(),
             &state.x,
             &self.radii,
             &mut contacts.pairs,
             &mut contacts.separations,
         );
-        self.inherit(problem, state, statistics);
+        self.inherit(scene, state, statistics);
         self.requested = false;
         statistics.searches += 1;
-        statistics.seconds.search += clock.elapsed().as_secs_f64();
+        statistics.seconds.search += timer.elapsed().as_secs_f64();
     }
 
     fn update_swept(
         &mut self,
-        problem: &Problem,
-        state: &mut State,
+        scene: &CollisionScene,
+        state: &mut ResolveState,
         displacements: &[Vector],
         deviations: &[f64],
         statistics: &mut Statistics,
     ) {
-        let clock = Instant::now();
-        // No margin for contacts to come: the next update searches again, and lists them.
+        let timer = Instant::now();
+        // No margin for contacts that are still farther: the next update searches again and finds them. But a
+        // margin for minimum separations: pairs that are no candidates must not come closer.
         self.radii.clear();
-        // But for floors: what is not listed must not fall below them.
-        let bodies = problem.model.vertex_body();
-        let margin = |body: &u32| problem.spacing.floor_margin(*body);
+        let bodies = scene.model().vertex_body();
+        let margin = |body: &u32| scene.spacing().min_separation_margin(*body);
         self.radii.extend(deviations.iter().zip(bodies).map(|(d, body)| d + margin(body)));
         std::mem::swap(&mut self.old, &mut state.contacts.pairs);
         let contacts = &mut state.contacts;
         self.search.search_swept(
-            &problem.model,
+            scene.model(),
             &state.x,
             displacements,
             &self.radii,
             &mut contacts.pairs,
             &mut contacts.separations,
         );
-        self.inherit(problem, state, statistics);
+        self.inherit(scene, state, statistics);
         self.requested = true;
         statistics.searches += 1;
-        statistics.seconds.search += clock.elapsed().as_secs_f64();
+        statistics.seconds.search += timer.elapsed().as_secs_f64();
     }
 
-    fn refresh(&mut self, problem: &Problem, state: &mut State, statistics: &mut Statistics) {
-        let clock = Instant::now();
-        self.evaluate_moved(problem, state, statistics);
-        statistics.seconds.evaluate += clock.elapsed().as_secs_f64();
+    fn refresh(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
+        let timer = Instant::now();
+        self.evaluate_moved(scene, state, statistics);
+        statistics.seconds.evaluate += timer.elapsed().as_secs_f64();
     }
 
     fn request(&mut self) {
         self.requested = true;
     }
 
-    fn reach(&self) -> Reach<'_> {
-        match self.budget {
-            Budget::PerVertex => Reach::Balls(&self.budgets),
-            Budget::Uniform => Reach::Distance(self.unlisted),
+    fn coverage(&self) -> Coverage<'_> {
+        match self.rule {
+            TrustRegionRule::PerVertex => Coverage::TrustRegions(&self.trust_regions),
+            TrustRegionRule::Uniform => Coverage::Distance(self.covered_distance),
         }
     }
 }

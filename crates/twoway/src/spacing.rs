@@ -1,28 +1,31 @@
-//! The distances that pairs are held to, from what their bodies were given.
+//! Desired distances and minimum separations of pairs, from the contact data of their bodies.
 
-use crate::{ContactTable, Params};
+use crate::bodies::ContactTable;
+use crate::params::Params;
 use bowknot_geometry::PairKind;
 use bowknot_proximity::{CollisionModel, Pair};
 
-/// Smallest ratio of a pair's desired distance to its floor, where bodies have thickness. The gap above the floor is
-/// the room in which contacts move: a step uses up at most 0.9 of it, so little room means small steps.
-/// Chosen, not tuned: a body of thickness t rests at 1.5 t where delta is smaller.
-pub const FLOOR_MARGIN: f64 = 1.5;
+/// Smallest ratio of a pair's desired distance to its minimum separation, where bodies have a thickness.
+/// Contacts move in the gap above the minimum separation. A step uses up at most 0.9 of it, so a small gap
+/// means small steps. The value was chosen, not tuned: a body of thickness t rests at 1.5 t where delta is
+/// smaller.
+pub const MIN_SEPARATION_MARGIN: f64 = 1.5;
 
-/// Desired distances and guaranteed floors of all pairs of bodies.
+/// Desired distances and guaranteed minimum separations of all pairs of bodies.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Spacing {
     bodies: Vec<Side>,
     half_spaces: Vec<f64>,
-    /// The scene's delta, its floor, and the range of rows in deltas.
+    /// The scene's delta, its minimum separation, and the range of rows in deltas.
     delta: f64,
-    floor: f64,
+    min_separation: f64,
     range: f64,
-    /// Nothing differs from the scene's.
+    /// All pairs have the values of the scene.
     uniform: bool,
-    /// Search margin of each body's vertices, and the part of it that keeps floors [m].
+    /// Search margin of each body's vertices, and the part of it that guarantees minimum separations [m].
     margins: Vec<(f64, f64)>,
-    largest: (f64, f64),
+    largest_delta: f64,
+    largest_min_separation: f64,
 }
 
 /// A body's part in its pairs.
@@ -33,30 +36,31 @@ struct Side {
     thickness: Option<f64>,
 }
 
-/// What one pair is held to.
+/// Desired distance and minimum separation of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairSpacing {
-    /// Desired distance delta_p before neighbourhood and tight starts lower it [m].
+    /// Desired distance delta_p [m], before it is lowered for neighbours and for pairs that start close.
     pub delta: f64,
-    /// Guaranteed floor xi_p [m] of bodies with a thickness, before the same lower it; None: the scene's floor
-    /// applies, in its softer form.
-    pub floor: Option<f64>,
+    /// Guaranteed minimum separation xi_p [m] of bodies with a thickness, before it is lowered likewise.
+    /// None: that of the scene, which is no guarantee: it is lowered with the desired distance.
+    pub min_separation: Option<f64>,
 }
 
 impl Spacing {
-    /// The spacing of the bodies in `table`, with the scene's `delta` and `floor` [m] for what they leave open.
+    /// The spacing of the bodies in `table`. The scene's `delta` and `min_separation` [m] apply where they
+    /// have none.
     pub(crate) fn new(
         model: &CollisionModel,
         table: &ContactTable,
         params: &Params,
         delta: f64,
-        floor: f64,
+        min_separation: f64,
     ) -> Self {
         let bodies: Vec<Side> = table
             .bodies()
             .iter()
             .map(|body| Side {
-                delta: body.delta.unwrap_or(delta).max(FLOOR_MARGIN * body.thickness.unwrap_or(0.0)),
+                delta: body.delta.unwrap_or(delta).max(MIN_SEPARATION_MARGIN * body.thickness.unwrap_or(0.0)),
                 own_delta: body.delta.is_some(),
                 thickness: body.thickness,
             })
@@ -68,11 +72,12 @@ impl Spacing {
             bodies,
             half_spaces,
             delta,
-            floor,
-            range: params.constraints.range,
+            min_separation,
+            range: params.contact.range,
             uniform,
             margins: Vec::new(),
-            largest: (delta, 0.0),
+            largest_delta: delta,
+            largest_min_separation: 0.0,
         };
         if !uniform {
             spacing.fill_margins(model.half_spaces().len());
@@ -80,23 +85,23 @@ impl Spacing {
         spacing
     }
 
-    /// Half of what pairs are listed within for each side. Against half-spaces, where the search counts it twice, it is more than
-    /// needed.
+    /// Half of the distance within which pairs are candidates, for each side. Against half-spaces the search
+    /// counts it twice, and it is more than needed.
     fn fill_margins(&mut self, half_spaces: usize) {
         let mut margins = Vec::with_capacity(self.bodies.len());
         for side in &self.bodies {
-            let floor = side.thickness.unwrap_or(self.floor);
-            let mut keep = 0.5 * floor;
-            let mut reach = 0.5 * (self.range * side.delta).max(floor);
+            let own = side.thickness.unwrap_or(self.min_separation);
+            let mut keep = 0.5 * own;
+            let mut margin = 0.5 * (self.range * side.delta).max(own);
             for h in 0..half_spaces {
                 let pair = self.against_half_space(side, h);
-                let floor = pair.floor.unwrap_or(self.floor);
-                keep = keep.max(floor);
-                reach = reach.max(floor.max(pair.delta));
+                let min_separation = pair.min_separation.unwrap_or(self.min_separation);
+                keep = keep.max(min_separation);
+                margin = margin.max(min_separation.max(pair.delta));
             }
-            self.largest.0 = self.largest.0.max(side.delta);
-            self.largest.1 = self.largest.1.max(2.0 * keep);
-            margins.push((reach, keep));
+            self.largest_delta = self.largest_delta.max(side.delta);
+            self.largest_min_separation = self.largest_min_separation.max(2.0 * keep);
+            margins.push((margin, keep));
         }
         self.margins = margins;
     }
@@ -105,20 +110,20 @@ impl Spacing {
         let other = Some(self.half_spaces[half_space]).filter(|t| !t.is_nan());
         let own = if side.own_delta { 0.0 } else { self.delta };
         PairSpacing {
-            delta: 0.5 * (side.delta + own.max(FLOOR_MARGIN * other.unwrap_or(0.0))),
-            floor: match (side.thickness, other) {
+            delta: 0.5 * (side.delta + own.max(MIN_SEPARATION_MARGIN * other.unwrap_or(0.0))),
+            min_separation: match (side.thickness, other) {
                 (None, None) => None,
                 (Some(a), b) => Some(0.5 * (a + b.unwrap_or(0.0))),
-                (None, Some(b)) => Some(0.5 * (self.floor + b)),
+                (None, Some(b)) => Some(0.5 * (self.min_separation + b)),
             },
         }
     }
 
-    /// What a pair is held to.
+    /// Desired distance and minimum separation of a pair.
     #[inline]
     pub fn of(&self, model: &CollisionModel, kind: PairKind, pair: &Pair) -> PairSpacing {
         if self.uniform {
-            return PairSpacing { delta: self.delta, floor: None };
+            return PairSpacing { delta: self.delta, min_separation: None };
         }
         let side = |place: usize| &self.bodies[model.vertex_body()[pair.vertices[place] as usize] as usize];
         if kind == PairKind::VertexHalfSpace {
@@ -127,9 +132,9 @@ impl Spacing {
         let (a, b) = (side(0), side(kind.side_a()));
         PairSpacing {
             delta: 0.5 * (a.delta + b.delta),
-            floor: match (a.thickness, b.thickness) {
+            min_separation: match (a.thickness, b.thickness) {
                 (None, None) => None,
-                (a, b) => Some(0.5 * (a.unwrap_or(self.floor) + b.unwrap_or(self.floor))),
+                (a, b) => Some(0.5 * (a.unwrap_or(self.min_separation) + b.unwrap_or(self.min_separation))),
             },
         }
     }
@@ -140,33 +145,37 @@ impl Spacing {
         self.range * if self.uniform { self.delta } else { self.of(model, kind, pair).delta }
     }
 
-    /// Whether nothing differs from the scene's delta and floor.
+    /// Whether all pairs have the scene's delta and minimum separation.
     pub fn is_uniform(&self) -> bool {
         self.uniform
     }
 
-    /// What a vertex of `body` adds to its search radius [m]: pairs are listed while nearer than range or floor.
+    /// What a vertex of `body` adds to its search radius [m]: pairs closer than the range of rows, or than
+    /// the minimum separation, are candidates.
     #[inline]
     pub fn margin(&self, body: u32) -> f64 {
-        match self.uniform {
-            true => 0.5 * (self.range * self.delta).max(self.floor),
-            false => self.margins[body as usize].0,
+        if self.uniform {
+            0.5 * (self.range * self.delta).max(self.min_separation)
+        } else {
+            self.margins[body as usize].0
         }
     }
 
-    /// The part of [`Self::margin`] without which unlisted pairs could fall below a guaranteed floor [m].
+    /// The part of [`Self::margin`] without which pairs that are no candidates could come closer than a
+    /// guaranteed minimum separation [m].
     #[inline]
-    pub fn floor_margin(&self, body: u32) -> f64 {
+    pub fn min_separation_margin(&self, body: u32) -> f64 {
         if self.uniform { 0.0 } else { self.margins[body as usize].1 }
     }
 
     /// Largest desired distance of a body with itself [m].
     pub fn largest_delta(&self) -> f64 {
-        self.largest.0
+        self.largest_delta
     }
 
-    /// Distance that unlisted pairs must keep for the guaranteed floors [m]; 0 where there are none.
-    pub fn largest_floor(&self) -> f64 {
-        self.largest.1
+    /// Distance that pairs which are no candidates must keep, by the guaranteed minimum separations [m]; 0
+    /// without any.
+    pub fn largest_min_separation(&self) -> f64 {
+        self.largest_min_separation
     }
 }

@@ -1,93 +1,87 @@
-//! The three stages of a two-way step, as traits: other methods plug in here.
+//! The three stages of a two-way step, as traits: other methods implement them.
 
-use crate::{Problem, State, Statistics};
+use crate::scene::CollisionScene;
+use crate::state::ResolveState;
+use crate::statistics::Statistics;
+use crate::stop::Residuals;
 use bowknot_geometry::Vector;
-use bowknot_stepper::StepReport;
+use bowknot_stepper::{StepReport, TrustRegions};
 
-/// Lists the pairs that the other stages work on.
+/// Finds the candidate pairs that the other stages work on.
 pub trait Search: Send {
     /// Starts a call.
-    fn begin(&mut self, problem: &Problem, state: &mut State);
+    fn begin(&mut self, scene: &CollisionScene, state: &mut ResolveState);
 
-    /// Makes `state.contacts` valid for `state.x`: every pair that could meet within the budgets is listed,
-    /// with its contact geometry.
-    fn update(&mut self, problem: &Problem, state: &mut State, statistics: &mut Statistics);
+    /// Makes `state.contacts` valid for `state.x`: it then has every pair that could meet within the trust
+    /// regions, with its contact geometry.
+    fn update(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics);
 
-    /// Lists instead every pair that could meet while each vertex moves from x along `displacements` on a common
-    /// clock, straying from there by at most `deviations` [m].
+    /// Instead finds every pair that could meet while the vertices move from x along `displacements`, all at
+    /// the same path time, and deviate from there by at most `deviations` [m].
     fn update_swept(
         &mut self,
-        problem: &Problem,
-        state: &mut State,
+        scene: &CollisionScene,
+        state: &mut ResolveState,
         displacements: &[Vector],
         deviations: &[f64],
         statistics: &mut Statistics,
     );
 
-    /// Brings the contact geometry of the listed pairs up to date with `state.x`, without listing others.
-    fn refresh(&mut self, problem: &Problem, state: &mut State, statistics: &mut Statistics);
+    /// Updates the contact geometry of the candidate pairs to `state.x`, without a search.
+    fn refresh(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics);
 
-    /// Asks for a fresh search in the next update.
+    /// Asks for a search in the next update.
     fn request(&mut self);
 
-    /// The budgets that the present list is good for.
-    fn reach(&self) -> Reach<'_>;
+    /// How far vertices may go with the present candidates.
+    fn coverage(&self) -> Coverage<'_>;
 }
 
-/// How far vertices may go with the present list of pairs.
+/// How far vertices may go before the list of candidate pairs is incomplete.
 #[derive(Clone, Copy, Debug)]
-pub enum Reach<'a> {
-    /// One ball a vertex.
-    Balls(&'a bowknot_stepper::Budgets),
-    /// Unlisted pairs are at least this far apart [m]: the paper's D^(l).
+pub enum Coverage<'a> {
+    /// Each vertex as far as its trust region.
+    TrustRegions(&'a TrustRegions),
+    /// Pairs that are no candidates are at least this far apart [m]: the paper's D^(l).
     Distance(f64),
 }
 
-/// Brings the target y toward the intersection-free region.
+/// Moves the target y toward the intersection-free region.
 pub trait BackwardStep: Send {
     /// Starts a call.
-    fn begin(&mut self, problem: &Problem, state: &State);
+    fn begin(&mut self, scene: &CollisionScene, state: &ResolveState);
 
-    /// Writes `state.y` from `state.target`, linearised at `state.x`; keeps multipliers for the next step.
-    fn project(&mut self, problem: &Problem, state: &mut State, statistics: &mut Statistics);
+    /// Computes `state.y` from `state.target`, linearised at `state.x`. Multipliers are kept for the next
+    /// step.
+    fn project(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics);
 
-    /// Largest ratio of an edge's length to its limit at `state.x`; 1 or less: the limits hold. This and the next two are for
-    /// [`crate::StopRule::Travel`]; a stage with a rule of its own, [`Self::settled`], needs none of them.
-    fn stretch_to_limit(&self, _state: &State) -> f64 {
-        1.0
+    /// Residuals at `state.x`, for [`crate::StopRule::Travel`]. A stage with a rule of its own,
+    /// [`Self::converged`], needs none.
+    fn residuals(&mut self, _scene: &CollisionScene, _state: &ResolveState) -> Residuals {
+        Residuals::default()
     }
 
-    /// Largest over bodies of the mean stationarity residual at `state.x` [m]: how far a body as a whole is from where
-    /// the forces on it balance.
-    fn imbalance(&mut self, _problem: &Problem, _state: &State) -> f64 {
-        0.0
-    }
-
-    /// Largest over bodies of the mean of the vertices' stationarity residuals at `state.x` [m].
-    fn unrest(&mut self, _problem: &Problem, _state: &State) -> f64 {
-        0.0
-    }
-
-    /// Whether the loop may stop by the stage's own rule; None: by that of [`crate::StopParams`]. For descent methods, whose
-    /// y is where one step should end rather than a target: having reached it says nothing about being done.
-    fn settled(&self, _problem: &Problem, _state: &State) -> Option<bool> {
+    /// Whether the call has converged by the stage's own rule. None: [`crate::StopRule`] decides. Descent
+    /// methods need a rule of their own: their y is the end of one step rather than a target, so that
+    /// reaching it does not mean convergence.
+    fn converged(&self, _scene: &CollisionScene, _state: &ResolveState) -> Option<bool> {
         None
     }
 
-    /// Fills in what the stage knows at the end of a call: residuals and stretch.
-    fn finish(&mut self, problem: &Problem, state: &State, statistics: &mut Statistics);
+    /// Adds the residuals and stretches at the end of a call to the statistics.
+    fn finish(&mut self, scene: &CollisionScene, state: &ResolveState, statistics: &mut Statistics);
 }
 
-/// Moves x toward y without meeting anything on the way.
+/// Moves x toward y on paths without intersections.
 pub trait ForwardStep: Send {
     /// Starts a call.
-    fn begin(&mut self, problem: &Problem, state: &State);
+    fn begin(&mut self, scene: &CollisionScene, state: &ResolveState);
 
-    /// Advances `state.x` toward `state.y`.
+    /// Moves `state.x` toward `state.y`.
     fn advance(
         &mut self,
-        problem: &Problem,
-        state: &mut State,
+        scene: &CollisionScene,
+        state: &mut ResolveState,
         search: &mut dyn Search,
         statistics: &mut Statistics,
     ) -> StepReport;

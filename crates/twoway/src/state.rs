@@ -1,12 +1,13 @@
 //! What moves during a call.
 
+use crate::call::CallInput;
 use bowknot_geometry::{Point, Separation, Vector};
 use bowknot_proximity::PairList;
 use bowknot_stepper::Contacts;
 
-/// The moving state of a call; its stages read and write nothing else of each other.
+/// The moving state of a call. The stages exchange data through it alone.
 #[derive(Clone, Debug, Default)]
-pub struct State {
+pub struct ResolveState {
     /// x^[k], where the call started [m].
     pub start: Vec<Point>,
     /// y^(0), where the dynamics wants to be [m].
@@ -17,19 +18,17 @@ pub struct State {
     pub previous: Vec<Point>,
     /// y^(l), the target as modified by the backward step [m].
     pub y: Vec<Point>,
-    /// Listed pairs and what belongs to them.
+    /// Candidate pairs and what belongs to them.
     pub contacts: ContactSet,
-    /// Two-way steps taken so far, l.
+    /// Number of two-way steps taken, l.
     pub step: usize,
-    /// Largest distance that the last forward step left to travel [m]; infinite before the first.
+    /// Largest remaining distance after the last forward step [m]; infinite before the first.
     pub remaining: f64,
-    /// Time step that the call stands for [s].
-    pub time_step: Option<f64>,
-    /// Positions at the start of the time step, which friction measures slip from [m]; empty without friction.
-    pub slip_start: Vec<Point>,
+    /// What was given for the call.
+    pub call: CallInput,
 }
 
-/// The listed pairs and what belongs to each of them, in the list's order.
+/// The candidate pairs and what belongs to each of them, in the order of the list.
 #[derive(Clone, Debug, Default)]
 pub struct ContactSet {
     /// The pairs.
@@ -38,26 +37,36 @@ pub struct ContactSet {
     pub separations: Vec<Separation>,
     /// Desired distance delta_p [m].
     pub desired: Vec<f64>,
-    /// Gap floor xi_p [m].
-    pub floors: Vec<f64>,
+    /// Minimum separation xi_p [m].
+    pub min_separations: Vec<f64>,
     /// Multiplier lambda_p of the pair's contact row [m, in units of relative mass].
     pub multipliers: Vec<f64>,
     /// Coefficient of friction mu of each pair [1]; empty without Coulomb friction.
     pub frictions: Vec<f64>,
-    /// Friction multiplier of each pair, in space [m, in units of relative mass]; empty likewise.
+    /// Friction multiplier of each pair, in space [m, in units of relative mass]; empty without Coulomb
+    /// friction.
     pub friction_multipliers: Vec<Vector>,
 }
 
 impl ContactSet {
     /// The part that the forward step reads.
     pub fn as_contacts(&self) -> Contacts<'_> {
-        Contacts { pairs: &self.pairs, separations: &self.separations, floors: &self.floors }
+        Contacts {
+            pairs: &self.pairs,
+            separations: &self.separations,
+            min_separations: &self.min_separations,
+        }
+    }
+
+    /// Whether any contact presses.
+    pub fn any_presses(&self) -> bool {
+        self.multipliers.iter().any(|&multiplier| multiplier > 0.0)
     }
 }
 
-impl State {
+impl ResolveState {
     /// Starts a call at `positions` toward `target`.
-    pub(crate) fn begin(&mut self, positions: &[Point], target: &[Point], time_step: Option<f64>) {
+    pub(crate) fn begin(&mut self, positions: &[Point], target: &[Point], call: CallInput) {
         for buffer in [&mut self.start, &mut self.x, &mut self.previous] {
             buffer.clear();
             buffer.extend_from_slice(positions);
@@ -68,6 +77,12 @@ impl State {
         }
         self.step = 0;
         self.remaining = f64::INFINITY;
-        self.time_step = time_step;
+        self.call = call;
+    }
+
+    /// Whether the method may move a vertex away from its target.
+    #[inline]
+    pub fn is_movable(&self, vertex: usize) -> bool {
+        self.call.is_movable(vertex)
     }
 }

@@ -1,14 +1,15 @@
 //! The steps of CI, each with its name and duration.
 //!
-//! All steps share one target folder and the release profile, so that what one compiles the next finds. The tests come
-//! last and nothing follows them: the log ends with the test runner's own lines.
+//! All steps share one target folder and the release profile, so that each reuses what the steps above it
+//! compiled. The tests come last and nothing follows them: the log ends with the test runner's own lines.
 
-use crate::{docs, readers};
-use std::path::{Path, PathBuf};
+use crate::workspace::{cargo, root, target_folder};
+use crate::{bowknot, docs, readers};
+use std::path::Path;
 use std::process::{Command, ExitCode};
 use std::time::Instant;
 
-/// Crates that must compile for the web: no clock, no files, no threads of their own.
+/// Crates that must compile for the web: they use no clock and no files, and start no threads.
 const WASM_CRATES: [&str; 5] =
     ["bowknot-geometry", "bowknot-proximity", "bowknot-lcp", "bowknot-constraints", "bowknot-stepper"];
 const WASM_TARGET: &str = "wasm32-unknown-unknown";
@@ -34,12 +35,12 @@ pub fn run(fast: bool) -> ExitCode {
     let count = steps.len();
     for (index, mut step) in steps.into_iter().enumerate() {
         println!("\n==> [{}/{count}] {}: {}", index + 1, step.name, describe(&step.command));
-        let clock = Instant::now();
+        let timer = Instant::now();
         let passed = (step.run)(&mut step.command).unwrap_or_else(|error| {
             eprintln!("cannot start {}: {error}", describe(&step.command));
             false
         });
-        let seconds = clock.elapsed().as_secs_f64();
+        let seconds = timer.elapsed().as_secs_f64();
         if !passed {
             println!("<== {} failed after {seconds:.1} s", step.name);
             return ExitCode::FAILURE;
@@ -72,12 +73,13 @@ fn all_steps(root: &Path) -> Vec<Step> {
         });
         steps.push(Step::new("wasm", wasm));
     } else {
-        println!("==> wasm: skipped, the target is missing: rustup target add {WASM_TARGET}");
+        println!("==> wasm: skipped, because the target is missing: rustup target add {WASM_TARGET}");
     }
     steps.push(Step::new("build tests", cargo(root, "test --release --workspace --no-run")));
-    // The tests' build has made the command; `cargo run` would make it again, with the features of its own package alone.
+    // The step above built the command. `cargo run` would build it anew, with the features of its own package
+    // alone.
     let target = target_folder(root);
-    let mut drape = Command::new(target.join("release").join("bowknot"));
+    let mut drape = Command::new(bowknot::path(&target));
     drape
         .args("run drape --scale 0.4 --frames 40 --check --out".split(' '))
         .arg(target.join("xtask").join("drape"));
@@ -88,13 +90,16 @@ fn all_steps(root: &Path) -> Vec<Step> {
         let read = readers::read(root, &target);
         steps.push(Step { run: readers::run, ..Step::new("read exports", read) });
     } else {
-        println!("==> read exports: skipped, Python 3.11 with venv is missing: apt-get install python3-venv");
+        println!(
+            "==> read exports: skipped, because Python 3.11 with venv is missing: apt-get install python3-venv"
+        );
     }
     steps.push(Step::new("tests", cargo(root, "test --release --workspace")));
     steps
 }
 
-/// Runs a command whose last argument is its output folder, which must not exist: `run` refuses one that holds a run.
+/// Runs a command whose last argument is its output folder, and removes that folder first: `bowknot run`
+/// refuses a folder that holds a run.
 fn run_afresh(command: &mut Command) -> std::io::Result<bool> {
     if let Some(out) = command.get_args().last().map(Path::new).filter(|out| out.exists()) {
         std::fs::remove_dir_all(out)?;
@@ -110,27 +115,10 @@ fn clippy(root: &Path) -> Step {
     Step::new("clippy", cargo(root, "clippy --release --workspace --all-targets -- -D warnings"))
 }
 
-/// The cargo that runs this, in the workspace's root.
-fn cargo(root: &Path, arguments: &str) -> Command {
-    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    command.args(arguments.split_whitespace()).current_dir(root);
-    command
-}
-
 fn describe(command: &Command) -> String {
     let words = command.get_args().map(|word| word.to_string_lossy().into_owned());
     let program = Path::new(command.get_program()).file_stem().unwrap_or_default().to_string_lossy();
     std::iter::once(program.into_owned()).chain(words).collect::<Vec<_>>().join(" ")
-}
-
-/// This crate lies two folders below the root.
-pub fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap_or(Path::new(".")).to_owned()
-}
-
-/// Where cargo builds.
-pub fn target_folder(root: &Path) -> PathBuf {
-    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from)
 }
 
 /// Whether the compiler has the standard library of the web target.

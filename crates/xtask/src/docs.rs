@@ -1,18 +1,18 @@
-//! The documentation without warnings, but for units in square brackets.
+//! Builds the documentation and refuses warnings, except about units in square brackets.
 //!
-//! Rustdoc takes `[m]` for a link to an item `m`. The workspace therefore allows unresolved links, which would hide those
-//! that are broken; here they are warned of regardless and the units are let through.
+//! Rustdoc takes `[m]` for a link to an item `m`. The workspace therefore allows unresolved links. That would
+//! hide broken ones, so this step turns the warning on again and ignores it for units.
 
 use std::process::{Command, Stdio};
 
-/// Everything else is an error.
+/// Flags of rustdoc: all warnings are errors but the one about unresolved links, which [`run`] sorts.
 pub const FLAGS: &str = "-D warnings --force-warn rustdoc::broken-intra-doc-links";
 
-/// What stands in brackets and is no link: units, and the superscript of x^[k].
+/// Text in brackets that is not a link: units, and the superscript of x^[k].
 const UNITS: [&str; 15] =
     ["pixels", "texels", "k", "m", "s", "kg", "N", "J", "Pa", "Hz", "deg", "rad", "bytes", "m2", "1"];
 
-/// Builds the documentation and shows what the compiler says, unless it is about units.
+/// Builds the documentation and shows the compiler's messages, except those about units.
 pub fn run(command: &mut Command) -> std::io::Result<bool> {
     let output = command.stderr(Stdio::piped()).output()?;
     let text = String::from_utf8_lossy(&output.stderr);
@@ -36,7 +36,7 @@ mod tests {
     use super::is_broken_link;
 
     #[test]
-    fn units_are_no_links() {
+    fn units_are_not_links() {
         assert!(!is_broken_link("warning: unresolved link to `m`\n  --> a.rs:1:2"));
         assert!(is_broken_link("warning: unresolved link to `Mesh`\n  --> a.rs:1:2"));
         assert!(!is_broken_link("   Compiling m v0.1.0"));

@@ -1,21 +1,38 @@
-//! Developer commands: `cargo xtask check` runs everything that CI runs, `cargo xtask pictures` draws the scenes.
+//! Developer commands: `cargo xtask COMMAND`.
+//!
+//! | command | does |
+//! |---|---|
+//! | `check` | runs everything that CI runs |
+//! | `pictures` | draws the built-in scenes into `assets/pictures` |
+//! | `hashes` | prints a hash of the frames of each built-in scene, to show that a change leaves every bit as it is |
+//!
+//! `cargo xtask help` prints the options.
 // A command for people and CI logs: printing is what it does.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod bowknot;
 mod check;
 mod docs;
+mod hashes;
 mod pictures;
 mod readers;
+mod workspace;
 
 use std::process::ExitCode;
 
 const USAGE: &str = "\
 Usage: cargo xtask check [--fast]
        cargo xtask pictures [SCENE..]
+       cargo xtask hashes [--scenes A,B] [--jobs N]
 
-check   run what CI runs, in named steps: format, clippy, docs, wasm, a small run, its exports read back, tests
-        --fast   format, clippy and unit tests only
-pictures run built-in scenes, all or those named, and draw them into assets/pictures: needs a graphics driver";
+check     run what CI runs, in named steps: format, clippy, docs, wasm, a small run, its exports read back, tests
+          --fast        format, clippy and unit tests only
+pictures  run built-in scenes, all or those named, and draw them into assets/pictures; needs a graphics driver
+hashes    run built-in scenes at a small scale on one thread each, and print for each its name, the number of its frames
+          and a hash of all bytes of the frames: compare the lines before and after a change that is to leave every
+          result as it is, on the same machine
+          --scenes A,B  these scenes only
+          --jobs N      run N scenes at the same time [default: as many as there are cores]";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -24,8 +41,15 @@ fn main() -> ExitCode {
         ["check"] => check::run(false),
         ["check", "--fast"] => check::run(true),
         ["pictures", names @ ..] if names.iter().all(|name| !name.starts_with('-')) => {
-            pictures::run(&check::root(), names)
+            pictures::run(&workspace::root(), names)
         }
+        ["hashes", options @ ..] => match hashes::Options::parse(options) {
+            Ok(options) => hashes::run(&workspace::root(), &options),
+            Err(message) => {
+                eprintln!("{message}\n\n{USAGE}");
+                ExitCode::from(2)
+            }
+        },
         ["help" | "--help" | "-h"] => {
             println!("{USAGE}");
             ExitCode::SUCCESS

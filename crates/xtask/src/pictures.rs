@@ -1,16 +1,18 @@
 //! `cargo xtask pictures`: a small picture of each built-in scene, in `assets/pictures`.
 //!
-//! A scene that is added to the facade is added to [`PICTURES`] as well; `cargo xtask pictures NAME` then draws it.
+//! Add each new scene to [`PICTURES`]; `cargo xtask pictures NAME` then draws it.
 
+use crate::bowknot;
+use crate::workspace::target_folder;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-/// What is drawn of a scene.
+/// Which frames of a scene are drawn, and how.
 struct Scene {
     name: &'static str,
     /// `--scale` of the run.
     scale: &'static str,
-    /// Frames that are drawn; the run ends with the last.
+    /// Numbers of the frames that are drawn; the run ends with the last.
     frames: &'static [u32],
     /// Further options of `bowknot render`, such as a camera.
     options: &'static str,
@@ -62,24 +64,35 @@ const PICTURES: &[Scene] = &[
     Scene { name: "woven", scale: "1", frames: &[200], options: "--camera 0.5,-0.5,0.25 --target 0,0,0" },
 ];
 
-/// Largest size of a picture [bytes]: the repository keeps them.
-const LARGEST: u64 = 60_000;
-/// Sizes that are tried in turn until one is small enough.
+/// Largest size of a picture [bytes]: the repository keeps them all.
+const MAX_BYTES: u64 = 60_000;
+/// Sizes [pixels] that are tried in turn until the file is small enough.
 const SIZES: [&str; 3] = ["480x360", "420x315", "360x270"];
 
-/// Runs the scenes that are named, all if none is, and draws them.
+/// Names of the scenes that have a picture.
+pub fn scene_names() -> impl Iterator<Item = &'static str> {
+    PICTURES.iter().map(|scene| scene.name)
+}
+
+/// Runs the named scenes, or all if no name is given, and draws them.
 pub fn run(root: &Path, names: &[&str]) -> ExitCode {
-    let known = || PICTURES.iter().map(|scene| scene.name).collect::<Vec<_>>().join(", ");
-    if let Some(unknown) = names.iter().find(|name| PICTURES.iter().all(|scene| scene.name != **name)) {
+    if let Some(unknown) = names.iter().find(|name| scene_names().all(|known| known != **name)) {
+        let known = scene_names().collect::<Vec<_>>().join(", ");
         eprintln!(
-            "no picture is planned of {unknown}, only of {}: add it to crates/xtask/src/pictures.rs",
-            known()
+            "there is no picture of {unknown}, only of {known}: add the scene to crates/xtask/src/pictures.rs"
         );
         return ExitCode::from(2);
     }
+    let command = match bowknot::build(root) {
+        Ok(command) => command,
+        Err(message) => {
+            eprintln!("{message}");
+            return ExitCode::FAILURE;
+        }
+    };
     let chosen = PICTURES.iter().filter(|scene| names.is_empty() || names.contains(&scene.name));
     for scene in chosen {
-        if let Err(message) = draw(root, scene) {
+        if let Err(message) = draw(root, &command, scene) {
             eprintln!("{}: {message}", scene.name);
             return ExitCode::FAILURE;
         }
@@ -87,13 +100,13 @@ pub fn run(root: &Path, names: &[&str]) -> ExitCode {
     ExitCode::SUCCESS
 }
 
-fn draw(root: &Path, scene: &Scene) -> Result<(), String> {
-    let folder = crate::check::target_folder(root).join("xtask").join("pictures").join(scene.name);
+fn draw(root: &Path, command: &Path, scene: &Scene) -> Result<(), String> {
+    let folder = target_folder(root).join("xtask").join("pictures").join(scene.name);
     if folder.exists() {
         std::fs::remove_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     }
     let last = scene.frames.iter().max().copied().unwrap_or(0).to_string();
-    bowknot(root, &["run", scene.name, "--scale", scene.scale, "--frames", &last], &folder)?;
+    run_command(command, &["run", scene.name, "--scale", scene.scale, "--frames", &last], &folder)?;
     for (index, frame) in scene.frames.iter().enumerate() {
         let number = if scene.frames.len() > 1 { format!("-{}", index + 1) } else { String::new() };
         let out = root.join("docs").join("pictures").join(format!("{}{number}.png", scene.name));
@@ -103,31 +116,31 @@ fn draw(root: &Path, scene: &Scene) -> Result<(), String> {
             let run = folder.to_string_lossy();
             let mut words = vec!["render", &*run, "--frame", &frame, "--size", size, "--indexed", "--quiet"];
             words.extend(scene.options.split_whitespace());
-            bowknot(root, &words, &out)?;
+            run_command(command, &words, &out)?;
             bytes = std::fs::metadata(&out).map_err(|error| format!("{}: {error}", out.display()))?.len();
-            if bytes <= LARGEST {
+            if bytes <= MAX_BYTES {
                 break;
             }
         }
         println!("{}: {bytes} bytes", relative(root, &out).display());
-        if bytes > LARGEST {
-            return Err(format!("the picture is larger than {LARGEST} bytes"));
+        if bytes > MAX_BYTES {
+            return Err(format!(
+                "the picture is larger than {MAX_BYTES} bytes at {}",
+                SIZES[SIZES.len() - 1]
+            ));
         }
     }
     Ok(())
 }
 
-/// Runs the command, built if it must be, with its output folder or file.
-fn bowknot(root: &Path, words: &[&str], out: &Path) -> Result<(), String> {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let status = Command::new(cargo)
-        .args(["run", "--quiet", "--release", "--package", "bowknot-cli", "--"])
+/// Runs the command with these words and its output folder or file.
+fn run_command(command: &Path, words: &[&str], out: &Path) -> Result<(), String> {
+    let status = Command::new(command)
         .args(words)
         .arg("--out")
         .arg(out)
-        .current_dir(root)
         .status()
-        .map_err(|error| format!("cannot start cargo: {error}"))?;
+        .map_err(|error| format!("cannot start {}: {error}", command.display()))?;
     if status.success() { Ok(()) } else { Err(format!("bowknot {} failed", words.join(" "))) }
 }
 

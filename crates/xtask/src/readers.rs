@@ -1,16 +1,17 @@
-//! Exports of a small run, read back by other people's readers: `tests/readers`.
+//! Exports of a small run, read back by third-party readers: `tests/readers`.
 //!
-//! The readers come from the Python package index into a virtual environment under the target folder, once for each
-//! content of their `requirements.txt`.
+//! The readers are Python packages. They are installed into a virtual environment in the target folder, and
+//! again whenever their `requirements.txt` changes.
 
+use crate::bowknot;
 use std::io::{Error, Result};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// Set by `.ci/run`: without Python the step then fails instead of being skipped.
+/// If this variable is set, as `.ci/run` does, the step fails without Python instead of being skipped.
 const REQUIRED: &str = "BOWKNOT_REQUIRE_READERS";
 
-/// Whether the step can run, or must.
+/// Whether the step runs: if Python can run it, or if [`REQUIRED`] is set.
 pub fn wanted() -> bool {
     let can = Command::new("python3")
         .args(["-c", "import ensurepip, sys; sys.exit(sys.version_info < (3, 11))"])
@@ -21,22 +22,22 @@ pub fn wanted() -> bool {
 
 /// `bowknot export` of the run in `target/xtask/drape`.
 pub fn export(target: &Path) -> Command {
-    let mut command = Command::new(target.join("release").join("bowknot"));
+    let mut command = Command::new(bowknot::path(target));
     command.arg("export").arg(target.join("xtask/drape")).args(["--format", "obj,npz,pc2,usd,vtu", "--out"]);
     command.arg(target.join("xtask/exports"));
     command
 }
 
-/// Reads what [`export`] wrote; then frames with strands and particles, which the script makes itself.
+/// Reads what [`export`] wrote, then frames with strands and particles, which the script makes itself.
 pub fn read(root: &Path, target: &Path) -> Command {
     let mut command = Command::new(environment(target).join("bin").join("python"));
     command.arg(root.join("tests/readers/read_exports.py"));
     command.arg(target.join("xtask/drape")).arg(target.join("xtask/exports"));
-    command.arg("--bowknot").arg(target.join("release").join("bowknot"));
+    command.arg("--bowknot").arg(bowknot::path(target));
     command
 }
 
-/// Makes the environment, then runs the command of [`read`] in it.
+/// Makes the virtual environment unless it is up to date, then runs the command of [`read`] in it.
 pub fn run(command: &mut Command) -> Result<bool> {
     let python = PathBuf::from(command.get_program());
     let script = command.get_args().next().map(PathBuf::from).unwrap_or_default();

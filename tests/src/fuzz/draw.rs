@@ -1,16 +1,16 @@
-//! From bytes to numbers. Similar bytes give similar numbers, as a fuzzer wants it.
+//! Numbers from bytes. Similar bytes give similar numbers, which helps a fuzzer.
 
-/// Bytes that are used up one after the other; zeros follow the last one.
+/// Bytes that are consumed one after the other. Zeros follow the last one.
 #[derive(Clone, Debug)]
 pub struct Draw<'a>(&'a [u8]);
 
 impl<'a> Draw<'a> {
-    /// All bytes are still to be drawn.
+    /// A source of these bytes.
     pub fn new(bytes: &'a [u8]) -> Self {
         Self(bytes)
     }
 
-    /// Whether all bytes are used up.
+    /// Whether all bytes are consumed.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
@@ -29,7 +29,7 @@ impl<'a> Draw<'a> {
         byte
     }
 
-    /// A number below `end`, which is at most 256, and 0 if that is 0.
+    /// A number below `end`, which is at most 256; 0 if `end` is 0.
     pub fn below(&mut self, end: usize) -> usize {
         usize::from(self.byte()) % end.max(1)
     }
@@ -39,7 +39,7 @@ impl<'a> Draw<'a> {
         values.get(self.below(values.len())).copied()
     }
 
-    /// Whether a rare case, of `odds` in 256, is drawn.
+    /// Whether a rare case, with a probability of `odds` in 256, is drawn.
     pub fn rarely(&mut self, odds: u8) -> bool {
         self.byte() > u8::MAX - odds
     }
@@ -55,12 +55,12 @@ impl<'a> Draw<'a> {
         2f64.powi(exponent)
     }
 
-    /// Any number: infinite ones, subnormal ones and NaN as well.
+    /// Any number, including infinite and subnormal ones and NaN.
     pub fn any(&mut self) -> f64 {
         f64::from_le_bytes(self.bytes())
     }
 
-    /// Any finite number: what is not is replaced by zero.
+    /// Any finite number. Other numbers are replaced by zero.
     pub fn finite(&mut self) -> f64 {
         let number = self.any();
         if number.is_finite() { number } else { 0.0 }

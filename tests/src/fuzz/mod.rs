@@ -1,9 +1,9 @@
-//! Bodies of the fuzz targets: what must hold for any bytes at all.
+//! Bodies of the fuzz targets: properties that hold for any bytes.
 //!
-//! `tests/fuzz` hands them to libFuzzer, which mutates bytes by what they cover; the test module `fuzz_bodies`
-//! drives them with seeded random bytes, so that they are known to work without a fuzzer. Each panics where a
-//! promise is broken and returns whether the bytes led as far as the promise: those of a mesh that intersects
-//! from the start, or of a broken file, do not.
+//! `tests/fuzz` runs them with libFuzzer, which mutates bytes by code coverage. The test module `fuzz_bodies`
+//! runs them with seeded random bytes, so that they are tested without a fuzzer. Each function panics if its
+//! property is violated. It returns whether the bytes led to the check of the property: those of a mesh that
+//! intersects at the start, or of a broken file, do not.
 
 mod draw;
 mod read_mesh;

@@ -1,4 +1,4 @@
-//! No file makes a reader panic, and what was read can be written and read again.
+//! No file makes a reader panic, and a mesh that was read can be written and read again.
 
 use super::Draw;
 use bowknot::check::{Judge, Parts, StateOptions};
@@ -30,8 +30,8 @@ const ARRAYS: [(&str, usize); 14] = [
     ("T", 4),
 ];
 
-/// The bytes as a file of any kind, by the first of them, or as the arrays of an NPZ file: readers give a sound mesh or
-/// an error that says something, and do not panic.
+/// Reads the bytes as a file whose format the first byte chooses, or as the arrays of an NPZ file. Readers
+/// return a valid mesh or an error with a message, and do not panic.
 pub fn read_mesh(data: &[u8]) -> bool {
     let Some((&choice, bytes)) = data.split_first() else { return false };
     let Ok(folder) = tempfile::tempdir() else { return false };
@@ -75,7 +75,7 @@ fn mesh(
     true
 }
 
-/// Formats that are only read, and what becomes of their tetrahedra.
+/// Reads a file of a format that is never written, and checks the mesh and the surface of its tetrahedra.
 fn solid(path: &Path) -> bool {
     match read(path, &Import::default()) {
         Ok(mut mesh) => {
@@ -89,7 +89,7 @@ fn solid(path: &Path) -> bool {
     }
 }
 
-/// Indices are in range, numbers finite, and neither the topology nor the judge panics.
+/// Checks that indices are in range and numbers finite, and that neither the topology nor the judge panics.
 fn check_sound(mesh: &Mesh) {
     let Mesh { positions, triangles, tets, strands, particles, obstacle, body } = mesh;
     let count = positions.len();
@@ -101,18 +101,23 @@ fn check_sound(mesh: &Mesh) {
     assert!(body.as_ref().is_none_or(|bodies| bodies.len() == count), "bodies of some vertices");
 
     check_mesh(positions, triangles);
-    let is_simple = Topology::new(count, triangles.clone(), strands, particles).is_ok();
+    let is_simple = Topology::builder(count)
+        .triangles(triangles.iter().copied())
+        .strand_edges(strands.iter().copied())
+        .particles(particles.iter().copied())
+        .build()
+        .is_ok();
     let parts = Parts { triangles, strands, particles, vertex_count: count, ..Parts::default() };
     match Judge::new(&parts) {
         Ok(judge) => {
-            // Coordinates beyond the judge's range are refused, which is no panic.
+            // The judge refuses coordinates beyond its range with an error.
             drop(judge.check_state(positions, &StateOptions::default()));
         }
         Err(error) => assert!(!is_simple, "the judge refuses what the topology takes: {error}"),
     }
 }
 
-/// As a collision problem and as a stack of frames.
+/// Reads a file as a collision problem and as a stack of frames.
 fn archive(path: &Path) -> bool {
     let frames = match FrameStack::read(path) {
         Ok(frames) => {
@@ -122,7 +127,7 @@ fn archive(path: &Path) -> bool {
         }
         Err(error) => check_error(&error),
     };
-    // What wrote the frames left nothing else in the archive.
+    // Writing the frames has replaced the file, so it contains nothing else.
     if frames {
         return true;
     }
@@ -156,7 +161,7 @@ fn check_states(states: &States) {
     }
 }
 
-/// An archive with some of the arrays, mostly of the right shape.
+/// An archive with some of the arrays, most of them of the right shape.
 fn write_arrays(path: &Path, draw: &mut Draw<'_>) -> Result<(), WriteNpzError> {
     let file = File::create(path).map_err(ndarray_npy::WriteNpyError::Io)?;
     let mut archive = if draw.below(2) == 0 { NpzWriter::new(file) } else { NpzWriter::new_compressed(file) };

@@ -1,32 +1,33 @@
-//! No accepted state of `resolve` intersects, nor any path between two, whatever the meshes and targets.
+//! For any meshes and targets, no accepted state of `resolve` intersects, and no path between two accepted
+//! states does.
 
 use super::Draw;
-use crate::{Case, Watch};
+use crate::{Case, StepChecker};
 use bowknot::check::{Judge, StateOptions};
 use bowknot_geometry::{HalfSpace, Point, Topology, Vector};
 use bowknot_proximity::{BodyFilter, CollisionModel};
-use bowknot_twoway::{AcceptedState, Call, Params, ResolveError, Resolver};
+use bowknot_twoway::{AcceptedState, Params, ResolveError, ResolveInput, Resolver};
 use std::ops::ControlFlow;
 
-/// Bodies at most.
+/// Largest number of bodies.
 const BODIES: usize = 4;
-/// Vertices of a body at most.
+/// Largest number of vertices of a body.
 const VERTICES: usize = 7;
-/// Largest coordinate and rest length up to which nothing may intersect [m]: the search takes what is beyond 1e15 m for
-/// not finite. Farther away it is enough not to panic.
+/// Largest coordinate and rest length up to which nothing may intersect [m]. The search treats coordinates
+/// beyond 1e15 m as not finite; beyond this limit the test only requires that nothing panics.
 const JUDGED: f64 = 1e14;
-/// Two-way steps at most.
+/// Largest number of two-way steps.
 const STEPS: usize = 8;
 
-/// Up to four small bodies of triangles, strands and particles, obstacles among them, and any targets: `resolve` does
-/// not panic, every state and path that it accepts is judged free of intersections, and a refused call leaves the
-/// positions alone.
+/// Draws up to four small bodies of triangles, strands and particles, obstacles among them, and any targets.
+/// `resolve` does not panic, every state and path that it accepts is free of intersections, and a refused
+/// call does not change the positions.
 pub fn resolve(data: &[u8]) -> bool {
     let mut draw = Draw::new(data);
     let mut params = if draw.below(3) == 0 { Params::paper() } else { Params::fast() };
-    params.stop.max_steps = Some(1 + draw.below(STEPS));
+    params.solver.stop.max_steps = Some(1 + draw.below(STEPS));
     if draw.below(2) == 0 {
-        params.stepper.floor = draw.pick(&[0.0, 1e-9, 1e-6, 1e-3]);
+        params.contact.min_separation = draw.pick(&[0.0, 1e-9, 1e-6, 1e-3]);
     }
     let Some(case) = case(&mut draw) else { return false };
     let start = &case.positions;
@@ -40,10 +41,10 @@ pub fn resolve(data: &[u8]) -> bool {
     let masses: Vec<f64> = start.iter().map(|_| mass(&mut draw)).collect();
     let pinned: Vec<bool> = start.iter().map(|_| draw.rarely(40)).collect();
     let time_step = draw.pick(&[None, Some(0.05), Some(1e-4)]).flatten();
-    let call = Call { prescribed: &pinned, time_step, ..Call::default() };
+    let input = ResolveInput { prescribed: &pinned, time_step, ..ResolveInput::default() };
 
     let mut x = start.clone();
-    match run(&case, params, &rest, &masses, &call, &mut x, &targets) {
+    match run(&case, params, &rest, &masses, &input, &mut x, &targets) {
         Ok(()) => true,
         Err(_) => {
             assert!(x == *start, "a refused call has moved the positions");
@@ -57,32 +58,32 @@ fn run(
     params: Params,
     rest: &[Point],
     masses: &[f64],
-    call: &Call<'_>,
+    call: &ResolveInput<'_>,
     x: &mut [Point],
     targets: &[Point],
 ) -> Result<(), ResolveError> {
     let mut resolver = Resolver::new(case.model.clone(), rest, masses, params)?;
-    let mut watch = Watch::new(case);
+    let mut checker = StepChecker::new(case);
     let is_judged = targets.iter().chain(rest).all(|p| p.coords.amax() < JUDGED);
     let mut last = x.to_vec();
     let mut observer = |state: &AcceptedState<'_>| {
         assert!(state.previous == last, "step {} does not start where the last one ended", state.step);
         last.copy_from_slice(state.positions);
         assert!(state.positions.iter().all(|p| p.iter().all(|c| c.is_finite())), "a position is not finite");
-        if !is_judged || watch.step(state.previous, state.positions) {
+        if !is_judged || checker.check_step(state.previous, state.positions) {
             ControlFlow::Continue(())
         } else {
             ControlFlow::Break(())
         }
     };
-    let statistics = resolver.resolve(x, targets, call, &mut observer)?;
-    assert!(watch.fault.is_none(), "{:?}", watch.fault);
+    let statistics = resolver.resolve_with(x, targets, call, &mut observer)?;
+    assert!(checker.fault.is_none(), "{:?}", checker.fault);
     assert!(x == last, "the result is not the last accepted state");
     assert!(statistics.remaining_m >= 0.0 && statistics.remaining_r >= 0.0, "{statistics:?}");
     Ok(())
 }
 
-/// Small bodies on a coarse grid, mostly apart from each other; `None` where the elements are refused.
+/// Small bodies on a coarse grid, most of them apart from each other; `None` if the elements are refused.
 fn case(draw: &mut Draw<'_>) -> Option<Case> {
     let (scale, origin) = (draw.power(12), draw.pick(&[0.0, 0.0, 1e3, -1e6])?);
     let mut positions = Vec::new();
@@ -92,7 +93,7 @@ fn case(draw: &mut Draw<'_>) -> Option<Case> {
         bodies.push(filter(draw));
         let first = positions.len() as u32;
         let count = 1 + draw.below(VERTICES) as u32;
-        // Bodies at heights of their own start apart more often than not.
+        // Each body has a height of its own, so bodies usually start apart.
         let height = draw.pick(&[0.0, 0.01, 0.25, 1.0])? * f64::from(body);
         let flatness = draw.pick(&[0.0, 0.05, 1.0])?;
         for _ in 0..count {
@@ -103,7 +104,7 @@ fn case(draw: &mut Draw<'_>) -> Option<Case> {
         let shape = draw.below(4);
         let mut vertex = || first + draw.below(count as usize) as u32;
         match shape {
-            // Consecutive vertices make a strip, which seldom crosses itself at so few.
+            // Consecutive vertices make a strip. With so few vertices it rarely intersects itself.
             0 | 1 => triangles.extend((2..count).map(|v| [first + v - 2, first + v - 1, first + v])),
             2 => strands.extend((1..count).map(|v| [first + v - 1, first + v])),
             _ => triangles.push([vertex(), vertex(), vertex()]),
@@ -120,7 +121,12 @@ fn case(draw: &mut Draw<'_>) -> Option<Case> {
         }
         _ => Vec::new(),
     };
-    let topology = Topology::new(positions.len(), triangles, &strands, &particles).ok()?;
+    let topology = Topology::builder(positions.len())
+        .triangles(triangles)
+        .strand_edges(strands.iter().copied())
+        .particles(particles.iter().copied())
+        .build()
+        .ok()?;
     let model = CollisionModel::new(topology, vertex_body, bodies, half_spaces).ok()?;
     Some(Case { name: "fuzz".to_owned(), model, positions })
 }
@@ -156,13 +162,13 @@ fn targets(draw: &mut Draw<'_>, start: &[Point]) -> Vec<Point> {
         .collect()
 }
 
-/// Any finite number, but none so small that the judge's exact predicates underflow.
+/// Any finite number that is not so small that the exact predicates of the judge underflow.
 fn height(draw: &mut Draw<'_>) -> f64 {
     let height = draw.finite();
     if height.abs() < 1e-60 { 0.0 } else { height }
 }
 
-/// A mass: rarely one that must be refused or is extreme, but not so that ratios of masses overflow.
+/// A mass. A few are extreme or must be refused, but ratios of masses never overflow.
 fn mass(draw: &mut Draw<'_>) -> f64 {
     if !draw.rarely(1) {
         return draw.power(20);

@@ -6,11 +6,12 @@ use bowknot_geometry::{HalfSpace, PairKind, Point, Vector, intersection};
 
 /// Half of a unit in the last place, 2^-53.
 const ROUNDING: f64 = 0.5 * f64::EPSILON;
-/// Error of a computed distance at most, in rounding units of the largest coordinate difference of the pair.
+/// Largest error of a computed distance, in rounding units of the largest coordinate difference of the pair.
 const DISTANCE_ROUNDING: f64 = 8.0;
 
-/// The contact geometry of a pair of any kind at any finite points: nothing is NaN; the width is at most the distance,
-/// as far as that itself is known, and at most zero where the sides share a point by an exact test.
+/// Checks the contact geometry of a pair of any kind at any finite points. Nothing is NaN. The width is at
+/// most the distance, up to the error of the distance, and at most zero if the sides share a point by an
+/// exact test.
 pub fn separate(data: &[u8]) -> bool {
     let mut draw = Draw::new(data);
     let Some(kind) = draw.pick(&PairKind::ALL) else { return false };
@@ -29,7 +30,7 @@ pub fn separate(data: &[u8]) -> bool {
     let used = &points[..kind.vertex_count()];
     let extent =
         used.iter().flat_map(|p| used.iter().map(move |q| (0.5 * p - 0.5 * q).amax())).fold(0.0, f64::max);
-    // Both halves may be infinite: then nothing is claimed.
+    // Both terms may be infinite; then nothing is checked.
     let known = separation.distance + 2.0 * extent * DISTANCE_ROUNDING * ROUNDING + f64::MIN_POSITIVE;
     assert!(separation.width <= known, "{kind:?} {points:?}: {separation:?}");
     if used.iter().all(is_in_exact_range) && share_a_point(kind, &points) {

@@ -1,4 +1,4 @@
-//! Sharp features opposite one another, and scenes of everything together.
+//! Sharp features that face each other, and a scene with all types of elements.
 
 use super::{Case, Draft, draw_clear, grid_triangles};
 use crate::Random;
@@ -6,7 +6,7 @@ use bowknot_geometry::{HalfSpace, Point, Vector};
 use bowknot_proximity::BodyFilter;
 
 /// Hinges, convex, flat and concave, with a vertex, a parallel edge or a crossing edge exactly above the
-/// shared edge, 1 um to 1 mm away. Without noise: the degenerate placements are the point.
+/// shared edge, 1 um to 1 mm away. There is no noise, because it would remove the degenerate placements.
 pub fn vertex_over_edge(seed: u64) -> Case {
     draw_clear("vertex over edge", seed, |_| {
         let mut random = Random::new(seed);
@@ -39,7 +39,7 @@ pub fn vertex_over_edge(seed: u64) -> Case {
     })
 }
 
-/// Sharp cones tip against tip, 1 um to 1 mm apart, some a little beside each other.
+/// Sharp cones tip to tip, 1 um to 1 mm apart; some tips are slightly offset.
 pub fn spike_on_spike(seed: u64) -> Case {
     draw_clear("spike on spike", seed, |noise| {
         let mut random = Random::new(seed);
@@ -64,7 +64,7 @@ pub fn spike_on_spike(seed: u64) -> Case {
     })
 }
 
-/// A sheet between a ball, an obstacle, and the ground, strands across it, particles on top.
+/// A sheet between a ball, which is an obstacle, and the ground, with strands across it and particles on top.
 pub fn mixed(seed: u64) -> Case {
     draw_clear("mixed", seed, |noise| {
         let mut random = Random::new(seed);

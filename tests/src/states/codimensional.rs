@@ -16,7 +16,7 @@ pub fn particles(seed: u64) -> Case {
                 Point::new(0.01 * (i % 5) as f64, 0.01 * (i / 5 % 10) as f64, 0.01 + 0.01 * (i / 50) as f64);
             let grain = place + random.vector(0.004 * noise);
             grains.push(grain);
-            // Every third has a neighbour that nearly touches it.
+            // Every third grain has a neighbour that nearly touches it.
             if i % 3 == 0 {
                 grains.push(grain + random.direction() * random.magnitude(2e-6, 1e-3));
             }
@@ -41,7 +41,7 @@ pub fn strands(seed: u64) -> Case {
         for bundle in 0..2 {
             let mut strands = Vec::new();
             for k in 0..10 {
-                // A bundle waves as one, so that its strands stay beside each other.
+                // All strands of a bundle have the same wave, so they stay side by side.
                 let strand = (0..10)
                     .map(|i| {
                         let (along, across) = (0.01 * i as f64, 0.01 + 0.008 * k as f64);

@@ -1,7 +1,7 @@
-//! Seeded generators of states that are free of intersections, but only just.
+//! Seeded generators of states that are free of intersections but nearly intersecting.
 //!
-//! Every generator draws a hard shape and then asks the judge; where noise made it intersect, it is
-//! drawn again with half the noise, so that what comes out is certainly clear.
+//! Every generator draws a hard shape, and the judge checks it. If noise makes it intersect, it is drawn
+//! again with half the noise. So every state is certainly free of intersections.
 
 mod bodies;
 mod codimensional;
@@ -22,7 +22,7 @@ pub struct Case {
     pub name: String,
     /// Elements, bodies, half-spaces.
     pub model: CollisionModel,
-    /// Positions [m], one a vertex.
+    /// Position of each vertex [m].
     pub positions: Vec<Point>,
 }
 
@@ -82,7 +82,11 @@ impl Draft {
     }
 
     fn finish(self, name: &str, seed: u64) -> Case {
-        let topology = Topology::new(self.positions.len(), self.triangles, &self.strands, &self.particles)
+        let topology = Topology::builder(self.positions.len())
+            .triangles(self.triangles)
+            .strand_edges(self.strands.iter().copied())
+            .particles(self.particles.iter().copied())
+            .build()
             .expect("generators name their own vertices");
         let model = CollisionModel::new(topology, self.body, self.filters, self.half_spaces)
             .expect("generators give every vertex a body");
@@ -90,7 +94,7 @@ impl Draft {
     }
 }
 
-/// Draws with the whole noise, a half of it, a quarter.., at last none, until the judge finds no
+/// Draws with the full noise, a half of it, a quarter, and so on, and finally none, until the judge finds no
 /// intersection.
 fn draw_clear(name: &str, seed: u64, draw: impl Fn(f64) -> Draft) -> Case {
     let noises = (0..12).map(|k| 0.5f64.powi(k)).chain([0.0]);
@@ -105,8 +109,8 @@ fn draw_clear(name: &str, seed: u64, draw: impl Fn(f64) -> Draft) -> Case {
     panic!("{name} {seed} intersects without any noise");
 }
 
-/// Triangles of a grid of `nx` x `ny` vertices, x running first; `flip(i, j)` chooses the diagonal of a
-/// cell.
+/// Triangles of a grid of `nx` x `ny` vertices, numbered along x first; `flip(i, j)` chooses the diagonal of
+/// a cell.
 fn grid_triangles(nx: u32, ny: u32, mut flip: impl FnMut(u32, u32) -> bool) -> Vec<[u32; 3]> {
     let mut triangles = Vec::new();
     for j in 0..ny - 1 {

@@ -11,7 +11,7 @@ pub fn folded_sheet(seed: u64) -> Case {
         let mut random = Random::new(seed);
         let gap = random.magnitude(1e-4, 5e-3);
         let (layers, cells, width, length) = (4, 7, 6, 0.2);
-        // The strip's profile in (x, z): layers to and fro, joined by half circles.
+        // The profile of the strip in (x, z): layers back and forth, joined by half circles.
         let mut profile = Vec::new();
         for layer in 0..layers {
             let height = layer as f64 * gap;
@@ -46,7 +46,7 @@ pub fn folded_sheet(seed: u64) -> Case {
     })
 }
 
-/// A sheet carried along by random shears, which map space one to one, then squashed fivefold.
+/// A sheet deformed by random shears, which map space one to one, and then flattened to a fifth.
 pub fn crumpled_sheet(seed: u64) -> Case {
     draw_clear("crumpled sheet", seed, |noise| {
         let mut random = Random::new(seed);

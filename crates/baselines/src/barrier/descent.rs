@@ -8,7 +8,8 @@
 use super::{BarrierParams, Derivatives, Objective, Scaling};
 use bowknot_twoway::geometry::Vector;
 use bowknot_twoway::{
-    BackwardStep, BudgetedSearch, CertifiedForward, Problem, ResolveError, Resolver, State, Statistics,
+    BackwardStep, CertifiedForward, CollisionScene, ResolveError, ResolveState, Resolver, Statistics,
+    TrustRegionSearch,
 };
 use nalgebra::Matrix3;
 
@@ -28,17 +29,17 @@ pub struct DescentStep {
 }
 
 /// Gradient descent with the forward step and the search of the two-way method: what bounds its steps is
-/// `params.stepper` of the problem.
+/// `params.solver.forward` of the scene.
 ///
 /// # Errors
 /// Parameters out of their range.
 pub fn by_descent(
-    problem: Problem,
+    scene: CollisionScene,
     params: BarrierParams,
-) -> Result<Resolver<BudgetedSearch, DescentStep, CertifiedForward>, ResolveError> {
-    let step = DescentStep::new(&problem, params)?;
-    let search = BudgetedSearch::new(&problem);
-    Ok(Resolver::with_stages(problem, search, step, CertifiedForward::default()))
+) -> Result<Resolver<TrustRegionSearch, DescentStep, CertifiedForward>, ResolveError> {
+    let step = DescentStep::new(&scene, params)?;
+    let search = TrustRegionSearch::new(&scene);
+    Ok(Resolver::with_stages(scene, search, step, CertifiedForward::default()))
 }
 
 impl DescentStep {
@@ -46,8 +47,8 @@ impl DescentStep {
     ///
     /// # Errors
     /// Parameters out of their range.
-    pub fn new(problem: &Problem, params: BarrierParams) -> Result<Self, ResolveError> {
-        Ok(Self { objective: Objective::new(problem, params)?, ..Self::default() })
+    pub fn new(scene: &CollisionScene, params: BarrierParams) -> Result<Self, ResolveError> {
+        Ok(Self { objective: Objective::new(scene, params)?, ..Self::default() })
     }
 
     /// E at the x that the last step started from [J].
@@ -57,26 +58,26 @@ impl DescentStep {
 }
 
 impl BackwardStep for DescentStep {
-    fn begin(&mut self, problem: &Problem, state: &State) {
-        self.objective.begin(problem, state);
+    fn begin(&mut self, scene: &CollisionScene, state: &ResolveState) {
+        self.objective.begin(scene, state);
         self.factor = 1.0;
         self.energy = f64::INFINITY;
         self.wanted = f64::INFINITY;
     }
 
-    fn project(&mut self, problem: &Problem, state: &mut State, statistics: &mut Statistics) {
-        let contacts = self.objective.contacts(problem, state);
-        let energy = self.objective.value(problem, state, &state.x, &contacts);
+    fn project(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
+        let contacts = self.objective.contacts(scene, state);
+        let energy = self.objective.value(scene, state, &state.x, &contacts);
         self.factor = if energy > self.energy {
             (0.5 * self.factor).max(SMALLEST_FACTOR)
         } else {
             (1.1 * self.factor).min(1.0)
         };
         self.energy = energy;
-        self.objective.derivatives(problem, state, &state.x, &contacts, &mut self.derivatives);
+        self.objective.derivatives(scene, state, &state.x, &contacts, &mut self.derivatives);
         self.wanted = 0.0;
         for v in 0..state.x.len() {
-            if !problem.movable(v) {
+            if !state.is_movable(v) {
                 state.y[v] = state.target[v];
                 continue;
             }
@@ -85,7 +86,7 @@ impl BackwardStep for DescentStep {
             self.wanted = self.wanted.max(newton.norm());
             let step = match self.objective.params().scaling {
                 Scaling::Blocks => newton,
-                Scaling::Mass => gradient / self.objective.inertia(problem, state, v),
+                Scaling::Mass => gradient / self.objective.inertia(scene, state, v),
             };
             state.y[v] = state.x[v] - self.factor * step;
         }
@@ -93,13 +94,13 @@ impl BackwardStep for DescentStep {
         statistics.active_rows = contacts.len();
     }
 
-    fn settled(&self, problem: &Problem, state: &State) -> Option<bool> {
-        let tolerance = self.objective.params().tolerance * problem.lengths.edge;
+    fn converged(&self, scene: &CollisionScene, state: &ResolveState) -> Option<bool> {
+        let tolerance = self.objective.params().tolerance * scene.lengths().edge;
         Some(self.wanted <= tolerance && state.remaining <= tolerance)
     }
 
-    fn finish(&mut self, problem: &Problem, state: &State, statistics: &mut Statistics) {
-        self.objective.report(problem, state, &mut self.derivatives, statistics);
+    fn finish(&mut self, scene: &CollisionScene, state: &ResolveState, statistics: &mut Statistics) {
+        self.objective.report(scene, state, &mut self.derivatives, statistics);
     }
 }
 

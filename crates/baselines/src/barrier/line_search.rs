@@ -5,7 +5,7 @@ use super::{BarrierParams, Objective};
 use crate::ccd::{AdditiveCcd, Clocks, PathSearch, earliest};
 use bowknot_twoway::geometry::{Point, Vector};
 use bowknot_twoway::stepper::{StepReport, Stepper};
-use bowknot_twoway::{ForwardStep, Problem, ResolveError, Search, State, Statistics};
+use bowknot_twoway::{CollisionScene, ForwardStep, ResolveError, ResolveState, Search, Statistics};
 
 /// Halvings after which nothing moves.
 const HALVINGS: usize = 40;
@@ -30,18 +30,22 @@ impl LineSearch {
     ///
     /// # Errors
     /// Parameters out of their range.
-    pub fn new(problem: &Problem, params: BarrierParams, ccd: AdditiveCcd) -> Result<Self, ResolveError> {
-        Ok(Self { objective: Objective::new(problem, params)?, ccd, ..Self::default() })
+    pub fn new(
+        scene: &CollisionScene,
+        params: BarrierParams,
+        ccd: AdditiveCcd,
+    ) -> Result<Self, ResolveError> {
+        Ok(Self { objective: Objective::new(scene, params)?, ccd, ..Self::default() })
     }
 
     /// The largest of `step`, half of it, .. that does not raise the energy; 0 where none of 40 does.
-    fn backtrack(&self, problem: &Problem, state: &State, mut step: f64) -> f64 {
+    fn backtrack(&self, scene: &CollisionScene, state: &ResolveState, mut step: f64) -> f64 {
         let value = |x: &[Point]| {
-            let contacts = self.objective.contacts_at(problem, state, x);
-            self.objective.value(problem, state, x, &contacts)
+            let contacts = self.objective.contacts_at(scene, state, x);
+            self.objective.value(scene, state, x, &contacts)
         };
-        let contacts = self.objective.contacts(problem, state);
-        let before = self.objective.value(problem, state, &state.x, &contacts);
+        let contacts = self.objective.contacts(scene, state);
+        let before = self.objective.value(scene, state, &state.x, &contacts);
         for _ in 0..HALVINGS {
             let x: Vec<Point> = state.x.iter().zip(&self.paths).map(|(x, p)| x + step * p).collect();
             if value(&x) <= before * (1.0 + ROUNDING) {
@@ -54,27 +58,27 @@ impl LineSearch {
 }
 
 impl ForwardStep for LineSearch {
-    fn begin(&mut self, problem: &Problem, state: &State) {
-        self.objective.begin(problem, state);
-        self.stepper.begin(problem.rest.len());
+    fn begin(&mut self, scene: &CollisionScene, state: &ResolveState) {
+        self.objective.begin(scene, state);
+        self.stepper.begin(scene.rest().len());
     }
 
     fn advance(
         &mut self,
-        problem: &Problem,
-        state: &mut State,
+        scene: &CollisionScene,
+        state: &mut ResolveState,
         search: &mut dyn Search,
         statistics: &mut Statistics,
     ) -> StepReport {
-        self.stepper.aim(&state.x, &state.y);
+        self.stepper.set_target(&state.x, &state.y);
         self.paths.clear();
         self.paths.extend_from_slice(self.stepper.displacements());
-        let range = self.objective.largest_range(problem);
-        self.search.list(problem, state, search, &self.paths, Clocks::Common, range, statistics);
-        let mut step = earliest(&self.ccd, problem, state, &self.paths);
-        let still = |v: usize| problem.movable(v) || self.paths[v] == Vector::zeros();
+        let range = self.objective.largest_range(scene);
+        self.search.list(scene, state, search, &self.paths, Clocks::Common, range, statistics);
+        let mut step = earliest(&self.ccd, scene, state, &self.paths);
+        let still = |v: usize| state.is_movable(v) || self.paths[v] == Vector::zeros();
         if (0..self.paths.len()).all(still) {
-            step = self.backtrack(problem, state, step);
+            step = self.backtrack(scene, state, step);
         }
         for v in 0..self.paths.len() {
             self.stepper.limit(v, step);

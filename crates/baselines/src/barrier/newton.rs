@@ -10,7 +10,9 @@ use super::system::System;
 use super::{BarrierParams, Contact, Derivatives, LineSearch, Objective};
 use crate::ccd::AdditiveCcd;
 use bowknot_twoway::geometry::Vector;
-use bowknot_twoway::{BackwardStep, BudgetedSearch, Problem, ResolveError, Resolver, State, Statistics};
+use bowknot_twoway::{
+    BackwardStep, CollisionScene, ResolveError, ResolveState, Resolver, Statistics, TrustRegionSearch,
+};
 
 /// Relative residual of the Newton systems.
 const TOLERANCE: f64 = 1e-4;
@@ -33,14 +35,14 @@ pub struct NewtonStep {
 /// # Errors
 /// Parameters out of their range.
 pub fn by_newton(
-    problem: Problem,
+    scene: CollisionScene,
     params: BarrierParams,
     ccd: AdditiveCcd,
-) -> Result<Resolver<BudgetedSearch, NewtonStep, LineSearch>, ResolveError> {
-    let step = NewtonStep::new(&problem, params.clone())?;
-    let line_search = LineSearch::new(&problem, params, ccd)?;
-    let search = BudgetedSearch::new(&problem);
-    Ok(Resolver::with_stages(problem, search, step, line_search))
+) -> Result<Resolver<TrustRegionSearch, NewtonStep, LineSearch>, ResolveError> {
+    let step = NewtonStep::new(&scene, params.clone())?;
+    let line_search = LineSearch::new(&scene, params, ccd)?;
+    let search = TrustRegionSearch::new(&scene);
+    Ok(Resolver::with_stages(scene, search, step, line_search))
 }
 
 impl NewtonStep {
@@ -48,8 +50,8 @@ impl NewtonStep {
     ///
     /// # Errors
     /// Parameters out of their range.
-    pub fn new(problem: &Problem, params: BarrierParams) -> Result<Self, ResolveError> {
-        Ok(Self { objective: Objective::new(problem, params)?, ..Self::default() })
+    pub fn new(scene: &CollisionScene, params: BarrierParams) -> Result<Self, ResolveError> {
+        Ok(Self { objective: Objective::new(scene, params)?, ..Self::default() })
     }
 
     /// Newton decrement of the last step as a length [m]: sqrt(-p . dE/dx / sum m/dt^2), the root mean square of the way to
@@ -66,8 +68,8 @@ impl NewtonStep {
 
 impl NewtonStep {
     /// Where prescribed vertices go in this step [m]; 0 for the others.
-    fn given(&self, problem: &Problem, state: &State, contacts: &[Contact]) -> Vec<Vector> {
-        let way = |v: usize| match problem.movable(v) {
+    fn given(&self, scene: &CollisionScene, state: &ResolveState, contacts: &[Contact]) -> Vec<Vector> {
+        let way = |v: usize| match state.is_movable(v) {
             true => Vector::zeros(),
             false => state.target[v] - state.x[v],
         };
@@ -75,7 +77,7 @@ impl NewtonStep {
         let moves = |v: &u32| given[*v as usize] != Vector::zeros();
         if contacts.iter().any(|c| c.vertices[..c.kind.vertex_count()].iter().any(moves)) {
             let longest = given.iter().map(Vector::norm).fold(0.0, f64::max);
-            let share = (0.5 * self.objective.largest_range(problem) / longest).min(1.0);
+            let share = (0.5 * self.objective.largest_range(scene) / longest).min(1.0);
             given.iter_mut().for_each(|d| *d *= share);
         }
         given
@@ -83,24 +85,24 @@ impl NewtonStep {
 }
 
 impl BackwardStep for NewtonStep {
-    fn begin(&mut self, problem: &Problem, state: &State) {
-        self.objective.begin(problem, state);
+    fn begin(&mut self, scene: &CollisionScene, state: &ResolveState) {
+        self.objective.begin(scene, state);
         self.decrement = f64::INFINITY;
         self.solver_iterations = 0;
     }
 
-    fn project(&mut self, problem: &Problem, state: &mut State, statistics: &mut Statistics) {
-        let contacts = self.objective.contacts(problem, state);
-        self.objective.derivatives(problem, state, &state.x, &contacts, &mut self.derivatives);
+    fn project(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
+        let contacts = self.objective.contacts(scene, state);
+        self.objective.derivatives(scene, state, &state.x, &contacts, &mut self.derivatives);
         let elements = elements(&self.objective, &state.x, &contacts);
-        let inertia = |v: usize| match problem.movable(v) {
-            true => self.objective.inertia(problem, state, v),
+        let inertia = |v: usize| match state.is_movable(v) {
+            true => self.objective.inertia(scene, state, v),
             false => 0.0,
         };
         let inertia: Vec<f64> = (0..state.x.len()).map(inertia).collect();
         let mut down: Vec<Vector> = self.derivatives.gradient.iter().map(|g| -g).collect();
         let system = System::new(&inertia, &elements);
-        let given = self.given(problem, state, &contacts);
+        let given = self.given(scene, state, &contacts);
         if given.iter().any(|d| *d != Vector::zeros()) {
             let mut dragged = vec![Vector::zeros(); down.len()];
             system.multiply(&given, &mut dragged);
@@ -112,19 +114,19 @@ impl BackwardStep for NewtonStep {
         let total: f64 = inertia.iter().sum();
         self.decrement = if total > 0.0 { (promised.max(0.0) / total).sqrt() } else { 0.0 };
         for v in 0..state.x.len() {
-            state.y[v] = state.x[v] + if problem.movable(v) { self.step[v] } else { given[v] };
+            state.y[v] = state.x[v] + if state.is_movable(v) { self.step[v] } else { given[v] };
         }
         statistics.contact_rows = contacts.len();
         statistics.active_rows = contacts.len();
     }
 
-    fn settled(&self, problem: &Problem, state: &State) -> Option<bool> {
-        let tolerance = self.objective.params().tolerance * problem.lengths.edge;
-        let arrived = |v: usize| problem.movable(v) || (state.target[v] - state.x[v]).norm() <= tolerance;
+    fn converged(&self, scene: &CollisionScene, state: &ResolveState) -> Option<bool> {
+        let tolerance = self.objective.params().tolerance * scene.lengths().edge;
+        let arrived = |v: usize| state.is_movable(v) || (state.target[v] - state.x[v]).norm() <= tolerance;
         Some(self.decrement <= tolerance && (0..state.x.len()).all(arrived))
     }
 
-    fn finish(&mut self, problem: &Problem, state: &State, statistics: &mut Statistics) {
-        self.objective.report(problem, state, &mut self.derivatives, statistics);
+    fn finish(&mut self, scene: &CollisionScene, state: &ResolveState, statistics: &mut Statistics) {
+        self.objective.report(scene, state, &mut self.derivatives, statistics);
     }
 }

@@ -10,8 +10,8 @@ use super::function::{Jet, barrier};
 use super::{BarrierParams, element};
 use bowknot_twoway::constraints::EdgeLimits;
 use bowknot_twoway::geometry::{PairKind, Point, Separation, Vector};
-use bowknot_twoway::lcp::BallRow;
-use bowknot_twoway::{Problem, ResolveError, State, Statistics};
+use bowknot_twoway::lcp::DistanceLimit;
+use bowknot_twoway::{CollisionScene, ResolveError, ResolveState, Statistics};
 use rayon::prelude::*;
 
 /// Pairs that one parallel task handles at least.
@@ -52,9 +52,9 @@ impl Objective {
     /// An objective for the problem's pairs.
     ///
     /// # Errors
-    /// Parameters out of their range, see [`BarrierParams::validate`].
-    pub fn new(problem: &Problem, params: BarrierParams) -> Result<Self, ResolveError> {
-        params.validate(problem)?;
+    /// Parameters out of their range, see [`BarrierParams::validate_for`].
+    pub fn new(scene: &CollisionScene, params: BarrierParams) -> Result<Self, ResolveError> {
+        params.validate_for(scene)?;
         Ok(Self { params, ..Self::default() })
     }
 
@@ -64,35 +64,34 @@ impl Objective {
     }
 
     /// Starts a call from `state.x`: takes down the edges' limits (paper, Eq. 17).
-    pub fn begin(&mut self, problem: &Problem, state: &State) {
-        self.range_share = self.params.range.map_or(1.0, |range| range / problem.lengths.delta);
-        let constraints = &problem.params.constraints;
+    pub fn begin(&mut self, scene: &CollisionScene, state: &ResolveState) {
+        self.range_share = self.params.range.map_or(1.0, |range| range / scene.lengths().delta);
+        let constraints = &scene.params().contact;
         self.edges = EdgeLimits::default();
         if self.params.edge_stiffness > 0.0 && constraints.edges {
-            let movable: Vec<bool> = problem.prescribed.iter().map(|p| !p).collect();
-            let limit =
-                |edge: &[u32; 2]| problem.stretch_limit(problem.model.vertex_body()[edge[0] as usize]);
-            self.edges = EdgeLimits::new(problem.model.topology(), &problem.rest, &movable, limit);
+            let movable: Vec<bool> = state.call.prescribed().iter().map(|p| !p).collect();
+            let limit = |edge: &[u32; 2]| scene.stretch_limit(scene.model().vertex_body()[edge[0] as usize]);
+            self.edges = EdgeLimits::new(scene.model().topology(), scene.rest(), &movable, limit);
             self.edges.begin(&state.x, constraints.edge_reference);
         }
     }
 
     /// m/dt^2 of a vertex [kg/s^2].
     #[inline]
-    pub fn inertia(&self, problem: &Problem, state: &State, vertex: usize) -> f64 {
-        let dt = state.time_step.unwrap_or(self.params.time_step);
-        problem.mean_mass * problem.relative_mass[vertex] / (dt * dt)
+    pub fn inertia(&self, scene: &CollisionScene, state: &ResolveState, vertex: usize) -> f64 {
+        let dt = state.call.time_step().unwrap_or(self.params.time_step);
+        scene.mean_mass() * scene.relative_mass(vertex) / (dt * dt)
     }
 
     /// The pairs within range at `state.x`, in the order of the list.
-    pub fn contacts(&self, problem: &Problem, state: &State) -> Vec<Contact> {
-        self.gather(problem, state, |_, p| state.contacts.separations[p])
+    pub fn contacts(&self, scene: &CollisionScene, state: &ResolveState) -> Vec<Contact> {
+        self.gather(scene, state, |_, p| state.contacts.separations[p])
     }
 
     /// The listed pairs within range at `x`: all that there are, where x is on a way that the list was made for.
-    pub fn contacts_at(&self, problem: &Problem, state: &State, x: &[Point]) -> Vec<Contact> {
-        let half_spaces = problem.model.half_spaces();
-        self.gather(problem, state, |kind, p| {
+    pub fn contacts_at(&self, scene: &CollisionScene, state: &ResolveState, x: &[Point]) -> Vec<Contact> {
+        let half_spaces = scene.model().half_spaces();
+        self.gather(scene, state, |kind, p| {
             let pair = &state.contacts.pairs.pairs()[p];
             element::separation(kind, &pair.vertices, pair.elements[1], x, half_spaces)
         })
@@ -100,25 +99,25 @@ impl Objective {
 
     fn gather(
         &self,
-        problem: &Problem,
-        state: &State,
+        scene: &CollisionScene,
+        state: &ResolveState,
         separation: impl Fn(PairKind, usize) -> Separation + Sync,
     ) -> Vec<Contact> {
         let listed = &state.contacts;
         let contact = |p: usize| -> Option<Contact> {
             let (kind, pair) = (listed.pairs.kind(p), &listed.pairs.pairs()[p]);
             let vertices = pair.vertices;
-            if !vertices[..kind.vertex_count()].iter().any(|&v| problem.movable(v as usize)) {
+            if !vertices[..kind.vertex_count()].iter().any(|&v| state.is_movable(v as usize)) {
                 return None;
             }
             let separation = separation(kind, p);
             // Before neighbours' ranges are lowered, which takes longer to find out: almost all pairs are farther apart.
-            let largest = self.range_share * problem.spacing.of(&problem.model, kind, pair).delta;
+            let largest = self.range_share * scene.spacing().of(scene.model(), kind, pair).delta;
             if separation.distance >= largest {
                 return None;
             }
-            let range = self.range_share * problem.desired_distance(kind, pair);
-            let floor = listed.floors[p].min(0.9 * range);
+            let range = self.range_share * scene.desired_distance(kind, pair);
+            let floor = listed.min_separations[p].min(0.9 * range);
             let jet = barrier(self.params.strength, separation.distance - floor, range - floor);
             (jet.value > 0.0).then_some(Contact { kind, vertices, separation, jet })
         };
@@ -126,13 +125,19 @@ impl Objective {
     }
 
     /// E at `x` [J], given the pairs within range there.
-    pub fn value(&self, problem: &Problem, state: &State, x: &[Point], contacts: &[Contact]) -> f64 {
+    pub fn value(
+        &self,
+        scene: &CollisionScene,
+        state: &ResolveState,
+        x: &[Point],
+        contacts: &[Contact],
+    ) -> f64 {
         let mut energy = 0.0;
-        for v in (0..x.len()).filter(|&v| problem.movable(v)) {
-            energy += 0.5 * self.inertia(problem, state, v) * (x[v] - state.target[v]).norm_squared();
+        for v in (0..x.len()).filter(|&v| state.is_movable(v)) {
+            energy += 0.5 * self.inertia(scene, state, v) * (x[v] - state.target[v]).norm_squared();
         }
         energy += contacts.iter().map(|contact| contact.jet.value).sum::<f64>();
-        let stretched = |ball: &BallRow| self.overlong(ball, x).map_or(0.0, |(over, _, _)| over * over);
+        let stretched = |ball: &DistanceLimit| self.overlong(ball, x).map_or(0.0, |(over, _, _)| over * over);
         energy + 0.5 * self.params.edge_stiffness * self.edges.balls.iter().map(stretched).sum::<f64>()
     }
 
@@ -144,8 +149,8 @@ impl Objective {
     /// that is positive semidefinite, as for two vertices.
     pub fn derivatives(
         &self,
-        problem: &Problem,
-        state: &State,
+        scene: &CollisionScene,
+        state: &ResolveState,
         x: &[Point],
         contacts: &[Contact],
         derivatives: &mut Derivatives,
@@ -154,7 +159,7 @@ impl Objective {
         gradient.clear();
         blocks.clear();
         for v in 0..x.len() {
-            let inertia = self.inertia(problem, state, v);
+            let inertia = self.inertia(scene, state, v);
             gradient.push(inertia * (x[v] - state.target[v]));
             blocks.push(nalgebra::Matrix3::from_diagonal_element(inertia));
         }
@@ -181,7 +186,7 @@ impl Objective {
                 }
             }
         }
-        for v in (0..x.len()).filter(|&v| !problem.movable(v)) {
+        for v in (0..x.len()).filter(|&v| !state.is_movable(v)) {
             gradient[v] = Vector::zeros();
             blocks[v] = nalgebra::Matrix3::identity();
         }
@@ -205,28 +210,28 @@ impl Objective {
     }
 
     /// Largest range of any pair's barrier [m].
-    pub fn largest_range(&self, problem: &Problem) -> f64 {
-        self.range_share * problem.spacing.largest_delta()
+    pub fn largest_range(&self, scene: &CollisionScene) -> f64 {
+        self.range_share * scene.spacing().largest_delta()
     }
 
     /// Fills in what is known at the end of a call.
     pub(super) fn report(
         &self,
-        problem: &Problem,
-        state: &State,
+        scene: &CollisionScene,
+        state: &ResolveState,
         derivatives: &mut Derivatives,
         statistics: &mut Statistics,
     ) {
-        let contacts = self.contacts(problem, state);
-        self.derivatives(problem, state, &state.x, &contacts, derivatives);
-        let movable = (0..state.x.len()).filter(|&v| problem.movable(v));
+        let contacts = self.contacts(scene, state);
+        self.derivatives(scene, state, &state.x, &contacts, derivatives);
+        let movable = (0..state.x.len()).filter(|&v| state.is_movable(v));
         statistics.stationarity_m = movable
-            .map(|v| derivatives.gradient[v].norm() / self.inertia(problem, state, v))
+            .map(|v| derivatives.gradient[v].norm() / self.inertia(scene, state, v))
             .fold(0.0, f64::max);
         (statistics.max_step_stretch, statistics.max_stretch) = self.stretch(&state.x);
     }
 
-    fn overlong(&self, ball: &BallRow, x: &[Point]) -> Option<(f64, f64, Vector)> {
+    fn overlong(&self, ball: &DistanceLimit, x: &[Point]) -> Option<(f64, f64, Vector)> {
         let [a, b] = ball.vertices;
         let edge = x[a as usize] - x[b as usize];
         let length = edge.norm();

@@ -1,6 +1,7 @@
 //! Parameters of the log barrier.
 
-use bowknot_twoway::{Problem, ResolveError};
+use bowknot_errors::{Checks, Parameters};
+use bowknot_twoway::{CollisionScene, ResolveError};
 use serde::{Deserialize, Serialize};
 
 /// Parameters of [`super::Objective`] and of the methods that minimise it.
@@ -50,34 +51,32 @@ impl Default for BarrierParams {
 }
 
 impl BarrierParams {
-    /// Checks every field, also against the problem: pairs within the barrier's range must be listed.
+    /// Checks every field, also against the scene: pairs within the barrier's range must be candidates.
     ///
     /// # Errors
-    /// [`ResolveError::Params`] with a line for each field out of its range.
-    pub fn validate(&self, problem: &Problem) -> Result<(), ResolveError> {
-        let mut problems = Vec::new();
-        for (key, value) in [
-            ("strength", self.strength),
-            ("range", self.range.unwrap_or(1.0)),
-            ("time_step", self.time_step),
-            ("tolerance", self.tolerance),
-        ] {
-            if !(value.is_finite() && value > 0.0) {
-                problems.push(format!("barrier.{key} = {value} must be finite and above 0"));
-            }
+    /// [`ResolveError::Params`] with an error for each field out of its range.
+    pub fn validate_for(&self, scene: &CollisionScene) -> Result<(), ResolveError> {
+        let mut checks = Checks::default();
+        checks.within("barrier", self);
+        let largest = scene.lengths().contact_range;
+        if let Some(range) = self.range {
+            let allowed =
+                format!("must be at most contact.range times delta = {largest} m, or pairs are missed");
+            // The check above refuses NaN.
+            checks.require(range.is_nan() || range <= largest, "barrier.range", range, allowed);
         }
-        if !(self.edge_stiffness.is_finite() && self.edge_stiffness >= 0.0) {
-            problems.push(format!(
-                "barrier.edge_stiffness = {} must be finite and at least 0",
-                self.edge_stiffness
-            ));
+        checks.finish().map_err(ResolveError::Params)
+    }
+}
+
+impl Parameters for BarrierParams {
+    fn check(&self, checks: &mut Checks) {
+        checks.positive("strength", self.strength);
+        if let Some(range) = self.range {
+            checks.positive("range", range);
         }
-        let listed = problem.lengths.contact_range;
-        if let Some(range) = self.range.filter(|range| *range > listed) {
-            problems.push(format!(
-                "barrier.range = {range} m must be at most constraints.range times delta = {listed} m, or pairs are missed"
-            ));
-        }
-        if problems.is_empty() { Ok(()) } else { Err(ResolveError::Params(problems)) }
+        checks.positive("time_step", self.time_step);
+        checks.non_negative("edge_stiffness", self.edge_stiffness);
+        checks.positive("tolerance", self.tolerance);
     }
 }

@@ -5,7 +5,7 @@ use super::pairs::clearance;
 use super::reach::{Clocks, PathSearch};
 use bowknot_twoway::geometry::Vector;
 use bowknot_twoway::stepper::{StepReport, Stepper};
-use bowknot_twoway::{ForwardStep, Problem, Search, State, Statistics};
+use bowknot_twoway::{CollisionScene, ForwardStep, ResolveState, Search, Statistics};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -29,34 +29,39 @@ impl EarliestImpact {
 }
 
 /// The smallest clearance of all listed pairs along `paths` [m]; 1 without impact.
-pub(crate) fn earliest(ccd: &AdditiveCcd, problem: &Problem, state: &State, paths: &[Vector]) -> f64 {
+pub(crate) fn earliest(
+    ccd: &AdditiveCcd,
+    scene: &CollisionScene,
+    state: &ResolveState,
+    paths: &[Vector],
+) -> f64 {
     // Nonnegative floats are ordered as their bits are.
     let first = AtomicU64::new(1.0f64.to_bits());
     (0..state.contacts.pairs.len()).into_par_iter().with_min_len(CHUNK).for_each(|p| {
         let until = f64::from_bits(first.load(Ordering::Relaxed));
-        let time = clearance(ccd, problem, state, paths, p, until).time;
+        let time = clearance(ccd, scene, state, paths, p, until).time;
         first.fetch_min(time.to_bits(), Ordering::Relaxed);
     });
     f64::from_bits(first.into_inner())
 }
 
 impl ForwardStep for EarliestImpact {
-    fn begin(&mut self, problem: &Problem, _: &State) {
-        self.stepper.begin(problem.rest.len());
+    fn begin(&mut self, scene: &CollisionScene, _: &ResolveState) {
+        self.stepper.begin(scene.rest().len());
     }
 
     fn advance(
         &mut self,
-        problem: &Problem,
-        state: &mut State,
+        scene: &CollisionScene,
+        state: &mut ResolveState,
         search: &mut dyn Search,
         statistics: &mut Statistics,
     ) -> StepReport {
-        self.stepper.aim(&state.x, &state.y);
+        self.stepper.set_target(&state.x, &state.y);
         self.paths.clear();
         self.paths.extend_from_slice(self.stepper.displacements());
-        self.search.list(problem, state, search, &self.paths, Clocks::Common, 0.0, statistics);
-        let time = earliest(&self.ccd, problem, state, &self.paths);
+        self.search.list(scene, state, search, &self.paths, Clocks::Common, 0.0, statistics);
+        let time = earliest(&self.ccd, scene, state, &self.paths);
         for v in 0..self.paths.len() {
             self.stepper.limit(v, time);
         }

@@ -2,22 +2,22 @@
 
 use super::{AdditiveCcd, Clearance};
 use bowknot_twoway::geometry::{PairKind, Vector};
-use bowknot_twoway::{Problem, State};
+use bowknot_twoway::{CollisionScene, ResolveState};
 
 /// How far the listed pair `p` stays farther apart than its floor while its vertices move from x along `paths` [m].
 pub(super) fn clearance(
     ccd: &AdditiveCcd,
-    problem: &Problem,
-    state: &State,
+    scene: &CollisionScene,
+    state: &ResolveState,
     paths: &[Vector],
     p: usize,
     until: f64,
 ) -> Clearance {
     let (kind, pair) = (state.contacts.pairs.kind(p), &state.contacts.pairs.pairs()[p]);
-    let floor = state.contacts.floors[p];
+    let floor = state.contacts.min_separations[p];
     if kind == PairKind::VertexHalfSpace {
         let [vertex, half_space] = pair.elements.map(|e| e as usize);
-        let half_space = &problem.model.half_spaces()[half_space];
+        let half_space = &scene.model().half_spaces()[half_space];
         return ccd.half_space_clearance(half_space, &state.x[vertex], &paths[vertex], floor);
     }
     let x = pair.vertices.map(|v| state.x[v as usize]);

@@ -11,7 +11,7 @@ use super::pairs::clearance;
 use super::reach::{Clocks, PathSearch};
 use bowknot_twoway::geometry::Vector;
 use bowknot_twoway::stepper::{StepReport, Stepper};
-use bowknot_twoway::{ForwardStep, Problem, Search, State, Statistics};
+use bowknot_twoway::{CollisionScene, ForwardStep, ResolveState, Search, Statistics};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -64,7 +64,7 @@ impl PerVertexImpact {
 
     /// Limits the vertices of all pairs that meet along the present paths, of those that have a new one. Returns how far
     /// all vertices can go along them.
-    fn limit(&self, problem: &Problem, state: &State) -> f64 {
+    fn limit(&self, scene: &CollisionScene, state: &ResolveState) -> f64 {
         let first = AtomicU64::new(1.0f64.to_bits());
         let pairs = &state.contacts.pairs;
         (0..pairs.len()).into_par_iter().with_min_len(CHUNK).for_each(|p| {
@@ -72,7 +72,7 @@ impl PerVertexImpact {
             if !vertices.iter().any(|&v| self.changed[v as usize]) {
                 return;
             }
-            let time = clearance(&self.ccd, problem, state, &self.paths, p, 1.0).time;
+            let time = clearance(&self.ccd, scene, state, &self.paths, p, 1.0).time;
             if time < 1.0 {
                 first.fetch_min(time.to_bits(), Ordering::Relaxed);
                 for v in vertices.iter().map(|&v| v as usize) {
@@ -83,9 +83,9 @@ impl PerVertexImpact {
         f64::from_bits(first.into_inner())
     }
 
-    fn limit_bodies(&self, problem: &Problem) {
-        self.stepper.limit_by_bodies(&problem.model, &problem.obstacle_vertices);
-        self.stepper.limit_by_groups(problem.group_count);
+    fn limit_bodies(&self, scene: &CollisionScene, state: &ResolveState) {
+        self.stepper.limit_by_bodies(scene.model(), scene.obstacle_vertices());
+        self.stepper.limit_by_groups(state.call.groups().count());
     }
 }
 
@@ -96,10 +96,10 @@ impl Default for PerVertexImpact {
 }
 
 impl ForwardStep for PerVertexImpact {
-    fn begin(&mut self, problem: &Problem, _: &State) {
-        let count = problem.rest.len();
+    fn begin(&mut self, scene: &CollisionScene, state: &ResolveState) {
+        let count = scene.rest().len();
         self.stepper.begin(count);
-        self.stepper.set_groups(&problem.groups);
+        self.stepper.set_groups(state.call.groups().of_vertices());
         self.paths.resize(count, Vector::zeros());
         self.fractions.resize(count, 0.0);
         self.changed.resize(count, true);
@@ -107,25 +107,25 @@ impl ForwardStep for PerVertexImpact {
 
     fn advance(
         &mut self,
-        problem: &Problem,
-        state: &mut State,
+        scene: &CollisionScene,
+        state: &mut ResolveState,
         search: &mut dyn Search,
         statistics: &mut Statistics,
     ) -> StepReport {
-        self.stepper.aim(&state.x, &state.y);
+        self.stepper.set_target(&state.x, &state.y);
         for v in 0..state.x.len() {
             let length = self.stepper.displacements()[v].norm();
-            let longest = self.longest * problem.local_edge[v];
+            let longest = self.longest * scene.local_edge(v);
             if length > longest {
                 self.stepper.limit(v, longest / length);
             }
         }
-        self.limit_bodies(problem);
+        self.limit_bodies(scene, state);
         self.shorten();
-        self.search.list(problem, state, search, &self.paths, Clocks::Own, 0.0, statistics);
+        self.search.list(scene, state, search, &self.paths, Clocks::Own, 0.0, statistics);
         self.changed.fill(true);
         for round in 1..=self.rounds {
-            let common = self.limit(problem, state);
+            let common = self.limit(scene, state);
             if common >= 1.0 {
                 break;
             }
@@ -136,7 +136,7 @@ impl ForwardStep for PerVertexImpact {
                     self.stepper.limit(v, common * self.fractions[v]);
                 }
             }
-            self.limit_bodies(problem);
+            self.limit_bodies(scene, state);
             self.shorten();
         }
         state.previous.clone_from(&state.x);

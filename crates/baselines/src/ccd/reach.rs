@@ -2,7 +2,7 @@
 
 use bowknot_twoway::geometry::Vector;
 use bowknot_twoway::stepper::Rounding;
-use bowknot_twoway::{Problem, Reach, Search, State, Statistics};
+use bowknot_twoway::{CollisionScene, Coverage, ResolveState, Search, Statistics};
 
 /// In which order vertices may go their ways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,8 +27,8 @@ impl PathSearch {
     /// `nearest` is the distance [m] below which pairs must be listed on the way, beyond those that may meet.
     pub(crate) fn list(
         &mut self,
-        problem: &Problem,
-        state: &mut State,
+        scene: &CollisionScene,
+        state: &mut ResolveState,
         search: &mut dyn Search,
         paths: &[Vector],
         clocks: Clocks,
@@ -37,14 +37,14 @@ impl PathSearch {
     ) {
         let largest = state.x.iter().zip(paths).map(|(x, p)| x.coords.amax() + p.amax()).fold(0.0, f64::max);
         let rounding = Rounding::new(largest).frozen;
-        let within = match search.reach() {
-            Reach::Balls(budgets) => {
-                (0..paths.len()).all(|v| budgets.limit(v, &state.x[v], &paths[v]) >= 1.0)
+        let within = match search.coverage() {
+            Coverage::TrustRegions(trust_regions) => {
+                (0..paths.len()).all(|v| trust_regions.limit(v, &state.x[v], &paths[v]) >= 1.0)
             }
-            Reach::Distance(unlisted) => {
+            Coverage::Distance(covered) => {
                 let longest = paths.iter().map(Vector::norm).fold(0.0, f64::max);
                 2.0 * (longest * (1.0 + 1e-12) + rounding)
-                    < unlisted - problem.spacing.largest_floor().max(nearest)
+                    < covered - scene.spacing().largest_min_separation().max(nearest)
             }
         };
         if within {
@@ -55,14 +55,14 @@ impl PathSearch {
             // Halfway along, all of the path is within half of its length.
             Clocks::Own => 0.5,
         };
-        let bodies = problem.model.vertex_body();
+        let bodies = scene.model().vertex_body();
         self.displacements.clear();
         self.displacements.extend(paths.iter().map(|p| share * p));
         self.deviations.clear();
         self.deviations.extend(paths.iter().zip(bodies).map(|(p, body)| {
             let strayed = if clocks == Clocks::Own { 0.5 * p.norm() * (1.0 + 1e-12) } else { 0.0 };
-            strayed + problem.spacing.margin(*body) + rounding
+            strayed + scene.spacing().margin(*body) + rounding
         }));
-        search.update_swept(problem, state, &self.displacements, &self.deviations, statistics);
+        search.update_swept(scene, state, &self.displacements, &self.deviations, statistics);
     }
 }

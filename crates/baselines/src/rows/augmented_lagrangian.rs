@@ -2,7 +2,7 @@
 
 use super::incidence::{Incidence, MIN_SHARE};
 use bowknot_twoway::geometry::Vector;
-use bowknot_twoway::lcp::{BallRow, Error, Problem, State, TangentVector};
+use bowknot_twoway::lcp::{DistanceLimit, LcpError, LcpProblem, LcpState, TangentVector};
 use bowknot_twoway::{RowSolver, RowSystem};
 use rayon::prelude::*;
 
@@ -58,7 +58,7 @@ impl AugmentedLagrangian {
     ///
     /// # Panics
     /// If a slice does not fit the system.
-    pub fn descend(&mut self, system: &Problem<'_>, free: &[Vector], state: &mut State<'_>) {
+    pub fn descend(&mut self, system: &LcpProblem<'_>, free: &[Vector], state: &mut LcpState<'_>) {
         let (weights, penalty) = (system.weights(), self.penalty);
         self.incidence.fill(system);
         self.incidence.curvatures(system, &mut self.steps);
@@ -68,7 +68,7 @@ impl AugmentedLagrangian {
         self.trial.clear();
         self.trial.resize(system.rows().rows.len(), 0.0);
         self.trial_forces.clear();
-        self.trial_forces.resize(system.balls().rows.len(), Vector::zeros());
+        self.trial_forces.resize(system.distance_limits().rows.len(), Vector::zeros());
         for iteration in 0..self.iterations {
             self.evaluate(system, state);
             if iteration > 0 && iteration % self.gradient_steps.max(1) == 0 {
@@ -88,7 +88,7 @@ impl AugmentedLagrangian {
     }
 
     /// max(0, lambda - rho s) at `state.y`.
-    fn evaluate(&mut self, system: &Problem<'_>, state: &State<'_>) {
+    fn evaluate(&mut self, system: &LcpProblem<'_>, state: &LcpState<'_>) {
         let (y, penalty) = (&*state.y, self.penalty);
         let rows = system.rows().rows;
         self.trial.par_iter_mut().zip(rows).zip(&*state.lambda).with_min_len(MIN_SHARE).for_each(
@@ -97,23 +97,23 @@ impl AugmentedLagrangian {
                 *trial = if row.inverse_diagonal == 0.0 { 0.0 } else { new };
             },
         );
-        let balls = system.balls().rows;
+        let balls = system.distance_limits().rows;
         self.trial_forces
             .par_iter_mut()
             .zip(balls)
-            .zip(&*state.forces)
+            .zip(&*state.limit_multipliers)
             .with_min_len(MIN_SHARE)
             .for_each(|((trial, ball), &force)| *trial = ball_force(ball, y, force, penalty));
     }
 
-    fn update_multipliers(&self, state: &mut State<'_>) {
+    fn update_multipliers(&self, state: &mut LcpState<'_>) {
         state.lambda.copy_from_slice(&self.trial);
-        state.forces.copy_from_slice(&self.trial_forces);
+        state.limit_multipliers.copy_from_slice(&self.trial_forces);
     }
 }
 
 /// rho (z - projection of z onto the ball), z = y_a - y_b + f/rho.
-fn ball_force(ball: &BallRow, y: &[Vector], force: Vector, penalty: f64) -> Vector {
+fn ball_force(ball: &DistanceLimit, y: &[Vector], force: Vector, penalty: f64) -> Vector {
     let [a, b] = ball.vertices.map(|v| v as usize);
     let z = y[a] - y[b] + force / penalty;
     let norm = z.norm();
@@ -121,7 +121,7 @@ fn ball_force(ball: &BallRow, y: &[Vector], force: Vector, penalty: f64) -> Vect
 }
 
 impl RowSolver for AugmentedLagrangian {
-    fn solve(&mut self, rows: &RowSystem<'_>, state: &mut State<'_>) -> Result<(), Error> {
+    fn solve(&mut self, rows: &RowSystem<'_>, state: &mut LcpState<'_>) -> Result<(), LcpError> {
         let weights = rows.system.weights();
         for (v, (y, last)) in state.y.iter_mut().zip(&rows.state.y).enumerate() {
             *y = if weights[v] == 0.0 { rows.free[v] } else { last.coords };

@@ -1,7 +1,7 @@
 //! In which places of which rows each node stands, to gather forces by node in a fixed order.
 
 use bowknot_twoway::geometry::Vector;
-use bowknot_twoway::lcp::Problem;
+use bowknot_twoway::lcp::LcpProblem;
 use rayon::prelude::*;
 
 /// Fewest nodes or rows that a thread takes.
@@ -18,7 +18,7 @@ pub(crate) struct Incidence {
 
 impl Incidence {
     /// Lists the places anew, in the order of the rows.
-    pub(crate) fn fill(&mut self, system: &Problem<'_>) {
+    pub(crate) fn fill(&mut self, system: &LcpProblem<'_>) {
         let weights = system.weights();
         self.after_rows = 4 * system.rows().rows.len();
         self.starts.clear();
@@ -51,7 +51,7 @@ impl Incidence {
     /// For each node, J^T lambda + the forces of ball rows, or anything else that adds up so: `each(node, sum)`.
     pub(crate) fn gather<T: Send>(
         &self,
-        system: &Problem<'_>,
+        system: &LcpProblem<'_>,
         lambda: &[f64],
         forces: &[Vector],
         values: &mut [T],
@@ -73,7 +73,7 @@ impl Incidence {
 
     /// For each node h_v = sum over its rows of |g_rv| sum_k |g_rk|: by Gershgorin's theorem in blocks J^T J is at most
     /// the diagonal matrix of these.
-    pub(crate) fn curvatures(&self, system: &Problem<'_>, curvatures: &mut Vec<f64>) {
+    pub(crate) fn curvatures(&self, system: &LcpProblem<'_>, curvatures: &mut Vec<f64>) {
         let rows = system.rows().rows;
         curvatures.clear();
         curvatures.resize(system.weights().len(), 0.0);
@@ -97,8 +97,8 @@ enum Place {
     Ball(usize, usize),
 }
 
-fn for_places(system: &Problem<'_>, mut visit: impl FnMut(u32, usize)) {
-    let (rows, balls, weights) = (system.rows().rows, system.balls().rows, system.weights());
+fn for_places(system: &LcpProblem<'_>, mut visit: impl FnMut(u32, usize)) {
+    let (rows, balls, weights) = (system.rows().rows, system.distance_limits().rows, system.weights());
     for (r, row) in rows.iter().enumerate() {
         for (k, &node) in row.vertices.iter().enumerate() {
             if weights[node as usize] != 0.0 && row.gradients[k] != Vector::zeros() {

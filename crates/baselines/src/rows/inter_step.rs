@@ -1,7 +1,7 @@
 //! Chebyshev acceleration from step to step (Wang 2015), around any backward step.
 
 use bowknot_twoway::geometry::Point;
-use bowknot_twoway::{BackwardStep, Problem, State, Statistics};
+use bowknot_twoway::{BackwardStep, CollisionScene, Residuals, ResolveState, Statistics};
 
 /// Accelerates the targets of another backward step over the two-way steps of a call (Wang 2015, "A Chebyshev
 /// semi-iterative approach for accelerating projective and position-based dynamics"; paper, section 4.2.2, which finds it
@@ -28,43 +28,37 @@ impl<B> InterStepChebyshev<B> {
 }
 
 impl<B: BackwardStep> BackwardStep for InterStepChebyshev<B> {
-    fn begin(&mut self, problem: &Problem, state: &State) {
+    fn begin(&mut self, scene: &CollisionScene, state: &ResolveState) {
         self.omega = 1.0;
         self.before.clone_from(&state.y);
         self.last.clone_from(&state.y);
-        self.inner.begin(problem, state);
+        self.inner.begin(scene, state);
     }
 
-    fn project(&mut self, problem: &Problem, state: &mut State, statistics: &mut Statistics) {
-        self.inner.project(problem, state, statistics);
+    fn project(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
+        self.inner.project(scene, state, statistics);
         let square = self.spectral_radius * self.spectral_radius;
         if state.step >= self.delay {
             self.omega = match state.step == self.delay {
                 true => 2.0 / (2.0 - square),
                 false => 4.0 / (4.0 - square * self.omega),
             };
-            for v in (0..state.y.len()).filter(|&v| problem.movable(v)) {
-                let before = self.before[v];
-                state.y[v] = before + self.omega * (state.y[v] - before);
+            for v in 0..state.y.len() {
+                if state.is_movable(v) {
+                    let before = self.before[v];
+                    state.y[v] = before + self.omega * (state.y[v] - before);
+                }
             }
         }
         std::mem::swap(&mut self.before, &mut self.last);
         self.last.clone_from(&state.y);
     }
 
-    fn stretch_to_limit(&self, state: &State) -> f64 {
-        self.inner.stretch_to_limit(state)
+    fn residuals(&mut self, scene: &CollisionScene, state: &ResolveState) -> Residuals {
+        self.inner.residuals(scene, state)
     }
 
-    fn imbalance(&mut self, problem: &Problem, state: &State) -> f64 {
-        self.inner.imbalance(problem, state)
-    }
-
-    fn unrest(&mut self, problem: &Problem, state: &State) -> f64 {
-        self.inner.unrest(problem, state)
-    }
-
-    fn finish(&mut self, problem: &Problem, state: &State, statistics: &mut Statistics) {
-        self.inner.finish(problem, state, statistics);
+    fn finish(&mut self, scene: &CollisionScene, state: &ResolveState, statistics: &mut Statistics) {
+        self.inner.finish(scene, state, statistics);
     }
 }

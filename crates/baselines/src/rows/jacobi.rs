@@ -1,6 +1,6 @@
 //! Projected Jacobi in place of projected Gauss-Seidel.
 
-use bowknot_twoway::lcp::{self, Error, Info, Jacobi, Params, State};
+use bowknot_twoway::lcp::{self, Jacobi, LcpError, LcpInfo, LcpParams, LcpState};
 use bowknot_twoway::{RowSolver, RowSystem};
 
 /// Projected Jacobi (paper, section 4.2.2, Fig. 11 and 12).
@@ -37,23 +37,23 @@ impl ProjectedJacobi {
     /// As [`Jacobi::solve`].
     pub fn sweep(
         &mut self,
-        system: &lcp::Problem<'_>,
-        state: &mut State<'_>,
+        system: &lcp::LcpProblem<'_>,
+        state: &mut LcpState<'_>,
         tolerance: Option<f64>,
-    ) -> Result<Info, Error> {
-        let params = Params {
+    ) -> Result<LcpInfo, LcpError> {
+        let params = LcpParams {
             max_sweeps: self.sweeps,
             tolerance,
             relaxation: self.relaxation,
             spectral_radius: self.spectral_radius,
-            ..Params::default()
+            ..LcpParams::default()
         };
         self.solver.solve(system, state, &params)
     }
 }
 
 impl RowSolver for ProjectedJacobi {
-    fn solve(&mut self, rows: &RowSystem<'_>, state: &mut State<'_>) -> Result<(), Error> {
+    fn solve(&mut self, rows: &RowSystem<'_>, state: &mut LcpState<'_>) -> Result<(), LcpError> {
         self.sweep(&rows.system, state, None).map(|_| ())
     }
 }

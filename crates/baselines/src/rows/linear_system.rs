@@ -1,6 +1,6 @@
 //! The linear system of Harmon et al. 2008 in place of the complementarity problem.
 
-use bowknot_twoway::lcp::{self, Error, Params, State, solve_coloured};
+use bowknot_twoway::lcp::{self, LcpError, LcpParams, LcpState, solve_coloured};
 use bowknot_twoway::{RowSolver, RowSystem};
 
 /// Gauss-Seidel on A lambda + q = 0, all rows taken for equations (Harmon et al. 2008, "Robust treatment of simultaneous
@@ -36,14 +36,15 @@ impl LinearSystem {
     ///
     /// # Errors
     /// As [`lcp::solve_coloured`].
-    pub fn sweep(&self, system: &lcp::Problem<'_>, state: &mut State<'_>) -> Result<(), Error> {
-        let params = Params { max_sweeps: self.sweeps, equations: !self.projected, ..Params::default() };
+    pub fn sweep(&self, system: &lcp::LcpProblem<'_>, state: &mut LcpState<'_>) -> Result<(), LcpError> {
+        let params =
+            LcpParams { max_sweeps: self.sweeps, equations: !self.projected, ..LcpParams::default() };
         solve_coloured(system, state, &params).map(|_| ())
     }
 }
 
 impl RowSolver for LinearSystem {
-    fn solve(&mut self, rows: &RowSystem<'_>, state: &mut State<'_>) -> Result<(), Error> {
+    fn solve(&mut self, rows: &RowSystem<'_>, state: &mut LcpState<'_>) -> Result<(), LcpError> {
         self.sweep(&rows.system, state)
     }
 }

@@ -21,25 +21,26 @@ pub use linear_system::LinearSystem;
 
 use bowknot_twoway::constraints::ContactForm;
 use bowknot_twoway::{
-    BackwardStep, BudgetedSearch, CertifiedForward, LcpBackward, Params, Problem, Resolver, RowSolver,
+    BackwardStep, CertifiedForward, CollisionScene, LcpBackward, Params, Resolver, RowSolver,
+    TrustRegionSearch,
 };
 
 /// The two-way method with another solver of its rows; `problem` has the parameters, as a rule those of
 /// [`bowknot_twoway::Params::paper`].
 pub fn two_way_with<K: RowSolver + Default>(
-    problem: Problem,
+    scene: CollisionScene,
     solver: K,
-) -> Resolver<BudgetedSearch, LcpBackward<K>, CertifiedForward> {
-    two_way_with_stage(problem, LcpBackward::with_solver(solver))
+) -> Resolver<TrustRegionSearch, LcpBackward<K>, CertifiedForward> {
+    two_way_with_stage(scene, LcpBackward::with_solver(solver))
 }
 
 /// The two-way method with another backward step.
 pub fn two_way_with_stage<B: BackwardStep>(
-    problem: Problem,
+    scene: CollisionScene,
     backward: B,
-) -> Resolver<BudgetedSearch, B, CertifiedForward> {
-    let search = BudgetedSearch::new(&problem);
-    Resolver::with_stages(problem, search, backward, CertifiedForward::default())
+) -> Resolver<TrustRegionSearch, B, CertifiedForward> {
+    let search = TrustRegionSearch::new(&scene);
+    Resolver::with_stages(scene, search, backward, CertifiedForward::default())
 }
 
 /// Parameters under which contacts keep the volume that they have, as Sifakis et al. 2008 ("Globally coupled collision handling
@@ -48,7 +49,7 @@ pub fn two_way_with_stage<B: BackwardStep>(
 /// have a time step, whose separation speed is what this takes away.
 #[must_use]
 pub fn preserving_volume(mut params: Params) -> Params {
-    params.constraints.form = ContactForm::Volume;
-    params.constraints.separation_speed = Some(f64::MIN_POSITIVE);
+    params.contact.form = ContactForm::Volume;
+    params.contact.separation_speed = Some(f64::MIN_POSITIVE);
     params
 }

@@ -2,7 +2,7 @@
 
 use crate::Outcome;
 use crate::ccd::AdditiveCcd;
-use bowknot_twoway::Problem;
+use bowknot_twoway::CollisionScene;
 use bowknot_twoway::constraints::DesiredDistance;
 use bowknot_twoway::geometry::{PairKind, Point, Separation, Vector, distance};
 use bowknot_twoway::proximity::{CollisionModel, Pair, PairList, ProximitySearch};
@@ -71,7 +71,7 @@ impl ImpactSearch {
     /// seconds (detection as evaluation).
     pub fn find(
         &mut self,
-        problem: &Problem,
+        scene: &CollisionScene,
         x: &[Point],
         paths: &[Vector],
         growth: f64,
@@ -82,8 +82,8 @@ impl ImpactSearch {
         let Self { thickness, search, pairs, separations, radii, ccd } = self;
         let thickness = *thickness;
         radii.clear();
-        radii.resize(x.len(), FLOOR_SHARE.max(thickness) * problem.spacing.largest_delta());
-        search.search_swept(&problem.model, x, paths, radii, pairs, separations);
+        radii.resize(x.len(), FLOOR_SHARE.max(thickness) * scene.spacing().largest_delta());
+        search.search_swept(scene.model(), x, paths, radii, pairs, separations);
         outcome.searches += 1;
         outcome.seconds.search += clock.elapsed().as_secs_f64();
 
@@ -96,10 +96,10 @@ impl ImpactSearch {
                 .zip(&separations[range])
                 .with_min_len(CHUNK)
                 .filter_map(|(&pair, separation)| {
-                    let delta = problem.spacing.of(&problem.model, kind, &pair).delta;
+                    let delta = scene.spacing().of(scene.model(), kind, &pair).delta;
                     let rule = DesiredDistance { delta, growth };
                     let gap = separation.distance;
-                    let (desired, _) = rule.of(&problem.model, kind, &pair, &problem.rest, gap);
+                    let (desired, _) = rule.of(scene.model(), kind, &pair, scene.rest(), gap);
                     let impact = Impact { kind, pair, time: 0.0, desired };
                     if !judged(&impact) {
                         return None;
@@ -107,8 +107,8 @@ impl ImpactSearch {
                     let floor = (FLOOR_SHARE * desired).min(GAP_SHARE * gap);
                     let slackness = (SLACK_SHARE * desired / gap).min(ccd.slackness);
                     let ccd = AdditiveCcd { slackness, ..*ccd };
-                    let time = clearance(&ccd, problem, kind, &pair, x, paths, floor);
-                    let near = || end_distance(problem, kind, &pair, x, paths) < thickness * desired;
+                    let time = clearance(&ccd, scene, kind, &pair, x, paths, floor);
+                    let near = || end_distance(scene, kind, &pair, x, paths) < thickness * desired;
                     (time < 1.0 || (thickness > 0.0 && near())).then_some(Impact { time, ..impact })
                 });
             impacts.par_extend(found);
@@ -119,11 +119,11 @@ impl ImpactSearch {
 }
 
 /// Distance of a pair at the end of its paths [m].
-fn end_distance(problem: &Problem, kind: PairKind, pair: &Pair, x: &[Point], paths: &[Vector]) -> f64 {
+fn end_distance(scene: &CollisionScene, kind: PairKind, pair: &Pair, x: &[Point], paths: &[Vector]) -> f64 {
     let at = |v: u32| x[v as usize] + paths[v as usize];
     match kind {
         PairKind::VertexHalfSpace => {
-            problem.model.half_spaces()[pair.elements[1] as usize].signed_distance(&at(pair.vertices[0]))
+            scene.model().half_spaces()[pair.elements[1] as usize].signed_distance(&at(pair.vertices[0]))
         }
         _ => distance::closest(kind, &pair.vertices.map(at)).distance,
     }
@@ -131,7 +131,7 @@ fn end_distance(problem: &Problem, kind: PairKind, pair: &Pair, x: &[Point], pat
 
 fn clearance(
     ccd: &AdditiveCcd,
-    problem: &Problem,
+    scene: &CollisionScene,
     kind: PairKind,
     pair: &Pair,
     x: &[Point],
@@ -140,7 +140,7 @@ fn clearance(
 ) -> f64 {
     let vertices = pair.vertices.map(|v| v as usize);
     if kind == PairKind::VertexHalfSpace {
-        let half_space = &problem.model.half_spaces()[pair.elements[1] as usize];
+        let half_space = &scene.model().half_spaces()[pair.elements[1] as usize];
         return ccd.half_space_clearance(half_space, &x[vertices[0]], &paths[vertices[0]], floor).time;
     }
     ccd.clearance(kind, &vertices.map(|v| x[v]), &vertices.map(|v| paths[v]), floor, 1.0).time

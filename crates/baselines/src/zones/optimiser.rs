@@ -4,7 +4,7 @@ use super::rows::ImpactRows;
 use super::{Impact, ImpactSearch};
 use crate::{Method, Outcome};
 use bowknot_twoway::geometry::{Point, Vector};
-use bowknot_twoway::{Call, Problem, ResolveError};
+use bowknot_twoway::{CallInput, CollisionScene, ResolveError, ResolveInput};
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
@@ -59,7 +59,7 @@ impl Default for ZoneParams {
 /// they were. Vertices that are prescribed go to their keyframe or make it fail; edges have no limits.
 #[derive(Debug)]
 pub struct ImpactZones {
-    problem: Problem,
+    scene: CollisionScene,
     /// Settings.
     pub params: ZoneParams,
     search: ImpactSearch,
@@ -77,9 +77,9 @@ pub(crate) struct Attempt {
 
 impl ImpactZones {
     /// Of the scene in `problem`; of its parameters lengths and limits on steps and seconds count.
-    pub fn new(problem: Problem, params: ZoneParams) -> Self {
-        let search = ImpactSearch::new(&problem.model);
-        Self { problem, params, search, rows: ImpactRows::default() }
+    pub fn new(scene: CollisionScene, params: ZoneParams) -> Self {
+        let search = ImpactSearch::new(scene.model());
+        Self { scene, params, search, rows: ImpactRows::default() }
     }
 
     /// Optimises the target; leaves positions alone.
@@ -87,14 +87,14 @@ impl ImpactZones {
         &mut self,
         positions: &[Point],
         target: &[Point],
-        call: &Call<'_>,
+        input: &ResolveInput<'_>,
         outcome: &mut Outcome,
     ) -> Result<Attempt, ResolveError> {
         let clock = Instant::now();
-        let Self { problem, params, search, rows } = self;
-        problem.begin(positions, target, call)?;
-        let growth = growth(problem, call);
-        let limits = &problem.params.stop;
+        let Self { scene, params, search, rows } = self;
+        let call = CallInput::new(scene, positions, target, input)?;
+        let growth = growth(scene, &call);
+        let limits = &scene.params().solver.stop;
         let max_iterations = limits.max_steps.unwrap_or(usize::MAX).min(params.max_iterations);
         let free: Vec<Vector> = target.iter().map(|y| y.coords).collect();
         let mut y = free.clone();
@@ -104,15 +104,15 @@ impl ImpactZones {
         loop {
             paths.clear();
             paths.extend(y.iter().zip(positions).map(|(y, x)| y - x.coords));
-            let impacts: Vec<Impact> = search.find(problem, positions, &paths, growth, |_| true, outcome);
+            let impacts: Vec<Impact> = search.find(scene, positions, &paths, growth, |_| true, outcome);
             let out_of_time = limits.max_seconds.is_some_and(|s| clock.elapsed().as_secs_f64() > s);
             if impacts.is_empty() || outcome.steps >= max_iterations || out_of_time {
                 let target = y.into_iter().map(Point::from).collect();
                 return Ok(Attempt { target, clear: impacts.is_empty() });
             }
             let backward = Instant::now();
-            impacts.iter().for_each(|impact| rows.add(problem, impact, positions, &paths));
-            if let Err(error) = rows.solve(problem, params, &free, &mut y) {
+            impacts.iter().for_each(|impact| rows.add(scene, impact, positions, &paths));
+            if let Err(error) = rows.solve(scene, &call, params, &free, &mut y) {
                 // Built from checked parts: a refusal is our own error.
                 tracing::error!(%error, "impact zones refused their own rows");
                 let target = y.into_iter().map(Point::from).collect();
@@ -124,9 +124,9 @@ impl ImpactZones {
     }
 }
 
-/// By how much a call may ask a gap to grow [m].
-pub(crate) fn growth(problem: &Problem, call: &Call<'_>) -> f64 {
-    call.time_step.map_or(f64::INFINITY, |dt| problem.lengths.separation_speed * dt)
+/// By how much, at most, a call asks a gap to grow [m].
+pub(crate) fn growth(scene: &CollisionScene, call: &CallInput) -> f64 {
+    call.time_step().map_or(f64::INFINITY, |dt| scene.lengths().separation_speed * dt)
 }
 
 impl Method for ImpactZones {
@@ -142,11 +142,11 @@ impl Method for ImpactZones {
         &mut self,
         positions: &mut [Point],
         target: &[Point],
-        call: &Call<'_>,
+        input: &ResolveInput<'_>,
     ) -> Result<Outcome, ResolveError> {
         let clock = Instant::now();
         let mut outcome = Outcome::default();
-        let attempt = self.optimise(positions, target, call, &mut outcome)?;
+        let attempt = self.optimise(positions, target, input, &mut outcome)?;
         outcome.converged = attempt.clear;
         outcome.failed = !attempt.clear;
         if attempt.clear {

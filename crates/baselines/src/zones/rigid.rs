@@ -4,8 +4,8 @@ use super::optimiser::growth;
 use super::rigid_motion::Motion;
 use super::{Impact, ImpactSearch};
 use crate::{Method, Outcome};
-use bowknot_twoway::geometry::{PairKind, Point, Vector};
-use bowknot_twoway::{Call, Problem, ResolveError};
+use bowknot_twoway::geometry::{PairKind, Point, UnionFind, Vector};
+use bowknot_twoway::{CallInput, CollisionScene, ResolveError, ResolveInput};
 use std::collections::BTreeMap;
 use std::time::Instant;
 
@@ -19,15 +19,15 @@ use std::time::Instant;
 /// of impulses before it; here it stands alone, as the two-way paper's Table 1 has it.
 #[derive(Debug)]
 pub struct RigidZones {
-    problem: Problem,
+    scene: CollisionScene,
     search: ImpactSearch,
 }
 
 impl RigidZones {
     /// Of the scene in `problem`.
-    pub fn new(problem: Problem) -> Self {
-        let search = ImpactSearch::new(&problem.model);
-        Self { problem, search }
+    pub fn new(scene: CollisionScene) -> Self {
+        let search = ImpactSearch::new(scene.model());
+        Self { scene, search }
     }
 }
 
@@ -40,19 +40,19 @@ impl Method for RigidZones {
         &mut self,
         positions: &mut [Point],
         target: &[Point],
-        call: &Call<'_>,
+        input: &ResolveInput<'_>,
     ) -> Result<Outcome, ResolveError> {
         let clock = Instant::now();
-        let Self { problem, search } = self;
-        problem.begin(positions, target, call)?;
+        let Self { scene, search } = self;
+        let call = CallInput::new(scene, positions, target, input)?;
         let mut outcome = Outcome { converged: true, ..Outcome::default() };
-        let growth = growth(problem, call);
+        let growth = growth(scene, &call);
         let wanted: Vec<Vector> = target.iter().zip(&*positions).map(|(y, x)| y - x).collect();
         let mut paths = wanted.clone();
-        let mut zones = Zones::new(problem);
+        let mut zones = Zones::new(scene, &call);
         loop {
             let judged = |impact: &Impact| !zones.hold(impact);
-            let impacts = search.find(problem, positions, &paths, growth, judged, &mut outcome);
+            let impacts = search.find(scene, positions, &paths, growth, judged, &mut outcome);
             if impacts.is_empty() {
                 break;
             }
@@ -60,7 +60,7 @@ impl Method for RigidZones {
             for impact in &impacts {
                 zones.unite(impact);
             }
-            zones.move_all(problem, positions, &wanted, &mut paths);
+            zones.move_all(scene, &call, positions, &wanted, &mut paths);
             outcome.steps += 1;
             outcome.seconds.backward += merging.elapsed().as_secs_f64();
         }
@@ -73,7 +73,7 @@ impl Method for RigidZones {
 /// A partition of vertices, and of half-spaces behind them, into zones.
 #[derive(Debug)]
 struct Zones {
-    parent: Vec<usize>,
+    sets: UnionFind,
     vertices: usize,
     /// Roots of the zones that something has met.
     met: Vec<bool>,
@@ -81,17 +81,17 @@ struct Zones {
 
 impl Zones {
     /// Everything alone, but what goes as one: obstacles, groups of pins.
-    fn new(problem: &Problem) -> Self {
-        let vertices = problem.rest.len();
-        let nodes = vertices + problem.model.half_spaces().len();
-        let mut zones = Self { parent: (0..nodes).collect(), vertices, met: vec![false; nodes] };
+    fn new(scene: &CollisionScene, call: &CallInput) -> Self {
+        let vertices = scene.rest().len();
+        let nodes = vertices + scene.model().half_spaces().len();
+        let mut zones = Self { sets: UnionFind::new(nodes), vertices, met: vec![false; nodes] };
         let mut first = BTreeMap::new();
-        for v in (0..vertices).filter(|&v| problem.prescribed[v]) {
-            let who = match problem.model.is_obstacle(v as u32) {
-                true => (0, problem.model.vertex_body()[v]),
-                false => match problem.groups.get(v) {
-                    Some(&group) if group != Call::NO_GROUP => (1, group),
-                    _ => continue,
+        for v in (0..vertices).filter(|&v| call.is_prescribed(v)) {
+            let who = match scene.model().is_obstacle(v as u32) {
+                true => (0, scene.model().vertex_body()[v]),
+                false => match call.groups().of(v) {
+                    Some(group) => (1, group),
+                    None => continue,
                 },
             };
             let leader = *first.entry(who).or_insert(v);
@@ -113,18 +113,15 @@ impl Zones {
         roots.next().is_some_and(|first| self.met[first] && roots.all(|root| root == first))
     }
 
-    fn root(&self, mut node: usize) -> usize {
-        while self.parent[node] != node {
-            node = self.parent[node];
-        }
-        node
+    fn root(&self, node: usize) -> usize {
+        self.sets.root(node as u32) as usize
     }
 
     /// Makes one zone of two, named after its smallest node.
     fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.root(a), self.root(b));
         let (low, high) = (a.min(b), a.max(b));
-        self.parent[high] = low;
+        self.sets.join(low as u32, high as u32);
         self.met[low] |= self.met[high];
     }
 
@@ -137,11 +134,17 @@ impl Zones {
     }
 
     /// Sets the paths of all zones that something has met.
-    fn move_all(&mut self, problem: &Problem, x: &[Point], wanted: &[Vector], paths: &mut [Vector]) {
+    fn move_all(
+        &mut self,
+        scene: &CollisionScene,
+        call: &CallInput,
+        x: &[Point],
+        wanted: &[Vector],
+        paths: &mut [Vector],
+    ) {
         let mut members: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for node in 0..self.parent.len() {
-            let root = self.root(node);
-            self.parent[node] = root;
+        for node in 0..self.sets.len() {
+            let root = self.sets.find(node as u32) as usize;
             if self.met[root] {
                 members.entry(root).or_default().push(node);
             }
@@ -149,8 +152,8 @@ impl Zones {
         for nodes in members.values() {
             let grounded = nodes.iter().any(|&node| node >= self.vertices);
             let vertices = || nodes.iter().copied().filter(|&node| node < self.vertices);
-            let of = |v: usize| (x[v], wanted[v], problem.relative_mass[v]);
-            let prescribed: Vec<_> = vertices().filter(|&v| problem.prescribed[v]).map(of).collect();
+            let of = |v: usize| (x[v], wanted[v], scene.relative_mass(v));
+            let prescribed: Vec<_> = vertices().filter(|&v| call.is_prescribed(v)).map(of).collect();
             let motion = if prescribed.is_empty() && !grounded {
                 Motion::keeping_momentum(&vertices().map(of).collect::<Vec<_>>())
             } else if prescribed.is_empty() {

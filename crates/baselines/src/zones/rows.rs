@@ -2,10 +2,10 @@
 
 use super::{Impact, ZoneParams, ZoneSolver};
 use crate::rows::{AugmentedLagrangian, LinearSystem};
-use bowknot_twoway::Problem;
 use bowknot_twoway::constraints::{Colouring, ContactForm, contact_row};
 use bowknot_twoway::geometry::{PairKind, Point, Vector, separation};
-use bowknot_twoway::lcp::{self, Family, Row, Schedule, State};
+use bowknot_twoway::lcp::{self, ConstraintSet, LcpState, Row, Schedule};
+use bowknot_twoway::{CallInput, CollisionScene};
 use std::collections::BTreeMap;
 
 /// One row a pair, from its latest impact.
@@ -24,7 +24,7 @@ impl ImpactRows {
 
     /// Adds the row of an impact, or replaces the pair's and keeps its multiplier: where the pair surely is still
     /// apart, along its normal there, n . (p - q)(y) >= desired distance.
-    pub(crate) fn add(&mut self, problem: &Problem, impact: &Impact, x: &[Point], paths: &[Vector]) {
+    pub(crate) fn add(&mut self, scene: &CollisionScene, impact: &Impact, x: &[Point], paths: &[Vector]) {
         let kind = impact.kind;
         let mut vertices = impact.pair.vertices;
         let first = vertices[0];
@@ -33,7 +33,7 @@ impl ImpactRows {
         let points = vertices.map(at);
         let separation = match kind {
             PairKind::VertexHalfSpace => {
-                let half_space = &problem.model.half_spaces()[impact.pair.elements[1] as usize];
+                let half_space = &scene.model().half_spaces()[impact.pair.elements[1] as usize];
                 separation::separate_half_space(&points[0], half_space)
             }
             _ => separation::separate(kind, &points),
@@ -46,36 +46,41 @@ impl ImpactRows {
     /// Moves `y` [m], one entry a vertex, from `free` to where the rows hold, as far as the solver gets.
     pub(crate) fn solve(
         &mut self,
-        problem: &Problem,
+        scene: &CollisionScene,
+        call: &CallInput,
         params: &ZoneParams,
         free: &[Vector],
         y: &mut Vec<Vector>,
-    ) -> Result<(), lcp::Error> {
+    ) -> Result<(), lcp::LcpError> {
         let weights: Vec<f64> = (0..free.len())
-            .map(|v| if problem.movable(v) { 1.0 / problem.relative_mass[v] } else { 0.0 })
+            .map(|v| if call.is_movable(v) { 1.0 / scene.relative_mass(v) } else { 0.0 })
             .collect();
         let list: Vec<(Row, f64)> = self.rows.values().copied().collect();
         self.colouring.first_fit(free.len(), list.len(), |r| {
-            list[r].0.vertices.into_iter().filter(|&v| problem.movable(v as usize))
+            list[r].0.vertices.into_iter().filter(|&v| call.is_movable(v as usize))
         });
         let order = self.colouring.order();
         let mut rows: Vec<Row> = order.iter().map(|&r| list[r as usize].0).collect();
         let mut lambda: Vec<f64> = order.iter().map(|&r| list[r as usize].1).collect();
         lcp::prepare_rows(&mut rows, &weights)?;
         let schedule = Schedule::coloured(self.colouring.starts());
-        let system =
-            lcp::Problem::new(&weights, Family::new(&rows, schedule), Family::default(), Family::default())?;
+        let system = lcp::LcpProblem::new(
+            &weights,
+            ConstraintSet::new(&rows, schedule),
+            ConstraintSet::default(),
+            ConstraintSet::default(),
+        )?;
         y.clear();
         y.extend_from_slice(free);
-        let mut state = State { y, lambda: &mut lambda, ..State::default() };
+        let mut state = LcpState { y, lambda: &mut lambda, ..LcpState::default() };
         lcp::apply_multipliers(&system, &mut state)?;
         match params.solver {
             ZoneSolver::GaussSeidel => {
-                let tolerance = Some(params.tolerance * problem.lengths.delta);
+                let tolerance = Some(params.tolerance * scene.lengths().delta);
                 let params =
-                    lcp::Params { max_sweeps: params.max_sweeps, tolerance, ..lcp::Params::default() };
+                    lcp::LcpParams { max_sweeps: params.max_sweeps, tolerance, ..lcp::LcpParams::default() };
                 match lcp::solve_coloured(&system, &mut state, &params) {
-                    Ok(_) | Err(lcp::Error::NotConverged { .. }) => {}
+                    Ok(_) | Err(lcp::LcpError::NotConverged { .. }) => {}
                     Err(error) => return Err(error),
                 }
             }

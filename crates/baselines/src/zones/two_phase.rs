@@ -3,7 +3,7 @@
 use super::{ImpactZones, ZoneParams};
 use crate::{Method, Outcome};
 use bowknot_twoway::geometry::Point;
-use bowknot_twoway::{Call, Problem, ResolveError};
+use bowknot_twoway::{CollisionScene, ResolveError, ResolveInput};
 use std::time::Instant;
 
 /// The soft and the hard phase of Wu et al. 2020 ("A safe and fast repulsion method for GPU-based cloth self collisions";
@@ -23,10 +23,10 @@ pub struct TwoPhase<H> {
 
 impl<H: Method> TwoPhase<H> {
     /// Of the scene in `problem`, with so many rounds at most in the soft phase; `hard` is a method for the same scene.
-    pub fn new(problem: Problem, soft_rounds: usize, hard: H) -> Self {
+    pub fn new(scene: CollisionScene, soft_rounds: usize, hard: H) -> Self {
         let params = ZoneParams { max_iterations: soft_rounds, ..ZoneParams::default() };
         let name = format!("two phases, hard: {}", hard.name());
-        Self { name, soft: ImpactZones::new(problem, params), hard, fallbacks: 0 }
+        Self { name, soft: ImpactZones::new(scene, params), hard, fallbacks: 0 }
     }
 
     /// Calls so far that needed the hard phase.
@@ -44,11 +44,11 @@ impl<H: Method> Method for TwoPhase<H> {
         &mut self,
         positions: &mut [Point],
         target: &[Point],
-        call: &Call<'_>,
+        input: &ResolveInput<'_>,
     ) -> Result<Outcome, ResolveError> {
         let clock = Instant::now();
         let mut outcome = Outcome::default();
-        let attempt = self.soft.optimise(positions, target, call, &mut outcome)?;
+        let attempt = self.soft.optimise(positions, target, input, &mut outcome)?;
         if attempt.clear {
             positions.copy_from_slice(&attempt.target);
             outcome.converged = true;
@@ -57,7 +57,7 @@ impl<H: Method> Method for TwoPhase<H> {
             // Rows that contradict each other may have sent it far; beyond all bounds it is of no use.
             let finite = attempt.target.iter().all(|y| y.iter().all(|c| c.is_finite()));
             let target = if finite { &attempt.target } else { target };
-            let hard = self.hard.solve(positions, target, call)?;
+            let hard = self.hard.solve(positions, target, input)?;
             outcome.steps += hard.steps;
             outcome.searches += hard.searches;
             outcome.converged = hard.converged;

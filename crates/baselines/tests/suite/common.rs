@@ -3,7 +3,8 @@
 use bowknot_baselines::twoway::geometry::{HalfSpace, Point, Topology, Vector, intersection};
 use bowknot_baselines::twoway::proximity::{BodyFilter, CollisionModel};
 use bowknot_baselines::twoway::{
-    AcceptedState, BackwardStep, Call, ForwardStep, Params, Problem, Resolver, Search, State, Statistics,
+    AcceptedState, BackwardStep, CallInput, CollisionScene, ForwardStep, Params, ResolveInput, ResolveState,
+    Resolver, Search, Statistics,
 };
 use std::ops::ControlFlow;
 
@@ -27,7 +28,7 @@ impl Scene {
     pub fn vertex_above_triangle(height: f64) -> Self {
         let mut x = [[-1.0, -1.0, 0.0], [2.0, -1.0, 0.0], [-1.0, 2.0, 0.0]].map(Point::from).to_vec();
         x.push(Point::new(0.1, 0.2, height));
-        let topology = Topology::new(4, vec![[0, 1, 2]], &[], &[3]).unwrap();
+        let topology = Topology::builder(4).triangles([[0, 1, 2]]).particles([3]).build().unwrap();
         let bodies = vec![BodyFilter::OBSTACLE, BodyFilter::DEFORMABLE];
         Self { x, model: CollisionModel::new(topology, vec![0, 0, 0, 1], bodies, vec![]).unwrap() }
     }
@@ -67,7 +68,12 @@ impl Scene {
         }
         triangles.push([first, first + 1, first + 2]);
         bodies.resize(x.len(), 4);
-        let topology = Topology::new(x.len(), triangles, &strands, &particles).unwrap();
+        let topology = Topology::builder(x.len())
+            .triangles(triangles)
+            .strand_edges(strands.iter().copied())
+            .particles(particles.iter().copied())
+            .build()
+            .unwrap();
         let mut filters = vec![BodyFilter::DEFORMABLE; 5];
         filters[4] = BodyFilter::OBSTACLE;
         let ground = HalfSpace::new(Point::origin(), Vector::z()).unwrap();
@@ -81,7 +87,7 @@ impl Scene {
         let n = x.len();
         sheet(cells, 0.1, gap, &mut x, &mut triangles);
         let bodies = (0..2 * n).map(|i| u32::from(i >= n)).collect();
-        let topology = Topology::new(2 * n, triangles, &[], &[]).unwrap();
+        let topology = Topology::builder(2 * n).triangles(triangles).build().unwrap();
         Self {
             x,
             model: CollisionModel::new(topology, bodies, vec![BodyFilter::DEFORMABLE; 2], vec![]).unwrap(),
@@ -104,7 +110,7 @@ impl Scene {
     /// Where two sheets want to be that change places, and crumple on the way.
     pub fn swapped(&self) -> Vec<Point> {
         let n = self.x.len() / 2;
-        let mut draw = Draw(5);
+        let mut draw = Draw::new(5);
         (0..2 * n)
             .map(|v| {
                 let other = self.x[(v + n) % (2 * n)];
@@ -113,24 +119,30 @@ impl Scene {
             .collect()
     }
 
-    pub fn problem(&self, params: Params) -> Problem {
-        Problem::new(self.model.clone(), &self.x, &vec![0.01; self.x.len()], params).unwrap()
+    pub fn collision_scene(&self, params: Params) -> CollisionScene {
+        CollisionScene::new(self.model.clone(), &self.x, &vec![0.01; self.x.len()], params).unwrap()
     }
 }
 
-/// The state that a call starts from, with the pairs that its first search lists.
-pub fn listed(problem: &Problem, search: &mut dyn Search, x: &[Point], target: &[Point]) -> State {
-    let mut state = State {
+/// The state that a call starts from, with the candidate pairs of its first search.
+pub fn listed(
+    collision: &CollisionScene,
+    search: &mut dyn Search,
+    x: &[Point],
+    target: &[Point],
+) -> ResolveState {
+    let input = ResolveInput { time_step: Some(0.01), ..ResolveInput::default() };
+    let mut state = ResolveState {
         start: x.to_vec(),
         target: target.to_vec(),
         x: x.to_vec(),
         previous: x.to_vec(),
         y: target.to_vec(),
-        time_step: Some(0.01),
-        ..State::default()
+        call: CallInput::new(collision, x, target, &input).unwrap(),
+        ..ResolveState::default()
     };
-    search.begin(problem, &mut state);
-    search.update(problem, &mut state, &mut Statistics::default());
+    search.begin(collision, &mut state);
+    search.update(collision, &mut state, &mut Statistics::default());
     state
 }
 
@@ -152,8 +164,8 @@ pub fn resolve_watched<S: Search, B: BackwardStep, F: ForwardStep>(
         }
         ControlFlow::Continue(())
     };
-    let call = Call { time_step: Some(0.01), ..Call::default() };
-    let statistics = resolver.resolve(&mut x, target, &call, &mut watch).unwrap();
+    let input = ResolveInput { time_step: Some(0.01), ..ResolveInput::default() };
+    let statistics = resolver.resolve_with(&mut x, target, &input, &mut watch).unwrap();
     (x, statistics)
 }
 

@@ -9,7 +9,7 @@ use crate::summary::{COLUMNS, Compared, on_scenes, ratios, table};
 use crate::table::{geometric_mean, times};
 use anyhow::Result;
 use bowknot::constraints::{ContactForm, EdgeReference};
-use bowknot::twoway::Params;
+use bowknot::twoway::{Params, StopRule};
 
 pub struct CollisionError {
     /// Problems of a dynamics that knows of no contact, or of Bowknot's own.
@@ -104,39 +104,41 @@ pub fn settings() -> Result<Vec<Setting>> {
     };
     for sweeps in [1, 2, 4, 16, 32] {
         vary("fast", format!("{sweeps} sweeps"), &|p| {
-            p.backward.sweeps = sweeps;
-            p.backward.polish_sweeps = p.backward.polish_sweeps.max(sweeps);
+            p.solver.backward.sweeps = sweeps;
+            p.solver.backward.polish_sweeps = p.solver.backward.polish_sweeps.max(sweeps);
         })?;
     }
     for distance in [0.3, 0.1, 0.01, 0.003, 0.001] {
-        vary("fast", format!("stop at {distance} h"), &|p| p.stop.distance = distance)?;
+        vary("fast", format!("stop at {distance} h"), &|p| p.solver.stop.distance = distance)?;
     }
     for distance in [0.01, 0.001] {
         vary("fast", format!("stop at {distance} h, drag {distance}"), &|p| {
-            p.stop.distance = distance;
-            p.stop.drag = Some(distance);
+            p.solver.stop.distance = distance;
+            p.solver.stop.rule = StopRule::Travel { net_residual: 0.2, residual: Some(distance) };
         })?;
     }
     for kappa in [0.05, 0.2, 0.5, 1.0] {
-        vary("fast", format!("kappa {kappa}"), &|p| p.backward.contact_proximal = kappa)?;
+        vary("fast", format!("kappa {kappa}"), &|p| p.solver.backward.contact_proximal = kappa)?;
     }
     for strength in [0.05, 0.2, 0.35, 0.7] {
-        vary("fast", format!("edge proximal {strength}"), &|p| p.backward.edge_proximal = strength)?;
+        vary("fast", format!("edge proximal {strength}"), &|p| p.solver.backward.edge_proximal = strength)?;
     }
-    vary("fast", "growth 1".to_owned(), &|p| p.backward.proximal_growth = 1.0)?;
-    vary("fast", "volume form".to_owned(), &|p| p.constraints.form = ContactForm::Volume)?;
-    vary("fast", "no floor".to_owned(), &|p| p.stepper.floor = Some(0.0))?;
-    vary("paper", "edges from rest".to_owned(), &|p| p.constraints.edge_reference = EdgeReference::Rest)?;
+    vary("fast", "growth 1".to_owned(), &|p| p.solver.backward.proximal_growth = 1.0)?;
+    vary("fast", "volume form".to_owned(), &|p| p.contact.form = ContactForm::Volume)?;
+    vary("fast", "no floor".to_owned(), &|p| p.contact.min_separation = Some(0.0))?;
+    vary("paper", "edges from rest".to_owned(), &|p| p.contact.edge_reference = EdgeReference::Rest)?;
     for clock in [1e-1, 1e-2] {
-        vary("paper", format!("epsilon {clock}"), &|p| p.stop.clock = clock)?;
+        vary("paper", format!("epsilon {clock}"), &|p| {
+            p.solver.stop.rule = StopRule::Clock { remaining_fraction: clock };
+        })?;
     }
     for sweeps in [4, 16] {
         vary("paper", format!("{sweeps} sweeps"), &|p| {
-            p.backward.sweeps = sweeps;
-            p.backward.polish_sweeps = sweeps;
+            p.solver.backward.sweeps = sweeps;
+            p.solver.backward.polish_sweeps = sweeps;
         })?;
     }
-    vary("paper", "gap form".to_owned(), &|p| p.constraints.form = ContactForm::Gap)?;
+    vary("paper", "gap form".to_owned(), &|p| p.contact.form = ContactForm::Gap)?;
     Ok(settings)
 }
 

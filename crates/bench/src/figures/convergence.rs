@@ -69,7 +69,7 @@ impl Figure for Convergence {
 
     fn question(&self) -> &'static str {
         "A time step alternates Newton iterations and collision stages. First: its residual after k iterations, all 16 made \
-         (`solver.step_tolerance=0`), medians and quartiles over the time steps of the second half of small runs. The residual is the \
+         (`solver.newton.step_tolerance=0`), medians and quartiles over the time steps of the second half of small runs. The residual is the \
          distance, in mean edge lengths, that the forces left over are worth: inertia, elasticity, contact and friction. The \
          default ends a time step at 0.003 (in time steps of 1/20 s at 0.015), when three iterations in a row do not take off 30 %, or after 8 iterations. \
          \n\n\
@@ -218,7 +218,7 @@ impl Subject {
     fn scene(&self, iterations: Option<usize>) -> Result<Scene> {
         let mut sets: Vec<String> = Vec::new();
         if let Some(count) = iterations {
-            sets.push("solver.step_tolerance=0".to_owned());
+            sets.push("solver.newton.step_tolerance=0".to_owned());
             sets.push(format!("simulation.newton_iterations={count}"));
         }
         Ok(Scene::builtin(self.scene, self.scale)?.with_sets(&sets)?)
@@ -226,7 +226,7 @@ impl Subject {
 
     fn residuals(&self, bench: &Bench) -> Result<Residuals> {
         let mut simulator = Simulator::new(&self.scene(Some(SHOWN))?)?;
-        let mut seen = Seen { edge: simulator.resolver().problem().lengths.edge, residuals: Vec::new() };
+        let mut seen = Seen { edge: simulator.resolver().scene().lengths().edge, residuals: Vec::new() };
         for _ in 0..self.frames(bench) {
             seen.residuals.push(Vec::with_capacity(SHOWN));
             simulator.step_watched(&mut seen)?;
@@ -248,7 +248,7 @@ impl Subject {
         }
         let (first, last) = (first.unwrap_or(0), states.len() - 1);
         let chosen = (0..STATES).map(|k| states[first + k * (last - first) / (STATES - 1)].clone()).collect();
-        Ok((simulator.resolver().problem().lengths.edge, chosen))
+        Ok((simulator.resolver().scene().lengths().edge, chosen))
     }
 
     /// Makes time steps from each of the states.

@@ -54,7 +54,7 @@ impl Figure for EarlyContact {
                 let flat = simulate(bench, &format!("{key}-flat"), &sheet()?.with_sets(&sets)?, 100, 1)?;
                 let height = flat.samples.last().map_or(f64::NAN, |s| s.center[2]);
                 let drape = Scene::builtin("drape", bench.size.pick(0.4, 0.2, 0.15))?;
-                let edge = bowknot::Simulator::new(&drape)?.resolver().problem().lengths.edge;
+                let edge = bowknot::Simulator::new(&drape)?.resolver().scene().lengths().edge;
                 let sets = [
                     format!("contact.preset={preset}"),
                     format!("contact.delta={:?}", delta * edge),

@@ -139,8 +139,10 @@ fn scene(bench: &Bench, subject: &Subject, sets: &[String]) -> Result<Scene> {
 fn ends(bench: &Bench, subject: &Subject, joint: bool, iterations: usize) -> Result<Ends> {
     let word = if joint { "joint" } else { "post" };
     bench.store.measured(&format!("joint/{}-{word}-{iterations}", subject.scene), || {
-        let mut sets =
-            vec![format!("simulation.newton_iterations={iterations}"), "solver.step_tolerance=0".to_owned()];
+        let mut sets = vec![
+            format!("simulation.newton_iterations={iterations}"),
+            "solver.newton.step_tolerance=0".to_owned(),
+        ];
         if joint {
             sets.push("solver.stop.max_steps=1".to_owned());
         }

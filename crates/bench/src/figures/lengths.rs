@@ -52,7 +52,7 @@ const SWEEPS: [Sweep; 3] = [
         methods: &["fast"],
         values: &[0.01, 0.03, 0.1, 0.3],
         recorded: 0.1,
-        set: |v| ProblemLengths { floor: Some(v), ..ProblemLengths::default() },
+        set: |v| ProblemLengths { min_separation: Some(v), ..ProblemLengths::default() },
     },
 ];
 

@@ -51,7 +51,7 @@ impl Figure for Newton {
                     let sets = [
                         format!("contact.preset={preset}"),
                         format!("simulation.newton_iterations={newton}"),
-                        "solver.step_tolerance=0".to_owned(),
+                        "solver.newton.step_tolerance=0".to_owned(),
                         format!("simulation.collision_every={every}"),
                         "solver.stop.max_seconds=1".to_owned(),
                     ];

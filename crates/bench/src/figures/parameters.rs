@@ -30,7 +30,7 @@ const SWEEPS: [Sweep; 4] = [
         unit: "delta",
         methods: &["paper"],
         values: &[0.5, 1.0, 2.0, 3.0, 3.8],
-        set: |p, v| p.stepper.budget_min = 0.5 * v,
+        set: |p, v| p.solver.forward.trust_region_min = 0.5 * v,
     },
     Sweep {
         symbol: "D_max",
@@ -38,7 +38,7 @@ const SWEEPS: [Sweep; 4] = [
         unit: "delta",
         methods: &["paper"],
         values: &[2.5, 4.0, 6.0, 10.0, 16.0],
-        set: |p, v| p.stepper.budget_max = 0.5 * v,
+        set: |p, v| p.solver.forward.trust_region_max = 0.5 * v,
     },
     Sweep {
         symbol: "gamma",
@@ -46,7 +46,7 @@ const SWEEPS: [Sweep; 4] = [
         unit: "1",
         methods: &["paper", "fast"],
         values: &[0.3, 0.5, 0.7, 0.9, 0.99],
-        set: |p, v| p.stepper.damping = v,
+        set: |p, v| p.solver.forward.damping = v,
     },
     Sweep {
         symbol: "budgets up to",
@@ -54,7 +54,7 @@ const SWEEPS: [Sweep; 4] = [
         unit: "edge lengths",
         methods: &["fast"],
         values: &[0.12, 0.18, 0.25, 0.4, 0.6],
-        set: |p, v| p.stepper.budget_max = v,
+        set: |p, v| p.solver.forward.trust_region_max = v,
     },
 ];
 

@@ -48,12 +48,12 @@ impl Figure for RowSolvers {
         );
         let mut settings = vec![
             Setting::of("paper")?,
-            Setting::of("paper")?.with("no edge limits", |p| p.constraints.edges = false),
+            Setting::of("paper")?.with("no edge limits", |p| p.contact.edges = false),
         ];
         for method in OTHERS {
             settings.push(Setting::of(method)?);
         }
-        settings.push(Setting::of("Harmon 2008")?.with("edge limits", |p| p.constraints.edges = true));
+        settings.push(Setting::of("Harmon 2008")?.with("edge limits", |p| p.contact.edges = true));
         for sweeps in bench.size.pick(&[8, 80, 800][..], &[8], &[8]) {
             let sweeps = *sweeps;
             settings.push(

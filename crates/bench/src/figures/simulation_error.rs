@@ -171,8 +171,8 @@ fn settings(contact: bool) -> Vec<(String, Vec<String>)> {
             vec![newton(4), "simulation.collision_every=step".to_owned()],
         ));
         for (name, set) in [
-            ("fast, 1, 1 sweep", "solver.sweeps=1"),
-            ("fast, 1, 32 sweeps", "solver.sweeps=32"),
+            ("fast, 1, 1 sweep", "solver.backward.sweeps=1"),
+            ("fast, 1, 32 sweeps", "solver.backward.sweeps=32"),
             ("fast, 1, stop at 0.1 h", "solver.stop.distance=0.1"),
             ("fast, 1, stop at 0.001 h", "solver.stop.distance=0.001"),
             ("fast, 1, no repulsion", "solver.repulsion.stiffness=0"),
@@ -186,7 +186,8 @@ fn settings(contact: bool) -> Vec<(String, Vec<String>)> {
 }
 
 fn reference(bench: &Bench, subject: &Subject) -> Result<Simulation> {
-    let sets = [format!("simulation.newton_iterations={CONVERGED}"), "solver.step_tolerance=0".to_owned()];
+    let sets =
+        [format!("simulation.newton_iterations={CONVERGED}"), "solver.newton.step_tolerance=0".to_owned()];
     at(bench, subject, "reference", &sets, subject.coarsest * subject.reference)
 }
 
@@ -275,7 +276,7 @@ mod tests {
             let sets = [
                 format!("simulation.dt={:?}", 0.2 / steps as f64),
                 "simulation.newton_iterations=6".to_owned(),
-                "solver.step_tolerance=0".to_owned(),
+                "solver.newton.step_tolerance=0".to_owned(),
                 "body.0.shape.edge=0.1".to_owned(),
             ];
             let scene = swing().expect("a scene").with_sets(&sets).expect("sound keys");

@@ -47,11 +47,11 @@ impl Figure for Sweeps {
         for (method, values) in ["paper", "fast"].iter().zip(&mut values) {
             for sweeps in SWEEPS {
                 let plain = Setting::of(method)?;
-                let setting = match plain.params.backward.sweeps == sweeps {
+                let setting = match plain.params.solver.backward.sweeps == sweeps {
                     true => plain,
                     false => plain.with(format!("{sweeps} sweeps"), |p| {
-                        p.backward.sweeps = sweeps;
-                        p.backward.polish_sweeps = p.backward.polish_sweeps.max(sweeps);
+                        p.solver.backward.sweeps = sweeps;
+                        p.solver.backward.polish_sweeps = p.solver.backward.polish_sweeps.max(sweeps);
                     }),
                 };
                 values.push((sweeps as f64, setting.method, setting.change.clone()));

@@ -18,53 +18,63 @@ struct Switch {
 }
 
 const SWITCHES: [Switch; 16] = [
-    Switch { name: "gap form", copy: |to, from| to.constraints.form = from.constraints.form },
-    Switch { name: "edges as balls", copy: |to, from| to.constraints.edge_form = from.constraints.edge_form },
+    Switch { name: "gap form", copy: |to, from| to.contact.form = from.contact.form },
+    Switch { name: "edges as balls", copy: |to, from| to.contact.edge_form = from.contact.edge_form },
     Switch {
         name: "edges limited from rest",
-        copy: |to, from| to.constraints.edge_reference = from.constraints.edge_reference,
+        copy: |to, from| to.contact.edge_reference = from.contact.edge_reference,
     },
-    Switch { name: "planes", copy: |to, from| to.stepper.bound = from.stepper.bound },
+    Switch { name: "planes", copy: |to, from| to.solver.forward.bound = from.solver.forward.bound },
     Switch {
         name: "budgets",
         copy: |to, from| {
-            to.stepper.budget = from.stepper.budget;
-            to.stepper.budget_min = from.stepper.budget_min;
-            to.stepper.budget_max = from.stepper.budget_max;
+            to.solver.forward.trust_region = from.solver.forward.trust_region;
+            to.solver.forward.trust_region_min = from.solver.forward.trust_region_min;
+            to.solver.forward.trust_region_max = from.solver.forward.trust_region_max;
         },
     },
-    Switch { name: "floor", copy: |to, from| to.stepper.floor = from.stepper.floor },
-    Switch { name: "swept search", copy: |to, from| to.stepper.swept_travel = from.stepper.swept_travel },
-    Switch { name: "rows from 2 delta", copy: |to, from| to.constraints.range = from.constraints.range },
+    Switch { name: "floor", copy: |to, from| to.contact.min_separation = from.contact.min_separation },
+    Switch {
+        name: "swept search",
+        copy: |to, from| to.solver.forward.swept_travel = from.solver.forward.swept_travel,
+    },
+    Switch { name: "rows from 2 delta", copy: |to, from| to.contact.range = from.contact.range },
     Switch {
         name: "8 sweeps",
         copy: |to, from| {
-            to.backward.sweeps = from.backward.sweeps;
-            to.backward.polish_sweeps = to.backward.polish_sweeps.max(from.backward.sweeps);
+            to.solver.backward.sweeps = from.solver.backward.sweeps;
+            to.solver.backward.polish_sweeps =
+                to.solver.backward.polish_sweeps.max(from.solver.backward.sweeps);
         },
     },
     Switch {
         name: "further sweeps at the end",
-        copy: |to, from| to.backward.polish_sweeps = from.backward.polish_sweeps.max(to.backward.sweeps),
+        copy: |to, from| {
+            to.solver.backward.polish_sweeps =
+                from.solver.backward.polish_sweeps.max(to.solver.backward.sweeps)
+        },
     },
     Switch {
         name: "proximal term, edges",
-        copy: |to, from| to.backward.edge_proximal = from.backward.edge_proximal,
+        copy: |to, from| to.solver.backward.edge_proximal = from.solver.backward.edge_proximal,
     },
     Switch {
         name: "proximal term, contacts",
-        copy: |to, from| to.backward.contact_proximal = from.backward.contact_proximal,
+        copy: |to, from| to.solver.backward.contact_proximal = from.solver.backward.contact_proximal,
     },
     Switch {
         name: "growth of the proximal term",
-        copy: |to, from| to.backward.proximal_growth = from.backward.proximal_growth,
+        copy: |to, from| to.solver.backward.proximal_growth = from.solver.backward.proximal_growth,
     },
     Switch {
         name: "coarse correction",
-        copy: |to, from| to.backward.coarse_correction = from.backward.coarse_correction,
+        copy: |to, from| to.solver.backward.coarse_correction = from.solver.backward.coarse_correction,
     },
-    Switch { name: "active rows", copy: |to, from| to.backward.active_rows = from.backward.active_rows },
-    Switch { name: "stop by travel", copy: |to, from| to.stop.rule = from.stop.rule },
+    Switch {
+        name: "active rows",
+        copy: |to, from| to.solver.backward.active_rows = from.solver.backward.active_rows,
+    },
+    Switch { name: "stop by travel", copy: |to, from| to.solver.stop.rule = from.solver.stop.rule },
 ];
 
 /// Seconds of a solve: without some points there is no end.

@@ -11,7 +11,7 @@ use crate::bench::Bench;
 use crate::case::Case;
 use anyhow::Result;
 use bowknot::geometry::Point;
-use bowknot::twoway::{AcceptedState, Params};
+use bowknot::twoway::{AcceptedState, Params, StopRule};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
@@ -49,13 +49,13 @@ pub fn solution(bench: &Bench, case: &Case) -> Result<Option<Vec<Point>>> {
 /// `fast` with nothing left to chance.
 pub fn params(seconds: f64) -> Params {
     let mut params = Params::fast();
-    params.backward.sweeps = 200;
-    params.backward.polish_sweeps = 200;
-    params.backward.active_rows = false;
-    params.stop.max_steps = Some(20_000);
-    params.stop.max_seconds = Some(seconds);
+    params.solver.backward.sweeps = 200;
+    params.solver.backward.polish_sweeps = 200;
+    params.solver.backward.active_rows = false;
+    params.solver.stop.max_steps = Some(20_000);
+    params.solver.stop.max_seconds = Some(seconds);
     // It ends when x is at rest, by no rule of its own.
-    params.stop.imbalance = 0.0;
+    params.solver.stop.rule = StopRule::Travel { net_residual: 0.0, residual: None };
     params
 }
 
@@ -75,10 +75,11 @@ pub fn at_rest(case: &Case) -> impl FnMut(&AcceptedState<'_>) -> ControlFlow<()>
 fn find(case: &Case, seconds: f64) -> Result<Found> {
     let mut resolver = case.resolver(params(seconds))?;
     let mut x = case.states.x.clone();
-    let statistics = resolver.resolve(&mut x, &case.states.y, &case.states.call(), &mut at_rest(case))?;
+    let statistics =
+        resolver.resolve_with(&mut x, &case.states.y, &case.states.input(), &mut at_rest(case))?;
     let judgement = Judgement::without_exact(case)?;
     let judged = judgement.judge(&x)?;
-    let lengths = &judgement.problem.lengths;
+    let lengths = judgement.scene.lengths();
     let good = judged.stationarity <= (RESIDUAL[0] * judged.distance).max(RESIDUAL[1] * lengths.edge)
         && judged.violation <= VIOLATION * lengths.delta
         && judged.intersections == 0;

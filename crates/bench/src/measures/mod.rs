@@ -13,7 +13,7 @@ use anyhow::Result;
 use bowknot::check::{Judge, StateOptions};
 use bowknot::geometry::Point;
 use bowknot::proximity::ProximitySearch;
-use bowknot::twoway::Problem;
+use bowknot::twoway::{CallInput, CollisionScene};
 use rows::RowSet;
 use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
@@ -54,7 +54,8 @@ const ITERATIONS: [usize; 2] = [400, 6000];
 #[derive(Debug)]
 pub struct Judgement<'a> {
     case: &'a Case,
-    problem: Problem,
+    scene: CollisionScene,
+    call: CallInput,
     judge: Judge,
     /// Iterations of non-negative least squares.
     iterations: usize,
@@ -74,9 +75,11 @@ impl<'a> Judgement<'a> {
     }
 
     fn without_exact(case: &'a Case) -> Result<Self> {
+        let (scene, call) = case.reference()?;
         Ok(Self {
             case,
-            problem: case.reference()?,
+            scene,
+            call,
             judge: Judge::from_model(&case.model),
             iterations: ITERATIONS[1],
             search: RefCell::new(ProximitySearch::new(&case.model)),
@@ -86,14 +89,14 @@ impl<'a> Judgement<'a> {
 
     /// Judges a result.
     pub fn judge(&self, x: &[Point]) -> Result<Judged> {
-        let (problem, states) = (&self.problem, &self.case.states);
-        let rows = RowSet::new(problem, states, x, &mut self.search.borrow_mut());
-        let residual = rows.stationarity(problem, x, &states.y, self.iterations);
+        let (scene, call, states) = (&self.scene, &self.call, &self.case.states);
+        let rows = RowSet::new(scene, call, states, x, &mut self.search.borrow_mut());
+        let residual = rows.stationarity(scene, call, x, &states.y, self.iterations);
         let distances = x.iter().zip(&states.y).map(|(x, y)| x - y);
-        let total: f64 = (0..x.len()).filter(|&v| problem.movable(v)).map(|v| problem.relative_mass[v]).sum();
+        let total: f64 = (0..x.len()).filter(|&v| call.is_movable(v)).map(|v| scene.relative_mass(v)).sum();
         let weighted = |vectors: &mut dyn Iterator<Item = f64>| -> f64 {
-            let squares = vectors.enumerate().filter(|(v, _)| problem.movable(*v));
-            squares.map(|(v, square)| problem.relative_mass[v] * square).sum()
+            let squares = vectors.enumerate().filter(|(v, _)| call.is_movable(*v));
+            squares.map(|(v, square)| scene.relative_mass(v) * square).sum()
         };
         let mean = |sum: f64| (sum / total.max(f64::MIN_POSITIVE)).sqrt();
         let square = weighted(&mut distances.map(|d| d.norm_squared()));
@@ -103,7 +106,7 @@ impl<'a> Judgement<'a> {
             .map(|exact| mean(weighted(&mut x.iter().zip(exact).map(|(a, b)| (a - b).norm_squared()))));
         let options = StateOptions { limit: 0, distance: false };
         Ok(Judged {
-            objective: 0.5 * problem.mean_mass * square,
+            objective: 0.5 * scene.mean_mass() * square,
             distance: mean(square),
             violation: rows.contact_violation(),
             stretch_violation: rows.stretch.to_limit - 1.0,

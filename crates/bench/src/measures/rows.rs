@@ -9,7 +9,7 @@ use bowknot::geometry::{PairKind, Point, Vector, separation};
 use bowknot::lcp::Row;
 use bowknot::proximity::{Pair, PairList, ProximitySearch};
 use bowknot::recording::States;
-use bowknot::twoway::Problem;
+use bowknot::twoway::{CallInput, CollisionScene};
 
 /// Slack below which a row counts as active: of contacts in desired distances, of edges in limits. Methods stop that far
 /// from the rows that they push against.
@@ -38,16 +38,22 @@ pub struct Stretch {
 }
 
 impl RowSet {
-    /// The rows of `problem` at `x`, for a call from `states.x`.
-    pub fn new(problem: &Problem, states: &States, x: &[Point], search: &mut ProximitySearch) -> Self {
+    /// The rows of `scene` at `x`, for a call from `states.x`.
+    pub fn new(
+        scene: &CollisionScene,
+        call: &CallInput,
+        states: &States,
+        x: &[Point],
+        search: &mut ProximitySearch,
+    ) -> Self {
         let (mut pairs, mut separations) = (PairList::default(), Vec::new());
-        let bodies = problem.model.vertex_body();
+        let bodies = scene.model().vertex_body();
         // A vertex and a half-space have one radius between them, which must be the whole range.
-        let planes = !problem.model.half_spaces().is_empty();
+        let planes = !scene.model().half_spaces().is_empty();
         let share = if planes { 2.0 } else { 1.0 };
-        let radii: Vec<f64> = bodies.iter().map(|&b| share * problem.spacing.margin(b)).collect();
-        search.search(&problem.model, x, &radii, &mut pairs, &mut separations);
-        let growth = states.time_step.map_or(f64::INFINITY, |dt| problem.lengths.separation_speed * dt);
+        let radii: Vec<f64> = bodies.iter().map(|&b| share * scene.spacing().margin(b)).collect();
+        search.search(scene.model(), x, &radii, &mut pairs, &mut separations);
+        let growth = states.time_step.map_or(f64::INFINITY, |dt| scene.lengths().separation_speed * dt);
         let mut set = Self {
             rows: Vec::new(),
             values: Vec::new(),
@@ -60,21 +66,21 @@ impl RowSet {
         for kind in PairKind::ALL {
             for index in pairs.range(kind) {
                 let (pair, separation) = (&pairs.pairs()[index], &separations[index]);
-                if separation.distance > problem.contact_range(kind, pair) {
+                if separation.distance > scene.contact_range(kind, pair) {
                     continue;
                 }
                 let gap = set.min_gap.map_or(separation.distance, |gap| gap.min(separation.distance));
                 set.min_gap = Some(gap);
-                let delta = problem.spacing.of(&problem.model, kind, pair).delta;
-                let start = start_gap(problem, kind, pair, &states.x);
+                let delta = scene.spacing().of(scene.model(), kind, pair).delta;
+                let start = start_gap(scene, kind, pair, &states.x);
                 let rule = DesiredDistance { delta, growth };
-                let desired = rule.of(&problem.model, kind, pair, &problem.rest, start).0;
+                let desired = rule.of(scene.model(), kind, pair, scene.rest(), start).0;
                 let row = contact_row(ContactForm::Gap, kind, pair.vertices, x, separation, desired);
                 set.push(row, ACTIVE[0] * desired, &points);
             }
         }
         set.contacts = set.rows.len();
-        set.add_edges(problem, states, x, &points);
+        set.add_edges(scene, call, states, x, &points);
         set
     }
 
@@ -84,10 +90,17 @@ impl RowSet {
         self.rows.push(row);
     }
 
-    fn add_edges(&mut self, problem: &Problem, states: &States, x: &[Point], points: &[Vector]) {
-        let movable: Vec<bool> = (0..x.len()).map(|v| problem.movable(v)).collect();
-        let limit = |e: &[u32; 2]| problem.stretch_limit(problem.model.vertex_body()[e[0] as usize]);
-        let mut limits = EdgeLimits::new(problem.model.topology(), &problem.rest, &movable, limit);
+    fn add_edges(
+        &mut self,
+        scene: &CollisionScene,
+        call: &CallInput,
+        states: &States,
+        x: &[Point],
+        points: &[Vector],
+    ) {
+        let movable: Vec<bool> = (0..x.len()).map(|v| call.is_movable(v)).collect();
+        let limit = |e: &[u32; 2]| scene.stretch_limit(scene.model().vertex_body()[e[0] as usize]);
+        let mut limits = EdgeLimits::new(scene.model().topology(), scene.rest(), &movable, limit);
         limits.begin(&states.x, EdgeReference::Rest);
         let mut rows = Vec::new();
         limits.linearise(x, &mut rows);
@@ -111,31 +124,32 @@ impl RowSet {
     }
 
     /// The projection of y0 - x onto the motions that no active row forbids, in the metric of mass: 0 where x solves the
-    /// problem. By Moreau's decomposition it is y0 - x + M^-1 J^T lambda with the non-negative multipliers that make it
+    /// scene. By Moreau's decomposition it is y0 - x + M^-1 J^T lambda with the non-negative multipliers that make it
     /// smallest.
     /// After so many `iterations` at most; fewer give an upper bound.
     pub fn stationarity(
         &self,
-        problem: &Problem,
+        scene: &CollisionScene,
+        call: &CallInput,
         x: &[Point],
         target: &[Point],
         iterations: usize,
     ) -> Vec<Vector> {
         let weights: Vec<f64> = (0..x.len())
-            .map(|v| if problem.movable(v) { 1.0 / problem.relative_mass[v] } else { 0.0 })
+            .map(|v| if call.is_movable(v) { 1.0 / scene.relative_mass(v) } else { 0.0 })
             .collect();
         let wanted: Vec<Vector> = (0..x.len())
-            .map(|v| if problem.movable(v) { target[v] - x[v] } else { Vector::zeros() })
+            .map(|v| if call.is_movable(v) { target[v] - x[v] } else { Vector::zeros() })
             .collect();
         nonnegative::residual(&self.active_rows(), &weights, wanted, iterations)
     }
 }
 
 /// Distance of a pair at the start of the call [m].
-fn start_gap(problem: &Problem, kind: PairKind, pair: &Pair, start: &[Point]) -> f64 {
+fn start_gap(scene: &CollisionScene, kind: PairKind, pair: &Pair, start: &[Point]) -> f64 {
     match kind {
         PairKind::VertexHalfSpace => {
-            let plane = &problem.model.half_spaces()[pair.elements[1] as usize];
+            let plane = &scene.model().half_spaces()[pair.elements[1] as usize];
             separation::separate_half_space(&start[pair.vertices[0] as usize], plane).distance
         }
         _ => separation::separate(kind, &pair.vertices.map(|v| start[v as usize])).distance,

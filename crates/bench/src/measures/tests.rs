@@ -2,7 +2,7 @@
 
 use super::*;
 use bowknot::geometry::{HalfSpace, Vector};
-use bowknot::lcp::{self, Family, Row};
+use bowknot::lcp::{self, ConstraintSet, Row};
 use bowknot::recording::States;
 
 /// Particles above the ground, 2 mm across: their distances are 2 mm from each other and 1 mm from the ground.
@@ -76,7 +76,7 @@ fn the_exact_solution_is_exact() {
     let mut resolver = case.states.resolver(case.model.clone(), exact::params(60.0)).expect("a resolver");
     let mut x = case.states.x.clone();
     resolver
-        .resolve(&mut x, &case.states.y, &case.states.call(), &mut exact::at_rest(&case))
+        .resolve_with(&mut x, &case.states.y, &case.states.input(), &mut exact::at_rest(&case))
         .expect("resolved");
     let solution = [Point::new(-0.0025, 0.0, 1e-3), Point::new(-0.0005, 0.0, 1e-3)];
     for (x, exact) in x.iter().zip(&solution) {
@@ -110,12 +110,17 @@ fn multipliers_equal_those_of_the_reference() {
         let ours = nonnegative::residual(&rows, &weights, wanted.clone(), 1500);
 
         lcp::prepare_rows(&mut rows, &weights).expect("weights of all nodes");
-        let problem =
-            lcp::Problem::new(&weights, Family::serial(&rows), Family::default(), Family::default())
-                .expect("a sound problem");
+        let problem = lcp::LcpProblem::new(
+            &weights,
+            ConstraintSet::serial(&rows),
+            ConstraintSet::default(),
+            ConstraintSet::default(),
+        )
+        .expect("a sound problem");
         let mut y = wanted;
         let mut lambda = vec![0.0; rows.len()];
-        let mut moving = lcp::State { y: &mut y, lambda: &mut lambda, forces: &mut [], friction: &mut [] };
+        let mut moving =
+            lcp::LcpState { y: &mut y, lambda: &mut lambda, limit_multipliers: &mut [], friction: &mut [] };
         lcp::solve_exact(&problem, &mut moving).expect("solved");
         let error = ours.iter().zip(&y).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
         assert!(error < 1e-5, "off by {error}");

@@ -3,7 +3,7 @@
 use crate::recording::states::States;
 use bowknot_geometry::Topology;
 use bowknot_proximity::{BodyFilter, CollisionModel};
-use bowknot_twoway::{Call, Params, ResolveError, Resolver};
+use bowknot_twoway::{Params, ResolveError, ResolveInput, Resolver};
 use std::collections::BTreeMap;
 
 impl States {
@@ -12,7 +12,11 @@ impl States {
     /// # Errors
     /// A mesh that is none, a body with obstacle and deformable vertices; in words.
     pub fn collision_model(&self) -> Result<CollisionModel, String> {
-        let topology = Topology::new(self.x.len(), self.triangles.clone(), &self.strands, &self.particles)
+        let topology = Topology::builder(self.x.len())
+            .triangles(self.triangles.iter().copied())
+            .strand_edges(self.strands.iter().copied())
+            .particles(self.particles.iter().copied())
+            .build()
             .map_err(|errors| first_of(&errors))?;
         let mut obstacle: BTreeMap<u32, bool> = BTreeMap::new();
         for (vertex, (&body, &flag)) in self.body.iter().zip(&self.obstacle).enumerate() {
@@ -49,8 +53,8 @@ impl States {
     }
 
     /// The call that the problem stands for.
-    pub fn call(&self) -> Call<'_> {
-        Call {
+    pub fn input(&self) -> ResolveInput<'_> {
+        ResolveInput {
             prescribed: &self.fixed,
             time_step: self.time_step,
             start: (!self.start.is_empty()).then_some(&self.start),

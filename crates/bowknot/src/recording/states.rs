@@ -3,7 +3,7 @@
 use bowknot_geometry::{HalfSpace, Point, Vector};
 use bowknot_io::IoError;
 use bowknot_io::npz::{Archive, write_archive};
-use bowknot_twoway::{BodyContact, Call, ContactSide, HalfSpaceContact, PairFriction};
+use bowknot_twoway::{BodyContact, ContactSide, HalfSpaceContact, PairFriction, ResolveInput};
 use ndarray::{Array0, Array1, Array2};
 use ndarray_npy::{NpzWriter, WriteNpzError};
 use std::io::{Seek, Write};
@@ -51,7 +51,7 @@ pub struct States {
     pub half_space_contacts: Vec<HalfSpaceContact>,
     /// Friction of pairs of bodies and half-spaces.
     pub pair_frictions: Vec<PairFriction>,
-    /// Group of each vertex, [`Call::NO_GROUP`] for none; empty: no groups.
+    /// Group of each vertex, [`ResolveInput::NO_GROUP`] for none; empty: no groups.
     pub groups: Vec<u32>,
     /// Positions at the start of the time step; empty: those of `x`.
     pub start: Vec<Point>,
@@ -157,8 +157,8 @@ impl States {
             let rows: Vec<[f64; 3]> = self.pair_frictions.iter().map(row).collect();
             archive.add_array("pair_friction", &table(&rows, |v| v))?;
         }
-        if self.groups.iter().any(|&g| g != Call::NO_GROUP) {
-            let number = |&g: &u32| if g == Call::NO_GROUP { -1 } else { g as i32 };
+        if self.groups.iter().any(|&g| g != ResolveInput::NO_GROUP) {
+            let number = |&g: &u32| if g == ResolveInput::NO_GROUP { -1 } else { g as i32 };
             archive.add_array("group", &Array1::from_iter(self.groups.iter().map(number)))?;
         }
         if !self.start.is_empty() && self.start != self.x {
@@ -295,8 +295,8 @@ fn groups(archive: &mut Archive<'_>, n: usize) -> Result<Vec<u32>, IoError> {
         ));
     }
     let groups: Vec<u32> =
-        values.into_iter().map(|g| if g < 0.0 { Call::NO_GROUP } else { g as u32 }).collect();
-    Ok(if groups.iter().any(|&g| g != Call::NO_GROUP) { groups } else { Vec::new() })
+        values.into_iter().map(|g| if g < 0.0 { ResolveInput::NO_GROUP } else { g as u32 }).collect();
+    Ok(if groups.iter().any(|&g| g != ResolveInput::NO_GROUP) { groups } else { Vec::new() })
 }
 
 fn points(points: &[Point]) -> Array2<f64> {

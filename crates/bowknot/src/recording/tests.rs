@@ -5,7 +5,7 @@ use crate::simulator::{CollisionProblem, Simulator};
 use bowknot_geometry::{HalfSpace, Point, Vector};
 use bowknot_io::{IoError, Mesh};
 use bowknot_twoway::Params;
-use bowknot_twoway::{BodyContact, Call, ContactSide, HalfSpaceContact, PairFriction};
+use bowknot_twoway::{BodyContact, ContactSide, HalfSpaceContact, PairFriction, ResolveInput};
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -27,7 +27,7 @@ impl Watcher for Again {
         let model = read.collision_model().expect("a model");
         let mut resolver = read.resolver(model, self.params.clone()).expect("a resolver");
         let mut x = read.x.clone();
-        resolver.resolve(&mut x, &read.y, &read.call(), &mut ()).expect("resolved");
+        resolver.resolve_with(&mut x, &read.y, &read.input(), &mut ()).expect("resolved");
         self.ends.push(x);
         ControlFlow::Continue(())
     }
@@ -101,7 +101,7 @@ fn states() -> States {
             sides: [ContactSide::Body(1), ContactSide::HalfSpace(0)],
             friction: 0.75,
         }],
-        groups: vec![3, 3, Call::NO_GROUP, 0, Call::NO_GROUP, Call::NO_GROUP],
+        groups: vec![3, 3, ResolveInput::NO_GROUP, 0, ResolveInput::NO_GROUP, ResolveInput::NO_GROUP],
         start: sample().positions.iter().map(|p| p * 0.75).collect(),
     }
 }

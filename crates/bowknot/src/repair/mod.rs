@@ -194,8 +194,11 @@ fn judge(mesh: &Mesh) -> Result<Verdict, CheckError> {
     let judge = Judge::new(&parts)?;
     let state = judge.check_state(&mesh.positions, &StateOptions { limit: usize::MAX, distance: false })?;
     // The judge has taken the elements, so the topology does.
-    let topology =
-        Topology::new(mesh.positions.len(), mesh.triangles.clone(), &mesh.strands, &[]).unwrap_or_default();
+    let topology = Topology::builder(mesh.positions.len())
+        .triangles(mesh.triangles.iter().copied())
+        .strand_edges(mesh.strands.iter().copied())
+        .build()
+        .unwrap_or_default();
     let components = topology.connected_components();
     let part = |v: u32| components.of_vertex.get(v as usize).copied().unwrap_or(0);
     let mut sizes = vec![0; components.count];

@@ -1,7 +1,7 @@
 //! Border vertices that lie together become one.
 
 use super::{RepairReport, border_vertices, near_pairs};
-use bowknot_geometry::{Point, Vector};
+use bowknot_geometry::{Point, UnionFind, Vector};
 use bowknot_io::Mesh;
 
 /// Places that the report lists.
@@ -17,7 +17,7 @@ pub(super) fn weld(mesh: &mut Mesh, distance: f64, report: &mut RepairReport) {
         groups.join(a, b);
     }
 
-    let representative: Vec<u32> = (0..mesh.positions.len() as u32).map(|v| groups.root(v)).collect();
+    let representative: Vec<u32> = (0..mesh.positions.len() as u32).map(|v| groups.sets.find(v)).collect();
     let mut sums = vec![(Vector::zeros(), 0_usize); mesh.positions.len()];
     for (v, &root) in representative.iter().enumerate() {
         let sum = &mut sums[root as usize];
@@ -46,7 +46,7 @@ pub(super) fn weld(mesh: &mut Mesh, distance: f64, report: &mut RepairReport) {
 
 /// Disjoint sets of vertices, each with its members and the neighbours that it must not swallow.
 struct Groups {
-    parent: Vec<u32>,
+    sets: UnionFind,
     members: Vec<Vec<u32>>,
     /// Vertices that share an edge with a vertex, ascending.
     neighbours: Vec<Vec<u32>>,
@@ -66,22 +66,15 @@ impl Groups {
             list.dedup();
         }
         Self {
-            parent: (0..count as u32).collect(),
+            sets: UnionFind::new(count),
             members: (0..count as u32).map(|v| vec![v]).collect(),
             neighbours,
         }
     }
 
-    fn root(&self, mut v: u32) -> u32 {
-        while self.parent[v as usize] != v {
-            v = self.parent[v as usize];
-        }
-        v
-    }
-
     /// Joins the groups of two vertices, under the smaller root, if no edge has its ends in both.
     fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
+        let (a, b) = (self.sets.find(a), self.sets.find(b));
         let (a, b) = (a.min(b), a.max(b));
         let shares_edge = || {
             let other = |v: &u32| self.members[b as usize].contains(v);
@@ -90,7 +83,7 @@ impl Groups {
         if a == b || shares_edge() {
             return;
         }
-        self.parent[b as usize] = a;
+        self.sets.join(a, b);
         let moved = std::mem::take(&mut self.members[b as usize]);
         self.members[a as usize].extend(moved);
     }

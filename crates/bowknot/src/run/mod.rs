@@ -11,7 +11,7 @@ mod writer;
 
 pub use checker::Checker;
 pub use export::{ExportOptions, Exported, export};
-pub use summary::Summary;
+pub use summary::{EnergyNumbers, SecondsNumbers, SkippedNumbers, StepNumbers, Summary};
 pub use writer::RunWriter;
 
 use crate::simulator::{
@@ -129,21 +129,21 @@ pub fn run(
     writer.finish(&simulator)?;
 
     let totals = writer.totals();
+    let path = writer.folder().join("summary.json");
+    let unwritable = |error: serde_json::Error| IoError::system("write", &path, error.into());
     let summary = Summary {
         scene: scene.name().to_owned(),
         info,
         frames: totals.steps(),
         threads: rayon::current_num_threads(),
         backend: "cpu".to_owned(),
-        mean: totals.mean(),
-        max: totals.max(),
+        mean: totals.mean().map_err(unwritable)?,
+        max: totals.max().map_err(unwritable)?,
         min_gap_m: totals.min_gap(),
         peak_memory_bytes: peak_memory_bytes(),
         intersections: checker.as_ref().map(Checker::intersections),
     };
-    let path = writer.folder().join("summary.json");
-    let text = serde_json::to_string_pretty(&summary)
-        .map_err(|error| IoError::system("write", &path, error.into()))?;
+    let text = serde_json::to_string_pretty(&summary).map_err(unwritable)?;
     write_text(&path, &(text + "\n"))?;
     let findings = checker.map_or_else(Vec::new, |checker| checker.findings().to_vec());
     Ok(Outcome { summary, interrupted, findings, warnings: world.warnings.clone() })

@@ -1,12 +1,13 @@
-//! What a run adds up to: `summary.json`.
+//! The summary of a run: `summary.json`.
 
 use crate::simulator::StepStatistics;
 use bowknot_scene::world::SceneInfo;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
+use std::collections::BTreeMap;
 
-/// What a run adds up to; it serialises to `summary.json`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+/// The summary of a run; it serializes to `summary.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// Name of the scene.
     pub scene: String,
@@ -19,18 +20,92 @@ pub struct Summary {
     pub threads: usize,
     /// "cpu".
     pub backend: String,
-    /// Means over the time steps, in the form of [`StepStatistics`]: flags become the share of time steps
-    /// where they held.
-    pub mean: Value,
-    /// Largest values, likewise.
-    pub max: Value,
-    /// Smallest gap of all time steps [m]; none if no pair was ever listed.
+    /// Means over the time steps; none without a time step.
+    pub mean: Option<StepNumbers>,
+    /// Largest values over the time steps; none without a time step.
+    pub max: Option<StepNumbers>,
+    /// Smallest gap of all time steps [m]; none if there never was a candidate pair.
     pub min_gap_m: Option<f64>,
-    /// Largest memory resident so far [bytes]; none where the system does not tell.
+    /// Largest resident memory so far [bytes]; none where the system does not report it.
     pub peak_memory_bytes: Option<u64>,
     /// Intersections found in accepted states and on the paths between them; none if not checked.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub intersections: Option<usize>,
+}
+
+/// The numbers of [`StepStatistics`], combined over time steps. Each is none if no time step has it; flags count as 0 and 1.
+/// The fields are in alphabetical order, as in the file.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the fields are documented in StepStatistics")]
+#[serde(default)]
+pub struct StepNumbers {
+    pub active_rows: Option<f64>,
+    pub center_of_mass: [Option<f64>; 3],
+    pub cg_iterations: Option<f64>,
+    pub collision_energy_j: Option<f64>,
+    pub contact_rows: Option<f64>,
+    pub converged: Option<f64>,
+    pub cpu_seconds: Option<f64>,
+    pub edge_rows: Option<f64>,
+    pub energy: EnergyNumbers,
+    pub friction_rows: Option<f64>,
+    pub frozen_pairs: Option<f64>,
+    pub injected_energy_j: Option<f64>,
+    pub interior_solves: Option<f64>,
+    pub inverted_tets: Option<f64>,
+    pub max_speed: Option<f64>,
+    pub max_step_stretch: Option<f64>,
+    pub max_stretch: Option<f64>,
+    pub min_gap_m: Option<f64>,
+    pub momentum: [Option<f64>; 3],
+    pub newton_iterations: Option<f64>,
+    pub pairs: Option<f64>,
+    pub prescribed_behind_m: Option<f64>,
+    pub remaining_m: Option<f64>,
+    pub remaining_r: Option<f64>,
+    pub repulsion_springs: Option<f64>,
+    pub residual_m: Option<f64>,
+    pub residual_n: Option<f64>,
+    pub searches: Option<f64>,
+    pub seconds: SecondsNumbers,
+    pub skipped: SkippedNumbers,
+    pub stationarity_m: Option<f64>,
+    pub two_way_steps: Option<f64>,
+    pub waiting: BTreeMap<String, Option<f64>>,
+}
+
+/// The numbers of [`crate::simulator::Energy`].
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the fields are documented in Energy")]
+#[serde(default)]
+pub struct EnergyNumbers {
+    pub elastic: Option<f64>,
+    pub kinetic: Option<f64>,
+    pub potential: Option<f64>,
+}
+
+/// The numbers of [`crate::simulator::StepSeconds`].
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the fields are documented in StepSeconds")]
+#[serde(default)]
+pub struct SecondsNumbers {
+    pub backward: Option<f64>,
+    pub dynamics: Option<f64>,
+    pub evaluate: Option<f64>,
+    pub forward: Option<f64>,
+    pub other: Option<f64>,
+    pub search: Option<f64>,
+    pub total: Option<f64>,
+}
+
+/// The numbers of [`crate::twoway::Skipped`].
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "the fields are documented in Skipped")]
+#[serde(default)]
+pub struct SkippedNumbers {
+    pub evaluations: Option<f64>,
+    pub rows: Option<f64>,
+    pub searches: Option<f64>,
 }
 
 /// Sums and maxima of the statistics of time steps.
@@ -45,7 +120,7 @@ pub(super) struct Totals {
 
 impl Totals {
     pub fn add(&mut self, statistics: &StepStatistics) {
-        // Which time step it is, and when, have no mean.
+        // The index, the time and the name of a body have no mean.
         let Ok(Value::Object(mut values)) = serde_json::to_value(statistics) else { return };
         values.remove("step");
         values.remove("time");
@@ -65,14 +140,14 @@ impl Totals {
         self.steps
     }
 
-    pub fn mean(&self) -> Value {
+    pub fn mean(&self) -> serde_json::Result<Option<StepNumbers>> {
         let mut mean = self.sum.clone();
         merge(&mut mean, &self.count, &|sum, count| sum / count);
-        mean
+        serde_json::from_value(mean)
     }
 
-    pub fn max(&self) -> Value {
-        self.max.clone()
+    pub fn max(&self) -> serde_json::Result<Option<StepNumbers>> {
+        serde_json::from_value(self.max.clone())
     }
 
     pub fn min_gap(&self) -> Option<f64> {
@@ -80,7 +155,7 @@ impl Totals {
     }
 }
 
-/// The number that a leaf stands for; flags count as 0 and 1, null and text as nothing.
+/// The number of a leaf: flags are 0 and 1; null and text are none.
 fn number(value: &Value) -> Option<f64> {
     match value {
         Value::Bool(flag) => Some(f64::from(u8::from(*flag))),
@@ -99,8 +174,7 @@ fn map(value: &Value, f: &impl Fn(f64) -> f64) -> Value {
     }
 }
 
-/// Combines every number of `b` into the number at the same place of `a`; where `a` has none it takes
-/// that of `b`.
+/// Combines every number of `b` with the number at the same place of `a`. Where `a` has no number, it takes that of `b`.
 fn merge(a: &mut Value, b: &Value, f: &impl Fn(f64, f64) -> f64) {
     match b {
         Value::Object(fields) => {
@@ -144,15 +218,34 @@ mod tests {
         totals.add(&step(10, true, None, -3.0));
         totals.add(&step(20, false, Some(0.002), -1.0));
         totals.add(&step(60, false, Some(0.001), -2.0));
-        let (mean, max) = (totals.mean(), totals.max());
-        assert_eq!(mean["pairs"], 30.0);
-        assert_eq!(mean["converged"], 1.0 / 3.0);
-        assert_eq!(mean["min_gap_m"], 0.0015);
-        assert_eq!(mean["momentum"][2], -2.0);
-        assert_eq!(max["pairs"], 60.0);
-        assert_eq!(max["momentum"][2], -1.0);
+        let mean = totals.mean().unwrap().unwrap();
+        let max = totals.max().unwrap().unwrap();
+        assert_eq!(mean.pairs, Some(30.0));
+        assert_eq!(mean.converged, Some(1.0 / 3.0));
+        assert_eq!(mean.min_gap_m, Some(0.0015));
+        assert_eq!(mean.momentum[2], Some(-2.0));
+        assert_eq!(max.pairs, Some(60.0));
+        assert_eq!(max.momentum[2], Some(-1.0));
         assert_eq!(totals.min_gap(), Some(0.001));
         assert_eq!(totals.steps(), 3);
-        assert!(mean.get("step").is_none());
+        assert_eq!(Totals::default().mean().unwrap(), None);
+    }
+
+    /// Reading the combined statistics into the struct loses no key, changes no number and keeps the order.
+    #[test]
+    fn the_struct_has_every_number_of_the_statistics() {
+        let mut totals = Totals::default();
+        let statistics = StepStatistics {
+            pairs: 3,
+            max_speed: f64::NAN,
+            waiting: BTreeMap::from([("pin[0] of flag".to_owned(), 0.1)]),
+            ..StepStatistics::default()
+        };
+        totals.add(&statistics);
+        totals.add(&StepStatistics { converged: true, ..statistics });
+        let typed = serde_json::to_string_pretty(&totals.max().unwrap()).unwrap();
+        assert_eq!(typed, serde_json::to_string_pretty(&totals.max).unwrap());
+        let read: Option<StepNumbers> = serde_json::from_str(&typed).unwrap();
+        assert_eq!(read, totals.max().unwrap());
     }
 }

@@ -12,7 +12,7 @@ use bowknot_dynamics::{Dynamics, RepulsionSpring, StepError, Touching};
 use bowknot_geometry::{PairKind, Point, Vector};
 use bowknot_scene::world::World;
 use bowknot_scene::{BodyKind, RepulsionParams};
-use bowknot_twoway::{Problem, Resolver};
+use bowknot_twoway::{CollisionScene, Resolver};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// The contacts in force.
@@ -48,9 +48,9 @@ pub struct ContactForce {
 impl Contacts {
     pub fn new(params: &RepulsionParams, world: &World, resolver: &Resolver) -> Self {
         // The velocity filter takes friction from how deep the target is; springs would leave nothing of that.
-        let filtered = resolver.problem().friction_model() == FrictionModel::Filter;
+        let filtered = resolver.scene().friction_model() == FrictionModel::Filter;
         let stiffness = if filtered { 0.0 } else { params.stiffness };
-        let limited = LimitedEdges::new(resolver.problem(), world);
+        let limited = LimitedEdges::new(resolver.scene(), world);
         let mut solved = vec![false; world.positions.len()];
         self::solved(world).for_each(|v| solved[v] = true);
         Self { stiffness, limited, counted: solved.clone(), solved, ..Self::default() }
@@ -83,11 +83,11 @@ impl Contacts {
 
     /// Takes down what is in contact range.
     pub fn note_touching(&mut self, resolver: &Resolver) {
-        let (problem, contacts) = (resolver.problem(), &resolver.state().contacts);
+        let (scene, contacts) = (resolver.scene(), &resolver.state().contacts);
         for kind in PairKind::ALL {
             for p in contacts.pairs.range(kind) {
                 let pair = &contacts.pairs.pairs()[p];
-                if contacts.separations[p].distance >= problem.contact_range(kind, pair) {
+                if contacts.separations[p].distance >= scene.contact_range(kind, pair) {
                     continue;
                 }
                 let used = &pair.vertices[..kind.vertex_count()];
@@ -127,9 +127,9 @@ impl Contacts {
     /// The same after the dynamics and the collision stage: `forces` of the springs, by spring [N], and of the rows that
     /// pushed.
     pub fn carried_after(&mut self, forces: &[Vector], resolver: &Resolver, dt: f64) -> Vec<ContactForce> {
-        let (problem, contacts) = (resolver.problem(), &resolver.state().contacts);
+        let (scene, contacts) = (resolver.scene(), &resolver.state().contacts);
         let mut carried = self.with_forces(forces.iter().copied());
-        let unit = problem.mean_mass / (dt * dt);
+        let unit = scene.mean_mass() / (dt * dt);
         self.counted.clone_from(&self.solved);
         for kind in PairKind::ALL {
             for p in contacts.pairs.range(kind) {
@@ -142,7 +142,7 @@ impl Contacts {
                 let force = (separation.normal * lambda + rubbing) * unit;
                 let used = &pair.vertices[..kind.vertex_count()];
                 if self.stiffness > 0.0 && self.is_elastic(used) {
-                    let (features, sign) = oriented(problem.features(kind, pair, separation));
+                    let (features, sign) = oriented(scene.features(kind, pair, separation));
                     let (normal, force) = (separation.normal * sign, force * sign);
                     carried.push(ContactForce { features, normal, force });
                 } else {
@@ -161,17 +161,17 @@ impl Contacts {
         if self.stiffness == 0.0 {
             return;
         }
-        let problem = resolver.problem();
+        let scene = resolver.scene();
         let with_force = carried.iter().filter(|c| c.force != Vector::zeros());
         let loaded: FxHashSet<[Feature; 2]> = with_force.map(|c| c.features).collect();
         let mut index = FxHashMap::default();
         self.add(resolver, start, dt, &mut index, |features, _| {
             Some(if loaded.contains(features) { LOADED_TOLERANCE } else { CONE_TOLERANCE })
         });
-        let orphans = self.orphans(problem, carried, &index);
+        let orphans = self.orphans(scene, carried, &index);
         if !orphans.is_empty() {
             self.add(resolver, start, dt, &mut index, |features, normal| {
-                let pressure = orphans.get(&side(problem, features)?)?;
+                let pressure = orphans.get(&side(scene, features)?)?;
                 (normal.dot(pressure) > 0.0).then_some(LOADED_TOLERANCE)
             });
         }
@@ -181,7 +181,7 @@ impl Contacts {
             self.features.push(features);
             self.springs.push(spring);
         }
-        self.hand_on(problem, carried, &index, &moved);
+        self.hand_on(scene, carried, &index, &moved);
     }
 
     /// Adds the pairs in range that are contacts within a tolerance, by features and normal, and are not in the `index` yet.
@@ -193,39 +193,38 @@ impl Contacts {
         index: &mut Index,
         tolerance: impl Fn(&[Feature; 2], &Vector) -> Option<f64>,
     ) {
-        let (problem, state) = (resolver.problem(), resolver.state());
+        let (scene, state) = (resolver.scene(), resolver.state());
         let contacts = &state.contacts;
-        let growth = problem.lengths.separation_speed * dt;
+        let growth = scene.lengths().separation_speed * dt;
         for kind in PairKind::ALL {
             for p in contacts.pairs.range(kind) {
                 let (separation, pair) = (&contacts.separations[p], &contacts.pairs.pairs()[p]);
                 let used = &pair.vertices[..kind.vertex_count()];
                 // A distance that is no number repels nothing.
-                let near = separation.distance < problem.contact_range(kind, pair);
+                let near = separation.distance < scene.contact_range(kind, pair);
                 if !near || !self.is_elastic(used) {
                     continue;
                 }
-                let (features, sign) = oriented(problem.features(kind, pair, separation));
+                let (features, sign) = oriented(scene.features(kind, pair, separation));
                 let mut normal = separation.normal * sign;
                 let Some(tolerance) = tolerance(&features, &normal) else { continue };
-                if index.contains_key(&features)
-                    || !problem.is_contact(features, &normal, &state.x, tolerance)
+                if index.contains_key(&features) || !scene.is_contact(features, &normal, &state.x, tolerance)
                 {
                     continue;
                 }
                 // What has left its cones pushes along their border: a tilted normal would push aside what slides.
                 if tolerance > CONE_TOLERANCE {
-                    normal = problem.turned(features, &normal, &state.x);
+                    normal = scene.turned(features, &normal, &state.x);
                 }
                 index.insert(features, self.springs.len());
                 let plane = (kind == PairKind::VertexHalfSpace)
-                    .then(|| &problem.model.half_spaces()[pair.elements[1] as usize]);
+                    .then(|| scene.model().half_spaces()[pair.elements[1] as usize]);
                 let offset = plane.map_or(0.0, |plane| plane.offset);
                 let weights = separation.signed_weights(kind).map(|weight| weight * sign);
                 let mut vertices = pair.vertices;
                 (0..4).filter(|&k| weights[k] == 0.0).for_each(|k| vertices[k] = pair.vertices[0]);
                 let sides: Vector = (0..4).map(|k| start[vertices[k] as usize].coords * weights[k]).sum();
-                let (desired, distance) = (problem.desired_distance(kind, pair), separation.distance);
+                let (desired, distance) = (scene.desired_distance(kind, pair), separation.distance);
                 // Where contacts are new or have turned, what is between the same places at the start may be less than what the
                 // collision stage has reached.
                 let first = (normal.dot(&sides) - offset).max(distance.min(desired));
@@ -245,10 +244,15 @@ impl Contacts {
     }
 
     /// The sides whose contacts pressed and are gone, and which no contact holds that they pressed, with their pressure [N].
-    fn orphans(&self, problem: &Problem, carried: &[ContactForce], index: &Index) -> FxHashMap<Side, Vector> {
-        let mut orphans = lost_by_side(problem, carried, index);
+    fn orphans(
+        &self,
+        scene: &CollisionScene,
+        carried: &[ContactForce],
+        index: &Index,
+    ) -> FxHashMap<Side, Vector> {
+        let mut orphans = lost_by_side(scene, carried, index);
         for (features, spring) in self.features.iter().zip(&self.springs) {
-            if let Some(side) = side(problem, features)
+            if let Some(side) = side(scene, features)
                 && orphans.get(&side).is_some_and(|pressure| spring.normal.dot(pressure) > 0.0)
             {
                 orphans.remove(&side);
@@ -260,7 +264,13 @@ impl Contacts {
     /// Gives the springs the forces of those before: of the same features; of two edges, to the feature of theirs that the closest
     /// points have moved on to, or to a contact that one of them has now; of a vertex against a body, to the contact of that vertex
     /// whose normal is nearest to the former one: another may be a wall ahead of it.
-    fn hand_on(&mut self, problem: &Problem, carried: &[ContactForce], index: &Index, moved: &MovedEdges) {
+    fn hand_on(
+        &mut self,
+        scene: &CollisionScene,
+        carried: &[ContactForce],
+        index: &Index,
+        moved: &MovedEdges,
+    ) {
         let mut of_vertices: FxHashMap<Side, Vec<ContactForce>> = FxHashMap::default();
         let mut of_edges: Vec<ContactForce> = Vec::new();
         let mut at_edge: FxHashMap<u32, usize> = FxHashMap::default();
@@ -270,7 +280,7 @@ impl Contacts {
                 self.springs[spring].force += force;
             } else if let Some(&(spring, sign)) = moved.get(features) {
                 self.springs[spring].force += force * sign;
-            } else if let Some(side) = side(problem, features) {
+            } else if let Some(side) = side(scene, features) {
                 of_vertices.entry(side).or_default().push(*contact);
             } else if let [Feature::Edge(a), Feature::Edge(b)] = features
                 && a != b
@@ -285,7 +295,7 @@ impl Contacts {
         }
         let mut at_side: FxHashMap<Side, Vec<usize>> = FxHashMap::default();
         for (spring, features) in self.features.iter().enumerate() {
-            if let Some(side) = side(problem, features)
+            if let Some(side) = side(scene, features)
                 && of_vertices.contains_key(&side)
             {
                 at_side.entry(side).or_default().push(spring);
@@ -417,9 +427,9 @@ type Side = (u32, u32);
 type MovedEdges = FxHashMap<[Feature; 2], (usize, f64)>;
 
 /// The vertex whose contact it is, and the body on the other side.
-fn side(problem: &Problem, features: &[Feature; 2]) -> Option<Side> {
-    let body = |vertex: u32| problem.model.vertex_body().get(vertex as usize).copied();
-    let topology = problem.model.topology();
+fn side(scene: &CollisionScene, features: &[Feature; 2]) -> Option<Side> {
+    let body = |vertex: u32| scene.model().vertex_body().get(vertex as usize).copied();
+    let topology = scene.model().topology();
     let Feature::Vertex(vertex) = features[0] else { return None };
     // Features of a checkpoint may be anything.
     let other = match features[1] {
@@ -432,12 +442,12 @@ fn side(problem: &Problem, features: &[Feature; 2]) -> Option<Side> {
 }
 
 /// Pressures of vertices, forces without friction, that no spring of the same features carries on, by side [N].
-fn lost_by_side(problem: &Problem, carried: &[ContactForce], index: &Index) -> FxHashMap<Side, Vector> {
+fn lost_by_side(scene: &CollisionScene, carried: &[ContactForce], index: &Index) -> FxHashMap<Side, Vector> {
     let mut lost = FxHashMap::default();
     for ContactForce { features, normal, force } in carried {
         if *force != Vector::zeros()
             && !index.contains_key(features)
-            && let Some(side) = side(problem, features)
+            && let Some(side) = side(scene, features)
         {
             *lost.entry(side).or_insert_with(Vector::zeros) += normal * normal.dot(force);
         }
@@ -455,13 +465,13 @@ fn moved_edges(resolver: &Resolver, carried: &[ContactForce], index: &Index) -> 
     if lost.is_empty() {
         return moved;
     }
-    let (problem, contacts) = (resolver.problem(), &resolver.state().contacts);
+    let (scene, contacts) = (resolver.scene(), &resolver.state().contacts);
     for p in contacts.pairs.range(PairKind::EdgeEdge) {
         let pair = &contacts.pairs.pairs()[p];
         let [a, b] = pair.elements;
         let before = [Feature::Edge(a), Feature::Edge(b)];
         if lost.contains(&before) {
-            let features = problem.features(PairKind::EdgeEdge, pair, &contacts.separations[p]);
+            let features = scene.features(PairKind::EdgeEdge, pair, &contacts.separations[p]);
             let (features, sign) = oriented(features);
             if let Some(&spring) = index.get(&features) {
                 moved.insert(before, (spring, sign));

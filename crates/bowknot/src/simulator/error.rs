@@ -1,7 +1,7 @@
 //! Why a simulation cannot begin or go on.
 
 use bowknot_check::{CheckError, Intersection};
-use bowknot_dynamics::{ParamsError, StepError};
+use bowknot_dynamics::{Errors, ParamError, StepError};
 use bowknot_io::IoError;
 use bowknot_scene::SceneError;
 use bowknot_scene::world::World;
@@ -18,8 +18,8 @@ pub enum SimulationError {
     #[error(transparent)]
     Scene(#[from] SceneError),
     /// Parameters of the dynamics are refused.
-    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
-    Dynamics(Vec<ParamsError>),
+    #[error(transparent)]
+    Dynamics(Errors<ParamError>),
     /// The state cannot be judged.
     #[error(transparent)]
     Check(#[from] CheckError),
@@ -114,9 +114,10 @@ fn start_message(lines: &[String], count: &usize) -> String {
 /// The messages of the collision stage, with the keys of a scene and the names of bodies.
 fn resolve_message(error: &ResolveError, body: &str) -> String {
     match error {
-        ResolveError::FloorBelowRounding { floor, coordinate, needed, .. } => format!(
-            "the gap floor of {floor:.3e} m is below 16 ulp of the largest coordinate ({coordinate:.3e} m, body \
-             {body}): move the scene nearer to the origin, or set contact.floor above {needed:.3e} m"
+        ResolveError::MinSeparationBelowRounding { min_separation, coordinate, needed, .. } => format!(
+            "the minimum separation of {min_separation:.3e} m is below 16 ulp of the largest coordinate \
+             ({coordinate:.3e} m, body {body}): move the scene closer to the origin, or set contact.min_separation above \
+             {needed:.3e} m"
         ),
         ResolveError::NonFinite { what, vertex, .. } => {
             format!("{what} of vertex {vertex} (body {body}) is not finite")

@@ -9,7 +9,7 @@
 //! 2. with [`InteriorFollows::Elastic`], the dynamics then solves for them with the surface held there: a Newton
 //!    iteration of the time step's own energy, repeated while a tetrahedron is inverted, a few times at most.
 //!
-//! `docs/ARCHITECTURE.md` has the figures by which the default was chosen.
+//! `docs/design-notes.md` has the figures by which the default was chosen.
 
 use bowknot_dynamics::{Dynamics, StepError};
 use bowknot_geometry::{Point, Vector};

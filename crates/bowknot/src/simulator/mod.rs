@@ -27,7 +27,7 @@ use bowknot_dynamics::{Dynamics, DynamicsModel, Residual};
 use bowknot_geometry::{Point, Vector};
 use bowknot_scene::world::{Attachment, World};
 use bowknot_scene::{CollisionEvery, Scene};
-use bowknot_twoway::{AcceptedState, Call, Observer, ResolveError, Resolver};
+use bowknot_twoway::{AcceptedState, Observer, ResolveError, ResolveInput, Resolver};
 use contacts::Contacts;
 use interior::Interior;
 use progress::Progress;
@@ -95,7 +95,7 @@ pub struct CollisionProblem<'a> {
     pub time_step: f64,
     /// Positions at the start of the time step, which friction measures slip from [m].
     pub start: &'a [Point],
-    /// Pinned vertices that go as one, see [`Call::groups`].
+    /// Pinned vertices that go as one, see [`ResolveInput::groups`].
     pub groups: &'a [u32],
 }
 
@@ -192,7 +192,7 @@ impl Simulator {
         Ok(Self {
             dt: scene.simulation.dt,
             newton_iterations: scene.simulation.newton_iterations,
-            step_tolerance: scene.dynamics.step_tolerance,
+            step_tolerance: scene.dynamics.newton.step_tolerance,
             collision_every: scene.simulation.collision_every,
             dynamics,
             resolver,
@@ -212,9 +212,9 @@ impl Simulator {
     /// contacts.
     fn survey(&mut self, carried: &[ContactForce]) -> Result<(), SimulationError> {
         let Self { world, resolver, contacts, positions, step, dt, .. } = self;
-        let call = Call { time_step: Some(*dt), ..Call::default() };
+        let input = ResolveInput { time_step: Some(*dt), ..ResolveInput::default() };
         resolver
-            .survey(&positions[..world.collision_vertices()], &call)
+            .detect_contacts(&positions[..world.collision_vertices()], &input)
             .map_err(|source| resolve_error(world, *step, source))?;
         contacts.resume(carried);
         Ok(())
@@ -319,7 +319,7 @@ impl Simulator {
         statistics.seconds.dynamics += clock.elapsed().as_secs_f64();
         y.clone_from(start);
         x.clone_from(start);
-        let mut progress = Progress::new(*step_tolerance * resolver.problem().lengths.edge, *dt);
+        let mut progress = Progress::new(*step_tolerance * resolver.scene().lengths().edge, *dt);
         for iteration in 0..self.newton_iterations {
             let last = iteration + 1 == self.newton_iterations;
             let clock = Instant::now();
@@ -361,14 +361,14 @@ impl Simulator {
                 return Err(SimulationError::Interrupted);
             }
             let mut relay = Relay { watcher: &mut *watcher, step, iteration, stopped: false };
-            let call = Call {
+            let input = ResolveInput {
                 prescribed: &prescribed[..count],
                 time_step: Some(*dt),
                 start: Some(&start[..count]),
                 groups,
                 max_steps: (!last).then_some(STEPS_BETWEEN),
             };
-            let resolved = resolver.resolve(&mut x[..count], &y[..count], &call, &mut relay);
+            let resolved = resolver.resolve_with(&mut x[..count], &y[..count], &input, &mut relay);
             if relay.stopped {
                 return Err(SimulationError::Interrupted);
             }
@@ -508,7 +508,7 @@ fn energy_put_in(dynamics: &Dynamics, start: &[Point], y: &[Point], x: &[Point],
 fn resolve_error(world: &World, step: usize, source: ResolveError) -> SimulationError {
     let body = match &source {
         ResolveError::NonFinite { body, .. } | ResolveError::Mass { body, .. } => world.name_of(*body),
-        ResolveError::FloorBelowRounding { vertex, .. } => world.body_name(*vertex),
+        ResolveError::MinSeparationBelowRounding { vertex, .. } => world.body_name(*vertex),
         _ => "",
     };
     SimulationError::Resolve { step, body: body.to_owned(), source }

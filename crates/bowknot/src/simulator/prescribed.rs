@@ -2,7 +2,7 @@
 
 use super::{Scratch, Simulator};
 use bowknot_geometry::Point;
-use bowknot_twoway::Call;
+use bowknot_twoway::ResolveInput;
 use std::collections::BTreeMap;
 
 /// Distances below this are rounding [m].
@@ -18,7 +18,7 @@ impl Simulator {
         prescribed.clear();
         prescribed.resize(positions.len(), false);
         groups.clear();
-        groups.resize(count, Call::NO_GROUP);
+        groups.resize(count, ResolveInput::NO_GROUP);
         keyframes.clone_from(positions);
         for body in world.bodies.iter().filter(|body| body.kind.is_none()) {
             let range = body.vertices.start as usize..body.vertices.end as usize;

@@ -64,7 +64,7 @@ pub struct StepStatistics {
     pub slowest_body: Option<String>,
     /// Largest distance by which an obstacle or pin is behind its keyframe at the end [m].
     #[serde(default)]
-    pub prescribed_behind_m: f64,
+    pub prescribed_lag_m: f64,
     /// The obstacles and pins that wait for what is in their way, by name, and how far they are behind their
     /// keyframes at the end [m].
     #[serde(default)]
@@ -161,7 +161,7 @@ impl StepStatistics {
         self.skipped.searches += call.skipped.searches;
         self.skipped.evaluations += call.skipped.evaluations;
         self.skipped.rows += call.skipped.rows;
-        self.prescribed_behind_m = call.prescribed_behind_m;
+        self.prescribed_lag_m = call.prescribed_lag_m;
         self.slowest_body = call.slowest_body.filter(|_| !call.converged).map(name_of);
     }
 

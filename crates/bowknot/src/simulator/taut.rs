@@ -10,7 +10,7 @@ use bowknot_dynamics::RepulsionSpring;
 use bowknot_geometry::{Point, Vector};
 use bowknot_scene::BodyKind;
 use bowknot_scene::world::World;
-use bowknot_twoway::Problem;
+use bowknot_twoway::CollisionScene;
 use rustc_hash::FxHashSet;
 
 /// Share of its limit from which on an edge counts as taut.
@@ -34,20 +34,20 @@ struct LimitedEdge {
 impl LimitedEdges {
     /// The edges of cloth and strands, where limits are those of rest lengths; none where they are of each call's start, as these limit
     /// no sum of them.
-    pub fn new(problem: &Problem, world: &World) -> Self {
-        let constraints = &problem.params.constraints;
+    pub fn new(scene: &CollisionScene, world: &World) -> Self {
+        let constraints = &scene.params().contact;
         if !constraints.edges || constraints.edge_reference != EdgeReference::Rest {
             return Self::default();
         }
         let limited = |(index, &vertices): (usize, &[u32; 2])| {
-            let [a, b] = vertices.map(|v| problem.rest[v as usize]);
-            let body = problem.model.vertex_body()[vertices[0] as usize];
-            let limit = problem.stretch_limit(body) * (a - b).norm();
+            let [a, b] = vertices.map(|v| scene.rest()[v as usize]);
+            let body = scene.model().vertex_body()[vertices[0] as usize];
+            let limit = scene.stretch_limit(body) * (a - b).norm();
             let kind = world.bodies[body as usize].kind;
             let limits = matches!(kind, Some(BodyKind::Cloth | BodyKind::Strands)) && limit.is_finite();
             limits.then_some(LimitedEdge { index: index as u32, vertices, limit })
         };
-        Self { edges: problem.model.topology().edges.iter().enumerate().filter_map(limited).collect() }
+        Self { edges: scene.model().topology().edges.iter().enumerate().filter_map(limited).collect() }
     }
 
     /// Those that are taut at `x` or carry a force, each as a spring of the `stiffness` and with the edge, twice, for its features.

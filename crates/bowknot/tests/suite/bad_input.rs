@@ -144,7 +144,10 @@ fn motion_beyond_all_bounds_is_an_error_and_no_panic() {
     assert!(message.starts_with("time step 1: ") && message.contains("sheet"), "{message}");
     // Before anything is written.
     let message = refusal(&text(0.0, 1e13));
-    assert!(message.contains("set contact.floor above") && message.contains("body sheet"), "{message}");
+    assert!(
+        message.contains("set contact.min_separation above") && message.contains("body sheet"),
+        "{message}"
+    );
 }
 
 #[test]

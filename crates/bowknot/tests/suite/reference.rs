@@ -1,8 +1,9 @@
 //! Makes `docs/scene-reference.md` from the structs' documentation and defaults, and fails when the file
 //! differs. `BOWKNOT_ACCEPT=1 cargo test --release -p bowknot reference` writes it anew.
 
-use bowknot::constraints::ConstraintParams;
-use bowknot::dynamics::{ClothMaterial, DynamicsParams, ParticleMaterial, SolidMaterial, StrandMaterial};
+use bowknot::dynamics::{
+    ClothMaterial, Environment, NewtonParams, ParticleMaterial, SolidMaterial, StrandMaterial,
+};
 use bowknot::scene::{
     BodyKind, BodySpec, FrictionPair, Keyframe, Motion, ObstacleSpec, OutputParams, PinSpec, Region,
     RepulsionParams, SimulationParams,
@@ -11,8 +12,7 @@ use bowknot::shapes::{
     Ball, Cone, Cuboid, Figure, Garment, HalfSpaceShape, Lathe, Ribbon, Sheet, Tube, Wedge,
 };
 use bowknot::shapes::{Block, Grains, Strands, TetBall, Woven};
-use bowknot::stepper::StepperParams;
-use bowknot::twoway::{BackwardParams, Params, StopParams};
+use bowknot::twoway::{BackwardParams, ContactParams, ForwardParams, Params, StopParams};
 use serde::Serialize;
 use std::fmt::Write;
 use std::fs;
@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 /// Where the structs and enums are, relative to `crates`.
-const SOURCES: [&str; 33] = [
+const SOURCES: [&str; 34] = [
     "bowknot/src/scene/params.rs",
     "bowknot/src/scene/body.rs",
     "bowknot/src/scene/material.rs",
@@ -46,8 +46,9 @@ const SOURCES: [&str; 33] = [
     "constraints/src/params.rs",
     "stepper/src/params.rs",
     "twoway/src/params.rs",
+    "twoway/src/stop.rs",
     "dynamics/src/params.rs",
-    "dynamics/src/material/mod.rs",
+    "dynamics/src/material/rest_shape.rs",
     "dynamics/src/material/cloth.rs",
     "dynamics/src/material/solid.rs",
     "dynamics/src/material/strand.rs",
@@ -92,6 +93,29 @@ impl Sources {
 
     fn fields(&self, name: &str) -> Vec<Field> {
         let body = self.body("struct", name).unwrap_or_else(|| panic!("struct {name} is in none of SOURCES"));
+        Self::documented_fields(body)
+    }
+
+    /// The fields of the variants of an enum.
+    fn variant_fields(&self, name: &str) -> Vec<Field> {
+        let body = self.body("enum", name).unwrap_or_else(|| panic!("enum {name} is in none of SOURCES"));
+        let start = |line: &str| line.trim().ends_with(" {");
+        let lines: Vec<&str> = body.lines().collect();
+        let variants = (1..lines.len()).filter(|&k| start(lines[k]));
+        variants
+            .flat_map(|k| {
+                let end = |line: &&&str| **line != "    },";
+                let fields = lines[k..].iter().take_while(end).map(|line| {
+                    let line = line.trim();
+                    if line.starts_with("///") { line.to_owned() } else { format!("pub {line}") }
+                });
+                Self::documented_fields(&fields.collect::<Vec<_>>().join("\n"))
+            })
+            .collect()
+    }
+
+    /// The public fields in the lines of a struct after the first.
+    fn documented_fields(body: &str) -> Vec<Field> {
         let (mut fields, mut doc, mut rename) = (Vec::new(), String::new(), None);
         for line in body.lines().skip(1).map(str::trim) {
             if let Some(text) = line.strip_prefix("///") {
@@ -109,7 +133,7 @@ impl Sources {
         fields
     }
 
-    /// Names of an enum's variants as serde has them, if `name` is an enum without data.
+    /// Names of an enum's variants as serde has them, if `name` is an enum whose variants have no data, or named fields.
     fn variants(&self, name: &str) -> Option<Vec<String>> {
         let lower = |name: &str| {
             let mut kebab = String::new();
@@ -121,9 +145,11 @@ impl Sources {
             }
             kebab
         };
-        let lines = self.body("enum", name)?.lines().skip(1).map(str::trim);
-        let names = lines.filter_map(|line| line.strip_suffix(',')).filter(|line| !line.starts_with('/'));
-        let names: Vec<String> = names.map(lower).collect();
+        // Variants are indented by one level, their fields by two.
+        let lines = self.body("enum", name)?.lines().skip(1).filter_map(|line| line.strip_prefix("    "));
+        let lines = lines.filter(|line| !line.starts_with(['/', ' ', '}', '#']));
+        let names: Vec<String> =
+            lines.filter_map(|line| line.strip_suffix(',').or(line.strip_suffix(" {"))).map(lower).collect();
         names
             .iter()
             .all(|name| name.chars().all(|c| c.is_lowercase() || c.is_ascii_digit() || c == '-'))
@@ -158,10 +184,17 @@ impl Page {
         paper: Option<&T>,
         keep: impl Fn(&str) -> bool,
     ) {
+        let mut fields = self.sources.fields(name);
+        fields.retain(|field| keep(&field.key));
+        self.rows_of(name, &fields, defaults, paper);
+    }
+
+    /// The rows of `fields`, which stand in the table of a `T`.
+    fn rows_of<T: Serialize>(&mut self, name: &str, fields: &[Field], defaults: &T, paper: Option<&T>) {
         let table = |value: &T| Table::try_from(value).expect("a table");
         let defaults = table(defaults);
         let paper_values = paper.map(table);
-        for field in self.sources.fields(name).iter().filter(|field| keep(&field.key)) {
+        for field in fields {
             let (unit, meaning) = split_unit(&plain(&field.doc), &field.kind);
             let (kind, values) = self.describe(&field.kind);
             let default = show(defaults.get(&field.key));
@@ -262,20 +295,17 @@ fn split_unit(doc: &str, kind: &str) -> (String, String) {
 fn page() -> String {
     let mut page = Page { sources: Sources::read(), text: HEAD.to_owned() };
     let all = |_: &str| true;
-    let in_simulation = |key: &str| {
-        ["gravity", "air_drag", "wind", "air_density", "drag_normal", "drag_tangential"].contains(&key)
-    };
 
     page.section("[simulation]", "Time and the order of work.");
     page.head(false);
     page.rows("SimulationParams", &SimulationParams::default(), None, all);
-    page.rows("DynamicsParams", &DynamicsParams::default(), None, in_simulation);
+    page.rows("Environment", &Environment::default(), None, all);
 
     page.section(
         "[contact]",
-        "Contact and stretch limits, the forward step, the search radii. `preset` sets the defaults of this table and \
-         of `[solver]`: `fast`, the default, or `paper`, the method as the paper describes it; the column `paper` has \
-         its values where they differ.",
+        "Contact and stretch limits. `preset` sets the defaults of this table, of `[solver.backward]`, `[solver.forward]` \
+         and `[solver.stop]`: `fast`, the default, or `paper`, the method as the paper describes it. The column `paper` \
+         has its values where they differ.",
     );
     page.head(true);
     let _ = writeln!(
@@ -283,9 +313,7 @@ fn page() -> String {
         "| `preset` | name |  | `\"fast\"` | `\"paper\"` | Set of defaults. One of `fast`, `paper`. |"
     );
     let (fast, paper) = (Params::fast(), Params::paper());
-    page.rows("ConstraintParams", &fast.constraints, Some(&paper.constraints), all);
-    page.rows("StepperParams", &fast.stepper, Some(&paper.stepper), all);
-    let _: (&ConstraintParams, &StepperParams) = (&fast.constraints, &fast.stepper);
+    page.rows::<ContactParams>("ContactParams", &fast.contact, Some(&paper.contact), all);
 
     page.section(
         "[[contact.friction_pairs]]",
@@ -294,17 +322,21 @@ fn page() -> String {
     page.head(false);
     page.rows("FrictionPair", &FrictionPair::default(), None, all);
 
-    page.section(
-        "[solver]",
-        "The backward step of the two-way method, Newton's method and its linear solve.",
-    );
+    page.section("[solver.newton]", "Newton's method, its linear solve, and when a time step is solved.");
+    page.head(false);
+    page.rows("NewtonParams", &NewtonParams::default(), None, all);
+    let (fast, paper) = (&fast.solver, &paper.solver);
+    page.section("[solver.backward]", "The backward step of the two-way method.");
     page.head(true);
     page.rows::<BackwardParams>("BackwardParams", &fast.backward, Some(&paper.backward), all);
-    let dynamics = DynamicsParams::default();
-    page.rows("DynamicsParams", &dynamics, Some(&dynamics), |key| !in_simulation(key));
+    page.section("[solver.forward]", "The forward step of the two-way method, and the trust regions.");
+    page.head(true);
+    page.rows::<ForwardParams>("ForwardParams", &fast.forward, Some(&paper.forward), all);
     page.section("[solver.stop]", "When a collision problem counts as solved.");
     page.head(true);
     page.rows::<StopParams>("StopParams", &fast.stop, Some(&paper.stop), all);
+    let fields = page.sources.variant_fields("StopRule");
+    page.rows_of("StopRule", &fields, &fast.stop, Some(&paper.stop));
 
     page.section(
         "[solver.repulsion]",
@@ -477,6 +509,8 @@ fn every_key_that_a_scene_has_is_on_the_page() {
             "contact",
             "friction_pairs",
             "solver",
+            "backward",
+            "forward",
             "repulsion",
             "output",
             "body",

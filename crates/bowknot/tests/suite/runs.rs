@@ -84,7 +84,7 @@ fn a_run_leaves_the_folder_that_other_tools_rely_on() {
         "cpu_seconds",
         "skipped",
         "slowest_body",
-        "prescribed_behind_m",
+        "prescribed_lag_m",
         "waiting",
         "injected_energy_j",
         "collision_energy_j",

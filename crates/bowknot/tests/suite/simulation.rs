@@ -247,7 +247,7 @@ fn cloth_that_hangs_over_a_needle_stays_at_rest() {
 #[test]
 fn every_time_step_of_taut_folded_sliding_cloth_goes_on_from_its_checkpoint_to_the_same_bits() {
     for (name, scale, steps, tolerance) in [("needle", 0.2, 20, "1e-7"), ("sphere", 0.08, 60, "0.003")] {
-        let sets = [format!("solver.step_tolerance={tolerance}")];
+        let sets = [format!("solver.newton.step_tolerance={tolerance}")];
         let scene = Scene::builtin(name, scale).and_then(|scene| scene.with_sets(&sets)).expect("a scene");
         let mut simulator = Simulator::new(&scene).unwrap_or_else(|error| panic!("{error}"));
         let mut other = Simulator::new(&scene).unwrap_or_else(|error| panic!("{error}"));

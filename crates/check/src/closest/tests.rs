@@ -3,11 +3,8 @@ use bowknot_geometry::distance;
 
 /// Points on a small grid, so that many pairs are degenerate, parallel or touching.
 fn pairs() -> Vec<[Point; 4]> {
-    let mut state = 1u64;
-    let mut number = || {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        ((state >> 33) % 5) as f64 - 2.0
-    };
+    let mut random = fastrand::Rng::with_seed(1);
+    let mut number = || f64::from(random.i8(-2..=2));
     (0..5000).map(|_| std::array::from_fn(|_| Point::new(number(), number(), 0.25 * number()))).collect()
 }
 

@@ -8,25 +8,21 @@ mod states;
 use super::{CheckError, Intersection, Judge, PairClass, Parts, PathOptions, StateOptions};
 use bowknot_geometry::{HalfSpace, Point, Vector};
 
-/// A small deterministic generator (splitmix64).
-struct Random(u64);
+/// Seeded random numbers.
+struct Random(fastrand::Rng);
 
 impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+    fn new(seed: u64) -> Self {
+        Self(fastrand::Rng::with_seed(seed))
     }
 
     /// Uniform in [-1, 1).
     fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        2.0 * self.0.f64() - 1.0
     }
 
     fn integer(&mut self, low: i64, high: i64) -> i64 {
-        low + (self.next() % (high - low + 1) as u64) as i64
+        self.0.i64(low..=high)
     }
 
     fn point(&mut self, scale: f64) -> Point {

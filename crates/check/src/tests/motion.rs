@@ -31,7 +31,7 @@ fn crowd(random: &mut Random) -> (Judge, Vec<Point>) {
 /// so that orders are kept and renewed, clear ones and ones full of hits, with jumps in between.
 #[test]
 fn an_order_that_is_kept_changes_no_verdict() {
-    let mut random = Random(21);
+    let mut random = Random::new(21);
     let (judge, mut x) = crowd(&mut random);
     let mut motion = MotionJudge::new(judge.clone());
     let (mut clear, mut struck) = (0, 0);
@@ -65,7 +65,7 @@ fn an_order_that_is_kept_changes_no_verdict() {
 /// Every pair whose moving boxes meet is looked at, each once: counted without a tree.
 #[test]
 fn an_outdated_order_leaves_no_pair_out() {
-    let mut random = Random(22);
+    let mut random = Random::new(22);
     let (count, range) = (300, 0.2);
     let triangles: Vec<[u32; 3]> = (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     let judge = judge_of(3 * count as usize, &triangles, &[], &[]);

@@ -21,7 +21,7 @@ fn hits(judge: &Judge, x0: &[Point], x1: &[Point]) -> usize {
 /// doubles, and the answer is the same.
 #[test]
 fn verdicts_equal_the_exact_ones() {
-    let mut random = Random(7);
+    let mut random = Random::new(7);
     let (mut sure_hits, mut sure_misses, mut unknown) = (0, 0, 0);
     for round in 0..12_000 {
         let edges = round % 2 == 0;
@@ -54,7 +54,7 @@ fn verdicts_equal_the_exact_ones() {
 /// Moved apart by one part in 2^30 along a direction that separates them all the way: never flagged.
 #[test]
 fn touching_is_a_hit_and_a_hair_apart_is_not() {
-    let mut random = Random(8);
+    let mut random = Random::new(8);
     for round in 0..6_000 {
         let edges = round % 2 == 0;
         let mut integers = |low, high| {
@@ -119,7 +119,7 @@ fn time_and_place_are_those_of_the_first_contact() {
 #[test]
 fn broad_phase_keeps_every_pair() {
     for seed in 0..6 {
-        let mut random = Random(100 + seed);
+        let mut random = Random::new(100 + seed);
         let n: u32 = 60;
         let count = (3 * n + 2 * n + n) as usize;
         let (size, travel) = [(0.3, 0.3), (0.1, 0.02), (0.05, 2.0)][seed as usize % 3];
@@ -222,7 +222,7 @@ fn half_spaces_are_judged_at_both_ends() {
 
 #[test]
 fn reports_do_not_depend_on_threads() {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     let (mut x0, triangles) = sheet(40, 0.0, 0);
     x0.iter_mut().for_each(|p| *p += random.vector(0.02));
     let x1: Vec<Point> = x0.iter().map(|p| p + random.vector(0.02)).collect();

@@ -1,8 +1,7 @@
 //! States.
 
 use super::*;
-use bowknot_geometry::{BodyFilter, CollisionModel};
-use bowknot_geometry::{Topology, intersection};
+use bowknot_geometry::{BodyFilter, CollisionModel, Topology, TopologyError, VertexOutOfRange, intersection};
 
 fn report(judge: &Judge, x: &[Point]) -> super::super::StateReport {
     judge.check_state(x, &StateOptions { limit: usize::MAX, distance: true }).expect("valid points")
@@ -16,7 +15,7 @@ fn listed(intersections: &[Intersection]) -> Vec<(PairClass, [u32; 2])> {
 #[test]
 fn soups_equal_all_pairs() {
     for seed in 0..4 {
-        let mut random = Random(40 + seed);
+        let mut random = Random::new(40 + seed);
         let n: u32 = 80;
         let size = [0.6, 0.05][seed as usize % 2];
         let mut x: Vec<Point> = Vec::new();
@@ -220,7 +219,7 @@ fn obstacles_and_filters_are_exempt() {
         BodyFilter { groups: 2, ..BodyFilter::OBSTACLE },
         BodyFilter { mask: 1, ..BodyFilter::DEFORMABLE },
     ];
-    let topology = Topology::new(9, triangles.to_vec(), &[], &[]).expect("valid topology");
+    let topology = Topology::builder(9).triangles(triangles.iter().copied()).build().expect("valid topology");
     let model =
         CollisionModel::new(topology, body.to_vec(), filters.to_vec(), Vec::new()).expect("valid model");
     let judge = Judge::from_model(&model);
@@ -234,15 +233,19 @@ fn bad_input_is_refused() {
     let error = |parts: Parts<'_>| Judge::new(&parts).expect_err("must be refused");
     assert_eq!(
         error(Parts { triangles: &[[0, 1, 2], [0, 1, 3]], ..parts }),
-        CheckError::VertexOutOfRange { element: "triangle", index: 1, vertex: 3, vertex_count: 3 }
+        CheckError::Topology(
+            VertexOutOfRange { element: "triangle", index: 1, vertex: 3, vertex_count: 3 }.into()
+        )
     );
     assert_eq!(
         error(Parts { strands: &[[2, 2]], ..parts }),
-        CheckError::RepeatedVertex { element: "strand edge", index: 0, vertex: 2 }
+        CheckError::Topology(TopologyError::RepeatedVertex { element: "strand edge", index: 0, vertex: 2 })
     );
     assert_eq!(
         error(Parts { particles: &[7], ..parts }),
-        CheckError::VertexOutOfRange { element: "particle", index: 0, vertex: 7, vertex_count: 3 }
+        CheckError::Topology(
+            VertexOutOfRange { element: "particle", index: 0, vertex: 7, vertex_count: 3 }.into()
+        )
     );
     assert_eq!(
         error(Parts { obstacle: &[true], ..parts }),

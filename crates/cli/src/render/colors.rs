@@ -1,10 +1,10 @@
-//! What colours show: numbers of vertices, and the scale that all frames share.
+//! The numbers that colours show at vertices, and the scale that all frames share.
 
+use super::edges::edges_with_lengths;
 use super::folder::RunFolder;
 use super::gaps::Gaps;
-use super::is_scale;
 use crate::args::{Color, RenderOptions};
-use crate::failure::Failure;
+use crate::exit::Failure;
 use crate::progress::Bar;
 use bowknot::StepStatistics;
 use bowknot::geometry::Point;
@@ -14,26 +14,27 @@ use bowknot_render::{Legend, Scale, body_color};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Share of the values at either end that may lie beyond the scale: a few extreme edges would leave no colours for the
-/// others.
-const BEYOND: f64 = 0.002;
+/// Share of the values at either end that may lie beyond the scale, so that a few extreme edges do not take
+/// the range of colours from all others.
+const OUTLIERS: f64 = 0.002;
 
 /// Colours of all frames that are drawn.
 pub struct Coloring {
     legend: Option<Legend>,
-    /// For each frame a share of the scale for each vertex, NaN for none; empty without a scale.
+    /// For each frame the position of each vertex on the scale, in [0, 1], or NaN for none; empty without a
+    /// scale.
     shares: Vec<Vec<f32>>,
 }
 
 impl Coloring {
-    /// Finds the numbers of all frames and a scale for them.
+    /// Computes the numbers of all frames and a scale for them.
     pub fn new(
         options: &RenderOptions,
         run: &RunFolder,
         frames: &[usize],
         bar: &mut Bar,
     ) -> Result<Self, Failure> {
-        let Some(color) = options.color.filter(|_| is_scale(options.color)) else {
+        let Some(color) = options.color.filter(|color| color.is_number()) else {
             bar.advance(frames.len());
             let legend = options.color.map(|_| Legend::Names(names(run)));
             return Ok(Self { legend, shares: Vec::new() });
@@ -61,18 +62,18 @@ impl Coloring {
         Ok(Self { legend: Some(Legend::Scale(scale)), shares })
     }
 
-    /// The key, if colours mean anything.
+    /// The legend, if colours show something.
     pub fn legend(&self) -> Option<&Legend> {
         self.legend.as_ref()
     }
 
-    /// Shares of the frame at `index` of those that are drawn.
+    /// Positions on the scale in frame `index` of those that are drawn.
     pub fn shares(&self, index: usize) -> &[f32] {
         self.shares.get(index).map_or(&[], Vec::as_slice)
     }
 }
 
-/// Deformable bodies that are in the frames, and the obstacles as one.
+/// Names and colours of the deformable bodies, and of the obstacles together.
 fn names(run: &RunFolder) -> Vec<(String, [u8; 3])> {
     let bodies = run.scene().bodies.iter().enumerate();
     let mut names: Vec<_> = bodies.map(|(k, body)| (body.name.clone(), body_color(k as u32))).collect();
@@ -82,36 +83,36 @@ fn names(run: &RunFolder) -> Vec<(String, [u8; 3])> {
     names
 }
 
-/// The lowest and the highest value, but for a few at either end.
+/// The smallest and the largest value, except for the outliers at either end.
 fn ends(values: &[Vec<f64>]) -> [f64; 2] {
     let mut all: Vec<f64> = values.iter().flatten().copied().filter(|v| !v.is_nan()).collect();
     if all.is_empty() {
         return [0.0, 1.0];
     }
     all.sort_by(f64::total_cmp);
-    let few = (BEYOND * all.len() as f64) as usize;
+    let few = (OUTLIERS * all.len() as f64) as usize;
     [all[few], all[all.len() - 1 - few]]
 }
 
-/// Where numbers come from.
+/// The source of the numbers.
 enum Source {
     Stretch {
         edges: Vec<([u32; 2], f64)>,
     },
     Gap(Box<Gaps>),
     Speed,
-    /// Targets were recorded: a file for each time step and Newton iteration.
+    /// Distances to recorded targets: a file for each time step and Newton iteration.
     RemainingOfVertices {
         files: Vec<(usize, PathBuf)>,
     },
-    /// Only the largest of each time step is known; from step 1 on [m].
+    /// The largest distance to the target in each time step, from step 1 on [m].
     RemainingOfSteps(Vec<f64>),
 }
 
 impl Source {
     fn new(color: Color, run: &RunFolder, range: Option<[f64; 2]>) -> Result<Self, Failure> {
         Ok(match color {
-            Color::Stretch => Self::Stretch { edges: edges(run) },
+            Color::Stretch => Self::Stretch { edges: edges_with_lengths(run.elements()) },
             Color::Gap => Self::Gap(Box::new(Gaps::new(run, range.map(|[_, high]| high * 1e-3))?)),
             Color::Speed | Color::Body => Self::Speed,
             Color::Remaining => {
@@ -125,7 +126,7 @@ impl Source {
         })
     }
 
-    /// What the legend says, and the unit.
+    /// The quantity and the unit for the legend.
     fn heading(&self) -> (String, String) {
         let (title, unit) = match self {
             Self::Stretch { .. } => ("stretch", ""),
@@ -137,12 +138,12 @@ impl Source {
         (title.to_owned(), unit.to_owned())
     }
 
-    /// Whether larger values than this are not told apart.
+    /// Whether values above this are all shown as the same, because the source measures no larger ones.
     fn is_capped(&self, high: f64) -> bool {
         matches!(self, Self::Gap(gaps) if high * 1e-3 >= gaps.cap() * (1.0 - 1e-9))
     }
 
-    /// A number for each vertex, in the legend's unit; NaN for obstacles.
+    /// A number per vertex, in the unit of the legend; NaN for obstacles.
     fn values(&self, run: &RunFolder, frame: usize) -> Result<Vec<f64>, Failure> {
         let positions = run.positions(frame)?;
         let n = positions.len();
@@ -158,9 +159,9 @@ impl Source {
                 // Grains have no edges.
                 largest.iter().map(|&ratio| if ratio > 0.0 { ratio } else { f64::NAN }).collect()
             }
-            Self::Gap(gaps) => gaps.of(&positions).into_iter().map(|gap| 1e3 * gap).collect(),
+            Self::Gap(gaps) => gaps.measure(&positions).into_iter().map(|gap| 1e3 * gap).collect(),
             Self::Speed => {
-                // The first frame has none before it: the speed at which it is left.
+                // The first frame has no frame before it: it shows the speed to the next one.
                 let (before, after) =
                     if frame == 0 { (0, run.last_frame().min(1)) } else { (frame - 1, frame) };
                 let (a, b) = (run.positions(before)?, run.positions(after)?);
@@ -168,7 +169,7 @@ impl Source {
             }
             Self::RemainingOfVertices { files } => match files.iter().rfind(|(step, _)| *step == frame) {
                 Some((_, file)) => remaining_of_vertices(&States::read(file)?, &positions, file)?,
-                // Nothing was asked of the first frame.
+                // The first frame has no target.
                 None => vec![0.0; n],
             },
             Self::RemainingOfSteps(steps) => {
@@ -185,19 +186,7 @@ impl Source {
     }
 }
 
-/// Deformable edges and their lengths in the first frame [m]; those without length have no stretch.
-fn edges(run: &RunFolder) -> Vec<([u32; 2], f64)> {
-    let mesh = run.elements();
-    let sides = mesh.triangles.iter().flat_map(|&[i, j, k]| [[i, j], [j, k], [k, i]]);
-    let mut edges: Vec<[u32; 2]> =
-        sides.chain(mesh.strands.iter().copied()).map(|[i, j]| [i.min(j), i.max(j)]).collect();
-    edges.sort_unstable();
-    edges.dedup();
-    let length = |[i, j]: [u32; 2]| (mesh.positions[i as usize] - mesh.positions[j as usize]).norm();
-    edges.into_iter().map(|e| (e, length(e))).filter(|(_, length)| *length > 0.0).collect()
-}
-
-/// Files of `states/` with the number of their time step, in order.
+/// The files in `states/` with the numbers of their time steps, in order.
 fn recorded(run: &RunFolder) -> Result<Vec<(usize, PathBuf)>, Failure> {
     let folder = run.file("states");
     if !folder.is_dir() {
@@ -208,11 +197,11 @@ fn recorded(run: &RunFolder) -> Result<Vec<(usize, PathBuf)>, Failure> {
     Ok(files.into_iter().filter_map(|file| Some((step(&file)?, file))).collect())
 }
 
-/// Distance between where each vertex is and where the last collision problem of the time step wanted it [mm].
+/// Distance from each vertex to its target in the last collision problem of the time step [mm].
 fn remaining_of_vertices(states: &States, x: &[Point], file: &Path) -> Result<Vec<f64>, Failure> {
     if states.y.len() != x.len() {
         let (file, given, expected) = (file.display(), states.y.len(), x.len());
-        return Err(Failure::input(format!("{file} has {given} vertices, the frames {expected}")));
+        return Err(Failure::input(format!("{file} has {given} vertices, but the frames have {expected}")));
     }
     Ok(x.iter().zip(&states.y).map(|(p, y)| 1e3 * (y - p).norm()).collect())
 }

@@ -1,7 +1,7 @@
-//! The folder of a run, as pictures need it.
+//! What pictures need from the folder of a run.
 
-use super::mean_edge;
-use crate::failure::Failure;
+use super::edges::mean_edge;
+use crate::exit::Failure;
 use bowknot::geometry::{HalfSpace, Point};
 use bowknot::io::{Import, Mesh, read_mesh};
 use bowknot::scene::{Material, Scene};
@@ -10,11 +10,12 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Distance of contacts where a scene names none, as a share of the mean edge length; as in the simulation.
+/// Contact distance where a scene gives none, relative to the mean edge length, as in the simulation.
 const DELTA: f64 = 0.1;
-/// Least radius of strands and grains, as a share of the scene's size: thinner ones would not be seen.
-const VISIBLE: f64 = 5e-4;
-/// Grains whose nearest neighbours tell how large they are, where nothing else does.
+/// Smallest radius of strands and grains, relative to the size of the scene: thinner ones could not be seen.
+const MIN_RADIUS: f64 = 5e-4;
+/// Number of grains whose nearest neighbours are measured to estimate their size, if the scene does not give
+/// it.
 const SAMPLED_GRAINS: usize = 500;
 
 /// The folder of a run.
@@ -24,32 +25,35 @@ pub struct RunFolder {
     scene: Scene,
     /// Files of the frames by number.
     frames: BTreeMap<usize, PathBuf>,
-    /// Elements and the first frame, without the squares that stand for half-spaces.
+    /// Elements and positions of the first frame, without the squares that represent half-spaces.
     elements: Mesh,
     ground: Vec<HalfSpace>,
     radius: f64,
 }
 
 impl RunFolder {
-    /// Reads what is the same for all frames.
+    /// Opens a folder and reads what is the same for all frames.
     pub fn open(path: &Path) -> Result<Self, Failure> {
-        let fault = |message: String| Failure::input(format!("{}: {message}", path.display()));
+        let bad_input = |message: String| Failure::input(format!("{}: {message}", path.display()));
         let scene_file = path.join("scene.toml");
         if !path.is_dir() || !scene_file.is_file() {
             let what = if path.exists() { "it holds no scene.toml" } else { "there is no such folder" };
-            return Err(fault(format!("not the folder of a run, {what}; `bowknot run SCENE` makes one")));
+            return Err(bad_input(format!("not the folder of a run: {what}; `bowknot run SCENE` makes one")));
         }
         let scene = Scene::load(&scene_file, &[] as &[&str]).map_err(Failure::input)?;
         let frames = frames(&path.join("frames"))?;
         let Some((_, first)) = frames.first_key_value() else {
-            return Err(fault("it has no frames/*.ply: run with --format ply".to_owned()));
+            return Err(bad_input("it has no frames/*.ply: run with --format ply".to_owned()));
         };
         let mut elements = read_mesh(first, &Import::default())?;
 
         let squares = scene.obstacles.iter().filter(|o| matches!(o.shape, Some(Shape::HalfSpace(_)))).count();
         let vertices = elements.positions.len();
         let Some(kept) = vertices.checked_sub(4 * squares) else {
-            return Err(fault(format!("{} has {vertices} vertices, too few for its scene", first.display())));
+            return Err(bad_input(format!(
+                "{} has {vertices} vertices, too few for its scene",
+                first.display()
+            )));
         };
         let ground = elements.positions[kept..].as_chunks::<4>().0.iter().filter_map(plane).collect();
         elements.positions.truncate(kept);
@@ -76,12 +80,12 @@ impl RunFolder {
         self.path.join(name)
     }
 
-    /// Elements and the first frame, without what stands for half-spaces.
+    /// Elements and positions of the first frame, without the squares that represent half-spaces.
     pub fn elements(&self) -> &Mesh {
         &self.elements
     }
 
-    /// Whether a vertex is of an obstacle.
+    /// Whether a vertex belongs to an obstacle.
     pub fn is_obstacle(&self, vertex: usize) -> bool {
         self.elements.obstacle.as_ref().is_some_and(|o| o[vertex])
     }
@@ -111,7 +115,7 @@ impl RunFolder {
         self.frames.last_key_value().map_or(0, |(number, _)| *number)
     }
 
-    /// Refuses a frame that is not there.
+    /// Refuses a frame that does not exist.
     pub fn check_frame(&self, frame: usize) -> Result<(), Failure> {
         if self.frames.contains_key(&frame) {
             return Ok(());
@@ -120,16 +124,16 @@ impl RunFolder {
         Err(Failure::input(format!("{path} has no frame {frame}: its frames are numbered from 0 to {last}")))
     }
 
-    /// Positions of a frame [m], without what stands for half-spaces.
+    /// Positions of a frame [m], without the squares that represent half-spaces.
     pub fn positions(&self, frame: usize) -> Result<Vec<Point>, Failure> {
         self.check_frame(frame)?;
         let file = &self.frames[&frame];
         let mut positions = read_mesh(file, &Import::default())?.positions;
         let kept = self.elements.positions.len();
         if positions.len() != kept + 4 * self.ground.len() {
-            let (file, given) = (file.display(), positions.len());
+            let (file, given, expected) = (file.display(), positions.len(), kept + 4 * self.ground.len());
             return Err(Failure::input(format!(
-                "{file} has {given} vertices, other frames of the run more or fewer"
+                "{file} has {given} vertices, but other frames of the run have {expected}"
             )));
         }
         positions.truncate(kept);
@@ -154,13 +158,13 @@ fn frames(folder: &Path) -> Result<BTreeMap<usize, PathBuf>, Failure> {
     Ok(frames)
 }
 
-/// The half-space of a square, counter-clockwise seen from outside.
+/// The half-space of a square with counter-clockwise corners, seen from outside.
 fn plane(corners: &[Point; 4]) -> Option<HalfSpace> {
     HalfSpace::new(corners[0], (corners[1] - corners[0]).cross(&(corners[3] - corners[0])))
 }
 
-/// Radius of the thinnest strands and grains by their material, or half the distance that contacts keep: so thick, they
-/// touch when they do.
+/// Radius for strands and grains [m]: the smallest in the materials, or half the contact distance. With it
+/// they touch in the picture when they are in contact.
 fn radius(scene: &Scene, mesh: &Mesh) -> f64 {
     if mesh.strands.is_empty() && mesh.particles.is_empty() {
         return 0.0;
@@ -171,14 +175,14 @@ fn radius(scene: &Scene, mesh: &Mesh) -> f64 {
         Material::Strands(strand) => Some(2.0 * strand.radius),
         _ => None,
     });
-    let given = own.min_by(f64::total_cmp).or(scene.twoway.constraints.delta);
-    let of_edges = || mean_edge(mesh, positions).map(|length| DELTA * length);
+    let given = own.min_by(f64::total_cmp).or(scene.twoway.contact.delta);
+    let of_edges = || mean_edge(mesh).map(|length| DELTA * length);
     let delta = given.or_else(of_edges).unwrap_or_else(|| spacing(mesh));
     let (low, high) = positions.iter().fold((positions[0], positions[0]), |(l, h), p| (l.inf(p), h.sup(p)));
-    (delta / 2.0).max(VISIBLE * (high - low).norm())
+    (delta / 2.0).max(MIN_RADIUS * (high - low).norm())
 }
 
-/// Median distance of grains to their nearest neighbours [m].
+/// Median distance from grains to their nearest neighbours [m].
 fn spacing(mesh: &Mesh) -> f64 {
     let grains: Vec<Point> = mesh.particles.iter().map(|&v| mesh.positions[v as usize]).collect();
     let step = (grains.len() / SAMPLED_GRAINS).max(1);

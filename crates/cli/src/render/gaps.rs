@@ -1,52 +1,57 @@
-//! Distances between elements, a number a vertex.
+//! Distances between elements, one number per vertex.
 
+use super::edges::mean_edge;
 use super::folder::RunFolder;
-use super::mean_edge;
-use crate::failure::Failure;
+use crate::exit::Failure;
 use bowknot::geometry::{Point, Topology};
 use bowknot::proximity::{BodyFilter, CollisionModel, PairList, ProximitySearch};
 
-/// Largest gap that is looked for, as a share of the mean edge length: elements a few edges apart on the same sheet are
-/// farther from each other, so that what is seen are contacts.
+/// Largest gap that is measured, relative to the mean edge length. Elements a few edges apart on the same
+/// sheet are farther from each other, so that smaller gaps are contacts.
 const CAP: f64 = 0.5;
 
-/// Finds gaps.
+/// Measures gaps.
 pub struct Gaps {
     model: CollisionModel,
     cap: f64,
 }
 
 impl Gaps {
-    /// Gaps up to `cap` [m], by default half the mean edge length. Collision groups are not looked at.
+    /// Measures gaps up to `cap` [m], by default half the mean edge length. Collision groups are ignored.
     pub fn new(run: &RunFolder, cap: Option<f64>) -> Result<Self, Failure> {
         let mesh = run.elements();
         let n = mesh.positions.len();
-        let default = || mean_edge(mesh, &mesh.positions).map_or(4.0 * run.radius(), |length| CAP * length);
+        let default = || mean_edge(mesh).map_or(4.0 * run.radius(), |length| CAP * length);
         let cap = cap.unwrap_or_else(default);
-        // A deformable body and an obstacle: more is not asked for.
+        // Two bodies are enough here: the deformable bodies as one and the obstacles as one.
         let bodies = vec![BodyFilter::DEFORMABLE, BodyFilter::OBSTACLE];
         let body = (0..n).map(|v| u32::from(run.is_obstacle(v))).collect();
-        let fault =
+        let bad_input =
             |error: &dyn std::fmt::Display| Failure::input(format!("the frames cannot be searched: {error}"));
-        let topology = Topology::new(n, mesh.triangles.clone(), &mesh.strands, &mesh.particles)
-            .map_err(|errors| fault(&errors.first().map(ToString::to_string).unwrap_or_default()))?;
+        let topology = Topology::builder(n)
+            .triangles(mesh.triangles.iter().copied())
+            .strand_edges(mesh.strands.iter().copied())
+            .particles(mesh.particles.iter().copied())
+            .build()
+            .map_err(|errors| bad_input(&errors.first().map(ToString::to_string).unwrap_or_default()))?;
         let model =
-            CollisionModel::new(topology, body, bodies, run.ground().to_vec()).map_err(|e| fault(&e))?;
+            CollisionModel::new(topology, body, bodies, run.ground().to_vec()).map_err(|e| bad_input(&e))?;
         Ok(Self { model, cap })
     }
 
-    /// Largest gap that is told [m].
+    /// Largest gap that is measured [m].
     pub fn cap(&self) -> f64 {
         self.cap
     }
 
-    /// Of each vertex the smallest distance of an element that it belongs to from one that shares no vertex with that
-    /// [m]; where there is none within the cap, the cap.
-    pub fn of(&self, positions: &[Point]) -> Vec<f64> {
+    /// For each vertex, the smallest distance from an element with this vertex to an element that shares no
+    /// vertex with it [m]; the cap, if there is none within the cap.
+    pub fn measure(&self, positions: &[Point]) -> Vec<f64> {
         let mut gaps = vec![self.cap; positions.len()];
         let (mut pairs, mut separations) = (PairList::default(), Vec::new());
         let half_spaces = self.model.half_spaces();
-        // A pair is listed within the sum of its sides' radii; half-spaces have none, and are simple.
+        // A pair is a candidate if its distance is below the sum of the radii of its sides. Half-spaces have
+        // no radius and are measured directly.
         let radii = vec![self.cap / 2.0; positions.len()];
         ProximitySearch::new(&self.model).search(
             &self.model,

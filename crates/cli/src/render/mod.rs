@@ -1,14 +1,14 @@
-//! `bowknot render`: pictures of a run.
+//! `bowknot render`: draws pictures of a run.
 
 mod colors;
+mod edges;
 mod folder;
 mod gaps;
 
-use crate::args::{Color, Direction, FrameRange, RenderOptions};
-use crate::failure::{Done, Failure};
+use crate::args::{Direction, FrameRange, RenderOptions};
+use crate::exit::{Exit, Failure};
 use crate::output;
 use crate::progress::Bar;
-use bowknot::geometry::Point;
 use bowknot::io::{create_folder, write_atomic};
 use bowknot_render::{
     Camera, Elements, Fit, Frame, Legend, Model, Picture, Quality, RenderError, Renderer, Shot, Style, View,
@@ -20,9 +20,9 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Most frames a second of an animation, if not asked otherwise.
+/// Largest number of frames per second of an animation, unless --fps asks for more.
 const MAX_FPS: f64 = 30.0;
-/// Frames of a run that the camera is fitted to, about, besides those that are drawn.
+/// Approximate number of frames of a run that the camera is fitted to, in addition to those that are drawn.
 const FITTED_FRAMES: usize = 24;
 
 impl From<RenderError> for Failure {
@@ -34,7 +34,7 @@ impl From<RenderError> for Failure {
     }
 }
 
-/// What is written.
+/// The kind of output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Output {
     Png,
@@ -48,23 +48,24 @@ impl Output {
             Some("png") => Ok(Self::Png),
             Some("gif") => Ok(Self::Gif),
             None => Ok(Self::Folder),
-            // A folder may well be called run.2.
+            // The name of a folder may contain a dot, as in run.2.
             Some(_) if path.is_dir() => Ok(Self::Folder),
             Some(other) => Err(Failure::input(format!(
-                "{}: pictures are .png, animations .gif, a name without an ending is a folder of pictures; not .{other}",
+                "{}: no format is called .{other}: pictures end in .png, animations in .gif, and a name without \
+                 an extension is a folder of pictures",
                 path.display()
             ))),
         }
     }
 }
 
-pub fn render(options: &RenderOptions) -> Result<Done, Failure> {
+pub fn render(options: &RenderOptions) -> Result<Exit, Failure> {
     let output = Output::of(&options.out)?;
     let run = RunFolder::open(&options.run)?;
     let (frames, fps) = select(options, output, &run)?;
     let started = Instant::now();
 
-    // The device first: without one nothing else is worth the wait.
+    // The device comes first: if there is none, the command fails before the other work.
     let mut renderer = Renderer::new(if frames.len() > 1 { Quality::FAST } else { Quality::FINE })?;
     let mut bar = Bar::new(2 * frames.len(), "passes over frames", options.quiet);
     let coloring = Coloring::new(options, &run, &frames, &mut bar)?;
@@ -106,10 +107,10 @@ pub fn render(options: &RenderOptions) -> Result<Done, Failure> {
         let out = options.out.display();
         output::print(&format!("{out}: {what}, {width} x {height} pixels, {seconds:.1} s on {name}"))?;
     }
-    Ok(Done::Fine)
+    Ok(Exit::Success)
 }
 
-/// Which frames are drawn, and how many a second an animation shows.
+/// The frames that are drawn, and the number of frames per second of an animation.
 fn select(options: &RenderOptions, output: Output, run: &RunFolder) -> Result<(Vec<usize>, f64), Failure> {
     let last = run.last_frame();
     if let Some(frame) = options.frame {
@@ -120,7 +121,7 @@ fn select(options: &RenderOptions, output: Output, run: &RunFolder) -> Result<(V
         return Err(Failure::input("a picture shows one frame: use --frame, or --out FILE.gif or a folder"));
     }
     let dt = run.time_step();
-    // As many frames are left out as it takes to play at the speed of the simulation.
+    // The step between frames with which an animation plays at the speed of the simulation.
     let fitting = (1.0 / (options.fps.unwrap_or(MAX_FPS) * dt)).ceil().max(1.0) as usize;
     let default = match output {
         Output::Png => FrameRange { first: last, last: None, step: 1 },
@@ -139,7 +140,7 @@ fn select(options: &RenderOptions, output: Output, run: &RunFolder) -> Result<(V
     Ok((frames, options.fps.unwrap_or(1.0 / (dt * range.step as f64))))
 }
 
-/// The camera, fitted to the whole run unless given, and the ground.
+/// The camera, which is fitted to the whole run unless the options give one, and the ground.
 fn shot(
     options: &RenderOptions,
     run: &RunFolder,
@@ -147,7 +148,7 @@ fn shot(
     size: [u32; 2],
     legend: Option<&Legend>,
 ) -> Result<Shot, Failure> {
-    let free = legend.map_or(0, |legend| legend.width(size[1])).min(size[0] / 2);
+    let legend_width = legend.map_or(0, |legend| legend.width(size[1])).min(size[0] / 2);
     let view = match options.view {
         Direction::Front => View::Front,
         Direction::Side => View::Side,
@@ -157,7 +158,7 @@ fn shot(
     let camera = match (options.camera, options.target) {
         (Some(eye), Some(target)) => Camera { eye: eye.into(), target: target.into(), fov: options.fov },
         (eye, _) => {
-            let mut fit = Fit::new(view, options.fov, f64::from(size[0] - free) / f64::from(size[1]));
+            let mut fit = Fit::new(view, options.fov, f64::from(size[0] - legend_width) / f64::from(size[1]));
             let every = (run.last_frame() / FITTED_FRAMES).max(1);
             let spread = run.frames().filter(|frame| frame % every == 0 || *frame == run.last_frame());
             let radius = run.radius();
@@ -171,7 +172,7 @@ fn shot(
             }
         }
     };
-    Ok(Shot { free, ground: run.ground().to_vec(), ..Shot::new(camera, size) })
+    Ok(Shot { legend_width, ground: run.ground().to_vec(), ..Shot::new(camera, size) })
 }
 
 fn model(run: &RunFolder) -> Result<Model, Failure> {
@@ -183,7 +184,7 @@ fn model(run: &RunFolder) -> Result<Model, Failure> {
         obstacle: mesh.obstacle.as_deref().unwrap_or(&[]),
         body: mesh.body.as_deref().unwrap_or(&[]),
     };
-    // Strands and grains keep a contact distance between them: so thick they touch in the picture when they do.
+    // With this radius, strands and grains touch in the picture when they are in contact.
     let style = Style { strand_radius: run.radius(), particle_radius: run.radius() };
     Ok(Model::new(&elements, &mesh.positions, &style)?)
 }
@@ -192,7 +193,8 @@ fn write(path: &Path, indexed: bool, picture: &Picture) -> Result<(), Failure> {
     encode(path, |out| if indexed { write_small_png(out, picture) } else { write_png(out, picture) })
 }
 
-/// Writes a file atomically. A fault of the encoder passes through as one of the system.
+/// Writes a file atomically, and its folder if there is none. An error of the encoder is reported as one of
+/// the file.
 fn encode(path: &Path, fill: impl FnOnce(&mut dyn Write) -> Result<(), RenderError>) -> Result<(), Failure> {
     let folder: PathBuf = path.parent().unwrap_or(Path::new("")).to_owned();
     if !folder.as_os_str().is_empty() {
@@ -204,19 +206,4 @@ fn encode(path: &Path, fill: impl FnOnce(&mut dyn Write) -> Result<(), RenderErr
             other => std::io::Error::other(other),
         })
     })?)
-}
-
-/// Mean length of the edges of triangles and strands [m], as far as there are any.
-fn mean_edge(mesh: &bowknot::io::Mesh, positions: &[Point]) -> Option<f64> {
-    let sides = mesh.triangles.iter().flat_map(|&[i, j, k]| [[i, j], [j, k], [k, i]]);
-    let lengths = sides
-        .chain(mesh.strands.iter().copied())
-        .map(|[i, j]| (positions[i as usize] - positions[j as usize]).norm());
-    let (sum, count) = lengths.fold((0.0, 0_usize), |(sum, count), length| (sum + length, count + 1));
-    (count > 0).then(|| sum / count as f64)
-}
-
-/// Whether a colour shows numbers.
-fn is_scale(color: Option<Color>) -> bool {
-    color.is_some_and(|color| color != Color::Body)
 }

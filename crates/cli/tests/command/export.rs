@@ -9,7 +9,8 @@ fn a_run_in_every_format() {
     assert!(ended.stdout.contains("exported 4 frames of") && ended.stdout.contains("to there"), "{ended:#?}");
     assert_eq!(place.files("there"), ["frames", "frames.npz", "frames.pvd", "pc2", "scene.usda"]);
     assert_eq!(place.files("run/frames").len(), 3 * 4);
-    // Half-spaces are quads in a run, and two triangles in what a PLY reader makes of it; all else is the same.
+    // Half-spaces are quads in a run, and two triangles in what a PLY reader makes of it; all else is the
+    // same.
     for file in ["frames.pvd", "pc2/sheet.pc2", "pc2/sheet.obj", "pc2/ball.pc2", "pc2/ground.pc2"] {
         let bytes = |folder: &str| std::fs::read(place.path(&format!("{folder}/{file}"))).unwrap();
         assert!(bytes("run") == bytes("there"), "{file} differs");

@@ -1,15 +1,15 @@
-//! The command from outside: exit codes, messages, files.
+//! Tests that run the command: exit codes, messages, files.
 // The helpers belong to the tests, where a panic is a failure.
 #![allow(clippy::unwrap_used)]
 
-/// Everything that can be wrong with what a user gives.
+/// Wrong arguments, scenes and files.
 mod bad_input;
 /// `check` on clear and on intersecting states and paths.
 mod check;
-/// Runs that are interrupted, resumed, or meet a full disk.
-mod endings;
-/// `export` of runs and loose frames.
+/// `export` of runs and of folders of frames.
 mod export;
+/// Runs that are interrupted, resumed, or meet a full disk.
+mod interruptions;
 /// Pictures of runs.
 #[cfg(feature = "render")]
 mod render;
@@ -19,7 +19,7 @@ mod repair;
 mod report;
 /// `resolve` on recorded problems.
 mod resolve;
-/// What a run writes and prints.
+/// The files and the output of `run`.
 mod run;
 /// `scenes` and `info`.
 mod scenes;
@@ -31,7 +31,7 @@ use tempfile::TempDir;
 /// A sheet of 8 x 8 edges over a coarse ball: a time step takes milliseconds.
 const SMALL: &str = "run drape --scale 0.16 --frames 3";
 
-/// A folder of its own for a test, in which the command runs.
+/// A temporary folder, in which the command runs.
 struct Place(TempDir);
 
 impl Place {
@@ -99,7 +99,7 @@ impl Ended {
         self
     }
 
-    /// Ended with this code and said all of these on stderr, without a panic.
+    /// Asserts that the command ended with this code, without a panic, and that stderr contains all of these.
     #[track_caller]
     fn refused(self, code: i32, says: &[&str]) -> Self {
         assert_eq!(self.code, code, "{self:#?}");
@@ -116,7 +116,7 @@ impl Ended {
     }
 }
 
-/// A PLY of one tetrahedron's surface, closed, about the origin.
+/// Writes an OBJ of the surface of one tetrahedron, with a corner at the origin.
 fn tetrahedron(path: &Path) {
     let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
     std::fs::write(path, text).unwrap();

@@ -7,8 +7,8 @@ fn png_size(place: &Place, name: &str) -> [u32; 2] {
     [16, 20].map(|at| u32::from_be_bytes(bytes[at..at + 4].try_into().unwrap()))
 }
 
-/// Whether pictures can be drawn here; says so if not.
-#[allow(clippy::print_stdout, reason = "what a test skips, it says")]
+/// Whether pictures can be drawn on this machine; prints why not.
+#[allow(clippy::print_stdout, reason = "a test that is skipped says so")]
 fn drawn(ended: &Ended) -> bool {
     if ended.code == 3 && std::env::var_os("BOWKNOT_NEED_DRIVER").is_none() {
         println!("skipped: {}", ended.stderr);
@@ -40,7 +40,7 @@ fn a_run_becomes_pictures() {
 }
 
 #[test]
-fn colours_show_what_is_asked_for() {
+fn each_quantity_gives_another_picture() {
     let place = Place::new();
     place.run(&format!("{SMALL} --out run --record")).ok();
     if !drawn(&place.run("render run --out plain.png --size 160x120")) {
@@ -53,13 +53,13 @@ fn colours_show_what_is_asked_for() {
         assert!(!seen.contains(&bytes), "{color} looks like another picture");
         seen.push(bytes);
     }
-    // Without recorded targets the statistics tell the largest of each step.
+    // Without recorded targets the statistics give the largest distance of each step.
     std::fs::remove_dir_all(place.path("run/states")).unwrap();
     place.run("render run --out steps.png --size 160x120 --color remaining --range 0..2.5").ok();
 }
 
 #[test]
-fn what_is_no_run_is_refused() {
+fn wrong_arguments_are_refused() {
     let place = Place::new();
     place.run("render nowhere --out a.png").refused(2, &["nowhere", "no such folder"]);
     std::fs::create_dir(place.path("empty")).unwrap();
@@ -85,7 +85,7 @@ fn what_is_no_run_is_refused() {
     place.run("render run --out a.png").refused(2, &["frames/*.ply", "--format ply"]);
 }
 
-/// The loader is told of a driver that does not exist.
+/// The variables name a driver that does not exist.
 #[cfg(target_os = "linux")]
 #[test]
 fn without_a_driver_the_package_is_named() {

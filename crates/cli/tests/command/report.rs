@@ -33,7 +33,8 @@ fn what_has_no_page() {
     place.run("report run --out none/page.html").refused(2, &["none/page.html"]);
 }
 
-/// Where this machine's Chromium is. In CI there must be one; elsewhere the tests that need it are skipped without.
+/// Where this machine's Chromium is. In CI there must be one; elsewhere the tests that need it are skipped
+/// without.
 #[expect(clippy::print_stderr, reason = "a test that is skipped says so")]
 fn chromium() -> Option<PathBuf> {
     let names = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
@@ -53,7 +54,8 @@ fn chromium() -> Option<PathBuf> {
     found
 }
 
-/// Opens a page in a window of 1000 x 700 and returns what the browser says: its DOM once settled, and a picture.
+/// Opens a page in a window of 1000 x 700 and returns what the browser says: its DOM once settled, and a
+/// picture.
 fn open(chromium: &Path, page: &Path, hash: &str, flags: &[&str]) -> (String, Picture) {
     let profile = tempfile::tempdir().unwrap();
     let picture = profile.path().join("page.png");
@@ -129,7 +131,8 @@ fn blue([r, _, b]: [u8; 3]) -> bool {
     b > 70 && i32::from(b) - i32::from(r) > 45
 }
 
-/// The middle of the picture, between the cards at its sides: at 1000 x 700 it is 670 wide, below a header of 46.
+/// The middle of the picture, between the cards at its sides: at 1000 x 700 it is 670 wide, below a header of
+/// 46.
 const MIDDLE: ([usize; 2], [usize; 2]) = ([180, 600], [60, 640]);
 
 #[test]

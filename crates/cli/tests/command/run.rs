@@ -21,14 +21,14 @@ fn a_run_writes_its_folder() {
             assert!(step.get(key).is_some(), "{key} is missing: {line}");
         }
     }
-    // The resolved scene is a scene: the same frames come of it.
+    // The scene file of the run makes the same frames.
     place.run("run out/drape/scene.toml --out again").ok();
     let frame = |run: &str| std::fs::read(place.path(&format!("{run}/frames/000003.ply"))).unwrap();
     assert!(frame("again") == frame("out/drape"), "scene.toml makes other frames");
 }
 
 #[test]
-fn json_is_all_that_stdout_holds() {
+fn json_is_the_only_output() {
     let place = Place::new();
     let ended = place.run(&format!("{SMALL} --json --check --threads 1")).ok();
     let summary = ended.json();
@@ -78,16 +78,16 @@ fn threads_do_not_change_the_bits() {
 #[test]
 fn options_reach_the_scene() {
     let place = Place::new();
-    place.run(&format!("{SMALL} --dt 0.002 --preset paper --set solver.sweeps=3 --out run")).ok();
+    place.run(&format!("{SMALL} --dt 0.002 --preset paper --set solver.backward.sweeps=3 --out run")).ok();
     let scene = place.read("run/scene.toml");
     for line in ["dt = 0.002", "frames = 3", "preset = \"paper\"", "sweeps = 3"] {
         assert!(scene.lines().any(|l| l.trim() == line), "{line:?} is not in\n{scene}");
     }
 }
 
-/// The README's promise: any OBJ or PLY runs as cloth.
+/// Any OBJ or PLY runs as cloth, as the README says.
 #[test]
-fn a_loose_mesh_falls_on_a_ball() {
+fn a_bare_mesh_falls_on_a_ball() {
     let place = Place::new();
     let vertices: String =
         (0..49).map(|i| format!("v {} {} {}\n", 100 * (i % 7), 40, 100 * (i / 7))).collect();
@@ -106,7 +106,7 @@ fn a_loose_mesh_falls_on_a_ball() {
     assert_eq!(again["vertices"], 49);
 }
 
-/// The README's scene, but for the size of its mesh.
+/// The scene in the README, with a smaller mesh.
 #[test]
 fn the_scene_of_the_readme() {
     let readme = include_str!("../../../../README.md");
@@ -141,7 +141,7 @@ fn a_pin_that_would_go_through_the_ground_waits_and_is_named() {
     let last: serde_json::Value = serde_json::from_str(statistics.lines().last().unwrap()).unwrap();
     let behind = last["waiting"]["pin[0] of flag"].as_f64().unwrap();
     assert!((behind - 0.1).abs() < 0.01, "the way goes on for 10 cm below the ground: {behind}");
-    assert_eq!(last["prescribed_behind_m"].as_f64().unwrap(), behind);
+    assert_eq!(last["prescribed_lag_m"].as_f64().unwrap(), behind);
     let free = place.run(&format!("{SMALL} --out free")).ok();
     assert!(!free.stdout.contains("waited") && !free.stdout.contains("ended at the limit"), "{free:#?}");
 }

@@ -1,48 +1,52 @@
-//! Velocities at the end of a time step whose rigid part is that of the end, with momenta conserved.
+//! Velocities at the end of a time step that conserve linear and angular momentum.
 //!
-//! The mean velocity of a step, (x1 - x0) / dt, is that of its middle. Taken for that of its end, as implicit Euler does, it
-//! slows rotation: with forces f that act at x1, about the centre of mass and relative to its motion,
+//! The mean velocity of a step, (x1 - x0) / dt, is the velocity in its middle. Implicit Euler takes it for
+//! the velocity at the end, which slows rotation: with forces f that act at x1, about the centre of mass and
+//! relative to its motion,
 //!
 //! ```text
 //! x1 = x0 + dt v1,  m (v1 - v0) = dt f
 //! =>  sum m x1 x v1 = sum m x0 x v0 + dt sum x1 x f - dt sum m v0 x v1
 //! ```
 //!
-//! The last term is what gets lost, whatever the forces are: a body that turns by 0.2 rad a step loses 2 % of its rotation each
-//! time. And at x1 the chord of a turning point aims out of its circle. So each body's rigid motion, fitted to the mean
-//! velocities at (x0 + x1) / 2, is replaced by one about x1 that has the loss back; what the body does beside, its vibrations,
-//! stays. Bodies that nothing but each other touches get the linear and angular momentum that gravity and the air leave them,
-//! exactly, by a rigid motion of all of them together: a loose linear solve and contacts that are resolved to a tolerance
-//! change nothing then.
+//! The last term is lost, whatever the forces are: a body that rotates by 0.2 rad per step loses 2 % of its
+//! rotation in each step. In addition, the mean velocity of a point that rotates is a chord of its circle,
+//! which points out of the circle at x1. Therefore the rigid motion of each body, fitted to the mean
+//! velocities at (x0 + x1) / 2, is replaced by one about x1 that includes the lost term; the rest of the
+//! motion, vibrations, stays. Groups of bodies that touch nothing but each other then get a common rigid
+//! motion, which gives them exactly the linear and angular momentum that gravity and air leave them:
+//! tolerances of linear solves and contacts have no effect on these.
 //!
-//! Positions stay as they are, so that nothing can intersect by it. Energy is not gained: a body, or the bodies that touch, end
-//! with no more kinetic energy than they had at the start, plus what gravity, the air and elasticity gave since, or than they
-//! have without the correction.
+//! Positions do not change, so no intersection can result. Energy is not gained: a body, or a group of bodies
+//! that touch, ends with at most the kinetic energy that it had at the start plus the work of gravity, air
+//! and elasticity since, or with at most the kinetic energy without the correction.
 
-use crate::drag::Drag;
+use super::newton::state::Step;
 use crate::groups::Groups;
-use crate::repulsion::Repulsion;
-use crate::{Dynamics, DynamicsModel};
+use crate::model::DynamicsModel;
+use crate::params::Environment;
+use crate::repulsion::springs::Repulsion;
 use bowknot_geometry::{Point, Vector};
 use nalgebra::{Matrix3, SymmetricEigen};
 use std::ops::Range;
 
-/// Moments of inertia below this share of the largest count as none: those of a straight strand about its axis.
-const THIN: f64 = 1e-6;
+/// Moments of inertia up to this share of the largest one count as zero, such as that of a straight strand
+/// about its axis.
+const MIN_INERTIA_RATIO: f64 = 1e-6;
 
-/// Turn in a time step [rad] beyond which it does not resolve rotation: nothing is given back then.
-const LARGEST_TURN: f64 = 0.7;
+/// Largest rotation in a time step that the step resolves [rad]; faster rotations are not corrected.
+const MAX_TURN: f64 = 0.7;
 
-/// Which vertices touched each other in the course of a time step.
+/// The contacts that occurred during a time step.
 #[derive(Clone, Debug, Default)]
 pub struct Touching {
-    /// Vertices that some contact joins; one of an obstacle holds the other.
+    /// Pairs of vertices that a contact joins. A vertex of an obstacle holds the other one.
     pub pairs: Vec<[u32; 2]>,
-    /// Vertices that something else held.
+    /// Vertices that something else held, such as a half-space.
     pub held: Vec<u32>,
 }
 
-/// Rigid motion of some nodes at some positions.
+/// Rigid part of the motion of some nodes.
 struct Rigid {
     center: Vector,
     velocity: Vector,
@@ -86,11 +90,12 @@ impl Rigid {
 fn pseudo_inverse(inertia: Matrix3<f64>) -> Matrix3<f64> {
     let SymmetricEigen { eigenvectors, eigenvalues } = inertia.symmetric_eigen();
     let largest = eigenvalues.max();
-    let inverse = eigenvalues.map(|moment| if moment > THIN * largest { 1.0 / moment } else { 0.0 });
+    let inverse =
+        eigenvalues.map(|moment| if moment > MIN_INERTIA_RATIO * largest { 1.0 / moment } else { 0.0 });
     eigenvectors * Matrix3::from_diagonal(&inverse) * eigenvectors.transpose()
 }
 
-/// What the correction of a time step works on, by node.
+/// The correction of the mean velocities of a time step, by node.
 struct Correction<'a> {
     model: &'a DynamicsModel,
     dt: f64,
@@ -101,21 +106,30 @@ struct Correction<'a> {
     middle: Vec<Vector>,
     /// Mean velocities of the step.
     mean: Vec<Vector>,
-    /// Gravity, external forces and the air's at the end [N].
+    /// Gravity, external forces and those of the air at the end [N].
     forces: Vec<Vector>,
-    /// Whether the air pushes.
+    /// Whether there are forces of the air.
     in_air: bool,
-    /// Elastic energy at x0 less that at x1, by component [J].
+    /// Elastic energy at x0 minus that at x1, by component [J].
     released: Vec<f64>,
 }
 
-impl Dynamics {
-    /// Velocities at the end of the step that was begun, at positions `x` [m], in `v`
-    /// [m/s]. Bodies with a vertex that is `prescribed`, obstacles and single grains move at the mean velocities of the step. All slices
-    /// have one entry per vertex; without a step that was begun, `v` stays.
-    pub fn end_velocities(&self, x: &[Point], prescribed: &[bool], touching: &Touching, v: &mut [Vector]) {
-        let Some(step) = &self.step else { return };
-        let (model, dt) = (&self.model, step.dt);
+/// What the velocities at the end of a time step depend on, besides its end.
+pub(super) struct EndOfStep<'a> {
+    pub model: &'a DynamicsModel,
+    pub environment: &'a Environment,
+    /// By node [N].
+    pub external_forces: &'a [Vector],
+    pub repulsion: &'a Repulsion,
+    pub step: &'a Step,
+}
+
+impl EndOfStep<'_> {
+    /// Velocities at the end of the time step, at positions `x` [m], in `v` [m/s], see
+    /// [`crate::Dynamics::end_velocities`].
+    pub fn velocities(&self, x: &[Point], prescribed: &[bool], touching: &Touching, v: &mut [Vector]) {
+        let Self { model, step, repulsion, .. } = self;
+        let dt = step.dt;
         for ((v, x), x0) in v.iter_mut().zip(x).zip(&step.positions) {
             *v = (x - x0) / dt;
         }
@@ -128,7 +142,7 @@ impl Dynamics {
         }
         let x1: Vec<Vector> = by_node().map(|vertex| x[vertex].coords).collect();
         let mean: Vec<Vector> = by_node().map(|vertex| v[vertex]).collect();
-        let forces = self.outer_forces(&mean, step.drag.as_ref());
+        let forces = self.outer_forces(&mean);
         let (before, after) = (model.elastic_by_component(&step.start), model.elastic_by_component(&x1));
         let correction = Correction {
             model,
@@ -142,18 +156,22 @@ impl Dynamics {
             in_air: step.drag.is_some(),
             released: before.iter().zip(&after).map(|(before, after)| before - after).collect(),
         };
-        for (node, velocity) in correction.corrected(&free, touching, &self.repulsion).iter().enumerate() {
+        for (node, velocity) in correction.corrected(&free, touching, repulsion).iter().enumerate() {
             v[model.node_vertex[node] as usize] = *velocity;
         }
     }
 
     /// Gravity, external forces and those of the air at velocities `v` [m/s], by node [N].
-    fn outer_forces(&self, v: &[Vector], drag: Option<&Drag>) -> Vec<Vector> {
+    fn outer_forces(&self, v: &[Vector]) -> Vec<Vector> {
+        let Self { model, environment, step, .. } = self;
         let force = |node: usize| {
-            let mass = self.model.node_masses[node];
-            let gravity = self.model.gravity(self.model.node_vertex[node] as usize, self.params.gravity);
-            let air = drag.map_or_else(Vector::zeros, |drag| drag.push[node] - drag.matrix[node] * v[node]);
-            (gravity - v[node] * self.params.air_drag) * mass + self.external_forces[node] + air
+            let mass = model.node_masses[node];
+            let gravity = model.gravity(model.node_vertex[node] as usize, environment.gravity);
+            let air = step
+                .drag
+                .as_ref()
+                .map_or_else(Vector::zeros, |drag| drag.push[node] - drag.matrix[node] * v[node]);
+            (gravity - v[node] * environment.air_drag) * mass + self.external_forces[node] + air
         };
         (0..v.len()).map(force).collect()
     }
@@ -174,13 +192,13 @@ impl Correction<'_> {
         v
     }
 
-    /// Groups of components that touch each other, and nothing else.
+    /// Groups of components that touch each other and nothing else.
     fn free_groups(&self, free: &[bool], touching: &Touching, repulsion: &Repulsion) -> Vec<Vec<usize>> {
         let count = self.model.components.len();
         let component = |vertex: u32| self.model.component(self.model.vertex_node[vertex as usize]);
         let mut groups = Groups::new(count);
         (0..count).filter(|&c| !free[c]).for_each(|c| groups.hold(c));
-        // Obstacles are no component.
+        // Obstacles are in no component.
         let inside = |c: &usize| *c < count;
         for pair in &touching.pairs {
             let both = pair.map(component);
@@ -189,13 +207,13 @@ impl Correction<'_> {
         for vertex in &touching.held {
             groups.join_all(Some(component(*vertex)).filter(inside), true);
         }
-        repulsion.for_each_link(|nodes, holds| {
-            groups.join_all(nodes.iter().map(|&node| self.model.component(node)), holds);
+        repulsion.for_each_spring(|nodes, held| {
+            groups.join_all(nodes.iter().map(|&node| self.model.component(node)), held);
         });
         groups.free()
     }
 
-    /// Replaces the rigid part of a component's velocities, as far as energy allows.
+    /// Replaces the rigid part of a component's velocities, as far as the bound of energy allows.
     fn turn(&self, component: &Range<u32>, released: f64, v: &mut [Vector]) {
         let nodes = component.start as usize..component.end as usize;
         let start = Rigid::of(self.model, nodes.clone(), self.x0, self.v0);
@@ -203,7 +221,7 @@ impl Correction<'_> {
         let end = Rigid::of(self.model, nodes.clone(), self.x1, &self.mean);
         let spin = middle.spin(middle.angular);
         let turning = |n: usize| spin.cross(&(self.middle[n] - middle.center));
-        // The angular momentum at x1 of the fitted motion and what was lost: that of the new one.
+        // The angular momentum of the new motion: that of the fitted motion at x1, plus the lost term.
         let mut angular = Vector::zeros();
         for n in nodes.clone() {
             let mass = self.model.node_masses[n];
@@ -212,11 +230,11 @@ impl Correction<'_> {
         }
         let new_spin = end.spin(angular);
         let largest = start.spin(start.angular).norm().max(spin.norm()).max(new_spin.norm());
-        if largest * self.dt > LARGEST_TURN {
+        if largest * self.dt > MAX_TURN {
             return;
         }
         let change = |n: usize| new_spin.cross(&(self.x1[n] - end.center)) - turning(n);
-        // Kinetic energy along v + s change: a + 2 b s + c s^2, bounded.
+        // The kinetic energy at v + s change is a + 2 b s + c s^2; s is limited by the bound.
         let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);
         for n in nodes.clone() {
             let (half, change) = (0.5 * self.model.node_masses[n], change(n));
@@ -224,18 +242,18 @@ impl Correction<'_> {
             b += half * v[n].dot(&change);
             c += half * change.norm_squared();
         }
-        let most = a.max(self.kinetic_allowed(nodes.clone(), released));
-        let share = if a + 2.0 * b + c <= most {
+        let allowed = a.max(self.kinetic_allowed(nodes.clone(), released));
+        let share = if a + 2.0 * b + c <= allowed {
             1.0
         } else {
-            let root = (b * b + c * (most - a)).max(0.0).sqrt();
-            // The larger root of c s^2 + 2 b s = most - a, without cancellation.
-            if b > 0.0 { (most - a) / (b + root) } else { (root - b) / c }
+            let root = (b * b + c * (allowed - a)).max(0.0).sqrt();
+            // The larger root of c s^2 + 2 b s = allowed - a, without cancellation.
+            if b > 0.0 { (allowed - a) / (b + root) } else { (root - b) / c }
         };
         nodes.for_each(|n| v[n] += change(n) * share);
     }
 
-    /// Gives components the momenta that the step leaves them, by a rigid motion of all.
+    /// Gives a group of components the momenta that outer forces leave it, by a rigid motion of the group.
     fn conserve(&self, group: &[usize], v: &mut [Vector]) {
         let components = &self.model.components;
         let nodes = group.iter().flat_map(|&c| components[c].start as usize..components[c].end as usize);
@@ -248,16 +266,17 @@ impl Correction<'_> {
             torque += (self.x1[n] - end.center).cross(&self.forces[n]) * self.dt;
         }
         let velocity = start.velocity + impulse / mass;
-        // Grains have no spin that could take the angular momentum which rubbing takes from their motion; the air takes its share
-        // at velocities that the correction changes.
+        // Angular momentum is not prescribed in two cases. Friction takes some from the motion of grains,
+        // which have no spin that could take it up; and the forces of the air depend on the velocities that
+        // are corrected here.
         let exact = end.spin(start.angular + torque);
         let turns = !self.in_air
             && group.iter().all(|&c| components[c].len() > 1)
-            && exact.norm() * self.dt < LARGEST_TURN;
+            && exact.norm() * self.dt < MAX_TURN;
         let rotation = if turns { exact } else { end.spin(end.angular) };
         let before = |n: usize| end.velocity + end.spin(end.angular).cross(&(self.x1[n] - end.center));
         let after = |n: usize| velocity + rotation.cross(&(self.x1[n] - end.center));
-        // What moves beside the rigid motion gives way if there is too much energy.
+        // If the energy exceeds its bound, the motion besides the rigid one is reduced.
         let (mut mean, mut rigid, mut beside) = (0.0, 0.0, 0.0);
         for n in nodes.clone() {
             let half = 0.5 * self.model.node_masses[n];
@@ -266,14 +285,15 @@ impl Correction<'_> {
             beside += half * (v[n] - before(n)).norm_squared();
         }
         let released = group.iter().map(|&c| self.released[c]).sum();
-        let most = mean.max(self.kinetic_allowed(nodes.clone(), released));
-        let share = if rigid + beside > most { ((most - rigid) / beside).max(0.0).sqrt() } else { 1.0 };
+        let allowed = mean.max(self.kinetic_allowed(nodes.clone(), released));
+        let share = if rigid + beside > allowed { ((allowed - rigid) / beside).max(0.0).sqrt() } else { 1.0 };
         for n in nodes {
             v[n] = after(n) + if beside > 0.0 { (v[n] - before(n)) * share } else { Vector::zeros() };
         }
     }
 
-    /// Kinetic energy at the start, with what elasticity has `released` and outer forces have given since [J].
+    /// Kinetic energy at the start, plus the elastic energy `released` and the work of outer forces since
+    /// [J].
     fn kinetic_allowed(&self, nodes: impl Iterator<Item = usize>, released: f64) -> f64 {
         let of_node = |n: usize| {
             0.5 * self.model.node_masses[n] * self.v0[n].norm_squared()

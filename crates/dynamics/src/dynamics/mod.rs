@@ -1,93 +1,52 @@
 //! The implicit Euler step as a minimisation, one Newton iteration at a time.
 //!
-//! Over the free nodes, with the others at their keyframes,
+//! The function is, over the free nodes and with the others at their keyframes,
 //!
 //! ```text
 //! E(x) = sum m/(2 dt^2) |x - x~|^2 + V(x) + D(x; x0),    x~ = x0 + dt v0 + dt^2 (g + f/m)
 //! D(x; x0) = a/(2 dt) |x - x0|^2_M + strain-rate damping of every element + drag of the air
 //! ```
 //!
-//! plus repulsion ([`RepulsionSpring`]), if there is any.
+//! plus the energy of springs ([`RepulsionSpring`]), if there are any.
 //!
 //! | stage of [`Dynamics::newton_target`] | reads | writes |
 //! |---|---|---|
 //! | linearise at x | x, x0 | energy, gradient, H (filtered) |
 //! | impose keyframes | H, prescribed | right-hand side b = -g - H p_prescribed |
-//! | solve H p = b by CG | warm start: inertia, previous target | p |
+//! | solve H p = b by CG | guesses: inertia, last target | p |
 //! | search along p | E | y = x + t p, prescribed vertices at their keyframes |
 
 mod conservation;
+mod info;
 mod newton;
+mod two_level;
 
 pub use conservation::Touching;
+pub use info::{NewtonInfo, Residual};
 
 use crate::drag::DragSurfaces;
+use crate::error::StepError;
 use crate::linear::block::BlockValues;
-use crate::linear::cg::{CgInfo, CgWorkspace};
+use crate::linear::cg::CgWorkspace;
 use crate::linear::preconditioner::Preconditioner;
-use crate::model::NO_NODE;
-use crate::repulsion::Repulsion;
-use crate::{DynamicsModel, DynamicsParams, ParamsError, RepulsionSpring, StepError};
+use crate::model::DynamicsModel;
+use crate::nodes::NO_NODE;
+use crate::params::{DynamicsParams, Environment, PreconditionerKind};
+use crate::repulsion::spring::RepulsionSpring;
+use crate::repulsion::springs::Repulsion;
+use bowknot_errors::{Errors, ParamError, Parameters};
 use bowknot_geometry::{Point, Vector};
-use newton::{Known, Newton, Step, Workspace};
-use serde::Serialize;
+use conservation::EndOfStep;
+use newton::state::{EvaluationCache, Newton, Step, Workspace};
+use two_level::two_level;
 
-/// What one Newton iteration did.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct NewtonInfo {
-    /// The linear solve.
-    pub cg: CgInfo,
-    /// Newton iterations made: 1, and the correcting ones.
-    pub iterations: usize,
-    /// Share of the last Newton step that the line search kept, in (0, 1].
-    pub step_length: f64,
-    /// Ratio of the last step's decrease of the potential to that of the quadratic model, the smaller one over the larger,
-    /// or `step_length` if that is less [1].
-    pub agreement: f64,
-    /// Incremental potential [J] at x, prescribed vertices at their keyframes.
-    pub energy_before: f64,
-    /// Incremental potential [J] at y.
-    pub energy_after: f64,
-    /// Largest |y - x| over free vertices [m].
-    pub max_displacement: f64,
-}
-
-impl NewtonInfo {
-    /// Takes in the next iteration of the same target.
-    fn add(&mut self, next: &Self) {
-        self.cg.iterations += next.cg.iterations;
-        self.cg.residual = next.cg.residual;
-        self.cg.converged &= next.cg.converged;
-        self.iterations += next.iterations;
-        self.step_length = next.step_length;
-        self.agreement = next.agreement;
-        self.energy_after = next.energy_after;
-    }
-
-    /// By how much the potential fell [J].
-    fn decrease(&self) -> f64 {
-        self.energy_before - self.energy_after
-    }
-}
-
-/// How far a state is from solving the step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Residual {
-    /// Root of the sum of squares of the forces on free nodes that do not balance [N].
-    pub force: f64,
-    /// The distance that this is worth [m]: the largest sqrt(dt^2 r . P r / M) of a connected component, with r the forces, P the
-    /// preconditioner of the Newton system without contacts and M the mass. As H is at least M / dt^2, this bounds the root
-    /// mean square distance, weighted by mass, to where the forces would balance, up to the quality of P.
-    pub distance: f64,
-}
-
-/// Model, parameters and workspace. Nothing in it outlives a time step: [`Self::begin_step`] forgets
-/// all but the external forces, the wind and the repulsion, which are kept until set again.
+/// Model, parameters and workspace. External forces, wind and springs are kept until they are set again.
+/// [`Self::begin_step`] discards everything else that depends on earlier time steps.
 #[derive(Debug)]
 pub struct Dynamics {
     model: DynamicsModel,
     params: DynamicsParams,
-    /// By node [N].
+    /// External force by node [N].
     external_forces: Vec<Vector>,
     /// None in a vacuum.
     surfaces: Option<DragSurfaces>,
@@ -100,8 +59,8 @@ impl Dynamics {
     /// Checks the parameters and allocates the workspace.
     ///
     /// # Errors
-    /// Everything that is wrong with the parameters.
-    pub fn new(model: DynamicsModel, params: DynamicsParams) -> Result<Self, Vec<ParamsError>> {
+    /// Every parameter out of its range.
+    pub fn new(model: DynamicsModel, params: DynamicsParams) -> Result<Self, Errors<ParamError>> {
         params.validate()?;
         let nodes = model.node_vertex.len();
         let zero = || vec![Vector::zeros(); nodes];
@@ -115,20 +74,20 @@ impl Dynamics {
             guesses: [zero(), zero()],
             step: zero(),
             values: BlockValues::zeros(&model.pattern),
-            preconditioner: match params.preconditioner {
-                crate::Preconditioner::BlockJacobi => Preconditioner::default(),
-                crate::Preconditioner::TwoLevel => model.two_level(),
+            preconditioner: match params.newton.preconditioner {
+                PreconditionerKind::BlockJacobi => Preconditioner::default(),
+                PreconditionerKind::TwoLevel => two_level(&model),
             },
             cg: CgWorkspace::default(),
-            least_scale: 0.0,
-            known: Known::default(),
+            min_scale: 0.0,
+            cache: EvaluationCache::default(),
         };
-        let surfaces = (params.air_density > 0.0).then(|| DragSurfaces::new(&model));
+        let surfaces = (params.environment.air_density > 0.0).then(|| DragSurfaces::new(&model));
         let repulsion = Repulsion::default();
         Ok(Self { external_forces: zero(), surfaces, repulsion, model, params, step: None, work })
     }
 
-    /// What is fixed.
+    /// The model.
     pub fn model(&self) -> &DynamicsModel {
         &self.model
     }
@@ -138,11 +97,11 @@ impl Dynamics {
         &self.params
     }
 
-    /// Sets the force on each vertex [N], kept until set again; 0 to begin with. It enters at the
-    /// next [`Self::begin_step`].
+    /// Sets the force on each vertex [N], 0 at first. It is kept until it is set again and takes effect at
+    /// the next [`Self::begin_step`].
     ///
     /// # Errors
-    /// Wrong length, or an entry that is not finite.
+    /// The length is wrong, or an entry is not finite.
     pub fn set_external_forces(&mut self, forces: &[Vector]) -> Result<(), StepError> {
         self.check_length("forces", forces.len())?;
         self.check_finite("force", |vertex| forces[vertex])?;
@@ -150,37 +109,40 @@ impl Dynamics {
         Ok(())
     }
 
-    /// Sets the wind [m/s], [`DynamicsParams::wind`] until then. It enters at the next [`Self::begin_step`].
+    /// Sets the wind [m/s], [`Environment::wind`] at first. It takes effect at the next [`Self::begin_step`].
     ///
     /// # Errors
-    /// A component that is not finite.
-    pub fn set_wind(&mut self, wind: Vector) -> Result<(), Vec<ParamsError>> {
-        DynamicsParams { wind, ..self.params }.validate()?;
-        self.params.wind = wind;
+    /// A component is not finite.
+    pub fn set_wind(&mut self, wind: Vector) -> Result<(), Errors<ParamError>> {
+        Environment { wind, ..self.params.environment }.validate()?;
+        self.params.environment.wind = wind;
         Ok(())
     }
 
-    /// Sets the springs that push close pairs apart, kept until set again; none to begin with. They enter at the
-    /// next [`Self::newton_target`]; none costs nothing and changes no bit.
+    /// Sets the springs of contacts; there are none at first. They are kept until they are set again and take
+    /// effect at the next [`Self::newton_target`]. Without springs the result has the same bits as if they
+    /// had never been set.
     ///
     /// # Errors
-    /// The first spring that is wrong, and why; the springs set before then stay.
+    /// The first invalid spring and the reason; the previous springs then stay.
     pub fn set_repulsion(&mut self, springs: &[RepulsionSpring]) -> Result<(), StepError> {
         self.repulsion =
             if springs.is_empty() { Repulsion::default() } else { Repulsion::new(&self.model, springs)? };
         if let Some(step) = &mut self.step {
-            step.fresh = true;
+            step.unprepared = true;
             self.repulsion.anchor(&step.positions);
         }
         Ok(())
     }
 
-    /// Forces of the springs at the last target, on the side that the normal points to [N]; one entry per spring.
+    /// Forces of the springs at the last target on the side that the normal points to [N], one entry per
+    /// spring.
     pub fn contact_forces(&self) -> Vec<Vector> {
         self.repulsion.forces(&self.work.trial)
     }
 
-    /// Where inertia alone leads from the start of the step, by vertex [m]; obstacles stay.
+    /// Positions where inertia alone leads from the start of the step [m], one entry per vertex. Obstacles
+    /// stay where they are; without a step that was begun the list is empty.
     pub fn inertial_positions(&self) -> Vec<Point> {
         let Some(step) = &self.step else { return Vec::new() };
         let mut positions = step.positions.clone();
@@ -190,12 +152,12 @@ impl Dynamics {
         positions
     }
 
-    /// What is missing to a solution of the step at `x` [m], with the springs' carried forces for contact forces.
-    /// Prescribed vertices and obstacles are where they are. Only forces on vertices that are `counted` matter: what holds
-    /// others may be unknown here. All slices have one entry per vertex.
+    /// The residual of the time step at `x` [m]. Contact forces are the known forces of the springs, see
+    /// [`RepulsionSpring::force`]. Only forces on vertices that are free and `counted` enter; leave out
+    /// vertices on which unknown forces act. All slices have one entry per vertex.
     ///
     /// # Errors
-    /// Wrong lengths, entries that are not finite, no step begun.
+    /// A length is wrong, an entry is not finite, or no step was begun.
     pub fn residual(
         &mut self,
         x: &[Point],
@@ -219,10 +181,11 @@ impl Dynamics {
 
     /// Starts a time step of `dt` [s] from positions `x0` [m] and velocities `v0` [m/s].
     ///
-    /// Velocities of vertices that will be prescribed matter for the drag of air alone, but must be finite.
+    /// Velocities of vertices that will be prescribed have an effect on the drag of air only, but must be
+    /// finite.
     ///
     /// # Errors
-    /// Wrong lengths, entries that are not finite, a time step that is not positive.
+    /// A length is wrong, an entry is not finite, or the time step is not positive and finite.
     pub fn begin_step(&mut self, x0: &[Point], v0: &[Vector], dt: f64) -> Result<(), StepError> {
         if !(dt > 0.0 && dt.is_finite()) {
             return Err(StepError::TimeStep { dt });
@@ -239,7 +202,7 @@ impl Dynamics {
         step.velocities.extend(model.node_vertex.iter().map(|&v| v0[v as usize]));
         step.inertial.clear();
         step.inertial.extend(model.node_vertex.iter().enumerate().map(|(node, &v)| {
-            let gravity = model.gravity(v as usize, self.params.gravity);
+            let gravity = model.gravity(v as usize, self.params.environment.gravity);
             let acceleration = gravity + self.external_forces[node] / model.node_masses[node];
             x0[v as usize].coords + v0[v as usize] * dt + acceleration * (dt * dt)
         }));
@@ -250,14 +213,15 @@ impl Dynamics {
             }
         }
         if let Some(surfaces) = &self.surfaces {
-            surfaces.fill(&self.params, &step.start, &step.velocities, step.drag.get_or_insert_default());
+            let drag = step.drag.get_or_insert_default();
+            surfaces.fill(&self.params.environment, &step.start, &step.velocities, drag);
         }
         step.dt = dt;
         step.last_target = None;
-        self.work.least_scale = 0.0;
-        self.work.known.clear();
-        step.most = None;
-        step.fresh = true;
+        self.work.min_scale = 0.0;
+        self.work.cache.clear();
+        step.max_potential = None;
+        step.unprepared = true;
         step.positions.clear();
         step.positions.extend_from_slice(x0);
         self.repulsion.anchor(x0);
@@ -265,19 +229,20 @@ impl Dynamics {
         Ok(())
     }
 
-    /// One Newton iteration of the step from the current iterate `x` [m] to the target `y` [m].
+    /// Computes the target `y` [m] from the current iterate `x` [m] by a Newton iteration and the ones that
+    /// correct it.
     ///
-    /// `prescribed` says which vertices end the step at their `keyframes` [m] (read only there);
-    /// vertices of obstacles always do. `y` of a prescribed vertex is its keyframe exactly, whatever
-    /// the line search does. `x` may be anything that contact resolution left, and may differ from
-    /// one call to the next. All slices have one entry a vertex.
+    /// Vertices that are `prescribed` end the step at their `keyframes` [m], which are read for them only;
+    /// vertices of obstacles always do. Their entries of `y` are exactly the keyframes, whatever the line
+    /// search does. `x` may be any state, such as the result of contact resolution, and may differ from one
+    /// call to the next. All slices have one entry per vertex.
     ///
-    /// To bring the inside of solids along with a surface that contact moved elsewhere than to `y`, call it once
-    /// or twice more in the same step, with the surface prescribed and its place as keyframe: the inside then
-    /// solves the step with the surface held, inertia included.
+    /// If contact moves the surface of a solid elsewhere than to `y`, its inside can follow: call this once
+    /// or twice more in the same step, with the surface prescribed and its positions as keyframes. The inside
+    /// then solves the time step, inertia included, with the surface held.
     ///
     /// # Errors
-    /// Wrong lengths, entries that are not finite, no step begun.
+    /// A length is wrong, an entry is not finite, or no step was begun.
     pub fn newton_target(
         &mut self,
         x: &[Point],
@@ -302,16 +267,16 @@ impl Dynamics {
             work.imposed[node] =
                 if prescribed[vertex] { keyframes[vertex] - x[vertex] } else { Vector::zeros() };
         }
-        // From inside of the thread pool a parallel loop is a push on a local queue; from outside every
-        // one of the thousands to come would put this thread to sleep and wake it (20 times the CPU
-        // time on a busy machine, at 1,700 nodes).
         self.repulsion.place_obstacles(keyframes);
+        // Thousands of parallel loops follow. From inside of the thread pool each is a push on a local queue;
+        // from outside each would put this thread to sleep and wake it again (20 times the CPU time on a busy
+        // machine, at 1,700 nodes).
         let repulsion = &mut self.repulsion;
         let mut info = rayon::scope(|_| {
-            Newton { model: &self.model, params: &self.params, repulsion, step: &mut step, work }.reach()
+            Newton { model: &self.model, params: &self.params, repulsion, step: &mut step, work }.solve()
         });
         info.max_displacement = displacement(&self.model, &work.trial, &work.free, x);
-        // `trial` holds the target by node.
+        // `trial` is the target by node.
         for (vertex, y) in y.iter_mut().enumerate() {
             let node = self.model.vertex_node[vertex];
             let free = node != NO_NODE && work.free[node as usize];
@@ -329,12 +294,12 @@ impl Dynamics {
         Ok(info)
     }
 
-    /// A whole step without contact: `newton_iterations` targets, each accepted as it is; `x` and
-    /// `v` move on by `dt`, see [`Self::end_velocities`]. Prescribed vertices end at their `keyframes` and move at the
-    /// velocity that takes them there.
+    /// Makes a whole step without contact resolution: `newton_iterations` targets, each of which is the next
+    /// iterate. `x` and `v` advance by `dt`, see [`Self::end_velocities`]. Prescribed vertices end at their
+    /// `keyframes` and have the velocity that takes them there.
     ///
     /// # Errors
-    /// As [`Self::begin_step`] and [`Self::newton_target`]; `x` and `v` are then unchanged.
+    /// Those of [`Self::begin_step`] and [`Self::newton_target`]; `x` and `v` are then unchanged.
     pub fn solve_step(
         &mut self,
         x: &mut [Point],
@@ -357,14 +322,25 @@ impl Dynamics {
         Ok(infos)
     }
 
-    /// Takes the state that an iteration starts from, by node.
+    /// Velocities at the end of the step, at positions `x` [m], in `v` [m/s]. They conserve linear and
+    /// angular momentum. Bodies with a vertex that is `prescribed`, obstacles and single grains move at the
+    /// mean velocities of the step. All slices have one entry per vertex. Without a step that was begun `v`
+    /// stays unchanged.
+    pub fn end_velocities(&self, x: &[Point], prescribed: &[bool], touching: &Touching, v: &mut [Vector]) {
+        let Some(step) = &self.step else { return };
+        let Self { model, params, external_forces, repulsion, .. } = self;
+        EndOfStep { model, environment: &params.environment, external_forces, repulsion, step }
+            .velocities(x, prescribed, touching, v);
+    }
+
+    /// Copies the iterate, by node.
     fn start_from(&mut self, x: &[Point], prescribed: &[bool]) {
         let work = &mut self.work;
         for (node, &vertex) in self.model.node_vertex.iter().enumerate() {
             work.x[node] = x[vertex as usize].coords;
             let free = !prescribed[vertex as usize];
             if std::mem::replace(&mut work.free[node], free) != free {
-                work.known.clear();
+                work.cache.clear();
             }
         }
     }
@@ -395,7 +371,7 @@ impl Dynamics {
     }
 }
 
-/// Largest |y - x| over free nodes, x by vertex [m].
+/// Largest |y - x| over free nodes [m]; `x` has one entry per vertex.
 fn displacement(model: &DynamicsModel, y: &[Vector], free: &[bool], x: &[Point]) -> f64 {
     let distance = |node: usize| (y[node] - x[model.node_vertex[node] as usize].coords).norm();
     (0..y.len()).filter(|&node| free[node]).map(distance).fold(0.0, f64::max)

@@ -1,23 +1,16 @@
 use super::*;
+use crate::body::Body;
 use crate::linear::system::System;
-use crate::{Body, ClothMaterial, HessianFilter};
+use crate::material::ClothMaterial;
+use crate::params::{HessianFilter, NewtonParams};
+use crate::test_support::grid_triangles;
 use nalgebra::{DMatrix, DVector, Matrix3};
 
 /// A crumpled 5 x 4 sheet with damping of every kind, one corner prescribed.
 fn crumpled() -> (Dynamics, Vec<Point>, Vec<Vector>, Vec<bool>) {
-    let (columns, rows) = (5, 4);
-    let index = |i: usize, j: usize| (i + j * columns) as u32;
-    let mut rest = Vec::new();
-    let mut triangles = Vec::new();
-    for j in 0..rows {
-        for i in 0..columns {
-            rest.push(Point::new(0.1 * i as f64, 0.1 * j as f64, 0.0));
-            if i + 1 < columns && j + 1 < rows {
-                triangles.push([index(i, j), index(i + 1, j), index(i + 1, j + 1)]);
-                triangles.push([index(i, j), index(i + 1, j + 1), index(i, j + 1)]);
-            }
-        }
-    }
+    let rest: Vec<Point> =
+        (0..20).map(|k| Point::new(0.1 * f64::from(k % 5), 0.1 * f64::from(k / 5), 0.0)).collect();
+    let triangles = grid_triangles(4, 3, false);
     let material = ClothMaterial {
         bend_stiffness: 1e-3,
         stretch_damping: 0.01,
@@ -26,7 +19,10 @@ fn crumpled() -> (Dynamics, Vec<Point>, Vec<Vector>, Vec<bool>) {
     };
     let model =
         DynamicsModel::new(rest.clone(), vec![Body::cloth("sheet", triangles, material)]).expect("valid");
-    let params = DynamicsParams { air_drag: 0.5, ..DynamicsParams::default() };
+    let params = DynamicsParams {
+        environment: Environment { air_drag: 0.5, ..Environment::default() },
+        newton: NewtonParams::default(),
+    };
     let wave = |k: usize, phase: f64| (k as f64 * 1.7 + phase).sin();
     let x: Vec<Point> = rest
         .iter()
@@ -43,7 +39,7 @@ fn newton<'a>(dynamics: &'a mut Dynamics, step: &'a mut Step) -> Newton<'a> {
     Newton { model, params, repulsion, step, work }
 }
 
-/// The state of an iteration from `x`, linearised.
+/// The time step, linearised at `x`.
 fn linearised(dynamics: &mut Dynamics, x: &[Vector]) -> Step {
     let mut step = dynamics.step.take().expect("begun");
     dynamics.work.x.copy_from_slice(x);
@@ -65,7 +61,7 @@ fn dense(dynamics: &Dynamics, step: &Step) -> DMatrix<f64> {
         for k in pattern.row(row) {
             set(pattern.columns[k] as usize, dynamics.work.values.blocks[k]);
         }
-        let (columns, values) = step.scalar.far(row);
+        let (columns, values) = step.scalar.off_pattern(row);
         columns
             .iter()
             .zip(values)
@@ -79,7 +75,7 @@ fn the_gradient_matches_differences_of_the_incremental_potential() {
     let (mut dynamics, x0, v0, _) = crumpled();
     dynamics.begin_step(&x0, &v0, 0.02).expect("begins");
     let nodes = dynamics.model.node_vertex.clone();
-    // Away from the start, so that damping acts.
+    // At a distance from the start, so that damping has an effect.
     let mut x: Vec<Vector> = nodes.iter().map(|&v| x0[v as usize].coords + v0[v as usize] * 0.01).collect();
     let mut step = linearised(&mut dynamics, &x);
     let gradient = dynamics.work.gradient.clone();
@@ -94,7 +90,7 @@ fn the_gradient_matches_differences_of_the_incremental_potential() {
             };
             let slope = (energy(here + h) - energy(here - h)) / (2.0 * h);
             x[node][axis] = here;
-            // Third derivatives are about stiffness / length = 3e4 N/m^2; h^2 of that, and rounding.
+            // The error is h^2 times third derivatives, about stiffness / length = 3e4 N/m^2, and rounding.
             assert!((slope - gradient[node][axis]).abs() < 1e-6 * scale, "{slope} {}", gradient[node][axis]);
         }
     }
@@ -109,9 +105,9 @@ fn the_matrix_is_symmetric_positive_definite_and_matches_differences_under_tensi
     let step = linearised(&mut dynamics, &crumple);
     let matrix = dense(&dynamics, &step);
     assert!((&matrix - matrix.transpose()).abs().max() < 1e-12 * matrix.abs().max());
-    let least = matrix.symmetric_eigenvalues().min();
+    let smallest = matrix.symmetric_eigenvalues().min();
     let inertia = dynamics.model.node_masses.iter().copied().fold(f64::INFINITY, f64::min) / (0.02 * 0.02);
-    assert!(least > 0.9 * inertia, "least eigenvalue {least}, inertia {inertia}");
+    assert!(smallest > 0.9 * inertia, "smallest eigenvalue {smallest}, inertia {inertia}");
 
     // Every triangle stretched: nothing is filtered, H is the derivative of the gradient.
     dynamics.step = Some(step);
@@ -138,18 +134,18 @@ fn the_matrix_is_symmetric_positive_definite_and_matches_differences_under_tensi
 }
 
 #[test]
-fn the_newton_step_is_that_of_a_dense_solve() {
-    for two_level in [false, true] {
+fn the_newton_step_equals_that_of_a_dense_solve() {
+    for coarse in [false, true] {
         let (mut dynamics, x0, v0, prescribed) = crumpled();
         dynamics.work.preconditioner =
-            if two_level { dynamics.model.two_level() } else { Preconditioner::default() };
+            if coarse { two_level(&dynamics.model) } else { Preconditioner::default() };
         check_newton_step(dynamics, x0, v0, prescribed);
     }
 }
 
 fn check_newton_step(mut dynamics: Dynamics, x0: Vec<Point>, v0: Vec<Vector>, prescribed: Vec<bool>) {
-    dynamics.params.cg_tolerance = 1e-12;
-    dynamics.params.line_search_halvings = 0;
+    dynamics.params.newton.cg_tolerance = 1e-12;
+    dynamics.params.newton.line_search_halvings = 0;
     dynamics.begin_step(&x0, &v0, 0.02).expect("begins");
     let mut keyframes = x0.clone();
     keyframes[0] += Vector::new(0.001, 0.002, -0.001);
@@ -195,7 +191,7 @@ fn bad_input_is_refused_by_name() {
     );
     assert!(dynamics.set_external_forces(&broken).is_err());
     dynamics.begin_step(&x, &v, 0.1).expect("begins");
-    // A keyframe matters only where a vertex is prescribed.
+    // Only keyframes of prescribed vertices are read.
     let mut keyframes = vec![Point::new(f64::NAN, 0.0, 0.0); x.len()];
     keyframes[0] = x[0];
     dynamics.newton_target(&x, &prescribed, &keyframes, &mut y).expect("only vertex 0 is prescribed");
@@ -208,8 +204,8 @@ fn bad_input_is_refused_by_name() {
 fn newton_converges_from_a_crumpled_state_with_either_filter() {
     for hessian_filter in [HessianFilter::Clamp, HessianFilter::Absolute] {
         let (mut dynamics, x0, v0, prescribed) = crumpled();
-        dynamics.params.hessian_filter = hessian_filter;
-        dynamics.params.cg_tolerance = 1e-10;
+        dynamics.params.newton.hessian_filter = hessian_filter;
+        dynamics.params.newton.cg_tolerance = 1e-10;
         dynamics.begin_step(&x0, &v0, 0.02).expect("begins");
         let (mut x, mut y) = (x0.clone(), x0.clone());
         let mut energy = f64::INFINITY;
@@ -229,7 +225,7 @@ fn newton_converges_from_a_crumpled_state_with_either_filter() {
 fn newton_converges_quadratically_under_tension() {
     // A drum: the rim of the 5 x 4 vertices is held, pulled apart by 60 %.
     let (mut dynamics, x0, v0, _) = crumpled();
-    dynamics.params.cg_tolerance = 1e-12;
+    dynamics.params.newton.cg_tolerance = 1e-12;
     let x0: Vec<Point> = x0.iter().map(|p| p * 1.6).collect();
     let prescribed: Vec<bool> =
         (0..20).map(|k| !(1..4).contains(&(k % 5)) || !(1..3).contains(&(k / 5))).collect();
@@ -245,14 +241,14 @@ fn newton_converges_quadratically_under_tension() {
     assert!(quadratic && moves[7] < 1e-11, "{moves:?}");
 }
 
-/// [`crumpled`] in the wind, with springs of two to four vertices, most of which push.
+/// [`crumpled`] in the wind, with springs of two to four vertices, most of which are active.
 fn crumpled_with_everything() -> (Dynamics, Vec<Point>, Vec<Vector>, Vec<bool>) {
     let (dynamics, x, v, prescribed) = crumpled();
     let Dynamics { model, params, .. } = dynamics;
     let wind = Vector::new(2.0, -1.0, 3.0);
-    let mut dynamics =
-        Dynamics::new(model, DynamicsParams { air_density: 1.2, wind, ..params }).expect("valid");
-    let spring = |k: u32| crate::RepulsionSpring {
+    let environment = Environment { air_density: 1.2, wind, ..params.environment };
+    let mut dynamics = Dynamics::new(model, DynamicsParams { environment, ..params }).expect("valid");
+    let spring = |k: u32| RepulsionSpring {
         vertices: [k, (k + 7) % 20, (k + 12) % 20, (k + 3) % 20],
         weights: if k.is_multiple_of(3) { [1.0, -1.0, 0.0, 0.0] } else { [1.0, -0.5, -0.2, -0.3] },
         normal: Vector::new(f64::from(k).sin(), f64::from(k).cos(), 0.5).normalize(),
@@ -273,13 +269,13 @@ fn wind_and_repulsion_have_exact_gradients_and_matrices() {
     let nodes = dynamics.model.node_vertex.clone();
     let stretched: Vec<Vector> =
         nodes.iter().map(|&v| x0[v as usize].coords * 1.6 + v0[v as usize] * 0.002).collect();
-    // Which springs push, and the bounds of their friction, as they are there.
+    // The active set and the bounds of friction are those at these positions.
     let step = linearised(&mut dynamics, &stretched);
-    dynamics.repulsion.settle(&stretched);
+    dynamics.repulsion.update_active_set(&stretched);
     let step = linearised_at(&mut dynamics, step, &stretched);
     let gradient = dynamics.work.gradient.clone();
-    let reactions = dynamics.repulsion.reactions(&stretched);
-    let pushed = |n: &usize| dynamics.repulsion.row_product(*n, &reactions) != Vector::zeros();
+    let reactions = dynamics.repulsion.linear().reactions(&stretched);
+    let pushed = |n: &usize| dynamics.repulsion.linear().row_product(*n, &reactions) != Vector::zeros();
     assert!((0..stretched.len()).filter(pushed).count() > 10);
     let scale = gradient.iter().map(|g| g.norm()).fold(0.0, f64::max);
     let largest = dynamics.work.values.diagonal.iter().map(|d| d.abs().max()).fold(0.0, f64::max);
@@ -298,7 +294,7 @@ fn wind_and_repulsion_have_exact_gradients_and_matrices() {
             moved[node][axis] = here;
             assert!((slope - gradient[node][axis]).abs() < 1e-6 * scale, "{slope} {}", gradient[node][axis]);
 
-            // A column of H, as products see it, against differences of the gradient.
+            // A column of H, computed by a product, against differences of the gradient.
             let step = linearised_at(&mut dynamics, step, &stretched);
             let mut unit = vec![Vector::zeros(); moved.len()];
             unit[node][axis] = 1.0;
@@ -306,7 +302,7 @@ fn wind_and_repulsion_have_exact_gradients_and_matrices() {
                 pattern: &dynamics.model.pattern,
                 values: &dynamics.work.values,
                 scalar: &step.scalar,
-                repulsion: Some(&dynamics.repulsion),
+                springs: Some(dynamics.repulsion.linear()),
                 free: &dynamics.work.free,
             };
             system.multiply(&unit, &mut image);
@@ -335,12 +331,12 @@ fn linearised_at(dynamics: &mut Dynamics, step: Step, x: &[Vector]) -> Step {
 #[test]
 fn newton_converges_with_wind_and_repulsion() {
     let (mut dynamics, x0, v0, prescribed) = crumpled_with_everything();
-    dynamics.params.cg_tolerance = 1e-12;
-    // The filter that ends sooner, over many iterations.
-    dynamics.params.hessian_filter = HessianFilter::Clamp;
+    dynamics.params.newton.cg_tolerance = 1e-12;
+    // Over many iterations this filter converges faster.
+    dynamics.params.newton.hessian_filter = HessianFilter::Clamp;
     dynamics.begin_step(&x0, &v0, 0.02).expect("begins");
     let (mut x, mut y) = (x0.clone(), x0.clone());
-    // The potential changes with the springs that push: what must vanish is the way to the next target.
+    // The potential changes with the active set; the displacement to the next target must vanish.
     let mut displacement = f64::INFINITY;
     for _ in 0..120 {
         displacement = dynamics.newton_target(&x, &prescribed, &x0, &mut y).expect("solves").max_displacement;

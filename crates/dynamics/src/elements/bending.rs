@@ -1,39 +1,39 @@
-//! Quadratic bending: a constant, scalar-valued Hessian, assembled once.
+//! Quadratic bending: its Hessian is constant, has one number per pair of nodes, and is assembled once.
 //!
-//! For sheets that bend much more easily than they stretch, the integrated jump of the surface's
-//! derivative across an inner edge is linear in positions (Bergou, Wardetzky, Harmon, Zorin and
-//! Grinspun 2006, "A Quadratic Bending Model for Inextensible Surfaces"): K_e x, a vector, with
-//! cotangent weights K_e over the four vertices of the two triangles at e.
+//! For sheets that bend much more easily than they stretch, the integrated jump of the surface's derivative
+//! across an inner edge e is a vector K_e x that is linear in positions, with cotangent weights K_e over the
+//! four vertices of the two triangles at e (Bergou, Wardetzky, Harmon, Zorin and Grinspun 2006, "A Quadratic
+//! Bending Model for Inextensible Surfaces").
 //!
-//! Bergou et al. sum `3/(A0 + A1) |K_e x|^2` over edges. That sum does not converge to the energy of
-//! a plate: a cylinder costs 1.5 times D/2 kappa^2 on equilateral triangles and 3 to 9 times on right
-//! triangles, depending on its direction. So here the jumps at a triangle's three edges are first
-//! combined to its curvature tensor (Grinspun, Gingold, Reisman and Zorin 2006, "Computing Discrete
-//! Shape Operators on General Meshes"), linear in x like the jumps,
+//! Bergou et al. sum `3/(A0 + A1) |K_e x|^2` over edges. That sum does not converge to the energy of a plate:
+//! the energy of a cylinder is 1.5 times D/2 kappa^2 on equilateral triangles and 3 to 9 times on right
+//! triangles, depending on its direction. Here the jumps at the three edges of a triangle are first combined
+//! to its curvature tensor (Grinspun, Gingold, Reisman and Zorin 2006, "Computing Discrete Shape Operators on
+//! General Meshes"), which is linear in x like the jumps:
 //!
 //! ```text
 //! L_T = sum_e K_e x / (2 A_T) (n_e n_e^T),   E = D/2 sum_T A_T |L_T|^2 = sum_T D/(8 A_T) sum_ef (n_e.n_f)^2 (K_e x).(K_f x)
 //! ```
 //!
-//! n_e the normal of e in the triangle's plane at rest. It is exact for constant curvature on every
-//! mesh of two families of parallel lines and their diagonals, and vanishes for flat states only.
-//! Across a free edge the jump is whatever costs least (a Schur complement), as the moment vanishes
-//! there. D is the stiffness of a strip with free sides: Poisson's ratio of bending is taken as 0.
+//! n_e is the normal of e in the triangle's plane at rest. E is exact for constant curvature on every mesh of
+//! two families of parallel lines and their diagonals, and zero for flat states only. The jump across a free
+//! edge is the one with the least energy (a Schur complement), as the moment vanishes there. D is the
+//! stiffness of a strip with free sides; Poisson's ratio of bending is taken as 0.
 //!
-//! The rest state is flat; [`super::shell`] bends sheets that are curved at rest.
+//! The rest state is flat; [`super::shell`] is for sheets that are curved at rest.
 
 use crate::linear::scalar::ScalarBuilder;
 use bowknot_geometry::Vector;
 use std::collections::BTreeMap;
 
-/// Jumps around one triangle.
+/// The jumps across the edges of one triangle.
 pub(crate) struct Stencil {
-    /// The corners, then the far vertex across the edge opposite of each corner: u32::MAX if that is free. Far
-    /// vertices may coincide on small closed surfaces.
+    /// The corners, then for each corner the vertex beyond the edge opposite of it: u32::MAX if that edge is
+    /// free. Vertices beyond may coincide on small closed surfaces.
     local: [u32; 6],
-    /// K_e over them, by the corner opposite of e.
+    /// Weights of K_e over these nodes, by the corner opposite of e.
     jumps: [[f64; 6]; 3],
-    /// (n_e.n_f)^2, free edges condensed.
+    /// (n_e.n_f)^2 with free edges condensed.
     gram: [[f64; 3]; 3],
     /// Area at rest [m^2].
     area: f64,
@@ -41,13 +41,12 @@ pub(crate) struct Stencil {
 
 /// Adds the bending energy of one sheet, with stiffness `stiffness` [N m], to the quadratic form.
 ///
-/// `triangles` over nodes with rest positions `rest`. An edge of more than two triangles has no
-/// jump to speak of and counts as free.
+/// `triangles` are over nodes with rest positions `rest`. An edge of more than two triangles counts as free.
 pub(crate) fn add_bending(triangles: &[[u32; 3]], rest: &[Vector], stiffness: f64, form: &mut ScalarBuilder) {
     for_each_stencil(triangles, rest, |Stencil { local, jumps, gram, area }| {
         for p in 0..6 {
             for q in p + 1..6 {
-                // The diagonal follows from the rows' sums, which are zero.
+                // The diagonal follows from the sums of rows, which are zero.
                 let mut value = 0.0;
                 for e in 0..3 {
                     for f in 0..3 {
@@ -64,7 +63,7 @@ pub(crate) fn add_bending(triangles: &[[u32; 3]], rest: &[Vector], stiffness: f6
 
 /// Calls `visit` with the stencil of every triangle.
 pub(crate) fn for_each_stencil(triangles: &[[u32; 3]], rest: &[Vector], mut visit: impl FnMut(&Stencil)) {
-    // Edge -> (triangle, corner opposite of it), in a deterministic order.
+    // The triangles of each edge, with the corner opposite of it. The order of a BTreeMap is deterministic.
     let mut edges: BTreeMap<[u32; 2], Vec<(u32, u8)>> = BTreeMap::new();
     for (t, nodes) in triangles.iter().enumerate() {
         for corner in 0..3 {
@@ -101,7 +100,7 @@ pub(crate) fn for_each_stencil(triangles: &[[u32; 3]], rest: &[Vector], mut visi
 }
 
 impl Stencil {
-    /// The same over distinct nodes, corners first: nodes, jumps by node, weights, area.
+    /// The same stencil over distinct nodes, corners first.
     pub fn merged(&self) -> Merged {
         let mut merged =
             Merged { nodes: Vec::new(), jumps: Default::default(), gram: self.gram, area: self.area };
@@ -120,16 +119,16 @@ impl Stencil {
 /// A stencil over distinct nodes.
 pub(crate) struct Merged {
     pub nodes: Vec<u32>,
-    /// K_e over the nodes.
+    /// Weights of K_e over the nodes.
     pub jumps: [Vec<f64>; 3],
-    /// (n_e.n_f)^2, free edges condensed.
+    /// (n_e.n_f)^2 with free edges condensed.
     pub gram: [[f64; 3]; 3],
     /// Area at rest [m^2].
     pub area: f64,
 }
 
-/// Weights of x_a, x_b, x_o in |e| times the outward derivative across edge ab of the linear function
-/// on triangle a b o.
+/// Weights of x_a, x_b and x_o in |e| times the outward derivative, across edge ab, of the linear function on
+/// triangle abo.
 fn flux(a: Vector, b: Vector, o: Vector) -> [f64; 3] {
     let cotangent = |p: Vector, q: Vector, r: Vector| {
         let (u, v) = (q - p, r - p);
@@ -139,16 +138,18 @@ fn flux(a: Vector, b: Vector, o: Vector) -> [f64; 3] {
     [at_b, at_a, -(at_a + at_b)]
 }
 
-/// (n_e.n_f)^2 for the edges opposite of each corner, minimised over the jumps of free edges.
+/// The matrix (n_e.n_f)^2 of the edges opposite of each corner, with the jumps of free edges eliminated by
+/// minimisation.
 fn free_edges_condensed(corners: &[Vector; 3], inner: [bool; 3]) -> [[f64; 3]; 3] {
     let directions: [Vector; 3] =
         std::array::from_fn(|c| (corners[(c + 2) % 3] - corners[(c + 1) % 3]).normalize());
-    // Normals in the plane meet at the same angles as the edges.
+    // Normals in the plane form the same angles as the edges.
     let mut gram: [[f64; 3]; 3] =
         std::array::from_fn(|e| std::array::from_fn(|f| directions[e].dot(&directions[f]).powi(2)));
     for free in (0..3).filter(|&e| !inner[e]) {
         let row = gram[free];
-        // The pivot is 1 for the first free edge, 1 - cos^4 for the second; 0 only after a third.
+        // The pivot is 1 for the first free edge and 1 - cos^4 for the second; it can be 0 only for the
+        // third.
         for e in 0..3 {
             for f in 0..3 {
                 gram[e][f] -= if row[free] > 1e-12 { row[e] * row[f] / row[free] } else { 0.0 };
@@ -160,5 +161,4 @@ fn free_edges_condensed(corners: &[Vector; 3], inner: [bool; 3]) -> [[f64; 3]; 3
 }
 
 #[cfg(test)]
-#[path = "bending_tests.rs"]
 mod tests;

@@ -1,34 +1,35 @@
 //! Bending of sheets that are curved at rest.
 //!
-//! The flat form ([`super::bending`]) measures the jumps K_e x of the surface's derivative across the edges of a
-//! triangle, vectors along the normal, and combines them to its curvature tensor. A sheet that is curved at rest
-//! has jumps there already; they turn with the triangle:
+//! The flat form ([`super::bending`]) measures the jumps K_e x of the surface's derivative across the edges
+//! of a triangle, which are vectors along the normal, and combines them to the curvature tensor. A sheet that
+//! is curved at rest has jumps at rest, which rotate with the triangle:
 //!
 //! ```text
 //! r_e = K_e x - (a_e f1 + b_e f2 + c_e n),   E_T = D/(8 A_T) sum_ef (n_e.n_f)^2 r_e . r_f
 //! ```
 //!
-//! f1, f2 the columns of the triangle's deformation gradient, n its unit normal (f1 x f2 scaled smoothly, shorter
-//! only where a triangle is crushed), and a, b, c the components of
-//! K_e x at rest along them. E is zero for the rest shape moved rigidly, equals the flat form for flat rest shapes,
-//! and has only one nonlinear part, n; its Hessian is that of Gauss and Newton, positive semi-definite by itself.
+//! f1 and f2 are the columns of the triangle's deformation gradient, n is its unit normal (f1 x f2 scaled
+//! smoothly, shorter than 1 only for crushed triangles), and a, b, c are the components of K_e x at rest
+//! along f1, f2 and n. E is zero for rigid motions of the rest shape and equals the flat form for flat rest
+//! shapes. Only n is nonlinear in x. The Hessian is the Gauss-Newton matrix, which is positive semi-definite.
 
 use super::bending::{Merged, for_each_stencil};
-use super::triangle::{deformation, rest_gradients};
-use super::{Element, Filter, Linearisation, Start};
+use super::element::{Element, Linearisation, Start};
+use super::filter::Filter;
+use super::membrane::{deformation, rest_gradients};
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
 
-/// The normal shrinks with triangles that are crushed to about this share of their area, and stays smooth.
-const CRUSHED: f64 = 0.05;
+/// Below about this share of a triangle's rest area the normal becomes shorter, smoothly.
+const CRUSHED_AREA_RATIO: f64 = 0.05;
 
-/// Bending around one triangle: its corners, then the far vertices across its inner edges.
+/// Bending around one triangle. Its nodes are the corners, then the opposite vertices across the inner edges.
 #[derive(Clone, Debug)]
 pub(crate) struct CurvedBend<const N: usize> {
     nodes: [u32; N],
-    /// K_e over the nodes [1].
+    /// Weights of K_e over the nodes [1].
     jumps: [[f64; N]; 3],
-    /// (n_e.n_f)^2, free edges condensed, times D/(4 A) [N/m].
+    /// (n_e.n_f)^2 with free edges condensed, times D/(4 A) [N/m].
     gram: [[f64; 3]; 3],
     /// Gradients of the shape functions in the rest plane [1/m].
     gradients: [[f64; 2]; 3],
@@ -37,7 +38,7 @@ pub(crate) struct CurvedBend<const N: usize> {
 }
 
 impl<const N: usize> CurvedBend<N> {
-    /// From a stencil of N distinct nodes; None if the triangle has no area at rest.
+    /// The element of a stencil of N distinct nodes; None if the triangle has no area at rest.
     pub fn new(stencil: &Merged, rest: &[Vector], stiffness: f64) -> Option<Self> {
         let nodes: [u32; N] = stencil.nodes.as_slice().try_into().ok()?;
         let at = nodes.map(|n| rest[n as usize]);
@@ -66,12 +67,14 @@ impl<const N: usize> CurvedBend<N> {
         (1..N).map(|p| (x[p] - x[0]) * self.jumps[e][p]).sum()
     }
 
-    /// r_e; f1, f2, f1 x f2; and n over the latter.
+    /// The residuals r_e; f1, f2 and f1 x f2; and the factor between f1 x f2 and n.
     #[inline]
     fn residuals(&self, x: &[Vector; N]) -> ([Vector; 3], [Vector; 3], f64) {
         let [f1, f2] = deformation(&self.gradients, &[x[0], x[1], x[2]]);
         let cross = f1.cross(&f2);
-        let scale = ((1.0 + CRUSHED * CRUSHED) / (cross.norm_squared() + CRUSHED * CRUSHED)).sqrt();
+        let scale = ((1.0 + CRUSHED_AREA_RATIO * CRUSHED_AREA_RATIO)
+            / (cross.norm_squared() + CRUSHED_AREA_RATIO * CRUSHED_AREA_RATIO))
+            .sqrt();
         let normal = cross * scale;
         let residuals = std::array::from_fn(|e| {
             let [a, b, c] = self.rest[e];
@@ -80,7 +83,7 @@ impl<const N: usize> CurvedBend<N> {
         (residuals, [f1, f2, cross], scale)
     }
 
-    /// G r: the stresses that belong to the residuals.
+    /// The stresses G r of the residuals.
     #[inline]
     fn weighted<T: Copy + std::ops::Mul<f64, Output = T> + std::iter::Sum>(&self, r: &[T; 3]) -> [T; 3] {
         self.gram.map(|row| (0..3).map(|f| r[f] * row[f]).sum())
@@ -102,8 +105,9 @@ impl<const N: usize> Element<N> for CurvedBend<N> {
     fn linearise(&self, x: &[Vector; N], _start: Option<Start<'_, N>>, _filter: Filter) -> Linearisation<N> {
         let (r, [f1, f2, cross], scale) = self.residuals(x);
         let stress = self.weighted(&r);
-        // m = f1 x f2: dn = scale (I - m m^T / (m^2 + crushed^2)) (df1 x f2 + f1 x df2).
-        let along = cross * cross.transpose() / (cross.norm_squared() + CRUSHED * CRUSHED);
+        // With m = f1 x f2: dn = scale (I - m m^T / (m^2 + crushed^2)) (df1 x f2 + f1 x df2).
+        let along =
+            cross * cross.transpose() / (cross.norm_squared() + CRUSHED_AREA_RATIO * CRUSHED_AREA_RATIO);
         let across = (Matrix3::identity() - along) * scale;
         let (by_f1, by_f2) = (across * -f2.cross_matrix(), across * f1.cross_matrix());
         // dr_e / dx_p.
@@ -131,7 +135,7 @@ impl<const N: usize> Element<N> for CurvedBend<N> {
     }
 }
 
-/// Bending elements of a sheet, by how many triangles have a neighbour.
+/// Bending elements of a sheet, by the number of neighbours of their triangles.
 #[derive(Default)]
 pub(crate) struct CurvedBends {
     pub one: Vec<CurvedBend<4>>,
@@ -156,5 +160,4 @@ impl CurvedBends {
 }
 
 #[cfg(test)]
-#[path = "shell_tests.rs"]
 mod tests;

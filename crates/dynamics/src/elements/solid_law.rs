@@ -10,9 +10,10 @@
 //! | flip | (u_i v_j^T + u_j v_i^T) / sqrt 2 | (p_i - p_j) / (s_i - s_j) |
 //! | twist | (u_i v_j^T - u_j v_i^T) / sqrt 2 | (p_i + p_j) / (s_i + s_j) |
 //!
-//! Both laws below have polynomial quotients, so nothing is divided by a difference or a small number.
+//! For both laws below the quotients are polynomials, so that nothing is divided by a difference or a small
+//! number.
 
-use crate::SolidModel;
+use crate::material::solid::SolidModel;
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
 
@@ -21,14 +22,15 @@ use nalgebra::Matrix3;
 pub(crate) enum SolidLaw {
     /// W = mu |E|^2 + lambda/2 tr(E)^2, E = (F^T F - I)/2.
     Stvk { lambda: f64, mu: f64 },
-    /// W = mu/2 (I - 3) - mu/2 log((I + 1)/4) + lambda/2 (J - 1)^2 - 3/4 mu (J - 1), I = |F|^2, J = det F: Smith,
-    /// de Goes and Kim 2018, "Stable Neo-Hookean Flesh Simulation", eq. 14, less its value at rest.
-    /// The constants are theirs (section 3.4), from those of linear elasticity:
-    /// mu = 4/3 mu_lin, lambda = lambda_lin + 5/6 mu_lin.
+    /// W = mu/2 (I - 3) - mu/2 log((I + 1)/4) + lambda/2 (J - 1)^2 - 3/4 mu (J - 1), I = |F|^2, J = det F:
+    /// Smith, de Goes and Kim 2018, "Stable Neo-Hookean Flesh Simulation", eq. 14, less its value at rest.
+    /// The constants are theirs (section 3.4), from those of linear elasticity: mu = 4/3 mu_lin, lambda =
+    /// lambda_lin + 5/6 mu_lin.
     StableNeoHookean { lambda: f64, mu: f64 },
 }
 
-/// Principal stresses and curvatures; pairs (i, j) are numbered by the index k that they lack.
+/// Principal stresses and curvatures. The entry k of `flip` and `twist` belongs to the pair (i, j) of the two
+/// other indices.
 pub(crate) struct Principal {
     pub stress: Vector,
     pub scaling: Matrix3<f64>,
@@ -47,7 +49,8 @@ impl SolidLaw {
         }
     }
 
-    /// Energy density [J/m^3]. Accurate near rest: rounding errs by strain times stiffness times an ulp.
+    /// Energy density [J/m^3]. It is accurate near rest: the rounding error is strain times stiffness times
+    /// an ulp.
     #[inline]
     pub fn density(&self, f: &Matrix3<f64>) -> f64 {
         let strain = green_strain(f);
@@ -56,8 +59,9 @@ impl SolidLaw {
             Self::Stvk { lambda, mu } => mu * strain.norm_squared() + 0.5 * lambda * trace * trace,
             Self::StableNeoHookean { lambda, mu } => {
                 let j = f.determinant();
-                // I - 3 = 2 tr E; mu/2 (2 tr E - log(1 + tr E / 2)) - 3/4 mu (J - 1) cancels to first
-                // order, so gather 3/8 mu ((I - 3) - 2 (J - 1)) from J^2 - 1 = 2 tr E + 4 E_2 + 8 det E.
+                // I - 3 = 2 tr E. The terms of mu/2 (2 tr E - log(1 + tr E / 2)) - 3/4 mu (J - 1) cancel to
+                // first order. 3/8 mu ((I - 3) - 2 (J - 1)) is therefore computed from J^2 - 1 = 2 tr E + 4
+                // E_2 + 8 det E.
                 let (grow, first_order) = if j > 0.5 {
                     let second = 0.5 * (trace * trace - strain.norm_squared());
                     let third = strain.determinant();

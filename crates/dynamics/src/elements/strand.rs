@@ -1,29 +1,35 @@
-//! Strands: springs along edges, and springs on the turning at inner vertices.
+//! Strands: springs along edges, and bending springs at inner vertices.
 //!
 //! | element | energy | over |
 //! |---|---|---|
 //! | [`StrandEdge`] | EA/2 L (l/L - 1)^2 | an edge of rest length L, length l |
 //! | [`StrandTurn`] | EI/(2 M) (\|w\| - w0)^2, w = (x_c - x_b)/L_c - (x_b - x_a)/L_a | two edges that meet in b, M = (L_a + L_c)/2 |
 //!
-//! w is the jump of the tangent, linear in positions, \|w\|/M the curvature (2 sin(angle/2)/M unstretched)
-//! and w0 its value at rest. A straight rest shape, w0 = 0, gives a constant Hessian (Bergou, Wardetzky,
-//! Robinson, Audoly and Grinspun 2008, "Discrete Elastic Rods", bending of isotropic rods). A curved one
-//! keeps how much the strand turns, not in which plane: there is no twist, and a curl may roll over.
+//! w is the jump of the tangent and linear in positions; \|w\|/M is the curvature (2 sin(angle/2)/M
+//! unstretched) and w0 the length of w at rest. For a straight rest shape, w0 = 0, the Hessian is constant
+//! (Bergou, Wardetzky, Robinson, Audoly and Grinspun 2008, "Discrete Elastic Rods", bending of isotropic
+//! rods). A curved rest shape fixes the angle between the edges, but not the plane of bending: there is no
+//! twist, and a curl may roll over.
 //!
-//! Where k edges meet, every two of them turn against each other with 2/k of the stiffness: a path through a
-//! branching vertex then bends nearly as it would without branches, whose own turning gives way (by a sixth
-//! more easily where the branch stands at right angles).
+//! Where k edges meet, each pair of them resists bending with 2/k of the stiffness. A path through a
+//! branching vertex then bends nearly as it would without the branches (by a sixth more easily if one branch
+//! stands at right angles), because the branches rotate with it.
 //!
-//! Damping of edges is a potential of the Green strain increment since the start of the step,
-//! `beta/dt EA/2 L dE^2`, dE = (l^2 - l0^2)/(2 L^2): blind to rotations. Damping of turns is
-//! `beta/dt EI/(2 M) |w - w_start|^2`, which sees rotations of bent strands, slightly.
+//! Damping of edges is a potential of the Green strain increment since the start of the step, `beta/dt EA/2 L
+//! dE^2`, dE = (l^2 - l0^2)/(2 L^2); it is invariant under rotations. Damping of bending is `beta/dt EI/(2 M)
+//! |w - w_start|^2`, which depends slightly on rotations of bent strands.
 
-use super::{Element, Filter, Linearisation, Start};
+use super::element::{Element, Linearisation, Start};
+use super::filter::Filter;
+use crate::material::rest_shape::RestShape;
+use crate::material::strand::StrandMaterial;
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
+use std::collections::BTreeMap;
 
-/// Lengths (over rest length) and turnings below this count as this in curvatures across; forces do not use it.
-const FLOOR: f64 = 0.05;
+/// Lower bound of divisors in transverse curvatures: lengths over the rest length, and jumps of the tangent
+/// over the jump at rest. Forces do not depend on it.
+const MIN_RATIO: f64 = 0.05;
 
 /// A spring along an edge.
 #[derive(Clone, Debug)]
@@ -38,13 +44,13 @@ pub(crate) struct StrandEdge {
 }
 
 impl StrandEdge {
-    /// An edge over `nodes` with rest positions `rest`; None if it has no length there.
+    /// An edge over `nodes` with rest positions `rest`; None if it has no length at rest.
     pub fn new(nodes: [u32; 2], rest: &[Vector; 2], stiffness: f64, damping: f64) -> Option<Self> {
         let length = (rest[1] - rest[0]).norm();
         (length > 0.0 && length.is_finite()).then_some(Self { nodes, length, stiffness, damping })
     }
 
-    /// Increment of Green's strain from edge vector `d0` to `d`.
+    /// Increment of the Green strain from edge vector `d0` to `d`.
     #[inline]
     fn strain_increment(&self, d: &Vector, d0: &Vector) -> f64 {
         (d - d0).dot(&(d + d0)) / (2.0 * self.length * self.length)
@@ -72,10 +78,10 @@ impl Element<2> for StrandEdge {
         let d = x[1] - x[0];
         let stretch = d.norm() / self.length;
         let along = if stretch > 0.0 { d / (stretch * self.length) } else { Vector::x() };
-        // Force, and curvatures along and across, all over EA / L.
+        // Force over EA, and axial and transverse curvature over EA / L.
         let mut force = stretch - 1.0;
         let mut axial = 1.0;
-        let mut across = 1.0 - 1.0 / stretch.max(FLOOR);
+        let mut across = 1.0 - 1.0 / stretch.max(MIN_RATIO);
         if let Some(start) = start.filter(|_| self.damping > 0.0) {
             let factor = self.damping * start.rate;
             let strain = factor * self.strain_increment(&d, &(start.x[1] - start.x[0]));
@@ -98,13 +104,13 @@ impl Element<2> for StrandEdge {
     }
 }
 
-/// A spring on the turning between two edges that meet.
+/// A bending spring between two edges that meet.
 #[derive(Clone, Debug)]
 pub(crate) struct StrandTurn {
     nodes: [u32; 3],
     /// 1 / L_a and 1 / L_c [1/m].
     inverse_lengths: [f64; 2],
-    /// Rest length of w [1].
+    /// Length of w at rest [1].
     rest: f64,
     /// EI / M [N m].
     stiffness: f64,
@@ -113,8 +119,8 @@ pub(crate) struct StrandTurn {
 }
 
 impl StrandTurn {
-    /// The turning at `nodes[1]` with rest positions `rest`, straight or as they are; None if an edge has no
-    /// length there. `stiffness` is EI [N m^2].
+    /// The bending spring at `nodes[1]`. Its rest shape is straight, or that of the rest positions `rest`.
+    /// None if an edge has no length at rest. `stiffness` is EI [N m^2].
     pub fn new(
         nodes: [u32; 3],
         rest: &[Vector; 3],
@@ -132,7 +138,7 @@ impl StrandTurn {
         };
         if !straight {
             turn.rest = turn.jump(rest).norm();
-            // What rounding leaves of a straight strand would have a direction.
+            // For a straight strand rounding leaves a small vector with a meaningless direction.
             if turn.rest < 1e-12 {
                 turn.rest = 0.0;
             }
@@ -168,7 +174,8 @@ impl Element<3> for StrandTurn {
         let along = if turning > 0.0 { jump / turning } else { Vector::zeros() };
         let mut force = jump - along * self.rest;
         let mut axial = 1.0;
-        let mut across = if self.rest > 0.0 { 1.0 - self.rest / turning.max(FLOOR * self.rest) } else { 1.0 };
+        let mut across =
+            if self.rest > 0.0 { 1.0 - self.rest / turning.max(MIN_RATIO * self.rest) } else { 1.0 };
         if let Some(start) = start.filter(|_| self.damping > 0.0) {
             let factor = self.damping * start.rate;
             force += (jump - self.jump(start.x)) * factor;
@@ -192,7 +199,7 @@ impl Element<3> for StrandTurn {
 pub(crate) fn strand_elements(
     edges: &[[u32; 2]],
     rest: &[Vector],
-    material: &crate::StrandMaterial,
+    material: &StrandMaterial,
 ) -> (Vec<StrandEdge>, Vec<StrandTurn>) {
     let at = |n: u32| rest[n as usize];
     let springs = edges.iter().filter_map(|&nodes| {
@@ -201,7 +208,7 @@ pub(crate) fn strand_elements(
     let mut turns = Vec::new();
     if material.bend_stiffness > 0.0 {
         // Neighbours by vertex, in the order of edges.
-        let mut around: std::collections::BTreeMap<u32, Vec<u32>> = std::collections::BTreeMap::new();
+        let mut around: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
         for &[a, b] in edges {
             around.entry(a).or_default().push(b);
             around.entry(b).or_default().push(a);
@@ -213,7 +220,7 @@ pub(crate) fn strand_elements(
                     turns.extend(StrandTurn::new(
                         nodes,
                         &nodes.map(at),
-                        material.rest_shape == crate::RestShape::Flat,
+                        material.rest_shape == RestShape::Flat,
                         material.bend_stiffness * 2.0 / others.len() as f64,
                         material.bend_damping,
                     ));
@@ -225,5 +232,4 @@ pub(crate) fn strand_elements(
 }
 
 #[cfg(test)]
-#[path = "strand_tests.rs"]
 mod tests;

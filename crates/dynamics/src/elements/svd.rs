@@ -3,36 +3,36 @@
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
 
-/// Rotations of a column pair whose cosine is below this change nothing: a few ulp.
-const ORTHOGONAL: f64 = 1e-15;
+/// Columns whose angle has a smaller cosine count as orthogonal: a few ulp.
+const ORTHOGONALITY_TOLERANCE: f64 = 1e-15;
 
-/// Singular values up to this are zero: their squares and reciprocals must be finite. Columns shorter than
-/// 1e-77 are not made orthogonal, as their products vanish.
-const ZERO: f64 = 1e-150;
+/// Singular values up to this count as zero: their squares and reciprocals must be finite. Columns shorter
+/// than 1e-77 are not made orthogonal, as their products vanish.
+const ZERO_SINGULAR_VALUE: f64 = 1e-150;
 
-/// Most sweeps; from random matrices four do.
-const SWEEPS: usize = 12;
+/// Largest number of sweeps; random matrices need four.
+const MAX_SWEEPS: usize = 12;
 
-/// F = u diag(s) v^T with rotations u and v (no reflections), s1 >= s2 >= |s3|: the last is negative
-/// where F inverts.
+/// F = u diag(s) v^T with rotations u and v (no reflections) and s1 >= s2 >= |s3|; s3 is negative if F is
+/// inverted.
 pub(crate) struct Svd {
     pub u: Matrix3<f64>,
     pub s: Vector,
     pub v: Matrix3<f64>,
 }
 
-/// One-sided Jacobi rotations: columns of F V made orthogonal, small singular values to full relative
-/// accuracy (Demmel and Veselic 1992). Algebraic, so that no trigonometric function of the platform
-/// enters; finite whatever the rank.
+/// One-sided Jacobi rotations make the columns of F V orthogonal; small singular values have full relative
+/// accuracy (Demmel and Veselic 1992). No trigonometric functions are used, which differ between platforms.
+/// The result is finite for any rank.
 #[inline]
 pub(crate) fn signed_svd(f: &Matrix3<f64>) -> Svd {
     let mut b: [Vector; 3] = std::array::from_fn(|k| f.column(k).into_owned());
     let mut v: [Vector; 3] = [Vector::x(), Vector::y(), Vector::z()];
-    for _ in 0..SWEEPS {
+    for _ in 0..MAX_SWEEPS {
         let mut rotated = false;
         for (p, q) in [(0, 1), (0, 2), (1, 2)] {
             let (pp, qq, pq) = (b[p].norm_squared(), b[q].norm_squared(), b[p].dot(&b[q]));
-            if pq * pq <= ORTHOGONAL * ORTHOGONAL * pp * qq {
+            if pq * pq <= ORTHOGONALITY_TOLERANCE * ORTHOGONALITY_TOLERANCE * pp * qq {
                 continue;
             }
             let tau = (qq - pp) / (2.0 * pq);
@@ -47,7 +47,7 @@ pub(crate) fn signed_svd(f: &Matrix3<f64>) -> Svd {
             break;
         }
     }
-    // Descending; a swap with a sign keeps v a rotation.
+    // Sort in descending order; a swap changes one sign, so that v stays a rotation.
     for (p, q) in [(0, 1), (1, 2), (0, 1)] {
         if b[p].norm_squared() < b[q].norm_squared() {
             (b[p], b[q]) = (b[q], -b[p]);
@@ -55,11 +55,11 @@ pub(crate) fn signed_svd(f: &Matrix3<f64>) -> Svd {
         }
     }
     let s1 = b[0].norm();
-    let u1 = if s1 > ZERO { b[0] * (1.0 / s1) } else { Vector::x() };
-    // What rounding left of b1 in b2 is taken out, so that u stays orthonormal near rank one.
+    let u1 = if s1 > ZERO_SINGULAR_VALUE { b[0] * (1.0 / s1) } else { Vector::x() };
+    // The component along u1 that rounding left is removed, so that u stays orthonormal near rank one.
     let w = b[1] - u1 * u1.dot(&b[1]);
     let s2 = w.norm();
-    let u2 = if s2 > 1e-14 * s1 && s2 > ZERO { w * (1.0 / s2) } else { super::any_normal(&u1) };
+    let u2 = if s2 > 1e-14 * s1 && s2 > ZERO_SINGULAR_VALUE { w * (1.0 / s2) } else { any_normal(&u1) };
     let u3 = u1.cross(&u2);
     Svd {
         u: Matrix3::from_columns(&[u1, u2, u3]),
@@ -68,10 +68,16 @@ pub(crate) fn signed_svd(f: &Matrix3<f64>) -> Svd {
     }
 }
 
+/// A unit vector orthogonal to the unit vector `u`.
+pub(super) fn any_normal(u: &Vector) -> Vector {
+    let axis = if u.x.abs() < 0.6 { Vector::x() } else { Vector::y() };
+    u.cross(&axis).normalize()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::elements::test_support::Stream;
+    use crate::test_support::Stream;
 
     fn check(f: &Matrix3<f64>) {
         let Svd { u, s, v } = signed_svd(f);
@@ -86,8 +92,8 @@ mod tests {
     }
 
     #[test]
-    fn any_matrix_is_taken_apart_into_rotations() {
-        let mut stream = Stream(1);
+    fn any_matrix_is_decomposed_into_rotations_and_singular_values() {
+        let mut stream = Stream::new(1);
         for k in 0..1000 {
             let mut f = Matrix3::from_fn(|_, _| stream.next());
             match k % 8 {

@@ -1,18 +1,19 @@
 //! Tetrahedra of constant strain.
 //!
-//! F = sum x_a g_a^T, g_a the gradients of the shape functions at rest; energy V W(F) with a
-//! [`SolidLaw`], curvatures by its analytic eigensystem in the frames of the singular vectors, each
-//! filtered by itself. Linear tetrahedra lock in bending as Poisson's ratio nears 0.5.
+//! F = sum x_a g_a^T, with g_a the gradients of the shape functions at rest. The energy is V W(F) with W a
+//! [`SolidLaw`]. Its curvatures come from an analytic eigensystem in the frames of the singular vectors, and
+//! each is filtered separately. Linear tetrahedra lock in bending as Poisson's ratio approaches 0.5.
 //!
 //! Damping is a potential of the Green strain increment since the start of the step, as for triangles
 //! ([`super::triangle`]): `beta/dt (mu |dE|^2 + lambda/2 tr(dE)^2)` with the Lame parameters of small strain.
-//! It does not see rotations, so it takes neither linear nor angular momentum. A damped element's
-//! curvatures are those of both potentials together, filtered together.
+//! It is invariant under rotations, so it conserves linear and angular momentum. The curvatures of a damped
+//! element are the sum of those of both potentials, and the sum is filtered.
 
+use super::element::{Element, Linearisation, Start};
+use super::filter::Filter;
 use super::solid_law::{Principal, SolidLaw};
 use super::svd::{Svd, signed_svd};
-use super::{Element, Filter, Linearisation, Start};
-use crate::SolidMaterial;
+use crate::material::solid::SolidMaterial;
 use bowknot_geometry::Vector;
 use nalgebra::{Matrix3, SMatrix};
 
@@ -27,12 +28,12 @@ pub(crate) struct Tetrahedron {
     /// Rest volume [m^3].
     volume: f64,
     law: SolidLaw,
-    /// Lame parameters of damping times its time [Pa s]: (lambda, mu).
+    /// Lame parameters times the damping time [Pa s]: (lambda, mu).
     viscosity: (f64, f64),
 }
 
 impl Tetrahedron {
-    /// A tetrahedron over `nodes` with rest positions `rest`; None unless its volume there is positive.
+    /// A tetrahedron over `nodes` with rest positions `rest`; None unless its volume at rest is positive.
     pub fn new(nodes: [u32; 4], rest: &[Vector; 4], material: &SolidMaterial) -> Option<Self> {
         let edges = edges(rest);
         let volume = edges.determinant() / 6.0;
@@ -56,7 +57,7 @@ impl Tetrahedron {
         self.viscosity.1 > 0.0
     }
 
-    /// Dissipation per volume of a strain increment over a step of 1 / `rate`.
+    /// Dissipation potential per volume of a strain increment over a step of length 1 / `rate`.
     #[inline]
     fn dissipation_density(&self, strain: &Matrix3<f64>, rate: f64) -> f64 {
         let (lambda, mu) = self.viscosity;
@@ -64,8 +65,8 @@ impl Tetrahedron {
         rate * (mu * strain.norm_squared() + 0.5 * lambda * trace * trace)
     }
 
-    /// Stress and filtered curvatures of elasticity and damping together; over increments d_ij along
-    /// u_i v_j^T at index 3 i + j. `strain` is the increment since the start, in the frame v.
+    /// Stress and filtered curvatures of elasticity and damping together. Index 3 i + j belongs to the
+    /// increment d_ij along u_i v_j^T; `strain` is the increment since the start of the step, in the frame v.
     fn damped(
         &self,
         principal: &Principal,
@@ -92,7 +93,7 @@ impl Tetrahedron {
         for (i, j, k) in [(1, 2, 0), (0, 2, 1), (0, 1, 2)] {
             let (ij, ji) = (3 * i + j, 3 * j + i);
             let (even, odd) = mixed(principal.flip[k], principal.twist[k]);
-            // dE_ij = (s_i d_ij + s_j d_ji) / 2, twice in the norm.
+            // dE_ij = (s_i d_ij + s_j d_ji) / 2; it counts twice in the norm.
             curvature[(ij, ij)] += even + mu * s[i] * s[i];
             curvature[(ji, ji)] += even + mu * s[j] * s[j];
             curvature[(ij, ji)] += odd + mu * s[i] * s[j];
@@ -102,7 +103,7 @@ impl Tetrahedron {
     }
 }
 
-/// Edges from vertex 0, as columns: they do not depend on where the origin is.
+/// Edges from vertex 0 as columns; they do not depend on where the origin is.
 #[inline]
 fn edges(x: &[Vector; 4]) -> Matrix3<f64> {
     Matrix3::from_columns(&[x[1] - x[0], x[2] - x[0], x[3] - x[0]])
@@ -115,13 +116,13 @@ fn strain_increment(f: &Matrix3<f64>, f0: &Matrix3<f64>) -> Matrix3<f64> {
     (product + product.transpose()) * 0.25
 }
 
-/// Curvature of d_ij and d_ji each, and between them.
+/// The diagonal and the off-diagonal curvature over d_ij and d_ji.
 #[inline]
 fn mixed(flip: f64, twist: f64) -> (f64, f64) {
     (0.5 * (flip + twist), 0.5 * (flip - twist))
 }
 
-/// Positive definite: nothing to filter.
+/// Whether a symmetric matrix is positive definite, so that nothing must be filtered.
 #[inline]
 fn is_positive(m: &Matrix3<f64>) -> bool {
     let minor = m[(0, 0)] * m[(1, 1)] - m[(0, 1)] * m[(1, 0)];
@@ -199,7 +200,8 @@ impl Element<4> for Tetrahedron {
             }
             for a in 0..3 {
                 for b in a..3 {
-                    // d_ij d_kl enters where i = k, j = l (even), i = l, j = k (odd), i = j, k = l (scaling).
+                    // d_ij d_kl has a curvature where i = k, j = l (even), i = l, j = k (odd), i = j, k = l
+                    // (scaling).
                     let mut block = (scaling.component_mul(&(h[a] * h[b].transpose()))
                         + odd.component_mul(&(h[b] * h[a].transpose())))
                         * self.volume;
@@ -215,7 +217,7 @@ impl Element<4> for Tetrahedron {
             out.gradient[a + 1] = stress * h[a];
             out.gradient[0] -= out.gradient[a + 1];
         }
-        // Translations cost nothing: what is left belongs to vertex 0.
+        // Translations store no energy: the rows of vertex 0 are minus the sum of the others.
         for b in 1..4 {
             for a in 1..4 {
                 let block = if a <= b { out.hessian[a][b] } else { out.hessian[b][a].transpose() };
@@ -231,5 +233,4 @@ impl Element<4> for Tetrahedron {
 }
 
 #[cfg(test)]
-#[path = "tetrahedron_tests.rs"]
 mod tests;

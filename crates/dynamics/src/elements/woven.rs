@@ -1,16 +1,17 @@
 //! Orthotropic triangles: stiff along warp and weft, soft in shear.
 //!
 //! As for isotropic triangles ([`super::triangle`]) the energy is quadratic in the strain e = U - I of the
-//! rotated frame, U = (F^T F)^(1/2), now with the axes of the weave:
+//! rotated frame, U = (F^T F)^(1/2), here with the axes of the weave:
 //!
 //! ```text
 //! W = c11/2 e11^2 + c12 e11 e22 + c22/2 e22^2 + 2 G e12^2
 //! c11 = E1/(1 - nu^2),  c22 = E2/(1 - nu^2),  c12 = nu sqrt(E1 E2)/(1 - nu^2)
 //! ```
 //!
-//! so that a strip pulled along warp or weft with free sides has stiffness E1 or E2 exactly. W is no function of
-//! singular values, but U(F) has closed derivatives in the frames of F = sum s_i u_i v_i^T: differentiating
-//! U U = F^T F once and twice, with increments d_ij of F along u_i v_j^T (i = n: along the normal),
+//! A strip that is pulled along warp or weft with free sides then has the stiffness E1 or E2 exactly. W is
+//! not a function of singular values, but U(F) has derivatives in closed form in the frames of F = sum s_i
+//! u_i v_i^T. With increments d_ij of F along u_i v_j^T (i = n: along the normal), differentiating U U = F^T
+//! F once and twice gives
 //!
 //! ```text
 //! dU_ij = (s_i d_ij + s_j d_ji)/(s_i + s_j),   (d2U)_ij = 2/(s_i + s_j) [(d^T d)_ij - (dU dU)_ij]
@@ -18,15 +19,17 @@
 //!
 //! and d2W = dU : C : dU + T : d2U with the stress T = C : e.
 
-use super::triangle::{
-    Curvatures, Decomposition, SINGULAR_FLOOR, assemble, decompose, deformation, filter_2, filter_4,
+use super::element::{Element, Linearisation, Start};
+use super::filter::Filter;
+use super::membrane::{
+    Curvatures, Decomposition, MIN_SINGULAR_VALUE, assemble, decompose, deformation, filter_2, filter_4,
     rest_gradients, strain_increment,
 };
-use super::{Element, Filter, Linearisation, Start};
+use crate::material::cloth::ClothMaterial;
 use bowknot_geometry::Vector;
 use nalgebra::{Matrix2, Matrix3, Matrix3x4, Matrix4, RowVector4};
 
-/// Stiffnesses of a weave [N/m].
+/// Stiffnesses of a weave [N/m]: along warp and weft, between them, and in shear.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Weave {
     pub c11: f64,
@@ -49,6 +52,19 @@ pub(crate) struct WovenTriangle {
 }
 
 impl Weave {
+    /// The stiffnesses of a fabric.
+    pub fn new(material: &ClothMaterial) -> Self {
+        let (warp, nu) = (material.stretch_stiffness, material.poisson_ratio);
+        let weft = material.weft_stiffness.unwrap_or(warp);
+        let (mean, plane) = ((warp * weft).sqrt(), 1.0 / (1.0 - nu * nu));
+        Self {
+            c11: warp * plane,
+            c12: nu * mean * plane,
+            c22: weft * plane,
+            shear: material.shear_stiffness.unwrap_or(mean / (2.0 * (1.0 + nu))),
+        }
+    }
+
     /// Energy per area of a strain (11, 22, 12).
     #[inline]
     fn density(&self, [e11, e22, e12]: [f64; 3]) -> f64 {
@@ -58,17 +74,17 @@ impl Weave {
             + 2.0 * self.shear * e12 * e12
     }
 
-    /// Stress of a strain, both along warp and weft.
+    /// Stress of a strain, both in the axes of the weave.
     #[inline]
     fn stress(&self, [e11, e22, e12]: [f64; 3]) -> Matrix2<f64> {
         let shear = 2.0 * self.shear * e12;
         Matrix2::new(self.c11 * e11 + self.c12 * e22, shear, shear, self.c12 * e11 + self.c22 * e22)
     }
 
-    /// Curvature over strain components (11, 12, 22) in the frame v1 = (c, s).
+    /// Curvature over the strain components (11, 12, 22) in the frame v1 = (c, s).
     #[inline]
     fn turned(&self, [c, s]: [f64; 2]) -> Matrix3<f64> {
-        // Rows: strains (11, 22, 12) along warp and weft.
+        // Rows: strains (11, 22, 12) in the axes of the weave.
         let turn =
             Matrix3::new(c * c, -2.0 * c * s, s * s, s * s, 2.0 * c * s, c * c, c * s, c * c - s * s, -c * s);
         let stiffness =
@@ -78,7 +94,8 @@ impl Weave {
 }
 
 impl WovenTriangle {
-    /// A triangle over `nodes` with rest positions `rest`; None if it has no area there, or if `warp` is normal to it.
+    /// A triangle over `nodes` with rest positions `rest`; None if it has no area at rest, or if `warp` is
+    /// normal to it.
     pub fn new(
         nodes: [u32; 3],
         rest: &[Vector; 3],
@@ -99,7 +116,7 @@ impl WovenTriangle {
         if sum > 0.0 { [(c11 + j) / sum - 1.0, (c22 + j) / sum - 1.0, c12 / sum] } else { [-1.0, -1.0, 0.0] }
     }
 
-    /// Half of the third component: strains in (11, 22, 12).
+    /// Increment of the Green strain (11, 22, 12).
     #[inline]
     fn increment(f: &[Vector; 2], f0: &[Vector; 2]) -> [f64; 3] {
         let [e11, e22, twice] = strain_increment(f, f0);
@@ -107,13 +124,13 @@ impl WovenTriangle {
     }
 }
 
-/// T : d2U over d11, d12, d21, d22 with the stress T in the frame v. Divides by s1 + s2 alone.
+/// T : d2U over d11, d12, d21, d22 with the stress T in the frame v. The only divisor is s1 + s2.
 #[inline]
 fn geometric(t: &Matrix2<f64>, [s1, s2]: [f64; 2]) -> Matrix4<f64> {
-    let sum = (s1 + s2).max(SINGULAR_FLOOR);
+    let sum = (s1 + s2).max(MIN_SINGULAR_VALUE);
     let over = 1.0 / (sum * sum);
     let (t1, t2, t12) = (t[(0, 0)], t[(1, 1)], 2.0 * t[(0, 1)] / sum);
-    // T11/s1 (d21^2 - q^2) + T22/s2 (d12^2 - q^2), q = dU12, with s1 and s2 divided out.
+    // T11/s1 (d21^2 - q^2) + T22/s2 (d12^2 - q^2) with q = dU12; s1 and s2 cancel.
     let k12 = (t2 * (s2 + 2.0 * s1) - t1 * s1) * over;
     let k21 = (t1 * (s1 + 2.0 * s2) - t2 * s2) * over;
     let across = -(t1 * s2 + t2 * s1) * over;
@@ -180,12 +197,12 @@ impl Element<3> for WovenTriangle {
         };
         let du = rows(RowVector4::new(0.0, r1, r2, 0.0), 1.0, 1.0);
         let mut plane = du.tr_mul(&(turned * du)) + geometric(&t, [s1, s2]);
-        let mixed = 2.0 * t[(0, 1)] / sum.max(SINGULAR_FLOOR);
+        let mixed = 2.0 * t[(0, 1)] / sum.max(MIN_SINGULAR_VALUE);
         let mut normal = Matrix2::new(
-            t[(0, 0)] / s1.max(SINGULAR_FLOOR),
+            t[(0, 0)] / s1.max(MIN_SINGULAR_VALUE),
             mixed,
             mixed,
-            t[(1, 1)] / s2.max(SINGULAR_FLOOR),
+            t[(1, 1)] / s2.max(MIN_SINGULAR_VALUE),
         );
         if let Some(start) = start.filter(|_| self.damping > 0.0) {
             let factor = self.damping * start.rate;
@@ -210,5 +227,4 @@ impl Element<3> for WovenTriangle {
 }
 
 #[cfg(test)]
-#[path = "woven_tests.rs"]
 mod tests;

@@ -1,20 +1,20 @@
-//! Sparse symmetric matrices of 3 x 3 blocks, full rows, the diagonal apart.
+//! Sparse symmetric matrices of 3 x 3 blocks: full rows, the diagonal stored separately.
 //!
-//! Both triangles are stored: a product then reads each row once and writes its own result only,
-//! which keeps it parallel and deterministic without scattering.
+//! Both triangles are stored. A product then reads each row once and writes only the result of that row, so
+//! it is parallel and deterministic without scattering.
 
 use nalgebra::Matrix3;
 
-/// Which off-diagonal blocks exist: compressed rows, columns ascending.
+/// The off-diagonal blocks that exist: compressed rows, columns ascending.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BlockPattern {
-    /// Start of each row in `columns`, and the end.
+    /// Columns of row r: `columns[starts[r]..starts[r + 1]]`.
     pub starts: Vec<u32>,
     pub columns: Vec<u32>,
 }
 
 impl BlockPattern {
-    /// The union of cliques: `visit_all` calls its argument with the nodes of every element.
+    /// The union of cliques. `visit_all` calls its argument with the nodes of every element.
     pub fn from_cliques(node_count: usize, visit_all: impl FnOnce(&mut dyn FnMut(&[u32]))) -> Self {
         let mut rows: Vec<Vec<u32>> = vec![Vec::new(); node_count];
         visit_all(&mut |nodes| {
@@ -36,7 +36,7 @@ impl BlockPattern {
         pattern
     }
 
-    /// Where block (row, column) stands; it exists by construction.
+    /// Index of block (row, column), which must exist.
     pub fn slot(&self, row: u32, column: u32) -> u32 {
         let range = self.row(row as usize);
         let found = self.columns[range.clone()].binary_search(&column);
@@ -58,7 +58,7 @@ impl BlockPattern {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BlockValues {
     pub diagonal: Vec<Matrix3<f64>>,
-    /// In the pattern's order.
+    /// Off-diagonal blocks in the order of the pattern.
     pub blocks: Vec<Matrix3<f64>>,
 }
 

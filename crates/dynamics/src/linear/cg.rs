@@ -3,7 +3,7 @@
 use super::preconditioner::Preconditioner;
 use super::system::System;
 use super::vectors::{add_scaled, dot};
-use crate::elements::CHUNK;
+use crate::nodes::CHUNK;
 use bowknot_geometry::Vector;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -11,28 +11,29 @@ use serde::Serialize;
 /// How a linear solve ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct CgInfo {
-    /// Iterations made, each with one product with the matrix.
+    /// Number of iterations, each with one matrix-vector product.
     pub iterations: usize,
     /// Residual in the preconditioner's norm, relative to that of the right-hand side [1].
     pub residual: f64,
-    /// Whether the residual fell below the tolerance. If not, the best iterate is used all the same:
-    /// it is a poorer target, not a failed step.
+    /// Whether the residual fell below the tolerance. If not, the last iterate is used all the same: the
+    /// target is less accurate, but the step does not fail.
     pub converged: bool,
 }
 
-/// When to stop.
+/// When to stop. Norms are those of the preconditioner.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limits {
+    /// Residual relative to b, or to `min_scale` if that is larger [1].
     pub tolerance: f64,
-    /// Residual relative to b itself that is enough [1].
+    /// Residual relative to b itself at which the solve may end as well [1].
     pub own_tolerance: f64,
-    /// Squared norm that the tolerance is relative to where b has a smaller one: that of a larger problem, which this
-    /// one corrects.
-    pub least_scale: f64,
+    /// Smallest squared norm that `tolerance` is relative to: that of the first solve of the time step, which
+    /// the present one corrects.
+    pub min_scale: f64,
     pub max_iterations: usize,
 }
 
-/// Vectors that are kept between solves.
+/// Buffers that are kept between solves.
 #[derive(Debug, Default)]
 pub(crate) struct CgWorkspace {
     residual: Vec<Vector>,
@@ -44,7 +45,7 @@ pub(crate) struct CgWorkspace {
 }
 
 impl CgWorkspace {
-    /// Squared norm of the last b, the preconditioner's.
+    /// Squared norm of the last b in the preconditioner's norm.
     pub fn scale(&self) -> f64 {
         self.scale
     }
@@ -69,9 +70,9 @@ impl CgWorkspace {
 
 /// Solves H x = b over the free nodes; b and x are zero elsewhere.
 ///
-/// Starts from the best combination of `guesses` (energy-minimal in their span; zero if empty).
-/// The tolerance is relative to b, not to the first residual, so that a good guess saves iterations
-/// instead of asking for more accuracy.
+/// The start is the combination of `guesses` with the least energy, or zero if there are none. The tolerance
+/// is relative to b, not to the first residual: a good guess saves iterations and does not raise the
+/// accuracy.
 pub(crate) fn solve(
     system: &System<'_>,
     preconditioner: &mut Preconditioner,
@@ -92,9 +93,9 @@ pub(crate) fn solve(
     }
     *own_scale = scale;
     let enough = limits.own_tolerance * limits.own_tolerance * scale;
-    let scale = scale.max(limits.least_scale);
+    let scale = scale.max(limits.min_scale);
 
-    // Conjugate the guesses one after the other: p is the guess made conjugate to those before.
+    // Conjugate the guesses one after the other: p is the guess made conjugate to the previous one.
     let mut previous: Option<(Vec<Vector>, Vec<Vector>, f64)> = None;
     for guess in guesses {
         p.copy_from_slice(guess);
@@ -119,7 +120,7 @@ pub(crate) fn solve(
     let mut info = CgInfo { iterations: 0, residual: (rz / scale).sqrt(), converged: rz <= goal };
     while !info.converged && info.iterations < limits.max_iterations {
         let curvature = system.multiply(p, q);
-        // H is positive definite; this ends the loop on non-finite numbers and on exhaustion.
+        // H is positive definite; the loop ends here on numbers that are not finite and when p vanishes.
         if !(curvature > 0.0 && curvature.is_finite()) {
             break;
         }

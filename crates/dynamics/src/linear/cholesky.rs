@@ -1,32 +1,33 @@
 //! Sparse Cholesky factorisation of symmetric matrices of B x B blocks.
 //!
-//! Meant for small systems with the graph of a surface (coarse spaces). The order is nested
-//! dissection by position: recursive bisection, the nodes of one half that touch the other last.
-//! Semi-definite input is welcome: a pivot that vanishes drops its unknown.
+//! It is made for small systems with the graph of a surface (coarse spaces) or of strands. Nodes are
+//! eliminated in the order of nested dissection by position (recursive bisection; nodes of one half that
+//! touch the other half come last), or in an order that the caller gives. Semi-definite matrices are allowed,
+//! see [`PivotPolicy`].
 
 use bowknot_geometry::Vector;
 use nalgebra::{SMatrix, SVector};
 
-/// A pivot below this share of its diagonal entry has vanished: what cancellation leaves of a sum of
-/// a few dozen terms, with room.
+/// A pivot at most this share of its diagonal entry counts as zero: the rounding error of a sum of a few
+/// dozen terms that cancel, with a margin.
 const ZERO_PIVOT: f64 = 1e-11;
 
-/// The least share of its diagonal entry that a pivot counts as where it must not vanish.
-const LEAST_PIVOT: f64 = 1e-15;
+/// Smallest pivot with [`PivotPolicy::Raise`], as a share of its diagonal entry.
+const MIN_PIVOT: f64 = 1e-15;
 
-/// What becomes of pivots that vanish.
+/// What is done with pivots that vanish.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Vanished {
-    /// Their unknowns are dropped: for semi-definite systems.
-    Dropped,
-    /// They are raised to the rounding: for systems that are definite, however barely.
-    Floored,
+pub(crate) enum PivotPolicy {
+    /// Drop their unknowns: for semi-definite systems.
+    Drop,
+    /// Raise them to the size of rounding errors: for systems that are definite, however barely.
+    Raise,
 }
 
-/// What depends on the graph alone.
+/// The part of a factorisation that depends on the graph alone.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Symbolic {
-    /// Old index of each new one, and the inverse.
+    /// Old index of each new index, and the inverse.
     pub order: Vec<u32>,
     pub place: Vec<u32>,
     /// Rows below the diagonal of each column of L, ascending: `rows[starts[k]..starts[k + 1]]`.
@@ -38,7 +39,8 @@ pub(crate) struct Symbolic {
 }
 
 impl Symbolic {
-    /// Analyses the graph with `neighbours(i)` (any order, i itself allowed) at `positions`.
+    /// Analyses the graph in which node i has the `neighbours(i)` (in any order, i itself allowed), in the
+    /// order of nested dissection by `positions`.
     pub fn new<'a>(positions: &[Vector], neighbours: impl Fn(usize) -> &'a [u32]) -> Self {
         let count = positions.len();
         let mut order: Vec<u32> = (0..count as u32).collect();
@@ -47,13 +49,14 @@ impl Symbolic {
         Self::in_order(order, neighbours)
     }
 
-    /// Analyses the graph with `neighbours(i)` for elimination in the given order.
+    /// Analyses the graph for elimination in the given order.
     pub fn in_order<'a>(order: Vec<u32>, neighbours: impl Fn(usize) -> &'a [u32]) -> Self {
         let count = order.len();
         let mut place = vec![0; count];
         order.iter().enumerate().for_each(|(new, &old)| place[old as usize] = new as u32);
 
-        // Column structures: the matrix's own, and those of the children in the elimination tree.
+        // The structure of a column is that of the matrix united with those of its children in the
+        // elimination tree.
         let mut structures: Vec<Vec<u32>> = vec![Vec::new(); count];
         let mut children: Vec<Vec<u32>> = vec![Vec::new(); count];
         let mut seen = vec![u32::MAX; count];
@@ -95,13 +98,13 @@ impl Symbolic {
         self.starts[k] as usize..self.starts[k + 1] as usize
     }
 
-    /// Blocks of L below the diagonal.
+    /// Number of blocks of L below the diagonal.
     pub fn fill(&self) -> usize {
         self.rows.len()
     }
 }
 
-/// Orders `nodes` in place: the halves, then the separator.
+/// Orders `nodes` in place: both halves, then the separator.
 fn dissect<'a>(
     nodes: &mut [u32],
     positions: &[Vector],
@@ -142,17 +145,17 @@ pub(crate) struct Cholesky<const B: usize> {
     inverses: Vec<SMatrix<f64, B, B>>,
     /// Blocks below the diagonal, in the symbolic order.
     blocks: Vec<SMatrix<f64, B, B>>,
-    /// Work: slot of each row in the column under way.
+    /// Buffer: slot of each row in the current column.
     slots: Vec<u32>,
 }
 
 impl<const B: usize> Cholesky<B> {
-    /// Factorises the matrix whose blocks (i, j) of old indices `visit(i)` yields; those above the
+    /// Factorises a matrix. `row(i)` gives the columns and blocks of row i, in old indices; blocks above the
     /// diagonal of the new order are skipped.
     pub fn factorise<'a>(
         &mut self,
         symbolic: &Symbolic,
-        vanished: Vanished,
+        policy: PivotPolicy,
         row: impl Fn(usize) -> (&'a [u32], &'a [SMatrix<f64, B, B>]),
     ) {
         let count = symbolic.order.len();
@@ -167,7 +170,7 @@ impl<const B: usize> Cholesky<B> {
                 self.slots[symbolic.rows[slot] as usize] = slot as u32;
             }
             let mut diagonal = SMatrix::zeros();
-            // The matrix is symmetric: its row is its column.
+            // The matrix is symmetric: row k is the transpose of column k.
             let (columns, blocks) = row(symbolic.order[k] as usize);
             for (&other, block) in columns.iter().zip(blocks) {
                 let place = symbolic.place[other as usize] as usize;
@@ -189,7 +192,7 @@ impl<const B: usize> Cholesky<B> {
                     self.blocks[target] -= update;
                 }
             }
-            let inverse = inverse_factor(&diagonal, &scale, vanished);
+            let inverse = inverse_factor(&diagonal, &scale, policy);
             let transposed = inverse.transpose();
             for slot in column {
                 self.blocks[slot] *= transposed;
@@ -198,7 +201,7 @@ impl<const B: usize> Cholesky<B> {
         }
     }
 
-    /// Solves in place; `x` in the new order.
+    /// Solves in place; `x` is in the new order.
     pub fn solve(&self, symbolic: &Symbolic, x: &mut [SVector<f64, B>]) {
         for k in 0..x.len() {
             let value = self.inverses[k] * x[k];
@@ -217,22 +220,22 @@ impl<const B: usize> Cholesky<B> {
     }
 }
 
-/// Inverse of the Cholesky factor of a block; rows and columns of vanished pivots are zero.
+/// Inverse of the Cholesky factor of a block; rows and columns of dropped pivots are zero.
 fn inverse_factor<const B: usize>(
     block: &SMatrix<f64, B, B>,
     scale: &SVector<f64, B>,
-    vanished: Vanished,
+    policy: PivotPolicy,
 ) -> SMatrix<f64, B, B> {
     let mut factor = SMatrix::<f64, B, B>::zeros();
     let mut inverse = SMatrix::<f64, B, B>::zeros();
     for k in 0..B {
         let mut pivot = block[(k, k)];
         (0..k).for_each(|m| pivot -= factor[(k, m)] * factor[(k, m)]);
-        if vanished == Vanished::Floored {
-            pivot = pivot.max(LEAST_PIVOT * scale[k]);
+        if policy == PivotPolicy::Raise {
+            pivot = pivot.max(MIN_PIVOT * scale[k]);
         }
-        let least = if vanished == Vanished::Dropped { ZERO_PIVOT * scale[k] } else { 0.0 };
-        if pivot.is_nan() || pivot <= least {
+        let zero = if policy == PivotPolicy::Drop { ZERO_PIVOT * scale[k] } else { 0.0 };
+        if pivot.is_nan() || pivot <= zero {
             continue;
         }
         let reciprocal = 1.0 / pivot.sqrt();
@@ -253,101 +256,4 @@ fn inverse_factor<const B: usize>(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use nalgebra::{DMatrix, DVector};
-
-    type Block = SMatrix<f64, 2, 2>;
-
-    struct Grid {
-        positions: Vec<Vector>,
-        rows: Vec<Vec<u32>>,
-        blocks: Vec<Vec<Block>>,
-        dense: DMatrix<f64>,
-    }
-
-    /// A grid graph with symmetric positive definite blocks.
-    fn grid(n: usize) -> Grid {
-        let count = n * n;
-        let mut positions = Vec::new();
-        let mut rows = vec![Vec::new(); count];
-        for j in 0..n {
-            for i in 0..n {
-                positions.push(Vector::new(i as f64, j as f64, 0.0));
-                let me = i + j * n;
-                rows[me].push(me as u32);
-                if i + 1 < n {
-                    rows[me].push(me as u32 + 1);
-                    rows[me + 1].push(me as u32);
-                }
-                if j + 1 < n {
-                    rows[me].push((me + n) as u32);
-                    rows[me + n].push(me as u32);
-                }
-            }
-        }
-        let mut dense = DMatrix::zeros(2 * count, 2 * count);
-        for (i, row) in rows.iter().enumerate() {
-            for &j in row.iter().filter(|&&j| j as usize >= i) {
-                let j = j as usize;
-                for a in 0..2 {
-                    for b in 0..2 {
-                        let value = if i == j {
-                            if a == b { 9.0 } else { 1.0 }
-                        } else {
-                            ((i + 3 * j + 5 * a + 7 * b) as f64).sin()
-                        };
-                        dense[(2 * i + a, 2 * j + b)] = value;
-                        dense[(2 * j + b, 2 * i + a)] = value;
-                    }
-                }
-            }
-        }
-        let blocks = rows
-            .iter()
-            .enumerate()
-            .map(|(i, row)| {
-                row.iter().map(|&j| dense.fixed_view::<2, 2>(2 * i, 2 * j as usize).into_owned()).collect()
-            })
-            .collect();
-        Grid { positions, rows, blocks, dense }
-    }
-
-    #[test]
-    fn it_solves_what_a_dense_factorisation_solves() {
-        let Grid { positions, rows, blocks, dense } = grid(9);
-        let symbolic = Symbolic::new(&positions, |i| &rows[i]);
-        let mut factor = Cholesky::<2>::default();
-        factor.factorise(&symbolic, Vanished::Dropped, |i| (&rows[i], &blocks[i]));
-        let right = DVector::from_fn(dense.nrows(), |i, _| (i as f64 * 0.7).cos());
-        let exact = dense.cholesky().expect("diagonally dominant").solve(&right);
-        let mut x: Vec<SVector<f64, 2>> =
-            symbolic.order.iter().map(|&old| right.fixed_rows::<2>(2 * old as usize).into_owned()).collect();
-        factor.solve(&symbolic, &mut x);
-        for (new, &old) in symbolic.order.iter().enumerate() {
-            assert!((x[new] - exact.fixed_rows::<2>(2 * old as usize)).norm() < 1e-12);
-        }
-    }
-
-    #[test]
-    fn nested_dissection_fills_less_than_a_band() {
-        let Grid { positions, rows, .. } = grid(32);
-        let symbolic = Symbolic::new(&positions, |i| &rows[i]);
-        // A band of 32 would hold 32 * 1024.
-        assert!(symbolic.fill() < 32 * 1024 / 2, "{}", symbolic.fill());
-    }
-
-    #[test]
-    fn semi_definite_systems_give_a_solution() {
-        // Two equal unknowns: the second is dropped, the equation still holds.
-        let block = SMatrix::<f64, 2, 2>::new(4.0, 4.0, 4.0, 4.0);
-        let rows = [0u32];
-        let symbolic = Symbolic::new(&[Vector::zeros()], |_| &rows);
-        let mut factor = Cholesky::<2>::default();
-        let blocks = [block];
-        factor.factorise(&symbolic, Vanished::Dropped, |_| (&rows, &blocks));
-        let mut x = [SVector::<f64, 2>::new(8.0, 8.0)];
-        factor.solve(&symbolic, &mut x);
-        assert!((block * x[0] - SVector::<f64, 2>::new(8.0, 8.0)).norm() < 1e-14);
-    }
-}
+mod tests;

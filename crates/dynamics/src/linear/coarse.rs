@@ -1,51 +1,52 @@
 //! A coarse correction: every aggregate of nodes moves as a rigid body.
 //!
-//! What conjugate gradients find slowly are motions of large patches that hardly stretch the cloth.
-//! Each aggregate (a leaf of the numbering, [`super::ordering`]) gets the six rigid motions about
-//! its centre at the current x, P; the Galerkin matrix P^T H P is factorised, and
-//! `P (P^T H P)^-1 P^T` is added to the fine preconditioner. Repulsion joins aggregates that the mesh does not:
-//! where there is any, the matrix's graph is made anew, unless that fills the factor.
+//! Conjugate gradients are slow to find motions of large patches that hardly stretch the cloth. The columns
+//! of P are the six rigid motions of each aggregate (a leaf of the numbering, [`super::ordering`]) about its
+//! centre at the current x. The Galerkin matrix P^T H P is factorised, and `P (P^T H P)^-1 P^T` is added to
+//! the fine preconditioner. Springs join aggregates that the mesh does not join: the graph of the matrix is
+//! then built anew, unless the factor would fill in too much.
 
-use super::cholesky::{Cholesky, Symbolic, Vanished};
+use super::cholesky::{Cholesky, PivotPolicy, Symbolic};
+use super::springs::LinearSprings;
 use super::system::System;
-use crate::repulsion::Repulsion;
 use bowknot_geometry::Vector;
 use nalgebra::{Matrix3, Matrix6, Vector6};
 use rayon::prelude::*;
 use std::ops::{AddAssign, Range};
 
-/// Most fill of a factor with repulsion, in that of the mesh's: a heap of many layers is no surface, and its factor costs
-/// more than it saves. Without, springs count with their diagonal blocks.
-const MOST_FILL: usize = 8;
+/// Largest fill of a factor with springs, relative to that of the mesh. The graph of a pile of many layers is
+/// not that of a surface, and its factor costs more time than it saves. Beyond this only the diagonal blocks
+/// of springs are used.
+const MAX_FILL: usize = 8;
 
 /// Rigid motions of aggregates.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Coarse {
     aggregates: Vec<Range<u32>>,
-    /// Without repulsion.
+    /// The graph without springs.
     mesh: Graph,
-    /// With that of the present system, if it has any.
+    /// The graph with the springs of the current system, if they are used.
     joined: Option<Graph>,
     blocks: Vec<Matrix6<f64>>,
     factor: Cholesky<6>,
     arms: Vec<Arm>,
     aggregate_of: Vec<u32>,
-    /// The last solution by aggregate, and in the order of the factor.
+    /// The last solution by aggregate, and the same in the order of the factor.
     motions: Vec<Vector6<f64>>,
     ordered: Vec<Vector6<f64>>,
 }
 
-/// Which aggregates the Galerkin matrix joins.
+/// The pairs of aggregates that the Galerkin matrix couples.
 #[derive(Clone, Debug, Default)]
 struct Graph {
-    /// Aggregates next to each, itself included, ascending: `neighbours[starts[a]..starts[a + 1]]`.
+    /// Neighbours of aggregate a, itself included, ascending: `neighbours[starts[a]..starts[a + 1]]`.
     starts: Vec<u32>,
     neighbours: Vec<u32>,
     symbolic: Symbolic,
 }
 
 impl Graph {
-    /// From pairs of aggregates that are neighbours, in both orders, each aggregate with itself included.
+    /// From the pairs of neighbours, each in both orders, and the pairs of each aggregate with itself.
     fn new(mut pairs: Vec<[u32; 2]>, centres: &[Vector]) -> Self {
         pairs.sort_unstable();
         pairs.dedup();
@@ -67,9 +68,9 @@ impl Graph {
 }
 
 impl Coarse {
-    /// Prepares the graph of `aggregates`, at least one, ranges that cover what H joins with them; other
-    /// nodes are left out. `rest` are the nodes' rest positions, `row` visits the off-diagonal columns of a
-    /// row of H.
+    /// Prepares the graph of `aggregates`, at least one. With each node they contain all nodes that H couples
+    /// to it; nodes in none of them get no correction. `rest` are the rest positions of all nodes; `row`
+    /// visits the off-diagonal columns of a row of H.
     pub fn new(aggregates: &[Range<u32>], rest: &[Vector], row: impl Fn(usize, &mut dyn FnMut(u32))) -> Self {
         let mut aggregate_of = vec![0u32; rest.len()];
         for (a, range) in aggregates.iter().enumerate() {
@@ -90,10 +91,10 @@ impl Coarse {
     pub fn build(&mut self, system: &System<'_>, x: &[Vector]) {
         self.place_arms(system, x);
         self.joined = system
-            .repulsion
-            .map(|repulsion| self.join(repulsion, x))
-            .filter(|graph| graph.symbolic.fill() <= MOST_FILL * self.mesh.symbolic.fill().max(1));
-        let couplings = system.repulsion.filter(|_| self.joined.is_some());
+            .springs
+            .map(|springs| self.join(springs, x))
+            .filter(|graph| graph.symbolic.fill() <= MAX_FILL * self.mesh.symbolic.fill().max(1));
+        let couplings = system.springs.filter(|_| self.joined.is_some());
         let graph = self.joined.as_ref().unwrap_or(&self.mesh);
         self.blocks.resize(graph.neighbours.len(), Matrix6::zeros());
         let (starts, arms, aggregate_of) = (&graph.starts, &self.arms, &self.aggregate_of);
@@ -110,12 +111,12 @@ impl Coarse {
                 if arms[node].free == 0.0 {
                     continue;
                 }
-                // The row of H P, neighbour by neighbour: those of one aggregate mostly follow each
-                // other, and are summed before P^T is applied.
+                // The row of H P, neighbour by neighbour. Neighbours in one aggregate mostly follow each
+                // other; their sum is formed before P^T is applied.
                 let mut sum = RowSum { aggregate: aggregate_of[node], ..RowSum::default() };
                 let mut flush = |sum: &RowSum| {
                     let slot = around.binary_search(&sum.aggregate);
-                    debug_assert!(slot.is_ok(), "aggregates of neighbours are neighbours");
+                    debug_assert!(slot.is_ok(), "aggregates of coupled nodes are neighbours");
                     if let Some(block) = slot.ok().and_then(|slot| blocks.get_mut(slot)) {
                         sum.add_to(&arms[node], block);
                     }
@@ -125,18 +126,18 @@ impl Coarse {
                 for (block, &column) in
                     system.values.blocks[row.clone()].iter().zip(&system.pattern.columns[row])
                 {
-                    sum.turn_to(aggregate_of[column as usize], &mut flush);
+                    sum.switch_to(aggregate_of[column as usize], &mut flush);
                     sum.add(block, &arms[column as usize]);
                 }
-                let (columns, values) = system.scalar.far(node);
+                let (columns, values) = system.scalar.off_pattern(node);
                 for (&column, &value) in columns.iter().zip(values) {
-                    sum.turn_to(aggregate_of[column as usize], &mut flush);
+                    sum.switch_to(aggregate_of[column as usize], &mut flush);
                     sum.add_scalar(value, &arms[column as usize]);
                 }
-                if let Some(repulsion) = couplings {
-                    repulsion.for_each_coupling(node, |other, block| {
+                if let Some(springs) = couplings {
+                    springs.for_each_coupling(node, |other, block| {
                         if arms[other].free > 0.0 {
-                            sum.turn_to(aggregate_of[other], &mut flush);
+                            sum.switch_to(aggregate_of[other], &mut flush);
                             sum.add(&block, &arms[other]);
                         }
                     });
@@ -145,15 +146,15 @@ impl Coarse {
             }
         });
         let blocks = &self.blocks;
-        self.factor.factorise(&graph.symbolic, Vanished::Dropped, |a| {
+        self.factor.factorise(&graph.symbolic, PivotPolicy::Drop, |a| {
             (graph.around(a), &blocks[starts[a] as usize..starts[a + 1] as usize])
         });
     }
 
-    /// The graph with the aggregates joined that springs join.
-    fn join(&self, repulsion: &Repulsion, x: &[Vector]) -> Graph {
+    /// The graph of the mesh and the springs.
+    fn join(&self, springs: &LinearSprings, x: &[Vector]) -> Graph {
         let mut pairs: Vec<[u32; 2]> = self.mesh.pairs().collect();
-        repulsion.for_each_bond(|nodes, _| {
+        springs.for_each_spring(|nodes, _| {
             let moving = || nodes.iter().filter(|n| self.arms[**n as usize].free > 0.0);
             let aggregate = |n: &u32| self.aggregate_of[*n as usize];
             for a in moving().map(aggregate) {
@@ -176,7 +177,7 @@ impl Coarse {
         }
     }
 
-    /// Solves for the motions of the aggregates that balance `r`; kept for [`Self::displacement`].
+    /// Solves for the motions of the aggregates that balance `r`; [`Self::displacement`] reads them.
     pub fn solve(&mut self, r: &[Vector]) {
         let arms = &self.arms;
         let forces = self.aggregates.par_iter().with_min_len(32).map(|range| {
@@ -206,6 +207,7 @@ impl Coarse {
     }
 }
 
+/// Mean position of the nodes of each aggregate.
 fn centres(aggregates: &[Range<u32>], x: &[Vector]) -> Vec<Vector> {
     let centre = |range: &Range<u32>| {
         x[range.start as usize..range.end as usize].iter().sum::<Vector>() / range.len() as f64
@@ -213,16 +215,17 @@ fn centres(aggregates: &[Range<u32>], x: &[Vector]) -> Vec<Vector> {
     aggregates.iter().map(centre).collect()
 }
 
-/// How a node moves with its aggregate: by `free * shift + spin x offset`.
+/// A node moves with its aggregate by `free * shift + spin x offset`.
 #[derive(Clone, Copy, Debug, Default)]
 struct Arm {
-    /// From the aggregate's centre, over its size; zero if the node is not free.
+    /// Vector from the aggregate's centre to the node over the aggregate's size [1]; zero if the node is not
+    /// free.
     offset: Vector,
-    /// 1, or 0 if the node is not free.
+    /// 1 if the node is free, 0 otherwise.
     free: f64,
 }
 
-/// A row of H times the columns of P of one aggregate: 3 x 6, shifts and spins apart.
+/// A row of H times the columns of P of one aggregate, 3 x 6: the columns of shifts and those of spins.
 #[derive(Default)]
 struct RowSum {
     aggregate: u32,
@@ -231,8 +234,9 @@ struct RowSum {
 }
 
 impl RowSum {
+    /// Starts the sum of another aggregate, unless it is the current one.
     #[inline]
-    fn turn_to(&mut self, aggregate: u32, flush: &mut impl FnMut(&RowSum)) {
+    fn switch_to(&mut self, aggregate: u32, flush: &mut impl FnMut(&RowSum)) {
         if self.aggregate != aggregate {
             flush(self);
             *self = Self { aggregate, ..Self::default() };
@@ -242,7 +246,7 @@ impl RowSum {
     #[inline]
     fn add(&mut self, block: &Matrix3<f64>, arm: &Arm) {
         self.shift += block * arm.free;
-        // The block times the spin matrix, without its zeros.
+        // The block times the spin matrix; the products with its zeros are left out.
         let [a, b, c] = [block.column(0), block.column(1), block.column(2)];
         let o = &arm.offset;
         let mut spin = |k: usize, column: Vector| self.spin.column_mut(k).add_assign(&column);
@@ -257,7 +261,7 @@ impl RowSum {
         self.spin += spin_matrix(arm) * value;
     }
 
-    /// P_node^T times the sum.
+    /// Adds P_node^T times the sum to `block`.
     #[inline]
     fn add_to(&self, arm: &Arm, block: &mut Matrix6<f64>) {
         let turn = spin_matrix(arm).transpose();
@@ -272,7 +276,7 @@ impl RowSum {
     }
 }
 
-/// spin -> spin x offset.
+/// The matrix of the map spin -> spin x offset.
 #[inline]
 fn spin_matrix(arm: &Arm) -> Matrix3<f64> {
     let o = &arm.offset;
@@ -280,5 +284,4 @@ fn spin_matrix(arm: &Arm) -> Matrix3<f64> {
 }
 
 #[cfg(test)]
-#[path = "coarse_tests.rs"]
 mod tests;

@@ -8,5 +8,6 @@ pub(crate) mod direct;
 pub(crate) mod ordering;
 pub(crate) mod preconditioner;
 pub(crate) mod scalar;
+pub(crate) mod springs;
 pub(crate) mod system;
 pub(crate) mod vectors;

@@ -1,43 +1,34 @@
 //! Numbering of nodes along the mesh, so that ranges of numbers are compact patches.
 //!
-//! Connected components first, then recursive bisection of the rest positions at the median of the
-//! longest side. Neighbours then stand close in memory, and the leaves are ready-made aggregates.
+//! Nodes are sorted by connected component, then by recursive bisection of the rest positions at the median
+//! of the longest side. Neighbours are then close in memory, and the leaves serve as aggregates.
 
-use bowknot_geometry::Vector;
+use bowknot_geometry::{UnionFind, Vector};
 use std::ops::Range;
 
 /// A numbering and its leaves.
 pub(crate) struct Ordering {
-    /// Old index of each new one.
+    /// Old index of each new index.
     pub order: Vec<u32>,
     /// Consecutive ranges of new indices, each at most `leaf` long and within one component.
     pub leaves: Vec<Range<u32>>,
-    /// Consecutive ranges of new indices, one a connected component.
+    /// Consecutive ranges of new indices, one per connected component.
     pub components: Vec<Range<u32>>,
 }
 
-/// Orders nodes at `positions` that `for_each_link` joins.
+/// Orders the nodes at `positions`; `for_each_link` calls its argument with each pair of nodes that are
+/// joined.
 pub(crate) fn order_nodes(
     positions: &[Vector],
     leaf: usize,
     for_each_link: impl FnOnce(&mut dyn FnMut(u32, u32)),
 ) -> Ordering {
     let count = positions.len();
-    let mut parent: Vec<u32> = (0..count as u32).collect();
-    fn root(parent: &mut [u32], mut node: u32) -> u32 {
-        while parent[node as usize] != node {
-            parent[node as usize] = parent[parent[node as usize] as usize];
-            node = parent[node as usize];
-        }
-        node
-    }
-    for_each_link(&mut |a, b| {
-        let (a, b) = (root(&mut parent, a), root(&mut parent, b));
-        // The smaller index is the root, so components come in the order of their first node.
-        parent[a.max(b) as usize] = a.min(b);
-    });
+    let mut sets = UnionFind::new(count);
+    // The smallest node represents a component, so that components are in the order of their first node.
+    for_each_link(&mut |a, b| sets.join(a, b));
     let mut order: Vec<u32> = (0..count as u32).collect();
-    let component: Vec<u32> = (0..count as u32).map(|n| root(&mut parent, n)).collect();
+    let component: Vec<u32> = (0..count as u32).map(|n| sets.find(n)).collect();
     order.sort_by_key(|&n| component[n as usize]);
 
     let (mut leaves, mut components) = (Vec::new(), Vec::new());
@@ -65,7 +56,7 @@ fn bisect(nodes: &mut [u32], first: u32, positions: &[Vector], leaf: usize, leav
     }
     let axis = (high - low).imax();
     let middle = nodes.len() / 2;
-    // Ties are broken by index: the halves are sets, the same whatever the selection does.
+    // Ties are broken by index, so that both halves are the same sets whatever order the selection leaves.
     nodes.select_nth_unstable_by(middle, |&a, &b| {
         positions[a as usize][axis].total_cmp(&positions[b as usize][axis]).then(a.cmp(&b))
     });

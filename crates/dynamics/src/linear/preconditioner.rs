@@ -4,23 +4,23 @@ use super::coarse::Coarse;
 use super::direct::Direct;
 use super::system::System;
 use super::vectors::chunk_dot;
-use crate::elements::CHUNK;
+use crate::nodes::CHUNK;
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
-/// Block-Jacobi, with strands solved exactly and a coarse correction added where there are any; rebuilt for
-/// every system.
+/// Block-Jacobi with an exact solve over strands and a coarse correction, each if the model has nodes for it.
+/// It is rebuilt for every system.
 #[derive(Debug, Default)]
 pub(crate) struct Preconditioner {
-    /// Inverses of the diagonal blocks, zero where the node is not free.
+    /// Inverses of the diagonal blocks; zero for nodes that are not free.
     inverses: Vec<Matrix3<f64>>,
     direct: Option<Direct>,
     coarse: Option<Coarse>,
 }
 
 impl Preconditioner {
-    /// Block-Jacobi, replaced by `direct` at its nodes, plus `coarse`.
+    /// Block-Jacobi, replaced by `direct` at the nodes of strands, plus `coarse`.
     pub fn new(direct: Option<Direct>, coarse: Option<Coarse>) -> Self {
         Self { inverses: Vec::new(), direct, coarse }
     }
@@ -42,7 +42,7 @@ impl Preconditioner {
         }
     }
 
-    /// z = M^-1 r; r . z.
+    /// Sets z = M^-1 r; returns r . z.
     pub fn apply(&mut self, r: &[Vector], z: &mut [Vector]) -> f64 {
         if let Some(direct) = &mut self.direct {
             direct.solve(r);
@@ -75,9 +75,9 @@ impl Preconditioner {
     }
 }
 
-/// The inverse of a symmetric positive definite block. Its smallest eigenvalue is at least the
-/// inertia of the node, so it is regular unless the input was not finite; then the identity lets CG
-/// notice.
+/// The inverse of a symmetric positive definite block. The smallest eigenvalue is at least the inertia of the
+/// node, so the block is singular only if the input is not finite. The identity is returned then, and CG
+/// detects the non-finite numbers.
 fn invert(block: Matrix3<f64>) -> Matrix3<f64> {
     block.try_inverse().map_or_else(Matrix3::identity, |inverse| (inverse + inverse.transpose()) * 0.5)
 }

@@ -1,16 +1,16 @@
-//! Translation-invariant quadratic forms `E(x) = 1/2 sum q_ij x_i.x_j` with one number a pair of
-//! nodes: every coordinate sees the same matrix.
+//! Translation-invariant quadratic forms `E(x) = 1/2 sum q_ij x_i.x_j` with one number per pair of nodes: the
+//! matrix is the same for every coordinate.
 //!
-//! Rows sum to zero, so the diagonal is implied, `q_ii = - sum q_ij`, and products run over
-//! differences x_j - x_i: exact invariance under translation however far the origin.
+//! Rows sum to zero. The diagonal is implied, `q_ii = - sum q_ij`, and products use differences x_j - x_i:
+//! they are exactly invariant under translation, however far the origin is.
 
 use super::block::BlockPattern;
-use crate::elements::CHUNK;
+use crate::nodes::CHUNK;
 use bowknot_geometry::Vector;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Collects entries.
+/// Collects the entries of a form.
 pub(crate) struct ScalarBuilder {
     rows: Vec<Vec<(u32, f64)>>,
 }
@@ -20,7 +20,8 @@ impl ScalarBuilder {
         Self { rows: vec![Vec::new(); node_count] }
     }
 
-    /// Adds `value` to entries (i, j) and (j, i), and takes it from both diagonals. Nothing if i = j.
+    /// Adds `value` to entries (i, j) and (j, i) and subtracts it from both diagonal entries. Does nothing if
+    /// i = j.
     pub fn add(&mut self, i: u32, j: u32, value: f64) {
         if i == j {
             return;
@@ -76,13 +77,13 @@ impl ScalarForm {
         sum
     }
 
-    /// Takes the form apart for a matrix with `pattern`: what falls on its off-diagonal blocks, by
-    /// slot, and the far entries. The diagonal stays here.
+    /// Splits the form for a matrix with `pattern` into the entries that its off-diagonal blocks have a place
+    /// for, and the others.
     pub fn split(&self, pattern: &BlockPattern) -> SplitForm {
         let mut split = SplitForm {
             diagonal: self.diagonal.clone(),
-            near: vec![0.0; pattern.columns.len()],
-            far_starts: vec![0],
+            in_pattern: vec![0.0; pattern.columns.len()],
+            off_starts: vec![0],
             ..SplitForm::default()
         };
         for row in 0..self.diagonal.len() {
@@ -90,14 +91,14 @@ impl ScalarForm {
             let (columns, values) = self.row(row);
             for (&column, &value) in columns.iter().zip(values) {
                 match pattern.columns[slots.clone()].binary_search(&column) {
-                    Ok(k) => split.near[slots.start + k] = value,
+                    Ok(k) => split.in_pattern[slots.start + k] = value,
                     Err(_) => {
-                        split.far_columns.push(column);
-                        split.far_values.push(value);
+                        split.off_columns.push(column);
+                        split.off_values.push(value);
                     }
                 }
             }
-            split.far_starts.push(split.far_columns.len() as u32);
+            split.off_starts.push(split.off_columns.len() as u32);
         }
         split
     }
@@ -109,12 +110,12 @@ impl ScalarForm {
         partial.iter().sum()
     }
 
-    /// The share of one chunk's rows.
+    /// Energy of the rows of one chunk.
     pub fn chunk_energy(&self, chunk: usize, x: &[Vector]) -> f64 {
         self.rows_energy(chunk * CHUNK..((chunk + 1) * CHUNK).min(x.len()), x)
     }
 
-    /// The share of some rows.
+    /// Energy of a range of rows.
     pub fn rows_energy(&self, rows: Range<usize>, x: &[Vector]) -> f64 {
         let mut sum = 0.0;
         for row in rows {
@@ -127,30 +128,32 @@ impl ScalarForm {
     }
 }
 
-/// A form as a matrix beside a block pattern: fewer entries to read in products.
+/// A form split by a block pattern. The block matrix takes the entries in the pattern, so that products read
+/// fewer numbers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SplitForm {
     pub diagonal: Vec<f64>,
-    /// By slot of the pattern.
-    pub near: Vec<f64>,
-    far_starts: Vec<u32>,
-    far_columns: Vec<u32>,
-    far_values: Vec<f64>,
+    /// Entries in the pattern, in its order.
+    pub in_pattern: Vec<f64>,
+    /// Entries outside of the pattern: compressed rows.
+    off_starts: Vec<u32>,
+    off_columns: Vec<u32>,
+    off_values: Vec<f64>,
 }
 
 impl SplitForm {
     /// Columns and values of a row that are not in the block pattern.
     #[inline]
-    pub fn far(&self, row: usize) -> (&[u32], &[f64]) {
-        let range = self.far_starts[row] as usize..self.far_starts[row + 1] as usize;
-        (&self.far_columns[range.clone()], &self.far_values[range])
+    pub fn off_pattern(&self, row: usize) -> (&[u32], &[f64]) {
+        let range = self.off_starts[row] as usize..self.off_starts[row + 1] as usize;
+        (&self.off_columns[range.clone()], &self.off_values[range])
     }
 
-    /// Adds `factor` times another form, of the same pattern.
+    /// Adds `factor` times another form with the same entries.
     pub fn add_scaled(&mut self, factor: f64, other: &SplitForm) {
         let add = |to: &mut [f64], from: &[f64]| to.iter_mut().zip(from).for_each(|(t, f)| *t += factor * f);
         add(&mut self.diagonal, &other.diagonal);
-        add(&mut self.near, &other.near);
-        add(&mut self.far_values, &other.far_values);
+        add(&mut self.in_pattern, &other.in_pattern);
+        add(&mut self.off_values, &other.off_values);
     }
 }

@@ -1,24 +1,24 @@
-//! The operator of a Newton iteration: H = block matrix + far entries of a scalar form + repulsion,
-//! over the free nodes.
+//! The matrix of a Newton iteration over the free nodes: H = block matrix + entries of a scalar form outside
+//! of the block pattern + active springs.
 
 use super::block::{BlockPattern, BlockValues};
 use super::scalar::SplitForm;
+use super::springs::LinearSprings;
 use super::vectors::chunk_dot;
-use crate::elements::CHUNK;
-use crate::repulsion::Repulsion;
+use crate::nodes::CHUNK;
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
-/// H, borrowed. Rows of nodes that are not free act as zero.
+/// H, borrowed. Rows of nodes that are not free count as zero.
 #[derive(Clone, Copy)]
 pub(crate) struct System<'a> {
     pub pattern: &'a BlockPattern,
     pub values: &'a BlockValues,
-    /// Its diagonal and near entries are part of `values`.
+    /// Its diagonal and its entries in the pattern are part of `values`.
     pub scalar: &'a SplitForm,
-    /// No part of `values`.
-    pub repulsion: Option<&'a Repulsion>,
+    /// Not part of `values`.
+    pub springs: Option<&'a LinearSprings>,
     pub free: &'a [bool],
 }
 
@@ -30,12 +30,12 @@ impl System<'_> {
     /// A diagonal block of H.
     pub fn diagonal(&self, row: usize) -> Matrix3<f64> {
         let own = self.values.diagonal[row];
-        self.repulsion.map_or(own, |repulsion| own + repulsion.block(row))
+        self.springs.map_or(own, |springs| own + springs.block(row))
     }
 
-    /// y = H x on free rows, 0 elsewhere; x . y.
+    /// Sets y = H x on free rows and 0 elsewhere; returns x . y.
     pub fn multiply(&self, x: &[Vector], y: &mut [Vector]) -> f64 {
-        let reactions = self.repulsion.map(|repulsion| repulsion.reactions(x)).unwrap_or_default();
+        let reactions = self.springs.map(|springs| springs.reactions(x)).unwrap_or_default();
         let partial: Vec<f64> = y
             .par_chunks_mut(CHUNK)
             .enumerate()
@@ -61,12 +61,12 @@ impl System<'_> {
         for (block, &column) in self.values.blocks[range.clone()].iter().zip(&self.pattern.columns[range]) {
             sum += block * x[column as usize];
         }
-        let (columns, values) = self.scalar.far(row);
+        let (columns, values) = self.scalar.off_pattern(row);
         for (&column, &value) in columns.iter().zip(values) {
             sum += x[column as usize] * value;
         }
-        if let Some(repulsion) = self.repulsion {
-            sum += repulsion.row_product(row, reactions);
+        if let Some(springs) = self.springs {
+            sum += springs.row_product(row, reactions);
         }
         sum
     }

@@ -1,8 +1,8 @@
-//! Vectors of one entry a node, with sums that do not depend on the number of threads.
+//! Operations on vectors with one entry per node. Sums do not depend on the number of threads.
 //!
 //! Partial sums run over fixed chunks and are added in order.
 
-use crate::elements::CHUNK;
+use crate::nodes::CHUNK;
 use bowknot_geometry::Vector;
 use rayon::prelude::*;
 

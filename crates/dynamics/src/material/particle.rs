@@ -1,16 +1,16 @@
 //! Grains.
 
-use super::check;
-use crate::MaterialError;
+use super::checks::positive;
+use bowknot_errors::{Checks, Parameters};
 use serde::{Deserialize, Serialize};
 
-/// A grain: a sphere that has mass and feels gravity and air, and nothing else.
+/// A grain: a sphere with mass. The only forces on it are gravity and the drag of air.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ParticleMaterial {
     /// Mass per volume [kg/m^3]. Default 2650, quartz.
     pub density: f64,
-    /// Radius [m]: of the mass, of the drag by air, for contact and for pictures. Default 0.5e-3.
+    /// Radius [m], for mass, drag by air, contact and pictures. Default 0.5e-3.
     pub radius: f64,
 }
 
@@ -22,7 +22,7 @@ impl Default for ParticleMaterial {
 }
 
 impl ParticleMaterial {
-    /// Names that [`Self::named`] knows.
+    /// The names that [`Self::named`] accepts.
     pub const NAMES: [&'static str; 3] = ["sand", "gravel", "beads"];
 
     /// Coarse quartz sand: 2650 kg/m^3, the density of quartz; 1 mm across, the upper end of "coarse
@@ -55,14 +55,12 @@ impl ParticleMaterial {
     pub fn mass(&self) -> f64 {
         self.density * 4.0 / 3.0 * std::f64::consts::PI * self.radius.powi(3)
     }
+}
 
-    /// Checks every value.
-    ///
-    /// # Errors
-    /// All that is wrong, by field name.
-    pub fn validate(&self) -> Result<(), Vec<MaterialError>> {
-        let errors = check(&[("density", self.density, "kg/m3"), ("radius", self.radius, "m")], &[]);
-        if errors.is_empty() { Ok(()) } else { Err(errors) }
+impl Parameters for ParticleMaterial {
+    fn check(&self, checks: &mut Checks) {
+        let Self { density, radius } = *self;
+        positive(checks, &[("density", density, "kg/m3"), ("radius", radius, "m")]);
     }
 }
 
@@ -76,8 +74,11 @@ mod tests {
             ParticleMaterial::named(name).expect(name).validate().expect(name);
         }
         let bad = ParticleMaterial { density: f64::NAN, radius: 0.0 };
-        let text: Vec<String> = bad.validate().expect_err("two").iter().map(ToString::to_string).collect();
-        assert!(text[0].starts_with("density = NaN") && text[1].starts_with("radius = 0 m"), "{text:?}");
+        let errors = bad.validate().expect_err("both are out of range");
+        assert_eq!(
+            errors.to_string(),
+            "density = NaN kg/m3: must be finite and above 0\nradius = 0 m: must be finite and above 0"
+        );
         assert!(toml::from_str::<ParticleMaterial>("radus = 1.0").is_err());
     }
 

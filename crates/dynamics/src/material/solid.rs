@@ -1,7 +1,7 @@
-//! Volumes.
+//! Solids.
 
-use super::check;
-use crate::MaterialError;
+use super::checks::{non_negative, positive};
+use bowknot_errors::{Checks, Parameters};
 use serde::{Deserialize, Serialize};
 
 /// An isotropic solid.
@@ -12,27 +12,27 @@ pub struct SolidMaterial {
     pub density: f64,
     /// Young's modulus at small strain [Pa]. Default 1e6. Larger: deforms less.
     pub young_modulus: f64,
-    /// Poisson's ratio at small strain [1], in (-1, 0.5). Default 0.45. Linear tetrahedra stiffen unduly
-    /// when bent as it nears 0.5 (volumetric locking).
+    /// Poisson's ratio at small strain [1], in (-1, 0.5). Default 0.45. As it approaches 0.5, linear
+    /// tetrahedra become much too stiff in bending (volumetric locking).
     pub poisson_ratio: f64,
     /// Law of large strains. Default `stable-neo-hookean`.
     pub model: SolidModel,
-    /// Strain-rate damping [s]: viscous stress = this times stiffness times strain rate. It conserves both
-    /// momenta. Default 0: none besides that of implicit Euler.
+    /// Strain-rate damping [s]: viscous stress = this times stiffness times strain rate. It conserves linear
+    /// and angular momentum. Default 0: no damping but that of implicit Euler.
     pub damping: f64,
 }
 
-/// Law of large strains of a solid; both are linear elasticity at small ones.
+/// Law of large strains of a solid. At small strains both are linear elasticity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum SolidModel {
-    /// St. Venant-Kirchhoff: stress linear in Green's strain. It stiffens under tension; compressed below
-    /// 1/sqrt(3) = 0.58 of its length it softens, and flattened it resists no more than at rest: strong
-    /// compression collapses it, and inverted elements stay inverted.
+    /// St. Venant-Kirchhoff: stress is linear in the Green strain. It stiffens under tension. Compressed
+    /// below 1/sqrt(3) = 0.58 of its length it softens, and flattened it has no stress: strong compression
+    /// collapses it, and inverted elements stay inverted.
     Stvk,
-    /// Stable neo-Hookean (Smith, de Goes and Kim 2018): resists inversion, recovers from it, and is
-    /// smooth on the way.
+    /// Stable neo-Hookean (Smith, de Goes and Kim 2018): it resists inversion and recovers from it, and its
+    /// energy is smooth there.
     #[default]
     StableNeoHookean,
 }
@@ -45,10 +45,10 @@ impl Default for SolidMaterial {
 }
 
 impl SolidMaterial {
-    /// Names that [`Self::named`] knows.
+    /// The names that [`Self::named`] accepts.
     pub const NAMES: [&'static str; 4] = ["rubber", "silicone", "jelly", "foam"];
 
-    /// A soft rubber: 1000 kg/m^3, 1 MPa (Shore A 25 or so), 0.45 in place of 0.4995, at which linear
+    /// A soft rubber: 1000 kg/m^3, 1 MPa (about Shore A 25), 0.45 instead of 0.4995, at which linear
     /// tetrahedra lock.
     pub fn rubber() -> Self {
         Self {
@@ -66,7 +66,7 @@ impl SolidMaterial {
         Self { density: 1070.0, young_modulus: 125e3, ..Self::rubber() }
     }
 
-    /// Table jelly: 1020 kg/m^3, 10 kPa, the middle of what gelatine of 5 to 10 % has.
+    /// Table jelly: 1020 kg/m^3, 10 kPa, the middle of the range of gelatine of 5 to 10 %.
     pub fn jelly() -> Self {
         Self { density: 1020.0, young_modulus: 10e3, ..Self::rubber() }
     }
@@ -88,26 +88,19 @@ impl SolidMaterial {
         })
     }
 
-    /// Checks every value.
-    ///
-    /// # Errors
-    /// All that is wrong, by field name.
-    pub fn validate(&self) -> Result<(), Vec<MaterialError>> {
-        let mut errors = check(
-            &[("density", self.density, "kg/m3"), ("young_modulus", self.young_modulus, "Pa")],
-            &[("damping", self.damping, "s")],
-        );
-        let value = self.poisson_ratio;
-        if !(value > -1.0 && value < 0.5) {
-            errors.push(MaterialError::PoissonRatio { value, range: "(-1, 0.5)" });
-        }
-        if errors.is_empty() { Ok(()) } else { Err(errors) }
-    }
-
     /// Lame parameters of linear elasticity [Pa]: (lambda, mu).
     pub fn lame(&self) -> (f64, f64) {
         let (e, nu) = (self.young_modulus, self.poisson_ratio);
         (e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), e / (2.0 * (1.0 + nu)))
+    }
+}
+
+impl Parameters for SolidMaterial {
+    fn check(&self, checks: &mut Checks) {
+        let Self { density, young_modulus, poisson_ratio, model: _, damping } = *self;
+        positive(checks, &[("density", density, "kg/m3"), ("young_modulus", young_modulus, "Pa")]);
+        checks.between("poisson_ratio", poisson_ratio, -1.0, 0.5);
+        non_negative(checks, &[("damping", damping, "s")]);
     }
 }
 
@@ -137,10 +130,13 @@ mod tests {
             damping: f64::INFINITY,
             ..SolidMaterial::default()
         };
-        let text: Vec<String> = bad.validate().expect_err("four").iter().map(ToString::to_string).collect();
-        for field in ["density", "young_modulus", "poisson_ratio", "damping"] {
-            assert!(text.iter().any(|t| t.starts_with(field)), "{field} missing in {text:?}");
-        }
-        assert_eq!(text.len(), 4);
+        let errors = bad.validate().expect_err("all four are out of range");
+        assert_eq!(
+            errors.to_string(),
+            "density = -1 kg/m3: must be finite and above 0\n\
+             young_modulus = 0 Pa: must be finite and above 0\n\
+             poisson_ratio = 0.5: must lie between -1 and 0.5\n\
+             damping = inf s: must be finite and at least 0"
+        );
     }
 }

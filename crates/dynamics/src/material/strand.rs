@@ -1,7 +1,8 @@
 //! Hair and yarn.
 
-use super::{RestShape, check};
-use crate::MaterialError;
+use super::checks::{non_negative, positive};
+use super::rest_shape::RestShape;
+use bowknot_errors::{Checks, Parameters};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
@@ -18,14 +19,15 @@ pub struct StrandMaterial {
     pub bend_stiffness: f64,
     /// Radius [m], for the drag by air, for contact and for pictures. Default: that of hair.
     pub radius: f64,
-    /// Strain-rate damping [s]: viscous force = this times stiffness times strain rate. It conserves both
-    /// momenta. Default 0.
+    /// Strain-rate damping [s]: viscous force = this times stiffness times strain rate. It conserves linear
+    /// and angular momentum. Default 0.
     pub stretch_damping: f64,
-    /// Bending-rate damping [s]: viscous moment = this times stiffness times curvature rate. It
-    /// conserves linear momentum; a bent strand that spins as a whole is slowed, slightly. Default 0.
+    /// Bending-rate damping [s]: viscous moment = this times stiffness times curvature rate. It conserves
+    /// linear momentum, but slightly slows a bent strand that spins as a whole. Default 0.
     pub bend_damping: f64,
-    /// Shape free of bending: `initial` keeps how much the strand turns at each vertex (not in which plane:
-    /// there is no twist, and a curl may roll over); `flat` is straight. Default `initial`.
+    /// Shape without bending energy: `flat` is straight; `initial` has the angle at each vertex that the
+    /// strand has at the start, but not the plane of bending (there is no twist, and a curl may roll over).
+    /// Default `initial`.
     pub rest_shape: RestShape,
 }
 
@@ -37,7 +39,7 @@ impl Default for StrandMaterial {
 }
 
 impl StrandMaterial {
-    /// Names that [`Self::named`] knows.
+    /// The names that [`Self::named`] accepts.
     pub const NAMES: [&'static str; 5] = ["hair", "lock", "yarn", "rope", "straw"];
 
     /// A homogeneous round rod: density [kg/m^3], Young's modulus [Pa], radius [m]. EA = E pi r^2,
@@ -61,8 +63,9 @@ impl StrandMaterial {
         Self::from_young_modulus(1320.0, 3.9e9, 40e-6)
     }
 
-    /// A lock of 100 hairs that slide freely: 100 times the mass and the stiffnesses of one; its radius
-    /// is that of a round bundle half filled with hair. For scenes whose strands stand for many.
+    /// A lock of 100 hairs that slide freely: 100 times the mass and the stiffnesses of one hair. Its radius
+    /// is that of a round bundle half filled with hair. It is for scenes in which one strand stands for many
+    /// hairs.
     pub fn lock() -> Self {
         let hair = Self::hair();
         Self {
@@ -74,8 +77,8 @@ impl StrandMaterial {
         }
     }
 
-    /// Cotton yarn of 100 tex: 0.1 g/m, 1 mm across. Engineering choices: EA 160 N, half of what straight
-    /// cotton fibres of 5 GPa would have; EI as of 575 loose fibres of 12 micrometres.
+    /// Cotton yarn of 100 tex: 0.1 g/m, 1 mm across. Engineering choices: EA 160 N, half of that of straight
+    /// cotton fibres of 5 GPa; EI that of 575 loose fibres of 12 micrometres.
     pub fn yarn() -> Self {
         Self {
             density: 1e-4,
@@ -118,25 +121,26 @@ impl StrandMaterial {
             _ => return None,
         })
     }
+}
 
-    /// Checks every value.
-    ///
-    /// # Errors
-    /// All that is wrong, by field name.
-    pub fn validate(&self) -> Result<(), Vec<MaterialError>> {
-        let errors = check(
-            &[
-                ("density", self.density, "kg/m"),
-                ("stretch_stiffness", self.stretch_stiffness, "N"),
-                ("radius", self.radius, "m"),
-            ],
-            &[
-                ("bend_stiffness", self.bend_stiffness, "N m2"),
-                ("stretch_damping", self.stretch_damping, "s"),
-                ("bend_damping", self.bend_damping, "s"),
-            ],
+impl Parameters for StrandMaterial {
+    fn check(&self, checks: &mut Checks) {
+        let Self {
+            density,
+            stretch_stiffness,
+            bend_stiffness,
+            radius,
+            stretch_damping,
+            bend_damping,
+            rest_shape: _,
+        } = *self;
+        positive(checks, &[("density", density, "kg/m"), ("stretch_stiffness", stretch_stiffness, "N")]);
+        non_negative(checks, &[("bend_stiffness", bend_stiffness, "N m2")]);
+        positive(checks, &[("radius", radius, "m")]);
+        non_negative(
+            checks,
+            &[("stretch_damping", stretch_damping, "s"), ("bend_damping", bend_damping, "s")],
         );
-        if errors.is_empty() { Ok(()) } else { Err(errors) }
     }
 }
 
@@ -175,6 +179,14 @@ mod tests {
             bend_damping: -1.0,
             ..StrandMaterial::hair()
         };
-        assert_eq!(bad.validate().expect_err("six").len(), 6);
+        assert_eq!(
+            bad.validate().expect_err("all six are out of range").to_string(),
+            "density = 0 kg/m: must be finite and above 0\n\
+             stretch_stiffness = -1 N: must be finite and above 0\n\
+             bend_stiffness = -1 N m2: must be finite and at least 0\n\
+             radius = NaN m: must be finite and above 0\n\
+             stretch_damping = -1 s: must be finite and at least 0\n\
+             bend_damping = -1 s: must be finite and at least 0"
+        );
     }
 }

@@ -1,17 +1,20 @@
-//! Elements of all bodies, by family.
+//! Builds the elements of all bodies.
 
+use crate::body::BodyShape;
 use crate::elements::bending::add_bending;
+use crate::elements::element::Element;
+use crate::elements::set::{AnyElementSet, ElementKind, ElementSet};
 use crate::elements::shell::CurvedBends;
 use crate::elements::strand::{StrandEdge, StrandTurn, strand_elements};
 use crate::elements::tetrahedron::Tetrahedron;
 use crate::elements::triangle::Triangle;
-use crate::elements::woven::WovenTriangle;
-use crate::elements::{Element, ElementFamily, Family, Kind};
+use crate::elements::woven::{Weave, WovenTriangle};
 use crate::linear::scalar::{ScalarBuilder, ScalarForm};
-use crate::{BodyShape, ClothMaterial, RestShape};
+use crate::material::cloth::ClothMaterial;
+use crate::material::rest_shape::RestShape;
 use bowknot_geometry::Vector;
 
-/// Elements over nodes, body by body.
+/// Collects elements over nodes, body by body.
 pub(super) struct Assembly<'a> {
     /// Rest positions by node.
     rest: &'a [Vector],
@@ -29,11 +32,12 @@ pub(super) struct Assembly<'a> {
 
 /// All elements of a model.
 pub(super) struct Elements {
-    pub families: Vec<Box<dyn ElementFamily>>,
+    pub element_sets: Vec<Box<dyn AnyElementSet>>,
     /// Edges of cloth and strands with their rest lengths [m].
     pub edges: Vec<([u32; 2], f64)>,
-    /// Bending [N/m], and times each body's damping time [N s/m] if any has one; of one pattern.
+    /// Flat bending [N/m].
     pub bending: ScalarForm,
+    /// Bending times each body's damping time [N s/m], with the same pattern; None if no body has any.
     pub bending_damping: Option<ScalarForm>,
 }
 
@@ -54,7 +58,7 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// Adds the elements of a body, whose rest shapes were checked before.
+    /// Adds the elements of a body. Their rest shapes must have been checked.
     pub fn add(&mut self, shape: &BodyShape, vertex_node: &[u32]) {
         let node = |v: u32| vertex_node[v as usize];
         match shape {
@@ -84,7 +88,7 @@ impl<'a> Assembly<'a> {
             let corners = nodes.map(|n| self.rest[n as usize]);
             let damping = material.stretch_damping;
             if material.is_woven() {
-                let (warp, weave) = (material.warp_direction.normalize(), material.weave());
+                let (warp, weave) = (material.warp_direction.normalize(), Weave::new(material));
                 self.woven.extend(WovenTriangle::new(*nodes, &corners, &warp, weave, damping));
             } else {
                 self.triangles.extend(Triangle::new(*nodes, &corners, material.lame(), damping));
@@ -94,8 +98,8 @@ impl<'a> Assembly<'a> {
             }
         }
         if material.bend_stiffness > 0.0 {
-            // Damping of curvature rates does not see the rest shape. Both forms have one pattern, so each is
-            // added also when its stiffness is 0.
+            // Damping of curvature rates does not depend on the rest shape. Both forms have the same pattern,
+            // so each is also added if its stiffness is 0.
             let flat = match material.rest_shape {
                 RestShape::Flat => material.bend_stiffness,
                 RestShape::Initial => {
@@ -111,20 +115,20 @@ impl<'a> Assembly<'a> {
     }
 
     pub fn finish(mut self) -> Elements {
-        let mut families: Vec<Box<dyn ElementFamily>> = Vec::new();
-        push(&mut families, Kind::Membrane, self.triangles);
-        push(&mut families, Kind::Membrane, self.woven);
-        push(&mut families, Kind::Bending, self.curved.one);
-        push(&mut families, Kind::Bending, self.curved.two);
-        push(&mut families, Kind::Bending, self.curved.three);
-        push(&mut families, Kind::Solid, self.tets);
-        push(&mut families, Kind::StrandStretching, self.strand_edges);
-        push(&mut families, Kind::StrandBending, self.strand_turns);
+        let mut element_sets: Vec<Box<dyn AnyElementSet>> = Vec::new();
+        push(&mut element_sets, ElementKind::Membrane, self.triangles);
+        push(&mut element_sets, ElementKind::Membrane, self.woven);
+        push(&mut element_sets, ElementKind::Bending, self.curved.one);
+        push(&mut element_sets, ElementKind::Bending, self.curved.two);
+        push(&mut element_sets, ElementKind::Bending, self.curved.three);
+        push(&mut element_sets, ElementKind::Solid, self.tets);
+        push(&mut element_sets, ElementKind::StrandStretching, self.strand_edges);
+        push(&mut element_sets, ElementKind::StrandBending, self.strand_turns);
         self.edges.sort_unstable();
         self.edges.dedup();
         let length = |[a, b]: [u32; 2]| (self.rest[a as usize] - self.rest[b as usize]).norm();
         Elements {
-            families,
+            element_sets,
             edges: self.edges.iter().map(|&e| (e, length(e))).collect(),
             bending: self.bending.build(),
             bending_damping: self.damped.then(|| self.bending_damping.build()),
@@ -133,11 +137,11 @@ impl<'a> Assembly<'a> {
 }
 
 fn push<E: Element<N> + 'static, const N: usize>(
-    families: &mut Vec<Box<dyn ElementFamily>>,
-    kind: Kind,
+    element_sets: &mut Vec<Box<dyn AnyElementSet>>,
+    kind: ElementKind,
     elements: Vec<E>,
 ) {
     if !elements.is_empty() {
-        families.push(Box::new(Family::new(kind, elements)));
+        element_sets.push(Box::new(ElementSet::new(kind, elements)));
     }
 }

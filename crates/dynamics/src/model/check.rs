@@ -1,18 +1,25 @@
-//! What must hold before a model is built.
+//! Checks of the input of a model.
 
-use crate::{Body, BodyShape, MaterialError, ModelError};
-use bowknot_geometry::{Point, Vector};
+use super::measures::{area, longest_edge, volume};
+use crate::body::{Body, BodyShape};
+use crate::error::ModelError;
+use bowknot_errors::{Errors, ParamError, Parameters};
+use bowknot_geometry::{Point, VertexOutOfRange};
 use std::collections::HashMap;
 
-/// An area (volume, length) below this share of the longest edge squared (cubed; of the largest coordinate)
-/// is none.
+/// Areas, volumes and lengths count as zero up to this share of the longest edge squared, of the longest edge
+/// cubed and of the largest coordinate.
 const ZERO: f64 = 1e-12;
 
-/// A warp closer than this to a triangle's normal [rad] has no direction in it.
-const NORMAL: f64 = 1e-6;
+/// Smallest angle between the warp and a triangle's normal [rad], below which the warp has no direction in
+/// the triangle.
+const MIN_WARP_ANGLE: f64 = 1e-6;
 
-/// Everything that is wrong: indices first, then, if they are sound, sizes.
-pub(super) fn check(positions: &[Point], bodies: &[Body]) -> Vec<ModelError> {
+/// Checks indices and materials first and then, if there is no error, sizes.
+///
+/// # Errors
+/// Every error that was found.
+pub(super) fn check(positions: &[Point], bodies: &[Body]) -> Result<(), Errors<ModelError>> {
     let mut errors = Vec::new();
     if let Some(vertex) = positions.iter().position(|p| !p.coords.iter().all(|c| c.is_finite())) {
         errors.push(ModelError::NonFinitePosition { vertex });
@@ -21,17 +28,8 @@ pub(super) fn check(positions: &[Point], bodies: &[Body]) -> Vec<ModelError> {
         if body.gravity.is_some_and(|g| !g.iter().all(|c| c.is_finite())) {
             errors.push(ModelError::Gravity { body: body.name.clone() });
         }
-        let mut wrong = |material: Result<(), Vec<MaterialError>>| {
-            for error in material.err().into_iter().flatten() {
-                errors.push(ModelError::Material { body: body.name.clone(), error });
-            }
-        };
-        match &body.shape {
-            BodyShape::Cloth { material, .. } => wrong(material.validate()),
-            BodyShape::Solid { material, .. } => wrong(material.validate()),
-            BodyShape::Strands { material, .. } => wrong(material.validate()),
-            BodyShape::Particles { material, .. } => wrong(material.validate()),
-            BodyShape::Obstacle { .. } => {}
+        for error in check_material(&body.shape).err().into_iter().flatten() {
+            errors.push(ModelError::Material { body: body.name.clone(), error });
         }
         check_indices(body, positions.len(), &mut errors);
     }
@@ -39,7 +37,17 @@ pub(super) fn check(positions: &[Point], bodies: &[Body]) -> Vec<ModelError> {
     if errors.is_empty() {
         bodies.iter().for_each(|body| check_sizes(positions, body, &mut errors));
     }
-    errors
+    Errors::check(errors)
+}
+
+fn check_material(shape: &BodyShape) -> Result<(), Errors<ParamError>> {
+    match shape {
+        BodyShape::Cloth { material, .. } => material.validate(),
+        BodyShape::Solid { material, .. } => material.validate(),
+        BodyShape::Strands { material, .. } => material.validate(),
+        BodyShape::Particles { material, .. } => material.validate(),
+        BodyShape::Obstacle { .. } => Ok(()),
+    }
 }
 
 fn element_name(shape: &BodyShape) -> &'static str {
@@ -59,14 +67,8 @@ fn check_indices(body: &Body, vertex_count: usize, errors: &mut Vec<ModelError>)
     let mut index = 0;
     body.shape.for_each_element(|vertices| {
         for (k, &vertex) in vertices.iter().enumerate() {
-            if vertex as usize >= vertex_count {
-                errors.push(ModelError::VertexOutOfRange {
-                    body: name(),
-                    element,
-                    index,
-                    vertex,
-                    vertex_count,
-                });
+            for error in VertexOutOfRange::of(element, index, &[vertex], vertex_count) {
+                errors.push(ModelError::VertexOutOfRange { body: name(), error });
             }
             if vertices[..k].contains(&vertex) {
                 errors.push(ModelError::RepeatedVertex { body: name(), element, index, vertex });
@@ -75,7 +77,7 @@ fn check_indices(body: &Body, vertex_count: usize, errors: &mut Vec<ModelError>)
         let mut sorted = [u32::MAX; 4];
         sorted[..vertices.len()].copy_from_slice(vertices);
         sorted.sort_unstable();
-        // An obstacle may name a vertex as often as it likes.
+        // An obstacle may name a vertex more than once.
         if !body.shape.is_obstacle()
             && let Some(first) = seen.insert(sorted, index)
         {
@@ -85,7 +87,7 @@ fn check_indices(body: &Body, vertex_count: usize, errors: &mut Vec<ModelError>)
     });
 }
 
-/// Obstacles share no vertex with deformable bodies.
+/// Obstacles must not share vertices with deformable bodies.
 fn check_shared(bodies: &[Body], errors: &mut Vec<ModelError>) {
     let mut obstacle_of: HashMap<u32, usize> = HashMap::new();
     for (index, body) in bodies.iter().enumerate() {
@@ -105,7 +107,7 @@ fn check_shared(bodies: &[Body], errors: &mut Vec<ModelError>) {
     }
 }
 
-/// Elements without a rest shape.
+/// Elements must have an area, a volume or a length at rest.
 fn check_sizes(positions: &[Point], body: &Body, errors: &mut Vec<ModelError>) {
     let at = |v: u32| positions[v as usize].coords;
     match &body.shape {
@@ -116,10 +118,10 @@ fn check_sizes(positions: &[Point], body: &Body, errors: &mut Vec<ModelError>) {
                 let corners = t.map(at);
                 let area = area(&corners);
                 let across = warp.cross(&(corners[1] - corners[0]).cross(&(corners[2] - corners[0]))).norm();
-                if material.is_woven() && area > 0.0 && across < 2.0 * area * NORMAL {
+                if material.is_woven() && area > 0.0 && across < 2.0 * area * MIN_WARP_ANGLE {
                     normal.push(index);
                 }
-                if area <= ZERO * longest(&corners).powi(2) {
+                if area <= ZERO * longest_edge(&corners).powi(2) {
                     errors.push(ModelError::ZeroArea { body: body.name.clone(), index, area });
                 }
             }
@@ -132,7 +134,7 @@ fn check_sizes(positions: &[Point], body: &Body, errors: &mut Vec<ModelError>) {
             for (index, t) in tets.iter().enumerate() {
                 let corners = t.map(at);
                 let volume = volume(&corners);
-                let zero = ZERO * longest(&corners).powi(3);
+                let zero = ZERO * longest_edge(&corners).powi(3);
                 if volume.abs() <= zero {
                     flat.push(index);
                 } else if volume < 0.0 {
@@ -157,20 +159,4 @@ fn check_sizes(positions: &[Point], body: &Body, errors: &mut Vec<ModelError>) {
         }
         BodyShape::Particles { .. } | BodyShape::Obstacle { .. } => {}
     }
-}
-
-pub(super) fn area(corners: &[Vector; 3]) -> f64 {
-    0.5 * (corners[1] - corners[0]).cross(&(corners[2] - corners[0])).norm()
-}
-
-/// Signed volume.
-pub(crate) fn volume(corners: &[Vector; 4]) -> f64 {
-    let edge = |k: usize| corners[k] - corners[0];
-    edge(1).cross(&edge(2)).dot(&edge(3)) / 6.0
-}
-
-fn longest(corners: &[Vector]) -> f64 {
-    let lengths =
-        corners.iter().enumerate().flat_map(|(k, a)| corners[..k].iter().map(move |b| (a - b).norm()));
-    lengths.fold(0.0, f64::max)
 }

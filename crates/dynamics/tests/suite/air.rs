@@ -1,16 +1,22 @@
 //! Wind and drag: terminal velocities, flags, stability at any time step.
 
-use crate::common::{block, cloth_model, sheet, strands};
+use crate::common::{block, cloth_model, dynamics, sheet, strands, with_tolerance};
 use bowknot_dynamics::{
-    Body, ClothMaterial, Dynamics, DynamicsModel, DynamicsParams, ParticleMaterial, SolidMaterial,
+    Body, ClothMaterial, Dynamics, DynamicsParams, Environment, ParticleMaterial, SolidMaterial,
     StrandMaterial,
 };
 use bowknot_geometry::{Point, Vector};
 
+/// Density of air [kg/m^3].
 const AIR: f64 = 1.2;
 
-fn air() -> DynamicsParams {
-    DynamicsParams { air_density: AIR, cg_tolerance: 1e-8, ..DynamicsParams::default() }
+/// Air with the default gravity.
+fn air() -> Environment {
+    Environment { air_density: AIR, ..Environment::default() }
+}
+
+fn with_environment(environment: Environment) -> DynamicsParams {
+    DynamicsParams { environment, ..with_tolerance(1e-8) }
 }
 
 /// Mean velocity after `steps` of `dt` from velocity `v0`.
@@ -29,9 +35,6 @@ fn everything_falls_at_its_terminal_velocity() {
     let g = 9.81;
     let terminal =
         |weight: f64, area: f64, coefficient: f64| (2.0 * weight / (AIR * area * coefficient)).sqrt();
-    let dynamics = |rest: &[Point], body: Body| {
-        Dynamics::new(DynamicsModel::new(rest.to_vec(), vec![body]).expect("valid"), air()).expect("valid")
-    };
     let (flat, triangles) = sheet(0.5, 0.4, 8, 8);
     let cloth = ClothMaterial::cotton();
     let (cube, tets) = block([0.2, 0.2, 0.1], [2, 2, 1]);
@@ -42,7 +45,7 @@ fn everything_falls_at_its_terminal_velocity() {
     let (hair, sand) = (StrandMaterial::hair(), ParticleMaterial::sand());
     let cases = [
         ("sheet", &flat, Body::cloth("a", triangles, cloth), terminal(cloth.density * g, 1.0, 1.2)),
-        // Top and bottom count half each, the sides by skin friction.
+        // Top and bottom count half each; on the sides there is skin friction.
         (
             "cube",
             &cube,
@@ -56,7 +59,8 @@ fn everything_falls_at_its_terminal_velocity() {
     ];
     for (name, rest, body, expected) in cases {
         for (dt, steps) in [(0.01, 400), (0.2, 40)] {
-            let v = fall(dynamics(rest, body.clone()), rest, Vector::zeros(), dt, steps);
+            let dynamics = dynamics(rest, vec![body.clone()], with_environment(air()));
+            let v = fall(dynamics, rest, Vector::zeros(), dt, steps);
             assert!((v.z / -expected - 1.0).abs() < 0.002, "{name} at dt = {dt}: {} {expected}", v.z);
         }
     }
@@ -67,11 +71,12 @@ fn a_free_sheet_ends_at_the_speed_of_the_wind_at_any_time_step() {
     let (rest, triangles) = sheet(0.5, 0.4, 8, 8);
     let wind = Vector::new(0.0, 20.0, 30.0);
     for dt in [0.01, 0.05, 1.0, 100.0] {
-        let params = DynamicsParams { gravity: Vector::zeros(), wind, ..air() };
+        let params = with_environment(Environment { gravity: Vector::zeros(), wind, ..air() });
         let model = cloth_model(&rest, triangles.clone(), ClothMaterial::cotton());
         let dynamics = Dynamics::new(model, params).expect("valid");
         let v = fall(dynamics, &rest, Vector::new(1.0, 0.0, -500.0), dt, 400);
-        // Across the sheet the wind takes it along; along it there is friction alone, slower.
+        // Across the sheet it reaches the speed of the wind; along it there is only friction, which is
+        // slower.
         assert!((v - wind).z.abs() < 0.05 * wind.z, "dt = {dt}: {v}");
         assert!(v.norm() <= 501.0 && v.y >= 0.0, "dt = {dt}: {v}");
     }
@@ -82,7 +87,7 @@ fn a_flag_in_the_wind_streams_and_stays_bounded() {
     let (rest, triangles) = sheet(0.6, 0.4, 18, 12);
     for dt in [0.01, 0.1, 1.0] {
         let model = cloth_model(&rest, triangles.clone(), ClothMaterial::cotton());
-        let params = DynamicsParams { wind: Vector::new(8.0, 1.0, 0.0), ..air() };
+        let params = with_environment(Environment { wind: Vector::new(8.0, 1.0, 0.0), ..air() });
         let mut dynamics = Dynamics::new(model, params).expect("valid");
         let held: Vec<bool> = rest.iter().map(|p| p.x < 1e-9).collect();
         let (mut x, mut v) = (rest.clone(), vec![Vector::zeros(); rest.len()]);
@@ -101,12 +106,13 @@ fn a_flag_in_the_wind_streams_and_stays_bounded() {
 }
 
 #[test]
-fn a_vacuum_changes_no_bit() {
+fn wind_without_air_changes_no_bit() {
     let (rest, triangles) = sheet(0.5, 0.4, 8, 8);
-    let run = |params: DynamicsParams| {
+    let run = |environment: Environment| {
         let model = cloth_model(&rest, triangles.clone(), ClothMaterial::cotton());
+        let params = DynamicsParams { environment, ..DynamicsParams::default() };
         fall(Dynamics::new(model, params).expect("valid"), &rest, Vector::new(1.0, 2.0, 3.0), 0.01, 5)
     };
     let wind = Vector::new(9.0, 0.0, 0.0);
-    assert_eq!(run(DynamicsParams::default()), run(DynamicsParams { wind, ..DynamicsParams::default() }));
+    assert_eq!(run(Environment::default()), run(Environment { wind, ..Environment::default() }));
 }

@@ -1,13 +1,10 @@
 //! Cases with known answers: free fall, conservation, hanging and clamped strips, determinism.
 
-use crate::common::{cloth_model, sheet};
-use bowknot_dynamics::{Body, ClothMaterial, Dynamics, DynamicsModel, DynamicsParams, HessianFilter};
+use crate::common::{cloth_model, dynamics, sheet, weightless, with_gravity, with_tolerance};
+use bowknot_dynamics::{Body, ClothMaterial, Dynamics, DynamicsParams, HessianFilter};
 use bowknot_geometry::{Point, Vector};
 
-const SPACE: DynamicsParamsFn = || DynamicsParams { gravity: Vector::zeros(), ..DynamicsParams::default() };
-type DynamicsParamsFn = fn() -> DynamicsParams;
-
-/// A sheet of near-equilateral triangles: every second row is shifted by half a cell.
+/// A sheet of nearly equilateral triangles: every second row is shifted by half a cell.
 fn staggered_sheet(width: f64, height: f64, columns: usize, rows: usize) -> (Vec<Point>, Vec<[u32; 3]>) {
     let (mut positions, _) = sheet(width, height, columns, rows);
     let cell = width / columns as f64;
@@ -32,7 +29,7 @@ fn staggered_sheet(width: f64, height: f64, columns: usize, rows: usize) -> (Vec
     (positions, triangles)
 }
 
-/// A sheet whose diagonals all run the same way.
+/// A sheet whose diagonals are parallel.
 fn parallel_sheet(width: f64, height: f64, columns: usize, rows: usize) -> (Vec<Point>, Vec<[u32; 3]>) {
     let (positions, _) = sheet(width, height, columns, rows);
     let index = |i: usize, j: usize| (i + j * (columns + 1)) as u32;
@@ -67,14 +64,14 @@ fn free_fall_is_exact() {
     let (dt, steps) = (0.05, 20);
     for _ in 0..steps {
         let infos = dynamics.solve_step(&mut x, &mut v, dt, &none, &rest, 1).expect("solves");
-        // Inertia is the guess, and it is the answer.
+        // The guess, where inertia leads, is the solution.
         assert_eq!(infos[0].cg.iterations, 0);
     }
     // Implicit Euler: v_n = v_0 + n dt g, x_n = x_0 + n dt v_0 + n (n + 1)/2 dt^2 g.
-    let (n, g) = (steps as f64, dynamics.params().gravity);
+    let (n, g) = (steps as f64, dynamics.params().environment.gravity);
     for k in 0..rest.len() {
         let expected = rest[k] + velocity * (n * dt) + g * (0.5 * n * (n + 1.0) * dt * dt);
-        // Each step rounds positions, 1e-15, and v = (x1 - x0) / dt carries that on: some 1e-11 in all.
+        // Each step rounds positions to 1e-15; v = (x1 - x0) / dt accumulates these errors to about 1e-11.
         assert!((x[k] - expected).norm() < 1e-10, "vertex {k}: {} {expected}", x[k]);
         assert!((v[k] - (velocity + g * (n * dt))).norm() < 1e-10 / dt);
     }
@@ -84,7 +81,7 @@ fn free_fall_is_exact() {
 fn linear_momentum_is_conserved_at_any_tolerance() {
     for cg_tolerance in [1e-2, 1e-8] {
         let material = ClothMaterial { stretch_damping: 0.01, bend_damping: 0.1, ..ClothMaterial::cotton() };
-        let (mut dynamics, mut x, mut v) = floating(DynamicsParams { cg_tolerance, ..SPACE() }, material);
+        let (mut dynamics, mut x, mut v) = floating(weightless(with_tolerance(cg_tolerance)), material);
         let none = vec![false; x.len()];
         let before = dynamics.momentum(&v);
         let center = dynamics.center_of_mass(&x);
@@ -101,10 +98,11 @@ fn linear_momentum_is_conserved_at_any_tolerance() {
 
 #[test]
 fn angular_momentum_stays_where_implicit_euler_would_lose_it() {
-    // With strain-rate damping too; bending damping, which sees rotations, is left out.
+    // Strain-rate damping is included; bending damping depends on rotations and is left out.
     let material = ClothMaterial { stretch_damping: 0.01, ..ClothMaterial::cotton() };
-    // Clamping is the filter that ends sooner, over many iterations.
-    let params = DynamicsParams { cg_tolerance: 1e-12, hessian_filter: HessianFilter::Clamp, ..SPACE() };
+    let mut params = weightless(with_tolerance(1e-12));
+    // Over many iterations this filter converges faster.
+    params.newton.hessian_filter = HessianFilter::Clamp;
     let (mut dynamics, mut x, mut v) = floating(params, material);
     let none = vec![false; x.len()];
     let dt = 0.002;
@@ -121,7 +119,8 @@ fn angular_momentum_stays_where_implicit_euler_would_lose_it() {
 
 #[test]
 fn energy_never_grows_without_external_work() {
-    let (mut dynamics, mut x, mut v) = floating(SPACE(), ClothMaterial::cotton());
+    let params = weightless(DynamicsParams::default());
+    let (mut dynamics, mut x, mut v) = floating(params, ClothMaterial::cotton());
     let none = vec![false; x.len()];
     let mut energy = dynamics.energies(&x, &v).total();
     let first = energy;
@@ -141,8 +140,7 @@ fn damping_from_rest_is_added_stiffness() {
     let dt = 0.01;
     let stiff = ClothMaterial { bend_stiffness: 1e-3, ..ClothMaterial::cotton() };
     let step = |material: ClothMaterial| {
-        let params = DynamicsParams { cg_tolerance: 1e-12, ..SPACE() };
-        let (mut dynamics, _, v) = floating(params, material);
+        let (mut dynamics, _, v) = floating(weightless(with_tolerance(1e-12)), material);
         let mut x = dynamics.model().rest_positions().to_vec();
         let mut v: Vec<Vector> = v.iter().map(|v| v * 1e-5).collect();
         let keyframes = x.clone();
@@ -170,7 +168,7 @@ fn damping_from_rest_is_added_stiffness() {
         ),
     ] {
         let (damped, stiffer) = (step(damped), step(stiffer));
-        // The amplitude, 1e-7 m of 25 mm cells, is the error of the linearisation.
+        // The amplitude is 1e-7 m in cells of 25 mm; this is the error of the linearisation.
         assert!(difference(&damped, &stiffer) < 1e-4, "{name}: {}", difference(&damped, &stiffer));
         assert!(difference(&damped, &undamped) > 1e-2, "{name}: no effect");
     }
@@ -179,7 +177,8 @@ fn damping_from_rest_is_added_stiffness() {
 #[test]
 fn air_drag_decays_velocity() {
     let (rest, triangles) = parallel_sheet(0.5, 0.4, 4, 4);
-    let params = DynamicsParams { air_drag: 2.0, ..SPACE() };
+    let mut params = weightless(DynamicsParams::default());
+    params.environment.air_drag = 2.0;
     let mut dynamics =
         Dynamics::new(cloth_model(&rest, triangles, ClothMaterial::cotton()), params).expect("valid");
     let (mut x, mut v) = (rest.clone(), vec![Vector::x(); rest.len()]);
@@ -189,7 +188,7 @@ fn air_drag_decays_velocity() {
     assert!(v.iter().all(|v| (v - Vector::x() / 1.1).norm() < 1e-9), "{}", v[0]);
 }
 
-/// Static equilibrium: steps so long that inertia is nothing.
+/// Static equilibrium: steps so long that inertia has no effect.
 fn settle(dynamics: &mut Dynamics, x: &mut [Point], prescribed: &[bool], steps: usize) {
     let keyframes = x.to_vec();
     for _ in 0..steps {
@@ -201,14 +200,14 @@ fn settle(dynamics: &mut Dynamics, x: &mut [Point], prescribed: &[bool], steps: 
 
 #[test]
 fn a_hanging_strip_meets_its_analytic_stretch() {
-    // Free at its sides and nu = 0: it lengthens by rho g L^2 / (2 Et), exactly so for linear elements.
+    // With free sides and nu = 0 it lengthens by rho g L^2 / (2 Et), exactly so for linear elements.
     let (length, material) = (2.0, ClothMaterial { poisson_ratio: 0.0, ..ClothMaterial::cotton() });
     let sheets =
         [("alternating", sheet(0.1, length, 4, 80)), ("parallel", parallel_sheet(0.1, length, 4, 80))];
     for (diagonals, (flat, triangles)) in sheets {
         let rest: Vec<Point> = flat.iter().map(|p| Point::new(p.x, 0.0, -p.y)).collect();
-        let params = DynamicsParams { cg_tolerance: 1e-9, ..DynamicsParams::default() };
-        let mut dynamics = Dynamics::new(cloth_model(&rest, triangles, material), params).expect("valid");
+        let mut dynamics =
+            Dynamics::new(cloth_model(&rest, triangles, material), with_tolerance(1e-9)).expect("valid");
         let prescribed: Vec<bool> = rest.iter().map(|p| p.z == 0.0).collect();
         let mut x = rest.clone();
         settle(&mut dynamics, &mut x, &prescribed, 3);
@@ -222,8 +221,8 @@ fn a_hanging_strip_meets_its_analytic_stretch() {
 
 #[test]
 fn a_clamped_strip_meets_its_sag() {
-    // w = q L^4 / (8 D), small against L. The first two rows are held, so the strip is clamped half a
-    // cell beyond the first: the hinge at the second stands for half a cell on either side.
+    // w = q L^4 / (8 D), small against L. The first two rows are held, so the strip is clamped half a cell
+    // beyond the first row: the hinge at the second row represents half a cell on either side.
     let (columns, length) = (50, 0.25);
     let cell = length / columns as f64;
     let material =
@@ -234,8 +233,8 @@ fn a_clamped_strip_meets_its_sag() {
         ("staggered", staggered_sheet(length, 0.05, columns, 10)),
     ];
     for (name, (rest, triangles)) in meshes {
-        let params = DynamicsParams { cg_tolerance: 1e-10, ..DynamicsParams::default() };
-        let mut dynamics = Dynamics::new(cloth_model(&rest, triangles, material), params).expect("valid");
+        let mut dynamics =
+            Dynamics::new(cloth_model(&rest, triangles, material), with_tolerance(1e-10)).expect("valid");
         let prescribed: Vec<bool> = rest.iter().map(|p| p.x < 1.1 * cell).collect();
         let mut x = rest.clone();
         settle(&mut dynamics, &mut x, &prescribed, 3);
@@ -258,8 +257,7 @@ fn prescribed_vertices_follow_their_keyframes_and_drag_the_rest() {
         Body::cloth("sheet", triangles, ClothMaterial::cotton()),
         Body::obstacle("marker", vec![rest.len() as u32]),
     ];
-    let model = DynamicsModel::new(all.clone(), bodies).expect("valid");
-    let mut dynamics = Dynamics::new(model, SPACE()).expect("valid");
+    let mut dynamics = dynamics(&all, bodies, weightless(DynamicsParams::default()));
     let prescribed: Vec<bool> = (0..all.len()).map(|k| k <= 8).collect();
     let (mut x, mut v) = (all.clone(), vec![Vector::zeros(); all.len()]);
     let speed = Vector::new(0.0, 0.0, 1.0);
@@ -268,11 +266,11 @@ fn prescribed_vertices_follow_their_keyframes_and_drag_the_rest() {
         let keyframes: Vec<Point> = all.iter().map(|p| p + speed * (step as f64 * dt)).collect();
         dynamics.solve_step(&mut x, &mut v, dt, &prescribed, &keyframes, 3).expect("solves");
         for k in (0..=8).chain([all.len() - 1]) {
-            // Obstacles are prescribed without being told.
+            // Obstacles are always prescribed.
             assert_eq!(x[k], keyframes[k]);
         }
     }
-    // A second later the sheet has been pulled along by most of the way.
+    // After a second the sheet has followed for most of the way.
     assert!(x[..all.len() - 1].iter().all(|p| p.z > 0.7), "some vertex stayed behind");
     assert!(dynamics.max_stretch(&x) < 1.1);
 }
@@ -282,9 +280,9 @@ fn external_forces_accelerate() {
     let (rest, triangles) = sheet(0.2, 0.2, 8, 8);
     let model = cloth_model(&rest, triangles, ClothMaterial::cotton());
     let mut dynamics = Dynamics::new(model, DynamicsParams::default()).expect("valid");
-    // The weight, turned around: the sheet stays where it is.
-    let lift: Vec<Vector> =
-        dynamics.model().masses().iter().map(|&m| -dynamics.params().gravity * m).collect();
+    // The opposite of the weight: the sheet stays where it is.
+    let gravity = dynamics.params().environment.gravity;
+    let lift: Vec<Vector> = dynamics.model().masses().iter().map(|&m| -gravity * m).collect();
     dynamics.set_external_forces(&lift).expect("valid");
     let (mut x, mut v) = (rest.clone(), vec![Vector::zeros(); rest.len()]);
     dynamics.solve_step(&mut x, &mut v, 0.1, &vec![false; rest.len()], &rest, 1).expect("solves");
@@ -293,16 +291,13 @@ fn external_forces_accelerate() {
 
 #[test]
 fn scaled_problems_have_scaled_answers() {
-    // Lengths times k, time times k: with density, Et, D k^2 and gravity / k all terms scale alike.
+    // With lengths and times multiplied by k, the same density and Et, D k^2 and gravity / k, all terms scale
+    // alike.
     let run = |k: f64| {
         let (rest, triangles) = sheet(0.3 * k, 0.3 * k, 10, 10);
         let cotton = ClothMaterial::cotton();
         let material = ClothMaterial { bend_stiffness: cotton.bend_stiffness * k * k, ..cotton };
-        let params = DynamicsParams {
-            gravity: Vector::new(0.0, 0.0, -9.81 / k),
-            cg_tolerance: 1e-11,
-            ..DynamicsParams::default()
-        };
+        let params = with_gravity(with_tolerance(1e-11), Vector::new(0.0, 0.0, -9.81 / k));
         let mut dynamics = Dynamics::new(cloth_model(&rest, triangles, material), params).expect("valid");
         let prescribed: Vec<bool> = (0..rest.len()).map(|v| v == 0).collect();
         let (mut x, mut v) = (rest.clone(), vec![Vector::zeros(); rest.len()]);
@@ -311,7 +306,7 @@ fn scaled_problems_have_scaled_answers() {
         }
         x.into_iter().map(|p| p.coords / k).collect::<Vec<_>>()
     };
-    // A power of two keeps rounding the same, too.
+    // For a power of two rounding is the same as well.
     assert_eq!(run(1.0), run(64.0));
 }
 
@@ -345,7 +340,7 @@ fn the_same_bits_for_any_number_of_threads() {
 
 #[test]
 fn a_step_does_not_depend_on_the_steps_before() {
-    // What a resumed run needs: positions and velocities are all the state there is.
+    // A resumed run needs this: positions and velocities are the whole state.
     let (mut warm, mut x, mut v) = floating(DynamicsParams::default(), ClothMaterial::cotton());
     let none = vec![false; x.len()];
     for _ in 0..3 {

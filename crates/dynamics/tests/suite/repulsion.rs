@@ -1,14 +1,13 @@
-//! Repulsion between sheets, and against obstacles.
+//! Springs between sheets, and against obstacles.
 
-use crate::common::sheet;
-use bowknot_dynamics::{
-    Body, ClothMaterial, Dynamics, DynamicsModel, DynamicsParams, RepulsionSpring, StepError,
-};
+use crate::common::{dynamics, sheet, weightless, with_gravity, with_tolerance};
+use bowknot_dynamics::{Body, ClothMaterial, Dynamics, DynamicsParams, RepulsionSpring, StepError};
 use bowknot_geometry::{Point, Vector};
 
+/// Gap below which springs push [m].
 const GAP: f64 = 0.004;
 
-/// Two sheets, one over the other at a gap of 2 mm, and a floor of one vertex.
+/// Two sheets, one above the other at a gap of 2 mm, and a floor of one vertex.
 fn sheets(params: DynamicsParams) -> (Dynamics, Vec<Point>) {
     let (lower, triangles) = sheet(0.2, 0.2, 6, 6);
     let count = lower.len() as u32;
@@ -21,11 +20,10 @@ fn sheets(params: DynamicsParams) -> (Dynamics, Vec<Point>) {
         Body::cloth("upper", upper, ClothMaterial::cotton()),
         Body::obstacle("floor", vec![2 * count]),
     ];
-    let model = DynamicsModel::new(rest.clone(), bodies).expect("valid");
-    (Dynamics::new(model, params).expect("valid"), rest)
+    (dynamics(&rest, bodies, params), rest)
 }
 
-/// Vertex against vertex of the sheets.
+/// Springs between corresponding vertices of the sheets.
 fn springs(count: u32, stiffness: f64) -> Vec<RepulsionSpring> {
     (0..count)
         .map(|v| RepulsionSpring {
@@ -44,11 +42,10 @@ fn springs(count: u32, stiffness: f64) -> Vec<RepulsionSpring> {
 #[test]
 fn two_sheets_pushed_together_balance_by_a_depth_that_stiffness_divides() {
     let depth = |stiffness: f64| {
-        let params =
-            DynamicsParams { gravity: Vector::zeros(), cg_tolerance: 1e-10, ..DynamicsParams::default() };
-        let (mut dynamics, rest) = sheets(params);
+        let (mut dynamics, rest) = sheets(weightless(with_tolerance(1e-10)));
         let count = rest.len() / 2;
-        // 0.02 N over each sheet, a third of its weight, in proportion to mass, towards each other.
+        // A force of 0.02 N on each sheet, a third of its weight, towards the other sheet; it is distributed
+        // by mass.
         let masses = dynamics.model().masses().to_vec();
         let total: f64 = masses[..count].iter().sum();
         let forces: Vec<Vector> = (0..rest.len())
@@ -63,7 +60,7 @@ fn two_sheets_pushed_together_balance_by_a_depth_that_stiffness_divides() {
             let infos = dynamics.solve_step(&mut x, &mut v, 0.01, &held, &rest, 3).expect("solves");
             assert!(infos[2].cg.converged, "{infos:?}");
         }
-        // Inner forces: momentum stays.
+        // The forces of springs are inner forces, so momentum is conserved.
         assert!(dynamics.momentum(&v).norm() < 1e-12, "{}", dynamics.momentum(&v));
         let gap: f64 = (0..count).map(|k| x[k + count].z - x[k].z).sum::<f64>() / count as f64;
         GAP - gap
@@ -75,8 +72,7 @@ fn two_sheets_pushed_together_balance_by_a_depth_that_stiffness_divides() {
 
 #[test]
 fn sheets_fly_together_with_their_momentum_at_any_tolerance() {
-    let params = DynamicsParams { gravity: Vector::zeros(), cg_tolerance: 1e-2, ..DynamicsParams::default() };
-    let (mut dynamics, rest) = sheets(params);
+    let (mut dynamics, rest) = sheets(weightless(with_tolerance(1e-2)));
     let count = rest.len() / 2;
     dynamics.set_repulsion(&springs(count as u32, 10.0)).expect("valid");
     let (mut x, mut v) = (rest.clone(), vec![Vector::zeros(); rest.len()]);
@@ -95,7 +91,7 @@ fn sheets_fly_together_with_their_momentum_at_any_tolerance() {
 fn targets_end_with_an_accurate_solve_and_a_residual_between_them_changes_no_bit() {
     let targets = |measured: bool| {
         let (mut dynamics, rest) = sheets(DynamicsParams::default());
-        let tolerance = dynamics.params().cg_tolerance;
+        let tolerance = dynamics.params().newton.cg_tolerance;
         let count = rest.len() / 2;
         dynamics.set_repulsion(&springs(count as u32, 10.0)).expect("valid");
         let held: Vec<bool> = (0..rest.len()).map(|k| k == 2 * count).collect();
@@ -109,7 +105,7 @@ fn targets_end_with_an_accurate_solve_and_a_residual_between_them_changes_no_bit
             assert!(info.cg.converged && info.cg.residual <= tolerance, "{info:?}");
             solves += info.iterations;
             x.copy_from_slice(&y);
-            // What it linearises the next target starts from.
+            // The next target reuses the linearisation of the residual.
             if measured {
                 dynamics.residual(&x, &held, &vec![true; rest.len()]).expect("finite");
             }
@@ -123,11 +119,12 @@ fn targets_end_with_an_accurate_solve_and_a_residual_between_them_changes_no_bit
 
 #[test]
 fn obstacles_and_half_spaces_hold_a_sheet_up() {
-    // Every vertex of the lower sheet over a half-space z < -5 mm, and over an obstacle's vertex: both by offset or by
-    // the obstacle's keyframe.
+    // Every vertex of the lower sheet has a spring against the half-space z < -5 mm (by an offset) or against
+    // an obstacle's vertex (by its keyframe).
     for obstacle in [false, true] {
-        let (mut dynamics, rest) =
-            sheets(DynamicsParams { cg_tolerance: 1e-10, air_drag: 5.0, ..DynamicsParams::default() });
+        let mut params = with_tolerance(1e-10);
+        params.environment.air_drag = 5.0;
+        let (mut dynamics, rest) = sheets(params);
         let count = (rest.len() / 2) as u32;
         let mut all = springs(count, 1000.0);
         all.extend((0..count).map(|v| RepulsionSpring {
@@ -163,8 +160,7 @@ fn springs_stick_below_the_angle_of_friction_and_slide_above_by_coulombs_law() {
     let (sine, cosine) = (0.4f64.atan().sin(), 0.4f64.atan().cos());
     let slid = |friction: f64, steps: usize| {
         let gravity = Vector::new(sine, 0.0, -cosine) * 9.81;
-        let params = DynamicsParams { gravity, cg_tolerance: 1e-10, ..DynamicsParams::default() };
-        let (mut dynamics, rest) = sheets(params);
+        let (mut dynamics, rest) = sheets(with_gravity(with_tolerance(1e-10), gravity));
         let count = (rest.len() / 2) as u32;
         let on_plane = |v: u32| RepulsionSpring {
             vertices: [v, 0, 0, 0],
@@ -195,7 +191,7 @@ fn springs_stick_below_the_angle_of_friction_and_slide_above_by_coulombs_law() {
 }
 
 #[test]
-fn no_springs_change_no_bit_and_bad_ones_are_refused() {
+fn removed_springs_change_no_bit_and_bad_ones_are_refused() {
     let run = |clear: bool| {
         let (mut dynamics, rest) = sheets(DynamicsParams::default());
         if clear {

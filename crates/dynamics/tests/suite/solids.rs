@@ -1,33 +1,24 @@
 //! Solids with known answers: bars, beams, patches, inversion, conservation.
 
-use crate::common::block;
-use bowknot_dynamics::{
-    Body, Dynamics, DynamicsModel, DynamicsParams, HessianFilter, SolidMaterial, SolidModel,
-};
+use crate::common::{block, dynamics, equilibrium, weightless, with_gravity, with_tolerance};
+use bowknot_dynamics::{Body, Dynamics, DynamicsParams, HessianFilter, SolidMaterial, SolidModel};
 use bowknot_geometry::{Point, Vector};
 
 const MODELS: [SolidModel; 2] = [SolidModel::Stvk, SolidModel::StableNeoHookean];
 
-fn space() -> DynamicsParams {
-    DynamicsParams { gravity: Vector::zeros(), cg_tolerance: 1e-8, ..DynamicsParams::default() }
-}
-
 fn solid(rest: &[Point], tets: Vec<[u32; 4]>, material: SolidMaterial, params: DynamicsParams) -> Dynamics {
-    let model = DynamicsModel::new(rest.to_vec(), vec![Body::solid("block", tets, material)]).expect("valid");
-    Dynamics::new(model, params).expect("valid")
+    dynamics(rest, vec![Body::solid("block", tets, material)], params)
 }
 
-/// Newton iterations of one step so long that inertia does not count.
+/// See [`equilibrium`].
 fn settle(dynamics: &mut Dynamics, x: &mut [Point], held: &[bool], keyframes: &[Point], iterations: usize) {
-    let mut v = vec![Vector::zeros(); x.len()];
-    let infos = dynamics.solve_step(x, &mut v, 1e4, held, keyframes, iterations).expect("solves");
-    let last = infos[iterations - 1];
-    assert!(last.cg.converged && last.max_displacement < 1e-6, "{last:?}");
+    equilibrium(dynamics, x, held, keyframes, (1e4, iterations, 1e-6));
 }
 
 #[test]
-fn a_uniform_strain_is_met_exactly_inside() {
-    // The surface follows an affine map, the inside finds it: the patch test, at large strain.
+fn the_inside_of_an_affinely_deformed_surface_is_affine() {
+    // The patch test at large strain: the surface follows an affine map, and the inside must follow it as
+    // well.
     let (rest, tets) = block([1.0, 0.8, 0.6], [4, 4, 3]);
     let map = nalgebra::Matrix3::new(1.3, 0.2, 0.0, -0.1, 0.8, 0.1, 0.2, 0.0, 0.9);
     let surface: Vec<bool> = rest
@@ -40,8 +31,7 @@ fn a_uniform_strain_is_met_exactly_inside() {
     let target: Vec<Point> = rest.iter().map(|p| map * p).collect();
     for model in MODELS {
         let material = SolidMaterial { model, ..SolidMaterial::rubber() };
-        let mut dynamics =
-            solid(&rest, tets.clone(), material, DynamicsParams { cg_tolerance: 1e-10, ..space() });
+        let mut dynamics = solid(&rest, tets.clone(), material, weightless(with_tolerance(1e-10)));
         let mut x = rest.clone();
         settle(&mut dynamics, &mut x, &surface, &target, 12);
         let error = x.iter().zip(&target).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
@@ -51,18 +41,14 @@ fn a_uniform_strain_is_met_exactly_inside() {
 
 #[test]
 fn a_hanging_bar_stretches_by_rho_g_l2_over_2e() {
-    // nu = 0, so that the clamp does not disturb: exact but for the lumping of mass and strains of 0.1 %.
+    // With nu = 0 the clamp has no effect on the stretch, which is exact up to the lumping of mass and
+    // strains of 0.1 %.
     let (length, width) = (1.0, 0.2);
     let (rest, tets) = block([width, width, length], [2, 2, 10]);
     for model in MODELS {
         let material =
             SolidMaterial { density: 1000.0, young_modulus: 5e6, poisson_ratio: 0.0, model, damping: 0.0 };
-        let mut dynamics = solid(
-            &rest,
-            tets.clone(),
-            material,
-            DynamicsParams { cg_tolerance: 1e-9, ..DynamicsParams::default() },
-        );
+        let mut dynamics = solid(&rest, tets.clone(), material, with_tolerance(1e-9));
         let held: Vec<bool> = rest.iter().map(|p| p.z > length - 1e-9).collect();
         let mut x = rest.clone();
         settle(&mut dynamics, &mut x, &held, &rest, 10);
@@ -75,8 +61,8 @@ fn a_hanging_bar_stretches_by_rho_g_l2_over_2e() {
 
 #[test]
 fn a_cantilever_meets_beam_theory_as_it_is_refined() {
-    // Tip of a clamped beam under its own weight: q L^4 / (8 EI) + 1.2 q L^2 / (2 G A) = bending and shear.
-    // Linear tets are too stiff in bending; the error falls as the square of the cell.
+    // The tip of a clamped beam under its own weight sags by bending and shear: q L^4 / (8 EI) + 1.2 q L^2 /
+    // (2 G A). Linear tets are too stiff in bending; the error decreases with the square of the cell size.
     let (length, height, width) = (1.0f64, 0.2, 0.1);
     let (e, rho) = (5e6, 1000.0);
     let bending = 9.81 * rho * length.powi(4) / (8.0 * e * height * height / 12.0);
@@ -92,8 +78,8 @@ fn a_cantilever_meets_beam_theory_as_it_is_refined() {
             model: SolidModel::StableNeoHookean,
             damping: 0.0,
         };
-        let params = DynamicsParams { gravity: Vector::new(0.0, 0.0, -0.981), ..DynamicsParams::default() };
-        let mut dynamics = solid(&rest, tets, material, DynamicsParams { cg_tolerance: 1e-8, ..params });
+        let params = with_gravity(with_tolerance(1e-8), Vector::new(0.0, 0.0, -0.981));
+        let mut dynamics = solid(&rest, tets, material, params);
         let held: Vec<bool> = rest.iter().map(|p| p.x < 1e-9).collect();
         let mut x = rest.clone();
         settle(&mut dynamics, &mut x, &held, &rest, 12);
@@ -108,13 +94,15 @@ fn a_cantilever_meets_beam_theory_as_it_is_refined() {
 
 #[test]
 fn stable_neo_hookean_recovers_from_inversion() {
-    // Flattened to a crumpled sheet, and scrambled by more than a cell: half of the tets inverted. It must come
-    // back to a shape of no energy.
+    // The block is flattened to a crumpled sheet, or its vertices are displaced by more than a cell, so that
+    // half of the tets are inverted. It must recover a shape without energy.
     let (rest, tets) = block([0.3, 0.3, 0.3], [3, 3, 3]);
     for filter in [HessianFilter::Clamp, HessianFilter::Absolute] {
         for (height, noise) in [(0.0, 0.01), (1.0, 0.12)] {
             let material = SolidMaterial { damping: 0.01, ..SolidMaterial::jelly() };
-            let params = DynamicsParams { hessian_filter: filter, air_drag: 5.0, ..space() };
+            let mut params = weightless(with_tolerance(1e-8));
+            params.newton.hessian_filter = filter;
+            params.environment.air_drag = 5.0;
             let mut dynamics = solid(&rest, tets.clone(), material, params);
             let wave = |k: usize| (k as f64 * 12.9898).sin();
             let mut x: Vec<Point> = (rest.iter().enumerate())
@@ -144,8 +132,9 @@ fn momenta_are_conserved_in_free_flight() {
     let (rest, tets) = block([0.3, 0.2, 0.1], [6, 4, 2]);
     for model in MODELS {
         let material = SolidMaterial { model, damping: 0.01, ..SolidMaterial::jelly() };
-        // Clamping is the filter that ends sooner, over many iterations.
-        let params = DynamicsParams { cg_tolerance: 1e-12, hessian_filter: HessianFilter::Clamp, ..space() };
+        let mut params = weightless(with_tolerance(1e-12));
+        // Over many iterations this filter converges faster.
+        params.newton.hessian_filter = HessianFilter::Clamp;
         let mut dynamics = solid(&rest, tets.clone(), material, params);
         let mut x = rest.clone();
         let mut v: Vec<Vector> = rest
@@ -175,8 +164,8 @@ fn momenta_are_conserved_in_free_flight() {
 
 #[test]
 fn the_inside_follows_a_surface_that_contact_moved() {
-    // Contact squeezes the surface of a step half-way through; one or two more targets with the surface held
-    // bring the inside along, at the step's own inertia, and leave no tet inverted.
+    // Contact moves the surface during a time step. One or two more targets with the surface held move the
+    // inside, with the inertia of the step, and leave no tet inverted.
     let (rest, tets) = block([0.4, 0.4, 0.2], [8, 8, 4]);
     let mut dynamics = solid(&rest, tets, SolidMaterial::rubber(), DynamicsParams::default());
     let surface: Vec<bool> = rest
@@ -188,7 +177,7 @@ fn the_inside_follows_a_surface_that_contact_moved() {
     let none = vec![false; rest.len()];
     let mut y = rest.clone();
     dynamics.newton_target(&rest, &none, &rest, &mut y).expect("solves");
-    // The surface ends where contact put it: flattened at z = 0; the inside is where it was.
+    // The surface ends where contact moved it: flattened at z = 0; the inside is where it was.
     let moved: Vec<Point> = (rest.iter().zip(&y).enumerate())
         .map(|(k, (x, y))| if surface[k] { Point::new(y.x, y.y, y.z.max(0.0)) } else { *x })
         .collect();

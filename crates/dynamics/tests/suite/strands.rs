@@ -1,26 +1,16 @@
 //! Strands and particles with known answers: threads, beams, curls, falls, conservation, mixed scenes.
 
-use crate::common::{block, sheet, strands};
+use crate::common::{block, dynamics, equilibrium, sheet, strands, weightless, with_tolerance};
 use bowknot_dynamics::{
-    Body, ClothMaterial, Dynamics, DynamicsModel, DynamicsParams, ParticleMaterial, SolidMaterial,
+    Body, ClothMaterial, Dynamics, DynamicsParams, NewtonParams, ParticleMaterial, RestShape, SolidMaterial,
     StrandMaterial,
 };
 use bowknot_geometry::{Point, Vector};
 
-fn dynamics(rest: &[Point], bodies: Vec<Body>, params: DynamicsParams) -> Dynamics {
-    Dynamics::new(DynamicsModel::new(rest.to_vec(), bodies).expect("valid"), params).expect("valid")
-}
-
-fn space() -> DynamicsParams {
-    DynamicsParams { gravity: Vector::zeros(), ..DynamicsParams::default() }
-}
-
-/// Newton iterations of one step so long that inertia does not count.
+/// See [`equilibrium`].
 fn settle(dynamics: &mut Dynamics, x: &mut [Point], held: &[bool], iterations: usize) {
-    let (mut v, keyframes) = (vec![Vector::zeros(); x.len()], x.to_vec());
-    let infos = dynamics.solve_step(x, &mut v, 1e3, held, &keyframes, iterations).expect("solves");
-    let last = infos[iterations - 1];
-    assert!(last.cg.converged && last.max_displacement < 1e-7, "{last:?}");
+    let keyframes = x.to_vec();
+    equilibrium(dynamics, x, held, &keyframes, (1e3, iterations, 1e-7));
 }
 
 #[test]
@@ -33,7 +23,7 @@ fn a_hanging_thread_stretches_by_rho_g_l2_over_2ea() {
     let held: Vec<bool> = (0..nodes).map(|k| k == 0).collect();
     let mut x = rest.clone();
     settle(&mut dynamics, &mut x, &held, 5);
-    // Half the mass of an edge sits at each end: the sum is exact.
+    // With half the mass of each edge at either end the sum is exact.
     let expected = 0.01 * 9.81 * length * length / (2.0 * 10.0);
     let stretch = rest[nodes - 1].z - x[nodes - 1].z;
     assert!((stretch - expected).abs() < 1e-9, "{stretch} {expected}");
@@ -41,16 +31,16 @@ fn a_hanging_thread_stretches_by_rho_g_l2_over_2ea() {
 
 #[test]
 fn a_clamped_strand_meets_beam_theory() {
-    // Tip of a beam under its own weight: q L^4 / (8 EI). Held by its first two vertices, it is clamped in the
-    // middle of the edge between them: the turning at the second stands for half a cell on either side.
+    // The tip of a beam under its own weight sags by q L^4 / (8 EI). Held by its first two vertices, the beam
+    // is clamped in the middle of the edge between them: the bending spring at the second vertex represents
+    // half a cell on either side.
     let (cells, length) = (40, 0.2f64);
     let rest: Vec<Point> =
         (0..=cells + 1).map(|k| Point::new(length * (k as f64 - 1.0) / cells as f64, 0.0, 0.0)).collect();
     let edges: Vec<[u32; 2]> = (0..=cells as u32).map(|k| [k, k + 1]).collect();
     let material = StrandMaterial::straw();
-    let gravity = Vector::new(0.0, 0.0, -9.81);
     let mut dynamics =
-        dynamics(&rest, vec![Body::strands("beam", edges, material)], DynamicsParams { gravity, ..space() });
+        dynamics(&rest, vec![Body::strands("beam", edges, material)], DynamicsParams::default());
     let held: Vec<bool> = (0..rest.len()).map(|k| k < 2).collect();
     let mut x = rest.clone();
     settle(&mut dynamics, &mut x, &held, 8);
@@ -62,7 +52,7 @@ fn a_clamped_strand_meets_beam_theory() {
 
 #[test]
 fn curls_rest_and_straight_rest_shapes_uncurl() {
-    // A helix with rest shape `initial` stays; with `flat` it opens.
+    // A helix with the rest shape `initial` keeps its shape; with `flat` it opens.
     let rest: Vec<Point> = (0..60)
         .map(|k| {
             let angle = 0.3 * f64::from(k);
@@ -71,11 +61,10 @@ fn curls_rest_and_straight_rest_shapes_uncurl() {
         .collect();
     let edges: Vec<[u32; 2]> = (0..59).map(|k| [k, k + 1]).collect();
     let span = |x: &[Point]| (x[59] - x[0]).norm();
-    for (rest_shape, opens) in
-        [(bowknot_dynamics::RestShape::Initial, false), (bowknot_dynamics::RestShape::Flat, true)]
-    {
+    for (rest_shape, opens) in [(RestShape::Initial, false), (RestShape::Flat, true)] {
         let material = StrandMaterial { rest_shape, ..StrandMaterial::hair() };
-        let mut dynamics = dynamics(&rest, vec![Body::strands("curl", edges.clone(), material)], space());
+        let body = Body::strands("curl", edges.clone(), material);
+        let mut dynamics = dynamics(&rest, vec![body], weightless(DynamicsParams::default()));
         let (mut x, mut v) = (rest.clone(), vec![Vector::zeros(); 60]);
         for _ in 0..40 {
             let keyframes = x.clone();
@@ -94,12 +83,12 @@ fn curls_rest_and_straight_rest_shapes_uncurl() {
 fn momenta_of_flying_strands_are_conserved() {
     let (rest, edges) = strands(3, 20, 0.2, 0.03);
     let material = StrandMaterial { stretch_damping: 0.001, ..StrandMaterial::hair() };
-    // Two strands are joined by a yarn that runs across: branches.
+    // A yarn joins the strands, which therefore branch.
     let bodies = vec![
         Body::strands("hair", edges, material),
         Body::strands("tie", vec![[5, 25], [25, 45]], StrandMaterial::yarn()),
     ];
-    let mut dynamics = dynamics(&rest, bodies, DynamicsParams { cg_tolerance: 1e-12, ..space() });
+    let mut dynamics = dynamics(&rest, bodies, weightless(with_tolerance(1e-12)));
     let mut x = rest.clone();
     let mut v: Vec<Vector> = (0..rest.len())
         .map(|k| {
@@ -124,7 +113,7 @@ fn momenta_of_flying_strands_are_conserved() {
 
 #[test]
 fn hair_is_solved_in_a_few_iterations_however_stiff() {
-    // 100 hairs of 40 nodes, blown sideways: EA / L is 10^7 times inertia.
+    // 100 hairs of 40 nodes that move sideways: EA / L is 10^7 times inertia.
     let (rest, edges) = strands(100, 40, 0.3, 0.005);
     let mut dynamics = dynamics(
         &rest,
@@ -142,13 +131,17 @@ fn hair_is_solved_in_a_few_iterations_however_stiff() {
     assert!(dynamics.max_stretch(&x) < 1.01, "{}", dynamics.max_stretch(&x));
 }
 
-/// Angle below the horizontal of a straw that is hinged at one end and falls for 0.2 s from level [rad].
+/// Angle below the horizontal of a straw that is hinged at one end and falls for 0.2 s from the horizontal
+/// [rad].
 fn fallen(correcting_iterations: usize) -> f64 {
     let (length, nodes) = (0.3, 13);
     let rest: Vec<Point> =
         (0..nodes).map(|k| Point::new(length * k as f64 / (nodes - 1) as f64, 0.0, 0.0)).collect();
     let edges = (1..nodes as u32).map(|k| [k - 1, k]).collect();
-    let params = DynamicsParams { correcting_iterations, ..DynamicsParams::default() };
+    let params = DynamicsParams {
+        newton: NewtonParams { correcting_iterations, ..NewtonParams::default() },
+        ..DynamicsParams::default()
+    };
     let mut dynamics = dynamics(&rest, vec![Body::strands("straw", edges, StrandMaterial::straw())], params);
     let held: Vec<bool> = (0..nodes).map(|k| k == 0).collect();
     let (mut x, mut v) = (rest.clone(), vec![Vector::zeros(); nodes]);
@@ -160,19 +153,20 @@ fn fallen(correcting_iterations: usize) -> f64 {
 
 #[test]
 fn a_stiff_straw_falls_as_a_rigid_rod_does() {
-    // theta'' = (3 g / 2 L) cos theta, by small explicit steps.
+    // theta'' = (3 g / 2 L) cos theta, integrated with small explicit steps.
     let (mut angle, mut rate, dt) = (0.0f64, 0.0f64, 1e-5);
     for _ in 0..20_000 {
         rate += dt * 1.5 * 9.81 / 0.3 * angle.cos();
         angle += dt * rate;
     }
-    let corrected = fallen(DynamicsParams::default().correcting_iterations);
+    let corrected = fallen(NewtonParams::default().correcting_iterations);
     assert!((corrected / angle - 1.0).abs() < 0.05, "{corrected}, not {angle}");
-    // One Newton step alone is cut short by the stretch that a straight move of a turning rod means.
+    // A single Newton step is shortened by the line search, because a straight motion stretches a rod that
+    // rotates.
     assert!(fallen(0) < 0.5 * angle, "{}", fallen(0));
 }
 
-/// Cloth on a solid with hair rooted in both, and grains, some with a gravity of their own.
+/// Cloth above a solid, hair of which two are rooted in them, and grains, some with a gravity of their own.
 fn mixed(params: DynamicsParams) -> (Dynamics, Vec<Point>, Vec<Vector>) {
     let (mut rest, triangles) = sheet(0.3, 0.3, 12, 12);
     let mut bodies = vec![Body::cloth("sheet", triangles, ClothMaterial::cotton())];
@@ -225,10 +219,11 @@ fn mixed_scenes_converge_and_every_body_falls_as_it_must() {
         let expected = x0[k] + v0[k] * 0.05 + Vector::z() * (g * 0.01 * 0.01 * 15.0);
         assert!((x[k] - expected).norm() < 1e-12, "grain {k}: {} {expected}", x[k]);
     }
-    // All that pulls is gravity.
+    // Gravity is the only outer force.
     let masses = dynamics.model().masses();
-    let weight: f64 =
-        (0..count).map(|k| masses[k] * dynamics.model().gravity(k, dynamics.params().gravity).z).sum();
+    let weight: f64 = (0..count)
+        .map(|k| masses[k] * dynamics.model().gravity(k, dynamics.params().environment.gravity).z)
+        .sum();
     let change = dynamics.momentum(&v) - before - Vector::z() * (weight * 0.05);
     assert!(change.norm() < 1e-10 * weight.abs(), "{change}");
     let energies = dynamics.model().elastic_energies(&x);

@@ -40,8 +40,8 @@ proptest! {
         let bound = a.distance_lower_bound(&b);
         prop_assert_eq!(bound, b.distance_lower_bound(&a));
         prop_assert_eq!(bound == 0.0, a.overlaps(&b));
-        // Corners or sides that face each other; the difference of coordinates is exact enough to
-        // judge tightness, and the two-sum judges the bound along single axes.
+        // Corners or sides that face each other; the difference of coordinates is exact enough to judge
+        // tightness, and the two-sum judges the bound along single axes.
         let gaps = [0, 1, 2].map(|k| (a.min[k] - b.max[k]).max(b.min[k] - a.max[k]).max(0.0));
         let distance = (gaps[0].powi(2) + gaps[1].powi(2) + gaps[2].powi(2)).sqrt();
         prop_assert!(bound < distance || distance == 0.0);

@@ -1,7 +1,10 @@
 //! Two edges.
 
-use super::{Closest, clamp_unit, in_range, norm, rescale, select};
-use crate::{PairKind, Point, Vector};
+use super::arithmetic::{clamp_unit, in_range, norm, select};
+use super::closest_points::Closest;
+use super::rescale::closest_rescaled;
+use crate::pair::PairKind;
+use crate::point::{Point, Vector};
 use std::hint::select_unpredictable;
 
 /// Closest points of two edges, which may have zero length or be parallel.
@@ -12,7 +15,7 @@ pub fn edge_edge(a: [&Point; 2], b: [&Point; 2]) -> Closest {
         return closest;
     }
     let points = [*a[0], *a[1], *b[0], *b[1]];
-    rescale::closest_rescaled(PairKind::EdgeEdge, &points, |[a0, a1, b0, b1]| core([a0, a1], [b0, b1]).0)
+    closest_rescaled(PairKind::EdgeEdge, &points, |[a0, a1, b0, b1]| core([a0, a1], [b0, b1]).0)
 }
 
 /// The closest points, and a sum of squares that bounds all differences.
@@ -21,18 +24,18 @@ fn core(a: [&Point; 2], b: [&Point; 2]) -> (Closest, f64) {
     let (d1, d2, r) = (a[1] - a[0], b[1] - b[0], a[0] - b[0]);
     let (aa, bb, ab) = (d1.norm_squared(), d2.norm_squared(), d1.dot(&d2));
     let (per_aa, per_bb, r_d2) = (1.0 / aa, 1.0 / bb, r.dot(&d2));
-    // The closest point of line a, from what of d1 and r is perpendicular to b: taking off the
-    // larger part first keeps the digits that determinants of near parallel edges would cancel.
+    // The closest point of line a, from the parts of d1 and r that are perpendicular to b. Subtracting the
+    // larger part first keeps the digits that would cancel in the determinants of nearly parallel edges.
     let across = d1 - d2 * (ab * per_bb);
     let from_line = r - d2 * (r_d2 * per_bb);
     let cc = across.norm_squared();
     let s = clamp_unit(-from_line.dot(&across) / cc);
-    // Clamped to edge a; then the best place on b for it, then the best on a for that: minimises
-    // over the square of both places (Ericson 2004, "Real-Time Collision Detection", 5.1.9). At a
-    // small angle g the first s is off by u (L g + d)/(L g^2), which moves the points apart by g times
-    // that; but from any s the next two lines find a distance within (L g)^2/d of the least. The
-    // smaller of both is below u L, so near parallel edges need no case of their own. Parallel edges
-    // (0/0 = not-a-number, taken as 0) and edges of zero length are right from any s as well.
+    // s is clamped to edge a. The next two lines find the best t on b for this s, and the best s on a for
+    // that t: together they minimise over the square of both parameters (Ericson 2004, "Real-Time Collision
+    // Detection", 5.1.9). At a small angle g the first s is off by u (L g + d)/(L g^2), which moves the
+    // points apart by g times that; but from any s the next two lines find a distance within (L g)^2/d of the
+    // smallest. The smaller of both errors is below u L, so nearly parallel edges are no special case. For
+    // parallel edges (0/0 = not-a-number, taken as 0) and edges of zero length any s gives the right result.
     let t = clamp_unit((ab * s + r_d2) * per_bb);
     let s = clamp_unit((ab * t - r.dot(&d1)) * per_aa);
 
@@ -43,7 +46,7 @@ fn core(a: [&Point; 2], b: [&Point; 2]) -> (Closest, f64) {
     (closest, offset_squared + aa + bb)
 }
 
-/// Point at s of edge a minus point at t of edge b, each measured from its nearer end.
+/// The point at s of edge a minus the point at t of edge b, each measured from its nearer end.
 #[inline(always)]
 fn offset_at(a: [&Point; 2], b: [&Point; 2], d1: &Vector, d2: &Vector, s: f64, t: f64) -> Vector {
     let (start_of_a, start_of_b) = (s <= 0.5, t <= 0.5);

@@ -1,8 +1,9 @@
-//! The rare inputs whose differences are so small or so large that their powers leave the range of
-//! `f64`: they are moved to their first vertex and scaled by a power of two.
+//! Rescaling of pairs whose differences are so small or so large that their powers leave the range of `f64`:
+//! such a pair is moved to its first vertex and scaled by a power of two.
 
-use super::Closest;
-use crate::{PairKind, Point, Vector};
+use super::closest_points::Closest;
+use crate::pair::PairKind;
+use crate::point::{Point, Vector};
 
 /// Largest difference below which a pair is scaled up [m]: fourth powers stay normal above it.
 pub(crate) const MIN_SCALE: f64 = 1e-70;
@@ -13,8 +14,8 @@ pub(crate) const MAX_SCALE: f64 = 1e70;
 pub(crate) struct Local {
     /// The scaled points; those that the kind does not use are zero.
     pub(crate) points: [Point; 4],
-    /// Lengths in `points` times this are lengths of the input (two factors: the product of both
-    /// may leave the range of `f64` before it meets a length).
+    /// Factors from lengths in `points` to lengths of the input. There are two, because their product may
+    /// leave the range of `f64`.
     unscale: [f64; 2],
 }
 
@@ -23,7 +24,7 @@ impl Local {
     pub(crate) fn new(kind: PairKind, points: &[Point; 4]) -> Option<Self> {
         let used = &points[..kind.vertex_count()];
         let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |m: f64, x| m.max(x.abs()));
-        // A quarter of the coordinates, where whole differences would overflow.
+        // Coordinates are divided by four if differences might overflow.
         let shrink = if largest(&mut used.iter().flat_map(|p| [p.x, p.y, p.z])) > 1e300 { 0.25 } else { 1.0 };
         let first = points[0].coords * shrink;
         let differences = used.iter().map(|p| p.coords * shrink - first);

@@ -1,8 +1,11 @@
 //! A vertex and a triangle.
 
+use super::arithmetic::{in_range, norm, select};
+use super::closest_points::Closest;
+use super::rescale::closest_rescaled;
 use super::vertex_edge::foot_on_edge;
-use super::{Closest, in_range, norm, rescale, select};
-use crate::{PairKind, Point, Vector};
+use crate::pair::PairKind;
+use crate::point::{Point, Vector};
 
 /// Closest points of a vertex and a triangle, which may have zero area.
 #[inline]
@@ -12,19 +15,20 @@ pub fn vertex_triangle(a: &Point, b: [&Point; 3]) -> Closest {
         return closest;
     }
     let points = [*a, *b[0], *b[1], *b[2]];
-    rescale::closest_rescaled(PairKind::VertexTriangle, &points, |[a, b0, b1, b2]| core(a, [b0, b1, b2]).0)
+    closest_rescaled(PairKind::VertexTriangle, &points, |[a, b0, b1, b2]| core(a, [b0, b1, b2]).0)
 }
 
 /// The closest points, and a sum of squares that bounds all differences.
 #[inline(always)]
 fn core(a: &Point, b: [&Point; 3]) -> (Closest, f64) {
     let (e1, e2, r) = (b[1] - b[0], b[2] - b[0], a - b[0]);
-    // The foot in the plane by orthogonalising: along e1, then along what of e2 is perpendicular to
-    // e1. Each step takes off the larger part before the smaller one is measured, so the foot is off
-    // by rounding of the lengths even in slivers, where ratios of areas or of Gram determinants
-    // cancel many digits. In a sliver of height h the plane's direction is off by u L/h, hence the
-    // distance d by (u L/h)^2 d; but whatever the foot inside, also by at most h^2/d, and the smaller
-    // of both is below u L: no separate case. Not-a-number where e1 or the area is zero.
+    // The foot in the plane by orthogonalisation: along e1, then along the part of e2 that is perpendicular
+    // to e1. Each step subtracts the larger part before it measures the smaller one. So the error of the foot
+    // is only rounding of the lengths, even in slivers, where ratios of areas or of Gram determinants cancel
+    // many digits. In a sliver of height h the direction of the plane is off by u L/h, hence the distance d
+    // by (u L/h)^2 d; but for any foot inside the triangle it is also off by at most h^2/d, and the smaller
+    // of both is below u L. So slivers are no special case. The weights are not-a-number where e1 or the area
+    // is zero.
     let (e1e1, e2e2) = (e1.norm_squared(), e2.norm_squared());
     let shear = e1.dot(&e2) / e1e1;
     let height = e2 - e1 * shear;
@@ -44,15 +48,14 @@ fn core(a: &Point, b: [&Point; 3]) -> (Closest, f64) {
     (closest, offset_squared + e1e1 + e2e2)
 }
 
-/// Weights and offset of the closer candidate, the first of equals.
+/// The closer of two candidates (weights and offset), the first of equals.
 #[inline(always)]
 fn closer(first: (Vector, Vector), second: (Vector, Vector)) -> (Vector, Vector) {
     let is_second = second.1.norm_squared() < first.1.norm_squared();
     (select(is_second, second.0, first.0), select(is_second, second.1, first.1))
 }
 
-/// The closest of the feet on the three edges, the first of equals: the triangle's weights and the
-/// offset.
+/// Weights and offset of the closest of the feet on the three edges, the first of equals.
 #[inline(always)]
 fn closest_edge(a: &Point, b: [&Point; 3]) -> (Vector, Vector) {
     let (t01, o01) = foot_on_edge(a, [b[0], b[1]]);

@@ -1,7 +1,10 @@
 //! Two vertices.
 
-use super::{Closest, in_range, norm, rescale};
-use crate::{PairKind, Point};
+use super::arithmetic::{in_range, norm};
+use super::closest_points::Closest;
+use super::rescale::closest_rescaled;
+use crate::pair::PairKind;
+use crate::point::Point;
 
 /// Distance of two vertices.
 #[inline]
@@ -11,7 +14,7 @@ pub fn vertex_vertex(a: &Point, b: &Point) -> Closest {
         return closest;
     }
     let origin = Point::origin();
-    rescale::closest_rescaled(PairKind::VertexVertex, &[*a, *b, origin, origin], |[a, b, ..]| core(a, b))
+    closest_rescaled(PairKind::VertexVertex, &[*a, *b, origin, origin], |[a, b, ..]| core(a, b))
 }
 
 #[inline(always)]

@@ -1,12 +1,13 @@
-//! Who is next to whom: triangles of edges, connected components, boundaries.
+//! Adjacency: triangles of edges, connected components, boundaries.
 
-use super::Topology;
+use super::primitives::Topology;
+use crate::union_find::UnionFind;
 
-/// The triangles at each edge, in compressed rows: those of edge e stand at
-/// `starts[e]..starts[e + 1]`, by ascending triangle.
+/// The triangles at each edge, in compressed rows: those of edge e are at `starts[e]..starts[e + 1]`,
+/// ascending.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct EdgeTriangles {
-    /// Start of each edge's row, and the end: one more than there are edges.
+    /// Start of each edge's row, and the end: one entry more than there are edges.
     pub starts: Vec<u32>,
     /// Triangles.
     pub triangles: Vec<u32>,
@@ -21,8 +22,8 @@ impl EdgeTriangles {
         self.triangles[row.clone()].iter().copied().zip(self.opposite_vertices[row].iter().copied())
     }
 
-    /// How many triangles there are at an edge: 0 on strands, 1 on a boundary, 2 inside a surface,
-    /// more where sheets branch.
+    /// Number of triangles at an edge: 0 on strands, 1 on a boundary, 2 inside a surface, more where surfaces
+    /// branch.
     pub fn count(&self, edge: u32) -> usize {
         self.row(edge).len()
     }
@@ -37,8 +38,8 @@ impl EdgeTriangles {
 pub struct Components {
     /// How many there are.
     pub count: usize,
-    /// Component of each vertex, below `count`, numbered by their smallest vertices. A vertex
-    /// without edges is a component of its own.
+    /// Component of each vertex, below `count`. Components are numbered in the order of their smallest
+    /// vertices. A vertex without edges is a component of its own.
     pub of_vertex: Vec<u32>,
 }
 
@@ -78,16 +79,14 @@ impl Topology {
 
     /// Connected components of vertices along edges. Nearly O(n).
     pub fn connected_components(&self) -> Components {
-        // Union-find in which every root is the smallest vertex of its tree.
-        let mut parent: Vec<u32> = (0..self.vertex_count as u32).collect();
+        let mut sets = UnionFind::new(self.vertex_count);
         for &[i, j] in &self.edges {
-            let (i, j) = (find(&mut parent, i), find(&mut parent, j));
-            parent[i.max(j) as usize] = i.min(j);
+            sets.join(i, j);
         }
         let mut of_vertex = vec![0; self.vertex_count];
         let mut count = 0;
         for v in 0..self.vertex_count as u32 {
-            let root = find(&mut parent, v);
+            let root = sets.find(v);
             of_vertex[v as usize] = if root == v {
                 count += 1;
                 count - 1
@@ -97,13 +96,4 @@ impl Topology {
         }
         Components { count: count as usize, of_vertex }
     }
-}
-
-/// Root of a vertex; halves the path on the way.
-fn find(parent: &mut [u32], mut v: u32) -> u32 {
-    while parent[v as usize] != v {
-        parent[v as usize] = parent[parent[v as usize] as usize];
-        v = parent[v as usize];
-    }
-    v
 }

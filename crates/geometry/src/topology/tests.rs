@@ -1,10 +1,15 @@
 use super::*;
 
-/// Two triangles that share an edge, a third on the same edge, a strand of two edges, a particle,
-/// and an inert vertex.
+/// Two triangles that share an edge, a third on the same edge, a strand of two edges, a particle, and a
+/// vertex without elements.
 fn scene() -> Topology {
     let triangles = vec![[0, 1, 2], [2, 1, 3], [1, 2, 4]];
-    Topology::new(10, triangles, &[[6, 5], [6, 7]], &[8, 8, 0]).unwrap()
+    Topology::builder(10)
+        .triangles(triangles)
+        .strand_edges([[6, 5], [6, 7]])
+        .particles([8, 8, 0])
+        .build()
+        .unwrap()
 }
 
 #[test]
@@ -19,14 +24,19 @@ fn edges_are_unique_and_sorted_and_triangles_know_them() {
 
 #[test]
 fn a_strand_edge_on_a_triangle_is_the_triangles() {
-    let topology = Topology::new(3, vec![[0, 1, 2]], &[[1, 0]], &[]).unwrap();
+    let topology = Topology::builder(3).triangles([[0, 1, 2]]).strand_edges([[1, 0]]).build().unwrap();
     assert_eq!(topology.edges.len(), 3);
     assert!(topology.strand_edges.is_empty());
 }
 
 #[test]
 fn every_wrong_element_is_reported() {
-    let errors = Topology::new(3, vec![[0, 1, 3], [1, 1, 2]], &[[2, 9]], &[4]).unwrap_err();
+    let errors = Topology::builder(3)
+        .triangles([[0, 1, 3], [1, 1, 2]])
+        .strand_edges([[2, 9]])
+        .particles([4])
+        .build()
+        .unwrap_err();
     let messages: Vec<String> = errors.iter().map(ToString::to_string).collect();
     assert_eq!(
         messages,
@@ -62,7 +72,7 @@ fn edges_list_their_triangles_and_opposite_vertices() {
 fn boundary_edges_have_one_triangle() {
     assert_eq!(scene().boundary_edges(), [0, 1, 3, 4, 5, 6]);
     let tetrahedron = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
-    assert!(Topology::new(4, tetrahedron, &[], &[]).unwrap().boundary_edges().is_empty());
+    assert!(Topology::builder(4).triangles(tetrahedron).build().unwrap().boundary_edges().is_empty());
 }
 
 #[test]
@@ -71,7 +81,7 @@ fn components_are_numbered_by_their_smallest_vertex() {
     assert_eq!(components.of_vertex, [0, 0, 0, 0, 0, 1, 1, 1, 2, 3]);
     assert_eq!(components.count, 4);
     // A strand that runs back and forth through the indices.
-    let strand = Topology::new(6, vec![], &[[5, 0], [0, 4], [4, 2], [3, 1]], &[]).unwrap();
+    let strand = Topology::builder(6).strand_edges([[5, 0], [0, 4], [4, 2], [3, 1]]).build().unwrap();
     assert_eq!(strand.connected_components().of_vertex, [0, 1, 0, 1, 0, 0]);
 }
 
@@ -84,7 +94,7 @@ fn a_topology_survives_serialisation() {
 
 #[test]
 fn an_empty_scene_is_a_topology() {
-    let topology = Topology::new(0, vec![], &[], &[]).unwrap();
+    let topology = Topology::builder(0).build().unwrap();
     assert_eq!(topology, Topology::default());
     assert_eq!(topology.connected_components().count, 0);
     assert_eq!(topology.edge_triangles().starts, [0]);

@@ -5,8 +5,8 @@ use bowknot_geometry::{PairKind, Point, distance, separation};
 /// 2^-53.
 const U: f64 = f64::EPSILON / 2.0;
 
-/// Four points on a grid of random coarseness up to `finest`; coarse grids and the copied, collinear
-/// and parallel points make degenerate pairs common, fine grids make slivers.
+/// Four points on a grid of random coarseness up to `finest`; coarse grids and the copied, collinear and
+/// parallel points make degenerate pairs common, fine grids make slivers.
 fn grid_pair(random: &mut Random, finest: usize) -> [Int3; 4] {
     let range = [1, 2, 4, 16, finest][random.below(5)];
     let mut p = [0; 4].map(|_| [0; 3].map(|_: i32| random.below(2 * range + 1) as i128 - range as i128));
@@ -15,7 +15,7 @@ fn grid_pair(random: &mut Random, finest: usize) -> [Int3; 4] {
         0 => p[i] = p[j],
         1 => p[i] = [0, 1, 2].map(|c| (p[j][c] + p[k][c]) / 2),
         2 => p[3] = [0, 1, 2].map(|c| (p[2][c] + p[1][c] - p[0][c]).clamp(-(range as i128), range as i128)),
-        // Steps of neighbouring Fibonacci numbers: as near parallel as integers can be.
+        // Steps of successive Fibonacci numbers: as nearly parallel as integers allow.
         3 if finest > 256 => {
             let n = random.below(25);
             let fibonacci = |n: usize| (0..n).fold((0_i128, 1), |(x, y), _| (y, x + y)).0;
@@ -36,13 +36,13 @@ fn grid_pair(random: &mut Random, finest: usize) -> [Int3; 4] {
     p
 }
 
-/// Grid points as the library sees them: scaled by a power of two and moved, both without rounding.
+/// Grid points as input of the library: scaled by a power of two and moved, both without rounding.
 fn place(points: [Int3; 4], spacing: f64, shift: f64) -> [Point; 4] {
     points.map(|p| Point::from(p.map(|x| x as f64 * spacing + shift)))
 }
 
 fn for_each_pair(count: usize, finest: usize, mut check: impl FnMut(PairKind, [Int3; 4], f64, [Point; 4])) {
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     for i in 0..count {
         let grid = grid_pair(&mut random, finest);
         let (spacing, shift) = [(1.0, 0.0), (2_f64.powi(-20), 8192.0), (2_f64.powi(-30), 0.0)][i % 3];
@@ -67,7 +67,7 @@ fn distances_and_weights_are_those_of_integer_arithmetic() {
             (a.iter().sum::<f64>() - 1.0).abs() <= 2.0 * U && (b.iter().sum::<f64>() - 1.0).abs() <= 2.0 * U
         );
         assert!(weights[kind.vertex_count()..].iter().all(|&w| w == 0.0));
-        // The offset is that of the points that the weights name.
+        // The offset is that of the points that the weights define.
         let named = (0..kind.vertex_count())
             .map(|i| (points[i] - points[0]) * if i < kind.side_a() { weights[i] } else { -weights[i] })
             .sum::<bowknot_geometry::Vector>();

@@ -1,8 +1,8 @@
 //! Exact squared distances and intersections of simplices with small integer coordinates.
 //!
-//! Written from definitions, apart from the library's ways: a squared distance is the least over all
-//! features of the pair whose closest points lie inside them, as a fraction. Coordinates up to 2^19
-//! keep every numerator below 2^127; up to 2^8, fractions are compared exactly as well.
+//! Written from definitions, apart from the library's ways: a squared distance is the least over all features
+//! of the pair whose closest points lie inside them, as a fraction. Coordinates up to 2^19 keep every
+//! numerator below 2^127; up to 2^8, fractions are compared exactly as well.
 
 use bowknot_geometry::PairKind;
 
@@ -108,8 +108,8 @@ pub fn edges([a0, a1]: [Int3; 2], [b0, b1]: [Int3; 2]) -> Fraction {
     Fraction { numerator: (height * height) as u128, denominator: nn as u128 }
 }
 
-/// Whether a closed segment and a closed triangle, either degenerate or not, share a point: by the
-/// point where the segment meets the plane, or by distances within the plane.
+/// Whether a closed segment and a closed triangle, either degenerate or not, share a point: by the point
+/// where the segment meets the plane, or by distances within the plane.
 pub fn edge_meets_triangle(edge: [Int3; 2], triangle: [Int3; 3]) -> bool {
     let [p, q] = edge;
     let [a, b, c] = triangle;

@@ -40,7 +40,7 @@ fn every_edge_and_triangle_of_the_smallest_grid() {
 
 #[test]
 fn random_edges_and_triangles_in_every_order_and_far_away() {
-    let mut random = Random(6);
+    let mut random = Random::new(6);
     for i in 0..1_000_000 {
         let range = [3, 5, 9, 64][i % 4];
         let mut point = || [0; 3].map(|_: i32| random.below(range) as i128);
@@ -52,7 +52,7 @@ fn random_edges_and_triangles_in_every_order_and_far_away() {
 
 #[test]
 fn points_and_edges_meet_where_their_exact_distance_is_zero() {
-    let mut random = Random(7);
+    let mut random = Random::new(7);
     let mut met = [0; 3];
     for i in 0..600_000 {
         let range = [2, 3, 5][i % 3];

@@ -3,7 +3,7 @@ use bowknot_geometry::{PairKind, Point, Vector, distance, separation};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 use proptest::prelude::*;
 
-/// Orders of the vertices that leave the pair what it is; the flag tells of swapped sides.
+/// Orders of the vertices that describe the same pair; the flag says whether the sides are swapped.
 fn reorderings(kind: PairKind) -> &'static [([usize; 4], bool)] {
     match kind {
         PairKind::VertexVertex => &[([1, 0, 2, 3], true)],
@@ -15,7 +15,7 @@ fn reorderings(kind: PairKind) -> &'static [([usize; 4], bool)] {
 }
 
 fn kind_and_pair() -> impl Strategy<Value = (PairKind, [Point; 4])> {
-    (0..4_usize, any::<u64>()).prop_map(|(k, seed)| (KINDS[k], near_degenerate_pair(&mut Random(seed))))
+    (0..4_usize, any::<u64>()).prop_map(|(k, seed)| (KINDS[k], near_degenerate_pair(&mut Random::new(seed))))
 }
 
 proptest! {
@@ -28,8 +28,8 @@ proptest! {
         for (order, swapped) in reorderings(kind) {
             let other = distance::closest(kind, &order.map(|i| points[i]));
             prop_assert!((closest.distance - other.distance).abs() <= 4e-15 * scale, "{:?}", order);
-            // Directions agree where they are determined: apart from parallel edges' choices the
-            // closest points are unique, to the square root of rounding.
+            // Directions agree where they are determined: except for parallel edges, the closest points are
+            // unique, up to the square root of rounding.
             let turned = if *swapped { -other.offset } else { other.offset };
             prop_assert!((turned - closest.offset).norm() <= 1e-6 * scale || kind == PairKind::EdgeEdge);
         }
@@ -37,7 +37,7 @@ proptest! {
 
     #[test]
     fn a_rigid_motion_moves_the_answer_along((kind, points) in kind_and_pair(), seed in any::<u64>()) {
-        let mut random = Random(seed);
+        let mut random = Random::new(seed);
         let turn = UnitQuaternion::from_scaled_axis(random.vector(3.0));
         let motion = Isometry3::from_parts(Translation3::from(random.vector(1.0)), turn);
         let moved = points.map(|p| motion * p);
@@ -53,7 +53,7 @@ proptest! {
 
 #[test]
 fn gradients_are_signed_weights_times_the_normal() {
-    let mut random = Random(8);
+    let mut random = Random::new(8);
     let mut checked = 0;
     while checked < 20_000 {
         let points = [0; 4].map(|_| Point::from(random.vector(1.0)));

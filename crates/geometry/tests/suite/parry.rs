@@ -1,9 +1,9 @@
 //! Against parry3d-f64 and parry3d 0.31.
 //!
-//! parry's segment-segment routine compares squared lengths and their products with an *absolute*
-//! epsilon (2.2e-16 in f64, 1.2e-7 in f32; `closest_points_segment_segment.rs`): edges below about
-//! 1e-4 m in f64 and below about 2 cm in f32 all count as parallel there. So pairs are compared at
-//! sizes near 1, and the last test pins the difference at small sizes, with brute force as judge.
+//! parry's segment-segment routine compares squared lengths and their products with an *absolute* epsilon
+//! (2.2e-16 in f64, 1.2e-7 in f32; `closest_points_segment_segment.rs`): edges below about 1e-4 m in f64 and
+//! below about 2 cm in f32 all count as parallel there. So pairs are compared at sizes near 1, and the last
+//! test pins the difference at small sizes, with brute force as judge.
 
 use crate::sampling::{KINDS, Random};
 use bowknot_geometry::{PairKind, Point, distance};
@@ -38,7 +38,7 @@ macro_rules! parry_distance {
 parry_distance!(distance_f64, parry3d_f64, f64);
 parry_distance!(distance_f32, parry3d, f32);
 
-/// The least distance over points of both sides, refined around the best places.
+/// The smallest distance over points of both sides, refined around the best points.
 fn brute_force(kind: PairKind, points: &[Point; 4]) -> f64 {
     assert_eq!(kind, PairKind::EdgeEdge);
     let [a0, a1, b0, b1] = points;
@@ -62,13 +62,13 @@ fn brute_force(kind: PairKind, points: &[Point; 4]) -> f64 {
 }
 
 fn random_pair(random: &mut Random, size: f64) -> [Point; 4] {
-    // Rounded to f32, so that both precisions see the same points.
+    // Rounded to f32, so that both precisions get the same points.
     [0; 4].map(|_| Point::from(random.vector(size)).map(|x| f64::from(x as f32)))
 }
 
 #[test]
 fn distances_agree_in_general_position() {
-    let mut random = Random(9);
+    let mut random = Random::new(9);
     for _ in 0..200_000 {
         let points = random_pair(&mut random, 1.0);
         let kind = KINDS[random.below(4)];
@@ -83,7 +83,7 @@ fn distances_agree_in_general_position() {
 #[test]
 fn no_distance_exceeds_theirs_however_degenerate() {
     // Any two points that another implementation finds bound the distance from above.
-    let mut random = Random(10);
+    let mut random = Random::new(10);
     for _ in 0..200_000 {
         let points = crate::sampling::near_degenerate_pair(&mut random);
         let kind = KINDS[random.below(4)];

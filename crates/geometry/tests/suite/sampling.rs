@@ -6,29 +6,25 @@ use bowknot_geometry::{PairKind, Point, Vector};
 pub const KINDS: [PairKind; 4] =
     [PairKind::VertexVertex, PairKind::VertexEdge, PairKind::VertexTriangle, PairKind::EdgeEdge];
 
-/// Pseudo-random numbers (Steele, Lea and Flood 2014, SplitMix).
-pub struct Random(pub u64);
+/// Seeded random numbers.
+pub struct Random(fastrand::Rng);
 
 impl Random {
-    pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+    pub fn new(seed: u64) -> Self {
+        Self(fastrand::Rng::with_seed(seed))
     }
 
     /// An index below n.
     pub fn below(&mut self, n: usize) -> usize {
-        (self.bits() % n as u64) as usize
+        self.0.usize(..n)
     }
 
-    /// A number in [-1, 1].
+    /// A number in [-1, 1).
     pub fn signed(&mut self) -> f64 {
-        self.bits() as i64 as f64 / i64::MAX as f64
+        2.0 * self.0.f64() - 1.0
     }
 
-    /// A vector in the cube [-size, size]^3.
+    /// A vector in the cube [-size, size)^3.
     pub fn vector(&mut self, size: f64) -> Vector {
         Vector::new(self.signed(), self.signed(), self.signed()) * size
     }
@@ -49,8 +45,8 @@ impl Random {
     }
 }
 
-/// A pair of elements of any size and place: in general position, or with points that coincide,
-/// lie on lines or planes of others, or edges that are parallel, all exactly or nearly.
+/// A pair of elements of any size and place: in general position, or with points that coincide, lie on lines
+/// or planes of others, or edges that are parallel, all exactly or nearly.
 pub fn near_degenerate_pair(random: &mut Random) -> [Point; 4] {
     let size = random.power(-5.0, 2.0);
     let far = [0.0, 1.0, 1e4][random.below(3)];
@@ -79,9 +75,7 @@ pub fn near_degenerate_pair(random: &mut Random) -> [Point; 4] {
 /// 0, 1, 2, 3 in a random order.
 pub fn shuffled(random: &mut Random) -> [usize; 4] {
     let mut order = [0, 1, 2, 3];
-    for i in (1..4).rev() {
-        order.swap(i, random.below(i + 1));
-    }
+    random.0.shuffle(&mut order);
     order
 }
 

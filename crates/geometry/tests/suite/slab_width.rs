@@ -65,7 +65,7 @@ fn slab(kind: PairKind, points: &[Point; 4], n: &Vector) -> Double {
 
 #[test]
 fn a_million_widths_are_certified() {
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     let mut judged = 0;
     for _ in 0..1_000_000 {
         let points = near_degenerate_pair(&mut random);
@@ -91,7 +91,7 @@ fn a_million_widths_are_certified() {
 
 #[test]
 fn half_space_widths_are_certified() {
-    let mut random = Random(2);
+    let mut random = Random::new(2);
     for _ in 0..200_000 {
         let n = random.vector(1.0).normalize() * (1.0 + 1e-15 * random.signed());
         let far = [1.0, 1e4][random.below(2)];
@@ -110,7 +110,7 @@ fn half_space_widths_are_certified() {
 
 #[test]
 fn coordinates_of_any_finite_size_give_numbers() {
-    let mut random = Random(4);
+    let mut random = Random::new(4);
     let sizes =
         [0.0, f64::from_bits(1), 1e-310, 1e-160, 1e-80, 1e-40, 1.0, 1e60, 1e100, 1e160, 1e300, f64::MAX];
     for _ in 0..300_000 {
@@ -119,7 +119,8 @@ fn coordinates_of_any_finite_size_give_numbers() {
             let whole = [1.0, -1.0, random.signed()][random.below(3)];
             *x = whole * sizes[random.below(sizes.len())];
         }
-        // Mostly of one size, so that the size itself is met and not only the largest.
+        // Most coordinates have one size, so that the bound is tested at that size and not only at the
+        // largest.
         if random.below(2) == 0 {
             let size = sizes[random.below(sizes.len())];
             points = [0; 4].map(|_| Point::from(random.vector(size)));
@@ -147,7 +148,7 @@ fn coordinates_of_any_finite_size_give_numbers() {
 
 #[test]
 fn tiny_and_huge_pairs_are_as_good_as_plain_ones() {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     for _ in 0..20_000 {
         let points = [0; 4].map(|_| Point::from(random.vector(1.0)));
         let kind = KINDS[random.below(4)];
@@ -159,7 +160,7 @@ fn tiny_and_huge_pairs_are_as_good_as_plain_ones() {
                 (scaled.distance / scale - plain.distance).abs() < 1e-14,
                 "{kind:?} {points:?} {exponent}"
             );
-            // Scaling by a power of two is exact, so the slab of the plain points judges.
+            // Scaling by a power of two is exact, so the slab of the unscaled points is the reference.
             let exact = slab(kind, &points, &scaled.normal);
             assert!(
                 certified(scaled.width / scale, &scaled.normal, exact, 1.0),

@@ -29,18 +29,23 @@ fn rubbing(case: &Case) -> Vec<FrictionRow> {
     friction
 }
 
-/// All bits of the state that `solve` leaves, and its residual's.
+/// All bits of the state after `solve`, and of its residual.
 fn bits(
-    problem: &Problem<'_>,
+    problem: &LcpProblem<'_>,
     case: &Case,
-    solve: impl Fn(&mut State<'_>) -> Info + Sync + Send,
+    solve: impl Fn(&mut LcpState<'_>) -> LcpInfo + Sync + Send,
 ) -> Vec<u64> {
-    let (mut y, mut lambda, mut forces) = case.start();
+    let (mut y, mut lambda, mut limit_multipliers) = case.start();
     let mut friction = vec![Vector2::zeros(); problem.friction().rows.len()];
-    let mut state = State { y: &mut y, lambda: &mut lambda, forces: &mut forces, friction: &mut friction };
+    let mut state = LcpState {
+        y: &mut y,
+        lambda: &mut lambda,
+        limit_multipliers: &mut limit_multipliers,
+        friction: &mut friction,
+    };
     let residual = solve(&mut state).residual;
     assert!(residual > 0.0);
-    let reals = y.iter().chain(&forces).flat_map(|v| [v.x, v.y, v.z]);
+    let reals = y.iter().chain(&limit_multipliers).flat_map(|v| [v.x, v.y, v.z]);
     let reals = reals.chain(friction.iter().flat_map(|v| [v.x, v.y])).chain(lambda).chain([residual]);
     reals.map(f64::to_bits).collect()
 }
@@ -49,25 +54,25 @@ fn bits(
 fn results_have_the_same_bits_on_any_number_of_threads() {
     let case = cloth(60, 6000, 5);
     let friction = rubbing(&case);
-    // Every third row left out.
+    // Every third row is left out.
     let (mut order, mut starts) = (Vec::new(), vec![0]);
     for ends in case.row_starts.windows(2) {
         order.extend((ends[0]..ends[1]).filter(|r| r % 3 != 0));
         starts.push(order.len() as u32);
     }
     let all = Schedule::coloured(&case.row_starts);
-    let params = Params { max_sweeps: 5, ..Params::default() };
+    let params = LcpParams { max_sweeps: 5, ..LcpParams::default() };
     for schedule in [all, Schedule::active(&order, &starts)] {
-        let problem = Problem::new(
+        let problem = LcpProblem::new(
             &case.weights,
-            Family::new(&case.rows, schedule),
-            Family::new(&case.balls, Schedule::coloured(&case.ball_starts)),
-            Family::new(&friction, schedule),
+            ConstraintSet::new(&case.rows, schedule),
+            ConstraintSet::new(&case.limits, Schedule::coloured(&case.limit_starts)),
+            ConstraintSet::new(&friction, schedule),
         )
         .unwrap();
         validate_colours(&problem).unwrap();
         let serial = bits(&problem, &case, |state| solve_serial(&problem, state, &params).unwrap());
-        let jacobi = |state: &mut State<'_>| Jacobi::new().solve(&problem, state, &params).unwrap();
+        let jacobi = |state: &mut LcpState<'_>| Jacobi::new().solve(&problem, state, &params).unwrap();
         let simultaneous = bits(&problem, &case, jacobi);
         for threads in [1, 2, 3, 5, 8] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -85,28 +90,28 @@ fn results_have_the_same_bits_on_any_number_of_threads() {
 #[test]
 fn single_sweeps_add_up_to_a_solve() {
     let case = cloth(40, 3000, 6);
-    let problem = Problem::new(
+    let problem = LcpProblem::new(
         &case.weights,
-        Family::new(&case.rows, Schedule::coloured(&case.row_starts)),
-        Family::new(&case.balls, Schedule::coloured(&case.ball_starts)),
-        Family::default(),
+        ConstraintSet::new(&case.rows, Schedule::coloured(&case.row_starts)),
+        ConstraintSet::new(&case.limits, Schedule::coloured(&case.limit_starts)),
+        ConstraintSet::default(),
     )
     .unwrap();
-    let params = Params { max_sweeps: 4, ..Params::default() };
+    let params = LcpParams { max_sweeps: 4, ..LcpParams::default() };
     let solved = bits(&problem, &case, |state| solve_coloured(&problem, state, &params).unwrap());
     let swept = bits(&problem, &case, |state| {
         for _ in 0..3 {
             sweep_coloured(&problem, state, &params).unwrap();
         }
-        solve_serial(&problem, state, &Params { max_sweeps: 1, ..params }).unwrap()
+        solve_serial(&problem, state, &LcpParams { max_sweeps: 1, ..params }).unwrap()
     });
     let stopped = bits(&problem, &case, |state| {
-        let Err(Error::NotConverged { sweeps: 4, residual }) =
-            solve_coloured(&problem, state, &Params { tolerance: Some(0.0), ..params })
+        let Err(LcpError::NotConverged { sweeps: 4, residual }) =
+            solve_coloured(&problem, state, &LcpParams { tolerance: Some(0.0), ..params })
         else {
             panic!("four sweeps cannot be exact")
         };
-        Info { sweeps: 4, residual }
+        LcpInfo { sweeps: 4, residual }
     });
     assert!(solved == swept && solved == stopped);
 }
@@ -117,17 +122,17 @@ fn friction_attached_to_its_normals_has_the_same_bits_and_the_same_solution() {
     let mut friction = rubbing(&case);
     // Every other contact is rough; rows stay in order.
     friction.retain(|f| f.normal % 2 == 0);
-    let mut friction_of = vec![Problem::NO_FRICTION; case.rows.len()];
+    let mut friction_of = vec![LcpProblem::NO_FRICTION; case.rows.len()];
     friction.iter().enumerate().for_each(|(f, row)| friction_of[row.normal as usize] = f as u32);
-    let problem = Problem::new(
+    let problem = LcpProblem::new(
         &case.weights,
-        Family::new(&case.rows, Schedule::coloured(&case.row_starts)),
-        Family::new(&case.balls, Schedule::coloured(&case.ball_starts)),
-        Family::serial(&friction),
+        ConstraintSet::new(&case.rows, Schedule::coloured(&case.row_starts)),
+        ConstraintSet::new(&case.limits, Schedule::coloured(&case.limit_starts)),
+        ConstraintSet::serial(&friction),
     )
     .unwrap();
     let attached = problem.attach_friction(&friction_of).unwrap();
-    let params = Params { max_sweeps: 5, ..Params::default() };
+    let params = LcpParams { max_sweeps: 5, ..LcpParams::default() };
     let serial = bits(&attached, &case, |state| solve_serial(&attached, state, &params).unwrap());
     for threads in [1, 2, 3] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -137,10 +142,15 @@ fn friction_attached_to_its_normals_has_the_same_bits_and_the_same_solution() {
     }
     let after_all = bits(&problem, &case, |state| solve_serial(&problem, state, &params).unwrap());
     assert!(after_all != serial, "attached rows are swept in another order");
-    // Each friction row was swept: its multiplier is inside of its cone, and many are not 0.
-    let (mut y, mut lambda, mut forces) = case.start();
+    // Each friction row was swept: many multipliers are not 0.
+    let (mut y, mut lambda, mut limit_multipliers) = case.start();
     let mut multipliers = vec![Vector2::zeros(); friction.len()];
-    let mut state = State { y: &mut y, lambda: &mut lambda, forces: &mut forces, friction: &mut multipliers };
+    let mut state = LcpState {
+        y: &mut y,
+        lambda: &mut lambda,
+        limit_multipliers: &mut limit_multipliers,
+        friction: &mut multipliers,
+    };
     sweep_coloured(&attached, &mut state, &params).unwrap();
     assert!(multipliers.iter().filter(|m| **m != Vector2::zeros()).count() > 100);
 }
@@ -149,16 +159,21 @@ fn friction_attached_to_its_normals_has_the_same_bits_and_the_same_solution() {
 fn friction_that_does_not_belong_to_its_row_is_refused() {
     let case = cloth(8, 20, 1);
     let friction = rubbing(&case);
-    let family = Family::serial(&friction[..]);
-    let problem = Problem::new(&case.weights, Family::serial(&case.rows), Family::default(), family).unwrap();
+    let family = ConstraintSet::serial(&friction[..]);
+    let problem =
+        LcpProblem::new(&case.weights, ConstraintSet::serial(&case.rows), ConstraintSet::default(), family)
+            .unwrap();
     let mut friction_of: Vec<u32> = (0..case.rows.len() as u32).collect();
     assert!(problem.attach_friction(&friction_of).is_ok());
-    assert!(matches!(problem.attach_friction(&friction_of[1..]), Err(Error::Length { .. })));
+    assert!(matches!(problem.attach_friction(&friction_of[1..]), Err(LcpError::Length { .. })));
     friction_of.swap(0, 1);
-    assert_eq!(problem.attach_friction(&friction_of).unwrap_err(), Error::Attached { row: 0, friction: 1 });
+    assert_eq!(
+        problem.attach_friction(&friction_of).unwrap_err(),
+        LcpError::Attached { row: 0, friction: 1 }
+    );
     friction_of[0] = 1000;
     assert_eq!(
         problem.attach_friction(&friction_of).unwrap_err(),
-        Error::Attached { row: 0, friction: 1000 }
+        LcpError::Attached { row: 0, friction: 1000 }
     );
 }

@@ -43,14 +43,14 @@ fn radii_that_reach_everywhere_list_everything() {
 #[test]
 fn radii_vary_from_vertex_to_vertex() {
     let mut scene = cloth(0.0).build();
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     scene.radii.iter_mut().for_each(|r| *r = 0.012 * random.unit().powi(3));
     check(&scene, 500);
 }
 
 #[test]
 fn one_huge_triangle_among_tiny_ones() {
-    let mut random = Random(2);
+    let mut random = Random::new(2);
     let mut builder = Builder::default();
     builder.body(BodyFilter::DEFORMABLE);
     builder.triangle(
@@ -66,7 +66,7 @@ fn one_huge_triangle_among_tiny_ones() {
 
 #[test]
 fn everything_in_one_place() {
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     let mut builder = Builder::default();
     builder.body(BodyFilter::DEFORMABLE);
     for _ in 0..40 {
@@ -98,7 +98,7 @@ fn far_from_the_origin_nothing_is_lost() {
 
 #[test]
 fn degenerate_elements_are_searched_too() {
-    let mut random = Random(4);
+    let mut random = Random::new(4);
     let mut builder = Builder::default();
     builder.body(BodyFilter::DEFORMABLE);
     for _ in 0..40 {
@@ -113,7 +113,7 @@ fn degenerate_elements_are_searched_too() {
 
 #[test]
 fn strands_particles_and_triangles_mix() {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     for size in [0.3, 1.0] {
         let mut builder = Builder::default();
         builder.body(BodyFilter::DEFORMABLE).soup(&mut random, [60, 60, 150], size, 0.03);
@@ -123,7 +123,7 @@ fn strands_particles_and_triangles_mix() {
 
 #[test]
 fn only_particles_or_only_strands() {
-    let mut random = Random(6);
+    let mut random = Random::new(6);
     let mut builder = Builder::default();
     builder.body(BodyFilter::DEFORMABLE).soup(&mut random, [0, 0, 500], 0.3, 0.02);
     check(&builder.build(), 100);
@@ -140,7 +140,7 @@ fn nothing_to_find_is_no_trouble() {
     builder.triangle([Point::origin(), Point::new(1.0, 0.0, 0.0), Point::new(0.0, 1.0, 0.0)], 1.0);
     check(&builder.build(), 0);
     let mut builder = Builder::default();
-    builder.body(BodyFilter::OBSTACLE).soup(&mut Random(7), [50, 20, 20], 0.1, 0.1);
+    builder.body(BodyFilter::OBSTACLE).soup(&mut Random::new(7), [50, 20, 20], 0.1, 0.1);
     check(&builder.build(), 0);
 }
 
@@ -168,7 +168,7 @@ fn crowd(random: &mut Random, groups: bool) -> Builder {
 
 #[test]
 fn obstacles_groups_and_half_spaces() {
-    let mut random = Random(8);
+    let mut random = Random::new(8);
     for groups in [false, true] {
         check(&crowd(&mut random, groups).build(), 500);
     }
@@ -186,7 +186,7 @@ fn radii_at_the_very_distance_are_listed() {
 /// Moves everything, obstacles now and then, and compares a search that is kept with a fresh one.
 #[test]
 fn trees_are_reused_after_motion() {
-    let mut random = Random(9);
+    let mut random = Random::new(9);
     let mut scene = crowd(&mut random, true).build();
     let mut kept = ProximitySearch::new(&scene.model);
     let mut drift = Vector::zeros();
@@ -215,7 +215,7 @@ fn trees_are_reused_after_motion() {
 
 #[test]
 fn obstacles_at_rest_are_indexed_once() {
-    let mut random = Random(10);
+    let mut random = Random::new(10);
     let mut builder = Builder::default();
     builder.body(BodyFilter::DEFORMABLE).soup(&mut random, [50, 0, 0], 0.4, 0.02);
     builder.body(BodyFilter::OBSTACLE).soup(&mut random, [50, 0, 0], 0.4, 0.02);

@@ -9,8 +9,8 @@ fn threads_do_not_change_a_bit() {
     let (positions, triangles) = folded_cloth(3000, 0.004);
     let mut builder = Builder::default();
     builder.body(BodyFilter::DEFORMABLE).mesh(&positions, &triangles, 0.003);
-    builder.soup(&mut Random(1), [0, 100, 300], 0.2, 0.01);
-    builder.body(BodyFilter::OBSTACLE).soup(&mut Random(2), [200, 0, 0], 0.2, 0.01);
+    builder.soup(&mut Random::new(1), [0, 100, 300], 0.2, 0.01);
+    builder.body(BodyFilter::OBSTACLE).soup(&mut Random::new(2), [200, 0, 0], 0.2, 0.01);
     let scene = builder.build();
     let results = [1, 2, 3].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
@@ -39,7 +39,7 @@ fn an_old_list_is_matched_with_a_new_one() {
     builder.body(BodyFilter::DEFORMABLE).mesh(&positions, &triangles, 0.003);
     let mut scene = builder.build();
     let (old, _) = scene.search();
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     scene.positions.iter_mut().for_each(|p| *p += random.vector(0.002));
     let (new, _) = scene.search();
     let matches = new.match_with(&old);

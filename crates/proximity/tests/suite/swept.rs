@@ -38,8 +38,8 @@ fn moving_box(scene: &Scene, displacements: &[Vector], vertices: &[u32], time: f
     [low0 + time * (low1 - low0) - inflate, high0 + time * (high1 - high0) + inflate]
 }
 
-/// Every pair whose moving boxes meet at a sampled moment must be listed; a listed pair's must meet
-/// up to rounding within some interval between samples.
+/// Every pair whose moving boxes overlap at a sampled moment must be listed. The boxes of a listed pair must
+/// overlap, up to rounding, at a moment or between two moments.
 fn check(scene: &Scene, displacements: &[Vector], listed: &PairList) -> usize {
     let listed = keys(listed);
     let all = scene.all_pairs();
@@ -84,7 +84,7 @@ fn soup(random: &mut Random) -> Scene {
 
 #[test]
 fn pairs_that_meet_on_the_way_are_listed() {
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     for (common, own) in [(0.0, 0.02), (0.3, 0.3), (5.0, 0.1)] {
         let scene = soup(&mut random);
         let along = [random.vector(common), Vector::zeros(), random.vector(common)];
@@ -98,21 +98,21 @@ fn pairs_that_meet_on_the_way_are_listed() {
 
 #[test]
 fn a_common_motion_adds_nothing() {
-    // The hulls of the paths of all bodies overlap, but nothing comes nearer on a common clock.
-    let mut random = Random(2);
+    // The hulls of the paths of all bodies overlap, but nothing comes nearer at the same path time.
+    let mut random = Random::new(2);
     let scene = soup(&mut random);
     let mut search = ProximitySearch::new(&scene.model);
     let still = sweep(&scene, &vec![Vector::zeros(); scene.positions.len()], &mut search);
     let moving = sweep(&scene, &vec![Vector::new(0.75, 0.5, 0.25); scene.positions.len()], &mut search);
-    // The half-space stays where it is and is left behind or stays as near as at the start. Boxes
-    // that touch to rounding may differ.
+    // The half-space stays where it is and is left behind or stays as near as at the start. Boxes that touch
+    // to rounding may differ.
     let (still, moving) = (keys(&still), keys(&moving));
     assert!(still.symmetric_difference(&moving).count() * 1000 < still.len());
 }
 
 #[test]
 fn swept_and_plain_searches_share_trees() {
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     let mut scene = soup(&mut random);
     let mut kept = ProximitySearch::new(&scene.model);
     for step in 0..30 {

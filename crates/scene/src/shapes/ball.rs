@@ -1,6 +1,6 @@
 //! A closed sphere.
 
-use super::{TriangleMesh, segments};
+use super::mesh::{TriangleMesh, segments};
 use bowknot_geometry::{Point, Vector};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

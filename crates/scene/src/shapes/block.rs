@@ -1,6 +1,8 @@
 //! A box of tetrahedra.
 
-use super::{above_0, segments, too_many};
+use super::limits::{limit_vertices, positive_lengths};
+use super::mesh::segments;
+use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::Point;
 use bowknot_io::Mesh;
 use serde::{Deserialize, Serialize};
@@ -41,11 +43,13 @@ impl Block {
     fn cells(&self) -> [u32; 3] {
         self.size.map(|length| segments(length, self.edge))
     }
+}
 
-    pub(super) fn validate(&self, problems: &mut Vec<(&'static str, String)>) {
+impl Parameters for Block {
+    fn check(&self, checks: &mut Checks) {
         let lengths = self.size.iter().map(|&s| ("size", s)).chain([("edge", self.edge)]);
-        if above_0(lengths, problems) {
-            too_many(self.size.iter().map(|s| s / self.edge + 1.0).product(), self.edge, problems);
+        if positive_lengths(lengths, checks) {
+            limit_vertices(self.size.iter().map(|s| s / self.edge + 1.0).product(), self.edge, checks);
         }
     }
 }

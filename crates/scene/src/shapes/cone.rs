@@ -1,6 +1,6 @@
 //! A closed cone.
 
-use super::{TriangleMesh, segments};
+use super::mesh::{TriangleMesh, segments};
 use bowknot_geometry::Point;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;

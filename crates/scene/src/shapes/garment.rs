@@ -1,7 +1,8 @@
 //! A garment around the figure: a tube of cloth from the chest or the waist down.
 
 use super::figure::RestBody;
-use super::{TriangleMesh, segments};
+use super::mesh::{TriangleMesh, segments};
+use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::Point;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -129,9 +130,10 @@ impl Garment {
         let around = TAU * (0.35 + self.gap + outward) + 2.0 * f64::from(self.pleats) * self.pleat_depth;
         around * (self.top - self.hem + outward + 0.5)
     }
+}
 
-    /// Appends the field and what is wrong with it.
-    pub(super) fn validate(&self, problems: &mut Vec<(&'static str, String)>) {
+impl Parameters for Garment {
+    fn check(&self, checks: &mut Checks) {
         let ranges = [
             ("edge", self.edge, f64::MIN_POSITIVE, LONGEST_EDGE),
             ("top", self.top, 0.05, 1.28),
@@ -145,15 +147,15 @@ impl Garment {
         for (key, value, least, most) in ranges {
             if !(least..=most).contains(&value) {
                 let range = if least == f64::MIN_POSITIVE { "above 0" } else { &format!("from {least}") };
-                problems.push((key, format!("{value} must lie {range} to {most}")));
+                checks.refuse(key, value, format!("must lie {range} to {most}"));
             }
         }
         if self.hem > self.top - 0.05 {
-            problems
-                .push(("hem", format!("{} m must lie 0.05 m below top, {} m, at least", self.hem, self.top)));
+            let allowed = format!("must lie at least 0.05 m below top, which is {} m", self.top);
+            checks.refuse("hem", self.hem, allowed);
         }
         if !(self.waist > self.hem && self.waist <= 1.28) {
-            problems.push(("waist", format!("{} m must lie above hem and be at most 1.28", self.waist)));
+            checks.refuse("waist", self.waist, "must lie above hem and be at most 1.28 m");
         }
     }
 }

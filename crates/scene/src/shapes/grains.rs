@@ -1,6 +1,7 @@
 //! Particles in a box.
 
-use super::{MOST_VERTICES, above_0};
+use super::limits::{MAX_VERTICES, positive_lengths};
+use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::{Point, Vector};
 use bowknot_io::Mesh;
 use serde::{Deserialize, Serialize};
@@ -46,17 +47,23 @@ impl Grains {
         }
         mesh
     }
+}
 
-    pub(super) fn validate(&self, problems: &mut Vec<(&'static str, String)>) {
-        above_0([("spacing", self.spacing)].into_iter(), problems);
+impl Parameters for Grains {
+    fn check(&self, checks: &mut Checks) {
+        positive_lengths([("spacing", self.spacing)].into_iter(), checks);
         if self.count.contains(&0) {
-            problems.push(("count", "must be at least 1 each way".to_owned()));
+            checks.refuse("count", format!("{:?}", self.count), "must be at least 1 each way");
         }
-        if self.count.iter().map(|&n| n as f64).product::<f64>() > MOST_VERTICES {
-            problems.push(("count", format!("would make more than {MOST_VERTICES:e} particles")));
+        if self.count.iter().map(|&n| n as f64).product::<f64>() > MAX_VERTICES {
+            checks.refuse(
+                "count",
+                format!("{:?}", self.count),
+                format!("must make at most {MAX_VERTICES:e} particles"),
+            );
         }
         if !(0.0..0.5).contains(&self.jitter) {
-            problems.push(("jitter", format!("{} must lie from 0 to below 0.5", self.jitter)));
+            checks.refuse("jitter", self.jitter, "must lie from 0 to below 0.5");
         }
     }
 }

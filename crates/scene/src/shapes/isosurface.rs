@@ -6,7 +6,7 @@
 //! one another are not joined. The vertices are then moved towards the middle of their neighbours along the surface, and edges flipped to Delaunay's,
 //! which leaves triangles of nearly equal size.
 
-use super::TriangleMesh;
+use super::mesh::TriangleMesh;
 use bowknot_geometry::{Point, Vector};
 use rayon::prelude::*;
 use std::collections::BTreeMap;

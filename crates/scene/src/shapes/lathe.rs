@@ -1,6 +1,8 @@
 //! A surface of revolution.
 
-use super::{TriangleMesh, segments, sheet::cut};
+use super::mesh::{TriangleMesh, segments};
+use super::sheet::cut;
+use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::Point;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -83,25 +85,25 @@ impl Lathe {
         }
         points
     }
+}
 
-    /// Appends the field and what is wrong with it.
-    pub(super) fn validate(&self, problems: &mut Vec<(&'static str, String)>) {
+impl Parameters for Lathe {
+    fn check(&self, checks: &mut Checks) {
         let least = if self.closed { 3 } else { 2 };
         if self.profile.len() < least {
-            let message = format!("has {} corners and needs {least} at least", self.profile.len());
-            problems.push(("profile", message));
+            let corners = format!("{} corners", self.profile.len());
+            checks.refuse("profile", corners, format!("must be at least {least}"));
         }
         for (index, [radius, z]) in self.profile.iter().enumerate() {
             if !(radius.is_finite() && *radius > 0.0 && z.is_finite()) {
-                let message = format!(
-                    "corner {index} is ({radius}, {z}); distances from the axis must be above 0, heights finite"
-                );
-                problems.push(("profile", message));
+                let corner = format!("corner {index} at ({radius}, {z})");
+                let allowed = "must have a distance from the axis above 0 and a finite height";
+                checks.refuse("profile", corner, allowed);
             }
         }
         if let Some(index) = self.sides().position(|(a, b)| a == b) {
             let next = (index + 1) % self.profile.len();
-            problems.push(("profile", format!("corners {index} and {next} are the same point")));
+            checks.refuse("profile", format!("corners {index} and {next}"), "must not be the same point");
         }
     }
 }

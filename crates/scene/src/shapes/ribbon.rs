@@ -1,6 +1,8 @@
 //! A strip along a curve.
 
-use super::{TriangleMesh, segments, sheet::cut};
+use super::mesh::{TriangleMesh, segments};
+use super::sheet::cut;
+use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::{Point, Vector};
 use serde::{Deserialize, Serialize};
 
@@ -113,27 +115,27 @@ impl Ribbon {
         };
         ((0..=along).map(row).collect(), total)
     }
+}
 
-    /// Appends the field and what is wrong with it.
-    pub(super) fn validate(&self, problems: &mut Vec<(&'static str, String)>) {
+impl Parameters for Ribbon {
+    fn check(&self, checks: &mut Checks) {
         let n = self.points.len();
         if n < 2 {
-            problems.push(("points", format!("has {n} points and needs two at least")));
+            checks.refuse("points", format!("{n} points"), "must be at least two");
         }
         if let Some(index) = self.points.iter().position(|p| !p.iter().all(|c| c.is_finite())) {
-            problems.push(("points", format!("point {index} must be finite")));
+            checks.refuse("points", format!("point {index}"), "must be finite");
         }
         if let Some(index) = self.points.windows(2).position(|w| w[0] == w[1]) {
-            problems.push(("points", format!("points {index} and {} are the same", index + 1)));
+            checks.refuse("points", format!("points {index} and {}", index + 1), "must not be the same");
         }
         if !(self.across.is_empty() || self.across.len() == n) {
-            let message =
-                format!("has {} directions for {n} points; one for each, or none", self.across.len());
-            problems.push(("across", message));
+            let given = format!("{} directions for {n} points", self.across.len());
+            checks.refuse("across", given, "must be one for each point, or none");
         }
         let usable = |v: &Vector| v.iter().all(|c| c.is_finite()) && v.norm() > 0.0;
         if let Some(index) = self.across.iter().position(|v| !usable(v)) {
-            problems.push(("across", format!("direction {index} must be finite and not zero")));
+            checks.refuse("across", format!("direction {index}"), "must be finite and not zero");
         }
     }
 }

@@ -4,8 +4,8 @@
 //! Distances have slope 1 at most and the smooth minimum is a mean of theirs, so the field has too: its value outside
 //! never exceeds the distance to the surface.
 
-use super::TriangleMesh;
 use super::isosurface::{self, Isosurface};
+use super::mesh::TriangleMesh;
 use bowknot_geometry::{Point, Vector};
 
 /// The hull of two balls, neither of which contains the other.

@@ -1,6 +1,6 @@
 //! A flat rectangle.
 
-use super::{TriangleMesh, segments};
+use super::mesh::{TriangleMesh, segments};
 use bowknot_geometry::Point;
 use serde::{Deserialize, Serialize};
 

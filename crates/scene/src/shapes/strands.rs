@@ -1,6 +1,7 @@
 //! A bundle of strands.
 
-use super::{MOST_VERTICES, above_0};
+use super::limits::{MAX_VERTICES, positive_lengths};
+use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::{Point, Vector};
 use bowknot_io::Mesh;
 use serde::{Deserialize, Serialize};
@@ -102,30 +103,28 @@ impl Strands {
             }
         }
     }
+}
 
-    pub(super) fn validate(&self, problems: &mut Vec<(&'static str, String)>) {
+impl Parameters for Strands {
+    fn check(&self, checks: &mut Checks) {
         let mut lengths = vec![("length", self.length)];
         match self.root {
             Root::Plane => lengths.push(("spacing", self.spacing)),
             Root::Sphere => lengths.push(("radius", self.radius)),
         }
-        above_0(lengths.into_iter(), problems);
+        positive_lengths(lengths.into_iter(), checks);
         for (key, count) in [("count", self.count), ("segments", self.segments)] {
-            if count == 0 {
-                problems.push((key, "must be at least 1".to_owned()));
-            }
+            checks.count_at_least(key, count as usize, 1);
         }
-        if self.count as f64 * (self.segments as f64 + 1.0) > MOST_VERTICES {
-            problems.push(("count", format!("would make more than {MOST_VERTICES:e} vertices")));
+        if self.count as f64 * (self.segments as f64 + 1.0) > MAX_VERTICES {
+            checks.refuse("count", self.count, format!("must make at most {MAX_VERTICES:e} vertices"));
         }
         if !(self.curl.is_finite() && self.curl >= 0.0) {
-            problems.push(("curl", format!("{} must be a length in metres from 0 on", self.curl)));
+            checks.refuse("curl", self.curl, "must be a length in metres, at least 0");
         }
-        if !self.turns.is_finite() {
-            problems.push(("turns", format!("{} must be finite", self.turns)));
-        }
+        checks.finite("turns", self.turns);
         if !(self.patch > 0.0 && self.patch <= 180.0) {
-            problems.push(("patch", format!("{} must lie above 0 and be at most 180 degrees", self.patch)));
+            checks.refuse("patch", self.patch, "must lie above 0 and be at most 180 degrees");
         }
     }
 }

@@ -1,6 +1,8 @@
 //! A ball of tetrahedra.
 
-use super::{above_0, block::grid, too_many};
+use super::block::grid;
+use super::limits::{limit_vertices, positive_lengths};
+use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::{Point, Vector};
 use bowknot_io::Mesh;
 use serde::{Deserialize, Serialize};
@@ -40,10 +42,12 @@ impl TetBall {
             Point::from(direction * (self.radius * shell / direction.norm()))
         })
     }
+}
 
-    pub(super) fn validate(&self, problems: &mut Vec<(&'static str, String)>) {
-        if above_0([("radius", self.radius), ("edge", self.edge)].into_iter(), problems) {
-            too_many((FRAC_PI_2 * self.radius / self.edge + 1.0).powi(3), self.edge, problems);
+impl Parameters for TetBall {
+    fn check(&self, checks: &mut Checks) {
+        if positive_lengths([("radius", self.radius), ("edge", self.edge)].into_iter(), checks) {
+            limit_vertices((FRAC_PI_2 * self.radius / self.edge + 1.0).powi(3), self.edge, checks);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! An open cylinder.
 
-use super::{TriangleMesh, segments, sheet::cut};
+use super::mesh::{TriangleMesh, segments};
+use super::sheet::cut;
 use bowknot_geometry::Point;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;

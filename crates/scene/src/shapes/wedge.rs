@@ -1,6 +1,7 @@
 //! A sharp wedge.
 
-use super::{TriangleMesh, segments, sheet::cut};
+use super::mesh::{TriangleMesh, segments};
+use super::sheet::cut;
 use bowknot_geometry::Point;
 use serde::{Deserialize, Serialize};
 

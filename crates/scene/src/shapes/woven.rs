@@ -1,6 +1,7 @@
 //! A plain weave of strands.
 
-use super::{MOST_VERTICES, above_0};
+use super::limits::{MAX_VERTICES, positive_lengths};
+use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::Point;
 use bowknot_io::Mesh;
 use serde::{Deserialize, Serialize};
@@ -68,23 +69,27 @@ impl Woven {
     fn centred(&self, index: f64, count: usize) -> f64 {
         (index - 0.5 * (count as f64 - 1.0)) * self.spacing
     }
+}
 
-    pub(super) fn validate(&self, problems: &mut Vec<(&'static str, String)>) {
-        above_0([("spacing", self.spacing), ("amplitude", self.amplitude)].into_iter(), problems);
+impl Parameters for Woven {
+    fn check(&self, checks: &mut Checks) {
+        positive_lengths([("spacing", self.spacing), ("amplitude", self.amplitude)].into_iter(), checks);
         let counts = [("count", self.count[0]), ("count", self.count[1]), ("segments", self.segments)];
-        let before = problems.len();
+        let before = checks.error_count();
         for (key, count) in counts {
-            if count == 0 {
-                problems.push((key, "must be at least 1".to_owned()));
-            }
+            checks.count_at_least(key, count as usize, 1);
         }
-        if problems.len() > before {
+        if checks.error_count() > before {
             return;
         }
         let [x, y] = self.count.map(|count| count as f64);
         let crossings = 2.0 * x * y + 2.0 * self.fringe as f64 * (x + y);
-        if crossings * self.segments as f64 > MOST_VERTICES {
-            problems.push(("count", format!("would make more than {MOST_VERTICES:e} vertices")));
+        if crossings * self.segments as f64 > MAX_VERTICES {
+            checks.refuse(
+                "count",
+                format!("{:?}", self.count),
+                format!("must make at most {MAX_VERTICES:e} vertices"),
+            );
         }
     }
 }

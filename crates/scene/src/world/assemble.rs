@@ -191,8 +191,12 @@ impl Assembly {
     fn finish(mut self, scene: &Scene, deformable_vertices: usize) -> Result<World, SceneError> {
         let pins = pins(scene, &self.bodies, &self.positions)?;
         self.contact.pairs = self.friction_pairs(scene);
-        let topology =
-            Topology::new(self.base.len(), self.triangles, &self.strands, &self.particles).map_err(joined)?;
+        let topology = Topology::builder(self.base.len())
+            .triangles(self.triangles)
+            .strand_edges(self.strands.iter().copied())
+            .particles(self.particles.iter().copied())
+            .build()
+            .map_err(joined)?;
         let collision = CollisionModel::new(topology, self.vertex_body, self.filters, self.half_spaces)
             .map_err(|error| SceneError::Model(error.to_string()))?;
         for warning in &self.warnings {
@@ -219,7 +223,7 @@ impl Assembly {
             let plane = || self.half_space_names.iter().position(|n| n == name);
             body.or_else(|| plane().map(|h| ContactSide::HalfSpace(h as u32)))
         };
-        let pair = |spec: &crate::contact::FrictionPair| {
+        let pair = |spec: &crate::friction::FrictionPair| {
             let [a, b] = &spec.bodies;
             // Validation has refused names that do not exist.
             Some(PairFriction { sides: [side(a)?, side(b)?], friction: spec.friction })
@@ -229,9 +233,9 @@ impl Assembly {
 }
 
 /// Stretch limit of a body: its own, or that of its material unless the scene has one for all, which is left to
-/// `constraints.stretch_limit`.
+/// `contact.stretch_limit`.
 fn stretch_limit(scene: &Scene, body: &BodySpec) -> Option<f64> {
-    let for_all = scene.twoway.constraints.stretch_limit.is_some();
+    let for_all = scene.twoway.contact.stretch_limit.is_some();
     body.stretch_limit.or_else(|| if for_all { None } else { body.material.stretch_limit() })
 }
 

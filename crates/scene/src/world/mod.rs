@@ -29,7 +29,7 @@ use bowknot_geometry::{Point, Vector};
 use bowknot_proximity::CollisionModel;
 use bowknot_twoway::{BodyContact, HalfSpaceContact, PairFriction};
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// A scene's bodies over one array of vertices.
@@ -123,7 +123,7 @@ pub struct Pin {
 }
 
 /// Counts of a scene, as `bowknot info --json` prints them.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SceneInfo {
     /// Deformable vertices, those inside of solids included.
     pub vertices: usize,
@@ -241,8 +241,8 @@ impl World {
     }
 }
 
-fn joined<E: ToString>(errors: Vec<E>) -> SceneError {
-    let lines: Vec<String> = errors.iter().take(10).map(ToString::to_string).collect();
+fn joined<E: ToString>(errors: impl IntoIterator<Item = E>) -> SceneError {
+    let lines: Vec<String> = errors.into_iter().take(10).map(|error| error.to_string()).collect();
     SceneError::Model(lines.join("\n"))
 }
 

@@ -1,12 +1,13 @@
-//! Thickness, contact distance and stretch limit of each body, against distances by brute force; groups of pins.
+//! Thickness, contact distance and stretch limit of each body, against distances by brute force; groups of
+//! pins.
 #![allow(clippy::unwrap_used)] // helpers of tests are outside the functions that the lint knows as tests
 
 use crate::common::{Draw, Flight, brute_force, sheet};
 use bowknot_geometry::{HalfSpace, PairKind, Point, Topology, Vector};
 use bowknot_proximity::{BodyFilter, CollisionModel};
 use bowknot_twoway::{
-    AcceptedState, Behind, BodyContact, Call, FLOOR_MARGIN, Follower, HalfSpaceContact, Params, ResolveError,
-    Resolver,
+    AcceptedState, BodyContact, HalfSpaceContact, Lag, MIN_SEPARATION_MARGIN, Params, PrescribedEntity,
+    ResolveError, ResolveInput, Resolver,
 };
 use std::ops::ControlFlow;
 
@@ -53,7 +54,12 @@ fn zoo() -> Zoo {
     bodies.resize(x.len(), 3);
     sheet(1, 0.2, 0.08, &mut x, &mut triangles);
     bodies.resize(x.len(), OBSTACLE);
-    let topology = Topology::new(x.len(), triangles, &strands, &particles).unwrap();
+    let topology = Topology::builder(x.len())
+        .triangles(triangles)
+        .strand_edges(strands.iter().copied())
+        .particles(particles.iter().copied())
+        .build()
+        .unwrap();
     let mut filters = vec![BodyFilter::DEFORMABLE; 5];
     filters[OBSTACLE as usize] = BodyFilter::OBSTACLE;
     let ground = HalfSpace::new(Point::origin(), Vector::z()).unwrap();
@@ -79,7 +85,7 @@ impl Zoo {
             .unwrap()
     }
 
-    /// Asserts that every pair keeps its floor.
+    /// Asserts that every pair keeps its minimum separation.
     fn check(&self, x: &[Point], what: &str) {
         let thickness = |v: u32| self.contact[self.bodies[v as usize] as usize].thickness.unwrap();
         let mut rest = Vec::new();
@@ -87,18 +93,25 @@ impl Zoo {
         let mut k = 0;
         brute_force::pairs(&self.topology, x, |a, b, distance| {
             let (body_a, body_b) = (self.bodies[a[0] as usize], self.bodies[b[0] as usize]);
-            let mut floor = 0.5 * (thickness(a[0]) + thickness(b[0]));
+            let mut min_separation = 0.5 * (thickness(a[0]) + thickness(b[0]));
             if body_a == body_b {
-                floor = floor.min(0.5 * rest[k] / FLOOR_MARGIN);
+                min_separation = min_separation.min(0.5 * rest[k] / MIN_SEPARATION_MARGIN);
             }
             k += 1;
             if body_a != OBSTACLE || body_b != OBSTACLE {
-                assert!(distance >= floor * (1.0 - 1e-9), "{what}: {a:?} {b:?} at {distance}, floor {floor}");
+                assert!(
+                    distance >= min_separation * (1.0 - 1e-9),
+                    "{what}: {a:?} {b:?} at {distance}, minimum {min_separation}"
+                );
             }
         });
         for (v, x) in x.iter().enumerate().filter(|(v, _)| self.bodies[*v] != OBSTACLE) {
-            let floor = 0.5 * (thickness(v as u32) + self.ground.thickness.unwrap());
-            assert!(x.z >= floor * (1.0 - 1e-9), "{what}: {v} at {} above the ground, floor {floor}", x.z);
+            let min_separation = 0.5 * (thickness(v as u32) + self.ground.thickness.unwrap());
+            assert!(
+                x.z >= min_separation * (1.0 - 1e-9),
+                "{what}: {v} at {} above the ground, minimum {min_separation}",
+                x.z
+            );
         }
     }
 }
@@ -108,13 +121,13 @@ fn however_violent_the_targets_bodies_of_all_kinds_keep_their_thickness() {
     let zoo = zoo();
     zoo.check(&zoo.x, "the start");
     for (preset, mut params) in [("fast", Params::fast()), ("paper", Params::paper())] {
-        params.stop.max_steps = Some(40);
+        params.solver.stop.max_steps = Some(40);
         let mut resolver = zoo.resolver(params);
-        let mut draw = Draw(7);
+        let mut draw = Draw::new(7);
         let mut x = zoo.x.clone();
         let mut met = [false; 5];
         for call_index in 0..12 {
-            // Thrown at the ground, at each other, or anywhere; the obstacle shakes.
+            // The bodies are thrown at the ground and at each other; the obstacle moves up and down.
             let reach = [0.05, 0.4, 2.0][call_index % 3];
             let fall = if call_index % 2 == 0 { -0.6 } else { 0.1 };
             let y: Vec<Point> = (0..x.len())
@@ -127,8 +140,8 @@ fn however_violent_the_targets_bodies_of_all_kinds_keep_their_thickness() {
                 zoo.check(state.positions, &format!("{preset}, call {call_index}, step {}", state.step));
                 ControlFlow::Continue(())
             };
-            let call = Call { time_step: Some(0.02), ..Call::default() };
-            resolver.resolve(&mut x, &y, &call, &mut observer).unwrap();
+            let input = ResolveInput { time_step: Some(0.02), ..ResolveInput::default() };
+            resolver.resolve_with(&mut x, &y, &input, &mut observer).unwrap();
             for kind in PairKind::ALL {
                 let contacts = &resolver.state().contacts;
                 let near = |p: usize| contacts.separations[p].distance < 1.3 * contacts.desired[p];
@@ -140,13 +153,13 @@ fn however_violent_the_targets_bodies_of_all_kinds_keep_their_thickness() {
 }
 
 #[test]
-fn a_long_step_without_contacts_in_sight_keeps_floors_too() {
-    // Two grains fly to places side by side, nearer than their thickness, from where neither sees the other: their
-    // paths would be clear.
+fn a_swept_step_without_candidates_keeps_minimum_separations() {
+    // Two grains that are no candidates fly to positions side by side, closer than their thickness. Their
+    // paths do not intersect.
     let side_by_side = 0.025;
     let mut x = vec![Point::new(-0.2, 0.0, 0.0), Point::new(0.2, side_by_side, 0.0)];
     let y = [Point::new(0.0, 0.0, 0.0), Point::new(0.0, side_by_side, 0.0)];
-    let topology = Topology::new(2, Vec::new(), &[], &[0, 1]).unwrap();
+    let topology = Topology::builder(2).particles([0, 1]).build().unwrap();
     let mut resolver = Resolver::new(CollisionModel::single_body(topology), &x, &[1.0; 2], Params::fast())
         .unwrap()
         .with_bodies(vec![BodyContact { delta: Some(0.04), ..thick(0.03) }])
@@ -156,21 +169,21 @@ fn a_long_step_without_contacts_in_sight_keeps_floors_too() {
         assert!(distance >= 0.03 * (1.0 - 1e-9), "{distance} m in step {}", state.step);
         ControlFlow::Continue(())
     };
-    let report = resolver.resolve(&mut x, &y, &Call::default(), &mut observer).unwrap();
+    let report = resolver.resolve_with(&mut x, &y, &ResolveInput::default(), &mut observer).unwrap();
     assert!(report.converged, "{report:?}");
     let distance = (x[0] - x[1]).norm();
     assert!(distance > 0.04 && distance < 0.055, "desired: 0.045 m; found: {distance} m");
 }
 
 #[test]
-fn a_start_tighter_than_the_thickness_grows_to_it_and_never_shrinks() {
+fn a_gap_that_starts_below_the_thickness_grows_to_it_and_never_shrinks() {
     let (mut x, mut triangles) = (Vec::new(), Vec::new());
     let (thickness, gap) = (0.01, 0.001);
     sheet(3, 0.1, 0.2, &mut x, &mut triangles);
     let n = x.len();
     sheet(3, 0.1, 0.2 + gap, &mut x, &mut triangles);
     let bodies: Vec<u32> = (0..2 * n).map(|i| u32::from(i >= n)).collect();
-    let topology = Topology::new(2 * n, triangles, &[], &[]).unwrap();
+    let topology = Topology::builder(2 * n).triangles(triangles).build().unwrap();
     let model =
         CollisionModel::new(topology.clone(), bodies.clone(), vec![BodyFilter::DEFORMABLE; 2], vec![])
             .unwrap();
@@ -178,7 +191,7 @@ fn a_start_tighter_than_the_thickness_grows_to_it_and_never_shrinks() {
         .unwrap()
         .with_bodies(vec![thick(thickness); 2])
         .unwrap();
-    let speed = resolver.problem().lengths.separation_speed;
+    let speed = resolver.scene().lengths().separation_speed;
     let v = vec![Vector::zeros(); 2 * n];
     let mut flight = Flight { resolver, x, v, gravity: Vector::zeros(), dt: 0.01 };
     let nearest = |x: &[Point]| {
@@ -192,7 +205,7 @@ fn a_start_tighter_than_the_thickness_grows_to_it_and_never_shrinks() {
     };
     let mut last = nearest(&flight.x);
     for step in 0..80 {
-        // Squeezed together in each step.
+        // Each step presses the sheets together.
         for i in 0..2 * n {
             flight.v[i].z += if i < n { 0.2 } else { -0.2 };
         }
@@ -221,7 +234,7 @@ fn grains_of_two_sizes_come_to_rest_at_the_sum_of_their_radii_and_on_the_ground_
         height += size + 0.05;
     }
     let bodies = vec![0, 1, 0, 1];
-    let topology = Topology::new(4, Vec::new(), &[], &[0, 1, 2, 3]).unwrap();
+    let topology = Topology::builder(4).particles([0, 1, 2, 3]).build().unwrap();
     let ground = HalfSpace::new(Point::origin(), Vector::z()).unwrap();
     let filters = vec![BodyFilter::DEFORMABLE; 2];
     let model = CollisionModel::new(topology, bodies, filters, vec![ground]).unwrap();
@@ -230,7 +243,7 @@ fn grains_of_two_sizes_come_to_rest_at_the_sum_of_their_radii_and_on_the_ground_
         .unwrap()
         .with_bodies(vec![grain(0.02), grain(0.05)])
         .unwrap();
-    let lengths = resolver.problem().lengths;
+    let lengths = resolver.scene().lengths();
     assert!((lengths.edge - 2.5 * 0.035).abs() < 1e-12, "lengths follow the grains: {lengths:?}");
     let v = vec![Vector::zeros(); 4];
     let mut flight = Flight { resolver, x, v, gravity: -9.81 * Vector::z(), dt: 0.005 };
@@ -259,7 +272,8 @@ fn strands_rest_on_strands_and_particles_on_both() {
     }
     x.push(Point::new(0.003, 0.0, 0.08));
     let strands: Vec<[u32; 2]> = (0..4).chain(5..9).map(|i| [i, i + 1]).collect();
-    let topology = Topology::new(11, Vec::new(), &strands, &[10]).unwrap();
+    let topology =
+        Topology::builder(11).strand_edges(strands.iter().copied()).particles([10]).build().unwrap();
     let bodies: Vec<u32> = (0..11).map(|i| i / 5).collect();
     let model = CollisionModel::new(topology, bodies, vec![BodyFilter::DEFORMABLE; 3], vec![]).unwrap();
     let resolver = Resolver::new(model, &x, &[1.0; 11], Params::fast())
@@ -269,7 +283,7 @@ fn strands_rest_on_strands_and_particles_on_both() {
     let v = vec![Vector::zeros(); 11];
     let mut flight = Flight { resolver, x, v, gravity: -2.0 * Vector::z(), dt: 0.01 };
     for _ in 0..100 {
-        // Sticky air, so that it comes to rest.
+        // Damping, so that the bodies come to rest.
         flight.v.iter_mut().for_each(|v| *v *= 0.9);
         flight.step(|i, x| [0, 4, 5, 9].contains(&i).then_some(*x));
         let crossing =
@@ -290,7 +304,7 @@ fn stretch_limits_are_those_of_each_body_and_none_costs_nothing() {
     sheet(3, 0.1, 1.0, &mut x, &mut triangles);
     sheet(3, 0.1, 2.0, &mut x, &mut triangles);
     let bodies: Vec<u32> = (0..3 * n).map(|i| (i / n) as u32).collect();
-    let topology = Topology::new(3 * n, triangles, &[], &[]).unwrap();
+    let topology = Topology::builder(3 * n).triangles(triangles).build().unwrap();
     let edges = topology.edges.clone();
     let filters = vec![BodyFilter::DEFORMABLE; 3];
     let model = CollisionModel::new(topology, bodies.clone(), filters, vec![]).unwrap();
@@ -301,7 +315,7 @@ fn stretch_limits_are_those_of_each_body_and_none_costs_nothing() {
         .unwrap();
     let y: Vec<Point> = x.iter().map(|p| Point::new(1.5 * p.x, p.y, p.z)).collect();
     let mut moved = x.clone();
-    let report = resolver.resolve(&mut moved, &y, &Call::default(), &mut ()).unwrap();
+    let report = resolver.resolve(&mut moved, &y).unwrap();
     assert!(report.converged, "{report:?}");
     assert_eq!(report.edge_rows, edges.len() / 3 * 2, "the body without a limit has no rows");
     let mut worst = [0.0f64; 3];
@@ -314,28 +328,31 @@ fn stretch_limits_are_those_of_each_body_and_none_costs_nothing() {
     assert!(worst[1] > 1.25 && worst[1] < 1.3 * 1.02 + 1e-12, "{worst:?}");
     assert!(worst[2] > 1.05 && worst[2] < 1.1 * 1.02 + 1e-12, "{worst:?}");
 
-    // Without any limit at all the rule that stops has no edge to look at.
-    let topology =
-        Topology::new(n, resolver.problem().model.topology().triangles[..18].to_vec(), &[], &[]).unwrap();
+    // Without any limit the stopping rule has no edges.
+    let topology = Topology::builder(n)
+        .triangles(resolver.scene().model().topology().triangles[..18].iter().copied())
+        .build()
+        .unwrap();
     let mut resolver =
         Resolver::new(CollisionModel::single_body(topology), &x[..n], &vec![1.0; n], Params::fast())
             .unwrap()
             .with_bodies(vec![limit(Some(f64::INFINITY))])
             .unwrap();
     let mut moved = x[..n].to_vec();
-    let report = resolver.resolve(&mut moved, &y[..n], &Call::default(), &mut ()).unwrap();
+    let report = resolver.resolve(&mut moved, &y[..n]).unwrap();
     assert!(report.converged && report.edge_rows == 0 && report.max_stretch == 1.0, "{report:?}");
 }
 
 #[test]
-fn a_group_of_pins_waits_as_a_whole_and_says_how_far_behind_it_is() {
+fn a_group_of_pins_waits_as_a_whole_and_reports_its_lag() {
     // Two pins carry the ends of a strand down through a pinned sheet; one of them alone could go on.
     let (mut x, mut triangles) = (Vec::new(), Vec::new());
     sheet(4, 0.1, 0.0, &mut x, &mut triangles);
     let n = x.len();
     x.extend([Point::new(0.2, 0.2, 0.1), Point::new(0.3, 0.2, 0.2), Point::new(2.0, 0.2, 0.3)]);
     let (a, b) = (n as u32, n as u32 + 2);
-    let topology = Topology::new(n + 3, triangles, &[[a, a + 1], [a + 1, b]], &[]).unwrap();
+    let topology =
+        Topology::builder(n + 3).triangles(triangles).strand_edges([[a, a + 1], [a + 1, b]]).build().unwrap();
     let bodies: Vec<u32> = (0..n + 3).map(|i| u32::from(i >= n)).collect();
     let model = CollisionModel::new(topology, bodies, vec![BodyFilter::DEFORMABLE; 2], vec![]).unwrap();
     let start = x.clone();
@@ -344,69 +361,69 @@ fn a_group_of_pins_waits_as_a_whole_and_says_how_far_behind_it_is() {
         .collect();
     let prescribed: Vec<bool> = (0..n + 3).map(|i| i != n + 1).collect();
     let groups: Vec<u32> =
-        (0..n + 3).map(|i| if [n, n + 2].contains(&i) { 7 } else { Call::NO_GROUP }).collect();
+        (0..n + 3).map(|i| if [n, n + 2].contains(&i) { 7 } else { ResolveInput::NO_GROUP }).collect();
     let mut params = Params::fast();
-    params.constraints.edges = false;
+    params.contact.edges = false;
     let mut resolver = Resolver::new(model, &x, &vec![1.0; n + 3], params).unwrap();
-    let call = Call { prescribed: &prescribed, groups: &groups, ..Call::default() };
-    let report = resolver.resolve(&mut x, &y, &call, &mut ()).unwrap();
+    let input = ResolveInput { prescribed: &prescribed, groups: &groups, ..ResolveInput::default() };
+    let report = resolver.resolve_with(&mut x, &y, &input, &mut ()).unwrap();
     let share = |i: usize| (x[i] - start[i]).norm() / (y[i] - start[i]).norm();
     assert!((share(n) - share(n + 2)).abs() < 1e-12, "{} {}", share(n), share(n + 2));
     assert!(share(n) > 0.1 && share(n) < 0.125, "it comes to the sheet and stays above: {}", share(n));
     assert!(x[n].z > 0.0);
-    let [Behind { who: Follower::Group(7), distance_m }] = report.behind[..] else {
-        panic!("{:?}", report.behind)
+    let [Lag { entity: PrescribedEntity::Group(7), distance_m }] = report.lags[..] else {
+        panic!("{:?}", report.lags)
     };
-    assert!((distance_m - report.prescribed_behind_m).abs() < 1e-12 && distance_m > 0.7, "{distance_m}");
+    assert!((distance_m - report.prescribed_lag_m).abs() < 1e-12 && distance_m > 0.7, "{distance_m}");
 
     // Without the group the far pin arrives and only the other waits.
     let mut x = start.clone();
-    let call = Call { prescribed: &prescribed, ..Call::default() };
-    let report = resolver.resolve(&mut x, &y, &call, &mut ()).unwrap();
+    let input = ResolveInput { prescribed: &prescribed, ..ResolveInput::default() };
+    let report = resolver.resolve_with(&mut x, &y, &input, &mut ()).unwrap();
     assert!((x[n + 2] - y[n + 2]).norm() < 0.01 && (x[n] - y[n]).norm() > 0.7);
-    assert!(matches!(report.behind[..], [Behind { who: Follower::Pins(1), .. }]), "{:?}", report.behind);
+    assert!(matches!(report.lags[..], [Lag { entity: PrescribedEntity::Pins(1), .. }]), "{:?}", report.lags);
 }
 
 #[test]
 fn layers_within_a_group_do_not_hold_each_other_back() {
-    // Two sheets pinned as one group, close together, move along the normal: each is in the other's way but for
-    // their common motion.
+    // Two sheets pinned as one group, close together, move along the normal: each is in the other's way but
+    // for their common motion.
     let (mut x, mut triangles) = (Vec::new(), Vec::new());
     sheet(4, 0.1, 0.0, &mut x, &mut triangles);
     let n = x.len();
     sheet(4, 0.1, 0.005, &mut x, &mut triangles);
-    let topology = Topology::new(2 * n, triangles, &[], &[]).unwrap();
+    let topology = Topology::builder(2 * n).triangles(triangles).build().unwrap();
     let bodies = (0..2 * n).map(|i| u32::from(i >= n)).collect();
     let model = CollisionModel::new(topology, bodies, vec![BodyFilter::DEFORMABLE; 2], vec![]).unwrap();
     let mut resolver = Resolver::new(model, &x, &vec![1.0; 2 * n], Params::fast()).unwrap();
     let y: Vec<Point> = x.iter().map(|p| p + 0.5 * Vector::z()).collect();
     let (prescribed, groups) = (vec![true; 2 * n], vec![3; 2 * n]);
-    let call = Call { prescribed: &prescribed, groups: &groups, ..Call::default() };
-    let report = resolver.resolve(&mut x, &y, &call, &mut ()).unwrap();
-    assert!(report.converged && report.behind.is_empty() && report.steps < 30, "{report:?}");
+    let input = ResolveInput { prescribed: &prescribed, groups: &groups, ..ResolveInput::default() };
+    let report = resolver.resolve_with(&mut x, &y, &input, &mut ()).unwrap();
+    assert!(report.converged && report.lags.is_empty() && report.steps < 30, "{report:?}");
     assert!(x.iter().zip(&y).all(|(x, y)| (x - y).norm() < 0.01));
 }
 
 #[test]
-fn contact_data_and_calls_that_do_not_fit_are_refused() {
+fn invalid_contact_data_and_input_are_refused() {
     let zoo = zoo();
     let resolver =
         || Resolver::new(zoo.model.clone(), &zoo.x, &vec![1.0; zoo.x.len()], Params::fast()).unwrap();
     let error = resolver().with_bodies(vec![BodyContact { friction: -0.5, ..thick(-1.0) }; 5]).unwrap_err();
-    let ResolveError::Contact(problems) = &error else { panic!("{error}") };
-    assert_eq!(problems.len(), 10, "{problems:?}");
-    assert!(error.to_string().contains("friction = -0.5 of body 3"), "{error}");
+    let ResolveError::Contact(errors) = &error else { panic!("{error}") };
+    assert_eq!(errors.len(), 10, "{errors}");
+    assert!(error.to_string().contains("bodies[3].friction = -0.5"), "{error}");
     let error = resolver().with_half_spaces(vec![]).unwrap_err();
-    assert!(error.to_string().contains("0 half-spaces given for a model with 1"), "{error}");
+    assert!(error.to_string().contains("half_spaces.len() = 0: must be 1"), "{error}");
     let mut good = resolver();
     let mut x = zoo.x.clone();
     let groups = [0; 3];
-    let call = Call { groups: &groups, ..Call::default() };
-    let error = good.resolve(&mut x, &zoo.x, &call, &mut ()).unwrap_err();
+    let input = ResolveInput { groups: &groups, ..ResolveInput::default() };
+    let error = good.resolve_with(&mut x, &zoo.x, &input, &mut ()).unwrap_err();
     assert!(matches!(error, ResolveError::Length { what: "groups", given: 3, .. }), "{error}");
     let start = vec![Point::new(f64::NAN, 0.0, 0.0); x.len()];
-    let call = Call { start: Some(&start), ..Call::default() };
-    let error = good.resolve(&mut x, &zoo.x, &call, &mut ()).unwrap_err();
+    let input = ResolveInput { start: Some(&start), ..ResolveInput::default() };
+    let error = good.resolve_with(&mut x, &zoo.x, &input, &mut ()).unwrap_err();
     assert!(matches!(error, ResolveError::NonFinite { what: "the start", .. }), "{error}");
     assert_eq!(x, zoo.x);
 }

@@ -5,7 +5,7 @@ use crate::common::{Flight, sheet};
 use bowknot_constraints::FrictionModel;
 use bowknot_geometry::{HalfSpace, Point, Topology, Vector};
 use bowknot_proximity::{BodyFilter, CollisionModel};
-use bowknot_twoway::{BodyContact, Call, ContactSide, HalfSpaceContact, PairFriction, Params, Resolver};
+use bowknot_twoway::{BodyContact, ContactSide, HalfSpaceContact, PairFriction, Params, Resolver};
 
 const G: f64 = 9.81;
 const H: f64 = 0.05;
@@ -30,12 +30,13 @@ fn incline(slope: f64, friction: f64, particle: bool, params: Params) -> (Flight
     let x: Vec<Point> =
         x.iter().map(|p| Point::origin() + p.x * down + p.y * side + delta * normal).collect();
     let particles: &[u32] = if particle { &[0] } else { &[] };
-    let topology = Topology::new(x.len(), triangles, &[], particles).unwrap();
+    let topology =
+        Topology::builder(x.len()).triangles(triangles).particles(particles.iter().copied()).build().unwrap();
     let plane = HalfSpace::new(Point::origin(), normal).unwrap();
     let bodies = vec![0; x.len()];
     let model = CollisionModel::new(topology, bodies, vec![BodyFilter::DEFORMABLE], vec![plane]).unwrap();
     let mut params = params;
-    params.constraints.delta = Some(delta);
+    params.contact.delta = Some(delta);
     let count = x.len();
     let resolver = Resolver::new(model, &x, &vec![1.0; count], params)
         .unwrap()
@@ -48,7 +49,7 @@ fn incline(slope: f64, friction: f64, particle: bool, params: Params) -> (Flight
 }
 
 #[test]
-fn below_the_angle_of_friction_a_patch_and_a_particle_stay_where_they_are() {
+fn below_the_angle_of_friction_a_patch_and_a_particle_stick() {
     for particle in [false, true] {
         let (mut flight, _, count) = incline(0.45, 0.5, particle, Params::fast());
         let start = flight.x.clone();
@@ -56,14 +57,14 @@ fn below_the_angle_of_friction_a_patch_and_a_particle_stay_where_they_are() {
             let report = flight.step(|_, _| None);
             assert!(report.converged && report.sticking_contacts == count, "{report:?}");
         }
-        // Two seconds in which free sliding would have gone 8 m.
-        let crept = flight.x.iter().zip(&start).map(|(x, s)| (x - s).norm()).fold(0.0, f64::max);
-        assert!(crept < 1e-9, "crept by {crept} m");
+        // In these two seconds a body without friction slides by 8 m.
+        let slip = flight.x.iter().zip(&start).map(|(x, s)| (x - s).norm()).fold(0.0, f64::max);
+        assert!(slip < 1e-9, "slipped by {slip} m");
     }
 }
 
 #[test]
-fn above_the_angle_of_friction_they_slide_with_the_acceleration_that_is_left() {
+fn above_the_angle_of_friction_they_slide_with_the_remaining_acceleration() {
     for (slope, friction) in [(0.6, 0.5), (1.0, 0.2), (0.5, 0.01)] {
         for particle in [false, true] {
             let (mut flight, down, count) = incline(slope, friction, particle, Params::fast());
@@ -85,7 +86,7 @@ fn above_the_angle_of_friction_they_slide_with_the_acceleration_that_is_left() {
 }
 
 #[test]
-fn friction_takes_energy_and_stops_what_slides_where_it_should() {
+fn friction_dissipates_energy_and_stops_a_sliding_patch_at_the_expected_place() {
     let (mut flight, _, count) = incline(0.0, 0.4, false, Params::fast());
     let speed = 1.5;
     flight.v.iter_mut().for_each(|v| *v = speed * Vector::x());
@@ -121,12 +122,12 @@ fn on_a_plate(friction: f64, model: FrictionModel) -> (Flight, usize) {
     let n = count as u32;
     triangles.extend([[n, n + 1, n + 2], [n, n + 2, n + 3]]);
     let bodies = (0..x.len()).map(|i| u32::from(i >= count)).collect();
-    let topology = Topology::new(x.len(), triangles, &[], &[]).unwrap();
+    let topology = Topology::builder(x.len()).triangles(triangles).build().unwrap();
     let filters = vec![BodyFilter::DEFORMABLE, BodyFilter::OBSTACLE];
     let collision = CollisionModel::new(topology, bodies, filters, vec![]).unwrap();
     let mut params = Params::fast();
-    params.constraints.delta = Some(0.1 * H);
-    params.constraints.friction_model = model;
+    params.contact.delta = Some(0.1 * H);
+    params.contact.friction_model = model;
     let resolver = Resolver::new(collision, &x, &vec![1.0; x.len()], params)
         .unwrap()
         .with_bodies(vec![rough(0.0), rough(0.0)])
@@ -142,14 +143,14 @@ fn a_moving_obstacle_drags_what_lies_on_it() {
     let (mut flight, count) = on_a_plate(0.3, FrictionModel::Coulomb);
     let speed = 0.5;
     let step = speed * flight.dt * Vector::x();
-    // As long as the plate is faster, friction accelerates the patch by mu g, ..
+    // As long as the plate is faster, friction accelerates the patch by mu g.
     for _ in 0..10 {
         flight.step(|i, x| (i >= count).then(|| x + step));
     }
     let found = flight.velocity(count).x;
     let expected = 0.3 * G * 10.0 * flight.dt;
     assert!((found / expected - 1.0).abs() < 0.03, "{found} m/s against {expected} m/s");
-    // .. and then they go on together.
+    // After that they move together.
     for _ in 0..20 {
         flight.step(|i, x| (i >= count).then(|| x + step));
     }
@@ -178,7 +179,7 @@ fn a_turning_obstacle_turns_what_lies_on_it() {
 }
 
 #[test]
-fn the_filter_drags_too_and_none_does_not() {
+fn the_filter_drags_as_well_and_none_does_not() {
     let speed = 0.5;
     let run = |model| {
         let (mut flight, count) = on_a_plate(0.3, model);
@@ -193,7 +194,8 @@ fn the_filter_drags_too_and_none_does_not() {
     assert_eq!(rows, 0, "the filter has no rows");
     assert!(filtered > 0.8 * speed && filtered < 1.01 * speed, "{filtered} m/s");
     let (free, rows) = run(FrictionModel::None);
-    // Not quite 0: contacts across the plate's diagonal have tilted normals, which push a little as it passes.
+    // Not exactly 0: contacts across the plate's diagonal have tilted normals, which push a little as the
+    // diagonal passes.
     assert!(free.abs() < 0.1 * speed && rows == 0, "{free} m/s");
 }
 
@@ -206,13 +208,13 @@ fn friction_between_two_bodies_is_equal_and_opposite() {
     sheet(4, H, 0.12 * H, &mut x, &mut triangles);
     let masses: Vec<f64> = (0..2 * n).map(|i| if i < n { 1.0 } else { 2.0 }).collect();
     let bodies: Vec<u32> = (0..2 * n).map(|i| u32::from(i >= n)).collect();
-    let topology = Topology::new(2 * n, triangles, &[], &[]).unwrap();
+    let topology = Topology::builder(2 * n).triangles(triangles).build().unwrap();
     let mut given = [0.0; 2];
     for (k, friction) in [0.0, 0.4].into_iter().enumerate() {
         let filters = vec![BodyFilter::DEFORMABLE; 2];
         let model = CollisionModel::new(topology.clone(), bodies.clone(), filters, vec![]).unwrap();
         let mut params = Params::fast();
-        params.constraints.delta = Some(0.1 * H);
+        params.contact.delta = Some(0.1 * H);
         let mut resolver =
             Resolver::new(model, &x, &masses, params).unwrap().with_bodies(vec![rough(friction); 2]).unwrap();
         let y: Vec<Point> = (0..2 * n)
@@ -222,7 +224,7 @@ fn friction_between_two_bodies_is_equal_and_opposite() {
             })
             .collect();
         let mut moved = x.clone();
-        let report = resolver.resolve(&mut moved, &y, &Call::default(), &mut ()).unwrap();
+        let report = resolver.resolve(&mut moved, &y).unwrap();
         assert!(report.converged, "{report:?}");
         let momentum =
             |range: std::ops::Range<usize>| -> Vector { range.map(|i| masses[i] * (moved[i] - y[i])).sum() };
@@ -230,7 +232,8 @@ fn friction_between_two_bodies_is_equal_and_opposite() {
         assert!((a + b).norm() < 1e-3 * a.norm(), "{a} {b}");
         given[k] = -a.x;
         if friction > 0.0 {
-            // The warp of the sheets tilts normals; what is added along x is mu times what presses, at most.
+            // The warp of the sheets tilts normals. Friction adds at most mu times the normal impulse along
+            // x.
             assert!(given[1] < 1.1 * 0.4 * a.z.abs(), "{a}");
             assert!(report.friction_rows == report.contact_rows && report.sliding_contacts > 0, "{report:?}");
         }
@@ -246,7 +249,7 @@ fn frictional_results_have_the_same_bits_for_any_number_of_threads() {
         sheet(20, H, 0.11 * H * f64::from(layer), &mut x, &mut triangles);
         bodies.resize(x.len(), layer as u32);
     }
-    let topology = Topology::new(x.len(), triangles, &[], &[]).unwrap();
+    let topology = Topology::builder(x.len()).triangles(triangles).build().unwrap();
     let model = CollisionModel::new(topology, bodies, vec![BodyFilter::DEFORMABLE; 4], vec![]).unwrap();
     let y: Vec<Point> = x
         .iter()
@@ -256,8 +259,8 @@ fn frictional_results_have_the_same_bits_for_any_number_of_threads() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let mut params = Params::fast();
-            params.constraints.delta = Some(0.1 * H);
-            params.stop.max_steps = Some(8);
+            params.contact.delta = Some(0.1 * H);
+            params.solver.stop.max_steps = Some(8);
             let mut resolver = Resolver::new(model.clone(), &x, &vec![1.0; x.len()], params)
                 .unwrap()
                 .with_bodies(vec![rough(0.5); 4])
@@ -265,11 +268,15 @@ fn frictional_results_have_the_same_bits_for_any_number_of_threads() {
             let mut results = Vec::new();
             for _ in 0..2 {
                 let mut moved = x.clone();
-                let report = resolver.resolve(&mut moved, &y, &Call::default(), &mut ()).unwrap();
-                assert!(report.friction_rows > 1024, "too few rows to be shared: {}", report.friction_rows);
+                let report = resolver.resolve(&mut moved, &y).unwrap();
+                assert!(
+                    report.friction_rows > 1024,
+                    "too few rows for parallel work: {}",
+                    report.friction_rows
+                );
                 results.push(moved);
             }
-            assert!(results[0] == results[1], "something outlives a call");
+            assert!(results[0] == results[1], "state is carried over between calls");
             results.swap_remove(0)
         })
     };

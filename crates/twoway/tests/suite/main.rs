@@ -1,4 +1,4 @@
-//! The two-way loop as a whole: bodies, friction, calls.
+//! Tests of the whole two-way loop: bodies, friction, calls.
 
 mod bodies;
 mod common;

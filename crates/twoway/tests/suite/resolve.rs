@@ -1,10 +1,10 @@
-//! Calls of the resolver against closed forms, limits, and the promises of the README.
+//! Calls of the resolver against closed forms and limits, and the statements of the README.
 #![allow(clippy::unwrap_used)] // helpers of tests are outside the functions that the lint knows as tests
 
 use crate::common::sheet;
 use bowknot_geometry::{HalfSpace, Point, Topology, Vector};
 use bowknot_proximity::{BodyFilter, CollisionModel};
-use bowknot_twoway::{AcceptedState, Call, Params, ResolveError, Resolver, Statistics};
+use bowknot_twoway::{AcceptedState, Params, ResolveError, ResolveInput, Resolver, Statistics, StopRule};
 use std::ops::ControlFlow;
 
 struct Scene {
@@ -20,7 +20,7 @@ fn sheets(cells: usize, heights: &[f64], ground: bool) -> Scene {
         sheet(cells, 0.1, height, &mut x, &mut triangles);
         bodies.resize(x.len(), body as u32);
     }
-    let topology = Topology::new(x.len(), triangles, &[], &[]).unwrap();
+    let topology = Topology::builder(x.len()).triangles(triangles).build().unwrap();
     let half_spaces =
         if ground { vec![HalfSpace::new(Point::origin(), Vector::z()).unwrap()] } else { Vec::new() };
     let filters = vec![BodyFilter::DEFORMABLE; heights.len()];
@@ -31,7 +31,7 @@ fn resolve(scene: &Scene, y: &[Point], params: Params) -> (Vec<Point>, Statistic
     let mut resolver =
         Resolver::new(scene.model.clone(), &scene.x, &vec![1.0; scene.x.len()], params).unwrap();
     let mut x = scene.x.clone();
-    let report = resolver.resolve(&mut x, y, &Call::default(), &mut ()).unwrap();
+    let report = resolver.resolve(&mut x, y).unwrap();
     (x, report)
 }
 
@@ -61,7 +61,7 @@ fn a_sheet_pushed_through_the_ground_rests_on_it_at_delta() {
         let lowest = x.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
         let delta = 0.1 * mean_edge();
         assert!(lowest > 0.0 && lowest < 1.5 * delta, "{lowest} against {delta}");
-        // Nothing but the vertical motion is taken away.
+        // Only vertical motion is removed.
         for (x, y) in x.iter().zip(&y) {
             assert!((x - y).xy().norm() < 0.02 * mean_edge(), "{x} {y}");
         }
@@ -89,34 +89,35 @@ fn two_sheets_that_want_to_swap_places_do_not() {
 
 #[test]
 fn a_taut_sheet_moved_along_itself_arrives() {
-    // The proximal term damps rigid motion of taut regions; it must delay it, not stop it.
+    // The proximal term slows down rigid motion of taut regions. It must delay that motion, not stop it.
     let scene = sheets(6, &[0.0], false);
     let stretched = |p: &Point, shift: f64| Point::new(1.3 * p.x + shift, p.y, p.z);
     let y: Vec<Point> = scene.x.iter().map(|p| stretched(p, 0.2)).collect();
     let mean = |p: &[Point]| p.iter().map(|p| p.x).sum::<f64>() / p.len() as f64;
-    for imbalance in [0.1, 0.01] {
+    for net_residual in [0.1, 0.01] {
         let mut params = Params::fast();
-        params.stop.imbalance = imbalance;
+        params.solver.stop.rule = StopRule::Travel { net_residual, residual: None };
         let (x, report) = resolve(&scene, &y, params);
         assert!(report.converged, "{report:?}");
-        // Internal forces cannot move the mean: what it lacks is what the stopping rule allows.
-        let behind = mean(&y) - mean(&x);
+        // Internal forces cannot move the mean: its distance to the target is what the stopping rule allows.
+        let lag = mean(&y) - mean(&x);
         assert!(
-            behind.abs() < imbalance * mean_edge() + 0.03 * mean_edge(),
-            "{behind} m behind at {imbalance}"
+            lag.abs() < net_residual * mean_edge() + 0.03 * mean_edge(),
+            "{lag} m from the target at {net_residual}"
         );
-        assert!(report.imbalance_m < imbalance * mean_edge());
+        assert!(report.net_residual_m < net_residual * mean_edge());
         assert!(report.max_stretch <= 1.1 * 1.02 + 1e-12, "{}", report.max_stretch);
     }
 }
 
 #[test]
 fn a_sheet_torn_by_its_pins_does_not_disturb_another() {
-    // Limits of 10 % against pins 50 % apart: their multipliers grow for ever, and those of the other sheet must not.
+    // Limits of 10 % contradict pins that stretch the sheet by 50 %: its multipliers grow without bound, and
+    // those of the other sheet must not.
     let scene = sheets(6, &[0.0, 1.0], false);
     let n = scene.x.len() / 2;
     let mut params = Params::fast();
-    params.stop.max_steps = Some(20);
+    params.solver.stop.max_steps = Some(20);
     let wanted = |p: &Point, stretch: f64| Point::new(stretch * p.x, p.y, p.z);
     let y: Vec<Point> =
         scene.x.iter().enumerate().map(|(v, p)| wanted(p, if v < n { 1.5 } else { 1.3 })).collect();
@@ -126,12 +127,12 @@ fn a_sheet_torn_by_its_pins_does_not_disturb_another() {
         let masses = vec![1.0; scene.x.len()];
         let mut resolver = Resolver::new(scene.model.clone(), &scene.x, &masses, params.clone()).unwrap();
         let mut x = scene.x.clone();
-        let call = Call { prescribed: &prescribed, ..Call::default() };
-        let report = resolver.resolve(&mut x, &y, &call, &mut ()).unwrap();
+        let input = ResolveInput { prescribed: &prescribed, ..ResolveInput::default() };
+        let report = resolver.resolve_with(&mut x, &y, &input, &mut ()).unwrap();
         (x, report)
     };
     let ((torn, report), (alone, calm)) = (solve(true), solve(false));
-    assert!(report.max_stretch > 1.3, "the pins get where they are told to");
+    assert!(report.max_stretch > 1.3, "the pins reach their targets");
     assert!(calm.converged, "{calm:?}");
     assert!(report.stationarity_m < 100.0 * mean_edge(), "{} m", report.stationarity_m);
     let apart = (n..2 * n).map(|v| (torn[v] - alone[v]).norm()).fold(0.0, f64::max);
@@ -140,13 +141,13 @@ fn a_sheet_torn_by_its_pins_does_not_disturb_another() {
 
 #[test]
 fn limits_and_observers_stop_with_a_valid_state_and_the_distance_that_remains() {
-    // Bent and stretched through each other: not done in a few steps.
+    // The sheets bend and stretch through each other, which takes more than a few steps.
     let scene = sheets(4, &[0.0, 0.05], false);
     let y: Vec<Point> = (0..50)
         .map(|i| scene.x[49 - i] + Vector::new(0.0, 0.0, if i % 3 == 0 { 0.5 } else { -0.5 }))
         .collect();
     let mut params = Params::fast();
-    params.stop.max_steps = Some(2);
+    params.solver.stop.max_steps = Some(2);
     let (_, report) = resolve(&scene, &y, params);
     assert_eq!(report.steps, 2);
     assert!(!report.converged && report.remaining_m > 0.0 && report.slowest_body.is_some());
@@ -162,18 +163,19 @@ fn limits_and_observers_stop_with_a_valid_state_and_the_distance_that_remains() 
         seen += 1;
         if seen == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    let report = resolver.resolve(&mut x, &y, &Call::default(), &mut observer).unwrap();
+    let report = resolver.resolve_with(&mut x, &y, &ResolveInput::default(), &mut observer).unwrap();
     assert_eq!((report.steps, seen), (3, 3));
     assert_eq!(x, previous);
 
     let mut params = Params::fast();
-    params.stop.max_seconds = Some(1e-9);
+    params.solver.stop.max_seconds = Some(1e-9);
     assert_eq!(resolve(&scene, &y, params).1.steps, 1);
 }
 
 #[test]
 fn pins_go_to_their_target_and_wait_where_they_would_cut_through() {
-    // A pinned sheet is pushed through a free one, which yields; through a pinned one it waits.
+    // A pinned sheet is pushed through a free sheet, which yields. If the other sheet is pinned as well, it
+    // waits.
     let scene = sheets(4, &[0.0, 0.05], false);
     let n = scene.x.len() / 2;
     let y: Vec<Point> =
@@ -182,16 +184,16 @@ fn pins_go_to_their_target_and_wait_where_they_would_cut_through() {
         Resolver::new(scene.model.clone(), &scene.x, &vec![1.0; 2 * n], Params::fast()).unwrap();
     let mut run = |pinned: Vec<bool>| {
         let mut x = scene.x.clone();
-        let call = Call { prescribed: &pinned, ..Call::default() };
-        let report = resolver.resolve(&mut x, &y, &call, &mut ()).unwrap();
+        let input = ResolveInput { prescribed: &pinned, ..ResolveInput::default() };
+        let report = resolver.resolve_with(&mut x, &y, &input, &mut ()).unwrap();
         (x, report)
     };
     let (x, report) = run((0..2 * n).map(|i| i < n).collect());
-    assert!(report.converged && report.prescribed_behind_m < 0.03 * mean_edge(), "{report:?}");
+    assert!(report.converged && report.prescribed_lag_m < 0.03 * mean_edge(), "{report:?}");
     assert!((0..n).all(|i| x[i + n].z > x[i].z + 1e-3));
     let (x, report) = run(vec![true; 2 * n]);
-    assert!(!report.converged && report.prescribed_behind_m > 0.1, "{report:?}");
-    assert!(report.steps < 60, "waiting for what cannot move uses up the steps: {}", report.steps);
+    assert!(!report.converged && report.prescribed_lag_m > 0.1, "{report:?}");
+    assert!(report.steps < 60, "the call must not wait for what cannot move: {} steps", report.steps);
     assert!((0..n).all(|i| x[i + n].z > x[i].z));
 }
 
@@ -204,16 +206,16 @@ fn the_result_has_the_same_bits_for_any_number_of_threads_and_on_every_call() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let mut params = Params::fast();
-            params.stop.max_steps = Some(12);
+            params.solver.stop.max_steps = Some(12);
             let mut resolver =
                 Resolver::new(scene.model.clone(), &scene.x, &vec![1.0; 3 * n], params).unwrap();
             let mut results = Vec::new();
             for _ in 0..2 {
                 let mut x = scene.x.clone();
-                resolver.resolve(&mut x, &y, &Call::default(), &mut ()).unwrap();
+                resolver.resolve(&mut x, &y).unwrap();
                 results.push(x);
             }
-            assert!(results[0] == results[1], "a second call differs: something outlives a call");
+            assert!(results[0] == results[1], "the second call differs: state is carried over between calls");
             results.swap_remove(0)
         })
     };
@@ -225,13 +227,13 @@ fn the_result_has_the_same_bits_for_any_number_of_threads_and_on_every_call() {
 
 #[test]
 fn an_obstacle_waits_as_one_body() {
-    // A rigid plate rises against a sheet that is pinned at its rim: it can go only so far.
+    // A rigid plate rises against a pinned sheet, which stops it.
     let (mut x, mut triangles) = (Vec::new(), Vec::new());
     sheet(4, 0.1, 0.05, &mut x, &mut triangles);
     let n = x.len();
     sheet(1, 0.4, 0.0, &mut x, &mut triangles);
     let bodies = (0..x.len()).map(|v| u32::from(v >= n)).collect();
-    let topology = Topology::new(x.len(), triangles, &[], &[]).unwrap();
+    let topology = Topology::builder(x.len()).triangles(triangles).build().unwrap();
     let filters = vec![BodyFilter::DEFORMABLE, BodyFilter::OBSTACLE];
     let model = CollisionModel::new(topology, bodies, filters, vec![]).unwrap();
     let mut resolver = Resolver::new(model, &x, &vec![1.0; x.len()], Params::fast()).unwrap();
@@ -239,16 +241,16 @@ fn an_obstacle_waits_as_one_body() {
     let y: Vec<Point> =
         x.iter().enumerate().map(|(i, p)| if i >= n { p + Vector::z() } else { *p }).collect();
     let pinned: Vec<bool> = (0..x.len()).map(|i| i < n).collect();
-    let call = Call { prescribed: &pinned, ..Call::default() };
-    let report = resolver.resolve(&mut x, &y, &call, &mut ()).unwrap();
+    let input = ResolveInput { prescribed: &pinned, ..ResolveInput::default() };
+    let report = resolver.resolve_with(&mut x, &y, &input, &mut ()).unwrap();
     let risen: Vec<f64> = (n..x.len()).map(|i| x[i].z - start[i].z).collect();
     assert!(risen.iter().all(|r| (r - risen[0]).abs() < 1e-12), "{risen:?}");
     assert!(risen[0] > 0.01 && risen[0] < 0.05, "{risen:?}");
-    assert!(report.prescribed_behind_m > 0.9);
+    assert!(report.prescribed_lag_m > 0.9);
 }
 
 #[test]
-fn what_cannot_be_resolved_is_refused_by_name_and_leaves_the_state_alone() {
+fn invalid_input_is_refused_with_its_name_and_leaves_the_state_unchanged() {
     let scene = sheets(1, &[1.0], false);
     let masses = vec![1.0; 4];
     let resolver = |masses: &[f64], params| Resolver::new(scene.model.clone(), &scene.x, masses, params);
@@ -258,42 +260,47 @@ fn what_cannot_be_resolved_is_refused_by_name_and_leaves_the_state_alone() {
         Err(ResolveError::Mass { vertex: 1, .. })
     ));
     let mut broken = Params::fast();
-    broken.stepper.damping = 1.5;
-    broken.constraints.stretch_limit = Some(0.9);
-    let Err(ResolveError::Params(problems)) = resolver(&masses, broken) else { panic!("accepted") };
-    assert_eq!(problems.len(), 2, "every problem is reported: {problems:?}");
+    broken.solver.forward.damping = 1.5;
+    broken.contact.stretch_limit = Some(0.9);
+    let Err(ResolveError::Params(errors)) = resolver(&masses, broken) else { panic!("accepted") };
+    let paths: Vec<&str> = errors.iter().map(|error| error.path.as_str()).collect();
+    assert_eq!(
+        paths,
+        ["contact.stretch_limit", "solver.forward.damping"],
+        "every error is reported: {errors}"
+    );
 
     let mut good = resolver(&masses, Params::fast()).unwrap();
     let mut x = scene.x.clone();
     let mut y = scene.x.clone();
     y[2].y = f64::NAN;
-    let error = good.resolve(&mut x, &y, &Call::default(), &mut ()).unwrap_err();
+    let error = good.resolve(&mut x, &y).unwrap_err();
     assert!(matches!(error, ResolveError::NonFinite { what: "the target", vertex: 2, .. }), "{error}");
     assert_eq!(x, scene.x);
     let far: Vec<Point> = scene.x.iter().map(|p| p + 1e13 * Vector::x()).collect();
-    let error = good.resolve(&mut x, &far, &Call::default(), &mut ()).unwrap_err();
-    assert!(matches!(error, ResolveError::FloorBelowRounding { .. }), "{error}");
+    let error = good.resolve(&mut x, &far).unwrap_err();
+    assert!(matches!(error, ResolveError::MinSeparationBelowRounding { .. }), "{error}");
     assert_eq!(x, scene.x);
 }
 
 #[test]
-fn a_tight_start_opens_slowly() {
-    // Two sheets 1 % of delta apart: the step opens them by the separation speed, no more.
+fn a_pair_that_starts_close_opens_slowly() {
+    // Two sheets start at 1 % of delta. The call opens the gap by the separation speed and no more.
     let delta = 0.1 * mean_edge();
     let (mut x, mut triangles) = (Vec::new(), Vec::new());
     sheet(4, 0.1, 0.0, &mut x, &mut triangles);
     let n = x.len();
     sheet(4, 0.1, 0.01 * delta, &mut x, &mut triangles);
-    let topology = Topology::new(x.len(), triangles, &[], &[]).unwrap();
+    let topology = Topology::builder(x.len()).triangles(triangles).build().unwrap();
     let bodies = (0..x.len()).map(|v| u32::from(v >= n)).collect();
     let model = CollisionModel::new(topology, bodies, vec![BodyFilter::DEFORMABLE; 2], vec![]).unwrap();
     let scene = Scene { x, model };
     let mut resolver =
         Resolver::new(scene.model.clone(), &scene.x, &vec![1.0; 2 * n], Params::fast()).unwrap();
     let mut x = scene.x.clone();
-    let call = Call { time_step: Some(0.005), ..Call::default() };
-    resolver.resolve(&mut x, &scene.x, &call, &mut ()).unwrap();
-    // 20 delta a second for 1/200 s: a tenth of delta.
+    let input = ResolveInput { time_step: Some(0.005), ..ResolveInput::default() };
+    resolver.resolve_with(&mut x, &scene.x, &input, &mut ()).unwrap();
+    // 20 delta per second for 1/200 s is a tenth of delta.
     let opened = (0..n).map(|i| x[n + i].z - x[i].z).fold(0.0, f64::max);
     assert!(opened > 0.05 * delta && opened < 0.2 * delta, "{}", opened / delta);
 }

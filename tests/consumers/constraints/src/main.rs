@@ -2,10 +2,12 @@
 #![allow(clippy::print_stdout, reason = "a command")]
 
 use bowknot_constraints::geometry::{PairKind, Point, Vector, separation};
-use bowknot_constraints::lcp::{Error, Family, Params, Problem, State, prepare_rows, solve_serial};
+use bowknot_constraints::lcp::{
+    ConstraintSet, LcpError, LcpParams, LcpProblem, LcpState, prepare_rows, solve_serial,
+};
 use bowknot_constraints::{ContactForm, contact_row, predicted_gap};
 
-fn main() -> Result<(), Error> {
+fn main() -> Result<(), LcpError> {
     let x = [[0.2, 0.2, 0.1], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point::from);
     let target = [x[0] - 0.3 * Vector::z(), x[1], x[2], x[3]];
     let (kind, vertices, delta) = (PairKind::VertexTriangle, [0, 1, 2, 3], 0.01);
@@ -16,11 +18,17 @@ fn main() -> Result<(), Error> {
         let weights = [1.0; 4];
         let mut rows = [contact_row(form, kind, vertices, &x, &separation, delta)];
         prepare_rows(&mut rows, &weights)?;
-        let problem = Problem::new(&weights, Family::serial(&rows), Family::default(), Family::default())?;
+        let problem = LcpProblem::new(
+            &weights,
+            ConstraintSet::serial(&rows),
+            ConstraintSet::default(),
+            ConstraintSet::default(),
+        )?;
         let mut y = target.map(|p| p.coords);
         let mut lambda = [0.0];
-        let mut state = State { y: &mut y, lambda: &mut lambda, forces: &mut [], friction: &mut [] };
-        let params = Params { tolerance: Some(1e-12), max_sweeps: 100, ..Params::default() };
+        let mut state =
+            LcpState { y: &mut y, lambda: &mut lambda, limit_multipliers: &mut [], friction: &mut [] };
+        let params = LcpParams { tolerance: Some(1e-12), max_sweeps: 100, ..LcpParams::default() };
         solve_serial(&problem, &mut state, &params)?;
         let after = y.map(Point::from);
         let gap = predicted_gap(kind, &vertices, &separation, &x, &after);

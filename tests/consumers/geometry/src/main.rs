@@ -15,7 +15,7 @@ fn main() {
         [0.2, 0.4, 0.5],
     ]
     .map(Point::from);
-    let Ok(topology) = Topology::new(x.len(), vec![[0, 1, 2], [0, 2, 3], [4, 5, 6]], &[], &[]) else {
+    let Ok(topology) = Topology::builder(x.len()).triangles([[0, 1, 2], [0, 2, 3], [4, 5, 6]]).build() else {
         panic!("the mesh is sound")
     };
     let mut nearest = (f64::INFINITY, 0, [0; 3]);

@@ -1,9 +1,11 @@
 //! A stack of five blocks on the ground, pressed down: who carries what.
 #![allow(clippy::print_stdout, reason = "a command")]
 
-use bowknot_lcp::{Error, Family, Params, Problem, Row, State, Vector, prepare_rows, solve_serial};
+use bowknot_lcp::{
+    ConstraintSet, LcpError, LcpParams, LcpProblem, LcpState, Row, Vector, prepare_rows, solve_serial,
+};
 
-fn main() -> Result<(), Error> {
+fn main() -> Result<(), LcpError> {
     // Blocks of height 1, and each wants to be 1 lower than where it just touches.
     let count = 5;
     let weights = vec![1.0; count];
@@ -16,11 +18,17 @@ fn main() -> Result<(), Error> {
         })
         .collect();
     prepare_rows(&mut rows, &weights)?;
-    let problem = Problem::new(&weights, Family::serial(&rows), Family::default(), Family::default())?;
+    let problem = LcpProblem::new(
+        &weights,
+        ConstraintSet::serial(&rows),
+        ConstraintSet::default(),
+        ConstraintSet::default(),
+    )?;
 
     let mut lambda = vec![0.0; count];
-    let mut state = State { y: &mut y, lambda: &mut lambda, forces: &mut [], friction: &mut [] };
-    let params = Params { tolerance: Some(1e-12), max_sweeps: 10_000, ..Params::default() };
+    let mut state =
+        LcpState { y: &mut y, lambda: &mut lambda, limit_multipliers: &mut [], friction: &mut [] };
+    let params = LcpParams { tolerance: Some(1e-12), max_sweeps: 10_000, ..LcpParams::default() };
     let info = solve_serial(&problem, &mut state, &params)?;
     println!("heights {:?}, loads {lambda:?}, {info:?}", y.iter().map(|y| y.z).collect::<Vec<_>>());
     for i in 0..count {

@@ -19,7 +19,9 @@ fn main() {
             triangles.extend([[a, a + 2, a + 1], [a + 1, a + 2, a + 3]]);
         }
     }
-    let Ok(topology) = Topology::new(x.len(), triangles, &[], &[]) else { panic!("the strips are sound") };
+    let Ok(topology) = Topology::builder(x.len()).triangles(triangles).build() else {
+        panic!("the strips are sound")
+    };
     let model = CollisionModel::single_body(topology);
     let (mut pairs, mut separations) = (PairList::default(), Vec::new());
     // Both sides reach 1 cm.

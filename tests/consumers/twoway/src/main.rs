@@ -1,9 +1,9 @@
-//! Two triangles whose targets swap them: they end up close, and still in order.
+//! Two triangles whose targets swap them: they end close to each other, in the same order.
 #![allow(clippy::print_stdout, reason = "a command")]
 
 use bowknot_twoway::geometry::{Point, Topology, Vector};
 use bowknot_twoway::proximity::CollisionModel;
-use bowknot_twoway::{AcceptedState, Call, Params, ResolveError, Resolver};
+use bowknot_twoway::{AcceptedState, Params, ResolveError, ResolveInput, Resolver};
 use std::ops::ControlFlow;
 
 fn main() -> Result<(), ResolveError> {
@@ -12,7 +12,7 @@ fn main() -> Result<(), ResolveError> {
     let mut x = [at(0.0), at(0.1)].concat();
     let y = [at(0.1), at(0.0)].concat();
 
-    let Ok(topology) = Topology::new(6, vec![[0, 1, 2], [3, 4, 5]], &[], &[]) else {
+    let Ok(topology) = Topology::builder(6).triangles([[0, 1, 2], [3, 4, 5]]).build() else {
         panic!("the triangles are sound")
     };
     let mut resolver = Resolver::new(CollisionModel::single_body(topology), &x, &[1.0; 6], Params::fast())?;
@@ -22,7 +22,7 @@ fn main() -> Result<(), ResolveError> {
         assert!((0..3).all(|i| state.positions[i].z < state.positions[i + 3].z), "in order after every step");
         ControlFlow::Continue(())
     };
-    let report = resolver.resolve(&mut x, &y, &Call::default(), &mut observer)?;
+    let report = resolver.resolve_with(&mut x, &y, &ResolveInput::default(), &mut observer)?;
     println!("{} steps, gap {:?} m", report.steps, report.min_gap_m);
     assert_eq!(seen, report.steps);
     assert!(report.min_gap_m.is_some_and(|gap| gap > 0.0));

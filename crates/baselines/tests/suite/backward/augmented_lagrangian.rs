@@ -1,7 +1,7 @@
 use super::systems::{Solution, System};
 use bowknot_baselines::rows::AugmentedLagrangian;
 use bowknot_baselines::twoway::geometry::Vector;
-use bowknot_baselines::twoway::lcp::{BallRow, Family, Problem, State, solve_exact};
+use bowknot_baselines::twoway::lcp::{ConstraintSet, DistanceLimit, LcpProblem, LcpState, solve_exact};
 
 fn descend(system: &System, mut solver: AugmentedLagrangian) -> Solution {
     system.solve(|problem, state| solver.descend(problem, &system.free, state))
@@ -49,11 +49,16 @@ fn it_comes_to_the_reference_on_random_systems() {
 fn a_stretched_edge_shrinks_to_its_limit_and_pinned_nodes_stay() {
     let weights = [0.0, 2.0];
     let free = [Vector::new(1.0, 0.0, 0.0), Vector::new(1.0, 3.0, 4.0)];
-    let balls = [BallRow { vertices: [0, 1], limit: 1.0 }];
-    let problem =
-        Problem::new(&weights, Family::default(), Family::serial(&balls), Family::default()).unwrap();
+    let balls = [DistanceLimit { vertices: [0, 1], limit: 1.0 }];
+    let problem = LcpProblem::new(
+        &weights,
+        ConstraintSet::default(),
+        ConstraintSet::serial(&balls),
+        ConstraintSet::default(),
+    )
+    .unwrap();
     let (mut y, mut forces) = (free, [Vector::zeros()]);
-    let mut state = State { y: &mut y, forces: &mut forces, ..State::default() };
+    let mut state = LcpState { y: &mut y, limit_multipliers: &mut forces, ..LcpState::default() };
     AugmentedLagrangian::new(2000).descend(&problem, &free, &mut state);
     assert_eq!(y[0], free[0]);
     assert!((y[1] - Vector::new(1.0, 0.6, 0.8)).norm() < 1e-9, "{:?}", y[1]);

@@ -5,22 +5,22 @@ use bowknot_baselines::rows::{
 };
 use bowknot_baselines::twoway::geometry::{Point, Vector};
 use bowknot_baselines::twoway::{
-    BackwardStep, BudgetedSearch, CertifiedForward, ColouredSweeps, LcpBackward, Params, Resolver, RowSolver,
-    Statistics,
+    BackwardStep, CertifiedForward, ColouredSweeps, LcpBackward, Params, Resolver, RowSolver, Statistics,
+    TrustRegionSearch,
 };
 use bowknot_baselines::{Composed, Method};
 
 /// The paper's parameters without edges, so many steps at most.
 fn params(steps: usize) -> Params {
     let mut params = Params::paper();
-    params.constraints.edges = false;
-    params.stop.max_steps = Some(steps);
+    params.contact.edges = false;
+    params.solver.stop.max_steps = Some(steps);
     params
 }
 
 fn run<B: BackwardStep>(
     scene: &Scene,
-    mut resolver: Resolver<BudgetedSearch, B, CertifiedForward>,
+    mut resolver: Resolver<TrustRegionSearch, B, CertifiedForward>,
     target: &[Point],
 ) -> (Vec<Point>, Statistics) {
     resolve_watched(&mut resolver, scene, target, std::any::type_name::<B>())
@@ -32,7 +32,7 @@ fn solve<K: RowSolver + Default>(
     steps: usize,
     target: &[Point],
 ) -> (Vec<Point>, Statistics) {
-    run(scene, two_way_with(scene.problem(params(steps)), solver), target)
+    run(scene, two_way_with(scene.collision_scene(params(steps)), solver), target)
 }
 
 /// Pinned, because a step more or less is a change of the method.
@@ -56,7 +56,7 @@ fn sheets_that_change_places_stay_apart_whatever_solves_the_rows() {
         ("Jacobi, 50", count(solve(&scene, ProjectedJacobi::new(50, 0.0), steps, &target))),
         ("Chebyshev, 50", count(solve(&scene, ProjectedJacobi::new(50, 0.95), steps, &target))),
         ("Chebyshev between steps", {
-            count(run(&scene, two_way_with_stage(scene.problem(params(steps)), chebyshev), &target))
+            count(run(&scene, two_way_with_stage(scene.collision_scene(params(steps)), chebyshev), &target))
         }),
     ];
     let expected = [
@@ -96,7 +96,7 @@ fn the_default_with_gauss_seidel_named_is_the_default() {
         Resolver::new(scene.model.clone(), &scene.x, &vec![0.01; scene.x.len()], Params::fast()).unwrap();
     let (x, _) = resolve_watched(&mut plain, &scene, &target, "plain");
     let (same, _) =
-        run(&scene, two_way_with(scene.problem(Params::fast()), ColouredSweeps::default()), &target);
+        run(&scene, two_way_with(scene.collision_scene(Params::fast()), ColouredSweeps::default()), &target);
     assert_eq!(x, same);
 }
 
@@ -106,13 +106,13 @@ fn results_have_the_same_bits_on_any_number_of_threads() {
     let scene = Scene::two_sheets(24, 0.02);
     let target = scene.swapped();
     assert_same_on_any_number_of_threads(|| {
-        let problem = || scene.problem(params(6));
+        let collision = || scene.collision_scene(params(6));
         let chebyshev = InterStepChebyshev::new(LcpBackward::<ColouredSweeps>::default(), 0.9, 2);
         let methods: [Box<dyn Method>; 4] = [
-            Box::new(Composed::new("Harmon", two_way_with(problem(), LinearSystem::default()))),
-            Box::new(Composed::new("Tang", two_way_with(problem(), AugmentedLagrangian::new(20)))),
-            Box::new(Composed::new("Jacobi", two_way_with(problem(), ProjectedJacobi::new(20, 0.9)))),
-            Box::new(Composed::new("Chebyshev", two_way_with_stage(problem(), chebyshev))),
+            Box::new(Composed::new("Harmon", two_way_with(collision(), LinearSystem::default()))),
+            Box::new(Composed::new("Tang", two_way_with(collision(), AugmentedLagrangian::new(20)))),
+            Box::new(Composed::new("Jacobi", two_way_with(collision(), ProjectedJacobi::new(20, 0.9)))),
+            Box::new(Composed::new("Chebyshev", two_way_with_stage(collision(), chebyshev))),
         ];
         methods.map(|mut method| {
             let mut x = scene.x.clone();
@@ -131,9 +131,9 @@ fn contacts_that_keep_their_volume_stay_as_near_as_they_start_and_others_open() 
         .map(|(v, x)| x + Vector::z() * if v < n { 0.01 } else { -0.01 })
         .collect();
     let gaps = |params: Params| {
-        let problem = scene.problem(params);
-        assert!((problem.lengths.delta - 0.0112).abs() < 1e-4);
-        let (x, statistics) = run(&scene, two_way_with(problem, ColouredSweeps::default()), &target);
+        let collision = scene.collision_scene(params);
+        assert!((collision.lengths().delta - 0.0112).abs() < 1e-4);
+        let (x, statistics) = run(&scene, two_way_with(collision, ColouredSweeps::default()), &target);
         assert!(statistics.converged);
         // Both sheets have one and the same warp.
         let gaps = (0..n).map(|v| x[v + n].z - x[v].z);

@@ -1,6 +1,6 @@
 use super::systems::System;
 use bowknot_baselines::rows::ProjectedJacobi;
-use bowknot_baselines::twoway::lcp::{Params, solve_exact, solve_serial};
+use bowknot_baselines::twoway::lcp::{LcpParams, solve_exact, solve_serial};
 
 #[test]
 fn it_comes_to_the_lambda_of_the_reference_on_random_systems() {
@@ -36,7 +36,7 @@ fn chebyshev_weights_save_most_sweeps_on_a_column_of_beads() {
     };
     let mut gauss_seidel = 0;
     system.solve(|problem, state| {
-        let params = Params { max_sweeps: 100_000, tolerance: Some(tolerance), ..Params::default() };
+        let params = LcpParams { max_sweeps: 100_000, tolerance: Some(tolerance), ..LcpParams::default() };
         gauss_seidel = solve_serial(problem, state, &params).unwrap().sweeps;
     });
     // A tight column, in which no contact opens or closes: what the weights are made for.

@@ -1,7 +1,7 @@
 use super::systems::System;
 use bowknot_baselines::rows::LinearSystem;
 use bowknot_baselines::twoway::geometry::Vector;
-use bowknot_baselines::twoway::lcp::{Params, solve_exact, solve_serial};
+use bowknot_baselines::twoway::lcp::{LcpParams, solve_exact, solve_serial};
 
 #[test]
 fn without_projection_it_pulls_where_the_complementarity_problem_lets_go() {
@@ -29,7 +29,7 @@ fn with_the_projection_it_is_projected_gauss_seidel_to_the_bit() {
     for seed in 0..50 {
         let system = System::random(seed);
         let yardstick = system.solve(|problem, state| {
-            solve_serial(problem, state, &Params { max_sweeps: 20, ..Params::default() }).unwrap();
+            solve_serial(problem, state, &LcpParams { max_sweeps: 20, ..LcpParams::default() }).unwrap();
         });
         let harmon = system.solve(|problem, state| LinearSystem::projected().sweep(problem, state).unwrap());
         assert_eq!(harmon, yardstick);

@@ -2,7 +2,9 @@
 
 use crate::common::Draw;
 use bowknot_baselines::twoway::geometry::Vector;
-use bowknot_baselines::twoway::lcp::{Family, FrictionBound, Problem, Row, State, prepare_rows, residuals};
+use bowknot_baselines::twoway::lcp::{
+    ConstraintSet, FrictionBound, LcpProblem, LcpState, Row, prepare_rows, residuals,
+};
 
 /// Rows over nodes, and where the nodes would be without them.
 #[derive(Clone)]
@@ -47,7 +49,7 @@ impl System {
     /// Rows of three nodes each over a few, with weights and gradients that look random; fewer rows than coordinates,
     /// hence with one lambda only.
     pub fn random(seed: u64) -> Self {
-        let mut draw = Draw(seed);
+        let mut draw = Draw::new(seed);
         let nodes = 6;
         let weights = (0..nodes).map(|v| if v == 5 { 0.0 } else { 1.0 + 0.5 * draw.next() }).collect();
         let free: Vec<Vector> = (0..nodes).map(|_| draw.vector()).collect();
@@ -64,23 +66,31 @@ impl System {
     }
 
     /// Runs a solver from zero multipliers.
-    pub fn solve(&self, solver: impl FnOnce(&Problem<'_>, &mut State<'_>)) -> Solution {
-        let problem =
-            Problem::new(&self.weights, Family::serial(&self.rows), Family::default(), Family::default())
-                .unwrap();
+    pub fn solve(&self, solver: impl FnOnce(&LcpProblem<'_>, &mut LcpState<'_>)) -> Solution {
+        let problem = LcpProblem::new(
+            &self.weights,
+            ConstraintSet::serial(&self.rows),
+            ConstraintSet::default(),
+            ConstraintSet::default(),
+        )
+        .unwrap();
         let mut solution = Solution { y: self.free.clone(), lambda: vec![0.0; self.rows.len()] };
-        let mut state = State { y: &mut solution.y, lambda: &mut solution.lambda, ..State::default() };
+        let mut state = LcpState { y: &mut solution.y, lambda: &mut solution.lambda, ..LcpState::default() };
         solver(&problem, &mut state);
         solution
     }
 
     /// Largest |min(lambda, s)|.
     pub fn complementarity(&self, solution: &Solution) -> f64 {
-        let problem =
-            Problem::new(&self.weights, Family::serial(&self.rows), Family::default(), Family::default())
-                .unwrap();
+        let problem = LcpProblem::new(
+            &self.weights,
+            ConstraintSet::serial(&self.rows),
+            ConstraintSet::default(),
+            ConstraintSet::default(),
+        )
+        .unwrap();
         let Solution { mut y, mut lambda } = solution.clone();
-        let state = State { y: &mut y, lambda: &mut lambda, ..State::default() };
+        let state = LcpState { y: &mut y, lambda: &mut lambda, ..LcpState::default() };
         residuals(&problem, &state, FrictionBound::Disc).unwrap().complementarity
     }
 }

@@ -2,8 +2,8 @@
 
 use crate::common::{Scene, assert_same_on_any_number_of_threads, resolve_watched};
 use bowknot_baselines::barrier::{BarrierParams, Scaling, barrier, by_descent};
+use bowknot_baselines::twoway::Params;
 use bowknot_baselines::twoway::geometry::Vector;
-use bowknot_baselines::twoway::{Call, Params};
 
 /// Where m/dt^2 (z - z0) + B'(z - floor) vanishes, by bisection.
 fn analytic_height(stiffness: f64, wanted: f64, floor: f64, range: f64, strength: f64) -> f64 {
@@ -25,16 +25,16 @@ fn a_vertex_pushed_against_a_triangle_ends_where_the_barrier_balances_its_inerti
         for scaling in [Scaling::Mass, Scaling::Blocks] {
             for strength in [20.0, 2000.0] {
                 let mut params = params.clone();
-                params.constraints.delta = Some(0.01);
-                params.stop.max_steps = Some(20_000);
-                let problem = scene.problem(params);
+                params.contact.delta = Some(0.01);
+                params.solver.stop.max_steps = Some(20_000);
+                let collision = scene.collision_scene(params);
                 let settings =
                     BarrierParams { strength, scaling, tolerance: 1e-9, ..BarrierParams::default() };
-                let mut resolver = by_descent(problem, settings).unwrap();
+                let mut resolver = by_descent(collision, settings).unwrap();
                 let what = format!("{name}, {scaling:?}, {strength}");
                 let (x, report) = resolve_watched(&mut resolver, &scene, &target, &what);
                 assert!(report.converged, "{what}: {report:?}");
-                let floor = resolver.state().contacts.floors[0];
+                let floor = resolver.state().contacts.min_separations[0];
                 assert!((floor > 0.0) == (name == "fast"), "{what}: {floor}");
                 let expected = analytic_height(0.01 / 1e-4, -0.03, floor, 0.01, strength);
                 assert!((x[3].z - expected).abs() < 1e-8, "{what}: {} m, expected {expected} m", x[3].z);
@@ -49,8 +49,8 @@ fn sheets_that_want_to_change_places_never_intersect_on_the_way() {
     let scene = Scene::two_sheets(4, 0.04);
     let target = scene.swapped();
     for (name, mut params) in [("fast", Params::fast()), ("paper", Params::paper())] {
-        params.stop.max_steps = Some(300);
-        let mut resolver = by_descent(scene.problem(params), BarrierParams::default()).unwrap();
+        params.solver.stop.max_steps = Some(300);
+        let mut resolver = by_descent(scene.collision_scene(params), BarrierParams::default()).unwrap();
         let (x, report) = resolve_watched(&mut resolver, &scene, &target, name);
         assert!(report.contact_rows > 10, "{name}: they never met: {report:?}");
         // At the rim they may pass beside each other.
@@ -64,7 +64,7 @@ fn sheets_that_want_to_change_places_never_intersect_on_the_way() {
 fn without_contacts_the_target_is_reached() {
     let scene = Scene::two_sheets(3, 0.3);
     let target: Vec<_> = scene.x.iter().map(|p| p + Vector::new(0.4, -0.3, 0.2)).collect();
-    let mut resolver = by_descent(scene.problem(Params::fast()), BarrierParams::default()).unwrap();
+    let mut resolver = by_descent(scene.collision_scene(Params::fast()), BarrierParams::default()).unwrap();
     let (x, report) = resolve_watched(&mut resolver, &scene, &target, "flight");
     assert!(report.converged);
     assert!(x.iter().zip(&target).all(|(x, y)| (x - y).norm() < 1e-12));
@@ -76,10 +76,10 @@ fn any_number_of_threads_gives_the_same_bits() {
     let target = scene.swapped();
     assert_same_on_any_number_of_threads(|| {
         let mut params = Params::fast();
-        params.stop.max_steps = Some(60);
-        let mut resolver = by_descent(scene.problem(params), BarrierParams::default()).unwrap();
+        params.solver.stop.max_steps = Some(60);
+        let mut resolver = by_descent(scene.collision_scene(params), BarrierParams::default()).unwrap();
         let mut x = scene.x.clone();
-        resolver.resolve(&mut x, &target, &Call::default(), &mut ()).unwrap();
+        resolver.resolve(&mut x, &target).unwrap();
         x
     });
 }

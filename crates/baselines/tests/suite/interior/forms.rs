@@ -9,8 +9,8 @@ fn sheets_that_want_to_change_places_never_intersect_with_rows_along_faces() {
     let scene = Scene::turned_sheets(4, 0.04);
     let target = scene.swapped();
     let mut params = Params::paper();
-    params.constraints.form = ContactForm::Face;
-    params.stop.max_steps = Some(100);
+    params.contact.form = ContactForm::Face;
+    params.solver.stop.max_steps = Some(100);
     let mut resolver =
         Resolver::new(scene.model.clone(), &scene.x, &vec![0.01; scene.x.len()], params).unwrap();
     let (x, report) = resolve_watched(&mut resolver, &scene, &target, "faces");

@@ -6,7 +6,7 @@ use bowknot_baselines::ccd::{AdditiveCcd, ClosingSpeed, EarliestImpact, PerVerte
 use bowknot_baselines::twoway::geometry::{Point, Topology, Vector};
 use bowknot_baselines::twoway::proximity::{BodyFilter, CollisionModel};
 use bowknot_baselines::twoway::{
-    BudgetedSearch, Call, ForwardStep, LcpBackward, Params, Resolver, Statistics,
+    ForwardStep, LcpBackward, Params, ResolveInput, Resolver, Statistics, TrustRegionSearch,
 };
 
 const SLAB: AdditiveCcd = AdditiveCcd { slackness: 0.1, speed: ClosingSpeed::Slab, max_iterations: 1000 };
@@ -15,10 +15,10 @@ fn two_way<F: ForwardStep>(
     scene: &Scene,
     params: Params,
     forward: F,
-) -> Resolver<BudgetedSearch, LcpBackward, F> {
-    let problem = scene.problem(params);
-    let search = BudgetedSearch::new(&problem);
-    Resolver::with_stages(problem, search, LcpBackward::default(), forward)
+) -> Resolver<TrustRegionSearch, LcpBackward, F> {
+    let collision = scene.collision_scene(params);
+    let search = TrustRegionSearch::new(&collision);
+    Resolver::with_stages(collision, search, LcpBackward::default(), forward)
 }
 
 fn check(name: &str, scene: &Scene, x: &[Point], report: &Statistics) {
@@ -34,7 +34,7 @@ fn sheets_that_want_to_change_places_never_intersect_on_the_way() {
     let scene = Scene::two_sheets(4, 0.04);
     let target = scene.swapped();
     for (name, mut params) in [("fast", Params::fast()), ("paper", Params::paper())] {
-        params.stop.max_steps = Some(150);
+        params.solver.stop.max_steps = Some(150);
         for ccd in [AdditiveCcd::default(), SLAB] {
             let what = format!("{name}, earliest, {:?}", ccd.speed);
             let mut resolver = two_way(&scene, params.clone(), EarliestImpact::new(ccd));
@@ -47,10 +47,10 @@ fn sheets_that_want_to_change_places_never_intersect_on_the_way() {
             check(&what, &scene, &x, &report);
 
             let what = format!("{name}, per vertex, log barrier, {:?}", ccd.speed);
-            let problem = scene.problem(params.clone());
-            let step = DescentStep::new(&problem, BarrierParams::default()).unwrap();
-            let search = BudgetedSearch::new(&problem);
-            let mut resolver = Resolver::with_stages(problem, search, step, PerVertexImpact::new(ccd));
+            let collision = scene.collision_scene(params.clone());
+            let step = DescentStep::new(&collision, BarrierParams::default()).unwrap();
+            let search = TrustRegionSearch::new(&collision);
+            let mut resolver = Resolver::with_stages(collision, search, step, PerVertexImpact::new(ccd));
             let (x, report) = resolve_watched(&mut resolver, &scene, &target, &what);
             check(&what, &scene, &x, &report);
         }
@@ -84,27 +84,29 @@ fn free_flight_takes_one_step_for_all_vertices_and_an_edge_at_a_time_for_each() 
 fn one_tight_pair_holds_up_all_vertices_or_its_own() {
     // Two particles that want to change places, and a third far away.
     let x = [[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [5.0, 0.0, 0.0]].map(Point::from).to_vec();
-    let topology = Topology::new(3, vec![], &[], &[0, 1, 2]).unwrap();
+    let topology = Topology::builder(3).particles([0, 1, 2]).build().unwrap();
     let model = CollisionModel::new(topology, vec![0; 3], vec![BodyFilter::DEFORMABLE], vec![]).unwrap();
     let scene = Scene { x, model };
     let target = [[0.02, 0.0, 0.0], [0.0, 0.0, 0.0], [5.0, 0.1, 0.0]].map(Point::from);
     let mut params = Params::fast();
-    params.stop.max_steps = Some(1);
-    let call = Call::default();
+    params.solver.stop.max_steps = Some(1);
+    let input = ResolveInput::default();
     let mut x = scene.x.clone();
     // A backward step without any rows: y is the target.
-    params.constraints.active = 1.0;
-    params.constraints.range = 1.0;
-    params.constraints.delta = Some(1e-3);
+    params.contact.active = 1.0;
+    params.contact.range = 1.0;
+    params.contact.delta = Some(1e-3);
     let ccd = AdditiveCcd::default();
     two_way(&scene, params.clone(), EarliestImpact::new(ccd))
-        .resolve(&mut x, &target, &call, &mut ())
+        .resolve_with(&mut x, &target, &input, &mut ())
         .unwrap();
     let gone = (x[2] - scene.x[2]).norm();
     assert!((gone - 0.45 * 0.1).abs() < 0.01 * 0.1, "{gone} m");
     let mut x = scene.x.clone();
-    params.constraints.delta = Some(0.1);
-    two_way(&scene, params, PerVertexImpact::new(ccd)).resolve(&mut x, &target, &call, &mut ()).unwrap();
+    params.contact.delta = Some(0.1);
+    two_way(&scene, params, PerVertexImpact::new(ccd))
+        .resolve_with(&mut x, &target, &input, &mut ())
+        .unwrap();
     assert!((x[2] - target[2]).norm() < 1e-12, "{}", x[2]);
     assert!(x[0].x < x[1].x, "{} {}", x[0], x[1]);
 }
@@ -114,15 +116,15 @@ fn any_number_of_threads_gives_the_same_bits() {
     let scene = Scene::two_sheets(6, 0.04);
     let target = scene.swapped();
     let mut params = Params::fast();
-    params.stop.max_steps = Some(40);
+    params.solver.stop.max_steps = Some(40);
     assert_same_on_any_number_of_threads(|| {
         let (mut common, mut own) = (scene.x.clone(), scene.x.clone());
-        let call = Call::default();
+        let input = ResolveInput::default();
         two_way(&scene, params.clone(), EarliestImpact::default())
-            .resolve(&mut common, &target, &call, &mut ())
+            .resolve_with(&mut common, &target, &input, &mut ())
             .unwrap();
         two_way(&scene, params.clone(), PerVertexImpact::default())
-            .resolve(&mut own, &target, &call, &mut ())
+            .resolve_with(&mut own, &target, &input, &mut ())
             .unwrap();
         [common, own]
     });

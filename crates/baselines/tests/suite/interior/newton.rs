@@ -4,7 +4,7 @@ use crate::common::{Scene, assert_same_on_any_number_of_threads, resolve_watched
 use bowknot_baselines::barrier::{BarrierParams, Objective, barrier, by_descent, by_newton};
 use bowknot_baselines::ccd::AdditiveCcd;
 use bowknot_baselines::twoway::geometry::{Point, Vector};
-use bowknot_baselines::twoway::{AcceptedState, Call, Params};
+use bowknot_baselines::twoway::{AcceptedState, Params, ResolveInput};
 use std::ops::ControlFlow;
 
 /// Presses two sheets together.
@@ -19,12 +19,13 @@ fn a_vertex_pushed_against_a_triangle_ends_where_the_barrier_balances_its_inerti
     let mut target = scene.x.clone();
     target[3].z = -0.03;
     for mut params in [Params::fast(), Params::paper()] {
-        params.constraints.delta = Some(0.01);
+        params.contact.delta = Some(0.01);
         let settings = BarrierParams { strength: 200.0, tolerance: 1e-9, ..BarrierParams::default() };
-        let mut resolver = by_newton(scene.problem(params), settings, AdditiveCcd::default()).unwrap();
+        let mut resolver =
+            by_newton(scene.collision_scene(params), settings, AdditiveCcd::default()).unwrap();
         let (x, report) = resolve_watched(&mut resolver, &scene, &target, "newton");
         assert!(report.converged && report.steps < 40, "{report:?}");
-        let floor = resolver.state().contacts.floors[0];
+        let floor = resolver.state().contacts.min_separations[0];
         let force = 0.01 / 1e-4 * (x[3].z + 0.03);
         let push = barrier(200.0, x[3].z - floor, 0.01 - floor).slope;
         assert!((force + push).abs() < 1e-6 * force, "{force} N, {push} N at {} m", x[3].z);
@@ -38,16 +39,16 @@ fn newton_and_gradient_descent_reach_the_same_minimum() {
     let target = pressed(&scene, 0.006);
     // An edge penalty that pulls as well, and no floor, which would depend on where a pair was first seen.
     let mut params = Params::paper();
-    params.constraints.delta = Some(0.01);
-    params.stop.max_steps = Some(20_000);
+    params.contact.delta = Some(0.01);
+    params.solver.stop.max_steps = Some(20_000);
     let settings = BarrierParams { tolerance: 1e-8, edge_stiffness: 100.0, ..BarrierParams::default() };
-    let call = Call { time_step: Some(0.01), ..Call::default() };
+    let input = ResolveInput { time_step: Some(0.01), ..ResolveInput::default() };
     let mut by_steps = scene.x.clone();
-    let mut descent = by_descent(scene.problem(params.clone()), settings.clone()).unwrap();
-    let slow = descent.resolve(&mut by_steps, &target, &call, &mut ()).unwrap();
+    let mut descent = by_descent(scene.collision_scene(params.clone()), settings.clone()).unwrap();
+    let slow = descent.resolve_with(&mut by_steps, &target, &input, &mut ()).unwrap();
     let mut x = scene.x.clone();
-    let mut newton = by_newton(scene.problem(params), settings, AdditiveCcd::default()).unwrap();
-    let fast = newton.resolve(&mut x, &target, &call, &mut ()).unwrap();
+    let mut newton = by_newton(scene.collision_scene(params), settings, AdditiveCcd::default()).unwrap();
+    let fast = newton.resolve_with(&mut x, &target, &input, &mut ()).unwrap();
     assert!(slow.converged && fast.converged, "{slow:?} {fast:?}");
     assert!(fast.contact_rows > 20, "{fast:?}");
     assert!(fast.steps < 12 && fast.steps < slow.steps, "{} {}", fast.steps, slow.steps);
@@ -63,9 +64,9 @@ fn sheets_that_want_to_change_places_never_intersect_on_the_way() {
     let scene = Scene::two_sheets(4, 0.04);
     let target = scene.swapped();
     for (name, mut params) in [("fast", Params::fast()), ("paper", Params::paper())] {
-        params.stop.max_steps = Some(60);
-        let problem = scene.problem(params);
-        let mut resolver = by_newton(problem, BarrierParams::default(), AdditiveCcd::default()).unwrap();
+        params.solver.stop.max_steps = Some(60);
+        let collision = scene.collision_scene(params);
+        let mut resolver = by_newton(collision, BarrierParams::default(), AdditiveCcd::default()).unwrap();
         let (x, report) = resolve_watched(&mut resolver, &scene, &target, name);
         assert!(report.contact_rows > 10, "{name}: they never met: {report:?}");
         let middle = x.len() / 4;
@@ -80,9 +81,9 @@ fn an_obstacle_that_comes_pushes_what_is_in_its_way() {
     let mut target = scene.x.clone();
     target[..3].iter_mut().for_each(|p| p.z += 0.1);
     let mut params = Params::fast();
-    params.constraints.delta = Some(0.01);
+    params.contact.delta = Some(0.01);
     let mut resolver =
-        by_newton(scene.problem(params), BarrierParams::default(), AdditiveCcd::default()).unwrap();
+        by_newton(scene.collision_scene(params), BarrierParams::default(), AdditiveCcd::default()).unwrap();
     let (x, report) = resolve_watched(&mut resolver, &scene, &target, "obstacle");
     assert!(report.converged, "{report:?}");
     assert!((0..3).all(|v| (x[v] - target[v]).norm() < 1e-3), "{x:?}");
@@ -94,26 +95,26 @@ fn the_energy_falls_step_by_step() {
     let scene = Scene::turned_sheets(4, 0.008);
     let target = pressed(&scene, 0.01);
     let mut params = Params::paper();
-    params.constraints.delta = Some(0.01);
+    params.contact.delta = Some(0.01);
     let settings = BarrierParams::default();
     let mut energies = Vec::new();
     for steps in 1..12 {
         // Runs of one step more each: what a step does depends on the state alone.
-        params.stop.max_steps = Some(steps);
-        let problem = scene.problem(params.clone());
-        let mut resolver = by_newton(problem, settings.clone(), AdditiveCcd::default()).unwrap();
+        params.solver.stop.max_steps = Some(steps);
+        let collision = scene.collision_scene(params.clone());
+        let mut resolver = by_newton(collision, settings.clone(), AdditiveCcd::default()).unwrap();
         let mut x = scene.x.clone();
         let mut taken = 0;
         let mut count = |_: &AcceptedState<'_>| {
             taken += 1;
             ControlFlow::Continue(())
         };
-        let call = Call { time_step: Some(0.01), ..Call::default() };
-        resolver.resolve(&mut x, &target, &call, &mut count).unwrap();
-        let (problem, state) = (resolver.problem(), resolver.state());
-        let mut objective = Objective::new(problem, settings.clone()).unwrap();
-        objective.begin(problem, state);
-        energies.push(objective.value(problem, state, &x, &objective.contacts(problem, state)));
+        let input = ResolveInput { time_step: Some(0.01), ..ResolveInput::default() };
+        resolver.resolve_with(&mut x, &target, &input, &mut count).unwrap();
+        let (collision, state) = (resolver.scene(), resolver.state());
+        let mut objective = Objective::new(collision, settings.clone()).unwrap();
+        objective.begin(collision, state);
+        energies.push(objective.value(collision, state, &x, &objective.contacts(collision, state)));
     }
     assert!(energies.windows(2).all(|e| e[1] <= e[0] * (1.0 + 1e-12)), "{energies:?}");
     assert!(energies[10] < 0.96 * energies[0], "{energies:?}");
@@ -125,11 +126,11 @@ fn any_number_of_threads_gives_the_same_bits() {
     let target = pressed(&scene, 0.01);
     assert_same_on_any_number_of_threads(|| {
         let mut params = Params::fast();
-        params.stop.max_steps = Some(15);
-        let problem = scene.problem(params);
-        let mut resolver = by_newton(problem, BarrierParams::default(), AdditiveCcd::default()).unwrap();
+        params.solver.stop.max_steps = Some(15);
+        let collision = scene.collision_scene(params);
+        let mut resolver = by_newton(collision, BarrierParams::default(), AdditiveCcd::default()).unwrap();
         let mut x = scene.x.clone();
-        resolver.resolve(&mut x, &target, &Call::default(), &mut ()).unwrap();
+        resolver.resolve(&mut x, &target).unwrap();
         x
     });
 }

@@ -4,41 +4,41 @@ use crate::common::{Draw, Scene, listed};
 use bowknot_baselines::barrier::{BarrierParams, Derivatives, Objective};
 use bowknot_baselines::twoway::constraints::EdgeReference;
 use bowknot_baselines::twoway::geometry::{PairKind, Point, Vector};
-use bowknot_baselines::twoway::{BudgetedSearch, Params, ResolveError};
+use bowknot_baselines::twoway::{Params, ResolveError, TrustRegionSearch};
 
 #[test]
 fn gradient_is_that_of_the_value_for_every_kind_of_pair_and_long_edges() {
     let mut scene = Scene::heap(0.006);
     let mut params = Params::fast();
-    params.constraints.delta = Some(0.01);
-    params.constraints.edge_reference = EdgeReference::Start;
+    params.contact.delta = Some(0.01);
+    params.contact.edge_reference = EdgeReference::Start;
     // Particles are no neighbours at rest, which would shorten their barrier.
     let place = scene.x.clone();
     scene.x.iter_mut().for_each(|p| p.coords *= 4.0);
-    let problem = scene.problem(params);
+    let collision = scene.collision_scene(params);
     scene.x = place;
-    let mut draw = Draw(11);
+    let mut draw = Draw::new(11);
     scene.x.iter_mut().for_each(|p| *p += 1e-3 * draw.vector());
     let target: Vec<Point> = scene.x.iter().map(|p| p + 0.03 * draw.vector()).collect();
-    let mut search = BudgetedSearch::new(&problem);
+    let mut search = TrustRegionSearch::new(&collision);
     // Edges are measured against a start where they were shorter than now.
     let barrier = BarrierParams { edge_stiffness: 50.0, ..BarrierParams::default() };
-    let mut objective = Objective::new(&problem, barrier).unwrap();
-    let mut start = listed(&problem, &mut search, &scene.x, &target);
+    let mut objective = Objective::new(&collision, barrier).unwrap();
+    let mut start = listed(&collision, &mut search, &scene.x, &target);
     start.x.iter_mut().for_each(|p| *p = Point::from(0.85 * p.coords));
-    objective.begin(&problem, &start);
-    let state = listed(&problem, &mut search, &scene.x, &target);
+    objective.begin(&collision, &start);
+    let state = listed(&collision, &mut search, &scene.x, &target);
 
-    let contacts = objective.contacts(&problem, &state);
+    let contacts = objective.contacts(&collision, &state);
     for kind in PairKind::ALL {
         assert!(contacts.iter().any(|c| c.kind == kind), "no {kind:?} within range");
     }
     assert!(objective.long_edges(&state.x).count() > 10);
     let mut derivatives = Derivatives::default();
-    objective.derivatives(&problem, &state, &state.x, &contacts, &mut derivatives);
+    objective.derivatives(&collision, &state, &state.x, &contacts, &mut derivatives);
     let energy =
-        |x: &[Point]| objective.value(&problem, &state, x, &objective.contacts_at(&problem, &state, x));
-    assert_eq!(energy(&state.x), objective.value(&problem, &state, &state.x, &contacts));
+        |x: &[Point]| objective.value(&collision, &state, x, &objective.contacts_at(&collision, &state, x));
+    assert_eq!(energy(&state.x), objective.value(&collision, &state, &state.x, &contacts));
     let h = 1e-8;
     let mut largest = 0.0f64;
     for v in 0..state.x.len() {
@@ -48,7 +48,7 @@ fn gradient_is_that_of_the_value_for_every_kind_of_pair_and_long_edges() {
                 x[v][k] += sign * h;
                 energy(&x)
             };
-            let expected = if problem.movable(v) { (moved(1.0) - moved(-1.0)) / (2.0 * h) } else { 0.0 };
+            let expected = if state.is_movable(v) { (moved(1.0) - moved(-1.0)) / (2.0 * h) } else { 0.0 };
             let found = derivatives.gradient[v][k];
             largest = largest.max(found.abs());
             assert!((found - expected).abs() < 1e-4 * (1.0 + expected.abs()), "{v}.{k}: {found} {expected}");
@@ -62,18 +62,18 @@ fn blocks_majorise_the_convex_part_along_any_direction() {
     // Vertices at different distances above one triangle: their barriers' curvature along random directions.
     let scene = Scene::heap(0.006);
     let mut params = Params::fast();
-    params.constraints.delta = Some(0.01);
-    let problem = scene.problem(params);
-    let mut search = BudgetedSearch::new(&problem);
-    let state = listed(&problem, &mut search, &scene.x, &scene.x);
-    let mut objective = Objective::new(&problem, BarrierParams::default()).unwrap();
-    objective.begin(&problem, &state);
-    let contacts = objective.contacts(&problem, &state);
+    params.contact.delta = Some(0.01);
+    let collision = scene.collision_scene(params);
+    let mut search = TrustRegionSearch::new(&collision);
+    let state = listed(&collision, &mut search, &scene.x, &scene.x);
+    let mut objective = Objective::new(&collision, BarrierParams::default()).unwrap();
+    objective.begin(&collision, &state);
+    let contacts = objective.contacts(&collision, &state);
     let mut derivatives = Derivatives::default();
-    objective.derivatives(&problem, &state, &state.x, &contacts, &mut derivatives);
-    let mut draw = Draw(3);
+    objective.derivatives(&collision, &state, &state.x, &contacts, &mut derivatives);
+    let mut draw = Draw::new(3);
     for _ in 0..50 {
-        let free = |v: usize| f64::from(u8::from(problem.movable(v)));
+        let free = |v: usize| f64::from(u8::from(state.is_movable(v)));
         let u: Vec<Vector> = (0..state.x.len()).map(|v| free(v) * draw.vector()).collect();
         let mut convex = 0.0;
         for contact in &contacts {
@@ -85,8 +85,8 @@ fn blocks_majorise_the_convex_part_along_any_direction() {
         }
         let bound: f64 = (0..u.len())
             .map(|v| {
-                let inertia = objective.inertia(&problem, &state, v) * u[v].norm_squared();
-                u[v].dot(&(derivatives.blocks[v] * u[v])) - if problem.movable(v) { inertia } else { 0.0 }
+                let inertia = objective.inertia(&collision, &state, v) * u[v].norm_squared();
+                u[v].dot(&(derivatives.blocks[v] * u[v])) - if state.is_movable(v) { inertia } else { 0.0 }
             })
             .sum();
         assert!(convex > 0.0 && convex <= bound * (1.0 + 1e-12), "{convex} {bound}");
@@ -95,7 +95,7 @@ fn blocks_majorise_the_convex_part_along_any_direction() {
 
 #[test]
 fn every_wrong_parameter_is_named() {
-    let problem = Scene::two_sheets(1, 0.05).problem(Params::fast());
+    let collision = Scene::two_sheets(1, 0.05).collision_scene(Params::fast());
     let params = BarrierParams {
         strength: -1.0,
         range: Some(1.0),
@@ -104,6 +104,6 @@ fn every_wrong_parameter_is_named() {
         tolerance: f64::INFINITY,
         ..BarrierParams::default()
     };
-    let Err(ResolveError::Params(problems)) = Objective::new(&problem, params) else { panic!("accepted") };
-    assert_eq!(problems.len(), 5, "{problems:?}");
+    let Err(ResolveError::Params(errors)) = Objective::new(&collision, params) else { panic!("accepted") };
+    assert_eq!(errors.len(), 5, "{errors}");
 }

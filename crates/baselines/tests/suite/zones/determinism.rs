@@ -1,6 +1,6 @@
 use crate::common::{Scene, assert_same_on_any_number_of_threads};
 use bowknot_baselines::Method;
-use bowknot_baselines::twoway::{Call, Params};
+use bowknot_baselines::twoway::{Params, ResolveInput};
 use bowknot_baselines::zones::{ImpactZones, RigidZones, TwoPhase, ZoneParams};
 
 #[test]
@@ -9,17 +9,17 @@ fn results_have_the_same_bits_on_any_number_of_threads() {
     let scene = Scene::two_sheets(24, 0.02);
     let target = scene.swapped();
     assert_same_on_any_number_of_threads(|| {
-        let problem = || scene.problem(Params::fast());
+        let collision = || scene.collision_scene(Params::fast());
         let params = ZoneParams { max_iterations: 4, ..ZoneParams::default() };
         let methods: [Box<dyn Method>; 3] = [
-            Box::new(ImpactZones::new(problem(), params)),
-            Box::new(RigidZones::new(problem())),
-            Box::new(TwoPhase::new(problem(), 3, RigidZones::new(problem()))),
+            Box::new(ImpactZones::new(collision(), params)),
+            Box::new(RigidZones::new(collision())),
+            Box::new(TwoPhase::new(collision(), 3, RigidZones::new(collision()))),
         ];
         methods.map(|mut method| {
             let mut x = scene.x.clone();
-            let call = Call { time_step: Some(0.01), ..Call::default() };
-            let outcome = method.solve(&mut x, &target, &call).unwrap();
+            let input = ResolveInput { time_step: Some(0.01), ..ResolveInput::default() };
+            let outcome = method.solve(&mut x, &target, &input).unwrap();
             (x, outcome.steps, outcome.failed)
         })
     });

@@ -28,14 +28,14 @@ fn meetings(scene: &Scene, paths: &[Vector]) -> usize {
 #[test]
 fn paths_without_impacts_meet_nothing_and_paths_that_meet_have_impacts() {
     let scene = Scene::two_sheets(3, 0.05);
-    let problem = scene.problem(Params::fast());
-    let mut search = ImpactSearch::new(&problem.model);
+    let collision = scene.collision_scene(Params::fast());
+    let mut search = ImpactSearch::new(&collision.model());
     let swapped = scene.swapped();
     let (mut clear, mut met) = (0, 0);
     for share in [0.0, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0] {
         let paths: Vec<Vector> = scene.x.iter().zip(&swapped).map(|(x, y)| share * (y - x)).collect();
         let mut outcome = Outcome::default();
-        let impacts = search.find(&problem, &scene.x, &paths, f64::INFINITY, |_| true, &mut outcome);
+        let impacts = search.find(&collision, &scene.x, &paths, f64::INFINITY, |_| true, &mut outcome);
         let meetings = meetings(&scene, &paths);
         assert_eq!(outcome.searches, 1);
         assert!(impacts.iter().all(|impact| (0.0..1.0).contains(&impact.time)));
@@ -54,13 +54,13 @@ fn a_pair_that_comes_from_afar_to_its_desired_distance_does_not_count_as_meeting
     // 10 m above: a tenth of that is a hundred times the desired distance.
     let scene = Scene::vertex_above_triangle(10.0);
     let mut params = Params::fast();
-    params.constraints.delta = Some(0.01);
-    let problem = scene.problem(params);
-    let mut search = ImpactSearch::new(&problem.model);
+    params.contact.delta = Some(0.01);
+    let collision = scene.collision_scene(params);
+    let mut search = ImpactSearch::new(&collision.model());
     let mut impacts = |height: f64| {
         let mut paths = vec![Vector::zeros(); 4];
         paths[3].z = height - 10.0;
-        search.find(&problem, &scene.x, &paths, f64::INFINITY, |_| true, &mut Outcome::default()).len()
+        search.find(&collision, &scene.x, &paths, f64::INFINITY, |_| true, &mut Outcome::default()).len()
     };
     assert_eq!(impacts(0.01), 0);
     assert_eq!(impacts(-0.01), 1);

@@ -2,11 +2,11 @@ use super::support::{crumpled, momenta, nearing, solve_clear};
 use crate::common::Scene;
 use bowknot_baselines::twoway::geometry::{HalfSpace, Point, Topology, Vector};
 use bowknot_baselines::twoway::proximity::{BodyFilter, CollisionModel};
-use bowknot_baselines::twoway::{Call, Params, Resolver};
+use bowknot_baselines::twoway::{Params, ResolveInput, Resolver};
 use bowknot_baselines::zones::{ImpactZones, ZoneParams, ZoneSolver};
 
 fn zones(scene: &Scene, solver: ZoneSolver) -> ImpactZones {
-    ImpactZones::new(scene.problem(Params::fast()), ZoneParams { solver, ..ZoneParams::default() })
+    ImpactZones::new(scene.collision_scene(Params::fast()), ZoneParams { solver, ..ZoneParams::default() })
 }
 
 const SOLVERS: [ZoneSolver; 3] =
@@ -15,15 +15,15 @@ const SOLVERS: [ZoneSolver; 3] =
 #[test]
 fn a_vertex_stops_at_its_desired_distance_above_a_triangle() {
     let scene = Scene::vertex_above_triangle(0.5);
-    let problem = scene.problem(Params::fast());
+    let collision = scene.collision_scene(Params::fast());
     let mut target = scene.x.clone();
     target[3] += Vector::new(0.3, -0.1, -1.0);
     for solver in SOLVERS {
         let (x, outcome) = solve_clear(&mut zones(&scene, solver), &scene, &target, &[]);
         assert!(outcome.converged && !outcome.failed);
         // Down to delta, and no further than needed from where it wanted to be.
-        let expected = Point::new(target[3].x, target[3].y, problem.lengths.delta);
-        assert!((x[3] - expected).norm() < 0.02 * problem.lengths.delta, "{solver:?}: {}", x[3]);
+        let expected = Point::new(target[3].x, target[3].y, collision.lengths().delta);
+        assert!((x[3] - expected).norm() < 0.02 * collision.lengths().delta, "{solver:?}: {}", x[3]);
         assert_eq!(x[..3], scene.x[..3]);
     }
 }
@@ -50,7 +50,7 @@ fn sheets_that_come_near_are_resolved_and_keep_their_momentum() {
 #[test]
 fn without_thickness_what_does_not_meet_may_end_near_and_with_it_keeps_its_distance() {
     let scene = Scene::vertex_above_triangle(0.5);
-    let delta = scene.problem(Params::fast()).lengths.delta;
+    let delta = scene.collision_scene(Params::fast()).lengths().delta;
     let mut target = scene.x.clone();
     target[3].z = 0.3 * delta;
     let mut thin = zones(&scene, ZoneSolver::GaussSeidel);
@@ -67,13 +67,13 @@ fn without_thickness_what_does_not_meet_may_end_near_and_with_it_keeps_its_dista
     let target = crumpled(&scene, 0.05, 7);
     let mut resolver =
         Resolver::new(scene.model.clone(), &scene.x, &vec![0.01; scene.x.len()], Params::fast()).unwrap();
-    let delta = resolver.problem().lengths.delta;
+    let delta = resolver.scene().lengths().delta;
     let mut gap = |thickness: f64| {
         let mut zones = zones(&scene, ZoneSolver::GaussSeidel);
         zones.params.thickness = thickness;
         let (x, outcome) = solve_clear(&mut zones, &scene, &target, &[]);
         assert!(outcome.converged);
-        let contacts = resolver.survey(&x, &Call::default()).unwrap();
+        let contacts = resolver.detect_contacts(&x, &ResolveInput::default()).unwrap();
         let body = |v: u32| scene.model.vertex_body()[v as usize];
         let gaps = contacts.pairs.pairs().iter().zip(&contacts.separations);
         let between = gaps.filter(|(pair, _)| body(pair.vertices[0]) != body(pair.vertices[3]));
@@ -90,7 +90,7 @@ fn vice() -> (Scene, Vec<Point>, Vec<bool>) {
         x.extend(corners.map(|[u, v]| Point::new(u, v, height)));
     }
     x.push(Point::new(0.1, 0.2, 0.5));
-    let topology = Topology::new(7, vec![[0, 1, 2], [3, 4, 5]], &[], &[6]).unwrap();
+    let topology = Topology::builder(7).triangles([[0, 1, 2], [3, 4, 5]]).particles([6]).build().unwrap();
     let bodies = vec![BodyFilter::OBSTACLE, BodyFilter::OBSTACLE, BodyFilter::DEFORMABLE];
     let model = CollisionModel::new(topology, vec![0, 0, 0, 1, 1, 1, 2], bodies, vec![]).unwrap();
     let scene = Scene { x, model };
@@ -164,8 +164,8 @@ fn a_target_far_from_anything_possible_is_too_much_for_projected_zones_too() {
 fn a_limit_on_steps_counts_as_a_failure_and_bad_input_is_refused() {
     let (scene, target, _) = vice();
     let mut params = Params::fast();
-    params.stop.max_steps = Some(3);
-    let mut zones = ImpactZones::new(scene.problem(params), ZoneParams::default());
+    params.solver.stop.max_steps = Some(3);
+    let mut zones = ImpactZones::new(scene.collision_scene(params), ZoneParams::default());
     let (_, outcome) = solve_clear(&mut zones, &scene, &target, &[]);
     assert!(outcome.failed && outcome.steps == 3);
     let mut x = scene.x.clone();

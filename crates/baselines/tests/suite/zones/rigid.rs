@@ -1,12 +1,12 @@
 use super::support::{momenta, solve_clear};
 use crate::common::{Draw, Scene};
 use bowknot_baselines::twoway::geometry::{Point, Vector};
-use bowknot_baselines::twoway::{Call, Params};
+use bowknot_baselines::twoway::{Params, ResolveInput};
 use bowknot_baselines::zones::RigidZones;
 use bowknot_baselines::{Method, Outcome};
 
 fn run(scene: &Scene, target: &[Point], prescribed: &[bool]) -> (Vec<Point>, Outcome) {
-    let mut zones = RigidZones::new(scene.problem(Params::fast()));
+    let mut zones = RigidZones::new(scene.collision_scene(Params::fast()));
     let (x, outcome) = solve_clear(&mut zones, scene, target, prescribed);
     assert!(outcome.converged && !outcome.failed);
     (x, outcome)
@@ -91,16 +91,21 @@ fn pins_of_a_group_wait_together() {
     target[down].z -= 0.1;
     target[aside].x += 0.01;
     let mut prescribed = vec![false; count];
-    let mut groups = vec![Call::NO_GROUP; count];
+    let mut groups = vec![ResolveInput::NO_GROUP; count];
     for v in [down, aside] {
         (prescribed[v], groups[v]) = (true, 7);
     }
     for grouped in [true, false] {
-        let mut zones = RigidZones::new(scene.problem(Params::fast()));
+        let mut zones = RigidZones::new(scene.collision_scene(Params::fast()));
         let mut x = scene.x.clone();
         let groups = if grouped { &groups[..] } else { &[] };
-        let call = Call { prescribed: &prescribed, groups, time_step: Some(0.01), ..Call::default() };
-        zones.solve(&mut x, &target, &call).unwrap();
+        let input = ResolveInput {
+            prescribed: &prescribed,
+            groups,
+            time_step: Some(0.01),
+            ..ResolveInput::default()
+        };
+        zones.solve(&mut x, &target, &input).unwrap();
         assert_eq!(x[down], scene.x[down]);
         assert_eq!(x[aside], if grouped { scene.x[aside] } else { target[aside] });
     }
@@ -110,7 +115,7 @@ fn pins_of_a_group_wait_together() {
 fn random_heaps_are_never_cut() {
     for seed in 0..20 {
         let scene = Scene::heap(0.02);
-        let mut draw = Draw(seed);
+        let mut draw = Draw::new(seed);
         let size = 10f64.powf(1.5 * draw.next() - 1.5);
         // The obstacle of three vertices at the end rests.
         let movable = scene.x.len() - 3;

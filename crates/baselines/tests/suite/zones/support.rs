@@ -1,7 +1,7 @@
 //! Running a method, and judging its path.
 
 use crate::common::{Draw, Scene, assert_clear};
-use bowknot_baselines::twoway::Call;
+use bowknot_baselines::twoway::ResolveInput;
 use bowknot_baselines::twoway::geometry::{Point, Vector};
 use bowknot_baselines::{Method, Outcome};
 
@@ -14,8 +14,8 @@ pub fn solve_clear(
     prescribed: &[bool],
 ) -> (Vec<Point>, Outcome) {
     let mut x = scene.x.clone();
-    let call = Call { time_step: Some(0.01), prescribed, ..Call::default() };
-    let outcome = method.solve(&mut x, target, &call).unwrap();
+    let input = ResolveInput { time_step: Some(0.01), prescribed, ..ResolveInput::default() };
+    let outcome = method.solve(&mut x, target, &input).unwrap();
     for k in 0..=64 {
         let t = f64::from(k) / 64.0;
         let between: Vec<Point> = scene.x.iter().zip(&x).map(|(a, b)| a + t * (b - a)).collect();
@@ -33,7 +33,7 @@ pub fn momenta(start: &[Point], end: &[Point]) -> [Vector; 2] {
 /// Where two sheets want to be that come toward each other, through each other by a little, with some noise [m].
 pub fn nearing(scene: &Scene) -> Vec<Point> {
     let n = scene.x.len() / 2;
-    let mut draw = Draw(3);
+    let mut draw = Draw::new(3);
     let way = |v: usize| if v < n { 0.03 } else { -0.03 };
     (0..2 * n).map(|v| scene.x[v] + Vector::z() * way(v) + 2e-3 * draw.vector()).collect()
 }
@@ -41,7 +41,7 @@ pub fn nearing(scene: &Scene) -> Vec<Point> {
 /// Where two sheets want to be that change places, with so much noise [m].
 pub fn crumpled(scene: &Scene, noise: f64, seed: u64) -> Vec<Point> {
     let n = scene.x.len() / 2;
-    let mut draw = Draw(seed);
+    let mut draw = Draw::new(seed);
     (0..2 * n)
         .map(|v| {
             let other = scene.x[(v + n) % (2 * n)];

@@ -2,7 +2,7 @@ use super::support::{crumpled, nearing, solve_clear};
 use crate::common::{Scene, assert_clear};
 use bowknot_baselines::barrier::{BarrierParams, by_descent};
 use bowknot_baselines::twoway::geometry::Point;
-use bowknot_baselines::twoway::{Call, Params};
+use bowknot_baselines::twoway::{Params, ResolveInput};
 use bowknot_baselines::zones::{ImpactZones, RigidZones, TwoPhase, ZoneParams};
 use bowknot_baselines::{Composed, Method};
 
@@ -10,11 +10,11 @@ use bowknot_baselines::{Composed, Method};
 fn easy_calls_need_the_soft_phase_only_and_end_where_it_does() {
     let scene = Scene::two_sheets(4, 0.05);
     let target = nearing(&scene);
-    let problem = || scene.problem(Params::fast());
-    let mut two = TwoPhase::new(problem(), 100, RigidZones::new(problem()));
+    let collision = || scene.collision_scene(Params::fast());
+    let mut two = TwoPhase::new(collision(), 100, RigidZones::new(collision()));
     let (x, outcome) = solve_clear(&mut two, &scene, &target, &[]);
     assert!(outcome.converged && two.fallbacks() == 0);
-    let mut alone = ImpactZones::new(problem(), ZoneParams::default());
+    let mut alone = ImpactZones::new(collision(), ZoneParams::default());
     assert_eq!(solve_clear(&mut alone, &scene, &target, &[]).0, x);
 }
 
@@ -23,14 +23,14 @@ fn what_the_soft_phase_leaves_the_hard_phase_brings_on_its_way() {
     let scene = Scene::two_sheets(6, 0.02);
     let target = crumpled(&scene, 0.2, 100);
     let mut params = Params::fast();
-    params.stop.max_steps = Some(100);
-    let problem = || scene.problem(params.clone());
-    let hard = Composed::new("log barrier", by_descent(problem(), BarrierParams::default()).unwrap());
-    let mut two = TwoPhase::new(problem(), 2, hard);
+    params.solver.stop.max_steps = Some(100);
+    let collision = || scene.collision_scene(params.clone());
+    let hard = Composed::new("log barrier", by_descent(collision(), BarrierParams::default()).unwrap());
+    let mut two = TwoPhase::new(collision(), 2, hard);
     assert_eq!(two.name(), "two phases, hard: log barrier");
     let mut x = scene.x.clone();
-    let call = Call { time_step: Some(0.01), ..Call::default() };
-    let outcome = two.solve(&mut x, &target, &call).unwrap();
+    let input = ResolveInput { time_step: Some(0.01), ..ResolveInput::default() };
+    let outcome = two.solve(&mut x, &target, &input).unwrap();
     assert_eq!(two.fallbacks(), 1);
     assert!(!outcome.failed && outcome.steps > 2 && outcome.searches > 3, "{outcome:?}");
     assert_clear(&scene.model, &x, "end");

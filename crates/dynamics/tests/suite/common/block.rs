@@ -2,8 +2,8 @@
 
 use bowknot_geometry::Point;
 
-/// A box of `cells` cubes a side, each six tets around its diagonal, corner at the origin: positions and tets.
-/// Vertex (i, j, k) has index i + (cells[0] + 1) * (j + (cells[1] + 1) * k).
+/// A box with its corner at the origin, of `cells` cubes along each axis, each of six tets around its
+/// diagonal: positions and tets. Vertex (i, j, k) has index i + (cells[0] + 1) * (j + (cells[1] + 1) * k).
 pub fn block(size: [f64; 3], cells: [usize; 3]) -> (Vec<Point>, Vec<[u32; 4]>) {
     let index = |i: usize, j: usize, k: usize| (i + (cells[0] + 1) * (j + (cells[1] + 1) * k)) as u32;
     let at = |axis: usize, k: usize| size[axis] * k as f64 / cells[axis] as f64;

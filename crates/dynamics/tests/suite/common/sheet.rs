@@ -2,8 +2,8 @@
 
 use bowknot_geometry::Point;
 
-/// A `width` x `height` sheet [m] in the xy plane, corner at the origin, of `columns` x `rows` cells:
-/// positions and triangles with alternating diagonals. Vertex (i, j) has index i + j * (columns + 1).
+/// A sheet of `width` x `height` [m] in the xy plane with its corner at the origin, of `columns` x `rows`
+/// cells: positions, and triangles with alternating diagonals. Vertex (i, j) has index i + j * (columns + 1).
 pub fn sheet(width: f64, height: f64, columns: usize, rows: usize) -> (Vec<Point>, Vec<[u32; 3]>) {
     let mut positions = Vec::new();
     for j in 0..=rows {

@@ -2,8 +2,8 @@
 
 use bowknot_geometry::Point;
 
-/// `count` strands of `nodes` vertices that hang down over `length` [m], roots on a square grid of `spacing` [m]:
-/// positions and edges; the root of strand s is vertex s * nodes.
+/// `count` strands of `nodes` vertices that hang down over `length` [m], with roots on a square grid of
+/// `spacing` [m]: positions and edges. The root of strand s is vertex s * nodes.
 pub fn strands(count: usize, nodes: usize, length: f64, spacing: f64) -> (Vec<Point>, Vec<[u32; 2]>) {
     let side = (count as f64).sqrt().ceil() as usize;
     let (mut positions, mut edges) = (Vec::new(), Vec::new());

@@ -2,23 +2,19 @@
 
 use bowknot_lcp::*;
 
-/// A reproducible source of numbers (splitmix64; Steele, Lea and Flood 2014).
-pub struct Random(pub u64);
+/// Seeded random numbers.
+pub struct Random(fastrand::Rng);
 
 impl Random {
-    pub fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+    pub fn new(seed: u64) -> Self {
+        Self(fastrand::Rng::with_seed(seed))
     }
     /// Uniform in [-1, 1).
     pub fn signed(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        2.0 * self.0.f64() - 1.0
     }
     pub fn below(&mut self, n: usize) -> usize {
-        (self.next() % n as u64) as usize
+        self.0.usize(..n)
     }
     pub fn vector(&mut self) -> Vector {
         Vector::new(self.signed(), self.signed(), self.signed())
@@ -31,13 +27,13 @@ pub struct Case {
     pub y_free: Vec<Vector>,
     pub rows: Vec<Row>,
     pub row_starts: Vec<u32>,
-    pub balls: Vec<BallRow>,
-    pub ball_starts: Vec<u32>,
+    pub limits: Vec<DistanceLimit>,
+    pub limit_starts: Vec<u32>,
 }
 
 impl Case {
     pub fn start(&self) -> (Vec<Vector>, Vec<f64>, Vec<Vector>) {
-        (self.y_free.clone(), vec![0.0; self.rows.len()], vec![Vector::zeros(); self.balls.len()])
+        (self.y_free.clone(), vec![0.0; self.rows.len()], vec![Vector::zeros(); self.limits.len()])
     }
 }
 
@@ -65,22 +61,22 @@ pub fn colour<T: Copy>(items: &[T], nodes: impl Fn(&T) -> Vec<u32>, weights: &[f
     (classes.concat(), starts)
 }
 
-/// A sheet of side x side nodes 1 cm apart, crumpled: edges and both diagonals' first as ball rows, and
-/// `contacts` rows between random neighbourhoods; one node in 100 is pinned.
+/// A crumpled sheet of side x side nodes 1 cm apart: edges and one diagonal per cell as distance limits, and
+/// `contacts` rows between random neighbourhoods. One node in 100 is pinned.
 pub fn cloth(side: usize, contacts: usize, seed: u64) -> Case {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let h = 0.01;
     let n = side * side;
     let rest = |v: usize| Vector::new((v % side) as f64 * h, (v / side) as f64 * h, 0.0);
     let y_free: Vec<Vector> = (0..n).map(|v| rest(v) * 1.1 + 0.3 * h * random.vector()).collect();
     let weights: Vec<f64> =
         (0..n).map(|v| if v % 100 == 7 { 0.0 } else { 1.0 + 0.5 * random.signed() }).collect();
-    let mut balls = Vec::new();
+    let mut limits = Vec::new();
     for j in 0..side {
         for i in 0..side {
             let v = (j * side + i) as u32;
             let mut edge = |other: usize, length: f64| {
-                balls.push(BallRow { vertices: [v, other as u32], limit: 1.05 * length });
+                limits.push(DistanceLimit { vertices: [v, other as u32], limit: 1.05 * length });
             };
             if i + 1 < side {
                 edge(j * side + i + 1, h);
@@ -111,10 +107,10 @@ pub fn cloth(side: usize, contacts: usize, seed: u64) -> Case {
         row.offset = -row.value(&y_free) - 0.1 * h * (random.signed() + 0.5);
         rows.push(row);
     }
-    // Contacts come in spatial order.
+    // Contacts are in spatial order.
     rows.sort_by_key(|row| row.vertices[1]);
     prepare_rows(&mut rows, &weights).expect("nodes are in range");
     let (rows, row_starts) = colour(&rows, |r| r.vertices.to_vec(), &weights);
-    let (balls, ball_starts) = colour(&balls, |b| b.vertices.to_vec(), &weights);
-    Case { weights, y_free, rows, row_starts, balls, ball_starts }
+    let (limits, limit_starts) = colour(&limits, |b| b.vertices.to_vec(), &weights);
+    Case { weights, y_free, rows, row_starts, limits, limit_starts }
 }

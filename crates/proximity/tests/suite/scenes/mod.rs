@@ -12,21 +12,17 @@ pub struct Scene {
     pub radii: Vec<f64>,
 }
 
-/// A small deterministic generator (splitmix64).
-pub struct Random(pub u64);
+/// Seeded random numbers.
+pub struct Random(fastrand::Rng);
 
 impl Random {
-    pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+    pub fn new(seed: u64) -> Self {
+        Self(fastrand::Rng::with_seed(seed))
     }
 
     /// Uniform in [0, 1).
     pub fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+        self.0.f64()
     }
 
     pub fn vector(&mut self, size: f64) -> Vector {
@@ -111,9 +107,12 @@ impl Builder {
     }
 
     pub fn build(&self) -> Scene {
-        let topology =
-            Topology::new(self.positions.len(), self.triangles.clone(), &self.strands, &self.particles)
-                .expect("valid elements");
+        let topology = Topology::builder(self.positions.len())
+            .triangles(self.triangles.iter().copied())
+            .strand_edges(self.strands.iter().copied())
+            .particles(self.particles.iter().copied())
+            .build()
+            .expect("valid elements");
         let model = CollisionModel::new(
             topology,
             self.vertex_body.clone(),
@@ -187,8 +186,8 @@ impl Scene {
         all
     }
 
-    /// Checks a list against all pairs: none nearer than its radii is missing, none is certainly
-    /// farther, order and geometry are right. Returns the number of pairs.
+    /// Checks a list against all pairs: none nearer than its radii is missing, none is certainly farther,
+    /// order and geometry are right. Returns the number of pairs.
     pub fn check(&self, pairs: &PairList, separations: &[Separation]) -> usize {
         assert_eq!(pairs.len(), separations.len());
         let mut listed = pairs.pairs().iter().enumerate().peekable();

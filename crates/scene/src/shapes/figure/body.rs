@@ -3,8 +3,8 @@
 //! Each bone carries round cones. The field of their union has slope 1 at most, so a surface on which it is at
 //! least g keeps g from the body.
 
+use super::super::round_cone::{RoundCone, bounds, smooth_union};
 use super::skeleton::{ARM, CHEST, FOOT, FOREARM, HEAD, LEG, NECK, PELVIS, SHIN, SPINE, THIGH, UPPER_ARM};
-use crate::shapes::round_cone::{RoundCone, bounds, smooth_union};
 use bowknot_geometry::Point;
 
 /// A round cone that moves with a bone.

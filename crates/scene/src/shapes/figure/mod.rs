@@ -9,8 +9,10 @@ mod tests;
 
 pub(super) use body::RestBody;
 
+use super::animated::Animated;
 use super::isosurface::{self, Isosurface};
-use super::{Animated, TriangleMesh};
+use super::mesh::TriangleMesh;
+use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::{Point, Topology};
 use serde::{Deserialize, Serialize};
 use skin::Skin;
@@ -80,9 +82,10 @@ impl Figure {
         // Edges come out shorter than the spacing of the grid by a tenth.
         isosurface::mesh(&surface, 1.1 * self.edge.min(LONGEST_EDGE))
     }
+}
 
-    /// Appends the field and what is wrong with it.
-    pub(super) fn validate(&self, problems: &mut Vec<(&'static str, String)>) {
+impl Parameters for Figure {
+    fn check(&self, checks: &mut Checks) {
         let ranges = [
             ("edge", self.edge, f64::MIN_POSITIVE, LONGEST_EDGE, "m"),
             ("start", self.start, 0.0, f64::MAX, "s"),
@@ -102,13 +105,13 @@ impl Figure {
                     (_, true) => "finite and at least 0".to_owned(),
                     _ => format!("from {least} to {most}"),
                 };
-                problems.push((key, format!("{value} must be {range} {unit}")));
+                checks.refuse(key, value, format!("must be {range} {unit}"));
             }
         }
         for (key, end, start) in [("end", self.end, self.start), ("turn_end", self.turn_end, self.turn_start)]
         {
             if end.is_nan() || end < start {
-                problems.push((key, format!("{end} must not be earlier than the start, {start} s")));
+                checks.refuse(key, end, format!("must not be earlier than the start, {start} s"));
             }
         }
     }
@@ -126,7 +129,8 @@ impl AnimatedFigure {
     /// Binds the mesh of [`Figure::mesh`] to the bones.
     pub fn new(figure: Figure) -> Self {
         let mesh = figure.mesh();
-        let topology = Topology::new(mesh.positions.len(), mesh.triangles.clone(), &[], &[]);
+        let topology =
+            Topology::builder(mesh.positions.len()).triangles(mesh.triangles.iter().copied()).build();
         // The mesh is our own, so there is a topology; without one the weights would only be rougher.
         let topology = topology.unwrap_or_default();
         let skin = Skin::new(&RestBody::new(), &mesh.positions, &topology, figure.edge);

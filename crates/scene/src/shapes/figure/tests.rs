@@ -3,7 +3,10 @@ use bowknot_geometry::{Vector, check_mesh};
 use std::collections::BTreeMap;
 
 fn euler(mesh: &TriangleMesh) -> i64 {
-    let topology = Topology::new(mesh.positions.len(), mesh.triangles.clone(), &[], &[]).expect("topology");
+    let topology = Topology::builder(mesh.positions.len())
+        .triangles(mesh.triangles.iter().copied())
+        .build()
+        .expect("topology");
     mesh.positions.len() as i64 - topology.edges.len() as i64 + mesh.triangles.len() as i64
 }
 

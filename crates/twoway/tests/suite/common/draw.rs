@@ -2,13 +2,17 @@
 
 use bowknot_geometry::Vector;
 
-/// Numbers that look random, from -1 to 1, the same in every run.
-pub struct Draw(pub u64);
+/// Seeded random numbers.
+pub struct Draw(fastrand::Rng);
 
 impl Draw {
+    pub fn new(seed: u64) -> Self {
+        Self(fastrand::Rng::with_seed(seed))
+    }
+
+    /// Uniform in [-1, 1).
     pub fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        2.0 * self.0.f64() - 1.0
     }
 
     pub fn vector(&mut self) -> Vector {

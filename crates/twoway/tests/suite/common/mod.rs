@@ -1,7 +1,7 @@
 //! Meshes and a plain time integrator for the tests.
 
 use bowknot_geometry::{Point, Vector};
-use bowknot_twoway::{Call, Resolver, Statistics};
+use bowknot_twoway::{ResolveInput, Resolver, Statistics};
 
 mod draw;
 mod sheet;
@@ -9,7 +9,7 @@ mod sheet;
 pub use draw::Draw;
 pub use sheet::sheet;
 
-/// Bodies that move freely between contacts: y = x + dt v + dt^2 g, then v from what the resolver let happen.
+/// Bodies that move freely between contacts: y = x + dt v + dt^2 g, then v from the resolved positions.
 pub struct Flight {
     pub resolver: Resolver,
     pub x: Vec<Point>,
@@ -19,7 +19,7 @@ pub struct Flight {
 }
 
 impl Flight {
-    /// A time step; `keyframe` says where a prescribed vertex goes.
+    /// A time step. `keyframe` gives the target of a prescribed vertex.
     pub fn step(&mut self, keyframe: impl Fn(usize, &Point) -> Option<Point>) -> Statistics {
         let dt = self.dt;
         let mut prescribed = vec![false; self.x.len()];
@@ -33,11 +33,11 @@ impl Flight {
             })
             .collect();
         let start = self.x.clone();
-        let call = Call { prescribed: &prescribed, time_step: Some(dt), ..Call::default() };
+        let input = ResolveInput { prescribed: &prescribed, time_step: Some(dt), ..ResolveInput::default() };
         let report = self
             .resolver
-            .resolve(&mut self.x, &y, &call, &mut ())
-            .expect("meshes and numbers of the tests are valid");
+            .resolve_with(&mut self.x, &y, &input, &mut ())
+            .expect("the meshes and numbers of the tests are valid");
         for (v, (x, start)) in self.v.iter_mut().zip(self.x.iter().zip(&start)) {
             *v = (x - start) / dt;
         }
@@ -50,7 +50,7 @@ impl Flight {
     }
 }
 
-/// Distances in a few lines that share nothing with the crates: closed forms by cases, each candidate a true pair of points.
+/// Distances that share no code with the crates: closed forms by cases, each candidate a true pair of points.
 pub mod brute_force {
     use bowknot_geometry::{Point, Topology};
 

@@ -6,7 +6,7 @@ use bowknot_geometry::Point;
 pub fn sheet(cells: usize, h: f64, height: f64, x: &mut Vec<Point>, triangles: &mut Vec<[u32; 3]>) {
     let (base, n) = (x.len(), cells + 1);
     for k in 0..n * n {
-        // A little warp, so that nothing is degenerate by accident.
+        // A small warp avoids degenerate positions.
         let warp = 1e-3 * h * ((k * 37 % 11) as f64 - 5.0);
         x.push(Point::new((k % n) as f64 * h, (k / n) as f64 * h, height + warp));
     }

@@ -1,0 +1,102 @@
+//! One Newton iteration: a linear system, its solution, the line search.
+
+use super::momentum::{Inertia, restore_momentum};
+use super::state::Newton;
+use crate::dynamics::info::NewtonInfo;
+use crate::linear::cg::{self, Limits};
+use crate::linear::system::System;
+use bowknot_geometry::Vector;
+
+/// Residual at which an inexact linear solve ends, relative to its own right-hand side.
+const INEXACT_TOLERANCE: f64 = 0.03;
+
+/// How accurately a linear system is solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Accuracy {
+    /// To a residual of 0.03: another linearisation follows.
+    Inexact,
+    /// To [`crate::NewtonParams::cg_tolerance`].
+    Full,
+}
+
+impl Newton<'_> {
+    /// Makes one Newton iteration from `work.x` to `work.trial`.
+    pub(super) fn iterate(&mut self, accuracy: Accuracy) -> NewtonInfo {
+        self.linearise();
+        let Self { model, params, repulsion, step, work } = self;
+
+        // b = -(g + H p) over free nodes, with p the imposed displacements of the prescribed nodes.
+        let springs = repulsion.linear();
+        let system = System {
+            pattern: &model.pattern,
+            values: &work.values,
+            scalar: &step.scalar,
+            springs: (!springs.is_empty()).then_some(springs),
+            free: &work.free,
+        };
+        if work.imposed.iter().any(|p| *p != Vector::zeros()) {
+            system.multiply(&work.imposed, &mut work.right_side);
+        } else {
+            work.right_side.fill(Vector::zeros());
+        }
+        for ((b, g), &free) in work.right_side.iter_mut().zip(&work.gradient).zip(&work.free) {
+            *b = if free { -(*b + g) } else { Vector::zeros() };
+        }
+
+        // There are two guesses: the way to the positions where inertia leads, and the way to the last
+        // target. In free flight the first is all but exact, near the solution of a step the second.
+        // Corrections use them as well: what is still missing along them is what conjugate gradients find
+        // last.
+        let guess_count = 1 + usize::from(step.last_target.is_some());
+        for (guess, target) in work.guesses.iter_mut().zip([Some(&step.inertial), step.last_target.as_ref()])
+        {
+            let Some(target) = target else { continue };
+            for (node, guess) in guess.iter_mut().enumerate() {
+                *guess = if work.free[node] { target[node] - work.x[node] } else { Vector::zeros() };
+            }
+        }
+        let [inertia, last] = &work.guesses;
+        let guesses: &[&[Vector]] = &[last.as_slice(), inertia.as_slice()][2 - guess_count..];
+        work.preconditioner.build(&system, &work.x);
+        let limits = Limits {
+            tolerance: params.newton.cg_tolerance,
+            own_tolerance: match accuracy {
+                Accuracy::Inexact => INEXACT_TOLERANCE,
+                Accuracy::Full => 0.0,
+            },
+            min_scale: work.min_scale,
+            max_iterations: params.newton.cg_max_iterations,
+        };
+        let mut info = NewtonInfo {
+            iterations: 1,
+            cg: cg::solve(
+                &system,
+                &mut work.preconditioner,
+                &work.right_side,
+                guesses,
+                limits,
+                &mut work.step,
+                &mut work.cg,
+            ),
+            ..NewtonInfo::default()
+        };
+        if work.min_scale == 0.0 {
+            work.min_scale = work.cg.scale();
+        }
+        let inertia = Inertia {
+            per_mass: 1.0 / (step.dt * step.dt) + params.environment.air_drag / step.dt,
+            drag: step.drag.as_ref(),
+            rate: 1.0 / step.dt,
+        };
+        restore_momentum(model, repulsion, &inertia, &work.free, work.cg.residual(), &mut work.step);
+        self.search_line(&mut info);
+        info.max_displacement = largest_distance(&self.work.trial, &self.work.x, &self.work.free);
+        info
+    }
+}
+
+/// Largest |y - x| over free nodes [m].
+pub(super) fn largest_distance(y: &[Vector], x: &[Vector], free: &[bool]) -> f64 {
+    let distance = |((y, x), _): ((&Vector, &Vector), &bool)| (y - x).norm();
+    y.iter().zip(x).zip(free).filter(|(_, free)| **free).map(distance).fold(0.0, f64::max)
+}

@@ -1,0 +1,88 @@
+//! Gradient and matrix of the incremental potential.
+
+use super::state::Newton;
+use crate::elements::filter::Filter;
+use crate::elements::set::{Motion, Rows};
+use crate::nodes::CHUNK;
+use bowknot_geometry::Vector;
+use nalgebra::Matrix3;
+use rayon::prelude::*;
+
+impl Newton<'_> {
+    /// Computes the gradient and H at `work.x`. Springs that have not been prepared get their stiffness and
+    /// the guess of the active set.
+    pub fn linearise(&mut self) {
+        self.linearise_bodies();
+        let Self { model, repulsion, step, work, .. } = self;
+        if repulsion.is_empty() {
+            return;
+        }
+        if std::mem::take(&mut step.unprepared) {
+            let end = |n: usize, x: &Vector| if work.free[n] { *x } else { work.x[n] + work.imposed[n] };
+            let placed = |x: &[Vector]| x.iter().enumerate().map(|(n, x)| end(n, x)).collect::<Vec<_>>();
+            let iterate = step.last_target.is_some().then(|| placed(&work.x));
+            let inertial = placed(&step.inertial);
+            let diagonal = &work.values.diagonal;
+            repulsion.prepare(model, diagonal, 1.0 / step.dt, &work.free, &inertial, iterate.as_deref());
+        }
+        repulsion.linearise(&work.x);
+        let gradient = work.gradient.par_iter_mut().enumerate().with_min_len(CHUNK);
+        gradient.for_each(|(node, gradient)| *gradient += repulsion.linear().gradient(node));
+    }
+
+    /// Computes the gradient and H at `work.x` without springs.
+    pub fn linearise_bodies(&mut self) {
+        let Self { model, params, step, work, .. } = self;
+        let motion = Motion { x: &work.x, start: &step.start, rate: 1.0 / step.dt };
+        let filter = Filter::new(params.newton.hessian_filter, step.last_target.is_none());
+        let cache = &mut work.cache;
+        if cache.linearised_at == work.x && cache.filter == Some(filter) {
+            work.gradient.copy_from_slice(&cache.gradient);
+            return;
+        }
+        let inertia = 1.0 / (step.dt * step.dt);
+        let drag = params.environment.air_drag / step.dt;
+
+        // Each chunk gets the blocks of its own rows.
+        let mut blocks = work.values.blocks.as_mut_slice();
+        let mut rows = Vec::new();
+        let chunks = work.gradient.chunks_mut(CHUNK).zip(work.values.diagonal.chunks_mut(CHUNK));
+        for (chunk, (gradient, diagonal)) in chunks.enumerate() {
+            let nodes = chunk * CHUNK..chunk * CHUNK + gradient.len();
+            let first_block = model.pattern.starts[nodes.start] as usize;
+            let end_block = model.pattern.starts[nodes.end] as usize;
+            let (mine, rest) = blocks.split_at_mut(end_block - first_block);
+            blocks = rest;
+            rows.push(Rows { nodes, gradient, diagonal, blocks: mine, first_block });
+        }
+        rows.into_par_iter().enumerate().for_each(|(chunk, mut rows)| {
+            let in_pattern = &step.scalar.in_pattern[rows.first_block..];
+            for (block, &value) in rows.blocks.iter_mut().zip(in_pattern) {
+                *block = Matrix3::from_diagonal_element(value);
+            }
+            for (row, node) in rows.nodes.clone().enumerate() {
+                let mass = model.node_masses[node];
+                let (x, start) = (motion.x[node], motion.start[node]);
+                rows.diagonal[row] =
+                    Matrix3::from_diagonal_element(mass * (inertia + drag) + step.scalar.diagonal[node]);
+                rows.gradient[row] = (x - step.inertial[node]) * (mass * inertia)
+                    + (x - start) * (mass * drag)
+                    + model.bending.product(node, motion.x);
+                if let Some(damping) = &model.bending_damping {
+                    rows.gradient[row] +=
+                        (damping.product(node, motion.x) - damping.product(node, motion.start)) * motion.rate;
+                }
+                if let Some(drag) = &step.drag {
+                    rows.diagonal[row] += drag.matrix[node] * motion.rate;
+                    rows.gradient[row] += drag.matrix[node] * (x - start) * motion.rate - drag.push[node];
+                }
+            }
+            for set in &model.element_sets {
+                set.linearise(chunk, motion, filter, &mut rows);
+            }
+        });
+        cache.linearised_at.clone_from(&work.x);
+        cache.filter = Some(filter);
+        cache.gradient.clone_from(&work.gradient);
+    }
+}

@@ -1,0 +1,107 @@
+//! What a Newton iteration works on, by node.
+
+use crate::drag::Drag;
+use crate::elements::filter::Filter;
+use crate::linear::block::BlockValues;
+use crate::linear::cg::CgWorkspace;
+use crate::linear::preconditioner::Preconditioner;
+use crate::linear::scalar::SplitForm;
+use crate::linear::vectors::add_scaled;
+use crate::model::DynamicsModel;
+use crate::params::DynamicsParams;
+use crate::repulsion::springs::Repulsion;
+use bowknot_geometry::{Point, Vector};
+
+/// The current time step.
+#[derive(Debug, Default)]
+pub struct Step {
+    pub dt: f64,
+    /// Positions at the start.
+    pub start: Vec<Vector>,
+    /// Velocities at the start.
+    pub velocities: Vec<Vector>,
+    /// Positions at the start, by vertex.
+    pub positions: Vec<Point>,
+    /// Positions x~ where inertia leads.
+    pub inertial: Vec<Vector>,
+    /// The last target, if there is one: the next solve starts from it.
+    pub last_target: Option<Vec<Vector>>,
+    /// Bending plus its damping / dt, as a matrix.
+    pub scalar: SplitForm,
+    /// Potential without springs that no target may exceed by more than springs have stored: that at the
+    /// first iterate of the step [J].
+    pub max_potential: Option<f64>,
+    /// None in a vacuum.
+    pub drag: Option<Drag>,
+    /// Whether springs must be prepared: they have been set since the last Newton iteration, or the step has
+    /// just begun.
+    pub unprepared: bool,
+}
+
+/// Buffers; they may be dropped at any time.
+#[derive(Debug, Default)]
+pub struct Workspace {
+    /// The iterate.
+    pub x: Vec<Vector>,
+    /// The trial of the line search, and the target in the end.
+    pub trial: Vec<Vector>,
+    pub free: Vec<bool>,
+    pub gradient: Vec<Vector>,
+    pub right_side: Vec<Vector>,
+    /// Displacements from the iterate to the keyframes; zero for free nodes.
+    pub imposed: Vec<Vector>,
+    pub guesses: [Vec<Vector>; 2],
+    /// The Newton step.
+    pub step: Vec<Vector>,
+    pub values: BlockValues,
+    pub preconditioner: Preconditioner,
+    pub cg: CgWorkspace,
+    /// See [`crate::linear::cg::Limits::min_scale`]: that of the first solve of the time step; 0 before.
+    pub min_scale: f64,
+    pub cache: EvaluationCache,
+}
+
+/// Energies and gradients that were computed in this time step, so that they are not computed twice.
+#[derive(Debug, Default)]
+pub struct EvaluationCache {
+    /// Where `energies` were computed last [m]; empty if nowhere in this time step.
+    pub energies_at: Vec<Vector>,
+    pub energies: [f64; 2],
+    /// Where the bodies were linearised last [m], with which filter, and their gradient [N].
+    pub linearised_at: Vec<Vector>,
+    pub filter: Option<Filter>,
+    pub gradient: Vec<Vector>,
+}
+
+impl EvaluationCache {
+    /// Drops all values.
+    pub fn clear(&mut self) {
+        self.energies_at.clear();
+        self.linearised_at.clear();
+    }
+}
+
+impl Workspace {
+    /// Sets the trial to the iterate plus `length` times the Newton step, with prescribed nodes at their
+    /// keyframes.
+    pub fn place(&mut self, length: f64) {
+        self.trial.copy_from_slice(&self.x);
+        add_scaled(&mut self.trial, 1.0, &self.imposed);
+        add_scaled(&mut self.trial, length, &self.step);
+    }
+
+    /// Makes the trial the next iterate. Prescribed nodes are at their keyframes there.
+    pub fn start_from_trial(&mut self) {
+        self.x.copy_from_slice(&self.trial);
+        self.imposed.fill(Vector::zeros());
+    }
+}
+
+/// Newton's method from `work.x` to `work.trial`.
+pub struct Newton<'a> {
+    pub model: &'a DynamicsModel,
+    pub params: &'a DynamicsParams,
+    pub repulsion: &'a mut Repulsion,
+    pub step: &'a mut Step,
+    pub work: &'a mut Workspace,
+}

@@ -1,0 +1,33 @@
+//! What an element is: a part of a body over a few nodes, with an energy and its derivatives.
+
+use super::filter::Filter;
+use bowknot_geometry::Vector;
+use nalgebra::Matrix3;
+
+/// Energy [J] of an element, its gradient [N] and its Hessian [N/m] over the element's nodes.
+pub(crate) struct Linearisation<const N: usize> {
+    pub energy: f64,
+    pub gradient: [Vector; N],
+    /// Blocks (a, b) for a <= b; the others are their transposes and are not filled in.
+    pub hessian: [[Matrix3<f64>; N]; N],
+}
+
+/// An element over N nodes.
+pub(crate) trait Element<const N: usize>: Send + Sync {
+    /// The nodes of the element.
+    fn nodes(&self) -> [u32; N];
+
+    /// Elastic energy [J] at `x` [m], plus the dissipation potential since `start` if that is given.
+    fn energy(&self, x: &[Vector; N], start: Option<Start<'_, N>>) -> f64;
+
+    /// [`Self::energy`] with gradient and filtered Hessian.
+    fn linearise(&self, x: &[Vector; N], start: Option<Start<'_, N>>, filter: Filter) -> Linearisation<N>;
+}
+
+/// Positions of an element's nodes at the start of the step [m], for damping.
+#[derive(Clone, Copy)]
+pub(crate) struct Start<'a, const N: usize> {
+    pub x: &'a [Vector; N],
+    /// 1 / dt [1/s].
+    pub rate: f64,
+}

@@ -1,0 +1,178 @@
+//! What all triangles of constant strain share: shape functions, deformation gradient, its singular values,
+//! and the assembly of forces and Hessian from a state in the frames of the singular vectors.
+
+use super::element::Linearisation;
+use super::filter::Filter;
+use super::svd::any_normal;
+use bowknot_geometry::Vector;
+use nalgebra::{Matrix2, Matrix3, Matrix4, Vector2};
+
+/// Divisors that are singular values, or sums of them, are at least this large. It limits the curvatures of
+/// triangles crushed to less than a twentieth; forces do not depend on it.
+pub(super) const MIN_SINGULAR_VALUE: f64 = 0.05;
+
+/// Singular values up to this count as zero: their reciprocals, and the squares on the way, must be finite.
+const ZERO_SINGULAR_VALUE: f64 = 1e-150;
+
+/// F = s1 u1 v1^T + s2 u2 v2^T, with v1 = (c, s) and v2 = (-s, c).
+pub(super) struct Decomposition {
+    pub s: [f64; 2],
+    pub u: [Vector; 2],
+    pub v1: [f64; 2],
+}
+
+/// Gradients of the shape functions in the rest plane [1/m] and the area [m^2]; None if the triangle has no
+/// area. The first axis of the plane is the projection of `axis` or, without one, points to vertex 1.
+pub(super) fn rest_gradients(rest: &[Vector; 3], axis: Option<&Vector>) -> Option<([[f64; 2]; 3], f64)> {
+    let (e1, e2) = (rest[1] - rest[0], rest[2] - rest[0]);
+    let (g1, g2, determinant) = match axis {
+        None => {
+            let length = e1.norm();
+            let (x1, x2) = (length, e1.dot(&e2) / length);
+            let y2 = e1.cross(&e2).norm() / length;
+            let determinant = x1 * y2;
+            // The inverse of [[x1, x2], [0, y2]]: its rows are the gradients of vertices 1 and 2.
+            ([1.0 / x1, -x2 / determinant], [0.0, 1.0 / y2], determinant)
+        }
+        Some(axis) => {
+            let normal = e1.cross(&e2).try_normalize(0.0)?;
+            let first = (axis - normal * normal.dot(axis)).try_normalize(0.0)?;
+            let second = normal.cross(&first);
+            let (x1, y1, x2, y2) = (e1.dot(&first), e1.dot(&second), e2.dot(&first), e2.dot(&second));
+            let determinant = x1 * y2 - x2 * y1;
+            ([y2 / determinant, -x2 / determinant], [-y1 / determinant, x1 / determinant], determinant)
+        }
+    };
+    let g0 = [-g1[0] - g2[0], -g1[1] - g2[1]];
+    let finite = [g0, g1, g2].iter().flatten().all(|g: &f64| g.is_finite());
+    (finite && determinant > 0.0).then_some(([g0, g1, g2], 0.5 * determinant))
+}
+
+/// Columns of F.
+#[inline]
+pub(super) fn deformation(gradients: &[[f64; 2]; 3], x: &[Vector; 3]) -> [Vector; 2] {
+    let [_, g1, g2] = gradients;
+    // From differences, so that F does not depend on where the origin is.
+    let (e1, e2) = (x[1] - x[0], x[2] - x[0]);
+    [e1 * g1[0] + e2 * g2[0], e1 * g1[1] + e2 * g2[1]]
+}
+
+/// Increment of the Green strain from `f0` to `f`: components 00, 11, and twice 01.
+#[inline]
+pub(super) fn strain_increment(f: &[Vector; 2], f0: &[Vector; 2]) -> [f64; 3] {
+    // a.a - b.b = (a - b).(a + b), without cancellation.
+    let difference = |a: &Vector, b: &Vector| (a - b).dot(&(a + b));
+    let shear = (f[0] - f0[0]).dot(&f[1]) + f0[0].dot(&(f[1] - f0[1]));
+    [0.5 * difference(&f[0], &f0[0]), 0.5 * difference(&f[1], &f0[1]), shear]
+}
+
+/// The unit eigenvector (c, s) of the larger eigenvalue of [[a, b], [b, d]].
+#[inline]
+fn first_axis(a: f64, d: f64, b: f64) -> [f64; 2] {
+    // A Jacobi rotation, without trigonometric functions, which differ between platforms.
+    let (c, s) = if b == 0.0 {
+        (1.0, 0.0)
+    } else {
+        let tau = (d - a) / (2.0 * b);
+        let t = 1.0f64.copysign(tau) / (tau.abs() + (1.0 + tau * tau).sqrt());
+        let c = 1.0 / (1.0 + t * t).sqrt();
+        (c, -t * c)
+    };
+    // The eigenvalue of (c, s) is a - t b, that of (-s, c) is d + t b; take the larger one.
+    let along = c * c * a + 2.0 * c * s * b + s * s * d;
+    let across = s * s * a - 2.0 * c * s * b + c * c * d;
+    if along >= across { [c, s] } else { [-s, c] }
+}
+
+/// Singular values and vectors of the 3 x 2 matrix with columns `f`; they are finite for any rank.
+#[inline]
+pub(super) fn decompose(f: &[Vector; 2]) -> Decomposition {
+    let [c, s] = first_axis(f[0].norm_squared(), f[1].norm_squared(), f[0].dot(&f[1]));
+    let (w1, w2) = (f[0] * c + f[1] * s, f[1] * c - f[0] * s);
+    let s1 = w1.norm();
+    let u1 = if s1 > ZERO_SINGULAR_VALUE { w1 * (1.0 / s1) } else { Vector::x() };
+    // The component along w1 that rounding left in w2 is removed, so that u stays orthonormal near rank one.
+    let w2 = w2 - u1 * u1.dot(&w2);
+    let s2 = w2.norm();
+    let u2 = if s2 > 1e-14 * s1 && s2 > ZERO_SINGULAR_VALUE { w2 * (1.0 / s2) } else { any_normal(&u1) };
+    Decomposition { s: [s1, s2], u: [u1, u2], v1: [c, s] }
+}
+
+/// Filtered curvatures in the frames (u1, u2, n) and (v1, v2); increments of F are d_ij along u_i v_j^T.
+pub(super) struct Curvatures {
+    /// Over d11, d12, d21, d22.
+    pub plane: Matrix4<f64>,
+    /// Over n v1^T, n v2^T.
+    pub normal: Matrix2<f64>,
+}
+
+/// Energy, gradient and Hessian of a triangle from an energy density, the `stress` (entry [i][j] is the
+/// component along u_i v_j^T) and the curvatures.
+#[inline]
+pub(super) fn assemble(
+    gradients: &[[f64; 2]; 3],
+    area: f64,
+    decomposition: &Decomposition,
+    energy: f64,
+    stress: [[f64; 2]; 2],
+    curvatures: &Curvatures,
+) -> Linearisation<3> {
+    let Decomposition { u: [u1, u2], v1: [cosine, sine], .. } = *decomposition;
+    // Shape function gradients along v1 and v2.
+    let shape = gradients.map(|[g0, g1]| Vector2::new(cosine * g0 + sine * g1, cosine * g1 - sine * g0));
+    let corner = |i: usize, j: usize| curvatures.plane.fixed_view::<2, 2>(2 * i, 2 * j).into_owned();
+    let (k11, k12, k22) = (corner(0, 0), corner(0, 1), corner(1, 1));
+    let basis = Matrix3::from_columns(&[u1, u2, u1.cross(&u2)]);
+    let [[p11, p12], [p21, p22]] = stress;
+    let mut out = Linearisation {
+        energy: area * energy,
+        gradient: [Vector::zeros(); 3],
+        hessian: [[Matrix3::zeros(); 3]; 3],
+    };
+    for k in 1..3 {
+        let g = shape[k];
+        out.gradient[k] = (u1 * (p11 * g.x + p12 * g.y) + u2 * (p21 * g.x + p22 * g.y)) * area;
+        let (g11, g12, g21, g22) = (k11 * g, k12.transpose() * g, k12 * g, k22 * g);
+        let gn = curvatures.normal * g;
+        for l in k..3 {
+            let h = shape[l];
+            let block = Matrix3::new(
+                g11.dot(&h),
+                g12.dot(&h),
+                0.0,
+                g21.dot(&h),
+                g22.dot(&h),
+                0.0,
+                0.0,
+                0.0,
+                gn.dot(&h),
+            );
+            out.hessian[k][l] = basis * (block * area) * basis.transpose();
+        }
+    }
+    // Translations store no energy: the rows of node 0 are minus the sum of the others.
+    out.gradient[0] = -(out.gradient[1] + out.gradient[2]);
+    let [_, [_, h11, h12], [.., h22]] = out.hessian;
+    let (h01, h02) = (-(h11 + h12.transpose()), -(h12 + h22));
+    out.hessian[0] = [-(h01 + h02), h01, h02];
+    out
+}
+
+/// Filters the eigenvalues of a symmetric matrix.
+pub(super) fn filter_2(matrix: Matrix2<f64>, filter: Filter) -> Matrix2<f64> {
+    let [c, s] = first_axis(matrix[(0, 0)], matrix[(1, 1)], matrix[(0, 1)]);
+    let turn = Matrix2::new(c, -s, s, c);
+    let diagonal = turn.transpose() * matrix * turn;
+    let (along, across) = (filter.apply(diagonal[(0, 0)]), filter.apply(diagonal[(1, 1)]));
+    turn * Matrix2::new(along, 0.0, 0.0, across) * turn.transpose()
+}
+
+/// Filters the eigenvalues of a symmetric matrix.
+pub(super) fn filter_4(matrix: Matrix4<f64>, filter: Filter) -> Matrix4<f64> {
+    if matrix.cholesky().is_some() {
+        return matrix;
+    }
+    let mut eigen = matrix.symmetric_eigen();
+    eigen.eigenvalues.apply(|value| *value = filter.apply(*value));
+    eigen.recompose()
+}

@@ -1,0 +1,136 @@
+//! All springs of a scene, over nodes.
+
+use super::spring::RepulsionSpring;
+use super::state::SpringState;
+use crate::error::StepError;
+use crate::linear::springs::{LinearSprings, visit_nodes};
+use crate::model::DynamicsModel;
+use crate::nodes::{CHUNK, NO_NODE};
+use bowknot_geometry::{Point, Vector};
+use rayon::prelude::*;
+
+/// The springs of a scene, over nodes.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Repulsion {
+    pub(super) springs: Vec<RepulsionSpring>,
+    /// Nodes of each spring; [`NO_NODE`] for obstacles and weights of 0.
+    pub(super) nodes: Vec<[u32; 4]>,
+    /// The share of obstacles in s [m].
+    fixed: Vec<Vector>,
+    /// s at the start of the time step [m].
+    anchors: Vec<Vector>,
+    pub(super) states: Vec<SpringState>,
+    /// Whether the active set (which springs push, stick and slide) is a guess. Energies take a guess as
+    /// given until the first update.
+    pub(super) guessed: bool,
+    /// The active springs at the last linearisation.
+    pub(super) linear: LinearSprings,
+}
+
+impl Repulsion {
+    /// Checks the springs and looks up their nodes.
+    pub fn new(model: &DynamicsModel, springs: &[RepulsionSpring]) -> Result<Self, StepError> {
+        for (spring, s) in springs.iter().enumerate() {
+            let refuse = |problem| Err(StepError::Repulsion { spring, problem });
+            if s.vertices.iter().zip(s.weights).any(|(&v, w)| w != 0.0 && v as usize >= model.vertex_count())
+            {
+                return refuse("it names a vertex that does not exist");
+            }
+            let numbers = s.weights.iter().chain(s.normal.iter()).chain(s.force.iter());
+            if !numbers.chain([&s.offset, &s.desired]).all(|value| value.is_finite()) {
+                return refuse("its weights, normal, offset, desired gap and force must be finite");
+            }
+            if ![s.stiffness, s.friction].iter().all(|value| *value >= 0.0 && value.is_finite()) {
+                return refuse("its stiffness and friction must be finite and at least 0");
+            }
+        }
+        let node = |v: u32, w: f64| if w == 0.0 { NO_NODE } else { model.vertex_node[v as usize] };
+        let nodes: Vec<[u32; 4]> =
+            springs.iter().map(|s| std::array::from_fn(|k| node(s.vertices[k], s.weights[k]))).collect();
+        let count = springs.len();
+        Ok(Self {
+            springs: springs.to_vec(),
+            nodes,
+            fixed: vec![Vector::zeros(); count],
+            anchors: vec![Vector::zeros(); count],
+            states: vec![SpringState::INACTIVE; count],
+            guessed: false,
+            linear: LinearSprings::new(model.node_vertex.len()),
+        })
+    }
+
+    /// Whether there are no springs.
+    pub fn is_empty(&self) -> bool {
+        self.springs.is_empty()
+    }
+
+    /// The active springs at the last linearisation.
+    pub fn linear(&self) -> &LinearSprings {
+        &self.linear
+    }
+
+    /// Sets the positions `x` of all vertices from which slip is measured: those at the start of the time
+    /// step.
+    pub fn anchor(&mut self, x: &[Point]) {
+        for (anchor, s) in self.anchors.iter_mut().zip(&self.springs) {
+            let used = (0..4).filter(|&k| s.weights[k] != 0.0);
+            *anchor = used.map(|k| x[s.vertices[k] as usize].coords * s.weights[k]).sum();
+        }
+    }
+
+    /// Places obstacles at their keyframes, which have one entry per vertex.
+    pub fn place_obstacles(&mut self, keyframes: &[Point]) {
+        for ((fixed, spring), nodes) in self.fixed.iter_mut().zip(&self.springs).zip(&self.nodes) {
+            let obstacles = (0..4).filter(|&k| nodes[k] == NO_NODE && spring.weights[k] != 0.0);
+            *fixed =
+                obstacles.map(|k| keyframes[spring.vertices[k] as usize].coords * spring.weights[k]).sum();
+        }
+    }
+
+    /// Depth below the desired gap [m] and slip [m] with nodes at `x`.
+    #[inline]
+    pub(super) fn depth_and_slip(&self, spring: usize, x: &[Vector]) -> (f64, Vector) {
+        let s = &self.springs[spring];
+        let mut sides = self.fixed[spring];
+        for (&node, weight) in self.nodes[spring].iter().zip(s.weights) {
+            if node != NO_NODE {
+                sides += x[node as usize] * weight;
+            }
+        }
+        let moved = sides - self.anchors[spring];
+        (s.desired + s.offset - s.normal.dot(&sides), moved - s.normal * s.normal.dot(&moved))
+    }
+
+    /// Forces of the springs with nodes at `x` [N], by spring: the multipliers that the next solve starts
+    /// from.
+    pub fn forces(&self, x: &[Vector]) -> Vec<Vector> {
+        let force = |spring: usize| {
+            let (state, s) = (&self.states[spring], &self.springs[spring]);
+            if !state.active {
+                return Vector::zeros();
+            }
+            let (depth, slip) = self.depth_and_slip(spring, x);
+            let lambda = (state.lambda + state.stiffness * depth).max(0.0);
+            let friction = state.coulomb(state.tau(), &slip, s.friction * lambda);
+            s.normal * lambda + SpringState { friction, ..*state }.tau()
+        };
+        (0..self.springs.len()).into_par_iter().with_min_len(CHUNK).map(force).collect()
+    }
+
+    /// Subtracts the known forces of the springs on the nodes from `gradient` [N].
+    pub fn subtract_known_forces(&self, gradient: &mut [Vector]) {
+        for (spring, nodes) in self.springs.iter().zip(&self.nodes) {
+            for (&node, weight) in nodes.iter().zip(spring.weights) {
+                if node != NO_NODE {
+                    gradient[node as usize] -= spring.force * weight;
+                }
+            }
+        }
+    }
+
+    /// Calls `visit` with the nodes of every spring, active or not, see [`visit_nodes`].
+    pub fn for_each_spring(&self, mut visit: impl FnMut(&[u32], bool)) {
+        let springs = self.nodes.iter().zip(&self.springs);
+        springs.for_each(|(nodes, spring)| visit_nodes(nodes, &spring.weights, &mut visit));
+    }
+}

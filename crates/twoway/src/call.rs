@@ -1,0 +1,117 @@
+//! What is given for one call, checked.
+
+use crate::error::ResolveError;
+use crate::groups::Groups;
+use crate::input::ResolveInput;
+use crate::scene::CollisionScene;
+use crate::validation::{check_finite, check_length};
+use bowknot_constraints::FrictionModel;
+use bowknot_geometry::Point;
+use bowknot_stepper::Rounding;
+
+/// The input of one call, checked against the scene.
+#[derive(Clone, Debug, Default)]
+pub struct CallInput {
+    prescribed: Vec<bool>,
+    groups: Groups,
+    time_step: Option<f64>,
+    slip_start: Vec<Point>,
+}
+
+impl CallInput {
+    /// Checks the input of a call that starts at `positions` toward `target`.
+    ///
+    /// # Errors
+    /// Wrong lengths, non-finite numbers and coordinates too large for the minimum separation.
+    pub fn new(
+        scene: &CollisionScene,
+        positions: &[Point],
+        target: &[Point],
+        input: &ResolveInput<'_>,
+    ) -> Result<Self, ResolveError> {
+        let (model, vertices) = (scene.model(), scene.vertex_count());
+        check_length("positions", positions.len(), vertices)?;
+        check_length("target", target.len(), vertices)?;
+        for (what, given) in [("prescribed", input.prescribed.len()), ("groups", input.groups.len())] {
+            if given != 0 {
+                check_length(what, given, vertices)?;
+            }
+        }
+        if let Some(start) = input.start {
+            check_length("start", start.len(), vertices)?;
+            check_finite("the start", model, start)?;
+        }
+        check_finite("the position", model, positions)?;
+        check_finite("the target", model, target)?;
+        check_min_separation(scene, positions, target)?;
+
+        let is_obstacle = |v: usize| model.is_obstacle(v as u32);
+        let is_given = |v: usize| input.prescribed.get(v).copied().unwrap_or(false);
+        let prescribed: Vec<bool> = (0..vertices).map(|v| is_obstacle(v) || is_given(v)).collect();
+        let has_friction = scene.friction_model() != FrictionModel::None;
+        let slip_start = if has_friction { input.start.unwrap_or(positions).to_vec() } else { Vec::new() };
+        Ok(Self {
+            groups: Groups::new(input.groups, &prescribed, is_obstacle),
+            prescribed,
+            time_step: input.time_step,
+            slip_start,
+        })
+    }
+
+    /// Which vertices are prescribed, obstacles included; one entry per vertex.
+    pub fn prescribed(&self) -> &[bool] {
+        &self.prescribed
+    }
+
+    /// Whether a vertex is prescribed.
+    #[inline]
+    pub fn is_prescribed(&self, vertex: usize) -> bool {
+        self.prescribed[vertex]
+    }
+
+    /// Whether the method may move a vertex away from its target.
+    #[inline]
+    pub fn is_movable(&self, vertex: usize) -> bool {
+        !self.prescribed[vertex]
+    }
+
+    /// Groups of pinned vertices that move together.
+    pub fn groups(&self) -> &Groups {
+        &self.groups
+    }
+
+    /// Time step that the call stands for [s].
+    pub fn time_step(&self) -> Option<f64> {
+        self.time_step
+    }
+
+    /// Positions at the start of the time step, from which friction measures slip [m]. Empty without
+    /// friction.
+    pub fn slip_start(&self) -> &[Point] {
+        &self.slip_start
+    }
+}
+
+/// Refuses coordinates so large that the smallest minimum separation of any pair is below their rounding.
+fn check_min_separation(
+    scene: &CollisionScene,
+    positions: &[Point],
+    target: &[Point],
+) -> Result<(), ResolveError> {
+    let thicknesses = scene.contact().bodies().iter().filter_map(|b| b.thickness).filter(|t| *t > 0.0);
+    let of_scene = scene.lengths().min_separation;
+    let smallest = thicknesses.fold(if of_scene > 0.0 { of_scene } else { f64::INFINITY }, f64::min);
+    let min_separation = if smallest.is_finite() { smallest } else { 0.0 };
+    let largest = |p: &Point| p.coords.amax();
+    let (vertex, coordinate) = positions
+        .iter()
+        .enumerate()
+        .chain(target.iter().enumerate())
+        .map(|(v, p)| (v, largest(p)))
+        .fold((0, 0.0), |best, next| if next.1 > best.1 { next } else { best });
+    let needed = Rounding::smallest_min_separation(coordinate);
+    if min_separation > 0.0 && min_separation < needed {
+        return Err(ResolveError::MinSeparationBelowRounding { min_separation, coordinate, vertex, needed });
+    }
+    Ok(())
+}

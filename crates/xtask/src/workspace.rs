@@ -1,0 +1,21 @@
+//! Where the workspace is and builds.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The workspace's root: this crate lies two folders below it.
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap_or(Path::new(".")).to_owned()
+}
+
+/// Where cargo builds.
+pub fn target_folder(root: &Path) -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |folder| root.join(folder))
+}
+
+/// The cargo that runs this, in the workspace's root, with arguments separated by spaces.
+pub fn cargo(root: &Path, arguments: &str) -> Command {
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.args(arguments.split_whitespace()).current_dir(root);
+    command
+}
