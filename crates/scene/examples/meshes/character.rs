@@ -1,7 +1,7 @@
 //! A character of cartoon proportions: 1.2 m tall, a big head, hands of three fingers and a thumb.
 //!
-//! It stands at the origin on the xy plane, looks along x and has its left along y. Fingers are three edges thick and
-//! at least an edge apart, so that the mesh resolves each of them.
+//! It stands at the origin on the xy plane, looks along x and has its left along y. Fingers are three edges
+//! thick and at least an edge apart, so that the mesh resolves each of them.
 
 use crate::parts::{bar, pair, part};
 use crate::remesh::Remesh;

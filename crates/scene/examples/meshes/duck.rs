@@ -1,8 +1,8 @@
 //! A rubber duck of tetrahedra.
 //!
-//! A lattice of tetrahedra is cut at the surface (after Labelle and Shewchuk 2007, "Isosurface Stuffing"): lattice
-//! points near the surface are moved onto it, so that no cut leaves a sliver; tetrahedra that the surface crosses are
-//! cut there, and what lies inside is divided into tetrahedra again.
+//! A lattice of tetrahedra is cut at the surface (after Labelle and Shewchuk 2007, "Isosurface Stuffing"):
+//! lattice points near the surface are moved onto it, so that no cut leaves a sliver; tetrahedra that the
+//! surface crosses are cut there, and what lies inside is divided into tetrahedra again.
 
 use crate::parts::{bar, pair, part};
 use bowknot_scene::geometry::{Point, Vector};
@@ -199,7 +199,8 @@ fn halves([a, b, c, d]: [u32; 4]) -> [[u32; 3]; 2] {
     if a.min(c) < b.min(d) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
 }
 
-/// A prism between two triangles as three tetrahedra. Each of its quadrilaterals is cut as [`halves`] cuts it.
+/// A prism between two triangles as three tetrahedra. Each of its quadrilaterals is cut as [`halves`] cuts
+/// it.
 fn prism([mut a, mut b]: [[u32; 3]; 2]) -> [[u32; 4]; 3] {
     if b.iter().min() < a.iter().min() {
         std::mem::swap(&mut a, &mut b);

@@ -1,4 +1,5 @@
-//! Writes the meshes of `assets/meshes`: a character with fingers, a shirt of separate panels, a duck of tetrahedra.
+//! Writes the meshes of `assets/meshes`: a character with fingers, a shirt of separate panels, a duck of
+//! tetrahedra.
 //!
 //! ```text
 //! cargo run --release -p bowknot-scene --example meshes -- assets/meshes

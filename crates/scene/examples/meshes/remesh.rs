@@ -57,7 +57,8 @@ impl<'a, const N: usize> Remesh<'a, N> {
         cuts_of
     }
 
-    /// Moves vertices halfway to the middle of their neighbors, of those on the same cut for vertices on a cut.
+    /// Moves vertices halfway to the middle of their neighbors, of those on the same cut for vertices on a
+    /// cut.
     fn even_out(&mut self) {
         let cuts_of = self.cuts_of();
         let count = |v: u32| cuts_of[v as usize].iter().filter(|on| **on).count();

@@ -1,9 +1,11 @@
-//! A shirt with long sleeves for the character: four panels that lie together at their seams without being joined.
+//! A shirt with long sleeves for the character: four panels that lie together at their seams without being
+//! joined.
 //!
-//! The shirt is a surface around the character, cut by planes. What lies beyond the hem, the neckline and the cuffs is
-//! dropped. The seams are the sides with the shoulders, the armholes, and below the sleeves. Vertices next to a cut
-//! are moved onto it, so that borders are smooth lines. Then each panel gets border vertices of its own. Those of two
-//! panels differ by up to some ten micrometers, as if each panel had been rounded by itself.
+//! The shirt is a surface around the character, cut by planes. What lies beyond the hem, the neckline and the
+//! cuffs is dropped. The seams are the sides with the shoulders, the armholes, and below the sleeves.
+//! Vertices next to a cut are moved onto it, so that borders are smooth lines. Then each panel gets border
+//! vertices of its own. Those of two panels differ by up to some ten micrometers, as if each panel had been
+//! rounded by itself.
 
 use crate::character::{ARM, ARM_RADII};
 use crate::parts::{pair, part};
@@ -21,8 +23,8 @@ const ARMHOLE: f64 = 0.2;
 /// How far a border vertex is moved at most along each axis [m].
 const ROUNDING: f64 = 1e-5;
 
-/// What cuts the surface: front from back, sleeves from trunk; then what is dropped where the function is above 0:
-/// below the hem, above the neckline, beyond the cuffs.
+/// What cuts the surface: front from back, sleeves from trunk; then what is dropped where the function is
+/// above 0: below the hem, above the neckline, beyond the cuffs.
 const CUTS: [Cut; 5] = [
     |p| p.x,
     |p| p.y.abs() - ARMHOLE,
@@ -131,7 +133,8 @@ fn cut_edges(mesh: &TriangleMesh, sides: &[OnCuts]) -> BTreeMap<[u32; 2], OnCuts
     edges
 }
 
-/// The mesh with a vertex of its own on either side of each seam, panel by panel; and which vertices are at seams.
+/// The mesh with a vertex of its own on either side of each seam, panel by panel; and which vertices are at
+/// seams.
 fn separated(mesh: &TriangleMesh, seams: &[[u32; 2]]) -> (TriangleMesh, Vec<bool>) {
     // Corners of triangles that are one vertex: those joined by an edge that is no seam.
     let mut groups = Groups::new(3 * mesh.triangles.len());

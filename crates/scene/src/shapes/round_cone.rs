@@ -1,8 +1,8 @@
 //! Solids of round cones: limbs, fingers, noses.
 //!
-//! Each part is a round cone, the hull of two balls. The distances to the parts are joined by a smooth minimum.
-//! Distances have slope 1 at most and the smooth minimum is a mean of theirs, so the field has too: its value outside
-//! never exceeds the distance to the surface.
+//! Each part is a round cone, the hull of two balls. The distances to the parts are joined by a smooth
+//! minimum. Distances have slope 1 at most and the smooth minimum is a mean of theirs, so the field has too:
+//! its value outside never exceeds the distance to the surface.
 
 use super::isosurface::{self, Isosurface};
 use super::mesh::TriangleMesh;
@@ -61,8 +61,8 @@ impl RoundCones {
         parts.fold(first, |(low, high), (a, b)| (low.inf(&a), high.sup(&b)))
     }
 
-    /// The surface: closed, of triangles of nearly equal size with edges of about `edge` [m]. Parts should be some
-    /// edges thick, and the gaps between them some edges wide.
+    /// The surface: closed, of triangles of nearly equal size with edges of about `edge` [m]. Parts should be
+    /// some edges thick, and the gaps between them some edges wide.
     pub fn mesh(&self, edge: f64) -> TriangleMesh {
         let (low, high) = self.bounds();
         let surface = Isosurface { field: |p: &Point| self.field(p), low, high };
@@ -117,8 +117,10 @@ mod tests {
         let hand = hand();
         let mesh = hand.mesh(0.01);
         assert_eq!(check_mesh(&mesh.positions, &mesh.triangles), []);
-        let topology =
-            Topology::new(mesh.positions.len(), mesh.triangles.clone(), &[], &[]).expect("topology");
+        let topology = Topology::builder(mesh.positions.len())
+            .triangles(mesh.triangles.clone())
+            .build()
+            .expect("topology");
         let (vertices, edges, triangles) =
             (mesh.positions.len() as i64, topology.edges.len() as i64, mesh.triangles.len() as i64);
         assert_eq!((vertices - edges + triangles, 2 * edges), (2, 3 * triangles));

@@ -1,7 +1,7 @@
 //! The surface of the figure at rest as the zero set of a function.
 //!
-//! Each bone carries round cones. The field of their union has slope 1 at most, so a surface on which it is at
-//! least g keeps g from the body.
+//! Each bone carries round cones. The field of their union has slope 1 at most, so a surface on which it is
+//! at least g keeps g from the body.
 
 use super::super::round_cone::{RoundCone, bounds, smooth_union};
 use super::skeleton::{ARM, CHEST, FOOT, FOREARM, HEAD, LEG, NECK, PELVIS, SHIN, SPINE, THIGH, UPPER_ARM};
