@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use bowknot::constraints::STRETCH_LIMIT;
 use bowknot::recording::Recorder;
 use bowknot::recording::States;
-use bowknot::simulator::{CollisionProblem, Watcher};
+use bowknot::simulator::{CollisionProblem, SimulationObserver};
 use bowknot::{Scene, Simulator};
 use std::fs;
 use std::ops::ControlFlow;
@@ -198,7 +198,7 @@ fn in_contact(scene: &Scene, frames: usize, count: usize) -> Result<Vec<Kept>> {
     // Every `stride`th time step in contact is kept; it doubles when too many are, so that memory holds few.
     let (mut seen, mut stride) = (0, 1);
     for step in 1..=frames {
-        let statistics = simulator.step_watched(&mut last)?;
+        let statistics = simulator.step_observed(&mut last)?;
         if statistics.contact_rows == 0 {
             continue;
         }
@@ -235,7 +235,7 @@ struct Last {
     problem: Option<States>,
 }
 
-impl Watcher for Last {
+impl SimulationObserver for Last {
     fn problem(&mut self, problem: &CollisionProblem<'_>) -> ControlFlow<()> {
         if problem.iteration == 0 {
             self.problem = Some(self.recorder.states(problem));

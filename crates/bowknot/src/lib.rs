@@ -57,5 +57,5 @@ pub use bowknot_stepper as stepper;
 pub use bowknot_twoway as twoway;
 
 pub use scene::{BUILTIN, Scene, SceneError};
-pub use simulator::{SimulationError, Simulator, StepStatistics, Watcher};
+pub use simulator::{SimulationError, SimulationObserver, Simulator, StepStatistics};
 pub use world::{SceneInfo, World};

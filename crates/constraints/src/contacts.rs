@@ -1,7 +1,10 @@
 //! Contact rows: one inequality per pair, linearised at the current positions x:
 //! s(y) = c(x) + J (y - x) >= 0 [m].
 
-use crate::{Colouring, ContactForm, face, friction_row, volume};
+use crate::colouring::Colouring;
+use crate::friction::friction_row;
+use crate::params::ContactForm;
+use crate::{face, volume};
 use bowknot_geometry::{PairKind, Point, Separation};
 use bowknot_lcp::{FrictionRow, LcpProblem, Row};
 use bowknot_proximity::PairList;

@@ -1,6 +1,7 @@
 //! Edge-length limits (paper, Eq. 17): every edge with a movable vertex.
 
-use crate::{Colouring, EdgeReference};
+use crate::colouring::Colouring;
+use crate::params::EdgeReference;
 use bowknot_geometry::{Point, Topology, Vector};
 use bowknot_lcp::{DistanceLimit, Row};
 

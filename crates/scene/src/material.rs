@@ -5,7 +5,7 @@ use crate::kind::BodyKind;
 use crate::reader::Reader;
 use crate::values::{describe, join};
 use bowknot_dynamics::{ClothMaterial, ParticleMaterial, SolidMaterial, StrandMaterial};
-use bowknot_errors::{Errors, ParamError, Parameters};
+use bowknot_errors::{Checks, Parameters};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
@@ -76,17 +76,15 @@ impl Material {
         let kind = self.kind();
         kind.materials().iter().copied().find(|name| Self::named(kind, name).as_ref() == Some(self))
     }
+}
 
-    /// Checks every value.
-    ///
-    /// # Errors
-    /// All that is wrong, by field name.
-    pub fn validate(&self) -> Result<(), Errors<ParamError>> {
+impl Parameters for Material {
+    fn check(&self, checks: &mut Checks) {
         match self {
-            Self::Cloth(material) => material.validate(),
-            Self::Solid(material) => material.validate(),
-            Self::Strands(material) => material.validate(),
-            Self::Particles(material) => material.validate(),
+            Self::Cloth(material) => material.check(checks),
+            Self::Solid(material) => material.check(checks),
+            Self::Strands(material) => material.check(checks),
+            Self::Particles(material) => material.check(checks),
         }
     }
 }

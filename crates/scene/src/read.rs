@@ -291,10 +291,7 @@ fn validate_bodies(scene: &Scene, source: &Source, problems: &mut Vec<Problem>) 
         }
         report(problems, source, &path, &mut faults);
         validate_shape(body.shape.as_ref(), source, &path, problems);
-        for error in body.material.validate().err().into_iter().flatten() {
-            let key = join(&path, &format!("material.{}", error.path));
-            problems.push(source.problem(&key, format!("{} {}", error.value, error.allowed)));
-        }
+        report_errors(problems, source, &join(&path, "material"), &body.material);
     }
     for (index, obstacle) in scene.obstacles.iter().enumerate() {
         let path = format!("obstacle[{index}]");

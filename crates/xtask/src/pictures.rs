@@ -109,7 +109,7 @@ fn draw(root: &Path, command: &Path, scene: &Scene) -> Result<(), String> {
     run_command(command, &["run", scene.name, "--scale", scene.scale, "--frames", &last], &folder)?;
     for (index, frame) in scene.frames.iter().enumerate() {
         let number = if scene.frames.len() > 1 { format!("-{}", index + 1) } else { String::new() };
-        let out = root.join("docs").join("pictures").join(format!("{}{number}.png", scene.name));
+        let out = root.join("assets").join("pictures").join(format!("{}{number}.png", scene.name));
         let frame = frame.to_string();
         let mut bytes = 0;
         for size in SIZES {

@@ -5,7 +5,7 @@ use crate::bench::Bench;
 use crate::chart::{Axis, Chart, Mark, Series, Style};
 use crate::table::{Table, mean, median, short};
 use anyhow::{Result, anyhow};
-use bowknot::simulator::{Checkpoint, Iterated, Watcher};
+use bowknot::simulator::{Checkpoint, Iterated, SimulationObserver};
 use bowknot::{Scene, Simulator};
 use serde::{Deserialize, Serialize};
 
@@ -229,7 +229,7 @@ impl Subject {
         let mut seen = Seen { edge: simulator.resolver().scene().lengths().edge, residuals: Vec::new() };
         for _ in 0..self.frames(bench) {
             seen.residuals.push(Vec::with_capacity(SHOWN));
-            simulator.step_watched(&mut seen)?;
+            simulator.step_observed(&mut seen)?;
         }
         Ok(seen.residuals)
     }
@@ -283,7 +283,7 @@ struct Seen {
     residuals: Residuals,
 }
 
-impl Watcher for Seen {
+impl SimulationObserver for Seen {
     fn iterated(&mut self, iterated: &Iterated) {
         if let Some(step) = self.residuals.last_mut() {
             step.push(iterated.residual.distance / self.edge);

@@ -1,6 +1,6 @@
 use super::*;
 use crate::Scene;
-use crate::simulator::Watcher;
+use crate::simulator::SimulationObserver;
 use crate::simulator::{CollisionProblem, Simulator};
 use bowknot_geometry::{HalfSpace, Point, Vector};
 use bowknot_io::{IoError, Mesh};
@@ -19,7 +19,7 @@ struct Again {
     ends: Vec<Vec<Point>>,
 }
 
-impl Watcher for Again {
+impl SimulationObserver for Again {
     fn problem(&mut self, problem: &CollisionProblem<'_>) -> ControlFlow<()> {
         let states = self.recorder.states(problem);
         states.write(&self.path).expect("written");
@@ -69,7 +69,7 @@ fn a_recorded_problem_ends_where_the_simulation_did() {
         ends: Vec::new(),
     };
     for step in 0..8 {
-        simulator.step_watched(&mut again).expect("a step");
+        simulator.step_observed(&mut again).expect("a step");
         let count = simulator.world().collision_vertices();
         let end = again.ends.last().expect("a problem in each step");
         assert!(*end == simulator.positions()[..count], "step {step} ends elsewhere");

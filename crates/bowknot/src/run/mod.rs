@@ -15,7 +15,8 @@ pub use summary::{EnergyNumbers, SecondsNumbers, SkippedNumbers, StepNumbers, Su
 pub use writer::RunWriter;
 
 use crate::simulator::{
-    AcceptedStep, CollisionProblem, SimulationError, Simulator, StepStatistics, Watcher, peak_memory_bytes,
+    AcceptedStep, CollisionProblem, SimulationError, SimulationObserver, Simulator, StepStatistics,
+    peak_memory_bytes,
 };
 use bowknot_io::{IoError, write_text};
 use bowknot_scene::Scene;
@@ -98,7 +99,7 @@ pub fn run(
     let stop_asked = || options.interrupt.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed));
     let mut interrupted = report(simulator.step_index(), None, &checker).is_break();
     while !interrupted && simulator.step_index() < frames {
-        let mut watcher = RunWatcher {
+        let mut observer = RunObserver {
             writer: &writer,
             checker: checker.as_mut(),
             world: &world,
@@ -107,8 +108,8 @@ pub fn run(
             stop_asked: &stop_asked,
             error: None,
         };
-        let result = simulator.step_watched(&mut watcher);
-        if let Some(error) = watcher.error {
+        let result = simulator.step_observed(&mut observer);
+        if let Some(error) = observer.error {
             return Err(error);
         }
         match result {
@@ -150,7 +151,7 @@ pub fn run(
 }
 
 /// What happens within the time steps of a run.
-struct RunWatcher<'a> {
+struct RunObserver<'a> {
     writer: &'a RunWriter,
     checker: Option<&'a mut Checker>,
     world: &'a World,
@@ -160,7 +161,7 @@ struct RunWatcher<'a> {
     error: Option<SimulationError>,
 }
 
-impl RunWatcher<'_> {
+impl RunObserver<'_> {
     fn go_on(&mut self, result: Result<(), SimulationError>) -> ControlFlow<()> {
         match result {
             Ok(()) if (self.stop_asked)() => ControlFlow::Break(()),
@@ -173,7 +174,7 @@ impl RunWatcher<'_> {
     }
 }
 
-impl Watcher for RunWatcher<'_> {
+impl SimulationObserver for RunObserver<'_> {
     fn problem(&mut self, problem: &CollisionProblem<'_>) -> ControlFlow<()> {
         let write = || -> Result<(), SimulationError> {
             if self.record {

@@ -1,6 +1,6 @@
 //! All that a simulation must remember between two time steps.
 
-use super::ContactForce;
+use super::contacts::ContactForce;
 use bowknot_geometry::{Point, Vector};
 
 /// The state between two time steps, in full: a simulation restored from it goes on to the same bits.

@@ -5,13 +5,14 @@
 //! collision stage. Where a contact point has slid on to another feature, the force on its vertex passes to the new one.
 //! Forces are part of the state between two time steps, and of checkpoints. Edges at their stretch limits are springs like contacts.
 
-use super::RELAXATION;
+use super::relaxation::relax_force;
+use super::solved::solved_vertices;
 use super::taut::LimitedEdges;
 use bowknot_constraints::{Feature, FrictionModel};
 use bowknot_dynamics::{Dynamics, RepulsionSpring, StepError, Touching};
 use bowknot_geometry::{PairKind, Point, Vector};
+use bowknot_scene::RepulsionParams;
 use bowknot_scene::world::World;
-use bowknot_scene::{BodyKind, RepulsionParams};
 use bowknot_twoway::{CollisionScene, Resolver};
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -52,7 +53,7 @@ impl Contacts {
         let stiffness = if filtered { 0.0 } else { params.stiffness };
         let limited = LimitedEdges::new(resolver.scene(), world);
         let mut solved = vec![false; world.positions.len()];
-        self::solved(world).for_each(|v| solved[v] = true);
+        solved_vertices(world).for_each(|v| solved[v] = true);
         Self { stiffness, limited, counted: solved.clone(), solved, ..Self::default() }
     }
 
@@ -120,7 +121,7 @@ impl Contacts {
     /// Moves the `forces` of the springs, by spring [N], back towards what they carried.
     pub fn relax(&self, forces: &mut [Vector]) {
         for (force, spring) in forces.iter_mut().zip(&self.springs) {
-            *force = spring.force + (*force - spring.force) * RELAXATION;
+            relax_force(force, &spring.force);
         }
     }
 
@@ -405,17 +406,6 @@ const NEAREST: f64 = 0.999;
 
 /// Share of the desired distance that something must keep from a feature to count as passing it.
 const PASSING: f64 = 0.5;
-
-/// Whether Newton's method solves bodies of a kind together with their contacts. Rows alone hold grains, which they do exactly.
-fn deforms(kind: BodyKind) -> bool {
-    kind != BodyKind::Particles
-}
-
-/// The vertices of bodies that Newton's method solves together with their contacts.
-pub(super) fn solved(world: &World) -> impl Iterator<Item = usize> + '_ {
-    let bodies = world.bodies.iter().filter(|body| body.kind.is_some_and(deforms));
-    bodies.flat_map(|body| body.vertices.clone().chain(body.interior.clone())).map(|v| v as usize)
-}
 
 /// Springs by what they stand for.
 type Index = FxHashMap<[Feature; 2], usize>;

@@ -69,7 +69,7 @@ pub enum SimulationError {
         /// Why not.
         message: String,
     },
-    /// A watcher stopped the time step; the simulator is as it was before the step.
+    /// An observer stopped the time step; the simulator is as it was before the step.
     #[error("interrupted")]
     Interrupted,
 }

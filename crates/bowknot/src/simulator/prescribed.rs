@@ -1,6 +1,6 @@
-//! Who is prescribed in a time step, where to, and who waits.
+//! Which vertices are prescribed in a time step, where to, and which of them lag behind.
 
-use super::{Scratch, Simulator};
+use super::simulator::{Scratch, Simulator};
 use bowknot_geometry::Point;
 use bowknot_twoway::ResolveInput;
 use std::collections::BTreeMap;

@@ -1,30 +1,30 @@
-//! When the iterations of a time step have done what they can.
+//! When the iterations of a time step end.
 
 /// Time step that tolerances are given for [s].
-const TOLERATED_STEP: f64 = 0.01;
+const REFERENCE_STEP: f64 = 0.01;
 
-/// Share of the least residual so far that an iteration must get below to count as progress.
-const STALLED: f64 = 0.7;
+/// Share of the smallest residual so far that an iteration must get below to count as progress.
+const MIN_REDUCTION: f64 = 0.7;
 
-/// Iterations without progress, one after the other, that are the last.
-const VAIN_ITERATIONS: usize = 3;
+/// Iterations without progress, one after the other, after which the iterations end.
+const MAX_STALLED_ITERATIONS: usize = 3;
 
-/// Iterations without progress after which they count as swinging about the solution.
-const SWINGING: usize = 2;
+/// Iterations without progress after which they count as oscillating about the solution.
+const OSCILLATING: usize = 2;
 
-/// Factor of the least residual within which iterations without progress may end: an iteration that has just lost or found a
+/// Factor of the smallest residual within which iterations without progress may end: an iteration that has just lost or found a
 /// contact can be far from the solution, with edges crushed.
-const GOOD_END: f64 = 1.2;
+const MAX_END_RATIO: f64 = 1.2;
 
-/// Least residual so far, in tolerances, above which iterations go on without progress: cloth that folds is crushed there.
-const FAR: f64 = 4.0;
+/// Smallest residual so far, in tolerances, above which iterations go on without progress: cloth that folds is crushed there.
+const MAX_STALLED_RESIDUAL: f64 = 4.0;
 
-/// How the residuals of a time step go down.
+/// The residuals of a time step, from iteration to iteration.
 #[derive(Debug)]
 pub(super) struct Progress {
     tolerance: f64,
-    least: f64,
-    vain: usize,
+    smallest: f64,
+    stalled: usize,
 }
 
 impl Progress {
@@ -33,21 +33,22 @@ impl Progress {
     /// In shorter time steps the tolerance shrinks with their square, as what gravity does: else it would be an acceleration
     /// without bound. In longer ones it grows with them: a constant error of velocities.
     pub fn new(tolerance: f64, dt: f64) -> Self {
-        let ratio = dt / TOLERATED_STEP;
-        Self { tolerance: tolerance * ratio.min(ratio * ratio), least: f64::INFINITY, vain: 0 }
+        let ratio = dt / REFERENCE_STEP;
+        Self { tolerance: tolerance * ratio.min(ratio * ratio), smallest: f64::INFINITY, stalled: 0 }
     }
 
-    /// Whether the iterations swing about the solution.
-    pub fn swings(&self) -> bool {
-        self.vain >= SWINGING
+    /// Whether the iterations oscillate about the solution.
+    pub fn oscillates(&self) -> bool {
+        self.stalled >= OSCILLATING
     }
 
     /// Whether an iteration that led to `residual` [m] is the last.
     pub fn ends(&mut self, residual: f64) -> bool {
-        self.vain = if residual > STALLED * self.least { self.vain + 1 } else { 0 };
-        self.least = self.least.min(residual);
-        let far = self.least > FAR * self.tolerance;
-        let stalls = self.vain >= VAIN_ITERATIONS && residual <= GOOD_END * self.least && !far;
+        self.stalled = if residual > MIN_REDUCTION * self.smallest { self.stalled + 1 } else { 0 };
+        self.smallest = self.smallest.min(residual);
+        let far = self.smallest > MAX_STALLED_RESIDUAL * self.tolerance;
+        let stalls =
+            self.stalled >= MAX_STALLED_ITERATIONS && residual <= MAX_END_RATIO * self.smallest && !far;
         self.tolerance > 0.0 && (residual < self.tolerance || stalls)
     }
 }
@@ -63,7 +64,7 @@ mod tests {
     }
 
     #[test]
-    fn iterations_without_progress_end_near_the_least_residual() {
+    fn iterations_without_progress_end_near_the_smallest_residual() {
         let mut progress = Progress::new(0.05, 0.01);
         let residuals = [1.0, 0.1, 0.09, 0.08, 0.5, 0.09];
         assert_eq!(residuals.map(|r| progress.ends(r)), [false, false, false, false, false, true]);
@@ -78,10 +79,10 @@ mod tests {
     }
 
     #[test]
-    fn iterations_without_progress_swing_and_without_a_tolerance_never_end() {
+    fn iterations_without_progress_oscillate_and_without_a_tolerance_never_end() {
         let mut progress = Progress::new(0.0, 0.01);
-        let swings = [1.0, 0.9, 0.8, 0.7, 0.1].map(|r| (progress.ends(r), progress.swings()));
-        assert_eq!(swings, [false, false, true, true, false].map(|swings| (false, swings)));
+        let oscillates = [1.0, 0.9, 0.8, 0.7, 0.1].map(|r| (progress.ends(r), progress.oscillates()));
+        assert_eq!(oscillates, [false, false, true, true, false].map(|oscillates| (false, oscillates)));
     }
 
     #[test]

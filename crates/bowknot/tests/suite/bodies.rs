@@ -4,14 +4,14 @@ use bowknot::geometry::{Point, Vector};
 use bowknot::io::{FrameStack, MeshView, write_obj};
 use bowknot::shapes::Woven;
 use bowknot::simulator::AcceptedStep;
-use bowknot::{Scene, Simulator, StepStatistics, Watcher, World};
+use bowknot::{Scene, SimulationObserver, Simulator, StepStatistics, World};
 use std::ops::{ControlFlow, Range};
 use std::path::Path;
 
 /// Judges every accepted state and path.
 struct Judged(Judge);
 
-impl Watcher for Judged {
+impl SimulationObserver for Judged {
     fn accepted(&mut self, accepted: &AcceptedStep<'_>) -> ControlFlow<()> {
         let x = accepted.state.positions;
         let state = self.0.check_state(x, &StateOptions { distance: false, ..Default::default() });
@@ -26,7 +26,7 @@ impl Watcher for Judged {
 fn run(simulator: &mut Simulator, steps: usize) -> Vec<StepStatistics> {
     let mut judged = Judged(simulator.judge());
     let step = |_| {
-        let statistics = simulator.step_watched(&mut judged).unwrap_or_else(|error| panic!("{error}"));
+        let statistics = simulator.step_observed(&mut judged).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(statistics.inverted_tets, 0, "time step {}", statistics.step);
         statistics
     };

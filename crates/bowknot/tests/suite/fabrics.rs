@@ -5,7 +5,7 @@ use bowknot::recording::Recorder;
 use bowknot::recording::States;
 use bowknot::scene::Material;
 use bowknot::simulator::CollisionProblem;
-use bowknot::{Scene, Simulator, Watcher, World};
+use bowknot::{Scene, SimulationObserver, Simulator, World};
 use std::ops::ControlFlow;
 
 /// A sheet of 0.3 m that hangs from one side.
@@ -106,7 +106,7 @@ fn what_is_no_cloth_takes_the_limit_of_the_scene() {
 /// Keeps the last collision problem, as a file holds it.
 struct Last(Recorder, Option<States>);
 
-impl Watcher for Last {
+impl SimulationObserver for Last {
     fn problem(&mut self, problem: &CollisionProblem<'_>) -> ControlFlow<()> {
         self.1 = Some(self.0.states(problem));
         ControlFlow::Continue(())
@@ -121,7 +121,7 @@ fn recorded_problems_hold_the_limit_of_the_fabric() {
         let scene = hanging("material = \"wool\"", contact);
         let mut simulator = Simulator::new(&scene).unwrap_or_else(|error| panic!("{error}"));
         let mut last = Last(Recorder::new(&simulator), None);
-        simulator.step_watched(&mut last).expect("a time step");
+        simulator.step_observed(&mut last).expect("a time step");
         last.1.expect("a problem").write(&path).expect("written");
         let states = States::read(&path).expect("read");
         assert_eq!(states.body_contacts.first().and_then(|b| b.stretch_limit), recorded, "{contact}");

@@ -2,7 +2,7 @@ use super::scene;
 use bowknot::check::{PathOptions, StateOptions};
 use bowknot::geometry::{Point, Vector};
 use bowknot::simulator::{AcceptedStep, Checkpoint, SimulationError};
-use bowknot::{Scene, Simulator, Watcher};
+use bowknot::{Scene, SimulationObserver, Simulator};
 use std::ops::ControlFlow;
 
 const SHEET: &str = r#"
@@ -125,7 +125,7 @@ struct Judged<'a> {
     states: usize,
 }
 
-impl Watcher for Judged<'_> {
+impl SimulationObserver for Judged<'_> {
     fn accepted(&mut self, accepted: &AcceptedStep<'_>) -> ControlFlow<()> {
         let x = accepted.state.positions;
         let state = self.judge.check_state(x, &StateOptions { distance: false, ..Default::default() });
@@ -150,7 +150,7 @@ fn a_sheet_on_a_ball_never_intersects_in_either_order_of_work() {
         let mut judged = Judged { judge: &judge, states: 0 };
         let mut iterations = 0;
         for _ in 0..8 {
-            iterations += simulator.step_watched(&mut judged).expect("a step").newton_iterations;
+            iterations += simulator.step_observed(&mut judged).expect("a step").newton_iterations;
         }
         assert!(judged.states >= 8, "{sets:?}");
         let expected = match sets {
@@ -195,7 +195,7 @@ fn threads_do_not_change_a_bit() {
 /// Stops in the second two-way step of a collision problem that has as many.
 struct Stop;
 
-impl Watcher for Stop {
+impl SimulationObserver for Stop {
     fn accepted(&mut self, accepted: &AcceptedStep<'_>) -> ControlFlow<()> {
         if accepted.state.step == 1 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
@@ -207,7 +207,7 @@ fn a_stopped_step_leaves_no_trace() {
     let mut simulator = Simulator::new(&scene).expect("a simulator");
     let mut before = bits(&simulator);
     for _ in 0..20 {
-        match simulator.step_watched(&mut Stop) {
+        match simulator.step_observed(&mut Stop) {
             Ok(_) => before = bits(&simulator),
             Err(SimulationError::Interrupted) => {
                 assert_eq!(bits(&simulator), before);

@@ -17,13 +17,8 @@ impl Filter {
         match filter {
             HessianFilter::Clamp => Filter::Clamp,
             HessianFilter::Absolute => Filter::Absolute,
-            HessianFilter::Mixed => {
-                if first {
-                    Filter::Absolute
-                } else {
-                    Filter::Clamp
-                }
-            }
+            HessianFilter::Mixed if first => Filter::Absolute,
+            HessianFilter::Mixed => Filter::Clamp,
         }
     }
 

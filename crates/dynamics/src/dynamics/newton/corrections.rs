@@ -44,14 +44,13 @@ impl Newton<'_> {
             }
             self.work.start_from_trial();
             let mut next = self.iterate(Accuracy::Inexact);
-            match shortened {
-                Some((trial, before)) if next.energy_after >= before.energy_after => {
-                    self.work.trial.copy_from_slice(&trial);
-                    self.work.start_from_trial();
-                    info.add(&next);
-                    next = self.iterate(Accuracy::Inexact);
-                }
-                _ => {}
+            if let Some((trial, before)) = shortened
+                && next.energy_after >= before.energy_after
+            {
+                self.work.trial.copy_from_slice(&trial);
+                self.work.start_from_trial();
+                info.add(&next);
+                next = self.iterate(Accuracy::Inexact);
             }
             info.add(&next);
             let moved = largest_distance(&self.work.trial, start, &self.work.free);

@@ -1,0 +1,95 @@
+//! What a simulation shows of a time step while it makes it.
+
+use bowknot_dynamics::Residual;
+use bowknot_geometry::Point;
+#[cfg(doc)]
+use bowknot_twoway::ResolveInput;
+use bowknot_twoway::{AcceptedState, Observer};
+use std::ops::ControlFlow;
+
+/// A collision problem on its way to the two-way method. Slices have one entry per vertex that collides.
+#[derive(Clone, Copy, Debug)]
+pub struct CollisionProblem<'a> {
+    /// The time step, from 1.
+    pub step: usize,
+    /// The Newton iteration in it, from 0.
+    pub iteration: usize,
+    /// The state, free of intersections [m].
+    pub positions: &'a [Point],
+    /// Where the dynamics wants to be [m].
+    pub target: &'a [Point],
+    /// Prescribed vertices: those of obstacles, and pinned ones.
+    pub prescribed: &'a [bool],
+    /// Time step that the problem stands for [s].
+    pub time_step: f64,
+    /// Positions at the start of the time step, which friction measures slip from [m].
+    pub start: &'a [Point],
+    /// Pinned vertices that move as one, see [`ResolveInput::groups`].
+    pub groups: &'a [u32],
+}
+
+/// A state that the two-way method has accepted.
+#[derive(Clone, Copy, Debug)]
+pub struct AcceptedStep<'a> {
+    /// The time step, from 1.
+    pub step: usize,
+    /// The Newton iteration in it, from 0.
+    pub iteration: usize,
+    /// The two-way step and its states.
+    pub state: AcceptedState<'a>,
+}
+
+/// How far a time step is from solved after one of its iterations.
+#[derive(Clone, Copy, Debug)]
+pub struct Iterated {
+    /// The time step, from 1.
+    pub step: usize,
+    /// The Newton iteration in it, from 0.
+    pub iteration: usize,
+    /// What is missing to a solution of the time step, contact and friction included.
+    pub residual: Residual,
+}
+
+/// Sees what happens within a time step, and may stop it.
+pub trait SimulationObserver {
+    /// Called before each collision problem is resolved; `Break` abandons the time step.
+    fn problem(&mut self, problem: &CollisionProblem<'_>) -> ControlFlow<()> {
+        let _ = problem;
+        ControlFlow::Continue(())
+    }
+
+    /// Called after each two-way step; `Break` abandons the time step.
+    fn accepted(&mut self, accepted: &AcceptedStep<'_>) -> ControlFlow<()> {
+        let _ = accepted;
+        ControlFlow::Continue(())
+    }
+
+    /// Called after the collision stage of each Newton iteration, with the residual of the whole time step.
+    fn iterated(&mut self, iterated: &Iterated) {
+        let _ = iterated;
+    }
+}
+
+/// Observes nothing.
+impl SimulationObserver for () {}
+
+/// Passes accepted states on, with their time step and iteration.
+pub(super) struct Relay<'a> {
+    pub observer: &'a mut dyn SimulationObserver,
+    pub step: usize,
+    pub iteration: usize,
+    /// Whether the observer has stopped the time step.
+    pub stopped: bool,
+}
+
+impl Observer for Relay<'_> {
+    fn accepted(&mut self, state: &AcceptedState<'_>) -> ControlFlow<()> {
+        let flow = self.observer.accepted(&AcceptedStep {
+            step: self.step,
+            iteration: self.iteration,
+            state: *state,
+        });
+        self.stopped |= flow.is_break();
+        flow
+    }
+}

@@ -1,0 +1,429 @@
+//! The simulator: one time step after the other.
+//!
+//! For each Newton iteration the dynamics computes a target y from x. Prescribed vertices (pins, obstacles) have their
+//! keyframe at t + dt as target. The two-way method moves x towards y without intersections, and the vertices inside of
+//! solids, which it does not know, follow. With [`CollisionEvery::Step`] the iterations run without collisions, and the
+//! two-way method resolves once, from the start of the step to the last target.
+
+use super::checkpoint::Checkpoint;
+use super::contacts::{ContactForce, Contacts};
+use super::error::{SimulationError, describe_intersections};
+use super::interior::{self, Interior};
+use super::observer::{CollisionProblem, Iterated, Relay, SimulationObserver};
+use super::process::cpu_seconds;
+use super::progress::Progress;
+use super::relaxation::relax_target;
+use super::statistics::StepStatistics;
+use bowknot_check::{Judge, StateOptions, StateReport};
+use bowknot_dynamics::{Dynamics, DynamicsModel};
+use bowknot_geometry::{Point, Vector};
+use bowknot_scene::world::{Attachment, World};
+use bowknot_scene::{CollisionEvery, Scene};
+use bowknot_twoway::{ResolveError, ResolveInput, Resolver};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// How many intersecting pairs of a refused start are named.
+const NAMED_PAIRS: usize = 5;
+
+/// Largest number of two-way steps of a collision stage that is not the last of its time step. Where folds lock each other on
+/// the way to a target that is far from the solution, the target of the next iteration is nearer.
+const MAX_INTERMEDIATE_STEPS: usize = 128;
+
+/// A running simulation.
+#[derive(Debug)]
+pub struct Simulator {
+    pub(super) world: Arc<World>,
+    pub(super) dt: f64,
+    newton_iterations: usize,
+    step_tolerance: f64,
+    collision_every: CollisionEvery,
+    dynamics: Dynamics,
+    pub(super) resolver: Resolver,
+    step: usize,
+    pub(super) positions: Vec<Point>,
+    velocities: Vec<Vector>,
+    pub(super) anchors: Vec<Vec<Point>>,
+    /// Places of pins that follow an obstacle, by pin and vertex; made from the anchors when first needed.
+    pub(super) attachments: Vec<Vec<Option<Attachment>>>,
+    interior: Interior,
+    contacts: Contacts,
+    scratch: Scratch,
+}
+
+/// Buffers of a time step; nothing in them outlives it.
+#[derive(Debug, Default)]
+pub(super) struct Scratch {
+    start: Vec<Point>,
+    x: Vec<Point>,
+    y: Vec<Point>,
+    pub(super) prescribed: Vec<bool>,
+    pub(super) keyframes: Vec<Point>,
+    pub(super) groups: Vec<u32>,
+}
+
+impl Simulator {
+    /// Loads the scene's meshes and prepares the first time step.
+    ///
+    /// # Errors
+    /// Whatever is wrong with the scene or its meshes; a start that already intersects, with the first
+    /// pairs.
+    pub fn new(scene: &Scene) -> Result<Self, SimulationError> {
+        let mut simulator = Self::without_start_check(scene)?;
+        let options = StateOptions { limit: NAMED_PAIRS, distance: false };
+        let count = simulator.world.collision_vertices();
+        let report = simulator.judge().check_state(&simulator.positions[..count], &options)?;
+        if report.is_clear() {
+            simulator.find_contacts(&[])?;
+            return Ok(simulator);
+        }
+        let lines = describe_intersections(&simulator.world, &report.intersections);
+        Err(SimulationError::StartIntersects { lines, count: report.intersection_count })
+    }
+
+    /// The scene's world and all intersections of its start, for a dump.
+    ///
+    /// # Errors
+    /// Whatever is wrong with the scene or its meshes.
+    pub fn start_intersections(scene: &Scene) -> Result<(World, StateReport), SimulationError> {
+        let world = World::new(scene)?;
+        let options = StateOptions { limit: usize::MAX, distance: false };
+        let positions = &world.positions[..world.collision_vertices()];
+        let report = Judge::from_model(&world.collision).check_state(positions, &options)?;
+        Ok((world, report))
+    }
+
+    fn without_start_check(scene: &Scene) -> Result<Self, SimulationError> {
+        let world = World::new(scene)?;
+        let model = world.dynamics_model()?;
+        let count = world.collision_vertices();
+        let (rest, masses) = (&model.rest_positions()[..count], &model.masses()[..count]);
+        let contact = world.contact.clone();
+        let resolver = Resolver::new(world.collision.clone(), rest, masses, scene.twoway.clone())
+            .and_then(|resolver| resolver.with_bodies(contact.bodies))
+            .and_then(|resolver| resolver.with_half_spaces(contact.half_spaces))
+            .and_then(|resolver| resolver.with_pair_friction(&contact.pairs))
+            .map_err(|source| resolve_error(&world, 0, source))?;
+        let contacts = Contacts::new(&scene.repulsion, &world, &resolver);
+        let dynamics = Dynamics::new(model, scene.dynamics).map_err(SimulationError::Dynamics)?;
+        let anchors = vec![Vec::new(); world.pins.len()];
+        Ok(Self {
+            dt: scene.simulation.dt,
+            newton_iterations: scene.simulation.newton_iterations,
+            step_tolerance: scene.dynamics.newton.step_tolerance,
+            collision_every: scene.simulation.collision_every,
+            dynamics,
+            resolver,
+            step: 0,
+            positions: world.positions.clone(),
+            velocities: world.velocities.clone(),
+            attachments: vec![Vec::new(); anchors.len()],
+            anchors,
+            interior: Interior::new(&world, scene.simulation.interior),
+            contacts,
+            scratch: Scratch::default(),
+            world: Arc::new(world),
+        })
+    }
+
+    /// Looks for what is near at the present state: refuses coordinates too large for the gap floor, and finds the
+    /// contacts.
+    fn find_contacts(&mut self, carried: &[ContactForce]) -> Result<(), SimulationError> {
+        let Self { world, resolver, contacts, positions, step, dt, .. } = self;
+        let input = ResolveInput { time_step: Some(*dt), ..ResolveInput::default() };
+        resolver
+            .detect_contacts(&positions[..world.collision_vertices()], &input)
+            .map_err(|source| resolve_error(world, *step, source))?;
+        contacts.resume(carried);
+        Ok(())
+    }
+
+    /// Makes one time step.
+    ///
+    /// # Errors
+    /// A target that is not finite, with its body; coordinates too large for the gap floor. The
+    /// simulator is then as it was before the step.
+    pub fn step(&mut self) -> Result<StepStatistics, SimulationError> {
+        self.step_observed(&mut ())
+    }
+
+    /// Makes one time step with an observer.
+    ///
+    /// # Errors
+    /// As [`Self::step`]; [`SimulationError::Interrupted`] if the observer stopped it. The simulator is
+    /// then as it was before the step.
+    pub fn step_observed(
+        &mut self,
+        observer: &mut dyn SimulationObserver,
+    ) -> Result<StepStatistics, SimulationError> {
+        let (clock, cpu_clock) = (Instant::now(), cpu_seconds());
+        let step = self.step + 1;
+        let time = step as f64 * self.dt;
+        let mut statistics = StepStatistics { step, time, converged: true, ..StepStatistics::default() };
+
+        let mut scratch = std::mem::take(&mut self.scratch);
+        scratch.start.clone_from(&self.positions);
+        let (anchors, contacts) = (self.anchors.clone(), self.contacts.clone());
+        self.prescribe(time, &mut scratch);
+        let result = self.iterate(step, &mut scratch, observer, &mut statistics);
+        if let Err(error) = result {
+            self.positions.clone_from(&scratch.start);
+            self.anchors = anchors;
+            let carried = contacts.carried();
+            self.contacts = contacts;
+            self.attachments.iter_mut().for_each(Vec::clear);
+            self.scratch = scratch;
+            // Pairs are those of where the step was stopped.
+            self.find_contacts(&carried)?;
+            return Err(error);
+        }
+
+        let Self { dynamics, positions, contacts, velocities, .. } = self;
+        dynamics.end_velocities(positions, &scratch.prescribed, contacts.touching(), velocities);
+        statistics.waiting = self.waiting(time, &scratch);
+        statistics.inverted_tets = interior::inverted(&self.world, &self.positions);
+        self.scratch = scratch;
+        self.step = step;
+
+        let model = self.dynamics.model();
+        statistics.max_stretch = model.max_stretch(&self.positions);
+        let (collide, inside) = self.velocities.split_at(self.world.collision_vertices());
+        let deformable = collide[..self.world.deformable_vertices].iter().chain(inside);
+        statistics.max_speed = deformable.map(Vector::norm).fold(0.0, f64::max);
+        statistics.finish(
+            &self.dynamics.energies(&self.positions, &self.velocities),
+            &model.momentum(&self.velocities),
+            &model.center_of_mass(&self.positions),
+        );
+        statistics.close(clock.elapsed().as_secs_f64(), cpu_seconds() - cpu_clock);
+        if let Some(body) = &statistics.slowest_body {
+            tracing::debug!(step, %body, remaining_m = statistics.remaining_m, "collisions did not converge");
+        }
+        Ok(statistics)
+    }
+
+    /// The Newton iterations of a time step, with their collision problems; moves `self.positions`.
+    fn iterate(
+        &mut self,
+        step: usize,
+        scratch: &mut Scratch,
+        observer: &mut dyn SimulationObserver,
+        statistics: &mut StepStatistics,
+    ) -> Result<(), SimulationError> {
+        let Self {
+            world,
+            dynamics,
+            resolver,
+            positions,
+            velocities,
+            dt,
+            interior,
+            contacts,
+            step_tolerance,
+            ..
+        } = self;
+        let Scratch { start, x, y, prescribed, keyframes, groups } = scratch;
+        let target_error = |source| SimulationError::Target { step, source };
+        let count = world.collision_vertices();
+
+        let clock = Instant::now();
+        dynamics.begin_step(start, velocities, *dt).map_err(target_error)?;
+        contacts.begin_step(resolver, start, *dt);
+        if !contacts.springs().is_empty() {
+            let inertial = dynamics.inertial_positions();
+            let end = |v: usize| if prescribed[v] { keyframes[v] } else { inertial[v] };
+            let mut motion: Vec<Vector> = (0..start.len()).map(|v| end(v) - start[v]).collect();
+            contacts.anticipate(&mut motion);
+        }
+        contacts.apply(dynamics).map_err(target_error)?;
+        statistics.repulsion_springs = contacts.springs().len();
+        statistics.seconds.dynamics += clock.elapsed().as_secs_f64();
+        y.clone_from(start);
+        x.clone_from(start);
+        let mut progress = Progress::new(*step_tolerance * resolver.scene().lengths().edge, *dt);
+        for iteration in 0..self.newton_iterations {
+            let last = iteration + 1 == self.newton_iterations;
+            let clock = Instant::now();
+            let info = dynamics.newton_target(x, prescribed, keyframes, y).map_err(target_error)?;
+            statistics.add_newton(&info, clock.elapsed().as_secs_f64());
+            if !info.cg.converged {
+                tracing::debug!(
+                    step,
+                    iteration,
+                    residual = info.cg.residual,
+                    "the linear solve did not converge"
+                );
+            }
+            let mut forces = dynamics.contact_forces();
+            if progress.oscillates() && !contacts.springs().is_empty() {
+                relax_target(world, x, y, prescribed);
+                contacts.relax(&mut forces);
+            }
+            match self.collision_every {
+                CollisionEvery::Step if !last => {
+                    x.clone_from(y);
+                    continue;
+                }
+                CollisionEvery::Step => x.clone_from(start),
+                CollisionEvery::Newton => {}
+            }
+
+            let problem = CollisionProblem {
+                step,
+                iteration,
+                positions: &x[..count],
+                target: &y[..count],
+                prescribed: &prescribed[..count],
+                time_step: *dt,
+                start: &start[..count],
+                groups,
+            };
+            if observer.problem(&problem).is_break() {
+                return Err(SimulationError::Interrupted);
+            }
+            let mut relay = Relay { observer: &mut *observer, step, iteration, stopped: false };
+            let input = ResolveInput {
+                prescribed: &prescribed[..count],
+                time_step: Some(*dt),
+                start: Some(&start[..count]),
+                groups,
+                max_steps: (!last).then_some(MAX_INTERMEDIATE_STEPS),
+            };
+            let resolved = resolver.resolve_with(&mut x[..count], &y[..count], &input, &mut relay);
+            if relay.stopped {
+                return Err(SimulationError::Interrupted);
+            }
+            let resolved = resolved.map_err(|source| resolve_error(world, step, source))?;
+            let cut = !last && !resolved.converged && resolved.steps >= MAX_INTERMEDIATE_STEPS;
+            statistics.add_collision(&resolved, |body| world.name_of(body).to_owned());
+
+            let clock = Instant::now();
+            contacts.note_touching(resolver);
+            let carried = contacts.carried_after(&forces, resolver, *dt);
+            contacts.find(resolver, &carried, start, *dt);
+            x[count..].copy_from_slice(&y[count..]);
+            if x[..count] != y[..count] {
+                statistics.interior_solves +=
+                    interior.follow(dynamics, prescribed, y, x).map_err(target_error)?;
+                statistics.collision_energy_j += added_energy(dynamics, start, y, x, *dt);
+            }
+            contacts.apply(dynamics).map_err(target_error)?;
+            let residual = dynamics.residual(x, prescribed, contacts.counted()).map_err(target_error)?;
+            statistics.seconds.dynamics += clock.elapsed().as_secs_f64();
+            (statistics.residual_n, statistics.residual_m) = (residual.force, residual.distance);
+            tracing::debug!(step, iteration, residual.force, residual.distance, "time step");
+            observer.iterated(&Iterated { step, iteration, residual });
+            if progress.ends(residual.distance) && !cut {
+                break;
+            }
+        }
+        positions.clone_from(x);
+        Ok(())
+    }
+
+    /// Positions of all vertices, in the order of the [world](crate::world) [m].
+    pub fn positions(&self) -> &[Point] {
+        &self.positions
+    }
+
+    /// Velocities of all vertices [m/s].
+    pub fn velocities(&self) -> &[Vector] {
+        &self.velocities
+    }
+
+    /// Time of the state [s].
+    pub fn time(&self) -> f64 {
+        self.step as f64 * self.dt
+    }
+
+    /// Time steps made.
+    pub fn step_index(&self) -> usize {
+        self.step
+    }
+
+    /// Bodies, topology, pins: what is fixed.
+    pub fn world(&self) -> &Arc<World> {
+        &self.world
+    }
+
+    /// Masses, elements, and what can be measured of a state.
+    pub fn dynamics_model(&self) -> &DynamicsModel {
+        self.dynamics.model()
+    }
+
+    /// The collision stage: its parameters and the lengths in force.
+    pub fn resolver(&self) -> &Resolver {
+        &self.resolver
+    }
+
+    /// A judge of the simulation's states and paths.
+    pub fn judge(&self) -> Judge {
+        Judge::from_model(&self.world.collision)
+    }
+
+    /// The state, in full.
+    pub fn checkpoint(&self) -> Checkpoint {
+        Checkpoint {
+            step: self.step,
+            positions: self.positions.clone(),
+            velocities: self.velocities.clone(),
+            anchors: self.anchors.clone(),
+            contacts: self.contacts.carried(),
+        }
+    }
+
+    /// Goes on from a state of the same scene.
+    ///
+    /// # Errors
+    /// What does not fit, in words; the simulator is then as it was.
+    pub fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), String> {
+        let vertices = self.positions.len();
+        for (what, given) in
+            [("positions", checkpoint.positions.len()), ("velocities", checkpoint.velocities.len())]
+        {
+            if given != vertices {
+                return Err(format!("it has {given} {what}, but the scene has {vertices} vertices"));
+            }
+        }
+        let fits = checkpoint.anchors.len() == self.world.pins.len()
+            && checkpoint
+                .anchors
+                .iter()
+                .zip(&self.world.pins)
+                .all(|(a, p)| a.is_empty() || a.len() == p.vertices.len());
+        if !fits {
+            return Err("its pins are not those of the scene".to_owned());
+        }
+        let before = self.checkpoint();
+        self.adopt(checkpoint);
+        self.find_contacts(&checkpoint.contacts).map_err(|error| {
+            self.adopt(&before);
+            error.to_string()
+        })
+    }
+
+    fn adopt(&mut self, checkpoint: &Checkpoint) {
+        self.step = checkpoint.step;
+        self.positions.clone_from(&checkpoint.positions);
+        self.velocities.clone_from(&checkpoint.velocities);
+        self.anchors.clone_from(&checkpoint.anchors);
+        self.attachments.iter_mut().for_each(Vec::clear);
+    }
+}
+
+fn added_energy(dynamics: &Dynamics, start: &[Point], y: &[Point], x: &[Point], dt: f64) -> f64 {
+    let energy = |end: &[Point]| {
+        let velocities: Vec<Vector> = end.iter().zip(start).map(|(x, x0)| (x - x0) / dt).collect();
+        dynamics.energies(end, &velocities).total()
+    };
+    (energy(x) - energy(y)).max(0.0)
+}
+
+fn resolve_error(world: &World, step: usize, source: ResolveError) -> SimulationError {
+    let body = match &source {
+        ResolveError::NonFinite { body, .. } | ResolveError::Mass { body, .. } => world.name_of(*body),
+        ResolveError::MinSeparationBelowRounding { vertex, .. } => world.body_name(*vertex),
+        _ => "",
+    };
+    SimulationError::Resolve { step, body: body.to_owned(), source }
+}
