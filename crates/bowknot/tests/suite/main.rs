@@ -1,5 +1,7 @@
 //! Integration tests of the facade, in one binary.
 
+/// The meshes and scenes of `assets`.
+mod assets;
 /// What users get wrong about kinds, materials, friction and sequences.
 mod bad_bodies;
 /// What users get wrong, and what they are told.

@@ -1,57 +1,25 @@
 //! The surface of the figure at rest as the zero set of a function.
 //!
-//! Each bone carries round cones (the hull of two balls); their distances are joined by a smooth
-//! minimum. Distances have slope 1 at most and the smooth minimum is a mean of theirs, so the field has
-//! too: its value outside never exceeds the distance to the surface, and a surface on which it is at
-//! least g keeps g from the body.
+//! Each bone carries round cones. The field of their union has slope 1 at most, so a surface on which it is
+//! at least g keeps g from the body.
 
+use super::super::round_cone::{RoundCone, bounds, smooth_union};
 use super::skeleton::{ARM, CHEST, FOOT, FOREARM, HEAD, LEG, NECK, PELVIS, SHIN, SPINE, THIGH, UPPER_ARM};
-use bowknot_geometry::{Point, Vector};
+use bowknot_geometry::Point;
 
-/// The hull of two balls.
+/// A round cone that moves with a bone.
 #[derive(Clone, Copy, Debug)]
-struct RoundCone {
+struct Part {
     bone: usize,
-    ends: [Point; 2],
-    radii: [f64; 2],
-    /// Width over which it blends into those before it [m].
-    blend: f64,
-}
-
-impl RoundCone {
-    /// Signed distance [m] (Quilez, "Round cone - distance", 2018).
-    fn distance(&self, p: &Point) -> f64 {
-        let [r0, r1] = self.radii;
-        let (axis, from) = (self.ends[1] - self.ends[0], p - self.ends[0]);
-        let length2 = axis.norm_squared();
-        let taper = r0 - r1;
-        let (y, z) = (from.dot(&axis), from.dot(&axis) - length2);
-        let x2 = (from * length2 - axis * y).norm_squared();
-        let (y2, z2) = (y * y * length2, z * z * length2);
-        let slope2 = length2 - taper * taper;
-        let k = taper.signum() * taper * taper * x2;
-        if z.signum() * slope2 * z2 > k {
-            (x2 + z2).sqrt() / length2 - r1
-        } else if y.signum() * slope2 * y2 < k {
-            (x2 + y2).sqrt() / length2 - r0
-        } else {
-            ((x2 * slope2 / length2).sqrt() + y * taper) / length2 - r0
-        }
-    }
-}
-
-/// Minimum, rounded where the two differ by less than `blend`; of slope 1 at most, if both are.
-fn smooth_min(a: f64, b: f64, blend: f64) -> f64 {
-    let h = (blend - (a - b).abs()).max(0.0);
-    a.min(b) - h * h / (4.0 * blend)
+    cone: RoundCone,
 }
 
 /// The body at rest.
 #[derive(Clone, Debug)]
 pub(in crate::shapes) struct RestBody {
-    trunk: Vec<RoundCone>,
-    arms: Vec<RoundCone>,
-    legs: Vec<RoundCone>,
+    trunk: Vec<Part>,
+    arms: Vec<Part>,
+    legs: Vec<Part>,
 }
 
 impl RestBody {
@@ -100,7 +68,7 @@ impl RestBody {
     }
 
     /// All parts.
-    fn parts(&self) -> impl Iterator<Item = &RoundCone> {
+    fn parts(&self) -> impl Iterator<Item = &Part> {
         self.trunk.iter().chain(&self.arms).chain(&self.legs)
     }
 
@@ -116,10 +84,9 @@ impl RestBody {
 
     /// A box around the body [m].
     pub fn bounds(&self) -> (Point, Point) {
-        let margin = |part: &RoundCone| Vector::repeat(part.radii[0].max(part.radii[1]) + part.blend);
         self.parts().fold((Point::origin(), Point::origin()), |(low, high), part| {
-            let [a, b] = part.ends;
-            (low.inf(&(a.inf(&b) - margin(part))), high.sup(&(a.sup(&b) + margin(part))))
+            let (a, b) = bounds(&part.cone);
+            (low.inf(&a), high.sup(&b))
         })
     }
 
@@ -127,31 +94,28 @@ impl RestBody {
     pub fn bone_distances<const N: usize>(&self, p: &Point) -> [f64; N] {
         let mut distances = [f64::INFINITY; N];
         for part in self.parts() {
-            distances[part.bone] = distances[part.bone].min(part.distance(p));
+            distances[part.bone] = distances[part.bone].min(part.cone.distance(p));
         }
         distances
     }
 }
 
-fn join<'a>(parts: impl Iterator<Item = &'a RoundCone>, p: &Point) -> f64 {
-    parts.fold(f64::INFINITY, |field, part| {
-        let distance = part.distance(p);
-        if field.is_finite() { smooth_min(field, distance, part.blend) } else { distance }
-    })
+fn join<'a>(parts: impl Iterator<Item = &'a Part>, p: &Point) -> f64 {
+    smooth_union(parts.map(|part| &part.cone), p)
 }
 
-fn bone(bone: usize, ends: [[f64; 3]; 2], radii: [f64; 2], blend: f64) -> RoundCone {
-    RoundCone { bone, ends: ends.map(Point::from), radii, blend }
+fn bone(bone: usize, ends: [[f64; 3]; 2], radii: [f64; 2], blend: f64) -> Part {
+    Part { bone, cone: RoundCone { ends: ends.map(Point::from), radii, blend } }
 }
 
 /// A part from the mirror image of its end to the end.
-fn bar(of: usize, [x, y, z]: [f64; 3], radius: f64, blend: f64) -> RoundCone {
+fn bar(of: usize, [x, y, z]: [f64; 3], radius: f64, blend: f64) -> Part {
     bone(of, [[x, -y, z], [x, y, z]], [radius; 2], blend)
 }
 
 /// A part of the left side and its mirror image. The right bone of a pair follows the left one by
 /// `1`; parts of the trunk belong to one bone on both sides.
-fn pair(of: usize, ends: [[f64; 3]; 2], radii: [f64; 2], level: usize) -> [RoundCone; 2] {
+fn pair(of: usize, ends: [[f64; 3]; 2], radii: [f64; 2], level: usize) -> [Part; 2] {
     // Joints within a limb are rounded less than where it grows from the trunk.
     let blend = [0.035, 0.02][level];
     let mirrored = ends.map(|[x, y, z]| [x, -y, z]);
