@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Folders of crates that may still have cycles.
-const EXEMPT: &[&str] = &["baselines", "bench", "bowknot", "cli", "scene", "twoway"];
+const EXEMPT: &[&str] = &[];
 
 /// Path of a module from the root of its crate; empty for the root itself.
 type ModulePath = Vec<String>;

@@ -16,7 +16,7 @@ struct Part {
 
 /// The body at rest.
 #[derive(Clone, Debug)]
-pub(in crate::shapes) struct RestBody {
+pub(crate) struct RestBody {
     trunk: Vec<Part>,
     arms: Vec<Part>,
     legs: Vec<Part>,
