@@ -91,9 +91,9 @@ pub enum EdgeReference {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum EdgeForm {
-    /// A row linearised at the current state (paper, Eq. 17).
+    /// A row linearized at the current state (paper, Eq. 17).
     Linear,
-    /// The convex ball |y_a - y_b| <= L with a vector multiplier, without linearisation.
+    /// The convex ball |y_a - y_b| <= L with a vector multiplier, without linearization.
     Ball,
 }
 
