@@ -51,7 +51,7 @@ impl Grains {
 
 impl Parameters for Grains {
     fn check(&self, checks: &mut Checks) {
-        positive_lengths([("spacing", self.spacing)].into_iter(), checks);
+        positive_lengths([("spacing", self.spacing)], checks);
         if self.count.contains(&0) {
             checks.refuse("count", format!("{:?}", self.count), "must be at least 1 each way");
         }

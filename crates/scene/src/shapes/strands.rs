@@ -112,9 +112,9 @@ impl Parameters for Strands {
             Root::Plane => lengths.push(("spacing", self.spacing)),
             Root::Sphere => lengths.push(("radius", self.radius)),
         }
-        positive_lengths(lengths.into_iter(), checks);
+        positive_lengths(lengths, checks);
         for (key, count) in [("count", self.count), ("segments", self.segments)] {
-            checks.count_at_least(key, count as usize, 1);
+            checks.count_at_least(key, count, 1);
         }
         if self.count as f64 * (self.segments as f64 + 1.0) > MAX_VERTICES {
             checks.refuse("count", self.count, format!("must make at most {MAX_VERTICES:e} vertices"));

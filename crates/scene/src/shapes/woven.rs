@@ -73,11 +73,11 @@ impl Woven {
 
 impl Parameters for Woven {
     fn check(&self, checks: &mut Checks) {
-        positive_lengths([("spacing", self.spacing), ("amplitude", self.amplitude)].into_iter(), checks);
+        positive_lengths([("spacing", self.spacing), ("amplitude", self.amplitude)], checks);
         let counts = [("count", self.count[0]), ("count", self.count[1]), ("segments", self.segments)];
         let before = checks.error_count();
         for (key, count) in counts {
-            checks.count_at_least(key, count as usize, 1);
+            checks.count_at_least(key, count, 1);
         }
         if checks.error_count() > before {
             return;
