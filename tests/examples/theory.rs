@@ -16,7 +16,7 @@ fn main() {
     }
     if named("meet") {
         for (name, offset) in
-            [("head on", [0.0, 0.0]), ("off centre", [0.03, 0.0]), ("askew", [0.031, 0.017])]
+            [("head on", [0.0, 0.0]), ("off center", [0.03, 0.0]), ("askew", [0.031, 0.017])]
         {
             for modulus in [1e5, 1e7] {
                 println!("meet {name} {modulus:e}: {:?}", theory::meeting(offset, modulus, 40, set));

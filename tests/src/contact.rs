@@ -283,14 +283,14 @@ impl Slope {
     }
 }
 
-/// Centre of mass of a slider at the start and after each time step.
+/// Center of mass of a slider at the start and after each time step.
 #[derive(Clone, Debug)]
 pub struct Track {
     /// Unit vector down the slope.
     pub along: Vector,
     /// Time step [s].
     pub dt: f64,
-    /// Centre of mass [m].
+    /// Center of mass [m].
     pub places: Vec<Point>,
     /// Its velocity [m/s].
     pub velocities: Vec<Vector>,
@@ -329,7 +329,7 @@ fn sliding(simulator: &Simulator) -> impl Iterator<Item = usize> + '_ {
     })
 }
 
-/// Centre of mass of the slider [m].
+/// Center of mass of the slider [m].
 pub fn center(simulator: &Simulator) -> Point {
     let masses = simulator.dynamics_model().masses();
     let (mut sum, mut total) = (Vector::zeros(), 0.0);
@@ -340,7 +340,7 @@ pub fn center(simulator: &Simulator) -> Point {
     Point::from(sum / total)
 }
 
-/// Velocity of the slider's centre of mass [m/s].
+/// Velocity of the slider's center of mass [m/s].
 pub fn velocity(simulator: &Simulator) -> Vector {
     let masses = simulator.dynamics_model().masses();
     let (mut sum, mut total) = (Vector::zeros(), 0.0);

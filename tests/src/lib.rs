@@ -1,7 +1,7 @@
 //! Shared helpers of the integration tests: hard states, far targets, and a check of every step.
 //!
 //! - [`states`]: seeded generators of states that are nearly intersecting;
-//! - [`targets`]: targets of their vertices, from a micrometre to a kilometre away;
+//! - [`targets`]: targets of their vertices, from a micrometer to a kilometer away;
 //! - [`step_checker`]: checks every step that moves them;
 //! - [`contact`], [`theory`]: scenes whose outcome is known from theory;
 //! - [`fuzz`]: properties that hold for any bytes, for the fuzz targets and a test.

@@ -1,4 +1,4 @@
-//! Targets of vertices, from a micrometre to a kilometre away. Most lead through other elements.
+//! Targets of vertices, from a micrometer to a kilometer away. Most lead through other elements.
 
 use crate::{Case, Random};
 use bowknot_geometry::{Point, Vector};

@@ -23,7 +23,7 @@ pub fn simulator(text: &str, folder: &Path, settings: &[String]) -> Simulator {
 pub struct Motion {
     /// Mass [kg].
     pub mass: f64,
-    /// Centre of mass [m].
+    /// Center of mass [m].
     pub center: Point,
     /// Momentum [kg m/s].
     pub momentum: Vector,
@@ -63,7 +63,7 @@ fn step(simulator: &mut Simulator) -> StepStatistics {
 pub struct Meeting {
     /// Largest change of the momentum, relative to that of one cube at the start [1].
     pub momentum: f64,
-    /// Largest change of the angular momentum about the common centre, relative to the momentum of one cube
+    /// Largest change of the angular momentum about the common center, relative to the momentum of one cube
     /// times its size [1].
     pub angular: f64,
     /// Largest kinetic and elastic energy of any later state, relative to that at the start [1].
@@ -75,7 +75,7 @@ pub struct Meeting {
     pub restitution: f64,
 }
 
-/// Two cubes of 8 cm that collide at 1 m/s each with friction; their centres are offset sideways by `offset`
+/// Two cubes of 8 cm that collide at 1 m/s each with friction; their centers are offset sideways by `offset`
 /// [m].
 pub fn meeting(offset: [f64; 2], modulus: f64, steps: usize, settings: &[String]) -> Meeting {
     let folder = tempfile::tempdir().expect("a folder");
@@ -117,7 +117,7 @@ fn floor(mesh: bool) -> &'static str {
     }
 }
 
-/// A cube of jelly falls by 5 cm on a floor. Returns the largest horizontal velocity of its centre of mass
+/// A cube of jelly falls by 5 cm on a floor. Returns the largest horizontal velocity of its center of mass
 /// [m/s] and the largest gain of energy since the start [J].
 pub fn dropped_cube(
     rotate: [f64; 3],

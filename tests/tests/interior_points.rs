@@ -10,7 +10,7 @@ use bowknot_twoway::{
 };
 
 /// Presets and speeds in turn. With a minimum separation: where a tenth of the gap is left step by step, it falls to 1e-12 m within these
-/// few steps, too near for the judge to tell a miss from a hit. With few iterations: along a kilometre there would be many,
+/// few steps, too near for the judge to tell a miss from a hit. With few iterations: along a kilometer there would be many,
 /// and stopping early is as safe.
 fn with_impacts<F: ForwardStep>(forward: impl Fn(AdditiveCcd) -> F) {
     let settings = [(Params::fast(), ClosingSpeed::Slab), (Params::paper(), ClosingSpeed::Travel)];

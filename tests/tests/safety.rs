@@ -81,7 +81,7 @@ struct Forward {
 }
 
 impl Forward {
-    /// Minimum separation [m]: above 16 ulp at a kilometre.
+    /// Minimum separation [m]: above 16 ulp at a kilometer.
     const MIN_SEPARATION: f64 = 1e-8;
 
     fn new(case: &Case, planes: bool, damping: f64) -> Self {
@@ -179,7 +179,7 @@ pub fn watched<S: Search, B: BackwardStep, F: ForwardStep>(
         let mut x = case.positions.clone();
         let mut params = params.clone();
         params.solver.stop.max_steps = Some(12);
-        // Coordinates of a kilometre need a minimum separation above their rounding.
+        // Coordinates of a kilometer need a minimum separation above their rounding.
         if params.contact.min_separation.is_none() {
             params.contact.min_separation = Some(1e-8);
         }

@@ -1,8 +1,8 @@
 """The projection onto states without intersections by a log barrier made of ipctk's parts.
 
-Minimises 1/2 sum m |x - y|^2 + kappa b(x) from a state x without intersections: Newton's method on
+Minimizes 1/2 sum m |x - y|^2 + kappa b(x) from a state x without intersections: Newton's method on
 the projected Hessian, each step cut by continuous collision detection and halved until the energy
-falls. (Its minimisers are those of the sum over the square of the time step, kappa scaled alike.)
+falls. (Its minimizers are those of the sum over the square of the time step, kappa scaled alike.)
 """
 
 from dataclasses import dataclass, field

@@ -35,7 +35,7 @@ class Fall:
     def sheet(self):
         """Points and triangles where it starts, above the obstacle's top at z = 0."""
         points, faces = meshes.flat_sheet(SIDE, self.side_vertices)
-        # Off the centre, so that no vertex is right above a tip.
+        # Off the center, so that no vertex is right above a tip.
         return points + [0.004, 0.002, DROP], faces
 
     @property

@@ -15,7 +15,7 @@ pub struct Sample {
     /// Kinetic, elastic and potential energy [J].
     pub energy: f64,
     pub elastic: f64,
-    /// Centre of mass [m].
+    /// Center of mass [m].
     pub center: [f64; 3],
     /// Mean ratio of edge lengths to those at the start.
     pub stretch: f64,
@@ -120,7 +120,7 @@ impl Simulation {
 pub struct Distances {
     /// Of the energies [J].
     pub energy: f64,
-    /// Of the centres of mass [m].
+    /// Of the centers of mass [m].
     pub center: f64,
     /// Of the mean stretches [1].
     pub stretch: f64,

@@ -37,14 +37,14 @@ pub(super) fn uncovered_pairs(
             }
         }
     }
-    // A vertex all of whose neighbours are in one triangle, without being in it itself.
+    // A vertex all of whose neighbors are in one triangle, without being in it itself.
     for v in 0..vertex_count as u32 {
-        let neighbours: Vec<u32> =
+        let neighbors: Vec<u32> =
             edges_at_vertex.at(v).iter().flat_map(|&e| edges[e as usize]).filter(|&w| w != v).collect();
-        let Some(&first) = neighbours.first() else { continue };
+        let Some(&first) = neighbors.first() else { continue };
         for &t in triangles_at_vertex.at(first) {
             let triangle = &triangles[t as usize];
-            if !triangle.contains(&v) && neighbours.iter().all(|w| triangle.contains(w)) {
+            if !triangle.contains(&v) && neighbors.iter().all(|w| triangle.contains(w)) {
                 uncovered.push((PairClass::VertexTriangle, [v, t]));
             }
         }

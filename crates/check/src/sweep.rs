@@ -80,7 +80,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// Whether a direction that costs next to nothing separates the sides all the way: that from one
-    /// side's center to the other's, midway. Most pairs whose boxes meet are neighbours in one mesh, for
+    /// side's center to the other's, midway. Most pairs whose boxes meet are neighbors in one mesh, for
     /// which it does.
     fn separated_easily(&self) -> bool {
         let toward =

@@ -153,10 +153,10 @@ pub struct RenderOptions {
     /// Width and height [pixels; default: 960x720, for an animation 640x480]
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
-    /// What colours show, with a legend [default: each body has a colour of its own, without a legend]
+    /// What colors show, with a legend [default: each body has a color of its own, without a legend]
     #[arg(long, value_enum)]
     pub color: Option<Color>,
-    /// Ends of the colour scale, in the unit of the legend [default: from the values in the frames]
+    /// Ends of the color scale, in the unit of the legend [default: from the values in the frames]
     #[arg(long, value_name = "LOW..HIGH", value_parser = range, allow_hyphen_values = true)]
     pub range: Option<[f64; 2]>,
     /// Direction to look from; the camera is placed so that it sees the whole run
@@ -171,7 +171,7 @@ pub struct RenderOptions {
     /// Vertical field of view [deg]
     #[arg(long, value_name = "DEG", value_parser = angle, default_value_t = 26.0)]
     pub fov: f64,
-    /// Reduce a picture to 256 colours, which makes the file a third of the size
+    /// Reduce a picture to 256 colors, which makes the file a third of the size
     #[arg(long)]
     pub indexed: bool,
     /// Print errors only
@@ -179,7 +179,7 @@ pub struct RenderOptions {
     pub quiet: bool,
 }
 
-/// The quantity that colours show.
+/// The quantity that colors show.
 #[cfg(feature = "render")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Color {

@@ -1,4 +1,4 @@
-//! Contact rows of a vertex above a triangle, in both forms: values and gradients at the linearisation point,
+//! Contact rows of a vertex above a triangle, in both forms: values and gradients at the linearization point,
 //! and values at targets on both sides.
 //!
 //! `cargo run --release -p bowknot-constraints --example pair_rows`

@@ -1,7 +1,7 @@
-//! Contact rows: one inequality per pair, linearised at the current positions x:
+//! Contact rows: one inequality per pair, linearized at the current positions x:
 //! s(y) = c(x) + J (y - x) >= 0 [m].
 
-use crate::colouring::Colouring;
+use crate::coloring::Coloring;
 use crate::friction::friction_row;
 use crate::params::ContactForm;
 use crate::{face, volume};
@@ -37,7 +37,7 @@ pub fn contact_row(
     Row::new(vertices, gradients, value - linear)
 }
 
-/// Predicted gap [m] of a pair at `y` along its normal at the linearisation point: the gap-form value
+/// Predicted gap [m] of a pair at `y` along its normal at the linearization point: the gap-form value
 /// without the desired distance.
 #[inline]
 pub fn predicted_gap(
@@ -56,7 +56,7 @@ pub fn predicted_gap(
     separation.distance.min(separation.width.max(0.0)) + change
 }
 
-/// Contact rows in colour order. They are refilled in every backward step and keep their buffers.
+/// Contact rows in color order. They are refilled in every backward step and keep their buffers.
 #[derive(Clone, Debug, Default)]
 pub struct ContactRows {
     /// Index of each row's pair in the pair list.
@@ -67,13 +67,13 @@ pub struct ContactRows {
     pub friction: Vec<FrictionRow>,
     /// Index of the friction row of each row, or [`LcpProblem::NO_FRICTION`]. Empty: no contact has friction.
     pub friction_of: Vec<u32>,
-    colouring: Colouring,
+    coloring: Coloring,
     selected: Vec<u32>,
 }
 
 impl ContactRows {
-    /// Fills in the rows of the pairs that `keep` accepts, ordered by colour. `movable[v]` tells which
-    /// vertices a row may move; only they count for colours.
+    /// Fills in the rows of the pairs that `keep` accepts, ordered by color. `movable[v]` tells which
+    /// vertices a row may move; only they count for colors.
     pub fn fill(
         &mut self,
         form: ContactForm,
@@ -90,13 +90,13 @@ impl ContactRows {
         }
         let all = pairs.pairs();
         let selected = &self.selected;
-        self.colouring.first_fit(movable.len(), selected.len(), |r| {
+        self.coloring.first_fit(movable.len(), selected.len(), |r| {
             let pair = selected[r] as usize;
             let kind = pairs.kind(pair);
             all[pair].vertices.into_iter().take(kind.vertex_count()).filter(|&v| movable[v as usize])
         });
         self.pair.clear();
-        self.pair.extend(self.colouring.order().iter().map(|&r| selected[r as usize]));
+        self.pair.extend(self.coloring.order().iter().map(|&r| selected[r as usize]));
         self.rows.clear();
         self.rows.extend(self.pair.iter().map(|&p| {
             let p = p as usize;
@@ -135,13 +135,13 @@ impl ContactRows {
         }
     }
 
-    /// Where each colour starts, and the end.
-    pub fn colour_starts(&self) -> &[u32] {
-        self.colouring.starts()
+    /// Where each color starts, and the end.
+    pub fn color_starts(&self) -> &[u32] {
+        self.coloring.starts()
     }
 
-    /// Number of colours.
-    pub fn colour_count(&self) -> usize {
-        self.colouring.colour_count()
+    /// Number of colors.
+    pub fn color_count(&self) -> usize {
+        self.coloring.color_count()
     }
 }

@@ -14,9 +14,9 @@ pub struct DesiredDistance {
 
 impl DesiredDistance {
     /// The desired distance [m] of a pair that has the distance `gap` when it first becomes a candidate in a
-    /// call, and whether it was lowered because the pair are neighbours in a fine mesh.
+    /// call, and whether it was lowered because the pair are neighbors in a fine mesh.
     ///
-    /// The desired distance of neighbours is at most half of their rest distance: otherwise `delta` would
+    /// The desired distance of neighbors is at most half of their rest distance: otherwise `delta` would
     /// tear a fine mesh apart. A pair that starts closer than its desired distance opens by at most `growth`
     /// per call.
     pub fn of(
@@ -32,7 +32,7 @@ impl DesiredDistance {
     }
 
     /// The desired distance [m] that a pair reaches in the end, however close it starts, and whether it was
-    /// lowered because the pair are neighbours in a fine mesh.
+    /// lowered because the pair are neighbors in a fine mesh.
     pub fn without_growth_limit(
         &self,
         model: &CollisionModel,

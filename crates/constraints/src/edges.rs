@@ -1,6 +1,6 @@
 //! Edge-length limits (paper, Eq. 17): every edge with a movable vertex.
 
-use crate::colouring::Colouring;
+use crate::coloring::Coloring;
 use crate::params::EdgeReference;
 use bowknot_geometry::{Point, Topology, Vector};
 use bowknot_lcp::{DistanceLimit, Row};
@@ -10,7 +10,7 @@ use bowknot_lcp::{DistanceLimit, Row};
 /// diverges.
 const START_SHARE: f64 = 0.97;
 
-/// Edge-length limits in colour order.
+/// Edge-length limits in color order.
 #[derive(Clone, Debug, Default)]
 pub struct EdgeLimits {
     /// Vertices of each edge and its largest length in this call, L [m].
@@ -21,11 +21,11 @@ pub struct EdgeLimits {
     pub start_lengths: Vec<f64>,
     /// Largest ratio of each edge's length to its reference length, sigma [1].
     pub stretch_limits: Vec<f64>,
-    colour_starts: Vec<u32>,
+    color_starts: Vec<u32>,
 }
 
 impl EdgeLimits {
-    /// Collects and colours the edges with at least one movable vertex and a finite `stretch_limit`, the
+    /// Collects and colors the edges with at least one movable vertex and a finite `stretch_limit`, the
     /// largest ratio of an edge's length to its reference length. Other edges have no row.
     pub fn new(
         topology: &Topology,
@@ -36,10 +36,10 @@ impl EdgeLimits {
         let limited =
             |e: &[u32; 2]| e.iter().any(|&v| movable[v as usize]) && stretch_limit(e) < f64::INFINITY;
         let edges: Vec<[u32; 2]> = topology.edges.iter().copied().filter(limited).collect();
-        let mut colouring = Colouring::default();
-        colouring
+        let mut coloring = Coloring::default();
+        coloring
             .first_fit(movable.len(), edges.len(), |r| edges[r].into_iter().filter(|&v| movable[v as usize]));
-        let vertices = colouring.order().iter().map(|&r| edges[r as usize]);
+        let vertices = coloring.order().iter().map(|&r| edges[r as usize]);
         let balls: Vec<DistanceLimit> =
             vertices.map(|e| DistanceLimit { vertices: e, limit: length(&e, rest) }).collect();
         let rest_lengths: Vec<f64> = balls.iter().map(|b| b.limit).collect();
@@ -48,7 +48,7 @@ impl EdgeLimits {
             start_lengths: rest_lengths.clone(),
             rest_lengths,
             balls,
-            colour_starts: colouring.starts().to_vec(),
+            color_starts: coloring.starts().to_vec(),
         }
     }
 
@@ -71,9 +71,9 @@ impl EdgeLimits {
         }
     }
 
-    /// Appends the limits as rows linearised at `positions` (paper, Eq. 17, in units of length):
-    /// s(y) = L - |e| - e/|e| . ((y_a - y_b) - (x_a - x_b)), e = x_a - x_b. Same order and colours.
-    pub fn linearise(&self, positions: &[Point], rows: &mut Vec<Row>) {
+    /// Appends the limits as rows linearized at `positions` (paper, Eq. 17, in units of length):
+    /// s(y) = L - |e| - e/|e| . ((y_a - y_b) - (x_a - x_b)), e = x_a - x_b. Same order and colors.
+    pub fn linearize(&self, positions: &[Point], rows: &mut Vec<Row>) {
         rows.extend(self.balls.iter().map(|ball| {
             let [a, b] = ball.vertices;
             let edge = positions[a as usize] - positions[b as usize];
@@ -98,14 +98,14 @@ impl EdgeLimits {
         if self.balls.is_empty() { Stretch { to_limit: 1.0, to_start: 1.0, to_rest: 1.0 } } else { stretch }
     }
 
-    /// Where each colour starts, and the end.
-    pub fn colour_starts(&self) -> &[u32] {
-        &self.colour_starts
+    /// Where each color starts, and the end.
+    pub fn color_starts(&self) -> &[u32] {
+        &self.color_starts
     }
 
-    /// Number of colours.
-    pub fn colour_count(&self) -> usize {
-        self.colour_starts.len().saturating_sub(1)
+    /// Number of colors.
+    pub fn color_count(&self) -> usize {
+        self.color_starts.len().saturating_sub(1)
     }
 }
 

@@ -2,7 +2,7 @@
 //! Collisions"; Tang et al. 2018, "I-Cloth"): what the volume form is compared with (paper, section 4.1).
 //!
 //! c(x) = m . (sum_k s_k beta_k x_k) - delta, with m the triangle's unit normal, or the common normal of both
-//! edges, and the weights of the closest points, all constant. Both papers linearise at a time of impact,
+//! edges, and the weights of the closest points, all constant. Both papers linearize at a time of impact,
 //! where the closest points are inside of the primitives and m is the direction between them. For a pair that
 //! is only close, m may have any direction.
 

@@ -4,7 +4,7 @@
 //! surfaces has a minimum at few of them. The others have tilted normals, and a constraint along such a
 //! normal blocks bodies that slide past: these are the ghost collisions at internal edges of meshes. A pair
 //! is a contact if its normal lies in the normal cones of the features of both sides, that is, if no
-//! neighbouring feature is closer to the other side. Offset geometric contact (Chen et al. 2025) sorts
+//! neighboring feature is closer to the other side. Offset geometric contact (Chen et al. 2025) sorts
 //! contacts by the same blocks: those above faces, edges and vertices.
 
 use bowknot_geometry::{EdgeTriangles, PairKind, Point, Separation, Topology, Vector};
@@ -16,7 +16,7 @@ const ON_BOUNDARY: f64 = 1e-9;
 /// Largest sine of the angle between the faces of an edge that count as one flat surface.
 const FLAT: f64 = 2e-3;
 
-/// Largest number of passes over the neighbours of a pair's features that turn its normal into their cones.
+/// Largest number of passes over the neighbors of a pair's features that turn its normal into their cones.
 const MAX_TURNS: usize = 4;
 
 /// Smallest length of a turned normal that has a direction.
@@ -26,9 +26,9 @@ const MIN_TURNED_LENGTH: f64 = 0.1;
 #[derive(Clone, Debug, Default)]
 pub struct Facing {
     triangles: EdgeTriangles,
-    /// Vertices next to each vertex of a surface: `neighbours[starts[v]..starts[v + 1]]`.
+    /// Vertices next to each vertex of a surface: `neighbors[starts[v]..starts[v + 1]]`.
     starts: Vec<u32>,
-    neighbours: Vec<u32>,
+    neighbors: Vec<u32>,
 }
 
 /// The feature of a primitive that a closest point lies on.
@@ -55,7 +55,7 @@ enum Place {
 }
 
 impl Facing {
-    /// Collects the neighbours of all vertices and edges, in linear time.
+    /// Collects the neighbors of all vertices and edges, in linear time.
     pub fn new(topology: &Topology) -> Self {
         let triangles = topology.edge_triangles();
         let of_surfaces = || (0..topology.edges.len()).filter(|&e| triangles.count(e as u32) > 0);
@@ -65,14 +65,14 @@ impl Facing {
         }
         (1..starts.len()).for_each(|v| starts[v] += starts[v - 1]);
         let mut next = starts.clone();
-        let mut neighbours = vec![0; next.last().map_or(0, |count| *count as usize)];
+        let mut neighbors = vec![0; next.last().map_or(0, |count| *count as usize)];
         for [a, b] in of_surfaces().map(|e| topology.edges[e]) {
             for (from, to) in [(a, b), (b, a)] {
-                neighbours[next[from as usize] as usize] = to;
+                neighbors[next[from as usize] as usize] = to;
                 next[from as usize] += 1;
             }
         }
-        Self { triangles, starts, neighbours }
+        Self { triangles, starts, neighbors }
     }
 
     /// The features that the closest points of a pair lie on, of side a and side b.
@@ -153,7 +153,7 @@ impl Facing {
         for _ in 0..MAX_TURNS {
             let before = turned;
             for (feature, sign) in [(features[0], -1.0), (features[1], 1.0)] {
-                self.for_each_neighbour(topology, feature, positions, |to| {
+                self.for_each_neighbor(topology, feature, positions, |to| {
                     let (rise, squared) = (sign * turned.dot(&to), to.norm_squared());
                     if rise > 0.0 && squared > 0.0 {
                         turned -= to * (sign * rise / squared);
@@ -168,7 +168,7 @@ impl Facing {
     }
 
     /// Visits the directions in which the surface continues from a feature; they have any length.
-    fn for_each_neighbour(
+    fn for_each_neighbor(
         &self,
         topology: &Topology,
         feature: Feature,
@@ -179,7 +179,7 @@ impl Facing {
             Feature::Triangle(_) | Feature::HalfSpace(_) => {}
             Feature::Vertex(v) => {
                 let range = self.starts[v as usize] as usize..self.starts[v as usize + 1] as usize;
-                self.neighbours[range]
+                self.neighbors[range]
                     .iter()
                     .for_each(|&u| visit(positions[u as usize] - positions[v as usize]));
             }
@@ -207,7 +207,7 @@ impl Facing {
             return Place::Inside;
         }
         let (mut within, mut flat, mut count) = (true, matches!(feature, Feature::Edge(_)), 0);
-        self.for_each_neighbour(topology, feature, positions, |to| {
+        self.for_each_neighbor(topology, feature, positions, |to| {
             let (rise, slack) = (outward.dot(&to), tolerance * to.norm());
             within &= rise <= slack;
             flat &= rise >= -FLAT * to.norm();

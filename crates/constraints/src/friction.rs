@@ -3,7 +3,7 @@
 //!
 //! Coulomb's law at the level of positions bounds the multiplier along the slip by mu times the normal's:
 //! over a time step dt the slip is dt times the relative velocity at its end (implicit Euler). The weights
-//! are those of the closest points at the linearisation point. The motion of every vertex of the pair counts,
+//! are those of the closest points at the linearization point. The motion of every vertex of the pair counts,
 //! prescribed or not, so a moving obstacle drags what it touches.
 
 use bowknot_geometry::{PairKind, Point, Separation, Vector};

@@ -1,9 +1,9 @@
-//! Contact and edge-length constraints: values, Jacobians, colours.
+//! Contact and edge-length constraints: values, Jacobians, colors.
 //!
 //! The crate turns pairs and their contact geometry into the rows that `bowknot-lcp` solves. It knows no
 //! solver.
 
-mod colouring;
+mod coloring;
 mod contacts;
 mod desired;
 mod edges;
@@ -21,7 +21,7 @@ pub use bowknot_lcp as lcp;
 pub use bowknot_proximity as proximity;
 
 pub use bowknot_errors::{Errors, ParamError, Parameters};
-pub use colouring::Colouring;
+pub use coloring::Coloring;
 pub use contacts::{ContactRows, contact_row, predicted_gap};
 pub use desired::DesiredDistance;
 pub use edges::{EdgeLimits, Stretch};

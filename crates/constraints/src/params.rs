@@ -91,9 +91,9 @@ pub enum EdgeReference {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum EdgeForm {
-    /// A row linearised at the current state (paper, Eq. 17).
+    /// A row linearized at the current state (paper, Eq. 17).
     Linear,
-    /// The convex ball |y_a - y_b| <= L with a vector multiplier, without linearisation.
+    /// The convex ball |y_a - y_b| <= L with a vector multiplier, without linearization.
     Ball,
 }
 
@@ -159,7 +159,8 @@ mod tests {
     #[test]
     fn every_number_must_be_in_range_and_nan_is_refused() {
         assert!(ContactParams::default().validate().is_ok() && ContactParams::paper().validate().is_ok());
-        let fields: [(&str, fn(&mut ContactParams, f64)); 6] = [
+        type Set = fn(&mut ContactParams, f64);
+        let fields: [(&str, Set); 6] = [
             ("delta", |p, value| p.delta = Some(value)),
             ("min_separation", |p, value| p.min_separation = Some(value)),
             ("range", |p, value| p.range = value),

@@ -2,10 +2,10 @@
 //!
 //! The paper asks for V(x) >= V(r), with r the positions after pushing the pair apart along the normal n to
 //! the desired distance. V(r)/V(x) = delta/d holds exactly, because the closest points lie on the primitives.
-//! Dividing by the area |N| of the base at the linearisation point gives a length, so that multipliers keep
-//! their meaning from one linearisation to the next:
+//! Dividing by the area |N| of the base at the linearization point gives a length, so that multipliers keep
+//! their meaning from one linearization to the next:
 //!
-//! c(x) = (6 V(x) - 6 V(r)) / |N|, hence at the linearisation point c = (6|V|/|N|) (1 - delta/d).
+//! c(x) = (6 V(x) - 6 V(r)) / |N|, hence at the linearization point c = (6|V|/|N|) (1 - delta/d).
 //!
 //! - vertex-triangle: 6V = (x_a - x_i) . N, N = (x_j - x_i) x (x_k - x_i);
 //! - edge-edge: 6V = (x_0 - x_2) . N, N = (x_1 - x_0) x (x_3 - x_2);

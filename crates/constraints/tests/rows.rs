@@ -46,7 +46,7 @@ fn interior_pair(kind: PairKind, random: &mut Random) -> [Point; 4] {
 const KINDS: [PairKind; 4] =
     [PairKind::VertexVertex, PairKind::VertexEdge, PairKind::VertexTriangle, PairKind::EdgeEdge];
 
-/// The quantity that the volume form linearises: height over a base of constant size, minus a constant.
+/// The quantity that the volume form linearizes: height over a base of constant size, minus a constant.
 fn height(kind: PairKind, x: &[Point; 4], base: f64) -> f64 {
     match kind {
         PairKind::VertexTriangle => ((x[0] - x[1]).dot(&(x[2] - x[1]).cross(&(x[3] - x[1]))) / base).abs(),
@@ -66,7 +66,7 @@ fn base(kind: PairKind, x: &[Point; 4]) -> f64 {
 }
 
 #[test]
-fn both_forms_have_the_value_and_gradient_of_what_they_linearise() {
+fn both_forms_have_the_value_and_gradient_of_what_they_linearize() {
     let mut random = Random::new(7);
     for kind in KINDS {
         for _ in 0..200 {
@@ -127,7 +127,7 @@ fn the_face_form_is_the_gap_form_above_interiors_and_blocks_motion_beside_them()
         }
     }
     assert!(compared > 150, "{compared}");
-    // A vertex beside a triangle, almost in its plane: half a metre away, but the row asks for more height.
+    // A vertex beside a triangle, almost in its plane: half a meter away, but the row asks for more height.
     let x = [[1.5, 0.0, -0.01], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point::from);
     let row = row_at(ContactForm::Face, PairKind::VertexTriangle, &x, 0.1);
     assert!((value(&row, &x) - (0.01 - 0.1)).abs() < 1e-12, "{}", value(&row, &x));
@@ -170,15 +170,15 @@ fn the_gap_form_replaces_the_volume_form_where_the_closest_feature_is_not_the_in
 }
 
 #[test]
-fn linearised_edges_have_the_value_and_slope_of_their_length() {
+fn linearized_edges_have_the_value_and_slope_of_their_length() {
     let topology = Topology::builder(3).triangles([[0, 1, 2]]).build().unwrap();
     let rest = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point::from);
     let mut edges = EdgeLimits::new(&topology, &rest, &[true; 3], |_| 1.1);
-    assert_eq!(edges.colour_count(), 3);
+    assert_eq!(edges.color_count(), 3);
     let x = [[0.0, 0.0, 0.0], [1.3, 0.2, 0.0], [0.1, 0.9, 0.4]].map(Point::from);
     edges.begin(&x, EdgeReference::Start);
     let mut rows = Vec::new();
-    edges.linearise(&x, &mut rows);
+    edges.linearize(&x, &mut rows);
     for (row, ball) in rows.iter().zip(&edges.balls) {
         let [a, b] = ball.vertices.map(|v| v as usize);
         let length = |x: &[Point; 3]| (x[a] - x[b]).norm();

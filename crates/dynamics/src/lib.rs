@@ -5,7 +5,7 @@
 //! step at a time. It does not know how contact is resolved: a collision stage moves x towards y as far as it
 //! can and asks for the next y.
 //!
-//! A time step minimises the incremental potential
+//! A time step minimizes the incremental potential
 //!
 //! ```text
 //! E(x) = |x - x~|^2_M / (2 dt^2) + V(x) + D(x; x0),   x~ = x0 + dt v0 + dt^2 (g + f/m)

@@ -63,7 +63,7 @@ impl DynamicsModel {
         self.masses().iter().zip(x.iter().zip(v)).map(|(&m, (x, v))| x.coords.cross(v) * m).sum()
     }
 
-    /// Centre of mass [m]; the origin if nothing has mass.
+    /// Center of mass [m]; the origin if nothing has mass.
     pub fn center_of_mass(&self, x: &[Point]) -> Point {
         let total = self.total_mass();
         let moment: Vector = self.masses().iter().zip(x).map(|(&m, x)| x.coords * m).sum();

@@ -68,7 +68,7 @@ pub(crate) fn check_gradient<E: Element<N>, const N: usize>(
     start: Option<Start<'_, N>>,
 ) {
     let h = 1e-5;
-    let here = element.linearise(x, start, Filter::Exact);
+    let here = element.linearize(x, start, Filter::Exact);
     // Both functions compute the energy, with different formulas.
     let size = here.energy.abs().max(1.0);
     let energy = element.energy(x, start);
@@ -91,11 +91,11 @@ pub(crate) fn check_derivatives<E: Element<N>, const N: usize>(
 ) {
     check_gradient(element, x, start);
     let h = 1e-5;
-    let hessian = dense(&element.linearise(x, start, Filter::Exact).hessian);
+    let hessian = dense(&element.linearize(x, start, Filter::Exact).hessian);
     let scale = hessian.abs().max();
     for k in 0..3 * N {
-        let plus = element.linearise(&moved(x, k, h), start, Filter::Exact).gradient;
-        let minus = element.linearise(&moved(x, k, -h), start, Filter::Exact).gradient;
+        let plus = element.linearize(&moved(x, k, h), start, Filter::Exact).gradient;
+        let minus = element.linearize(&moved(x, k, -h), start, Filter::Exact).gradient;
         for l in 0..3 * N {
             let curvature = (plus[l / 3][l % 3] - minus[l / 3][l % 3]) / (2.0 * h);
             let error = (curvature - hessian[(l, k)]).abs();

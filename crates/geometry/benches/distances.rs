@@ -1,7 +1,7 @@
 //! Nanoseconds per call of the closest points and the certified separation, each kind.
 //!
 //! `cargo bench -p bowknot-geometry`. Pairs are drawn as a proximity search meets them: elements of about 1
-//! cm, a few millimetres apart, all regions of closest features mixed; throughput over a list.
+//! cm, a few millimeters apart, all regions of closest features mixed; throughput over a list.
 
 use bowknot_geometry::{HalfSpace, PairKind, Point, Vector, distance, separation};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
@@ -19,8 +19,8 @@ fn pairs(kind: PairKind, parallel: bool) -> Vec<[Point; 4]> {
     let mut random = Rng::with_seed(kind as u64 + 1);
     (0..PAIRS)
         .map(|_| {
-            let centre = Point::from(vector(&mut random, 1.0));
-            let mut points = [0; 4].map(|_| centre + vector(&mut random, 0.008));
+            let center = Point::from(vector(&mut random, 1.0));
+            let mut points = [0; 4].map(|_| center + vector(&mut random, 0.008));
             if parallel {
                 points[3] = points[2] + (points[1] - points[0]);
             }

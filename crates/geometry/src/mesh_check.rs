@@ -24,17 +24,17 @@ pub enum MeshProblem {
     VertexOutOfRange(#[from] VertexOutOfRange),
     /// A triangle has zero area, exactly or within rounding, because of collinear, coincident or repeated
     /// vertices.
-    #[error("triangle {triangle} (vertices {}, {}, {}) has zero area, at {}", vertices[0], vertices[1], vertices[2], place(centre))]
+    #[error("triangle {triangle} (vertices {}, {}, {}) has zero area, at {}", vertices[0], vertices[1], vertices[2], place(center))]
     ZeroArea {
         /// Which triangle.
         triangle: u32,
         /// Its vertices.
         vertices: [u32; 3],
-        /// Its centre [m].
-        centre: Point,
+        /// Its center [m].
+        center: Point,
     },
     /// A triangle has the same three vertices as an earlier one, in any order.
-    #[error("triangle {triangle} repeats triangle {first} (vertices {}, {}, {}), at {}", vertices[0], vertices[1], vertices[2], place(centre))]
+    #[error("triangle {triangle} repeats triangle {first} (vertices {}, {}, {}), at {}", vertices[0], vertices[1], vertices[2], place(center))]
     RepeatedTriangle {
         /// The later triangle.
         triangle: u32,
@@ -42,8 +42,8 @@ pub enum MeshProblem {
         first: u32,
         /// Vertices of the later triangle.
         vertices: [u32; 3],
-        /// Its centre [m].
-        centre: Point,
+        /// Its center [m].
+        center: Point,
     },
     /// No triangle uses a vertex.
     #[error("vertex {vertex} belongs to no triangle, at {}", place(position))]
@@ -85,7 +85,7 @@ pub fn check_mesh(positions: &[Point], triangles: &[[u32; 3]]) -> Vec<MeshProble
         .map(|(t, vs)| (t as u32, *vs, vs.map(|v| positions[v as usize])))
         .collect();
     for &(triangle, vertices, corners) in checked.iter().filter(|(_, _, corners)| has_zero_area(corners)) {
-        problems.push(MeshProblem::ZeroArea { triangle, vertices, centre: centre(&corners) });
+        problems.push(MeshProblem::ZeroArea { triangle, vertices, center: center(&corners) });
     }
     problems.extend(repeated(&checked));
 
@@ -118,7 +118,7 @@ fn repeated(checked: &[(u32, [u32; 3], [Point; 3])]) -> Vec<MeshProblem> {
                 triangle,
                 first: checked[first].0,
                 vertices,
-                centre: centre(&corners),
+                center: center(&corners),
             }
         })
         .collect()
@@ -142,7 +142,7 @@ fn has_zero_area([a, b, c]: &[Point; 3]) -> bool {
 }
 
 /// The mean of the corners. Each is divided first, because the sum may overflow.
-fn centre(corners: &[Point; 3]) -> Point {
+fn center(corners: &[Point; 3]) -> Point {
     Point::from(corners.iter().fold(Vector::zeros(), |sum, p| sum + p.coords / 3.0))
 }
 

@@ -83,7 +83,7 @@ pub fn separate(kind: PairKind, points: &[Point; 4]) -> Separation {
 
 /// Contact geometry of a vertex above a half-space.
 ///
-/// `normal` is the normalised normal of the plane. `distance` is signed, negative inside the solid. `width`
+/// `normal` is the normalized normal of the plane. `distance` is signed, negative inside the solid. `width`
 /// is a lower bound of (n.x - offset)/|n| in exact arithmetic, for n and offset as they are stored.
 pub fn separate_half_space(point: &Point, half_space: &HalfSpace) -> Separation {
     let weights = [1.0, 0.0, 0.0, 0.0];
@@ -207,7 +207,7 @@ fn try_other_directions(
         // If all points are on one line, only this direction is perpendicular to it.
         attempt(d.cross(&Vector::ith(d.iamin(), 1.0)));
     }
-    // All differences are zero or too short to normalise, so no direction was tried.
+    // All differences are zero or too short to normalize, so no direction was tried.
     if separation.width == f64::NEG_INFINITY {
         separation.width = -slack;
     }

@@ -12,7 +12,7 @@ static COUNTER: AtomicU32 = AtomicU32::new(0);
 
 /// Writes a file through `fill` into a temporary file in the same folder, which then takes the name of `path`.
 ///
-/// An interrupted or failed write leaves an older file of that name as it was. The file is not synchronised to the
+/// An interrupted or failed write leaves an older file of that name as it was. The file is not synchronized to the
 /// disk: the promise covers the process being stopped and the disk being full, not the power failing.
 ///
 /// # Errors

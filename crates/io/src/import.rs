@@ -1,4 +1,4 @@
-//! From a file's axes and unit to ours: z up, metres.
+//! From a file's axes and unit to ours: z up, meters.
 
 use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::Point;
@@ -23,7 +23,7 @@ pub enum Up {
 pub struct Import {
     /// Which axis of the file points up. Default z.
     pub up: Up,
-    /// Length of the file's unit [m]: 0.001 for millimetres. Default 1.
+    /// Length of the file's unit [m]: 0.001 for millimeters. Default 1.
     pub scale: f64,
 }
 

@@ -146,7 +146,7 @@ impl Reader<'_> {
     fn vertex<'w>(&mut self, words: impl Iterator<Item = &'w str>, number: usize) -> Result<(), IoError> {
         let mut coordinates = [0.0; 3];
         let mut count = 0;
-        // A weight or a colour may follow the three coordinates.
+        // A weight or a color may follow the three coordinates.
         for (slot, word) in coordinates.iter_mut().zip(words) {
             *slot =
                 word.parse::<f64>().map_err(|_| self.error(number, format!("'{word}' is not a number")))?;

@@ -7,12 +7,12 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 fn folder() -> TempDir {
-    tempfile::tempdir().unwrap()
+    tempfile::tempdir().expect("a folder")
 }
 
 fn write(folder: &TempDir, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
     let path = folder.path().join(name);
-    fs::write(&path, content).unwrap();
+    fs::write(&path, content).expect("a writable folder");
     path
 }
 
@@ -46,7 +46,7 @@ fn stack() -> FrameStack {
 }
 
 fn message(result: Result<impl std::fmt::Debug, IoError>) -> String {
-    result.unwrap_err().to_string()
+    result.expect_err("a refusal").to_string()
 }
 
 #[test]

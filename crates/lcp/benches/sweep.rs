@@ -1,4 +1,4 @@
-//! A sweep over a cloth-like grid: distance limits on its edges in 12 colours, random contact rows in
+//! A sweep over a cloth-like grid: distance limits on its edges in 12 colors, random contact rows in
 //! about 40.
 //!
 //! `cargo bench -p bowknot-lcp --bench sweep`
@@ -14,8 +14,8 @@ use common::{Case, cloth};
 fn problem(case: &Case) -> LcpProblem<'_> {
     LcpProblem::new(
         &case.weights,
-        ConstraintSet::new(&case.rows, Schedule::coloured(&case.row_starts)),
-        ConstraintSet::new(&case.limits, Schedule::coloured(&case.limit_starts)),
+        ConstraintSet::new(&case.rows, Schedule::colored(&case.row_starts)),
+        ConstraintSet::new(&case.limits, Schedule::colored(&case.limit_starts)),
         ConstraintSet::default(),
     )
     .expect("the case is valid")
@@ -30,7 +30,7 @@ fn sweeps(criterion: &mut Criterion) {
     let params = LcpParams { max_sweeps: 8, ..LcpParams::default() };
     let problem = problem(&case);
     for threads in [0, 1, 2] {
-        let name = if threads == 0 { "serial".to_owned() } else { format!("coloured, {threads} threads") };
+        let name = if threads == 0 { "serial".to_owned() } else { format!("colored, {threads} threads") };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.max(1)).build().expect("a pool");
         group.bench_function(BenchmarkId::new(name, format!("{limits}+{rows}")), |bench| {
             let (mut y, mut lambda, mut limit_multipliers) = case.start();
@@ -47,7 +47,7 @@ fn sweeps(criterion: &mut Criterion) {
                 let info = if threads == 0 {
                     solve_serial(&problem, &mut state, &params)
                 } else {
-                    pool.install(|| solve_coloured(&problem, &mut state, &params))
+                    pool.install(|| solve_colored(&problem, &mut state, &params))
                 };
                 black_box(info.expect("no tolerance, no error"))
             });

@@ -36,17 +36,17 @@ fn main() -> Result<(), LcpError> {
         .collect();
     prepare_friction(&mut friction, &weights)?;
 
-    // Ground rows share no node: one colour. Links alternate between two, through an order.
+    // Ground rows share no node: one color. Links alternate between two, through an order.
     let order: Vec<u32> = (0..nodes - 1).step_by(2).chain((1..nodes - 1).step_by(2)).collect();
     let link_starts = [0, nodes / 2, nodes - 1];
     let ground = [0, nodes];
     let problem = LcpProblem::new(
         &weights,
-        ConstraintSet::new(&rows, Schedule::coloured(&ground)),
+        ConstraintSet::new(&rows, Schedule::colored(&ground)),
         ConstraintSet::new(&limits, Schedule::active(&order, &link_starts)),
-        ConstraintSet::new(&friction, Schedule::coloured(&ground)),
+        ConstraintSet::new(&friction, Schedule::colored(&ground)),
     )?;
-    validate_colours(&problem)?;
+    validate_colors(&problem)?;
 
     let (mut lambda, mut limit_multipliers) = (vec![0.0; rows.len()], vec![zero; limits.len()]);
     let mut multipliers = vec![Vector2::zeros(); friction.len()];
@@ -57,7 +57,7 @@ fn main() -> Result<(), LcpError> {
         friction: &mut multipliers,
     };
     let params = LcpParams { max_sweeps: 5000, tolerance: Some(1e-9), ..LcpParams::default() };
-    let info = solve_coloured(&problem, &mut state, &params)?;
+    let info = solve_colored(&problem, &mut state, &params)?;
     let left = residuals(&problem, &state, params.friction_bound)?;
     println!(
         "{} sweeps, residual {:.1e} m; complementarity {:.1e}",

@@ -67,11 +67,11 @@ pub enum LcpError {
         index: usize,
     },
     /// The `starts` of a schedule decrease or do not end where the list ends.
-    #[error("the colour starts of the {constraint}s must rise from 0 to {expected}")]
+    #[error("the color starts of the {constraint}s must rise from 0 to {expected}")]
     Starts {
         /// Type of the constraints.
         constraint: &'static str,
-        /// Where the last colour must end.
+        /// Where the last color must end.
         expected: usize,
     },
     /// The `order` of a schedule names a constraint that does not exist.
@@ -84,13 +84,13 @@ pub enum LcpError {
         /// How many of these constraints there are.
         count: usize,
     },
-    /// Two constraints of one colour share a node that can move.
-    #[error("{constraint}s {first} and {second} of colour {colour} share node {node}, which can move")]
-    Colour {
+    /// Two constraints of one color share a node that can move.
+    #[error("{constraint}s {first} and {second} of color {color} share node {node}, which can move")]
+    Color {
         /// Type of the constraints.
         constraint: &'static str,
-        /// The colour.
-        colour: usize,
+        /// The color.
+        color: usize,
         /// The constraint that comes first.
         first: usize,
         /// The constraint that clashes with it.

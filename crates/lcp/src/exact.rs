@@ -1,6 +1,6 @@
 //! An exact solver for small problems: the reference for tests of the iterative solvers.
 //!
-//! With the multipliers of distance limits and friction fixed, the rows' multipliers minimise the convex
+//! With the multipliers of distance limits and friction fixed, the rows' multipliers minimize the convex
 //! quadratic lambda^T A lambda / 2 + q^T lambda over the box 0 <= lambda <= upper. Here A = J W J^T is the
 //! Delassus matrix and q the row values at lambda = 0; the gradient A lambda + q is s. This is a primal
 //! active-set method in the manner of Lawson and Hanson (1974, ch. 23), with upper bounds as in Stark and
@@ -123,7 +123,7 @@ pub fn solve_dense(matrix: &DMatrix<f64>, q: &[f64], upper: &[f64]) -> Result<(V
             solver.within_rounding[entering] = true;
             continue;
         }
-        solver.minimise();
+        solver.minimize();
         if solver.lambda == before {
             stalled += 1;
         } else {
@@ -253,8 +253,8 @@ impl ActiveSet<'_> {
         self.free.remove(self.matrix, place);
     }
 
-    /// Minimises over the free multipliers; those that reach a bound leave the free set.
-    fn minimise(&mut self) {
+    /// Minimizes over the free multipliers; those that reach a bound leave the free set.
+    fn minimize(&mut self) {
         // Each blocked step removes a member. Two full steps end the loop; the second refines the first.
         let mut full = 0;
         while full < 2 && !self.free.members.is_empty() {

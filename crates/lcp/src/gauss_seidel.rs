@@ -1,7 +1,7 @@
-//! Projected Gauss-Seidel: one row after the other, or colour by colour with the rows of a colour in
+//! Projected Gauss-Seidel: one row after the other, or color by color with the rows of a color in
 //! parallel.
 //!
-//! Both visit the rows in the order of the schedule and compute each row in the same way. Rows of a colour
+//! Both visit the rows in the order of the schedule and compute each row in the same way. Rows of a color
 //! share no node that moves, so both give the same bits for any number of threads.
 
 use crate::error::LcpError;
@@ -18,7 +18,7 @@ use bowknot_errors::Parameters;
 use std::ops::Range;
 
 /// Rows that a thread takes at once: so many that the cost of the counter (50 ns) is small, and so few that
-/// threads share a colour of some hundred rows evenly.
+/// threads share a color of some hundred rows evenly.
 const ROW_CHUNK: usize = 64;
 /// Distance limits that a thread takes at once; they are cheaper than rows.
 const LIMIT_CHUNK: usize = 128;
@@ -61,28 +61,28 @@ pub fn solve_serial(
     })
 }
 
-/// One sweep, the rows of a colour in parallel on the threads of the current rayon pool. The same bits as
-/// [`sweep_serial`] if the colours are valid ([`crate::validate_colours`]).
+/// One sweep, the rows of a color in parallel on the threads of the current rayon pool. The same bits as
+/// [`sweep_serial`] if the colors are valid ([`crate::validate_colors`]).
 ///
 /// # Errors
 /// [`LcpError::Length`] if the state does not fit the problem; [`LcpError::Parameters`].
-pub fn sweep_coloured(
+pub fn sweep_colored(
     problem: &LcpProblem<'_>,
     state: &mut LcpState<'_>,
     params: &LcpParams,
 ) -> Result<(), LcpError> {
     params.validate()?;
     state.check(problem)?;
-    coloured::<false>(problem, state, params, 1);
+    colored::<false>(problem, state, params, 1);
     Ok(())
 }
 
-/// Sweeps, the rows of a colour in parallel on the threads of the current rayon pool. The same bits as
-/// [`solve_serial`] if the colours are valid ([`crate::validate_colours`]).
+/// Sweeps, the rows of a color in parallel on the threads of the current rayon pool. The same bits as
+/// [`solve_serial`] if the colors are valid ([`crate::validate_colors`]).
 ///
 /// # Errors
 /// As [`solve_serial`].
-pub fn solve_coloured(
+pub fn solve_colored(
     problem: &LcpProblem<'_>,
     state: &mut LcpState<'_>,
     params: &LcpParams,
@@ -91,9 +91,9 @@ pub fn solve_coloured(
     state.check(problem)?;
     repeat(params, |residual, sweeps| {
         if residual {
-            coloured::<true>(problem, state, params, sweeps)
+            colored::<true>(problem, state, params, sweeps)
         } else {
-            coloured::<false>(problem, state, params, sweeps)
+            colored::<false>(problem, state, params, sweeps)
         }
     })
 }
@@ -141,7 +141,7 @@ fn serial<const RESIDUAL: bool>(
     residual
 }
 
-fn coloured<const RESIDUAL: bool>(
+fn colored<const RESIDUAL: bool>(
     problem: &LcpProblem<'_>,
     state: &mut LcpState<'_>,
     params: &LcpParams,
@@ -304,8 +304,8 @@ struct Phase {
     chunk: usize,
 }
 
-/// The phases of one sweep. Each colour is a phase, but successive colours that one thread takes whole are
-/// joined into one. Contacts have many such small colours, and waiting for the other threads costs as much as
+/// The phases of one sweep. Each color is a phase, but successive colors that one thread takes whole are
+/// joined into one. Contacts have many such small colors, and waiting for the other threads costs as much as
 /// a dozen rows.
 fn phases(problem: &LcpProblem<'_>) -> Vec<Phase> {
     let mut phases = Vec::new();

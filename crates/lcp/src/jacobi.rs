@@ -1,4 +1,4 @@
-//! Projected Jacobi: all rows at once from the same positions. It needs no colours.
+//! Projected Jacobi: all rows at once from the same positions. It needs no colors.
 //!
 //! If every row is solved by itself and the moves are added up, rows that share nodes overshoot without
 //! bound. So each row takes its nodes to be lighter by the number n_v of rows that share them ("mass

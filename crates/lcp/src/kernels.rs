@@ -3,7 +3,7 @@
 //! With `RESIDUAL` each step returns the correction of the row's value, |change of the multiplier| times its
 //! diagonal. Keeping the largest correction costs a sixth of a sweep.
 //!
-//! A node is written only if it can move and the multiplier changed. Rows of one colour may share nodes that
+//! A node is written only if it can move and the multiplier changed. Rows of one color may share nodes that
 //! cannot move, and several threads writing them would contend for the cache line.
 //!
 //! # Why distance limits converge
@@ -13,7 +13,7 @@
 //! y_a - w_a f and y_b -> y_b + w_b f, hence e -> e - W f, W = w_a + w_b. Taking back the old f gives z = e +
 //! W f_old. The cost of changing e by -W f is (w_a + w_b)|f|^2 / 2 = |z - e_new|^2 / 2W, so e_new is the
 //! Euclidean projection of z onto the ball, e_new = min(1, L/|z|) z, and f_new = (z - e_new)/W = max(0, |z| -
-//! L) / (W |z|) z. This is exact block minimisation of the dual; nothing is linearised, so a sweep cannot
+//! L) / (W |z|) z. This is exact block minimization of the dual; nothing is linearized, so a sweep cannot
 //! overshoot. For a half-space Dykstra's correction is lambda times the gradient, and the same procedure is
 //! projected Gauss-Seidel. So both types may be swept together.
 

@@ -5,14 +5,14 @@
 //! ([`FrictionRow`]). It is given as borrowed arrays ([`LcpProblem`]), and solved in place ([`LcpState`]):
 //!
 //! - [`sweep_serial`], [`solve_serial`]: projected Gauss-Seidel, one row after the other;
-//! - [`sweep_coloured`], [`solve_coloured`]: the same, colour by colour in parallel, to the same bits;
-//! - [`Jacobi`]: all rows at once, with split masses, for comparison and where there are no colours;
+//! - [`sweep_colored`], [`solve_colored`]: the same, color by color in parallel, to the same bits;
+//! - [`Jacobi`]: all rows at once, with split masses, for comparison and where there are no colors;
 //! - [`solve_exact`]: an active-set method on the dense Delassus matrix, the reference for small problems.
 //!
-//! The crate knows neither meshes nor contacts. Positions and row values share one unit, usually metres. With
+//! The crate knows neither meshes nor contacts. Positions and row values share one unit, usually meters. With
 //! weights relative to their mean, multipliers have it too.
 
-mod colours;
+mod colors;
 mod error;
 mod exact;
 mod gauss_seidel;
@@ -32,10 +32,10 @@ mod vector;
 
 pub use bowknot_errors::{Errors, ParamError, Parameters};
 
-pub use colours::validate_colours;
+pub use colors::validate_colors;
 pub use error::LcpError;
 pub use exact::{delassus, solve_dense, solve_exact};
-pub use gauss_seidel::{solve_coloured, solve_serial, sweep_coloured, sweep_serial};
+pub use gauss_seidel::{solve_colored, solve_serial, sweep_colored, sweep_serial};
 pub use info::LcpInfo;
 pub use jacobi::Jacobi;
 pub use multipliers::apply_multipliers;

@@ -34,7 +34,7 @@ impl<'a> LcpProblem<'a> {
     pub const NO_FRICTION: u32 = u32::MAX;
 
     /// Checks the parts and keeps them. `weights[i]` >= 0 is the inverse weight of node i. Cost: one pass
-    /// over the indices. Colours are not checked, see [`crate::validate_colours`].
+    /// over the indices. Colors are not checked, see [`crate::validate_colors`].
     ///
     /// # Errors
     /// The first fault: [`LcpError::Weight`], [`LcpError::UnknownNode`], [`LcpError::UnknownNormal`],
@@ -63,7 +63,7 @@ impl<'a> LcpProblem<'a> {
     /// Makes Gauss-Seidel sweeps visit each friction row right after its normal's row, rather than all
     /// friction rows after all rows: the rows of one contact are solved together. `friction_of` names the
     /// friction row of each row, or [`Self::NO_FRICTION`]. Friction rows then have no schedule of their own.
-    /// Colours stay valid, because a friction row has the nodes of its normal's row.
+    /// Colors stay valid, because a friction row has the nodes of its normal's row.
     ///
     /// # Errors
     /// [`LcpError::Length`]; [`LcpError::Attached`] for a friction row that does not exist, has another

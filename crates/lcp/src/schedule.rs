@@ -2,16 +2,16 @@
 
 /// Which rows are swept, in which order, and which of them are independent.
 ///
-/// Colour c holds the places `starts[c]..starts[c + 1]` of `order`, or of the rows themselves if `order` is
-/// `None`. The rows of a colour are swept in parallel, so no two of them may share a node that can move
-/// ([`crate::validate_colours`] checks it). Rows that are not in `order` are not swept: inactive rows cost
-/// nothing. A sweep is fastest if rows are stored by colour, in spatial order within each colour, and `order`
+/// Color c holds the places `starts[c]..starts[c + 1]` of `order`, or of the rows themselves if `order` is
+/// `None`. The rows of a color are swept in parallel, so no two of them may share a node that can move
+/// ([`crate::validate_colors`] checks it). Rows that are not in `order` are not swept: inactive rows cost
+/// nothing. A sweep is fastest if rows are stored by color, in spatial order within each color, and `order`
 /// rises: rows are then read in order, and each thread stays in its part of the nodes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Schedule<'a> {
     /// Indices of the rows to sweep; `None`: all, as stored.
     pub order: Option<&'a [u32]>,
-    /// Where each colour starts, and the end. If it is empty, there are no colours, and rows are swept one
+    /// Where each color starts, and the end. If it is empty, there are no colors, and rows are swept one
     /// after the other.
     pub starts: &'a [u32],
 }
@@ -20,12 +20,12 @@ impl<'a> Schedule<'a> {
     /// All rows, as stored, one after the other.
     pub const SERIAL: Schedule<'static> = Schedule { order: None, starts: &[] };
 
-    /// All rows, stored by colour.
-    pub fn coloured(starts: &'a [u32]) -> Self {
+    /// All rows, stored by color.
+    pub fn colored(starts: &'a [u32]) -> Self {
         Self { order: None, starts }
     }
 
-    /// The rows of `order`, colour c in `order[starts[c]..starts[c + 1]]`.
+    /// The rows of `order`, color c in `order[starts[c]..starts[c + 1]]`.
     pub fn active(order: &'a [u32], starts: &'a [u32]) -> Self {
         Self { order: Some(order), starts }
     }

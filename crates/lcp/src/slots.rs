@@ -1,13 +1,13 @@
 //! Arrays that several rows write through shared references, one element at a time.
 //!
-//! Rows of a colour write disjoint nodes, which the compiler cannot prove. Two views of a `&mut [T]` give
+//! Rows of a color write disjoint nodes, which the compiler cannot prove. Two views of a `&mut [T]` give
 //! kernels shared access: `Cell`s on one thread, relaxed atomics on several. One kernel serves both. A wrong
-//! colouring can then spoil a result but never memory safety: soundness needs no check of the colours, and
+//! coloring can then spoil a result but never memory safety: soundness needs no check of the colors, and
 //! the only unsafe line is a change of type.
 //!
 //! The cost, on 30k distance limits and 20k rows over 10k nodes (8 sweeps, one thread of a 2-core
 //! x86-64): 3.7 ms with cells, 4.7 ms with atomics, whose loads the compiler does not combine, and 2.6 ms
-//! with atomics on two threads. Raw pointers with checked colours would save that quarter. But the proof that
+//! with atomics on two threads. Raw pointers with checked colors would save that quarter. But the proof that
 //! no two threads access the same node would then involve the check, the kernels and the schedules, and the
 //! check costs 0.1 ms per problem. Computing changes in parallel and scattering them serially needs safe code
 //! only, took 2.7 ms on two threads, and does not scale beyond two: the serial half is a third of the work.

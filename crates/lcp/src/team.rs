@@ -1,10 +1,10 @@
 //! Several threads run one sequence of phases, each phase in parallel, without a fork between phases.
 //!
-//! A sweep has dozens of colours of a few hundred rows. One colour is some microseconds of work, and a fork
+//! A sweep has dozens of colors of a few hundred rows. One color is some microseconds of work, and a fork
 //! and join would cost as much. So one fork covers all sweeps. Each thread goes through the same sequence of
-//! phases (colours) and waits, spinning, until all places of the earlier phases are done. Each thread has its
+//! phases (colors) and waits, spinning, until all places of the earlier phases are done. Each thread has its
 //! own share of every phase, the same fraction of the places: if rows are stored in spatial order, it
-//! accesses the same nodes in every colour, in its own cache. A thread that has finished its share takes
+//! accesses the same nodes in every color, in its own cache. A thread that has finished its share takes
 //! chunks of the shares of others.
 //!
 //! There is no deadlock. Only a running thread claims a chunk, and it runs the chunk at once; any thread may
@@ -25,11 +25,11 @@ pub(crate) trait Phases: Sync {
     fn run(&self, phase: usize, places: Range<usize>, residual: &mut f64);
 }
 
-/// A colour has no work for more threads than this.
+/// A color has no work for more threads than this.
 const MAX_THREADS: usize = 32;
 
 /// A counter that shares its cache lines with nothing else. Lines come in pairs of 64 bytes, because the
-/// processor prefetches the neighbour.
+/// processor prefetches the neighbor.
 #[derive(Default)]
 #[repr(align(128))]
 struct Counter(AtomicUsize);

@@ -18,7 +18,7 @@ const MAX_COORDINATE: f64 = 1e15;
 /// is not finite; such vertices, and elements with them, are in no pair.
 pub type LocalVertex = [f32; 4];
 
-/// The origin of a frame: the centre of the box of `vertices`, rounded to a grid about as coarse as the box
+/// The origin of a frame: the center of the box of `vertices`, rounded to a grid about as coarse as the box
 /// is large.
 pub fn origin(positions: &[Point], vertices: &[u32]) -> Point {
     let mut low = [f64::INFINITY; 3];
@@ -33,13 +33,13 @@ pub fn origin(positions: &[Point], vertices: &[u32]) -> Point {
             }
         }
     }
-    // The grid is at least a few centimetres wide; with a finer one a lone particle would change the origin
+    // The grid is at least a few centimeters wide; with a finer one a lone particle would change the origin
     // all the time.
     let extent = (0..3).fold(0.06, |e: f64, k| e.max(high[k] - low[k]));
     let grid = extent.log2().ceil().exp2();
-    let centre =
+    let center =
         |k: usize| if low[k] <= high[k] { (0.5 * (low[k] + high[k]) / grid).round() * grid } else { 0.0 };
-    Point::new(centre(0), centre(1), centre(2))
+    Point::new(center(0), center(1), center(2))
 }
 
 /// A vertex in the frame of `origin`.

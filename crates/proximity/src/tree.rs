@@ -13,7 +13,7 @@
 
 use crate::frame::{LocalVertex, UNIT_ROUNDOFF};
 use crate::min_max::{larger, smaller};
-use crate::order::{Centre, kd_order};
+use crate::order::{Center, kd_order};
 use rayon::prelude::*;
 
 /// Children of a node, elements of a leaf.
@@ -139,7 +139,7 @@ impl<const V: usize> Tree<V> {
     /// Builds the tree of `elements` (index and vertices of each) in spatial order. [`Self::refit`] must
     /// follow: it sets the boxes.
     pub fn build(&mut self, elements: &[(u32, [u32; V])], local: &[LocalVertex]) {
-        let mut centres: Vec<Centre> = elements
+        let mut centers: Vec<Center> = elements
             .iter()
             .zip(0..)
             .map(|((_, vertices), index)| {
@@ -147,17 +147,17 @@ impl<const V: usize> Tree<V> {
                 for k in 0..3 {
                     position[k] = vertices.iter().map(|&v| local[v as usize][k]).sum();
                 }
-                Centre { position, index }
+                Center { position, index }
             })
             .collect();
-        kd_order(&mut centres, LANES);
+        kd_order(&mut centers, LANES);
 
         self.len = elements.len();
         self.leaves.clear();
-        self.leaves.extend(centres.chunks(LANES).map(|group| {
+        self.leaves.extend(centers.chunks(LANES).map(|group| {
             let mut leaf = Leaf::EMPTY;
-            for (lane, centre) in group.iter().enumerate() {
-                let (element, vertices) = &elements[centre.index as usize];
+            for (lane, center) in group.iter().enumerate() {
+                let (element, vertices) = &elements[center.index as usize];
                 leaf.elements[lane] = *element;
                 leaf.last_element = leaf.last_element.max(*element);
                 for j in 0..V {

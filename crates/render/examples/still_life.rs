@@ -59,7 +59,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let body: Vec<u32> =
         (0..points.len()).map(|v| u32::from(v >= sheet) + u32::from(v >= strand_end)).collect();
-    // Colours by height on the grains and strands.
+    // Colors by height on the grains and strands.
     let values: Vec<f32> = points
         .iter()
         .enumerate()

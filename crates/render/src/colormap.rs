@@ -1,4 +1,4 @@
-//! The map from numbers to colours, which is perceptually uniform.
+//! The map from numbers to colors, which is perceptually uniform.
 
 /// Coefficients of t^0 .. t^6 for red, green and blue of viridis: a fit by Matt Zucker (2019, CC0,
 /// <https://www.shadertoy.com/view/WlfXRN>) to the map of Stéfan van der Walt and Nathaniel Smith (2015,
@@ -13,8 +13,8 @@ const VIRIDIS: [[f64; 3]; 7] = [
     [-5.435_455_855_934_631, 4.645_852_612_178_535, 26.312_435_249_583_2],
 ];
 
-/// The colour of `t` in [0, 1], from dark violet to yellow, as sRGB in [0, 1]. Values outside have the
-/// colours of the ends.
+/// The color of `t` in [0, 1], from dark violet to yellow, as sRGB in [0, 1]. Values outside have the
+/// colors of the ends.
 pub fn viridis(t: f64) -> [f64; 3] {
     let t = t.clamp(0.0, 1.0);
     let channel = |c: usize| VIRIDIS.iter().rev().fold(0.0, |sum, row| sum * t + row[c]).clamp(0.0, 1.0);

@@ -20,7 +20,7 @@ pub fn write_png(out: impl Write, picture: &Picture) -> Result<(), RenderError> 
     Ok(writer.finish().map_err(Error::from)?)
 }
 
-/// Writes a PNG of 256 colours. It is a third of the size, for pictures that are kept in a repository.
+/// Writes a PNG of 256 colors. It is a third of the size, for pictures that are kept in a repository.
 ///
 /// # Errors
 /// Errors of `out`.
@@ -31,7 +31,7 @@ pub fn write_small_png(out: impl Write, picture: &Picture) -> Result<(), RenderE
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_palette(palette.colors.as_flattened().to_vec());
     encoder.set_compression(png::Compression::High);
-    // Neighbouring indices are unrelated colours, so a filter that predicts one from another would only add
+    // Neighboring indices are unrelated colors, so a filter that predicts one from another would only add
     // noise.
     encoder.set_filter(png::Filter::NoFilter);
     let mut writer = encoder.write_header().map_err(Error::from)?;
@@ -100,21 +100,21 @@ fn changed(a: &[u8], b: &[u8], width: u32) -> [u32; 4] {
     if found[2] == 0 { [0, 0, 1, 1] } else { found }
 }
 
-/// The colours that indexed pictures are made of.
+/// The colors that indexed pictures are made of.
 struct Palette {
     colors: Vec<[u8; 3]>,
-    /// Index of the nearest colour for each of [`LEVELS`] cubed colours.
+    /// Index of the nearest color for each of [`LEVELS`] cubed colors.
     nearest: Vec<u8>,
 }
 
-/// Levels per channel of the table of nearest colours.
+/// Levels per channel of the table of nearest colors.
 const LEVELS: usize = 64;
 /// Approximate number of pixels that a palette is made from.
 const SAMPLES: usize = 200_000;
 
 impl Palette {
     /// A palette from evenly spaced pixels of all pictures (Dekker, "Kohonen neural networks for optimal
-    /// colour quantization", 1994).
+    /// color quantization", 1994).
     fn new(pictures: &[Picture], count: usize) -> Self {
         let total: usize = pictures.iter().map(|p| p.pixels.len()).sum();
         // An odd step, so that the samples do not line up in columns of a picture of even width.
@@ -143,7 +143,7 @@ impl Palette {
         Self { colors, nearest }
     }
 
-    /// The nearest colour of each pixel, after ordered dithering (Bayer, 1973). Parts of a picture that do
+    /// The nearest color of each pixel, after ordered dithering (Bayer, 1973). Parts of a picture that do
     /// not move keep their pattern from frame to frame, which error diffusion would change.
     fn indices(&self, picture: &Picture) -> Vec<u8> {
         const BAYER: [[u8; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];

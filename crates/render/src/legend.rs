@@ -1,29 +1,29 @@
-//! The legend of a picture: a bar with ticks, or a name beside each colour.
+//! The legend of a picture: a bar with ticks, or a name beside each color.
 
 use crate::Picture;
 use crate::colormap::viridis;
 use crate::palette::INK;
 use crate::text::Pen;
 
-/// The meaning of colours.
+/// The meaning of colors.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Legend {
-    /// Colours show numbers.
+    /// Colors show numbers.
     Scale(Scale),
-    /// Colours show named things.
+    /// Colors show named things.
     Names(Vec<(String, [u8; 3])>),
 }
 
-/// A scale of numbers that are shown by colours.
+/// A scale of numbers that are shown by colors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {
     /// Name of the quantity.
     pub title: String,
     /// Its unit; empty for a pure number.
     pub unit: String,
-    /// The number that the first colour shows; smaller numbers have the same colour.
+    /// The number that the first color shows; smaller numbers have the same color.
     pub low: f64,
-    /// The number that the last colour shows; larger numbers have the same colour.
+    /// The number that the last color shows; larger numbers have the same color.
     pub high: f64,
     /// Whether numbers below `low`, and above `high`, occur. The ticks at the ends then show ≤ and ≥.
     pub beyond: [bool; 2],

@@ -26,7 +26,7 @@
 //! | `surface`, `tubes` | normals with creases; strands as closed tubes |
 //! | `camera`, `lights` | the camera and its fit; key light and sky as many small lights |
 //! | `device`, `renderer`, `shader.wgsl` | the device and its pipelines; the passes of a picture; the shaders |
-//! | `colormap`, `palette`, `legend`, `text` | colours of numbers and bodies, and their legend |
+//! | `colormap`, `palette`, `legend`, `text` | colors of numbers and bodies, and their legend |
 //! | `picture`, `encode` | pixels in memory; PNG and GIF |
 //!
 //! The crate knows no solvers, no scenes, and no file formats other than PNG and GIF.

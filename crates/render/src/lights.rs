@@ -45,7 +45,7 @@ pub fn lights(back: &Vector, key_count: usize, sky_count: usize) -> Vec<Light> {
         let direction = (center + (right * c + up * s) * radius).normalize();
         lights.push(Light { direction, weight: 1.0, key: true });
     }
-    normalise(&mut lights, KEY_SHARE);
+    normalize(&mut lights, KEY_SHARE);
 
     // A spiral spreads the points over a hemisphere by equal area (Archimedes: bands of equal height in z).
     // The sky is brighter toward the zenith, as an overcast sky is (Moon and Spencer, "Illumination from a
@@ -58,13 +58,13 @@ pub fn lights(back: &Vector, key_count: usize, sky_count: usize) -> Vec<Light> {
         let direction = Vector::new(level * c, level * s, z);
         sky.push(Light { direction, weight: (1.0 + 2.0 * z) / 3.0, key: false });
     }
-    normalise(&mut sky, if key_count > 0 { 1.0 - KEY_SHARE } else { 1.0 });
+    normalize(&mut sky, if key_count > 0 { 1.0 - KEY_SHARE } else { 1.0 });
     lights.extend(sky);
     lights
 }
 
 /// Scales the weights so that the lights give `total` on a level ground.
-fn normalise(lights: &mut [Light], total: f64) {
+fn normalize(lights: &mut [Light], total: f64) {
     let sum: f64 = lights.iter().map(|l| l.weight * l.direction.z).sum();
     lights.iter_mut().for_each(|l| l.weight *= total / sum);
 }

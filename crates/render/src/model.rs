@@ -19,7 +19,7 @@ pub struct Elements<'a> {
     /// Whether each vertex belongs to an obstacle; empty if none does. The first vertex of an element
     /// decides.
     pub obstacle: &'a [bool],
-    /// Body of each vertex, which gives its colour; empty if all belong to body 0.
+    /// Body of each vertex, which gives its color; empty if all belong to body 0.
     pub body: &'a [u32],
 }
 
@@ -37,7 +37,7 @@ pub struct Style {
 pub struct Frame<'a> {
     /// Positions of the vertices [m].
     pub positions: &'a [Point],
-    /// A value in [0, 1] per vertex, which the colour map shows; a vertex with NaN has the colour of its
+    /// A value in [0, 1] per vertex, which the color map shows; a vertex with NaN has the color of its
     /// body. Empty: all are NaN.
     pub values: &'a [f32],
 }
@@ -50,7 +50,7 @@ pub struct Model {
     tubes: Tubes,
     particles: Vec<u32>,
     style: Style,
-    /// Colour of each vertex. Alpha is 255 where the two sides of a surface differ, else 0.
+    /// Color of each vertex. Alpha is 255 where the two sides of a surface differ, else 0.
     colors: Vec<[u8; 4]>,
 }
 

@@ -1,6 +1,6 @@
-//! Colours of bodies, obstacles and the backdrop, as sRGB.
+//! Colors of bodies, obstacles and the backdrop, as sRGB.
 
-/// Colours of deformable bodies, used in turn. They are distinct for colour-blind readers too, and muted
+/// Colors of deformable bodies, used in turn. They are distinct for color-blind readers too, and muted
 /// enough to shade well. The hues are those of Paul Tol's qualitative scheme "muted" (SRON/EPS/TN/09-002,
 /// issue 3.2, 2021), some of them lightened, with the most distinct first.
 const BODIES: [[u8; 3]; 9] = [
@@ -15,16 +15,16 @@ const BODIES: [[u8; 3]; 9] = [
     [152, 152, 84],
 ];
 
-/// The colour of obstacles.
+/// The color of obstacles.
 pub const OBSTACLE: [u8; 3] = [176, 178, 182];
 
-/// Colours of the backdrop at its upper and lower edge.
+/// Colors of the backdrop at its upper and lower edge.
 pub const BACKDROP: [[u8; 3]; 2] = [[236, 239, 243], [250, 250, 249]];
 
-/// The colour of text and ticks.
+/// The color of text and ticks.
 pub const INK: [u8; 3] = [45, 48, 54];
 
-/// The colour of a deformable body.
+/// The color of a deformable body.
 pub fn body(index: u32) -> [u8; 3] {
     BODIES[index as usize % BODIES.len()]
 }
@@ -34,7 +34,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn neighbours_differ() {
+    fn neighbors_differ() {
         for index in 0..2 * BODIES.len() as u32 {
             let (a, b) = (body(index), body(index + 1));
             let distance: i32 = (0..3).map(|c| (i32::from(a[c]) - i32::from(b[c])).abs()).sum();

@@ -14,7 +14,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// A picture of one colour.
+    /// A picture of one color.
     pub fn new(width: u32, height: u32, color: [u8; 3]) -> Self {
         Self { width, height, pixels: vec![color; width as usize * height as usize] }
     }
@@ -28,7 +28,7 @@ impl Picture {
         self.pixels[(y * self.width + x) as usize]
     }
 
-    /// Blends a colour into a pixel, with opacity `coverage` in [0, 1]. Pixels outside of the picture are
+    /// Blends a color into a pixel, with opacity `coverage` in [0, 1]. Pixels outside of the picture are
     /// ignored.
     pub fn blend(&mut self, x: i64, y: i64, color: [u8; 3], coverage: f32) {
         if (0..i64::from(self.width)).contains(&x) && (0..i64::from(self.height)).contains(&y) {

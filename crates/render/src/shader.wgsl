@@ -18,12 +18,12 @@ struct Light {
 }
 
 struct Scene {
-    // Linear colours of the backdrop at the upper and lower edge; upper.w: height of the picture [pixels].
+    // Linear colors of the backdrop at the upper and lower edge; upper.w: height of the picture [pixels].
     upper: vec4<f32>,
     lower: vec4<f32>,
     // Irradiance of a level ground with nothing on it.
     open_sky: vec4<f32>,
-    // Centre and radius of a ball that contains all casters of shadows.
+    // Center and radius of a ball that contains all casters of shadows.
     bound: vec4<f32>,
     // Number of lights; width of a texel of the shadow maps [m] as the bits of an f32; 0; 0.
     counts: vec4<u32>,
@@ -75,7 +75,7 @@ fn received(point: vec3<f32>, normal: vec3<f32>) -> Received {
     return Received(sum, key_seen / max(key_count, 1.0), normalize(key_direction + vec3<f32>(0.0, 0.0, 1e-6)));
 }
 
-// Light that a surface of this colour sends to the eye.
+// Light that a surface of this color sends to the eye.
 fn shade(color: vec3<f32>, point: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     let light = received(point, normal);
     let ambient = AMBIENT + BOUNCE * (0.5 - 0.5 * normal.z);
@@ -84,13 +84,13 @@ fn shade(color: vec3<f32>, point: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     let to_eye = normalize(view.eye.xyz - point);
     let middle = normalize(light.key_direction + to_eye);
     out += vec3<f32>(0.07 * light.key * pow(max(dot(normal, middle), 0.0), 28.0));
-    // Bright colours are compressed instead of clipped.
+    // Bright colors are compressed instead of clipped.
     let knee = vec3<f32>(0.7);
     let over = max(out - knee, vec3<f32>(0.0));
     return min(out, knee) + 0.3 * (1.0 - exp(-over / 0.3));
 }
 
-// The colour of a value in [0, 1]; a negative value has the colour of the body.
+// The color of a value in [0, 1]; a negative value has the color of the body.
 fn colored(value: f32, own: vec3<f32>) -> vec3<f32> {
     if value < 0.0 {
         return own;
@@ -118,7 +118,7 @@ struct SurfaceOut {
     @location(0) point: vec3<f32>,
     @location(1) normal: vec3<f32>,
     @location(2) value: f32,
-    // w: 1 if the colours of the two sides differ.
+    // w: 1 if the colors of the two sides differ.
     @location(3) color: vec4<f32>,
 }
 
@@ -135,8 +135,8 @@ fn surface_fragment(in: SurfaceOut, @builtin(front_facing) front: bool) -> @loca
     if !front {
         normal = -normal;
         // The back is paler, so that folds can be seen.
-        let grey = vec3<f32>(dot(own, vec3<f32>(0.2126, 0.7152, 0.0722)));
-        own = mix(own, mix(own, grey, 0.35) * 0.55 + 0.3, in.color.a);
+        let gray = vec3<f32>(dot(own, vec3<f32>(0.2126, 0.7152, 0.0722)));
+        own = mix(own, mix(own, gray, 0.35) * 0.55 + 0.3, in.color.a);
     }
     return vec4<f32>(shade(colored(in.value, own), in.point, normal), 1.0);
 }
@@ -157,9 +157,9 @@ struct BallOut {
     @location(2) @interpolate(flat) color: vec4<f32>,
 }
 
-// The square of a ball without its colour: the pass of a light has no access to the palette.
+// The square of a ball without its color: the pass of a light has no access to the palette.
 fn ball_square(in: BallIn, index: u32) -> BallOut {
-    // Direction from the centre of the ball toward the viewer, and the radius of its outline in the plane of
+    // Direction from the center of the ball toward the viewer, and the radius of its outline in the plane of
     // the square.
     var toward = view.eye.xyz;
     var size = in.radius;
@@ -193,7 +193,7 @@ fn ball_outline_vertex(in: BallIn, @builtin(vertex_index) index: u32) -> BallOut
 }
 
 // The point where the ray through a point of the square meets the ball; w: distance of the ray from the
-// centre. A ray that misses gives the point of the ball nearest to it.
+// center. A ray that misses gives the point of the ball nearest to it.
 fn ball_hit(point: vec3<f32>, ball: vec4<f32>) -> vec4<f32> {
     var along = -view.eye.xyz;
     if view.eye.w > 0.5 {
@@ -252,7 +252,7 @@ fn backdrop_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec
     return vec4<f32>(backdrop(position.y), 1.0);
 }
 
-// The ground has the colour of the backdrop, darkened by the light that is blocked, so that it has no edge
+// The ground has the color of the backdrop, darkened by the light that is blocked, so that it has no edge
 // and no horizon. Ground that is not level is darker as far as it faces away from the light.
 @fragment
 fn ground_fragment(in: SurfaceOut) -> @location(0) vec4<f32> {

@@ -1,6 +1,6 @@
 //! Normals of surfaces: smooth, except at creases.
 //!
-//! Neighbouring triangles share a normal at a vertex unless their edge is a crease of the surface at rest. So
+//! Neighboring triangles share a normal at a vertex unless their edge is a crease of the surface at rest. So
 //! a cuboid keeps its edges, a sheet stays smooth however it folds, and nothing flickers from frame to frame.
 
 use bowknot_geometry::{Point, UnionFind, Vector};

@@ -3,7 +3,7 @@
 use crate::Picture;
 use ab_glyph::{Font, FontRef, PxScale, ScaleFont};
 
-/// The font; its licence is in the same folder.
+/// The font; its license is in the same folder.
 const FONT: &[u8] = include_bytes!("../assets/DejaVuSans-subset.ttf");
 
 /// Writes lines of one size.
@@ -33,7 +33,7 @@ impl Pen {
         self.size * 0.626
     }
 
-    /// Writes a text that begins at column `x` and whose capitals are centred on row `middle`.
+    /// Writes a text that begins at column `x` and whose capitals are centered on row `middle`.
     pub fn write(&self, picture: &mut Picture, x: f32, middle: f32, color: [u8; 3], text: &str) {
         let Some(font) = &self.font else { return };
         let scaled = font.as_scaled(PxScale::from(self.size));
@@ -79,7 +79,7 @@ mod tests {
         pen.write(&mut picture, 100.0, 50.0, [0; 3], "H0.25");
         let [x0, x1, y0, y1] = extent(&picture);
         assert!((x0 as f32 - 100.0).abs() < 6.0 && (x1 as f32 - 100.0 - width).abs() < 6.0, "{x0} to {x1}");
-        // Capitals and digits are centred on row 50.
+        // Capitals and digits are centered on row 50.
         assert!(((y0 + y1 + 1) as f32 / 2.0 - 50.0).abs() <= 1.5, "{y0} to {y1}");
         assert!(((y1 + 1 - y0) as f32 - pen.capital_height()).abs() < 2.5);
     }

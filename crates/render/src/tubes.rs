@@ -1,7 +1,7 @@
 //! Strands as tubes with round ends.
 //!
 //! Edges are joined into chains at the vertices where exactly two of them meet. A frame is transported along
-//! each chain without twist, so that neighbouring rings of a tube do not turn against each other (parallel
+//! each chain without twist, so that neighboring rings of a tube do not turn against each other (parallel
 //! transport by double reflection: Wang, Jüttler, Zheng and Liu, "Computation of Rotation Minimizing Frames",
 //! ACM Transactions on Graphics 27, 2008).
 

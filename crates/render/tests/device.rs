@@ -53,7 +53,7 @@ fn light(pixel: [u8; 3]) -> f64 {
     pixel.iter().map(|&c| f64::from(c)).sum::<f64>() / 3.0
 }
 
-/// Largest difference of the channels: 0 for grey.
+/// Largest difference of the channels: 0 for gray.
 fn tint(pixel: [u8; 3]) -> u8 {
     pixel.iter().max().unwrap() - pixel.iter().min().unwrap()
 }
@@ -72,7 +72,7 @@ fn a_sheet_stands_where_it_is_and_throws_a_soft_shadow() {
     let empty = draw(&mut renderer, &Elements::default(), &points, &shot());
     assert_eq!((with.width, with.height), (SIZE[0], SIZE[1]));
 
-    // Coloured on the sheet, and beyond its corners not.
+    // Colored on the sheet, and beyond its corners not.
     let at = |p: Point| pixel(&camera(), p);
     for (p, inside) in [
         (Point::new(0.0, 0.0, 0.3), true),
@@ -117,7 +117,7 @@ fn both_sides_are_shaded_and_differ() {
     assert!(light(front) > 60.0 && light(back) > 60.0, "neither side is black: {front:?} {back:?}");
     let distance: i32 = (0..3).map(|c| (i32::from(front[c]) - i32::from(back[c])).abs()).sum();
     assert!(distance > 25, "the sides look alike: {front:?} {back:?}");
-    // An obstacle is grey, and the same on both sides.
+    // An obstacle is gray, and the same on both sides.
     let sides = [seen(&triangles, &[true; 4]), seen(&turned, &[true; 4])];
     assert_eq!(sides[0], sides[1]);
     assert!(tint(sides[0]) < 16, "{sides:?}");
@@ -185,7 +185,7 @@ fn the_same_frame_gives_the_same_pixels() {
     assert_eq!(draw(&mut renderer, &elements, &points, &shot()), first);
 }
 
-/// Values go through the colour map, evenly between vertices.
+/// Values go through the color map, evenly between vertices.
 #[test]
 fn values_are_shown_by_the_map() {
     let Some(mut renderer) = renderer() else { return };

@@ -1,8 +1,8 @@
-//! Positions as bytes: quantised to 16 bits a coordinate, predicted, deflated, base64.
+//! Positions as bytes: quantized to 16 bits a coordinate, predicted, deflated, base64.
 //!
 //! A coordinate is a multiple of 1/65535 of the edge of the body's box, so that an error is at most half of that. Of a
 //! frame, what a *predictor* misses is kept: the base is nothing, the frame before, or the two before carried on in a
-//! straight line; and where it pays the miss of the vertex before is subtracted, since neighbours miss alike. Low and high bytes
+//! straight line; and where it pays the miss of the vertex before is subtracted, since neighbors miss alike. Low and high bytes
 //! lie apart, so that the high ones, mostly 0, deflate to almost nothing. `assets/app/data.js` is the inverse.
 
 use bowknot_geometry::{Point, Vector};
@@ -10,11 +10,11 @@ use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use std::io::Write;
 
-/// Largest quantised coordinate.
+/// Largest quantized coordinate.
 const LEVELS: f64 = 65535.0;
 /// Bit of a mode that tells that the miss of the vertex before is subtracted; the bits below count the frames that
 /// the base is made of.
-const NEIGHBOUR: u8 = 4;
+const NEIGHBOR: u8 = 4;
 
 /// The grid of a body.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +34,7 @@ impl Grid {
         0.5 * self.step.norm()
     }
 
-    pub(super) fn quantise(&self, p: &Point) -> [u16; 3] {
+    pub(super) fn quantize(&self, p: &Point) -> [u16; 3] {
         std::array::from_fn(|k| {
             let step = self.step[k];
             // A saturating cast: points of the box are within the levels but for rounding.
@@ -60,7 +60,7 @@ impl Predictor {
     /// Appends a frame: a byte that names the mode, then for each axis the low and the high bytes of all vertices.
     pub(super) fn encode(&mut self, frame: Vec<[u16; 3]>, bytes: &mut Vec<u8>) {
         let orders = self.frames.min(2) as u8;
-        let modes = (0..=orders).flat_map(|order| [order, order | NEIGHBOUR]);
+        let modes = (0..=orders).flat_map(|order| [order, order | NEIGHBOR]);
         let cost = |mode: u8| -> u64 { (0..3).map(|axis| self.cost(&frame, axis, mode)).sum() };
         let mode = modes.min_by_key(|&mode| cost(mode)).unwrap_or(0);
         bytes.push(mode);
@@ -84,13 +84,13 @@ impl Predictor {
         let mut before = 0u16;
         frame.iter().enumerate().map(move |(vertex, q)| {
             let past = |k: usize| self.past[k][vertex][axis];
-            let base = match mode & !NEIGHBOUR {
+            let base = match mode & !NEIGHBOR {
                 0 => 0,
                 1 => past(0),
                 _ => past(0).wrapping_mul(2).wrapping_sub(past(1)),
             };
             let miss = q[axis].wrapping_sub(base);
-            let kept = if mode & NEIGHBOUR != 0 { miss.wrapping_sub(before) } else { miss };
+            let kept = if mode & NEIGHBOR != 0 { miss.wrapping_sub(before) } else { miss };
             before = miss;
             zigzag(kept)
         })

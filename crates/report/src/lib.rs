@@ -4,12 +4,12 @@
 //! ```text
 //! frames.rs    where the frames of a run's folder are
 //! bodies.rs    the first frame split into bodies, with names from scene.toml
-//! codec.rs     quantised positions, predicted, deflated, base64
+//! codec.rs     quantized positions, predicted, deflated, base64
 //! pack.rs      which frames go in: two passes over the folder, the budget kept by a stride
 //! columns.rs   stats.jsonl as columns
 //! facts.rs     what the page says in words: scene, counts, machine, what was left out
 //! page.rs      the parts put together
-//! assets/      the page itself (HTML, CSS, scripts) and the libraries in it, with their licences
+//! assets/      the page itself (HTML, CSS, scripts) and the libraries in it, with their licenses
 //! ```
 //!
 //! Only what the page keeps is held in memory: at most [`ReportOptions::max_bytes`], and two frames.

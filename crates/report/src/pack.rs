@@ -83,7 +83,7 @@ pub(super) fn pack(
             let particles: Vec<[u32; 1]> = body.particles.iter().map(|&v| [v]).collect();
             let mut still = Vec::new();
             if !body.moves {
-                Predictor::default().encode(quantised(body, grid, &first), &mut still);
+                Predictor::default().encode(quantized(body, grid, &first), &mut still);
             }
             let packed = |bytes: Vec<u8>| if bytes.is_empty() { String::new() } else { deflate(&bytes) };
             Elements {
@@ -115,7 +115,7 @@ pub(super) fn pack(
             let mut bytes = Vec::new();
             for ((body, grid), predictor) in bodies.iter().zip(&grids).zip(&mut predictors) {
                 if body.moves {
-                    predictor.encode(quantised(body, grid, &positions), &mut bytes);
+                    predictor.encode(quantized(body, grid, &positions), &mut bytes);
                 }
             }
             packed.push(deflate(&bytes));
@@ -154,6 +154,6 @@ fn shown(count: usize, stride: usize) -> Vec<usize> {
     shown
 }
 
-fn quantised(body: &Body, grid: &Grid, positions: &[bowknot_geometry::Point]) -> Vec<[u16; 3]> {
-    body.vertices.iter().map(|&v| grid.quantise(&positions[v as usize])).collect()
+fn quantized(body: &Body, grid: &Grid, positions: &[bowknot_geometry::Point]) -> Vec<[u16; 3]> {
+    body.vertices.iter().map(|&v| grid.quantize(&positions[v as usize])).collect()
 }

@@ -23,7 +23,7 @@ const LICENCES: [(&str, &str); 2] = [
 /// The page's own scripts, in the order in which they need each other; they share one scope.
 const APP: [&str; 10] = [
     include_str!("assets/app/data.js"),
-    include_str!("assets/app/colours.js"),
+    include_str!("assets/app/colors.js"),
     include_str!("assets/app/fields.js"),
     include_str!("assets/app/shapes.js"),
     include_str!("assets/app/ground.js"),
@@ -37,13 +37,13 @@ const APP: [&str; 10] = [
 /// What the page needs beside frames and elements [bytes], rather too much than too little.
 pub(super) fn fixed_bytes(frames: &FrameSource, facts: &Facts, columns: &Columns) -> u64 {
     let assets = TEMPLATE.len() + STYLE.len() + PLOT_STYLE.len() + LIBRARIES.len();
-    let licences: usize = LICENCES.iter().map(|(_, text)| 2 * text.len()).sum();
+    let licenses: usize = LICENCES.iter().map(|(_, text)| 2 * text.len()).sum();
     let app: usize = APP.iter().map(|text| text.len()).sum();
     let summary = script_json(&json!(facts.summary)).len();
     // Numbers and times of frames; keys and numbers of bodies; all else that is said in words.
     let words =
         4000 + 32 * frames.len() + facts.bodies.iter().map(|body| 400 + 2 * body.name.len()).sum::<usize>();
-    (assets + licences + app + summary + words + script_json(&columns.to_json()).len()) as u64
+    (assets + licenses + app + summary + words + script_json(&columns.to_json()).len()) as u64
 }
 
 /// Writes the page.
@@ -71,7 +71,7 @@ pub(super) fn write(
             match part {
                 "title" => put(&escape(&title))?,
                 "style" => [PLOT_STYLE, STYLE].iter().try_for_each(|style| put(style))?,
-                "licences" => LICENCES.iter().try_for_each(|(name, text)| {
+                "licenses" => LICENCES.iter().try_for_each(|(name, text)| {
                     put(&format!("<h3>{}</h3><pre>{}</pre>", escape(name), escape(text)))
                 })?,
                 "libraries" => {

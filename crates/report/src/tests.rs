@@ -95,7 +95,7 @@ fn inflate(text: &str) -> Vec<u8> {
 /// The inverse of the encoder, as `data.js` has it.
 fn decode(bytes: &[u8], past: [&[[u16; 3]]; 2]) -> Vec<[u16; 3]> {
     let count = (bytes.len() - 1) / 6;
-    let (order, neighbour) = (bytes[0] & 3, bytes[0] & 4 != 0);
+    let (order, neighbor) = (bytes[0] & 3, bytes[0] & 4 != 0);
     let mut frame = vec![[0u16; 3]; count];
     for axis in 0..3 {
         let low = &bytes[1 + 2 * axis * count..];
@@ -103,7 +103,7 @@ fn decode(bytes: &[u8], past: [&[[u16; 3]]; 2]) -> Vec<[u16; 3]> {
         for i in 0..count {
             let z = u16::from(low[i]) | u16::from(low[count + i]) << 8;
             let kept = (z >> 1) ^ (z & 1).wrapping_neg();
-            before = if neighbour { kept.wrapping_add(before) } else { kept };
+            before = if neighbor { kept.wrapping_add(before) } else { kept };
             let base = match order {
                 0 => 0,
                 1 => past[0][i][axis],
@@ -134,7 +134,7 @@ fn positions_come_back_within_the_error_that_is_stated() {
     for k in 0..1000 {
         let share = Vector::new(f64::from(k) / 999.0, 0.0, (f64::from(k) * 0.618).fract());
         let p = low + (high - low).component_mul(&share);
-        let q = grid.quantise(&p);
+        let q = grid.quantize(&p);
         worst = worst.max((grid.point(q) - p).norm());
         assert_eq!(q[1], 0, "an axis without extent");
     }
@@ -275,13 +275,13 @@ fn a_page_asks_nothing_of_a_network() {
     let folder = frames(2);
     let (_, page) = report(folder.path(), &ReportOptions::default()).expect("a page");
     assert!(page.contains("default-src 'none'"), "the browser is told to refuse");
-    // An XML namespace of three.js is a name, and the licences' text names none.
+    // An XML namespace of three.js is a name, and the licenses' text names none.
     let own = page.replace("http://www.w3.org/1999/xhtml", "");
     for scheme in ["http://", "https://", "src=\"", "@import", "url(", "importScripts("] {
         assert!(!own.contains(scheme), "{scheme}");
     }
     for library in ["three.js authors", "Leon Sorokin"] {
-        assert!(page.contains(library), "the licence of {library}");
+        assert!(page.contains(library), "the license of {library}");
     }
 }
 

@@ -27,7 +27,7 @@ pub struct BodySpec {
     pub shape: Option<Shape>,
     /// Axis of the mesh that points up: `x`, `y` or `z`. Default `z`.
     pub up: Up,
-    /// Factor on the mesh's coordinates [1]: 0.001 for a mesh in millimetres. Default 1.
+    /// Factor on the mesh's coordinates [1]: 0.001 for a mesh in millimeters. Default 1.
     pub scale: f64,
     /// Rotation about the x, then the y, then the z axis through the origin [deg], after `up` and
     /// `scale`. Default (0, 0, 0).
@@ -92,7 +92,7 @@ pub struct ObstacleSpec {
     pub sequence_start: f64,
     /// Axis of the mesh that points up: `x`, `y` or `z`. Default `z`.
     pub up: Up,
-    /// Factor on the mesh's coordinates [1]: 0.001 for a mesh in millimetres. Default 1.
+    /// Factor on the mesh's coordinates [1]: 0.001 for a mesh in millimeters. Default 1.
     pub scale: f64,
     /// Rotation about the x, then the y, then the z axis through the origin [deg], after `up` and
     /// `scale`. Default (0, 0, 0).

@@ -22,7 +22,7 @@ pub struct SimulationParams {
     /// time step, `step`. Default `newton`.
     pub collision_every: CollisionEvery,
     /// How vertices inside of solids follow their surface where collisions keep it from its target: `elastic`, by a
-    /// solve with the surface held, or `average`, by the corrections of their neighbours, cheaper and coarser.
+    /// solve with the surface held, or `average`, by the corrections of their neighbors, cheaper and coarser.
     /// Default `elastic`.
     pub interior: InteriorFollows,
 }
@@ -34,7 +34,7 @@ pub enum InteriorFollows {
     /// By an elastic solve with the surface held.
     #[default]
     Elastic,
-    /// By the corrections of their neighbours.
+    /// By the corrections of their neighbors.
     Average,
 }
 

@@ -20,7 +20,7 @@ const DAMPING: f64 = 0.9;
 const MAX_STEPS: usize = 12;
 
 fn main() {
-    // One target is half a metre below the plane, the other a tenth above it; both are two metres along it.
+    // One target is half a meter below the plane, the other a tenth above it; both are two meters along it.
     for (place, displacement) in
         [("through", Vector::new(1.6, 1.2, -1.0)), ("on the same side", Vector::new(1.6, 1.2, -0.4))]
     {

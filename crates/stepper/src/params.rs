@@ -94,7 +94,8 @@ mod tests {
     #[test]
     fn every_number_must_be_in_range_and_nan_is_refused() {
         assert!(ForwardParams::default().validate().is_ok() && ForwardParams::paper().validate().is_ok());
-        let fields: [(&str, fn(&mut ForwardParams) -> &mut f64); 4] = [
+        type Field = fn(&mut ForwardParams) -> &mut f64;
+        let fields: [(&str, Field); 4] = [
             ("damping", |p| &mut p.damping),
             ("trust_region_min", |p| &mut p.trust_region_min),
             ("trust_region_max", |p| &mut p.trust_region_max),

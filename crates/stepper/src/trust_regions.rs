@@ -11,7 +11,7 @@ const USABLE: f64 = 1.0 - 1e-3;
 /// largest radii of its two sides. As long as every vertex stays in its ball, such a pair cannot meet.
 #[derive(Clone, Debug, Default)]
 pub struct TrustRegions {
-    /// Centres: positions at the last search [m].
+    /// Centers: positions at the last search [m].
     pub centers: Vec<Point>,
     /// Radius of each ball, rho [m].
     pub radii: Vec<f64>,

@@ -1,7 +1,7 @@
 //! The default backward stage: the inexact LCP (paper, Eq. 9-13) with a proximal term.
 //!
-//! Linearised at x, the problem is min 1/2 sum m^ |y - y0|^2 + 1/2 sum mu |y - x|^2 subject to the rows. The
-//! proximal term with weights mu replaces curvature that linearisation drops (`proximal.rs`). Without it y
+//! Linearized at x, the problem is min 1/2 sum m^ |y - y0|^2 + 1/2 sum mu |y - x|^2 subject to the rows. The
+//! proximal term with weights mu replaces curvature that linearization drops (`proximal.rs`). Without it y
 //! does not come to rest in hard contact. At y = x the term vanishes, so it does not change the fixed point.
 //! With w = 1/(m^ + mu):
 //!
@@ -10,7 +10,7 @@
 use crate::coarse::is_sliding;
 use crate::oscillation::OscillationDamping;
 use crate::proximal;
-use crate::row_solver::{ColouredSweeps, RowSolver, RowSystem};
+use crate::row_solver::{ColoredSweeps, RowSolver, RowSystem};
 use crate::scene::CollisionScene;
 use crate::stages::BackwardStep;
 use crate::state::ResolveState;
@@ -43,7 +43,7 @@ const MIN_NON_CONTACT_DISTANCE: f64 = 0.5;
 
 /// The default [`BackwardStep`]. `K` solves its rows, by default projected Gauss-Seidel.
 #[derive(Debug, Default)]
-pub struct LcpBackward<K = ColouredSweeps> {
+pub struct LcpBackward<K = ColoredSweeps> {
     solver: K,
     edges: EdgeLimits,
     /// The distance that the row of each pair asks for [m].
@@ -123,7 +123,7 @@ impl<K: RowSolver> BackwardStep for LcpBackward<K> {
         let stretch = self.edges.stretch(&state.x);
         statistics.max_step_stretch = stretch.to_start;
         statistics.max_stretch = stretch.to_rest;
-        statistics.edge_colours = self.edges.colour_count();
+        statistics.edge_colors = self.edges.color_count();
         statistics.stationarity_m = (0..self.y.len())
             .filter(|&v| state.is_movable(v))
             .map(|v| self.residual(scene, state, v).norm())
@@ -278,7 +278,7 @@ impl<K: RowSolver> LcpBackward<K> {
             },
         );
         self.row_starts.clear();
-        self.row_starts.extend_from_slice(self.contacts.colour_starts());
+        self.row_starts.extend_from_slice(self.contacts.color_starts());
         self.lambda.clear();
         self.lambda.extend(self.contacts.pair.iter().map(|&p| contacts.multipliers[p as usize]));
         self.contacts.fill_friction(
@@ -294,12 +294,12 @@ impl<K: RowSolver> LcpBackward<K> {
         }));
         let contact_rows = self.contacts.rows.len();
         if params.edge_form == EdgeForm::Linear {
-            self.edges.linearise(&state.x, &mut self.contacts.rows);
+            self.edges.linearize(&state.x, &mut self.contacts.rows);
             if !self.contacts.friction_of.is_empty() {
                 self.contacts.friction_of.resize(self.contacts.rows.len(), lcp::LcpProblem::NO_FRICTION);
             }
             self.lambda.extend_from_slice(&self.edge_multipliers);
-            let starts = self.edges.colour_starts().iter().skip(1);
+            let starts = self.edges.color_starts().iter().skip(1);
             if self.row_starts.is_empty() {
                 self.row_starts.push(0);
             }
@@ -307,7 +307,7 @@ impl<K: RowSolver> LcpBackward<K> {
         }
         statistics.contact_rows = contact_rows;
         statistics.friction_rows = self.contacts.friction.len();
-        statistics.contact_colours = self.contacts.colour_count();
+        statistics.contact_colors = self.contacts.color_count();
         statistics.edge_rows = self.edges.balls.len();
         if only_active {
             statistics.skipped.rows +=
@@ -333,14 +333,14 @@ impl<K: RowSolver> LcpBackward<K> {
             EdgeForm::Ball => &self.edges.balls,
             EdgeForm::Linear => &[],
         };
-        let ball_starts = if balls.is_empty() { &[][..] } else { self.edges.colour_starts() };
+        let ball_starts = if balls.is_empty() { &[][..] } else { self.edges.color_starts() };
         self.y.clone_from(&self.free);
         lcp::prepare_rows(&mut self.contacts.rows, &self.weights)?;
         lcp::prepare_friction(&mut self.contacts.friction, &self.weights)?;
         let mut system = lcp::LcpProblem::new(
             &self.weights,
-            ConstraintSet::new(&self.contacts.rows, Schedule::coloured(&self.row_starts)),
-            ConstraintSet::new(balls, Schedule::coloured(ball_starts)),
+            ConstraintSet::new(&self.contacts.rows, Schedule::colored(&self.row_starts)),
+            ConstraintSet::new(balls, Schedule::colored(ball_starts)),
             ConstraintSet::serial(&self.contacts.friction),
         )?;
         if !self.contacts.friction.is_empty() {

@@ -16,7 +16,7 @@ pub(crate) fn is_sliding(row: &lcp::FrictionRow, normal: f64, multiplier: lcp::T
     multiplier.norm() >= (1.0 - 1e-9) * row.friction * normal
 }
 
-/// The coarse correction: one factor s for all multipliers, the maximiser of the dual along that ray.
+/// The coarse correction: one factor s for all multipliers, the maximizer of the dual along that ray.
 ///
 /// With delta = y - y' = W J^T lambda, scaling by s moves y to y' + s delta and each row value linearly. The
 /// dual's derivative vanishes where
@@ -68,7 +68,7 @@ impl CoarseCorrection {
     }
 }
 
-/// The maximiser. It is not finite if no multiplier acts.
+/// The maximizer. It is not finite if no multiplier acts.
 fn best_factor(system: &lcp::LcpProblem<'_>, free: &[Vector], state: &lcp::LcpState<'_>) -> f64 {
     let mut slack = 0.0;
     for (row, &lambda) in system.rows().rows.iter().zip(&*state.lambda) {

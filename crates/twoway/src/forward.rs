@@ -10,7 +10,7 @@ use bowknot_stepper::{Bound, StepReport, Stepper};
 /// Largest travel of a vertex in a swept step, in local edge lengths.
 const MAX_SWEPT_TRAVEL: f64 = 4.0;
 /// Radius of the tube around a swept path within which a vertex may deviate, in local edge lengths. It is so
-/// small that the tubes of neighbours in the mesh, about a third of an edge apart, do not meet.
+/// small that the tubes of neighbors in the mesh, about a third of an edge apart, do not meet.
 const SWEPT_TUBE_RADIUS: f64 = 0.1;
 /// Share of that radius that may be used; the rest covers rounding.
 const SWEPT_USABLE: f64 = 1.0 - 1e-3;

@@ -58,7 +58,7 @@ pub use lag::{Lag, PrescribedEntity};
 pub use observer::{AcceptedState, Observer};
 pub use params::{BackwardParams, Params, SolverParams};
 pub use resolver::Resolver;
-pub use row_solver::{ColouredSweeps, RowSolver, RowSystem};
+pub use row_solver::{ColoredSweeps, RowSolver, RowSystem};
 pub use scene::{CollisionScene, Lengths};
 pub use search::TrustRegionSearch;
 pub use spacing::{MIN_SEPARATION_MARGIN, PairSpacing, Spacing};

@@ -52,7 +52,7 @@ pub struct BackwardParams {
     /// displacement of the vertex reverses from one step to the next, and falls slowly otherwise. 1: no
     /// factor. Default 32.
     pub proximal_growth: f64,
-    /// Whether a common factor of all multipliers is optimised before each sweep. Default true.
+    /// Whether a common factor of all multipliers is optimized before each sweep. Default true.
     pub coarse_correction: bool,
     /// Whether the sweeps leave out rows that neither press nor are predicted to close. Default true.
     pub active_rows: bool,

@@ -1,4 +1,4 @@
-//! The proximal term of the backward step: it replaces part of the curvature that linearisation drops.
+//! The proximal term of the backward step: it replaces part of the curvature that linearization drops.
 //!
 //! An edge of length |e| with a multiplier lambda has the curvature lambda/|e| sideways, and a contact
 //! lambda/r, where r is the radius of curvature of the contact. This is the local edge length h if a face or

@@ -37,7 +37,7 @@ pub struct Resolver<S = TrustRegionSearch, B = LcpBackward, F = CertifiedForward
 impl Resolver {
     /// A resolver for vertices with the given rest positions [m] and masses [kg]. Masses of obstacle vertices
     /// are ignored. Rest positions determine default lengths, stretch limits, and the desired distance of
-    /// neighbours.
+    /// neighbors.
     ///
     /// # Errors
     /// Wrong lengths, non-finite numbers, massless vertices, parameters out of range.

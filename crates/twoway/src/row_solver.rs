@@ -11,10 +11,10 @@ use bowknot_lcp as lcp;
 /// Number of sweeps between two checks of the stretch while polishing.
 const POLISH_BATCH: usize = 8;
 
-/// The rows of one backward step, linearised at x^(l), and what belongs to them.
+/// The rows of one backward step, linearized at x^(l), and what belongs to them.
 #[derive(Clone, Copy, Debug)]
 pub struct RowSystem<'a> {
-    /// Inverse weights w, rows and colours. The first rows are contacts; in the linear form of edges, edges
+    /// Inverse weights w, rows and colors. The first rows are contacts; in the linear form of edges, edges
     /// follow.
     pub system: lcp::LcpProblem<'a>,
     /// y', the value of y without multipliers [m].
@@ -42,14 +42,14 @@ pub trait RowSolver: Send {
     fn solve(&mut self, rows: &RowSystem<'_>, state: &mut lcp::LcpState<'_>) -> Result<(), lcp::LcpError>;
 }
 
-/// Projected Gauss-Seidel by colours, with the coarse correction and the polishing that
+/// Projected Gauss-Seidel by colors, with the coarse correction and the polishing that
 /// [`crate::BackwardParams`] ask for: the default [`RowSolver`].
 #[derive(Clone, Copy, Debug, Default)]
-pub struct ColouredSweeps {
+pub struct ColoredSweeps {
     coarse: CoarseCorrection,
 }
 
-impl RowSolver for ColouredSweeps {
+impl RowSolver for ColoredSweeps {
     fn begin(&mut self) {
         self.coarse.begin();
     }
@@ -62,11 +62,11 @@ impl RowSolver for ColouredSweeps {
             if params.coarse_correction {
                 for _ in 0..sweeps {
                     self.coarse.apply(system, rows.free, state);
-                    lcp::solve_coloured(system, state, &one)?;
+                    lcp::solve_colored(system, state, &one)?;
                 }
             } else {
                 let all = lcp::LcpParams { max_sweeps: sweeps as u32, ..one };
-                lcp::solve_coloured(system, state, &all)?;
+                lcp::solve_colored(system, state, &all)?;
             }
             Ok(())
         };

@@ -84,7 +84,7 @@ impl TrustRegionSearch {
         }
     }
 
-    /// Carries the data of pairs over to the new list, and initialises those of new pairs.
+    /// Carries the data of pairs over to the new list, and initializes those of new pairs.
     fn inherit(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
         let contacts = &mut state.contacts;
         let inherited = contacts.pairs.match_with(&self.old);
@@ -113,7 +113,7 @@ impl TrustRegionSearch {
                     let min_separation = match spacing.min_separation {
                         None => scene.lengths().min_separation.min(0.1 * desired),
                         Some(guaranteed) => {
-                            // The rest distance of neighbours bounds their minimum separation. A pair that
+                            // The rest distance of neighbors bounds their minimum separation. A pair that
                             // starts closer has its own gap as minimum separation, which grows from call to
                             // call.
                             let (unlimited, _) = rule.without_growth_limit(model, kind, pair, scene.rest());

@@ -39,7 +39,7 @@ struct Side {
 /// Desired distance and minimum separation of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairSpacing {
-    /// Desired distance delta_p [m], before it is lowered for neighbours and for pairs that start close.
+    /// Desired distance delta_p [m], before it is lowered for neighbors and for pairs that start close.
     pub delta: f64,
     /// Guaranteed minimum separation xi_p [m] of bodies with a thickness, before it is lowered likewise.
     /// None: that of the scene, which is no guarantee: it is lowered with the desired distance.

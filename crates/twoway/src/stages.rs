@@ -51,7 +51,7 @@ pub trait BackwardStep: Send {
     /// Starts a call.
     fn begin(&mut self, scene: &CollisionScene, state: &ResolveState);
 
-    /// Computes `state.y` from `state.target`, linearised at `state.x`. Multipliers are kept for the next
+    /// Computes `state.y` from `state.target`, linearized at `state.x`. Multipliers are kept for the next
     /// step.
     fn project(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics);
 

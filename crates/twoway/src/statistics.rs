@@ -28,12 +28,12 @@ pub struct Statistics {
     pub active_rows: usize,
     /// Pairs frozen because no direction certifies their gap, over all steps.
     pub frozen_pairs: usize,
-    /// Pairs whose desired distance was lowered because they are neighbours in a fine mesh.
+    /// Pairs whose desired distance was lowered because they are neighbors in a fine mesh.
     pub lowered_pairs: usize,
-    /// Colours of the edge rows.
-    pub edge_colours: usize,
-    /// Colours of the contact rows in the last backward step.
-    pub contact_colours: usize,
+    /// Colors of the edge rows.
+    pub edge_colors: usize,
+    /// Colors of the contact rows in the last backward step.
+    pub contact_colors: usize,
     /// Whether the stopping rule was met.
     pub converged: bool,
     /// Largest remaining fraction r (paper, Eq. 20).

@@ -16,7 +16,7 @@ pub fn particles(seed: u64) -> Case {
                 Point::new(0.01 * (i % 5) as f64, 0.01 * (i / 5 % 10) as f64, 0.01 + 0.01 * (i / 50) as f64);
             let grain = place + random.vector(0.004 * noise);
             grains.push(grain);
-            // Every third grain has a neighbour that nearly touches it.
+            // Every third grain has a neighbor that nearly touches it.
             if i % 3 == 0 {
                 grains.push(grain + random.direction() * random.magnitude(2e-6, 1e-3));
             }

@@ -1,7 +1,7 @@
 //! The log-barrier interior point method (paper, Eq. 7-8; after Li et al. 2020, "Incremental Potential
 //! Contact", and Wu et al. 2020).
 //!
-//! The distance to the target and a barrier on gaps form one [`Objective`]. It is minimised by gradient
+//! The distance to the target and a barrier on gaps form one [`Objective`]. It is minimized by gradient
 //! descent with the step bounds of the two-way method ([`by_descent`]), or by Newton's method with a line
 //! search ([`by_newton`]).
 

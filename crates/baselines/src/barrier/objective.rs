@@ -32,7 +32,7 @@ pub struct Contact {
     pub jet: Jet,
 }
 
-/// Gradient of the objective, and a block-diagonal matrix that majorises the convex part of its Hessian.
+/// Gradient of the objective, and a block-diagonal matrix that majorizes the convex part of its Hessian.
 #[derive(Clone, Debug, Default)]
 pub struct Derivatives {
     /// dE/dx of each vertex [N]; 0 for prescribed ones.
@@ -114,7 +114,7 @@ impl Objective {
                 return None;
             }
             let separation = separation(kind, p);
-            // First the range that is not lowered for neighbours, which is cheaper: almost all pairs are
+            // First the range that is not lowered for neighbors, which is cheaper: almost all pairs are
             // farther apart.
             let largest = self.range_share * scene.spacing().of(scene.model(), kind, pair).delta;
             if separation.distance >= largest {
@@ -150,7 +150,7 @@ impl Objective {
     ///
     /// A pair adds B'' g g^T with g the gradient of its distance, s_k beta_k n by vertex k. With weights that
     /// sum to 1 on either side, (sum_k beta_k n.u_k)^2 <= 2 sum_k beta_k (n.u_k)^2: blocks 2 B'' beta_k n n^T
-    /// majorise it, beta_k against half-spaces. The rest, B' times the distance's own Hessian, is left out:
+    /// majorize it, beta_k against half-spaces. The rest, B' times the distance's own Hessian, is left out:
     /// it only lowers the energy where that is positive semidefinite, as for two vertices.
     pub fn derivatives(
         &self,

@@ -4,7 +4,7 @@ use bowknot_errors::{Checks, Errors, ParamError, Parameters};
 use bowknot_twoway::CollisionScene;
 use serde::{Deserialize, Serialize};
 
-/// Parameters of [`super::Objective`], and of the methods that minimise it.
+/// Parameters of [`super::Objective`], and of the methods that minimize it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct BarrierParams {
@@ -12,7 +12,7 @@ pub struct BarrierParams {
     /// the target, a smaller one makes gaps tighter and steps shorter. Default 20, the paper's.
     pub strength: f64,
     /// Distance d below which the barrier acts [m]. Default delta; in the paper both are 1 mm. Like delta it
-    /// is lowered for neighbours in fine meshes and scaled by the contact distances of the bodies.
+    /// is lowered for neighbors in fine meshes and scaled by the contact distances of the bodies.
     pub range: Option<f64>,
     /// Time step of the inertia term [s] for calls that state none. Default 1/100.
     pub time_step: f64,
@@ -33,7 +33,7 @@ pub enum Scaling {
     /// dt^2/m of each vertex, the inverse of the inertia term: gradient descent in the metric of the
     /// objective (paper, section 3.4), y = x - (x - y0) - dt^2/m dB/dx.
     Mass,
-    /// The inverse of each vertex's 3x3 block of a matrix that majorises the Hessian's convex part.
+    /// The inverse of each vertex's 3x3 block of a matrix that majorizes the Hessian's convex part.
     Blocks,
 }
 

@@ -1,7 +1,7 @@
 //! The linear system of Harmon et al. 2008 in place of the complementarity problem.
 
 use bowknot_errors::{Checks, Parameters};
-use bowknot_twoway::lcp::{self, LcpError, LcpParams, LcpState, solve_coloured};
+use bowknot_twoway::lcp::{self, LcpError, LcpParams, LcpState, solve_colored};
 use bowknot_twoway::{RowSolver, RowSystem};
 
 /// Gauss-Seidel on A lambda + q = 0 with all rows as equations (Harmon et al. 2008, "Robust treatment of
@@ -42,11 +42,11 @@ impl LinearSystem {
     /// Sweeps over any rows.
     ///
     /// # Errors
-    /// As [`lcp::solve_coloured`].
+    /// As [`lcp::solve_colored`].
     pub fn sweep(&self, system: &lcp::LcpProblem<'_>, state: &mut LcpState<'_>) -> Result<(), LcpError> {
         let params =
             LcpParams { max_sweeps: self.sweeps, equations: !self.projected, ..LcpParams::default() };
-        solve_coloured(system, state, &params).map(|_| ())
+        solve_colored(system, state, &params).map(|_| ())
     }
 }
 

@@ -6,7 +6,7 @@
 //! - [`ProjectedJacobi`]: with Chebyshev weights within the step (Fig. 11, 12), or between steps
 //!   ([`InterStepChebyshev`]).
 //!
-//! They are compared with projected Gauss-Seidel ([`bowknot_twoway::ColouredSweeps`]) and, for small
+//! They are compared with projected Gauss-Seidel ([`bowknot_twoway::ColoredSweeps`]) and, for small
 //! problems, the exact [`bowknot_twoway::lcp::solve_exact`].
 
 mod augmented_lagrangian;

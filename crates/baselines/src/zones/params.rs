@@ -1,4 +1,4 @@
-//! Parameters of impact-zone optimisation.
+//! Parameters of impact-zone optimization.
 
 use bowknot_errors::{Checks, Parameters};
 use serde::{Deserialize, Serialize};
@@ -7,18 +7,18 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ZoneParams {
-    /// Largest number of rounds of detection and optimisation. Default 100.
+    /// Largest number of rounds of detection and optimization. Default 100.
     pub max_iterations: usize,
     /// The solver of the rows of zones. Default Gauss-Seidel.
     pub solver: ZoneSolver,
-    /// Largest number of sweeps or gradient steps of one optimisation. Default 200.
+    /// Largest number of sweeps or gradient steps of one optimization. Default 200.
     pub max_sweeps: u32,
     /// Gauss-Seidel stops when a sweep changes no row by more than this, in desired distances. Default 0.01.
     pub tolerance: f64,
     /// A pair that does not meet, but ends at less than this share of its desired distance, gets a row too.
     /// Default 0, as published: zones prevent intersections and keep no distance. With 0.8 they solve the
     /// problem of the methods that keep a distance, up to a fifth of it. Closer to 1, rows that are
-    /// linearised again and again may oscillate.
+    /// linearized again and again may oscillate.
     pub thickness: f64,
 }
 

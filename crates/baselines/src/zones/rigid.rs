@@ -1,7 +1,7 @@
 //! Rigid impact zones.
 
 use super::impacts::{Impact, ImpactSearch};
-use super::optimiser::growth;
+use super::optimizer::growth;
 use super::rigid_motion::Motion;
 use crate::{Method, Outcome};
 use bowknot_twoway::geometry::{PairKind, Point, UnionFind, Vector};

@@ -15,10 +15,10 @@ const RIGID: f64 = 1e-6;
 pub(crate) enum Motion {
     /// No motion.
     Rest,
-    /// d = v + omega x (x - centre), the velocities of a rigid body (Bridson et al. 2002). The paths are
+    /// d = v + omega x (x - center), the velocities of a rigid body (Bridson et al. 2002). The paths are
     /// those of the map 1 + s \[omega\], whose determinant 1 + s^2 |omega|^2 never vanishes. It stretches by
     /// sqrt(1 + omega^2), as theirs.
-    Twist { centre: Vector, linear: Vector, angular: Vector },
+    Twist { center: Vector, linear: Vector, angular: Vector },
     /// x -> to + R (x - from), the motion of keyframes. The paths are those of (1 - s) + s R, which can be
     /// inverted for any rotation by less than half a turn.
     Rigid { from: Vector, to: Vector, rotation: Matrix3<f64> },
@@ -29,7 +29,7 @@ impl Motion {
     pub(crate) fn displacement(&self, x: &Point) -> Vector {
         match self {
             Motion::Rest => Vector::zeros(),
-            Motion::Twist { centre, linear, angular } => linear + angular.cross(&(x.coords - centre)),
+            Motion::Twist { center, linear, angular } => linear + angular.cross(&(x.coords - center)),
             Motion::Rigid { from, to, rotation } => {
                 let r = x.coords - from;
                 (to - from) + (rotation * r - r)
@@ -47,11 +47,11 @@ impl Motion {
         let mean = |value: &dyn Fn(&(Point, Vector, f64)) -> Vector| {
             vertices.iter().fold(Vector::zeros(), |sum, v| sum + v.2 * value(v)) / total
         };
-        let (centre, linear) = (mean(&|v| v.0.coords), mean(&|v| v.1));
+        let (center, linear) = (mean(&|v| v.0.coords), mean(&|v| v.1));
         let mut momentum = Vector::zeros();
         let mut inertia = Matrix3::zeros();
         for (x, path, mass) in vertices {
-            let r = x.coords - centre;
+            let r = x.coords - center;
             momentum += *mass * r.cross(&(path - linear));
             inertia += *mass * (Matrix3::identity() * r.norm_squared() - r * r.transpose());
         }
@@ -64,7 +64,7 @@ impl Motion {
                 sum + axis * (axis.dot(&momentum) / eigen.eigenvalues[k])
             },
         );
-        Motion::Twist { centre, linear, angular }
+        Motion::Twist { center, linear, angular }
     }
 
     /// The rigid motion that moves vertices along the paths of their keyframes (Kabsch 1976); `None` if there

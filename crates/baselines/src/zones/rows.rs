@@ -3,7 +3,7 @@
 use super::impacts::Impact;
 use super::params::{ZoneParams, ZoneSolver};
 use crate::rows::{AugmentedLagrangian, LinearSystem};
-use bowknot_twoway::constraints::{Colouring, ContactForm, contact_row};
+use bowknot_twoway::constraints::{Coloring, ContactForm, contact_row};
 use bowknot_twoway::geometry::{PairKind, Point, Vector, separation};
 use bowknot_twoway::lcp::{self, ConstraintSet, LcpState, Row, Schedule};
 use bowknot_twoway::{CallInput, CollisionScene};
@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 pub(crate) struct ImpactRows {
     /// Row and multiplier by kind and elements.
     rows: BTreeMap<(PairKind, [u32; 2]), (Row, f64)>,
-    colouring: Colouring,
+    coloring: Coloring,
     descent: AugmentedLagrangian,
 }
 
@@ -23,7 +23,7 @@ impl ImpactRows {
         self.rows.clear();
     }
 
-    /// Adds the row of an impact, or replaces the pair's row and keeps its multiplier. The row is linearised
+    /// Adds the row of an impact, or replaces the pair's row and keeps its multiplier. The row is linearized
     /// at the last time at which the pair is certain not to meet: n . (p - q)(y) >= desired distance with the
     /// normal n there.
     pub(crate) fn add(&mut self, scene: &CollisionScene, impact: &Impact, x: &[Point], paths: &[Vector]) {
@@ -59,14 +59,14 @@ impl ImpactRows {
             .map(|v| if call.is_movable(v) { 1.0 / scene.relative_mass(v) } else { 0.0 })
             .collect();
         let list: Vec<(Row, f64)> = self.rows.values().copied().collect();
-        self.colouring.first_fit(free.len(), list.len(), |r| {
+        self.coloring.first_fit(free.len(), list.len(), |r| {
             list[r].0.vertices.into_iter().filter(|&v| call.is_movable(v as usize))
         });
-        let order = self.colouring.order();
+        let order = self.coloring.order();
         let mut rows: Vec<Row> = order.iter().map(|&r| list[r as usize].0).collect();
         let mut lambda: Vec<f64> = order.iter().map(|&r| list[r as usize].1).collect();
         lcp::prepare_rows(&mut rows, &weights)?;
-        let schedule = Schedule::coloured(self.colouring.starts());
+        let schedule = Schedule::colored(self.coloring.starts());
         let system = lcp::LcpProblem::new(
             &weights,
             ConstraintSet::new(&rows, schedule),
@@ -82,7 +82,7 @@ impl ImpactRows {
                 let tolerance = Some(params.tolerance * scene.lengths().delta);
                 let params =
                     lcp::LcpParams { max_sweeps: params.max_sweeps, tolerance, ..lcp::LcpParams::default() };
-                match lcp::solve_coloured(&system, &mut state, &params) {
+                match lcp::solve_colored(&system, &mut state, &params) {
                     Ok(_) | Err(lcp::LcpError::NotConverged { .. }) => {}
                     Err(error) => return Err(error),
                 }

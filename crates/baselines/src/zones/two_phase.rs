@@ -1,6 +1,6 @@
 //! The two-phase scheme of Wu et al. 2020: soft, then hard.
 
-use super::optimiser::ImpactZones;
+use super::optimizer::ImpactZones;
 use super::params::ZoneParams;
 use crate::{Method, Outcome};
 use bowknot_errors::{Errors, ParamError};
@@ -9,7 +9,7 @@ use bowknot_twoway::{CollisionScene, ResolveError, ResolveInput};
 use std::time::Instant;
 
 /// The soft and the hard phase of Wu et al. 2020 ("A safe and fast repulsion method for GPU-based cloth self
-/// collisions"; two-way paper, section 1.3). Some rounds of impact-zone optimisation move the target, without
+/// collisions"; two-way paper, section 1.3). Some rounds of impact-zone optimization move the target, without
 /// a guarantee. If the path to it still has impacts, an interior point method moves x towards it as far as it
 /// can.
 ///
@@ -55,7 +55,7 @@ impl<H: Method> Method for TwoPhase<H> {
     ) -> Result<Outcome, ResolveError> {
         let timer = Instant::now();
         let mut outcome = Outcome::default();
-        let attempt = self.soft.optimise(positions, target, input, &mut outcome)?;
+        let attempt = self.soft.optimize(positions, target, input, &mut outcome)?;
         if attempt.clear {
             positions.copy_from_slice(&attempt.target);
             outcome.converged = true;

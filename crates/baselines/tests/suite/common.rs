@@ -34,7 +34,7 @@ impl Scene {
     }
 
     /// Two sheets `gap` apart, two strands across them, particles on top, ground below, an obstacle beside
-    /// it: every kind of pair, nearest neighbours `gap` apart.
+    /// it: every kind of pair, nearest neighbors `gap` apart.
     pub fn heap(gap: f64) -> Self {
         let (mut x, mut triangles, mut bodies) = (Vec::new(), Vec::new(), Vec::new());
         let h = 0.1;

@@ -50,7 +50,7 @@ pub enum Style {
     Marks,
     /// Marks joined by lines.
     Line,
-    /// Bars from the axis up, as wide as the distance between neighbours allows.
+    /// Bars from the axis up, as wide as the distance between neighbors allows.
     Bars,
 }
 

@@ -10,10 +10,10 @@ const WIDTH: f64 = 860.0;
 const HEIGHT: f64 = 470.0;
 /// Left, top, right, bottom of the area within the axes [px].
 const AREA: [f64; 4] = [72.0, 34.0, 660.0, 416.0];
-/// Colours that colour-blind readers can tell apart (Okabe and Ito 2008), light ones last.
-const COLOURS: [&str; 8] =
+/// Colors that color-blind readers can tell apart (Okabe and Ito 2008), light ones last.
+const COLORS: [&str; 8] =
     ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#000000", "#e69f00", "#56b4e9", "#8c564b"];
-/// Number of shapes of marks. The shape changes when the colours start again.
+/// Number of shapes of marks. The shape changes when the colors start again.
 const SHAPES: usize = 4;
 
 /// The chart as an SVG file.
@@ -106,7 +106,7 @@ fn draw(
     [bottom, bars]: [f64; 2],
     add: &mut impl FnMut(String),
 ) {
-    let colour = COLOURS[index % COLOURS.len()];
+    let color = COLORS[index % COLORS.len()];
     let points: Vec<(f64, f64)> = series.points.iter().filter_map(|m| place(m.x, m.y)).collect();
     match series.style {
         Style::Bars => {
@@ -114,7 +114,7 @@ fn draw(
             let width = (0.8 / bars * gaps.fold(f64::INFINITY, f64::min)).clamp(2.0, 40.0);
             for (x, y) in points {
                 add(format!(
-                    "<rect x=\"{:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{:.1}\" fill=\"{colour}\" \
+                    "<rect x=\"{:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{:.1}\" fill=\"{color}\" \
                      fill-opacity=\"0.75\"/>",
                     x - width / 2.0,
                     (bottom - y).max(0.0)
@@ -126,7 +126,7 @@ fn draw(
             let path: Vec<String> = points.iter().map(|(x, y)| format!("{x:.1} {y:.1}")).collect();
             if path.len() > 1 {
                 let path = path.join("L");
-                add(format!("<path d=\"M{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.5\"/>"));
+                add(format!("<path d=\"M{path}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"1.5\"/>"));
             }
         }
         Style::Marks => {}
@@ -136,18 +136,18 @@ fn draw(
     }
 }
 
-/// A mark in the colour and shape of a series.
+/// A mark in the color and shape of a series.
 fn mark(index: usize, x: f64, y: f64) -> String {
-    let colour = COLOURS[index % COLOURS.len()];
-    match index / COLOURS.len() % SHAPES {
-        0 => format!("<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3.6\" fill=\"{colour}\"/>"),
+    let color = COLORS[index % COLORS.len()];
+    match index / COLORS.len() % SHAPES {
+        0 => format!("<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3.6\" fill=\"{color}\"/>"),
         1 => format!(
-            "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"7\" height=\"7\" fill=\"{colour}\"/>",
+            "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"7\" height=\"7\" fill=\"{color}\"/>",
             x - 3.5,
             y - 3.5
         ),
-        2 => format!("<path d=\"M{x:.1} {:.1}l4.5 8h-9z\" fill=\"{colour}\"/>", y - 5.0),
-        _ => format!("<path d=\"M{x:.1} {:.1}l5 5l-5 5l-5 -5z\" fill=\"{colour}\"/>", y - 5.0),
+        2 => format!("<path d=\"M{x:.1} {:.1}l4.5 8h-9z\" fill=\"{color}\"/>", y - 5.0),
+        _ => format!("<path d=\"M{x:.1} {:.1}l5 5l-5 5l-5 -5z\" fill=\"{color}\"/>", y - 5.0),
     }
 }
 
@@ -163,7 +163,7 @@ fn label(chart: &Chart, place: impl Fn(f64, f64) -> Option<(f64, f64)>, add: &mu
                 "<text x=\"{:.1}\" y=\"{:.1}\" font-size=\"10\" fill=\"{}\">{}</text>",
                 anchor.x,
                 anchor.y,
-                COLOURS[index % COLOURS.len()],
+                COLORS[index % COLORS.len()],
                 escape(&mark.label)
             ));
         }

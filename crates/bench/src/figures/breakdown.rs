@@ -23,7 +23,7 @@ impl Figure for Breakdown {
     fn question(&self) -> &'static str {
         "In the paper's bow knot, the proximity search and the update of Jacobians take almost half of the \
          time. Shares of the wall time of the recorded problems: *search* includes the distances of new \
-         pairs; *evaluate*: distances between searches; *backward*: rows, colours and sweeps; *forward*: the \
+         pairs; *evaluate*: distances between searches; *backward*: rows, colors and sweeps; *forward*: the \
          step and its certificates."
     }
 

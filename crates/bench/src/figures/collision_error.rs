@@ -56,7 +56,7 @@ impl Figure for CollisionError {
                 "The same with targets of a dynamics without repulsion (`--set \
                  solver.repulsion.stiffness=0`), which lie deep in penetration. The paper's simulator has a \
                  repulsive model (section 6.2), so these are not the paper's targets. Hard problems have no \
-                 reference solution: their linearisation does not come to rest within a minute. Barriers and \
+                 reference solution: their linearization does not come to rest within a minute. Barriers and \
                  impact zones have no edge limits, which is part of their error here; `contacts-alone` \
                  compares without limits."
             }

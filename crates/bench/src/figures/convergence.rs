@@ -170,12 +170,12 @@ fn costs(bench: &Bench, subjects: &[Subject]) -> Result<(Vec<Part>, String)> {
             let made = done.iter().map(|a| a.iterations).sum::<usize>() as f64 / steps;
             let off: Vec<f64> = (0..AFTER.len()).map(|k| distance(&done, &reference, k)).collect();
             let name = iterations.map_or("default".to_owned(), |n| n.to_string());
-            let millimetres = off.iter().map(|d| (1e3 * d).into());
+            let millimeters = off.iter().map(|d| (1e3 * d).into());
             let edges = off.iter().map(|d| (d / edge).into());
             table.row(
                 [subject.scene.into(), name.clone().into(), made.into(), (1e3 * cpu).into()]
                     .into_iter()
-                    .chain(millimetres)
+                    .chain(millimeters)
                     .chain(edges),
             );
             marks.push(Mark { x: cpu, y: off[0] / edge, label: name });

@@ -1,4 +1,4 @@
-//! Impact-zone optimisation alone: how often it fails (paper, section 3.3).
+//! Impact-zone optimization alone: how often it fails (paper, section 3.3).
 
 use crate::bench::Bench;
 use crate::figure::{Figure, Part, Report, verdict};
@@ -19,12 +19,12 @@ impl Figure for ImpactZones {
     }
 
     fn title(&self) -> &'static str {
-        "Section 3.3: impact-zone optimisation alone fails"
+        "Section 3.3: impact-zone optimization alone fails"
     }
 
     fn question(&self) -> &'static str {
         "In the paper, I-Cloth fails in the knots even at 1/1000 s, while the two-way method cannot fail. \
-         The target is optimised until the straight path to it is free of impacts, in at most 100 rounds: by \
+         The target is optimized until the straight path to it is free of impacts, in at most 100 rounds: by \
          projected Gauss-Seidel, by the linear system of Harmon et al. 2008, by the augmented Lagrangian of \
          Tang et al. 2018, and by Gauss-Seidel to 0.8 of the distance that the other methods keep. *-1000* \
          are the knots at 1/1000 s. A solve that fails leaves x unchanged; its error is that of the start."

@@ -51,7 +51,7 @@ impl Figure for SimulationError {
 
     fn question(&self) -> &'static str {
         "The reference is a simulation of the same mesh with 1/64 of the largest time step (`swing`: 1/256) \
-         and converged Newton iterations. How far from it are energy, centre of mass, mean stretch, \
+         and converged Newton iterations. How far from it are energy, center of mass, mean stretch, \
          positions and the last shape, and at what CPU time? Root mean squares over four times. `swing`, a \
          sheet held along one side, has no contact: implicit Euler has order 1 there. `block`, a cube of \
          jelly, drops onto the ground; how high it bounces depends on the time step. `drape` and `stack` \
@@ -142,7 +142,7 @@ impl Figure for SimulationError {
                 series.push(Series { name, points: marks, style: Style::Line });
             }
             let chart = Chart {
-                title: format!("{}: error of the centre of mass against run time", subject.name),
+                title: format!("{}: error of the center of mass against run time", subject.name),
                 x: Axis::log("CPU seconds of the simulation"),
                 y: Axis::log("error [mm]"),
                 series,
@@ -152,9 +152,9 @@ impl Figure for SimulationError {
             compared.extend(against_fast(subject, &errors_of));
         }
         report.finding = format!(
-            "Observed orders, of energy / centre of mass / positions: {}. (Implicit Euler: 1.) Against \
+            "Observed orders, of energy / center of mass / positions: {}. (Implicit Euler: 1.) Against \
              `fast` with one Newton iteration, geometric means over the time steps, CPU time / error of the \
-             energy / of the centre of mass: {}.",
+             energy / of the center of mass: {}.",
             orders.join("; "),
             compared.join("; ")
         );
@@ -290,7 +290,7 @@ mod tests {
         let errors = [20, 40].map(|steps| Distances::between(&at(steps), &reference));
         for (what, ratio) in [
             ("energy", errors[0].energy / errors[1].energy),
-            ("centre", errors[0].center / errors[1].center),
+            ("center", errors[0].center / errors[1].center),
             ("positions", errors[0].positions / errors[1].positions),
         ] {
             // The reference has an error too: (1/20 - 1/640)/(1/40 - 1/640) = 2.07.

@@ -1,7 +1,7 @@
 //! The quality of a result x of a collision problem, measured alike for every method.
 //!
 //! Every result is measured with one set of rows, whatever the parameters of its method: contacts within
-//! range and edge limits, linearised at x (`rows`) under the parameters of `fast`
+//! range and edge limits, linearized at x (`rows`) under the parameters of `fast`
 //! ([`crate::case::CollisionCase::reference`]).
 //!
 //! - Distance to the reference solution: the reference is made by `fast` itself with 200 sweeps, iterated to

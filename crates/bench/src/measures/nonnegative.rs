@@ -1,4 +1,4 @@
-//! Non-negative least squares over rows: the lambda >= 0 that minimises |d + W J^T lambda| in the metric of
+//! Non-negative least squares over rows: the lambda >= 0 that minimizes |d + W J^T lambda| in the metric of
 //! W^-1.
 //!
 //! That is a quadratic program with matrix A = J W J^T and bounds at 0. It is solved by modified
@@ -76,7 +76,7 @@ impl<'a> System<'a> {
         self.gather(space, out);
     }
 
-    /// Minimises lambda A lambda/2 + q lambda over lambda >= 0.
+    /// Minimizes lambda A lambda/2 + q lambda over lambda >= 0.
     fn solve(&self, q: Vec<f64>, iterations: usize) -> Vec<f64> {
         let n = q.len();
         let mut space = vec![Vector::zeros(); self.weights.len()];

@@ -1,8 +1,8 @@
-//! The reference solution of a small problem: `fast` iterated to a fixed point of the linearisation.
+//! The reference solution of a small problem: `fast` iterated to a fixed point of the linearization.
 //!
 //! With 200 sweeps and rows for all pairs, `fast` runs until a step moves nothing any more, without ever
 //! intersecting. Its proximal term vanishes at such a fixed point, which is then a KKT point of the problem
-//! with its rows linearised there. So the reference comes from the method that is compared, not from
+//! with its rows linearized there. So the reference comes from the method that is compared, not from
 //! independent code. Two checks guard it, otherwise the case has no reference: violations are small against
 //! delta, and the stationarity residual, whose multipliers come from a solver of their own (`nonnegative`),
 //! is small against the distance to the target.
@@ -74,7 +74,7 @@ pub fn params(seconds: f64) -> Params {
 
 /// An observer that stops a solve once no vertex moves any more.
 pub fn at_rest(case: &CollisionCase) -> impl FnMut(&AcceptedState<'_>) -> ControlFlow<()> + use<> {
-    // Sand has no edges: a nanometre.
+    // Sand has no edges: a nanometer.
     let rest = case.mean_edge().map_or(1e-9, |length| REST * length);
     move |state| {
         let moved = state.positions.iter().zip(state.previous).map(|(a, b)| (a - b).norm());

@@ -1,4 +1,4 @@
-//! The rows of a state: contacts within range and edge limits, linearised there.
+//! The rows of a state: contacts within range and edge limits, linearized there.
 //!
 //! Contacts are in gap form. The desired distance of a pair follows from its gap at the start of the call; a
 //! pair that started out of range is asked for all of delta.
@@ -103,7 +103,7 @@ impl RowSet {
         let mut limits = EdgeLimits::new(scene.model().topology(), scene.rest(), &movable, limit);
         limits.begin(&states.x, EdgeReference::Rest);
         let mut rows = Vec::new();
-        limits.linearise(x, &mut rows);
+        limits.linearize(x, &mut rows);
         for (row, ball) in rows.into_iter().zip(&limits.balls) {
             self.push(row, ACTIVE[1] * ball.limit, points);
         }
@@ -125,7 +125,7 @@ impl RowSet {
 
     /// The projection of y0 - x onto the motions that no active row forbids, in the metric of mass: 0 if x
     /// solves the scene. By Moreau's decomposition it is y0 - x + M^-1 J^T lambda with the non-negative
-    /// multipliers that minimise it. If at most `iterations` do not suffice, the result is an upper bound.
+    /// multipliers that minimize it. If at most `iterations` do not suffice, the result is an upper bound.
     pub fn stationarity(
         &self,
         scene: &CollisionScene,

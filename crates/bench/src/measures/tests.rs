@@ -56,13 +56,13 @@ fn a_particle_on_the_ground() {
     assert!((free.stationarity - 0.52).abs() < 1e-12 && free.min_gap.is_none(), "{free:?}");
 }
 
-/// Two particles pressed against each other end with the centre of mass of their targets.
+/// Two particles pressed against each other end with the center of mass of their targets.
 #[test]
 fn two_particles_of_different_mass() {
     let start = vec![Point::new(-0.01, 0.0, 1.0), Point::new(0.01, 0.0, 1.0)];
     let target = vec![Point::new(0.008, 0.0, 1.0), Point::new(-0.004, 0.0, 1.0)];
     let case = particles(start, target, vec![1.0, 3.0]);
-    // Centre (0.008 - 3 * 0.004)/4 = -0.001, distance 2 mm shared 3 to 1.
+    // Center (0.008 - 3 * 0.004)/4 = -0.001, distance 2 mm shared 3 to 1.
     let solution = [Point::new(-0.001 - 1.5e-3, 0.0, 1.0), Point::new(-0.001 + 0.5e-3, 0.0, 1.0)];
     let solved = quality(&case, &solution);
     assert!(solved.stationarity < 1e-9 && solved.violation < 1e-12, "{solved:?}");
@@ -153,13 +153,13 @@ fn stretch_is_measured_against_its_limit() {
         ..States::default()
     };
     let case = CollisionCase::new("sheet", states).expect("a sound case");
-    let centred = |s: f64| -> Vec<Point> {
+    let centered = |s: f64| -> Vec<Point> {
         square(s).iter().map(|p| p + Vector::new(0.1 - s / 2.0, 0.1 - s / 2.0, 0.0)).collect()
     };
-    let at_limit = quality(&case, &centred(0.11));
+    let at_limit = quality(&case, &centered(0.11));
     assert!(at_limit.stretch_violation.abs() < 1e-9 && at_limit.stationarity < 1e-6, "{at_limit:?}");
-    let beyond = quality(&case, &centred(0.121));
+    let beyond = quality(&case, &centered(0.121));
     assert!((beyond.stretch_violation - 0.1).abs() < 1e-9, "{beyond:?}");
-    let before = quality(&case, &centred(0.1));
+    let before = quality(&case, &centered(0.1));
     assert!(before.stationarity > 0.01, "no edge is at its limit");
 }

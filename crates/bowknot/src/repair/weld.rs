@@ -44,32 +44,28 @@ pub(super) fn weld(mesh: &mut Mesh, distance: f64, report: &mut RepairReport) {
     mesh.particles.iter_mut().for_each(rename);
 }
 
-/// Disjoint sets of vertices, each with its members and the neighbours that it must not swallow.
+/// Disjoint sets of vertices, each with its members and the neighbors that it must not swallow.
 struct Groups {
     sets: UnionFind,
     members: Vec<Vec<u32>>,
     /// Vertices that share an edge with a vertex, ascending.
-    neighbours: Vec<Vec<u32>>,
+    neighbors: Vec<Vec<u32>>,
 }
 
 impl Groups {
     fn new(mesh: &Mesh) -> Self {
         let count = mesh.positions.len();
-        let mut neighbours = vec![Vec::new(); count];
+        let mut neighbors = vec![Vec::new(); count];
         let edges = mesh.triangles.iter().flat_map(|&[i, j, k]| [[i, j], [j, k], [k, i]]);
         for [i, j] in edges.chain(mesh.strands.iter().copied()) {
-            neighbours[i as usize].push(j);
-            neighbours[j as usize].push(i);
+            neighbors[i as usize].push(j);
+            neighbors[j as usize].push(i);
         }
-        for list in &mut neighbours {
+        for list in &mut neighbors {
             list.sort_unstable();
             list.dedup();
         }
-        Self {
-            sets: UnionFind::new(count),
-            members: (0..count as u32).map(|v| vec![v]).collect(),
-            neighbours,
-        }
+        Self { sets: UnionFind::new(count), members: (0..count as u32).map(|v| vec![v]).collect(), neighbors }
     }
 
     /// Joins the groups of two vertices, under the smaller root, if no edge has its ends in both.
@@ -78,7 +74,7 @@ impl Groups {
         let (a, b) = (a.min(b), a.max(b));
         let shares_edge = || {
             let other = |v: &u32| self.members[b as usize].contains(v);
-            self.members[a as usize].iter().any(|&v| self.neighbours[v as usize].iter().any(other))
+            self.members[a as usize].iter().any(|&v| self.neighbors[v as usize].iter().any(other))
         };
         if a == b || shares_edge() {
             return;

@@ -1,6 +1,6 @@
 //! The contacts that the dynamics knows of: which pairs they are, and the forces that they carry.
 //!
-//! After each collision stage the pairs within contact range are sorted into contacts and mere neighbours ([`Facing`]). A
+//! After each collision stage the pairs within contact range are sorted into contacts and mere neighbors ([`Facing`]). A
 //! contact takes over the force that it carried before: that of its spring in the Newton system and that of its row in the
 //! collision stage. Where a contact point has slid on to another feature, the force on its vertex passes to the new one.
 //! Forces are part of the state between two time steps, and of checkpoints. Edges at their stretch limits are springs like contacts.

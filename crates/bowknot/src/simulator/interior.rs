@@ -4,7 +4,7 @@
 //! leave them elsewhere, at x. A vertex inside that went to its target all the same could end up on the wrong side of
 //! the surface that was stopped before it. So, where surface and target differ:
 //!
-//! 1. vertices inside get their target and a correction, that of their neighbours on average (a few sweeps of
+//! 1. vertices inside get their target and a correction, that of their neighbors on average (a few sweeps of
 //!    Gauss-Seidel on the graph Laplacian, the surface's corrections held);
 //! 2. with [`InteriorFollows::Elastic`], the dynamics then solves for them with the surface held there: a Newton
 //!    iteration of the time step's own energy, repeated while a tetrahedron is inverted, a few times at most.
@@ -29,9 +29,9 @@ pub(super) struct Interior {
     first: usize,
     /// Tetrahedra with a vertex inside.
     tets: Vec<[u32; 4]>,
-    /// Where the neighbours of each vertex inside begin, and of one more.
+    /// Where the neighbors of each vertex inside begin, and of one more.
     starts: Vec<u32>,
-    neighbours: Vec<u32>,
+    neighbors: Vec<u32>,
     prescribed: Vec<bool>,
     keyframes: Vec<Point>,
 }
@@ -53,8 +53,8 @@ impl Interior {
         let starts = (first..=world.positions.len())
             .map(|v| pairs.partition_point(|pair| (pair[0] as usize) < v) as u32)
             .collect();
-        let neighbours = pairs.iter().map(|pair| pair[1]).collect();
-        Self { method, first, tets, starts, neighbours, ..Self::default() }
+        let neighbors = pairs.iter().map(|pair| pair[1]).collect();
+        Self { method, first, tets, starts, neighbors, ..Self::default() }
     }
 
     /// Moves the vertices inside, which are at their target `y`, to where they go with the surface at `x` [m].
@@ -99,7 +99,7 @@ impl Interior {
         for _ in 0..SWEEPS {
             for (k, range) in self.starts.windows(2).enumerate() {
                 let v = self.first + k;
-                let near = &self.neighbours[range[0] as usize..range[1] as usize];
+                let near = &self.neighbors[range[0] as usize..range[1] as usize];
                 if near.is_empty() || prescribed[v] {
                     continue;
                 }

@@ -6,7 +6,7 @@ use bowknot_twoway::{Skipped, Statistics};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// What a time step did and how it ended; it serialises to one line of `stats.jsonl`.
+/// What a time step did and how it ended; it serializes to one line of `stats.jsonl`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StepStatistics {
     /// Index of the time step, from 1: the frame that it made.
@@ -51,7 +51,7 @@ pub struct StepStatistics {
     pub energy: Energy,
     /// Momentum at the end [kg m/s].
     pub momentum: [f64; 3],
-    /// Centre of mass at the end [m].
+    /// Center of mass at the end [m].
     pub center_of_mass: [f64; 3],
     /// Wall seconds by stage.
     pub seconds: StepSeconds,

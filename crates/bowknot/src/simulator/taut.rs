@@ -1,7 +1,7 @@
 //! Edges of cloth at their stretch limits, as springs of the dynamics.
 //!
 //! The collision stage keeps edges within their limits, in the metric of mass: without knowing of limits, the dynamics would
-//! stretch them beyond in each iteration, and the collision stage would draw them back at the cost of their neighbours, which it
+//! stretch them beyond in each iteration, and the collision stage would draw them back at the cost of their neighbors, which it
 //! crushes. A taut edge is a one-sided spring like a contact: it pulls from its limit on, and the force that its spring has come to
 //! is that of the next one. What rows of the collision stage add to it is not handed on.
 

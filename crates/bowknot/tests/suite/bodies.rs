@@ -296,7 +296,7 @@ fn bits(simulator: &Simulator) -> Vec<[u64; 6]> {
     state.map(|(x, v)| [x.x, x.y, x.z, v.x, v.y, v.z].map(f64::to_bits)).collect()
 }
 
-/// A block of rubber, stiff beside its weight, on a plane of slope 0.4: how far its centre of mass goes in a second, its acceleration
+/// A block of rubber, stiff beside its weight, on a plane of slope 0.4: how far its center of mass goes in a second, its acceleration
 /// in the last half of it, after it has come to lie at its contact distance, and the most elastic energy on the way.
 fn rubber_on_a_slope(friction: f64, repulsion: f64) -> (f64, f64, f64) {
     let mut simulator = simulator(&format!(

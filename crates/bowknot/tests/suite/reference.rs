@@ -61,7 +61,7 @@ const HEAD: &str = "\
 # Scene reference
 
 A scene is a TOML file. Every key has a default but the meshes; unknown keys are refused. Units stand in their own
-column: 1 is a plain number. Lengths are in metres, z is up. `--set KEY.PATH=VALUE` overrides a key of a file or of a
+column: 1 is a plain number. Lengths are in meters, z is up. `--set KEY.PATH=VALUE` overrides a key of a file or of a
 built-in scene; an entry of `body`, `obstacle` or `pin` is named by its index from 0 or by its `name`:
 `--set body.sheet.material=silk`.
 

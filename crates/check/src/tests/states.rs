@@ -114,7 +114,7 @@ fn touching_counts() {
 
 /// Contacts in which every edge and triangle share a vertex are found as well.
 #[test]
-fn contacts_among_neighbours_are_found() {
+fn contacts_among_neighbors_are_found() {
     // A tetrahedron flattened to a quad: its opposite edges cross.
     let flat = points(&[[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
     let faces = [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]];

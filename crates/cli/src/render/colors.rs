@@ -1,4 +1,4 @@
-//! The numbers that colours show at vertices, and the scale that all frames share.
+//! The numbers that colors show at vertices, and the scale that all frames share.
 
 use super::edges::edges_with_lengths;
 use super::folder::RunFolder;
@@ -15,10 +15,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Share of the values at either end that may lie beyond the scale, so that a few extreme edges do not take
-/// the range of colours from all others.
+/// the range of colors from all others.
 const OUTLIERS: f64 = 0.002;
 
-/// Colours of all frames that are drawn.
+/// Colors of all frames that are drawn.
 pub struct Coloring {
     legend: Option<Legend>,
     /// For each frame the position of each vertex on the scale, in [0, 1], or NaN for none; empty without a
@@ -62,7 +62,7 @@ impl Coloring {
         Ok(Self { legend: Some(Legend::Scale(scale)), shares })
     }
 
-    /// The legend, if colours show something.
+    /// The legend, if colors show something.
     pub fn legend(&self) -> Option<&Legend> {
         self.legend.as_ref()
     }
@@ -73,7 +73,7 @@ impl Coloring {
     }
 }
 
-/// Names and colours of the deformable bodies, and of the obstacles together.
+/// Names and colors of the deformable bodies, and of the obstacles together.
 fn names(run: &RunFolder) -> Vec<(String, [u8; 3])> {
     let bodies = run.scene().bodies.iter().enumerate();
     let mut names: Vec<_> = bodies.map(|(k, body)| (body.name.clone(), body_color(k as u32))).collect();
@@ -174,7 +174,7 @@ impl Source {
             },
             Self::RemainingOfSteps(steps) => {
                 let of_step = frame.checked_sub(1).and_then(|step| steps.get(step));
-                vec![of_step.map_or(0.0, |metres| 1e3 * metres); n]
+                vec![of_step.map_or(0.0, |meters| 1e3 * meters); n]
             }
         };
         for (v, value) in values.iter_mut().enumerate() {

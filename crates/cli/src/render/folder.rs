@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 const DELTA: f64 = 0.1;
 /// Smallest radius of strands and grains, relative to the size of the scene: thinner ones could not be seen.
 const MIN_RADIUS: f64 = 5e-4;
-/// Number of grains whose nearest neighbours are measured to estimate their size, if the scene does not give
+/// Number of grains whose nearest neighbors are measured to estimate their size, if the scene does not give
 /// it.
 const SAMPLED_GRAINS: usize = 500;
 
@@ -182,7 +182,7 @@ fn radius(scene: &Scene, mesh: &Mesh) -> f64 {
     (delta / 2.0).max(MIN_RADIUS * (high - low).norm())
 }
 
-/// Median distance from grains to their nearest neighbours [m].
+/// Median distance from grains to their nearest neighbors [m].
 fn spacing(mesh: &Mesh) -> f64 {
     let grains: Vec<Point> = mesh.particles.iter().map(|&v| mesh.positions[v as usize]).collect();
     let step = (grains.len() / SAMPLED_GRAINS).max(1);

@@ -158,7 +158,7 @@ fn a_browser_plays_the_page() {
     let sheet = picture.share(MIDDLE.0, MIDDLE.1, blue);
     assert!((0.05..0.9).contains(&sheet), "the sheet covers {sheet} of the middle");
 
-    // Other colours, by what the address asks for: speeds of a falling sheet are not its blue.
+    // Other colors, by what the address asks for: speeds of a falling sheet are not its blue.
     let (dom, speeds) = open(&chromium, &page, "theme=light&field=speed&tab=summary", &[]);
     assert_eq!(data(&dom, "state"), Some("ready"));
     let light = speeds.share(MIDDLE.0, MIDDLE.1, |p| p.iter().all(|&c| c > 200));

@@ -1,7 +1,7 @@
 //! Velocities at the end of a time step that conserve linear and angular momentum.
 //!
 //! The mean velocity of a step, (x1 - x0) / dt, is the velocity in its middle. Implicit Euler takes it for
-//! the velocity at the end, which slows rotation: with forces f that act at x1, about the centre of mass and
+//! the velocity at the end, which slows rotation: with forces f that act at x1, about the center of mass and
 //! relative to its motion,
 //!
 //! ```text
@@ -50,9 +50,9 @@ pub struct Touching {
 struct Rigid {
     center: Vector,
     velocity: Vector,
-    /// Angular momentum about the centre [kg m^2/s].
+    /// Angular momentum about the center [kg m^2/s].
     angular: Vector,
-    /// Pseudo-inverse of the tensor of inertia about the centre.
+    /// Pseudo-inverse of the tensor of inertia about the center.
     inverse: Matrix3<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! The implicit Euler step as a minimisation, one Newton iteration at a time.
+//! The implicit Euler step as a minimization, one Newton iteration at a time.
 //!
 //! The function is, over the free nodes and with the others at their keyframes,
 //!
@@ -11,7 +11,7 @@
 //!
 //! | stage of [`Dynamics::newton_target`] | reads | writes |
 //! |---|---|---|
-//! | linearise at x | x, x0 | energy, gradient, H (filtered) |
+//! | linearize at x | x, x0 | energy, gradient, H (filtered) |
 //! | impose keyframes | H, prescribed | right-hand side b = -g - H p_prescribed |
 //! | solve H p = b by CG | guesses: inertia, last target | p |
 //! | search along p | E | y = x + t p, prescribed vertices at their keyframes |

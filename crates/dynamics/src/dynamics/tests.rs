@@ -39,12 +39,12 @@ fn newton<'a>(dynamics: &'a mut Dynamics, step: &'a mut Step) -> Newton<'a> {
     Newton { model, params, repulsion, step, work }
 }
 
-/// The time step, linearised at `x`.
-fn linearised(dynamics: &mut Dynamics, x: &[Vector]) -> Step {
+/// The time step, linearized at `x`.
+fn linearized(dynamics: &mut Dynamics, x: &[Vector]) -> Step {
     let mut step = dynamics.step.take().expect("begun");
     dynamics.work.x.copy_from_slice(x);
     dynamics.work.imposed.fill(Vector::zeros());
-    newton(dynamics, &mut step).linearise();
+    newton(dynamics, &mut step).linearize();
     step
 }
 
@@ -77,7 +77,7 @@ fn the_gradient_matches_differences_of_the_incremental_potential() {
     let nodes = dynamics.model.node_vertex.clone();
     // At a distance from the start, so that damping has an effect.
     let mut x: Vec<Vector> = nodes.iter().map(|&v| x0[v as usize].coords + v0[v as usize] * 0.01).collect();
-    let mut step = linearised(&mut dynamics, &x);
+    let mut step = linearized(&mut dynamics, &x);
     let gradient = dynamics.work.gradient.clone();
     let h = 1e-6;
     let scale = gradient.iter().map(|g| g.norm()).fold(0.0, f64::max);
@@ -102,7 +102,7 @@ fn the_matrix_is_symmetric_positive_definite_and_matches_differences_under_tensi
     dynamics.begin_step(&x0, &v0, 0.02).expect("begins");
     let nodes = dynamics.model.node_vertex.clone();
     let crumple: Vec<Vector> = nodes.iter().map(|&v| x0[v as usize].coords).collect();
-    let step = linearised(&mut dynamics, &crumple);
+    let step = linearized(&mut dynamics, &crumple);
     let matrix = dense(&dynamics, &step);
     assert!((&matrix - matrix.transpose()).abs().max() < 1e-12 * matrix.abs().max());
     let smallest = matrix.symmetric_eigenvalues().min();
@@ -112,7 +112,7 @@ fn the_matrix_is_symmetric_positive_definite_and_matches_differences_under_tensi
     // Every triangle stretched: nothing is filtered, H is the derivative of the gradient.
     dynamics.step = Some(step);
     let stretched: Vec<Vector> = crumple.iter().map(|x| x * 1.6).collect();
-    let step = linearised(&mut dynamics, &stretched);
+    let step = linearized(&mut dynamics, &stretched);
     let matrix = dense(&dynamics, &step);
     dynamics.step = Some(step);
     let h = 1e-6;
@@ -120,7 +120,7 @@ fn the_matrix_is_symmetric_positive_definite_and_matches_differences_under_tensi
         let mut at = |offset: f64| {
             let mut x = stretched.clone();
             x[column / 3][column % 3] += offset;
-            let step = linearised(&mut dynamics, &x);
+            let step = linearized(&mut dynamics, &x);
             dynamics.step = Some(step);
             dynamics.work.gradient.clone()
         };
@@ -270,9 +270,9 @@ fn wind_and_repulsion_have_exact_gradients_and_matrices() {
     let stretched: Vec<Vector> =
         nodes.iter().map(|&v| x0[v as usize].coords * 1.6 + v0[v as usize] * 0.002).collect();
     // The active set and the bounds of friction are those at these positions.
-    let step = linearised(&mut dynamics, &stretched);
+    let step = linearized(&mut dynamics, &stretched);
     dynamics.repulsion.update_active_set(&stretched);
-    let step = linearised_at(&mut dynamics, step, &stretched);
+    let step = linearized_at(&mut dynamics, step, &stretched);
     let gradient = dynamics.work.gradient.clone();
     let reactions = dynamics.repulsion.linear().reactions(&stretched);
     let pushed = |n: &usize| dynamics.repulsion.linear().row_product(*n, &reactions) != Vector::zeros();
@@ -295,7 +295,7 @@ fn wind_and_repulsion_have_exact_gradients_and_matrices() {
             assert!((slope - gradient[node][axis]).abs() < 1e-6 * scale, "{slope} {}", gradient[node][axis]);
 
             // A column of H, computed by a product, against differences of the gradient.
-            let step = linearised_at(&mut dynamics, step, &stretched);
+            let step = linearized_at(&mut dynamics, step, &stretched);
             let mut unit = vec![Vector::zeros(); moved.len()];
             unit[node][axis] = 1.0;
             let system = System {
@@ -308,7 +308,7 @@ fn wind_and_repulsion_have_exact_gradients_and_matrices() {
             system.multiply(&unit, &mut image);
             let mut gradient_at = |dynamics: &mut Dynamics, step: Step, offset: f64| {
                 moved[node][axis] = here + offset;
-                let step = linearised_at(dynamics, step, &moved);
+                let step = linearized_at(dynamics, step, &moved);
                 moved[node][axis] = here;
                 (dynamics.work.gradient.clone(), step)
             };
@@ -323,9 +323,9 @@ fn wind_and_repulsion_have_exact_gradients_and_matrices() {
     }
 }
 
-fn linearised_at(dynamics: &mut Dynamics, step: Step, x: &[Vector]) -> Step {
+fn linearized_at(dynamics: &mut Dynamics, step: Step, x: &[Vector]) -> Step {
     dynamics.step = Some(step);
-    linearised(dynamics, x)
+    linearized(dynamics, x)
 }
 
 #[test]

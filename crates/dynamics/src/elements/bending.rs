@@ -139,7 +139,7 @@ fn flux(a: Vector, b: Vector, o: Vector) -> [f64; 3] {
 }
 
 /// The matrix (n_e.n_f)^2 of the edges opposite of each corner, with the jumps of free edges eliminated by
-/// minimisation.
+/// minimization.
 fn free_edges_condensed(corners: &[Vector; 3], inner: [bool; 3]) -> [[f64; 3]; 3] {
     let directions: [Vector; 3] =
         std::array::from_fn(|c| (corners[(c + 2) % 3] - corners[(c + 1) % 3]).normalize());

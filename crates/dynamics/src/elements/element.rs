@@ -5,7 +5,7 @@ use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
 
 /// Energy [J] of an element, its gradient [N] and its Hessian [N/m] over the element's nodes.
-pub(crate) struct Linearisation<const N: usize> {
+pub(crate) struct Linearization<const N: usize> {
     pub energy: f64,
     pub gradient: [Vector; N],
     /// Blocks (a, b) for a <= b; the others are their transposes and are not filled in.
@@ -21,7 +21,7 @@ pub(crate) trait Element<const N: usize>: Send + Sync {
     fn energy(&self, x: &[Vector; N], start: Option<Start<'_, N>>) -> f64;
 
     /// [`Self::energy`] with gradient and filtered Hessian.
-    fn linearise(&self, x: &[Vector; N], start: Option<Start<'_, N>>, filter: Filter) -> Linearisation<N>;
+    fn linearize(&self, x: &[Vector; N], start: Option<Start<'_, N>>, filter: Filter) -> Linearization<N>;
 }
 
 /// Positions of an element's nodes at the start of the step [m], for damping.

@@ -1,7 +1,7 @@
 //! What all triangles of constant strain share: shape functions, deformation gradient, its singular values,
 //! and the assembly of forces and Hessian from a state in the frames of the singular vectors.
 
-use super::element::Linearisation;
+use super::element::Linearization;
 use super::filter::Filter;
 use super::svd::any_normal;
 use bowknot_geometry::Vector;
@@ -116,7 +116,7 @@ pub(super) fn assemble(
     energy: f64,
     stress: [[f64; 2]; 2],
     curvatures: &Curvatures,
-) -> Linearisation<3> {
+) -> Linearization<3> {
     let Decomposition { u: [u1, u2], v1: [cosine, sine], .. } = *decomposition;
     // Shape function gradients along v1 and v2.
     let shape = gradients.map(|[g0, g1]| Vector2::new(cosine * g0 + sine * g1, cosine * g1 - sine * g0));
@@ -124,7 +124,7 @@ pub(super) fn assemble(
     let (k11, k12, k22) = (corner(0, 0), corner(0, 1), corner(1, 1));
     let basis = Matrix3::from_columns(&[u1, u2, u1.cross(&u2)]);
     let [[p11, p12], [p21, p22]] = stress;
-    let mut out = Linearisation {
+    let mut out = Linearization {
         energy: area * energy,
         gradient: [Vector::zeros(); 3],
         hessian: [[Matrix3::zeros(); 3]; 3],

@@ -54,7 +54,7 @@ pub(crate) trait AnyElementSet: Send + Sync {
 
     /// Adds gradient and Hessian of the elements that touch the chunk to its rows. Returns the energy [J] of
     /// the elements that the chunk owns.
-    fn linearise(&self, chunk: usize, motion: Motion<'_>, filter: Filter, rows: &mut Rows<'_>) -> f64;
+    fn linearize(&self, chunk: usize, motion: Motion<'_>, filter: Filter, rows: &mut Rows<'_>) -> f64;
 
     /// Number of elements.
     #[cfg(test)]
@@ -162,7 +162,7 @@ impl<E: Element<N>, const N: usize> AnyElementSet for ElementSet<E, N> {
         self.elements.iter().zip(energies).for_each(|(element, energy)| visit(element.nodes()[0], energy));
     }
 
-    fn linearise(&self, chunk: usize, motion: Motion<'_>, filter: Filter, rows: &mut Rows<'_>) -> f64 {
+    fn linearize(&self, chunk: usize, motion: Motion<'_>, filter: Filter, rows: &mut Rows<'_>) -> f64 {
         let mut energy = 0.0;
         for &index in self.chunk(chunk) {
             let element = &self.elements[index as usize];
@@ -170,7 +170,7 @@ impl<E: Element<N>, const N: usize> AnyElementSet for ElementSet<E, N> {
             let x = nodes.map(|n| motion.x[n as usize]);
             let x0 = nodes.map(|n| motion.start[n as usize]);
             let start = Start { x: &x0, rate: motion.rate };
-            let part = element.linearise(&x, (motion.rate > 0.0).then_some(start), filter);
+            let part = element.linearize(&x, (motion.rate > 0.0).then_some(start), filter);
             if Self::owner(&nodes) == chunk {
                 energy += part.energy;
             }

@@ -14,7 +14,7 @@
 //! shapes. Only n is nonlinear in x. The Hessian is the Gauss-Newton matrix, which is positive semi-definite.
 
 use super::bending::{Merged, for_each_stencil};
-use super::element::{Element, Linearisation, Start};
+use super::element::{Element, Linearization, Start};
 use super::filter::Filter;
 use super::membrane::{deformation, rest_gradients};
 use bowknot_geometry::Vector;
@@ -102,7 +102,7 @@ impl<const N: usize> Element<N> for CurvedBend<N> {
         0.5 * (0..3).map(|e| r[e].dot(&stress[e])).sum::<f64>()
     }
 
-    fn linearise(&self, x: &[Vector; N], _start: Option<Start<'_, N>>, _filter: Filter) -> Linearisation<N> {
+    fn linearize(&self, x: &[Vector; N], _start: Option<Start<'_, N>>, _filter: Filter) -> Linearization<N> {
         let (r, [f1, f2, cross], scale) = self.residuals(x);
         let stress = self.weighted(&r);
         // With m = f1 x f2: dn = scale (I - m m^T / (m^2 + crushed^2)) (df1 x f2 + f1 x df2).
@@ -119,7 +119,7 @@ impl<const N: usize> Element<N> for CurvedBend<N> {
                 Matrix3::from_diagonal_element(self.jumps[e][p] - a * g1 - b * g2) - turn * c
             })
         });
-        let mut out = Linearisation {
+        let mut out = Linearization {
             energy: 0.5 * (0..3).map(|e| r[e].dot(&stress[e])).sum::<f64>(),
             gradient: [Vector::zeros(); N],
             hessian: [[Matrix3::zeros(); N]; N],
@@ -135,7 +135,7 @@ impl<const N: usize> Element<N> for CurvedBend<N> {
     }
 }
 
-/// Bending elements of a sheet, by the number of neighbours of their triangles.
+/// Bending elements of a sheet, by the number of neighbors of their triangles.
 #[derive(Default)]
 pub(crate) struct CurvedBends {
     pub one: Vec<CurvedBend<4>>,
@@ -152,7 +152,7 @@ impl CurvedBends {
                 4 => self.one.extend(CurvedBend::new(&stencil, rest, stiffness)),
                 5 => self.two.extend(CurvedBend::new(&stencil, rest, stiffness)),
                 6 => self.three.extend(CurvedBend::new(&stencil, rest, stiffness)),
-                // A triangle without neighbours cannot bend.
+                // A triangle without neighbors cannot bend.
                 _ => {}
             }
         });

@@ -19,7 +19,7 @@
 //! dE^2`, dE = (l^2 - l0^2)/(2 L^2); it is invariant under rotations. Damping of bending is `beta/dt EI/(2 M)
 //! |w - w_start|^2`, which depends slightly on rotations of bent strands.
 
-use super::element::{Element, Linearisation, Start};
+use super::element::{Element, Linearization, Start};
 use super::filter::Filter;
 use crate::material::rest_shape::RestShape;
 use crate::material::strand::StrandMaterial;
@@ -74,7 +74,7 @@ impl Element<2> for StrandEdge {
         0.5 * self.stiffness * self.length * twice
     }
 
-    fn linearise(&self, x: &[Vector; 2], start: Option<Start<'_, 2>>, filter: Filter) -> Linearisation<2> {
+    fn linearize(&self, x: &[Vector; 2], start: Option<Start<'_, 2>>, filter: Filter) -> Linearization<2> {
         let d = x[1] - x[0];
         let stretch = d.norm() / self.length;
         let along = if stretch > 0.0 { d / (stretch * self.length) } else { Vector::x() };
@@ -94,7 +94,7 @@ impl Element<2> for StrandEdge {
         let scale = self.stiffness / self.length;
         let block =
             (Matrix3::from_diagonal_element(across) + along * along.transpose() * (axial - across)) * scale;
-        let mut out = Linearisation {
+        let mut out = Linearization {
             energy: self.energy(x, start),
             gradient: [-gradient, gradient],
             hessian: [[block; 2]; 2],
@@ -168,7 +168,7 @@ impl Element<3> for StrandTurn {
         0.5 * self.stiffness * twice
     }
 
-    fn linearise(&self, x: &[Vector; 3], start: Option<Start<'_, 3>>, filter: Filter) -> Linearisation<3> {
+    fn linearize(&self, x: &[Vector; 3], start: Option<Start<'_, 3>>, filter: Filter) -> Linearization<3> {
         let jump = self.jump(x);
         let turning = jump.norm();
         let along = if turning > 0.0 { jump / turning } else { Vector::zeros() };
@@ -187,7 +187,7 @@ impl Element<3> for StrandTurn {
             * self.stiffness;
         let [a, c] = self.inverse_lengths;
         let weights = [a, -a - c, c];
-        Linearisation {
+        Linearization {
             energy: self.energy(x, start),
             gradient: weights.map(|w| force * (w * self.stiffness)),
             hessian: weights.map(|wa| weights.map(|wb| block * (wa * wb))),
@@ -207,16 +207,16 @@ pub(crate) fn strand_elements(
     });
     let mut turns = Vec::new();
     if material.bend_stiffness > 0.0 {
-        // Neighbours by vertex, in the order of edges.
+        // Neighbors by vertex, in the order of edges.
         let mut around: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
         for &[a, b] in edges {
             around.entry(a).or_default().push(b);
             around.entry(b).or_default().push(a);
         }
-        for (&centre, others) in &around {
+        for (&center, others) in &around {
             for (k, &c) in others.iter().enumerate() {
                 for &a in &others[..k] {
-                    let nodes = [a, centre, c];
+                    let nodes = [a, center, c];
                     turns.extend(StrandTurn::new(
                         nodes,
                         &nodes.map(at),

@@ -9,7 +9,7 @@
 //! It is invariant under rotations, so it conserves linear and angular momentum. The curvatures of a damped
 //! element are the sum of those of both potentials, and the sum is filtered.
 
-use super::element::{Element, Linearisation, Start};
+use super::element::{Element, Linearization, Start};
 use super::filter::Filter;
 use super::solid_law::{Principal, SolidLaw};
 use super::svd::{Svd, signed_svd};
@@ -163,14 +163,14 @@ impl Element<4> for Tetrahedron {
         self.volume * density
     }
 
-    fn linearise(&self, x: &[Vector; 4], start: Option<Start<'_, 4>>, filter: Filter) -> Linearisation<4> {
+    fn linearize(&self, x: &[Vector; 4], start: Option<Start<'_, 4>>, filter: Filter) -> Linearization<4> {
         let f = self.deformation(x);
         let Svd { u, s, v } = signed_svd(&f);
         let principal = self.law.principal(&s);
         // Shape function gradients along v_j, as rows.
         let shape = self.gradients * v;
         let h: [Vector; 3] = std::array::from_fn(|a| shape.row(a).transpose());
-        let mut out = Linearisation {
+        let mut out = Linearization {
             energy: self.volume * self.law.density(&f),
             gradient: [Vector::zeros(); 4],
             hessian: [[Matrix3::zeros(); 4]; 4],

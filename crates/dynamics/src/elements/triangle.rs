@@ -28,7 +28,7 @@
 //! angular momentum; its gradient is the viscous force of implicit Euler. The curvatures of a damped element
 //! are the sum of those of both potentials, and the sum is filtered.
 
-use super::element::{Element, Linearisation, Start};
+use super::element::{Element, Linearization, Start};
 use super::filter::Filter;
 use super::membrane::{
     Curvatures, Decomposition, MIN_SINGULAR_VALUE, assemble, decompose, deformation, filter_2, filter_4,
@@ -213,7 +213,7 @@ impl Element<3> for Triangle {
         self.area * density
     }
 
-    fn linearise(&self, x: &[Vector; 3], start: Option<Start<'_, 3>>, filter: Filter) -> Linearisation<3> {
+    fn linearize(&self, x: &[Vector; 3], start: Option<Start<'_, 3>>, filter: Filter) -> Linearization<3> {
         let f = self.deformation(x);
         let decomposition = decompose(&f);
         let mut local = self.elastic(decomposition.s);

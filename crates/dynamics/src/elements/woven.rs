@@ -19,7 +19,7 @@
 //!
 //! and d2W = dU : C : dU + T : d2U with the stress T = C : e.
 
-use super::element::{Element, Linearisation, Start};
+use super::element::{Element, Linearization, Start};
 use super::filter::Filter;
 use super::membrane::{
     Curvatures, Decomposition, MIN_SINGULAR_VALUE, assemble, decompose, deformation, filter_2, filter_4,
@@ -172,7 +172,7 @@ impl Element<3> for WovenTriangle {
         self.area * density
     }
 
-    fn linearise(&self, x: &[Vector; 3], start: Option<Start<'_, 3>>, filter: Filter) -> Linearisation<3> {
+    fn linearize(&self, x: &[Vector; 3], start: Option<Start<'_, 3>>, filter: Filter) -> Linearization<3> {
         let f = deformation(&self.gradients, x);
         let decomposition = decompose(&f);
         let Decomposition { s: [s1, s2], v1: [c, s], .. } = decomposition;

@@ -1,4 +1,4 @@
-//! Sparse Cholesky factorisation of symmetric matrices of B x B blocks.
+//! Sparse Cholesky factorization of symmetric matrices of B x B blocks.
 //!
 //! It is made for small systems with the graph of a surface (coarse spaces) or of strands. Nodes are
 //! eliminated in the order of nested dissection by position (recursive bisection; nodes of one half that
@@ -24,7 +24,7 @@ pub(crate) enum PivotPolicy {
     Raise,
 }
 
-/// The part of a factorisation that depends on the graph alone.
+/// The part of a factorization that depends on the graph alone.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Symbolic {
     /// Old index of each new index, and the inverse.
@@ -39,18 +39,18 @@ pub(crate) struct Symbolic {
 }
 
 impl Symbolic {
-    /// Analyses the graph in which node i has the `neighbours(i)` (in any order, i itself allowed), in the
+    /// Analyses the graph in which node i has the `neighbors(i)` (in any order, i itself allowed), in the
     /// order of nested dissection by `positions`.
-    pub fn new<'a>(positions: &[Vector], neighbours: impl Fn(usize) -> &'a [u32]) -> Self {
+    pub fn new<'a>(positions: &[Vector], neighbors: impl Fn(usize) -> &'a [u32]) -> Self {
         let count = positions.len();
         let mut order: Vec<u32> = (0..count as u32).collect();
         let mut side = vec![0u8; count];
-        dissect(&mut order, positions, &neighbours, &mut side);
-        Self::in_order(order, neighbours)
+        dissect(&mut order, positions, &neighbors, &mut side);
+        Self::in_order(order, neighbors)
     }
 
     /// Analyses the graph for elimination in the given order.
-    pub fn in_order<'a>(order: Vec<u32>, neighbours: impl Fn(usize) -> &'a [u32]) -> Self {
+    pub fn in_order<'a>(order: Vec<u32>, neighbors: impl Fn(usize) -> &'a [u32]) -> Self {
         let count = order.len();
         let mut place = vec![0; count];
         order.iter().enumerate().for_each(|(new, &old)| place[old as usize] = new as u32);
@@ -63,7 +63,7 @@ impl Symbolic {
         for k in 0..count {
             let mut rows = Vec::new();
             seen[k] = k as u32;
-            let own = neighbours(order[k] as usize).iter().map(|&n| place[n as usize]);
+            let own = neighbors(order[k] as usize).iter().map(|&n| place[n as usize]);
             let inherited = children[k].iter().flat_map(|&c| structures[c as usize].iter().copied());
             for row in own.chain(inherited) {
                 if row as usize > k && seen[row as usize] != k as u32 {
@@ -108,7 +108,7 @@ impl Symbolic {
 fn dissect<'a>(
     nodes: &mut [u32],
     positions: &[Vector],
-    neighbours: &impl Fn(usize) -> &'a [u32],
+    neighbors: &impl Fn(usize) -> &'a [u32],
     side: &mut [u8],
 ) {
     if nodes.len() <= 3 {
@@ -128,14 +128,14 @@ fn dissect<'a>(
     nodes[..middle].iter().for_each(|&n| side[n as usize] = 1);
     let (mut right, separator): (Vec<u32>, Vec<u32>) = nodes[middle..]
         .iter()
-        .partition(|&&n| neighbours(n as usize).iter().all(|&other| side[other as usize] != 1));
+        .partition(|&&n| neighbors(n as usize).iter().all(|&other| side[other as usize] != 1));
     nodes[..middle].iter().for_each(|&n| side[n as usize] = 0);
     let split = middle + right.len();
     nodes[middle..split].copy_from_slice(&right);
     right.clear();
     nodes[split..].copy_from_slice(&separator);
-    dissect(&mut nodes[..middle], positions, neighbours, side);
-    dissect(&mut nodes[middle..split], positions, neighbours, side);
+    dissect(&mut nodes[..middle], positions, neighbors, side);
+    dissect(&mut nodes[middle..split], positions, neighbors, side);
 }
 
 /// The factor L, by columns.
@@ -150,9 +150,9 @@ pub(crate) struct Cholesky<const B: usize> {
 }
 
 impl<const B: usize> Cholesky<B> {
-    /// Factorises a matrix. `row(i)` gives the columns and blocks of row i, in old indices; blocks above the
+    /// Factorizes a matrix. `row(i)` gives the columns and blocks of row i, in old indices; blocks above the
     /// diagonal of the new order are skipped.
-    pub fn factorise<'a>(
+    pub fn factorize<'a>(
         &mut self,
         symbolic: &Symbolic,
         policy: PivotPolicy,

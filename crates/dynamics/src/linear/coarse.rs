@@ -2,7 +2,7 @@
 //!
 //! Conjugate gradients are slow to find motions of large patches that hardly stretch the cloth. The columns
 //! of P are the six rigid motions of each aggregate (a leaf of the numbering, [`super::ordering`]) about its
-//! centre at the current x. The Galerkin matrix P^T H P is factorised, and `P (P^T H P)^-1 P^T` is added to
+//! center at the current x. The Galerkin matrix P^T H P is factorized, and `P (P^T H P)^-1 P^T` is added to
 //! the fine preconditioner. Springs join aggregates that the mesh does not join: the graph of the matrix is
 //! then built anew, unless the factor would fill in too much.
 
@@ -39,27 +39,27 @@ pub(crate) struct Coarse {
 /// The pairs of aggregates that the Galerkin matrix couples.
 #[derive(Clone, Debug, Default)]
 struct Graph {
-    /// Neighbours of aggregate a, itself included, ascending: `neighbours[starts[a]..starts[a + 1]]`.
+    /// Neighbors of aggregate a, itself included, ascending: `neighbors[starts[a]..starts[a + 1]]`.
     starts: Vec<u32>,
-    neighbours: Vec<u32>,
+    neighbors: Vec<u32>,
     symbolic: Symbolic,
 }
 
 impl Graph {
-    /// From the pairs of neighbours, each in both orders, and the pairs of each aggregate with itself.
-    fn new(mut pairs: Vec<[u32; 2]>, centres: &[Vector]) -> Self {
+    /// From the pairs of neighbors, each in both orders, and the pairs of each aggregate with itself.
+    fn new(mut pairs: Vec<[u32; 2]>, centers: &[Vector]) -> Self {
         pairs.sort_unstable();
         pairs.dedup();
         let starts: Vec<u32> =
-            (0..=centres.len() as u32).map(|a| pairs.partition_point(|pair| pair[0] < a) as u32).collect();
-        let neighbours: Vec<u32> = pairs.iter().map(|pair| pair[1]).collect();
-        let mut graph = Self { starts, neighbours, symbolic: Symbolic::default() };
-        graph.symbolic = Symbolic::new(centres, |a| graph.around(a));
+            (0..=centers.len() as u32).map(|a| pairs.partition_point(|pair| pair[0] < a) as u32).collect();
+        let neighbors: Vec<u32> = pairs.iter().map(|pair| pair[1]).collect();
+        let mut graph = Self { starts, neighbors, symbolic: Symbolic::default() };
+        graph.symbolic = Symbolic::new(centers, |a| graph.around(a));
         graph
     }
 
     fn around(&self, aggregate: usize) -> &[u32] {
-        &self.neighbours[self.starts[aggregate] as usize..self.starts[aggregate + 1] as usize]
+        &self.neighbors[self.starts[aggregate] as usize..self.starts[aggregate + 1] as usize]
     }
 
     fn pairs(&self) -> impl Iterator<Item = [u32; 2]> {
@@ -83,11 +83,11 @@ impl Coarse {
                 row(node as usize, &mut |other| pairs.push([a as u32, aggregate_of[other as usize]]));
             }
         }
-        let mesh = Graph::new(pairs, &centres(aggregates, rest));
+        let mesh = Graph::new(pairs, &centers(aggregates, rest));
         Self { aggregates: aggregates.to_vec(), mesh, aggregate_of, ..Self::default() }
     }
 
-    /// Builds and factorises the Galerkin matrix for `system` at positions `x`.
+    /// Builds and factorizes the Galerkin matrix for `system` at positions `x`.
     pub fn build(&mut self, system: &System<'_>, x: &[Vector]) {
         self.place_arms(system, x);
         self.joined = system
@@ -96,7 +96,7 @@ impl Coarse {
             .filter(|graph| graph.symbolic.fill() <= MAX_FILL * self.mesh.symbolic.fill().max(1));
         let couplings = system.springs.filter(|_| self.joined.is_some());
         let graph = self.joined.as_ref().unwrap_or(&self.mesh);
-        self.blocks.resize(graph.neighbours.len(), Matrix6::zeros());
+        self.blocks.resize(graph.neighbors.len(), Matrix6::zeros());
         let (starts, arms, aggregate_of) = (&graph.starts, &self.arms, &self.aggregate_of);
         let mut rows = Vec::with_capacity(self.aggregates.len());
         let mut rest = self.blocks.as_mut_slice();
@@ -111,12 +111,12 @@ impl Coarse {
                 if arms[node].free == 0.0 {
                     continue;
                 }
-                // The row of H P, neighbour by neighbour. Neighbours in one aggregate mostly follow each
+                // The row of H P, neighbor by neighbor. Neighbors in one aggregate mostly follow each
                 // other; their sum is formed before P^T is applied.
                 let mut sum = RowSum { aggregate: aggregate_of[node], ..RowSum::default() };
                 let mut flush = |sum: &RowSum| {
                     let slot = around.binary_search(&sum.aggregate);
-                    debug_assert!(slot.is_ok(), "aggregates of coupled nodes are neighbours");
+                    debug_assert!(slot.is_ok(), "aggregates of coupled nodes are neighbors");
                     if let Some(block) = slot.ok().and_then(|slot| blocks.get_mut(slot)) {
                         sum.add_to(&arms[node], block);
                     }
@@ -146,7 +146,7 @@ impl Coarse {
             }
         });
         let blocks = &self.blocks;
-        self.factor.factorise(&graph.symbolic, PivotPolicy::Drop, |a| {
+        self.factor.factorize(&graph.symbolic, PivotPolicy::Drop, |a| {
             (graph.around(a), &blocks[starts[a] as usize..starts[a + 1] as usize])
         });
     }
@@ -161,18 +161,18 @@ impl Coarse {
                 pairs.extend(moving().map(aggregate).filter(|b| *b != a).map(|b| [a, b]));
             }
         });
-        Graph::new(pairs, &centres(&self.aggregates, x))
+        Graph::new(pairs, &centers(&self.aggregates, x))
     }
 
     fn place_arms(&mut self, system: &System<'_>, x: &[Vector]) {
         self.arms.resize(x.len(), Arm::default());
         for range in &self.aggregates {
             let nodes = range.start as usize..range.end as usize;
-            let centre = x[nodes.clone()].iter().sum::<Vector>() / nodes.len() as f64;
-            let size = x[nodes.clone()].iter().map(|x| (x - centre).norm()).fold(f64::MIN_POSITIVE, f64::max);
+            let center = x[nodes.clone()].iter().sum::<Vector>() / nodes.len() as f64;
+            let size = x[nodes.clone()].iter().map(|x| (x - center).norm()).fold(f64::MIN_POSITIVE, f64::max);
             for node in nodes {
                 let free = if system.free[node] { 1.0 } else { 0.0 };
-                self.arms[node] = Arm { offset: (x[node] - centre) * (free / size), free };
+                self.arms[node] = Arm { offset: (x[node] - center) * (free / size), free };
             }
         }
     }
@@ -208,17 +208,17 @@ impl Coarse {
 }
 
 /// Mean position of the nodes of each aggregate.
-fn centres(aggregates: &[Range<u32>], x: &[Vector]) -> Vec<Vector> {
-    let centre = |range: &Range<u32>| {
+fn centers(aggregates: &[Range<u32>], x: &[Vector]) -> Vec<Vector> {
+    let center = |range: &Range<u32>| {
         x[range.start as usize..range.end as usize].iter().sum::<Vector>() / range.len() as f64
     };
-    aggregates.iter().map(centre).collect()
+    aggregates.iter().map(center).collect()
 }
 
 /// A node moves with its aggregate by `free * shift + spin x offset`.
 #[derive(Clone, Copy, Debug, Default)]
 struct Arm {
-    /// Vector from the aggregate's centre to the node over the aggregate's size [1]; zero if the node is not
+    /// Vector from the aggregate's center to the node over the aggregate's size [1]; zero if the node is not
     /// free.
     offset: Vector,
     /// 1 if the node is free, 0 otherwise.

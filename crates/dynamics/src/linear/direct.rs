@@ -2,8 +2,8 @@
 //!
 //! The edges of a strand are very stiff compared with the inertia of its nodes. Conjugate gradients with
 //! block-Jacobi therefore take about n iterations for a strand of n nodes. Its part of H is a narrow band,
-//! which is factorised instead: some 2 blocks per node, no more work than a product with H. Nodes are
-//! eliminated from the far ends inwards: in that order trees, and bending between second neighbours, cause
+//! which is factorized instead: some 2 blocks per node, no more work than a product with H. Nodes are
+//! eliminated from the far ends inwards: in that order trees, and bending between second neighbors, cause
 //! hardly any fill-in.
 
 use super::block::BlockPattern;
@@ -84,7 +84,7 @@ impl Direct {
         self.groups.push(group);
     }
 
-    /// Factorises the blocks of `system`; rows of nodes that are not free are those of the identity.
+    /// Factorizes the blocks of `system`; rows of nodes that are not free are those of the identity.
     pub fn build(&mut self, system: &System<'_>) {
         self.groups.par_iter_mut().for_each(|group| group.build(system));
     }
@@ -125,7 +125,7 @@ impl Group {
             }
         }
         let (starts, columns, blocks) = (&self.starts, &self.columns, &self.blocks);
-        self.factor.factorise(&self.symbolic, PivotPolicy::Raise, |k| {
+        self.factor.factorize(&self.symbolic, PivotPolicy::Raise, |k| {
             let range = starts[k] as usize..starts[k + 1] as usize;
             (&columns[range.clone()], &blocks[range])
         });

@@ -1,7 +1,7 @@
 //! Numbering of nodes along the mesh, so that ranges of numbers are compact patches.
 //!
 //! Nodes are sorted by connected component, then by recursive bisection of the rest positions at the median
-//! of the longest side. Neighbours are then close in memory, and the leaves serve as aggregates.
+//! of the longest side. Neighbors are then close in memory, and the leaves serve as aggregates.
 
 use bowknot_geometry::{UnionFind, Vector};
 use std::ops::Range;

@@ -25,7 +25,7 @@ impl Preconditioner {
         Self { inverses: Vec::new(), direct, coarse }
     }
 
-    /// Prepares for `system`, linearised at positions `x`.
+    /// Prepares for `system`, linearized at positions `x`.
     pub fn build(&mut self, system: &System<'_>, x: &[Vector]) {
         self.inverses.resize(system.node_count(), Matrix3::zeros());
         self.inverses.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, inverses)| {

@@ -10,7 +10,7 @@ use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
-/// A linearised spring.
+/// A linearized spring.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LinearSpring {
     /// [`NO_NODE`] for vertices of obstacles and vertices with weight 0.
@@ -23,7 +23,7 @@ pub(crate) struct LinearSpring {
     pub force: Vector,
 }
 
-/// The active springs, linearised.
+/// The active springs, linearized.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LinearSprings {
     springs: Vec<LinearSpring>,

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// A woven or knitted sheet, linear in the rotated frame. It is isotropic, or has different stiffnesses along
 /// warp, weft and in shear.
 ///
-/// Forces do not depend on the thickness: stiffnesses are those of the sheet, per metre of its width. For a
+/// Forces do not depend on the thickness: stiffnesses are those of the sheet, per meter of its width. For a
 /// homogeneous sheet with Young's modulus E they are `E t` and `E t^3 / (12 (1 - nu^2))`, see
 /// [`ClothMaterial::from_young_modulus`]. The yarns of a fabric slide, so that it bends far more easily than
 /// that.

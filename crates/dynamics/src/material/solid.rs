@@ -113,7 +113,7 @@ mod tests {
         for name in SolidMaterial::NAMES {
             let material = SolidMaterial::named(name).expect(name);
             material.validate().expect(name);
-            let text = toml::to_string(&material).expect("serialise");
+            let text = toml::to_string(&material).expect("serialize");
             assert_eq!(toml::from_str::<SolidMaterial>(&text).expect("parse"), material);
         }
         let stvk: SolidMaterial = toml::from_str("model = \"stvk\"").expect("parse");

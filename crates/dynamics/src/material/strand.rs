@@ -57,7 +57,7 @@ impl StrandMaterial {
         }
     }
 
-    /// One human scalp hair: 1320 kg/m^3, 3.9 GPa, 80 micrometres across (Robbins, "Chemical and
+    /// One human scalp hair: 1320 kg/m^3, 3.9 GPa, 80 micrometers across (Robbins, "Chemical and
     /// Physical Behavior of Human Hair", 5th ed. 2012, chapter 9).
     pub fn hair() -> Self {
         Self::from_young_modulus(1320.0, 3.9e9, 40e-6)
@@ -78,7 +78,7 @@ impl StrandMaterial {
     }
 
     /// Cotton yarn of 100 tex: 0.1 g/m, 1 mm across. Engineering choices: EA 160 N, half of that of straight
-    /// cotton fibres of 5 GPa; EI that of 575 loose fibres of 12 micrometres.
+    /// cotton fibres of 5 GPa; EI that of 575 loose fibres of 12 micrometers.
     pub fn yarn() -> Self {
         Self {
             density: 1e-4,
@@ -153,7 +153,7 @@ mod tests {
         for name in StrandMaterial::NAMES {
             let material = StrandMaterial::named(name).expect(name);
             material.validate().expect(name);
-            let text = toml::to_string(&material).expect("serialise");
+            let text = toml::to_string(&material).expect("serialize");
             assert_eq!(toml::from_str::<StrandMaterial>(&text).expect("parse"), material);
         }
         assert!(toml::from_str::<StrandMaterial>("bend = 1.0").is_err());

@@ -4,7 +4,7 @@ use super::*;
 fn defaults_are_valid_and_survive_toml() {
     let params = DynamicsParams::default();
     params.validate().expect("defaults");
-    let text = toml::to_string(&params).expect("serialise");
+    let text = toml::to_string(&params).expect("serialize");
     assert_eq!(toml::from_str::<DynamicsParams>(&text).expect("parse"), params);
     assert!(toml::from_str::<DynamicsParams>("newton.cg_tolerence = 1e-3").is_err());
     assert!(toml::from_str::<DynamicsParams>("environment.gravitation = [0, 0, 0]").is_err());

@@ -26,13 +26,13 @@
 //! | `state` | multipliers and friction of a contact |
 //! | `springs` | all springs, their depths, slips and forces |
 //! | `prepare` | stiffness and the initial active set |
-//! | `linearise` | force and Hessian of each active spring |
+//! | `linearize` | force and Hessian of each active spring |
 //! | `active_set` | the update of active set and multipliers after a solve |
 //! | `energy` | energies |
 
 mod active_set;
 mod energy;
-mod linearise;
+mod linearize;
 mod prepare;
 pub(crate) mod spring;
 pub(crate) mod springs;

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 const ACTIVATION_MARGIN: f64 = 0.01;
 
 /// Compliance of springs against rigid motion of bodies, in dt^2 / M. The inertia of a stiff body is far less
-/// than the diagonal block of a node suggests. With springs as stiff as the block, errors of micrometres that
+/// than the diagonal block of a node suggests. With springs as stiff as the block, errors of micrometers that
 /// one linear solve makes in a rotation become forces of many times the weight of the body, and the updates
 /// of the active set diverge.
 const RIGID_COMPLIANCE: f64 = 0.3;
@@ -122,7 +122,7 @@ impl Repulsion {
     }
 
     /// Stiffness of each node in its softest direction if it has springs and belongs to strands, 0 otherwise
-    /// [N/m]. A bent strand resists along both of its edges, but only as long as the neighbours do not move.
+    /// [N/m]. A bent strand resists along both of its edges, but only as long as the neighbors do not move.
     /// Springs as stiff as that are too stiff for it, and the updates of the active set diverge where strands
     /// cross.
     fn softest_stiffness(&self, model: &DynamicsModel, diagonal: &[Matrix3<f64>]) -> Vec<f64> {

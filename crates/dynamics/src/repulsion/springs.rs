@@ -23,7 +23,7 @@ pub(crate) struct Repulsion {
     /// Whether the active set (which springs push, stick and slide) is a guess. Energies take a guess as
     /// given until the first update.
     pub(super) guessed: bool,
-    /// The active springs at the last linearisation.
+    /// The active springs at the last linearization.
     pub(super) linear: LinearSprings,
 }
 
@@ -64,7 +64,7 @@ impl Repulsion {
         self.springs.is_empty()
     }
 
-    /// The active springs at the last linearisation.
+    /// The active springs at the last linearization.
     pub fn linear(&self) -> &LinearSprings {
         &self.linear
     }

@@ -168,7 +168,7 @@ fn damping_from_rest_is_added_stiffness() {
         ),
     ] {
         let (damped, stiffer) = (step(damped), step(stiffer));
-        // The amplitude is 1e-7 m in cells of 25 mm; this is the error of the linearisation.
+        // The amplitude is 1e-7 m in cells of 25 mm; this is the error of the linearization.
         assert!(difference(&damped, &stiffer) < 1e-4, "{name}: {}", difference(&damped, &stiffer));
         assert!(difference(&damped, &undamped) > 1e-2, "{name}: no effect");
     }

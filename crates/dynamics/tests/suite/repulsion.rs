@@ -105,7 +105,7 @@ fn targets_end_with_an_accurate_solve_and_a_residual_between_them_changes_no_bit
             assert!(info.cg.converged && info.cg.residual <= tolerance, "{info:?}");
             solves += info.iterations;
             x.copy_from_slice(&y);
-            // The next target reuses the linearisation of the residual.
+            // The next target reuses the linearization of the residual.
             if measured {
                 dynamics.residual(&x, &held, &vec![true; rest.len()]).expect("finite");
             }

@@ -31,7 +31,7 @@ fn core(a: [&Point; 2], b: [&Point; 2]) -> (Closest, f64) {
     let cc = across.norm_squared();
     let s = clamp_unit(-from_line.dot(&across) / cc);
     // s is clamped to edge a. The next two lines find the best t on b for this s, and the best s on a for
-    // that t: together they minimise over the square of both parameters (Ericson 2004, "Real-Time Collision
+    // that t: together they minimize over the square of both parameters (Ericson 2004, "Real-Time Collision
     // Detection", 5.1.9). At a small angle g the first s is off by u (L g + d)/(L g^2), which moves the
     // points apart by g times that; but from any s the next two lines find a distance within (L g)^2/d of the
     // smallest. The smaller of both errors is below u L, so nearly parallel edges are no special case. For

@@ -86,7 +86,7 @@ fn components_are_numbered_by_their_smallest_vertex() {
 }
 
 #[test]
-fn a_topology_survives_serialisation() {
+fn a_topology_survives_serialization() {
     let topology = scene();
     let text = serde_json::to_string(&topology).unwrap();
     assert_eq!(serde_json::from_str::<Topology>(&text).unwrap(), topology);

@@ -96,7 +96,7 @@ fn no_distance_exceeds_theirs_however_degenerate() {
 
 #[test]
 fn short_edges_are_parallel_to_parry_and_not_to_us() {
-    // Crossing edges of 5 micrometres, 1 micrometre apart.
+    // Crossing edges of 5 micrometers, 1 micrometer apart.
     let size = 5e-6;
     let points = [
         Point::new(-size, 0.0, 1e-6),
@@ -111,7 +111,7 @@ fn short_edges_are_parallel_to_parry_and_not_to_us() {
     assert!(theirs > 2.0 * judge, "parry has changed: {theirs}; drop this test and compare at all sizes");
 
     // The same at 1 cm in single precision.
-    let centimetre = points.map(|p| p * 1e3);
-    let theirs = distance_f32(PairKind::EdgeEdge, &centimetre);
+    let centimeter = points.map(|p| p * 1e3);
+    let theirs = distance_f32(PairKind::EdgeEdge, &centimeter);
     assert!(theirs > 2e-3, "parry has changed: {theirs}; drop this test and compare at all sizes");
 }

@@ -50,8 +50,8 @@ impl Random {
 pub fn near_degenerate_pair(random: &mut Random) -> [Point; 4] {
     let size = random.power(-5.0, 2.0);
     let far = [0.0, 1.0, 1e4][random.below(3)];
-    let centre = Point::from(random.vector(far));
-    let mut p = [0; 4].map(|_| centre + random.vector(size));
+    let center = Point::from(random.vector(far));
+    let mut p = [0; 4].map(|_| center + random.vector(size));
     for _ in 0..random.below(4) {
         let [i, j, k, l] = shuffled(random);
         let speck = random.speck(size);
@@ -63,7 +63,7 @@ pub fn near_degenerate_pair(random: &mut Random) -> [Point; 4] {
             3 => p[3] = p[2] + (p[1] - p[0]) * s + speck,
             4 => {
                 let axis = random.below(3);
-                p.iter_mut().for_each(|q| q[axis] = centre[axis]);
+                p.iter_mut().for_each(|q| q[axis] = center[axis]);
             }
             // One edge or one triangle much smaller than the rest.
             _ => p[i] = p[j] + (p[i] - p[j]) * random.power(-12.0, 0.0),

@@ -19,7 +19,7 @@ pub struct UsdBody<'a> {
     pub name: &'a str,
     /// Elements, over its own vertices; positions are not looked at.
     pub elements: MeshView<'a>,
-    /// Whether it is an obstacle, which is shown in a muted colour.
+    /// Whether it is an obstacle, which is shown in a muted color.
     pub obstacle: bool,
     /// Thickness of its strands and particles [m].
     pub width: f64,
@@ -28,7 +28,7 @@ pub struct UsdBody<'a> {
 /// Writes a stage of all `frames`, atomically. `read(body, frame)` gives the positions of a body [m]; only one frame of
 /// one body is held at a time, but that each is asked for in turn, body by body.
 ///
-/// Time code k is frame k, at k / `rate` seconds; z is up, one unit a metre.
+/// Time code k is frame k, at k / `rate` seconds; z is up, one unit a meter.
 ///
 /// # Errors
 /// The system's refusal, with the path; what `read` reports.

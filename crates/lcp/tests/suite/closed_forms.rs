@@ -389,7 +389,7 @@ fn equations_pull_where_complementarity_lets_go() {
     .unwrap();
     type Solve = fn(&LcpProblem<'_>, &mut LcpState<'_>, &LcpParams) -> Result<LcpInfo, LcpError>;
     let jacobi: Solve = |problem, state, params| Jacobi::new().solve(problem, state, params);
-    for solve in [solve_serial as Solve, solve_coloured, jacobi] {
+    for solve in [solve_serial as Solve, solve_colored, jacobi] {
         for (equations, expected) in [(false, [3.0, 0.0]), (true, [3.0, -2.0])] {
             let params = LcpParams { equations, ..TIGHT };
             let (mut y, mut lambda) = (vec![x * -3.0, x * 2.0], vec![0.0; 2]);

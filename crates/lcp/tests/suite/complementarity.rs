@@ -194,7 +194,7 @@ proptest! {
                 state.lambda[i] = if row.inverse_diagonal == 0.0 { 0.0 } else { start[i] };
             }
             apply_multipliers(problem, state)?;
-            solve_coloured(problem, state, &LcpParams { relaxation: 1.4, ..PATIENT })
+            solve_colored(problem, state, &LcpParams { relaxation: 1.4, ..PATIENT })
         });
         case.check(&y, &lambda, 1e-9)?;
         near(&y, &expected, 1e-7)?;
@@ -258,8 +258,8 @@ fn rows_and_distance_limits_together_are_dykstras_projection() {
         let expected = dykstra(&case, 6000);
         let problem = LcpProblem::new(
             &case.weights,
-            ConstraintSet::new(&case.rows, Schedule::coloured(&case.row_starts)),
-            ConstraintSet::new(&case.limits, Schedule::coloured(&case.limit_starts)),
+            ConstraintSet::new(&case.rows, Schedule::colored(&case.row_starts)),
+            ConstraintSet::new(&case.limits, Schedule::colored(&case.limit_starts)),
             ConstraintSet::default(),
         )
         .unwrap();

@@ -5,7 +5,7 @@ use crate::common::{Case, cloth};
 use bowknot_lcp::*;
 use nalgebra::Vector2;
 
-/// A friction row for each row, in the same colours.
+/// A friction row for each row, in the same colors.
 fn rubbing(case: &Case) -> Vec<FrictionRow> {
     let mut friction: Vec<FrictionRow> = case
         .rows
@@ -60,27 +60,27 @@ fn results_have_the_same_bits_on_any_number_of_threads() {
         order.extend((ends[0]..ends[1]).filter(|r| r % 3 != 0));
         starts.push(order.len() as u32);
     }
-    let all = Schedule::coloured(&case.row_starts);
+    let all = Schedule::colored(&case.row_starts);
     let params = LcpParams { max_sweeps: 5, ..LcpParams::default() };
     for schedule in [all, Schedule::active(&order, &starts)] {
         let problem = LcpProblem::new(
             &case.weights,
             ConstraintSet::new(&case.rows, schedule),
-            ConstraintSet::new(&case.limits, Schedule::coloured(&case.limit_starts)),
+            ConstraintSet::new(&case.limits, Schedule::colored(&case.limit_starts)),
             ConstraintSet::new(&friction, schedule),
         )
         .unwrap();
-        validate_colours(&problem).unwrap();
+        validate_colors(&problem).unwrap();
         let serial = bits(&problem, &case, |state| solve_serial(&problem, state, &params).unwrap());
         let jacobi = |state: &mut LcpState<'_>| Jacobi::new().solve(&problem, state, &params).unwrap();
         let simultaneous = bits(&problem, &case, jacobi);
         for threads in [1, 2, 3, 5, 8] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             for _ in 0..5 {
-                let coloured = pool.install(|| {
-                    bits(&problem, &case, |state| solve_coloured(&problem, state, &params).unwrap())
+                let colored = pool.install(|| {
+                    bits(&problem, &case, |state| solve_colored(&problem, state, &params).unwrap())
                 });
-                assert!(coloured == serial, "{threads} threads");
+                assert!(colored == serial, "{threads} threads");
             }
             assert!(pool.install(|| bits(&problem, &case, jacobi)) == simultaneous, "{threads} threads");
         }
@@ -92,22 +92,22 @@ fn single_sweeps_add_up_to_a_solve() {
     let case = cloth(40, 3000, 6);
     let problem = LcpProblem::new(
         &case.weights,
-        ConstraintSet::new(&case.rows, Schedule::coloured(&case.row_starts)),
-        ConstraintSet::new(&case.limits, Schedule::coloured(&case.limit_starts)),
+        ConstraintSet::new(&case.rows, Schedule::colored(&case.row_starts)),
+        ConstraintSet::new(&case.limits, Schedule::colored(&case.limit_starts)),
         ConstraintSet::default(),
     )
     .unwrap();
     let params = LcpParams { max_sweeps: 4, ..LcpParams::default() };
-    let solved = bits(&problem, &case, |state| solve_coloured(&problem, state, &params).unwrap());
+    let solved = bits(&problem, &case, |state| solve_colored(&problem, state, &params).unwrap());
     let swept = bits(&problem, &case, |state| {
         for _ in 0..3 {
-            sweep_coloured(&problem, state, &params).unwrap();
+            sweep_colored(&problem, state, &params).unwrap();
         }
         solve_serial(&problem, state, &LcpParams { max_sweeps: 1, ..params }).unwrap()
     });
     let stopped = bits(&problem, &case, |state| {
         let Err(LcpError::NotConverged { sweeps: 4, residual }) =
-            solve_coloured(&problem, state, &LcpParams { tolerance: Some(0.0), ..params })
+            solve_colored(&problem, state, &LcpParams { tolerance: Some(0.0), ..params })
         else {
             panic!("four sweeps cannot be exact")
         };
@@ -126,8 +126,8 @@ fn friction_attached_to_its_normals_has_the_same_bits_and_the_same_solution() {
     friction.iter().enumerate().for_each(|(f, row)| friction_of[row.normal as usize] = f as u32);
     let problem = LcpProblem::new(
         &case.weights,
-        ConstraintSet::new(&case.rows, Schedule::coloured(&case.row_starts)),
-        ConstraintSet::new(&case.limits, Schedule::coloured(&case.limit_starts)),
+        ConstraintSet::new(&case.rows, Schedule::colored(&case.row_starts)),
+        ConstraintSet::new(&case.limits, Schedule::colored(&case.limit_starts)),
         ConstraintSet::serial(&friction),
     )
     .unwrap();
@@ -136,9 +136,9 @@ fn friction_attached_to_its_normals_has_the_same_bits_and_the_same_solution() {
     let serial = bits(&attached, &case, |state| solve_serial(&attached, state, &params).unwrap());
     for threads in [1, 2, 3] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let coloured = pool
-            .install(|| bits(&attached, &case, |state| solve_coloured(&attached, state, &params).unwrap()));
-        assert!(coloured == serial, "{threads} threads");
+        let colored = pool
+            .install(|| bits(&attached, &case, |state| solve_colored(&attached, state, &params).unwrap()));
+        assert!(colored == serial, "{threads} threads");
     }
     let after_all = bits(&problem, &case, |state| solve_serial(&problem, state, &params).unwrap());
     assert!(after_all != serial, "attached rows are swept in another order");
@@ -151,7 +151,7 @@ fn friction_attached_to_its_normals_has_the_same_bits_and_the_same_solution() {
         limit_multipliers: &mut limit_multipliers,
         friction: &mut multipliers,
     };
-    sweep_coloured(&attached, &mut state, &params).unwrap();
+    sweep_colored(&attached, &mut state, &params).unwrap();
     assert!(multipliers.iter().filter(|m| **m != Vector2::zeros()).count() > 100);
 }
 

@@ -69,7 +69,7 @@ fn problems_with_faults_are_refused() {
     assert_eq!(result.map(|_| ()), Err(LcpError::UnknownNormal { index: 1, normal: 2, rows: 2 }));
 
     for starts in [&[0, 1][..], &[1, 2], &[0, 2, 1, 2], &[0, 3], &[0]] {
-        let result = new(&weights, ConstraintSet::new(&good, Schedule::coloured(starts)));
+        let result = new(&weights, ConstraintSet::new(&good, Schedule::colored(starts)));
         assert_eq!(result, Err(LcpError::Starts { constraint: "row", expected: 2 }), "{starts:?}");
     }
     let result = new(&weights, ConstraintSet::new(&good, Schedule::active(&[0, 2], &[0, 2])));
@@ -94,7 +94,7 @@ fn states_and_parameters_that_do_not_fit_are_refused() {
     let fault = |state: &mut LcpState<'_>, params: &LcpParams| {
         let fault = solve_serial(&problem, state, params).unwrap_err();
         // As text, since NaN is unequal to itself.
-        assert_eq!(sweep_coloured(&problem, state, params).unwrap_err().to_string(), fault.to_string());
+        assert_eq!(sweep_colored(&problem, state, params).unwrap_err().to_string(), fault.to_string());
         assert_eq!(Jacobi::new().solve(&problem, state, params).unwrap_err().to_string(), fault.to_string());
         fault
     };
@@ -117,32 +117,32 @@ fn states_and_parameters_that_do_not_fit_are_refused() {
 }
 
 #[test]
-fn colours_that_share_a_moving_node_are_refused() {
+fn colors_that_share_a_moving_node_are_refused() {
     let weights = [1.0, 0.0, 2.0, 1.0];
     // Node 1 cannot move, so rows 0 and 1 may share it; rows 1 and 2 share node 2.
     let rows = [row([0, 1, 0, 0], &weights), row([1, 2, 1, 1], &weights), row([2, 3, 2, 2], &weights)];
     let judge = |order: &[u32], starts: &[u32]| {
         let rows = ConstraintSet::new(&rows, Schedule::active(order, starts));
-        validate_colours(
+        validate_colors(
             &LcpProblem::new(&weights, rows, ConstraintSet::default(), ConstraintSet::default()).unwrap(),
         )
     };
     assert_eq!(judge(&[0, 1, 2], &[0, 2, 3]), Ok(()));
     assert_eq!(judge(&[2, 0, 1], &[0, 2, 3]), Ok(()));
-    let clash = LcpError::Colour { constraint: "row", colour: 1, first: 1, second: 2, node: 2 };
+    let clash = LcpError::Color { constraint: "row", color: 1, first: 1, second: 2, node: 2 };
     assert_eq!(judge(&[0, 1, 2], &[0, 1, 3]), Err(clash));
-    let clash = LcpError::Colour { constraint: "row", colour: 0, first: 0, second: 0, node: 0 };
+    let clash = LcpError::Color { constraint: "row", color: 0, first: 0, second: 0, node: 0 };
     assert_eq!(judge(&[0, 0], &[0, 2]), Err(clash));
-    // Without colours rows are swept one after the other, so there is no clash.
+    // Without colors rows are swept one after the other, so there is no clash.
     assert_eq!(judge(&[0, 1, 2], &[]), Ok(()));
     let limits =
         [DistanceLimit { vertices: [0, 2], limit: 1.0 }, DistanceLimit { vertices: [2, 3], limit: 1.0 }];
-    let limits = ConstraintSet::new(&limits, Schedule::coloured(&[0, 2]));
+    let limits = ConstraintSet::new(&limits, Schedule::colored(&[0, 2]));
     let problem =
         LcpProblem::new(&weights, ConstraintSet::default(), limits, ConstraintSet::default()).unwrap();
     assert!(matches!(
-        validate_colours(&problem),
-        Err(LcpError::Colour { constraint: "distance limit", node: 2, .. })
+        validate_colors(&problem),
+        Err(LcpError::Color { constraint: "distance limit", node: 2, .. })
     ));
 }
 

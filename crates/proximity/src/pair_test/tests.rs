@@ -21,10 +21,10 @@ fn check<K: PairTest<A, B>, const A: usize, const B: usize>(place: f64) {
     let origin = Point::new(1.0, 2.0, -1.0);
     let mut counts = [0; 3];
     for round in 0..20_000 {
-        let centre = origin + vector(&mut random, place);
+        let center = origin + vector(&mut random, place);
         // Some pairs are flat, aligned or nearly touching.
         let flat = if round % 3 == 0 { 1e-6 } else { 1.0 };
-        let mut points = [centre; 4];
+        let mut points = [center; 4];
         for point in &mut points {
             let step = vector(&mut random, 0.01);
             *point += Vector::new(step.x, step.y, flat * step.z);

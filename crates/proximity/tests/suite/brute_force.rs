@@ -20,7 +20,7 @@ fn cloth(radius: f64) -> Builder {
 }
 
 #[test]
-fn folded_cloth_lists_neighbouring_layers() {
+fn folded_cloth_lists_neighboring_layers() {
     check(&cloth(0.007).build(), 1000);
 }
 
@@ -58,8 +58,8 @@ fn one_huge_triangle_among_tiny_ones() {
         0.001,
     );
     for _ in 0..250 {
-        let centre = Point::new(random.unit(), random.unit(), 0.05 * (random.unit() - 0.5));
-        builder.triangle([0; 3].map(|_| centre + random.vector(0.01)), 0.004);
+        let center = Point::new(random.unit(), random.unit(), 0.05 * (random.unit() - 0.5));
+        builder.triangle([0; 3].map(|_| center + random.vector(0.01)), 0.004);
     }
     check(&builder.build(), 200);
 }
@@ -73,7 +73,7 @@ fn everything_in_one_place() {
         builder.triangle([0; 3].map(|_| Point::origin() + random.vector(1.0)), 0.15);
     }
     check(&builder.build(), 1000);
-    // Not only close: exactly coincident, so that all boxes and centres are equal.
+    // Not only close: exactly coincident, so that all boxes and centers are equal.
     let mut builder = Builder::default();
     builder.body(BodyFilter::DEFORMABLE);
     for _ in 0..40 {

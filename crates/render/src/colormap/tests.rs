@@ -18,7 +18,7 @@ fn follows_the_original_table() {
     }
 }
 
-/// Perceived lightness grows steadily, so that the map can be read in grey as well.
+/// Perceived lightness grows steadily, so that the map can be read in gray as well.
 #[test]
 fn grows_lighter() {
     let luminance = |t: f64| {

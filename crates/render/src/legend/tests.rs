@@ -26,7 +26,7 @@ fn rounding_moves_the_ends_outward() {
     }
 }
 
-/// At each height the bar has the colour of the number there.
+/// At each height the bar has the color of the number there.
 #[test]
 fn the_bar_agrees_with_the_map() {
     let legend = Legend::Scale(scale(0.0, 1.0));
@@ -48,7 +48,7 @@ fn the_bar_agrees_with_the_map() {
 }
 
 #[test]
-fn names_stand_beside_their_colours() {
+fn names_stand_beside_their_colors() {
     let legend = Legend::Names(vec![("cloth".to_owned(), [200, 0, 0]), ("ball".to_owned(), [0, 0, 200])]);
     let mut picture = Picture::new(300, 200, [255; 3]);
     legend.draw(&mut picture);

@@ -35,7 +35,7 @@ fn rings_lie_on_the_tube_and_do_not_twist() {
         assert!((distance - radius).abs() < 1e-6 * radius + 2e-6, "{distance}");
         assert!((v.normal.norm() - 1.0).abs() < 1e-12);
     }
-    // Neighbouring rings are not twisted: the vector from a vertex to that of the next ring points along the
+    // Neighboring rings are not twisted: the vector from a vertex to that of the next ring points along the
     // strand.
     let body = &vertices[CAP_RINGS * sides..(points.len() + CAP_RINGS) * sides];
     for k in 0..body.len() - sides {

@@ -92,14 +92,14 @@ fn profile(top: f64, edge: f64) -> Vec<[f64; 2]> {
         // The arc touches both sides at this distance from the corner.
         let half_angle = 0.5 * to.dot(&from).acos();
         let (reach, turn) = (radius / half_angle.tan(), std::f64::consts::PI - 2.0 * half_angle);
-        let centre = corner + (to + from).normalize() * (radius / half_angle.sin());
-        let (start, end) = (corner + to * reach - centre, corner + from * reach - centre);
+        let center = corner + (to + from).normalize() * (radius / half_angle.sin());
+        let (start, end) = (corner + to * reach - center, corner + from * reach - center);
         let steps = (radius * turn / edge).ceil().max(3.0) as u32;
         for step in 0..=steps {
             let s = f64::from(step) / f64::from(steps);
             let weight = |s: f64| (s * turn).sin() / turn.sin();
             let arm = start * weight(1.0 - s) + end * weight(s);
-            points.push([centre.x + arm.x, centre.y + arm.y]);
+            points.push([center.x + arm.x, center.y + arm.y]);
         }
     }
     points

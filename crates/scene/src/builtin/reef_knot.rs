@@ -26,7 +26,7 @@ pub(super) fn curve() -> Vec<[f64; 6]> {
 }
 
 /// The half from the upper end to the middle of the bight, as a `Curve`. It began as sines with the crossings over,
-/// under, over, and was then relaxed: a flat strip kept clear of its neighbour, bent as little as can be; the strip is
+/// under, over, and was then relaxed: a flat strip kept clear of its neighbor, bent as little as can be; the strip is
 /// true to its flat shape within 0.2 %.
 const HALF: [[f64; 6]; 16] = [
     [-400.1, 50.3, -0.3, -82.0, 443.0, 893.0],

@@ -50,7 +50,7 @@ pub(super) fn scene(scale: f64) -> Scene {
     let ground = ObstacleSpec { friction: 0.6, ..ground() };
     let mut scene = Scene { bodies: vec![sand], obstacles: vec![funnel, ground], ..Scene::default() };
     scene.simulation.frames = 200;
-    // Grains touch everywhere: a wider range would list pairs with the neighbours' neighbours.
+    // Grains touch everywhere: a wider range would list pairs with the neighbors' neighbors.
     scene.twoway.contact.range = 1.2;
     scene
 }

@@ -27,7 +27,7 @@ impl Default for Cone {
 }
 
 impl Cone {
-    /// The mesh: the tip, rings from the tip down to the rim, rings across the base, its centre.
+    /// The mesh: the tip, rings from the tip down to the rim, rings across the base, its center.
     pub fn mesh(&self) -> TriangleMesh {
         let n = self.sides.clamp(3, 1000);
         let down = segments(self.radius.hypot(self.height), self.edge);
@@ -48,7 +48,7 @@ impl Cone {
             }
             rings += 1;
         }
-        let centre = mesh.positions.len() as u32;
+        let center = mesh.positions.len() as u32;
         mesh.positions.push(Point::origin());
         for i in 0..n {
             let next = (i + 1) % n;
@@ -59,7 +59,7 @@ impl Cone {
                 mesh.triangles.push([upper + i, lower + next, upper + next]);
             }
             let last = 1 + (rings - 1) * n;
-            mesh.triangles.push([last + i, centre, last + next]);
+            mesh.triangles.push([last + i, center, last + next]);
         }
         mesh
     }

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 pub struct Grains {
     /// Numbers along x, y and z [1]. Default 10 each.
     pub count: [usize; 3],
-    /// Distance of neighbours on the lattice [m]; at least the grain size, so that none begins inside of another.
+    /// Distance of neighbors on the lattice [m]; at least the grain size, so that none begins inside of another.
     /// Default 0.01.
     pub spacing: f64,
     /// Largest displacement off the lattice along each axis [1], in `spacing`, below 0.5. It breaks the symmetry by
@@ -51,7 +51,7 @@ impl Grains {
 
 impl Parameters for Grains {
     fn check(&self, checks: &mut Checks) {
-        positive_lengths([("spacing", self.spacing)].into_iter(), checks);
+        positive_lengths([("spacing", self.spacing)], checks);
         if self.count.contains(&0) {
             checks.refuse("count", format!("{:?}", self.count), "must be at least 1 each way");
         }

@@ -3,7 +3,7 @@
 //! Surface nets (Gibson 1998, "Constrained Elastic Surface Nets") put a vertex into each cell of a grid
 //! that the surface crosses and a quadrilateral across each such edge of the grid. Here a cell has a
 //! vertex for each sheet of the surface in it (Nielson 2004, "Dual Marching Cubes"), so that sheets near
-//! one another are not joined. The vertices are then moved towards the middle of their neighbours along the surface, and edges flipped to Delaunay's,
+//! one another are not joined. The vertices are then moved towards the middle of their neighbors along the surface, and edges flipped to Delaunay's,
 //! which leaves triangles of nearly equal size.
 
 use super::mesh::TriangleMesh;
@@ -209,11 +209,11 @@ impl Grid {
     }
 }
 
-/// Moves each vertex halfway to the middle of its neighbours, along the surface, and onto it.
+/// Moves each vertex halfway to the middle of its neighbors, along the surface, and onto it.
 fn even_out<F: Fn(&Point) -> f64 + Sync>(surface: &Isosurface<F>, mesh: &mut TriangleMesh, spacing: f64) {
     let mut sums = vec![(Vector::zeros(), 0.0); mesh.positions.len()];
     for &[a, b, c] in &mesh.triangles {
-        // On a closed mesh every neighbour comes twice, from the triangles at either side.
+        // On a closed mesh every neighbor comes twice, from the triangles at either side.
         for (v, p, q) in [(a, b, c), (b, c, a), (c, a, b)] {
             let sum = &mut sums[v as usize];
             sum.0 += mesh.positions[p as usize].coords + mesh.positions[q as usize].coords;
@@ -279,7 +279,7 @@ fn flip(mesh: &mut TriangleMesh) {
 /// Whether every edge lies between two triangles of opposite direction, and the triangles of every vertex
 /// go around it once.
 fn is_closed_manifold(mesh: &TriangleMesh) -> bool {
-    // For each vertex, which neighbour follows which.
+    // For each vertex, which neighbor follows which.
     let mut around: Vec<BTreeMap<u32, u32>> = vec![BTreeMap::new(); mesh.positions.len()];
     for &[a, b, c] in &mesh.triangles {
         for (v, p, q) in [(a, b, c), (b, c, a), (c, a, b)] {

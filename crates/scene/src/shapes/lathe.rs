@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 #[serde(deny_unknown_fields, default)]
 pub struct Lathe {
     /// Corners of the profile as (distance from the axis, height) [m], joined by straight lines; distances
-    /// above 0, and no two neighbours alike. Default: a ring of square cross-section.
+    /// above 0, and no two neighbors alike. Default: a ring of square cross-section.
     pub profile: Vec<[f64; 2]>,
     /// Whether the last corner is joined to the first. Default true.
     pub closed: bool,
@@ -64,7 +64,7 @@ impl Lathe {
         self.sides().map(|(a, b)| (b[0] - a[0]).hypot(b[1] - a[1])).sum()
     }
 
-    /// Neighbouring corners.
+    /// Neighboring corners.
     fn sides(&self) -> impl Iterator<Item = ([f64; 2], [f64; 2])> + '_ {
         let n = self.profile.len();
         let count = if self.closed { n } else { n.saturating_sub(1) };

@@ -13,7 +13,7 @@ pub(super) fn positive_lengths(
     let before = checks.error_count();
     for (field, value) in lengths {
         let fits = value.is_finite() && value > 0.0;
-        checks.require(fits, field, value, "must be a length in metres above 0");
+        checks.require(fits, field, value, "must be a length in meters above 0");
     }
     checks.error_count() == before
 }

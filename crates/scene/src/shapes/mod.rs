@@ -1,4 +1,4 @@
-//! Generated meshes: deterministic, in metres, z up, about the origin.
+//! Generated meshes: deterministic, in meters, z up, about the origin.
 
 mod animated;
 mod ball;

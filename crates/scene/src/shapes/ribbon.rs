@@ -6,13 +6,13 @@ use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::{Point, Vector};
 use serde::{Deserialize, Serialize};
 
-/// A strip of constant width along a smooth centre-line, such as a ribbon that is to be tied. The centre-line is the
+/// A strip of constant width along a smooth center-line, such as a ribbon that is to be tied. The center-line is the
 /// uniform cubic B-spline of `points`, which starts and ends at the first and last of them and rounds the others;
 /// rows of vertices cross it at equal distances along the curve, at right angles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Ribbon {
-    /// Control points of the centre-line [m], two at least. Default: from (-0.5, 0, 0) to (0.5, 0, 0).
+    /// Control points of the center-line [m], two at least. Default: from (-0.5, 0, 0) to (0.5, 0, 0).
     pub points: Vec<Point>,
     /// Directions across the strip at the control points [1], of any length but zero, blended like the points and
     /// then made orthogonal to the curve. Empty: the first row lies level and the others follow without turning
@@ -43,9 +43,9 @@ impl Ribbon {
     pub fn mesh(&self) -> TriangleMesh {
         let (parameters, length) = self.rows();
         let tangents: Vec<Vector> = parameters.iter().map(|&u| self.tangent(u)).collect();
-        let centres: Vec<Point> = parameters.iter().map(|&u| self.centre(u)).collect();
+        let centers: Vec<Point> = parameters.iter().map(|&u| self.center(u)).collect();
         let across = if self.across.is_empty() {
-            rotation_minimising(&centres, &tangents)
+            rotation_minimizing(&centers, &tangents)
         } else {
             let control = |k: usize| self.across[k];
             let blended = |(&u, t): (&f64, &Vector)| orthogonal(blend(control, self.spans(), u, &BASIS), t);
@@ -53,10 +53,10 @@ impl Ribbon {
         };
         let (along, wide) = (segments(length, self.edge), segments(self.width, self.edge));
         let mut mesh = TriangleMesh::default();
-        for (centre, across) in centres.iter().zip(&across) {
+        for (center, across) in centers.iter().zip(&across) {
             for i in 0..=wide {
                 let s = self.width * (f64::from(i) / f64::from(wide) - 0.5);
-                mesh.positions.push(centre + across * s);
+                mesh.positions.push(center + across * s);
             }
         }
         let vertex = |i: u32, j: u32| j * (wide + 1) + i;
@@ -69,7 +69,7 @@ impl Ribbon {
         mesh
     }
 
-    /// Length of the centre-line [m].
+    /// Length of the center-line [m].
     pub fn length(&self) -> f64 {
         self.arc_lengths().last().copied().unwrap_or(0.0)
     }
@@ -78,7 +78,7 @@ impl Ribbon {
         self.points.len().saturating_sub(1)
     }
 
-    fn centre(&self, u: f64) -> Point {
+    fn center(&self, u: f64) -> Point {
         Point::from(blend(|k| self.points[k].coords, self.spans(), u, &BASIS))
     }
 
@@ -90,10 +90,10 @@ impl Ribbon {
     /// Length of the curve [m] up to each sample.
     fn arc_lengths(&self) -> Vec<f64> {
         let mut lengths = vec![0.0];
-        let mut last = self.centre(0.0);
+        let mut last = self.center(0.0);
         let mut sum = 0.0;
         for k in 1..=self.spans() * SAMPLES {
-            let next = self.centre(k as f64 / SAMPLES as f64);
+            let next = self.center(k as f64 / SAMPLES as f64);
             sum += (next - last).norm();
             lengths.push(sum);
             last = next;
@@ -140,7 +140,7 @@ impl Parameters for Ribbon {
     }
 }
 
-/// Weights of four neighbouring control points at a place in their middle span.
+/// Weights of four neighboring control points at a place in their middle span.
 type Weights = fn(f64) -> [f64; 4];
 
 const BASIS: Weights = |t| {
@@ -171,7 +171,7 @@ fn blend(control: impl Fn(usize) -> Vector, last: usize, u: f64, weights: &Weigh
     (0..4).map(|k| at(span + k) * w[k]).sum()
 }
 
-/// The part of `v` at right angles to the unit vector `t`, normalised; any such direction if there is none.
+/// The part of `v` at right angles to the unit vector `t`, normalized; any such direction if there is none.
 fn orthogonal(v: Vector, t: &Vector) -> Vector {
     let part = |v: Vector| (v - t * t.dot(&v)).try_normalize(1e-9 * v.norm());
     let other = if t.z.abs() < 0.9 { Vector::z() } else { Vector::x() };
@@ -179,15 +179,15 @@ fn orthogonal(v: Vector, t: &Vector) -> Vector {
 }
 
 /// Directions across a curve that turn about it as little as can be: double reflection, from row to row.
-fn rotation_minimising(centres: &[Point], tangents: &[Vector]) -> Vec<Vector> {
+fn rotation_minimizing(centers: &[Point], tangents: &[Vector]) -> Vec<Vector> {
     let Some(first) = tangents.first() else { return Vec::new() };
     let mut across = vec![orthogonal(Vector::z().cross(first), first)];
-    for j in 1..centres.len() {
+    for j in 1..centers.len() {
         let reflect = |v: Vector, n: &Vector| {
             let square = n.norm_squared();
             if square > 0.0 { v - n * (2.0 * n.dot(&v) / square) } else { v }
         };
-        let step = centres[j] - centres[j - 1];
+        let step = centers[j] - centers[j - 1];
         let (side, tangent) = (reflect(across[j - 1], &step), reflect(tangents[j - 1], &step));
         across.push(orthogonal(reflect(side, &(tangents[j] - tangent)), &tangents[j]));
     }

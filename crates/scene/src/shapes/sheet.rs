@@ -4,7 +4,7 @@ use super::mesh::{TriangleMesh, segments};
 use bowknot_geometry::Point;
 use serde::{Deserialize, Serialize};
 
-/// A flat rectangle in the xy plane, centred at the origin, normal z.
+/// A flat rectangle in the xy plane, centered at the origin, normal z.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Sheet {
@@ -21,7 +21,7 @@ pub struct Sheet {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Diagonals {
-    /// Neighbouring squares differently: bends alike in both diagonal directions.
+    /// Neighboring squares differently: bends alike in both diagonal directions.
     #[default]
     Alternating,
     /// All the same way.

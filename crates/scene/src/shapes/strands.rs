@@ -19,7 +19,7 @@ pub struct Strands {
     pub segments: usize,
     /// What the roots are on. Default `plane`.
     pub root: Root,
-    /// Distance of neighbouring roots on the plane [m]. Default 0.01.
+    /// Distance of neighboring roots on the plane [m]. Default 0.01.
     pub spacing: f64,
     /// Radius of the sphere [m]. Default 0.1.
     pub radius: f64,
@@ -64,7 +64,7 @@ impl Strands {
         let mut mesh = Mesh::default();
         for index in 0..self.count {
             let (root, along) = self.root(index);
-            // Any direction across will do; curls of neighbours are in step.
+            // Any direction across will do; curls of neighbors are in step.
             let helper = if along.x.abs() < 0.6 { Vector::x() } else { Vector::y() };
             let across = (helper - along * along.dot(&helper)).normalize();
             let other = along.cross(&across);
@@ -112,15 +112,15 @@ impl Parameters for Strands {
             Root::Plane => lengths.push(("spacing", self.spacing)),
             Root::Sphere => lengths.push(("radius", self.radius)),
         }
-        positive_lengths(lengths.into_iter(), checks);
+        positive_lengths(lengths, checks);
         for (key, count) in [("count", self.count), ("segments", self.segments)] {
-            checks.count_at_least(key, count as usize, 1);
+            checks.count_at_least(key, count, 1);
         }
         if self.count as f64 * (self.segments as f64 + 1.0) > MAX_VERTICES {
             checks.refuse("count", self.count, format!("must make at most {MAX_VERTICES:e} vertices"));
         }
         if !(self.curl.is_finite() && self.curl >= 0.0) {
-            checks.refuse("curl", self.curl, "must be a length in metres, at least 0");
+            checks.refuse("curl", self.curl, "must be a length in meters, at least 0");
         }
         checks.finite("turns", self.turns);
         if !(self.patch > 0.0 && self.patch <= 180.0) {

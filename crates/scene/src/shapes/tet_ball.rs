@@ -46,7 +46,7 @@ impl TetBall {
 
 impl Parameters for TetBall {
     fn check(&self, checks: &mut Checks) {
-        if positive_lengths([("radius", self.radius), ("edge", self.edge)].into_iter(), checks) {
+        if positive_lengths([("radius", self.radius), ("edge", self.edge)], checks) {
             limit_vertices((FRAC_PI_2 * self.radius / self.edge + 1.0).powi(3), self.edge, checks);
         }
     }

@@ -6,7 +6,7 @@ use bowknot_geometry::Point;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// An open cylinder along the x axis, centred at the origin, normals outward.
+/// An open cylinder along the x axis, centered at the origin, normals outward.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Tube {

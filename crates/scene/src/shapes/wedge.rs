@@ -5,7 +5,7 @@ use super::sheet::cut;
 use bowknot_geometry::Point;
 use serde::{Deserialize, Serialize};
 
-/// A wedge such as a blade: a prism along the y axis, centred, its base on the xy plane, its upper edge a
+/// A wedge such as a blade: a prism along the y axis, centered, its base on the xy plane, its upper edge a
 /// single line of vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]

@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 pub struct Woven {
     /// Numbers of strands along x and along y [1]. Default (20, 20).
     pub count: [usize; 2],
-    /// Distance of neighbouring strands [m]. Default 0.01.
+    /// Distance of neighboring strands [m]. Default 0.01.
     pub spacing: f64,
     /// Height of the waves over their middle [m]. Default 0.001.
     pub amplitude: f64,
@@ -42,11 +42,11 @@ impl Woven {
             let edges = self.edges(crossings);
             for strand in 0..strands {
                 let first = mesh.positions.len() as u32;
-                let across = self.centred(strand as f64, strands);
+                let across = self.centered(strand as f64, strands);
                 for k in 0..=edges {
                     // Counted in crossings: a whole number at each, 0 at the first.
                     let at = k as f64 / self.segments as f64 - self.fringe as f64;
-                    let along = self.centred(at, crossings);
+                    let along = self.centered(at, crossings);
                     // One is up where the other is down: at crossing (i, j) the one along x has the sign of (-1)^(i+j).
                     let sign = if (strand + axis) % 2 == 0 { 1.0 } else { -1.0 };
                     let height = sign * self.amplitude * (PI * at).cos();
@@ -66,18 +66,18 @@ impl Woven {
         self.segments * (crossings - 1 + 2 * self.fringe)
     }
 
-    fn centred(&self, index: f64, count: usize) -> f64 {
+    fn centered(&self, index: f64, count: usize) -> f64 {
         (index - 0.5 * (count as f64 - 1.0)) * self.spacing
     }
 }
 
 impl Parameters for Woven {
     fn check(&self, checks: &mut Checks) {
-        positive_lengths([("spacing", self.spacing), ("amplitude", self.amplitude)].into_iter(), checks);
+        positive_lengths([("spacing", self.spacing), ("amplitude", self.amplitude)], checks);
         let counts = [("count", self.count[0]), ("count", self.count[1]), ("segments", self.segments)];
         let before = checks.error_count();
         for (key, count) in counts {
-            checks.count_at_least(key, count as usize, 1);
+            checks.count_at_least(key, count, 1);
         }
         if checks.error_count() > before {
             return;

@@ -155,7 +155,7 @@ mod tests {
         let motion = ObstacleMotion::Procedural(Procedural { shape: Arc::new(Rising), placing });
         let mut x = [Point::origin()];
         motion.positions(&[Point::origin()], 3.0, &mut x);
-        // (0, 3, 0), y up, in half metres, is (0, 0, 6); a quarter turn about y takes z to x.
+        // (0, 3, 0), y up, in half meters, is (0, 0, 6); a quarter turn about y takes z to x.
         assert!((x[0] - Point::new(6.0, 5.0, 0.0)).norm() < 1e-12, "{}", x[0]);
         assert!(!motion.is_rest() && ObstacleMotion::default().is_rest());
     }

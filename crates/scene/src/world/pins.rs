@@ -92,10 +92,10 @@ fn pinned(spec: &PinSpec, body: &WorldBody, positions: &[Point]) -> Result<Vec<u
 fn roots(body: &WorldBody, count: usize) -> Vec<u32> {
     let first = body.vertices.start;
     let n = body.vertices.len();
-    let mut neighbours = vec![Vec::new(); n];
+    let mut neighbors = vec![Vec::new(); n];
     for &[a, b] in &body.strands {
-        neighbours[(a - first) as usize].push((b - first) as usize);
-        neighbours[(b - first) as usize].push((a - first) as usize);
+        neighbors[(a - first) as usize].push((b - first) as usize);
+        neighbors[(b - first) as usize].push((a - first) as usize);
     }
     let mut seen = vec![false; n];
     let mut held = Vec::new();
@@ -112,7 +112,7 @@ fn roots(body: &WorldBody, count: usize) -> Vec<u32> {
             if distance < count {
                 held.push(first + v as u32);
             }
-            for &w in &neighbours[v] {
+            for &w in &neighbors[v] {
                 if !std::mem::replace(&mut seen[w], true) {
                     queue.push((w, distance + 1));
                 }

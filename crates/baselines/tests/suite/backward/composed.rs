@@ -5,7 +5,7 @@ use bowknot_baselines::rows::{
 };
 use bowknot_baselines::twoway::geometry::{Point, Vector};
 use bowknot_baselines::twoway::{
-    BackwardStep, CertifiedForward, ColouredSweeps, LcpBackward, Params, Resolver, RowSolver, Statistics,
+    BackwardStep, CertifiedForward, ColoredSweeps, LcpBackward, Params, Resolver, RowSolver, Statistics,
     TrustRegionSearch,
 };
 use bowknot_baselines::{Composed, Method};
@@ -47,7 +47,7 @@ fn sheets_that_change_places_stay_apart_whatever_solves_the_rows() {
     let steps = 400;
     let chebyshev = InterStepChebyshev::new(LcpBackward::with_solver(ProjectedJacobi::new(1, 0.0)), 0.9, 10);
     let counts = [
-        ("Gauss-Seidel", count(solve(&scene, ColouredSweeps::default(), steps, &target))),
+        ("Gauss-Seidel", count(solve(&scene, ColoredSweeps::default(), steps, &target))),
         ("linear system", count(solve(&scene, LinearSystem::default(), steps, &target))),
         ("projected", count(solve(&scene, LinearSystem::projected(), steps, &target))),
         ("augmented, 20", count(solve(&scene, AugmentedLagrangian::new(20), steps, &target))),
@@ -82,7 +82,7 @@ fn sheets_with_separating_targets_stick_with_the_linear_system_only() {
     let left = |(x, _): (Vec<Point>, Statistics)| {
         x.iter().zip(&target).map(|(x, y)| (x - y).norm()).fold(0.0, f64::max)
     };
-    assert!(left(solve(&scene, ColouredSweeps::default(), 200, &target)) < 1e-4);
+    assert!(left(solve(&scene, ColoredSweeps::default(), 200, &target)) < 1e-4);
     assert!(left(solve(&scene, LinearSystem::projected(), 200, &target)) < 1e-4);
     assert!(left(solve(&scene, AugmentedLagrangian::new(20), 200, &target)) < 1e-4);
     assert!(left(solve(&scene, LinearSystem::default(), 200, &target)) > 0.04);
@@ -96,7 +96,7 @@ fn the_default_with_gauss_seidel_named_is_the_default() {
         Resolver::new(scene.model.clone(), &scene.x, &vec![0.01; scene.x.len()], Params::fast()).unwrap();
     let (x, _) = resolve_watched(&mut plain, &scene, &target, "plain");
     let (same, _) =
-        run(&scene, two_way_with(scene.collision_scene(Params::fast()), ColouredSweeps::default()), &target);
+        run(&scene, two_way_with(scene.collision_scene(Params::fast()), ColoredSweeps::default()), &target);
     assert_eq!(x, same);
 }
 
@@ -107,7 +107,7 @@ fn results_have_the_same_bits_on_any_number_of_threads() {
     let target = scene.swapped();
     assert_same_on_any_number_of_threads(|| {
         let collision = || scene.collision_scene(params(6));
-        let chebyshev = InterStepChebyshev::new(LcpBackward::<ColouredSweeps>::default(), 0.9, 2);
+        let chebyshev = InterStepChebyshev::new(LcpBackward::<ColoredSweeps>::default(), 0.9, 2);
         let methods: [Box<dyn Method>; 4] = [
             Box::new(Composed::new("Harmon", two_way_with(collision(), LinearSystem::default()))),
             Box::new(Composed::new("Tang", two_way_with(collision(), AugmentedLagrangian::new(20)))),
@@ -133,7 +133,7 @@ fn contacts_that_keep_their_volume_stay_as_near_as_they_start_and_others_open() 
     let gaps = |params: Params| {
         let collision = scene.collision_scene(params);
         assert!((collision.lengths().delta - 0.0112).abs() < 1e-4);
-        let (x, statistics) = run(&scene, two_way_with(collision, ColouredSweeps::default()), &target);
+        let (x, statistics) = run(&scene, two_way_with(collision, ColoredSweeps::default()), &target);
         assert!(statistics.converged);
         // Both sheets have one and the same warp.
         let gaps = (0..n).map(|v| x[v + n].z - x[v].z);

@@ -12,7 +12,7 @@ fn gradient_is_that_of_the_value_for_every_kind_of_pair_and_long_edges() {
     let mut params = Params::fast();
     params.contact.delta = Some(0.01);
     params.contact.edge_reference = EdgeReference::Start;
-    // Particles are no neighbours at rest, which would shorten their barrier.
+    // Particles are no neighbors at rest, which would shorten their barrier.
     let place = scene.x.clone();
     scene.x.iter_mut().for_each(|p| p.coords *= 4.0);
     let collision = scene.collision_scene(params);

@@ -29,7 +29,7 @@ fn meetings(scene: &Scene, paths: &[Vector]) -> usize {
 fn paths_without_impacts_meet_nothing_and_paths_that_meet_have_impacts() {
     let scene = Scene::two_sheets(3, 0.05);
     let collision = scene.collision_scene(Params::fast());
-    let mut search = ImpactSearch::new(&collision.model());
+    let mut search = ImpactSearch::new(collision.model());
     let swapped = scene.swapped();
     let (mut clear, mut met) = (0, 0);
     for share in [0.0, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 1.0] {
@@ -56,7 +56,7 @@ fn a_pair_that_comes_from_afar_to_its_desired_distance_does_not_count_as_meeting
     let mut params = Params::fast();
     params.contact.delta = Some(0.01);
     let collision = scene.collision_scene(params);
-    let mut search = ImpactSearch::new(&collision.model());
+    let mut search = ImpactSearch::new(collision.model());
     let mut impacts = |height: f64| {
         let mut paths = vec![Vector::zeros(); 4];
         paths[3].z = height - 10.0;

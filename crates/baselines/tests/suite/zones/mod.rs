@@ -2,7 +2,7 @@
 
 mod determinism;
 mod impacts;
-mod optimiser;
+mod optimizer;
 mod rigid;
 mod support;
 mod two_phase;

@@ -13,7 +13,7 @@ const INEXACT_TOLERANCE: f64 = 0.03;
 /// How accurately a linear system is solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Accuracy {
-    /// To a residual of 0.03: another linearisation follows.
+    /// To a residual of 0.03: another linearization follows.
     Inexact,
     /// To [`crate::NewtonParams::cg_tolerance`].
     Full,
@@ -22,7 +22,7 @@ pub(super) enum Accuracy {
 impl Newton<'_> {
     /// Makes one Newton iteration from `work.x` to `work.trial`.
     pub(super) fn iterate(&mut self, accuracy: Accuracy) -> NewtonInfo {
-        self.linearise();
+        self.linearize();
         let Self { model, params, repulsion, step, work } = self;
 
         // b = -(g + H p) over free nodes, with p the imposed displacements of the prescribed nodes.

@@ -3,7 +3,7 @@
 //! | file | holds |
 //! |---|---|
 //! | [`state`] | what an iteration works on: [`state::Step`], [`state::Workspace`], [`state::Newton`] |
-//! | [`linearise`] | gradient and matrix |
+//! | [`linearize`] | gradient and matrix |
 //! | [`potential`] | the incremental potential |
 //! | [`line_search`] | backtracking along a Newton step |
 //! | [`momentum`] | exact linear momentum in spite of inexact linear solves |
@@ -16,7 +16,7 @@ mod contacts;
 mod corrections;
 mod iteration;
 mod line_search;
-mod linearise;
+mod linearize;
 mod momentum;
 mod potential;
 mod residual;

@@ -9,7 +9,7 @@ impl Newton<'_> {
     /// The residual of the time step at `work.x` over the nodes that are `counted`; contact forces are the
     /// known forces of the springs.
     pub fn residual(&mut self, counted: &[bool]) -> Residual {
-        self.linearise_bodies();
+        self.linearize_bodies();
         self.repulsion.subtract_known_forces(&mut self.work.gradient);
         let Self { model, step, work, .. } = self;
         for node in 0..work.x.len() {

@@ -67,8 +67,8 @@ pub struct EvaluationCache {
     /// Where `energies` were computed last [m]; empty if nowhere in this time step.
     pub energies_at: Vec<Vector>,
     pub energies: [f64; 2],
-    /// Where the bodies were linearised last [m], with which filter, and their gradient [N].
-    pub linearised_at: Vec<Vector>,
+    /// Where the bodies were linearized last [m], with which filter, and their gradient [N].
+    pub linearized_at: Vec<Vector>,
     pub filter: Option<Filter>,
     pub gradient: Vec<Vector>,
 }
@@ -77,7 +77,7 @@ impl EvaluationCache {
     /// Drops all values.
     pub fn clear(&mut self) {
         self.energies_at.clear();
-        self.linearised_at.clear();
+        self.linearized_at.clear();
     }
 }
 

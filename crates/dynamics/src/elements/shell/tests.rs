@@ -11,7 +11,7 @@ use crate::test_support::{
 use bowknot_geometry::Point;
 use nalgebra::Rotation3;
 
-/// A triangle with a neighbour at each side, all in different planes.
+/// A triangle with a neighbor at each side, all in different planes.
 const REST: [Vector; 6] = [
     Vector::new(0.0, 0.0, 0.0),
     Vector::new(1.0, 0.1, 0.2),
@@ -52,14 +52,14 @@ fn rigid_motions_store_no_energy_forces_balance_and_hessians_are_positive() {
         let turn = Rotation3::new(stream.vector() * 3.0);
         let shift = stream.vector() * 100.0;
         let x = REST.map(|x| turn * x + shift);
-        let part = bend.linearise(&x, None, Filter::Clamp);
+        let part = bend.linearize(&x, None, Filter::Clamp);
         assert!(part.energy < 1e-24 && part.gradient.iter().all(|g| g.norm() < 1e-11), "{:e}", part.energy);
         let x = stream.deformed(&REST, 0.1 * f64::from(k), 0.3);
-        let part = bend.linearise(&x, None, Filter::Clamp);
+        let part = bend.linearize(&x, None, Filter::Clamp);
         check_balance(&x, &part.gradient);
         check_positive(&part.hessian, "bend");
     }
-    let part = bend.linearise(&[Vector::zeros(); 6], None, Filter::Clamp);
+    let part = bend.linearize(&[Vector::zeros(); 6], None, Filter::Clamp);
     check_positive(&part.hessian, "crushed");
 }
 

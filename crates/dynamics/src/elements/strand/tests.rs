@@ -38,16 +38,16 @@ fn rigid_motions_store_no_energy_and_forces_balance() {
         let rotation = Rotation3::new(stream.vector() * 3.0);
         let shift = stream.vector() * 100.0;
         let x = BENT.map(|x| rotation * x + shift);
-        let part = turn(false, 0.0).linearise(&x, None, Filter::Clamp);
+        let part = turn(false, 0.0).linearize(&x, None, Filter::Clamp);
         assert!(part.energy < 1e-24 && part.gradient.iter().all(|g| g.norm() < 1e-10), "{}", part.energy);
         let ends = [x[0], x[1]];
         let start = Start { x: &[BENT[0], BENT[1]], rate: 20.0 };
-        let part = edge(0.1).linearise(&ends, Some(start), Filter::Clamp);
+        let part = edge(0.1).linearize(&ends, Some(start), Filter::Clamp);
         assert!(part.energy < 1e-24 && part.gradient.iter().all(|g| g.norm() < 1e-10), "{}", part.energy);
 
         let x = stream.deformed(&BENT, 0.8, 0.3);
-        check_balance(&x, &turn(false, 0.0).linearise(&x, None, Filter::Clamp).gradient);
-        let part = edge(0.1).linearise(&[x[0], x[1]], Some(start), Filter::Clamp);
+        check_balance(&x, &turn(false, 0.0).linearize(&x, None, Filter::Clamp).gradient);
+        let part = edge(0.1).linearize(&[x[0], x[1]], Some(start), Filter::Clamp);
         check_balance(&[x[0], x[1]], &part.gradient);
     }
 }
@@ -63,12 +63,12 @@ fn filtered_hessians_are_positive_also_of_crushed_strands() {
         for filter in [Filter::Clamp, Filter::Absolute] {
             let start = Start { x: &BENT, rate: 20.0 };
             for straight in [true, false] {
-                let part = turn(straight, 0.02).linearise(x, Some(start), filter);
+                let part = turn(straight, 0.02).linearize(x, Some(start), filter);
                 check_positive(&part.hessian, "turn");
                 assert!(part.gradient.iter().flat_map(|g| g.iter()).all(|g| g.is_finite()));
             }
             let start = Start { x: &[BENT[0], BENT[1]], rate: 20.0 };
-            let part = edge(0.02).linearise(&[x[0], x[1]], Some(start), filter);
+            let part = edge(0.02).linearize(&[x[0], x[1]], Some(start), filter);
             check_positive(&part.hessian, "edge");
             assert!(part.gradient.iter().flat_map(|g| g.iter()).all(|g| g.is_finite()));
         }
@@ -78,7 +78,7 @@ fn filtered_hessians_are_positive_also_of_crushed_strands() {
 #[test]
 fn a_stretched_edge_pulls_with_ea_times_strain() {
     let edge = StrandEdge::new([0, 1], &[Vector::zeros(), Vector::x() * 0.2], 40.0, 0.0).expect("length");
-    let part = edge.linearise(&[Vector::zeros(), Vector::x() * 0.202], None, Filter::Clamp);
+    let part = edge.linearize(&[Vector::zeros(), Vector::x() * 0.202], None, Filter::Clamp);
     assert!((part.gradient[1] - Vector::x() * 0.4).norm() < 1e-12);
     assert!((part.energy - 0.5 * 40.0 * 0.2 * 0.01 * 0.01).abs() < 1e-14);
 }

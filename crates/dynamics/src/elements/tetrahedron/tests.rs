@@ -30,7 +30,7 @@ fn unit(model: SolidModel) -> Tetrahedron {
 /// First Piola-Kirchhoff stress [Pa] at deformation gradient `f`.
 fn stress(model: SolidModel, f: &Matrix3<f64>) -> Matrix3<f64> {
     let tet = unit(model);
-    let part = tet.linearise(&UNIT.map(|x| f * x), NONE, Filter::Exact);
+    let part = tet.linearize(&UNIT.map(|x| f * x), NONE, Filter::Exact);
     Matrix3::from_columns(&[part.gradient[1], part.gradient[2], part.gradient[3]]) / tet.volume
 }
 
@@ -79,7 +79,7 @@ fn filtered_hessians_are_positive_semi_definite() {
         {
             for damping in [0.0, 0.02] {
                 let start = Start { x: &x0, rate: 20.0 };
-                let part = tet(model, damping).linearise(x, Some(start), filter);
+                let part = tet(model, damping).linearize(x, Some(start), filter);
                 check_positive(&part.hessian, "filtered");
                 assert!(part.energy.is_finite() && part.gradient.iter().flatten().all(|g| g.is_finite()));
             }
@@ -93,8 +93,8 @@ fn the_clamped_hessian_is_the_nearest_positive_one() {
     for model in MODELS {
         for _ in 0..30 {
             let x = stream.deformed(&REST, 0.6, 0.15);
-            let exact = dense(&tet(model, 0.0).linearise(&x, NONE, Filter::Exact).hessian);
-            let clamped = dense(&tet(model, 0.0).linearise(&x, NONE, Filter::Clamp).hessian);
+            let exact = dense(&tet(model, 0.0).linearize(&x, NONE, Filter::Exact).hessian);
+            let clamped = dense(&tet(model, 0.0).linearize(&x, NONE, Filter::Clamp).hessian);
             let lowered = (&exact - &clamped).symmetric_eigenvalues().max();
             assert!(lowered < 1e-10 * exact.abs().max(), "clamping lowered a curvature by {lowered:e}");
         }
@@ -110,13 +110,13 @@ fn rigid_motions_store_no_energy_and_forces_balance() {
             let shift = stream.vector() * 100.0;
             let x = REST.map(|x| turn * x + shift);
             let start = Start { x: &REST, rate: 20.0 };
-            let part = tet(model, 0.1).linearise(&x, Some(start), Filter::Clamp);
+            let part = tet(model, 0.1).linearize(&x, Some(start), Filter::Clamp);
             // Stiffness 135, coordinates near 100: rounding of 1e-14 m.
             assert!(part.energy.abs() < 1e-24, "energy {:e}", part.energy);
             assert!(part.gradient.iter().all(|g| g.norm() < 1e-10), "{:?}", part.gradient);
 
             let x = stream.deformed(&REST, 0.8, 0.4);
-            check_balance(&x, &tet(model, 0.1).linearise(&x, Some(start), Filter::Clamp).gradient);
+            check_balance(&x, &tet(model, 0.1).linearize(&x, Some(start), Filter::Clamp).gradient);
         }
     }
 }

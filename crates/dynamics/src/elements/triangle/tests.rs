@@ -46,7 +46,7 @@ fn filtered_hessians_are_positive_semi_definite() {
             for _ in 0..50 {
                 let x0 = deformed(&mut stream, 1.0, 0.2);
                 let x = deformed(&mut stream, scale, amount);
-                let part = triangle(0.02).linearise(&x, Some(Start { x: &x0, rate: 20.0 }), filter);
+                let part = triangle(0.02).linearize(&x, Some(Start { x: &x0, rate: 20.0 }), filter);
                 check_positive(&part.hessian, "filtered");
             }
         }
@@ -60,8 +60,8 @@ fn the_clamped_hessian_is_the_nearest_positive_one() {
     let mut stream = Stream::new(4);
     for _ in 0..50 {
         let x = deformed(&mut stream, 0.8, 0.15);
-        let exact = dense(&triangle(0.0).linearise(&x, NONE, Filter::Exact).hessian);
-        let clamped = dense(&triangle(0.0).linearise(&x, NONE, Filter::Clamp).hessian);
+        let exact = dense(&triangle(0.0).linearize(&x, NONE, Filter::Exact).hessian);
+        let clamped = dense(&triangle(0.0).linearize(&x, NONE, Filter::Clamp).hessian);
         let lowered = (&exact - &clamped).symmetric_eigenvalues().max();
         assert!(lowered < 1e-10 * exact.abs().max(), "clamping lowered a curvature by {lowered:e}");
     }
@@ -74,9 +74,9 @@ fn filters_change_nothing_at_rest_or_under_tension() {
     let mut states = vec![rest().map(|x| turn * x)];
     states.extend((0..20).map(|_| deformed(&mut stream, 2.0, 0.1)));
     for x in &states {
-        let exact = dense(&triangle(0.0).linearise(x, NONE, Filter::Exact).hessian);
+        let exact = dense(&triangle(0.0).linearize(x, NONE, Filter::Exact).hessian);
         for filter in [Filter::Clamp, Filter::Absolute] {
-            let filtered = dense(&triangle(0.0).linearise(x, NONE, filter).hessian);
+            let filtered = dense(&triangle(0.0).linearize(x, NONE, filter).hessian);
             assert!((&exact - &filtered).abs().max() < 1e-12 * exact.abs().max());
         }
     }
@@ -89,7 +89,7 @@ fn rigid_motions_store_no_energy() {
         let turn = Rotation3::new(stream.vector() * 3.0);
         let shift = stream.vector() * 100.0;
         let x = rest().map(|x| turn * x + shift);
-        let part = triangle(0.1).linearise(&x, Some(Start { x: &rest(), rate: 20.0 }), Filter::Clamp);
+        let part = triangle(0.1).linearize(&x, Some(Start { x: &rest(), rate: 20.0 }), Filter::Clamp);
         // Stiffness 50, coordinates near 100: rounding of 1e-14 m.
         assert!(part.energy < 1e-24, "energy {:e}", part.energy);
         assert!(part.gradient.iter().all(|g| g.norm() < 1e-11), "{:?}", part.gradient);
@@ -102,7 +102,7 @@ fn forces_of_an_element_sum_to_zero_and_have_no_torque() {
     for _ in 0..50 {
         let x0 = deformed(&mut stream, 1.0, 0.3);
         let x = deformed(&mut stream, 0.8, 0.4);
-        let part = triangle(0.1).linearise(&x, Some(Start { x: &x0, rate: 20.0 }), Filter::Clamp);
+        let part = triangle(0.1).linearize(&x, Some(Start { x: &x0, rate: 20.0 }), Filter::Clamp);
         let size = part.gradient.iter().map(|g| g.norm()).sum::<f64>() * x[0].norm();
         let force: Vector = part.gradient.iter().sum();
         let torque: Vector = (0..3).map(|k| x[k].cross(&part.gradient[k])).sum();
@@ -121,7 +121,7 @@ fn uniaxial_tension_has_youngs_modulus() {
     let triangle = Triangle::new([0, 1, 2], &corners, material.lame(), 0.0).expect("area");
     let strain = 0.01;
     let x = corners.map(|x| Vector::new(x.x * (1.0 + strain), x.y * (1.0 - nu * strain), 0.0));
-    let part = triangle.linearise(&x, NONE, Filter::Clamp);
+    let part = triangle.linearize(&x, NONE, Filter::Clamp);
     assert!((part.energy - 0.5 * stiffness * strain * strain * triangle.area).abs() < 1e-12);
     // There is no force across; half of the tension over the width acts on vertex 1.
     assert!((part.gradient[1] - Vector::new(0.5 * stiffness * strain, 0.0, 0.0)).norm() < 1e-10);
@@ -136,7 +136,7 @@ fn crushed_triangles_give_finite_numbers() {
     let tiny = rest().map(|x| x * 1e-200);
     for x in [point, line, edge, tiny] {
         for filter in [Filter::Clamp, Filter::Absolute] {
-            let part = triangle(0.1).linearise(&x, Some(Start { x: &rest(), rate: 20.0 }), filter);
+            let part = triangle(0.1).linearize(&x, Some(Start { x: &rest(), rate: 20.0 }), filter);
             let start = Start { x: &rest(), rate: 20.0 };
             assert!(part.energy.is_finite());
             assert!((part.energy - triangle(0.1).energy(&x, Some(start))).abs() < 1e-12 * part.energy);
@@ -152,8 +152,8 @@ fn scaling_lengths_scales_energy_by_area_and_forces_by_length() {
     let x = deformed(&mut stream, 1.1, 0.2);
     let k = 0.01;
     let small = Triangle::new([0, 1, 2], &rest().map(|x| x * k), (30.0, 50.0), 0.0).expect("area");
-    let part = triangle(0.0).linearise(&x, NONE, Filter::Clamp);
-    let scaled = small.linearise(&x.map(|x| x * k), NONE, Filter::Clamp);
+    let part = triangle(0.0).linearize(&x, NONE, Filter::Clamp);
+    let scaled = small.linearize(&x.map(|x| x * k), NONE, Filter::Clamp);
     assert!((scaled.energy - k * k * part.energy).abs() < 1e-12 * part.energy);
     for a in 0..3 {
         assert!((scaled.gradient[a] - part.gradient[a] * k).norm() < 1e-12 * part.gradient[a].norm());

@@ -35,7 +35,7 @@ fn with_equal_stiffnesses_it_equals_the_isotropic_triangle() {
         let (x, x0) = (stream.deformed(&REST, scale, 0.2), stream.deformed(&REST, 1.0, 0.2));
         let start = Some(Start { x: &x0, rate: 20.0 });
         for filter in [Filter::Exact, Filter::Clamp, Filter::Absolute] {
-            let (a, b) = (isotropic.linearise(&x, start, filter), woven.linearise(&x, start, filter));
+            let (a, b) = (isotropic.linearize(&x, start, filter), woven.linearize(&x, start, filter));
             assert!((a.energy - b.energy).abs() < 1e-11 * a.energy);
             (0..3).for_each(|k| assert!((a.gradient[k] - b.gradient[k]).norm() < 1e-10));
             assert!((dense(&a.hessian) - dense(&b.hessian)).abs().max() < 1e-9, "{filter:?}");
@@ -53,7 +53,7 @@ fn filtered_hessians_are_positive_also_of_crushed_triangles() {
     for x in &states {
         for filter in [Filter::Clamp, Filter::Absolute] {
             let start = Start { x: &REST, rate: 20.0 };
-            let part = triangle(0.02).linearise(x, Some(start), filter);
+            let part = triangle(0.02).linearize(x, Some(start), filter);
             check_positive(&part.hessian, "woven");
             assert!(part.gradient.iter().flat_map(|g| g.iter()).all(|g| g.is_finite()));
         }
@@ -68,10 +68,10 @@ fn rigid_motions_store_no_energy_and_forces_balance() {
         let shift = stream.vector() * 100.0;
         let x = REST.map(|x| turn * x + shift);
         let start = Start { x: &REST, rate: 20.0 };
-        let part = triangle(0.1).linearise(&x, Some(start), Filter::Clamp);
+        let part = triangle(0.1).linearize(&x, Some(start), Filter::Clamp);
         assert!(part.energy < 1e-23 && part.gradient.iter().all(|g| g.norm() < 1e-10), "{:e}", part.energy);
         let x = stream.deformed(&REST, 0.8, 0.4);
-        check_balance(&x, &triangle(0.1).linearise(&x, Some(start), Filter::Clamp).gradient);
+        check_balance(&x, &triangle(0.1).linearize(&x, Some(start), Filter::Clamp).gradient);
     }
 }
 
@@ -94,7 +94,7 @@ fn warp_weft_and_shear_have_their_stiffnesses() {
             let y = f * x.xy();
             Vector::new(y.x, y.y, 0.0)
         });
-        woven.linearise(&x, None, Filter::Clamp)
+        woven.linearize(&x, None, Filter::Clamp)
     };
     // Along warp the strip narrows by nu_12 = nu sqrt(E1/E2), along weft by nu sqrt(E2/E1).
     let (e, ratio) = (0.01, (1000.0f64 / 400.0).sqrt());

@@ -58,11 +58,11 @@ fn grid(n: usize) -> Grid {
 }
 
 #[test]
-fn the_solution_is_that_of_a_dense_factorisation() {
+fn the_solution_is_that_of_a_dense_factorization() {
     let Grid { positions, rows, blocks, dense } = grid(9);
     let symbolic = Symbolic::new(&positions, |i| &rows[i]);
     let mut factor = Cholesky::<2>::default();
-    factor.factorise(&symbolic, PivotPolicy::Drop, |i| (&rows[i], &blocks[i]));
+    factor.factorize(&symbolic, PivotPolicy::Drop, |i| (&rows[i], &blocks[i]));
     let right = DVector::from_fn(dense.nrows(), |i, _| (i as f64 * 0.7).cos());
     let exact = dense.cholesky().expect("diagonally dominant").solve(&right);
     let mut x: Vec<SVector<f64, 2>> =
@@ -89,7 +89,7 @@ fn semi_definite_systems_give_a_solution() {
     let symbolic = Symbolic::new(&[Vector::zeros()], |_| &rows);
     let mut factor = Cholesky::<2>::default();
     let blocks = [block];
-    factor.factorise(&symbolic, PivotPolicy::Drop, |_| (&rows, &blocks));
+    factor.factorize(&symbolic, PivotPolicy::Drop, |_| (&rows, &blocks));
     let mut x = [SVector::<f64, 2>::new(8.0, 8.0)];
     factor.solve(&symbolic, &mut x);
     assert!((block * x[0] - SVector::<f64, 2>::new(8.0, 8.0)).norm() < 1e-14);

@@ -51,12 +51,12 @@ fn the_correction_is_the_galerkin_projection() {
     let mut motions = DMatrix::zeros(3 * count, 18);
     for (a, range) in aggregates.iter().enumerate() {
         let nodes = range.start as usize..range.end as usize;
-        let centre = x[nodes.clone()].iter().sum::<Vector>() / nodes.len() as f64;
+        let center = x[nodes.clone()].iter().sum::<Vector>() / nodes.len() as f64;
         for node in nodes.filter(|&n| free[n]) {
             let mut part = SMatrix::<f64, 3, 6>::zeros();
             part.fixed_view_mut::<3, 3>(0, 0).fill_with_identity();
             for axis in 0..3 {
-                let spin = Vector::ith(axis, 1.0).cross(&(x[node] - centre));
+                let spin = Vector::ith(axis, 1.0).cross(&(x[node] - center));
                 part.set_column(3 + axis, &spin);
             }
             motions.view_mut((3 * node, 6 * a), (3, 6)).copy_from(&part);

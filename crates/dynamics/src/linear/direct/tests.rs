@@ -4,7 +4,7 @@ use crate::linear::scalar::ScalarBuilder;
 
 #[test]
 fn strands_are_solved_exactly_and_fill_in_little() {
-    // Two strands of 30 nodes with links to first and second neighbours, one with a branch of 5 nodes, and a
+    // Two strands of 30 nodes with links to first and second neighbors, one with a branch of 5 nodes, and a
     // node in neither; some nodes are held.
     let count = 66u32;
     let pattern = BlockPattern::from_cliques(count as usize, |visit| {

@@ -68,7 +68,7 @@ fn a_material_survives_toml_and_unknown_keys_are_refused() {
         stretch_limit: f64::INFINITY,
         ..ClothMaterial::denim()
     };
-    let text = toml::to_string(&material).expect("serialise");
+    let text = toml::to_string(&material).expect("serialize");
     assert_eq!(toml::from_str::<ClothMaterial>(&text).expect("parse"), material);
     assert!(toml::from_str::<ClothMaterial>("densty = 1.0").is_err());
     // Keys that are left out have the values of the default material.

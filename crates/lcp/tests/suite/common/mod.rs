@@ -21,7 +21,7 @@ impl Random {
     }
 }
 
-/// Arrays of a problem, rows stored by colour.
+/// Arrays of a problem, rows stored by color.
 pub struct Case {
     pub weights: Vec<f64>,
     pub y_free: Vec<Vector>,
@@ -37,8 +37,8 @@ impl Case {
     }
 }
 
-/// Sorts items by first-fit colours; nodes of weight 0 do not count.
-pub fn colour<T: Copy>(items: &[T], nodes: impl Fn(&T) -> Vec<u32>, weights: &[f64]) -> (Vec<T>, Vec<u32>) {
+/// Sorts items by first-fit colors; nodes of weight 0 do not count.
+pub fn color<T: Copy>(items: &[T], nodes: impl Fn(&T) -> Vec<u32>, weights: &[f64]) -> (Vec<T>, Vec<u32>) {
     let mut used = vec![0_u128; weights.len()];
     let mut classes: Vec<Vec<T>> = Vec::new();
     for item in items {
@@ -62,7 +62,7 @@ pub fn colour<T: Copy>(items: &[T], nodes: impl Fn(&T) -> Vec<u32>, weights: &[f
 }
 
 /// A crumpled sheet of side x side nodes 1 cm apart: edges and one diagonal per cell as distance limits, and
-/// `contacts` rows between random neighbourhoods. One node in 100 is pinned.
+/// `contacts` rows between random neighborhoods. One node in 100 is pinned.
 pub fn cloth(side: usize, contacts: usize, seed: u64) -> Case {
     let mut random = Random::new(seed);
     let h = 0.01;
@@ -110,7 +110,7 @@ pub fn cloth(side: usize, contacts: usize, seed: u64) -> Case {
     // Contacts are in spatial order.
     rows.sort_by_key(|row| row.vertices[1]);
     prepare_rows(&mut rows, &weights).expect("nodes are in range");
-    let (rows, row_starts) = colour(&rows, |r| r.vertices.to_vec(), &weights);
-    let (limits, limit_starts) = colour(&limits, |b| b.vertices.to_vec(), &weights);
+    let (rows, row_starts) = color(&rows, |r| r.vertices.to_vec(), &weights);
+    let (limits, limit_starts) = color(&limits, |b| b.vertices.to_vec(), &weights);
     Case { weights, y_free, rows, row_starts, limits, limit_starts }
 }

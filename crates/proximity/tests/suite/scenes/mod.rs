@@ -90,8 +90,8 @@ impl Builder {
     pub fn soup(&mut self, random: &mut Random, counts: [usize; 3], size: f64, radius: f64) -> &mut Self {
         let at = |random: &mut Random| Point::origin() + random.vector(size);
         for _ in 0..counts[0] {
-            let centre = at(random);
-            let corners = [0; 3].map(|_| centre + random.vector(0.15 * size));
+            let center = at(random);
+            let corners = [0; 3].map(|_| center + random.vector(0.15 * size));
             self.triangle(corners, radius * (0.5 + random.unit()));
         }
         for _ in 0..counts[1] {

@@ -33,13 +33,13 @@ function decodeIndices(bytes) {
 }
 
 /**
- * Quantised positions of one body in one frame, x y z of each vertex, from `offset` in `bytes`; `past` are those of
+ * Quantized positions of one body in one frame, x y z of each vertex, from `offset` in `bytes`; `past` are those of
  * the frame before and of the one before that.
  */
 function decodePositions(bytes, offset, count, past) {
     const mode = bytes[offset];
     const order = mode & 3;
-    const neighbour = (mode & 4) !== 0;
+    const neighbor = (mode & 4) !== 0;
     const [last, beforeLast] = past;
     const positions = new Uint16Array(3 * count);
     for (let axis = 0; axis < 3; axis++) {
@@ -49,7 +49,7 @@ function decodePositions(bytes, offset, count, past) {
         for (let i = 0, k = axis; i < count; i++, k += 3) {
             const z = bytes[low + i] | (bytes[high + i] << 8);
             let miss = (z >>> 1) ^ -(z & 1);
-            if (neighbour) miss += before;
+            if (neighbor) miss += before;
             before = miss & 0xffff;
             const base = order === 0 ? 0 : order === 1 ? last[k] : 2 * last[k] - beforeLast[k];
             // The array takes it modulo 2^16, as the encoder does.
@@ -79,7 +79,7 @@ async function readBodies() {
 }
 
 /**
- * Reads all frames in order, a list of quantised positions a frame, one array a body; calls `arrived(frames)` after each
+ * Reads all frames in order, a list of quantized positions a frame, one array a body; calls `arrived(frames)` after each
  * few. Resolves to the list.
  */
 async function readFrames(bodies, arrived) {
@@ -106,13 +106,13 @@ async function readFrames(bodies, arrived) {
 }
 
 /** Writes a body's positions [m] into `out`. */
-function dequantise(body, quantised, out) {
+function dequantize(body, quantized, out) {
     const [x, y, z] = body.low;
     const [sx, sy, sz] = body.step;
-    for (let k = 0; k < quantised.length; k += 3) {
-        out[k] = x + quantised[k] * sx;
-        out[k + 1] = y + quantised[k + 1] * sy;
-        out[k + 2] = z + quantised[k + 2] * sz;
+    for (let k = 0; k < quantized.length; k += 3) {
+        out[k] = x + quantized[k] * sx;
+        out[k + 1] = y + quantized[k + 1] * sy;
+        out[k + 2] = z + quantized[k + 2] * sz;
     }
 }
 

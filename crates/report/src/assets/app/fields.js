@@ -1,4 +1,4 @@
-// Values of vertices that colours show: stretch, speed, height.
+// Values of vertices that colors show: stretch, speed, height.
 
 /** Edges of a body, each once: those of triangles and of strands. */
 function edgesOf(body) {
@@ -42,7 +42,7 @@ class Fields {
 
     positions(body, frame) {
         const out = new Float32Array(3 * body.vertices);
-        dequantise(body, this.frames[frame][body.index], out);
+        dequantize(body, this.frames[frame][body.index], out);
         return out;
     }
 
@@ -85,7 +85,7 @@ class Fields {
         return this[field](body, frame);
     }
 
-    /** Ends of the colours: over deformable bodies and some frames of the whole run, but for the last half percent. */
+    /** Ends of the colors: over deformable bodies and some frames of the whole run, but for the last half percent. */
     range(field) {
         if (this.ranges.has(field)) return this.ranges.get(field);
         const deformable = this.bodies.filter((body) => !body.obstacle);

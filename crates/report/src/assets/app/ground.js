@@ -1,6 +1,6 @@
 // The ground: half-spaces as planes that fade out, with a grid; where a run has none, a faint one below it.
 
-/** A round number of metres near a tenth of `size`: 1, 2 or 5 times a power of ten. */
+/** A round number of meters near a tenth of `size`: 1, 2 or 5 times a power of ten. */
 function roundCell(size) {
     const power = 10 ** Math.floor(Math.log10(size / 10));
     return power * [1, 2, 5, 10].find((factor) => factor * power >= size / 10);
@@ -58,7 +58,7 @@ class Ground {
 /** The plane of a half-space body, from its four corners; its foot is the point below `center`. */
 function planeOf(body, center) {
     const p = new Float32Array(12);
-    dequantise(body, body.still.subarray(0, 12), p);
+    dequantize(body, body.still.subarray(0, 12), p);
     const corner = (k) => new L.Vector3(p[3 * k], p[3 * k + 1], p[3 * k + 2]);
     const normal = corner(1).sub(corner(0)).cross(corner(3).sub(corner(0))).normalize();
     const foot = center.clone().addScaledVector(normal, corner(0).sub(center).dot(normal));

@@ -23,8 +23,8 @@ function fail(error) {
 window.addEventListener("error", (event) => fail(event.error ?? event.message));
 window.addEventListener("unhandledrejection", (event) => fail(event.reason));
 
-/** The menu of colours, the legend, the bodies. */
-class Colours {
+/** The menu of colors, the legend, the bodies. */
+class Colors {
     constructor(viewer, fields, player) {
         Object.assign(this, { viewer, fields, player, tables: new Map(), field: FIELDS[0] });
         const menu = at("field");
@@ -53,13 +53,13 @@ class Colours {
         );
     }
 
-    /** Colours the frame shown; bodies that keep their colour are left as they are unless `all`. */
+    /** Colors the frame shown; bodies that keep their color are left as they are unless `all`. */
     paint(all) {
         const { id, map } = this.field;
         for (const shape of this.viewer.shapes) {
             if (!shape) continue;
             if (!map || shape.body.obstacle) {
-                if (all) shape.paintBody(bodyColour(shape.body));
+                if (all) shape.paintBody(bodyColor(shape.body));
                 continue;
             }
             if (!this.tables.has(map)) this.tables.set(map, lookup(map));
@@ -73,9 +73,9 @@ class Colours {
         const { viewer } = this;
         at("bodies").replaceChildren(...viewer.bodies.map((body, index) => {
             const shown = !this.hidden.has(index);
-            const colour = body.kind === "half-space" ? scenery().grid : bodyColour(body);
+            const color = body.kind === "half-space" ? scenery().grid : bodyColor(body);
             const button = make("button", { className: "body", ariaPressed: String(shown), title: `Show or hide: ${body.name}` },
-                make("span", { className: "swatch", style: `background:${colour}` }),
+                make("span", { className: "swatch", style: `background:${color}` }),
                 make("span", { className: "name", textContent: body.name }),
                 make("span", { className: "kind", textContent: body.kind }));
             button.addEventListener("click", () => {
@@ -146,11 +146,11 @@ async function start() {
     fillSummary(at("summary"));
 
     let viewer = null;
-    let colours = null;
+    let colors = null;
     let frames = [];
     const player = new Player(meta.numbers.length, (frame) => {
         viewer?.move(frames, frame);
-        if (colours?.field.map) colours.paint(false);
+        if (colors?.field.map) colors.paint(false);
         plots.at(plots.timed && meta.times ? meta.times[frame] : meta.numbers[frame]);
     });
     const plots = new Plots(at("plots"), (x) => {
@@ -171,7 +171,7 @@ async function start() {
         player.loaded = some.length;
         state.frames = String(some.length);
         if (some.length === 1) {
-            viewer?.shapes.forEach((shape) => shape?.paintBody(bodyColour(shape.body)));
+            viewer?.shapes.forEach((shape) => shape?.paintBody(bodyColor(shape.body)));
             player.go(0);
         }
         notice(some.length < meta.numbers.length ? `Unpacking ${some.length} of ${meta.numbers.length} frames…` : "", false);
@@ -187,14 +187,14 @@ async function start() {
         Home: () => player.go(0), End: () => player.go(player.count - 1), l: () => player.setLoop(!player.loop), t: () => at("theme").click(),
     };
     if (viewer) {
-        colours = new Colours(viewer, new Fields(bodiesRead, frames), player);
-        colours.choose(asked.get("field"));
+        colors = new Colors(viewer, new Fields(bodiesRead, frames), player);
+        colors.choose(asked.get("field"));
         const { wire } = views(viewer);
         Object.assign(actions, { f: () => viewer.view("fit"), w: wire });
         if (asked.has("view")) viewer.view(asked.get("view"));
         if (asked.has("wire")) wire();
     } else {
-        for (const id of ["colours", "views"]) at(id).hidden = true;
+        for (const id of ["colors", "views"]) at(id).hidden = true;
         notice("This browser gives no WebGL 2, so that the run cannot be drawn.\nThe statistics follow the slider all the same.", false);
     }
     keys(actions);
@@ -206,8 +206,8 @@ async function start() {
         plots.at(plots.now);
         fillSummary(at("summary"));
         viewer?.theme();
-        colours?.list();
-        colours?.paint(true);
+        colors?.list();
+        colors?.paint(true);
         for (const shape of viewer?.shapes ?? []) shape?.showWire(!!viewer.wired, scenery().wire, viewer.group);
     });
     const frame = meta.numbers.findIndex((number) => number >= Number(asked.get("frame") ?? 0));

@@ -4,7 +4,7 @@ const { uPlot } = Libraries;
 
 const LINES = ["#6cb0ff", "#f0a35e", "#57c794", "#d58be0", "#e6cf5c", "#ff7b7b", "#9aa6b8"];
 const LINES_LIGHT = ["#1f6fd1", "#c8660f", "#16834f", "#9b3fae", "#94780a", "#c62f2f", "#667180"];
-const lineColour = (k) => (theme() === "dark" ? LINES : LINES_LIGHT)[k % LINES.length];
+const lineColor = (k) => (theme() === "dark" ? LINES : LINES_LIGHT)[k % LINES.length];
 
 /** What is plotted; series whose column is missing are left out, and plots without series. */
 const PLOTS = [
@@ -117,14 +117,14 @@ class Plots {
         const count = plot.series.length;
         const data = this.data(plot);
         plot.chart?.destroy();
-        const colour = (k) => lineColour(plot.stacked ? count - 1 - k : k);
-        const muted = cssColour("--muted");
+        const color = (k) => lineColor(plot.stacked ? count - 1 - k : k);
+        const muted = cssColor("--muted");
         const axis = {
             stroke: muted, font: "10.5px system-ui, sans-serif", ticks: { show: false },
-            grid: { stroke: cssColour("--line"), width: 1 },
+            grid: { stroke: cssColor("--line"), width: 1 },
         };
         const series = plot.series.map((_, k) => ({
-            stroke: colour(k), width: plot.stacked ? 0 : 1.5, fill: plot.stacked ? colour(k) : undefined,
+            stroke: color(k), width: plot.stacked ? 0 : 1.5, fill: plot.stacked ? color(k) : undefined,
             points: { show: this.x.length < 3, size: 5 }, spanGaps: false,
         }));
         const options = {
@@ -219,7 +219,7 @@ class Plots {
         for (const plot of this.plots) {
             plot.keys.replaceChildren(...plot.series.map(([key, name], k) => {
                 const value = row === null ? null : columns[key][row];
-                return make("span", {}, make("i", { style: `background:${lineColour(k)}` }), name, make("b", { textContent: show(value, plot.unit) }));
+                return make("span", {}, make("i", { style: `background:${lineColor(k)}` }), name, make("b", { textContent: show(value, plot.unit) }));
             }));
         }
     }

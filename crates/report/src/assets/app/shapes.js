@@ -14,8 +14,8 @@ function surfaceMaterial(twoSided) {
                 "#include <color_fragment>",
                 `#include <color_fragment>
                 if (!gl_FrontFacing) {
-                    float grey = dot(diffuseColor.rgb, vec3(0.2126, 0.7152, 0.0722));
-                    diffuseColor.rgb = mix(diffuseColor.rgb, vec3(grey) * vec3(1.25, 1.1, 0.95) + 0.05, uBack);
+                    float gray = dot(diffuseColor.rgb, vec3(0.2126, 0.7152, 0.0722));
+                    diffuseColor.rgb = mix(diffuseColor.rgb, vec3(gray) * vec3(1.25, 1.1, 0.95) + 0.05, uBack);
                 }`,
             );
     };
@@ -27,7 +27,7 @@ class Shape {
     constructor(body, group) {
         this.body = body;
         this.positions = new Float32Array(3 * body.vertices);
-        this.colours = new Float32Array(3 * body.vertices);
+        this.colors = new Float32Array(3 * body.vertices);
         this.parts = [];
         if (body.triangles.length > 0) this.addSurface(group);
         if (body.strands.length > 0) this.addTubes(group);
@@ -37,8 +37,8 @@ class Shape {
     addSurface(group) {
         const geometry = new L.BufferGeometry();
         const position = new L.BufferAttribute(this.positions, 3).setUsage(L.DynamicDrawUsage);
-        const colour = new L.BufferAttribute(this.colours, 3).setUsage(L.DynamicDrawUsage);
-        geometry.setAttribute("position", position).setAttribute("color", colour);
+        const color = new L.BufferAttribute(this.colors, 3).setUsage(L.DynamicDrawUsage);
+        geometry.setAttribute("position", position).setAttribute("color", color);
         // Without normals when first drawn it would be shaded flat for good.
         geometry.setAttribute("normal", new L.BufferAttribute(new Float32Array(this.positions.length), 3).setUsage(L.DynamicDrawUsage));
         geometry.setIndex(new L.BufferAttribute(this.body.triangles, 1));
@@ -72,7 +72,7 @@ class Shape {
         const mesh = new L.InstancedMesh(geometry, material, count);
         mesh.instanceColor = new L.InstancedBufferAttribute(new Float32Array(3 * count), 3);
         mesh.instanceMatrix.setUsage(L.DynamicDrawUsage);
-        // Until the first frame arrives: spheres of a metre, all in one place, would keep a GPU busy for long.
+        // Until the first frame arrives: spheres of a meter, all in one place, would keep a GPU busy for long.
         mesh.instanceMatrix.array.fill(0);
         return mesh;
     }
@@ -91,9 +91,9 @@ class Shape {
         for (const part of this.parts) part.visible = visible;
     }
 
-    /** Takes quantised positions; `radius` is that of strands and particles [m]. */
-    move(quantised, radius) {
-        dequantise(this.body, quantised, this.positions);
+    /** Takes quantized positions; `radius` is that of strands and particles [m]. */
+    move(quantized, radius) {
+        dequantize(this.body, quantized, this.positions);
         if (this.surface) {
             const { geometry } = this.surface;
             geometry.getAttribute("position").needsUpdate = true;
@@ -139,16 +139,16 @@ class Shape {
         this.spheres.instanceMatrix.needsUpdate = true;
     }
 
-    /** One colour, told front from back. */
+    /** One color, told front from back. */
     paintBody(text) {
         const { r, g, b } = new L.Color(text);
-        for (let k = 0; k < this.colours.length; k += 3) this.colours.set([r, g, b], k);
+        for (let k = 0; k < this.colors.length; k += 3) this.colors.set([r, g, b], k);
         this.painted(!this.body.obstacle);
     }
 
-    /** Values as colours, the same on both sides. */
+    /** Values as colors, the same on both sides. */
     paintValues(values, [low, high], table) {
-        paint(values, low, high, table, this.colours);
+        paint(values, low, high, table, this.colors);
         this.painted(false);
     }
 
@@ -158,12 +158,12 @@ class Shape {
             this.material.userData.back.value = twoSided ? 0.45 : 0;
         }
         const copy = (mesh, vertexOf) => {
-            const colours = mesh.instanceColor.array;
+            const colors = mesh.instanceColor.array;
             for (let k = 0; k < mesh.count; k++) {
                 const i = 3 * vertexOf(k);
-                colours[3 * k] = this.colours[i];
-                colours[3 * k + 1] = this.colours[i + 1];
-                colours[3 * k + 2] = this.colours[i + 2];
+                colors[3 * k] = this.colors[i];
+                colors[3 * k + 1] = this.colors[i + 1];
+                colors[3 * k + 2] = this.colors[i + 2];
             }
             mesh.instanceColor.needsUpdate = true;
         };
@@ -172,7 +172,7 @@ class Shape {
     }
 
     /** Shows or hides the edges of the surface. */
-    showWire(shown, colour, group) {
+    showWire(shown, color, group) {
         if (!this.surface) return;
         if (shown && !this.wire) {
             const geometry = new L.BufferGeometry();
@@ -187,7 +187,7 @@ class Shape {
             Object.assign(this.material, { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
         }
         if (this.wire) {
-            this.wire.material.color.set(colour);
+            this.wire.material.color.set(color);
             this.wire.visible = shown && this.surface.visible;
         }
     }

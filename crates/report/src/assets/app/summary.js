@@ -80,9 +80,9 @@ function shares() {
     const seconds = stages.map((stage) => sum(columns[`seconds.${stage}`]));
     const total = seconds.reduce((a, b) => a + b, 0);
     if (!(total > 0)) return [];
-    const bar = make("div", { className: "shares" }, ...seconds.map((s, k) => make("div", { style: `width:${(100 * s) / total}%;background:${lineColour(k)}`, title: stages[k] })));
+    const bar = make("div", { className: "shares" }, ...seconds.map((s, k) => make("div", { style: `width:${(100 * s) / total}%;background:${lineColor(k)}`, title: stages[k] })));
     const table = make("table", {}, ...stages.map((stage, k) => make("tr", {},
-        make("td", {}, make("i", { style: `display:inline-block;width:9px;height:9px;border-radius:2px;margin-right:7px;background:${lineColour(k)}` }), stage),
+        make("td", {}, make("i", { style: `display:inline-block;width:9px;height:9px;border-radius:2px;margin-right:7px;background:${lineColor(k)}` }), stage),
         make("td", { textContent: show(seconds[k], "s") }),
         make("td", { textContent: `${Math.round((100 * seconds[k]) / total)} %` }),
     )));
@@ -108,7 +108,7 @@ function fillSummary(panel) {
     const count = (value) => (value > 0 ? show(value) : null);
     const extent = summary?.extent?.map((length) => show(length, "m")).join(" × ");
     const steps = summary?.frames ?? present(columns.step).length;
-    const licences = make("details", {}, make("summary", { textContent: "Libraries in this page, and their licences" }), document.getElementById("licences").content.cloneNode(true));
+    const licenses = make("details", {}, make("summary", { textContent: "Libraries in this page, and their licenses" }), document.getElementById("licenses").content.cloneNode(true));
     panel.replaceChildren(
         tiles(),
         ...rows("Scene", [
@@ -130,6 +130,6 @@ function fillSummary(panel) {
             ["folder", meta.folder], ["made by", `Bowknot ${meta.version}`],
         ]),
         ...(meta.left_out.length > 0 ? [make("h2", { textContent: "Left out" }), make("ul", {}, ...meta.left_out.map((text) => make("li", { textContent: text })))] : []),
-        licences,
+        licenses,
     );
 }

@@ -15,9 +15,9 @@ fn ribbon(scene: &Scene) -> Ribbon {
     ribbon.clone()
 }
 
-/// The centre-line of the left ribbon as points about 1 cm apart.
+/// The center-line of the left ribbon as points about 1 cm apart.
 fn centre_line(scene: &Scene) -> Vec<Point> {
-    // Two columns of quadrilaterals make three vertices a row, the middle one on the centre-line.
+    // Two columns of quadrilaterals make three vertices a row, the middle one on the center-line.
     let ribbon = ribbon(scene);
     let narrow = Ribbon { width: 0.02, edge: 0.01, ..ribbon };
     narrow.mesh().positions.iter().skip(1).step_by(3).copied().collect()

@@ -29,7 +29,7 @@ impl Skin {
             .map(|p| {
                 let distances: [f64; BONES] = body.bone_distances(p);
                 let nearest = distances.iter().copied().fold(f64::INFINITY, f64::min);
-                normalised(distances.map(|d| ((nearest - d) / FALLOFF).exp()))
+                normalized(distances.map(|d| ((nearest - d) / FALLOFF).exp()))
             })
             .collect();
         let rounds = (SMOOTHING / edge).powi(2).round().clamp(0.0, 40.0) as usize;
@@ -51,7 +51,7 @@ impl Skin {
         }
         let (mut starts, mut influences) = (vec![0], Vec::new());
         for weights in weights {
-            let kept = normalised(weights.map(|w| if w < LEAST { 0.0 } else { w }));
+            let kept = normalized(weights.map(|w| if w < LEAST { 0.0 } else { w }));
             influences.extend((0..BONES).filter(|&b| kept[b] > 0.0).map(|b| (b as u8, kept[b])));
             starts.push(influences.len() as u32);
         }
@@ -77,7 +77,7 @@ impl Skin {
     }
 }
 
-fn normalised(weights: [f64; BONES]) -> [f64; BONES] {
+fn normalized(weights: [f64; BONES]) -> [f64; BONES] {
     let sum: f64 = weights.iter().sum();
     weights.map(|w| w / sum)
 }

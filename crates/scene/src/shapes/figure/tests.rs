@@ -110,12 +110,12 @@ fn it_goes_where_it_is_told() {
     assert!((walk.pose(3.0).place - Vector::x() * 2.0 * 1.75).norm() < 1e-12);
     let turn = Figure { turn_rate: 90.0, turn_start: 0.5, turn_end: 1.5, ..walk };
     assert!((turn.pose(3.0).heading - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
-    // A circle of radius v / w, once both are steady: the distance from its centre stays.
+    // A circle of radius v / w, once both are steady: the distance from its center stays.
     let circle = Figure { start: 0.0, ease: 0.0, walk_speed: 1.0, turn_rate: 180.0, ..Figure::default() };
     let radius = 1.0 / std::f64::consts::PI;
     for time in [0.25, 0.5, 1.3, 2.0] {
-        let from_centre = circle.pose(time).place - Vector::new(0.0, radius, 0.0);
-        assert!((from_centre.norm() - radius).abs() < 1e-5, "at {time}");
+        let from_center = circle.pose(time).place - Vector::new(0.0, radius, 0.0);
+        assert!((from_center.norm() - radius).abs() < 1e-5, "at {time}");
     }
     assert!(circle.pose(2.0).place.norm() < 1e-5);
 }

@@ -30,7 +30,7 @@ fn a_block_is_filled_by_positive_tets_that_fit_together() {
         let volumes = volumes(&mesh);
         assert!(volumes.iter().all(|v| (v / (edge.powi(3) / 6.0) - 1.0).abs() < 1e-9), "{volumes:?}");
         assert!((volumes.iter().sum::<f64>() / size.iter().product::<f64>() - 1.0).abs() < 1e-12);
-        // Faces that did not fit their neighbours would count as surface.
+        // Faces that did not fit their neighbors would count as surface.
         let cells = size.map(|s| (s / edge).round());
         let faces = 4.0 * (cells[0] * cells[1] + cells[1] * cells[2] + cells[2] * cells[0]);
         assert_eq!(boundary_triangles(&mesh.tets).len() as f64, faces);

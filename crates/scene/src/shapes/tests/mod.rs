@@ -127,7 +127,7 @@ fn a_ribbon_wound_around_a_cylinder_is_not_distorted() {
     let ribbon = Ribbon { points: points.collect(), across: across.collect(), width: 0.1, edge: 0.01 };
     assert!(distortion(&ribbon) < 2e-4, "{}", distortion(&ribbon));
     assert!((ribbon.length() / (0.5 * std::f64::consts::PI * slope) - 1.0).abs() < 1e-3);
-    // Of itself it does not turn about its centre-line either; the same curve, turned steadily, is sheared.
+    // Of itself it does not turn about its center-line either; the same curve, turned steadily, is sheared.
     let free = Ribbon { across: Vec::new(), ..ribbon };
     assert!(distortion(&free) < 0.06);
 }

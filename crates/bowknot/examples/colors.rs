@@ -1,7 +1,7 @@
-//! Colours of the rows of recorded collision problems: rows of one colour share no vertex that can move, so a sweep may
+//! Colors of the rows of recorded collision problems: rows of one color share no vertex that can move, so a sweep may
 //! treat them in parallel with one and the same result.
 //!
-//! `cargo run --release -- run stack --record && cargo run --release -p bowknot --example colours -- out/stack/states/*.npz`
+//! `cargo run --release -- run stack --record && cargo run --release -p bowknot --example colors -- out/stack/states/*.npz`
 
 #![allow(clippy::print_stdout)]
 
@@ -14,11 +14,11 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    println!("preset  contact rows, colours  edge rows, colours");
+    println!("preset  contact rows, colors  edge rows, colors");
     for path in std::env::args().skip(1) {
         let states = States::read(Path::new(&path))?;
         for (name, params) in [("fast", Params::fast()), ("paper", Params::paper())] {
-            // The colours of the first backward step; later ones have like rows.
+            // The colors of the first backward step; later ones have like rows.
             let mut resolver = Resolver::new(model(&states)?, &states.rest, &states.masses, params)?;
             let mut x = states.x.clone();
             let input = ResolveInput {
@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let s = resolver.resolve_with(&mut x, &states.y, &input, &mut stop)?;
             println!(
                 "{name:6}  {:7} {:5}  {:7} {:5}",
-                s.contact_rows, s.contact_colours, s.edge_rows, s.edge_colours
+                s.contact_rows, s.contact_colors, s.edge_rows, s.edge_colors
             );
         }
     }

@@ -1,33 +1,33 @@
-//! Greedy colouring of rows: rows of one colour share no movable vertex, so a sweep may treat
+//! Greedy coloring of rows: rows of one color share no movable vertex, so a sweep may treat
 //! them in any order, or in parallel, with the same result.
 //!
-//! The paper colours randomly (section 4.2); first-fit over rows in their listed order needs fewer
-//! colours, is deterministic, and costs tens of nanoseconds per row.
+//! The paper colors randomly (section 4.2); first-fit over rows in their listed order needs fewer
+//! colors, is deterministic, and costs tens of nanoseconds per row.
 
 use std::ops::Range;
 
-/// Words of the mask of the colours in use at a vertex. Rows that find no free colour get a colour of their
+/// Words of the mask of the colors in use at a vertex. Rows that find no free color get a color of their
 /// own.
 const WORDS: usize = 4;
-const COLOURS: usize = WORDS * 64;
+const COLORS: usize = WORDS * 64;
 const NONE: u32 = u32::MAX;
 
-/// Scratch of [`Colouring::first_fit`]; may be dropped at any time.
+/// Scratch of [`Coloring::first_fit`]; may be dropped at any time.
 #[derive(Clone, Debug, Default)]
-pub struct Colouring {
-    /// Colours in use at each vertex.
+pub struct Coloring {
+    /// Colors in use at each vertex.
     used: Vec<[u64; WORDS]>,
-    /// Colour of each row.
-    colours: Vec<u32>,
-    /// Rows in colour order.
+    /// Color of each row.
+    colors: Vec<u32>,
+    /// Rows in color order.
     order: Vec<u32>,
-    /// Where each colour starts in `order`, and the end.
+    /// Where each color starts in `order`, and the end.
     starts: Vec<u32>,
 }
 
-impl Colouring {
-    /// Colours `row_count` rows. `vertices(r)` lists the movable vertices of row r; rows that share one
-    /// get different colours.
+impl Coloring {
+    /// Colors `row_count` rows. `vertices(r)` lists the movable vertices of row r; rows that share one
+    /// get different colors.
     pub fn first_fit<I: IntoIterator<Item = u32>>(
         &mut self,
         vertex_count: usize,
@@ -35,9 +35,9 @@ impl Colouring {
         vertices: impl Fn(usize) -> I,
     ) {
         self.used.resize(vertex_count, [0; WORDS]);
-        self.colours.clear();
+        self.colors.clear();
         self.starts.clear();
-        self.starts.resize(COLOURS + 1, 0);
+        self.starts.resize(COLORS + 1, 0);
         let mut overflow = 0;
         for row in 0..row_count {
             let mut taken = [0u64; WORDS];
@@ -47,7 +47,7 @@ impl Colouring {
                 }
             }
             let Some(word) = taken.iter().position(|t| *t != u64::MAX) else {
-                self.colours.push(NONE);
+                self.colors.push(NONE);
                 overflow += 1;
                 continue;
             };
@@ -55,9 +55,9 @@ impl Colouring {
             for v in vertices(row) {
                 self.used[v as usize][word] |= 1 << bit;
             }
-            let colour = word * 64 + bit;
-            self.colours.push(colour as u32);
-            self.starts[colour + 1] += 1;
+            let color = word * 64 + bit;
+            self.colors.push(color as u32);
+            self.starts[color + 1] += 1;
         }
         // Clears only the touched entries: most vertices of a scene are in no contact.
         for row in 0..row_count {
@@ -66,8 +66,8 @@ impl Colouring {
             }
         }
 
-        let colours = self.starts.iter().rposition(|count| *count > 0).unwrap_or(0);
-        self.starts.truncate(colours + 1);
+        let colors = self.starts.iter().rposition(|count| *count > 0).unwrap_or(0);
+        self.starts.truncate(colors + 1);
         for c in 1..self.starts.len() {
             self.starts[c] += self.starts[c - 1];
         }
@@ -75,8 +75,8 @@ impl Colouring {
         self.order.clear();
         self.order.resize(row_count, 0);
         let mut tail = (row_count - overflow) as u32;
-        for (row, &colour) in self.colours.iter().enumerate() {
-            let place = if colour == NONE { &mut tail } else { &mut next[colour as usize] };
+        for (row, &color) in self.colors.iter().enumerate() {
+            let place = if color == NONE { &mut tail } else { &mut next[color as usize] };
             self.order[*place as usize] = row as u32;
             *place += 1;
         }
@@ -85,22 +85,22 @@ impl Colouring {
         }
     }
 
-    /// Rows in colour order.
+    /// Rows in color order.
     pub fn order(&self) -> &[u32] {
         &self.order
     }
 
-    /// Where each colour starts in [`Self::order`], and the end: one entry more than there are colours.
+    /// Where each color starts in [`Self::order`], and the end: one entry more than there are colors.
     pub fn starts(&self) -> &[u32] {
         &self.starts
     }
 
-    /// Number of colours.
-    pub fn colour_count(&self) -> usize {
+    /// Number of colors.
+    pub fn color_count(&self) -> usize {
         self.starts.len().saturating_sub(1)
     }
 
-    /// The range of each colour in [`Self::order`].
+    /// The range of each color in [`Self::order`].
     pub fn ranges(&self) -> impl Iterator<Item = Range<usize>> + '_ {
         self.starts.windows(2).map(|w| w[0] as usize..w[1] as usize)
     }

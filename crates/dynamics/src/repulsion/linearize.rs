@@ -8,18 +8,18 @@ use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 impl Repulsion {
-    /// Linearises the active springs at `x`.
-    pub fn linearise(&mut self, x: &[Vector]) {
+    /// Linearizes the active springs at `x`.
+    pub fn linearize(&mut self, x: &[Vector]) {
         let active: Vec<u32> =
             (0..self.springs.len() as u32).filter(|&s| self.states[s as usize].active).collect();
         let mut linear = std::mem::take(&mut self.linear);
         linear.set(|springs| {
-            active.par_iter().map(|&s| self.linearised(s as usize, x)).collect_into_vec(springs);
+            active.par_iter().map(|&s| self.linearized(s as usize, x)).collect_into_vec(springs);
         });
         self.linear = linear;
     }
 
-    fn linearised(&self, spring: usize, x: &[Vector]) -> LinearSpring {
+    fn linearized(&self, spring: usize, x: &[Vector]) -> LinearSpring {
         let (state, n) = (&self.states[spring], self.springs[spring].normal);
         let k = state.stiffness;
         let (depth, slip) = self.depth_and_slip(spring, x);

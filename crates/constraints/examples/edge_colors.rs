@@ -1,7 +1,7 @@
-//! Colours of a sheet's edges: their number, their sizes, and a check that edges of one colour share no
+//! Colors of a sheet's edges: their number, their sizes, and a check that edges of one color share no
 //! movable vertex.
 //!
-//! `cargo run --release -p bowknot-constraints --example edge_colours`
+//! `cargo run --release -p bowknot-constraints --example edge_colors`
 #![allow(clippy::print_stdout)]
 
 use bowknot_constraints::{EdgeLimits, EdgeReference};
@@ -26,21 +26,21 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let topology = Topology::builder(rest.len()).triangles(triangles).build()?;
     // One side is held. Edges between held vertices need no limit, and edges that share a held vertex may
-    // have one colour.
+    // have one color.
     let movable: Vec<bool> = (0..SIDE * SIDE).map(|v| v >= SIDE).collect();
 
     let mut limits = EdgeLimits::new(&topology, &rest, &movable, |_| STRETCH);
     let (edges, rows) = (topology.edges.len(), limits.balls.len());
-    println!("{edges} edges, {rows} of them with a movable vertex, {} colours", limits.colour_count());
-    for (colour, range) in limits.colour_starts().windows(2).enumerate() {
+    println!("{edges} edges, {rows} of them with a movable vertex, {} colors", limits.color_count());
+    for (color, range) in limits.color_starts().windows(2).enumerate() {
         let (start, end) = (range[0] as usize, range[1] as usize);
-        println!("  colour {colour:2}: {:5} edges", end - start);
+        println!("  color {color:2}: {:5} edges", end - start);
         let mut taken = vec![false; rest.len()];
         for ball in &limits.balls[start..end] {
             for v in ball.vertices.map(|v| v as usize).into_iter().filter(|&v| movable[v]) {
                 assert!(
                     !std::mem::replace(&mut taken[v], true),
-                    "vertex {v} is in two edges of colour {colour}"
+                    "vertex {v} is in two edges of color {color}"
                 );
             }
         }

@@ -11,8 +11,8 @@ use rayon::prelude::*;
 impl Newton<'_> {
     /// Computes the gradient and H at `work.x`. Springs that have not been prepared get their stiffness and
     /// the guess of the active set.
-    pub fn linearise(&mut self) {
-        self.linearise_bodies();
+    pub fn linearize(&mut self) {
+        self.linearize_bodies();
         let Self { model, repulsion, step, work, .. } = self;
         if repulsion.is_empty() {
             return;
@@ -25,18 +25,18 @@ impl Newton<'_> {
             let diagonal = &work.values.diagonal;
             repulsion.prepare(model, diagonal, 1.0 / step.dt, &work.free, &inertial, iterate.as_deref());
         }
-        repulsion.linearise(&work.x);
+        repulsion.linearize(&work.x);
         let gradient = work.gradient.par_iter_mut().enumerate().with_min_len(CHUNK);
         gradient.for_each(|(node, gradient)| *gradient += repulsion.linear().gradient(node));
     }
 
     /// Computes the gradient and H at `work.x` without springs.
-    pub fn linearise_bodies(&mut self) {
+    pub fn linearize_bodies(&mut self) {
         let Self { model, params, step, work, .. } = self;
         let motion = Motion { x: &work.x, start: &step.start, rate: 1.0 / step.dt };
         let filter = Filter::new(params.newton.hessian_filter, step.last_target.is_none());
         let cache = &mut work.cache;
-        if cache.linearised_at == work.x && cache.filter == Some(filter) {
+        if cache.linearized_at == work.x && cache.filter == Some(filter) {
             work.gradient.copy_from_slice(&cache.gradient);
             return;
         }
@@ -78,10 +78,10 @@ impl Newton<'_> {
                 }
             }
             for set in &model.element_sets {
-                set.linearise(chunk, motion, filter, &mut rows);
+                set.linearize(chunk, motion, filter, &mut rows);
             }
         });
-        cache.linearised_at.clone_from(&work.x);
+        cache.linearized_at.clone_from(&work.x);
         cache.filter = Some(filter);
         cache.gradient.clone_from(&work.gradient);
     }

@@ -1,4 +1,4 @@
-//! Impact-zone optimisation of the target alone.
+//! Impact-zone optimization of the target alone.
 
 use super::impacts::{Impact, ImpactSearch};
 use super::params::{ZoneParams, ZoneSolver};
@@ -9,8 +9,8 @@ use bowknot_twoway::geometry::{Point, Vector};
 use bowknot_twoway::{CallInput, CollisionScene, ResolveError, ResolveInput};
 use std::time::Instant;
 
-/// Impact-zone optimisation alone (Harmon et al. 2008; Tang et al. 2018). Each round finds the target y
-/// nearest to y0 with n . (p - q)(y) >= delta for every pair that has met so far, with rows linearised at the
+/// Impact-zone optimization alone (Harmon et al. 2008; Tang et al. 2018). Each round finds the target y
+/// nearest to y0 with n . (p - q)(y) >= delta for every pair that has met so far, with rows linearized at the
 /// impact; then impacts from x to y are detected again, until there are none. A pair that meets again gets a
 /// new row. Zones are the sets of vertices that rows connect. No row connects two zones, so that solving all
 /// rows at once solves each zone.
@@ -27,7 +27,7 @@ pub struct ImpactZones {
     rows: ImpactRows,
 }
 
-/// The optimised target.
+/// The optimized target.
 #[derive(Debug)]
 pub(crate) struct Attempt {
     /// y [m].
@@ -47,8 +47,8 @@ impl ImpactZones {
         Ok(Self { scene, params, search, rows: ImpactRows::default() })
     }
 
-    /// Optimises the target; positions stay unchanged.
-    pub(crate) fn optimise(
+    /// Optimizes the target; positions stay unchanged.
+    pub(crate) fn optimize(
         &mut self,
         positions: &[Point],
         target: &[Point],
@@ -111,7 +111,7 @@ impl Method for ImpactZones {
     ) -> Result<Outcome, ResolveError> {
         let timer = Instant::now();
         let mut outcome = Outcome::default();
-        let attempt = self.optimise(positions, target, input, &mut outcome)?;
+        let attempt = self.optimize(positions, target, input, &mut outcome)?;
         outcome.converged = attempt.clear;
         outcome.failed = !attempt.clear;
         if attempt.clear {
