@@ -60,7 +60,7 @@ pub struct StepNumbers {
     pub momentum: [Option<f64>; 3],
     pub newton_iterations: Option<f64>,
     pub pairs: Option<f64>,
-    pub prescribed_behind_m: Option<f64>,
+    pub prescribed_lag_m: Option<f64>,
     pub remaining_m: Option<f64>,
     pub remaining_r: Option<f64>,
     pub repulsion_springs: Option<f64>,
