@@ -2,11 +2,15 @@
 //!
 //! | table | fields of |
 //! |---|---|
-//! | `[simulation]` | [`SimulationParams`], gravity and drag of [`DynamicsParams`] |
-//! | `[contact]` | `preset`, [`ContactParams`](bowknot_twoway::ContactParams), [`FrictionPair`]s |
-//! | `[solver]` | [`SolverParams`](bowknot_twoway::SolverParams), the rest of [`DynamicsParams`]; `[solver.repulsion]`: [`RepulsionParams`] |
+//! | `[simulation]` | [`SimulationParams`], [`Environment`](bowknot_dynamics::Environment) |
+//! | `[contact]` | `preset`, [`ContactParams`](bowknot_constraints::ContactParams), [`FrictionPair`]s |
+//! | `[solver.backward]`, `[solver.forward]`, `[solver.stop]` | [`SolverParams`](bowknot_twoway::SolverParams) |
+//! | `[solver.newton]` | [`NewtonParams`](bowknot_dynamics::NewtonParams) |
+//! | `[solver.repulsion]` | [`RepulsionParams`] |
 //! | `[output]` | [`OutputParams`] |
 //! | `[[body]]`, `[[obstacle]]`, `[[pin]]` | [`BodySpec`], [`ObstacleSpec`], [`PinSpec`] |
+//!
+//! [`World`] puts the meshes of a scene together; [`shapes`] generates meshes.
 //!
 //! `docs/scene-reference.md` lists every key; a test keeps it in step with the structs.
 

@@ -138,8 +138,7 @@ fn a_fabric_whose_limit_leaves_no_room_is_refused() {
             "[[body]]\nname = \"sheet\"\nmaterial = {{ stretch_limit = {value} }}\nshape = \"sheet\"\n"
         );
         let error = Scene::from_toml(&text, "").expect_err(value).to_string();
-        let expected =
-            format!("body[0].material.stretch_limit: {shown}: it must be above 1, or inf for no limit");
+        let expected = format!("body[0].material.stretch_limit: {shown} must be above 1, inf included");
         assert!(error.contains(&expected), "{error}");
     }
 }

@@ -1,5 +1,5 @@
 //! Makes `docs/scene-reference.md` from the structs' documentation and defaults, and fails when the file
-//! differs. `BOWKNOT_ACCEPT=1 cargo test --release -p bowknot reference` writes it anew.
+//! differs. `BOWKNOT_ACCEPT=1 cargo test --release --workspace reference` writes it anew.
 
 use bowknot::dynamics::{
     ClothMaterial, Environment, NewtonParams, ParticleMaterial, SolidMaterial, StrandMaterial,
@@ -21,28 +21,28 @@ use toml::{Table, Value};
 
 /// Where the structs and enums are, relative to `crates`.
 const SOURCES: [&str; 34] = [
-    "bowknot/src/scene/params.rs",
-    "bowknot/src/scene/body.rs",
-    "bowknot/src/scene/material.rs",
-    "bowknot/src/scene/contact.rs",
-    "bowknot/src/scene/motion.rs",
-    "bowknot/src/io/import.rs",
-    "bowknot/src/shapes/mod.rs",
-    "bowknot/src/shapes/sheet.rs",
-    "bowknot/src/shapes/tube.rs",
-    "bowknot/src/shapes/ball.rs",
-    "bowknot/src/shapes/cone.rs",
-    "bowknot/src/shapes/cuboid.rs",
-    "bowknot/src/shapes/figure/mod.rs",
-    "bowknot/src/shapes/garment.rs",
-    "bowknot/src/shapes/wedge.rs",
-    "bowknot/src/shapes/lathe.rs",
-    "bowknot/src/shapes/ribbon.rs",
-    "bowknot/src/shapes/block.rs",
-    "bowknot/src/shapes/tet_ball.rs",
-    "bowknot/src/shapes/strands.rs",
-    "bowknot/src/shapes/woven.rs",
-    "bowknot/src/shapes/grains.rs",
+    "scene/src/params.rs",
+    "scene/src/body.rs",
+    "scene/src/kind.rs",
+    "scene/src/friction.rs",
+    "scene/src/motion.rs",
+    "io/src/import.rs",
+    "scene/src/shapes/half_space.rs",
+    "scene/src/shapes/sheet.rs",
+    "scene/src/shapes/tube.rs",
+    "scene/src/shapes/ball.rs",
+    "scene/src/shapes/cone.rs",
+    "scene/src/shapes/cuboid.rs",
+    "scene/src/shapes/figure/mod.rs",
+    "scene/src/shapes/garment.rs",
+    "scene/src/shapes/wedge.rs",
+    "scene/src/shapes/lathe.rs",
+    "scene/src/shapes/ribbon.rs",
+    "scene/src/shapes/block.rs",
+    "scene/src/shapes/tet_ball.rs",
+    "scene/src/shapes/strands.rs",
+    "scene/src/shapes/woven.rs",
+    "scene/src/shapes/grains.rs",
     "constraints/src/params.rs",
     "stepper/src/params.rs",
     "twoway/src/params.rs",
@@ -54,7 +54,7 @@ const SOURCES: [&str; 34] = [
     "dynamics/src/material/strand.rs",
     "dynamics/src/material/particle.rs",
     "lcp/src/params.rs",
-    "geometry/src/lib.rs",
+    "geometry/src/point.rs",
 ];
 
 const HEAD: &str = "\
@@ -65,7 +65,7 @@ column: 1 is a plain number. Lengths are in meters, z is up. `--set KEY.PATH=VAL
 built-in scene; an entry of `body`, `obstacle` or `pin` is named by its index from 0 or by its `name`:
 `--set body.sheet.material=silk`.
 
-This page is made from the documentation of the structs; `BOWKNOT_ACCEPT=1 cargo test --release -p bowknot reference`
+This page is made from the documentation of the structs; `BOWKNOT_ACCEPT=1 cargo test --release --workspace reference`
 writes it anew.
 ";
 
@@ -479,7 +479,7 @@ fn the_reference_page_is_up_to_date() {
     let first = stored.lines().zip(page.lines()).find(|(a, b)| a != b);
     assert!(
         stored == page,
-        "docs/scene-reference.md is stale, first at {first:?}: BOWKNOT_ACCEPT=1 cargo test --release -p bowknot reference"
+        "docs/scene-reference.md is stale, first at {first:?}: BOWKNOT_ACCEPT=1 cargo test --release --workspace reference"
     );
 }
 
@@ -511,6 +511,7 @@ fn every_key_that_a_scene_has_is_on_the_page() {
             "solver",
             "backward",
             "forward",
+            "newton",
             "repulsion",
             "output",
             "body",

@@ -182,11 +182,7 @@ fn degenerate_triangles_of_an_obstacle_are_dropped() {
 
 #[test]
 fn a_body_without_mass() {
-    refused(
-        "translate",
-        "material = { density = 0.0 }\ntranslate",
-        &["scene.toml:12", "density", "greater than 0"],
-    );
+    refused("translate", "material = { density = 0.0 }\ntranslate", &["scene.toml:12", "density", "above 0"]);
 }
 
 #[test]
@@ -240,7 +236,9 @@ fn a_start_below_the_ground() {
 fn coordinates_beyond_rounding() {
     let place = Place::new();
     place.write("scene.toml", SCENE.replace("[0.0, 0.0, 1.0]", "[1e12, 0.0, 1.0]"));
-    place.run("run scene.toml").refused(2, &["body cloth", "16 ulp", "floor", "nearer to the origin"]);
+    place
+        .run("run scene.toml")
+        .refused(2, &["body cloth", "16 ulp", "minimum separation", "closer to the origin"]);
 }
 
 #[test]
