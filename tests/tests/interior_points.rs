@@ -9,9 +9,9 @@ use bowknot_twoway::{
     Statistics, TrustRegionSearch,
 };
 
-/// Presets and speeds in turn. With a minimum separation: where a tenth of the gap is left step by step, it falls to 1e-12 m within these
-/// few steps, too near for the judge to tell a miss from a hit. With few iterations: along a kilometer there would be many,
-/// and stopping early is as safe.
+/// Presets and speeds in turn. With a minimum separation: where a tenth of the gap is left step by step, it
+/// falls to 1e-12 m within these few steps, too near for the judge to tell a miss from a hit. With few
+/// iterations: along a kilometer there would be many, and stopping early is as safe.
 fn with_impacts<F: ForwardStep>(forward: impl Fn(AdditiveCcd) -> F) {
     let settings = [(Params::fast(), ClosingSpeed::Slab), (Params::paper(), ClosingSpeed::Travel)];
     for (mut params, speed) in settings {

@@ -1,7 +1,8 @@
-//! Colors of the rows of recorded collision problems: rows of one color share no vertex that can move, so a sweep may
-//! treat them in parallel with one and the same result.
+//! Colors of the rows of recorded collision problems: rows of one color share no vertex that can move, so a
+//! sweep may treat them in parallel with one and the same result.
 //!
-//! `cargo run --release -- run stack --record && cargo run --release -p bowknot --example colors -- out/stack/states/*.npz`
+//! `cargo run --release -- run stack --record && cargo run --release -p bowknot --example colors --
+//! out/stack/states/*.npz`
 
 #![allow(clippy::print_stdout)]
 

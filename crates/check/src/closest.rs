@@ -1,9 +1,9 @@
 //! The judge's own closest points of two primitives.
 //!
-//! Every candidate is a pair of points of the two primitives, to rounding: a vertex of one with the other, and the
-//! common normal of both where its feet lie inside. The nearest candidate wins, so that a degenerate or nearly parallel
-//! pair, whose common normal means nothing, still has the right distance from its vertices and edges. What is found
-//! here is reported or taken for a guess; no verdict rests on it.
+//! Every candidate is a pair of points of the two primitives, to rounding: a vertex of one with the other,
+//! and the common normal of both where its feet lie inside. The nearest candidate wins, so that a degenerate
+//! or nearly parallel pair, whose common normal means nothing, still has the right distance from its vertices
+//! and edges. What is found here is reported or taken for a guess; no verdict rests on it.
 
 use bowknot_geometry::{PairKind, Point, Vector};
 
@@ -41,8 +41,8 @@ impl Closest {
     }
 }
 
-/// Closest points of a pair, its vertices in the order of [`PairKind`]. A half-space has no vertices here: the first
-/// vertex is then compared with itself.
+/// Closest points of a pair, its vertices in the order of [`PairKind`]. A half-space has no vertices here:
+/// the first vertex is then compared with itself.
 pub(super) fn closest(kind: PairKind, x: &[Point; 4]) -> Closest {
     match kind {
         PairKind::VertexTriangle => vertex_triangle(x[0], [x[1], x[2], x[3]]),
@@ -64,8 +64,9 @@ pub(super) fn common_normal(kind: PairKind, x: &[Point; 4]) -> Option<Vector> {
     Some(if side < 0.0 { -normal } else { normal })
 }
 
-/// Directions from each edge of a pair to each vertex of the other side, perpendicular to the edge to rounding: good
-/// guesses where the gap is so small against the edges that the offset of the closest points is mostly rounding.
+/// Directions from each edge of a pair to each vertex of the other side, perpendicular to the edge to
+/// rounding: good guesses where the gap is so small against the edges that the offset of the closest points
+/// is mostly rounding.
 pub(super) fn across_edges(kind: PairKind, x: &[Point; 4]) -> impl Iterator<Item = Vector> {
     let combinations: &[(usize, [usize; 2])] = match kind {
         PairKind::VertexEdge => &[(0, [1, 2])],

@@ -10,10 +10,10 @@ use bowknot_geometry::{Point, intersection};
 use rayon::prelude::*;
 
 /// A pair that intersects.
-type Found = (PairClass, [u32; 2]);
+type FoundPair = (PairClass, [u32; 2]);
 
 impl Judge {
-    /// Judges the state `x` [m], one point a vertex.
+    /// Judges the state `x` [m], one point per vertex.
     ///
     /// Intersections are decided exactly, but for half-spaces: a vertex that is not certainly above one,
     /// given rounding, counts as touching it. So that one place is not counted several times, two edges
@@ -34,7 +34,7 @@ impl Judge {
             edges,
             triangles,
             &Meeting,
-            |class, elements, [edge, triangle], found: &mut Vec<Found>| {
+            |class, elements, [edge, triangle], found: &mut Vec<FoundPair>| {
                 let point = |v: u32| &x[v as usize];
                 let (e, t) = ([edge[0], edge[1]], [triangle[0], triangle[1], triangle[2]]);
                 if intersection::edge_triangle(e.map(point), t.map(point)) {
@@ -44,7 +44,7 @@ impl Judge {
         )
         .concat();
         let edge_triangle_count = found.len();
-        let test = |class: PairClass, elements: [u32; 2], [a, b]: [&[u32]; 2], found: &mut Vec<Found>| {
+        let test = |class: PairClass, elements: [u32; 2], [a, b]: [&[u32]; 2], found: &mut Vec<FoundPair>| {
             if touch(x, a, b) {
                 found.push((class, elements));
             }
@@ -78,7 +78,7 @@ impl Judge {
         Ok(StateReport { intersections, intersection_count: found.len(), edge_triangle_count, nearest })
     }
 
-    fn describe(&self, x: &[Point], &(class, elements): &Found) -> Intersection {
+    fn describe(&self, x: &[Point], &(class, elements): &FoundPair) -> Intersection {
         let sides = self.sides(class, elements);
         let place = match class {
             PairClass::EdgeTriangle => {

@@ -41,11 +41,11 @@ pub struct Judge {
     pub(super) half_spaces: Vec<HalfSpace>,
     /// Touching pairs that no edge-triangle pair stands for.
     pub(super) uncovered: Vec<(PairClass, [u32; 2])>,
-    /// One entry a vertex.
+    /// One entry per vertex.
     pub(super) obstacle: Vec<bool>,
-    /// One entry a vertex.
+    /// One entry per vertex.
     body: Vec<u32>,
-    /// One entry a body, or empty: all bodies meet.
+    /// One entry per body, or empty: all bodies meet.
     filters: Vec<BodyFilter>,
 }
 

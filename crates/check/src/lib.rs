@@ -1,8 +1,9 @@
 //! The judge: are states, and straight paths between states, free of intersections?
 //!
-//! It shares no code with the solver, so that a mistake there cannot hide itself here: it has its own broad phase (a
-//! tree over moving boxes), its own closest points, and a certificate of its own for paths (see [`Judge::check_path`]).
-//! States are decided by the exact predicates of `bowknot-geometry`, which the solver does not use.
+//! It shares no code with the solver, so that a mistake there cannot hide itself here: it has its own broad
+//! phase (a tree over moving boxes), its own closest points, and a certificate of its own for paths (see
+//! [`Judge::check_path`]). States are decided by the exact predicates of `bowknot-geometry`, which the solver
+//! does not use.
 //!
 //! ```text
 //! Judge::new(&Parts) -> Result<Judge, CheckError>                       loose meshes

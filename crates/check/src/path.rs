@@ -1,4 +1,4 @@
-//! Straight paths: every vertex moves from x0 to x1 linearly, all on one clock.
+//! Straight paths: every vertex moves from x0 to x1 linearly, all in one path time.
 //!
 //! Trees over the boxes at both ends list the pairs whose moving boxes may meet; [`Sweep`] then
 //! certifies each, or calls it a hit.
@@ -30,7 +30,7 @@ struct Looks {
 }
 
 impl Judge {
-    /// Judges the straight path from `x0` to `x1` [m], one point a vertex.
+    /// Judges the straight path from `x0` to `x1` [m], one point per vertex.
     ///
     /// A clear report is certain: no pair touches at any time, in exact arithmetic over the given
     /// coordinates. A hit may be a near miss closer than rounding can tell, about 1e-16 of the pair's

@@ -1,4 +1,4 @@
-//! Certifies that two primitives stay apart while their vertices move linearly on one clock.
+//! Certifies that two primitives stay apart while their vertices move linearly in one path time.
 //!
 //! For a fixed direction n and vertices i of side a and j of side b, n . (x_i(t) - x_j(t)) is linear in
 //! t. So if it is positive for all i and j at t0 and at t1, then at every t between a plane with normal
@@ -58,8 +58,8 @@ impl<'a> Sweep<'a> {
         }
         let shortest = 0.5f64.powi(HALVINGS);
         let (mut start, mut length) = (0.0, 1.0);
-        // What separates the sides at the start often does so all the way; and from a gap that is tiny against the
-        // elements or the path, hardly any other guess does.
+        // What separates the sides at the start often does so all the way; and from a gap that is tiny
+        // against the elements or the path, hardly any other guess does.
         let mut direction = self.widest(self.ends[0], 0.0);
         for _ in 0..MAX_INTERVALS {
             let end = f64::min(start + length, 1.0);
@@ -133,8 +133,8 @@ impl<'a> Sweep<'a> {
         })
     }
 
-    /// Of the directions that the vertices `points` at `time` suggest, that along which the sides are farthest apart then:
-    /// the offset of the closest points, the common normal, and those across edges.
+    /// Of the directions that the vertices `points` at `time` suggest, that along which the sides are
+    /// farthest apart then: the offset of the closest points, the common normal, and those across edges.
     fn widest(&self, points: &[Point; 4], time: f64) -> Option<Vector> {
         let suggested = [Some(closest(self.kind, points).offset), common_normal(self.kind, points)];
         let width = |n: &Vector| {

@@ -1,7 +1,7 @@
 //! The judge's broad phase: a balanced binary tree over boxes, walked against another tree.
 //!
 //! A box is given at `K` instants: one for a state; two, start and end, for a path. Between the two,
-//! all vertices move linearly on one clock, so a vertex stays within the linear interpolation of its
+//! all vertices move linearly in one path time, so a vertex stays within the linear interpolation of its
 //! boxes, and two boxes that are apart along one axis, on the same side, at both instants are apart
 //! along it all the way. Common motion hence costs nothing, however fast.
 //!

@@ -15,9 +15,9 @@
 //! | strand edge | diameter times length, `drag_normal` | half of its circumference times length, `drag_tangential` |
 //! | grain | cross-section, 0.47, a sphere at Re of 10^3 to 10^5; isotropic | |
 //!
-//! F is linearized at the start of the step (Rosenbrock's Euler method): F(v) = F(v0) - K (v - v0), with
-//! K = -dF/dv positive semi-definite. It is then the gradient of a quadratic form of positions, has its place
-//! in the diagonal blocks of the Newton matrix, and velocities tend to the terminal velocity without overshoot
+//! F is linearized at the start of the step (Rosenbrock's Euler method): F(v) = F(v0) - K (v - v0), with K =
+//! -dF/dv positive semi-definite. It is then the gradient of a quadratic form of positions, has its place in
+//! the diagonal blocks of the Newton matrix, and velocities tend to the terminal velocity without overshoot
 //! at any time step.
 
 use crate::body::BodyShape;

@@ -1,9 +1,9 @@
-//! Errors that all crates share: [`ParamError`], a parameter out of its range, and [`Errors`], a list of errors that
-//! is itself an error.
+//! Errors that all crates share: [`ParamError`], a parameter out of its range, and [`Errors`], a list of
+//! errors that is itself an error.
 //!
-//! A struct of parameters implements [`Parameters::check`], which looks at every field; [`Parameters::validate`] is what
-//! users call. Nested structs are checked by [`Checks::within`], so that each error carries the whole path of its
-//! parameter, the one that a scene file has.
+//! A struct of parameters implements [`Parameters::check`], which looks at every field;
+//! [`Parameters::validate`] is what users call. Nested structs are checked by [`Checks::within`], so that
+//! each error carries the whole path of its parameter, the one that a scene file has.
 
 mod checks;
 mod errors;

@@ -10,10 +10,11 @@ use std::sync::atomic::{AtomicU32, Ordering};
 /// Distinguishes the temporary files of one process.
 static COUNTER: AtomicU32 = AtomicU32::new(0);
 
-/// Writes a file through `fill` into a temporary file in the same folder, which then takes the name of `path`.
+/// Writes a file through `fill` into a temporary file in the same folder, which then takes the name of
+/// `path`.
 ///
-/// An interrupted or failed write leaves an older file of that name as it was. The file is not synchronized to the
-/// disk: the promise covers the process being stopped and the disk being full, not the power failing.
+/// An interrupted or failed write leaves an older file of that name as it was. The file is not synchronized
+/// to the disk: the promise covers the process being stopped and the disk being full, not the power failing.
 ///
 /// # Errors
 /// Whatever `fill` or the system reports; the temporary file is then removed.

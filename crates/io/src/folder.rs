@@ -4,8 +4,8 @@ use crate::error::IoError;
 use std::cmp::Ordering;
 use std::path::{Path, PathBuf};
 
-/// Files of a folder with one of these endings (lower case), in natural order of their names. Names that start with a dot
-/// are left out: such files are being written.
+/// Files of a folder with one of these endings (lower case), in natural order of their names. Names that
+/// start with a dot are left out: such files are being written.
 ///
 /// # Errors
 /// A folder that cannot be read.

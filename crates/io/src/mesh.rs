@@ -9,12 +9,13 @@ pub struct Mesh {
     pub positions: Vec<Point>,
     /// Triangles; larger polygons come as fans around their first vertex.
     pub triangles: Vec<[u32; 3]>,
-    /// Tetrahedra, with a positive volume if (x1 - x0) x (x2 - x0) . (x3 - x0) is; as the file orders them. Their
-    /// faces are not among the triangles.
+    /// Tetrahedra, with a positive volume if (x1 - x0) x (x2 - x0) . (x3 - x0) is; as the file orders them.
+    /// Their faces are not among the triangles.
     pub tets: Vec<[u32; 4]>,
     /// Strand edges: `l` of an OBJ, `edge` of a PLY, `s` of a SEG, lines of a MSH.
     pub strands: Vec<[u32; 2]>,
-    /// Loose points that the file means: `p` of an OBJ, points of a MSH; in a PLY every vertex of no face and no edge.
+    /// Loose points that the file means: `p` of an OBJ, points of a MSH; in a PLY every vertex of no face and
+    /// no edge.
     pub particles: Vec<u32>,
     /// Whether each vertex belongs to an obstacle, if the file says so.
     pub obstacle: Option<Vec<bool>>,
@@ -55,8 +56,9 @@ impl Mesh {
         }
     }
 
-    /// The mesh with the surface of its tetrahedra in their place, pointing outward where they have a positive volume,
-    /// before the other triangles. Vertices keep their numbers; those inside are then named by nothing.
+    /// The mesh with the surface of its tetrahedra in their place, pointing outward where they have a
+    /// positive volume, before the other triangles. Vertices keep their numbers; those inside are then named
+    /// by nothing.
     pub fn into_surface(mut self) -> Self {
         let mut triangles = boundary_triangles(&self.tets);
         triangles.append(&mut self.triangles);
@@ -70,7 +72,8 @@ impl Mesh {
         (0..self.positions.len() as u32).filter(|&v| !used[v as usize]).collect()
     }
 
-    /// Drops the vertices that nothing names and renumbers the others in order. Returns how many were dropped.
+    /// Drops the vertices that nothing names and renumbers the others in order. Returns how many were
+    /// dropped.
     pub fn drop_unused_vertices(&mut self) -> usize {
         let unused = self.unused_vertices();
         if unused.is_empty() {

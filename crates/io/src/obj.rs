@@ -1,8 +1,8 @@
-//! Wavefront OBJ: `v`, `f`, `l` and `p`; every other statement is skipped. And `.seg`, of the same manner, with strand
-//! segments as `s`.
+//! Wavefront OBJ: `v`, `f`, `l` and `p`; every other statement is skipped. And `.seg`, of the same manner,
+//! with strand segments as `s`.
 //!
-//! The format has no word for obstacles, without which nobody could tell a ball that rests on the ground from one that
-//! intersects it; a comment says from which vertex on there are obstacles only.
+//! The format has no word for obstacles, without which nobody could tell a ball that rests on the ground from
+//! one that intersects it; a comment says from which vertex on there are obstacles only.
 
 use crate::atomic::write_atomic;
 use crate::error::{IoError, Place};
@@ -16,14 +16,16 @@ use std::path::Path;
 /// Begins the comment that names the first vertex, from 0, of those that all belong to obstacles.
 const OBSTACLE_FROM: &str = "# obstacle-from ";
 
-/// Reads an OBJ file: vertices, faces (as fans around their first vertex), `l` polylines as strands, `p` points.
+/// Reads an OBJ file: vertices, faces (as fans around their first vertex), `l` polylines as strands, `p`
+/// points.
 ///
-/// Indices count from 1, or backward from the last vertex read when negative; `v/vt/vn` triples are read for their
-/// first number; a `\` at the end of a line continues it. The comment `# obstacle-from N`, as [`write_obj`] writes it,
-/// makes obstacles of the vertices from N on, counted from 0.
+/// Indices count from 1, or backward from the last vertex read when negative; `v/vt/vn` triples are read for
+/// their first number; a `\` at the end of a line continues it. The comment `# obstacle-from N`, as
+/// [`write_obj`] writes it, makes obstacles of the vertices from N on, counted from 0.
 ///
 /// # Errors
-/// A missing or malformed file, coordinates that are not finite, indices of vertices that do not exist; with the line.
+/// A missing or malformed file, coordinates that are not finite, indices of vertices that do not exist; with
+/// the line.
 pub fn read_obj(path: &Path, import: &Import) -> Result<Mesh, IoError> {
     read(path, import, false)
 }
@@ -74,8 +76,9 @@ fn read(path: &Path, import: &Import, segments: bool) -> Result<Mesh, IoError> {
     reader.finish()
 }
 
-/// Writes positions, faces, strands and particles as an OBJ file, atomically; coordinates round-trip exactly. If the
-/// last vertices, and only they, belong to obstacles, a comment says so for [`read_obj`]; bodies are not written.
+/// Writes positions, faces, strands and particles as an OBJ file, atomically; coordinates round-trip exactly.
+/// If the last vertices, and only they, belong to obstacles, a comment says so for [`read_obj`]; bodies are
+/// not written.
 ///
 /// # Errors
 /// The system's refusal, with the path.

@@ -1,9 +1,9 @@
-//! Point caches, `.pc2`: positions of one object's vertices, frame by frame, for Blender's Mesh Cache modifier, 3ds Max
-//! and Maya.
+//! Point caches, `.pc2`: positions of one object's vertices, frame by frame, for Blender's Mesh Cache
+//! modifier, 3ds Max and Maya.
 //!
-//! The layout, little-endian: `POINTCACHE2\0`, version 1 (i32), points a sample (i32), first frame (f32), sampling rate
-//! in frames (f32), number of samples (i32), then x y z (f32) of every point of every sample. Source: the format notes
-//! in Blender's exporter `export_pc2`.
+//! The layout, little-endian: `POINTCACHE2\0`, version 1 (i32), points a sample (i32), first frame (f32),
+//! sampling rate in frames (f32), number of samples (i32), then x y z (f32) of every point of every sample.
+//! Source: the format notes in Blender's exporter `export_pc2`.
 
 use crate::error::{IoError, Place};
 use bowknot_geometry::Point;
@@ -16,8 +16,8 @@ const HEADER: u64 = 32;
 /// Where the header says how many samples there are.
 const SAMPLES_AT: u64 = 28;
 
-/// Writes the sample of a frame, counted from 0, and drops those behind it; frame 0 makes the file. The header counts a
-/// sample once it is written as a whole, so that a run that dies leaves a sound file.
+/// Writes the sample of a frame, counted from 0, and drops those behind it; frame 0 makes the file. The
+/// header counts a sample once it is written as a whole, so that a run that dies leaves a sound file.
 ///
 /// # Errors
 /// The system's refusal; a file that is no point cache of as many points, or has fewer samples.
@@ -53,7 +53,8 @@ pub fn write_pc2_frame(path: &Path, frame: usize, positions: &[Point]) -> Result
 /// Drops the samples from `frames` on.
 ///
 /// # Errors
-/// The system's refusal; a file that is no point cache of `points` points, or has fewer than `frames` samples.
+/// The system's refusal; a file that is no point cache of `points` points, or has fewer than `frames`
+/// samples.
 pub fn truncate_pc2(path: &Path, frames: usize, points: usize) -> Result<(), IoError> {
     let system = |source| IoError::system("write", path, source);
     let fault = |message: String| Err(IoError::content(path, Place::File, message));

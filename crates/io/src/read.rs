@@ -12,11 +12,12 @@ use std::path::Path;
 /// Endings of the files that [`read_mesh`] reads, in lower case.
 pub const MESH_ENDINGS: [&str; 5] = ["obj", "ply", "msh", "t", "seg"];
 
-/// Reads a mesh file, told apart by the ending of its name: OBJ, PLY, Gmsh's MSH, lists of tetrahedra (`.t`), strand
-/// segments (`.seg`).
+/// Reads a mesh file, told apart by the ending of its name: OBJ, PLY, Gmsh's MSH, lists of tetrahedra (`.t`),
+/// strand segments (`.seg`).
 ///
 /// # Errors
-/// A missing, malformed or truncated file, numbers that are not finite, indices out of range, an unknown ending.
+/// A missing, malformed or truncated file, numbers that are not finite, indices out of range, an unknown
+/// ending.
 pub fn read_mesh(path: &Path, import: &Import) -> Result<Mesh, IoError> {
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
     match ending.as_str() {

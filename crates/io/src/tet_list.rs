@@ -1,4 +1,5 @@
-//! Lists of tetrahedra, `.t`: lines `Vertex NUMBER x y z` and `Tet NUMBER a b c d`, as MeshLib and its users write.
+//! Lists of tetrahedra, `.t`: lines `Vertex NUMBER x y z` and `Tet NUMBER a b c d`, as MeshLib and its users
+//! write.
 
 use crate::error::{IoError, Place};
 use crate::import::Import;
@@ -9,12 +10,12 @@ use std::fs;
 use std::path::Path;
 
 /// Reads a list of tetrahedra. `Vertex` lines may have any numbers, which `Tet` lines and `Face` lines (three
-/// vertices) refer to; what follows the last number of a line, such as `{attributes}`, and lines that begin with
-/// another word are skipped, the latter with their number logged as a warning.
+/// vertices) refer to; what follows the last number of a line, such as `{attributes}`, and lines that begin
+/// with another word are skipped, the latter with their number logged as a warning.
 ///
 /// # Errors
-/// A missing or malformed file, coordinates that are not finite, vertices that do not exist or are given twice; with
-/// the line.
+/// A missing or malformed file, coordinates that are not finite, vertices that do not exist or are given
+/// twice; with the line.
 pub fn read_tet_list(path: &Path, import: &Import) -> Result<Mesh, IoError> {
     import.validate().map_err(|errors| IoError::content(path, Place::File, errors.to_string()))?;
     let bytes = fs::read(path).map_err(|source| IoError::system("read", path, source))?;

@@ -1,7 +1,7 @@
 //! VTK XML for ParaView: one unstructured grid `.vtu` a frame, and a collection `.pvd` with their times.
 //!
-//! Source: VTK's page "VTK XML file formats". Arrays are appended raw, little-endian, each behind its length in bytes
-//! (u64), neither encoded nor compressed.
+//! Source: VTK's page "VTK XML file formats". Arrays are appended raw, little-endian, each behind its length
+//! in bytes (u64), neither encoded nor compressed.
 
 use crate::atomic::write_atomic;
 use crate::error::IoError;
@@ -15,8 +15,8 @@ const LINE: u8 = 3;
 const TRIANGLE: u8 = 5;
 const QUAD: u8 = 9;
 
-/// Writes a grid of triangles, quads, strand edges and particles, in this order, over all vertices, with the point
-/// arrays `body` (i32) and `obstacle` (0 or 1); atomically. Coordinates are doubles [m].
+/// Writes a grid of triangles, quads, strand edges and particles, in this order, over all vertices, with the
+/// point arrays `body` (i32) and `obstacle` (0 or 1); atomically. Coordinates are doubles [m].
 ///
 /// # Errors
 /// The system's refusal, with the path.

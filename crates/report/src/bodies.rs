@@ -30,9 +30,9 @@ pub(super) struct Body {
     pub(super) moves: bool,
 }
 
-/// Splits a frame by its vertices' bodies; `facts` name them in the order of the world: deformable bodies, obstacles
-/// with a mesh, half-spaces. A file without bodies is split into what is obstacle and what is not, one whose elements
-/// join bodies is not split.
+/// Splits a frame by its vertices' bodies; `facts` name them in the order of the world: deformable bodies,
+/// obstacles with a mesh, half-spaces. A file without bodies is split into what is obstacle and what is not,
+/// one whose elements join bodies is not split.
 pub(super) fn split(mesh: &Mesh, facts: &[BodyFacts]) -> Vec<Body> {
     let count = mesh.positions.len();
     let obstacle = mesh.obstacle.clone().unwrap_or_else(|| vec![false; count]);

@@ -1,9 +1,10 @@
 //! Positions as bytes: quantized to 16 bits a coordinate, predicted, deflated, base64.
 //!
-//! A coordinate is a multiple of 1/65535 of the edge of the body's box, so that an error is at most half of that. Of a
-//! frame, what a *predictor* misses is kept: the base is nothing, the frame before, or the two before carried on in a
-//! straight line; and where it pays the miss of the vertex before is subtracted, since neighbors miss alike. Low and high bytes
-//! lie apart, so that the high ones, mostly 0, deflate to almost nothing. `assets/app/data.js` is the inverse.
+//! A coordinate is a multiple of 1/65535 of the edge of the body's box, so that an error is at most half of
+//! that. Of a frame, what a *predictor* misses is kept: the base is nothing, the frame before, or the two
+//! before carried on in a straight line; and where it pays the miss of the vertex before is subtracted, since
+//! neighbors miss alike. Low and high bytes lie apart, so that the high ones, mostly 0, deflate to almost
+//! nothing. `assets/app/data.js` is the inverse.
 
 use bowknot_geometry::{Point, Vector};
 use flate2::Compression;
@@ -12,8 +13,8 @@ use std::io::Write;
 
 /// Largest quantized coordinate.
 const LEVELS: f64 = 65535.0;
-/// Bit of a mode that tells that the miss of the vertex before is subtracted; the bits below count the frames that
-/// the base is made of.
+/// Bit of a mode that tells that the miss of the vertex before is subtracted; the bits below count the frames
+/// that the base is made of.
 const NEIGHBOR: u8 = 4;
 
 /// The grid of a body.
@@ -57,7 +58,8 @@ pub(super) struct Predictor {
 }
 
 impl Predictor {
-    /// Appends a frame: a byte that names the mode, then for each axis the low and the high bytes of all vertices.
+    /// Appends a frame: a byte that names the mode, then for each axis the low and the high bytes of all
+    /// vertices.
     pub(super) fn encode(&mut self, frame: Vec<[u16; 3]>, bytes: &mut Vec<u8>) {
         let orders = self.frames.min(2) as u8;
         let modes = (0..=orders).flat_map(|order| [order, order | NEIGHBOR]);

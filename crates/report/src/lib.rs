@@ -1,5 +1,5 @@
-//! One self-contained HTML page of a run: it plays the frames beside plots of the statistics, from a file, without a
-//! network.
+//! One self-contained HTML page of a run: it plays the frames beside plots of the statistics, from a file,
+//! without a network.
 //!
 //! ```text
 //! frames.rs    where the frames of a run's folder are

@@ -5,10 +5,11 @@ use std::path::PathBuf;
 /// What goes into a page.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReportOptions {
-    /// Every how many frames one is shown; none: as few are left out as the budget demands. The last frame is always
-    /// shown. Default none.
+    /// Every how many frames one is shown; none: as few are left out as the budget demands. The last frame is
+    /// always shown. Default none.
     pub stride: Option<usize>,
-    /// Largest size of the page [bytes]. Larger: more frames, and browsers take longer to open it. Default 30 MB.
+    /// Largest size of the page [bytes]. Larger: more frames, and browsers take longer to open it. Default 30
+    /// MB.
     pub max_bytes: u64,
 }
 

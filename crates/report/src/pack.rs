@@ -7,10 +7,11 @@ use crate::options::ReportOptions;
 use bowknot_io::FrameSource;
 use bowknot_io::Mesh;
 
-/// Largest size of all positions once unpacked in the browser [bytes]: what compresses well still needs memory there.
+/// Largest size of all positions once unpacked in the browser [bytes]: what compresses well still needs
+/// memory there.
 const MAX_UNPACKED: u64 = 600_000_000;
-/// Bytes of base64 a vertex and frame with which the first stride is guessed: less than what runs were seen to take
-/// (2 to 5), so that no frame is left out for a guess.
+/// Bytes of base64 per vertex and frame with which the first stride is guessed: less than what runs were seen
+/// to take (2 to 5), so that no frame is left out for a guess.
 const HOPED_BYTES: f64 = 1.5;
 
 /// The frames as the page holds them.

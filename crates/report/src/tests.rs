@@ -316,7 +316,8 @@ fn a_budget_leaves_frames_out_but_never_the_last() {
     // A cloud whose particles move as they like: hardly to be compressed.
     for frame in 0..60u32 {
         let noise = |i: u32, k: u32| {
-            // The finaliser of MurmurHash3 (A. Appleby, 2011): no two differences alike, for the predictor to find.
+            // The finaliser of MurmurHash3 (A. Appleby, 2011): no two differences alike, for the predictor to
+            // find.
             let mut bits = i * 180 + frame * 3 + k;
             for factor in [0x85eb_ca6b_u32, 0xc2b2_ae35] {
                 bits = (bits ^ (bits >> 16)).wrapping_mul(factor);

@@ -5,12 +5,12 @@ use crate::options::{ReportInfo, ReportOptions};
 use crate::{bodies, columns, facts, frames, pack, page};
 use std::path::Path;
 
-/// Writes the page of the run in `folder` to `out`, atomically. `progress` hears of frames read and to be read; the
-/// second number grows when the budget turns out to demand another pass.
+/// Writes the page of the run in `folder` to `out`, atomically. `progress` hears of frames read and to be
+/// read; the second number grows when the budget turns out to demand another pass.
 ///
 /// # Errors
-/// A folder without frames, a frame that is malformed or does not fit the first, a budget too small, an output that
-/// cannot be written. Statistics and scene may be missing or damaged: the page then says so.
+/// A folder without frames, a frame that is malformed or does not fit the first, a budget too small, an
+/// output that cannot be written. Statistics and scene may be missing or damaged: the page then says so.
 pub fn write_report(
     folder: &Path,
     out: &Path,

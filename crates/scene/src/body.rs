@@ -15,11 +15,11 @@ use std::path::PathBuf;
 pub struct BodySpec {
     /// Name in messages and for pins; no two bodies share one. Default `body` and its index.
     pub name: String,
-    /// What the body is: `cloth`, a surface of triangles; `solid`, a volume of tetrahedra; `strands`, hair or yarn
-    /// of edges; `particles`, grains. Default `cloth`.
+    /// What the body is: `cloth`, a surface of triangles; `solid`, a volume of tetrahedra; `strands`, hair or
+    /// yarn of edges; `particles`, grains. Default `cloth`.
     pub kind: BodyKind,
-    /// Mesh file (OBJ, PLY, MSH, T, SEG) relative to the scene file, with the elements of the kind. Either this or
-    /// `shape`.
+    /// Mesh file (OBJ, PLY, MSH, T, SEG) relative to the scene file, with the elements of the kind. Either
+    /// this or `shape`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh: Option<PathBuf>,
     /// Generated mesh, see the shapes. Either this or `mesh`.
@@ -42,22 +42,23 @@ pub struct BodySpec {
     /// Acceleration of gravity on this body [m/s^2]. Default: that of the scene.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gravity: Option<Vector>,
-    /// A material of the body's kind by name, or a table of its numbers over those of the one that `base` names.
-    /// Default: the first of the kind, see the materials.
+    /// A material of the body's kind by name, or a table of its numbers over those of the one that `base`
+    /// names. Default: the first of the kind, see the materials.
     pub material: Material,
-    /// Coefficient of Coulomb friction [1], at least 0. Two bodies in contact have the geometric mean of both, unless
-    /// `contact.friction_pairs` says otherwise: it takes both to rub. Default 0.
+    /// Coefficient of Coulomb friction [1], at least 0. Two bodies in contact have the geometric mean of
+    /// both, unless `contact.friction_pairs` says otherwise: it takes both to rub. Default 0.
     pub friction: f64,
-    /// Guaranteed smallest gap to a body of the same thickness [m]; a pair keeps the mean of both. Larger: layers
-    /// that lie further apart. Default: the gap floor of the scene.
+    /// Guaranteed smallest gap to a body of the same thickness [m]; a pair keeps the mean of both. Larger:
+    /// layers that lie further apart. Default: the minimum separation of the scene.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub thickness: Option<f64>,
-    /// Distance that contacts with a body alike are separated to [m]; a pair takes the mean of both. Default: that of
-    /// the scene, and for particles their diameter.
+    /// Distance that contacts with a body alike are separated to [m]; a pair takes the mean of both. Default:
+    /// that of the scene, and for particles their diameter.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub delta: Option<f64>,
-    /// Largest ratio of an edge's length to its rest length [1], above 1; inf: no limit. Default: that of `[contact]` if
-    /// it is given there (`paper` gives it), otherwise that of the material of a cloth and 1.1 for other kinds.
+    /// Largest ratio of an edge's length to its rest length [1], above 1; inf: no limit. Default: that of
+    /// `[contact]` if it is given there (`paper` gives it), otherwise that of the material of a cloth and 1.1
+    /// for other kinds.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stretch_limit: Option<f64>,
     /// Collision groups that the body is in, from 0 to 31 [1]. Default `[0]`.
@@ -75,20 +76,22 @@ pub struct BodySpec {
 pub struct ObstacleSpec {
     /// Name in messages. Default `obstacle` and its index.
     pub name: String,
-    /// Mesh file (OBJ, PLY, MSH, T, SEG) relative to the scene file; of tetrahedra, the surface. This, `shape`, or
-    /// `sequence`.
+    /// Mesh file (OBJ, PLY, MSH, T, SEG) relative to the scene file; of tetrahedra, the surface. This,
+    /// `shape`, or `sequence`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh: Option<PathBuf>,
     /// Generated mesh or `half-space`, see the shapes. This, `mesh`, or `sequence`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shape: Option<Shape>,
-    /// An animation, relative to the scene file: a folder of meshes of equal elements, taken in the order of their
-    /// names, or an NPZ archive of `X[f,n,3]` and `F[m,3]`. Frames are joined linearly. This, `mesh`, or `shape`.
+    /// An animation, relative to the scene file: a folder of meshes of equal elements, taken in the order of
+    /// their names, or an NPZ archive of `X[f,n,3]` and `F[m,3]`. Frames are joined linearly. This, `mesh`,
+    /// or `shape`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sequence: Option<PathBuf>,
     /// Frames of the sequence a second [1/s]. Default 30.
     pub sequence_rate: f64,
-    /// When the sequence begins [s]; it is held at its first frame before, and at its last one after. Default 0.
+    /// When the sequence begins [s]; it is held at its first frame before, and at its last one after. Default
+    /// 0.
     pub sequence_start: f64,
     /// Axis of the mesh that points up: `x`, `y` or `z`. Default `z`.
     pub up: Up,
@@ -99,13 +102,14 @@ pub struct ObstacleSpec {
     pub rotate: Vector,
     /// Displacement after the rotation [m]. Default (0, 0, 0).
     pub translate: Vector,
-    /// Rigid motion over time, see the motions; not for a half-space, nor for what moves by itself. Default: at rest.
+    /// Rigid motion over time, see the motions; not for a half-space, nor for what moves by itself. Default:
+    /// at rest.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub motion: Option<Motion>,
     /// Coefficient of Coulomb friction [1], as for bodies. Default 0.
     pub friction: f64,
-    /// Guaranteed smallest gap [m], as for bodies. A half-space without one counts as 0 against a body that has one.
-    /// Default: the gap floor of the scene.
+    /// Guaranteed smallest gap [m], as for bodies. A half-space without one counts as 0 against a body that
+    /// has one. Default: the minimum separation of the scene.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub thickness: Option<f64>,
     /// Collision groups that the obstacle is in, from 0 to 31 [1]. A half-space meets all. Default
@@ -132,8 +136,8 @@ pub struct PinSpec {
     /// `z-max`. Default none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub side: Option<Side>,
-    /// How many vertices of each strand are held, from its root on, the end that comes first in the mesh [1]: 1 hinges
-    /// strands, 2 or more clamp their direction as well. Default 0.
+    /// How many vertices of each strand are held, from its root on, the end that comes first in the mesh [1]:
+    /// 1 hinges strands, 2 or more clamp their direction as well. Default 0.
     pub roots: usize,
     /// Rigid motion over time, see the motions. Default: held where they are.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -2,7 +2,7 @@
 
 use crate::body::{BodySpec, ObstacleSpec};
 use crate::description::Scene;
-use crate::error::{Problem, nearest};
+use crate::error::{SceneProblem, nearest};
 use crate::source::Source;
 use crate::values::join;
 use std::collections::BTreeSet;
@@ -40,7 +40,7 @@ fn at_least_0(key: &'static str, value: Option<f64>, faults: &mut Faults) {
 }
 
 /// The pairs with friction of their own: names exist, no pair is named twice.
-pub(super) fn validate_pairs(scene: &Scene, source: &Source, problems: &mut Vec<Problem>) {
+pub(super) fn validate_pairs(scene: &Scene, source: &Source, problems: &mut Vec<SceneProblem>) {
     let names: Vec<&str> = scene.bodies.iter().map(|b| b.name.as_str()).collect();
     let obstacles: Vec<&str> = scene.obstacles.iter().map(|o| o.name.as_str()).collect();
     let all = || names.iter().chain(&obstacles).copied();

@@ -26,7 +26,7 @@ pub enum SceneError {
     },
     /// Keys or values that are not allowed; all of them.
     #[error("{}", lines(.0))]
-    Invalid(Vec<Problem>),
+    Invalid(Vec<SceneProblem>),
     /// Neither a built-in scene nor a file.
     #[error("no scene {name}: it is neither a file nor a built-in scene{}", suggestion(nearest))]
     Unknown {
@@ -77,7 +77,7 @@ pub enum SceneError {
 
 /// One thing that is wrong with a scene description.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Problem {
+pub struct SceneProblem {
     /// Where the value came from.
     pub origin: Origin,
     /// Path of the key, such as `contact.delta` or `body[0].material`.
@@ -97,7 +97,7 @@ pub enum Origin {
     Code,
 }
 
-impl fmt::Display for Problem {
+impl fmt::Display for SceneProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.origin {
             Origin::File(file, Some(line)) => write!(f, "{}:{line}: ", file.display())?,
@@ -122,7 +122,7 @@ fn suggestion(nearest: &Option<&'static str>) -> String {
     nearest.map_or_else(String::new, |name| format!("; did you mean {name}?"))
 }
 
-fn lines(problems: &[Problem]) -> String {
+fn lines(problems: &[SceneProblem]) -> String {
     problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
 }
 

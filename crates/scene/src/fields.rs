@@ -7,7 +7,7 @@ use std::fmt;
 /// Names of the fields of `T` as its serde form has them; empty if `T` is not a struct.
 pub(crate) fn field_names<'de, T: Deserialize<'de>>() -> &'static [&'static str] {
     match T::deserialize(Probe) {
-        Err(Found(fields)) => fields,
+        Err(RequestedFields(fields)) => fields,
         Ok(_) => &[],
     }
 }
@@ -16,27 +16,27 @@ pub(crate) fn field_names<'de, T: Deserialize<'de>>() -> &'static [&'static str]
 struct Probe;
 
 #[derive(Debug)]
-struct Found(&'static [&'static str]);
+struct RequestedFields(&'static [&'static str]);
 
-impl fmt::Display for Found {
+impl fmt::Display for RequestedFields {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:?}", self.0)
     }
 }
 
-impl std::error::Error for Found {}
+impl std::error::Error for RequestedFields {}
 
-impl de::Error for Found {
+impl de::Error for RequestedFields {
     fn custom<M: fmt::Display>(_: M) -> Self {
         Self(&[])
     }
 }
 
 impl<'de> Deserializer<'de> for Probe {
-    type Error = Found;
+    type Error = RequestedFields;
 
-    fn deserialize_any<V: Visitor<'de>>(self, _: V) -> Result<V::Value, Found> {
-        Err(Found(&[]))
+    fn deserialize_any<V: Visitor<'de>>(self, _: V) -> Result<V::Value, RequestedFields> {
+        Err(RequestedFields(&[]))
     }
 
     fn deserialize_struct<V: Visitor<'de>>(
@@ -44,8 +44,8 @@ impl<'de> Deserializer<'de> for Probe {
         _: &'static str,
         fields: &'static [&'static str],
         _: V,
-    ) -> Result<V::Value, Found> {
-        Err(Found(fields))
+    ) -> Result<V::Value, RequestedFields> {
+        Err(RequestedFields(fields))
     }
 
     serde::forward_to_deserialize_any! {

@@ -48,7 +48,7 @@ pub use bowknot_twoway as twoway;
 pub use body::{BodySpec, ObstacleSpec, PinSpec, Region, Side};
 pub use builtin::{BUILTIN, Builtin};
 pub use description::Scene;
-pub use error::{Origin, Problem, SceneError};
+pub use error::{Origin, SceneError, SceneProblem};
 pub use friction::FrictionPair;
 pub use kind::BodyKind;
 pub use material::Material;

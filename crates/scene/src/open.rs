@@ -2,7 +2,7 @@
 
 use crate::builtin::{self, BUILTIN};
 use crate::description::Scene;
-use crate::error::{self, Problem, SceneError};
+use crate::error::{self, SceneError, SceneProblem};
 use crate::source::Source;
 use crate::{read, short, validate, write};
 use bowknot_io::IoError;
@@ -88,7 +88,8 @@ impl Scene {
         write::text(self)
     }
 
-    /// The scene as TOML without what is default, the way a person would write it; [`Self::from_toml`] reads it back equal.
+    /// The scene as TOML without what is default, the way a person would write it; [`Self::from_toml`] reads
+    /// it back equal.
     pub fn to_short_toml(&self) -> String {
         short::text(self)
     }
@@ -114,7 +115,7 @@ pub fn twoway_params<S: AsRef<str>>(sets: &[S]) -> Result<bowknot_twoway::Params
 }
 
 fn apply<S: AsRef<str>>(source: &mut Source, sets: &[S]) -> Result<(), SceneError> {
-    let problems: Vec<Problem> = sets.iter().filter_map(|set| source.set(set.as_ref()).err()).collect();
+    let problems: Vec<SceneProblem> = sets.iter().filter_map(|set| source.set(set.as_ref()).err()).collect();
     if problems.is_empty() { Ok(()) } else { Err(SceneError::Invalid(problems)) }
 }
 

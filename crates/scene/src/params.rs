@@ -15,15 +15,16 @@ pub struct SimulationParams {
     pub dt: f64,
     /// Number of time steps of a run [1]. Default 100.
     pub frames: usize,
-    /// Most Newton iterations per time step, each with a collision problem [1]; they end earlier at `solver.newton.step_tolerance`.
-    /// More: contact and large deformation come nearer to the solution of the time step. Default 8.
+    /// Most Newton iterations per time step, each with a collision problem [1]; they end earlier at
+    /// `solver.newton.step_tolerance`. More: contact and large deformation come nearer to the solution of the
+    /// time step. Default 8.
     pub newton_iterations: usize,
     /// When collisions are resolved: after each Newton iteration, `newton`, or once at the end of the
     /// time step, `step`. Default `newton`.
     pub collision_every: CollisionEvery,
-    /// How vertices inside of solids follow their surface where collisions keep it from its target: `elastic`, by a
-    /// solve with the surface held, or `average`, by the corrections of their neighbors, cheaper and coarser.
-    /// Default `elastic`.
+    /// How vertices inside of solids follow their surface where collisions keep it from its target:
+    /// `elastic`, by a solve with the surface held, or `average`, by the corrections of their neighbors,
+    /// cheaper and coarser. Default `elastic`.
     pub interior: InteriorFollows,
 }
 
@@ -70,16 +71,17 @@ impl Preset {
     }
 }
 
-/// Contact forces of the dynamics, `[solver.repulsion]` (paper, section 6.2): springs between surfaces that are near, in
-/// the linear system of the dynamics, by which it knows of contacts and their friction. Without them the collision stage
-/// alone holds bodies apart, and what rests on something is deformed within each time step. The guarantee does not rest
-/// on them. Grains have none where they touch grains or obstacles. With `contact.friction_model = "filter"`, and so with
-/// the preset `paper`, there are no springs whatever the stiffness.
+/// Contact forces of the dynamics, `[solver.repulsion]` (paper, section 6.2): springs between surfaces that
+/// are near, in the linear system of the dynamics, by which it knows of contacts and their friction. Without
+/// them the collision stage alone holds bodies apart, and what rests on something is deformed within each
+/// time step. The guarantee does not rest on them. Grains have none where they touch grains or obstacles.
+/// With `contact.friction_model = "filter"`, and so with the preset `paper`, there are no springs whatever
+/// the stiffness.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RepulsionParams {
-    /// Stiffness of the springs in units of the bodies' own at the contact [1]; 0 switches them off. Larger: contacts give
-    /// way less in the dynamics, its linear system takes longer. Default 3.
+    /// Stiffness of the springs in units of the bodies' own at the contact [1]; 0 switches them off. Larger:
+    /// contacts give way less in the dynamics, its linear system takes longer. Default 3.
     pub stiffness: f64,
 }
 
@@ -93,13 +95,13 @@ impl Default for RepulsionParams {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct OutputParams {
-    /// Formats of the frames: `ply`, `obj` and `vtu` write one file a frame, `pc2` one point cache a body,
-    /// `npz` and `usd` one file of all frames at the end. Default `["ply"]`.
+    /// Formats of the frames: `ply`, `obj` and `vtu` write one file per frame, `pc2` one point cache per
+    /// body, `npz` and `usd` one file of all frames at the end. Default `["ply"]`.
     pub formats: Vec<Format>,
     /// Time steps between checkpoints [1]; 0 writes one at the end only. Smaller: less is repeated after
     /// an interruption. Default 10.
     pub checkpoint_every: usize,
-    /// Whether every accepted state x^(l) is written to `trace/`: hundreds of files a time step. Default
+    /// Whether every accepted state x^(l) is written to `trace/`: hundreds of files per time step. Default
     /// false.
     pub trace: bool,
     /// Whether the collision problems are written to `states/`, for `bowknot resolve`. Default false.
@@ -116,7 +118,7 @@ pub enum Format {
     Obj,
     /// NumPy archive of all frames.
     Npz,
-    /// Point caches, one a body.
+    /// Point caches, one per body.
     Pc2,
     /// Universal Scene Description of all frames, as text.
     Usd,

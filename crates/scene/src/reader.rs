@@ -1,6 +1,6 @@
 //! From TOML tables to structs, key by key, so that every problem is reported with its key.
 
-use crate::error::{Problem, nearest};
+use crate::error::{SceneProblem, nearest};
 use crate::fields::field_names;
 use crate::source::Source;
 use crate::values::{describe, join};
@@ -11,7 +11,7 @@ use toml::{Table, Value};
 /// Reads tables and collects what is wrong with them.
 pub(crate) struct Reader<'a> {
     source: &'a Source,
-    pub problems: Vec<Problem>,
+    pub problems: Vec<SceneProblem>,
 }
 
 impl<'a> Reader<'a> {

@@ -6,7 +6,7 @@ use crate::material::Material;
 use crate::motion::{Keyframe, Motion};
 use crate::params::Preset;
 use crate::shapes::Shape;
-use crate::write;
+use crate::write::{self, subtract};
 use serde::Deserialize;
 use toml::{Table, Value};
 
@@ -53,7 +53,8 @@ const LINE_WIDTH: usize = 100;
 /// Keys that come before the others in their table.
 const FIRST: [&str; 8] = ["type", "name", "kind", "body", "mesh", "shape", "material", "time"];
 
-/// Writes a table: values on one line each, long arrays one element per line, long tables as sections of their own.
+/// Writes a table: values on one line each, long arrays one element per line, long tables as sections of
+/// their own.
 fn section(text: &mut String, header: &str, path: &str, table: &Table) {
     if table.is_empty() {
         return;
@@ -112,16 +113,4 @@ fn shape(own: &Table) -> Table {
     let alone: Table =
         own.iter().filter(|(key, _)| *key == "type").map(|(k, v)| (k.clone(), v.clone())).collect();
     Shape::deserialize(Value::Table(alone)).map_or_else(|_| Table::new(), |shape| write::fields(&shape))
-}
-
-/// Removes from `own` what `base` has as well, and tables that this leaves empty.
-fn subtract(own: &mut Table, base: &Table) {
-    own.retain(|key, value| match (value, base.get(key)) {
-        (Value::Table(own), Some(Value::Table(base))) => {
-            subtract(own, base);
-            !own.is_empty()
-        }
-        (value, Some(base)) => value != base,
-        (_, None) => true,
-    });
 }

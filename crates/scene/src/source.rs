@@ -1,6 +1,6 @@
 //! Where each value of a scene description came from: the file's lines and the `--set` options.
 
-use crate::error::{Origin, Problem, SceneError, nearest};
+use crate::error::{Origin, SceneError, SceneProblem, nearest};
 use crate::values::describe;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -54,15 +54,15 @@ impl Source {
     }
 
     /// A problem with the value of a key.
-    pub fn problem(&self, key: &str, message: impl Into<String>) -> Problem {
-        Problem { origin: self.origin(key), key: key.to_owned(), message: message.into() }
+    pub fn problem(&self, key: &str, message: impl Into<String>) -> SceneProblem {
+        SceneProblem { origin: self.origin(key), key: key.to_owned(), message: message.into() }
     }
 
     /// Applies `KEY.PATH=VALUE`. VALUE is TOML; what is not is taken as a string. A part of the path
     /// that selects from an array (`body`, `obstacle`, `pin`) is an index from 0 or a `name`.
-    pub fn set(&mut self, assignment: &str) -> Result<(), Problem> {
+    pub fn set(&mut self, assignment: &str) -> Result<(), SceneProblem> {
         let fault =
-            |key: &str, message: String| Problem { origin: Origin::Set, key: key.to_owned(), message };
+            |key: &str, message: String| SceneProblem { origin: Origin::Set, key: key.to_owned(), message };
         let Some((path, text)) = assignment.split_once('=') else {
             return Err(fault(assignment, "an option --set has the form KEY.PATH=VALUE".to_owned()));
         };

@@ -3,7 +3,7 @@
 use crate::body::{ObstacleSpec, PinSpec};
 use crate::contact;
 use crate::description::Scene;
-use crate::error::{Problem, SceneError, nearest};
+use crate::error::{SceneError, SceneProblem, nearest};
 use crate::kind::BodyKind;
 use crate::motion::Motion;
 use crate::shapes::Shape;
@@ -36,7 +36,7 @@ pub(super) fn scene(scene: &Scene, source: &Source) -> Result<(), SceneError> {
 }
 
 fn report(
-    problems: &mut Vec<Problem>,
+    problems: &mut Vec<SceneProblem>,
     source: &Source,
     path: &str,
     faults: &mut Vec<(&'static str, String)>,
@@ -44,7 +44,7 @@ fn report(
     problems.extend(faults.drain(..).map(|(key, message)| source.problem(&join(path, key), message)));
 }
 
-fn validate_bodies(scene: &Scene, source: &Source, problems: &mut Vec<Problem>) {
+fn validate_bodies(scene: &Scene, source: &Source, problems: &mut Vec<SceneProblem>) {
     let mut faults = Vec::new();
     let mut names: HashMap<&str, String> = HashMap::new();
     let paths = (0..scene.bodies.len())
@@ -128,13 +128,13 @@ fn validate_bodies(scene: &Scene, source: &Source, problems: &mut Vec<Problem>) 
     }
 }
 
-fn validate_shape(shape: Option<&Shape>, source: &Source, path: &str, problems: &mut Vec<Problem>) {
+fn validate_shape(shape: Option<&Shape>, source: &Source, path: &str, problems: &mut Vec<SceneProblem>) {
     if let Some(shape) = shape {
         report_errors(problems, source, &join(path, "shape"), shape);
     }
 }
 
-fn validate_motion(motion: Option<&Motion>, source: &Source, path: &str, problems: &mut Vec<Problem>) {
+fn validate_motion(motion: Option<&Motion>, source: &Source, path: &str, problems: &mut Vec<SceneProblem>) {
     if let Some(motion) = motion {
         report_errors(problems, source, &join(path, "motion"), motion);
     }
@@ -142,7 +142,7 @@ fn validate_motion(motion: Option<&Motion>, source: &Source, path: &str, problem
 
 /// Reports the fields of a struct that are out of their range, with the struct's place in the scene.
 pub(super) fn report_errors(
-    problems: &mut Vec<Problem>,
+    problems: &mut Vec<SceneProblem>,
     source: &Source,
     path: &str,
     parameters: &impl Parameters,
@@ -153,7 +153,7 @@ pub(super) fn report_errors(
     }
 }
 
-fn validate_pin(scene: &Scene, pin: &PinSpec, source: &Source, path: &str, problems: &mut Vec<Problem>) {
+fn validate_pin(scene: &Scene, pin: &PinSpec, source: &Source, path: &str, problems: &mut Vec<SceneProblem>) {
     let mut faults = Vec::new();
     if !scene.bodies.iter().any(|body| body.name == pin.body) {
         let names: Vec<&str> = scene.bodies.iter().map(|b| b.name.as_str()).collect();

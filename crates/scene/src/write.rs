@@ -65,11 +65,12 @@ pub(super) fn drop_defaults(root: &mut Table, scene: &Scene) {
     }
 }
 
-fn subtract(own: &mut Table, base: &Table) {
+/// Removes from `own` what `base` has as well, and tables that this leaves empty.
+pub(super) fn subtract(own: &mut Table, base: &Table) {
     own.retain(|key, value| match (value, base.get(key)) {
         (Value::Table(own), Some(Value::Table(base))) => {
             subtract(own, base);
-            true
+            !own.is_empty()
         }
         (value, Some(base)) => value != base,
         (_, None) => true,

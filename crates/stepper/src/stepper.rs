@@ -1,8 +1,8 @@
 //! The forward step (paper, Eq. 3, 18-20), with separating planes in place of the isotropic bound.
 //!
-//! For a pair with unit normal n and certified slab width w, side *a* may close at most a share of
-//! G = gamma max(0, w - xi), where xi is the pair's minimum separation, and side *b* the rest. Each side then
-//! stays in its own half-space. Half-spaces are convex, so no straight path of any vertex crosses, whatever the
+//! For a pair with unit normal n and certified slab width w, side *a* may close at most a share of G = gamma
+//! max(0, w - xi), where xi is the pair's minimum separation, and side *b* the rest. Each side then stays in
+//! its own half-space. Half-spaces are convex, so no straight path of any vertex crosses, whatever the
 //! speeds, and a smaller alpha is always safe too. The isotropic bound is the paper's: no vertex moves by
 //! more than half of the smallest distance of its pairs.
 

@@ -12,13 +12,14 @@ use std::path::Path;
 /// One collision problem as `--record` writes it and `resolve` reads it.
 ///
 /// In the archive: `x[n,3]`, `y[n,3]` [m], `F[m,3]`, and optionally `E[k,2]` (strands), `P[p]` (particles),
-/// `rest[n,3]` [m], `mass[n]` [kg], `fixed[n]`, `O[n]` (obstacle), `body[n]`, `planes[h,4]` (unit normal, offset [m]),
-/// `dt` [s]; stored or deflated, f32 or f64, integers of any width.
+/// `rest[n,3]` [m], `mass[n]` [kg], `fixed[n]`, `O[n]` (obstacle), `body[n]`, `planes[h,4]` (unit normal,
+/// offset [m]), `dt` [s]; stored or deflated, f32 or f64, integers of any width.
 ///
-/// What bodies bring into their contacts, optional as well, with one entry a body of `body`: `thickness`, `delta` [m],
-/// `friction`, `stretch_limit` [1], each nan where the body leaves it open; `plane_thickness[h]` [m] and
-/// `plane_friction[h]` likewise; `pair_friction[k,3]`: two bodies, half-spaces numbered after the bodies, and their
-/// coefficient. `group[n]`: pins that go as one, -1 for none. `start[n,3]` [m]: what friction measures slip from.
+/// What bodies bring into their contacts, optional as well, with one entry per body of `body`: `thickness`,
+/// `delta` [m], `friction`, `stretch_limit` [1], each nan where the body leaves it open; `plane_thickness[h]`
+/// [m] and `plane_friction[h]` likewise; `pair_friction[k,3]`: two bodies, half-spaces numbered after the
+/// bodies, and their coefficient. `group[n]`: pins that go as one, -1 for none. `start[n,3]` [m]: what
+/// friction measures slip from.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct States {
     /// The state, free of intersections.
@@ -185,8 +186,8 @@ fn bodies(archive: &mut Archive<'_>, obstacle: &[bool]) -> Result<Vec<u32>, IoEr
     let Some(values) = archive.column("body", Some(obstacle.len()))? else {
         return Ok(obstacle.iter().map(|&o| u32::from(o)).collect());
     };
-    // Bodies are counted, so that a stray large number would cost memory; none has more bodies than vertices, but that
-    // of obstacles is 1 by default even where there is no deformable vertex.
+    // Bodies are counted, so that a stray large number would cost memory; none has more bodies than vertices,
+    // but that of obstacles is 1 by default even where there is no deformable vertex.
     let limit = values.len().max(2) as f64;
     if let Some(vertex) = values.iter().position(|&b| !(b >= 0.0 && b < limit && b.fract() == 0.0)) {
         let body = values[vertex];
@@ -209,7 +210,8 @@ fn planes(archive: &mut Archive<'_>) -> Result<Vec<HalfSpace>, IoError> {
                 format!("row {index} needs a normal (not zero) and an offset, all finite"),
             ));
         }
-        // A normal that is a unit to rounding is kept bit by bit, so that a recorded problem is the one that was run.
+        // A normal that is a unit to rounding is kept bit by bit, so that a recorded problem is the one that
+        // was run.
         let scale = if (length - 1.0).abs() < 1e-12 { 1.0 } else { length };
         half_spaces.push(HalfSpace { normal: normal / scale, offset: offset / scale });
     }

@@ -4,7 +4,8 @@ use super::{RepairReport, droppable};
 use bowknot_geometry::MeshProblem;
 use bowknot_io::Mesh;
 
-/// Drops triangles without area or given twice, and strand edges likewise. The first of each stays where it was.
+/// Drops triangles without area or given twice, and strand edges likewise. The first of each stays where it
+/// was.
 pub(super) fn drop_bad_elements(mesh: &mut Mesh, report: &mut RepairReport) {
     let mut keep = vec![true; mesh.triangles.len()];
     for problem in droppable(mesh) {

@@ -1,9 +1,10 @@
-//! Cleaning meshes that no simulation can start from: garments whose panels meet in seams without being joined.
+//! Cleaning meshes that no simulation can start from: garments whose panels meet in seams without being
+//! joined.
 //!
-//! What is done, in this order: vertices at the open borders of surfaces that lie together are welded; a border vertex
-//! that lies on another border edge (a T-seam) splits the triangle there; triangles without area and elements given
-//! twice are dropped, and vertices that nothing uses. Before and after, the exact judge counts the intersections.
-//! What intersects away from borders is left as it is: no weld would cure it.
+//! What is done, in this order: vertices at the open borders of surfaces that lie together are welded; a
+//! border vertex that lies on another border edge (a T-seam) splits the triangle there; triangles without
+//! area and elements given twice are dropped, and vertices that nothing uses. Before and after, the exact
+//! judge counts the intersections. What intersects away from borders is left as it is: no weld would cure it.
 
 mod clean;
 mod seams;
@@ -22,8 +23,9 @@ const WELD_SHARE: f64 = 0.01;
 /// How a mesh is repaired.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RepairParams {
-    /// Border vertices nearer than this are welded [m]. Default: a hundredth of the mean edge of the triangles at open
-    /// borders. Larger: wider seams close, but more of the cloth is pulled together; keep it below the shortest edge.
+    /// Border vertices nearer than this are welded [m]. Default: a hundredth of the mean edge of the
+    /// triangles at open borders. Larger: wider seams close, but more of the cloth is pulled together; keep
+    /// it below the shortest edge.
     pub weld_distance: Option<f64>,
 }
 

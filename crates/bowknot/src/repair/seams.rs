@@ -6,11 +6,12 @@ use bowknot_io::Mesh;
 
 /// Rounds of splitting: a new border edge may have vertices on it that the old one had not.
 const ROUNDS: usize = 3;
-/// Border vertices this near to an end of an edge, as a share of it, do not split it: a sliver would come of it.
+/// Border vertices this near to an end of an edge, as a share of it, do not split it: a sliver would come of
+/// it.
 const END_SHARE: f64 = 0.02;
 
-/// Splits border triangles where another border vertex lies on their border edge within `distance` [m], so that the
-/// edge runs through the vertex.
+/// Splits border triangles where another border vertex lies on their border edge within `distance` [m], so
+/// that the edge runs through the vertex.
 pub(super) fn split_t_seams(mesh: &mut Mesh, distance: f64, report: &mut RepairReport) {
     for _ in 0..ROUNDS {
         let splits = splits(mesh, distance);

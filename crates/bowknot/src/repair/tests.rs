@@ -1,6 +1,7 @@
 use super::*;
 
-/// A panel of `n` x `m` squares of `edge` from a corner, in the plane z = 0, as its own vertices; appended to `mesh`.
+/// A panel of `n` x `m` squares of `edge` from a corner, in the plane z = 0, as its own vertices; appended to
+/// `mesh`.
 fn panel(mesh: &mut Mesh, corner: [f64; 2], n: u32, m: u32, edge: [f64; 2]) {
     let first = mesh.positions.len() as u32;
     let at = |i: u32, j: u32| first + j * (n + 1) + i;

@@ -7,8 +7,8 @@ use bowknot_io::Mesh;
 /// Places that the report lists.
 const LISTED: usize = 10;
 
-/// Welds border vertices nearer than `distance` [m], nearest pairs first; each group moves to its mean. Two vertices of
-/// one edge are never welded, neither directly nor through others: no edge collapses.
+/// Welds border vertices nearer than `distance` [m], nearest pairs first; each group moves to its mean. Two
+/// vertices of one edge are never welded, neither directly nor through others: no edge collapses.
 pub(super) fn weld(mesh: &mut Mesh, distance: f64, report: &mut RepairReport) {
     let border: Vec<(u32, Point)> =
         border_vertices(mesh).into_iter().map(|v| (v, mesh.positions[v as usize])).collect();

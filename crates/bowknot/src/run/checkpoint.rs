@@ -12,8 +12,8 @@ use std::path::Path;
 
 impl Checkpoint {
     /// Writes the state as one NPZ file, atomically: `step[1]`, `positions[n,3]`, `velocities[n,3]`,
-    /// `anchor_counts[p]`, `anchors[k,3]`, `contact_features[c,4]` (kind and index of either feature: 0 vertex, 1 edge,
-    /// 2 triangle, 3 half-space), `contact_normals[c,3]`, `contact_forces[c,3]`.
+    /// `anchor_counts[p]`, `anchors[k,3]`, `contact_features[c,4]` (kind and index of either feature: 0
+    /// vertex, 1 edge, 2 triangle, 3 half-space), `contact_normals[c,3]`, `contact_forces[c,3]`.
     ///
     /// # Errors
     /// The system's refusal, with the path.

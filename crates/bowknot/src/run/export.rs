@@ -28,15 +28,15 @@ pub struct Exported {
     pub vertices: usize,
 }
 
-/// Writes the frames of `source` in other formats: of a run's folder, of a folder of PLY or OBJ files that differ in
-/// positions only, or of an NPZ archive. `progress` hears the frames done and their number.
+/// Writes the frames of `source` in other formats: of a run's folder, of a folder of PLY or OBJ files that
+/// differ in positions only, or of an NPZ archive. `progress` hears the frames done and their number.
 ///
-/// Frames are taken from PLY files if there are any, then OBJ, then `frames.npz`; the archive is the only one that is
-/// held in memory.
+/// Frames are taken from PLY files if there are any, then OBJ, then `frames.npz`; the archive is the only one
+/// that is held in memory.
 ///
 /// # Errors
-/// No frames, frames whose elements differ, no time step, formats that would overwrite what is read; files that cannot
-/// be read or written.
+/// No frames, frames whose elements differ, no time step, formats that would overwrite what is read; files
+/// that cannot be read or written.
 pub fn export(
     source: &Path,
     options: &ExportOptions,

@@ -1,7 +1,7 @@
 //! Frames in every format.
 //!
 //! ```text
-//! frames/000000.ply  .obj  .vtu     one file a frame
+//! frames/000000.ply  .obj  .vtu     one file per frame
 //! frames.pvd                        the .vtu files with their times
 //! frames.npz                        all frames
 //! scene.usda                        all frames
@@ -92,8 +92,8 @@ impl FrameWriter {
         Ok(())
     }
 
-    /// Makes files of many frames hold the first `frames`, as a run that is resumed needs them; what they lack comes
-    /// from the other formats.
+    /// Makes files of many frames hold the first `frames`, as a run that is resumed needs them; what they
+    /// lack comes from the other formats.
     pub fn restore(&self, frames: usize) -> Result<(), IoError> {
         let caches = self.formats.contains(&Format::Pc2)
             && self.parts.iter().zip(&self.part_files).any(|(part, name)| {
@@ -200,7 +200,8 @@ fn typical_width(part: &Part, start: &[Point]) -> f64 {
     if width > 0.0 && width.is_finite() { width } else { FALLBACK }
 }
 
-/// Names of the parts as file names: what a system may not like becomes an underscore, names given twice get a number.
+/// Names of the parts as file names: what a system may not like becomes an underscore, names given twice get
+/// a number.
 fn file_names(parts: &[Part]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for part in parts {

@@ -1,4 +1,5 @@
-//! The positions of all frames so far on disk, for formats that are one file in the end: memory holds one frame.
+//! The positions of all frames so far on disk, for formats that are one file in the end: memory holds one
+//! frame.
 
 use bowknot_geometry::Point;
 use bowknot_io::IoError;

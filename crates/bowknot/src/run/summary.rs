@@ -33,8 +33,8 @@ pub struct Summary {
     pub intersections: Option<usize>,
 }
 
-/// The numbers of [`StepStatistics`], combined over time steps. Each is none if no time step has it; flags count as 0 and 1.
-/// The fields are in alphabetical order, as in the file.
+/// The numbers of [`StepStatistics`], combined over time steps. Each is none if no time step has it; flags
+/// count as 0 and 1. The fields are in alphabetical order, as in the file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the fields are documented in StepStatistics")]
 #[serde(default)]
@@ -174,7 +174,8 @@ fn map(value: &Value, f: &impl Fn(f64) -> f64) -> Value {
     }
 }
 
-/// Combines every number of `b` with the number at the same place of `a`. Where `a` has no number, it takes that of `b`.
+/// Combines every number of `b` with the number at the same place of `a`. Where `a` has no number, it takes
+/// that of `b`.
 fn merge(a: &mut Value, b: &Value, f: &impl Fn(f64, f64) -> f64) {
     match b {
         Value::Object(fields) => {

@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! scene.toml                resolved scene
-//! frames/000000.ply ..      one file a frame and format; other formats beside it, see `frames.rs`
-//! stats.jsonl               one line a time step
+//! frames/000000.ply ..      one file per frame and format; other formats beside it, see `frames.rs`
+//! stats.jsonl               one line per time step
 //! summary.json              written at the end
 //! checkpoint/state.npz      the state to resume from
 //! checkpoint/frames.f64     the positions so far, for formats that are one file in the end

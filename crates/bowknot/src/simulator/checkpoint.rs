@@ -4,7 +4,8 @@ use super::contacts::ContactForce;
 use bowknot_geometry::{Point, Vector};
 
 /// The state between two time steps, in full: a simulation restored from it goes on to the same bits.
-/// Multipliers of the collision stage and search radii are set up anew in each time step, so they are no part of it.
+/// Multipliers of the collision stage and search radii are set up anew in each time step, so they are no part
+/// of it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Checkpoint {
     /// Time steps made.

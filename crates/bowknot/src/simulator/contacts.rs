@@ -1,9 +1,10 @@
 //! The contacts that the dynamics knows of: which pairs they are, and the forces that they carry.
 //!
-//! After each collision stage the pairs within contact range are sorted into contacts and mere neighbors ([`Facing`]). A
-//! contact takes over the force that it carried before: that of its spring in the Newton system and that of its row in the
-//! collision stage. Where a contact point has slid on to another feature, the force on its vertex passes to the new one.
-//! Forces are part of the state between two time steps, and of checkpoints. Edges at their stretch limits are springs like contacts.
+//! After each collision stage the pairs within contact range are divided into contacts and neighbors
+//! ([`Facing`](bowknot_constraints::Facing)). A contact keeps the force that it carried: that of its spring
+//! in the Newton system plus that of its row in the collision stage. Where a contact point has slid to
+//! another feature, the force on its vertex passes to the new contact. Forces are part of the state between
+//! two time steps, and of checkpoints. Edges at their stretch limits are springs like contacts.
 
 use super::relaxation::relax_force;
 use super::solved::solved_vertices;
@@ -21,24 +22,24 @@ use rustc_hash::{FxHashMap, FxHashSet};
 pub(super) struct Contacts {
     stiffness: f64,
     springs: Vec<RepulsionSpring>,
-    /// Features of each spring's sides, [`oriented`]; of a taut edge, the edge with itself.
+    /// Features of each spring's sides, [`oriented`]. A taut edge has itself as both.
     features: Vec<[Feature; 2]>,
-    /// Forces of the contacts that a run goes on from, until its first time step finds them.
+    /// Contact forces of a checkpoint, until the first time step after it finds their contacts.
     resumed: Option<Vec<ContactForce>>,
     /// The edges that have a stretch limit.
     limited: LimitedEdges,
-    /// Which vertices of the world are part of bodies that Newton's method solves together with their contacts, and which of them
-    /// no row held whose pair has no spring.
+    /// Which vertices of the world belong to bodies that Newton's method solves together with their contacts.
     solved: Vec<bool>,
+    /// Of these, the vertices whose forces the residual of a time step counts.
     counted: Vec<bool>,
-    /// What was in contact range at the start of the time step or after any of its collision stages.
+    /// Pairs that were in contact range at the start of the time step or after one of its collision stages.
     touching: Touching,
 }
 
 /// The force that a contact carries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactForce {
-    /// What touches what.
+    /// The two features in contact.
     pub features: [Feature; 2],
     /// Unit normal, towards the first feature [1].
     pub normal: Vector,
@@ -48,7 +49,7 @@ pub struct ContactForce {
 
 impl Contacts {
     pub fn new(params: &RepulsionParams, world: &World, resolver: &Resolver) -> Self {
-        // The velocity filter takes friction from how deep the target is; springs would leave nothing of that.
+        // The velocity filter computes friction from the depth of the target, which springs would remove.
         let filtered = resolver.scene().friction_model() == FrictionModel::Filter;
         let stiffness = if filtered { 0.0 } else { params.stiffness };
         let limited = LimitedEdges::new(resolver.scene(), world);
@@ -62,18 +63,19 @@ impl Contacts {
         &self.springs
     }
 
-    /// What has touched what since the time step began.
+    /// Pairs that have been in contact range since the time step began.
     pub fn touching(&self) -> &Touching {
         &self.touching
     }
 
-    /// Goes on with the forces of a checkpoint.
+    /// Continues with the forces of a checkpoint.
     pub fn resume(&mut self, carried: &[ContactForce]) {
         self.resumed = Some(carried.to_vec());
     }
 
-    /// Begins a time step at the positions `start`: forgets what touched in the last one, but for what is in contact range now, and
-    /// finds the contacts anew, from nothing but positions and forces, so that a run that goes on from a checkpoint finds the same.
+    /// Begins a time step at the positions `start`. It forgets the pairs of the last time step that are out
+    /// of contact range, and finds the contacts from positions and forces alone, so that a resumed run finds
+    /// the same.
     pub fn begin_step(&mut self, resolver: &Resolver, start: &[Point], dt: f64) {
         self.touching = Touching::default();
         self.note_touching(resolver);
@@ -82,7 +84,7 @@ impl Contacts {
         self.find(resolver, &carried, start, dt);
     }
 
-    /// Takes down what is in contact range.
+    /// Adds the pairs in contact range to [`Self::touching`].
     pub fn note_touching(&mut self, resolver: &Resolver) {
         let (scene, contacts) = (resolver.scene(), &resolver.state().contacts);
         for kind in PairKind::ALL {
@@ -100,7 +102,7 @@ impl Contacts {
         }
     }
 
-    /// The forces that they carry.
+    /// The forces that the contacts carry.
     pub fn carried(&self) -> Vec<ContactForce> {
         let of_springs = || self.springs.iter().map(|spring| spring.force);
         self.resumed.clone().unwrap_or_else(|| self.with_forces(of_springs()))
@@ -125,8 +127,8 @@ impl Contacts {
         }
     }
 
-    /// The same after the dynamics and the collision stage: `forces` of the springs, by spring [N], and of the rows that
-    /// pushed.
+    /// The forces after the dynamics and the collision stage: `forces` of the springs, by spring [N], and
+    /// those of active rows.
     pub fn carried_after(&mut self, forces: &[Vector], resolver: &Resolver, dt: f64) -> Vec<ContactForce> {
         let (scene, contacts) = (resolver.scene(), &resolver.state().contacts);
         let mut carried = self.with_forces(forces.iter().copied());
@@ -154,8 +156,8 @@ impl Contacts {
         carried
     }
 
-    /// Finds the contacts at the present state of the collision stage, which lists all pairs in range in an order of their own, and
-    /// hands on the forces of those before. `start` are positions at the start of the time step.
+    /// Finds the contacts at the present state of the collision stage, in the order of its candidate pairs,
+    /// and gives them the forces of the contacts before. `start` are positions at the start of the time step.
     pub fn find(&mut self, resolver: &Resolver, carried: &[ContactForce], start: &[Point], dt: f64) {
         self.springs.clear();
         self.features.clear();
@@ -185,7 +187,8 @@ impl Contacts {
         self.hand_on(scene, carried, &index, &moved);
     }
 
-    /// Adds the pairs in range that are contacts within a tolerance, by features and normal, and are not in the `index` yet.
+    /// Adds the pairs in range that are contacts within a tolerance, by features and normal, and not in the
+    /// `index` yet.
     fn add(
         &mut self,
         resolver: &Resolver,
@@ -201,7 +204,7 @@ impl Contacts {
             for p in contacts.pairs.range(kind) {
                 let (separation, pair) = (&contacts.separations[p], &contacts.pairs.pairs()[p]);
                 let used = &pair.vertices[..kind.vertex_count()];
-                // A distance that is no number repels nothing.
+                // A pair whose distance is not a number gets no spring.
                 let near = separation.distance < scene.contact_range(kind, pair);
                 if !near || !self.is_elastic(used) {
                     continue;
@@ -213,7 +216,8 @@ impl Contacts {
                 {
                     continue;
                 }
-                // What has left its cones pushes along their border: a tilted normal would push aside what slides.
+                // A normal outside of the cones is turned to their border: a tilted one would push sliding
+                // bodies aside.
                 if tolerance > CONE_TOLERANCE {
                     normal = scene.turned(features, &normal, &state.x);
                 }
@@ -226,8 +230,8 @@ impl Contacts {
                 (0..4).filter(|&k| weights[k] == 0.0).for_each(|k| vertices[k] = pair.vertices[0]);
                 let sides: Vector = (0..4).map(|k| start[vertices[k] as usize].coords * weights[k]).sum();
                 let (desired, distance) = (scene.desired_distance(kind, pair), separation.distance);
-                // Where contacts are new or have turned, what is between the same places at the start may be less than what the
-                // collision stage has reached.
+                // For contacts that are new or have turned, the gap between the same points at the start may
+                // be smaller than the one that the collision stage has reached.
                 let first = (normal.dot(&sides) - offset).max(distance.min(desired));
                 self.features.push(features);
                 self.springs.push(RepulsionSpring {
@@ -244,7 +248,8 @@ impl Contacts {
         }
     }
 
-    /// The sides whose contacts pressed and are gone, and which no contact holds that they pressed, with their pressure [N].
+    /// The sides whose contacts carried a force and are gone, if no other contact that carried one holds
+    /// them, with their normal forces [N].
     fn orphans(
         &self,
         scene: &CollisionScene,
@@ -262,9 +267,10 @@ impl Contacts {
         orphans
     }
 
-    /// Gives the springs the forces of those before: of the same features; of two edges, to the feature of theirs that the closest
-    /// points have moved on to, or to a contact that one of them has now; of a vertex against a body, to the contact of that vertex
-    /// whose normal is nearest to the former one: another may be a wall ahead of it.
+    /// Gives the springs the forces of the contacts before. A force goes to the contact of the same features.
+    /// That of two edges goes to the feature that their closest points have moved to, or to a contact that
+    /// one of the edges has now. That of a vertex against a body goes to the contact of the vertex whose
+    /// normal is closest to the former one, because another contact of the vertex may be ahead of it.
     fn hand_on(
         &mut self,
         scene: &CollisionScene,
@@ -320,14 +326,16 @@ impl Contacts {
         }
     }
 
-    /// The vertices of the world whose forces the residual of a time step counts: those of bodies that Newton's method solves together
-    /// with their contacts, but not where rows alone hold them, of which it does not know.
+    /// Whether the residual of a time step counts the forces on each vertex: those of bodies that Newton's
+    /// method solves together with their contacts, except vertices that only rows hold, of which it does not
+    /// know.
     pub fn counted(&self) -> &[bool] {
         &self.counted
     }
 
-    /// Leaves out contacts that the vertices will have passed by the end of the time step, if they go by `motion` [m] but into
-    /// no face: an edge that lies ahead of a vertex, on the surface that it slides on, is no wall.
+    /// Removes contacts that the vertices will have passed at the end of the time step if they move by
+    /// `motion` [m], faces excepted. An edge ahead of a vertex, on the surface on which it slides, must not
+    /// stop it.
     pub fn anticipate(&mut self, motion: &mut [Vector]) {
         let approach = |spring: &RepulsionSpring, motion: &[Vector]| {
             let used = (0..4).filter(|&k| spring.weights[k] != 0.0);
@@ -339,7 +347,7 @@ impl Contacts {
             if !is_face(features) {
                 continue;
             }
-            // The gap is at least the desired one, or opens no faster than to that.
+            // The gap is at least the desired one, or opens to it no faster than the separation speed.
             let closing = -approach(spring, motion).dot(&spring.normal);
             if closing > 0.0 {
                 motion[spring.vertices[0] as usize] += spring.normal * closing;
@@ -353,7 +361,7 @@ impl Contacts {
                 let start = spring.normal * spring.desired;
                 let way = approach(spring, motion);
                 let length = way.norm_squared();
-                // What carries a force is touched already, not ahead.
+                // A contact that carries a force is not ahead.
                 if is_face(features) || spring.force != Vector::zeros() || length == 0.0 {
                     return false;
                 }
@@ -373,41 +381,42 @@ impl Contacts {
         vertices.iter().any(|&v| self.solved[v as usize])
     }
 
-    /// Hands the springs to the dynamics.
+    /// Gives the springs to the dynamics.
     pub fn apply(&self, dynamics: &mut Dynamics) -> Result<(), StepError> {
         if self.stiffness == 0.0 { Ok(()) } else { dynamics.set_repulsion(&self.springs) }
     }
 }
 
-/// Gap that contacts of the dynamics come to in time, in the desired distance of the collision stage, which then has nothing to
-/// do at rest.
+/// Gap that contacts of the dynamics approach in time, in the desired distance of the collision stage, so
+/// that the collision stage changes nothing at rest.
 const SLACK: f64 = 1.05;
 
-/// Time within which they do [s].
+/// Time in which they approach it [s].
 const OPENING_TIME: f64 = 0.05;
 
-/// Sine of the angle by which normals may leave their cones. What slides 1 cm along a normal that is tilted by so much is lifted
-/// by 0.02 mm: a stiff body feels more.
+/// Sine of the angle by which normals may leave their cones. A body that slides by 1 cm on a plane tilted by
+/// this angle rises by 0.02 mm; more would disturb a stiff body.
 const CONE_TOLERANCE: f64 = 2e-3;
 
-/// The same for contacts that carry a force: they do not come and go as surfaces tremble.
+/// The same for contacts that carry a force, so that they do not come and go when surfaces tremble.
 const LOADED_TOLERANCE: f64 = 0.2;
 
-/// Gap that a contact is to have at the end of a time step, with a `distance` at its start and a `desired` one in the collision stage,
-/// that opens by `growth` in a step at most [m].
+/// Gap that a contact should have at the end of a time step [m]. It starts with `distance`, the collision
+/// stage asks for `desired`, and it opens by `growth` per step at most.
 fn desired_gap(desired: f64, distance: f64, growth: f64, dt: f64) -> f64 {
     let most = SLACK * desired;
     let opened = distance + (most - distance) * (dt / OPENING_TIME).min(1.0);
     desired.min(distance + growth).max(opened).min(most)
 }
 
-/// Share of the largest cosine between normals from which on another one counts as the same: those of a flat surface.
+/// Share of the largest cosine between normals above which another one counts as equal: those of a flat
+/// surface.
 const NEAREST: f64 = 0.999;
 
-/// Share of the desired distance that something must keep from a feature to count as passing it.
+/// Share of the desired distance that a vertex must keep from a feature to count as passing it.
 const PASSING: f64 = 0.5;
 
-/// Springs by what they stand for.
+/// Indices of springs by their features.
 type Index = FxHashMap<[Feature; 2], usize>;
 
 /// A vertex, and a body that it is in contact with; half-spaces count from the end.
@@ -416,7 +425,7 @@ type Side = (u32, u32);
 /// Springs that have taken over from two edges, with the sign of the force in them.
 type MovedEdges = FxHashMap<[Feature; 2], (usize, f64)>;
 
-/// The vertex whose contact it is, and the body on the other side.
+/// The vertex of a contact, and the body on the other side.
 fn side(scene: &CollisionScene, features: &[Feature; 2]) -> Option<Side> {
     let body = |vertex: u32| scene.model().vertex_body().get(vertex as usize).copied();
     let topology = scene.model().topology();
@@ -431,7 +440,7 @@ fn side(scene: &CollisionScene, features: &[Feature; 2]) -> Option<Side> {
     Some((vertex, other))
 }
 
-/// Pressures of vertices, forces without friction, that no spring of the same features carries on, by side [N].
+/// Normal forces of vertices that no spring of the same features carries on, by side [N].
 fn lost_by_side(scene: &CollisionScene, carried: &[ContactForce], index: &Index) -> FxHashMap<Side, Vector> {
     let mut lost = FxHashMap::default();
     for ContactForce { features, normal, force } in carried {
@@ -445,7 +454,8 @@ fn lost_by_side(scene: &CollisionScene, carried: &[ContactForce], index: &Index)
     lost
 }
 
-/// Pairs of edges that carried a force and whose closest points now lie on an end of one: what they have become.
+/// Pairs of edges that carried a force and whose closest points are now at an end of one: the contact that
+/// replaces them.
 fn moved_edges(resolver: &Resolver, carried: &[ContactForce], index: &Index) -> MovedEdges {
     let is_lost = |features: &[Feature; 2]| {
         matches!(features, [Feature::Edge(a), Feature::Edge(b)] if a != b) && !index.contains_key(features)
@@ -471,8 +481,8 @@ fn moved_edges(resolver: &Resolver, carried: &[ContactForce], index: &Index) -> 
     moved
 }
 
-/// Features with a vertex before an edge, so that pairs of different kinds that touch there are one contact; and the sign that the
-/// normal and forces take.
+/// Features with a vertex before an edge, so that pairs of different kinds at the same features are one
+/// contact, and the sign that normal and force take.
 fn oriented(features: [Feature; 2]) -> ([Feature; 2], f64) {
     match features {
         [edge @ Feature::Edge(_), vertex @ Feature::Vertex(_)] => ([vertex, edge], -1.0),

@@ -1,13 +1,14 @@
-//! Brings the vertices inside of solids along with their surfaces.
+//! Moves the vertices inside of solids with their surfaces.
 //!
-//! The dynamics gives all vertices of a solid a target y; the collision stage knows those of the surface only and may
-//! leave them elsewhere, at x. A vertex inside that went to its target all the same could end up on the wrong side of
-//! the surface that was stopped before it. So, where surface and target differ:
+//! The dynamics gives all vertices of a solid a target y. The collision stage knows those of the surface
+//! only, and may stop them on the way, at x. A vertex inside that moved to its target could then end on the
+//! wrong side of the surface. So, where surface and target differ:
 //!
-//! 1. vertices inside get their target and a correction, that of their neighbors on average (a few sweeps of
-//!    Gauss-Seidel on the graph Laplacian, the surface's corrections held);
-//! 2. with [`InteriorFollows::Elastic`], the dynamics then solves for them with the surface held there: a Newton
-//!    iteration of the time step's own energy, repeated while a tetrahedron is inverted, a few times at most.
+//! 1. vertices inside get their target plus a correction, the average of those of their neighbors (a few
+//!    sweeps of Gauss-Seidel on the graph Laplacian, the corrections of the surface held fixed);
+//! 2. with [`InteriorFollows::Elastic`], the dynamics then solves for them with the surface held there: a
+//!    Newton iteration of the time step's own energy, repeated while a tetrahedron is inverted, a few times
+//!    at most.
 //!
 //! `docs/design-notes.md` has the figures by which the default was chosen.
 
@@ -16,12 +17,12 @@ use bowknot_geometry::{Point, Vector};
 use bowknot_scene::InteriorFollows;
 use bowknot_scene::world::World;
 
-/// Sweeps of the average; corrections reach about as many layers of vertices deep as this number's root.
+/// Sweeps of the average. Corrections reach about the square root of this number of layers of vertices deep.
 const SWEEPS: usize = 24;
-/// Most Newton iterations of the elastic solve.
+/// Largest number of Newton iterations of the elastic solve.
 const MOST_SOLVES: usize = 4;
 
-/// The tetrahedra of a world and what is inside of them.
+/// The tetrahedra of a world and the vertices inside of solids.
 #[derive(Debug, Default)]
 pub(super) struct Interior {
     method: InteriorFollows,
@@ -29,7 +30,7 @@ pub(super) struct Interior {
     first: usize,
     /// Tetrahedra with a vertex inside.
     tets: Vec<[u32; 4]>,
-    /// Where the neighbors of each vertex inside begin, and of one more.
+    /// Where the neighbors of each vertex inside begin, and the end.
     starts: Vec<u32>,
     neighbors: Vec<u32>,
     prescribed: Vec<bool>,
@@ -57,7 +58,7 @@ impl Interior {
         Self { method, first, tets, starts, neighbors, ..Self::default() }
     }
 
-    /// Moves the vertices inside, which are at their target `y`, to where they go with the surface at `x` [m].
+    /// Moves the vertices inside, which are at their target `y`, to follow the surface at `x` [m].
     /// Returns the number of elastic solves.
     pub fn follow(
         &mut self,
@@ -75,7 +76,7 @@ impl Interior {
         if self.method == InteriorFollows::Average {
             return Ok(0);
         }
-        // Only what is inside is free: the surface of the solid, and all other bodies, stay.
+        // Only vertices inside are free: surfaces and all other bodies are held.
         self.prescribed.clear();
         self.prescribed.resize(first, true);
         self.prescribed.extend_from_slice(&prescribed[first..]);
@@ -123,7 +124,7 @@ fn count_inverted(tets: &[[u32; 4]], x: &[Point]) -> usize {
         let [a, b, c, d] = tet.map(|v| x[v as usize]);
         (b - a).cross(&(c - a)).dot(&(d - a))
     };
-    // One of a volume that is no number does not count as sound.
+    // A volume that is not a number counts as inverted.
     let sound = |tet: &&[u32; 4]| volume(tet) > 0.0;
     tets.len() - tets.iter().filter(sound).count()
 }

@@ -1,4 +1,5 @@
-//! The time-step loop: [`Simulator`], its statistics, errors and checkpoints, and what it shows to an observer.
+//! The time-step loop: [`Simulator`], its statistics, errors and checkpoints, and what it shows to an
+//! observer.
 
 mod checkpoint;
 mod contacts;

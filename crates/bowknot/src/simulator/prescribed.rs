@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 const NO_DISTANCE: f64 = 1e-9;
 
 impl Simulator {
-    /// Fills in who is prescribed at `time`, the end of the time step, and where. The vertices of a pin are a group:
-    /// they wait as one.
+    /// Fills in which vertices are prescribed at `time`, the end of the time step, and their keyframes. The
+    /// vertices of a pin form a group: they move by one fraction of their way.
     pub(super) fn prescribe(&mut self, time: f64, scratch: &mut Scratch) {
         let Self { world, anchors, attachments, positions, dt, .. } = self;
         let Scratch { prescribed, keyframes, groups, .. } = scratch;

@@ -12,11 +12,12 @@ const MAX_STALLED_ITERATIONS: usize = 3;
 /// Iterations without progress after which they count as oscillating about the solution.
 const OSCILLATING: usize = 2;
 
-/// Factor of the smallest residual within which iterations without progress may end: an iteration that has just lost or found a
-/// contact can be far from the solution, with edges crushed.
+/// Factor of the smallest residual within which iterations without progress may end: an iteration that has
+/// just lost or found a contact can be far from the solution, with edges crushed.
 const MAX_END_RATIO: f64 = 1.2;
 
-/// Smallest residual so far, in tolerances, above which iterations go on without progress: cloth that folds is crushed there.
+/// Smallest residual so far, in tolerances, above which iterations go on without progress: cloth that folds
+/// is crushed there.
 const MAX_STALLED_RESIDUAL: f64 = 4.0;
 
 /// The residuals of a time step, from iteration to iteration.
@@ -28,10 +29,11 @@ pub(super) struct Progress {
 }
 
 impl Progress {
-    /// Of a time step of `dt` [s], with the `tolerance` of the residual in one of 1/100 s [m]; 0: iterations never end by themselves.
+    /// Of a time step of `dt` [s], with the `tolerance` of the residual in one of 1/100 s [m]; 0: iterations
+    /// never end by themselves.
     ///
-    /// In shorter time steps the tolerance shrinks with their square, as what gravity does: else it would be an acceleration
-    /// without bound. In longer ones it grows with them: a constant error of velocities.
+    /// In shorter time steps the tolerance shrinks with their square, as what gravity does: else it would be
+    /// an acceleration without bound. In longer ones it grows with them: a constant error of velocities.
     pub fn new(tolerance: f64, dt: f64) -> Self {
         let ratio = dt / REFERENCE_STEP;
         Self { tolerance: tolerance * ratio.min(ratio * ratio), smallest: f64::INFINITY, stalled: 0 }

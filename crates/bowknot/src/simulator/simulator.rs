@@ -1,9 +1,10 @@
 //! The simulator: one time step after the other.
 //!
-//! For each Newton iteration the dynamics computes a target y from x. Prescribed vertices (pins, obstacles) have their
-//! keyframe at t + dt as target. The two-way method moves x towards y without intersections, and the vertices inside of
-//! solids, which it does not know, follow. With [`CollisionEvery::Step`] the iterations run without collisions, and the
-//! two-way method resolves once, from the start of the step to the last target.
+//! For each Newton iteration the dynamics computes a target y from x. Prescribed vertices (pins, obstacles)
+//! have their keyframe at t + dt as target. The two-way method moves x towards y without intersections, and
+//! the vertices inside of solids, which it does not know, follow. With [`CollisionEvery::Step`] the
+//! iterations run without collisions, and the two-way method resolves once, from the start of the step to the
+//! last target.
 
 use super::checkpoint::Checkpoint;
 use super::contacts::{ContactForce, Contacts};
@@ -26,8 +27,9 @@ use std::time::Instant;
 /// How many intersecting pairs of a refused start are named.
 const NAMED_PAIRS: usize = 5;
 
-/// Largest number of two-way steps of a collision stage that is not the last of its time step. Where folds lock each other on
-/// the way to a target that is far from the solution, the target of the next iteration is nearer.
+/// Largest number of two-way steps of a collision stage that is not the last of its time step. Where folds
+/// lock each other on the way to a target that is far from the solution, the target of the next iteration is
+/// nearer.
 const MAX_INTERMEDIATE_STEPS: usize = 128;
 
 /// A running simulation.
@@ -126,8 +128,7 @@ impl Simulator {
         })
     }
 
-    /// Looks for what is near at the present state: refuses coordinates too large for the gap floor, and finds the
-    /// contacts.
+    /// Finds the contacts at the present state, and refuses coordinates too large for the minimum separation.
     fn find_contacts(&mut self, carried: &[ContactForce]) -> Result<(), SimulationError> {
         let Self { world, resolver, contacts, positions, step, dt, .. } = self;
         let input = ResolveInput { time_step: Some(*dt), ..ResolveInput::default() };
@@ -141,7 +142,7 @@ impl Simulator {
     /// Makes one time step.
     ///
     /// # Errors
-    /// A target that is not finite, with its body; coordinates too large for the gap floor. The
+    /// A target that is not finite, with its body; coordinates too large for the minimum separation. The
     /// simulator is then as it was before the step.
     pub fn step(&mut self) -> Result<StepStatistics, SimulationError> {
         self.step_observed(&mut ())
@@ -156,7 +157,7 @@ impl Simulator {
         &mut self,
         observer: &mut dyn SimulationObserver,
     ) -> Result<StepStatistics, SimulationError> {
-        let (clock, cpu_clock) = (Instant::now(), cpu_seconds());
+        let (timer, cpu_start) = (Instant::now(), cpu_seconds());
         let step = self.step + 1;
         let time = step as f64 * self.dt;
         let mut statistics = StepStatistics { step, time, converged: true, ..StepStatistics::default() };
@@ -173,7 +174,7 @@ impl Simulator {
             self.contacts = contacts;
             self.attachments.iter_mut().for_each(Vec::clear);
             self.scratch = scratch;
-            // Pairs are those of where the step was stopped.
+            // The resolver still has the pairs of the abandoned step.
             self.find_contacts(&carried)?;
             return Err(error);
         }
@@ -195,7 +196,7 @@ impl Simulator {
             &model.momentum(&self.velocities),
             &model.center_of_mass(&self.positions),
         );
-        statistics.close(clock.elapsed().as_secs_f64(), cpu_seconds() - cpu_clock);
+        statistics.close(timer.elapsed().as_secs_f64(), cpu_seconds() - cpu_start);
         if let Some(body) = &statistics.slowest_body {
             tracing::debug!(step, %body, remaining_m = statistics.remaining_m, "collisions did not converge");
         }
@@ -226,7 +227,7 @@ impl Simulator {
         let target_error = |source| SimulationError::Target { step, source };
         let count = world.collision_vertices();
 
-        let clock = Instant::now();
+        let timer = Instant::now();
         dynamics.begin_step(start, velocities, *dt).map_err(target_error)?;
         contacts.begin_step(resolver, start, *dt);
         if !contacts.springs().is_empty() {
@@ -237,15 +238,15 @@ impl Simulator {
         }
         contacts.apply(dynamics).map_err(target_error)?;
         statistics.repulsion_springs = contacts.springs().len();
-        statistics.seconds.dynamics += clock.elapsed().as_secs_f64();
+        statistics.seconds.dynamics += timer.elapsed().as_secs_f64();
         y.clone_from(start);
         x.clone_from(start);
         let mut progress = Progress::new(*step_tolerance * resolver.scene().lengths().edge, *dt);
         for iteration in 0..self.newton_iterations {
             let last = iteration + 1 == self.newton_iterations;
-            let clock = Instant::now();
+            let timer = Instant::now();
             let info = dynamics.newton_target(x, prescribed, keyframes, y).map_err(target_error)?;
-            statistics.add_newton(&info, clock.elapsed().as_secs_f64());
+            statistics.add_newton(&info, timer.elapsed().as_secs_f64());
             if !info.cg.converged {
                 tracing::debug!(
                     step,
@@ -297,7 +298,7 @@ impl Simulator {
             let cut = !last && !resolved.converged && resolved.steps >= MAX_INTERMEDIATE_STEPS;
             statistics.add_collision(&resolved, |body| world.name_of(body).to_owned());
 
-            let clock = Instant::now();
+            let timer = Instant::now();
             contacts.note_touching(resolver);
             let carried = contacts.carried_after(&forces, resolver, *dt);
             contacts.find(resolver, &carried, start, *dt);
@@ -309,7 +310,7 @@ impl Simulator {
             }
             contacts.apply(dynamics).map_err(target_error)?;
             let residual = dynamics.residual(x, prescribed, contacts.counted()).map_err(target_error)?;
-            statistics.seconds.dynamics += clock.elapsed().as_secs_f64();
+            statistics.seconds.dynamics += timer.elapsed().as_secs_f64();
             (statistics.residual_n, statistics.residual_m) = (residual.force, residual.distance);
             tracing::debug!(step, iteration, residual.force, residual.distance, "time step");
             observer.iterated(&Iterated { step, iteration, residual });

@@ -9,7 +9,8 @@ pub(super) fn solved_vertices(world: &World) -> impl Iterator<Item = usize> + '_
     bodies.flat_map(|body| body.vertices.clone().chain(body.interior.clone())).map(|v| v as usize)
 }
 
-/// Whether Newton's method solves bodies of a kind together with their contacts. Rows alone hold grains, which they do exactly.
+/// Whether Newton's method solves bodies of a kind together with their contacts. Rows alone hold grains,
+/// which they do exactly.
 pub(super) fn is_solved(kind: BodyKind) -> bool {
     kind != BodyKind::Particles
 }

@@ -21,7 +21,7 @@ pub struct StepStatistics {
     pub two_way_steps: usize,
     /// Proximity searches, likewise.
     pub searches: usize,
-    /// Pairs listed after the last search.
+    /// Candidate pairs after the last search.
     pub pairs: usize,
     /// Contact rows of the last backward step.
     pub contact_rows: usize,
@@ -29,17 +29,17 @@ pub struct StepStatistics {
     pub edge_rows: usize,
     /// Rows swept in the last backward step.
     pub active_rows: usize,
-    /// Pairs frozen for want of a certificate, over all two-way steps.
+    /// Pairs that no certificate covers, so that their vertices did not move, over all two-way steps.
     pub frozen_pairs: usize,
-    /// Clock r at the end of the last collision problem.
+    /// Largest remaining fraction r at the end of the last collision problem.
     pub remaining_r: f64,
-    /// Largest distance not travelled at the end of the last collision problem [m].
+    /// Largest remaining distance at the end of the last collision problem [m].
     pub remaining_m: f64,
     /// Largest stationarity residual, likewise [m].
     pub stationarity_m: f64,
     /// Whether the last collision problem met the stopping rule.
     pub converged: bool,
-    /// Smallest distance over the listed pairs at the end [m]; none if no pair is listed.
+    /// Smallest distance over the candidate pairs at the end [m]; none if there are none.
     pub min_gap_m: Option<f64>,
     /// Largest ratio of an edge's length to its rest length at the end.
     pub max_stretch: f64,
@@ -59,23 +59,24 @@ pub struct StepStatistics {
     pub cpu_seconds: f64,
     /// Work that was skipped because nothing needed it.
     pub skipped: Skipped,
-    /// Name of the body that has travelled least of its way, if the last collision problem did not converge.
+    /// Name of the body with the largest remaining distance, if the last collision problem did not converge.
     #[serde(default)]
     pub slowest_body: Option<String>,
-    /// Largest distance by which an obstacle or pin is behind its keyframe at the end [m].
+    /// Largest distance by which an obstacle or pin lags behind its keyframe at the end [m].
     #[serde(default)]
     pub prescribed_lag_m: f64,
-    /// The obstacles and pins that wait for what is in their way, by name, and how far they are behind their
+    /// The obstacles and pins that wait for what is in their way, by name, and how far they lag behind their
     /// keyframes at the end [m].
     #[serde(default)]
     pub waiting: BTreeMap<String, f64>,
-    /// Bound on the kinetic energy that separation to the desired distance injected [J], the sum over all collision
-    /// problems, see [`Statistics::injected_j`].
+    /// Bound on the kinetic energy that separation to the desired distance injected [J], the sum over all
+    /// collision problems, see [`Statistics::injected_j`].
     #[serde(default)]
     pub injected_energy_j: f64,
-    /// Energy that the collision stage put in, as measured [J]: kinetic, elastic and potential energy after it, less
-    /// that of the target of the dynamics, where that is positive; the sum over all collision problems. Separation
-    /// shows here, and the work of moving obstacles; what the dynamics itself loses does not.
+    /// Energy that the collision stage put in, as measured [J]: kinetic, elastic and potential energy after
+    /// it, less that of the target of the dynamics, where that is positive; the sum over all collision
+    /// problems. Separation shows here, and the work of moving obstacles; what the dynamics itself loses does
+    /// not.
     #[serde(default)]
     pub collision_energy_j: f64,
     /// Friction rows of the last backward step.
@@ -84,7 +85,7 @@ pub struct StepStatistics {
     /// Contacts in the first Newton system.
     #[serde(default)]
     pub repulsion_springs: usize,
-    /// Forces that do not balance at the end, the root of their sum of squares [N]: inertia, elasticity, bending, damping,
+    /// Net forces at the end, the root of their sum of squares [N]: inertia, elasticity, bending, damping,
     /// drag, contact and friction.
     #[serde(default)]
     pub residual_n: f64,
@@ -94,7 +95,7 @@ pub struct StepStatistics {
     /// Tetrahedra without a positive volume at the end.
     #[serde(default)]
     pub inverted_tets: usize,
-    /// Elastic solves by which vertices inside of solids were brought along with their surfaces.
+    /// Elastic solves by which vertices inside of solids follow their surfaces.
     #[serde(default)]
     pub interior_solves: usize,
 }
@@ -115,11 +116,11 @@ pub struct Energy {
 pub struct StepSeconds {
     /// The whole time step.
     pub total: f64,
-    /// Making targets.
+    /// Targets: the dynamics.
     pub dynamics: f64,
     /// Proximity search.
     pub search: f64,
-    /// Contact geometry of the listed pairs.
+    /// Contact geometry of the candidate pairs.
     pub evaluate: f64,
     /// Backward steps.
     pub backward: f64,
@@ -173,7 +174,7 @@ impl StepStatistics {
         self.center_of_mass = center.coords.into();
     }
 
-    /// Closes the account of wall time.
+    /// Fills in the total times, and the wall time that no stage accounts for.
     pub(super) fn close(&mut self, total: f64, cpu_seconds: f64) {
         let s = &mut self.seconds;
         s.total = total;

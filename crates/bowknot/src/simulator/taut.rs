@@ -1,9 +1,10 @@
 //! Edges of cloth at their stretch limits, as springs of the dynamics.
 //!
-//! The collision stage keeps edges within their limits, in the metric of mass: without knowing of limits, the dynamics would
-//! stretch them beyond in each iteration, and the collision stage would draw them back at the cost of their neighbors, which it
-//! crushes. A taut edge is a one-sided spring like a contact: it pulls from its limit on, and the force that its spring has come to
-//! is that of the next one. What rows of the collision stage add to it is not handed on.
+//! The collision stage keeps edges within their limits, in the metric of mass. If the dynamics did not know
+//! the limits, it would stretch edges beyond them in each iteration, and the collision stage would pull them
+//! back and crush their neighbors. So a taut edge is a one-sided spring like a contact: it pulls beyond its
+//! limit, and its force passes to the next iteration. Forces that rows of the collision stage add are not
+//! passed on.
 
 use bowknot_constraints::{EdgeLimits, EdgeReference, Feature};
 use bowknot_dynamics::RepulsionSpring;
@@ -13,7 +14,7 @@ use bowknot_scene::world::World;
 use bowknot_twoway::CollisionScene;
 use rustc_hash::FxHashSet;
 
-/// Share of its limit from which on an edge counts as taut.
+/// Share of its limit above which an edge counts as taut.
 const TAUT: f64 = 0.99;
 
 /// The edges that have a stretch limit.
@@ -24,7 +25,7 @@ pub(super) struct LimitedEdges {
 
 #[derive(Clone, Copy, Debug)]
 struct LimitedEdge {
-    /// In the topology.
+    /// Index in the topology.
     index: u32,
     vertices: [u32; 2],
     /// Largest length [m].
@@ -32,8 +33,8 @@ struct LimitedEdge {
 }
 
 impl LimitedEdges {
-    /// The edges of cloth and strands, where limits are those of rest lengths; none where they are of each call's start, as these limit
-    /// no sum of them.
+    /// The edges of cloth and strands with limits relative to their rest lengths. Limits relative to the
+    /// start of each call do not bound the stretch over several calls, so these edges get no springs.
     pub fn new(scene: &CollisionScene, world: &World) -> Self {
         let constraints = &scene.params().contact;
         if !constraints.edges || constraints.edge_reference != EdgeReference::Rest {
@@ -50,8 +51,8 @@ impl LimitedEdges {
         Self { edges: scene.model().topology().edges.iter().enumerate().filter_map(limited).collect() }
     }
 
-    /// Those that are taut at `x` or carry a force, each as a spring of the `stiffness` and with the edge, twice, for its features.
-    /// `start` are positions at the start of the time step.
+    /// The edges that are taut at `x` or carry a force: each as a spring of the given `stiffness`, and the
+    /// edge twice as its features. `start` are positions at the start of the time step.
     pub fn taut<'a>(
         &'a self,
         x: &'a [Point],
@@ -77,7 +78,7 @@ impl LimitedEdges {
                 weights: [-1.0, 1.0, 0.0, 0.0],
                 normal: now.try_normalize(0.0)?,
                 offset: 0.0,
-                // As a gap: minus the length, which must stay above minus the limit.
+                // The gap is minus the length, which must stay above minus the limit.
                 desired: -EdgeLimits::of_rest(edge.limit, length(start, edge.vertices).norm()),
                 stiffness,
                 friction: 0.0,

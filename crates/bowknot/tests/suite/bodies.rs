@@ -296,8 +296,9 @@ fn bits(simulator: &Simulator) -> Vec<[u64; 6]> {
     state.map(|(x, v)| [x.x, x.y, x.z, v.x, v.y, v.z].map(f64::to_bits)).collect()
 }
 
-/// A block of rubber, stiff beside its weight, on a plane of slope 0.4: how far its center of mass goes in a second, its acceleration
-/// in the last half of it, after it has come to lie at its contact distance, and the most elastic energy on the way.
+/// A block of rubber, stiff beside its weight, on a plane of slope 0.4: how far its center of mass goes in a
+/// second, its acceleration in the last half of it, after it has come to lie at its contact distance, and the
+/// most elastic energy on the way.
 fn rubber_on_a_slope(friction: f64, repulsion: f64) -> (f64, f64, f64) {
     let mut simulator = simulator(&format!(
         "[solver.repulsion]\nstiffness = {repulsion}\n\
@@ -326,7 +327,8 @@ fn a_stiff_block_sticks_to_a_slope_and_slides_as_a_rigid_one() {
         (acceleration - expected).abs() < 0.01 * expected && elastic < 1e-3,
         "{acceleration} {expected} {elastic}"
     );
-    // Without springs the collision stage moves those that touch alone, and the rest falls on: what the springs are for.
+    // Without springs the collision stage moves those that touch alone, and the rest falls on: what the
+    // springs are for.
     let (_, _, without) = rubber_on_a_slope(0.5, 0.0);
     assert!(without > 1e4 * elastic, "{elastic} {without}");
 }
@@ -512,9 +514,10 @@ fn a_woven_mat_hangs_over_a_ball_by_contact_alone() {
     assert!(highest > 0.07, "{highest}");
 }
 
-/// Locks that fall over a ball whip into each other at 2 m/s. The normal of two strands in contact turns with their distance,
-/// a tenth of their edges: with less curvature than that in the backward step, vertices swing about their places until the
-/// limit of 512 steps, in the time steps 33 to 44. A lock a thousand times as stiff stores 0.7 J.
+/// Locks that fall over a ball whip into each other at 2 m/s. The normal of two strands in contact turns with
+/// their distance, a tenth of their edges: with less curvature than that in the backward step, vertices swing
+/// about their places until the limit of 512 steps, in the time steps 33 to 44. A lock a thousand times as
+/// stiff stores 0.7 J.
 #[test]
 fn hair_that_falls_into_place_needs_few_two_way_steps_and_stores_little() {
     let scene = Scene::builtin("hair", 0.25).unwrap_or_else(|error| panic!("{error}"));

@@ -31,7 +31,8 @@ fn every_fabric_is_held_at_its_limit_where_its_elasticity_would_give_way() {
     for name in ClothMaterial::NAMES {
         let mut scene = hanging(&format!("material = \"{name}\""), "");
         let material = cloth(&scene);
-        // Drawn along its length until its own stiffness would let the held side stretch by four times its limit.
+        // Drawn along its length until its own stiffness would let the held side stretch by four times its
+        // limit.
         let strain = 4.0 * (material.stretch_limit - 1.0);
         let pull = strain * material.stretch_stiffness / (material.density * 0.3);
         scene.dynamics.environment.gravity = Vector::new(pull, 0.0, 0.0);

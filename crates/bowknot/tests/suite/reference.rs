@@ -133,7 +133,8 @@ impl Sources {
         fields
     }
 
-    /// Names of an enum's variants as serde has them, if `name` is an enum whose variants have no data, or named fields.
+    /// Names of an enum's variants as serde has them, if `name` is an enum whose variants have no data, or
+    /// named fields.
     fn variants(&self, name: &str) -> Option<Vec<String>> {
         let lower = |name: &str| {
             let mut kebab = String::new();

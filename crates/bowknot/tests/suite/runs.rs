@@ -331,7 +331,8 @@ fn an_interrupt_stops_within_a_step_and_the_run_can_go_on() {
     assert_eq!(names(&folder.path().join("frames")).len(), 5);
 }
 
-/// Point caches end at the last frame also where a longer run had written more, and are filled up where it had none.
+/// Point caches end at the last frame also where a longer run had written more, and are filled up where it
+/// had none.
 #[test]
 fn formats_may_change_when_a_run_is_resumed() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -29,7 +29,8 @@ fn falling(sets: &[&str]) -> Scene {
     Scene::builtin("drape", 0.3).and_then(|s| s.with_sets(&[&fall, sets].concat())).expect("a scene")
 }
 
-/// Edges of 10 cm and of 2 cm: 0.1 to 0.5 edges of travel a time step, within one ball of the search and beyond.
+/// Edges of 10 cm and of 2 cm: 0.1 to 0.5 edges of travel a time step, within one ball of the search and
+/// beyond.
 #[test]
 fn a_free_sheet_falls_as_implicit_euler_has_it() {
     for edge in [0.1, 0.02] {
@@ -224,8 +225,9 @@ fn a_stopped_step_leaves_no_trace() {
     panic!("no collision problem took two steps");
 }
 
-/// Which contacts push is a guess, wrong now and then. A target made without any falls as far as in free flight, and the
-/// collision stage, which knows no elasticity, crushes what lies: 2.4 J in the 40th time step, from 0.01 J.
+/// Which contacts push is a guess, wrong now and then. A target made without any falls as far as in free
+/// flight, and the collision stage, which knows no elasticity, crushes what lies: 2.4 J in the 40th time
+/// step, from 0.01 J.
 #[test]
 fn cloth_that_hangs_over_a_needle_stays_at_rest() {
     let mut simulator =

@@ -246,9 +246,9 @@ fn reports_do_not_depend_on_threads() {
     assert_eq!(one, run(7));
 }
 
-/// Two edges 4e8 m long, 4 cm apart, on a path of 1e8 m along which they keep 7 mm (by rational arithmetic: all
-/// differences of their ends are positive along one direction, at both ends of the path). The direction of closest points as
-/// `f64` has them is too rough to see it.
+/// Two edges 4e8 m long, 4 cm apart, on a path of 1e8 m along which they keep 7 mm (by rational arithmetic:
+/// all differences of their ends are positive along one direction, at both ends of the path). The direction
+/// of closest points as `f64` has them is too rough to see it.
 #[test]
 fn narrow_gaps_of_huge_edges_are_certified() {
     let x0 = [

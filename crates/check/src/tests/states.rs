@@ -56,8 +56,8 @@ fn soups_equal_all_pairs() {
         assert_eq!(found.edge_triangle_count, expected.len());
         assert!(seed % 2 == 1 || expected.len() > 50, "{}", expected.len());
         let measured = found.nearest.expect("pairs");
-        // The judge measures by code of its own, so that the last bits may differ. Their rounding error is one of the
-        // size of the soup, about 1e-16 m: with these seeds the smallest distance is above 3e-4 m.
+        // The judge measures by code of its own, so that the last bits may differ. Their rounding error is
+        // one of the size of the soup, about 1e-16 m: with these seeds the smallest distance is above 3e-4 m.
         assert!((measured.distance - nearest).abs() <= 1e-12 * nearest, "seed {seed}");
         assert!(((measured.places[0] - measured.places[1]).norm() - nearest).abs() < 1e-12);
     }

@@ -120,7 +120,7 @@ pub(crate) struct StrandTurn {
 
 impl StrandTurn {
     /// The bending spring at `nodes[1]`. Its rest shape is straight, or that of the rest positions `rest`.
-    /// None if an edge has no length at rest. `stiffness` is EI [N m^2].
+    /// Returns `None` if an edge has no length at rest. `stiffness` is the bending stiffness EI [N m^2].
     pub fn new(
         nodes: [u32; 3],
         rest: &[Vector; 3],

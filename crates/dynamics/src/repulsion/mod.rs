@@ -13,12 +13,12 @@
 //! ```
 //!
 //! lambda and tau are its multipliers [N]. A contact whose multipliers are already the correct forces is not
-//! displaced: at the solution depth and slip vanish, however soft the spring is (Hestenes 1969 and Powell 1969;
-//! for friction Simo and Laursen 1992, "An augmented Lagrangian treatment of contact problems involving
-//! friction"). Multipliers are updated after a solve: lambda <- max(0, lambda + k depth), tau <- tau - k slip,
-//! limited to mu lambda. Callers pass them in as [`RepulsionSpring::force`] and read them with
-//! [`crate::Dynamics::contact_forces`]: thus they pass from one Newton iteration to the next and from one time
-//! step to the next, although the springs change.
+//! displaced: at the solution depth and slip vanish, however soft the spring is (Hestenes 1969 and Powell
+//! 1969; for friction Simo and Laursen 1992, "An augmented Lagrangian treatment of contact problems involving
+//! friction"). Multipliers are updated after a solve: lambda <- max(0, lambda + k depth), tau <- tau - k
+//! slip, limited to mu lambda. Callers pass them in as [`RepulsionSpring::force`] and read them with
+//! [`crate::Dynamics::contact_forces`]: thus they pass from one Newton iteration to the next and from one
+//! time step to the next, although the springs change.
 //!
 //! | file | holds |
 //! |---|---|

@@ -151,8 +151,9 @@ impl<'a> Cursor<'a> {
         word.parse().map_err(|_| self.fault_before(format!("'{word}' is not {what}, a number")))
     }
 
-    /// Refuses more things than the rest of the file can hold, so that memory follows what is there and not what a
-    /// header claims. Each takes at least `numbers` numbers: a digit and a blank in text, four bytes in binary.
+    /// Refuses more things than the rest of the file can hold, so that memory follows what is there and not
+    /// what a header claims. Each takes at least `numbers` numbers: a digit and a blank in text, four bytes
+    /// in binary.
     pub(super) fn expect(&self, count: u64, numbers: u64, what: &str) -> Result<usize, Fault> {
         let each = numbers * if self.is_binary() { 4 } else { 2 };
         let left = self.bytes.len() - self.at;

@@ -18,8 +18,8 @@ enum Becomes {
     Nothing,
 }
 
-/// Number of an element type, its nodes, what it becomes, its name in the plural. Gmsh reference manual, "MSH file
-/// format", and `GmshDefines.h` for the numbers that the manual leaves out.
+/// Number of an element type, its nodes, what it becomes, its name in the plural. Gmsh reference manual, "MSH
+/// file format", and `GmshDefines.h` for the numbers that the manual leaves out.
 const TYPES: [(i64, usize, Becomes, &str); 33] = [
     (1, 2, Becomes::Line, "lines"),
     (2, 3, Becomes::Triangle, "triangles"),

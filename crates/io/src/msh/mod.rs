@@ -1,8 +1,8 @@
 //! Gmsh `.msh`, versions 2.2 and 4.1, text and binary: tetrahedra, triangles, lines and points.
 //!
-//! Source: the Gmsh reference manual, "Gmsh file formats" (MSH 4.1 and the legacy MSH 2). A file is a sequence of
-//! sections `$Name` .. `$EndName`; those that are not about nodes or elements (entities, physical names, data,
-//! other programs' own) are skipped.
+//! Source: the Gmsh reference manual, "Gmsh file formats" (MSH 4.1 and the legacy MSH 2). A file is a
+//! sequence of sections `$Name` .. `$EndName`; those that are not about nodes or elements (entities, physical
+//! names, data, other programs' own) are skipped.
 
 mod cursor;
 mod elements;
@@ -23,18 +23,20 @@ use std::fs;
 use std::path::Path;
 use version::Version;
 
-/// Reads a Gmsh file: tetrahedra, triangles and quadrilaterals (as two triangles), lines as strands, points as
-/// particles; of higher-order elements their corners. Node numbers may be any, vertices are numbered in the order of
-/// the file. Physical groups are ignored.
+/// Reads a Gmsh file: tetrahedra, triangles and quadrilaterals (as two triangles), lines as strands, points
+/// as particles; of higher-order elements their corners. Node numbers may be any, vertices are numbered in
+/// the order of the file. Physical groups are ignored.
 ///
 /// Gmsh writes the boundary of a volume or surface as elements of their own. A triangle that is a face of a
-/// tetrahedron, a line that is an edge of either, and a point that is a vertex of any of these are therefore left out:
-/// what remains in [`Mesh::triangles`], [`Mesh::strands`] and [`Mesh::particles`] is not part of something larger.
-/// Elements of other types, such as hexahedra, are skipped; their number is logged as a warning.
+/// tetrahedron, a line that is an edge of either, and a point that is a vertex of any of these are therefore
+/// left out: what remains in [`Mesh::triangles`], [`Mesh::strands`] and [`Mesh::particles`] is not part of
+/// something larger. Elements of other types, such as hexahedra, are skipped; their number is logged as a
+/// warning.
 ///
 /// # Errors
-/// A missing, malformed or truncated file, another version, the other byte order, coordinates that are not finite,
-/// nodes that do not exist or are given twice; with the line of a text file or the byte of a binary one.
+/// A missing, malformed or truncated file, another version, the other byte order, coordinates that are not
+/// finite, nodes that do not exist or are given twice; with the line of a text file or the byte of a binary
+/// one.
 pub fn read_msh(path: &Path, import: &Import) -> Result<Mesh, IoError> {
     import.validate().map_err(|errors| IoError::content(path, Place::File, errors.to_string()))?;
     let bytes = fs::read(path).map_err(|source| IoError::system("read", path, source))?;

@@ -17,8 +17,8 @@ enum Form {
 
 const FORMS: [Form; 5] = [Form::Text2, Form::Binary2, Form::Text4, Form::Binary4, Form::Binary4Short];
 
-/// A tetrahedron beside a lone triangle, a lone line and a lone point, with the boundary elements that Gmsh writes;
-/// numbers that are neither dense nor ascending.
+/// A tetrahedron beside a lone triangle, a lone line and a lone point, with the boundary elements that Gmsh
+/// writes; numbers that are neither dense nor ascending.
 fn nodes() -> Vec<(i64, [f64; 3])> {
     vec![
         (7, [0.1, 1.0 / 3.0, -2.5e-7]),
@@ -54,7 +54,8 @@ fn expected() -> Mesh {
     }
 }
 
-/// A file of these nodes and elements, each element in a block of its own, with sections that are to be skipped.
+/// A file of these nodes and elements, each element in a block of its own, with sections that are to be
+/// skipped.
 fn file(form: Form, nodes: &[(i64, [f64; 3])], elements: &[Element]) -> Vec<u8> {
     let binary = matches!(form, Form::Binary2 | Form::Binary4 | Form::Binary4Short);
     let v2 = matches!(form, Form::Text2 | Form::Binary2);

@@ -10,8 +10,8 @@ use std::fs::File;
 use std::io::{BufReader, BufWriter, ErrorKind, Read};
 use std::path::Path;
 
-/// A number of an archive, widened from whatever type it was stored as. Integers above 2^53 lose their last digits;
-/// none that we read are indices.
+/// A number of an archive, widened from whatever type it was stored as. Integers above 2^53 lose their last
+/// digits; none that we read are indices.
 #[derive(Clone, Copy)]
 struct Number(f64);
 
@@ -46,7 +46,8 @@ impl ReadableElement for Number {
             "u8" => widen!(u64),
             _ => return Err(unknown()),
         }?;
-        // What follows the last number is not part of the array; reading on also checks the archive's checksum.
+        // What follows the last number is not part of the array; reading on also checks the archive's
+        // checksum.
         let extra = std::io::copy(&mut reader, &mut std::io::sink())?;
         if extra > 0 { Err(ReadDataError::ExtraBytes(extra as usize)) } else { Ok(values) }
     }
@@ -72,8 +73,8 @@ fn read_numbers<R: Read, const N: usize>(
 /// Lengths of an array's axes.
 pub type Shape = Vec<usize>;
 
-/// An open archive. Arrays may be stored or deflated, of any number type, in either byte order; every refusal names the
-/// file and the array.
+/// An open archive. Arrays may be stored or deflated, of any number type, in either byte order; every refusal
+/// names the file and the array.
 pub struct Archive<'a> {
     path: &'a Path,
     reader: NpzReader<BufReader<File>>,

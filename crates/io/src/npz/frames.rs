@@ -9,8 +9,8 @@ use std::path::Path;
 
 /// A stack of frames over one topology: `X[f,n,3]`, `F[m,3]`, `E[k,2]`, `T[t,4]`, `P[p]`, `O[n]`.
 ///
-/// Frames are kept in memory (24 bytes a vertex and frame) and written as one archive, whenever asked; runs write with
-/// [`super::write_frame_stack`], which keeps one frame only.
+/// Frames are kept in memory (24 bytes per vertex and frame) and written as one archive, whenever asked; runs
+/// write with [`super::write_frame_stack`], which keeps one frame only.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrameStack {
     vertices: usize,
@@ -23,8 +23,8 @@ pub struct FrameStack {
 }
 
 impl FrameStack {
-    /// An empty stack over the elements of `mesh`, quads as two triangles each. Its positions are not taken and may
-    /// be left out: the first frame then says how many vertices there are.
+    /// An empty stack over the elements of `mesh`, quads as two triangles each. Its positions are not taken
+    /// and may be left out: the first frame then says how many vertices there are.
     pub fn new(mesh: &MeshView<'_>, tetrahedra: &[[u32; 4]]) -> Self {
         let vertices = mesh.positions.len();
         let quads = mesh.quads.iter().flat_map(|&[i, j, k, l]| [[i, j, k], [i, k, l]]);
@@ -39,7 +39,8 @@ impl FrameStack {
         }
     }
 
-    /// Reads an archive written by [`FrameStack::write`], or any with `X[f,n,3]` or `X[n,3]`, all else optional.
+    /// Reads an archive written by [`FrameStack::write`], or any with `X[f,n,3]` or `X[n,3]`, all else
+    /// optional.
     ///
     /// # Errors
     /// A missing or malformed archive, misshapen arrays, numbers out of range; with the array.

@@ -11,9 +11,9 @@ use std::path::Path;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
-/// Writes an archive as [`super::FrameStack::write`] does, of as many `frames`; `read(frame, bytes)` appends the
-/// coordinates of a frame as little-endian doubles, 24 bytes a vertex. The number of vertices is that of
-/// `mesh.obstacle`. Atomic.
+/// Writes an archive as [`super::FrameStack::write`] does, of as many `frames`; `read(frame, bytes)` appends
+/// the coordinates of a frame as little-endian doubles, 24 bytes per vertex. The number of vertices is that
+/// of `mesh.obstacle`. Atomic.
 ///
 /// # Errors
 /// The system's refusal, with the path; what `read` reports.

@@ -53,7 +53,7 @@ impl Scalar {
 
 /// What a property holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum PropertyKind {
     Scalar(Scalar),
     List { count: Scalar, item: Scalar },
 }
@@ -62,7 +62,7 @@ pub(super) enum Kind {
 #[derive(Clone, Debug)]
 pub(super) struct Property {
     pub(super) name: String,
-    pub(super) kind: Kind,
+    pub(super) kind: PropertyKind,
 }
 
 /// One element: vertex, face, edge, or one that is skipped.
@@ -82,8 +82,8 @@ impl Element {
     /// The least that a row takes in a binary payload [bytes].
     pub(super) fn least_size(&self) -> usize {
         let size = |p: &Property| match p.kind {
-            Kind::Scalar(scalar) => scalar.size(),
-            Kind::List { count, .. } => count.size(),
+            PropertyKind::Scalar(scalar) => scalar.size(),
+            PropertyKind::List { count, .. } => count.size(),
         };
         self.properties.iter().map(size).sum()
     }
@@ -171,7 +171,7 @@ fn parse_encoding(name: &str, line: usize) -> Result<Encoding, Fault> {
     }
 }
 
-fn parse_kind(words: &[&str], line: usize) -> Result<Kind, Fault> {
+fn parse_kind(words: &[&str], line: usize) -> Result<PropertyKind, Fault> {
     let scalar = |word: &str| {
         Scalar::parse(word)
             .ok_or_else(|| (line, format!("'{word}' is no type of the format (float, double, int, ..)")))
@@ -182,9 +182,9 @@ fn parse_kind(words: &[&str], line: usize) -> Result<Kind, Fault> {
             if !count.is_integer() {
                 return Err((line, "the length of a list must have an integer type".to_owned()));
             }
-            Ok(Kind::List { count, item })
+            Ok(PropertyKind::List { count, item })
         }
-        [word] => Ok(Kind::Scalar(scalar(word)?)),
+        [word] => Ok(PropertyKind::Scalar(scalar(word)?)),
         _ => {
             Err((line, "a property reads 'property TYPE NAME' or 'property list TYPE TYPE NAME'".to_owned()))
         }

@@ -1,6 +1,6 @@
 //! The rows of a PLY payload, whatever the encoding, as numbers.
 
-use super::header::{Element, Encoding, Header, Kind, Scalar};
+use super::header::{Element, Encoding, Header, PropertyKind, Scalar};
 use crate::error::Place;
 use std::str::SplitAsciiWhitespace;
 
@@ -49,7 +49,8 @@ impl<'a> Payload<'a> {
 
     /// Refuses an element that the rest of the file cannot hold, before anything is allocated for it.
     pub(super) fn expect(&self, element: &Element) -> Result<(), Fault> {
-        // An ASCII row takes at least a digit and a line end for each property; the last may lack its line end.
+        // An ASCII row takes at least a digit and a line end for each property; the last may lack its line
+        // end.
         let (row, slack) = match self.encoding {
             Encoding::Ascii => (2 * element.properties.len(), 1),
             _ => (element.least_size(), 0),
@@ -107,11 +108,11 @@ impl<'a> Payload<'a> {
         };
         for property in &element.properties {
             match property.kind {
-                Kind::Scalar(kind) => {
+                PropertyKind::Scalar(kind) => {
                     row.values.push(next(&mut words, &property.name, kind)?);
                     row.lengths.push(0);
                 }
-                Kind::List { count, item } => {
+                PropertyKind::List { count, item } => {
                     let length = next(&mut words, &property.name, count)?;
                     row.values.push(row.items.len() as f64);
                     // A length beyond the line ends at its last word; a negative one becomes 0.
@@ -145,11 +146,11 @@ impl<'a> Payload<'a> {
         let truncated = || (place(), format!("the file ends here, {} elements were declared", element.count));
         for property in &element.properties {
             match property.kind {
-                Kind::Scalar(kind) => {
+                PropertyKind::Scalar(kind) => {
                     row.values.push(take::<LITTLE>(&mut rest, kind).ok_or_else(truncated)?);
                     row.lengths.push(0);
                 }
-                Kind::List { count, item } => {
+                PropertyKind::List { count, item } => {
                     let length = take::<LITTLE>(&mut rest, count).ok_or_else(truncated)? as usize;
                     if length.checked_mul(item.size()).is_none_or(|needed| needed > rest.len()) {
                         return Err(truncated());

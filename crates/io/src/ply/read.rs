@@ -1,6 +1,6 @@
 //! From the rows of a PLY file to a mesh.
 
-use super::header::{Element, Header, Kind};
+use super::header::{Element, Header, PropertyKind};
 use super::payload::{Payload, Row};
 use crate::error::{IoError, Place};
 use crate::import::Import;
@@ -10,12 +10,12 @@ use std::fs;
 use std::path::Path;
 
 /// Reads a PLY file: `vertex` (x y z, and `obstacle`, `body` if there), `face` (a list `vertex_indices` or
-/// `vertex_index` of any integer type, as fans around the first vertex), `edge` (`vertex1`, `vertex2`); other elements
-/// and properties are skipped. Vertices of no face and no edge are particles.
+/// `vertex_index` of any integer type, as fans around the first vertex), `edge` (`vertex1`, `vertex2`); other
+/// elements and properties are skipped. Vertices of no face and no edge are particles.
 ///
 /// # Errors
-/// A missing, malformed or truncated file, coordinates that are not finite, indices of vertices that do not exist,
-/// triangle strips; with the line of an ASCII file or the element of a binary one.
+/// A missing, malformed or truncated file, coordinates that are not finite, indices of vertices that do not
+/// exist, triangle strips; with the line of an ASCII file or the element of a binary one.
 pub fn read_ply(path: &Path, import: &Import) -> Result<Mesh, IoError> {
     import.validate().map_err(|errors| IoError::content(path, Place::File, errors.to_string()))?;
     let bytes = fs::read(path).map_err(|source| IoError::system("read", path, source))?;
@@ -76,7 +76,7 @@ impl<'a> Sink<'a> {
         let scalar = |name: &str, integer: bool| {
             let index = element.property(name)?;
             match element.properties[index].kind {
-                Kind::Scalar(kind) if kind.is_integer() || !integer => Some(index),
+                PropertyKind::Scalar(kind) if kind.is_integer() || !integer => Some(index),
                 _ => None,
             }
         };
@@ -95,7 +95,7 @@ impl<'a> Sink<'a> {
             "face" => {
                 let list = ["vertex_indices", "vertex_index"].iter().find_map(|name| {
                     let index = element.property(name)?;
-                    matches!(element.properties[index].kind, Kind::List { item, .. } if item.is_integer())
+                    matches!(element.properties[index].kind, PropertyKind::List { item, .. } if item.is_integer())
                         .then_some(index)
                 });
                 let list =

@@ -8,9 +8,9 @@ use std::path::Path;
 
 /// Writes a binary little-endian PLY file, atomically.
 ///
-/// `vertex`: x y z (double), `obstacle` (uchar, 0 or 1), `body` (int). `face`: list (uchar int) `vertex_indices`,
-/// triangles first, then quads. `edge`, if there are strands: `vertex1`, `vertex2` (int). Particles are the vertices
-/// that none of these names.
+/// `vertex`: x y z (double), `obstacle` (uchar, 0 or 1), `body` (int). `face`: list (uchar int)
+/// `vertex_indices`, triangles first, then quads. `edge`, if there are strands: `vertex1`, `vertex2` (int).
+/// Particles are the vertices that none of these names.
 ///
 /// # Errors
 /// The system's refusal, with the path.

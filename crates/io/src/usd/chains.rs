@@ -1,7 +1,7 @@
 //! Strand edges strung together to curves.
 
-/// Curves that cover every edge once: vertices in order, from an end or a branching to the next, closed ones with the
-/// first vertex again at the end. In the order of their first edge. O(n log n).
+/// Curves that cover every edge once: vertices in order, from an end or a branching to the next, closed ones
+/// with the first vertex again at the end. In the order of their first edge. O(n log n).
 pub(super) fn chains(edges: &[[u32; 2]]) -> Vec<Vec<u32>> {
     // Edges at each vertex: (vertex, edge), ascending.
     let mut at: Vec<(u32, usize)> =

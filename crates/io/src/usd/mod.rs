@@ -1,7 +1,8 @@
 //! Universal Scene Description as text, `.usda`: meshes, curves and points that move.
 //!
-//! Sources: the USD glossary and the schema pages of UsdGeom (Mesh, BasisCurves, Points). Topology is constant, `points`
-//! and `extent` are time samples, one time code a frame. USD's points are single-precision.
+//! Sources: the USD glossary and the schema pages of UsdGeom (Mesh, BasisCurves, Points). Topology is
+//! constant, `points` and `extent` are time samples, one time code per frame. USD's points are
+//! single-precision.
 
 mod chains;
 
@@ -25,8 +26,8 @@ pub struct UsdBody<'a> {
     pub width: f64,
 }
 
-/// Writes a stage of all `frames`, atomically. `read(body, frame)` gives the positions of a body [m]; only one frame of
-/// one body is held at a time, but that each is asked for in turn, body by body.
+/// Writes a stage of all `frames`, atomically. `read(body, frame)` gives the positions of a body [m]; only
+/// one frame of one body is held at a time, but that each is asked for in turn, body by body.
 ///
 /// Time code k is frame k, at k / `rate` seconds; z is up, one unit a meter.
 ///
@@ -52,7 +53,7 @@ pub fn write_usda(
         for (index, (body, name)) in bodies.iter().zip(&names).enumerate() {
             for prim in Prim::of_body(body, name) {
                 prim.begin(out, body)?;
-                let pad = if prim.kind == Kind::Mesh { 0.0 } else { body.width / 2.0 };
+                let pad = if prim.kind == PrimKind::Mesh { 0.0 } else { body.width / 2.0 };
                 let mut extents = Vec::with_capacity(frames);
                 out.write_all(b"        point3f[] points.timeSamples = {\n")?;
                 for frame in 0..frames {
@@ -80,7 +81,7 @@ pub fn write_usda(
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum PrimKind {
     Mesh,
     BasisCurves,
     Points,
@@ -88,7 +89,7 @@ enum Kind {
 
 /// A primitive of a body: its surface, strands or particles.
 struct Prim {
-    kind: Kind,
+    kind: PrimKind,
     name: String,
     /// The body's vertices that are its points, in this order.
     vertices: Vec<u32>,
@@ -116,12 +117,12 @@ impl Prim {
             indices.iter_mut().for_each(|v| *v = vertices.partition_point(|w| w < v) as u32);
             let mut counts = vec![3; elements.triangles.len()];
             counts.resize(counts.len() + elements.quads.len(), 4);
-            prims.push(Self { kind: Kind::Mesh, name: name.to_owned(), vertices, counts, indices });
+            prims.push(Self { kind: PrimKind::Mesh, name: name.to_owned(), vertices, counts, indices });
         }
         if !elements.strands.is_empty() {
             let chains = chains::chains(elements.strands);
             prims.push(Self {
-                kind: Kind::BasisCurves,
+                kind: PrimKind::BasisCurves,
                 name: if prims.is_empty() { name.to_owned() } else { format!("{name}_strands") },
                 counts: chains.iter().map(Vec::len).collect(),
                 vertices: chains.concat(),
@@ -130,7 +131,7 @@ impl Prim {
         }
         if !elements.particles.is_empty() {
             prims.push(Self {
-                kind: Kind::Points,
+                kind: PrimKind::Points,
                 name: if prims.is_empty() { name.to_owned() } else { format!("{name}_particles") },
                 vertices: elements.particles.to_vec(),
                 counts: Vec::new(),
@@ -144,13 +145,13 @@ impl Prim {
     fn begin(&self, out: &mut impl Write, body: &UsdBody<'_>) -> std::io::Result<()> {
         write!(out, "    def {:?} \"{}\"\n    {{\n", self.kind, self.name)?;
         match self.kind {
-            Kind::Mesh => {
+            PrimKind::Mesh => {
                 out.write_all(b"        uniform bool doubleSided = 1\n")?;
                 write_list(out, "int[] faceVertexCounts", &self.counts)?;
                 write_list(out, "int[] faceVertexIndices", &self.indices)?;
                 out.write_all(b"        uniform token subdivisionScheme = \"none\"\n")?;
             }
-            Kind::BasisCurves => {
+            PrimKind::BasisCurves => {
                 write_list(out, "int[] curveVertexCounts", &self.counts)?;
                 out.write_all(b"        uniform token type = \"linear\"\n")?;
                 let width = body.width as f32;
@@ -160,7 +161,9 @@ impl Prim {
                 )?;
             }
             // A constant width is read by some programs as that of the first point only.
-            Kind::Points => write_list(out, "float[] widths", &vec![body.width as f32; self.vertices.len()])?,
+            PrimKind::Points => {
+                write_list(out, "float[] widths", &vec![body.width as f32; self.vertices.len()])?
+            }
         }
         let color = if body.obstacle { "(0.6, 0.6, 0.62)" } else { "(0.75, 0.35, 0.25)" };
         writeln!(out, "        color3f[] primvars:displayColor = [{color}]")

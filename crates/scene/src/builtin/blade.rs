@@ -3,9 +3,9 @@ use crate::body::ObstacleSpec;
 use crate::description::Scene;
 use crate::shapes::{Shape, Wedge};
 
-/// 59,405 vertices and 116,640 triangles, after Fig. 22 of the paper. Five sheets, each 1 m wide, 4 cm apart, turned
-/// and shifted against each other, start 5 cm above the edge of a blade of 160 cm length, 50 cm height and 2 cm
-/// thickness at its base; the edge is a single line of vertices.
+/// 59,405 vertices and 116,640 triangles, after Fig. 22 of the paper. Five sheets, each 1 m wide, 4 cm apart,
+/// turned and shifted against each other, start 5 cm above the edge of a blade of 160 cm length, 50 cm height
+/// and 2 cm thickness at its base; the edge is a single line of vertices.
 pub(super) fn scene(scale: f64) -> Scene {
     let edge = 1.0 / (108.0 * scale);
     let blade = Wedge { length: 1.6, thickness: 0.02, height: 0.5, edge: 2.0 * edge };

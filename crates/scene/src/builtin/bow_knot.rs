@@ -2,16 +2,16 @@ use super::knot::{Hand, ribbons};
 use crate::description::Scene;
 use bowknot_geometry::{Point, Vector};
 
-/// 71,778 vertices and 136,640 triangles, after Fig. 1 of the paper. Two ribbons of 5 cm width and 424 cm length lie as
-/// the loose bow of a shoelace, nowhere nearer than 2 cm: a half knot of their standing ends, and above it a half knot
-/// of opposite sense of two bights, which makes a reef knot with two loops. Within 3.5 s the standing ends are drawn
-/// apart, the free ends down and outward, and the loops to where they stand upright, a quarter turn about their axis,
-/// 48 cm from the knot. No gravity.
+/// 71,778 vertices and 136,640 triangles, after Fig. 1 of the paper. Two ribbons of 5 cm width and 424 cm
+/// length lie as the loose bow of a shoelace, nowhere nearer than 2 cm: a half knot of their standing ends,
+/// and above it a half knot of opposite sense of two bights, which makes a reef knot with two loops. Within
+/// 3.5 s the standing ends are drawn apart, the free ends down and outward, and the loops to where they stand
+/// upright, a quarter turn about their axis, 48 cm from the knot. No gravity.
 pub(super) fn scene(scale: f64) -> Scene {
     let infinity = f64::INFINITY;
     let knot = Vector::new(0.0, -0.02, 0.0);
-    // Each hand goes to its distance from the knot; what is left for the knot itself is 22 cm of a ribbon between the
-    // standing end and the loop, 12 cm between the loop and the free end.
+    // Each hand goes to its distance from the knot; what is left for the knot itself is 22 cm of a ribbon
+    // between the standing end and the loop, 12 cm between the loop and the free end.
     let to = |direction: [f64; 3], distance: f64, from: [f64; 3]| {
         knot + Vector::from(direction).normalize() * distance - Vector::from(from)
     };
@@ -52,9 +52,10 @@ pub(super) fn curve() -> Vec<[f64; 6]> {
     CURVE.to_vec()
 }
 
-/// From the standing end at the left through the lower half knot to the right, up, through the upper half knot to the
-/// left, around the loop, back beside itself, and down to the free end at the right, as a `Curve`. Made like that of
-/// the reef knot; the strip is true to its flat shape within 3 %, 0.4 % in the mean square.
+/// From the standing end at the left through the lower half knot to the right, up, through the upper half
+/// knot to the left, around the loop, back beside itself, and down to the free end at the right, as a
+/// `Curve`. Made like that of the reef knot; the strip is true to its flat shape within 3 %, 0.4 % in the
+/// mean square.
 const CURVE: [[f64; 6]; 64] = [
     [-609.6, -169.3, 0.2, 764.0, 549.0, -338.0],
     [-544.0, -151.1, 4.7, -223.0, 591.0, -776.0],

@@ -9,17 +9,18 @@ use bowknot_geometry::Vector;
 /// Width and length of a playing card [m].
 const WIDTH: f64 = 0.063;
 const LENGTH: f64 = 0.088;
-/// Distance that contacts are separated to [m], twice the thickness of a card; the house starts a little wider.
+/// Distance that contacts are separated to [m], twice the thickness of a card; the house starts a little
+/// wider.
 const DELTA: f64 = 0.0006;
 const GAP: f64 = 1.05 * DELTA;
 /// Coefficient of friction [1] of cards on each other and on the table; a smooth table lets them slide apart.
 const FRICTION: f64 = 0.5;
 
-/// Three playing cards of 63 by 88 mm make a house: two lean against each other, 22 and 20 degrees off the vertical, and
-/// a third closes the open end, 25 degrees off it. Friction alone holds them, for 5 s.
+/// Three playing cards of 63 by 88 mm make a house: two lean against each other, 22 and 20 degrees off the
+/// vertical, and a third closes the open end, 25 degrees off it. Friction alone holds them, for 5 s.
 ///
-/// A card is a stiff sheet of 0.3 kg/m^2. Its stiffness in the plane is that of a plate of its thickness h and bending stiffness D,
-/// 12 (1 - nu^2) D / h^2.
+/// A card is a stiff sheet of 0.3 kg/m^2. Its stiffness in the plane is that of a plate of its thickness h
+/// and bending stiffness D, 12 (1 - nu^2) D / h^2.
 pub(super) fn scene(scale: f64) -> Scene {
     let card = |name: &str, size: [f64; 2], rotate: Vector, translate: Vector| BodySpec {
         name: name.to_owned(),
@@ -43,7 +44,8 @@ pub(super) fn scene(scale: f64) -> Scene {
         (0.5 * LENGTH * sin, 0.5 * LENGTH * cos)
     };
     let (left, right, third) = (22.0, 20.0, 25.0);
-    // The upper edge of the left card, at x = 0, touches the face of the right one, which ends a little higher.
+    // The upper edge of the left card, at x = 0, touches the face of the right one, which ends a little
+    // higher.
     let ((left_x, left_z), (right_x, right_z)) = (half(left), half(right));
     let top = GAP / right.to_radians().cos() - 2.0 * (right_z - left_z) * right.to_radians().tan();
     let (third_y, third_z) = half(third);

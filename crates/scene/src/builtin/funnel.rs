@@ -20,10 +20,10 @@ const RELEASE: f64 = 0.2;
 /// Speed at which it is drawn [m/s]: 2.5 cm within the longest of the paper's time steps.
 const SPEED: f64 = 0.5;
 
-/// 49,284 vertices and 97,682 triangles, after Fig. 19 of the paper. A sheet of 1 m width lies 1 cm above a funnel
-/// of 45 cm radius at its mouth and 10 cm at its neck, 15 cm long; its middle, a patch of 4 cm, is drawn down
-/// through the neck at 0.5 m/s and let go 20 cm above the ground. The paper's four time steps are `--dt` 0.05, 0.025,
-/// 0.0125 and 0.00625, with `--frames` as many times 80.
+/// 49,284 vertices and 97,682 triangles, after Fig. 19 of the paper. A sheet of 1 m width lies 1 cm above a
+/// funnel of 45 cm radius at its mouth and 10 cm at its neck, 15 cm long; its middle, a patch of 4 cm, is
+/// drawn down through the neck at 0.5 m/s and let go 20 cm above the ground. The paper's four time steps are
+/// `--dt` 0.05, 0.025, 0.0125 and 0.00625, with `--frames` as many times 80.
 pub(super) fn scene(scale: f64) -> Scene {
     let edge = 1.0 / (221.0 * scale);
     let top = THROAT + MOUTH - NECK;
@@ -49,9 +49,10 @@ pub(super) fn scene(scale: f64) -> Scene {
     };
     let mut scene = Scene {
         bodies: vec![BodySpec {
-            // In the neck limits and contacts contradict each other, and now and then a collision problem takes all the
-            // steps it may: with cotton's own 1.05 at two of five scales, with the paper's 1.1 at none of seven. No limit
-            // rules it out: at scale 0.2 it happens with 1.07, 1.101 and 1.11, not with 1.049, 1.051, 1.06 and 1.08.
+            // In the neck limits and contacts contradict each other, and now and then a collision problem
+            // takes all the steps it may: with cotton's own 1.05 at two of five scales, with the paper's 1.1
+            // at none of seven. No limit rules it out: at scale 0.2 it happens with 1.07, 1.101 and 1.11, not
+            // with 1.049, 1.051, 1.06 and 1.08.
             stretch_limit: Some(STRETCH_LIMIT),
             ..sheet("sheet", 1.0, edge, [0.0, 0.0, start], 7.0)
         }],

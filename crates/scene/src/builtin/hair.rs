@@ -8,11 +8,11 @@ use crate::shapes::{Root, Shape, Strands};
 use bowknot_dynamics::StrandMaterial;
 use bowknot_geometry::Vector;
 
-/// 63,000 vertices and 62,000 edges, after Fig. 7c and 7d of the paper: 1,000 locks of 100 hairs each, 30 cm long, stand out
-/// from the upper side of a ball of 10 cm radius, fall over it and swing as it shakes about the vertical, 70 degrees to
-/// either side. A lock stretches by a thousandth under its own weight, and by 2 % at most: the collision stage pushes
-/// vertices along a lock as easily as across, and what energy that stores grows with the stiffness, which a real lock
-/// has a thousand times as much of.
+/// 63,000 vertices and 62,000 edges, after Fig. 7c and 7d of the paper: 1,000 locks of 100 hairs each, 30 cm
+/// long, stand out from the upper side of a ball of 10 cm radius, fall over it and swing as it shakes about
+/// the vertical, 70 degrees to either side. A lock stretches by a thousandth under its own weight, and by 2 %
+/// at most: the collision stage pushes vertices along a lock as easily as across, and what energy that stores
+/// grows with the stiffness, which a real lock has a thousand times as much of.
 pub(super) fn scene(scale: f64) -> Scene {
     let segments = (62.0 * scale).round().max(4.0) as usize;
     let count = (1000.0 * scale).round().max(8.0) as usize;

@@ -7,9 +7,9 @@ use crate::shapes::{Block, Shape};
 use bowknot_dynamics::{SolidMaterial, SolidModel};
 use bowknot_geometry::Vector;
 
-/// 31,570 vertices and 92,160 tetrahedra, after Fig. 7a of the paper. The mat is 1.2 m long, 12.5 cm wide and 4 mm thick,
-/// of the paper's St. Venant-Kirchhoff material; each end is turned by two turns, against each other, within 2 s while
-/// they approach by 30 cm, so that it winds up into a rope and buckles. No gravity.
+/// 31,570 vertices and 92,160 tetrahedra, after Fig. 7a of the paper. The mat is 1.2 m long, 12.5 cm wide and
+/// 4 mm thick, of the paper's St. Venant-Kirchhoff material; each end is turned by two turns, against each
+/// other, within 2 s while they approach by 30 cm, so that it winds up into a rope and buckles. No gravity.
 pub(super) fn scene(scale: f64) -> Scene {
     let (length, width, thickness) = (1.2, 0.125, 0.004);
     let edge = length / 384.0 / scale;

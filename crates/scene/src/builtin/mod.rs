@@ -137,8 +137,8 @@ fn ground() -> ObstacleSpec {
     }
 }
 
-/// Pins for both ends of a body along x, turned against each other and brought nearer: at each time [s] by turns and by a
-/// length [m], of which either end makes half.
+/// Pins for both ends of a body along x, turned against each other and brought nearer: at each time [s] by
+/// turns and by a length [m], of which either end makes half.
 fn twisted_ends(body: &str, twist: &[(f64, f64, f64)]) -> Vec<PinSpec> {
     let end = |side: Side, sign: f64| {
         let keyframe = |&(time, turns, approach): &(f64, f64, f64)| Keyframe {

@@ -2,9 +2,9 @@ use super::knot::{Hand, ribbons};
 use crate::description::Scene;
 use bowknot_geometry::Vector;
 
-/// 36,432 vertices and 69,468 triangles, after Fig. 1 of the paper. Two ribbons of 4 cm width and 155 cm length lie as
-/// a loose reef knot, 80 cm long and 37 cm wide, nowhere nearer than 2 cm; their four ends are drawn out by 35.5 cm each
-/// within 2.4 s, which ties it to a size of about 3 cm, and held. No gravity.
+/// 36,432 vertices and 69,468 triangles, after Fig. 1 of the paper. Two ribbons of 4 cm width and 155 cm
+/// length lie as a loose reef knot, 80 cm long and 37 cm wide, nowhere nearer than 2 cm; their four ends are
+/// drawn out by 35.5 cm each within 2.4 s, which ties it to a size of about 3 cm, and held. No gravity.
 pub(super) fn scene(scale: f64) -> Scene {
     let infinity = f64::INFINITY;
     let ends = Hand::new(
@@ -19,15 +19,16 @@ pub(super) fn scene(scale: f64) -> Scene {
 /// Width of the ribbons [m].
 const WIDTH: f64 = 0.04;
 
-/// The left ribbon: in from the left, over and under the right ribbon to the bight, and back by the mirror image.
+/// The left ribbon: in from the left, over and under the right ribbon to the bight, and back by the mirror
+/// image.
 pub(super) fn curve() -> Vec<[f64; 6]> {
     let mirrored = HALF.iter().rev().skip(1).map(|&[x, y, z, a, b, c]| [x, -y, z, a, -b, c]);
     HALF.into_iter().chain(mirrored).collect()
 }
 
-/// The half from the upper end to the middle of the bight, as a `Curve`. It began as sines with the crossings over,
-/// under, over, and was then relaxed: a flat strip kept clear of its neighbor, bent as little as can be; the strip is
-/// true to its flat shape within 0.2 %.
+/// The half from the upper end to the middle of the bight, as a `Curve`. It began as sines with the crossings
+/// over, under, over, and was then relaxed: a flat strip kept clear of its neighbor, bent as little as can
+/// be; the strip is true to its flat shape within 0.2 %.
 const HALF: [[f64; 6]; 16] = [
     [-400.1, 50.3, -0.3, -82.0, 443.0, 893.0],
     [-352.8, 47.1, 5.2, -45.0, 420.0, 906.0],

@@ -7,9 +7,9 @@ use crate::shapes::{Grains, Lathe, Shape};
 use bowknot_dynamics::ParticleMaterial;
 use bowknot_geometry::Vector;
 
-/// 30,000 grains, after Fig. 7e and 7f of the paper. They fill a funnel, pour out of its neck of 10 cm width onto the
-/// ground 12 cm below, and heap. A grain is 4 mm across at scale 1; coarser scales have fewer and larger ones in the
-/// same volume.
+/// 30,000 grains, after Fig. 7e and 7f of the paper. They fill a funnel, pour out of its neck of 10 cm width
+/// onto the ground 12 cm below, and heap. A grain is 4 mm across at scale 1; coarser scales have fewer and
+/// larger ones in the same volume.
 pub(super) fn scene(scale: f64) -> Scene {
     // Sheets double their edge length where the scale halves; so do grains.
     let diameter = 0.004 / scale.powf(2.0 / 3.0);

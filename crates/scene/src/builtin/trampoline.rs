@@ -7,13 +7,13 @@ use crate::shapes::{Block, Shape, TetBall};
 use bowknot_dynamics::{ClothMaterial, SolidMaterial};
 use bowknot_geometry::{Point, Vector};
 
-/// A sheet of 1.2 m, held along its four sides, catches a cube and two balls of jelly that fall from up to 0.9 m.
-/// Solids keep their resolution: tetrahedra multiply with its cube.
+/// A sheet of 1.2 m, held along its four sides, catches a cube and two balls of jelly that fall from up to
+/// 0.9 m. Solids keep their resolution: tetrahedra multiply with its cube.
 pub(super) fn scene(scale: f64) -> Scene {
     let edge = 0.02 / scale;
     let mut mat = sheet("mat", 1.2, edge, [0.0, 0.0, 0.0], 0.0);
-    // A jumping mat of polypropylene webbing: far stiffer than a garment, and edges that give by a tenth for the springs that
-    // hold it.
+    // A jumping mat of polypropylene webbing: far stiffer than a garment, and edges that give by a tenth for
+    // the springs that hold it.
     mat.material = Material::Cloth(ClothMaterial {
         density: 0.3,
         stretch_stiffness: 4000.0,

@@ -7,8 +7,8 @@ use crate::shapes::{Shape, Woven};
 use bowknot_dynamics::StrandMaterial;
 use bowknot_geometry::Vector;
 
-/// A mat of 30 cm by 30 cm, plain-woven of cords, falls on a ball of 8 cm radius and hangs over it: warp and weft hold each
-/// other by nothing but contact and friction.
+/// A mat of 30 cm by 30 cm, plain-woven of cords, falls on a ball of 8 cm radius and hangs over it: warp and
+/// weft hold each other by nothing but contact and friction.
 pub(super) fn scene(scale: f64) -> Scene {
     // The mat keeps its size; there are more and thinner cords. They fill 0.36 of their spacing: in a looser
     // weave the outer ones slip off as soon as they hang.
@@ -44,7 +44,8 @@ pub(super) fn scene(scale: f64) -> Scene {
     };
     scene.obstacles[0].friction = 1.0;
     scene.twoway.contact.delta = Some(delta);
-    // At 1/100 s the cords move by more than their thickness within a time step, and every crossing must be found anew.
+    // At 1/100 s the cords move by more than their thickness within a time step, and every crossing must be
+    // found anew.
     scene.simulation.dt = 0.0025;
     // More iterations lower neither the residual nor what the cords store.
     scene.simulation.newton_iterations = 2;

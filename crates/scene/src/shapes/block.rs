@@ -9,9 +9,10 @@ use serde::{Deserialize, Serialize};
 
 /// A box about the origin, filled with tetrahedra: a grid of cells, each divided into six.
 ///
-/// Each cell has a diagonal that its six tetrahedra share (Kuhn 1960, "Some combinatorial lemmas in topology"). The
-/// diagonals of all cells point to the middle of the box, so that the mesh is symmetric, no tetrahedron has two faces
-/// on the surface where there are two cells or more each way, and neighboring cells agree.
+/// Each cell has a diagonal that its six tetrahedra share (Kuhn 1960, "Some combinatorial lemmas in
+/// topology"). The diagonals of all cells point to the middle of the box, so that the mesh is symmetric, no
+/// tetrahedron has two faces on the surface where there are two cells or more each way, and neighboring cells
+/// agree.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Block {

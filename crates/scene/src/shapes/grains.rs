@@ -6,17 +6,18 @@ use bowknot_geometry::{Point, Vector};
 use bowknot_io::Mesh;
 use serde::{Deserialize, Serialize};
 
-/// Particles about the origin on a cubic lattice, each moved off its place by a little, differently but always alike.
+/// Particles about the origin on a cubic lattice, each moved off its place by a little, differently but
+/// always alike.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Grains {
     /// Numbers along x, y and z [1]. Default 10 each.
     pub count: [usize; 3],
-    /// Distance of neighbors on the lattice [m]; at least the grain size, so that none begins inside of another.
-    /// Default 0.01.
+    /// Distance of neighbors on the lattice [m]; at least the grain size, so that none begins inside of
+    /// another. Default 0.01.
     pub spacing: f64,
-    /// Largest displacement off the lattice along each axis [1], in `spacing`, below 0.5. It breaks the symmetry by
-    /// which grains would balance on each other. Default 0.05.
+    /// Largest displacement off the lattice along each axis [1], in `spacing`, below 0.5. It breaks the
+    /// symmetry by which grains would balance on each other. Default 0.05.
     pub jitter: f64,
     /// Which of the random patterns [1]. Default 0.
     pub seed: u64,

@@ -1,10 +1,10 @@
 //! Meshes of implicit surfaces: surface nets, then evened out on the surface.
 //!
-//! Surface nets (Gibson 1998, "Constrained Elastic Surface Nets") put a vertex into each cell of a grid
-//! that the surface crosses and a quadrilateral across each such edge of the grid. Here a cell has a
-//! vertex for each sheet of the surface in it (Nielson 2004, "Dual Marching Cubes"), so that sheets near
-//! one another are not joined. The vertices are then moved towards the middle of their neighbors along the surface, and edges flipped to Delaunay's,
-//! which leaves triangles of nearly equal size.
+//! Surface nets (Gibson 1998, "Constrained Elastic Surface Nets") put a vertex into each cell of a grid that
+//! the surface crosses and a quadrilateral across each such edge of the grid. Here a cell has a vertex for
+//! each sheet of the surface in it (Nielson 2004, "Dual Marching Cubes"), so that sheets near one another are
+//! not joined. The vertices are then moved towards the middle of their neighbors along the surface, and edges
+//! flipped to Delaunay's, which leaves triangles of nearly equal size.
 
 use super::mesh::TriangleMesh;
 use bowknot_geometry::{Point, Vector};

@@ -7,8 +7,8 @@ use bowknot_geometry::Point;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// A profile turned about the z axis: a funnel, a bowl, a ring. A closed profile makes a solid wall with normals
-/// outward; an open one a sheet without thickness, met from both sides.
+/// A profile turned about the z axis: a funnel, a bowl, a ring. A closed profile makes a solid wall with
+/// normals outward; an open one a sheet without thickness, met from both sides.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Lathe {
@@ -17,8 +17,8 @@ pub struct Lathe {
     pub profile: Vec<[f64; 2]>,
     /// Whether the last corner is joined to the first. Default true.
     pub closed: bool,
-    /// Length of the edges along the profile, and around where the profile is widest [m], rounded so that whole
-    /// numbers fit. Default 0.02.
+    /// Length of the edges along the profile, and around where the profile is widest [m], rounded so that
+    /// whole numbers fit. Default 0.02.
     pub edge: f64,
 }
 

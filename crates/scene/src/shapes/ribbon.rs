@@ -6,17 +6,18 @@ use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::{Point, Vector};
 use serde::{Deserialize, Serialize};
 
-/// A strip of constant width along a smooth center-line, such as a ribbon that is to be tied. The center-line is the
-/// uniform cubic B-spline of `points`, which starts and ends at the first and last of them and rounds the others;
-/// rows of vertices cross it at equal distances along the curve, at right angles.
+/// A strip of constant width along a smooth center-line, such as a ribbon that is to be tied. The center-line
+/// is the uniform cubic B-spline of `points`, which starts and ends at the first and last of them and rounds
+/// the others; rows of vertices cross it at equal distances along the curve, at right angles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Ribbon {
     /// Control points of the center-line [m], two at least. Default: from (-0.5, 0, 0) to (0.5, 0, 0).
     pub points: Vec<Point>,
-    /// Directions across the strip at the control points [1], of any length but zero, blended like the points and
-    /// then made orthogonal to the curve. Empty: the first row lies level and the others follow without turning
-    /// about the curve (Wang et al. 2008, "Computation of Rotation Minimizing Frames"). Default empty.
+    /// Directions across the strip at the control points [1], of any length but zero, blended like the points
+    /// and then made orthogonal to the curve. Empty: the first row lies level and the others follow without
+    /// turning about the curve (Wang et al. 2008, "Computation of Rotation Minimizing Frames"). Default
+    /// empty.
     pub across: Vec<Vector>,
     /// Width [m]. Default 0.05.
     pub width: f64,
@@ -158,8 +159,9 @@ const SLOPE: Weights = |t| {
     [-0.5 * s * s, 1.5 * t * t - 2.0 * t, 2.0 * s - 1.5 * s * s, 0.5 * t * t]
 };
 
-/// Blends the control vectors 0 to `last` at the spline parameter `u` from 0 to `last`. Beyond the ends stand the
-/// mirror images of the second ones, which makes the curve start and end at its first and last control point.
+/// Blends the control vectors 0 to `last` at the spline parameter `u` from 0 to `last`. Beyond the ends stand
+/// the mirror images of the second ones, which makes the curve start and end at its first and last control
+/// point.
 fn blend(control: impl Fn(usize) -> Vector, last: usize, u: f64, weights: &Weights) -> Vector {
     let span = (u.floor() as usize).min(last.saturating_sub(1));
     let at = |k: usize| match k.checked_sub(1) {

@@ -144,7 +144,8 @@ impl Shape {
 
 impl Parameters for Shape {
     fn check(&self, checks: &mut Checks) {
-        // Lengths that must be positive, the area, and the length of edges: which bounds the number of vertices.
+        // Lengths that must be positive, the area, and the length of edges: which bounds the number of
+        // vertices.
         let before = checks.error_count();
         let (lengths, area, edge): (Vec<(&'static str, f64)>, f64, f64) = match self {
             Self::Sheet(s) => (vec![("size", s.size[0]), ("size", s.size[1])], s.size[0] * s.size[1], s.edge),

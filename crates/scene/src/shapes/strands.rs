@@ -23,7 +23,8 @@ pub struct Strands {
     pub spacing: f64,
     /// Radius of the sphere [m]. Default 0.1.
     pub radius: f64,
-    /// Angle from the sphere's top to the edge of the patch that carries roots [deg], at most 180. Default 60.
+    /// Angle from the sphere's top to the edge of the patch that carries roots [deg], at most 180. Default
+    /// 60.
     pub patch: f64,
     /// Radius of the curls [m]; 0 makes straight strands. Default 0.
     pub curl: f64,

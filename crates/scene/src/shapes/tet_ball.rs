@@ -10,14 +10,15 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 /// A ball about the origin, filled with tetrahedra: the grid of a cube, each of its shells moved to a sphere.
 ///
-/// On a shell the grid's lines are equal angles apart (the equiangular cubed sphere, Ronchi, Iacono and Paolucci
-/// 1996), so that edges differ by less than a factor of two.
+/// On a shell the grid's lines are equal angles apart (the equiangular cubed sphere, Ronchi, Iacono and
+/// Paolucci 1996), so that edges differ by less than a factor of two.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct TetBall {
     /// Radius [m]. Default 0.1.
     pub radius: f64,
-    /// Length of the edges along the surface [m], rounded so that an even number fits a quarter circle. Default 0.03.
+    /// Length of the edges along the surface [m], rounded so that an even number fits a quarter circle.
+    /// Default 0.03.
     pub edge: f64,
 }
 

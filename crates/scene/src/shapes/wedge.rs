@@ -16,7 +16,8 @@ pub struct Wedge {
     pub thickness: f64,
     /// Height of the sharp edge [m]. Default 0.5.
     pub height: f64,
-    /// Length of the edges along the blade and down its sides [m], rounded so that whole numbers fit. Default 0.02.
+    /// Length of the edges along the blade and down its sides [m], rounded so that whole numbers fit. Default
+    /// 0.02.
     pub edge: f64,
 }
 

@@ -7,11 +7,11 @@ use bowknot_io::Mesh;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// A square of plain-woven strands about the origin: warp along x, weft along y, which pass over and under each other in
-/// turn, as sine waves.
+/// A square of plain-woven strands about the origin: warp along x, weft along y, which pass over and under
+/// each other in turn, as sine waves.
 ///
-/// Where two cross, their axes lie two amplitudes apart; elsewhere they keep that distance roughly, so that nothing
-/// touches at the start if the amplitude is above half the distance of contacts.
+/// Where two cross, their axes lie two amplitudes apart; elsewhere they keep that distance roughly, so that
+/// nothing touches at the start if the amplitude is above half the distance of contacts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Woven {
@@ -23,7 +23,8 @@ pub struct Woven {
     pub amplitude: f64,
     /// Number of edges from one crossing to the next [1]. Default 4.
     pub segments: usize,
-    /// Length by which strands reach beyond the outermost crossings, in `spacing` [1]: whole numbers. Default 1.
+    /// Length by which strands reach beyond the outermost crossings, in `spacing` [1]: whole numbers. Default
+    /// 1.
     pub fringe: usize,
 }
 
@@ -47,7 +48,8 @@ impl Woven {
                     // Counted in crossings: a whole number at each, 0 at the first.
                     let at = k as f64 / self.segments as f64 - self.fringe as f64;
                     let along = self.centered(at, crossings);
-                    // One is up where the other is down: at crossing (i, j) the one along x has the sign of (-1)^(i+j).
+                    // One is up where the other is down: at crossing (i, j) the one along x has the sign of
+                    // (-1)^(i+j).
                     let sign = if (strand + axis) % 2 == 0 { 1.0 } else { -1.0 };
                     let height = sign * self.amplitude * (PI * at).cos();
                     mesh.positions.push(match axis {

@@ -19,9 +19,9 @@ impl World {
     /// Loads and places the meshes of a scene.
     ///
     /// # Errors
-    /// What [`Scene::validate`] refuses; meshes that are missing, malformed, or of other elements than their body is
-    /// made of; triangles of a deformable body without area or repeated; tetrahedra that are inverted or flat; strand
-    /// edges whose points coincide; sequences whose topology changes; pins without vertices.
+    /// What [`Scene::validate`] refuses; meshes that are missing, malformed, or of other elements than their
+    /// body is made of; triangles of a deformable body without area or repeated; tetrahedra that are inverted
+    /// or flat; strand edges whose points coincide; sequences whose topology changes; pins without vertices.
     pub fn new(scene: &Scene) -> Result<Self, SceneError> {
         scene.validate()?;
         let mut assembly = Assembly::default();
@@ -156,7 +156,8 @@ impl Assembly {
         Ok(())
     }
 
-    /// Appends what collides of a part as the next body; its vertices, and its elements in the world's numbering.
+    /// Appends what collides of a part as the next body; its vertices, and its elements in the world's
+    /// numbering.
     fn append(&mut self, mut part: Part, filter: BodyFilter) -> (Range<u32>, Part) {
         let first = self.base.len() as u32;
         part.triangles.iter_mut().flatten().for_each(|v| *v += first);
@@ -232,8 +233,8 @@ impl Assembly {
     }
 }
 
-/// Stretch limit of a body: its own, or that of its material unless the scene has one for all, which is left to
-/// `contact.stretch_limit`.
+/// Stretch limit of a body: its own, or that of its material unless the scene has one for all, which is left
+/// to `contact.stretch_limit`.
 fn stretch_limit(scene: &Scene, body: &BodySpec) -> Option<f64> {
     let for_all = scene.twoway.contact.stretch_limit.is_some();
     body.stretch_limit.or_else(|| if for_all { None } else { body.material.stretch_limit() })

@@ -8,7 +8,8 @@
 //! | of obstacles | all |
 //! | inside of solids | the dynamics alone |
 //!
-//! The collision model, the judge and the frames cover the first two groups, [`World::collision_vertices`] of them.
+//! The collision model, the judge and the frames cover the first two groups, [`World::collision_vertices`] of
+//! them.
 
 mod assemble;
 mod follow;
@@ -55,14 +56,15 @@ pub struct World {
     pub pins: Vec<Pin>,
     /// What was repaired or left out on the way, in words.
     pub warnings: Vec<String>,
-    /// Positions of obstacle vertices without their motion [m]; of the other vertices that collide, those at time 0.
+    /// Positions of obstacle vertices without their motion [m]; of the other vertices that collide, those at
+    /// time 0.
     pub base: Vec<Point>,
 }
 
 /// What bodies bring into their contacts, for the two-way method.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WorldContact {
-    /// One entry a body.
+    /// One entry per body.
     pub bodies: Vec<BodyContact>,
     /// One entry a half-space.
     pub half_spaces: Vec<HalfSpaceContact>,
@@ -210,7 +212,7 @@ impl World {
     }
 
     /// Ties the vertices of a pin that follows an obstacle, when they are at `homes`, to it: one entry
-    /// a vertex, none where the obstacle has no triangle with an area.
+    /// per vertex, none where the obstacle has no triangle with an area.
     pub fn attach(&self, pin: &Pin, homes: &[Point]) -> Vec<Option<Attachment>> {
         let Some(body) = pin.follow.and_then(|body| self.bodies.get(body as usize)) else {
             return vec![None; homes.len()];

@@ -9,9 +9,9 @@ use std::sync::Arc;
 
 /// How an obstacle moves.
 ///
-/// Whatever the kind, [`ObstacleMotion::positions`] answers the same question: where the obstacle's vertices belong
-/// at a time, in the scene's axes. Between two time steps the simulator moves each vertex on the straight line
-/// between two answers, the obstacle as one.
+/// Whatever the kind, [`ObstacleMotion::positions`] answers the same question: where the obstacle's vertices
+/// belong at a time, in the scene's axes. Between two time steps the simulator moves each vertex on the
+/// straight line between two answers, the obstacle as one.
 #[derive(Clone, Debug, Default)]
 pub enum ObstacleMotion {
     /// At rest.
@@ -62,8 +62,8 @@ impl ObstacleMotion {
         matches!(self, Self::Rest)
     }
 
-    /// Where the vertices belong at a time [s], given where the scene puts them without motion, `base`. All slices
-    /// have one entry a vertex [m].
+    /// Where the vertices belong at a time [s], given where the scene puts them without motion, `base`. All
+    /// slices have one entry per vertex [m].
     pub fn positions(&self, base: &[Point], time: f64, out: &mut [Point]) {
         match self {
             Self::Rest => out.copy_from_slice(base),

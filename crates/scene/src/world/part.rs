@@ -217,7 +217,8 @@ impl Part {
         self.numbers = order.iter().map(|&v| self.numbers[v as usize]).collect();
     }
 
-    /// Makes an obstacle of the mesh: the surface of tetrahedra, without triangles that have no area or are repeated.
+    /// Makes an obstacle of the mesh: the surface of tetrahedra, without triangles that have no area or are
+    /// repeated.
     pub fn into_obstacle(mut self, owner: &str, warnings: &mut Vec<String>) -> Result<Self, SceneError> {
         let mut surface = boundary_triangles(&std::mem::take(&mut self.tets));
         surface.append(&mut self.triangles);

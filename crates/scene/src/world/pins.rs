@@ -88,7 +88,8 @@ fn pinned(spec: &PinSpec, body: &WorldBody, positions: &[Point]) -> Result<Vec<u
     Ok(vertices)
 }
 
-/// The vertices of strands within `count - 1` edges of their root, the vertex of each strand that comes first.
+/// The vertices of strands within `count - 1` edges of their root, the vertex of each strand that comes
+/// first.
 fn roots(body: &WorldBody, count: usize) -> Vec<u32> {
     let first = body.vertices.start;
     let n = body.vertices.len();

@@ -29,9 +29,13 @@ pub fn folded_cloth(vertices: usize, gap: f64) -> (Vec<Point>, Vec<[u32; 3]>) {
         }
     }
 
-    // Noise breaks the symmetry.
-    let mut random = fastrand::Rng::with_seed(1);
-    let mut noise = || (2.0 * random.f64() - 1.0) * gap / 8.0;
+    // Noise breaks the symmetry. The figures of the README depend on these numbers of a linear congruential
+    // generator, so that they do not come from a library.
+    let mut state = 1_u64;
+    let mut noise = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((state >> 33) as f64 / (1_u64 << 30) as f64 - 1.0) * gap / 8.0
+    };
     let mut positions = Vec::with_capacity(profile.len() * across);
     for &[x, height] in &profile {
         let flat = (x.min(panel - x) / (0.05 * panel)).clamp(0.0, 1.0);

@@ -1,5 +1,5 @@
-//! That the knots are the knots they claim to be, that their ribbons could be cut from a flat band, and that nothing
-//! touches at the start, at any scale.
+//! That the knots are the knots they claim to be, that their ribbons could be cut from a flat band, and that
+//! nothing touches at the start, at any scale.
 
 use super::super::{bow_knot, reef_knot};
 use crate::description::Scene;
@@ -23,8 +23,8 @@ fn centre_line(scene: &Scene) -> Vec<Point> {
     narrow.mesh().positions.iter().skip(1).step_by(3).copied().collect()
 }
 
-/// A crossing of two curves seen along -z: which segments, whether the first lies above, its sign (+1 if the upper
-/// strand must turn counter-clockwise to run along the lower one, by less than half a turn).
+/// A crossing of two curves seen along -z: which segments, whether the first lies above, its sign (+1 if the
+/// upper strand must turn counter-clockwise to run along the lower one, by less than half a turn).
 #[derive(Clone, Copy, Debug)]
 struct Crossing {
     segments: [usize; 2],
@@ -62,8 +62,8 @@ fn signs_and_heights(crossings: &[Crossing]) -> Vec<(i32, bool)> {
     crossings.iter().map(|c| (c.sign, c.over)).collect()
 }
 
-/// Two half knots of 3 alternating crossings: of opposite sense they make a reef knot (closed at either side, a trefoil
-/// and its mirror image), of the same sense a granny knot.
+/// Two half knots of 3 alternating crossings: of opposite sense they make a reef knot (closed at either side,
+/// a trefoil and its mirror image), of the same sense a granny knot.
 fn reef(sense: i32) -> [(i32, bool); 6] {
     [(sense, true), (sense, false), (sense, true), (-sense, true), (-sense, false), (-sense, true)]
 }
@@ -101,8 +101,8 @@ fn the_bow_is_a_reef_knot_whose_second_half_is_tied_with_bights() {
     assert_eq!(strands(false, true)[3..], [(-1, true)]);
     assert_eq!(strands(true, false)[1..], second(1));
     assert_eq!(strands(true, false)[..1], [(-1, true)]);
-    // The strand back lies above the strand there all the way: they are not twisted around each other, so that a pull
-    // at the free end would undo the bow.
+    // The strand back lies above the strand there all the way: they are not twisted around each other, so
+    // that a pull at the free end would undo the bow.
     assert!(crossings(&left, &left, true).iter().all(|c| !c.over));
 }
 
@@ -147,7 +147,8 @@ fn nothing_is_near_anything_at_the_start_at_any_scale() {
                 .check_state(&world.positions, &StateOptions::default())
                 .expect("finite positions");
             assert!(report.is_clear(), "scale {scale}: {:?}", report.intersections);
-            // The contact distance is a tenth of an edge; within the flat strips pairs are two thirds of one apart.
+            // The contact distance is a tenth of an edge; within the flat strips pairs are two thirds of one
+            // apart.
             let nearest = report.nearest.expect("pairs").distance;
             assert!(nearest > 0.5 * edge, "scale {scale}: {nearest} m at edges of {edge} m");
         }

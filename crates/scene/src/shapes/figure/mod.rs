@@ -144,7 +144,8 @@ impl AnimatedFigure {
 }
 
 impl Animated for AnimatedFigure {
-    /// A few hundred microseconds for 10,000 vertices. Before [`Figure::start`] the places are those of the mesh.
+    /// A few hundred microseconds for 10,000 vertices. Before [`Figure::start`] the places are those of the
+    /// mesh.
     fn positions(&self, time: f64) -> Vec<Point> {
         self.skin.apply(&self.figure.pose(time), &self.mesh.positions)
     }

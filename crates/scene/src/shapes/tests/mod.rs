@@ -116,9 +116,9 @@ fn distortion(ribbon: &Ribbon) -> f64 {
 
 #[test]
 fn a_ribbon_wound_around_a_cylinder_is_not_distorted() {
-    // A quarter turn of a helix. Bent as paper bends, the strip keeps its lengths, but for the chords and for the
-    // spline, which is rounder by a sixth of the squared angle between control points, 6e-5, and straightens at its
-    // ends.
+    // A quarter turn of a helix. Bent as paper bends, the strip keeps its lengths, but for the chords and for
+    // the spline, which is rounder by a sixth of the squared angle between control points, 6e-5, and
+    // straightens at its ends.
     let steps = 80;
     let angle = |k: i32| 0.5 * std::f64::consts::PI * f64::from(k) / f64::from(steps);
     let points = (0..=steps).map(|k| Point::new(angle(k).cos(), angle(k).sin(), 0.3 * angle(k)));
