@@ -145,9 +145,9 @@ impl ProblemSet {
         let mut scene = Scene::builtin(self.scene, self.scale(bench.size))?;
         scene.simulation.dt = self.time_step.unwrap_or(scene.simulation.dt);
         // The paper's limit for every fabric, so that its method gets the problems that it was made for.
-        scene.twoway.contact.stretch_limit = Some(STRETCH_LIMIT);
+        scene.contact.stretch_limit = Some(STRETCH_LIMIT);
         if self.targets == Targets::Unaware {
-            scene.repulsion.stiffness = 0.0;
+            scene.solver.repulsion.stiffness = 0.0;
         }
         let [full, quick, tiny] = self.frames;
         let frames = bench.size.pick(full, quick, tiny);

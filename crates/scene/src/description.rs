@@ -2,26 +2,27 @@
 
 use crate::body::{BodySpec, ObstacleSpec, PinSpec};
 use crate::friction::FrictionPair;
-use crate::params::{OutputParams, Preset, RepulsionParams, SimulationParams};
-use bowknot_dynamics::DynamicsParams;
+use crate::params::{OutputParams, Preset, SceneSolverParams, SimulationParams};
+use bowknot_dynamics::{DynamicsParams, Environment};
+use bowknot_twoway::ContactParams;
 use std::path::PathBuf;
 
 /// A scene: parameters, bodies, obstacles, pins.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scene {
-    /// Time and the order of work.
+    /// Time and the order of work; with `environment` the table `[simulation]`.
     pub simulation: SimulationParams,
-    /// Gravity, drag, Newton's method, the linear solve.
-    pub dynamics: DynamicsParams,
-    /// Which preset the defaults of `twoway` came from.
+    /// Gravity and air.
+    pub environment: Environment,
+    /// Which set of defaults `contact` and `solver` started from, the key `contact.preset`.
     pub preset: Preset,
-    /// Contact, backward step, forward step, stopping rule.
-    pub twoway: bowknot_twoway::Params,
-    /// Friction of pairs of bodies.
+    /// Contacts and edge-length limits, the table `[contact]`.
+    pub contact: ContactParams,
+    /// Friction of pairs of bodies, the tables `[[contact.friction_pairs]]`.
     pub friction_pairs: Vec<FrictionPair>,
-    /// Repulsion of near surfaces by the dynamics.
-    pub repulsion: RepulsionParams,
-    /// What a run writes.
+    /// How a time step is solved, the table `[solver]`.
+    pub solver: SceneSolverParams,
+    /// What a run writes, the table `[output]`.
     pub output: OutputParams,
     /// Deformable bodies.
     pub bodies: Vec<BodySpec>,
@@ -34,6 +35,26 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// An empty scene whose contacts and solver are those of a preset.
+    pub fn with_preset(preset: Preset) -> Self {
+        let bowknot_twoway::Params { contact, solver } = preset.params();
+        let bowknot_twoway::SolverParams { backward, forward, stop } = solver;
+        let solver = SceneSolverParams { backward, forward, stop, ..SceneSolverParams::default() };
+        Self { preset, contact, solver, ..Self::default() }
+    }
+
+    /// The parameters of the collision stage.
+    pub fn twoway(&self) -> bowknot_twoway::Params {
+        let SceneSolverParams { backward, forward, stop, .. } = self.solver.clone();
+        let solver = bowknot_twoway::SolverParams { backward, forward, stop };
+        bowknot_twoway::Params { contact: self.contact.clone(), solver }
+    }
+
+    /// The parameters of the dynamics.
+    pub fn dynamics(&self) -> DynamicsParams {
+        DynamicsParams { environment: self.environment, newton: self.solver.newton }
+    }
+
     /// Name in reports.
     pub fn name(&self) -> &str {
         &self.simulation.name

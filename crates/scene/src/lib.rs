@@ -4,9 +4,7 @@
 //! |---|---|
 //! | `[simulation]` | [`SimulationParams`], [`Environment`](bowknot_dynamics::Environment) |
 //! | `[contact]` | `preset`, [`ContactParams`](bowknot_constraints::ContactParams), [`FrictionPair`]s |
-//! | `[solver.backward]`, `[solver.forward]`, `[solver.stop]` | [`SolverParams`](bowknot_twoway::SolverParams) |
-//! | `[solver.newton]` | [`NewtonParams`](bowknot_dynamics::NewtonParams) |
-//! | `[solver.repulsion]` | [`RepulsionParams`] |
+//! | `[solver]` | [`SceneSolverParams`], one struct per part |
 //! | `[output]` | [`OutputParams`] |
 //! | `[[body]]`, `[[obstacle]]`, `[[pin]]` | [`BodySpec`], [`ObstacleSpec`], [`PinSpec`] |
 //!
@@ -55,7 +53,8 @@ pub use material::Material;
 pub use motion::{Keyframe, Motion, Placement};
 pub use open::twoway_params;
 pub use params::{
-    CollisionEvery, Format, InteriorFollows, OutputParams, Preset, RepulsionParams, SimulationParams,
+    CollisionEvery, Format, InteriorFollows, OutputParams, Preset, RepulsionParams, SceneSolverParams,
+    SimulationParams,
 };
 pub use world::{SceneInfo, World};
 

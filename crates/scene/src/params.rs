@@ -1,10 +1,12 @@
 //! The tables of a scene that belong to the facade itself; the others are the crates' own parameters.
 
+use bowknot_dynamics::NewtonParams;
 use bowknot_errors::{Checks, Parameters};
+use bowknot_twoway::{BackwardParams, ForwardParams, StopParams};
 use serde::{Deserialize, Serialize};
 
-/// Time and the order of work within a time step; with the gravity and drag of
-/// [`bowknot_dynamics::DynamicsParams`] this is the table `[simulation]`.
+/// Time and the order of work within a time step; with [`bowknot_dynamics::Environment`] this is the table
+/// `[simulation]`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SimulationParams {
@@ -69,6 +71,22 @@ impl Preset {
             Self::Paper => bowknot_twoway::Params::paper(),
         }
     }
+}
+
+/// How a time step is solved, the table `[solver]`: the collision stage and Newton's method.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SceneSolverParams {
+    /// The backward step of the collision stage.
+    pub backward: BackwardParams,
+    /// Its forward step and trust regions.
+    pub forward: ForwardParams,
+    /// When a call of the collision stage ends.
+    pub stop: StopParams,
+    /// Newton's method and its linear solves.
+    pub newton: NewtonParams,
+    /// Contact forces of the dynamics.
+    pub repulsion: RepulsionParams,
 }
 
 /// Contact forces of the dynamics, `[solver.repulsion]` (paper, section 6.2): springs between surfaces that

@@ -7,7 +7,7 @@ use crate::fields::field_names;
 use crate::friction::FrictionPair;
 use crate::material;
 use crate::motion::Motion;
-use crate::params::{OutputParams, Preset, RepulsionParams, SimulationParams};
+use crate::params::{OutputParams, Preset, SceneSolverParams, SimulationParams};
 use crate::reader::Reader;
 use crate::shapes::{
     Ball, Block, Cone, Cuboid, Figure, Garment, Grains, HalfSpaceShape, Lathe, Ribbon, Shape, Sheet, Strands,
@@ -16,8 +16,10 @@ use crate::shapes::{
 use crate::source::Source;
 use crate::validate::{self, report_errors};
 use crate::values::{describe, join};
-use bowknot_dynamics::{DynamicsParams, Environment, NewtonParams};
-use bowknot_twoway::{ContactParams, Params, SolverParams};
+use bowknot_dynamics::Environment;
+use bowknot_twoway::{ContactParams, Params};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use std::path::Path;
 use toml::{Table, Value};
 
@@ -30,25 +32,23 @@ pub(super) fn scene(source: &Source, folder: &Path, name: &str) -> Result<Scene,
     let root = &source.table;
     reader.check_keys(root, "", &TABLES);
 
+    let mut scene = read_solver(&mut reader, root);
+    folder.clone_into(&mut scene.folder);
+
     let table = reader.table(root, "", "simulation");
     let known = [field_names::<SimulationParams>(), field_names::<Environment>()].concat();
     reader.check_keys(&table, "simulation", &known);
-    let mut simulation = reader.fields(&SimulationParams::default(), &table, "simulation", &[]);
-    if simulation.name.is_empty() {
-        simulation.name = name.to_owned();
+    scene.simulation = reader.fields(&SimulationParams::default(), &table, "simulation", &[]);
+    if scene.simulation.name.is_empty() {
+        name.clone_into(&mut scene.simulation.name);
     }
-    let environment = reader.fields(&Environment::default(), &table, "simulation", &[]);
-    let table = reader.table(root, "", "solver");
-    let table = reader.table(&table, "solver", "newton");
-    let newton = reader.structure::<NewtonParams>(&table, "solver.newton", &[]);
-    let dynamics = DynamicsParams { environment, newton };
-    let (preset, twoway) = read_twoway(&mut reader, root);
-
+    scene.environment = reader.fields(&Environment::default(), &table, "simulation", &[]);
+    let table = reader.table(root, "", "contact");
+    for (table, path) in reader.tables(&table, "contact", "friction_pairs") {
+        scene.friction_pairs.push(reader.structure::<FrictionPair>(&table, &path, &[]));
+    }
     let table = reader.table(root, "", "output");
-    let output = reader.structure::<OutputParams>(&table, "output", &[]);
-
-    let mut scene =
-        Scene { simulation, dynamics, preset, twoway, output, folder: folder.to_owned(), ..Scene::default() };
+    scene.output = reader.structure::<OutputParams>(&table, "output", &[]);
     for (index, (table, path)) in reader.tables(root, "", "body").into_iter().enumerate() {
         scene.bodies.push(body(&mut reader, &table, &path, index));
     }
@@ -59,13 +59,6 @@ pub(super) fn scene(source: &Source, folder: &Path, name: &str) -> Result<Scene,
         let pin = pin(&mut reader, &table, &path, &scene.bodies);
         scene.pins.push(pin);
     }
-    let table = reader.table(root, "", "contact");
-    for (table, path) in reader.tables(&table, "contact", "friction_pairs") {
-        scene.friction_pairs.push(reader.structure::<FrictionPair>(&table, &path, &[]));
-    }
-    let table = reader.table(root, "", "solver");
-    let table = reader.table(&table, "solver", "repulsion");
-    scene.repulsion = reader.structure::<RepulsionParams>(&table, "solver.repulsion", &[]);
     if !reader.problems.is_empty() {
         return Err(SceneError::Invalid(reader.problems));
     }
@@ -79,13 +72,14 @@ pub(super) fn twoway(source: &Source) -> Result<Params, SceneError> {
     for key in source.table.keys().filter(|key| !["contact", "solver"].contains(&key.as_str())) {
         reader.fail(key, "only keys of contact and solver can be set here");
     }
-    let (_, params) = read_twoway(&mut reader, &source.table);
+    let params = read_solver(&mut reader, &source.table).twoway();
     let mut problems = reader.problems;
     report_errors(&mut problems, source, "", &params);
     if problems.is_empty() { Ok(params) } else { Err(SceneError::Invalid(problems)) }
 }
 
-fn read_twoway(reader: &mut Reader<'_>, root: &Table) -> (Preset, Params) {
+/// Reads the numbers of `[contact]`, and `[solver]`, into an empty scene.
+fn read_solver(reader: &mut Reader<'_>, root: &Table) -> Scene {
     let contact = reader.table(root, "", "contact");
     let known = [&["preset", "friction_pairs"], field_names::<ContactParams>()].concat();
     reader.check_keys(&contact, "contact", &known);
@@ -97,23 +91,32 @@ fn read_twoway(reader: &mut Reader<'_>, root: &Table) -> (Preset, Params) {
             Preset::default()
         }
     };
-    let base = preset.params();
+    let base = Scene::with_preset(preset);
     let contact = reader.fields(&base.contact, &contact, "contact", &[]);
 
-    let solver = reader.table(root, "", "solver");
-    let known = [field_names::<SolverParams>(), &["newton", "repulsion"]].concat();
-    reader.check_keys(&solver, "solver", &known);
-    let backward_table = reader.table(&solver, "solver", "backward");
-    let mut backward = reader.structure_over(&base.solver.backward, &backward_table, "solver.backward");
+    let table = reader.table(root, "", "solver");
+    reader.check_keys(&table, "solver", field_names::<SceneSolverParams>());
+    let mut backward = solver_part(reader, &table, "backward", &base.solver.backward);
     // A scene with more sweeps than the preset's polish_sweeps polishes with as many.
-    if !backward_table.contains_key("polish_sweeps") {
+    if !reader.table(&table, "solver", "backward").contains_key("polish_sweeps") {
         backward.polish_sweeps = backward.polish_sweeps.max(backward.sweeps);
     }
-    let table = reader.table(&solver, "solver", "forward");
-    let forward = reader.structure_over(&base.solver.forward, &table, "solver.forward");
-    let table = reader.table(&solver, "solver", "stop");
-    let stop = reader.structure_over(&base.solver.stop, &table, "solver.stop");
-    (preset, Params { contact, solver: SolverParams { backward, forward, stop } })
+    let solver = SceneSolverParams {
+        backward,
+        forward: solver_part(reader, &table, "forward", &base.solver.forward),
+        stop: solver_part(reader, &table, "stop", &base.solver.stop),
+        newton: solver_part(reader, &table, "newton", &base.solver.newton),
+        repulsion: solver_part(reader, &table, "repulsion", &base.solver.repulsion),
+    };
+    Scene { contact, solver, ..base }
+}
+
+fn solver_part<T>(reader: &mut Reader<'_>, solver: &Table, key: &str, base: &T) -> T
+where
+    T: Serialize + DeserializeOwned + Default + Clone,
+{
+    let table = reader.table(solver, "solver", key);
+    reader.structure_over(base, &table, &join("solver", key))
 }
 
 fn body(reader: &mut Reader<'_>, table: &Table, path: &str, index: usize) -> BodySpec {

@@ -13,8 +13,7 @@ use toml::{Table, Value};
 /// The scene as text. What equals a default, or a preset's value, is left out.
 pub(super) fn text(scene: &Scene) -> String {
     let mut root = write::table_of_names(scene);
-    let base =
-        write::table(&Scene { preset: scene.preset, twoway: scene.preset.params(), ..Scene::default() });
+    let base = write::table(&Scene::with_preset(scene.preset));
     for key in ["simulation", "contact", "solver", "output"] {
         if let (Some(Value::Table(own)), Some(Value::Table(base))) = (root.get_mut(key), base.get(key)) {
             let preset = own.get("preset").filter(|_| scene.preset != Preset::default()).cloned();

@@ -53,11 +53,11 @@ fn values_reach_their_structs() {
     let scene = Scene::from_toml(SMALL, "").expect("a scene");
     assert_eq!(scene.simulation.dt, 0.02);
     assert_eq!(scene.simulation.frames, SimulationParams::default().frames);
-    assert_eq!(scene.dynamics.environment.gravity, Vector::new(0.0, 0.0, -1.62));
-    assert_eq!(scene.dynamics.newton.cg_tolerance, 1e-6);
-    assert_eq!(scene.twoway.contact.delta, Some(0.002));
-    assert_eq!(scene.twoway.solver.backward.sweeps, 4);
-    assert_eq!(scene.twoway.solver.stop.max_steps, Some(100));
+    assert_eq!(scene.environment.gravity, Vector::new(0.0, 0.0, -1.62));
+    assert_eq!(scene.solver.newton.cg_tolerance, 1e-6);
+    assert_eq!(scene.contact.delta, Some(0.002));
+    assert_eq!(scene.solver.backward.sweeps, 4);
+    assert_eq!(scene.solver.stop.max_steps, Some(100));
     let Material::Cloth(material) = scene.bodies[0].material else { panic!("no cloth") };
     assert_eq!(material, ClothMaterial { density: 0.1, ..ClothMaterial::silk() });
     assert!(matches!(scene.obstacles[0].shape, Some(Shape::HalfSpace(_))));
@@ -217,8 +217,8 @@ fn sets_override_before_anything_is_interpreted() {
     assert_eq!(scene, "--set: simulation.dt: invalid type: string \"1/50\", expected f64");
     let scene =
         set(&["simulation.dt = 0.05", "solver.stop.max_steps=7", "contact.form=volume"]).expect("sets");
-    assert_eq!((scene.simulation.dt, scene.twoway.solver.stop.max_steps), (0.05, Some(7)));
-    assert_eq!(scene.twoway.contact.form, bowknot_constraints::ContactForm::Volume);
+    assert_eq!((scene.simulation.dt, scene.solver.stop.max_steps), (0.05, Some(7)));
+    assert_eq!(scene.contact.form, bowknot_constraints::ContactForm::Volume);
     let scene = set(&["body.sheet.material.density=2", "obstacle.0.shape.radius=0.2"]).expect("sets");
     let Material::Cloth(material) = scene.bodies[0].material else { panic!("no cloth") };
     assert_eq!(material, ClothMaterial { density: 2.0, ..ClothMaterial::cotton() });
@@ -241,12 +241,12 @@ fn sets_override_before_anything_is_interpreted() {
 fn a_preset_changes_defaults_and_keeps_what_was_stated() {
     let stated = Scene::from_toml(&changed("delta = 0.002", "delta = 0.002\npreset = \"paper\""), "")
         .expect("a scene");
-    assert_eq!(stated.twoway.solver.backward.sweeps, 4);
-    assert_eq!(stated.twoway.contact.delta, Some(0.002));
-    assert_eq!(stated.twoway.solver.forward, bowknot_twoway::ForwardParams::paper());
+    assert_eq!(stated.solver.backward.sweeps, 4);
+    assert_eq!(stated.contact.delta, Some(0.002));
+    assert_eq!(stated.solver.forward, bowknot_twoway::ForwardParams::paper());
     let set =
         Scene::builtin("drape", 0.1).expect("a scene").with_sets(&["contact.preset=paper"]).expect("a set");
-    assert_eq!(set.twoway, bowknot_twoway::Params::paper());
+    assert_eq!(set.twoway(), bowknot_twoway::Params::paper());
     let sets = ["contact.preset=paper", "solver.forward.bound=planes"];
     let params = twoway_params(&sets).expect("parameters");
     assert_eq!(params.solver.forward.bound, bowknot_twoway::stepper::Bound::Planes);

@@ -18,14 +18,14 @@ use std::collections::HashMap;
 pub(super) fn scene(scene: &Scene, source: &Source) -> Result<(), SceneError> {
     let mut problems = Vec::new();
     report_errors(&mut problems, source, "simulation", &scene.simulation);
-    report_errors(&mut problems, source, "simulation", &scene.dynamics.environment);
-    report_errors(&mut problems, source, "solver.newton", &scene.dynamics.newton);
+    report_errors(&mut problems, source, "simulation", &scene.environment);
+    report_errors(&mut problems, source, "solver.newton", &scene.solver.newton);
+    report_errors(&mut problems, source, "solver.repulsion", &scene.solver.repulsion);
     report_errors(&mut problems, source, "output", &scene.output);
     // The paths of these parameters are keys of the scene.
-    report_errors(&mut problems, source, "", &scene.twoway);
+    report_errors(&mut problems, source, "", &scene.twoway());
     validate_bodies(scene, source, &mut problems);
     contact::validate_pairs(scene, source, &mut problems);
-    report_errors(&mut problems, source, "solver.repulsion", &scene.repulsion);
     for (index, pin) in scene.pins.iter().enumerate() {
         validate_pin(scene, pin, source, &format!("pin[{index}]"), &mut problems);
     }

@@ -8,19 +8,16 @@ use toml::{Table, Value};
 /// The scene as tables, every default filled in.
 pub(super) fn table(scene: &Scene) -> Table {
     let mut simulation = fields(&scene.simulation);
-    simulation.extend(fields(&scene.dynamics.environment));
-    let mut solver = fields(&scene.twoway.solver);
-    solver.insert("newton".to_owned(), Value::Table(fields(&scene.dynamics.newton)));
-    solver.insert("repulsion".to_owned(), Value::Table(fields(&scene.repulsion)));
+    simulation.extend(fields(&scene.environment));
     let mut contact = Table::new();
     insert(&mut contact, "preset", &scene.preset);
-    contact.extend(fields(&scene.twoway.contact));
+    contact.extend(fields(&scene.contact));
     insert(&mut contact, "friction_pairs", &scene.friction_pairs);
 
     let mut root = Table::new();
     root.insert("simulation".to_owned(), Value::Table(simulation));
     root.insert("contact".to_owned(), Value::Table(contact));
-    root.insert("solver".to_owned(), Value::Table(solver));
+    root.insert("solver".to_owned(), Value::Table(fields(&scene.solver)));
     root.insert("output".to_owned(), Value::Table(fields(&scene.output)));
     insert(&mut root, "body", &scene.bodies);
     insert(&mut root, "obstacle", &scene.obstacles);
@@ -57,7 +54,7 @@ pub(super) fn text(scene: &Scene) -> String {
 
 /// Removes from `[contact]` and `[solver]` what equals the preset's own values.
 pub(super) fn drop_defaults(root: &mut Table, scene: &Scene) {
-    let base = table(&Scene { preset: scene.preset, twoway: scene.preset.params(), ..Scene::default() });
+    let base = table(&Scene::with_preset(scene.preset));
     for key in ["contact", "solver"] {
         if let (Some(Value::Table(own)), Some(Value::Table(base))) = (root.get_mut(key), base.get(key)) {
             subtract(own, base);

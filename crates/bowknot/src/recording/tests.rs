@@ -62,7 +62,7 @@ fn a_recorded_problem_ends_where_the_simulation_did() {
     let mut simulator = Simulator::new(&scene).expect("a simulator");
     let mut again = Again {
         recorder: Recorder::new(&simulator),
-        params: scene.twoway.clone(),
+        params: scene.twoway(),
         path: folder.path().join("problem.npz"),
         ends: Vec::new(),
     };

@@ -63,7 +63,7 @@ pub fn export(
 
     let first = frames.read(0)?;
     let names = scene.as_ref().map(names).unwrap_or_default();
-    let width = scene.as_ref().and_then(|scene| scene.twoway.contact.delta);
+    let width = scene.as_ref().and_then(|scene| scene.contact.delta);
     create_folder(&options.out)?;
     let spool = options.out.join(format!(".frames.{}.part", std::process::id()));
     let layout = Layout::of_mesh(&first, names);

@@ -119,7 +119,7 @@ impl RunWriter {
 
     fn new(folder: &Path, scene: &Scene, simulator: &Simulator, statistics: File) -> Result<Self, IoError> {
         let spool = folder.join("checkpoint").join("frames.f64");
-        let width = scene.twoway.contact.delta;
+        let width = scene.contact.delta;
         let layout = Layout::new(simulator.world());
         let dt = scene.simulation.dt;
         Ok(Self {

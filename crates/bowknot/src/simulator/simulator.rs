@@ -101,18 +101,18 @@ impl Simulator {
         let count = world.collision_vertices();
         let (rest, masses) = (&model.rest_positions()[..count], &model.masses()[..count]);
         let contact = world.contact.clone();
-        let resolver = Resolver::new(world.collision.clone(), rest, masses, scene.twoway.clone())
+        let resolver = Resolver::new(world.collision.clone(), rest, masses, scene.twoway())
             .and_then(|resolver| resolver.with_bodies(contact.bodies))
             .and_then(|resolver| resolver.with_half_spaces(contact.half_spaces))
             .and_then(|resolver| resolver.with_pair_friction(&contact.pairs))
             .map_err(|source| resolve_error(&world, 0, source))?;
-        let contacts = Contacts::new(&scene.repulsion, &world, &resolver);
-        let dynamics = Dynamics::new(model, scene.dynamics).map_err(SimulationError::Dynamics)?;
+        let contacts = Contacts::new(&scene.solver.repulsion, &world, &resolver);
+        let dynamics = Dynamics::new(model, scene.dynamics()).map_err(SimulationError::Dynamics)?;
         let anchors = vec![Vec::new(); world.pins.len()];
         Ok(Self {
             dt: scene.simulation.dt,
             newton_iterations: scene.simulation.newton_iterations,
-            step_tolerance: scene.dynamics.newton.step_tolerance,
+            step_tolerance: scene.solver.newton.step_tolerance,
             collision_every: scene.simulation.collision_every,
             dynamics,
             resolver,

@@ -35,7 +35,7 @@ fn every_fabric_is_held_at_its_limit_where_its_elasticity_would_give_way() {
         // limit.
         let strain = 4.0 * (material.stretch_limit - 1.0);
         let pull = strain * material.stretch_stiffness / (material.density * 0.3);
-        scene.dynamics.environment.gravity = Vector::new(pull, 0.0, 0.0);
+        scene.environment.gravity = Vector::new(pull, 0.0, 0.0);
         scene.simulation.dt = 0.002;
         let stretch = |scene: &Scene| {
             let mut simulator = Simulator::new(scene).unwrap_or_else(|error| panic!("{error}"));
@@ -43,7 +43,7 @@ fn every_fabric_is_held_at_its_limit_where_its_elasticity_would_give_way() {
             assert!(steps.iter().all(|s| s.converged), "{name}");
             (steps.iter().map(|s| s.max_stretch).fold(0.0, f64::max), steps[59].max_stretch)
         };
-        let tolerance = 1.0 + scene.twoway.solver.stop.stretch_tolerance;
+        let tolerance = 1.0 + scene.solver.stop.stretch_tolerance;
         let (largest, last) = stretch(&scene);
         assert!(largest <= tolerance * material.stretch_limit + 1e-9, "{name}: {largest}");
         assert!(
@@ -127,7 +127,7 @@ fn recorded_problems_hold_the_limit_of_the_fabric() {
         let states = States::read(&path).expect("read");
         assert_eq!(states.body_contacts.first().and_then(|b| b.stretch_limit), recorded, "{contact}");
         let model = states.collision_model().expect("a model");
-        let resolver = states.resolver(model, scene.twoway.clone()).expect("a resolver");
+        let resolver = states.resolver(model, scene.twoway()).expect("a resolver");
         assert_eq!(resolver.scene().stretch_limit(0), limit(&scene), "{contact}");
     }
 }

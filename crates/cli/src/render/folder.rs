@@ -175,7 +175,7 @@ fn radius(scene: &Scene, mesh: &Mesh) -> f64 {
         Material::Strands(strand) => Some(2.0 * strand.radius),
         _ => None,
     });
-    let given = own.min_by(f64::total_cmp).or(scene.twoway.contact.delta);
+    let given = own.min_by(f64::total_cmp).or(scene.contact.delta);
     let of_edges = || mean_edge(mesh).map(|length| DELTA * length);
     let delta = given.or_else(of_edges).unwrap_or_else(|| spacing(mesh));
     let (low, high) = positions.iter().fold((positions[0], positions[0]), |(l, h), p| (l.inf(p), h.sup(p)));

@@ -70,7 +70,7 @@ pub(super) fn scene(scale: f64) -> Scene {
         ..Scene::default()
     };
     scene.obstacles[0].friction = FRICTION;
-    scene.twoway.contact.delta = Some(DELTA);
+    scene.contact.delta = Some(DELTA);
     scene.simulation.frames = 500;
     scene
 }

@@ -85,7 +85,7 @@ impl Hand {
 pub(super) fn scene(bodies: Vec<BodySpec>, hands: &[Hand], frames: usize) -> Scene {
     let mut scene = Scene { bodies, pins: hands.iter().flat_map(Hand::pair).collect(), ..Scene::default() };
     scene.simulation.frames = frames;
-    scene.dynamics.environment.gravity = Vector::zeros();
+    scene.environment.gravity = Vector::zeros();
     scene
 }
 

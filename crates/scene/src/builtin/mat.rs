@@ -26,6 +26,6 @@ pub(super) fn scene(scale: f64) -> Scene {
     let twist = [(0.0, 0.0, 0.0), (0.5, 1.0, 0.03), (1.0, 2.0, 0.1), (2.0, 4.0, 0.3)];
     let mut scene = Scene { bodies: vec![body], pins: twisted_ends("mat", &twist), ..Scene::default() };
     scene.simulation.frames = 220;
-    scene.dynamics.environment.gravity = Vector::zeros();
+    scene.environment.gravity = Vector::zeros();
     scene
 }

@@ -51,6 +51,6 @@ pub(super) fn scene(scale: f64) -> Scene {
     let mut scene = Scene { bodies: vec![sand], obstacles: vec![funnel, ground], ..Scene::default() };
     scene.simulation.frames = 200;
     // Grains touch everywhere: a wider range would list pairs with the neighbors' neighbors.
-    scene.twoway.contact.range = 1.2;
+    scene.contact.range = 1.2;
     scene
 }

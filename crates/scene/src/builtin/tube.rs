@@ -30,6 +30,6 @@ pub(super) fn scene(scale: f64) -> Scene {
     let mut scene = Scene { bodies: vec![body], pins: twisted_ends("tube", &twist), ..Scene::default() };
     scene.simulation.frames = 150;
     // Under gravity the tube would swing below its ends rather than bunch up between them.
-    scene.dynamics.environment.gravity = Vector::zeros();
+    scene.environment.gravity = Vector::zeros();
     scene
 }

@@ -43,7 +43,7 @@ pub(super) fn scene(scale: f64) -> Scene {
         ..Scene::default()
     };
     scene.obstacles[0].friction = 1.0;
-    scene.twoway.contact.delta = Some(delta);
+    scene.contact.delta = Some(delta);
     // At 1/100 s the cords move by more than their thickness within a time step, and every crossing must be
     // found anew.
     scene.simulation.dt = 0.0025;

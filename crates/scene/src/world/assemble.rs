@@ -236,7 +236,7 @@ impl Assembly {
 /// Stretch limit of a body: its own, or that of its material unless the scene has one for all, which is left
 /// to `contact.stretch_limit`.
 fn stretch_limit(scene: &Scene, body: &BodySpec) -> Option<f64> {
-    let for_all = scene.twoway.contact.stretch_limit.is_some();
+    let for_all = scene.contact.stretch_limit.is_some();
     body.stretch_limit.or_else(|| if for_all { None } else { body.material.stretch_limit() })
 }
 
