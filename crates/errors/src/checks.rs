@@ -9,15 +9,19 @@ use std::fmt;
 pub struct ParamError {
     /// Path of the parameter from the struct that was validated, such as `stop.distance`.
     pub path: String,
-    /// Its value, as text.
+    /// Its value, as text; empty if it is missing, or wrong only beside another parameter.
     pub value: String,
-    /// What is allowed: "must be ...".
+    /// What is allowed, "must be ...", or what is missing or contradicts.
     pub allowed: String,
 }
 
 impl fmt::Display for ParamError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} = {}: {}", self.path, self.value, self.allowed)
+        if self.value.is_empty() {
+            write!(f, "{}: {}", self.path, self.allowed)
+        } else {
+            write!(f, "{} = {}: {}", self.path, self.value, self.allowed)
+        }
     }
 }
 
@@ -59,6 +63,11 @@ impl Checks {
     /// Refuses `value`; `allowed` says what is allowed, "must be ...".
     pub fn refuse(&mut self, field: &str, value: impl fmt::Display, allowed: impl Into<String>) {
         self.require(false, field, value, allowed);
+    }
+
+    /// Refuses a field that is missing or that contradicts another; `message` says which, and the remedy.
+    pub fn contradiction(&mut self, field: &str, message: impl Into<String>) {
+        self.refuse(field, "", message);
     }
 
     /// Number of errors so far, in all structs that have been checked.

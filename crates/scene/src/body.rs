@@ -1,11 +1,11 @@
-//! Bodies, obstacles and pins as a scene describes them.
+//! Deformable bodies as a scene describes them.
 
 use crate::kind::BodyKind;
 use crate::material::Material;
-use crate::motion::Motion;
 use crate::shapes::Shape;
-use bowknot_geometry::{Point, Vector};
-use bowknot_io::Up;
+use bowknot_errors::{Checks, Parameters};
+use bowknot_geometry::Vector;
+use bowknot_io::{Import, Up};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -70,142 +70,6 @@ pub struct BodySpec {
     pub self_collision: bool,
 }
 
-/// Something that deformable bodies collide with and that moves only as prescribed, `[[obstacle]]`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct ObstacleSpec {
-    /// Name in messages. Default `obstacle` and its index.
-    pub name: String,
-    /// Mesh file (OBJ, PLY, MSH, T, SEG) relative to the scene file; of tetrahedra, the surface. This,
-    /// `shape`, or `sequence`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub mesh: Option<PathBuf>,
-    /// Generated mesh or `half-space`, see the shapes. This, `mesh`, or `sequence`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub shape: Option<Shape>,
-    /// An animation, relative to the scene file: a folder of meshes of equal elements, taken in the order of
-    /// their names, or an NPZ archive of `X[f,n,3]` and `F[m,3]`. Frames are joined linearly. This, `mesh`,
-    /// or `shape`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub sequence: Option<PathBuf>,
-    /// Frames of the sequence a second [1/s]. Default 30.
-    pub sequence_rate: f64,
-    /// When the sequence begins [s]; it is held at its first frame before, and at its last one after. Default
-    /// 0.
-    pub sequence_start: f64,
-    /// Axis of the mesh that points up: `x`, `y` or `z`. Default `z`.
-    pub up: Up,
-    /// Factor on the mesh's coordinates [1]: 0.001 for a mesh in millimeters. Default 1.
-    pub scale: f64,
-    /// Rotation about the x, then the y, then the z axis through the origin [deg], after `up` and
-    /// `scale`. Default (0, 0, 0).
-    pub rotate: Vector,
-    /// Displacement after the rotation [m]. Default (0, 0, 0).
-    pub translate: Vector,
-    /// Rigid motion over time, see the motions; not for a half-space, nor for what moves by itself. Default:
-    /// at rest.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub motion: Option<Motion>,
-    /// Coefficient of Coulomb friction [1], as for bodies. Default 0.
-    pub friction: f64,
-    /// Guaranteed smallest gap [m], as for bodies. A half-space without one counts as 0 against a body that
-    /// has one. Default: the minimum separation of the scene.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub thickness: Option<f64>,
-    /// Collision groups that the obstacle is in, from 0 to 31 [1]. A half-space meets all. Default
-    /// `[0]`.
-    pub groups: Vec<u32>,
-    /// Collision groups that it meets [1]; both sides must agree. Default: all.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub collides_with: Option<Vec<u32>>,
-}
-
-/// Vertices of a body that are held or led, `[[pin]]`. The vertices are those of all selectors given
-/// (`vertices`, `box`, `side`, `roots`). While an obstacle or another body is in the way they wait, as one.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct PinSpec {
-    /// Name of the body. May be left out if there is only one.
-    pub body: String,
-    /// Vertices by index in the body's mesh, from 0. Default none.
-    pub vertices: Vec<u32>,
-    /// Vertices within an axis-aligned box of the scene at its start. Default none.
-    #[serde(rename = "box", skip_serializing_if = "Option::is_none")]
-    pub region: Option<Region>,
-    /// Vertices on a side of the body's bounding box: `x-min`, `x-max`, `y-min`, `y-max`, `z-min`,
-    /// `z-max`. Default none.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub side: Option<Side>,
-    /// How many vertices of each strand are held, from its root on, the end that comes first in the mesh [1]:
-    /// 1 hinges strands, 2 or more clamp their direction as well. Default 0.
-    pub roots: usize,
-    /// Rigid motion over time, see the motions. Default: held where they are.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub motion: Option<Motion>,
-    /// Name of an obstacle with a mesh that they follow instead: each keeps its place relative to the
-    /// triangle that is nearest to it when the pin takes hold, as if sewn on. Default none.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub follow: Option<String>,
-    /// When the pin takes hold [s]; it takes the vertices from where they are then. Default 0.
-    pub start: f64,
-    /// When it lets go [s]. Default inf.
-    pub end: f64,
-}
-
-/// An axis-aligned box of the scene.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Region {
-    /// Lower corner [m]; components may be -inf. Default -inf.
-    pub min: Point,
-    /// Upper corner [m]; components may be inf. Default inf.
-    pub max: Point,
-}
-
-/// A side of a body's bounding box.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[allow(missing_docs)]
-pub enum Side {
-    XMin,
-    XMax,
-    YMin,
-    YMax,
-    ZMin,
-    ZMax,
-}
-
-impl Side {
-    /// Axis, and whether it is the upper end.
-    pub fn axis(self) -> (usize, bool) {
-        match self {
-            Self::XMin => (0, false),
-            Self::XMax => (0, true),
-            Self::YMin => (1, false),
-            Self::YMax => (1, true),
-            Self::ZMin => (2, false),
-            Self::ZMax => (2, true),
-        }
-    }
-}
-
-impl Default for Region {
-    fn default() -> Self {
-        let infinity = f64::INFINITY;
-        Self {
-            min: Point::new(-infinity, -infinity, -infinity),
-            max: Point::new(infinity, infinity, infinity),
-        }
-    }
-}
-
-impl Region {
-    /// Whether a point lies in the box or on its surface.
-    pub fn contains(&self, p: &Point) -> bool {
-        (0..3).all(|c| self.min[c] <= p[c] && p[c] <= self.max[c])
-    }
-}
-
 impl Default for BodySpec {
     fn default() -> Self {
         Self {
@@ -232,40 +96,77 @@ impl Default for BodySpec {
     }
 }
 
-impl Default for ObstacleSpec {
-    fn default() -> Self {
-        Self {
-            name: String::new(),
-            mesh: None,
-            shape: None,
-            sequence: None,
-            sequence_rate: 30.0,
-            sequence_start: 0.0,
-            up: Up::Z,
-            scale: 1.0,
-            rotate: Vector::zeros(),
-            translate: Vector::zeros(),
-            motion: None,
-            friction: 0.0,
-            thickness: None,
-            groups: vec![0],
-            collides_with: None,
+impl Parameters for BodySpec {
+    fn check(&self, checks: &mut Checks) {
+        check_placement(checks, self.scale, &self.rotate, &self.translate);
+        checks.all_finite("velocity", &self.velocity);
+        checks.all_finite("angular_velocity", &self.angular_velocity);
+        if let Some(gravity) = &self.gravity {
+            checks.all_finite("gravity", gravity);
+        }
+        check_groups(checks, &self.groups, self.collides_with.as_deref());
+        checks.non_negative("friction", self.friction);
+        if let Some(thickness) = self.thickness {
+            checks.non_negative("thickness", thickness);
+        }
+        if let Some(delta) = self.delta {
+            checks.positive("delta", delta);
+        }
+        if let Some(limit) = self.stretch_limit {
+            checks.above_or_infinite("stretch_limit", limit, 1.0);
+        }
+        if self.material.kind() != self.kind {
+            let (own, kind) = (self.material.kind().name(), self.kind.name());
+            checks.contradiction("material", format!("is one of kind {own}, but the body is of kind {kind}"));
+        }
+        checks.within("material", &self.material);
+        match &self.shape {
+            None if self.mesh.is_none() => checks.contradiction("mesh", "needs a mesh file, or a shape"),
+            None => {}
+            Some(shape) => {
+                if self.mesh.is_some() {
+                    checks.contradiction("shape", "stands beside mesh; only one of them may be given");
+                }
+                if let Some(message) = self.unfit(shape) {
+                    checks.contradiction("shape", message);
+                }
+                checks.within("shape", shape);
+            }
         }
     }
 }
 
-impl Default for PinSpec {
-    fn default() -> Self {
-        Self {
-            body: String::new(),
-            vertices: Vec::new(),
-            region: None,
-            side: None,
-            roots: 0,
-            motion: None,
-            follow: None,
-            start: 0.0,
-            end: f64::INFINITY,
+impl BodySpec {
+    /// Why a shape is none for this body.
+    fn unfit(&self, shape: &Shape) -> Option<String> {
+        let (own, kind) = (shape.kind(), self.kind);
+        match shape {
+            Shape::HalfSpace(_) => Some("a half-space can only be an obstacle".to_owned()),
+            Shape::Figure(_) => Some("a figure can only be an obstacle".to_owned()),
+            _ if own != kind => {
+                let (own, kind) = (own.name(), kind.name());
+                Some(format!("makes a body of kind {own}, but this one is of kind {kind}"))
+            }
+            _ => None,
         }
+    }
+}
+
+/// Checks where a mesh is placed.
+pub(crate) fn check_placement(checks: &mut Checks, scale: f64, rotate: &Vector, translate: &Vector) {
+    Import { scale, ..Import::default() }.check(checks);
+    checks.all_finite("rotate", rotate);
+    checks.all_finite("translate", translate);
+}
+
+/// Checks collision groups.
+pub(crate) fn check_groups(checks: &mut Checks, groups: &[u32], collides_with: Option<&[u32]>) {
+    for (field, list) in [("groups", groups), ("collides_with", collides_with.unwrap_or_default())] {
+        if let Some(group) = list.iter().find(|group| **group > 31) {
+            checks.refuse(field, format!("group {group}"), "must be at most 31");
+        }
+    }
+    if groups.is_empty() {
+        checks.contradiction("groups", "must name at least one group");
     }
 }

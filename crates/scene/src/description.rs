@@ -1,8 +1,10 @@
 //! A scene: what a TOML file holds, with every default filled in.
 
-use crate::body::{BodySpec, ObstacleSpec, PinSpec};
+use crate::body::BodySpec;
 use crate::friction::FrictionPair;
+use crate::obstacle::ObstacleSpec;
 use crate::params::{OutputParams, Preset, SceneSolverParams, SimulationParams};
+use crate::pin::PinSpec;
 use bowknot_dynamics::{DynamicsParams, Environment};
 use bowknot_twoway::ContactParams;
 use std::path::PathBuf;

@@ -1,5 +1,6 @@
 //! Friction of pairs of bodies.
 
+use bowknot_errors::{Checks, Parameters};
 use serde::{Deserialize, Serialize};
 
 /// Friction between two bodies, `[[contact.friction_pairs]]`.
@@ -11,4 +12,10 @@ pub struct FrictionPair {
     /// Coefficient of Coulomb friction between them [1], at least 0, in place of the mean of their own.
     /// Default 0.
     pub friction: f64,
+}
+
+impl Parameters for FrictionPair {
+    fn check(&self, checks: &mut Checks) {
+        checks.non_negative("friction", self.friction);
+    }
 }

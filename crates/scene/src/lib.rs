@@ -14,7 +14,6 @@
 
 mod body;
 mod builtin;
-mod contact;
 mod description;
 mod error;
 mod fields;
@@ -22,8 +21,10 @@ mod friction;
 mod kind;
 mod material;
 mod motion;
+mod obstacle;
 mod open;
 mod params;
+mod pin;
 mod read;
 mod reader;
 pub mod shapes;
@@ -43,7 +44,7 @@ pub use bowknot_io as io;
 /// Parameters of the collision stage.
 pub use bowknot_twoway as twoway;
 
-pub use body::{BodySpec, ObstacleSpec, PinSpec, Region, Side};
+pub use body::BodySpec;
 pub use builtin::{BUILTIN, Builtin};
 pub use description::Scene;
 pub use error::{Origin, SceneError, SceneProblem};
@@ -51,11 +52,13 @@ pub use friction::FrictionPair;
 pub use kind::BodyKind;
 pub use material::Material;
 pub use motion::{Keyframe, Motion, Placement};
+pub use obstacle::ObstacleSpec;
 pub use open::twoway_params;
 pub use params::{
     CollisionEvery, Format, InteriorFollows, OutputParams, Preset, RepulsionParams, SceneSolverParams,
     SimulationParams,
 };
+pub use pin::{PinSpec, Region, Side};
 pub use world::{SceneInfo, World};
 
 /// The README's example is tested with the documentation.

@@ -1,13 +1,15 @@
 //! From a parsed description to a [`Scene`].
 
-use crate::body::{BodySpec, ObstacleSpec, PinSpec, Region};
+use crate::body::BodySpec;
 use crate::description::Scene;
 use crate::error::{SceneError, nearest};
 use crate::fields::field_names;
 use crate::friction::FrictionPair;
 use crate::material;
 use crate::motion::Motion;
+use crate::obstacle::ObstacleSpec;
 use crate::params::{OutputParams, Preset, SceneSolverParams, SimulationParams};
+use crate::pin::{PinSpec, Region};
 use crate::reader::Reader;
 use crate::shapes::{
     Ball, Block, Cone, Cuboid, Figure, Garment, Grains, HalfSpaceShape, Lathe, Ribbon, Shape, Sheet, Strands,

@@ -1,10 +1,12 @@
 //! A scene as the TOML that a person would write: without what is default.
 
-use crate::body::{BodySpec, ObstacleSpec, PinSpec};
+use crate::body::BodySpec;
 use crate::description::Scene;
 use crate::material::Material;
 use crate::motion::{Keyframe, Motion};
+use crate::obstacle::ObstacleSpec;
 use crate::params::Preset;
+use crate::pin::PinSpec;
 use crate::shapes::Shape;
 use crate::write::{self, subtract};
 use serde::Deserialize;

@@ -31,9 +31,9 @@ fn keys_of_bodies_are_refused_one_by_one() {
         ("friction = nan", "2: body[0].friction: NaN must be finite and at least 0"),
         ("thickness = -1", "2: body[0].thickness: -1 must be finite and at least 0"),
         ("delta = 0", "2: body[0].delta: 0 must be finite and above 0"),
-        ("stretch_limit = 1", "2: body[0].stretch_limit: 1 must be above 1, or inf for no limit"),
-        ("gravity = [0, nan, 0]", "2: body[0].gravity: must be finite"),
-        ("angular_velocity = [inf, 0, 0]", "2: body[0].angular_velocity: must be finite"),
+        ("stretch_limit = 1", "2: body[0].stretch_limit: 1 must be above 1, inf included"),
+        ("gravity = [0, nan, 0]", "2: body[0].gravity: [0.0, NaN, 0.0] must be finite"),
+        ("angular_velocity = [inf, 0, 0]", "2: body[0].angular_velocity: [inf, 0.0, 0.0] must be finite"),
         (
             "material = { young_modulus = 1e6 }",
             "2: body[0].material.young_modulus: a key of kind solid, but this body is of kind cloth",

@@ -1,6 +1,6 @@
 use super::{ground, sheet};
-use crate::body::ObstacleSpec;
 use crate::description::Scene;
+use crate::obstacle::ObstacleSpec;
 use crate::shapes::{Shape, Wedge};
 
 /// 59,405 vertices and 116,640 triangles, after Fig. 22 of the paper. Five sheets, each 1 m wide, 4 cm apart,

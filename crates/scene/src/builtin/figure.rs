@@ -1,8 +1,10 @@
 //! What the scenes of a dressed figure share.
 
-use crate::body::{BodySpec, ObstacleSpec, PinSpec, Side};
+use crate::body::BodySpec;
 use crate::description::Scene;
 use crate::material::Material;
+use crate::obstacle::ObstacleSpec;
+use crate::pin::{PinSpec, Side};
 use crate::shapes::{Figure, Garment, Shape};
 use bowknot_dynamics::ClothMaterial;
 

@@ -1,7 +1,9 @@
 use super::{ground, sheet};
-use crate::body::{BodySpec, ObstacleSpec, PinSpec, Region};
+use crate::body::BodySpec;
 use crate::description::Scene;
 use crate::motion::{Keyframe, Motion};
+use crate::obstacle::ObstacleSpec;
+use crate::pin::{PinSpec, Region};
 use crate::shapes::{Lathe, Shape};
 use bowknot_constraints::STRETCH_LIMIT;
 use bowknot_geometry::{Point, Vector};

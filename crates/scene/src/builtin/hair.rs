@@ -1,9 +1,10 @@
 use super::ball;
-use crate::body::{BodySpec, PinSpec};
+use crate::body::BodySpec;
 use crate::description::Scene;
 use crate::kind::BodyKind;
 use crate::material::Material;
 use crate::motion::{Keyframe, Motion};
+use crate::pin::PinSpec;
 use crate::shapes::{Root, Shape, Strands};
 use bowknot_dynamics::StrandMaterial;
 use bowknot_geometry::Vector;

@@ -1,9 +1,10 @@
 //! What the two knots share: ribbons along given curves, and the hands that pull them.
 
-use crate::body::{BodySpec, PinSpec, Region};
+use crate::body::BodySpec;
 use crate::description::Scene;
 use crate::material::Material;
 use crate::motion::{Keyframe, Motion};
+use crate::pin::{PinSpec, Region};
 use crate::shapes::{Ribbon, Shape};
 use bowknot_dynamics::ClothMaterial;
 use bowknot_geometry::{Point, Vector};

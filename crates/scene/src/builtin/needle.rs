@@ -1,6 +1,6 @@
 use super::{ground, sheet};
-use crate::body::ObstacleSpec;
 use crate::description::Scene;
+use crate::obstacle::ObstacleSpec;
 use crate::shapes::{Cone, Shape};
 
 /// 10,201 vertices and 20,000 triangles, after Fig. 9 and 17 of the paper. The sheet is 1 m wide and

@@ -1,8 +1,9 @@
 use super::ground;
-use crate::body::{BodySpec, ObstacleSpec};
+use crate::body::BodySpec;
 use crate::description::Scene;
 use crate::kind::BodyKind;
 use crate::material::Material;
+use crate::obstacle::ObstacleSpec;
 use crate::shapes::{Grains, Lathe, Shape};
 use bowknot_dynamics::ParticleMaterial;
 use bowknot_geometry::Vector;

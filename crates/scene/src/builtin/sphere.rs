@@ -1,7 +1,7 @@
 use super::{ball, ground, sheet};
-use crate::body::ObstacleSpec;
 use crate::description::Scene;
 use crate::motion::Motion;
+use crate::obstacle::ObstacleSpec;
 
 /// Of everything with everything.
 const FRICTION: f64 = 0.4;

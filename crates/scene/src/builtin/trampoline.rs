@@ -1,8 +1,9 @@
 use super::sheet;
-use crate::body::{BodySpec, PinSpec, Region, Side};
+use crate::body::BodySpec;
 use crate::description::Scene;
 use crate::kind::BodyKind;
 use crate::material::Material;
+use crate::pin::{PinSpec, Region, Side};
 use crate::shapes::{Block, Shape, TetBall};
 use bowknot_dynamics::{ClothMaterial, SolidMaterial};
 use bowknot_geometry::{Point, Vector};

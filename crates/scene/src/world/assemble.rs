@@ -3,10 +3,11 @@
 use super::part::Part;
 use super::pins::pins;
 use super::{ObstacleMotion, Placing, Procedural, World, WorldBody, WorldContact, joined, sequence};
-use crate::body::{BodySpec, ObstacleSpec};
+use crate::body::BodySpec;
 use crate::description::Scene;
 use crate::error::SceneError;
 use crate::material::Material;
+use crate::obstacle::ObstacleSpec;
 use crate::shapes::Shape;
 use bowknot_dynamics::{Body, BodyShape};
 use bowknot_geometry::{HalfSpace, Point, Topology, Vector};

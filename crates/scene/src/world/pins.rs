@@ -2,10 +2,10 @@
 
 use super::part::element_of;
 use super::{Pin, WorldBody, bounds};
-use crate::body::PinSpec;
 use crate::description::Scene;
 use crate::error::SceneError;
 use crate::kind::BodyKind;
+use crate::pin::PinSpec;
 use bowknot_geometry::Point;
 
 /// The pins of a scene, given its bodies and the positions at time 0.

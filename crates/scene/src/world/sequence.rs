@@ -2,8 +2,8 @@
 
 use super::part::Part;
 use super::{Placing, Sequence};
-use crate::body::ObstacleSpec;
 use crate::error::SceneError;
+use crate::obstacle::ObstacleSpec;
 use bowknot_geometry::Point;
 #[cfg(feature = "npz")]
 use bowknot_io::FrameStack;
