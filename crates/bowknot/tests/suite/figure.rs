@@ -70,11 +70,11 @@ fn what_cannot_be_followed_is_refused() {
     let refusal = |pin: &str| Scene::from_toml(&sewn(pin), "").expect_err("refused").to_string();
     let message = refusal("follow = \"bok\"");
     assert!(
-        message.contains("no obstacle \"bok\" with a mesh; there are: box; did you mean box?"),
+        message.contains("no obstacle with a mesh \"bok\"; there are: box; did you mean box?"),
         "{message}"
     );
     let message = refusal("follow = \"ground\"");
-    assert!(message.contains("pin[0].follow: no obstacle \"ground\""), "{message}");
+    assert!(message.contains("pin[0].follow: no obstacle with a mesh \"ground\""), "{message}");
     let message = refusal("follow = \"box\"\nmotion = { spin = 1 }");
     assert!(message.contains("stands beside motion"), "{message}");
     let body = "[[body]]\nshape = \"figure\"\n";

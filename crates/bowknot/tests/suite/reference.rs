@@ -20,9 +20,11 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 /// Where the structs and enums are, relative to `crates`.
-const SOURCES: [&str; 34] = [
+const SOURCES: [&str; 36] = [
     "scene/src/params.rs",
     "scene/src/body.rs",
+    "scene/src/obstacle.rs",
+    "scene/src/pin.rs",
     "scene/src/kind.rs",
     "scene/src/friction.rs",
     "scene/src/motion.rs",
