@@ -3,6 +3,7 @@
 use crate::safety::{seeds, watched};
 use bowknot_baselines::barrier::{BarrierParams, by_descent, by_newton};
 use bowknot_baselines::ccd::{AdditiveCcd, ClosingSpeed, EarliestImpact, PerVertexImpact};
+use bowknot_errors::{Errors, ParamError};
 use bowknot_stepper::{StepReport, Stepper};
 use bowknot_twoway::{
     CollisionScene, ForwardStep, LcpBackward, Params, ResolveError, ResolveState, Resolver, Search,
@@ -12,7 +13,7 @@ use bowknot_twoway::{
 /// Presets and speeds in turn. With a minimum separation: where a tenth of the gap is left step by step, it
 /// falls to 1e-12 m within these few steps, too near for the judge to tell a miss from a hit. With few
 /// iterations: along a kilometer there would be many, and stopping early is as safe.
-fn with_impacts<F: ForwardStep>(forward: impl Fn(AdditiveCcd) -> F) {
+fn with_impacts<F: ForwardStep>(forward: impl Fn(AdditiveCcd) -> Result<F, Errors<ParamError>>) {
     let settings = [(Params::fast(), ClosingSpeed::Slab), (Params::paper(), ClosingSpeed::Travel)];
     for (mut params, speed) in settings {
         params.contact.min_separation = Some(1e-8);
@@ -20,7 +21,8 @@ fn with_impacts<F: ForwardStep>(forward: impl Fn(AdditiveCcd) -> F) {
         watched(&params, seeds().div_ceil(2), |scene| {
             let search = TrustRegionSearch::new(&scene);
             let backward: LcpBackward = LcpBackward::default();
-            Ok(Resolver::with_stages(scene, search, backward, forward(ccd)))
+            let forward = forward(ccd).map_err(ResolveError::Params)?;
+            Ok(Resolver::with_stages(scene, search, backward, forward))
         })
         .assert_safe();
     }

@@ -38,10 +38,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut methods: Vec<Box<dyn Method>> = vec![
         two_way("two-way, fast", collision_scene(fast())?, CertifiedForward::default()),
         two_way("two-way, paper", collision_scene(paper())?, CertifiedForward::default()),
-        two_way("two-way, fast, earliest impact", collision_scene(fast())?, EarliestImpact::new(travel)),
-        two_way("the same, slab speeds", collision_scene(fast())?, EarliestImpact::new(slab)),
-        two_way("two-way, fast, impact per vertex", collision_scene(fast())?, PerVertexImpact::new(travel)),
-        two_way("the same, slab speeds", collision_scene(fast())?, PerVertexImpact::new(slab)),
+        two_way("two-way, fast, earliest impact", collision_scene(fast())?, EarliestImpact::new(travel)?),
+        two_way("the same, slab speeds", collision_scene(fast())?, EarliestImpact::new(slab)?),
+        two_way("two-way, fast, impact per vertex", collision_scene(fast())?, PerVertexImpact::new(travel)?),
+        two_way("the same, slab speeds", collision_scene(fast())?, PerVertexImpact::new(slab)?),
     ];
     for (bound, params) in [("planes", fast()), ("isotropic", paper())] {
         for (scaling, barrier) in [("blocks", &barrier), ("mass", &plain)] {

@@ -60,6 +60,14 @@ impl<'a> LcpProblem<'a> {
         }
     }
 
+    /// A problem of rows alone, in the order of the slice.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn of_rows(weights: &'a [f64], rows: &'a [Row]) -> Result<Self, LcpError> {
+        Self::new(weights, ConstraintSet::serial(rows), ConstraintSet::default(), ConstraintSet::default())
+    }
+
     /// Makes Gauss-Seidel sweeps visit each friction row right after its normal's row, rather than all
     /// friction rows after all rows: the rows of one contact are solved together. `friction_of` names the
     /// friction row of each row, or [`Self::NO_FRICTION`]. Friction rows then have no schedule of their own.

@@ -4,6 +4,7 @@
 use super::additive::AdditiveCcd;
 use super::pairs::clearance;
 use super::path_search::{PathSearch, PathTime};
+use bowknot_errors::{Errors, ParamError, Parameters};
 use bowknot_twoway::geometry::Vector;
 use bowknot_twoway::stepper::{StepReport, Stepper};
 use bowknot_twoway::{CollisionScene, ForwardStep, ResolveState, Search, Statistics};
@@ -24,8 +25,12 @@ pub struct EarliestImpact {
 
 impl EarliestImpact {
     /// With these parameters of the CCD.
-    pub fn new(ccd: AdditiveCcd) -> Self {
-        Self { ccd, ..Self::default() }
+    ///
+    /// # Errors
+    /// Parameters out of their range.
+    pub fn new(ccd: AdditiveCcd) -> Result<Self, Errors<ParamError>> {
+        ccd.validate()?;
+        Ok(Self { ccd, ..Self::default() })
     }
 }
 

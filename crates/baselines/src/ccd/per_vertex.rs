@@ -10,6 +10,7 @@
 use super::additive::AdditiveCcd;
 use super::pairs::clearance;
 use super::path_search::{PathSearch, PathTime};
+use bowknot_errors::{Errors, ParamError, Parameters};
 use bowknot_twoway::geometry::Vector;
 use bowknot_twoway::stepper::{StepReport, Stepper};
 use bowknot_twoway::{CollisionScene, ForwardStep, ResolveState, Search, Statistics};
@@ -20,11 +21,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 const CHUNK: usize = 256;
 
 /// Moves each vertex by the fraction of its way at which its first pair would meet.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct PerVertexImpact {
     ccd: AdditiveCcd,
-    longest: f64,
-    rounds: usize,
     stepper: Stepper,
     search: PathSearch,
     /// Paths of the present round.
@@ -41,17 +40,12 @@ impl PerVertexImpact {
     const MAX_ROUNDS: usize = 20;
 
     /// With these parameters of the CCD.
-    pub fn new(ccd: AdditiveCcd) -> Self {
-        Self {
-            ccd,
-            longest: Self::MAX_LENGTH,
-            rounds: Self::MAX_ROUNDS,
-            stepper: Stepper::default(),
-            search: PathSearch::default(),
-            paths: Vec::new(),
-            fractions: Vec::new(),
-            changed: Vec::new(),
-        }
+    ///
+    /// # Errors
+    /// Parameters out of their range.
+    pub fn new(ccd: AdditiveCcd) -> Result<Self, Errors<ParamError>> {
+        ccd.validate()?;
+        Ok(Self { ccd, ..Self::default() })
     }
 
     /// Shortens the paths to the fractions so far, and marks those that change.
@@ -91,12 +85,6 @@ impl PerVertexImpact {
     }
 }
 
-impl Default for PerVertexImpact {
-    fn default() -> Self {
-        Self::new(AdditiveCcd::default())
-    }
-}
-
 impl ForwardStep for PerVertexImpact {
     fn begin(&mut self, scene: &CollisionScene, state: &ResolveState) {
         let count = scene.rest().len();
@@ -117,7 +105,7 @@ impl ForwardStep for PerVertexImpact {
         self.stepper.set_target(&state.x, &state.y);
         for v in 0..state.x.len() {
             let length = self.stepper.displacements()[v].norm();
-            let longest = self.longest * scene.local_edge(v);
+            let longest = Self::MAX_LENGTH * scene.local_edge(v);
             if length > longest {
                 self.stepper.limit(v, longest / length);
             }
@@ -126,12 +114,12 @@ impl ForwardStep for PerVertexImpact {
         self.shorten();
         self.search.list(scene, state, search, &self.paths, PathTime::PerVertex, 0.0, statistics);
         self.changed.fill(true);
-        for round in 1..=self.rounds {
+        for round in 1..=Self::MAX_ROUNDS {
             let common = self.limit(scene, state);
             if common >= 1.0 {
                 break;
             }
-            if round == self.rounds {
+            if round == Self::MAX_ROUNDS {
                 // With a common path time along the paths just tested, every pair is clear up to here. Pairs
                 // without a changed path were tested in an earlier round and are clear all the way.
                 for v in 0..self.paths.len() {

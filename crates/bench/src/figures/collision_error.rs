@@ -1,6 +1,6 @@
 //! Run time against error of the collision stage: every method and setting on the same problems.
 
-use crate::bench::{Bench, Size};
+use crate::bench::Bench;
 use crate::chart::{Axis, Chart, Mark, Series, Style, pareto_front};
 use crate::figure::{Figure, Part, Report};
 use crate::methods::{METHODS, Setting};
@@ -84,38 +84,14 @@ impl Figure for CollisionError {
 
 /// Problems with these targets, solved by settings.
 pub fn compared(bench: &Bench, targets: Targets, settings: &[Setting]) -> Result<Vec<Compared>> {
-    let problems = problem_sets(bench.size, targets);
     on_scenes(
         bench,
-        problems,
+        targets.problem_sets(bench.size),
         bench.size.pick(2, 2, 1),
         settings,
         bench.size.pick(3, 1, 1),
         Against::Reference,
     )
-}
-
-/// The problem sets that all methods are compared on.
-fn problem_sets(size: Size, targets: Targets) -> &'static [&'static str] {
-    match targets {
-        Targets::Aware => size.pick(
-            &["needle", "stack", "tube", "bow-knot", "reef-knot", "dress"][..],
-            &["needle", "stack", "tube"],
-            &["needle"],
-        ),
-        Targets::Unaware => size.pick(
-            &[
-                "needle-unaware",
-                "stack-unaware",
-                "tube-unaware",
-                "bow-knot-unaware",
-                "reef-knot-unaware",
-                "dress-unaware",
-            ][..],
-            &["needle-unaware", "stack-unaware"],
-            &["needle-unaware"],
-        ),
-    }
 }
 
 /// Methods of which changes are measured too.

@@ -8,6 +8,7 @@ use crate::methods::Setting;
 use crate::solve::Against;
 use crate::summary::{on_cases, ratios, table};
 use crate::table::{Entry, Table, geometric_mean, times};
+use crate::targets::Targets;
 use anyhow::Result;
 
 pub struct ContactsAlone;
@@ -42,18 +43,7 @@ impl Figure for ContactsAlone {
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {
-        let scenes: &[&'static str] = bench.size.pick(
-            &[
-                "needle-unaware",
-                "stack-unaware",
-                "tube-unaware",
-                "bow-knot-unaware",
-                "reef-knot-unaware",
-                "dress-unaware",
-            ][..],
-            &["needle-unaware", "stack-unaware"],
-            &["needle-unaware"],
-        );
+        let scenes = Targets::Unaware.problem_sets(bench.size);
         let settings = METHODS.iter().map(|m| Setting::of(m)).collect::<Result<Vec<_>>>()?;
         let unlimited = ProblemLengths { stretch_limit: Some(f64::INFINITY), ..ProblemLengths::default() };
         let mut by_scene = Vec::new();

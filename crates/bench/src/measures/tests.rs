@@ -4,7 +4,7 @@ use super::reference::{at_rest, params};
 use super::*;
 use crate::case::CollisionCase;
 use bowknot::geometry::{HalfSpace, Point, Vector};
-use bowknot::lcp::{self, ConstraintSet, Row};
+use bowknot::lcp::{self, Row};
 use bowknot::recording::States;
 
 /// Particles above the ground, 2 mm across: their distances are 2 mm from each other and 1 mm from the
@@ -113,13 +113,7 @@ fn multipliers_equal_those_of_the_reference() {
         let ours = nonnegative::residual(&rows, &weights, wanted.clone(), 1500);
 
         lcp::prepare_rows(&mut rows, &weights).expect("weights of all nodes");
-        let problem = lcp::LcpProblem::new(
-            &weights,
-            ConstraintSet::serial(&rows),
-            ConstraintSet::default(),
-            ConstraintSet::default(),
-        )
-        .expect("a sound problem");
+        let problem = lcp::LcpProblem::of_rows(&weights, &rows).expect("a sound problem");
         let mut y = wanted;
         let mut lambda = vec![0.0; rows.len()];
         let mut moving =

@@ -122,13 +122,7 @@ fn an_upper_bound_caps_the_force() {
     let mut rows = [Row::new([0; 4], [Vector::z(), Vector::zeros(), Vector::zeros(), Vector::zeros()], 0.0)];
     rows[0].upper = 2.0;
     prepare_rows(&mut rows, &weights).unwrap();
-    let problem = LcpProblem::new(
-        &weights,
-        ConstraintSet::serial(&rows),
-        ConstraintSet::default(),
-        ConstraintSet::default(),
-    )
-    .unwrap();
+    let problem = LcpProblem::of_rows(&weights, &rows).unwrap();
     for exact in [false, true] {
         let (mut y, mut lambda) = ([Vector::z() * -3.0], [0.0]);
         let mut state = LcpState { y: &mut y, lambda: &mut lambda, ..LcpState::default() };
@@ -243,13 +237,7 @@ fn a_node_in_two_places_of_a_row_counts_with_its_summed_gradient() {
     let mut results = Vec::new();
     for rows in [&mut split, &mut merged] {
         prepare_rows(rows, &weights).unwrap();
-        let problem = LcpProblem::new(
-            &weights,
-            ConstraintSet::serial(rows),
-            ConstraintSet::default(),
-            ConstraintSet::default(),
-        )
-        .unwrap();
+        let problem = LcpProblem::of_rows(&weights, rows).unwrap();
         let (mut y, mut lambda) = ([Vector::zeros(); 2], [0.0]);
         let mut state = LcpState { y: &mut y, lambda: &mut lambda, ..LcpState::default() };
         // One sweep solves one row exactly.
@@ -380,13 +368,7 @@ fn equations_pull_where_complementarity_lets_go() {
     rows[2].upper = 0.125;
     let weights = vec![1.0; 2];
     prepare_rows(&mut rows, &weights).unwrap();
-    let problem = LcpProblem::new(
-        &weights,
-        ConstraintSet::serial(&rows[..2]),
-        ConstraintSet::default(),
-        ConstraintSet::default(),
-    )
-    .unwrap();
+    let problem = LcpProblem::of_rows(&weights, &rows[..2]).unwrap();
     type Solve = fn(&LcpProblem<'_>, &mut LcpState<'_>, &LcpParams) -> Result<LcpInfo, LcpError>;
     let jacobi: Solve = |problem, state, params| Jacobi::new().solve(problem, state, params);
     for solve in [solve_serial as Solve, solve_colored, jacobi] {
@@ -400,13 +382,7 @@ fn equations_pull_where_complementarity_lets_go() {
     }
     // The third row makes the system redundant, and it contradicts the first two: for x0 = x1 = 0 its value
     // is 1/4. Its multiplier has no bound and grows from sweep to sweep, but is never NaN.
-    let problem = LcpProblem::new(
-        &weights,
-        ConstraintSet::serial(&rows),
-        ConstraintSet::default(),
-        ConstraintSet::default(),
-    )
-    .unwrap();
+    let problem = LcpProblem::of_rows(&weights, &rows).unwrap();
     let (mut y, mut lambda) = (vec![x * -3.0, x * 2.0], vec![0.0; 3]);
     let params = LcpParams { equations: true, max_sweeps: 1000, ..LcpParams::default() };
     solve_serial(&problem, &mut LcpState { y: &mut y, lambda: &mut lambda, ..LcpState::default() }, &params)

@@ -52,13 +52,7 @@ fn small(seed: u64, nodes: usize, rows: usize, bounded: bool) -> Small {
 
 impl Small {
     fn problem(&self) -> LcpProblem<'_> {
-        LcpProblem::new(
-            &self.weights,
-            ConstraintSet::serial(&self.rows),
-            ConstraintSet::default(),
-            ConstraintSet::default(),
-        )
-        .unwrap()
+        LcpProblem::of_rows(&self.weights, &self.rows).unwrap()
     }
 
     /// Whether the rows are so far from parallel that sweeps converge within the limit. Each sweep reduces
@@ -358,13 +352,7 @@ fn chebyshev_weights_need_fewer_sweeps_on_a_smooth_error() {
     let mut rows: Vec<Row> =
         (0..30).map(|i| Row::new([i, i + 1, i, i], [Vector::x(), -Vector::x(), zero, zero], 1.0)).collect();
     prepare_rows(&mut rows, &weights).unwrap();
-    let problem = LcpProblem::new(
-        &weights,
-        ConstraintSet::serial(&rows),
-        ConstraintSet::default(),
-        ConstraintSet::default(),
-    )
-    .unwrap();
+    let problem = LcpProblem::of_rows(&weights, &rows).unwrap();
     let sweeps = |spectral_radius: f64| {
         let mut y: Vec<Vector> = (0..31).map(|i| Vector::x() * (1.5 * f64::from(i))).collect();
         let mut lambda = vec![0.0; 30];

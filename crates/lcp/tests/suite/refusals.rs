@@ -82,13 +82,7 @@ fn problems_with_faults_are_refused() {
 fn states_and_parameters_that_do_not_fit_are_refused() {
     let weights = [1.0; 2];
     let rows = [row([0, 1, 0, 0], &weights)];
-    let problem = LcpProblem::new(
-        &weights,
-        ConstraintSet::serial(&rows),
-        ConstraintSet::default(),
-        ConstraintSet::default(),
-    )
-    .unwrap();
+    let problem = LcpProblem::of_rows(&weights, &rows).unwrap();
     let params = LcpParams::default();
     let mut y = [Vector::zeros(); 2];
     let fault = |state: &mut LcpState<'_>, params: &LcpParams| {

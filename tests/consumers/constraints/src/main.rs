@@ -2,9 +2,7 @@
 #![allow(clippy::print_stdout, reason = "a command")]
 
 use bowknot_constraints::geometry::{PairKind, Point, Vector, separation};
-use bowknot_constraints::lcp::{
-    ConstraintSet, LcpError, LcpParams, LcpProblem, LcpState, prepare_rows, solve_serial,
-};
+use bowknot_constraints::lcp::{LcpError, LcpParams, LcpProblem, LcpState, prepare_rows, solve_serial};
 use bowknot_constraints::{ContactForm, contact_row, predicted_gap};
 
 fn main() -> Result<(), LcpError> {
@@ -18,12 +16,7 @@ fn main() -> Result<(), LcpError> {
         let weights = [1.0; 4];
         let mut rows = [contact_row(form, kind, vertices, &x, &separation, delta)];
         prepare_rows(&mut rows, &weights)?;
-        let problem = LcpProblem::new(
-            &weights,
-            ConstraintSet::serial(&rows),
-            ConstraintSet::default(),
-            ConstraintSet::default(),
-        )?;
+        let problem = LcpProblem::of_rows(&weights, &rows)?;
         let mut y = target.map(|p| p.coords);
         let mut lambda = [0.0];
         let mut state =

@@ -1,9 +1,7 @@
 //! A stack of five blocks on the ground, pressed down: who carries what.
 #![allow(clippy::print_stdout, reason = "a command")]
 
-use bowknot_lcp::{
-    ConstraintSet, LcpError, LcpParams, LcpProblem, LcpState, Row, Vector, prepare_rows, solve_serial,
-};
+use bowknot_lcp::{LcpError, LcpParams, LcpProblem, LcpState, Row, Vector, prepare_rows, solve_serial};
 
 fn main() -> Result<(), LcpError> {
     // Blocks of height 1, and each wants to be 1 lower than where it just touches.
@@ -18,12 +16,7 @@ fn main() -> Result<(), LcpError> {
         })
         .collect();
     prepare_rows(&mut rows, &weights)?;
-    let problem = LcpProblem::new(
-        &weights,
-        ConstraintSet::serial(&rows),
-        ConstraintSet::default(),
-        ConstraintSet::default(),
-    )?;
+    let problem = LcpProblem::of_rows(&weights, &rows)?;
 
     let mut lambda = vec![0.0; count];
     let mut state =

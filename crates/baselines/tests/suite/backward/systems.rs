@@ -2,9 +2,7 @@
 
 use crate::common::Draw;
 use bowknot_baselines::twoway::geometry::Vector;
-use bowknot_baselines::twoway::lcp::{
-    ConstraintSet, FrictionBound, LcpProblem, LcpState, Row, prepare_rows, residuals,
-};
+use bowknot_baselines::twoway::lcp::{FrictionBound, LcpProblem, LcpState, Row, prepare_rows, residuals};
 
 /// Rows over nodes, and the positions of the nodes without them.
 #[derive(Clone)]
@@ -67,13 +65,7 @@ impl System {
 
     /// Runs a solver from zero multipliers.
     pub fn solve(&self, solver: impl FnOnce(&LcpProblem<'_>, &mut LcpState<'_>)) -> Solution {
-        let problem = LcpProblem::new(
-            &self.weights,
-            ConstraintSet::serial(&self.rows),
-            ConstraintSet::default(),
-            ConstraintSet::default(),
-        )
-        .unwrap();
+        let problem = LcpProblem::of_rows(&self.weights, &self.rows).unwrap();
         let mut solution = Solution { y: self.free.clone(), lambda: vec![0.0; self.rows.len()] };
         let mut state = LcpState { y: &mut solution.y, lambda: &mut solution.lambda, ..LcpState::default() };
         solver(&problem, &mut state);
@@ -82,13 +74,7 @@ impl System {
 
     /// Largest |min(lambda, s)|.
     pub fn complementarity(&self, solution: &Solution) -> f64 {
-        let problem = LcpProblem::new(
-            &self.weights,
-            ConstraintSet::serial(&self.rows),
-            ConstraintSet::default(),
-            ConstraintSet::default(),
-        )
-        .unwrap();
+        let problem = LcpProblem::of_rows(&self.weights, &self.rows).unwrap();
         let Solution { mut y, mut lambda } = solution.clone();
         let state = LcpState { y: &mut y, lambda: &mut lambda, ..LcpState::default() };
         residuals(&problem, &state, FrictionBound::Disc).unwrap().complementarity

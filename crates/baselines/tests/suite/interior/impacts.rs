@@ -37,12 +37,12 @@ fn sheets_that_change_places_never_intersect_on_the_way() {
         params.solver.stop.max_steps = Some(150);
         for ccd in [AdditiveCcd::default(), SLAB] {
             let what = format!("{name}, earliest, {:?}", ccd.speed);
-            let mut resolver = two_way(&scene, params.clone(), EarliestImpact::new(ccd));
+            let mut resolver = two_way(&scene, params.clone(), EarliestImpact::new(ccd).unwrap());
             let (x, report) = resolve_watched(&mut resolver, &scene, &target, &what);
             check(&what, &scene, &x, &report);
 
             let what = format!("{name}, per vertex, {:?}", ccd.speed);
-            let mut resolver = two_way(&scene, params.clone(), PerVertexImpact::new(ccd));
+            let mut resolver = two_way(&scene, params.clone(), PerVertexImpact::new(ccd).unwrap());
             let (x, report) = resolve_watched(&mut resolver, &scene, &target, &what);
             check(&what, &scene, &x, &report);
 
@@ -50,7 +50,8 @@ fn sheets_that_change_places_never_intersect_on_the_way() {
             let collision = scene.collision_scene(params.clone());
             let step = DescentStep::new(&collision, BarrierParams::default()).unwrap();
             let search = TrustRegionSearch::new(&collision);
-            let mut resolver = Resolver::with_stages(collision, search, step, PerVertexImpact::new(ccd));
+            let mut resolver =
+                Resolver::with_stages(collision, search, step, PerVertexImpact::new(ccd).unwrap());
             let (x, report) = resolve_watched(&mut resolver, &scene, &target, &what);
             check(&what, &scene, &x, &report);
         }
@@ -96,15 +97,14 @@ fn one_tight_pair_holds_up_all_vertices_or_its_own() {
     params.contact.active = 1.0;
     params.contact.range = 1.0;
     params.contact.delta = Some(1e-3);
-    let ccd = AdditiveCcd::default();
-    two_way(&scene, params.clone(), EarliestImpact::new(ccd))
+    two_way(&scene, params.clone(), EarliestImpact::default())
         .resolve_with(&mut x, &target, &input, &mut ())
         .unwrap();
     let gone = (x[2] - scene.x[2]).norm();
     assert!((gone - 0.45 * 0.1).abs() < 0.01 * 0.1, "{gone} m");
     let mut x = scene.x.clone();
     params.contact.delta = Some(0.1);
-    two_way(&scene, params, PerVertexImpact::new(ccd))
+    two_way(&scene, params, PerVertexImpact::default())
         .resolve_with(&mut x, &target, &input, &mut ())
         .unwrap();
     assert!((x[2] - target[2]).norm() < 1e-12, "{}", x[2]);
@@ -128,4 +128,13 @@ fn any_number_of_threads_gives_the_same_bits() {
             .unwrap();
         [common, own]
     });
+}
+
+#[test]
+fn parameters_out_of_their_range_are_refused() {
+    let ccd = AdditiveCcd { max_iterations: 0, ..AdditiveCcd::default() };
+    let errors = [EarliestImpact::new(ccd).err(), PerVertexImpact::new(ccd).err()];
+    for error in errors {
+        assert_eq!(error.expect("a refusal")[0].path, "max_iterations");
+    }
 }

@@ -1,14 +1,7 @@
+use super::super::tests::euler;
 use super::*;
 use bowknot_geometry::{Vector, check_mesh};
 use std::collections::BTreeMap;
-
-fn euler(mesh: &TriangleMesh) -> i64 {
-    let topology = Topology::builder(mesh.positions.len())
-        .triangles(mesh.triangles.iter().copied())
-        .build()
-        .expect("topology");
-    mesh.positions.len() as i64 - topology.edges.len() as i64 + mesh.triangles.len() as i64
-}
 
 #[test]
 fn the_mesh_is_closed_and_its_triangles_well_shaped_at_every_resolution() {

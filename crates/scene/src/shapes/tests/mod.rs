@@ -10,7 +10,8 @@ fn fields(shape: Shape) -> Vec<String> {
     shape.validate().err().into_iter().flatten().map(|error| error.path).collect()
 }
 
-fn euler(mesh: &TriangleMesh) -> i64 {
+/// Euler characteristic: vertices less edges plus triangles.
+pub(super) fn euler(mesh: &TriangleMesh) -> i64 {
     let topology = Topology::builder(mesh.positions.len())
         .triangles(mesh.triangles.iter().copied())
         .build()
