@@ -1,7 +1,7 @@
 use super::*;
 use bowknot_geometry::Point;
 
-/// One entry an element: its type, its node numbers.
+/// One entry per element: its type, its node numbers.
 type Element = (i64, Vec<i64>);
 
 /// The forms of a file.

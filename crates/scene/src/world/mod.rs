@@ -66,7 +66,7 @@ pub struct World {
 pub struct WorldContact {
     /// One entry per body.
     pub bodies: Vec<BodyContact>,
-    /// One entry a half-space.
+    /// One entry per half-space.
     pub half_spaces: Vec<HalfSpaceContact>,
     /// Friction of pairs.
     pub pairs: Vec<PairFriction>,
