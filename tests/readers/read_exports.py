@@ -3,7 +3,8 @@
     python read_exports.py RUN [EXPORTS] [--bowknot COMMAND] [--pyvista]
 
 RUN holds scene.toml and frames/*.ply; EXPORTS (default: RUN) the same frames as VTU, PVD, PC2, USD, NPZ and OBJ.
-With --bowknot COMMAND it also makes frames of strands and particles, which the command exports, and reads these.
+With --bowknot COMMAND it also makes frames of strands and particles, which the command exports, and a textured OBJ,
+which it runs, and reads these.
 VTU is read by meshio (with --pyvista by VTK itself), USD by usd-core, PC2 by the struct reader below, written from the
 format's notes. Exits with 1 at the first difference.
 """
@@ -41,14 +42,17 @@ class Frame:
 
     def __init__(self, path):
         with open(path, "rb") as file:
-            counts = {}
+            counts, names = {}, set()
             while (line := file.readline().decode().strip()) != "end_header":
                 words = line.split()
                 if words[0] == "element":
                     counts[words[1]] = int(words[2])
-            kind = np.dtype([("x", "<f8", 3), ("obstacle", "u1"), ("body", "<i4")])
+                names.add(words[-1])
+            texture = [("texture", "<f8", 2)] if {"s", "t"} <= names else []
+            kind = np.dtype([("x", "<f8", 3), ("obstacle", "u1"), ("body", "<i4"), *texture])
             vertices = np.frombuffer(file.read(kind.itemsize * counts["vertex"]), kind)
             self.x, self.obstacle, self.body = (vertices[name].copy() for name in ("x", "obstacle", "body"))
+            self.texture = vertices["texture"].copy() if texture else None
             self.faces = []
             for _ in range(counts["face"]):
                 size = file.read(1)[0]
@@ -124,6 +128,8 @@ def check_usd(folder, frames, dt):
     edges = {tuple(sorted(edge)) for edge in first.edges.tolist()}
     seen = dict(faces=0, edges=0, particles=0)
     for prim in stage.GetDefaultPrim().GetChildren():
+        if prim.GetTypeName() == "Scope":
+            continue
         geometry = UsdGeom.PointBased(prim)
         times = geometry.GetPointsAttr().GetTimeSamples()
         expect(times == list(range(len(frames))), f"{prim.GetPath()}: time samples")
@@ -182,8 +188,14 @@ def check_npz(folder, frames):
 
 def check_obj(folder, frames):
     for k, frame in enumerate(frames):
-        mesh = meshio.read(folder / f"frames/{k:06}.obj")
-        expect(np.array_equal(mesh.points, frame.x), f"frames/{k:06}.obj: points")
+        path = folder / f"frames/{k:06}.obj"
+        lines = path.read_text().splitlines()
+        if any(line.startswith("vt ") for line in lines):
+            # meshio takes texture coordinates for those of vertices and refuses another number of them.
+            points = [list(map(float, line.split()[1:])) for line in lines if line.startswith("v ")]
+        else:
+            points = meshio.read(path).points
+        expect(np.array_equal(points, frame.x), f"{path}: points")
 
 
 def write_mixed(folder):
@@ -204,6 +216,91 @@ def write_mixed(folder):
         data += struct.pack("<B3i", 3, 14, 15, 16)
         data += b"".join(struct.pack("<2i", *edge) for edge in edges)
         (folder / f"frames/{k:06}.ply").write_bytes(data)
+
+
+# Two quads, a triangle and a hexagon: faces as lines of an OBJ, with the labels that hold for each.
+GARMENT = """mtllib cloth.mtl
+o Garment
+v 0 0 1\nv 1 0 1\nv 2 0 1\nv 2 1 1\nv 1 1 1\nv 0 1 1\nv 3 0.5 1\nv 0 2 1\nv 1 3 1\nv 2 2 1
+vt 0 0\nvt 0.4 0\nvt 0.4 0.4\nvt 0 0.4\nvt 0.6 0\nvt 1 0\nvt 1 0.4\nvt 0.6 0.4\nvn 0 0 1\nvn 0 1 0
+g left all\nusemtl silk\nf 1/1/1 2/2/1 5/3/1 6/4/1
+g right all\nusemtl wool #2\nf 2/5/1 3/6/1 4/7/1 5/8/1\nf 3/6/2 7/7/2 4/8/2
+g back\nf 9/1/1 8/2/1 6/3/1 5/4/1 4/5/1 10/6/1
+"""
+
+
+def read_textured_obj(path):
+    """Of each face its vertices and texture coordinates; the faces of each group and material."""
+    texture, faces, members, current = [], [], {}, {}
+    for line in path.read_text().splitlines():
+        word, _, rest = line.partition(" ")
+        if word == "vt":
+            texture.append(tuple(map(float, rest.split())))
+        elif word == "usemtl":
+            current["materialBind"] = [rest]
+        elif word == "g":
+            current["group"] = rest.split()
+        elif word == "f":
+            corners = [(corner.split("/") + ["", ""])[:2] for corner in rest.split()]
+            for family, names in current.items():
+                for name in names:
+                    members.setdefault((family, name), []).append(len(faces))
+            faces.append(([int(v) - 1 for v, _ in corners], [texture[int(t) - 1] for _, t in corners if t]))
+    return faces, members
+
+
+def check_attributes(run, original, frames):
+    """Polygons, texture coordinates, normals and names of the only textured body, in USD, OBJ and PLY."""
+    from pxr import Usd, UsdGeom, UsdShade
+
+    faces, members = read_textured_obj(original)
+    written, _ = read_textured_obj(run / "frames/000001.obj")
+    expect(written[:len(faces)] == faces, "frames/000001.obj: faces and texture coordinates")
+    expect([list(face) for face in frames[0].faces[:len(faces)]] == [face for face, _ in faces], "PLY: polygons")
+    expect(frames[0].texture is None, "PLY: texture coordinates, though vertices have two")
+
+    stage = Usd.Stage.Open(str(run / "scene.usda"))
+    mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/World/body"))
+    counts, indices = mesh.GetFaceVertexCountsAttr().Get(), mesh.GetFaceVertexIndicesAttr().Get()
+    points = mesh.GetPointsAttr().Get(0)
+    expect(mesh.ValidateTopology(indices, counts, len(points))[0], "scene.usda: topology")
+    expect(list(counts) == [len(face) for face, _ in faces], "scene.usda: polygons")
+    expect(list(indices) == [v for face, _ in faces for v in face], "scene.usda: vertices of polygons")
+    st = UsdGeom.PrimvarsAPI(mesh).GetPrimvar("st")
+    expect((st.GetTypeName(), st.GetInterpolation()) == ("texCoord2f[]", "faceVarying"), "scene.usda: type of st")
+    close(np.array(st.ComputeFlattened()), np.array([c for _, own in faces for c in own]), "scene.usda: st")
+    expect(mesh.GetNormalsInterpolation() == "faceVarying", "scene.usda: interpolation of normals")
+    for k in range(len(frames)):
+        normals = np.array(mesh.GetNormalsAttr().Get(k))
+        expect(len(normals) == len(indices), f"scene.usda: number of normals at frame {k}")
+        lengths = np.linalg.norm(normals, axis=1)
+        expect(np.allclose(lengths, 1.0, atol=1e-6), f"scene.usda: lengths of normals at frame {k}")
+    for family, kind in [("materialBind", "nonOverlapping"), ("group", "unrestricted")]:
+        expect(UsdGeom.Subset.GetFamilyType(mesh, family) == kind, f"scene.usda: type of family {family}")
+        expect(UsdGeom.Subset.ValidateFamily(mesh, "face", family)[0], f"scene.usda: family {family}")
+    found = {}
+    for subset in UsdGeom.Subset.GetGeomSubsets(mesh):
+        prim, family = subset.GetPrim(), subset.GetFamilyNameAttr().Get()
+        name = prim.GetMetadata("displayName") or prim.GetName()
+        if family == "object":
+            continue
+        found[family, name] = list(subset.GetIndicesAttr().Get())
+        material, _ = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()
+        if family == "materialBind":
+            bound = material.GetPrim()
+            expect((bound.GetMetadata("displayName") or bound.GetName()) == name, f"scene.usda: material {name}")
+    expect(found == members, f"scene.usda has subsets {found}, the OBJ {members}")
+    print(f"{run}: polygons, texture coordinates, normals, groups and materials read back from OBJ, PLY and USD")
+
+
+def run_textured(command, folder):
+    folder.mkdir()
+    (folder / "garment.obj").write_text(GARMENT)
+    run = folder / "run"
+    formats = ["--format", "ply,obj,npz,pc2,usd,vtu", "--frames", "2", "--quiet"]
+    subprocess.run([command, "run", folder / "garment.obj", "--out", run, *formats], check=True)
+    read_all(run, run, False)
+    check_attributes(run, folder / "garment.obj", [Frame(path) for path in sorted((run / "frames").glob("*.ply"))])
 
 
 def read_all(run, exports, use_pyvista):
@@ -234,6 +331,7 @@ def main():
             formats = ["--format", "obj,npz,pc2,usd,vtu", "--dt", "0.02"]
             subprocess.run([options.bowknot, "export", folder, *formats], check=True)
             read_all(folder, folder, options.pyvista)
+            run_textured(options.bowknot.absolute(), folder / "textured")
 
 
 main()

@@ -18,7 +18,14 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("bowknot-stepper", &["bowknot-geometry", "bowknot-proximity"]),
     (
         "bowknot-twoway",
-        &["bowknot-constraints", "bowknot-geometry", "bowknot-lcp", "bowknot-proximity", "bowknot-stepper"],
+        &[
+            "bowknot-check",
+            "bowknot-constraints",
+            "bowknot-geometry",
+            "bowknot-lcp",
+            "bowknot-proximity",
+            "bowknot-stepper",
+        ],
     ),
     (
         "bowknot-baselines",

@@ -3,10 +3,14 @@
 use crate::machine::Machine;
 use crate::store::Store;
 use anyhow::{Context, Result};
+use bowknot_errors::counted;
 use std::cell::Cell;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+
+/// Time that a full figure has for its measurements, beside the recording of its problems [s].
+pub const FULL_SECONDS: u64 = 17 * 60;
 
 /// How much is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,7 +90,7 @@ impl Bench {
     /// Whether the present figure may measure more. If not, what is missing is left out and the figure says
     /// so; another run of the command continues from there.
     pub fn has_time(&self) -> bool {
-        let seconds = self.size.pick(17 * 60, 60, 15);
+        let seconds = self.size.pick(FULL_SECONDS, 60, 15);
         // All quick figures together have ten minutes; recordings and figures that began late take the rest.
         let late = self.size != Size::Full && self.run_timer.elapsed() > Duration::from_secs(8 * 60);
         let left = self.figure_timer.get().elapsed() < Duration::from_secs(seconds) && !late;
@@ -104,10 +108,7 @@ impl Bench {
         if commits.is_empty() {
             commits.clone_from(&self.machine.commit);
         }
-        let threads = match rayon::current_num_threads() {
-            1 => "1 thread".to_owned(),
-            n => format!("{n} threads"),
-        };
+        let threads = counted(rayon::current_num_threads(), "thread", "threads");
         let missing = if self.out_of_time.get() { " Out of time: the rest was not measured." } else { "" };
         format!(
             "Commit {commits}; {threads} of {cores} cores, {cpu}; load average {load} before, {} \

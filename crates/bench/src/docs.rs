@@ -69,7 +69,11 @@ impl Docs {
         let path = self.repository.join(PAGE);
         let page = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
         let page = if figure.on_page() {
-            page::with_section(&page, figure.name(), &page::section(figure, report, conditions))
+            page::with_section(
+                &page,
+                figure.name(),
+                &page::section(figure, report, conditions, "benchmarks/"),
+            )
         } else {
             page::with_index_rows(&page, figure.name(), &page::index_rows(figure, report, conditions), order)
         };

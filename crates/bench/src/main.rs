@@ -5,7 +5,7 @@
 //! |---|---|
 //! | `figures` | one file per figure or table |
 //! | `figure` | the trait that they implement, and what they report |
-//! | `run` | measuring a figure |
+//! | `run`, `durations` | measuring a figure; how long that takes |
 //! | `docs`, `page` | writing its results into docs/benchmarks and docs/benchmarks.md |
 //! | `bench`, `store`, `machine` | size, folder and time of a run; kept measurements; machine, commit |
 //! | `record`, `case`, `targets` | collision problems: recorded from scenes, loaded to be solved |
@@ -25,6 +25,7 @@ mod bench;
 mod case;
 mod chart;
 mod docs;
+mod durations;
 mod figure;
 mod figures;
 mod files;
@@ -90,12 +91,35 @@ fn main() -> ExitCode {
     }
 }
 
+/// Names all figures, and how long they take.
+fn list() {
+    let line = |name: &str, title: &str| {
+        let (quick, full) = (durations::quick(name), durations::full(name));
+        println!("{name:<23} {quick:>6} {full:>7}  {title}");
+    };
+    println!("{:<23} {:>6} {:>7}", "name", "quick", "full");
+    for figure in figures::ALL {
+        line(figure.name(), figure.title());
+    }
+    let sets = record::PROBLEM_SETS.len();
+    let scenes = record::contact_aware_scenes();
+    let unaware = sets - scenes;
+    let problems = format!(
+        "collision problems of {scenes} scenes in {sets} sets, as NPZ files: a set of each scene with contact-aware \
+         targets, and of {unaware} of them one with contact-unaware targets too"
+    );
+    line("record", &problems);
+    println!(
+        "\nquick, full: time of a first run with one thread; full is an upper bound. Problems and measurements are \
+         kept,\nso that later runs take less. A figure stops measuring after {} minutes and says so; run again, it \
+         goes on.",
+        bench::FULL_SECONDS / 60
+    );
+}
+
 fn run(arguments: &Arguments) -> Result<()> {
     if arguments.name == "list" {
-        for figure in figures::ALL {
-            println!("{:<22} {}", figure.name(), figure.title());
-        }
-        println!("{:<22} collision problems in {} sets, as NPZ files", "record", record::PROBLEM_SETS.len());
+        list();
         return Ok(());
     }
     rayon::ThreadPoolBuilder::new().num_threads(arguments.threads).build_global()?;

@@ -9,8 +9,9 @@ const LINE: usize = 110;
 /// Name of the block with the index.
 const INDEX: &str = "index";
 
-/// The section of a figure: text, tables, charts, conditions.
-pub fn section(figure: &dyn Figure, report: &Report, conditions: &str) -> String {
+/// The section of a figure: text, tables, charts, conditions. `charts` is where the charts are, seen from the
+/// file with the section: empty if beside it, else a folder with a slash at its end.
+pub fn section(figure: &dyn Figure, report: &Report, conditions: &str, charts: &str) -> String {
     let mut text = format!(
         "## {}\n\n{}\n\n{}\n",
         figure.title(),
@@ -23,7 +24,7 @@ pub fn section(figure: &dyn Figure, report: &Report, conditions: &str) -> String
             Part::Table { shows, table, .. } => {
                 format!("{}:\n\n{}", wrap(shows), table.markdown().trim_end())
             }
-            Part::Chart { name, chart } => format!("![{}](benchmarks/{name}.svg)", chart.title),
+            Part::Chart { name, chart } => format!("![{}]({charts}{name}.svg)", chart.title),
         };
         text.push_str(&format!("\n{part}\n"));
     }

@@ -1,4 +1,5 @@
-//! Records collision problems of scenes: at most ten per scene, spread over the time steps in contact.
+//! Records collision problems of scenes: at most ten per scene and kind of targets, spread over the time steps in
+//! contact.
 
 use crate::bench::{Bench, Size};
 use crate::files::write;
@@ -10,6 +11,7 @@ use bowknot::recording::Recorder;
 use bowknot::recording::States;
 use bowknot::simulator::{CollisionProblem, SimulationObserver};
 use bowknot::{Scene, Simulator};
+use bowknot_errors::counted;
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -100,7 +102,13 @@ const OTHER_TIME_STEPS: [ProblemSet; 6] = [
     stepped("stack-unaware-20", UNAWARE_STACK, 0.05, [24, 14, 10]),
 ];
 
-/// Number of problems kept of each scene.
+/// Number of scenes in [`PROBLEM_SETS`]: each has a set with contact-aware targets, and some another one with
+/// contact-unaware targets.
+pub fn contact_aware_scenes() -> usize {
+    PROBLEM_SETS.iter().filter(|set| set.targets == Targets::Aware).count()
+}
+
+/// Number of problems kept of each set.
 const KEPT: usize = 10;
 
 impl ProblemSet {
@@ -222,7 +230,12 @@ fn in_contact(scene: &Scene, frames: usize, count: usize) -> Result<Vec<Kept>> {
             });
         }
     }
-    anyhow::ensure!(!kept.is_empty(), "no contact in {frames} time steps of {}", scene.name());
+    anyhow::ensure!(
+        !kept.is_empty(),
+        "no contact in {} of {}",
+        counted(frames, "time step", "time steps"),
+        scene.name()
+    );
     let total = kept.len();
     let chosen: Vec<usize> =
         (0..count.min(total)).map(|k| (2 * k + 1) * total / (2 * count.min(total))).collect();

@@ -32,6 +32,8 @@ fn a_figure_is_measured_once() {
     assert!(table.lines().skip(1).all(|line| line.ends_with(",0")), "a result intersects:\n{table}");
     assert!(chart.starts_with("<svg") && !chart.contains("NaN"));
     assert!(page.starts_with("## Steps per problem") && page.contains("Commit "), "{page}");
+    let pictures: Vec<&str> = page.split("](").skip(1).filter_map(|rest| rest.split(')').next()).collect();
+    assert_eq!(pictures, ["steps.svg"], "the page shows the chart beside it:\n{page}");
 
     let again = bench(&["steps", "--tiny"], folder.path());
     assert!(again.status.success() && !text(&again.stdout).contains("recording"));
@@ -43,6 +45,9 @@ fn figures_are_listed_and_unknown_ones_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let list = text(&bench(&["list"], folder.path()).stdout);
     assert!(list.contains("collision-error") && list.contains("record"), "{list}");
+    assert!(list.contains("10 scenes") && list.contains("17 sets"), "{list}");
+    let line = list.lines().find(|line| line.starts_with("sweeps ")).expect("a line for each figure");
+    assert!(line.contains(" s ") && line.contains("20 min"), "how long it takes: {line}");
     let refused = bench(&["fig-99", "--tiny"], folder.path());
     assert_eq!(refused.status.code(), Some(2));
     assert!(text(&refused.stderr).contains("no figure \"fig-99\""), "{}", text(&refused.stderr));

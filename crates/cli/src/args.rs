@@ -18,7 +18,7 @@ pub struct Arguments {
 pub enum Command {
     /// List the built-in scenes with their sizes
     Scenes(ScenesOptions),
-    /// Simulate a scene, or a mesh as cloth
+    /// Simulate a built-in scene, a scene file or a mesh
     Run(RunOptions),
     /// Resolve a recorded collision problem
     Resolve(ResolveOptions),
@@ -46,8 +46,9 @@ pub struct ScenesOptions {
 
 #[derive(Debug, Args)]
 pub struct RunOptions {
-    /// A built-in scene (see `bowknot scenes`), a scene file (.toml), or a mesh (.obj, .ply) to drop on a
-    /// ball as cloth
+    /// A built-in scene (see `bowknot scenes`), a scene file (.toml), or a mesh (.obj, .ply, .msh, .t, .seg),
+    /// which falls on a ball: tetrahedra as a solid, else triangles as cloth, else edges as strands, else
+    /// points as grains
     pub scene: String,
     /// Number of time steps [default: that of the scene]
     #[arg(long, value_name = "N")]
@@ -58,20 +59,26 @@ pub struct RunOptions {
     /// Time step [s; default: that of the scene]
     #[arg(long, value_name = "S", value_parser = positive)]
     pub dt: Option<f64>,
-    /// Factor on the resolution of a built-in scene: the number of vertices of sheets grows with its square
+    /// Of a built-in scene: factor on the resolution, at the same size: 0.5 gives sheets half the edges along
+    /// each side, a quarter of the vertices [default: 1]. Of a mesh: length of its unit [m; default: 1], 0.01
+    /// for centimeters
     #[arg(long, value_name = "F", value_parser = positive)]
     pub scale: Option<f64>,
+    /// Axis of a mesh that points up [default: z]
+    #[arg(long, value_enum)]
+    pub up: Option<Up>,
     #[command(flatten)]
     pub machine: Machine,
     #[command(flatten)]
     pub method: Method,
-    /// Formats of the frames
+    /// Formats of the frames, separated by commas [default: that of the scene, else ply]
     #[arg(long, value_name = "FORMATS", value_delimiter = ',')]
     pub format: Vec<Format>,
-    /// Write each accepted state of each time step to trace/
+    /// Write each accepted state of each time step to trace/ in the folder of the run: `bowknot check` judges
+    /// the paths between them
     #[arg(long)]
     pub trace: bool,
-    /// Write the collision problems to states/, for `bowknot resolve`
+    /// Write the collision problem of each iteration to states/ in the folder of the run, for `bowknot resolve`
     #[arg(long)]
     pub record: bool,
     /// Check the path to every accepted state by a certificate, and the state at the end of each time step by
@@ -81,7 +88,7 @@ pub struct RunOptions {
     /// If the start intersects, write the triangles that do to this file (.ply or .obj)
     #[arg(long, value_name = "FILE")]
     pub dump: Option<PathBuf>,
-    /// Continue the run in the folder from its checkpoint
+    /// Continue the run in the folder --out from its checkpoint
     #[arg(long)]
     pub resume: bool,
     /// Print the summary as JSON to stdout and nothing else
@@ -94,9 +101,9 @@ pub struct RunOptions {
 
 #[derive(Debug, Args)]
 pub struct ResolveOptions {
-    /// The problem: an NPZ archive with x, y, F and optionally E, P, rest, mass, fixed, O, body, planes, dt
+    /// The problem: an NPZ archive, as `bowknot run --record` writes it; docs/formats.md lists its arrays
     pub states: PathBuf,
-    /// File for the resolved positions x
+    /// File for the result: the array x of positions, free of intersections
     #[arg(long, value_name = "RESULT.npz")]
     pub out: PathBuf,
     #[command(flatten)]
@@ -117,7 +124,8 @@ pub struct CheckOptions {
     /// the path between successive files is checked too
     #[arg(required = true, value_name = "PATH")]
     pub paths: Vec<PathBuf>,
-    /// Also fail if two primitives are nearer than this [m]
+    /// Also fail if two triangles, strands or grains that share no vertex are nearer than this [m; for other
+    /// meshes in the unit of their files]
     #[arg(long, value_name = "D", value_parser = positive)]
     pub min_distance: Option<f64>,
     /// Print at most this many intersections of each state and path; all are counted
@@ -159,10 +167,10 @@ pub struct RenderOptions {
     /// Ends of the color scale, in the unit of the legend [default: from the values in the frames]
     #[arg(long, value_name = "LOW..HIGH", value_parser = range, allow_hyphen_values = true)]
     pub range: Option<[f64; 2]>,
-    /// Direction to look from; the camera is placed so that it sees the whole run
+    /// Direction to look from; the camera is placed so that it sees all frames of the run
     #[arg(long, value_enum, default_value_t = Direction::ThreeQuarter, conflicts_with = "camera")]
     pub view: Direction,
-    /// Position of the camera [m]
+    /// Position of the camera [m; default: as --view says]
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub camera: Option<[f64; 3]>,
     /// Point that the camera looks at [m; default: the middle of the run]
@@ -183,14 +191,14 @@ pub struct RenderOptions {
 #[cfg(feature = "render")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Color {
-    /// Largest ratio of the length of an edge at a vertex to its length in the first frame
+    /// Stretch of the most stretched edge at a vertex: its length over that in the first frame
     Stretch,
-    /// Distance from the elements at a vertex to the nearest element that shares no vertex with them
+    /// Gap to the nearest other element: triangles, strands and grains that share no vertex
     Gap,
     /// Speed between frames
     Speed,
-    /// Distance to the target: of each vertex if the run was made with --record, else the largest of each
-    /// time step
+    /// Distance between where a vertex is and where elasticity and inertia pull it: of each vertex if the run
+    /// was made with --record, else the largest of each time step
     Remaining,
     /// The body, by name
     Body,
@@ -229,12 +237,13 @@ pub struct FrameRange {
 
 #[derive(Debug, Args)]
 pub struct RepairOptions {
-    /// A mesh (.obj, .ply)
+    /// A mesh of triangles and strands (.obj, .ply, .msh)
     pub mesh: PathBuf,
     /// File for the repaired mesh (.obj, .ply)
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
-    /// Weld border vertices nearer than this [m; default: a hundredth of the mean length of border edges]
+    /// Weld border vertices nearer than this [unit of the mesh file; default: a hundredth of the mean length of
+    /// border edges]
     #[arg(long, value_name = "D", value_parser = positive)]
     pub weld_distance: Option<f64>,
     /// Print JSON
@@ -247,7 +256,7 @@ pub struct ExportOptions {
     /// The folder of a run, a folder of frames (.ply, .obj), or an archive of frames (.npz)
     #[arg(value_name = "DIR")]
     pub source: PathBuf,
-    /// Formats to write
+    /// Formats to write, separated by commas
     #[arg(long, value_name = "FORMATS", value_delimiter = ',', required = true)]
     pub format: Vec<Format>,
     /// Folder to write to [default: DIR]
@@ -269,7 +278,7 @@ pub struct ReportOptions {
     /// Show every N-th frame and the last [default: as many frames as --max-megabytes allows]
     #[arg(long, value_name = "N", value_parser = stride)]
     pub stride: Option<usize>,
-    /// Largest size of the page [default: 30]
+    /// Largest size of the page [MB; default: 30]
     #[arg(long, value_name = "MB", value_parser = positive)]
     pub max_megabytes: Option<f64>,
 }
@@ -279,7 +288,16 @@ pub struct InfoOptions {
     /// A built-in scene, a scene file (.toml), or a mesh (.obj, .ply, .msh, .t, .seg)
     #[arg(required_unless_present = "gpus")]
     pub scene: Option<String>,
-    /// List the GPUs
+    /// Of a mesh: length of its unit [m; default: 1], 0.01 for centimeters
+    #[arg(long, value_name = "F", value_parser = positive)]
+    pub scale: Option<f64>,
+    /// Axis of a mesh that points up [default: z]
+    #[arg(long, value_enum)]
+    pub up: Option<Up>,
+    /// Print at most this many parts, borders, odd edges and problems of a mesh; all are counted
+    #[arg(long, value_name = "N", default_value_t = 5)]
+    pub list: usize,
+    /// List the GPUs that could compute; none can yet
     #[arg(long, conflicts_with = "scene")]
     pub gpus: bool,
     /// Print JSON
@@ -301,10 +319,11 @@ pub struct Machine {
 /// How collisions are resolved.
 #[derive(Debug, Args)]
 pub struct Method {
-    /// Set of defaults for the tables [contact] and [solver] of a scene
+    /// Set of defaults for the tables [contact] and [solver] of a scene [default: that of the scene, else fast]
     #[arg(long, value_enum)]
     pub preset: Option<Preset>,
-    /// Set one key of the scene, as in a scene file: contact.delta=0.001
+    /// Set one key of the scene, as in a scene file: contact.delta=0.001; may be repeated;
+    /// docs/scene-reference.md lists the keys
     #[arg(long = "set", value_name = "KEY.PATH=VALUE")]
     pub sets: Vec<String>,
 }
@@ -320,21 +339,43 @@ impl Method {
     }
 }
 
+/// The axis of a mesh file that points up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Up {
+    /// x becomes z, y becomes x, z becomes y
+    X,
+    /// As most modeling tools have it: y becomes z, z becomes -y
+    Y,
+    /// Nothing changes
+    Z,
+}
+
+impl Up {
+    /// The name in scene files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::X => "x",
+            Self::Y => "y",
+            Self::Z => "z",
+        }
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Backend {
     /// The CPU
     Cpu,
     /// A GPU; none is built in yet
     Gpu,
-    /// The fastest there is
+    /// The fastest that is built in, at present the CPU
     Auto,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Preset {
-    /// All improvements on the paper that measurements support
+    /// The method with the improvements that measurements support
     Fast,
-    /// The method as the paper describes it
+    /// The method as its paper describes it
     Paper,
 }
 

@@ -1,6 +1,7 @@
 //! A mesh file as a scene: the mesh falls on a ball that stands on the ground. Ball and gaps are sized to the
 //! mesh.
 
+use crate::args::Up;
 use crate::exit::Failure;
 use bowknot::geometry::{Point, Vector};
 use bowknot::io::{Import, MESH_ENDINGS, Mesh, read_mesh};
@@ -17,6 +18,14 @@ const GAP: f64 = 0.05;
 pub fn is_mesh(name: &str) -> bool {
     let extension = Path::new(name).extension().unwrap_or_default().to_ascii_lowercase();
     MESH_ENDINGS.iter().any(|known| extension == *known)
+}
+
+/// The options `--up` and `--scale` as assignments to keys of the scene of a mesh.
+pub fn assignments(up: Option<Up>, scale: Option<f64>) -> Vec<String> {
+    let up = up.map(|up| format!("body.0.up=\"{}\"", up.name()));
+    // Debug formatting keeps a whole number a float.
+    let scale = scale.map(|scale| format!("body.0.scale={scale:?}"));
+    up.into_iter().chain(scale).collect()
 }
 
 /// The scene of a mesh file. `sets` may change how it is imported (`body.0.up=y`), so its size is measured

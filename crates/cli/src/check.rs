@@ -2,13 +2,14 @@
 
 use crate::args::CheckOptions;
 use crate::exit::{Exit, Failure};
-use crate::output;
 use crate::progress::Bar;
+use crate::{archive, output};
 use bowknot::check::{Judge, Parts, PathOptions, StateOptions};
-use bowknot::geometry::Point;
-use bowknot::io::{FrameStack, Import, Mesh, MeshView, files_in, read_mesh};
-use bowknot::recording::States;
+use bowknot::geometry::{MeshProblem, Point, check_mesh};
+use bowknot::io::{Import, Mesh, files_in, read_mesh};
+use bowknot_errors::counted;
 use serde::Serialize;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// The result, as `--json` prints it.
@@ -22,6 +23,8 @@ struct Report {
     intersections: usize,
     /// Pairs that meet, or are not certified to stay apart, over all paths.
     path_hits: usize,
+    /// Triangles that no deformable body may have, over all meshes; they do not count as intersections.
+    mesh_problems: usize,
     /// Smallest distance over all states [m].
     min_distance_m: Option<f64>,
     /// Whether a distance is below `--min-distance`.
@@ -42,6 +45,10 @@ struct Entry {
 }
 
 pub fn check(options: &CheckOptions) -> Result<Exit, Failure> {
+    if let Some(dump) = &options.dump {
+        let paths: Vec<&Path> = options.paths.iter().map(PathBuf::as_path).collect();
+        output::refuse_overwrite(dump, &paths)?;
+    }
     let groups = options.paths.iter().map(|path| groups_of(path)).collect::<Result<Vec<_>, _>>()?.concat();
     let mut checker = Checker {
         min_distance: options.min_distance,
@@ -65,7 +72,11 @@ pub fn check(options: &CheckOptions) -> Result<Exit, Failure> {
     } else {
         output::print(&to_text(&report, options.min_distance))?;
         if let (Some(triangles), Some(path)) = (dumped, &options.dump) {
-            output::print(&format!("wrote {triangles} triangles to {}", path.display()))?;
+            output::print(&format!(
+                "wrote {} to {}",
+                counted(triangles, "triangle", "triangles"),
+                path.display()
+            ))?;
         }
     }
     Ok(if report.clear { Exit::Success } else { Exit::CheckFailed })
@@ -100,7 +111,11 @@ fn groups_of(path: &Path) -> Result<Vec<Group>, Failure> {
 
 /// The frames directly in a folder, in natural order.
 fn frames_in(folder: &Path) -> Result<Option<Group>, Failure> {
-    let files = files_in(folder, &["ply", "obj", "npz"])?;
+    let mut files = files_in(folder, &["ply", "obj", "npz"])?;
+    // Frames that a run wrote in two formats are the same states: the binary ones, which are exact, count.
+    let binary: BTreeSet<PathBuf> =
+        files.iter().filter(|file| extension(file) == "ply").map(|file| file.with_extension("")).collect();
+    files.retain(|file| extension(file) != "obj" || !binary.contains(&file.with_extension("")));
     // The canonical path has a file name even where the argument ends with a dot, as `trace/.` does.
     let real = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     let trace = real.file_name().is_some_and(|n| n == "trace");
@@ -141,7 +156,9 @@ impl Checker<'_> {
                 self.archive(file)?;
                 joined = false;
             } else {
-                let mesh = read_mesh(file, &Import::default())?.into_surface();
+                let mut mesh = read_mesh(file, &Import::default())?.into_surface();
+                // Names of faces make no other state.
+                mesh.surface = None;
                 self.state(file, file.display().to_string(), mesh, joined)?;
                 joined = group.trace;
             }
@@ -152,34 +169,9 @@ impl Checker<'_> {
 
     /// Checks an archive: its frames `X`, or the start of a recorded problem.
     fn archive(&mut self, file: &Path) -> Result<(), Failure> {
-        let frames = FrameStack::read(file).or_else(|error| match States::read(file) {
-            Ok(states) => {
-                let view = MeshView {
-                    positions: &states.x,
-                    triangles: &states.triangles,
-                    strands: &states.strands,
-                    particles: &states.particles,
-                    obstacle: &states.obstacle,
-                    ..MeshView::default()
-                };
-                let mut stack = FrameStack::new(&view, &[]);
-                // This cannot fail: the stack is for meshes of this number of vertices.
-                let _ = stack.push(&states.x);
-                Ok(stack)
-            }
-            Err(_) => Err(error),
-        })?;
-        let view = frames.mesh();
-        for (index, positions) in (0..frames.len()).filter_map(|i| Some((i, frames.frame(i)?))) {
-            let mesh = Mesh {
-                positions,
-                triangles: view.triangles.to_vec(),
-                strands: view.strands.to_vec(),
-                particles: view.particles.to_vec(),
-                obstacle: Some(view.obstacle.to_vec()),
-                ..Mesh::default()
-            };
-            self.state(file, format!("{}[{index}]", file.display()), mesh, false)?;
+        let frames = archive::read(file)?;
+        for index in 0..frames.len() {
+            self.state(file, format!("{}[{index}]", file.display()), archive::mesh(&frames, index), false)?;
         }
         Ok(())
     }
@@ -208,7 +200,9 @@ impl Checker<'_> {
                     body: mesh.body.as_deref().unwrap_or(&[]),
                     half_spaces: &[],
                 };
-                (Judge::new(&parts).map_err(bad_input)?, None)
+                let judge = Judge::new(&parts).map_err(bad_input)?;
+                self.note_problems(&name, &positions, &mesh.triangles);
+                (judge, None)
             }
         };
 
@@ -273,6 +267,24 @@ impl Checker<'_> {
     }
 }
 
+impl Checker<'_> {
+    /// Warns of triangles that no intersection shows, but that a deformable body may not have.
+    fn note_problems(&mut self, name: &str, positions: &[Point], triangles: &[[u32; 3]]) {
+        let problems: Vec<MeshProblem> = check_mesh(positions, triangles)
+            .into_iter()
+            .filter(|p| !matches!(p, MeshProblem::UnreferencedVertex { .. }))
+            .collect();
+        self.report.mesh_problems += problems.len();
+        if let Some(first) = problems.first() {
+            self.bar.print(&format!(
+                "warning: {name}: {first}; {} in all, which a deformable body may not have: `bowknot info` lists them, \
+                 `bowknot repair` drops them",
+                counted(problems.len(), "such triangle", "such triangles")
+            ));
+        }
+    }
+}
+
 /// A line for the intersections that are not listed.
 fn more(count: usize, listed: usize) -> Option<String> {
     (count > listed).then(|| format!("and {} more", count - listed))
@@ -284,14 +296,13 @@ fn to_text(report: &Report, min_distance: Option<f64>) -> String {
         .iter()
         .flat_map(|entry| entry.findings.iter().map(move |finding| format!("{}: {finding}", entry.file)))
         .collect();
-    let counted = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
-    let mut summary = counted(report.states, "state");
+    let mut summary = counted(report.states, "state", "states");
     if report.paths > 0 {
-        summary += &format!(" and {}", counted(report.paths, "path"));
+        summary += &format!(" and {}", counted(report.paths, "path", "paths"));
     }
     summary += &match report.intersections + report.path_hits {
         0 => ": no intersection".to_owned(),
-        count => format!(": {}", counted(count, "intersection")),
+        count => format!(": {}", counted(count, "intersection", "intersections")),
     };
     if let Some(distance) = report.min_distance_m {
         summary += &format!("; smallest distance {distance:.3e} m");

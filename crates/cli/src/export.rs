@@ -4,6 +4,7 @@ use crate::args::ExportOptions;
 use crate::exit::{Exit, Failure};
 use crate::output;
 use crate::progress::Bar;
+use bowknot_errors::counted;
 
 pub fn export(options: &ExportOptions) -> Result<Exit, Failure> {
     let out = match &options.out {
@@ -30,9 +31,9 @@ pub fn export(options: &ExportOptions) -> Result<Exit, Failure> {
     let exported = result?;
     let names: Vec<&str> = options.format.iter().map(|format| format.name()).collect();
     output::print(&format!(
-        "exported {} frames of {} vertices as {} to {}",
-        exported.frames,
-        exported.vertices,
+        "exported {} of {} as {} to {}",
+        counted(exported.frames, "frame", "frames"),
+        counted(exported.vertices, "vertex", "vertices"),
         names.join(", "),
         out.display()
     ))?;

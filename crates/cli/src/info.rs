@@ -1,15 +1,16 @@
-//! `bowknot info`: counts and size of a scene or a mesh.
+//! `bowknot info`: counts, size and structure of a scene or a mesh.
 
 use crate::args::InfoOptions;
 use crate::exit::{Exit, Failure};
-use crate::{bare_mesh, output, setup};
+use crate::{archive, bare_mesh, output, setup};
+use bowknot::geometry::{MeshEdge, MeshProblem, MeshStructure, Point, check_mesh};
 use bowknot::io::{Import, Mesh, read_mesh};
-use bowknot::{Scene, SceneInfo};
+use bowknot::{Scene, SceneInfo, World};
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Counts and size of a scene or a mesh; a mesh has no time step.
+/// Counts and size of a scene or a mesh. The extent of a mesh is in the unit of its file unless that is given.
 #[derive(Debug, Serialize)]
 struct Info {
     vertices: usize,
@@ -19,8 +20,23 @@ struct Info {
     strand_edges: usize,
     particles: usize,
     obstacle_vertices: usize,
+    /// A mesh has none.
     time_step: Option<f64>,
     extent: [f64; 3],
+    #[serde(skip)]
+    has_unit: bool,
+    /// A scene has none.
+    #[serde(flatten)]
+    surface: Option<Surface>,
+}
+
+/// How the triangles of a mesh hang together, and what is wrong with it.
+#[derive(Debug, Serialize)]
+struct Surface {
+    #[serde(flatten)]
+    structure: MeshStructure,
+    /// Why `run` refuses the mesh as a body, in words.
+    problems: Vec<String>,
 }
 
 pub fn info(options: &InfoOptions) -> Result<Exit, Failure> {
@@ -28,7 +44,13 @@ pub fn info(options: &InfoOptions) -> Result<Exit, Failure> {
         return Err(setup::no_gpu());
     };
     let info = if bare_mesh::is_mesh(name) {
-        info_of_mesh(read_mesh(Path::new(name), &Import::default())?)
+        info_of_file(name, &bare_mesh::assignments(options.up, options.scale))?
+    } else if Path::new(name).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("npz")) {
+        let mesh = archive::mesh(&archive::read(Path::new(name))?, 0);
+        let problems = problems(&mesh);
+        Info { has_unit: true, ..info_of_mesh(mesh, problems) }
+    } else if options.up.is_some() || options.scale.is_some() {
+        return Err(Failure::input("--up and --scale apply to meshes"));
     } else {
         let sets: [&str; 0] = [];
         info_of_scene(Scene::open(name, None, &sets).and_then(|scene| scene.info()).map_err(Failure::input)?)
@@ -36,7 +58,7 @@ pub fn info(options: &InfoOptions) -> Result<Exit, Failure> {
     if options.json {
         output::print_json(&info)?;
     } else {
-        output::print(&to_text(name, &info))?;
+        output::print(&to_text(name, &info, options.list))?;
     }
     Ok(Exit::Success)
 }
@@ -52,12 +74,30 @@ fn info_of_scene(info: SceneInfo) -> Info {
         obstacle_vertices: info.obstacle_vertices,
         time_step: Some(info.time_step),
         extent: info.extent,
+        has_unit: true,
+        surface: None,
     }
 }
 
-/// Counts of a mesh as its file holds it, with the surface of its tetrahedra. In a frame, elements with an
-/// obstacle vertex are not counted.
-fn info_of_mesh(mesh: Mesh) -> Info {
+/// Counts of a mesh file, and what keeps it from being simulated.
+fn info_of_file(name: &str, import: &[String]) -> Result<Info, Failure> {
+    let scene = bare_mesh::scene(name, import)?;
+    let body = &scene.bodies[0];
+    let mesh = read_mesh(Path::new(name), &Import { up: body.up, scale: body.scale })?;
+    let mut problems = problems(&mesh);
+    // What only the assembly finds, such as inverted tetrahedra. A frame with obstacles is no body.
+    if problems.is_empty() && mesh.obstacle.is_none() {
+        // Without the ball and the ground, which nobody asked for here.
+        let alone = Scene { obstacles: Vec::new(), ..scene };
+        problems.extend(World::new(&alone).err().map(|error| error.to_string()));
+    }
+    let has_unit = import.iter().any(|set| set.starts_with("body.0.scale="));
+    Ok(Info { has_unit, ..info_of_mesh(mesh, problems) })
+}
+
+/// Counts of a mesh with the surface of its tetrahedra. In a frame, elements with an obstacle vertex are not
+/// counted.
+fn info_of_mesh(mesh: Mesh, problems: Vec<String>) -> Info {
     let tets = mesh.tets.len();
     let mesh = mesh.into_surface();
     let obstacle = |v: &u32| mesh.obstacle.as_ref().is_some_and(|o| o[*v as usize]);
@@ -70,12 +110,6 @@ fn info_of_mesh(mesh: Mesh) -> Info {
         triangles.iter().flat_map(|&&[i, j, k]| [[i, j], [j, k], [k, i]]).map(|[i, j]| [i.min(j), i.max(j)]),
     );
     let obstacle_vertices = (0..mesh.positions.len() as u32).filter(obstacle).count();
-    let mut extent = [0.0; 3];
-    for (k, length) in extent.iter_mut().enumerate() {
-        let low = mesh.positions.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min);
-        let high = mesh.positions.iter().map(|p| p[k]).fold(f64::NEG_INFINITY, f64::max);
-        *length = high - low;
-    }
     Info {
         vertices: mesh.positions.len() - obstacle_vertices,
         edges: edges.len(),
@@ -85,12 +119,31 @@ fn info_of_mesh(mesh: Mesh) -> Info {
         particles: mesh.particles.iter().filter(|v| !obstacle(v)).count(),
         obstacle_vertices,
         time_step: None,
-        extent,
+        extent: extent(&mesh.positions),
+        has_unit: false,
+        surface: Some(Surface { structure: MeshStructure::new(&mesh.positions, &mesh.triangles), problems }),
     }
 }
 
-fn to_text(name: &str, info: &Info) -> String {
+/// Triangles that no deformable body may have, in words.
+fn problems(mesh: &Mesh) -> Vec<String> {
+    check_mesh(&mesh.positions, &mesh.triangles)
+        .iter()
+        .filter(|problem| !matches!(problem, MeshProblem::UnreferencedVertex { .. }))
+        .map(ToString::to_string)
+        .collect()
+}
+
+/// Size of the bounding box [m].
+fn extent(positions: &[Point]) -> [f64; 3] {
+    let first = positions.first().copied().unwrap_or_default();
+    let (low, high) = positions.iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)));
+    (high - low).into()
+}
+
+fn to_text(name: &str, info: &Info, list: usize) -> String {
     let mut lines = vec![format!("{name}:")];
+    let mut line = |what: &str, value: String| lines.push(format!("  {what:<18} {value}"));
     let counts = [
         ("vertices", info.vertices),
         ("edges", info.edges),
@@ -101,12 +154,63 @@ fn to_text(name: &str, info: &Info) -> String {
         ("obstacle vertices", info.obstacle_vertices),
     ];
     // Counts of zero are left out, except that of the vertices.
-    let shown = counts.iter().filter(|(what, count)| *count > 0 || *what == "vertices");
-    lines.extend(shown.map(|(what, count)| format!("  {what:<18} {count}")));
+    for (what, count) in counts.into_iter().filter(|(what, count)| *count > 0 || *what == "vertices") {
+        line(what, count.to_string());
+    }
     if let Some(dt) = info.time_step {
-        lines.push(format!("  {:<18} {dt} s", "time step"));
+        line("time step", format!("{dt} s"));
     }
     let [x, y, z] = info.extent;
-    lines.push(format!("  {:<18} {x:.4} x {y:.4} x {z:.4} m", "extent"));
+    // Nothing tells the unit of a mesh file.
+    let unit = if info.has_unit { "m" } else { "(units of the file)" };
+    line("extent", format!("{x:.4} x {y:.4} x {z:.4} {unit}"));
+    if let Some(surface) = &info.surface {
+        lines.extend(surface_lines(surface, list));
+    }
     lines.join("\n")
+}
+
+/// Parts, borders, odd edges and problems: how many there are, and the first `list` of each.
+fn surface_lines(surface: &Surface, list: usize) -> Vec<String> {
+    let MeshStructure { parts, borders, branching_edges, flipped_edges } = &surface.structure;
+    let part = |part: &bowknot::geometry::MeshPart| {
+        let [low, high] = part.bounds;
+        format!(
+            "vertex {} and {} more, {} triangles, from {} to {}",
+            part.vertex,
+            part.vertices - 1,
+            part.triangles,
+            place(&low),
+            place(&high)
+        )
+    };
+    let border = |border: &bowknot::geometry::MeshBorder| {
+        format!("{} edges, from vertex {} at {}", border.edges, border.vertex, place(&border.place))
+    };
+    let mut lines = Vec::new();
+    let mut section = |what: &str, entries: Vec<String>| {
+        if !entries.is_empty() {
+            lines.push(format!("  {what:<18} {}", entries.len()));
+            lines.extend(entries.iter().take(list).map(|entry| format!("    {entry}")));
+            if entries.len() > list {
+                lines.push(format!("    and {} more", entries.len() - list));
+            }
+        }
+    };
+    section("connected parts", parts.iter().map(part).collect());
+    section("borders", borders.iter().map(border).collect());
+    section("edges of three or more triangles", branching_edges.iter().map(edge).collect());
+    section("edges whose triangles face opposite ways", flipped_edges.iter().map(edge).collect());
+    section("problems, for which `run` refuses the mesh as a body", surface.problems.clone());
+    lines
+}
+
+fn edge(edge: &MeshEdge) -> String {
+    let ([a, b], triangles) = (edge.vertices, &edge.triangles);
+    let triangles: Vec<String> = triangles.iter().map(ToString::to_string).collect();
+    format!("vertices {a}, {b}, triangles {}, at {}", triangles.join(", "), place(&edge.place))
+}
+
+fn place(p: &Point) -> String {
+    format!("({:.4}, {:.4}, {:.4})", p.x, p.y, p.z)
 }

@@ -4,6 +4,7 @@
 // A command prints its results.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod archive;
 mod args;
 mod bare_mesh;
 mod check;
@@ -22,6 +23,7 @@ mod resolve;
 mod run;
 mod scenes;
 mod setup;
+mod sizes;
 
 use args::{Arguments, Command};
 use clap::Parser;
@@ -31,6 +33,8 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     // With a wrong option clap prints a message and exits with code 2.
     let arguments = Arguments::parse();
+    #[cfg(all(feature = "render", target_os = "linux"))]
+    setup::no_display();
     setup::logging(matches!(&arguments.command, Command::Run(options) if options.quiet));
     let result = match arguments.command {
         Command::Scenes(options) => scenes::scenes(&options),

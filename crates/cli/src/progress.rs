@@ -1,4 +1,5 @@
-//! Progress on stderr: on a terminal a bar with the time left, otherwise a plain line every few seconds.
+//! Progress on stderr: on a terminal a bar with the time left, otherwise a plain line every few seconds, without
+//! any control code.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
@@ -56,6 +57,11 @@ impl Bar {
         }
     }
 
+    /// Prints a line to stderr, above the bar.
+    pub fn print(&self, line: &str) {
+        self.bar.suspend(|| eprintln!("{line}"));
+    }
+
     /// Removes the bar.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
@@ -64,7 +70,7 @@ impl Bar {
     fn line(&self, position: usize, message: &str) -> String {
         let total = self.bar.length().unwrap_or(0);
         let elapsed = self.started.elapsed().as_secs_f64();
-        let mut line = format!("{position}/{total} {}", self.what);
+        let mut line = format!("{}: {position}/{total}", self.what);
         if position > 0 && (position as u64) < total {
             let left = elapsed / position as f64 * (total as f64 - position as f64);
             line += &format!(", about {left:.0} s left");

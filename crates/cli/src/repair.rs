@@ -3,8 +3,9 @@
 use crate::args::RepairOptions;
 use crate::exit::{Exit, Failure};
 use crate::{dump, output};
-use bowknot::io::{Import, read_mesh};
+use bowknot::io::{Import, Labels, Mesh, read_mesh};
 use bowknot::repair::{RepairParams, RepairReport, Verdict};
+use bowknot_errors::counted;
 use std::path::Path;
 
 pub fn repair(options: &RepairOptions) -> Result<Exit, Failure> {
@@ -15,6 +16,7 @@ pub fn repair(options: &RepairOptions) -> Result<Exit, Failure> {
             options.out.display()
         )));
     }
+    output::refuse_overwrite(&options.out, &[&options.mesh])?;
     let mesh = read_mesh(&options.mesh, &Import::default())?;
     let params = RepairParams { weld_distance: options.weld_distance };
     let (clean, report) = bowknot::repair::repair(&mesh, &params)
@@ -23,20 +25,39 @@ pub fn repair(options: &RepairOptions) -> Result<Exit, Failure> {
     if options.json {
         output::print_json(&report)?;
     } else {
-        output::print(&to_text(&report, &options.out))?;
+        output::print(&to_text(&report, &options.out, &left_out(&clean, extension == "ply")))?;
     }
     Ok(if report.after.intersections == 0 { Exit::Success } else { Exit::CheckFailed })
 }
 
-fn to_text(report: &RepairReport, out: &Path) -> String {
+/// What the mesh has but a PLY cannot hold.
+fn left_out(mesh: &Mesh, is_ply: bool) -> Vec<&'static str> {
+    let Some(surface) = mesh.surface.as_ref().filter(|_| is_ply) else { return Vec::new() };
+    let has_texture = surface.corners().iter().any(|corner| corner.texture().is_some());
+    let fits = surface.vertex_texture_coordinates(mesh.positions.len()).is_some();
+    let has_names = surface.polygons().any(|polygon| *polygon.labels != Labels::default());
+    [
+        (has_texture && !fits, "texture coordinates, because some vertices have two"),
+        (surface.normal_count() > 0, "normals"),
+        (has_names, "names of objects, groups and materials"),
+    ]
+    .into_iter()
+    .filter_map(|(is_left_out, what)| is_left_out.then_some(what))
+    .collect()
+}
+
+fn to_text(report: &RepairReport, out: &Path, left_out: &[&str]) -> String {
     let mut lines = Vec::new();
     lines.push(match &report.before {
         Some(before) => format!("before: {}", counts(before)),
         None => "before: cannot be checked, because a triangle or strand names a vertex twice".to_owned(),
     });
+    // The file may be in centimeters: a mesh is repaired in its own unit, and written in it.
     let mut welds = format!(
-        "welded {} border vertices nearer than {:.3e} m, moving none by more than {:.3e} m",
-        report.welded_vertices, report.weld_distance, report.largest_move
+        "welded {} nearer than {:.3e}, moving none by more than {:.3e} (units of the file)",
+        counted(report.welded_vertices, "border vertex", "border vertices"),
+        report.weld_distance,
+        report.largest_move
     );
     if let Some([x, y, z]) = report.weld_places.first() {
         welds += &format!("; the first at ({x:.6}, {y:.6}, {z:.6})");
@@ -46,6 +67,7 @@ fn to_text(report: &RepairReport, out: &Path) -> String {
         (report.split_triangles, "split triangles at vertices of T-seams"),
         (report.zero_area_triangles, "dropped triangles without area"),
         (report.repeated_triangles, "dropped triangles given twice"),
+        (report.cut_polygons, "cut polygons around these triangles"),
         (report.dropped_strands, "dropped strand edges given twice or without length"),
         (report.unused_vertices, "dropped vertices that no element used"),
     ] {
@@ -55,16 +77,32 @@ fn to_text(report: &RepairReport, out: &Path) -> String {
     }
     lines.push(format!("after: {}", counts(&report.after)));
     for entry in &report.after.by_parts {
-        let ([a, b], [n, m]) = (entry.parts, entry.vertices);
+        let [a, b] = entry.parts;
+        let [n, m] = entry.vertices.map(|count| counted(count, "vertex", "vertices"));
         lines.push(if a == b {
-            format!("  part {a} ({n} vertices) with itself: {}", entry.count)
+            format!("  part {a} ({n}) with itself: {}", entry.count)
         } else {
-            format!("  part {a} ({n} vertices) with part {b} ({m} vertices): {}", entry.count)
+            format!("  part {a} ({n}) with part {b} ({m}): {}", entry.count)
         });
     }
     lines.extend(report.after.findings.iter().map(|finding| format!("  {finding}")));
     lines.push(format!("wrote {}", out.display()));
-    if report.after.intersections > 0 {
+    if !left_out.is_empty() {
+        let what = left_out.join("; ");
+        lines.push(format!("left out, because the format cannot hold it (.obj can): {what}"));
+    }
+    if report.largest_move > report.weld_distance {
+        lines.push(
+            "the weld distance joins vertices in chains, far beyond its own length: give a smaller --weld-distance"
+                .to_owned(),
+        );
+    } else if report.after.parts > 1 && report.welded_vertices == 0 {
+        lines.push(
+            "no borders lie together within the weld distance, and parts stay apart: if they are panels of one \
+             garment, give a larger --weld-distance"
+                .to_owned(),
+        );
+    } else if report.after.intersections > 0 {
         let remedy = "a larger --weld-distance closes wider seams; `bowknot check --dump FILE` writes the \
                       triangles that intersect; a mesh for an obstacle needs no further repair, since obstacles \
                       may intersect themselves";
@@ -75,7 +113,11 @@ fn to_text(report: &RepairReport, out: &Path) -> String {
 
 fn counts(verdict: &Verdict) -> String {
     format!(
-        "{} vertices, {} triangles in {} parts, {} border vertices, {} intersections",
-        verdict.vertices, verdict.triangles, verdict.parts, verdict.border_vertices, verdict.intersections
+        "{}, {} in {}, {}, {}",
+        counted(verdict.vertices, "vertex", "vertices"),
+        counted(verdict.triangles, "triangle", "triangles"),
+        counted(verdict.parts, "part", "parts"),
+        counted(verdict.border_vertices, "border vertex", "border vertices"),
+        counted(verdict.intersections, "intersection", "intersections")
     )
 }

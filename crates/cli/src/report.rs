@@ -5,6 +5,7 @@ use crate::exit::{Exit, Failure};
 use crate::output;
 use crate::progress::Bar;
 use bowknot::report::{ReportInfo, write_report};
+use bowknot_errors::counted;
 
 pub fn report(options: &ReportOptions) -> Result<Exit, Failure> {
     let out = options.out.clone().unwrap_or_else(|| options.folder.join("report.html"));
@@ -30,10 +31,10 @@ pub fn report(options: &ReportOptions) -> Result<Exit, Failure> {
 
 fn to_text(info: &ReportInfo) -> String {
     let mut lines = vec![format!(
-        "wrote {}: {} of {} frames, {:.1} MB, positions within {:.1e} m; open it in a browser",
+        "wrote {}: {} of {}, {:.1} MB, positions within {:.1e} m; open it in a browser",
         info.path.display(),
         info.frames,
-        info.frames_found,
+        counted(info.frames_found, "frame", "frames"),
         info.bytes as f64 / 1e6,
         info.position_error_m
     )];

@@ -3,11 +3,12 @@
 use crate::args::ResolveOptions;
 use crate::exit::{Exit, Failure};
 use crate::interrupt::Interrupt;
-use crate::{output, setup};
+use crate::{output, setup, sizes};
 use bowknot::check::{Judge, StateOptions};
 use bowknot::proximity::CollisionModel;
 use bowknot::recording::{States, write_result};
 use bowknot::twoway::{AcceptedState, Statistics};
+use bowknot_errors::counted;
 use serde::Serialize;
 use std::ops::ControlFlow;
 
@@ -24,11 +25,18 @@ struct Summary {
     /// Processor time of all threads during the call.
     cpu_seconds: f64,
     /// RMS over free vertices of |x - y| [m].
+    distance_to_target_m: f64,
+    /// The same number by the name without its unit.
     distance_to_target: f64,
     remaining_m: f64,
+    /// Largest distance of a prescribed vertex to its target [m].
+    prescribed_lag_m: f64,
+    /// Number of prescribed vertices that are not at their targets.
+    prescribed_waiting: usize,
     stationarity_m: f64,
     min_gap_m: Option<f64>,
     max_step_stretch: f64,
+    max_stretch: f64,
     converged: bool,
 }
 
@@ -38,8 +46,16 @@ pub fn resolve(options: &ResolveOptions) -> Result<Exit, Failure> {
     if options.max_seconds.is_some() {
         params.solver.stop.max_seconds = options.max_seconds;
     }
+    output::refuse_overwrite(&options.out, &[&options.states])?;
+    output::refuse_unwritable(&options.out, "npz")?;
     let states = States::read(&options.states)?;
+    if states.triangles.is_empty() && states.strands.is_empty() && states.particles.is_empty() {
+        eprintln!("warning: {}: no elements (F, E, P): nothing can collide", options.states.display());
+    }
     let bad_input = |message: String| Failure::input(format!("{}: {message}", options.states.display()));
+    for oddity in sizes::oddities(&states) {
+        eprintln!("warning: {}: {oddity}", options.states.display());
+    }
     let model = states.collision_model().map_err(bad_input)?;
     refuse_intersections(&model, &states).map_err(bad_input)?;
 
@@ -53,8 +69,10 @@ pub fn resolve(options: &ResolveOptions) -> Result<Exit, Failure> {
     let statistics = resolver
         .resolve_with(&mut x, &states.y, &states.input(), &mut watch)
         .map_err(|error| bad_input(error.to_string()))?;
-    let summary = summarize(&statistics, bowknot::simulator::cpu_seconds() - cpu);
-    write_result(&options.out, &x)?;
+    let waiting =
+        (0..x.len()).filter(|&v| (states.fixed[v] || states.obstacle[v]) && x[v] != states.y[v]).count();
+    let summary = summarize(&statistics, bowknot::simulator::cpu_seconds() - cpu, waiting);
+    write_result(&options.out, &states, &x)?;
 
     if options.json {
         output::print_json(&summary)?;
@@ -72,7 +90,10 @@ fn refuse_intersections(model: &CollisionModel, states: &States) -> Result<(), S
     if report.is_clear() {
         return Ok(());
     }
-    let mut lines = vec![format!("array x: {} pairs intersect at the start", report.intersection_count)];
+    let mut lines = vec![format!(
+        "array x: {} at the start",
+        counted(report.intersection_count, "pair intersects", "pairs intersect")
+    )];
     lines.extend(report.intersections.iter().map(|pair| format!("  {pair}")));
     let rest = report.intersection_count - report.intersections.len();
     if rest > 0 {
@@ -81,37 +102,59 @@ fn refuse_intersections(model: &CollisionModel, states: &States) -> Result<(), S
     Err(lines.join("\n"))
 }
 
-fn summarize(statistics: &Statistics, cpu_seconds: f64) -> Summary {
+fn summarize(statistics: &Statistics, cpu_seconds: f64, prescribed_waiting: usize) -> Summary {
     Summary {
         steps: statistics.steps,
         searches: statistics.searches,
         seconds: statistics.seconds.total,
         cpu_seconds,
+        distance_to_target_m: statistics.distance_to_target_m,
         distance_to_target: statistics.distance_to_target_m,
         remaining_m: statistics.remaining_m,
+        prescribed_lag_m: statistics.prescribed_lag_m,
+        prescribed_waiting,
         stationarity_m: statistics.stationarity_m,
         min_gap_m: statistics.min_gap_m,
         max_step_stretch: statistics.max_step_stretch,
+        max_stretch: statistics.max_stretch,
         converged: statistics.converged,
     }
 }
 
 fn to_text(summary: &Summary, options: &ResolveOptions) -> String {
-    let end = if summary.converged { "converged" } else { "stopped early, with a valid state" };
+    let end = if summary.converged {
+        "converged"
+    } else {
+        "stopped at a limit before the target, with a valid state,"
+    };
     let gap =
         summary.min_gap_m.map_or_else(|| "no pair within reach".to_owned(), |gap| format!("{gap:.3e} m"));
+    let lag = if summary.prescribed_lag_m > 0.0 {
+        format!(
+            "{}, at most {:.3e} m away: something is in the way\n",
+            counted(
+                summary.prescribed_waiting,
+                "prescribed vertex is not at its target",
+                "prescribed vertices are not at their targets"
+            ),
+            summary.prescribed_lag_m
+        )
+    } else {
+        String::new()
+    };
     format!(
-        "{end} after {} steps and {} searches in {:.3} s ({:.3} s of CPU)\n\
-         distance to target {:.3e} m (RMS), not travelled {:.3e} m, stationarity {:.3e} m\n\
-         smallest gap {gap}, largest stretch in the call {:.4}\nwrote {}",
-        summary.steps,
-        summary.searches,
+        "{end} after {} and {} in {:.3} s ({:.3} s of CPU)\n\
+         distance to target {:.3e} m (RMS of free vertices), not travelled {:.3e} m, stationarity {:.3e} m\n{lag}\
+         smallest gap {gap}, largest stretch {:.4} of the lengths at the start, {:.4} at rest\nwrote {}",
+        counted(summary.steps, "step", "steps"),
+        counted(summary.searches, "search", "searches"),
         summary.seconds,
         summary.cpu_seconds,
-        summary.distance_to_target,
+        summary.distance_to_target_m,
         summary.remaining_m,
         summary.stationarity_m,
         summary.max_step_stretch,
+        summary.max_stretch,
         options.out.display()
     )
 }

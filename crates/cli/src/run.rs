@@ -8,11 +8,18 @@ use crate::{bare_mesh, output, setup};
 use bowknot::check::{Judge, StateReport};
 use bowknot::run::{Outcome, Progress, Summary};
 use bowknot::{Scene, SimulationError, Simulator, World};
+use bowknot_errors::counted;
 use std::ops::ControlFlow;
 use std::path::Path;
 
+/// Largest number of bodies whose sizes are printed.
+const MAX_SIZES: usize = 10;
+
 pub fn run(options: &RunOptions) -> Result<Exit, Failure> {
     setup::machine(&options.machine)?;
+    if let Some(dump) = &options.dump {
+        output::refuse_overwrite(dump, &[Path::new(&options.scene)])?;
+    }
     let scene = open(options)?;
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(scene.name()));
     let interrupt = Interrupt::listen();
@@ -24,7 +31,12 @@ pub fn run(options: &RunOptions) -> Result<Exit, Failure> {
     };
     let mut bar: Option<Bar> = None;
     let mut show = |progress: &Progress<'_>| {
-        let bar = bar.get_or_insert_with(|| Bar::new(progress.frames, "frames", options.quiet));
+        let bar = bar.get_or_insert_with(|| {
+            if !options.quiet && !options.json {
+                print_sizes(progress.world);
+            }
+            Bar::new(progress.frames, "frames", options.quiet)
+        });
         bar.set_position(progress.step, &progress_text(progress));
         ControlFlow::Continue(())
     };
@@ -70,12 +82,12 @@ fn open(options: &RunOptions) -> Result<Scene, Failure> {
     }
     sets.extend(options.method.assignments());
     if bare_mesh::is_mesh(&options.scene) {
-        if options.scale.is_some() {
-            let message =
-                "--scale applies to built-in scenes; for a mesh in other units: --set body.0.scale=0.001";
-            return Err(Failure::input(message));
-        }
-        return bare_mesh::scene(&options.scene, &sets);
+        let import = bare_mesh::assignments(options.up, options.scale);
+        return bare_mesh::scene(&options.scene, &[import, sets].concat());
+    }
+    if options.up.is_some() {
+        let message = "--up applies to meshes; in a scene file, `up` is a key of each body and obstacle";
+        return Err(Failure::input(message));
     }
     Scene::open(&options.scene, options.scale, &sets).map_err(Failure::input)
 }
@@ -86,7 +98,8 @@ fn run_failure(scene: &Scene, error: SimulationError, dump: Option<&Path>) -> Fa
     let (SimulationError::StartIntersects { .. }, Some(path)) = (&error, dump) else { return failure };
     match write_dump(scene, path) {
         Ok(triangles) => {
-            Failure::input(format!("{error}\nwrote {triangles} triangles to {}", path.display()))
+            let triangles = counted(triangles, "triangle", "triangles");
+            Failure::input(format!("{error}\nwrote {triangles} to {}", path.display()))
         }
         Err(second) => Failure::input(format!("{error}\n{}", second.message)),
     }
@@ -103,10 +116,19 @@ fn write_dump(scene: &Scene, path: &Path) -> Result<usize, Failure> {
     Ok(mesh.triangles.len())
 }
 
+/// Prints what is simulated and how large it is.
+fn print_sizes(world: &World) {
+    let sizes = world.sizes();
+    sizes.iter().take(MAX_SIZES).for_each(|size| eprintln!("{size}"));
+    if let Some(rest) = sizes.len().checked_sub(MAX_SIZES).filter(|rest| *rest > 0) {
+        eprintln!("and {rest} more");
+    }
+}
+
 /// The text beside the progress bar.
 fn progress_text(progress: &Progress<'_>) -> String {
     let Some(statistics) = progress.statistics else { return String::new() };
-    let mut text = format!("{} steps", statistics.two_way_steps);
+    let mut text = counted(statistics.two_way_steps, "step", "steps");
     if let Some(gap) = statistics.min_gap_m {
         text += &format!(", gap {:.2} mm", 1e3 * gap);
     }
@@ -114,7 +136,7 @@ fn progress_text(progress: &Progress<'_>) -> String {
         text += &format!(", {body} is {:.1} mm short of its target", 1e3 * statistics.remaining_m);
     }
     if let Some(count) = progress.intersections.filter(|&count| count > 0) {
-        text += &format!(", {count} INTERSECTIONS");
+        text += &format!(", {}", counted(count, "INTERSECTION", "INTERSECTIONS"));
     }
     text
 }
@@ -123,10 +145,24 @@ fn to_text(outcome: &Outcome, out: &Path, frames: usize) -> String {
     let summary = &outcome.summary;
     let (mean, max) = (summary.mean.as_ref(), summary.max.as_ref());
     let mut lines = Vec::new();
-    let state = if outcome.interrupted { "interrupted" } else { "done" };
-    let mut line = format!("{}: {state} after {} of {frames} frames", summary.scene, summary.frames);
+    let mut line = if summary.frames > frames {
+        format!(
+            "{}: nothing to do, {} asked for and there are {}",
+            summary.scene,
+            counted(frames, "frame was", "frames were"),
+            summary.frames
+        )
+    } else {
+        let state = if outcome.interrupted { "interrupted" } else { "done" };
+        format!(
+            "{}: {state} after {} of {}",
+            summary.scene,
+            summary.frames,
+            counted(frames, "frame", "frames")
+        )
+    };
     if let Some(seconds) = mean.and_then(|mean| mean.seconds.total) {
-        line += &format!(", {seconds:.3} s per frame on {} threads", summary.threads);
+        line += &format!(", {seconds:.3} s per frame on {}", counted(summary.threads, "thread", "threads"));
     }
     lines.push(line);
     let number = |value: Option<f64>, digits: usize| {
@@ -143,7 +179,10 @@ fn to_text(outcome: &Outcome, out: &Path, frames: usize) -> String {
     if let Some(count) = summary.intersections {
         lines.push(match count {
             0 => "checked every accepted state and path: no intersection".to_owned(),
-            _ => format!("checked every accepted state and path: {count} INTERSECTIONS"),
+            _ => format!(
+                "checked every accepted state and path: {}",
+                counted(count, "INTERSECTION", "INTERSECTIONS")
+            ),
         });
     }
     lines.push(format!("wrote {}", out.display()));
@@ -157,15 +196,16 @@ fn to_text(outcome: &Outcome, out: &Path, frames: usize) -> String {
 fn unreached_targets(summary: &Summary) -> Vec<String> {
     let mut lines = Vec::new();
     let converged = summary.mean.as_ref().and_then(|mean| mean.converged).unwrap_or(1.0);
-    let stopped = ((1.0 - converged) * summary.frames as f64).round();
-    if stopped > 0.0 {
-        lines.push(format!(
-            "{stopped} time steps ended at the limit of steps or time, short of their targets"
-        ));
+    let stopped = ((1.0 - converged) * summary.frames as f64).round() as usize;
+    if stopped > 0 {
+        let stopped = counted(stopped, "time step", "time steps");
+        lines.push(format!("{stopped} ended at the limit of steps or time, short of the target"));
     }
     for (name, lag) in summary.max.iter().flat_map(|max| &max.waiting) {
         let lag = lag.unwrap_or(f64::NAN);
-        lines.push(format!("{name} waited for what was in its way, at most {lag:.3e} m behind its motion"));
+        lines.push(format!(
+            "{name} was held up by what was in its way, or by the limit of steps: at most {lag:.3e} m behind its motion"
+        ));
     }
     lines
 }

@@ -23,6 +23,7 @@ pub mod distance;
 pub mod half_space;
 pub mod intersection;
 pub mod mesh_check;
+mod mesh_structure;
 pub mod pair;
 mod point;
 pub mod separation;
@@ -35,12 +36,15 @@ mod vertex_range;
 struct Readme;
 
 pub use bowknot_errors::Errors;
+/// The crate of the types [`Point`] and [`Vector`].
+pub use nalgebra;
 
 pub use bounds::Aabb;
 pub use collision_model::{BodyFilter, CollisionModel, ModelError};
 pub use distance::Closest;
 pub use half_space::HalfSpace;
 pub use mesh_check::{MeshProblem, check_mesh};
+pub use mesh_structure::{MeshBorder, MeshEdge, MeshPart, MeshStructure};
 pub use pair::PairKind;
 pub use point::{Point, Vector};
 pub use separation::Separation;

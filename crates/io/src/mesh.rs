@@ -1,5 +1,6 @@
 //! A mesh as files hold it, whatever their format.
 
+use crate::surface::Surface;
 use bowknot_geometry::{Point, boundary_triangles};
 
 /// A mesh read from a file [m, z up].
@@ -21,6 +22,9 @@ pub struct Mesh {
     pub obstacle: Option<Vec<bool>>,
     /// Body of each vertex, if the file says so.
     pub body: Option<Vec<u32>>,
+    /// The polygons whose fans are the triangles, and what modeling tools say about them; none if the file
+    /// has nameless triangles only, or is no OBJ.
+    pub surface: Option<Surface>,
 }
 
 /// A mesh to be written, borrowed from wherever it lives.
@@ -40,6 +44,9 @@ pub struct MeshView<'a> {
     pub obstacle: &'a [bool],
     /// Body of each vertex; empty: all belong to body 0.
     pub body: &'a [u32],
+    /// The polygons whose fans are the triangles, then the fans of the quads: what OBJ, PLY and USD hold in
+    /// their place.
+    pub surface: Option<&'a Surface>,
 }
 
 impl Mesh {
@@ -53,6 +60,7 @@ impl Mesh {
             particles: &self.particles,
             obstacle: self.obstacle.as_deref().unwrap_or(&[]),
             body: self.body.as_deref().unwrap_or(&[]),
+            surface: self.surface.as_ref(),
         }
     }
 
@@ -60,9 +68,12 @@ impl Mesh {
     /// positive volume, before the other triangles. Vertices keep their numbers; those inside are then named
     /// by nothing.
     pub fn into_surface(mut self) -> Self {
+        if self.tets.is_empty() {
+            return self;
+        }
         let mut triangles = boundary_triangles(&self.tets);
         triangles.append(&mut self.triangles);
-        Self { triangles, tets: Vec::new(), ..self }
+        Self { triangles, tets: Vec::new(), surface: None, ..self }
     }
 
     /// Vertices that no triangle, tetrahedron, strand edge or particle names, ascending.
@@ -95,6 +106,9 @@ impl Mesh {
         self.tets.iter_mut().flatten().for_each(renumber);
         self.strands.iter_mut().flatten().for_each(renumber);
         self.particles.iter_mut().for_each(renumber);
+        if let Some(surface) = &mut self.surface {
+            surface.renumber(|v| renumbered[v as usize]);
+        }
         retain(&mut self.positions, &keep);
         if let Some(obstacle) = &mut self.obstacle {
             retain(obstacle, &keep);
@@ -103,6 +117,14 @@ impl Mesh {
             retain(body, &keep);
         }
         unused.len()
+    }
+
+    /// Keeps the triangles that are marked. Returns how many polygons of the surface lose some of theirs.
+    pub fn retain_triangles(&mut self, keep: &[bool]) -> usize {
+        retain(&mut self.triangles, keep);
+        let cut = self.surface.as_mut().map_or(0, |surface| surface.retain_triangles(keep));
+        self.surface = self.surface.take().filter(|surface| !surface.is_empty());
+        cut
     }
 
     pub(super) fn used_by_elements(&self) -> Vec<bool> {

@@ -6,6 +6,7 @@ use crate::import::Import;
 use crate::mesh::Mesh;
 use crate::numbering::Numbering;
 use bowknot_errors::Parameters;
+use bowknot_errors::counted;
 use std::fs;
 use std::path::Path;
 
@@ -24,8 +25,9 @@ pub fn read_tet_list(path: &Path, import: &Import) -> Result<Mesh, IoError> {
         parse(&text, import).map_err(|(place, message)| IoError::content(path, place, message))?;
     if skipped > 0 {
         tracing::warn!(
-            "{}: skipped {skipped} lines that are neither Vertex nor Tet nor Face",
-            path.display()
+            "{}: skipped {} neither Vertex nor Tet nor Face",
+            path.display(),
+            counted(skipped, "line that is", "lines that are")
         );
     }
     Ok(mesh)

@@ -31,6 +31,8 @@ mod team;
 mod vector;
 
 pub use bowknot_errors::{Errors, ParamError, Parameters};
+/// The crate of the types [`Vector`] and [`TangentVector`].
+pub use nalgebra;
 
 pub use colors::validate_colors;
 pub use error::LcpError;

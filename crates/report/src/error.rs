@@ -1,5 +1,6 @@
 //! Why there is no page.
 
+use bowknot_errors::counted;
 use bowknot_io::IoError;
 use std::path::PathBuf;
 
@@ -19,7 +20,10 @@ pub enum ReportError {
         path: PathBuf,
     },
     /// A frame of another number of vertices than the first.
-    #[error("{}: it has {found} vertices, the first frame has {expected}: frames of one run have the same", path.display())]
+    #[error(
+        "{}: it has {}, the first frame has {expected}: frames of one run have the same",
+        path.display(), counted(*found, "vertex", "vertices")
+    )]
     Mismatch {
         /// The frame.
         path: PathBuf,
@@ -29,7 +33,10 @@ pub enum ReportError {
         expected: usize,
     },
     /// Not even two frames fit, or not as many as a given stride asks for.
-    #[error("{frames} frames with a stride of {stride} take more than {budget} bytes: {remedy}")]
+    #[error(
+        "{} with a stride of {stride} need more than {budget} bytes: {remedy}",
+        counted(*frames, "frame", "frames")
+    )]
     TooLarge {
         /// Frames that would be shown.
         frames: usize,

@@ -5,6 +5,7 @@ use crate::error::ReportError;
 use crate::facts::Facts;
 use crate::options::ReportInfo;
 use crate::pack::Pack;
+use bowknot_errors::counted;
 use bowknot_io::FrameSource;
 use bowknot_io::write_atomic;
 use serde_json::{Value, json};
@@ -112,8 +113,9 @@ fn left_out(frames: &FrameSource, facts: &Facts, columns: &Columns, pack: &Pack)
     let (shown, found) = (pack.shown.len(), frames.len());
     if shown < found {
         left_out.push(format!(
-            "{} of {found} frames: one in {} is shown, and the last; --stride and --max-megabytes change that",
+            "{} of {}: one in {} is shown, and the last; --stride and --max-megabytes change that",
             found - shown,
+            counted(found, "frame", "frames"),
             pack.stride
         ));
     }
@@ -121,7 +123,8 @@ fn left_out(frames: &FrameSource, facts: &Facts, columns: &Columns, pack: &Pack)
         left_out.push("statistics: stats.jsonl is missing or empty".to_owned());
     }
     if columns.damaged > 0 {
-        left_out.push(format!("{} damaged lines of stats.jsonl", columns.damaged));
+        left_out
+            .push(format!("{} of stats.jsonl", counted(columns.damaged, "damaged line", "damaged lines")));
     }
     left_out.extend(facts.missing.iter().cloned());
     left_out

@@ -25,7 +25,8 @@ pub struct BodySpec {
     /// Generated mesh, see the shapes. Either this or `mesh`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shape: Option<Shape>,
-    /// Axis of the mesh that points up: `x`, `y` or `z`. Default `z`.
+    /// Axis of the mesh that points up: `x`, `y` or `z`. With `y`, as most modeling tools have it, y becomes z
+    /// and z becomes -y; with `x`, x becomes z, y becomes x and z becomes y. Default `z`.
     pub up: Up,
     /// Factor on the mesh's coordinates [1]: 0.001 for a mesh in millimeters. Default 1.
     pub scale: f64,

@@ -3,6 +3,7 @@
 use crate::body::BodySpec;
 use crate::friction::FrictionPair;
 use crate::obstacle::ObstacleSpec;
+use crate::origin::Origins;
 use crate::params::{OutputParams, Preset, SceneSolverParams, SimulationParams};
 use crate::pin::PinSpec;
 use bowknot_dynamics::{DynamicsParams, Environment};
@@ -34,6 +35,8 @@ pub struct Scene {
     pub pins: Vec<PinSpec>,
     /// Folder that mesh paths are relative to.
     pub folder: PathBuf,
+    /// Where the keys stand, for messages.
+    pub origins: Origins,
 }
 
 impl Scene {

@@ -1,7 +1,8 @@
 //! What is wrong with a scene.
 
+use crate::origin::Origin;
 use bowknot_geometry::MeshProblem;
-use bowknot_io::IoError;
+use bowknot_io::{IoError, MESH_ENDINGS};
 use std::fmt;
 use std::path::PathBuf;
 
@@ -35,6 +36,12 @@ pub enum SceneError {
         /// The built-in scene with the most similar name, if any is similar.
         nearest: Option<&'static str>,
     },
+    /// A file that is no scene, by its ending.
+    #[error("{}: a scene is a .toml file; meshes that can be read are {}", file.display(), endings())]
+    NoScene {
+        /// The file.
+        file: PathBuf,
+    },
     /// `--scale` out of its range.
     #[error("scale {scale} must be finite, at least {min} and at most {max}")]
     Scale {
@@ -67,12 +74,30 @@ pub enum SceneError {
         /// What is wrong and what is allowed.
         message: String,
     },
+    /// What goes wrong with a part of a scene file.
+    #[error("{origin}{source}")]
+    At {
+        /// The line of the part.
+        origin: Origin,
+        /// What goes wrong.
+        source: Box<SceneError>,
+    },
     /// There is nothing to simulate.
     #[error("the scene is empty: it needs at least one [[body]]")]
     Empty,
     /// The model cannot be built from the parts.
     #[error("{0}")]
     Model(String),
+}
+
+impl SceneError {
+    /// The error with the place of the part that it is about, if that is known.
+    pub(crate) fn at(self, origin: Option<Origin>) -> Self {
+        match origin {
+            Some(origin) => Self::At { origin, source: Box::new(self) },
+            None => self,
+        }
+    }
 }
 
 /// One thing that is wrong with a scene description.
@@ -86,36 +111,24 @@ pub struct SceneProblem {
     pub message: String,
 }
 
-/// Where a value came from.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Origin {
-    /// A line, from 1, of a scene file.
-    File(PathBuf, Option<usize>),
-    /// An option `--set`.
-    Set,
-    /// A scene made in code.
-    Code,
-}
-
 impl fmt::Display for SceneProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match &self.origin {
-            Origin::File(file, Some(line)) => write!(f, "{}:{line}: ", file.display())?,
-            Origin::File(file, None) => write!(f, "{}: ", file.display())?,
-            Origin::Set => write!(f, "--set: ")?,
-            Origin::Code => {}
-        }
-        write!(f, "{}: {}", self.key, self.message)
+        write!(f, "{}{}: {}", self.origin, self.key, self.message)
     }
 }
 
 /// The candidate most similar to `name`, if it is similar enough to be what was meant.
-pub(crate) fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+pub fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     candidates
         .map(|candidate| (strsim::normalized_damerau_levenshtein(name, candidate), candidate))
         .filter(|(similarity, _)| *similarity >= 0.5)
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, candidate)| candidate)
+}
+
+/// Endings of meshes, in words.
+fn endings() -> String {
+    MESH_ENDINGS.map(|ending| format!(".{ending}")).join(", ")
 }
 
 fn suggestion(nearest: &Option<&'static str>) -> String {
@@ -140,7 +153,8 @@ fn mesh_hint(problems: &[MeshProblem]) -> &'static str {
     let degenerate =
         |p: &MeshProblem| matches!(p, MeshProblem::ZeroArea { .. } | MeshProblem::RepeatedTriangle { .. });
     if problems.iter().any(degenerate) {
-        ". The triangles of a deformable body need an area and must differ: remove these from the mesh"
+        ". The triangles of a deformable body need an area and must differ: \
+         `bowknot repair MESH --out FILE` drops these, `bowknot info MESH` lists them"
     } else {
         ""
     }

@@ -16,6 +16,7 @@ mod body;
 mod builtin;
 mod description;
 mod error;
+mod explain;
 mod fields;
 mod friction;
 mod kind;
@@ -23,6 +24,7 @@ mod material;
 mod motion;
 mod obstacle;
 mod open;
+mod origin;
 mod params;
 mod pin;
 mod read;
@@ -47,13 +49,14 @@ pub use bowknot_twoway as twoway;
 pub use body::BodySpec;
 pub use builtin::{BUILTIN, Builtin};
 pub use description::Scene;
-pub use error::{Origin, SceneError, SceneProblem};
+pub use error::{SceneError, SceneProblem, nearest};
 pub use friction::FrictionPair;
 pub use kind::BodyKind;
 pub use material::Material;
 pub use motion::{Keyframe, Motion, Placement};
 pub use obstacle::ObstacleSpec;
 pub use open::twoway_params;
+pub use origin::{Origin, Origins};
 pub use params::{
     CollisionEvery, Format, InteriorFollows, OutputParams, Preset, RepulsionParams, SceneSolverParams,
     SimulationParams,

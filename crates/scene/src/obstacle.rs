@@ -32,7 +32,8 @@ pub struct ObstacleSpec {
     /// When the sequence begins [s]; it is held at its first frame before, and at its last one after. Default
     /// 0.
     pub sequence_start: f64,
-    /// Axis of the mesh that points up: `x`, `y` or `z`. Default `z`.
+    /// Axis of the mesh that points up: `x`, `y` or `z`. With `y`, as most modeling tools have it, y becomes z
+    /// and z becomes -y; with `x`, x becomes z, y becomes x and z becomes y. Default `z`.
     pub up: Up,
     /// Factor on the mesh's coordinates [1]: 0.001 for a mesh in millimeters. Default 1.
     pub scale: f64,

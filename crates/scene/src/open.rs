@@ -58,6 +58,9 @@ impl Scene {
             let nearest = error::nearest(name, BUILTIN.iter().map(|b| b.name));
             return Err(SceneError::Unknown { name: name.to_owned(), nearest });
         }
+        if path.extension().is_some_and(|ending| !ending.eq_ignore_ascii_case("toml")) && path.exists() {
+            return Err(SceneError::NoScene { file: path.to_owned() });
+        }
         if scale.is_some() {
             return Err(SceneError::ScaleOfFile { file: path.to_owned() });
         }
@@ -79,7 +82,8 @@ impl Scene {
             write::drop_defaults(&mut source.table, &self);
         }
         apply(&mut source, sets)?;
-        read::scene(&source, &self.folder, &self.simulation.name)
+        let scene = read::scene(&source, &self.folder, &self.simulation.name)?;
+        Ok(Self { origins: self.origins, ..scene })
     }
 
     /// The scene as TOML with every default filled in; [`Self::from_toml`] reads it back equal. Mesh

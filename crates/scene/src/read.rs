@@ -3,6 +3,7 @@
 use crate::body::BodySpec;
 use crate::description::Scene;
 use crate::error::{SceneError, nearest};
+use crate::explain::explain;
 use crate::fields::field_names;
 use crate::friction::FrictionPair;
 use crate::material;
@@ -19,7 +20,7 @@ use crate::source::Source;
 use crate::validate::{self, report_errors};
 use crate::values::{describe, join};
 use bowknot_dynamics::Environment;
-use bowknot_twoway::{ContactParams, Params};
+use bowknot_twoway::{ContactParams, Params, StopRule};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::path::Path;
@@ -36,6 +37,7 @@ pub(super) fn scene(source: &Source, folder: &Path, name: &str) -> Result<Scene,
 
     let mut scene = read_solver(&mut reader, root);
     folder.clone_into(&mut scene.folder);
+    scene.origins = source.origins();
 
     let table = reader.table(root, "", "simulation");
     let known = [field_names::<SimulationParams>(), field_names::<Environment>()].concat();
@@ -85,14 +87,12 @@ fn read_solver(reader: &mut Reader<'_>, root: &Table) -> Scene {
     let contact = reader.table(root, "", "contact");
     let known = [&["preset", "friction_pairs"], field_names::<ContactParams>()].concat();
     reader.check_keys(&contact, "contact", &known);
-    let preset = match contact.get("preset").map(|value| value.clone().try_into::<Preset>()) {
-        None => Preset::default(),
-        Some(Ok(preset)) => preset,
-        Some(Err(error)) => {
-            reader.fail("contact.preset", error.message().trim());
+    let preset = contact.get("preset").map_or_else(Preset::default, |value| {
+        value.clone().try_into().unwrap_or_else(|error: toml::de::Error| {
+            reader.fail("contact.preset", explain(error.message(), value));
             Preset::default()
-        }
-    };
+        })
+    });
     let base = Scene::with_preset(preset);
     let contact = reader.fields(&base.contact, &contact, "contact", &[]);
 
@@ -103,14 +103,28 @@ fn read_solver(reader: &mut Reader<'_>, root: &Table) -> Scene {
     if !reader.table(&table, "solver", "backward").contains_key("polish_sweeps") {
         backward.polish_sweeps = backward.polish_sweeps.max(backward.sweeps);
     }
+    let stop = solver_part(reader, &table, "stop", &base.solver.stop);
+    warn_of_other_rule(reader, &table, &stop.rule);
     let solver = SceneSolverParams {
         backward,
         forward: solver_part(reader, &table, "forward", &base.solver.forward),
-        stop: solver_part(reader, &table, "stop", &base.solver.stop),
+        stop,
         newton: solver_part(reader, &table, "newton", &base.solver.newton),
         repulsion: solver_part(reader, &table, "repulsion", &base.solver.repulsion),
     };
     Scene { contact, solver, ..base }
+}
+
+/// Warns of keys that belong to the stopping rule that is not in force.
+fn warn_of_other_rule(reader: &mut Reader<'_>, solver: &Table, rule: &StopRule) {
+    let (rule, others): (_, &[&str]) = match rule {
+        StopRule::Clock { .. } => ("clock", &["net_residual", "residual"]),
+        StopRule::Travel { .. } => ("travel", &["remaining_fraction"]),
+    };
+    let table = reader.table(solver, "solver", "stop");
+    for key in others.iter().filter(|key| table.contains_key(**key)) {
+        reader.warn(&format!("solver.stop.{key}"), format!("has no effect: solver.stop.rule is {rule:?}"));
+    }
 }
 
 fn solver_part<T>(reader: &mut Reader<'_>, solver: &Table, key: &str, base: &T) -> T

@@ -1,6 +1,7 @@
 //! From TOML tables to structs, key by key, so that every problem is reported with its key.
 
 use crate::error::{SceneProblem, nearest};
+use crate::explain::explain;
 use crate::fields::field_names;
 use crate::source::Source;
 use crate::values::{describe, join};
@@ -21,6 +22,11 @@ impl<'a> Reader<'a> {
 
     pub fn fail(&mut self, key: &str, message: impl Into<String>) {
         self.problems.push(self.source.problem(key, message));
+    }
+
+    /// Warns of the value of a key, which is used all the same.
+    pub fn warn(&self, key: &str, message: impl Into<String>) {
+        tracing::warn!("{}", self.source.problem(key, message));
     }
 
     /// The table at a key, empty if there is none.
@@ -96,9 +102,7 @@ impl<'a> Reader<'a> {
                     merged.insert(field.to_owned(), value.clone());
                 }
                 Err(error) => {
-                    // Below an inline key the message of serde names what is wrong.
-                    let message = error.message().trim().replace('\n', " ");
-                    self.fail(&join(path, field), message);
+                    self.fail(&join(path, field), explain(error.message(), value));
                 }
             }
         }

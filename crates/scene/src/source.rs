@@ -1,7 +1,9 @@
 //! Where each value of a scene description came from: the file's lines and the `--set` options.
 
-use crate::error::{Origin, SceneError, SceneProblem, nearest};
+use crate::error::{SceneError, SceneProblem, nearest};
+use crate::origin::{Origin, Origins};
 use crate::values::describe;
+use bowknot_errors::counted;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use toml::de::{DeTable, DeValue};
@@ -51,6 +53,11 @@ impl Source {
             }
         }
         self.file.as_ref().map_or(Origin::Code, |file| Origin::File(file.clone(), None))
+    }
+
+    /// Where the keys of the file stand.
+    pub fn origins(&self) -> Origins {
+        Origins::new(self.file.clone().unwrap_or_default(), self.lines.clone())
     }
 
     /// A problem with the value of a key.
@@ -139,7 +146,10 @@ fn select(list: &[Value], part: &str) -> Result<usize, String> {
     found.ok_or_else(|| {
         let hint =
             nearest(part, names.iter().copied()).map_or(String::new(), |n| format!("; did you mean {n}?"));
-        format!("has no entry {part}; it has {} entries, by index from 0 or by name{hint}", list.len())
+        format!(
+            "has no entry {part}; it has {}, by index from 0 or by name{hint}",
+            counted(list.len(), "entry", "entries")
+        )
     })
 }
 

@@ -93,7 +93,7 @@ fn problems_name_file_line_key_and_what_is_allowed() {
         (
             "dt = 0.02",
             "dt = \"fast\"",
-            "scene.toml:3: simulation.dt: invalid type: string \"fast\", expected f64",
+            "scene.toml:3: simulation.dt: must be a number, not the string \"fast\"",
         ),
         (
             "dt = 0.02",
@@ -147,11 +147,7 @@ fn problems_name_file_line_key_and_what_is_allowed() {
             "scene.toml:26: obstacle[1].motion.keyframes[0].tiem: unknown key; did you mean \
              obstacle[1].motion.keyframes[0].time?",
         ),
-        (
-            "side = \"x-min\"",
-            "side = \"left\"",
-            "scene.toml:29: pin[0].side: unknown variant `left`, expected one of `x-min`,",
-        ),
+        ("side = \"x-min\"", "side = \"left\"", "scene.toml:29: pin[0].side: \"left\" must be one of x-min,"),
         ("[solver]", "[slover]", "scene.toml:9: slover: unknown key; did you mean solver?"),
         (
             "name = \"ground\"",
@@ -214,7 +210,7 @@ fn an_empty_scene_is_refused() {
 fn sets_override_before_anything_is_interpreted() {
     let set = |sets: &[&str]| Scene::builtin("drape", 0.1).expect("a scene").with_sets(sets);
     let scene = set(&["simulation.dt=1/50"]).expect_err("not a number").to_string();
-    assert_eq!(scene, "--set: simulation.dt: invalid type: string \"1/50\", expected f64");
+    assert_eq!(scene, "--set: simulation.dt: must be a number, not the string \"1/50\"");
     let scene =
         set(&["simulation.dt = 0.05", "solver.stop.max_steps=7", "contact.form=volume"]).expect("sets");
     assert_eq!((scene.simulation.dt, scene.solver.stop.max_steps), (0.05, Some(7)));
@@ -229,7 +225,7 @@ fn sets_override_before_anything_is_interpreted() {
     for (sets, expected) in [
         ("contact.delt=1", "--set: contact.delt: unknown key; did you mean contact.delta?"),
         ("contact", "--set: contact: an option --set has the form KEY.PATH=VALUE"),
-        ("body.shet.scale=2", "--set: body: has no entry shet; it has 1 entries"),
+        ("body.shet.scale=2", "--set: body: has no entry shet; it has 1 entry"),
         ("simulation.dt=nan", "--set: simulation.dt: NaN must be"),
     ] {
         let error = set(&[sets]).expect_err(sets).to_string();

@@ -38,6 +38,9 @@ pub struct StepReport {
     pub slowest: Option<u32>,
     /// Largest |alpha (y - x)| [m].
     pub largest_move: f64,
+    /// Largest remaining distance of a prescribed vertex that no pair holds back [m]. The caller knows which
+    /// vertices these are; [`Stepper::advance`] leaves it 0.
+    pub unhindered_lag: f64,
 }
 
 /// Workspace of the forward step: wanted displacements, step sizes, remaining fractions.

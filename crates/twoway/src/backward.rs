@@ -120,9 +120,6 @@ impl<K: RowSolver> BackwardStep for LcpBackward<K> {
 
     fn finish(&mut self, scene: &CollisionScene, state: &ResolveState, statistics: &mut Statistics) {
         statistics.net_residual_m = self.net_residual(scene, state);
-        let stretch = self.edges.stretch(&state.x);
-        statistics.max_step_stretch = stretch.to_start;
-        statistics.max_stretch = stretch.to_rest;
         statistics.edge_colors = self.edges.color_count();
         statistics.stationarity_m = (0..self.y.len())
             .filter(|&v| state.is_movable(v))

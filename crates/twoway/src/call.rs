@@ -22,7 +22,8 @@ impl CallInput {
     /// Checks the input of a call that starts at `positions` toward `target`.
     ///
     /// # Errors
-    /// Wrong lengths, non-finite numbers and coordinates too large for the minimum separation.
+    /// Wrong lengths, non-finite numbers, a time step that is not above 0, and coordinates too large for the
+    /// minimum separation.
     pub fn new(
         scene: &CollisionScene,
         positions: &[Point],
@@ -40,6 +41,9 @@ impl CallInput {
         if let Some(start) = input.start {
             check_length("start", start.len(), vertices)?;
             check_finite("the start", model, start)?;
+        }
+        if let Some(dt) = input.time_step.filter(|dt| !(dt.is_finite() && *dt > 0.0)) {
+            return Err(ResolveError::TimeStep(dt));
         }
         check_finite("the position", model, positions)?;
         check_finite("the target", model, target)?;
@@ -103,15 +107,21 @@ fn check_min_separation(
     let smallest = thicknesses.fold(if of_scene > 0.0 { of_scene } else { f64::INFINITY }, f64::min);
     let min_separation = if smallest.is_finite() { smallest } else { 0.0 };
     let largest = |p: &Point| p.coords.amax();
-    let (vertex, coordinate) = positions
-        .iter()
-        .enumerate()
-        .chain(target.iter().enumerate())
-        .map(|(v, p)| (v, largest(p)))
-        .fold((0, 0.0), |best, next| if next.1 > best.1 { next } else { best });
+    let of = |what: &'static str, x: &[Point]| {
+        let coordinates = x.iter().enumerate().map(|(v, p)| (what, v, largest(p)));
+        coordinates.fold((what, 0, 0.0), |best, next| if next.2 > best.2 { next } else { best })
+    };
+    let (of_start, of_target) = (of("the position", positions), of("the target", target));
+    let (what, vertex, coordinate) = if of_target.2 > of_start.2 { of_target } else { of_start };
     let needed = Rounding::smallest_min_separation(coordinate);
     if min_separation > 0.0 && min_separation < needed {
-        return Err(ResolveError::MinSeparationBelowRounding { min_separation, coordinate, vertex, needed });
+        return Err(ResolveError::MinSeparationBelowRounding {
+            min_separation,
+            what,
+            coordinate,
+            vertex,
+            needed,
+        });
     }
     Ok(())
 }

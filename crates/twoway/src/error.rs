@@ -1,5 +1,6 @@
 //! Why a call is refused.
 
+use bowknot_check::{CheckError, Intersection};
 use bowknot_errors::{Errors, ParamError};
 
 /// Why a scene or a call is refused. The positions are unchanged then.
@@ -26,9 +27,27 @@ pub enum ResolveError {
         /// Its body.
         body: u32,
     },
+    /// A time step that is not finite or not above 0.
+    #[error("the time step is {0} s; it must be finite and above 0")]
+    TimeStep(f64),
+    /// The start intersects. Only debug builds look, see [`crate::Resolver::detect_intersections`].
+    #[error(
+        "{count} pairs intersect at the start, the first: {first}; the start must be free of intersections, which \
+         `Resolver::detect_intersections` tells"
+    )]
+    StartIntersects {
+        /// How many pairs intersect.
+        count: usize,
+        /// The first of them.
+        first: Box<Intersection>,
+    },
+    /// The start cannot be judged. Only debug builds look.
+    #[error("the start: {0}")]
+    Unjudged(CheckError),
     /// A deformable vertex has no mass.
     #[error(
-        "vertex {vertex} (body {body}) has mass {mass}; masses of deformable vertices must be finite and above 0"
+        "vertex {vertex} (body {body}) has mass {mass}; masses of deformable vertices must be finite and above 0; to pin \
+         a vertex, give it its mass and name it in `ResolveInput::prescribed`"
     )]
     Mass {
         /// The vertex.
@@ -47,11 +66,14 @@ pub enum ResolveError {
     /// Coordinates so large that their rounding exceeds the minimum separation.
     #[error(
         "the minimum separation of {min_separation:.3e} m is below 16 ulp of the largest coordinate ({coordinate:.3e} m, \
-         vertex {vertex}): move the scene closer to the origin, or raise contact.min_separation above {needed:.3e} m"
+         {what} of vertex {vertex}): if the dynamics has not diverged, move the scene closer to the origin, or raise \
+         contact.min_separation above {needed:.3e} m"
     )]
     MinSeparationBelowRounding {
         /// The minimum separation [m].
         min_separation: f64,
+        /// "the position" or "the target".
+        what: &'static str,
         /// The largest coordinate [m].
         coordinate: f64,
         /// The vertex that has it.

@@ -27,6 +27,8 @@ pub struct CertifiedForward {
     paths: Vec<Vector>,
     /// Radii of the tubes around the paths [m].
     tubes: Vec<f64>,
+    /// Whether a pair holds back the vertex in this step; of prescribed vertices only. Empty: none is held.
+    held: Vec<bool>,
     /// Whether a swept step of this call had to be shortened. In such hard contact swept steps do not pay,
     /// and the call takes no more of them.
     swept_step_failed: bool,
@@ -47,6 +49,7 @@ impl ForwardStep for CertifiedForward {
         statistics: &mut Statistics,
     ) -> StepReport {
         self.stepper.set_target(&state.x, &state.y);
+        self.held.clear();
         if !self.sweep(scene, state, search, statistics) {
             let damping = scene.params().solver.forward.damping;
             let contacts = state.contacts.as_contacts();
@@ -54,6 +57,8 @@ impl ForwardStep for CertifiedForward {
                 Bound::Planes => self.stepper.limit_by_planes(&contacts, damping),
                 Bound::Isotropic => self.stepper.limit_by_distances(&contacts, damping),
             };
+            self.limit_bodies(scene, state);
+            self.note_held(state);
             match search.coverage() {
                 Coverage::Distance(distance) => {
                     let room = distance - scene.spacing().largest_min_separation();
@@ -67,8 +72,9 @@ impl ForwardStep for CertifiedForward {
             }
         }
         self.limit_bodies(scene, state);
+        let unhindered_lag = self.unhindered_lag(state);
         state.previous.clone_from(&state.x);
-        self.stepper.advance(&mut state.x)
+        StepReport { unhindered_lag, ..self.stepper.advance(&mut state.x) }
     }
 }
 
@@ -148,6 +154,22 @@ impl CertifiedForward {
             }
         }
         true
+    }
+
+    /// Notes which prescribed vertices the pairs hold back: those with a limit before trust regions add theirs.
+    fn note_held(&mut self, state: &ResolveState) {
+        let Self { held, stepper, .. } = self;
+        held.extend(
+            state.call.prescribed().iter().enumerate().map(|(v, given)| *given && stepper.alpha(v) < 1.0),
+        );
+    }
+
+    /// Largest distance that a prescribed vertex has left after this step although no pair holds it back [m].
+    fn unhindered_lag(&self, state: &ResolveState) -> f64 {
+        let is_held = |v: usize| self.held.get(v).is_some_and(|held| *held);
+        let left = |v: usize| (1.0 - self.stepper.alpha(v)) * self.stepper.displacements()[v].norm();
+        let prescribed = state.call.prescribed().iter().enumerate().filter(|(_, given)| **given);
+        prescribed.filter(|(v, _)| !is_held(*v)).map(|(v, _)| left(v)).fold(0.0, f64::max)
     }
 
     /// Assumes that the vertices take the present step sizes.

@@ -31,8 +31,11 @@ mod stall;
 mod state;
 mod statistics;
 mod stop;
+mod stretch;
 mod validation;
 
+/// The judge of states and paths, which finds intersections by exact predicates.
+pub use bowknot_check as check;
 /// Contact rows and edge limits, and their part of the parameters.
 pub use bowknot_constraints as constraints;
 /// Points, topology and separations.

@@ -18,6 +18,8 @@ use crate::stall::StallDetector;
 use crate::state::{ContactSet, ResolveState};
 use crate::statistics::Statistics;
 use crate::stop::StopTest;
+use crate::stretch::max_stretch;
+use bowknot_check::{CheckError, Judge, StateOptions, StateReport};
 use bowknot_constraints::FrictionModel;
 use bowknot_geometry::Point;
 use bowknot_proximity::CollisionModel;
@@ -37,7 +39,10 @@ pub struct Resolver<S = TrustRegionSearch, B = LcpBackward, F = CertifiedForward
 impl Resolver {
     /// A resolver for vertices with the given rest positions [m] and masses [kg]. Masses of obstacle vertices
     /// are ignored. Rest positions determine default lengths, stretch limits, and the desired distance of
-    /// neighbors.
+    /// neighbors: they are those of the undeformed bodies, not of a draped start.
+    ///
+    /// By default no edge gets longer than 1.1 times its rest length. [`BodyContact::stretch_limit`] and
+    /// `params.contact.stretch_limit` set other limits, infinity switches them off.
     ///
     /// # Errors
     /// Wrong lengths, non-finite numbers, massless vertices, parameters out of range.
@@ -111,12 +116,27 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
         Ok(&self.state.contacts)
     }
 
+    /// The pairs that intersect at `positions` [m], by the exact predicates of [`bowknot_check`]. Lists up to
+    /// `limit` of them and counts all; does not look for the nearest pair, as `Judge::check_state` can. Takes
+    /// about as long as a two-way step.
+    ///
+    /// # Errors
+    /// A wrong number of positions; coordinates that are not finite or above 1e60.
+    pub fn detect_intersections(&self, positions: &[Point], limit: usize) -> Result<StateReport, CheckError> {
+        Judge::from_model(self.scene.model()).check_state(positions, &StateOptions { limit, distance: false })
+    }
+
     /// Moves `positions` from an intersection-free state toward `target`. Every accepted state and the
     /// straight path to it are free of intersections, however far the target.
     ///
+    /// **The start must be free of intersections.** That holds for what an earlier call returned; check any
+    /// other start with [`Self::detect_intersections`]. Debug builds check each start and refuse those that
+    /// intersect. Release builds do not look: surfaces that pass through each other then stay so, or worse,
+    /// and the statistics do not tell.
+    ///
     /// # Errors
-    /// Wrong lengths, non-finite numbers and coordinates too large for the minimum separation. The call is
-    /// then refused, and `positions` are unchanged.
+    /// Wrong lengths, non-finite numbers and coordinates too large for the minimum separation; in debug builds
+    /// a start that intersects. The call is then refused, and `positions` are unchanged.
     pub fn resolve(&mut self, positions: &mut [Point], target: &[Point]) -> Result<Statistics, ResolveError> {
         self.resolve_with(positions, target, &ResolveInput::default(), &mut ())
     }
@@ -137,6 +157,9 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
     ) -> Result<Statistics, ResolveError> {
         let timer = Instant::now();
         self.begin(positions, target, input)?;
+        if cfg!(debug_assertions) {
+            self.refuse_intersections(positions)?;
+        }
         let Self { scene, state, search, backward, forward } = self;
         let mut statistics = Statistics::default();
         let stop = &scene.params().solver.stop;
@@ -174,9 +197,23 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
         }
 
         self.finish(&mut statistics);
+        statistics.max_step_stretch = max_stretch(&self.scene, positions, &self.state.x);
+        statistics.max_stretch = max_stretch(&self.scene, self.scene.rest(), &self.state.x);
         positions.copy_from_slice(&self.state.x);
         statistics.seconds.total = timer.elapsed().as_secs_f64();
         Ok(statistics)
+    }
+
+    /// Refuses a start that intersects.
+    fn refuse_intersections(&self, positions: &[Point]) -> Result<(), ResolveError> {
+        let mut report = self.detect_intersections(positions, 1).map_err(ResolveError::Unjudged)?;
+        match report.intersections.pop() {
+            Some(first) => Err(ResolveError::StartIntersects {
+                count: report.intersection_count,
+                first: Box::new(first),
+            }),
+            None => Ok(()),
+        }
     }
 
     /// Starts a call: x^(0) = x^[k], y^(0) = y^[k+1], no candidates, r = 1.

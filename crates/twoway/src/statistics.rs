@@ -51,9 +51,10 @@ pub struct Statistics {
     pub distance_to_target_m: f64,
     /// Smallest distance of a candidate pair at the end [m]; none if there are no candidates.
     pub min_gap_m: Option<f64>,
-    /// Largest ratio of an edge's length to its length at the start of the call.
+    /// Largest ratio of a deformable body's edge to its length at the start of the call, with or without a
+    /// stretch limit.
     pub max_step_stretch: f64,
-    /// Largest ratio of an edge's length to its rest length.
+    /// Largest ratio of a deformable body's edge to its rest length.
     pub max_stretch: f64,
     /// Largest distance of an obstacle's or pin's vertex to its keyframe [m].
     pub prescribed_lag_m: f64,

@@ -41,8 +41,8 @@ pub enum StopRule {
         /// Rule `clock`: largest remaining fraction r of any vertex, the paper's epsilon. Default 1e-4.
         remaining_fraction: f64,
     },
-    /// All vertices have arrived, max |(1 - alpha)(y - x)| < `distance`; the stretch limits hold; and both
-    /// residuals are small. Small residuals are needed because the proximal term may still hold back a motion
+    /// All vertices have arrived, max |(1 - alpha)(y - x)| < `distance`, and prescribed vertices exactly
+    /// unless a pair holds them back; the stretch limits hold; and both residuals are small. Small residuals are needed because the proximal term may still hold back a motion
     /// that is common to a body. Where no contact presses, up to two more steps reach the target to the bit.
     Travel {
         /// Rule `travel`: largest net residual, in mean edge lengths: how far a body as a whole is from where
@@ -167,7 +167,7 @@ impl StopTest {
         match params.rule {
             StopRule::Clock { remaining_fraction } => report.remaining_fraction < remaining_fraction,
             StopRule::Travel { net_residual, residual } => {
-                let has_arrived = report.remaining < params.distance * edge;
+                let has_arrived = report.remaining < params.distance * edge && report.unhindered_lag == 0.0;
                 if !has_arrived {
                     return false;
                 }

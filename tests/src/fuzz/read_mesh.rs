@@ -91,7 +91,7 @@ fn solid(path: &Path) -> bool {
 
 /// Checks that indices are in range and numbers finite, and that neither the topology nor the judge panics.
 fn check_sound(mesh: &Mesh) {
-    let Mesh { positions, triangles, tets, strands, particles, obstacle, body } = mesh;
+    let Mesh { positions, triangles, tets, strands, particles, obstacle, body, surface } = mesh;
     let count = positions.len();
     let named = triangles.iter().flatten().chain(strands.iter().flatten()).chain(particles);
     let named = named.chain(tets.iter().flatten());
@@ -99,6 +99,19 @@ fn check_sound(mesh: &Mesh) {
     assert!(positions.iter().all(|p| p.iter().all(|c| c.is_finite())), "a coordinate is not finite");
     assert!(obstacle.as_ref().is_none_or(|flags| flags.len() == count), "obstacle flags of some vertices");
     assert!(body.as_ref().is_none_or(|bodies| bodies.len() == count), "bodies of some vertices");
+
+    if let Some(surface) = surface {
+        assert!(
+            surface.triangles().eq(triangles.iter().copied()),
+            "other triangles than those of the polygons"
+        );
+        let (textures, normals) = (surface.texture_coordinates().len() as u32, surface.normal_count() as u32);
+        for corner in surface.corners() {
+            assert!(corner.texture().is_none_or(|texture| texture < textures), "an index is out of range");
+            assert!(corner.normal().is_none_or(|normal| normal < normals), "an index is out of range");
+        }
+        assert_eq!(surface.corner_normals(positions).len(), surface.corners().len());
+    }
 
     check_mesh(positions, triangles);
     let is_simple = Topology::builder(count)

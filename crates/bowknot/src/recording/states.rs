@@ -1,13 +1,40 @@
 //! Collision problems: a state x, a target y, and what collides.
 
+use bowknot_errors::counted;
 use bowknot_geometry::{HalfSpace, Point, Vector};
 use bowknot_io::IoError;
 use bowknot_io::npz::{Archive, write_archive};
+use bowknot_scene::nearest;
 use bowknot_twoway::{BodyContact, ContactSide, HalfSpaceContact, PairFriction, ResolveInput};
 use ndarray::{Array0, Array1, Array2};
 use ndarray_npy::{NpzWriter, WriteNpzError};
 use std::io::{Seek, Write};
 use std::path::Path;
+
+/// The arrays of a problem.
+const ARRAYS: [&str; 21] = [
+    "x",
+    "y",
+    "F",
+    "E",
+    "P",
+    "rest",
+    "mass",
+    "fixed",
+    "O",
+    "body",
+    "planes",
+    "dt",
+    "thickness",
+    "delta",
+    "friction",
+    "stretch_limit",
+    "plane_thickness",
+    "plane_friction",
+    "pair_friction",
+    "group",
+    "start",
+];
 
 /// One collision problem as `--record` writes it and `resolve` reads it.
 ///
@@ -65,6 +92,7 @@ impl States {
     /// A missing or malformed archive, a missing or misshapen array, numbers out of range; with the array.
     pub fn read(path: &Path) -> Result<Self, IoError> {
         let mut archive = Archive::open(path)?;
+        refuse_unknown(&archive)?;
         let missing = |archive: &Archive<'_>, name: &str| {
             let names = archive.names().join(", ");
             archive.file_fault(format!("array {name} is missing; the archive has: {names}"))
@@ -114,23 +142,28 @@ impl States {
     pub fn write(&self, path: &Path) -> Result<(), IoError> {
         write_archive(path, true, |archive| {
             archive.add_array("x", &points(&self.x))?;
-            archive.add_array("y", &points(&self.y))?;
-            archive.add_array("F", &elements(&self.triangles))?;
-            archive.add_array("E", &elements(&self.strands))?;
-            archive.add_array("P", &Array1::from_iter(self.particles.iter().map(|&p| p as i32)))?;
+            self.write_elements(archive)?;
             archive.add_array("rest", &points(&self.rest))?;
             archive.add_array("mass", &Array1::from_iter(self.masses.iter().copied()))?;
             archive.add_array("fixed", &Array1::from_iter(self.fixed.iter().copied()))?;
-            archive.add_array("O", &Array1::from_iter(self.obstacle.iter().copied()))?;
-            archive.add_array("body", &Array1::from_iter(self.body.iter().map(|&b| b as i32)))?;
-            let rows: Vec<[f64; 4]> =
-                self.half_spaces.iter().map(|h| [h.normal.x, h.normal.y, h.normal.z, h.offset]).collect();
-            archive.add_array("planes", &table(&rows, |v| v))?;
             if let Some(dt) = self.time_step {
                 archive.add_array("dt", &Array0::from_elem((), dt))?;
             }
             self.write_contacts(archive)
         })
+    }
+
+    /// The target and what collides.
+    fn write_elements<W: Write + Seek>(&self, archive: &mut NpzWriter<W>) -> Result<(), WriteNpzError> {
+        archive.add_array("y", &points(&self.y))?;
+        archive.add_array("F", &elements(&self.triangles))?;
+        archive.add_array("E", &elements(&self.strands))?;
+        archive.add_array("P", &Array1::from_iter(self.particles.iter().map(|&p| p as i32)))?;
+        archive.add_array("O", &Array1::from_iter(self.obstacle.iter().copied()))?;
+        archive.add_array("body", &Array1::from_iter(self.body.iter().map(|&b| b as i32)))?;
+        let rows: Vec<[f64; 4]> =
+            self.half_spaces.iter().map(|h| [h.normal.x, h.normal.y, h.normal.z, h.offset]).collect();
+        archive.add_array("planes", &table(&rows, |v| v))
     }
 
     /// What the problem has beyond geometry, each array only where it says something.
@@ -169,12 +202,40 @@ impl States {
     }
 }
 
-/// Writes the answer of `resolve`: `x[n,3]` as f64, atomically.
+/// Writes the answer to a problem, atomically: the resolved `x[n,3]` [m] as f64, and of the problem what tells
+/// whether a state intersects, `y`, `F`, `E`, `P`, `O`, `body` and `planes`.
 ///
 /// # Errors
 /// The system's refusal, with the path.
-pub fn write_result(path: &Path, x: &[Point]) -> Result<(), IoError> {
-    write_archive(path, false, |archive| archive.add_array("x", &points(x)))
+pub fn write_result(path: &Path, problem: &States, x: &[Point]) -> Result<(), IoError> {
+    write_archive(path, false, |archive| {
+        archive.add_array("x", &points(x))?;
+        problem.write_elements(archive)
+    })
+}
+
+/// Refuses arrays of unknown names: a misspelled one would be ignored, and the result be that of another
+/// problem.
+fn refuse_unknown(archive: &Archive<'_>) -> Result<(), IoError> {
+    let Some(name) = archive.names().iter().find(|name| !ARRAYS.contains(&name.as_str())) else {
+        return Ok(());
+    };
+    let meant = match name.to_ascii_lowercase().as_str() {
+        "faces" | "face" | "triangles" | "tris" | "f" => Some("F"),
+        "edges" | "edge" | "strands" | "segments" | "lines" | "e" => Some("E"),
+        "particles" | "points" | "p" => Some("P"),
+        "masses" | "m" => Some("mass"),
+        "pinned" | "pins" | "prescribed" => Some("fixed"),
+        "obstacle" | "obstacles" | "o" => Some("O"),
+        "bodies" | "body_id" => Some("body"),
+        "positions" | "vertices" | "v" => Some("x"),
+        "target" | "targets" => Some("y"),
+        "time_step" | "timestep" => Some("dt"),
+        name => nearest(name, ARRAYS.iter().copied()),
+    };
+    let hint = meant.map_or_else(String::new, |meant| format!("; did you mean {meant}?"));
+    Err(archive
+        .file_fault(format!("array {name} has no meaning here{hint}; known are: {}", ARRAYS.join(", "))))
 }
 
 fn flags(archive: &mut Archive<'_>, name: &str, n: usize) -> Result<Vec<bool>, IoError> {
@@ -192,7 +253,14 @@ fn bodies(archive: &mut Archive<'_>, obstacle: &[bool]) -> Result<Vec<u32>, IoEr
     if let Some(vertex) = values.iter().position(|&b| !(b >= 0.0 && b < limit && b.fract() == 0.0)) {
         let body = values[vertex];
         return Err(
-            archive.fault("body", format!("vertex {vertex} has body {body}; bodies are numbered from 0 up"))
+            archive.fault(
+                "body",
+                format!(
+                    "vertex {vertex} has body {body}; bodies are numbered 0, 1, 2 and so on, here up to {} at most, \
+                     because there are no more bodies than vertices",
+                    limit - 1.0
+                )
+            )
         );
     }
     Ok(values.into_iter().map(|b| b as u32).collect())
@@ -227,17 +295,23 @@ fn time_step(archive: &mut Archive<'_>) -> Result<Option<f64>, IoError> {
 }
 
 /// A column of one number for each of `count` things; nan for all if the archive has none.
-fn per(archive: &mut Archive<'_>, name: &str, count: usize, what: &str) -> Result<Vec<Option<f64>>, IoError> {
+fn per(
+    archive: &mut Archive<'_>,
+    name: &str,
+    count: usize,
+    [one, many]: [&str; 2],
+) -> Result<Vec<Option<f64>>, IoError> {
     let Some(values) = archive.column(name, None)? else { return Ok(vec![None; count]) };
     if values.len() != count {
-        return Err(archive.fault(name, format!("it has {} entries for {count} {what}", values.len())));
+        let given = counted(values.len(), "entry", "entries");
+        return Err(archive.fault(name, format!("it has {given} for {}", counted(count, one, many))));
     }
     Ok(values.into_iter().map(|v| Some(v).filter(|v| !v.is_nan())).collect())
 }
 
 /// Ranges are checked where the numbers are used, by [`bowknot_twoway::Resolver::with_bodies`].
 fn body_contacts(archive: &mut Archive<'_>, count: usize) -> Result<Vec<BodyContact>, IoError> {
-    let mut column = |name| per(archive, name, count, "bodies");
+    let mut column = |name| per(archive, name, count, ["body", "bodies"]);
     let (thickness, delta) = (column("thickness")?, column("delta")?);
     let (friction, stretch_limit) = (column("friction")?, column("stretch_limit")?);
     let body = |b: usize| BodyContact {
@@ -252,8 +326,8 @@ fn body_contacts(archive: &mut Archive<'_>, count: usize) -> Result<Vec<BodyCont
 }
 
 fn half_space_contacts(archive: &mut Archive<'_>, count: usize) -> Result<Vec<HalfSpaceContact>, IoError> {
-    let thickness = per(archive, "plane_thickness", count, "planes")?;
-    let friction = per(archive, "plane_friction", count, "planes")?;
+    let thickness = per(archive, "plane_thickness", count, ["plane", "planes"])?;
+    let friction = per(archive, "plane_friction", count, ["plane", "planes"])?;
     let plane = |h: usize| HalfSpaceContact { thickness: thickness[h], friction: friction[h].unwrap_or(0.0) };
     let contacts: Vec<HalfSpaceContact> = (0..count).map(plane).collect();
     let given = contacts.iter().any(|c| *c != HalfSpaceContact::default());
@@ -269,8 +343,11 @@ fn pair_frictions(
     for (index, row) in archive.rows::<3>("pair_friction")?.unwrap_or_default().into_iter().enumerate() {
         let count = (bodies + planes) as f64;
         if let Some(side) = row[..2].iter().find(|&&s| !(s >= 0.0 && s < count && s.fract() == 0.0)) {
-            let message =
-                format!("row {index} names side {side}, but there are {bodies} bodies and {planes} planes");
+            let message = format!(
+                "row {index} names side {side}, but the archive has {} and {}",
+                counted(bodies, "body", "bodies"),
+                counted(planes, "plane", "planes")
+            );
             return Err(archive.fault("pair_friction", message));
         }
         if !row[2].is_finite() {

@@ -159,30 +159,36 @@ fn states_of_any_number_type_with_defaults() {
     }
     let row = |values: &[f64]| Array2::from_shape_vec((1, values.len()), values.to_vec()).unwrap();
     for (name, array, words) in [
-        ("y", row(&[0.0, 0.0, 0.0]), "array y: it has 1 rows for 4 vertices"),
+        ("y", row(&[0.0, 0.0, 0.0]), "array y: it has 1 row for 4 vertices"),
         ("y", Array2::zeros((4, 2)), "array y: its shape is [4, 2], it must be [n, 3]"),
         ("y", Array2::from_elem((4, 3), f64::NAN), "array y: row 0 is not finite"),
         ("x", Array2::zeros((0, 3)), "array x: it has no vertices"),
-        ("F", row(&[0.0, 1.0, 4.0]), "array F: row 0 names vertex 4, but there are 4 vertices"),
+        ("F", row(&[0.0, 1.0, 4.0]), "array F: row 0 names vertex 4, but the archive has 4 vertices"),
         ("F", row(&[0.0, 1.0, -1.0]), "names vertex -1"),
         ("E", row(&[0.0, 0.5]), "array E: row 0 names vertex 0.5"),
         ("P", row(&[7.0]), "array P: row 0 names vertex 7"),
-        ("mass", row(&[1.0]), "array mass: it has 1 entries for 4 vertices"),
+        ("mass", row(&[1.0]), "array mass: it has 1 entry for 4 vertices"),
         ("body", row(&[0.0, 0.0, 0.0, 9.0]), "vertex 3 has body 9"),
         ("planes", row(&[0.0, 0.0, 0.0, 1.0]), "array planes: row 0 needs a normal"),
         ("dt", row(&[-1.0]), "array dt"),
         ("thickness", row(&[0.0, 0.0, 0.0]), "array thickness: it has 3 entries for 2 bodies"),
-        ("plane_friction", row(&[0.5]), "array plane_friction: it has 1 entries for 0 planes"),
-        ("pair_friction", row(&[0.0, 2.0, 0.5]), "names side 2, but there are 2 bodies and 0 planes"),
+        ("plane_friction", row(&[0.5]), "array plane_friction: it has 1 entry for 0 planes"),
+        ("pair_friction", row(&[0.0, 2.0, 0.5]), "names side 2, but the archive has 2 bodies and 0 planes"),
         ("group", row(&[-2.0, 0.0, 0.0, 0.0]), "vertex 0 has group -2"),
-        ("start", row(&[0.0, 0.0, 0.0]), "array start: it has 1 rows for 4 vertices"),
+        ("start", row(&[0.0, 0.0, 0.0]), "array start: it has 1 row for 4 vertices"),
     ] {
         let text = message(&write_with("bad.npz", true, Some((name, array))));
         assert!(text.contains("bad.npz") && text.contains(words), "{name}: {text}");
     }
     let path = folder.path().join("few.npz");
-    write_result(&path, &states().x).unwrap();
-    assert!(message(&path).contains("array y is missing; the archive has: x"));
+    write_result(&path, &states(), &states().y).unwrap();
+    let result = States::read(&path).unwrap();
+    assert_eq!(
+        (&result.x, &result.triangles, &result.body),
+        (&states().y, &states().triangles, &states().body)
+    );
+    fs::write(&path, b"\x93NUMPY\x01").unwrap();
+    assert!(message(&path).contains("a single array, use np.savez"));
     fs::write(&path, "hello").unwrap();
     assert!(message(&path).contains("not an NPZ archive"));
 }

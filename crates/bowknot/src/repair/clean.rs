@@ -21,11 +21,7 @@ pub(super) fn drop_bad_elements(mesh: &mut Mesh, report: &mut RepairReport) {
             _ => {}
         }
     }
-    let mut index = 0;
-    mesh.triangles.retain(|_| {
-        index += 1;
-        keep[index - 1]
-    });
+    report.cut_polygons += mesh.retain_triangles(&keep);
 
     let before = mesh.strands.len();
     let mut order: Vec<([u32; 2], usize)> =

@@ -5,6 +5,10 @@
 //! border vertex that lies on another border edge (a T-seam) splits the triangle there; triangles without
 //! area and elements given twice are dropped, and vertices that nothing uses. Before and after, the exact
 //! judge counts the intersections. What intersects away from borders is left as it is: no weld would cure it.
+//!
+//! Polygons, texture coordinates and names of an OBJ stay with their faces. Corners that are welded keep their
+//! own texture coordinates and normals; a vertex on a T-seam gets texture coordinates between those of the
+//! edge.
 
 mod clean;
 mod seams;
@@ -13,19 +17,20 @@ mod tests;
 mod weld;
 
 use bowknot_check::{CheckError, Judge, Parts, StateOptions};
+use bowknot_errors::counted;
 use bowknot_geometry::{MeshProblem, Point, Topology, check_mesh};
 use bowknot_io::Mesh;
 use serde::Serialize;
 
-/// The default weld distance over the mean edge of the triangles at open borders.
+/// The default weld distance over the mean border edge.
 const WELD_SHARE: f64 = 0.01;
 
 /// How a mesh is repaired.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RepairParams {
-    /// Border vertices nearer than this are welded [m]. Default: a hundredth of the mean edge of the
-    /// triangles at open borders. Larger: wider seams close, but more of the cloth is pulled together; keep
-    /// it below the shortest edge.
+    /// Border vertices nearer than this are welded [unit of the mesh]. Default: a hundredth of the mean border
+    /// edge. Larger: wider seams close, but more of the cloth is pulled together; keep it below the shortest
+    /// edge.
     pub weld_distance: Option<f64>,
 }
 
@@ -59,16 +64,17 @@ pub struct Verdict {
     pub findings: Vec<String>,
 }
 
-/// What was done to a mesh. Vertices are those of the file, triangles those at the time.
+/// What was done to a mesh. Vertices are those of the file, triangles those at the time. Lengths are in the
+/// unit of the mesh, which need not be the meter.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct RepairReport {
-    /// The weld distance used [m].
+    /// The weld distance used [unit of the mesh].
     pub weld_distance: f64,
     /// Vertices that were welded to another one.
     pub welded_vertices: usize,
-    /// The farthest that welding moved a vertex [m].
+    /// The farthest that welding moved a vertex [unit of the mesh].
     pub largest_move: f64,
-    /// Where the first were welded [m].
+    /// Where the first were welded [unit of the mesh].
     pub weld_places: Vec<[f64; 3]>,
     /// Triangles that were split at a vertex of a T-seam.
     pub split_triangles: usize,
@@ -76,6 +82,8 @@ pub struct RepairReport {
     pub zero_area_triangles: usize,
     /// Triangles dropped because they repeat another.
     pub repeated_triangles: usize,
+    /// Polygons of an OBJ that were cut because triangles of them were dropped or split.
+    pub cut_polygons: usize,
     /// Strand edges dropped because they repeat another or have no length.
     pub dropped_strands: usize,
     /// Vertices dropped because nothing uses them, welded ones not counted.
@@ -92,7 +100,8 @@ pub struct RepairReport {
 pub enum RepairError {
     /// It has tetrahedra.
     #[error(
-        "it has {count} tetrahedra, and only surfaces and strands are repaired: repair its surface and mesh that again"
+        "it has {}, and only surfaces and strands are repaired: repair its surface and mesh that again",
+        counted(*count, "tetrahedron", "tetrahedra")
     )]
     Solid {
         /// How many.
@@ -158,7 +167,7 @@ fn border_vertices(mesh: &Mesh) -> Vec<u32> {
     vertices
 }
 
-/// Mean length of the border edges [m]; 0 if there are none.
+/// Mean length of the border edges [unit of the mesh]; 0 if there are none.
 fn mean_border_edge(mesh: &Mesh) -> f64 {
     let edges = border_edges(mesh);
     let length =

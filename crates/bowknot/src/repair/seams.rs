@@ -2,7 +2,7 @@
 
 use super::{RepairReport, border_edges, border_vertices};
 use bowknot_geometry::{Point, distance};
-use bowknot_io::Mesh;
+use bowknot_io::{EdgeSplit, Mesh};
 
 /// Rounds of splitting: a new border edge may have vertices on it that the old one had not.
 const ROUNDS: usize = 3;
@@ -10,8 +10,8 @@ const ROUNDS: usize = 3;
 /// it.
 const END_SHARE: f64 = 0.02;
 
-/// Splits border triangles where another border vertex lies on their border edge within `distance` [m], so
-/// that the edge runs through the vertex.
+/// Splits border triangles where another border vertex lies on their border edge within `distance` [unit of
+/// the mesh], so that the edge runs through the vertex.
 pub(super) fn split_t_seams(mesh: &mut Mesh, distance: f64, report: &mut RepairReport) {
     for _ in 0..ROUNDS {
         let splits = splits(mesh, distance);
@@ -19,6 +19,7 @@ pub(super) fn split_t_seams(mesh: &mut Mesh, distance: f64, report: &mut RepairR
             return;
         }
         report.split_triangles += splits.len();
+        report.cut_polygons += split_surface(mesh, &splits);
         for Split { triangle, edge: [a, b], through } in splits {
             let corners = mesh.triangles[triangle as usize];
             let Some(place) = (0..3).find(|&k| {
@@ -29,7 +30,7 @@ pub(super) fn split_t_seams(mesh: &mut Mesh, distance: f64, report: &mut RepairR
             };
             let (start, apex) = (corners[place], corners[(place + 2) % 3]);
             let mut chain: Vec<u32> = vec![a];
-            chain.extend(through);
+            chain.extend(through.iter().map(|(_, v)| v));
             chain.push(b);
             if start != a {
                 chain.reverse();
@@ -40,11 +41,35 @@ pub(super) fn split_t_seams(mesh: &mut Mesh, distance: f64, report: &mut RepairR
     }
 }
 
-/// A triangle whose border edge runs through other vertices, in their order from the edge's first end.
+/// Does to the polygons of the mesh, if it has any, what is then done to its triangles. Returns how many
+/// larger polygons are cut.
+fn split_surface(mesh: &mut Mesh, splits: &[Split]) -> usize {
+    let Some(surface) = &mut mesh.surface else { return 0 };
+    let mut alone = vec![false; mesh.triangles.len()];
+    splits.iter().for_each(|split| alone[split.triangle as usize] = true);
+    let cut = surface.isolate_triangles(&alone);
+    let splits: Vec<EdgeSplit> = splits
+        .iter()
+        .filter_map(|&Split { triangle, edge: [a, b], ref through }| {
+            let corners = mesh.triangles[triangle as usize];
+            let place = |edge: [u32; 2]| (0..3).find(|&k| [corners[k], corners[(k + 1) % 3]] == edge);
+            let along = through.iter().map(|&(share, vertex)| (vertex, share));
+            let back = through.iter().rev().map(|&(share, vertex)| (vertex, 1.0 - share));
+            let forward = place([a, b]).map(|start| (start, along.collect()));
+            let (start, through) = forward.or_else(|| Some((place([b, a])?, back.collect())))?;
+            Some(EdgeSplit { triangle, start, through })
+        })
+        .collect();
+    surface.split_triangles(&splits);
+    cut
+}
+
+/// A triangle whose border edge runs through other vertices, in their order from the edge's first end, each
+/// with its place on the edge, from 0 to 1.
 struct Split {
     triangle: u32,
     edge: [u32; 2],
-    through: Vec<u32>,
+    through: Vec<(f64, u32)>,
 }
 
 /// At most one split a triangle: a second border edge of it waits for the next round.
@@ -76,7 +101,7 @@ fn splits(mesh: &Mesh, distance: f64) -> Vec<Split> {
         }
         taken[triangle as usize] = true;
         through.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        splits.push(Split { triangle, edge, through: through.into_iter().map(|entry| entry.1).collect() });
+        splits.push(Split { triangle, edge, through });
     }
     splits
 }

@@ -130,7 +130,7 @@ fn what_cannot_be_repaired_is_refused() {
         assert!(matches!(with(distance), Err(RepairError::WeldDistance(_))));
     }
     let solid = Mesh { tets: vec![[0, 1, 2, 3]], ..mesh.clone() };
-    assert!(repair(&solid, &RepairParams::default()).unwrap_err().to_string().contains("1 tetrahedra"));
+    assert!(repair(&solid, &RepairParams::default()).unwrap_err().to_string().contains("1 tetrahedron"));
     let empty = Mesh { triangles: Vec::new(), ..mesh };
     assert_eq!(repair(&empty, &RepairParams::default()), Err(RepairError::NoTriangles));
 }

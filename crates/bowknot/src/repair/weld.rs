@@ -7,7 +7,7 @@ use bowknot_io::Mesh;
 /// Places that the report lists.
 const LISTED: usize = 10;
 
-/// Welds border vertices nearer than `distance` [m], nearest pairs first; each group moves to its mean. Two
+/// Welds border vertices nearer than `distance` [unit of the mesh], nearest pairs first; each group moves to its mean. Two
 /// vertices of one edge are never welded, neither directly nor through others: no edge collapses.
 pub(super) fn weld(mesh: &mut Mesh, distance: f64, report: &mut RepairReport) {
     let border: Vec<(u32, Point)> =
@@ -42,6 +42,9 @@ pub(super) fn weld(mesh: &mut Mesh, distance: f64, report: &mut RepairReport) {
     mesh.triangles.iter_mut().flatten().for_each(rename);
     mesh.strands.iter_mut().flatten().for_each(rename);
     mesh.particles.iter_mut().for_each(rename);
+    if let Some(surface) = &mut mesh.surface {
+        surface.renumber(|v| representative[v as usize]);
+    }
 }
 
 /// Disjoint sets of vertices, each with its members and the neighbors that it must not swallow.

@@ -2,6 +2,7 @@
 
 use crate::simulator::{Checkpoint, ContactForce};
 use bowknot_constraints::Feature;
+use bowknot_errors::counted;
 use bowknot_geometry::{Point, Vector};
 use bowknot_io::{IoError, Place, write_atomic};
 use ndarray::{Array1, Array2};
@@ -65,7 +66,10 @@ impl Checkpoint {
         let mut rows = |name: &str| -> Result<Vec<[f64; 3]>, IoError> {
             let array: Array2<f64> = archive.by_name(name).map_err(|e| fault(name, e.to_string()))?;
             if array.ncols() != 3 {
-                return Err(fault(name, format!("has {} columns, not 3", array.ncols())));
+                return Err(fault(
+                    name,
+                    format!("has {}, not 3", counted(array.ncols(), "column", "columns")),
+                ));
             }
             Ok(array.rows().into_iter().map(|row| [row[0], row[1], row[2]]).collect())
         };

@@ -1,9 +1,9 @@
 //! Frames of a run, or of any folder, in other formats.
 
-use super::frames::FrameWriter;
+use super::frames::{FrameWriter, SURFACE};
 use super::layout::Layout;
 use bowknot_geometry::Point;
-use bowknot_io::{FrameSource, IoError, Mesh, Place, create_folder};
+use bowknot_io::{FrameSource, IoError, Mesh, Place, Surface, create_folder, read_obj_surface};
 use bowknot_scene::shapes::Shape;
 use bowknot_scene::{Format, Scene};
 use std::path::{Path, PathBuf};
@@ -32,7 +32,8 @@ pub struct Exported {
 /// differ in positions only, or of an NPZ archive. `progress` hears the frames done and their number.
 ///
 /// Frames are taken from PLY files if there are any, then OBJ, then `frames.npz`; the archive is the only one
-/// that is held in memory.
+/// that is held in memory. What modeling tools say about faces comes from the run's `surface` folder, else from
+/// the first OBJ frame.
 ///
 /// # Errors
 /// No frames, frames whose elements differ, no time step, formats that would overwrite what is read; files
@@ -66,12 +67,14 @@ pub fn export(
     let width = scene.as_ref().and_then(|scene| scene.contact.delta);
     create_folder(&options.out)?;
     let spool = options.out.join(format!(".frames.{}.part", std::process::id()));
-    let layout = Layout::of_mesh(&first, names);
+    let layout = Layout::of_mesh(&first, surface_of(source, &first)?, names);
     let writer = FrameWriter::new(&options.out, &options.formats, layout, spool, time_step, width)?;
-    let elements = Mesh { positions: Vec::new(), ..first.clone() };
+    let elements = Mesh { positions: Vec::new(), surface: None, ..first.clone() };
     let mut write = || {
         for index in 0..frames.len() {
             let mut mesh = frames.read(index)?;
+            // That of the first frame is written. Which corners share a normal may look different in each.
+            mesh.surface = None;
             let positions: Vec<Point> = std::mem::take(&mut mesh.positions);
             if positions.len() != first.positions.len() || mesh != elements {
                 let message = "its elements differ from those of the first frame: export it by itself";
@@ -86,6 +89,19 @@ pub fn export(
     writer.remove_spool();
     written?;
     Ok(Exported { frames: frames.len(), vertices: first.positions.len() })
+}
+
+/// What is known about the faces of the frames of `source`, of which `first` is the first.
+fn surface_of(source: &Path, first: &Mesh) -> Result<Option<Surface>, IoError> {
+    let path = source.join(SURFACE);
+    if path.is_file() {
+        let surface = read_obj_surface(&path)?.filter(|s| s.triangles().eq(first.triangles.iter().copied()));
+        if surface.is_some() {
+            return Ok(surface);
+        }
+        tracing::warn!("{}: not of these frames, so it is not used", path.display());
+    }
+    Ok(first.surface.clone())
 }
 
 /// The frames of a folder, of `frames/` or `frames.npz` in it, or of an archive.

@@ -6,12 +6,14 @@
 //! frames.npz                        all frames
 //! scene.usda                        all frames
 //! pc2/BODY.pc2, pc2/BODY.obj        the motion of a body, and the body at the first frame
+//! surface/000000.obj                what a mesh says about its faces, for exports of PLY frames later on
 //! ```
 //!
 //! The archive and the USD stage come into being when a run ends, from a spool of bare positions on disk.
 
 use super::layout::{Layout, Part};
 use super::spool::Spool;
+use bowknot_errors::counted;
 use bowknot_geometry::Point;
 use bowknot_io::{
     self as io, Import, IoError, MeshView, Place, UsdBody, create_folder, write_frame_stack, write_obj,
@@ -19,6 +21,9 @@ use bowknot_io::{
 };
 use bowknot_scene::Format;
 use std::path::{Path, PathBuf};
+
+/// The first frame of a run, with all that its meshes say about their faces.
+pub(super) const SURFACE: &str = "surface/000000.obj";
 
 /// Formats that are made from the spool.
 fn needs_spool(format: &Format) -> bool {
@@ -80,6 +85,17 @@ impl FrameWriter {
         self.spool.as_ref().map_or(Ok(()), |spool| spool.write(frame, positions))
     }
 
+    /// Writes the first frame for those who export frames of formats that do not hold all that the layout says
+    /// about faces, if it does.
+    pub fn write_surface(&self, positions: &[Point]) -> Result<(), IoError> {
+        if !self.layout.has_surface() {
+            return Ok(());
+        }
+        let path = self.folder.join(SURFACE);
+        create_folder(path.parent().unwrap_or(&self.folder))?;
+        write_obj(&path, &self.layout.view(positions))
+    }
+
     fn write_caches(&self, frame: usize, positions: &[Point]) -> Result<(), IoError> {
         for (part, name) in self.parts.iter().zip(&self.part_files) {
             let positions = part.positions(positions);
@@ -126,7 +142,11 @@ impl FrameWriter {
         if positions.len() == self.layout.vertices() {
             return Ok(positions);
         }
-        let message = format!("it has {} vertices, not {}", positions.len(), self.layout.vertices());
+        let message = format!(
+            "it has {}, not {}",
+            counted(positions.len(), "vertex", "vertices"),
+            self.layout.vertices()
+        );
         Err(IoError::content(path, Place::File, message))
     }
 

@@ -1,7 +1,7 @@
 //! What is the same in all frames of a run.
 
 use bowknot_geometry::{HalfSpace, Point, Vector};
-use bowknot_io::{Mesh, MeshView};
+use bowknot_io::{Corner, Labels, Mesh, MeshView, Surface};
 use bowknot_scene::world::World;
 
 /// Elements, bodies and their names; half-spaces as quads.
@@ -15,6 +15,8 @@ pub(super) struct Layout {
     corners: Vec<Point>,
     pub obstacle: Vec<bool>,
     pub body: Vec<u32>,
+    /// The polygons of all triangles and quads, if a mesh says more about its faces.
+    surface: Option<Surface>,
     /// Names of the bodies, in the order of their numbers; there may be fewer than bodies.
     names: Vec<String>,
 }
@@ -30,6 +32,7 @@ pub(super) struct Part {
     quads: Vec<[u32; 4]>,
     strands: Vec<[u32; 2]>,
     particles: Vec<u32>,
+    surface: Option<Surface>,
 }
 
 impl Layout {
@@ -44,6 +47,7 @@ impl Layout {
             corners: Vec::new(),
             obstacle: (0..topology.vertex_count as u32).map(|v| world.collision.is_obstacle(v)).collect(),
             body: world.collision.vertex_body().to_vec(),
+            surface: None,
             names: names.collect(),
         };
         let (low, high) = world.bounds();
@@ -57,11 +61,12 @@ impl Layout {
             layout.obstacle.extend([true; 4]);
             layout.body.extend([(world.bodies.len() + index) as u32; 4]);
         }
+        layout.surface = surface(world, &layout.triangles, &layout.quads);
         layout
     }
 
-    /// The layout of frames that are like this one.
-    pub fn of_mesh(mesh: &Mesh, names: Vec<String>) -> Self {
+    /// The layout of frames that are like this one, with the polygons of its triangles if they are known.
+    pub fn of_mesh(mesh: &Mesh, surface: Option<Surface>, names: Vec<String>) -> Self {
         let count = mesh.positions.len();
         Self {
             triangles: mesh.triangles.clone(),
@@ -71,6 +76,7 @@ impl Layout {
             corners: Vec::new(),
             obstacle: mesh.obstacle.clone().unwrap_or_else(|| vec![false; count]),
             body: mesh.body.clone().unwrap_or_else(|| vec![0; count]),
+            surface,
             names,
         }
     }
@@ -78,6 +84,11 @@ impl Layout {
     /// Vertices of a frame.
     pub fn vertices(&self) -> usize {
         self.obstacle.len()
+    }
+
+    /// Whether frames hold more about their faces than the PLY format does.
+    pub fn has_surface(&self) -> bool {
+        self.surface.is_some()
     }
 
     /// The world's positions, those inside of solids left out, and the corners of the quads.
@@ -95,6 +106,7 @@ impl Layout {
             particles: &self.particles,
             obstacle: &self.obstacle,
             body: &self.body,
+            surface: self.surface.as_ref(),
         }
     }
 
@@ -108,6 +120,10 @@ impl Layout {
             local.push(part.vertices.len() as u32);
             part.vertices.push(vertex as u32);
             part.obstacle = self.obstacle[vertex];
+        }
+        if let Some(surface) = &self.surface {
+            let surfaces = surface.split(&self.body, &local, bodies);
+            parts.iter_mut().zip(surfaces).for_each(|(part, surface)| part.surface = surface);
         }
         let owner = |element: &[u32]| self.body[element[0] as usize];
         let local = |v: u32| local[v as usize];
@@ -130,6 +146,7 @@ impl Part {
             quads: &self.quads,
             strands: &self.strands,
             particles: &self.particles,
+            surface: self.surface.as_ref(),
             ..MeshView::default()
         }
     }
@@ -138,6 +155,34 @@ impl Part {
     pub fn positions(&self, all: &[Point]) -> Vec<Point> {
         self.vertices.iter().map(|&v| all[v as usize]).collect()
     }
+}
+
+/// The polygons of all bodies, then the squares of the half-spaces, if a mesh has any polygons. What belongs
+/// to no object is one of the name of its body: otherwise it would belong to the object before it.
+fn surface(world: &World, triangles: &[[u32; 3]], quads: &[[u32; 4]]) -> Option<Surface> {
+    if world.bodies.iter().all(|body| body.surface.is_none()) {
+        return None;
+    }
+    let labels = |name: &String| Labels { object: Some(name.clone()), ..Labels::default() };
+    let mut all = Surface::default();
+    let mut rest = triangles;
+    for body in &world.bodies {
+        let count = rest.iter().take_while(|triangle| body.vertices.contains(&triangle[0])).count();
+        let (own, others) = rest.split_at(count);
+        rest = others;
+        match &body.surface {
+            Some(surface) => {
+                let mut named = surface.clone();
+                named.name_objects(&body.name);
+                all.append(&named, body.vertices.start);
+            }
+            None => all.push_triangles(own, &labels(&body.name)),
+        }
+    }
+    for (quad, name) in quads.iter().zip(&world.half_space_names) {
+        all.push(quad.map(|v| Corner::new(v, None, None)), &labels(name));
+    }
+    Some(all)
 }
 
 /// A square of the plane around the foot of `center`, counter-clockwise seen from outside.

@@ -2,6 +2,7 @@
 
 mod checker;
 mod checkpoint;
+mod differences;
 mod export;
 mod frames;
 mod layout;
@@ -49,7 +50,9 @@ pub struct Progress<'a> {
     pub step: usize,
     /// Time steps to be made.
     pub frames: usize,
-    /// Counts of the scene.
+    /// What is simulated.
+    pub world: &'a World,
+    /// Counts of it.
     pub info: &'a SceneInfo,
     /// The last time step; none before the first.
     pub statistics: Option<&'a StepStatistics>,
@@ -93,7 +96,7 @@ pub fn run(
     let frames = scene.simulation.frames;
     let mut report = |step: usize, statistics: Option<&StepStatistics>, checker: &Option<Checker>| {
         let intersections = checker.as_ref().map(Checker::intersections);
-        progress(&Progress { step, frames, info: &info, statistics, intersections })
+        progress(&Progress { step, frames, world: &world, info: &info, statistics, intersections })
     };
 
     let stop_asked = || options.interrupt.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed));

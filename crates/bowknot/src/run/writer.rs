@@ -3,6 +3,7 @@
 //! ```text
 //! scene.toml                resolved scene
 //! frames/000000.ply ..      one file per frame and format; other formats beside it, see `frames.rs`
+//! surface/000000.obj        what the meshes say about their faces, if they do
 //! stats.jsonl               one line per time step
 //! summary.json              written at the end
 //! checkpoint/state.npz      the state to resume from
@@ -15,11 +16,13 @@
 //! time step writes its frame, then its line of statistics, then the checkpoint: all that a checkpoint
 //! builds on is there.
 
+use super::differences::differences;
 use super::frames::FrameWriter;
 use super::layout::Layout;
 use super::summary::Totals;
 use crate::recording::Recorder;
 use crate::simulator::{Checkpoint, CollisionProblem, SimulationError, Simulator, StepStatistics};
+use bowknot_errors::counted;
 use bowknot_geometry::Point;
 use bowknot_io::{self as io, IoError, create_folder, write_ply};
 use bowknot_scene::Scene;
@@ -28,13 +31,14 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// What tells that a folder holds a run.
-const PARTS: [&str; 9] = [
+const PARTS: [&str; 10] = [
     "scene.toml",
     "frames",
     "frames.npz",
     "frames.pvd",
     "scene.usda",
     "pc2",
+    "surface",
     "stats.jsonl",
     "summary.json",
     "checkpoint",
@@ -51,6 +55,29 @@ pub struct RunWriter {
     /// Length of `stats.jsonl` up to its last whole line [bytes].
     statistics_length: u64,
     totals: Totals,
+}
+
+/// Says where a run would be.
+const NO_RUN: &str =
+    "it holds no run; --out names the folder of a run, by default out/ and the name of its scene";
+
+/// Warns of formats that the run wrote so far and that are not continued.
+fn warn_of_left_formats(text: &str, scene: &Scene) {
+    let Ok(before) = Scene::from_toml(text, &scene.folder) else { return };
+    let left: Vec<String> = before
+        .output
+        .formats
+        .iter()
+        .filter(|format| !scene.output.formats.contains(format))
+        .map(|format| format!("{format:?}").to_lowercase())
+        .collect();
+    if !left.is_empty() {
+        let left = left.join(", ");
+        tracing::warn!(
+            "the run wrote {left} as well, which this resumption does not continue: repeat --format, or use \
+             `bowknot export`"
+        );
+    }
 }
 
 impl RunWriter {
@@ -79,10 +106,13 @@ impl RunWriter {
     pub fn resume(folder: &Path, scene: &Scene, simulator: &mut Simulator) -> Result<Self, SimulationError> {
         let fault = |message: String| SimulationError::Resume { path: folder.to_owned(), message };
         let path = folder.join("scene.toml");
-        let text = fs::read_to_string(&path).map_err(|_| fault("it holds no run".to_owned()))?;
-        if let Some(key) = first_difference(&text, &scene.to_toml()) {
-            return Err(fault(format!("its scene differs in {key}; only frames and output may change")));
+        let text = fs::read_to_string(&path).map_err(|_| fault(NO_RUN.to_owned()))?;
+        if let Some(differences) = differences(&text, &scene.to_toml()) {
+            let message =
+                format!("its scene differs in {differences}; only name, frames and output may change");
+            return Err(fault(message));
         }
+        warn_of_left_formats(&text, scene);
         let checkpoint = checkpoint_path(folder);
         // A run that ended before its first checkpoint goes on from the start.
         if checkpoint.exists() {
@@ -100,7 +130,11 @@ impl RunWriter {
             .collect();
         if kept.len() != simulator.step_index() {
             let steps = simulator.step_index();
-            return Err(fault(format!("stats.jsonl has {} of {steps} lines", kept.len())));
+            return Err(fault(format!(
+                "stats.jsonl has {} of {}",
+                kept.len(),
+                counted(steps, "line", "lines")
+            )));
         }
         let length: u64 = lines.split_inclusive('\n').take(kept.len()).map(|line| line.len() as u64).sum();
         let system = |source| IoError::system("write", &path, source);
@@ -122,10 +156,12 @@ impl RunWriter {
         let width = scene.contact.delta;
         let layout = Layout::new(simulator.world());
         let dt = scene.simulation.dt;
+        let frames = FrameWriter::new(folder, &scene.output.formats, layout, spool, dt, width)?;
+        frames.write_surface(&frames.layout.with_corners(&simulator.world().positions))?;
         Ok(Self {
             folder: folder.to_owned(),
             checkpoint_every: scene.output.checkpoint_every,
-            frames: FrameWriter::new(folder, &scene.output.formats, layout, spool, dt, width)?,
+            frames,
             recorder: Recorder::new(simulator),
             statistics,
             statistics_length: 0,
@@ -229,37 +265,4 @@ fn prepare(folder: &Path, scene: &Scene) -> Result<(), IoError> {
         create_folder(&folder.join("states"))?;
     }
     Ok(())
-}
-
-/// The first key in which two resolved scenes differ, but for how long they run and what they write.
-fn first_difference(a: &str, b: &str) -> Option<String> {
-    fn differ(a: &toml::Value, b: &toml::Value, path: &str) -> Option<String> {
-        match (a, b) {
-            (toml::Value::Table(a), toml::Value::Table(b)) => {
-                let missing = b.keys().find(|key| !a.contains_key(*key));
-                a.iter()
-                    .find_map(|(key, value)| {
-                        let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
-                        b.get(key).map_or(Some(path.clone()), |other| differ(value, other, &path))
-                    })
-                    .or_else(|| missing.map(|key| format!("{path}.{key}")))
-            }
-            (toml::Value::Array(a), toml::Value::Array(b)) if a.len() == b.len() => {
-                a.iter().zip(b).enumerate().find_map(|(i, (a, b))| differ(a, b, &format!("{path}[{i}]")))
-            }
-            _ => (a != b).then(|| path.to_owned()),
-        }
-    }
-    let parse = |text: &str| {
-        let mut table: toml::Table = text.parse().ok()?;
-        table.remove("output");
-        if let Some(toml::Value::Table(simulation)) = table.get_mut("simulation") {
-            simulation.remove("frames");
-        }
-        Some(toml::Value::Table(table))
-    };
-    match (parse(a), parse(b)) {
-        (Some(a), Some(b)) => differ(&a, &b, ""),
-        _ => Some("scene.toml, which is not TOML".to_owned()),
-    }
 }

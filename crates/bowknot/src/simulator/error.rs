@@ -2,6 +2,7 @@
 
 use bowknot_check::{CheckError, Intersection};
 use bowknot_dynamics::{Errors, ParamError, StepError};
+use bowknot_errors::counted;
 use bowknot_io::IoError;
 use bowknot_scene::SceneError;
 use bowknot_scene::world::World;
@@ -24,12 +25,14 @@ pub enum SimulationError {
     #[error(transparent)]
     Check(#[from] CheckError),
     /// Bodies intersect at the start.
-    #[error("{}", start_message(.lines, .count))]
+    #[error("{}", start_message(.lines, .count, .advice))]
     StartIntersects {
         /// The first intersecting pairs, in words.
         lines: Vec<String>,
         /// How many pairs intersect in all.
         count: usize,
+        /// What to move or mend, in words.
+        advice: Vec<String>,
     },
     /// The dynamics has no finite target.
     #[error("time step {step}: {source}; a smaller dt, or softer materials, may help")]
@@ -101,12 +104,17 @@ pub fn describe_intersections(world: &World, intersections: &[Intersection]) -> 
         .collect()
 }
 
-fn start_message(lines: &[String], count: &usize) -> String {
+fn start_message(lines: &[String], count: &usize, advice: &[String]) -> String {
     let more = count - lines.len();
-    let more = if more > 0 { format!("\n  and {more} more pairs") } else { String::new() };
+    let more = if more > 0 {
+        format!("\n  and {}", counted(more, "more pair", "more pairs"))
+    } else {
+        String::new()
+    };
+    let advice: String = advice.iter().map(|line| format!("{line}\n")).collect();
     format!(
         "the start already intersects; a simulation needs a start without intersections:\n  {}{more}\n\
-         `bowknot run .. --dump FILE.ply` writes the offending triangles as a mesh; `bowknot repair MESH --out FILE` welds\n     seams whose panels only lie together",
+         {advice}`bowknot run .. --dump FILE.ply` writes the offending triangles as a mesh",
         lines.join("\n  ")
     )
 }

@@ -4,8 +4,10 @@
 mod checkpoint;
 mod contacts;
 mod error;
+mod inside;
 mod interior;
 mod observer;
+mod overlap;
 mod prescribed;
 mod process;
 mod progress;

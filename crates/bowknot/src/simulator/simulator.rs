@@ -9,14 +9,17 @@
 use super::checkpoint::Checkpoint;
 use super::contacts::{ContactForce, Contacts};
 use super::error::{SimulationError, describe_intersections};
+use super::inside;
 use super::interior::{self, Interior};
 use super::observer::{CollisionProblem, Iterated, Relay, SimulationObserver};
+use super::overlap;
 use super::process::cpu_seconds;
 use super::progress::Progress;
 use super::relaxation::relax_target;
 use super::statistics::StepStatistics;
 use bowknot_check::{Judge, StateOptions, StateReport};
 use bowknot_dynamics::{Dynamics, DynamicsModel};
+use bowknot_errors::counted;
 use bowknot_geometry::{Point, Vector};
 use bowknot_scene::world::{Attachment, World};
 use bowknot_scene::{CollisionEvery, Scene};
@@ -76,11 +79,15 @@ impl Simulator {
         let count = simulator.world.collision_vertices();
         let report = simulator.judge().check_state(&simulator.positions[..count], &options)?;
         if report.is_clear() {
+            inside::enclosed_bodies(&simulator.world).iter().for_each(|body| tracing::warn!("{body}"));
             simulator.find_contacts(&[])?;
             return Ok(simulator);
         }
         let lines = describe_intersections(&simulator.world, &report.intersections);
-        Err(SimulationError::StartIntersects { lines, count: report.intersection_count })
+        let all = StateOptions { limit: usize::MAX, distance: false };
+        let all = simulator.judge().check_state(&simulator.positions[..count], &all)?;
+        let advice = overlap::advice(&simulator.world, &all.intersections);
+        Err(SimulationError::StartIntersects { lines, count: report.intersection_count, advice })
     }
 
     /// The scene's world and all intersections of its start, for a dump.
@@ -383,7 +390,8 @@ impl Simulator {
             [("positions", checkpoint.positions.len()), ("velocities", checkpoint.velocities.len())]
         {
             if given != vertices {
-                return Err(format!("it has {given} {what}, but the scene has {vertices} vertices"));
+                let vertices = counted(vertices, "vertex", "vertices");
+                return Err(format!("its {what} are {given}, but the scene has {vertices}"));
             }
         }
         let fits = checkpoint.anchors.len() == self.world.pins.len()

@@ -26,7 +26,7 @@ fn with_mesh(kind: &str, name: &str, content: &str) -> Result<World, String> {
 #[test]
 fn keys_of_bodies_are_refused_one_by_one() {
     for (body, expected) in [
-        ("kind = \"clot\"", "2: body[0].kind: unknown variant `clot`, expected one of `cloth`, `solid`"),
+        ("kind = \"clot\"", "2: body[0].kind: \"clot\" must be one of cloth, solid"),
         ("friction = -0.1", "2: body[0].friction: -0.1 must be finite and at least 0"),
         ("friction = nan", "2: body[0].friction: NaN must be finite and at least 0"),
         ("thickness = -1", "2: body[0].thickness: -1 must be finite and at least 0"),
@@ -102,13 +102,14 @@ fn keys_of_obstacles_pins_and_pairs_are_refused_one_by_one() {
 fn meshes_must_be_of_the_elements_of_their_kind() {
     let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     let message = with_mesh("solid", "mesh.obj", triangle).expect_err("refused");
-    assert_eq!(message, "body it: the mesh has 1 triangles, but a solid is made of tetrahedra only");
+    let refused = |what: &str| format!("scene.toml:4: body it: the mesh has 1 triangle, but {what}");
+    assert_eq!(message, refused("a solid is made of tetrahedra only"));
     let message = with_mesh("strands", "mesh.obj", triangle).expect_err("refused");
-    assert_eq!(message, "body it: the mesh has 1 triangles, but strands are made of edges only");
+    assert_eq!(message, refused("strands are made of edges only"));
     let message = with_mesh("particles", "mesh.obj", triangle).expect_err("refused");
-    assert_eq!(message, "body it: the mesh has 1 triangles, but particles are loose points only");
+    assert_eq!(message, refused("particles are loose points only"));
     let message = with_mesh("strands", "mesh.obj", "v 0 0 0\n").expect_err("refused");
-    assert_eq!(message, "body it: the mesh has no strand edges");
+    assert_eq!(message, "scene.toml:4: body it: the mesh has no strand edges");
 }
 
 #[test]
@@ -117,7 +118,7 @@ fn strands_with_repeated_points_are_listed() {
     let message = with_mesh("strands", "mesh.obj", mesh).expect_err("refused");
     assert_eq!(
         message,
-        "body it: 3 strand edges are faulty: edge 0 joins vertices 1 and 2, both at (0, 0, 0), edge 2 joins \
+        "scene.toml:4: body it: 3 strand edges are faulty: edge 0 joins vertices 1 and 2, both at (0, 0, 0), edge 2 joins \
          vertices 3 and 4, both at (1, 0, 0), edge 3 repeats edge 1 (vertices 3, 2); merge repeated points"
     );
 }
@@ -136,13 +137,12 @@ fn inverted_and_flat_tetrahedra_are_listed() {
     let world = with_mesh("solid", "mesh.msh", &msh(&[[1, 2, 3, 4]])).expect("a world");
     assert_eq!((world.positions.len(), world.bodies[0].tets.len()), (4, 1));
     assert!(
-        world.warnings[0]
-            .contains("left out 1 vertices that belong to no tetrahedron, the first is vertex 4")
+        world.warnings[0].contains("left out 1 vertex that belongs to no tetrahedron, the first is vertex 4")
     );
     let message = with_mesh("solid", "mesh.msh", &msh(&[[1, 2, 3, 4], [1, 3, 2, 4], [1, 2, 3, 5]]));
     assert_eq!(
         message.expect_err("refused"),
-        "body it: of 3 tetrahedra, 1 inverted: 1; 1 flat: 2; mend or remove them"
+        "scene.toml:4: body it: of 3 tetrahedra, 1 inverted: 1; 1 flat: 2; mend or remove them"
     );
     let message = with_mesh("solid", "mesh.msh", &msh(&[[1, 3, 2, 4]])).expect_err("refused");
     assert!(message.ends_with("1 inverted: 0; swap two vertices of every tetrahedron"), "{message}");
@@ -168,9 +168,9 @@ fn a_sequence_must_keep_its_topology() {
         let scene = Scene::from_toml(&text, folder.path()).expect("a scene");
         World::new(&scene).map_err(|e| e.to_string().replace(&*folder.path().to_string_lossy(), ""))
     };
-    assert_eq!(run().expect_err("missing"), "cannot read /frames: no such file or folder");
+    assert_eq!(run().expect_err("missing"), "scene.toml:5: cannot read /frames: no such file or folder");
     fs::create_dir(&frames).expect("a folder");
-    assert_eq!(run().expect_err("empty"), "/frames: no meshes in it, so no sequence");
+    assert_eq!(run().expect_err("empty"), "scene.toml:5: /frames: no meshes in it, so no sequence");
     let positions: Vec<Point> =
         [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(Point::from).into();
     let write = |name: &str, count: usize, triangles: &[[u32; 3]]| {
@@ -184,12 +184,12 @@ fn a_sequence_must_keep_its_topology() {
     let message = run().expect_err("other triangles");
     assert_eq!(
         message,
-        "/frames/11.obj: joins its vertices to other triangles than /frames/2.obj; a sequence keeps its topology"
+        "scene.toml:5: /frames/11.obj: joins its vertices to other triangles than /frames/2.obj; a sequence keeps its topology"
     );
     write("11.obj", 3, &[[0, 1, 2]]);
     let message = run().expect_err("other vertices");
     assert!(
-        message.starts_with("/frames/11.obj: has 3 vertices, not 4, so another topology than"),
+        message.starts_with("scene.toml:5: /frames/11.obj: has 3 vertices, not 4, so another topology than"),
         "{message}"
     );
 }

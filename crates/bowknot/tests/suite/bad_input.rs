@@ -31,19 +31,22 @@ fn mesh(content: &str, obstacle: bool) -> Result<World, String> {
 #[test]
 fn meshes_are_refused_by_name_and_place() {
     for (content, expected) in [
-        (format!("{SQUARE}f 1 2 9\n"), "mesh.obj:5: "),
-        ("v 0 0\nf 1 1 1\n".to_owned(), "mesh.obj:1: "),
-        ("v 0 0 nan\n".to_owned(), "mesh.obj:1: "),
-        ("v 0 0 0\n".to_owned(), "body cloth: the mesh has no triangles"),
+        (format!("{SQUARE}f 1 2 9\n"), "scene.toml:3: mesh.obj:5: "),
+        ("v 0 0\nf 1 1 1\n".to_owned(), "scene.toml:3: mesh.obj:1: "),
+        ("v 0 0 nan\n".to_owned(), "scene.toml:3: mesh.obj:1: "),
+        ("v 0 0 0\n".to_owned(), "scene.toml:3: body cloth: the mesh has no triangles"),
         (
             format!("{SQUARE}v 2 0 0\nf 1 2 3\nf 1 3 4\nf 1 2 5\n"),
-            "body cloth: triangle 2 (vertices 0, 1, 4) has zero area, at (1, 0, 0)",
+            "scene.toml:3: body cloth: triangle 2 (vertices 0, 1, 4) has zero area, at (1, 0, 0)",
         ),
         (
             format!("{SQUARE}f 1 2 3\nf 1 3 4\nf 3 1 2\n"),
-            "body cloth: triangle 2 repeats triangle 0 (vertices 2, 0, 1), at",
+            "scene.toml:3: body cloth: triangle 2 repeats triangle 0 (vertices 2, 0, 1), at",
         ),
-        (format!("{SQUARE}f 1 2 3\nl 3 4\n"), "body cloth: the mesh has 1 strand edges, but a cloth"),
+        (
+            format!("{SQUARE}f 1 2 3\nl 3 4\n"),
+            "scene.toml:3: body cloth: the mesh has 1 strand edge, but a cloth",
+        ),
     ] {
         let message = mesh(&content, false).expect_err("refused");
         assert!(message.starts_with(expected), "{message}\nexpected {expected}");
@@ -54,7 +57,11 @@ fn meshes_are_refused_by_name_and_place() {
 fn loose_vertices_and_degenerate_obstacle_triangles_are_dropped_with_a_warning() {
     let world = mesh(&format!("{SQUARE}f 1 2 3\n"), false).expect("a world");
     assert_eq!(world.positions.len(), 3);
-    assert!(world.warnings[0].starts_with("body cloth: left out 1 vertices"), "{:?}", world.warnings);
+    assert!(
+        world.warnings[0].starts_with("body cloth: left out 1 vertex that belongs"),
+        "{:?}",
+        world.warnings
+    );
     let world =
         mesh(&format!("{SQUARE}v 2 0 0\nf 1 2 3\nf 1 3 4\nf 1 2 5\nf 3 2 1\n"), true).expect("a world");
     assert_eq!(world.bodies[1].vertices.len(), 4);
@@ -65,7 +72,22 @@ fn loose_vertices_and_degenerate_obstacle_triangles_are_dropped_with_a_warning()
         world.warnings
     );
     let message = mesh("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", true).expect_err("nothing left");
-    assert_eq!(message, "obstacle thing: no triangle of the mesh has an area");
+    assert_eq!(message, "scene.toml:6: obstacle thing: no triangle of the mesh has an area");
+}
+
+#[test]
+fn polygons_of_obstacles_lose_the_triangles_that_are_dropped() {
+    // The first triangle of the pentagon's fan has no area, and its second vertex no other triangle.
+    let pentagon = format!("{SQUARE}v 2 0 0\nvt 0 1\nvt 1 0\nusemtl wood\nf 1/1 2 5/2 3 4\n");
+    let world = mesh(&pentagon, true).expect("a world");
+    let thing = &world.bodies[1];
+    let surface = thing.surface.as_ref().expect("a surface");
+    let polygons: Vec<_> = surface.polygons().collect();
+    let texture: Vec<_> = polygons[0].corners.iter().map(|corner| corner.texture()).collect();
+    assert_eq!((polygons.len(), texture), (1, vec![Some(0), Some(1), None, None]));
+    assert_eq!(polygons[0].labels.material.as_deref(), Some("wood"));
+    let own: Vec<[u32; 3]> = surface.triangles().map(|t| t.map(|v| v + thing.vertices.start)).collect();
+    assert_eq!(own, world.collision.topology().triangles[8..]);
 }
 
 #[test]
@@ -79,10 +101,13 @@ fn pins_name_vertices_of_the_file() {
         Scene::from_toml(&text, folder.path()).and_then(|scene| World::new(&scene)).map_err(|e| e.to_string())
     };
     assert_eq!(world("[1, 4]").expect("a world").pins[0].vertices, [0, 3]);
-    assert_eq!(world("[0]").expect_err("loose"), "pin[0]: vertex 0 belongs to no triangle of body cloth");
+    assert_eq!(
+        world("[0]").expect_err("loose"),
+        "scene.toml:5: pin[0] of cloth: vertex 0 belongs to no triangle of body cloth"
+    );
     assert_eq!(
         world("[5]").expect_err("range"),
-        "pin[0]: vertex 5, but body cloth has 5 vertices, counted from 0"
+        "scene.toml:5: pin[0] of cloth: vertex 5, but body cloth has 5 vertices, counted from 0"
     );
 }
 
@@ -91,10 +116,13 @@ fn pins_must_select_and_not_quarrel() {
     let sheet = "[[body]]\nname = \"sheet\"\nshape = { type = \"sheet\", edge = 0.5 }\n";
     assert_eq!(
         refusal(&format!("{sheet}[[pin]]\nbox = {{ min = [5, 5, 5] }}\n")),
-        "pin[0]: it selects no vertex of body sheet"
+        "scene.toml:4: pin[0] of sheet: it selects no vertex of the body"
     );
     let two = format!("{sheet}[[pin]]\nside = \"x-min\"\nend = 1\n[[pin]]\nside = \"y-min\"\nstart = 0.5\n");
-    assert_eq!(refusal(&two), "pin[1]: vertex 0 of body sheet is held by pin[0] at the same time");
+    assert_eq!(
+        refusal(&two),
+        "scene.toml:7: pin[1] of sheet: vertex 0 of body sheet is held by pin[0] at the same time"
+    );
     let later = two.replace("start = 0.5", "start = 1.5");
     assert!(Simulator::new(&scene(&later)).is_ok());
 }
@@ -105,9 +133,9 @@ fn a_start_that_intersects_names_bodies_and_places() {
                 [[obstacle]]\nname = \"ball\"\nshape = { type = \"ball\", radius = 0.3, edge = 0.1 }\n\
                 [[obstacle]]\nname = \"ground\"\nshape = \"half-space\"\ntranslate = [0, 0, -1]\n";
     let error = Simulator::new(&scene(text)).map(|_| ()).expect_err("intersects");
-    let SimulationError::StartIntersects { lines, count } = &error else { panic!("{error}") };
+    let SimulationError::StartIntersects { lines, count, advice } = &error else { panic!("{error}") };
     assert_eq!(lines.len(), 5);
-    assert!(*count > 20);
+    assert!(*count > 20 && advice[0].starts_with("sheet and ball overlap: move sheet by "), "{advice:?}");
     assert!(
         lines[0].starts_with("edge (vertices ") && lines[0].contains(" of sheet and triangle (vertices ")
     );
@@ -154,5 +182,5 @@ fn motion_beyond_all_bounds_is_an_error_and_no_panic() {
 fn a_missing_mesh_is_named_with_its_path() {
     let scene = Scene::from_toml("[[body]]\nmesh = \"gone.ply\"\n", Path::new("/nowhere")).expect("a scene");
     let message = World::new(&scene).map(|_| ()).expect_err("missing").to_string();
-    assert_eq!(message, "cannot read /nowhere/gone.ply: no such file or folder");
+    assert_eq!(message, "scene.toml:2: cannot read /nowhere/gone.ply: no such file or folder");
 }

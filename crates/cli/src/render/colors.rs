@@ -10,6 +10,7 @@ use bowknot::StepStatistics;
 use bowknot::geometry::Point;
 use bowknot::io::{IoError, files_in};
 use bowknot::recording::States;
+use bowknot_errors::counted;
 use bowknot_render::{Legend, Scale, body_color};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -200,8 +201,9 @@ fn recorded(run: &RunFolder) -> Result<Vec<(usize, PathBuf)>, Failure> {
 /// Distance from each vertex to its target in the last collision problem of the time step [mm].
 fn remaining_of_vertices(states: &States, x: &[Point], file: &Path) -> Result<Vec<f64>, Failure> {
     if states.y.len() != x.len() {
-        let (file, given, expected) = (file.display(), states.y.len(), x.len());
-        return Err(Failure::input(format!("{file} has {given} vertices, but the frames have {expected}")));
+        let (file, expected) = (file.display(), x.len());
+        let given = counted(states.y.len(), "vertex", "vertices");
+        return Err(Failure::input(format!("{file} has {given}, but the frames have {expected}")));
     }
     Ok(x.iter().zip(&states.y).map(|(p, y)| 1e3 * (y - p).norm()).collect())
 }

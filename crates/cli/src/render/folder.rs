@@ -6,6 +6,7 @@ use bowknot::geometry::{HalfSpace, Point};
 use bowknot::io::{Import, Mesh, read_mesh};
 use bowknot::scene::{Material, Scene};
 use bowknot::shapes::Shape;
+use bowknot_errors::counted;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -51,12 +52,14 @@ impl RunFolder {
         let vertices = elements.positions.len();
         let Some(kept) = vertices.checked_sub(4 * squares) else {
             return Err(bad_input(format!(
-                "{} has {vertices} vertices, too few for its scene",
-                first.display()
+                "{} has {}, too few for its scene",
+                first.display(),
+                counted(vertices, "vertex", "vertices")
             )));
         };
         let ground = elements.positions[kept..].as_chunks::<4>().0.iter().filter_map(plane).collect();
         elements.positions.truncate(kept);
+        elements.surface = None;
         elements.triangles.retain(|t| t.iter().all(|&v| (v as usize) < kept));
         elements.particles.retain(|&v| (v as usize) < kept);
         elements.strands.retain(|e| e.iter().all(|&v| (v as usize) < kept));
@@ -131,9 +134,10 @@ impl RunFolder {
         let mut positions = read_mesh(file, &Import::default())?.positions;
         let kept = self.elements.positions.len();
         if positions.len() != kept + 4 * self.ground.len() {
-            let (file, given, expected) = (file.display(), positions.len(), kept + 4 * self.ground.len());
+            let (file, expected) = (file.display(), kept + 4 * self.ground.len());
+            let given = counted(positions.len(), "vertex", "vertices");
             return Err(Failure::input(format!(
-                "{file} has {given} vertices, but other frames of the run have {expected}"
+                "{file} has {given}, but other frames of the run have {expected}"
             )));
         }
         positions.truncate(kept);

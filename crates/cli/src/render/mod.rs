@@ -10,6 +10,7 @@ use crate::exit::{Exit, Failure};
 use crate::output;
 use crate::progress::Bar;
 use bowknot::io::{create_folder, write_atomic};
+use bowknot_errors::counted;
 use bowknot_render::{
     Camera, Elements, Fit, Frame, Legend, Model, Picture, Quality, RenderError, Renderer, Shot, Style, View,
     write_gif, write_png, write_small_png,
@@ -101,7 +102,7 @@ pub fn render(options: &RenderOptions) -> Result<Exit, Failure> {
         let [width, height] = size;
         let what = match frames[..] {
             [frame] => format!("frame {frame}"),
-            _ => format!("{} frames", frames.len()),
+            _ => counted(frames.len(), "frame", "frames"),
         };
         let (name, seconds) = (renderer.device_name(), started.elapsed().as_secs_f64());
         let out = options.out.display();

@@ -21,6 +21,14 @@ fn clear_states() {
 }
 
 #[test]
+fn frames_written_in_two_formats_are_counted_once() {
+    let place = Place::new();
+    place.run(&format!("{SMALL} --format ply,obj --out run")).ok();
+    assert_eq!(place.files("run/frames").len(), 8);
+    assert_eq!(place.run("check run --json").ok().json()["states"], 4);
+}
+
+#[test]
 fn an_intersection_is_found() {
     let place = Place::new();
     place.write("a.obj", layers(0.5));

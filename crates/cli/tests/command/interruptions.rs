@@ -20,6 +20,24 @@ fn a_resumed_run_has_the_same_bits() {
 }
 
 #[test]
+fn a_renamed_scene_file_is_resumed_and_a_shorter_run_has_nothing_to_do() {
+    let place = Place::new();
+    let scene =
+        "[simulation]\ndt = 0.01\n[[body]]\nshape = { type = \"sheet\", size = [1.0, 1.0], edge = 0.5 }\n";
+    place.write("a.toml", scene);
+    place.run("run a.toml --frames 4 --out run").ok();
+    place.write("b.toml", scene);
+    place.run("run b.toml --frames 6 --out run --resume").ok();
+    assert_eq!(place.read("run/stats.jsonl").lines().count(), 6);
+    let ended = place.run("run b.toml --frames 3 --out run --resume").ok();
+    assert!(ended.stdout.contains("nothing to do, 3 frames were asked for and there are 6"), "{ended:#?}");
+    place.write("b.toml", scene.replace("0.01", "0.02").replace("edge = 0.5", "edge = 0.25"));
+    place
+        .run("run b.toml --frames 9 --out run --resume")
+        .refused(2, &["simulation.dt (0.01 there, 0.02 here)", "body[0].shape.edge (0.5 there, 0.25 here)"]);
+}
+
+#[test]
 fn runs_that_cannot_be_resumed() {
     let place = Place::new();
     place.run(&format!("{SMALL} --out none --resume")).refused(2, &["cannot resume none", "no run"]);

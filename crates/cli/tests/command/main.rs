@@ -23,6 +23,10 @@ mod resolve;
 mod run;
 /// `scenes` and `info`.
 mod scenes;
+/// What a command writes where no terminal is.
+mod streams;
+/// The commands of `docs/tutorials`.
+mod tutorials;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -85,6 +85,20 @@ fn wrong_arguments_are_refused() {
     place.run("render run --out a.png").refused(2, &["frames/*.ply", "--format ply"]);
 }
 
+/// A layer of Mesa's drivers complains on stderr if it finds no Wayland display.
+#[cfg(target_os = "linux")]
+#[test]
+fn without_a_display_nothing_is_printed() {
+    let place = Place::new();
+    place.run(&format!("{SMALL} --out run")).ok();
+    let words = "render run --out a.png --size 64x48";
+    let output = place.command(words).env_remove("XDG_RUNTIME_DIR").output().unwrap();
+    let ended = Ended::new(words, output);
+    if drawn(&ended) {
+        assert_eq!(ended.stderr, "", "{ended:#?}");
+    }
+}
+
 /// The variables name a driver that does not exist.
 #[cfg(target_os = "linux")]
 #[test]

@@ -16,16 +16,48 @@ fn a_seam_is_welded_and_the_mesh_runs() {
 
     let ended = place.run("repair seam.obj --out clean.obj").ok();
     for words in
-        ["welded 2 border vertices", "given twice: 1", "in 1 parts", " 0 intersections", "wrote clean.obj"]
+        ["welded 2 border vertices", "given twice: 1", "in 1 part,", " 0 intersections", "wrote clean.obj"]
     {
         assert!(ended.stdout.contains(words), "{words:?}: {ended:#?}");
     }
+    // The file may be in centimeters.
+    assert!(ended.stdout.contains("(units of the file)") && !ended.stdout.contains("e-2 m"), "{ended:#?}");
     let report = place.run("repair seam.obj --out clean.ply --json").ok().json();
     assert_eq!((&report["welded_vertices"], &report["repeated_triangles"]), (&2.into(), &1.into()));
     assert_eq!((&report["after"]["intersections"], &report["after"]["vertices"]), (&0.into(), &6.into()));
     assert!(report["before"]["intersections"].as_u64().unwrap() > 0);
     place.run("check clean.obj clean.ply").ok();
     place.run("run clean.obj --frames 1").ok();
+}
+
+/// The panels of [`SEAM`] as quads with texture coordinates of their own, and a triangle given twice.
+const TEXTURED: &str = "mtllib cloth.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 1 0 0\nv 2 0 0\nv 1 1 0\nv 2 1 0\n\
+                        vt 0 0\nvt 0.4 0\nvt 0.4 1\nvt 0 1\nvt 0.6 0\nvt 1 0\nvt 1 1\nvt 0.6 1\n\
+                        g left\nusemtl silk\nf 1/1 2/2 4/3 3/4\ng right\nusemtl wool\nf 5/5 6/6 8/7 7/8\nf 8/7 5/5 6/6\n";
+
+#[test]
+fn what_an_obj_says_about_faces_is_kept() {
+    let place = Place::new();
+    place.write("seam.obj", TEXTURED);
+    let ended = place.run("repair seam.obj --out clean.obj").ok();
+    assert!(!ended.stdout.contains("left out"), "{ended:#?}");
+    let clean = place.read("clean.obj");
+    assert!(clean.starts_with("mtllib cloth.mtl\n"), "{clean}");
+    // Welded vertices have one number, and a texture coordinate for each panel.
+    let faces = "g left\nusemtl silk\nf 1/1 2/2 4/3 3/4\ng right\nusemtl wool\nf 2/5 5/6 6/7 4/8\n";
+    assert!(clean.ends_with(faces), "{clean}");
+    let ended = place.run("repair seam.obj --out clean.ply").ok();
+    for words in ["left out", "texture coordinates", "names of objects"] {
+        assert!(ended.stdout.contains(words), "{words:?}: {ended:#?}");
+    }
+    // A vertex on the edge of the quad splits a triangle of it.
+    let seam = "v 1 0.4 0\nv 2 0 0\nv 2 1 0\nf 5 7 6\nf 5 8 7\nf 2 5 6\nv 1 1 0\n";
+    let left = TEXTURED.split("g right").next().unwrap().replace("v 1 0 0\nv 2 0 0\nv 1 1 0\nv 2 1 0\n", "");
+    place.write("t.obj", left + "g right\n" + seam);
+    let ended = place.run("repair t.obj --out t-clean.obj").ok();
+    assert!(ended.stdout.contains("cut polygons around these triangles: 1"), "{ended:#?}");
+    let clean = place.read("t-clean.obj");
+    assert!(clean.contains("vt 0.4 0.4\n") && clean.contains("usemtl silk\n"), "{clean}");
 }
 
 /// Without the triangle given twice, it is the seam that keeps the mesh from running.
@@ -65,6 +97,6 @@ fn what_cannot_be_repaired() {
     place.write("points.obj", "v 0 0 0\np 1\n");
     place.run("repair points.obj --out a.obj").refused(2, &["points.obj", "no triangles"]);
     place.write("solid.t", "Vertex 0 0 0 0\nVertex 1 1 0 0\nVertex 2 0 1 0\nVertex 3 0 0 1\nTet 0 0 1 2 3\n");
-    place.run("repair solid.t --out a.obj").refused(2, &["solid.t", "1 tetrahedra"]);
+    place.run("repair solid.t --out a.obj").refused(2, &["solid.t", "1 tetrahedron"]);
     assert!(!place.path("a.obj").exists());
 }

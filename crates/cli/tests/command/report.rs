@@ -154,6 +154,8 @@ fn a_browser_plays_the_page() {
     assert_eq!((state("frames"), state("webgl")), (Some("4"), Some("yes")));
     assert_eq!(state("plots"), Some("8"));
     assert_eq!(dom.matches("class=\"u-over\"").count(), 8, "every plot is drawn");
+    let speed = "slower than real time: the run lasts 30 ms";
+    assert!(dom.contains(speed), "the page says how fast it plays, and why");
     assert!(dom.contains("0.03 s") && dom.contains(">not checked<"), "the last frame's time; the verdict");
     let sheet = picture.share(MIDDLE.0, MIDDLE.1, blue);
     assert!((0.05..0.9).contains(&sheet), "the sheet covers {sheet} of the middle");
@@ -192,4 +194,65 @@ fn a_browser_without_webgl_still_plots() {
         (Some("ready"), Some("0"), None)
     );
     assert!(dom.contains("This run has no statistics"));
+}
+
+/// Tells the page around this one how wide it is, how far anything goes beyond its side, and its state.
+const MEASURE: &str = r#"<script>
+setInterval(() => {
+    const over = (box) => (box.clientWidth > 0 ? box.scrollWidth - box.clientWidth : 0);
+    const boxes = ['html', '#stage', '#transport', '#clock', '#plots', '#summary'].map((name) => document.querySelector(name));
+    const beyond = [...document.querySelectorAll('#transport > *, header > *')]
+        .map((element) => element.getBoundingClientRect().right - innerWidth);
+    const overflow = Math.ceil(Math.max(0, ...boxes.map(over), ...beyond));
+    parent.postMessage({ width: innerWidth, overflow, state: document.body.dataset.state }, "*");
+}, 100);
+</script></body>"#;
+
+/// From a phone's width to the one at which the plots stand beside the picture. Browsers refuse windows that
+/// narrow, so the page is shown in a frame.
+#[test]
+fn nothing_is_beyond_the_side_of_a_narrow_window() {
+    let Some(chromium) = chromium() else { return };
+    let place = Place::new();
+    place.run(&format!("{SMALL} --out run")).ok();
+    place.run("report run").ok();
+    place.write("page.html", place.read("run/report.html").replace("</body>", MEASURE));
+    for (width, tab) in [(360, "plots"), (360, "summary"), (420, "plots"), (800, "plots"), (800, "summary")] {
+        let around = format!(
+            "<body><iframe width={width} height=650 style=\"border:0\" src=\"page.html#tab={tab}\"></iframe>\
+             <script>onmessage = ({{ data }}) => Object.assign(document.body.dataset, data)</script>"
+        );
+        place.write("around.html", around);
+        let (dom, _) = open(&chromium, &place.path("around.html"), "", &[]);
+        let told = ["state", "width", "overflow"].map(|name| data(&dom, name));
+        assert_eq!(told, [Some("ready"), Some(&*width.to_string()), Some("0")], "{tab}");
+    }
+}
+
+/// The labels of axes as the page's script makes them: different values never read alike.
+#[test]
+fn ticks_are_told_apart() {
+    let Some(chromium) = chromium() else { return };
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../report/src/assets/app/data.js");
+    let script = std::fs::read_to_string(script).unwrap();
+    let place = Place::new();
+    let cases = r#"[
+        showTicks([1e-16, 1e-14, 1e-12, 1e-10], "m"), showTicks([1e-6, 1e-3, 1], "m"), showTicks([0, 0.00063011, 0.00063012, null], "m"),
+        showTicks([1, 1.00001, 1.00002]), showTicks([0, 5, 12345])
+    ]"#;
+    let page = format!(
+        "<meta charset=\"utf-8\"><script id=\"meta\" type=\"application/json\">{{}}</script>\
+         <script id=\"columns\" type=\"application/json\">{{}}</script>\
+         <body><p></p><script>{script}\ndocument.querySelector(\"p\").textContent = JSON.stringify({cases});</script>"
+    );
+    place.write("ticks.html", page);
+    let (dom, _) = open(&chromium, &place.path("ticks.html"), "", &[]);
+    let labels = [
+        r#"["1e-16 m","1e-14 m","1e-12 m","0.1 nm"]"#,
+        r#"["1 µm","1 mm","1 m"]"#,
+        r#"["0","630.11 µm","630.12 µm",""]"#,
+        r#"["1","1.00001","1.00002"]"#,
+        r#"["0","5","12,345"]"#,
+    ];
+    assert!(dom.contains(&format!("<p>[{}]</p>", labels.join(","))), "{}", &dom[dom.len() - 400..]);
 }

@@ -77,6 +77,69 @@ fn recorded_problems_resolve_to_the_same_steps() {
     assert_eq!(steps["min_gap_m"], stats[34]["min_gap_m"]);
 }
 
+/// An archive of a state `x`, the same target but for the last vertex `y`, and further arrays.
+fn archive(place: &Place, name: &str, last: [f64; 3], add: impl Fn(&mut NpzWriter<File>)) {
+    let x = array![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.2, 0.2, 0.5]];
+    let mut y = x.clone();
+    y.row_mut(3).assign(&ndarray::arr1(&last));
+    let mut npz = NpzWriter::new(File::create(place.path(name)).unwrap());
+    npz.add_array("x", &x).unwrap();
+    npz.add_array("y", &y).unwrap();
+    add(&mut npz);
+    npz.finish().unwrap();
+}
+
+#[test]
+fn unknown_arrays_and_a_problem_without_elements_are_named() {
+    let place = Place::new();
+    let triangle = array![[0_u32, 1, 2]];
+    let below = [0.2, 0.2, -0.5];
+    archive(&place, "faces.npz", below, |npz| npz.add_array("faces", &triangle).unwrap());
+    place.run("resolve faces.npz --out out.npz").refused(2, &["faces.npz", "array faces", "F"]);
+    archive(&place, "masses.npz", below, |npz| npz.add_array("masses", &array![1.0, 1.0, 1.0, 1.0]).unwrap());
+    place.run("resolve masses.npz --out out.npz").refused(2, &["array masses", "mass"]);
+    archive(&place, "rets.npz", below, |npz| npz.add_array("rets", &triangle).unwrap());
+    place.run("resolve rets.npz --out out.npz").refused(2, &["array rets", "rest"]);
+    assert!(!place.path("out.npz").exists());
+    archive(&place, "empty.npz", below, |_| ());
+    let ended = place.run("resolve empty.npz --out out.npz").ok();
+    assert!(ended.stderr.contains("no elements (F, E, P): nothing can collide"), "{ended:#?}");
+}
+
+#[test]
+fn prescribed_vertices_that_wait_are_reported() {
+    let place = Place::new();
+    let triangle = array![[0_u32, 1, 2]];
+    archive(&place, "in.npz", [0.2, 0.2, -0.5], |npz| {
+        npz.add_array("F", &triangle).unwrap();
+        npz.add_array("P", &array![3_u32]).unwrap();
+        npz.add_array("fixed", &array![1_u8, 1, 1, 1]).unwrap();
+    });
+    let summary = place.run("resolve in.npz --out out.npz --json").ok().json();
+    let lag = summary["prescribed_lag_m"].as_f64().unwrap();
+    assert!((0.5..0.6).contains(&lag), "{summary}");
+    assert_eq!((&summary["prescribed_waiting"], &summary["distance_to_target_m"]), (&1.into(), &0.0.into()));
+    let ended = place.run("resolve in.npz --out out.npz").ok();
+    assert!(ended.stdout.contains("1 prescribed vertex is not at its target"), "{ended:#?}");
+}
+
+/// No command writes over a file that it reads, whatever the name that it goes by.
+#[test]
+fn the_input_is_not_overwritten() {
+    let place = Place::new();
+    problem(&place, "in.npz");
+    let before = std::fs::read(place.path("in.npz")).unwrap();
+    place.run("resolve in.npz --out in.npz").refused(2, &["in.npz", "is the file that is read"]);
+    place.run("resolve in.npz --out ./in.npz").refused(2, &["in.npz"]);
+    assert_eq!(std::fs::read(place.path("in.npz")).unwrap(), before);
+    place.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    for words in
+        ["repair mesh.obj --out mesh.obj", "check mesh.obj --dump mesh.obj", "run mesh.obj --dump mesh.obj"]
+    {
+        place.run(words).refused(2, &["mesh.obj", "is the file that is read"]);
+    }
+}
+
 #[test]
 fn what_is_refused() {
     let place = Place::new();

@@ -78,5 +78,49 @@ fn info_counts_a_mesh() {
     assert_eq!(info["extent"], serde_json::json!([1.0, 1.0, 1.0]));
     let ended = place.run("info t.obj").ok();
     assert!(ended.stdout.contains("triangles          4"), "{ended:#?}");
+    assert!(ended.stdout.contains("1.0000 (units of the file)"), "{ended:#?}");
     place.run("info").refused(2, &["SCENE"]);
+}
+
+/// A square of two triangles in centimeters, y up, beside a triangle of its own.
+const SQUARE_AND_TRIANGLE: &str = "v 0 0 0\nv 100 0 0\nv 0 100 0\nv 100 100 0\nv 0 0 9\nv 9 0 9\nv 0 9 9\n\
+                                   f 1 2 4\nf 1 4 3\nf 5 6 7\n";
+
+#[test]
+fn info_lists_the_structure_of_a_mesh_and_its_problems() {
+    let place = Place::new();
+    place.write("good.obj", SQUARE_AND_TRIANGLE);
+    let info = place.run("info good.obj --scale 0.01 --up y --json").ok().json();
+    let extent: Vec<f64> = info["extent"].as_array().unwrap().iter().map(|e| e.as_f64().unwrap()).collect();
+    assert!((extent[0] - 1.0).abs() + (extent[1] - 0.09).abs() + (extent[2] - 1.0).abs() < 1e-12, "{info}");
+    assert_eq!(
+        (info["parts"][0]["triangles"].as_u64(), info["parts"][1]["vertex"].as_u64()),
+        (Some(2), Some(4))
+    );
+    assert_eq!(
+        (info["borders"][0]["edges"].as_u64(), info["borders"].as_array().unwrap().len()),
+        (Some(4), 2)
+    );
+    assert_eq!(info["problems"].as_array().unwrap().len(), 0);
+    place.run("info drape --up y").refused(2, &["--up", "meshes"]);
+
+    // A third triangle at the diagonal, a repeated triangle.
+    place.write("bad.obj", format!("{SQUARE_AND_TRIANGLE}f 1 4 5\nf 7 6 5\n"));
+    let ended = place.run("info bad.obj").ok();
+    for words in [
+        "edges of three or more triangles 1\n    vertices 0, 3, triangles 0, 1, 3, at (50.0000, 50.0000, 0.0000)",
+        "refuses the mesh as a body 1\n    triangle 4 repeats triangle 2 (vertices 6, 5, 4), at (3, 3, 9)",
+    ] {
+        assert!(ended.stdout.contains(words), "{words:?}: {ended:#?}");
+    }
+    let info = place.run("info bad.obj --json").ok().json();
+    assert_eq!(info["branching_edges"][0]["vertices"], serde_json::json!([0, 3]));
+    // What `run` refuses: it names the command that helps, and `check` does not pass it without a word.
+    place.run("run bad.obj").refused(2, &["triangle 4 repeats triangle 2", "bowknot repair", "bowknot info"]);
+    let ended = place.run("check bad.obj");
+    assert!(ended.stderr.contains("bad.obj: triangle 4 repeats triangle 2"), "{ended:#?}");
+    assert_eq!(place.run("check bad.obj --json").json()["mesh_problems"], 1);
+    place.write("flat.t", "Vertex 0 0 0 0\nVertex 1 1 0 0\nVertex 2 0 1 0\nVertex 3 0 0 -1\nTet 0 0 1 2 3\n");
+    let info = place.run("info flat.t --json").ok().json();
+    assert!(info["problems"][0].as_str().unwrap().contains("1 inverted"), "{info}");
 }

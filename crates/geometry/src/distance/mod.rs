@@ -11,6 +11,8 @@
 //! side *a* and -1 on side *b*. (The closest points move too, but at a minimum that contributes nothing.) The
 //! distance has no gradient where the closest points are not unique (parallel edges) or coincide. The weights
 //! are then those of one choice, the same for the same input.
+//!
+//! Points that are not finite are at no distance: the result is NaN, or infinite.
 
 mod arithmetic;
 mod closest_points;

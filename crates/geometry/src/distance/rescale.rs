@@ -65,9 +65,13 @@ pub(super) fn closest_rescaled(
     points: &[Point; 4],
     core: impl Fn(&[Point; 4]) -> Closest,
 ) -> Closest {
+    let mut weights = [1.0, 0.0, 0.0, 0.0];
+    weights[kind.side_a()] = 1.0;
+    let used = &points[..kind.vertex_count()];
+    if !used.iter().all(|p| p.iter().all(|x| x.is_finite())) {
+        return Closest { weights, offset: Vector::repeat(f64::NAN), distance: f64::NAN };
+    }
     let Some(local) = Local::new(kind, points) else {
-        let mut weights = [1.0, 0.0, 0.0, 0.0];
-        weights[kind.side_a()] = 1.0;
         return Closest { weights, offset: Vector::zeros(), distance: 0.0 };
     };
     let closest = core(&local.points);
@@ -82,6 +86,9 @@ pub(super) fn closest_rescaled(
 #[cold]
 #[inline(never)]
 pub(crate) fn norm_of_tiny(v: &Vector) -> f64 {
+    if v.iter().any(|x| x.is_nan()) {
+        return f64::NAN;
+    }
     let largest = v.amax();
     if largest == 0.0 || !largest.is_finite() {
         return largest;

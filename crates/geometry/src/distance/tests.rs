@@ -68,3 +68,25 @@ fn distances_whose_squares_underflow_are_kept() {
         assert_eq!(edge_edge([&beyond, &p(-1.0, 0.0, 0.0)], [&o, &x]).distance, tiny);
     }
 }
+
+#[test]
+fn points_that_are_not_finite_have_no_distance() {
+    let points = [p(0.2, 0.3, 0.5), p(0.0, 0.0, 0.0), p(1.0, 0.0, 0.0), p(0.0, 1.0, 0.0)];
+    for kind in [PairKind::VertexVertex, PairKind::VertexEdge, PairKind::VertexTriangle, PairKind::EdgeEdge] {
+        for bad in [f64::NAN, f64::INFINITY] {
+            for place in 0..kind.vertex_count() {
+                let mut points = points;
+                points[place].y = bad;
+                let closest = closest(kind, &points);
+                assert!(
+                    closest.distance.is_nan() || closest.distance == f64::INFINITY,
+                    "{kind:?}: {closest:?}"
+                );
+            }
+        }
+    }
+    let [a, b, c, d] = [p(f64::NAN, 0.0, 0.0), points[1], points[2], points[3]];
+    assert!(vertex_triangle(&a, [&b, &c, &d]).distance.is_nan());
+    assert!(vertex_triangle(&points[0], [&b, &a, &d]).distance.is_nan());
+    assert!(edge_edge([&a, &b], [&c, &d]).distance.is_nan());
+}

@@ -4,6 +4,7 @@ use super::cursor::{Cursor, Fault};
 use super::nodes::Nodes;
 use super::version::Version;
 use crate::mesh::Mesh;
+use bowknot_errors::counted;
 use bowknot_geometry::Point;
 use std::collections::BTreeMap;
 
@@ -237,7 +238,7 @@ impl Elements {
         let note = |(kind, count): (&i64, &usize)| match TYPES.iter().find(|entry| entry.0 == *kind) {
             Some((_, _, Becomes::Nothing, name)) => format!("skipped {count} {name}"),
             Some((_, _, _, name)) => format!("took the corners only of {count} {name}"),
-            None => format!("skipped {count} elements of the unknown type {kind}"),
+            None => format!("skipped {} of the unknown type {kind}", counted(*count, "element", "elements")),
         };
         self.noted.iter().map(note).collect()
     }

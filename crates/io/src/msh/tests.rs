@@ -206,7 +206,7 @@ fn unknown_types_are_skipped_in_text_and_refused_in_binary() {
     for form in FORMS {
         let result = read(&file(form, &nodes(), &elements));
         if matches!(form, Form::Text2 | Form::Text4) {
-            let note = "skipped 1 elements of the unknown type 777".to_owned();
+            let note = "skipped 1 element of the unknown type 777".to_owned();
             assert_eq!(result, Ok((expected(), vec![note])));
         } else {
             assert!(result.as_ref().unwrap_err().contains("element type 777 is unknown"), "{result:?}");

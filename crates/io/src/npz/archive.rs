@@ -2,9 +2,10 @@
 
 use crate::atomic::write_atomic;
 use crate::error::{IoError, Place};
+use bowknot_errors::counted;
 use bowknot_geometry::Point;
 use ndarray::ArrayD;
-use ndarray_npy::{NpzReader, NpzWriter, ReadDataError, ReadableElement};
+use ndarray_npy::{NpzReader, NpzWriter, ReadDataError, ReadNpyError, ReadNpzError, ReadableElement};
 use py_literal::Value as PyValue;
 use std::fs::File;
 use std::io::{BufReader, BufWriter, ErrorKind, Read};
@@ -92,7 +93,10 @@ impl<'a> Archive<'a> {
         if file.metadata().is_ok_and(|m| m.is_dir()) {
             return Err(IoError::system("read", path, ErrorKind::IsADirectory.into()));
         }
-        let not_npz = |error| IoError::content(path, Place::File, format!("not an NPZ archive: {error}"));
+        let not_npz = |_| {
+            let hint = if starts_as_npy(path) { "; it is a single array, use np.savez" } else { "" };
+            IoError::content(path, Place::File, format!("not an NPZ archive, as np.savez writes it{hint}"))
+        };
         let mut reader = NpzReader::new(BufReader::new(file)).map_err(not_npz)?;
         let names = reader.names().map_err(not_npz)?;
         Ok(Self { path, reader, names })
@@ -118,6 +122,10 @@ impl<'a> Archive<'a> {
         }
         let array: ArrayD<Number> = match self.reader.by_name::<ndarray::OwnedRepr<Number>, _>(name) {
             Ok(array) => array,
+            Err(ReadNpzError::Npy(ReadNpyError::WrongDescriptor(descriptor))) => {
+                let allowed = "f32, f64, bool and integers of 8 to 64 bits can be read";
+                return Err(self.fault(name, format!("its type is {descriptor}; {allowed}")));
+            }
             Err(error) => return Err(self.fault(name, format!("unreadable: {error}"))),
         };
         let shape = array.shape().to_vec();
@@ -131,7 +139,8 @@ impl<'a> Archive<'a> {
     pub fn rows<const N: usize>(&mut self, name: &str) -> Result<Option<Vec<[f64; N]>>, IoError> {
         let Some((values, shape)) = self.array(name)? else { return Ok(None) };
         if !values.is_empty() && (shape.len() != 2 || shape[1] != N) {
-            return Err(self.fault(name, format!("its shape is {shape:?}, it must be [n, {N}]")));
+            let hint = if shape.len() == 2 && shape[0] == N { "; transpose it" } else { "" };
+            return Err(self.fault(name, format!("its shape is {shape:?}, it must be [n, {N}]{hint}")));
         }
         Ok(Some(values.as_chunks::<N>().0.to_vec()))
     }
@@ -145,7 +154,14 @@ impl<'a> Archive<'a> {
         if let Some(count) = count
             && values.len() != count
         {
-            return Err(self.fault(name, format!("it has {} entries for {count} vertices", values.len())));
+            return Err(self.fault(
+                name,
+                format!(
+                    "it has {} for {}; it needs one per vertex",
+                    counted(values.len(), "entry", "entries"),
+                    counted(count, "vertex", "vertices")
+                ),
+            ));
         }
         if shape.iter().filter(|&&n| n != 1).count() > 1 {
             return Err(self.fault(name, format!("its shape is {shape:?}, it must be [n]")));
@@ -162,7 +178,14 @@ impl<'a> Archive<'a> {
         if let Some(count) = count
             && rows.len() != count
         {
-            return Err(self.fault(name, format!("it has {} rows for {count} vertices", rows.len())));
+            return Err(self.fault(
+                name,
+                format!(
+                    "it has {} for {}",
+                    counted(rows.len(), "row", "rows"),
+                    counted(count, "vertex", "vertices")
+                ),
+            ));
         }
         if let Some(vertex) = rows.iter().position(|row| !row.iter().all(|c| c.is_finite())) {
             return Err(self.fault(name, format!("row {vertex} is not finite: {:?}", rows[vertex])));
@@ -183,8 +206,13 @@ impl<'a> Archive<'a> {
         let mut elements = Vec::new();
         for (index, row) in rows.unwrap_or_default().into_iter().enumerate() {
             if let Some(bad) = row.iter().find(|&&v| !(v >= 0.0 && v < count as f64 && v.fract() == 0.0)) {
-                return Err(self
-                    .fault(name, format!("row {index} names vertex {bad}, but there are {count} vertices")));
+                return Err(self.fault(
+                    name,
+                    format!(
+                        "row {index} names vertex {bad}, but the archive has {}",
+                        counted(count, "vertex", "vertices")
+                    ),
+                ));
             }
             elements.push(row.map(|v| v as u32));
         }
@@ -200,6 +228,12 @@ impl<'a> Archive<'a> {
     pub fn file_fault(&self, message: impl Into<String>) -> IoError {
         IoError::content(self.path, Place::File, message)
     }
+}
+
+/// Whether a file is a single NumPy array, `.npy`.
+fn starts_as_npy(path: &Path) -> bool {
+    let mut start = [0; 6];
+    File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == *b"\x93NUMPY"
 }
 
 /// Writes an archive atomically; `fill` adds the arrays.

@@ -6,6 +6,7 @@ use crate::error::{IoError, Place};
 use crate::import::Import;
 use crate::mesh::Mesh;
 use bowknot_errors::Parameters;
+use bowknot_errors::counted;
 use std::fs;
 use std::path::Path;
 
@@ -157,6 +158,7 @@ fn vertex(value: f64, vertices: usize) -> Result<u32, String> {
     if value >= 0.0 && value < vertices as f64 {
         Ok(value as u32)
     } else {
-        Err(format!("vertex index {value}, but the file has {vertices} vertices, counted from 0"))
+        let vertices = counted(vertices, "vertex", "vertices");
+        Err(format!("vertex index {value}, but the file has {vertices}, counted from 0"))
     }
 }

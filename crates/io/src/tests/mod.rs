@@ -6,6 +6,7 @@ mod lists;
 mod obj;
 mod ply;
 mod robust;
+mod surface;
 
 use super::*;
 use bowknot_geometry::{Point, Vector};
@@ -41,6 +42,7 @@ fn sample() -> Mesh {
         particles: vec![5],
         obstacle: Some(vec![false, false, false, false, false, true]),
         body: Some(vec![0, 0, 0, 0, 1, 2]),
+        surface: None,
     }
 }
 

@@ -1,17 +1,23 @@
 //! Universal Scene Description as text, `.usda`: meshes, curves and points that move.
 //!
 //! Sources: the USD glossary and the schema pages of UsdGeom (Mesh, BasisCurves, Points). Topology is
-//! constant, `points` and `extent` are time samples, one time code per frame. USD's points are
+//! constant, `points`, `extent` and `normals` are time samples, one time code per frame. USD's points are
 //! single-precision.
 
+mod attributes;
 mod chains;
+mod names;
+mod text;
 
 use crate::atomic::write_atomic;
 use crate::error::IoError;
 use crate::mesh::MeshView;
+use crate::surface::Surface;
+use attributes::Materials;
 use bowknot_geometry::Point;
 use std::io::Write;
 use std::path::Path;
+use text::{write_list, write_point};
 
 /// A body of a stage.
 #[derive(Clone, Copy, Debug)]
@@ -40,7 +46,9 @@ pub fn write_usda(
     rate: f64,
     mut read: impl FnMut(usize, usize) -> std::io::Result<Vec<Point>>,
 ) -> Result<(), IoError> {
-    let names = identifiers(bodies.iter().map(|body| body.name));
+    let mut names = names::identifiers(bodies.iter().map(|body| body.name).chain(["Materials"]));
+    let surfaces = bodies.iter().filter_map(|body| body.elements.surface);
+    let materials = Materials::new(surfaces, names.pop().unwrap_or_default());
     write_atomic(path, |out| {
         write!(
             out,
@@ -73,9 +81,15 @@ pub fn write_usda(
                     write_point(out, 1, high)?;
                     out.write_all(b"],\n")?;
                 }
-                out.write_all(b"        }\n    }\n\n")?;
+                out.write_all(b"        }\n")?;
+                if let Some(surface) = prim.surface {
+                    attributes::write_normals(out, surface, frames, |frame| read(index, frame))?;
+                    attributes::write_subsets(out, surface, body.name, &materials)?;
+                }
+                out.write_all(b"    }\n\n")?;
             }
         }
+        materials.write(out)?;
         out.write_all(b"}\n")
     })
 }
@@ -88,7 +102,7 @@ enum PrimKind {
 }
 
 /// A primitive of a body: its surface, strands or particles.
-struct Prim {
+struct Prim<'a> {
     kind: PrimKind,
     name: String,
     /// The body's vertices that are its points, in this order.
@@ -97,27 +111,29 @@ struct Prim {
     counts: Vec<usize>,
     /// Of a mesh: the points of each face.
     indices: Vec<u32>,
+    /// Of a mesh: its polygons, if more is known of them than their vertices.
+    surface: Option<&'a Surface>,
 }
 
-impl Prim {
-    fn of_body(body: &UsdBody<'_>, name: &str) -> Vec<Self> {
+impl<'a> Prim<'a> {
+    fn of_body(body: &UsdBody<'a>, name: &str) -> Vec<Self> {
         let elements = &body.elements;
         let mut prims = Vec::new();
         if !elements.triangles.is_empty() || !elements.quads.is_empty() {
-            let mut vertices: Vec<u32> = elements
-                .triangles
-                .as_flattened()
-                .iter()
-                .chain(elements.quads.as_flattened())
-                .copied()
-                .collect();
-            let mut indices = vertices.clone();
+            let (counts, mut indices) = faces(elements);
+            let mut vertices = indices.clone();
             vertices.sort_unstable();
             vertices.dedup();
             indices.iter_mut().for_each(|v| *v = vertices.partition_point(|w| w < v) as u32);
-            let mut counts = vec![3; elements.triangles.len()];
-            counts.resize(counts.len() + elements.quads.len(), 4);
-            prims.push(Self { kind: PrimKind::Mesh, name: name.to_owned(), vertices, counts, indices });
+            let surface = elements.surface;
+            prims.push(Self {
+                kind: PrimKind::Mesh,
+                name: name.to_owned(),
+                vertices,
+                counts,
+                indices,
+                surface,
+            });
         }
         if !elements.strands.is_empty() {
             let chains = chains::chains(elements.strands);
@@ -127,6 +143,7 @@ impl Prim {
                 counts: chains.iter().map(Vec::len).collect(),
                 vertices: chains.concat(),
                 indices: Vec::new(),
+                surface: None,
             });
         }
         if !elements.particles.is_empty() {
@@ -136,6 +153,7 @@ impl Prim {
                 vertices: elements.particles.to_vec(),
                 counts: Vec::new(),
                 indices: Vec::new(),
+                surface: None,
             });
         }
         prims
@@ -150,6 +168,9 @@ impl Prim {
                 write_list(out, "int[] faceVertexCounts", &self.counts)?;
                 write_list(out, "int[] faceVertexIndices", &self.indices)?;
                 out.write_all(b"        uniform token subdivisionScheme = \"none\"\n")?;
+                if let Some(surface) = self.surface {
+                    attributes::write_texture_coordinates(out, surface)?;
+                }
             }
             PrimKind::BasisCurves => {
                 write_list(out, "int[] curveVertexCounts", &self.counts)?;
@@ -162,7 +183,7 @@ impl Prim {
             }
             // A constant width is read by some programs as that of the first point only.
             PrimKind::Points => {
-                write_list(out, "float[] widths", &vec![body.width as f32; self.vertices.len()])?
+                write_list(out, "float[] widths", vec![body.width as f32; self.vertices.len()])?
             }
         }
         let color = if body.obstacle { "(0.6, 0.6, 0.62)" } else { "(0.75, 0.35, 0.25)" };
@@ -170,18 +191,16 @@ impl Prim {
     }
 }
 
-fn write_list(out: &mut impl Write, name: &str, values: &[impl std::fmt::Debug]) -> std::io::Result<()> {
-    write!(out, "        {name} = [")?;
-    for (k, value) in values.iter().enumerate() {
-        write!(out, "{}{value:?}", if k == 0 { "" } else { ", " })?;
+/// The number of vertices of each face, and these.
+fn faces(elements: &MeshView<'_>) -> (Vec<usize>, Vec<u32>) {
+    if let Some(surface) = elements.surface {
+        let counts = surface.polygons().map(|polygon| polygon.corners.len()).collect();
+        return (counts, surface.corners().iter().map(|corner| corner.vertex).collect());
     }
-    out.write_all(b"]\n")
-}
-
-/// Single precision, in the fewest digits that are read back the same.
-fn write_point(out: &mut impl Write, index: usize, point: &Point) -> std::io::Result<()> {
-    let [x, y, z] = [point.x as f32, point.y as f32, point.z as f32];
-    write!(out, "{}({x:?}, {y:?}, {z:?})", if index == 0 { "" } else { ", " })
+    let mut counts = vec![3; elements.triangles.len()];
+    counts.resize(counts.len() + elements.quads.len(), 4);
+    let flat = elements.triangles.as_flattened().iter().chain(elements.quads.as_flattened());
+    (counts, flat.copied().collect())
 }
 
 /// Corners of the box around points and their thickness.
@@ -191,30 +210,4 @@ fn extent<'a>(points: impl Iterator<Item = &'a Point>, pad: f64) -> [Point; 2] {
     });
     let (low, high) = bounds.unwrap_or_default();
     [low.map(|x| x - pad), high.map(|x| x + pad)]
-}
-
-/// Names that USD allows, all different.
-fn identifiers<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
-    let mut taken: Vec<String> = Vec::new();
-    for name in names {
-        let mut id: String =
-            name.chars().map(|c| if c.is_ascii_alphanumeric() || c == '_' { c } else { '_' }).collect();
-        if id.is_empty() || id.starts_with(|c: char| c.is_ascii_digit()) {
-            id.insert(0, '_');
-        }
-        let mut unique = id.clone();
-        let mut number = 2;
-        // `cloth_strands` may be the name of another body, or that of the strands of `cloth`.
-        let clashes = |id: &String, taken: &[String]| {
-            let kin =
-                |a: &str, b: &str| ["", "_strands", "_particles"].iter().any(|end| a == format!("{b}{end}"));
-            taken.iter().any(|other| kin(id, other) || kin(other, id))
-        };
-        while clashes(&unique, &taken) {
-            unique = format!("{id}_{number}");
-            number += 1;
-        }
-        taken.push(unique);
-    }
-    taken
 }

@@ -13,6 +13,7 @@ mod duck;
 mod parts;
 mod remesh;
 mod shirt;
+mod shirt_surface;
 
 use bowknot_scene::geometry::Point;
 use bowknot_scene::io::{MeshView, write_obj, write_ply, write_text};
@@ -34,8 +35,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     // As pattern tools write it: y up, in millimeters, rounded to micrometers.
     let y_up: Vec<Point> = shirt.positions.iter().map(|p| Point::new(p.x, p.z, -p.y) * 1e3).collect();
     let positions = rounded(&y_up, 1e3);
-    let view = MeshView { positions: &positions, triangles: &shirt.triangles, ..MeshView::default() };
+    let surface = shirt_surface::of_panels(&shirt, folder);
+    let view = MeshView {
+        positions: &positions,
+        triangles: &shirt.triangles,
+        surface: Some(&surface),
+        ..MeshView::default()
+    };
     write_obj(&folder.join("shirt.obj"), &view)?;
+    write_text(&folder.join(shirt_surface::LIBRARY), shirt_surface::MATERIALS)?;
     println!("shirt: {} vertices, {} triangles", positions.len(), shirt.triangles.len());
 
     let duck = duck::tetrahedra();

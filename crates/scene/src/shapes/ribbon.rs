@@ -2,6 +2,7 @@
 
 use super::mesh::{TriangleMesh, segments};
 use super::sheet::cut;
+use bowknot_errors::counted;
 use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::{Point, Vector};
 use serde::{Deserialize, Serialize};
@@ -122,7 +123,7 @@ impl Parameters for Ribbon {
     fn check(&self, checks: &mut Checks) {
         let n = self.points.len();
         if n < 2 {
-            checks.refuse("points", format!("{n} points"), "must be at least two");
+            checks.refuse("points", counted(n, "point", "points"), "must be at least two");
         }
         if let Some(index) = self.points.iter().position(|p| !p.iter().all(|c| c.is_finite())) {
             checks.refuse("points", format!("point {index}"), "must be finite");
@@ -131,7 +132,11 @@ impl Parameters for Ribbon {
             checks.refuse("points", format!("points {index} and {}", index + 1), "must not be the same");
         }
         if !(self.across.is_empty() || self.across.len() == n) {
-            let given = format!("{} directions for {n} points", self.across.len());
+            let given = format!(
+                "{} for {}",
+                counted(self.across.len(), "direction", "directions"),
+                counted(n, "point", "points")
+            );
             checks.refuse("across", given, "must be one for each point, or none");
         }
         let usable = |v: &Vector| v.iter().all(|c| c.is_finite()) && v.norm() > 0.0;

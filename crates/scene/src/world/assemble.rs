@@ -2,7 +2,8 @@
 
 use super::part::Part;
 use super::pins::pins;
-use super::{ObstacleMotion, Placing, Procedural, World, WorldBody, WorldContact, joined, sequence};
+use super::unused::unused_keys;
+use super::{ObstacleMotion, Placing, Procedural, World, WorldBody, WorldContact, joined, sequence, size};
 use crate::body::BodySpec;
 use crate::description::Scene;
 use crate::error::SceneError;
@@ -26,13 +27,17 @@ impl World {
     pub fn new(scene: &Scene) -> Result<Self, SceneError> {
         scene.validate()?;
         let mut assembly = Assembly::default();
-        for body in &scene.bodies {
-            assembly.body(scene, body)?;
+        for (index, body) in scene.bodies.iter().enumerate() {
+            let part = format!("body[{index}]");
+            let keys = [&*format!("{part}.mesh"), &*part];
+            assembly.body(scene, body).map_err(|error| error.at(scene.origins.of(keys)))?;
         }
         let deformable_vertices = assembly.base.len();
         assembly.positions.clone_from(&assembly.base);
-        for obstacle in &scene.obstacles {
-            assembly.obstacle(scene, obstacle)?;
+        for (index, obstacle) in scene.obstacles.iter().enumerate() {
+            let part = format!("obstacle[{index}]");
+            let keys = [&*format!("{part}.mesh"), &*format!("{part}.sequence"), &*part];
+            assembly.obstacle(scene, obstacle).map_err(|error| error.at(scene.origins.of(keys)))?;
         }
         assembly.interior();
         assembly.finish(scene, deformable_vertices)
@@ -101,6 +106,7 @@ impl Assembly {
             interior: 0..0,
             tets,
             strands: elements.strands,
+            surface: elements.surface,
             motion: ObstacleMotion::Rest,
             numbers: elements.numbers,
             mesh_vertices: elements.mesh_vertices,
@@ -150,6 +156,7 @@ impl Assembly {
             interior: 0..0,
             tets: Vec::new(),
             strands: elements.strands,
+            surface: elements.surface,
             motion,
             numbers: elements.numbers,
             mesh_vertices: elements.mesh_vertices,
@@ -201,10 +208,7 @@ impl Assembly {
             .map_err(joined)?;
         let collision = CollisionModel::new(topology, self.vertex_body, self.filters, self.half_spaces)
             .map_err(|error| SceneError::Model(error.to_string()))?;
-        for warning in &self.warnings {
-            tracing::warn!("{warning}");
-        }
-        Ok(World {
+        let mut world = World {
             bodies: self.bodies,
             half_space_names: self.half_space_names,
             deformable_vertices,
@@ -216,7 +220,13 @@ impl Assembly {
             pins,
             warnings: self.warnings,
             base: self.base,
-        })
+        };
+        world.warnings.extend(size::warnings(&world.sizes()));
+        world.warnings.extend(unused_keys(scene));
+        for warning in &world.warnings {
+            tracing::warn!("{warning}");
+        }
+        Ok(world)
     }
 
     fn friction_pairs(&self, scene: &Scene) -> Vec<PairFriction> {

@@ -17,9 +17,12 @@ mod motion;
 mod part;
 mod pins;
 mod sequence;
+mod size;
+mod unused;
 
 pub use follow::Attachment;
 pub use motion::{ObstacleMotion, Placing, Procedural, Sequence};
+pub use size::BodySize;
 
 use crate::description::Scene;
 use crate::error::SceneError;
@@ -27,6 +30,7 @@ use crate::kind::BodyKind;
 use crate::motion::Motion;
 use bowknot_dynamics::{Body, DynamicsModel};
 use bowknot_geometry::{Point, Vector};
+use bowknot_io::Surface;
 use bowknot_proximity::CollisionModel;
 use bowknot_twoway::{BodyContact, HalfSpaceContact, PairFriction};
 use rayon::prelude::*;
@@ -54,7 +58,7 @@ pub struct World {
     pub materials: Vec<Body>,
     /// Held or led vertices.
     pub pins: Vec<Pin>,
-    /// What was repaired or left out on the way, in words.
+    /// What was repaired or left out on the way, what speaks for a wrong unit, and keys without effect, in words.
     pub warnings: Vec<String>,
     /// Positions of obstacle vertices without their motion [m]; of the other vertices that collide, those at
     /// time 0.
@@ -87,6 +91,8 @@ pub struct WorldBody {
     pub tets: Vec<[u32; 4]>,
     /// Its edges, if it is made of strands.
     pub strands: Vec<[u32; 2]>,
+    /// What its mesh says about its faces, over its own vertices: polygons whose fans are its triangles.
+    pub surface: Option<Surface>,
     /// How it moves, if it is an obstacle.
     pub motion: ObstacleMotion,
     /// Number in the mesh of each vertex, `vertices` first.
@@ -196,6 +202,18 @@ impl World {
             time_step,
             extent: (high - low).into(),
         }
+    }
+
+    /// The size of each body and of each obstacle with a mesh, in their order.
+    pub fn sizes(&self) -> Vec<BodySize> {
+        let size = |body: &WorldBody| {
+            let own =
+                [&body.vertices, &body.interior].map(|r| &self.positions[r.start as usize..r.end as usize]);
+            let (low, high) = bounds(&own.concat());
+            let vertices = own.iter().map(|part| part.len()).sum();
+            BodySize { kind: body.kind, name: body.name.clone(), vertices, extent: (high - low).into() }
+        };
+        self.bodies.iter().map(size).collect()
     }
 
     /// Corners of the bounding box of all vertices at time 0 [m].

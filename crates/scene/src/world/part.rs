@@ -3,8 +3,9 @@
 use crate::error::SceneError;
 use crate::kind::BodyKind;
 use crate::shapes::Shape;
+use bowknot_errors::counted;
 use bowknot_geometry::{MeshProblem, Point, boundary_triangles, check_mesh};
-use bowknot_io::{self as io, Import, Mesh};
+use bowknot_io::{self as io, Import, Mesh, Surface};
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -21,6 +22,8 @@ pub(super) struct Part {
     pub tets: Vec<[u32; 4]>,
     pub strands: Vec<[u32; 2]>,
     pub particles: Vec<u32>,
+    /// What the mesh says about its faces: polygons whose fans are the triangles.
+    pub surface: Option<Surface>,
     /// Number in the mesh of each vertex.
     pub numbers: Vec<u32>,
     /// Vertices of the mesh, those left out counted.
@@ -32,9 +35,9 @@ pub(super) struct Part {
 impl Part {
     pub fn from_mesh(mesh: Mesh) -> Self {
         let mesh_vertices = mesh.positions.len();
-        let Mesh { positions, triangles, tets, strands, particles, .. } = mesh;
+        let Mesh { positions, triangles, tets, strands, particles, surface, .. } = mesh;
         let numbers = (0..mesh_vertices as u32).collect();
-        Self { positions, triangles, tets, strands, particles, numbers, mesh_vertices, interior: 0 }
+        Self { positions, triangles, tets, strands, particles, surface, numbers, mesh_vertices, interior: 0 }
     }
 
     /// Loads a mesh file or makes a shape.
@@ -55,18 +58,31 @@ impl Part {
         Ok(Self::from_mesh(mesh))
     }
 
-    /// Keeps the vertices that elements name.
-    fn drop_unused(&mut self) {
+    /// Changes the elements as those of a mesh.
+    fn edit<T>(&mut self, edit: impl FnOnce(&mut Mesh) -> T) -> T {
         let mut mesh = Mesh {
             positions: std::mem::take(&mut self.positions),
             triangles: std::mem::take(&mut self.triangles),
             tets: std::mem::take(&mut self.tets),
             strands: std::mem::take(&mut self.strands),
             particles: std::mem::take(&mut self.particles),
+            surface: self.surface.take(),
             ..Mesh::default()
         };
-        let unused = mesh.unused_vertices();
-        mesh.drop_unused_vertices();
+        let result = edit(&mut mesh);
+        let Mesh { positions, triangles, tets, strands, particles, surface, .. } = mesh;
+        (self.positions, self.triangles, self.tets) = (positions, triangles, tets);
+        (self.strands, self.particles, self.surface) = (strands, particles, surface);
+        result
+    }
+
+    /// Keeps the vertices that elements name.
+    fn drop_unused(&mut self) {
+        let unused = self.edit(|mesh| {
+            let unused = mesh.unused_vertices();
+            mesh.drop_unused_vertices();
+            unused
+        });
         let mut drop = vec![false; self.numbers.len()];
         unused.iter().for_each(|&v| drop[v as usize] = true);
         let mut index = 0;
@@ -74,9 +90,6 @@ impl Part {
             index += 1;
             !drop[index - 1]
         });
-        let Mesh { positions, triangles, tets, strands, particles, .. } = mesh;
-        (self.positions, self.triangles, self.tets) = (positions, triangles, tets);
-        (self.strands, self.particles) = (strands, particles);
     }
 
     /// Makes a body of the mesh: refuses elements of other kinds and faulty ones, drops loose vertices.
@@ -93,15 +106,16 @@ impl Part {
         self.drop_unused();
         let fault = |message: String| SceneError::Body { body: format!("body {name}"), message };
         let (own, others) = self.elements(kind);
-        if let Some((count, what)) = others.into_iter().find(|(count, _)| *count > 0) {
+        if let Some((count, other)) = others.into_iter().find(|(count, _)| *count > 0) {
             let only = match kind {
                 BodyKind::Cloth => "a cloth is made of triangles only",
                 BodyKind::Solid => "a solid is made of tetrahedra only",
                 BodyKind::Strands => "strands are made of edges only",
                 BodyKind::Particles => "particles are loose points only",
             };
-            let hint = if what == "tetrahedra" { "; set kind = \"solid\"" } else { "" };
-            return Err(fault(format!("the mesh has {count} {what}, but {only}{hint}")));
+            let hint = if other == BodyKind::Solid { "; set kind = \"solid\"" } else { "" };
+            let (one, many) = element_of(other);
+            return Err(fault(format!("the mesh has {}, but {only}{hint}", counted(count, one, many))));
         }
         if own == 0 {
             return Err(fault(format!("the mesh has no {}", element_of(kind).1)));
@@ -128,23 +142,24 @@ impl Part {
             let first = first.map_or(sorted.len(), |(k, _)| k);
             let element = element_of(kind).0;
             warnings.push(format!(
-                "body {name}: left out {left_out} vertices that belong to no {element}, the first is vertex {first}"
+                "body {name}: left out {} to no {element}, the first is vertex {first}",
+                counted(left_out, "vertex that belongs", "vertices that belong")
             ));
         }
         Ok(self)
     }
 
-    /// Number of elements of a kind, and of the others with their names.
-    fn elements(&self, kind: BodyKind) -> (usize, Vec<(usize, &'static str)>) {
+    /// Number of elements of a kind, and of the others with their kinds.
+    fn elements(&self, kind: BodyKind) -> (usize, Vec<(usize, BodyKind)>) {
         let mut counts = vec![
-            (self.triangles.len(), BodyKind::Cloth, "triangles"),
-            (self.tets.len(), BodyKind::Solid, "tetrahedra"),
-            (self.strands.len(), BodyKind::Strands, "strand edges"),
-            (self.particles.len(), BodyKind::Particles, "particles"),
+            (self.triangles.len(), BodyKind::Cloth),
+            (self.tets.len(), BodyKind::Solid),
+            (self.strands.len(), BodyKind::Strands),
+            (self.particles.len(), BodyKind::Particles),
         ];
         let own = counts.iter().find(|c| c.1 == kind).map_or(0, |c| c.0);
         counts.retain(|c| c.1 != kind);
-        (own, counts.into_iter().map(|(count, _, what)| (count, what)).collect())
+        (own, counts)
     }
 
     fn check_tets(&self) -> Result<(), String> {
@@ -174,7 +189,11 @@ impl Part {
         } else {
             "mend or remove them"
         };
-        Err(format!("of {} tetrahedra, {}; {hint}", self.tets.len(), lists.join("; ")))
+        Err(format!(
+            "of {}, {}; {hint}",
+            counted(self.tets.len(), "tetrahedron", "tetrahedra"),
+            lists.join("; ")
+        ))
     }
 
     fn check_strands(&self) -> Result<(), String> {
@@ -195,13 +214,14 @@ impl Part {
         if faults.is_empty() {
             return Ok(());
         }
-        let count = faults.len();
-        Err(format!("{count} strand edges are faulty: {}; merge repeated points", first(faults.iter())))
+        let count = counted(faults.len(), "strand edge is", "strand edges are");
+        Err(format!("{count} faulty: {}; merge repeated points", first(faults.iter())))
     }
 
     /// Finds the surface of the tetrahedra and moves the vertices inside behind those on it.
     fn split_surface(&mut self) {
         self.triangles = boundary_triangles(&self.tets);
+        self.surface = None;
         let mut outside = vec![false; self.positions.len()];
         self.triangles.iter().flatten().for_each(|&v| outside[v as usize] = true);
         let (surface, inside): (Vec<u32>, Vec<u32>) =
@@ -220,21 +240,23 @@ impl Part {
     /// Makes an obstacle of the mesh: the surface of tetrahedra, without triangles that have no area or are
     /// repeated.
     pub fn into_obstacle(mut self, owner: &str, warnings: &mut Vec<String>) -> Result<Self, SceneError> {
-        let mut surface = boundary_triangles(&std::mem::take(&mut self.tets));
-        surface.append(&mut self.triangles);
-        self.triangles = surface;
+        if !self.tets.is_empty() {
+            let mut triangles = boundary_triangles(&std::mem::take(&mut self.tets));
+            triangles.append(&mut self.triangles);
+            (self.triangles, self.surface) = (triangles, None);
+        }
         self.particles.clear();
         self.drop_unused();
         let fault = |message: &str| SceneError::Body { body: owner.to_owned(), message: message.to_owned() };
         if self.triangles.is_empty() && self.strands.is_empty() {
             return Err(fault("the mesh has no triangles"));
         }
-        let mut drop = vec![false; self.triangles.len()];
+        let mut keep = vec![true; self.triangles.len()];
         let mut first = None;
         for problem in check_mesh(&self.positions, &self.triangles) {
             match problem {
                 MeshProblem::ZeroArea { triangle, .. } | MeshProblem::RepeatedTriangle { triangle, .. } => {
-                    drop[triangle as usize] = true;
+                    keep[triangle as usize] = false;
                     first = first.or(Some(problem));
                 }
                 // Of a strand, or of triangles that are dropped.
@@ -243,13 +265,10 @@ impl Part {
             }
         }
         let Some(first) = first else { return Ok(self) };
-        let count = drop.iter().filter(|d| **d).count();
-        warnings.push(format!("{owner}: dropped {count} triangles that are no obstacle: {first}"));
-        let mut index = 0;
-        self.triangles.retain(|_| {
-            index += 1;
-            !drop[index - 1]
-        });
+        let count = keep.iter().filter(|kept| !**kept).count();
+        let dropped = counted(count, "triangle that is", "triangles that are");
+        warnings.push(format!("{owner}: dropped {dropped} no obstacle: {first}"));
+        self.edit(|mesh| mesh.retain_triangles(&keep));
         self.drop_unused();
         if self.triangles.is_empty() && self.strands.is_empty() {
             return Err(fault("no triangle of the mesh has an area"));

@@ -6,19 +6,24 @@ use crate::description::Scene;
 use crate::error::SceneError;
 use crate::kind::BodyKind;
 use crate::pin::PinSpec;
+use bowknot_errors::counted;
 use bowknot_geometry::Point;
 
 /// The pins of a scene, given its bodies and the positions at time 0.
 pub(super) fn pins(scene: &Scene, bodies: &[WorldBody], positions: &[Point]) -> Result<Vec<Pin>, SceneError> {
     let mut pins: Vec<Pin> = Vec::new();
     for (index, spec) in scene.pins.iter().enumerate() {
-        let fault = |message: String| SceneError::Body { body: format!("pin[{index}]"), message };
+        let key = format!("pin[{index}]");
+        let fault = |message: String| {
+            SceneError::Body { body: format!("{key} of {}", spec.body), message }
+                .at(scene.origins.of([&format!("{key}.vertices"), &key]))
+        };
         let Some(body) = bodies.iter().find(|b| b.kind.is_some() && b.name == spec.body) else {
             return Err(fault(format!("no body {:?}", spec.body)));
         };
         let vertices = pinned(spec, body, positions).map_err(fault)?;
         if vertices.is_empty() {
-            return Err(fault(format!("it selects no vertex of body {}", spec.body)));
+            return Err(fault("it selects no vertex of the body".to_owned()));
         }
         for (other, pin) in pins.iter().enumerate() {
             let apart = pin.end < spec.start || spec.end < pin.start;
@@ -56,11 +61,8 @@ fn pinned(spec: &PinSpec, body: &WorldBody, positions: &[Point]) -> Result<Vec<u
                     return Err(format!("vertex {v} belongs to no {element} of body {}", spec.body));
                 }
                 None => {
-                    let count = body.mesh_vertices;
-                    return Err(format!(
-                        "vertex {v}, but body {} has {count} vertices, counted from 0",
-                        spec.body
-                    ));
+                    let count = counted(body.mesh_vertices, "vertex", "vertices");
+                    return Err(format!("vertex {v}, but body {} has {count}, counted from 0", spec.body));
                 }
             }
         }

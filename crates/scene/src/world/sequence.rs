@@ -4,6 +4,7 @@ use super::part::Part;
 use super::{Placing, Sequence};
 use crate::error::SceneError;
 use crate::obstacle::ObstacleSpec;
+use bowknot_errors::counted;
 use bowknot_geometry::Point;
 #[cfg(feature = "npz")]
 use bowknot_io::FrameStack;
@@ -25,6 +26,12 @@ pub(super) fn load(
     warnings: &mut Vec<String>,
 ) -> Result<(Part, Sequence), SceneError> {
     let path = folder.join(path);
+    let is_mesh = path.extension().is_some_and(|ending| MESH_ENDINGS.iter().any(|known| ending == *known));
+    if is_mesh {
+        let message =
+            "a sequence is a folder of meshes or an archive of frames (.npz), not one mesh; use `mesh`";
+        return Err(IoError::content(&path, Place::File, message).into());
+    }
     let frames = if path.is_dir() { of_folder(&path, placing)? } else { of_archive(&path, placing)? };
     let owner = format!("obstacle {}", spec.name);
     let mut part = Part::from_mesh(frames.mesh).into_obstacle(&owner, warnings)?;
@@ -68,22 +75,27 @@ fn of_folder(folder: &Path, placing: &Placing) -> Result<Frames, IoError> {
 /// How a frame differs from the first one in what must not change.
 fn difference(first: &Mesh, other: &Mesh, vertices: usize) -> Option<String> {
     if vertices != first.positions.len() {
-        return Some(format!("has {vertices} vertices, not {}, so another topology", first.positions.len()));
+        return Some(format!(
+            "has {}, not {}, so another topology",
+            counted(vertices, "vertex", "vertices"),
+            first.positions.len()
+        ));
     }
-    let elements = |what: &str, a: usize, b: usize| {
+    let elements = |one: &str, many: &str, a: usize, b: usize| {
         if a == b {
-            format!("joins its vertices to other {what}")
+            format!("joins its vertices to other {many}")
         } else {
-            format!("has {b} {what}, not {a}: other")
+            format!("has {}, not {a}, so another topology", counted(b, one, many))
         }
     };
     if first.triangles != other.triangles {
-        return Some(elements("triangles", first.triangles.len(), other.triangles.len()));
+        return Some(elements("triangle", "triangles", first.triangles.len(), other.triangles.len()));
     }
     if first.tets != other.tets {
-        return Some(elements("tetrahedra", first.tets.len(), other.tets.len()));
+        return Some(elements("tetrahedron", "tetrahedra", first.tets.len(), other.tets.len()));
     }
-    (first.strands != other.strands).then(|| elements("edges", first.strands.len(), other.strands.len()))
+    (first.strands != other.strands)
+        .then(|| elements("edge", "edges", first.strands.len(), other.strands.len()))
 }
 
 /// Without support for archives every one is refused.

@@ -250,6 +250,56 @@ fn an_obstacle_waits_as_one_body() {
 }
 
 #[test]
+fn prescribed_vertices_arrive_exactly_where_nothing_is_in_their_way() {
+    // A small obstacle under a coarse sheet: a hundredth of the mean edge, at which a call may end, is large
+    // beside its motion. Far below it moves freely; just below, trust regions make it take many steps.
+    for (height, motion) in [(20.0, 0.2), (20.0, 3.0), (0.05, 0.1), (0.05, 1.0), (0.05, 10.0)] {
+        let (mut x, mut triangles) = (Vec::new(), Vec::new());
+        sheet(20, 0.5, height, &mut x, &mut triangles);
+        let first = x.len();
+        sheet(2, 0.1, 0.0, &mut x, &mut triangles);
+        let topology = Topology::builder(x.len()).triangles(triangles).build().unwrap();
+        let bodies = (0..x.len()).map(|v| u32::from(v >= first)).collect();
+        let filters = vec![BodyFilter::DEFORMABLE, BodyFilter::OBSTACLE];
+        let model = CollisionModel::new(topology, bodies, filters, vec![]).unwrap();
+        let mut resolver = Resolver::new(model, &x, &vec![1.0; x.len()], Params::fast()).unwrap();
+        let mut y = x.clone();
+        y[first..].iter_mut().for_each(|p| p.x += motion);
+        let report = resolver.resolve(&mut x, &y).unwrap();
+        assert!(report.converged && report.prescribed_lag_m == 0.0, "{height}, {motion}: {report:?}");
+        assert_eq!(x[first..], y[first..], "{height}, {motion}");
+    }
+}
+
+#[test]
+fn intersections_of_a_start_are_found() {
+    let scene = sheets(4, &[0.0, 0.1], false);
+    let mut resolver =
+        Resolver::new(scene.model.clone(), &scene.x, &vec![1.0; scene.x.len()], Params::fast()).unwrap();
+    assert!(resolver.detect_intersections(&scene.x, 10).unwrap().is_clear());
+    // The upper sheet is turned upright, through the lower one.
+    let mut crossed = scene.x.clone();
+    crossed[25..].iter_mut().for_each(|p| *p = Point::new(p.x, 0.21, 0.2 - p.y));
+    let report = resolver.detect_intersections(&crossed, 3).unwrap();
+    assert!(report.intersections.len() == 3 && report.intersection_count > 3, "{report:?}");
+    let result = resolver.resolve(&mut crossed.clone(), &crossed);
+    // Debug builds look at each start.
+    let refused = matches!(result, Err(ResolveError::StartIntersects { count, .. }) if count == report.intersection_count);
+    assert_eq!(refused, cfg!(debug_assertions));
+}
+
+#[test]
+fn a_time_step_that_is_none_is_refused() {
+    let scene = sheets(1, &[1.0], false);
+    let mut resolver = Resolver::new(scene.model.clone(), &scene.x, &[1.0; 4], Params::fast()).unwrap();
+    for dt in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let input = ResolveInput { time_step: Some(dt), ..ResolveInput::default() };
+        let error = resolver.resolve_with(&mut scene.x.clone(), &scene.x, &input, &mut ()).unwrap_err();
+        assert!(matches!(error, ResolveError::TimeStep(_)), "{dt}: {error}");
+    }
+}
+
+#[test]
 fn invalid_input_is_refused_with_its_name_and_leaves_the_state_unchanged() {
     let scene = sheets(1, &[1.0], false);
     let masses = vec![1.0; 4];

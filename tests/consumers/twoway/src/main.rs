@@ -3,18 +3,17 @@
 
 use bowknot_twoway::geometry::{Point, Topology, Vector};
 use bowknot_twoway::proximity::CollisionModel;
-use bowknot_twoway::{AcceptedState, Params, ResolveError, ResolveInput, Resolver};
+use bowknot_twoway::{AcceptedState, Params, ResolveInput, Resolver};
+use std::error::Error;
 use std::ops::ControlFlow;
 
-fn main() -> Result<(), ResolveError> {
+fn main() -> Result<(), Box<dyn Error>> {
     let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     let at = |z: f64| corners.map(|p| Point::from(p) + z * Vector::z());
     let mut x = [at(0.0), at(0.1)].concat();
     let y = [at(0.1), at(0.0)].concat();
 
-    let Ok(topology) = Topology::builder(6).triangles([[0, 1, 2], [3, 4, 5]]).build() else {
-        panic!("the triangles are sound")
-    };
+    let topology = Topology::builder(6).triangles([[0, 1, 2], [3, 4, 5]]).build()?;
     let mut resolver = Resolver::new(CollisionModel::single_body(topology), &x, &[1.0; 6], Params::fast())?;
     let mut seen = 0;
     let mut observer = |state: &AcceptedState<'_>| {

@@ -127,18 +127,31 @@ function showTime(time) {
 
 const PREFIXES = [[1e9, "G"], [1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-6, "µ"], [1e-9, "n"]];
 
-/** A number with three digits, and with a unit prefix where there is a unit. */
-function show(value, unit = "") {
+/** A number with `digits` digits, and with a unit prefix where there is a unit; a number without one has a digit more. */
+function show(value, unit = "", digits = 3) {
     if (value === null || value === undefined || !Number.isFinite(value)) return "–";
     const size = Math.abs(value);
     if (unit === "") {
-        if (size >= 1e4 || Number.isInteger(value)) return Math.round(value).toLocaleString("en");
-        return size === 0 || size >= 1e-3 ? String(Number(value.toPrecision(4))) : value.toExponential(2);
+        if (Number.isInteger(value) || (size >= 1e4 && digits <= 3)) return Math.round(value).toLocaleString("en");
+        return size >= 1e-3 ? String(Number(value.toPrecision(digits + 1))) : value.toExponential(digits - 1);
     }
-    if (size < 1e-12) return `0 ${unit}`;
+    if (size === 0) return `0 ${unit}`;
+    // Below the prefixes that readers know, as residuals of rounding are.
+    if (size < 0.9995e-10) return `${Number(value.toPrecision(digits)).toExponential()} ${unit}`;
     const [factor, prefix] = PREFIXES.find(([factor]) => size >= 0.9995 * factor) ?? PREFIXES.at(-1);
-    return `${Number((value / factor).toPrecision(3))} ${prefix}${unit}`;
+    return `${Number((value / factor).toPrecision(digits))} ${prefix}${unit}`;
 }
+
+/** Labels of the ticks of an axis, with as many digits as it takes to tell them apart. */
+function showTicks(values, unit = "") {
+    const label = (value, digits) => (value === null ? "" : value === 0 ? "0" : show(value, unit, digits));
+    const differ = (labels) => new Set(labels.filter((text) => text !== "")).size === values.filter((value) => value !== null).length;
+    const labels = (digits) => values.map((value) => label(value, digits));
+    return [3, 4, 5, 6, 7, 8].map(labels).find(differ) ?? labels(8);
+}
+
+/** The noun that belongs to a count. */
+const noun = (count, one, many) => (count === 1 ? one : many);
 
 /** An element with properties and children; text is text, never HTML. */
 function make(tag, properties = {}, ...children) {

@@ -20,7 +20,20 @@ function setIcon(button, name) {
     button.innerHTML = `<svg viewBox="0 0 24 24" aria-hidden="true">${ICONS[name]}</svg>`;
 }
 
+/** Simulated time over the time that passes while it is shown. */
 const SPEEDS = [0.05, 0.1, 0.25, 0.5, 1, 2, 4];
+
+/** A speed in words. Without times there is no real time, and frames are counted. */
+function speedName(speed) {
+    if (!meta.times) return `${show(30 * speed)} frames/s`;
+    if (speed === 1) return "real time";
+    return speed < 1 ? `${show(1 / speed)}× slower` : `${show(speed)}× faster`;
+}
+
+/** The speed at first: real time; slower if the run takes less than a second, which would be over too soon. */
+function firstSpeed(duration) {
+    return SPEEDS.findLast((speed) => speed <= 1 && duration / speed >= 1) ?? SPEEDS[0];
+}
 
 class Player {
     /** `show(frame)` draws one of `count` frames. */
@@ -32,8 +45,7 @@ class Player {
         this.playing = false;
         this.loop = true;
         this.duration = timeOf(count - 1) - timeOf(0);
-        // The fastest speed at which the run takes three seconds at least, but never below real time for long ones.
-        this.speed = [...SPEEDS].reverse().find((speed) => speed <= 1 && this.duration / speed >= 3) ?? SPEEDS[0];
+        this.speed = firstSpeed(this.duration);
         this.scrub = document.getElementById("scrub");
         this.clock = document.getElementById("clock");
         this.wire();
@@ -57,7 +69,7 @@ class Player {
             this.go(Number(this.scrub.value));
         });
         const speed = document.getElementById("speed");
-        speed.append(...SPEEDS.map((value) => make("option", { value: String(value), textContent: `${value}×` })));
+        speed.append(...SPEEDS.map((value) => make("option", { value: String(value), textContent: speedName(value) })));
         speed.value = String(this.speed);
         speed.addEventListener("change", () => (this.speed = Number(speed.value)));
     }

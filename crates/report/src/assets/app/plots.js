@@ -6,6 +6,9 @@ const LINES = ["#6cb0ff", "#f0a35e", "#57c794", "#d58be0", "#e6cf5c", "#ff7b7b",
 const LINES_LIGHT = ["#1f6fd1", "#c8660f", "#16834f", "#9b3fae", "#94780a", "#c62f2f", "#667180"];
 const lineColor = (k) => (theme() === "dark" ? LINES : LINES_LIGHT)[k % LINES.length];
 
+/** Lengths [m] and times [s] below this are rounding: a logarithmic axis does not show their decades. */
+const ROUNDING = 1e-12;
+
 /** What is plotted; series whose column is missing are left out, and plots without series. */
 const PLOTS = [
     { title: "Two-way steps and searches", series: [["two_way_steps", "steps"], ["searches", "searches"]] },
@@ -97,13 +100,16 @@ class Plots {
         return [this.x, ...values.map((column) => column.map((value) => (value === null ? null : Math.max(value, plot.floor))))];
     }
 
-    /** The lower end of a logarithmic axis: six decades below the largest value, or the smallest; counts begin at 1. */
+    /**
+     * The lower end of a logarithmic axis: six decades below the largest value, or the smallest. Counts begin at 1, other
+     * values where rounding begins.
+     */
     floor(plot, values) {
         const positive = values.flat().filter((value) => value > 0);
         const high = positive.reduce((a, b) => Math.max(a, b), 0) || 1;
         const low = positive.reduce((a, b) => Math.min(a, b), high);
-        const decade = Math.floor(Math.log10(Math.max(low, 1e-6 * high)) + 1e-9);
-        return 10 ** (plot.unit ? decade : Math.max(decade, 0));
+        const decade = Math.floor(Math.log10(Math.max(low, 1e-6 * high, ROUNDING)) + 1e-9);
+        return 10 ** (plot.unit ? decade : 0);
     }
 
     /** Powers of ten, not too many. */
@@ -134,7 +140,7 @@ class Plots {
             scales: { x: { time: false, range: (_, low, high) => this.ends(low, high) }, y: { distr: plot.log ? 3 : 1, range: this.range(plot) } },
             axes: [
                 { ...axis, size: 24, gap: 5, values: (_, ticks) => ticks.map((x) => (this.timed ? `${Number(x.toPrecision(6))} s` : show(x))) },
-                { ...axis, ...this.splits(plot), size: 58, gap: 4, space: 24, values: (_, ticks) => ticks.map((y) => (y === null ? "" : y === 0 ? "0" : show(y, plot.unit))) },
+                { ...axis, ...this.splits(plot), size: 58, gap: 4, space: 24, values: (_, ticks) => showTicks(ticks, plot.unit) },
             ],
             series: [{}, ...series],
             hooks: { setCursor: [(chart) => this.hover(chart)], ready: [(chart) => this.ready(chart, plot)] },

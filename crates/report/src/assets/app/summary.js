@@ -30,23 +30,26 @@ function verdicts() {
     const list = [];
     if (!summary) list.push(["not ended", "warn"]);
     else if (meta.frames_asked !== null && summary.frames < meta.frames_asked) {
-        list.push([`stopped after ${summary.frames} of ${meta.frames_asked} time steps`, "warn"]);
+        list.push([`stopped after ${summary.frames} of ${meta.frames_asked} ${noun(meta.frames_asked, "time step", "time steps")}`, "warn"]);
     }
     if (summary && Number.isFinite(summary.intersections)) {
         const found = summary.intersections;
-        list.push(found === 0 ? ["checked: no intersection", "good"] : [`checked: ${show(found)} intersection${found === 1 ? "" : "s"}`, "bad"]);
+        list.push(found === 0 ? ["checked: no intersection", "good"] : [`checked: ${show(found)} ${noun(found, "intersection", "intersections")}`, "bad"]);
     } else list.push(["not checked", ""]);
     return list;
 }
 
 function chips() {
     const { vertices, triangles, tets, strand_edges: strands, particles } = counts();
-    const list = [[vertices, "vertices", ""], [triangles, "triangles", "minor"], [tets, "tets", "minor"], [strands, "strand edges", "minor"], [particles, "particles", "minor"]];
+    const list = [
+        [vertices, "vertex", "vertices", ""], [triangles, "triangle", "triangles", "minor"], [tets, "tet", "tets", "minor"],
+        [strands, "strand edge", "strand edges", "minor"], [particles, "particle", "particles", "minor"],
+    ];
     const chip = (className, ...content) => make("span", { className: `chip ${className}` }, ...content);
     const bold = (text) => make("b", { textContent: text });
     return [
         ...verdicts().map(([words, kind]) => chip(kind, words)),
-        ...list.filter(([count]) => count > 0).map(([count, name, kind]) => chip(kind, bold(show(count)), ` ${name}`)),
+        ...list.filter(([count]) => count > 0).map(([count, one, many, kind]) => chip(kind, bold(show(count)), ` ${noun(count, one, many)}`)),
         ...(meta.dt ? [chip("minor", "time step ", bold(show(meta.dt, "s")))] : []),
         ...(meta.preset ? [chip("minor", "preset ", bold(meta.preset))] : []),
     ];
@@ -102,6 +105,14 @@ function averages() {
     return [make("h2", { textContent: "A time step" }), make("table", {}, line("th", ["", "mean", "largest"]), ...body)];
 }
 
+/** The speed at which the page begins to play, and why. */
+function playing() {
+    const duration = timeOf(meta.numbers.length - 1) - timeOf(0);
+    const speed = firstSpeed(duration);
+    if (!meta.times || speed === 1) return speedName(speed);
+    return `${speedName(speed)} than real time: the run lasts ${show(duration, "s")}`;
+}
+
 function fillSummary(panel) {
     const n = counts();
     const { summary } = meta;
@@ -126,6 +137,7 @@ function fillSummary(panel) {
         ...averages(),
         ...rows("This page", [
             ["frames", `${meta.numbers.length} of ${meta.frames_found}${meta.stride > 1 ? `, one in ${meta.stride}` : ""}`],
+            ["plays at first", playing()],
             ["positions within", show(meta.position_error, "m")],
             ["folder", meta.folder], ["made by", `Bowknot ${meta.version}`],
         ]),

@@ -1,0 +1,13 @@
+//! What modeling tools say about the faces of a mesh: polygons, texture coordinates, which corners share a
+//! normal, names of objects, groups and materials, smoothing groups.
+//!
+//! A simulation knows triangles only. The polygons cut into fans around their first corners are the triangles
+//! of their mesh, in the same order: whoever drops or renumbers triangles does the same with the surface.
+
+mod edit;
+mod normals;
+#[allow(clippy::module_inception, reason = "the type that the module is named for")]
+mod surface;
+
+pub use edit::EdgeSplit;
+pub use surface::{Corner, Labels, Polygon, Surface};
