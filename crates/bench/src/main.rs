@@ -48,6 +48,7 @@ use anyhow::{Result, bail};
 use bench::{Bench, Size};
 use clap::Parser;
 use docs::Docs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -92,15 +93,13 @@ fn main() -> ExitCode {
 }
 
 /// Names all figures, and how long they take.
-fn list() {
+fn list() -> Result<()> {
     let line = |name: &str, title: &str| {
         let (quick, full) = (durations::quick(name), durations::full(name));
-        println!("{name:<23} {quick:>6} {full:>7}  {title}");
+        format!("{name:<23} {quick:>6} {full:>7}  {title}\n")
     };
-    println!("{:<23} {:>6} {:>7}", "name", "quick", "full");
-    for figure in figures::ALL {
-        line(figure.name(), figure.title());
-    }
+    let mut text = format!("{:<23} {:>6} {:>7}\n", "name", "quick", "full");
+    text.extend(figures::ALL.iter().map(|figure| line(figure.name(), figure.title())));
     let sets = record::PROBLEM_SETS.len();
     let scenes = record::contact_aware_scenes();
     let unaware = sets - scenes;
@@ -108,19 +107,23 @@ fn list() {
         "collision problems of {scenes} scenes in {sets} sets, as NPZ files: a set of each scene with contact-aware \
          targets, and of {unaware} of them one with contact-unaware targets too"
     );
-    line("record", &problems);
-    println!(
+    text += &line("record", &problems);
+    text += &format!(
         "\nquick, full: time of a first run with one thread; full is an upper bound. Problems and measurements are \
          kept,\nso that later runs take less. A figure stops measuring after {} minutes and says so; run again, it \
-         goes on.",
+         goes on.\n",
         bench::FULL_SECONDS / 60
     );
+    match std::io::stdout().write_all(text.as_bytes()) {
+        // The reader, such as `head`, has seen enough.
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error.into()),
+        _ => Ok(()),
+    }
 }
 
 fn run(arguments: &Arguments) -> Result<()> {
     if arguments.name == "list" {
-        list();
-        return Ok(());
+        return list();
     }
     rayon::ThreadPoolBuilder::new().num_threads(arguments.threads).build_global()?;
     if arguments.name == "footprint" {
