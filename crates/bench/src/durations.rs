@@ -1,8 +1,9 @@
 //! How long figures take, for the list of them.
 //!
-//! Quick runs: CPU time with one thread and an empty folder, recording of the problems included (Intel Xeon, 2
-//! cores, 23 November 2026); wall time on an idle machine is the same. Runs that the limit of one minute ended
-//! are given as a minute. Full runs have the limit that [`crate::bench`] sets.
+//! Quick runs: processor time with one thread and an empty folder, recording of the problems included (Intel
+//! Xeon, 2 cores, 23 November 2026, while other programs shared the machine: an estimate, no measurement to
+//! compare with). Runs that the limit of one minute ended are given as a minute. Full runs have the limit that
+//! [`crate::bench`] sets; that of `record` is a guess.
 
 /// Seconds of a quick run.
 const QUICK: &[(&str, u32)] = &[

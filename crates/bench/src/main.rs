@@ -109,9 +109,9 @@ fn list() -> Result<()> {
     );
     text += &line("record", &problems);
     text += &format!(
-        "\nquick, full: time of a first run with one thread; full is an upper bound. Problems and measurements are \
-         kept,\nso that later runs take less. A figure stops measuring after {} minutes and says so; run again, it \
-         goes on.\n",
+        "\nquick, full: about the processor time of a first run with one thread; full is a limit, that of \
+         record a\nguess. Problems and measurements are kept, so that later runs take less. A figure stops measuring \
+         after {}\nminutes and says so; run again, it goes on.\n",
         bench::FULL_SECONDS / 60
     );
     match std::io::stdout().write_all(text.as_bytes()) {

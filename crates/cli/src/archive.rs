@@ -1,7 +1,7 @@
 //! Archives of frames, and collision problems as archives of one frame.
 
 use bowknot::io::npz::Archive;
-use bowknot::io::{FrameStack, IoError, Mesh, MeshView};
+use bowknot::io::{FrameStack, IoError, MeshView};
 use bowknot::recording::States;
 use std::path::Path;
 
@@ -23,17 +23,4 @@ pub fn read(file: &Path) -> Result<FrameStack, IoError> {
     // This cannot fail: the stack is for meshes of this number of vertices.
     let _ = stack.push(&states.x);
     Ok(stack)
-}
-
-/// A frame of an archive as a mesh.
-pub fn mesh(stack: &FrameStack, frame: usize) -> Mesh {
-    let view = stack.mesh();
-    Mesh {
-        positions: stack.frame(frame).unwrap_or_default(),
-        triangles: view.triangles.to_vec(),
-        strands: view.strands.to_vec(),
-        particles: view.particles.to_vec(),
-        obstacle: Some(view.obstacle.to_vec()),
-        ..Mesh::default()
-    }
 }

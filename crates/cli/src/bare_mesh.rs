@@ -87,7 +87,7 @@ fn kind(mesh: &Mesh) -> BodyKind {
 }
 
 /// The lower and upper corner of the bounding box.
-fn extent(positions: &[Point]) -> (Point, Point) {
+pub fn extent(positions: &[Point]) -> (Point, Point) {
     let first = positions.first().copied().unwrap_or_default();
     positions.iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)))
 }

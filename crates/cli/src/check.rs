@@ -171,7 +171,7 @@ impl Checker<'_> {
     fn archive(&mut self, file: &Path) -> Result<(), Failure> {
         let frames = archive::read(file)?;
         for index in 0..frames.len() {
-            self.state(file, format!("{}[{index}]", file.display()), archive::mesh(&frames, index), false)?;
+            self.state(file, format!("{}[{index}]", file.display()), frames.frame_mesh(index), false)?;
         }
         Ok(())
     }

@@ -46,7 +46,7 @@ pub fn info(options: &InfoOptions) -> Result<Exit, Failure> {
     let info = if bare_mesh::is_mesh(name) {
         info_of_file(name, &bare_mesh::assignments(options.up, options.scale))?
     } else if Path::new(name).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("npz")) {
-        let mesh = archive::mesh(&archive::read(Path::new(name))?, 0);
+        let mesh = archive::read(Path::new(name))?.frame_mesh(0);
         let problems = problems(&mesh);
         Info { has_unit: true, ..info_of_mesh(mesh, problems) }
     } else if options.up.is_some() || options.scale.is_some() {
@@ -136,8 +136,7 @@ fn problems(mesh: &Mesh) -> Vec<String> {
 
 /// Size of the bounding box [m].
 fn extent(positions: &[Point]) -> [f64; 3] {
-    let first = positions.first().copied().unwrap_or_default();
-    let (low, high) = positions.iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)));
+    let (low, high) = bare_mesh::extent(positions);
     (high - low).into()
 }
 

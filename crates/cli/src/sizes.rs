@@ -1,5 +1,6 @@
 //! What speaks for a wrong unit in a collision problem.
 
+use crate::bare_mesh;
 use bowknot::geometry::Point;
 use bowknot::recording::States;
 
@@ -33,8 +34,7 @@ pub fn oddities(states: &States) -> Vec<String> {
 
 /// The largest side of the bounding box [m].
 fn extent(positions: &[Point]) -> f64 {
-    let first = positions.first().copied().unwrap_or_default();
-    let (low, high) = positions.iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)));
+    let (low, high) = bare_mesh::extent(positions);
     (high - low).max()
 }
 

@@ -84,6 +84,13 @@ impl MeshStructure {
     }
 }
 
+impl MeshStructure {
+    /// Whether the triangles bound a volume: there are some, each edge has two of them, and no border is open.
+    pub fn is_closed(&self) -> bool {
+        !self.parts.is_empty() && self.borders.is_empty() && self.branching_edges.is_empty()
+    }
+}
+
 /// An edge as a side of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Side {

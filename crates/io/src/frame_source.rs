@@ -103,17 +103,7 @@ impl FrameSource {
         match &self.store {
             Store::Files(files) => read_mesh(&files[index], &Import::default()),
             #[cfg(feature = "npz")]
-            Store::Archive(_, stack) => {
-                let view = stack.mesh();
-                Ok(Mesh {
-                    positions: stack.frame(index).unwrap_or_default(),
-                    triangles: view.triangles.to_vec(),
-                    strands: view.strands.to_vec(),
-                    particles: view.particles.to_vec(),
-                    obstacle: Some(view.obstacle.to_vec()),
-                    ..Mesh::default()
-                })
-            }
+            Store::Archive(_, stack) => Ok(stack.frame_mesh(index)),
         }
     }
 }

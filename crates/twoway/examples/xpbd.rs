@@ -148,7 +148,8 @@ pub fn simulate(cells: usize, friction: f64, frames: usize) -> Result<(Cloth, us
     Ok((cloth, steps, gap))
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
+/// Simulates with the friction and the number of frames that the command line gives.
+pub fn main() -> Result<(), Box<dyn Error>> {
     let argument =
         |k: usize, default: f64| std::env::args().nth(k).and_then(|a| a.parse().ok()).unwrap_or(default);
     let (friction, frames) = (argument(1, 0.5), argument(2, 240.0) as usize);

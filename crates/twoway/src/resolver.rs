@@ -197,8 +197,8 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
         }
 
         self.finish(&mut statistics);
-        statistics.max_step_stretch = max_stretch(&self.scene, positions, &self.state.x);
-        statistics.max_stretch = max_stretch(&self.scene, self.scene.rest(), &self.state.x);
+        [statistics.max_step_stretch, statistics.max_stretch] =
+            max_stretch(&self.scene, [positions, self.scene.rest()], &self.state.x);
         positions.copy_from_slice(&self.state.x);
         statistics.seconds.total = timer.elapsed().as_secs_f64();
         Ok(statistics)

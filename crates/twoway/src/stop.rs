@@ -42,8 +42,9 @@ pub enum StopRule {
         remaining_fraction: f64,
     },
     /// All vertices have arrived, max |(1 - alpha)(y - x)| < `distance`, and prescribed vertices exactly
-    /// unless a pair holds them back; the stretch limits hold; and both residuals are small. Small residuals are needed because the proximal term may still hold back a motion
-    /// that is common to a body. Where no contact presses, up to two more steps reach the target to the bit.
+    /// unless a pair holds them back; the stretch limits hold; and both residuals are small. Small residuals
+    /// are needed because the proximal term may still hold back a motion that is common to a body. Where no
+    /// contact presses, up to two more steps reach the target to the bit.
     Travel {
         /// Rule `travel`: largest net residual, in mean edge lengths: how far a body as a whole is from where
         /// the forces on it balance. 0 is never reached. Default 0.2.

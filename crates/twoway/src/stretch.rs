@@ -3,15 +3,23 @@
 use crate::scene::CollisionScene;
 use bowknot_geometry::Point;
 
-/// Largest ratio of the length of a deformable body's edge at `end` to its length at `start`; 1 if there is no
-/// edge with a length at `start`.
-pub(crate) fn max_stretch(scene: &CollisionScene, start: &[Point], end: &[Point]) -> f64 {
+/// Largest ratios of the length of a deformable body's edge at `end` to its lengths in two `references`; 1 where
+/// no edge has a length.
+pub(crate) fn max_stretch(scene: &CollisionScene, references: [&[Point]; 2], end: &[Point]) -> [f64; 2] {
     let model = scene.model();
-    let length = |[a, b]: [u32; 2], x: &[Point]| (x[a as usize] - x[b as usize]).norm();
-    let edges = model.topology().edges.iter().filter(|edge| edge.iter().any(|v| !model.is_obstacle(*v)));
-    let ratio = |edge: &[u32; 2]| {
-        let before = length(*edge, start);
-        (before > 0.0).then(|| length(*edge, end) / before)
-    };
-    edges.filter_map(ratio).reduce(f64::max).unwrap_or(1.0)
+    let mut largest = [None; 2];
+    for &[a, b] in &model.topology().edges {
+        if model.is_obstacle(a) && model.is_obstacle(b) {
+            continue;
+        }
+        let length = |x: &[Point]| (x[a as usize] - x[b as usize]).norm();
+        let now = length(end);
+        for (largest, reference) in largest.iter_mut().zip(references) {
+            let before = length(reference);
+            if before > 0.0 {
+                *largest = Some((now / before).max(largest.unwrap_or(0.0)));
+            }
+        }
+    }
+    largest.map(|ratio| ratio.unwrap_or(1.0))
 }

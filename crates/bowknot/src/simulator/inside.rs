@@ -14,19 +14,18 @@ pub(super) fn is_inside(point: &Point, triangles: impl Iterator<Item = [Point; 3
 /// Deformable bodies that start inside of a closed obstacle, which they can never leave, in words.
 pub(super) fn enclosed_bodies(world: &World) -> Vec<String> {
     let is_obstacle = |body: &WorldBody| body.kind.is_none();
+    let topology = world.collision.topology();
+    let components = topology.connected_components();
     let mut found = Vec::new();
     for (o, obstacle) in world.bodies.iter().enumerate().filter(|(_, body)| is_obstacle(body)) {
-        let topology = world.collision.topology();
         let triangles: Vec<[u32; 3]> =
             topology.triangles.iter().filter(|t| obstacle.vertices.contains(&t[0])).copied().collect();
-        let structure = MeshStructure::new(&world.positions, &triangles);
-        if triangles.is_empty() || !structure.borders.is_empty() || !structure.branching_edges.is_empty() {
+        if !MeshStructure::new(&world.positions, &triangles).is_closed() {
             continue;
         }
         let range = obstacle.vertices.start as usize..obstacle.vertices.end as usize;
         let bounds = Aabb::of_points(&world.positions[range]);
         let surface = || triangles.iter().map(|t| t.map(|v| world.positions[v as usize]));
-        let components = topology.connected_components();
         for (b, body) in world.bodies.iter().enumerate().filter(|(_, body)| !is_obstacle(body)) {
             let mut seen = Vec::new();
             let mut starts = body.vertices.clone().filter(|v| {

@@ -2,7 +2,7 @@
 
 use super::inside::is_inside;
 use bowknot_check::{Intersection, Judge, Parts, StateOptions};
-use bowknot_geometry::{Aabb, Point, Topology, Vector};
+use bowknot_geometry::{Aabb, MeshStructure, Point, Topology, Vector};
 use bowknot_scene::world::World;
 use std::collections::BTreeMap;
 
@@ -116,8 +116,13 @@ struct Pair<'a> {
     moved: &'a [Point],
     other: &'a [Point],
     /// The moved body's vertices come first.
-    topology: Topology,
     judge: Judge,
+    /// Number of triangles and edges.
+    elements: usize,
+    /// A vertex of each connected part.
+    parts: Vec<u32>,
+    /// Triangles of either side, if its surface is closed: only such a surface contains something.
+    closed: [Vec<[u32; 3]>; 2],
 }
 
 impl<'a> Pair<'a> {
@@ -157,13 +162,22 @@ impl<'a> Pair<'a> {
         };
         // The world has these elements, so both take them.
         let judge = Judge::new(&parts).unwrap_or_default();
+        let [moved, other] = [moved, other].map(|body| positions(world, body as u32));
+        let x = [moved, other].concat();
+        let closed = [true, false].map(|is_moved| {
+            let side: Vec<[u32; 3]> =
+                triangles.iter().filter(|t| (t[0] < first) == is_moved).copied().collect();
+            if MeshStructure::new(&x, &side).is_closed() { side } else { Vec::new() }
+        });
         let topology = Topology::builder(count).triangles(triangles).strand_edges(strands).build();
-        Self {
-            moved: positions(world, moved as u32),
-            other: positions(world, other as u32),
-            topology: topology.unwrap_or_default(),
-            judge,
-        }
+        let topology = topology.unwrap_or_default();
+        let components = topology.connected_components();
+        let mut seen = vec![false; components.count];
+        let is_new =
+            |v: &u32| !std::mem::replace(&mut seen[components.of_vertex[*v as usize] as usize], true);
+        let parts = (0..count as u32).filter(is_new).collect();
+        let elements = topology.triangles.len() + topology.edges.len();
+        Self { moved, other, judge, elements, parts, closed }
     }
 
     /// The smallest motion found that takes the two apart, and the names of its direction and of the opposite.
@@ -180,7 +194,7 @@ impl<'a> Pair<'a> {
             ways.reduce(|best, way| if way.0 < best.0 { way } else { best })
         };
         let mut boxes = DIRECTIONS.iter().zip(disjoint).map(|((_, names), limit)| (limit, *names));
-        if self.topology.triangles.len() + self.topology.edges.len() > MAX_ELEMENTS {
+        if self.elements > MAX_ELEMENTS {
             return shortest(&mut boxes);
         }
         let mut motion = FIRST_MOTION * self.size();
@@ -227,17 +241,13 @@ impl<'a> Pair<'a> {
         apart && !self.contain_each_other(&x)
     }
 
-    /// Whether a vertex of one body lies inside of the other's closed surface.
+    /// Whether a part of one body lies inside of the other's closed surface.
     fn contain_each_other(&self, x: &[Point]) -> bool {
-        let components = self.topology.connected_components();
-        let mut seen = vec![false; components.count];
         let first = self.moved.len() as u32;
-        (0..x.len() as u32)
-            .filter(|&v| !std::mem::replace(&mut seen[components.of_vertex[v as usize] as usize], true))
-            .any(|v| {
-                let others = self.topology.triangles.iter().filter(|t| (t[0] < first) != (v < first));
-                is_inside(&x[v as usize], others.map(|t| t.map(|w| x[w as usize])))
-            })
+        self.parts.iter().any(|&v| {
+            let around = &self.closed[usize::from(v < first)];
+            is_inside(&x[v as usize], around.iter().map(|t| t.map(|w| x[w as usize])))
+        })
     }
 }
 
@@ -281,6 +291,15 @@ mod tests {
                      rotate = [90.0, 0.0, 0.0]\ntranslate = [0.0, 0.0, 0.28]\n";
         let found = advice_of(&format!("{small}{BALL}"));
         assert!(found[0].contains("move sheet by 0.07") && found[0].contains("along +z"), "{found:?}");
+    }
+
+    #[test]
+    fn an_open_garment_is_moved_by_as_little_as_helps() {
+        // Wide enough for the ball, but 3 cm off to one side; not contained, although the ball is within it.
+        let tube = "[[body]]\nname = \"skirt\"\nshape = { type = \"tube\", radius = 0.35, length = 0.2, edge = 0.03 }\n\
+                    translate = [0.08, 0.0, 0.0]\nrotate = [0.0, 90.0, 0.0]\n";
+        let found = advice_of(&format!("{tube}{BALL}"));
+        assert!(found[0].contains("move skirt by 0.03") && found[0].contains("along -x"), "{found:?}");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::archive::{Archive, write_archive};
 use crate::error::IoError;
-use crate::mesh::MeshView;
+use crate::mesh::{Mesh, MeshView};
 use bowknot_geometry::Point;
 use ndarray::{Array1, Array2, ArrayView3};
 use std::path::Path;
@@ -111,6 +111,18 @@ impl FrameStack {
             particles: &self.particles,
             obstacle: &self.obstacle,
             ..MeshView::default()
+        }
+    }
+
+    /// A frame with its elements; without vertices if there is no such frame.
+    pub fn frame_mesh(&self, index: usize) -> Mesh {
+        Mesh {
+            positions: self.frame(index).unwrap_or_default(),
+            triangles: self.triangles.clone(),
+            strands: self.strands.clone(),
+            particles: self.particles.clone(),
+            obstacle: Some(self.obstacle.clone()),
+            ..Mesh::default()
         }
     }
 

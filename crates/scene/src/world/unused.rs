@@ -2,6 +2,7 @@
 
 use crate::description::Scene;
 use crate::kind::BodyKind;
+use crate::obstacle::ObstacleSpec;
 use crate::params::{InteriorFollows, RepulsionParams};
 use crate::shapes::Shape;
 use bowknot_constraints::FrictionModel;
@@ -47,8 +48,8 @@ fn of_friction(scene: &Scene, note: Note<'_>) {
     let no_obstacle_rubs = !scene.obstacles.is_empty() && scene.obstacles.iter().all(|o| o.friction == 0.0);
     if let [body] = &scene.bodies[..] {
         let alone = !is_off && body.friction > 0.0 && no_obstacle_rubs && scene.friction_pairs.is_empty();
-        let why = "no obstacle has friction, and both sides of a contact must (it acts where the body touches itself)";
-        note(alone, "body[0].friction", why);
+        let why = "none of them has friction, and both sides of a contact must";
+        note(alone, "body[0].friction on obstacles", why);
     }
     let no_body_rubs = scene.bodies.iter().all(|body| body.friction == 0.0);
     for (index, obstacle) in scene.obstacles.iter().enumerate() {
@@ -60,11 +61,10 @@ fn of_friction(scene: &Scene, note: Note<'_>) {
         );
     }
     let filter = scene.contact.friction_model == FrictionModel::Filter;
-    let springs = scene.solver.repulsion != RepulsionParams::default();
     let stiffness = scene.solver.repulsion.stiffness;
-    let set = filter && springs && stiffness != 0.0;
+    let set = stiffness != 0.0 && stiffness != RepulsionParams::default().stiffness;
     note(
-        set,
+        filter && set,
         "solver.repulsion.stiffness",
         "contact.friction_model is \"filter\", which switches the springs off",
     );
@@ -81,12 +81,13 @@ fn of_solver(scene: &Scene, note: Note<'_>) {
 }
 
 fn of_obstacles(scene: &Scene, note: Note<'_>) {
+    let default = ObstacleSpec::default();
     for (index, obstacle) in scene.obstacles.iter().enumerate() {
         let key = |name: &str| format!("obstacle[{index}].{name}");
         let why = "the obstacle has no sequence";
         let still = obstacle.sequence.is_none();
-        note(still && obstacle.sequence_rate != 30.0, &key("sequence_rate"), why);
-        note(still && obstacle.sequence_start != 0.0, &key("sequence_start"), why);
+        note(still && obstacle.sequence_rate != default.sequence_rate, &key("sequence_rate"), why);
+        note(still && obstacle.sequence_start != default.sequence_start, &key("sequence_start"), why);
         let plane = matches!(obstacle.shape, Some(Shape::HalfSpace(_)));
         note(plane && obstacle.scale != 1.0, &key("scale"), "a half-space has no size");
     }
@@ -130,6 +131,17 @@ mod tests {
             let found = unused(scene);
             assert!(found.len() == 1 && found[0].starts_with(start), "{scene}: {found:?}");
         }
+    }
+
+    #[test]
+    fn friction_that_only_the_body_itself_feels_is_named() {
+        let scene = |friction: f64| {
+            let ball = format!("[[obstacle]]\nshape = \"ball\"\nfriction = {friction}\n");
+            format!("{ball}[[body]]\nshape = \"sheet\"\nfriction = 0.5\n")
+        };
+        let unused = |friction| unused_keys(&Scene::from_toml(&scene(friction), "").expect("a scene"));
+        assert!(unused(0.0)[0].starts_with("body[0].friction on obstacles has no effect"));
+        assert_eq!(unused(0.5), [""; 0]);
     }
 
     #[test]

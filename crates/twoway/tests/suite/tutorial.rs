@@ -1,7 +1,6 @@
 //! The tutorial `docs/tutorials/own-solver.md` and its program.
 
 #[path = "../../examples/xpbd.rs"]
-#[allow(dead_code, missing_docs)]
 mod xpbd;
 
 /// Code in the tutorial is that of the program.
@@ -15,6 +14,11 @@ fn the_tutorial_shows_the_program() {
     for block in blocks {
         assert!(program.contains(block), "{block}");
     }
+}
+
+#[test]
+fn the_program_of_the_tutorial_runs_as_its_command_does() {
+    xpbd::main().unwrap();
 }
 
 /// A sheet of 12 x 12 cells: pins hold, then it drapes over the obstacle, and friction keeps it there.
