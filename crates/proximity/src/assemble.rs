@@ -1,5 +1,6 @@
 //! The pairs in order, with their contact geometry.
 
+use crate::candidates::Candidate;
 use crate::narrow::separate_all;
 use crate::pairs::Pair;
 use crate::traverse::{PartnerRange, TaskResult};
@@ -38,6 +39,20 @@ impl PartnerTable {
         self.chunk_pairs.iter().sum()
     }
 
+    /// Number of elements of side *a*; 0 if there were no tasks.
+    pub fn len(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// The partners of an element.
+    #[inline]
+    pub fn partners<'a>(&self, tasks: &'a [TaskResult], element: usize) -> &'a [Candidate] {
+        let (task, run) = &self.entries[element];
+        tasks
+            .get(*task as usize)
+            .map_or(&[][..], |task| &task.partners[run.start as usize..][..run.count as usize])
+    }
+
     /// Writes the pairs of `kind` in order.
     pub fn write(
         &self,
@@ -72,29 +87,8 @@ impl PartnerTable {
 }
 
 /// Writes the pairs of one element `a`.
-fn write_pairs(kind: PairKind, model: &CollisionModel, a: u32, partners: &[u32], pairs: &mut [Pair]) {
-    let topology = model.topology();
-    let places = partners.iter().zip(pairs);
-    match kind {
-        PairKind::VertexVertex => places.for_each(|(&b, pair)| {
-            *pair = Pair { elements: [a, b], vertices: [a, b, a, a] };
-        }),
-        PairKind::VertexEdge => places.for_each(|(&b, pair)| {
-            let [b0, b1] = topology.edges[b as usize];
-            *pair = Pair { elements: [a, b], vertices: [a, b0, b1, a] };
-        }),
-        PairKind::VertexTriangle => places.for_each(|(&b, pair)| {
-            let [b0, b1, b2] = topology.triangles[b as usize];
-            *pair = Pair { elements: [a, b], vertices: [a, b0, b1, b2] };
-        }),
-        PairKind::EdgeEdge => {
-            let [a0, a1] = topology.edges[a as usize];
-            places.for_each(|(&b, pair)| {
-                let [b0, b1] = topology.edges[b as usize];
-                *pair = Pair { elements: [a, b], vertices: [a0, a1, b0, b1] };
-            });
-        }
-        // Not found by trees.
-        PairKind::VertexHalfSpace => {}
+fn write_pairs(kind: PairKind, model: &CollisionModel, a: u32, partners: &[Candidate], pairs: &mut [Pair]) {
+    for (partner, pair) in partners.iter().zip(pairs) {
+        *pair = Pair::of_elements(model.topology(), kind, [a, partner.element]);
     }
 }

@@ -1,6 +1,7 @@
 //! Flags of sixteen lanes as bits, lists of bits, and short sorts, without branches. In their usual form
 //! these parts of the traversal would stall on branches that cannot be predicted.
 
+use crate::candidates::Candidate;
 use crate::tree::LANES;
 
 /// A flag as a byte that [`bits`] understands.
@@ -74,26 +75,28 @@ pub fn append_places(list: &mut [u32], mut end: usize, mask: u32, base: u32) -> 
 /// Longest list that is sorted by counting smaller entries.
 const SHORT: usize = 64;
 
-/// Appends `list`, whose entries differ from each other and from `u32::MAX`, to `sorted` in ascending order.
+/// Appends candidates to `sorted` in ascending order of their elements, which differ from each other and from
+/// `u32::MAX`. Entry k of `bounds` belongs to entry k of `elements`.
 #[inline(always)]
-pub fn append_sorted(list: &[u32], sorted: &mut Vec<u32>) {
+pub fn append_sorted(elements: &[u32], bounds: &[f32], sorted: &mut Vec<Candidate>) {
     let start = sorted.len();
-    if list.len() > SHORT {
-        sorted.extend_from_slice(list);
-        sorted[start..].sort_unstable();
+    let candidate = |(&element, &bound): (&u32, &f32)| Candidate { element, bound };
+    if elements.len() > SHORT {
+        sorted.extend(elements.iter().zip(bounds).map(candidate));
+        sorted[start..].sort_unstable_by_key(|candidate| candidate.element);
         return;
     }
     let mut padded = [u32::MAX; SHORT];
-    padded[..list.len()].copy_from_slice(list);
-    let chunks = list.len().div_ceil(LANES);
-    sorted.resize(start + list.len(), 0);
+    padded[..elements.len()].copy_from_slice(elements);
+    let chunks = elements.len().div_ceil(LANES);
+    sorted.resize(start + elements.len(), Candidate::default());
     let out = &mut sorted[start..];
-    for &entry in list {
+    for entry in elements.iter().zip(bounds).map(candidate) {
         let mut rank = 0;
         for chunk in padded.as_chunks::<LANES>().0.iter().take(chunks) {
             let mut smaller = [0_u8; LANES];
             for lane in 0..LANES {
-                smaller[lane] = flag(chunk[lane] < entry);
+                smaller[lane] = flag(chunk[lane] < entry.element);
             }
             rank += bits(&smaller).count_ones();
         }
@@ -124,13 +127,15 @@ mod tests {
 
     #[test]
     fn lists_of_any_length_are_sorted() {
+        let candidate = |element| Candidate { element, bound: element as f32 };
         for n in [0, 1, 2, 15, 16, 17, 33, 63, 64, 65, 200] {
             let list: Vec<u32> = (0..n).map(|i| (i * 7919 + 13) % 104_729).collect();
-            let mut sorted = vec![5, 4];
-            append_sorted(&list, &mut sorted);
-            let mut expected = list.clone();
-            expected.sort_unstable();
-            assert_eq!(sorted[..2], [5, 4]);
+            let bounds: Vec<f32> = list.iter().map(|&element| element as f32).collect();
+            let mut sorted = vec![candidate(5), candidate(4)];
+            append_sorted(&list, &bounds, &mut sorted);
+            let mut expected: Vec<Candidate> = list.iter().map(|&element| candidate(element)).collect();
+            expected.sort_unstable_by_key(|candidate| candidate.element);
+            assert_eq!(sorted[..2], [candidate(5), candidate(4)]);
             assert_eq!(sorted[2..], expected);
         }
     }

@@ -62,6 +62,15 @@ impl Layer {
         self.trees()
     }
 
+    /// Refits the boxes of elements with a vertex that has `changed`; none of them if nothing has.
+    pub fn refit_changed(&mut self, local: &[LocalVertex], changed: Option<&[bool]>) {
+        self.vertices.refit_changed(local, changed);
+        self.edges.refit_changed(local, changed);
+        self.triangles.refit_changed(local, changed);
+        self.particles.refit_changed(local, changed);
+        self.strands.refit_changed(local, changed);
+    }
+
     /// Rebuilds trees whose order is stale, and refits their boxes; returns how many trees that were.
     pub fn rebuild_stale(&mut self, local: &[LocalVertex], end: Option<&[LocalVertex]>) -> u32 {
         rebuild_stale(&mut self.vertices, local, end)

@@ -12,6 +12,7 @@
 
 mod assemble;
 mod bits;
+mod candidates;
 mod collision_matrix;
 mod frame;
 mod half_spaces;
@@ -31,6 +32,8 @@ mod tree;
 pub use bowknot_geometry as geometry;
 
 pub use bowknot_geometry::{BodyFilter, CollisionModel, ModelError};
+pub use candidates::{Candidate, CandidateList, Candidates};
+pub use narrow::separate_all;
 pub use pairs::{Pair, PairList};
 pub use search::ProximitySearch;
 pub use statistics::SearchStatistics;

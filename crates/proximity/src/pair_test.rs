@@ -10,12 +10,17 @@
 //! off by u m, and so each coordinate of the computed differences r = a0 - b0, a1 - a0, .. by 2 u m + u 2 m =
 //! 4 u m. A dot product of a difference with d (exact as stored) adds 3 u (2 m) |d|_1, so each of the up to
 //! three products is off by 10 u m |d|_1, and their sums round by another 12 u m |d|_1: altogether 42 u
-//! m |d|_1 <= 73 u m |d|. The row's `reject` holds the radius with a factor 1 + 16 u (for the rounding of the
-//! radius and of |d|) plus 80 u m, each side with its own m. For the other test, the point of a side with
-//! computed weights in [0, 1] is off by 4 u m for each difference and 6 u (6 m) for its operations, together
-//! below 60 u m per coordinate and 104 u m in length, which `accept` subtracts as 128 u m. Products of tiny
-//! numbers may underflow: below a length |d| of 1e-12 m nothing is rejected, and above it 1e-18 m of slack
-//! covers errors of 1e-44.
+//! m |d|_1 <= 73 u m |d|. The row's `slack` is 80 u m, each side with its own m, and the radius is compared
+//! with a factor 1 + 16 u, for the rounding of the radius and of |d|. For the other test, the point of a side
+//! with computed weights in [0, 1] is off by 4 u m for each difference and 6 u (6 m) for its operations,
+//! together below 60 u m per coordinate and 104 u m in length; 1.6 times the slack, 128 u m, is subtracted.
+//! Products of tiny numbers may underflow: below a length |d| of 1e-12 m nothing is rejected, and above it
+//! 1e-18 m of slack covers errors of 1e-44.
+//!
+//! **Lower bounds.** A pair is farther apart than every R with (R (1 + 16 u) + s) |d| (1 + 16 u) < width,
+//! where s is the slack. With q = width / |d| as computed, R = (q (1 - 64 u) - s)(1 - 64 u) is such a number
+//! where it is positive: then s < q, and the left side is below |d| (q (1 - 112 u) + 48 u s) (1 + 20 u) < |d|
+//! q (1 - 40 u), which is below the width.
 
 use crate::bits::{bits, flag};
 use crate::frame::UNIT_ROUNDOFF;
@@ -43,23 +48,25 @@ pub struct VertexTriangle;
 /// Two edges.
 pub struct EdgeEdge;
 
-/// Results of the `f32` test for sixteen pairs, one bit each.
+/// Results of the `f32` test for sixteen pairs.
 #[derive(Clone, Copy, Debug)]
 pub struct Verdicts {
-    /// Pairs that are certainly farther apart than their radii.
+    /// Pairs that are certainly farther apart than their radii, one bit each.
     pub rejected: u32,
-    /// Pairs that are certainly nearer than their radii.
+    /// Pairs that are certainly nearer than their radii, one bit each.
     pub accepted: u32,
+    /// Certified lower bounds of the distances [m], at least 0.
+    pub bounds: [f32; LANES],
 }
 
 /// Sixteen pairs side by side: local coordinates of both sides' vertices [m], and the sums of the sides'
-/// `reject` and `accept` of [`crate::tree::ElementRow`] [m].
+/// radii and slacks of [`crate::tree::ElementRow`] [m].
 #[repr(C, align(64))]
 pub struct Batch<const A: usize, const B: usize> {
     pub a: [[[f32; LANES]; 3]; A],
     pub b: [[[f32; LANES]; 3]; B],
-    pub reject: [f32; LANES],
-    pub accept: [f32; LANES],
+    pub radius: [f32; LANES],
+    pub slack: [f32; LANES],
 }
 
 /// Tests sixteen pairs.
@@ -67,6 +74,7 @@ pub struct Batch<const A: usize, const B: usize> {
 pub fn classify<K: PairTest<A, B>, const A: usize, const B: usize>(batch: &Batch<A, B>) -> Verdicts {
     let mut rejected = [0_u8; LANES];
     let mut accepted = [0_u8; LANES];
+    let mut bounds = [0.0; LANES];
     for lane in 0..LANES {
         let mut a = [[0.0; 3]; A];
         let mut b = [[0.0; 3]; B];
@@ -91,11 +99,18 @@ pub fn classify<K: PairTest<A, B>, const A: usize, const B: usize>(batch: &Batch
         width = width + below - above;
         let squared = dot(d, d);
         let length = squared.sqrt();
-        let far = width > batch.reject[lane] * length * (1.0 + 16.0 * UNIT_ROUNDOFF);
-        rejected[lane] = flag(far & (squared > 1e-24));
-        accepted[lane] = flag(length < batch.accept[lane]);
+        let (radius, slack) = (batch.radius[lane], batch.slack[lane]);
+        let reject = radius * (1.0 + 16.0 * UNIT_ROUNDOFF) + slack;
+        let accept = radius * (1.0 - 16.0 * UNIT_ROUNDOFF) - 1.6 * slack;
+        let far = width > reject * length * (1.0 + 16.0 * UNIT_ROUNDOFF);
+        let certain = squared > 1e-24;
+        rejected[lane] = flag(far & certain);
+        accepted[lane] = flag(length < accept);
+        const SMALLER: f32 = 1.0 - 64.0 * UNIT_ROUNDOFF;
+        let bound = (width / length * SMALLER - slack) * SMALLER;
+        bounds[lane] = if certain { larger(bound, 0.0) } else { 0.0 };
     }
-    Verdicts { rejected: bits(&rejected), accepted: bits(&accepted) }
+    Verdicts { rejected: bits(&rejected), accepted: bits(&accepted), bounds }
 }
 
 impl PairTest<1, 1> for VertexVertex {

@@ -1,6 +1,6 @@
 //! Lists of pairs.
 
-use bowknot_geometry::PairKind;
+use bowknot_geometry::{PairKind, Topology};
 use std::ops::Range;
 
 /// A pair of primitives.
@@ -12,6 +12,35 @@ pub struct Pair {
     pub elements: [u32; 2],
     /// Vertices in [`PairKind`] order; unused places repeat the first vertex.
     pub vertices: [u32; 4],
+}
+
+impl Pair {
+    /// The pair of two `elements`; for [`PairKind::VertexHalfSpace`] the second is the half-space.
+    ///
+    /// # Panics
+    /// If the topology does not have them.
+    #[inline(always)]
+    pub fn of_elements(topology: &Topology, kind: PairKind, elements: [u32; 2]) -> Self {
+        let [a, b] = elements;
+        let vertices = match kind {
+            PairKind::VertexVertex => [a, b, a, a],
+            PairKind::VertexEdge => {
+                let [b0, b1] = topology.edges[b as usize];
+                [a, b0, b1, a]
+            }
+            PairKind::VertexTriangle => {
+                let [b0, b1, b2] = topology.triangles[b as usize];
+                [a, b0, b1, b2]
+            }
+            PairKind::EdgeEdge => {
+                let [a0, a1] = topology.edges[a as usize];
+                let [b0, b1] = topology.edges[b as usize];
+                [a0, a1, b0, b1]
+            }
+            PairKind::VertexHalfSpace => [a; 4],
+        };
+        Self { elements, vertices }
+    }
 }
 
 /// Pairs grouped by kind in the order of [`PairKind::ALL`], sorted by `elements` within a kind.

@@ -1,12 +1,13 @@
 //! The proximity search.
 
 use crate::assemble::PartnerTable;
+use crate::candidates::CandidateList;
 use crate::collision_matrix::CollisionMatrix;
 use crate::frame::{self, LocalVertex};
 use crate::half_spaces::near_half_spaces;
 use crate::layer::Layer;
 use crate::narrow::BLANK;
-use crate::obstacles::ObstacleTracker;
+use crate::obstacles::{Changes, ObstacleTracker};
 use crate::pair_test::{EdgeEdge, PairTest, VertexEdge, VertexTriangle, VertexVertex};
 use crate::pairs::{Pair, PairList};
 use crate::statistics::SearchStatistics;
@@ -34,6 +35,8 @@ pub struct ProximitySearch {
     collisions: CollisionMatrix,
 
     origin: Option<Point>,
+    /// Whether the trees are those of the last [`Self::update`].
+    updated: bool,
     local: Vec<LocalVertex>,
     end: Vec<LocalVertex>,
     layers: [Layer; 3],
@@ -122,6 +125,44 @@ impl ProximitySearch {
         self.run::<true>(model, positions, Some(displacements), radii, pairs, separations);
     }
 
+    /// Lists the same pairs as [`Self::search`], in compact form: with a lower bound of their distance in
+    /// place of their contact geometry, and without those of half-spaces.
+    ///
+    /// With `changed`, only the vertices that it marks (one entry per vertex) have other positions or radii
+    /// than in the last call, which must have been for the same list. Only pairs with such a vertex are then
+    /// searched for; all others stay. That pays where few vertices have changed. After a search of another
+    /// kind everything is searched.
+    ///
+    /// Which pairs are listed whose distance equals the sum of their radii up to rounding in `f32` may depend
+    /// on earlier calls; no pair is lost.
+    ///
+    /// # Panics
+    /// If a slice has another length than the model has vertices.
+    pub fn update(
+        &mut self,
+        model: &CollisionModel,
+        positions: &[Point],
+        radii: &[f64],
+        changed: Option<&[bool]>,
+        list: &mut CandidateList,
+    ) {
+        self.begin(model, positions, radii);
+        let obstacles = self.obstacles.update(model, positions, None, radii);
+        // An obstacle that begins or ends to move changes its trees.
+        let changed = changed.filter(|_| self.updated && !obstacles.layers);
+        match changed {
+            Some(changed) => self.update_changed_trees(positions, radii, changed),
+            None => self.update_trees(model, positions, None, radii, obstacles),
+        }
+        let filtered = self.collisions.some_forbidden;
+        let scene = Scene { model, positions, radii, filtered, changed_only: changed.is_some() };
+        self.search_kinds::<false>(&scene);
+        self.fill_tables(model);
+        list.take(model.topology(), &self.tables, &self.tasks, changed);
+        self.count(list.len());
+        self.updated = true;
+    }
+
     /// Counts of the last search.
     pub fn statistics(&self) -> SearchStatistics {
         self.statistics
@@ -136,15 +177,12 @@ impl ProximitySearch {
         pairs: &mut PairList,
         separations: &mut Vec<Separation>,
     ) {
-        let count = model.topology().vertex_count;
-        assert_eq!(count, self.layer_of_vertex.len(), "the model must be the one given to `new`");
-        assert_eq!(positions.len(), count, "one position per vertex");
-        assert_eq!(radii.len(), count, "one radius per vertex");
-        self.statistics = SearchStatistics::default();
+        self.begin(model, positions, radii);
+        let obstacles = self.obstacles.update(model, positions, displacements, radii);
+        self.update_trees(model, positions, displacements, radii, obstacles);
 
-        self.update_trees(model, positions, displacements, radii);
-
-        let scene = Scene { model, positions, radii, filtered: self.collisions.some_forbidden };
+        let filtered = self.collisions.some_forbidden;
+        let scene = Scene { model, positions, radii, filtered, changed_only: false };
         self.search_kinds::<SWEPT>(&scene);
         near_half_spaces(
             model.half_spaces(),
@@ -155,12 +193,42 @@ impl ProximitySearch {
             &mut self.half_space_pairs,
         );
         self.write(model, positions, pairs, separations);
+        self.count(pairs.len());
+        self.updated = false;
+    }
 
+    /// Begins a search.
+    fn begin(&mut self, model: &CollisionModel, positions: &[Point], radii: &[f64]) {
+        let count = model.topology().vertex_count;
+        assert_eq!(count, self.layer_of_vertex.len(), "the model must be the one given to `new`");
+        assert_eq!(positions.len(), count, "one position per vertex");
+        assert_eq!(radii.len(), count, "one radius per vertex");
+        self.statistics = SearchStatistics::default();
+    }
+
+    /// Counts what a search has done that has listed so many pairs.
+    fn count(&mut self, pairs: usize) {
         for found in self.tasks.iter().flatten() {
             self.statistics.candidates += found.candidates;
             self.statistics.undecided += found.undecided;
         }
-        self.statistics.pairs = pairs.len() as u64;
+        self.statistics.pairs = pairs as u64;
+    }
+
+    /// Updates local positions and trees where vertices have changed.
+    fn update_changed_trees(&mut self, positions: &[Point], radii: &[f64], changed: &[bool]) {
+        assert_eq!(changed.len(), positions.len(), "one flag per vertex");
+        let (still, origin) = (Vector::new(0.0, 0.0, 0.0), self.origin.unwrap_or(Point::origin()));
+        self.local.par_chunks_mut(LOCAL_CHUNK).enumerate().for_each(|(chunk, local)| {
+            for (local, v) in local.iter_mut().zip(chunk * LOCAL_CHUNK..) {
+                if changed[v] {
+                    *local = frame::localize(&positions[v], &still, radii[v], &origin);
+                }
+            }
+        });
+        for (layer, index) in self.layers.iter_mut().zip(0_u8..) {
+            layer.refit_changed(&self.local, (index != RESTING).then_some(changed));
+        }
     }
 
     /// Updates local positions and trees to the given state.
@@ -170,11 +238,11 @@ impl ProximitySearch {
         positions: &[Point],
         displacements: Option<&[Vector]>,
         radii: &[f64],
+        changes: Changes,
     ) {
         let first = self.origin.is_none();
         let origin = frame::origin(positions, &self.deformable);
         let origin_moved = self.origin.replace(origin) != Some(origin);
-        let changes = self.obstacles.update(model, positions, displacements, radii);
         if changes.layers {
             for (v, layer) in self.layer_of_vertex.iter_mut().enumerate() {
                 let body = model.vertex_body()[v] as usize;
@@ -276,6 +344,14 @@ impl ProximitySearch {
         );
     }
 
+    /// Sorts the results of the tasks by element; returns the number of pairs of each kind.
+    fn fill_tables(&mut self, model: &CollisionModel) -> [usize; 4] {
+        let topology = model.topology();
+        let elements =
+            [topology.vertex_count, topology.vertex_count, topology.vertex_count, topology.edges.len()];
+        std::array::from_fn(|k| self.tables[k].fill(elements[k], &self.tasks[k]))
+    }
+
     /// Writes the results of the tasks into the caller's lists.
     fn write(
         &mut self,
@@ -284,13 +360,8 @@ impl ProximitySearch {
         pairs: &mut PairList,
         separations: &mut Vec<Separation>,
     ) {
-        let topology = model.topology();
-        let elements =
-            [topology.vertex_count, topology.vertex_count, topology.vertex_count, topology.edges.len()];
-        let mut counts = [0; 5];
-        for k in 0..4 {
-            counts[k] = self.tables[k].fill(elements[k], &self.tasks[k]);
-        }
+        let [vv, ve, vt, ee] = self.fill_tables(model);
+        let mut counts = [vv, ve, vt, ee, 0];
         counts[4] = self.half_space_pairs.iter().map(Vec::len).sum();
         let total: usize = counts.iter().sum();
         let mut pairs = pairs.resize_kinds(counts);

@@ -1,6 +1,7 @@
 //! Tests of elements against trees: which pairs are listed.
 
 use crate::bits::{append_places, append_sorted, bits, flag};
+use crate::candidates::Candidate;
 use crate::frame::UNIT_ROUNDOFF;
 use crate::narrow::separate_one;
 use crate::pair_test::{Batch, PairTest, classify};
@@ -18,6 +19,8 @@ pub struct Scene<'a> {
     pub radii: &'a [f64],
     /// Whether some pairs of bodies that are searched together may not collide.
     pub filtered: bool,
+    /// Whether only pairs are searched of which an element has changed.
+    pub changed_only: bool,
 }
 
 /// Leaves of a tree whose elements are searched for in other trees.
@@ -43,8 +46,8 @@ pub struct PartnerRange {
 #[derive(Debug, Default)]
 pub struct TaskResult {
     pub runs: Vec<PartnerRange>,
-    /// Partners of the elements of `runs`, ascending within each.
-    pub partners: Vec<u32>,
+    /// Partners of the elements of `runs`, ascending within each. Bounds of swept searches are 0.
+    pub partners: Vec<Candidate>,
     pub candidates: u64,
     pub undecided: u64,
 }
@@ -56,8 +59,10 @@ pub struct Scratch {
     near_leaves: Vec<u32>,
     /// Pairs whose boxes overlap, as [`code`]s. The valid ones come first; their number is kept outside.
     queue: Vec<u32>,
-    /// Partners of each lane; only the first `lengths[lane]` are valid.
+    /// Partners of each lane, and the lower bounds of their distances; only the first `lengths[lane]` are
+    /// valid.
     lists: [Vec<u32>; LANES],
+    bounds: [Vec<f32>; LANES],
     lengths: [usize; LANES],
 }
 
@@ -81,7 +86,7 @@ const fn decode(code: u32) -> (usize, usize, usize) {
 
 /// Leaves of `tree` whose boxes overlap `bounds`, ascending.
 pub fn overlapping_leaves<const V: usize>(tree: &Tree<V>, bounds: &[[f32; 3]; 2], out: &mut Vec<u32>) {
-    gather_leaves(tree, bounds, out, |_| true);
+    gather_leaves(tree, bounds, false, out, |_| true);
     out.sort_unstable();
 }
 
@@ -116,10 +121,12 @@ fn search_leaf<K: PairTest<A, B>, const A: usize, const B: usize, const SWEPT: b
     found: &mut TaskResult,
 ) {
     let leaf = &query.tree.leaves[index];
+    // A leaf without a change is searched for in changed leaves only.
+    let unchanged = scene.changed_only && query.tree.changed[0][index] == 0;
     for target in query.targets {
         let mut near_leaves = std::mem::take(&mut scratch.near_leaves);
         let first_element = leaf.elements.iter().fold(u32::MAX, |first, &e| first.min(e));
-        gather_leaves(target, &query.tree.leaf_bounds(index), &mut near_leaves, |leaf| {
+        gather_leaves(target, &query.tree.leaf_bounds(index), unchanged, &mut near_leaves, |leaf| {
             // If each pair would be found twice, the larger index is the partner.
             !K::SYMMETRIC || leaf.last_element > first_element
         });
@@ -148,16 +155,17 @@ fn search_leaf<K: PairTest<A, B>, const A: usize, const B: usize, const SWEPT: b
         if count > 0 {
             let start = found.partners.len() as u32;
             found.runs.push(PartnerRange { element: leaf.elements[lane], start, count: count as u32 });
-            append_sorted(&scratch.lists[lane][..count], &mut found.partners);
+            append_sorted(&scratch.lists[lane][..count], &scratch.bounds[lane][..count], &mut found.partners);
         }
     }
 }
 
-/// Leaves whose boxes overlap `bounds` and that are `wanted`.
+/// Leaves whose boxes overlap `bounds` and that are `wanted`; with `changed_only` those that have changed.
 #[inline(always)]
 fn gather_leaves<const V: usize>(
     tree: &Tree<V>,
     bounds: &[[f32; 3]; 2],
+    changed_only: bool,
     leaves: &mut Vec<u32>,
     wanted: impl Fn(&Leaf<V>) -> bool,
 ) {
@@ -171,6 +179,9 @@ fn gather_leaves<const V: usize>(
         depth -= 1;
         let (level, node) = stack[depth];
         let mut mask = overlap(&tree.levels[level as usize][node as usize], bounds);
+        if changed_only {
+            mask &= u32::from(tree.changed[level as usize][node as usize]);
+        }
         while mask != 0 {
             let child = node * LANES as u32 + mask.trailing_zeros();
             mask &= mask - 1;
@@ -209,6 +220,9 @@ fn queue_candidates<K: PairTest<A, B>, const A: usize, const B: usize, const SWE
         }
         let vertices: [u32; A] = std::array::from_fn(|i| leaf.vertices[i][lane]);
         let mut mask = candidates::<K, A, B>(other_boxes, other_leaf, &boxes.lane(lane), element, &vertices);
+        if scene.changed_only && query.changed[0][index] >> lane & 1 == 0 {
+            mask &= u32::from(target.changed[0][other]);
+        }
         if scene.filtered && mask != 0 {
             mask = filter(scene.model, vertices[0], &other_leaf.vertices[0], mask);
         }
@@ -241,14 +255,15 @@ fn test_queue<K: PairTest<A, B>, const A: usize, const B: usize, const SWEPT: bo
     let mut batch = Batch {
         a: [[[0.0; LANES]; 3]; A],
         b: [[[0.0; LANES]; 3]; B],
-        reject: [0.0; LANES],
-        accept: [0.0; LANES],
+        radius: [0.0; LANES],
+        slack: [0.0; LANES],
     };
     let mut remaining = queued;
     for codes in scratch.queue.as_chunks::<LANES>().0.iter().take(queued.div_ceil(LANES)) {
         let present = ((1_u64 << remaining.min(LANES)) - 1) as u32;
         remaining = remaining.saturating_sub(LANES);
         let mut near = present;
+        let mut bounds = [0.0; LANES];
         if !SWEPT {
             for slot in 0..LANES {
                 let (other_leaf, lane, other_lane) = decode(codes[slot]);
@@ -261,11 +276,12 @@ fn test_queue<K: PairTest<A, B>, const A: usize, const B: usize, const SWEPT: bo
                         batch.b[j][k][slot] = other.positions[j][k];
                     }
                 }
-                batch.reject[slot] = own.reject + other.reject;
-                batch.accept[slot] = own.accept + other.accept;
+                batch.radius[slot] = own.radius + other.radius;
+                batch.slack[slot] = own.slack + other.slack;
             }
             let verdicts = classify::<K, A, B>(&batch);
             near &= verdicts.accepted;
+            bounds = verdicts.bounds;
             let mut undecided = present & !(verdicts.accepted | verdicts.rejected);
             while undecided != 0 {
                 let slot = undecided.trailing_zeros() as usize % LANES;
@@ -282,10 +298,13 @@ fn test_queue<K: PairTest<A, B>, const A: usize, const B: usize, const SWEPT: bo
         for slot in 0..LANES {
             let (other_leaf, lane, other_lane) = decode(codes[slot]);
             let (list, length) = (&mut scratch.lists[lane], &mut scratch.lengths[lane]);
+            let list_bounds = &mut scratch.bounds[lane];
             if list.len() <= *length {
                 list.resize(2 * *length + LANES, 0);
+                list_bounds.resize(2 * *length + LANES, 0.0);
             }
             list[*length] = target.leaves[other_leaf].elements[other_lane];
+            list_bounds[*length] = bounds[slot];
             *length += (near >> slot & 1) as usize;
         }
     }

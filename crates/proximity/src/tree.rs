@@ -71,10 +71,10 @@ impl Node {
 pub struct ElementRow<const V: usize> {
     /// Local coordinates of the vertices [m].
     pub positions: [[f32; 3]; V],
-    /// Radius plus the slack that certifies a rejection [m], see [`crate::pair_test`].
-    pub reject: f32,
-    /// Radius less the slack that certifies that a pair is near [m].
-    pub accept: f32,
+    /// Radius [m].
+    pub radius: f32,
+    /// Bound of the rounding error of the test [m], see [`crate::pair_test`].
+    pub slack: f32,
 }
 
 /// The sixteen elements of a leaf, without their boxes.
@@ -97,7 +97,7 @@ impl<const V: usize> Leaf<V> {
     const EMPTY: Self = Self {
         elements: [u32::MAX; LANES],
         vertices: [[u32::MAX; LANES]; V],
-        rows: [ElementRow { positions: [[0.0; 3]; V], reject: 0.0, accept: 0.0 }; LANES],
+        rows: [ElementRow { positions: [[0.0; 3]; V], radius: 0.0, slack: 0.0 }; LANES],
         last_element: 0,
         extent: 0.0,
     };
@@ -114,6 +114,9 @@ pub struct Tree<const V: usize> {
     /// Boxes at the start and the end of a motion; level 0 then holds their hull. Empty if the last refit was
     /// without motion.
     pub sweep: Vec<[Node; 2]>,
+    /// For each level and node, the children of which some vertex has changed, one bit each: those that
+    /// [`Self::refit_changed`] has refitted.
+    pub changed: Vec<Vec<u16>>,
     len: usize,
     /// Sum of the extents of the leaves when the tree was built.
     built_extent: f64,
@@ -175,6 +178,7 @@ impl<const V: usize> Tree<V> {
             }
             count = count.div_ceil(LANES);
         }
+        self.changed = self.levels.iter().map(|level| vec![0; level.len()]).collect();
         self.built_extent = f64::NAN;
     }
 
@@ -238,6 +242,42 @@ impl<const V: usize> Tree<V> {
         }
     }
 
+    /// Refits the boxes of the elements with a vertex that has `changed`, and notes which those are: none if
+    /// it is not given.
+    pub fn refit_changed(&mut self, local: &[LocalVertex], changed: Option<&[bool]>) {
+        let Some(changed) = changed.filter(|_| !self.is_empty()) else {
+            return self.changed.iter_mut().for_each(|level| level.fill(0));
+        };
+        self.sweep.clear();
+        let (leaf_marks, inner_marks) = self.changed.split_at_mut(1);
+        let (elements, inner) = self.levels.split_at_mut(1);
+        elements[0]
+            .par_chunks_mut(REFIT_CHUNK)
+            .zip(self.leaves.par_chunks_mut(REFIT_CHUNK))
+            .zip(leaf_marks[0].par_chunks_mut(REFIT_CHUNK))
+            .for_each(|((nodes, leaves), marks)| {
+                for ((node, leaf), mark) in nodes.iter_mut().zip(leaves).zip(marks) {
+                    *mark = changed_lanes(leaf, changed);
+                    if *mark != 0 {
+                        refit_leaf(local, node, leaf);
+                    }
+                }
+            });
+        let (mut below, mut marks_below) = (&elements[0], &leaf_marks[0]);
+        for (level, marks) in inner.iter_mut().zip(inner_marks) {
+            for (n, (node, mark)) in level.iter_mut().zip(&mut *marks).enumerate() {
+                *mark = 0;
+                for child in n * LANES..((n + 1) * LANES).min(below.len()) {
+                    if marks_below[child] != 0 {
+                        *mark |= 1 << (child % LANES);
+                        node.set_lane(child % LANES, below[child].bounds());
+                    }
+                }
+            }
+            (below, marks_below) = (level, marks);
+        }
+    }
+
     /// Whether the leaves have grown so much that rebuilding is worth its cost.
     pub fn is_stale(&self) -> bool {
         self.extent() > STALE_GROWTH * self.built_extent
@@ -246,6 +286,15 @@ impl<const V: usize> Tree<V> {
     fn extent(&self) -> f64 {
         self.leaves.iter().map(|leaf| f64::from(leaf.extent)).sum()
     }
+}
+
+/// The elements of a leaf with a vertex that has `changed`, one bit each.
+#[inline(always)]
+fn changed_lanes<const V: usize>(leaf: &Leaf<V>, changed: &[bool]) -> u16 {
+    (0..LANES).filter(|&lane| leaf.elements[lane] != u32::MAX).fold(0, |mark, lane| {
+        let any = leaf.vertices.iter().any(|vertices| changed[vertices[lane] as usize]);
+        mark | u16::from(any) << lane
+    })
 }
 
 /// Boxes, positions and radii of a leaf's elements.
@@ -285,10 +334,8 @@ fn refit_leaf<const V: usize>(local: &[LocalVertex], node: &mut Node, leaf: &mut
             node.low[k][lane] = (low[k] - radius) - margin;
             node.high[k][lane] = (high[k] + radius) + margin;
         }
-        leaf.rows[lane].reject =
-            radius * (1.0 + 16.0 * UNIT_ROUNDOFF) + (80.0 * UNIT_ROUNDOFF * largest + 1e-18);
-        leaf.rows[lane].accept =
-            radius * (1.0 - 16.0 * UNIT_ROUNDOFF) - (128.0 * UNIT_ROUNDOFF * largest + 1e-18);
+        leaf.rows[lane].radius = radius;
+        leaf.rows[lane].slack = 80.0 * UNIT_ROUNDOFF * largest + 1e-18;
     }
     leaf.extent = larger(0.0, (0..3).map(|k| all[1][k] - all[0][k]).sum());
 }

@@ -20,6 +20,7 @@ fn check<K: PairTest<A, B>, const A: usize, const B: usize>(place: f64) {
     let mut random = Rng::with_seed(K::KIND as u64 + 17);
     let origin = Point::new(1.0, 2.0, -1.0);
     let mut counts = [0; 3];
+    let mut tight = 0;
     for round in 0..20_000 {
         let center = origin + vector(&mut random, place);
         // Some pairs are flat, aligned or nearly touching.
@@ -51,12 +52,15 @@ fn check<K: PairTest<A, B>, const A: usize, const B: usize>(place: f64) {
         let batch = Batch {
             a: a.positions.map(|p| p.map(|x| [x; LANES])),
             b: b.positions.map(|p| p.map(|x| [x; LANES])),
-            reject: [a.reject + b.reject; LANES],
-            accept: [a.accept + b.accept; LANES],
+            radius: [a.radius + b.radius; LANES],
+            slack: [a.slack + b.slack; LANES],
         };
         let verdicts = classify::<K, A, B>(&batch);
         // The oracle is right to 8 units of the pair's size.
         let rounding = 1e-16 * 16.0 * 0.03;
+        let bound = f64::from(verdicts.bounds[0]);
+        assert!(bound <= distance + rounding, "{points:?} at {distance} not below {bound}");
+        tight += usize::from(bound >= 0.99 * distance - 4.0 * f64::from(batch.slack[0]));
         if verdicts.rejected & 1 != 0 {
             assert!(distance > radii - rounding, "{points:?} at {distance} rejected for {radii}");
             counts[0] += 1;
@@ -68,6 +72,7 @@ fn check<K: PairTest<A, B>, const A: usize, const B: usize>(place: f64) {
         }
     }
     assert!(counts.iter().all(|&count| count > 500), "{counts:?}");
+    assert!(tight > 19_000, "{tight}");
 }
 
 #[test]
