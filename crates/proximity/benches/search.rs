@@ -30,7 +30,8 @@ fn search(criterion: &mut Criterion) {
         });
         let old = pairs.clone();
         group.bench_function(BenchmarkId::new("match_with", vertices), |bencher| {
-            bencher.iter(|| pairs.match_with(&old));
+            let mut matches = Vec::new();
+            bencher.iter(|| pairs.match_with(&old, &mut matches));
         });
         group.finish();
     }

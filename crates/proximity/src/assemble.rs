@@ -1,8 +1,7 @@
 //! The pairs in order, with their contact geometry.
 
-use crate::candidates::Candidate;
 use crate::narrow::separate_all;
-use crate::pairs::Pair;
+use crate::pairs::{Candidate, Pair};
 use crate::traverse::{PartnerRange, TaskResult};
 use bowknot_geometry::{CollisionModel, PairKind, Point, Separation};
 use rayon::prelude::*;

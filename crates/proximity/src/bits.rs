@@ -1,7 +1,7 @@
 //! Flags of sixteen lanes as bits, lists of bits, and short sorts, without branches. In their usual form
 //! these parts of the traversal would stall on branches that cannot be predicted.
 
-use crate::candidates::Candidate;
+use crate::pairs::Candidate;
 use crate::tree::LANES;
 
 /// A flag as a byte that [`bits`] understands.

@@ -2,6 +2,7 @@
 //! certified lower bound of the distance.
 
 use crate::assemble::PartnerTable;
+use crate::pairs::Candidate;
 use crate::traverse::TaskResult;
 use bowknot_geometry::{PairKind, Topology};
 use rayon::prelude::*;
@@ -9,15 +10,6 @@ use std::ops::Range;
 
 /// Elements whose partners one task writes.
 const CHUNK: usize = 512;
-
-/// A partner of an element: 8 bytes.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Candidate {
-    /// The element of side *b*, by index.
-    pub element: u32,
-    /// Certified lower bound of the distance at the positions of the search [m], at least 0.
-    pub bound: f32,
-}
 
 /// Candidate pairs of all kinds but [`PairKind::VertexHalfSpace`]. It is filled by
 /// [`ProximitySearch::update`](crate::ProximitySearch::update).

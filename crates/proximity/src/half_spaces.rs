@@ -2,30 +2,36 @@
 //! the vertex counts twice.
 
 use crate::pairs::Pair;
-use bowknot_geometry::{HalfSpace, Point, Vector, separation};
+use bowknot_geometry::{CollisionModel, HalfSpace, Point, Vector, separation};
 use rayon::prelude::*;
 
 /// Vertices that one task tests.
 const CHUNK: usize = 4096;
 
-/// Lists the pairs of `vertices` (ascending) and half-spaces, in order. With `displacements` it lists the
-/// pairs that come near at some time of the motion: the distance is linear in time, so it is smallest at the
-/// start or at the end.
+/// Lists the pairs of deformable vertices and half-spaces, in order, whose certified distance is at most twice
+/// the `radius` of the vertex [m]. With `displacements` it lists the pairs that come near at some time of the
+/// motion: the distance is linear in time, so it is smallest at the start or at the end.
+///
+/// The pairs stand in `chunks`, one list after the other.
 pub fn near_half_spaces(
-    half_spaces: &[HalfSpace],
-    vertices: &[u32],
+    model: &CollisionModel,
     positions: &[Point],
     displacements: Option<&[Vector]>,
-    radii: &[f64],
+    radius: impl Fn(usize) -> f64 + Sync,
     chunks: &mut Vec<Vec<Pair>>,
 ) {
+    let half_spaces = model.half_spaces();
+    if half_spaces.is_empty() {
+        return chunks.clear();
+    }
+    let vertices = &model.topology().surface_vertices;
     chunks.resize_with(vertices.len().div_ceil(CHUNK), Vec::new);
     vertices.par_chunks(CHUNK).zip(chunks.par_iter_mut()).for_each(|(vertices, found)| {
         found.clear();
-        for &v in vertices {
+        for &v in vertices.iter().filter(|&&v| !model.is_obstacle(v)) {
             let start = positions[v as usize];
             let end = displacements.map(|u| start + u[v as usize]);
-            let radius = 2.0 * radii[v as usize];
+            let radius = 2.0 * radius(v as usize);
             for (half_space, index) in half_spaces.iter().zip(0..) {
                 // Each coordinate of the end is off by up to half a unit in its last place.
                 let reaches =

@@ -32,9 +32,10 @@ mod tree;
 pub use bowknot_geometry as geometry;
 
 pub use bowknot_geometry::{BodyFilter, CollisionModel, ModelError};
-pub use candidates::{Candidate, CandidateList, Candidates};
+pub use candidates::{CandidateList, Candidates};
+pub use half_spaces::near_half_spaces;
 pub use narrow::separate_all;
-pub use pairs::{Pair, PairList};
+pub use pairs::{Candidate, Pair, PairList};
 pub use search::ProximitySearch;
 pub use statistics::SearchStatistics;
 

@@ -3,6 +3,15 @@
 use bowknot_geometry::{PairKind, Topology};
 use std::ops::Range;
 
+/// A partner of an element in a [`CandidateList`](crate::CandidateList): 8 bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Candidate {
+    /// The element of side *b*, by index.
+    pub element: u32,
+    /// Certified lower bound of the distance at the positions of the search [m], at least 0.
+    pub bound: f32,
+}
+
 /// A pair of primitives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Pair {
@@ -55,17 +64,19 @@ impl PairList {
     /// A list from the pairs of each kind in the order of [`PairKind::ALL`]; each is sorted.
     pub fn from_kinds(kinds: [Vec<Pair>; 5]) -> Self {
         let mut list = Self::default();
-        list.refill(kinds.iter().map(Vec::as_slice));
+        list.refill(&kinds.map(|pairs| [pairs]));
         list
     }
 
-    /// Replaces the content and keeps the allocation. `kinds` yields five slices, one per kind.
-    pub fn refill<'a>(&mut self, kinds: impl Iterator<Item = &'a [Pair]>) {
+    /// Replaces the content and keeps the allocation. `kinds` has some lists of pairs of each kind, which are
+    /// joined and sorted.
+    pub fn refill(&mut self, kinds: &[impl AsRef<[Vec<Pair>]>; 5]) {
         self.pairs.clear();
         self.starts = [0; 6];
-        for (k, pairs) in kinds.enumerate() {
+        for (k, lists) in kinds.iter().enumerate() {
             let start = self.pairs.len();
-            self.pairs.extend_from_slice(pairs);
+            lists.as_ref().iter().for_each(|list| self.pairs.extend_from_slice(list));
+            // Takes linear time for lists that are sorted.
             self.pairs[start..].sort_unstable();
             self.starts[k + 1] = self.pairs.len();
         }
@@ -82,13 +93,32 @@ impl PairList {
         &mut self.pairs
     }
 
+    /// Keeps the pairs that `keep` accepts; it is called with index, kind and pair, in order.
+    pub fn retain(&mut self, mut keep: impl FnMut(usize, PairKind, &Pair) -> bool) {
+        let mut end = 0;
+        for kind in PairKind::ALL {
+            let range = self.range(kind);
+            self.starts[kind as usize] = end;
+            for p in range {
+                let pair = self.pairs[p];
+                if keep(p, kind, &pair) {
+                    self.pairs[end] = pair;
+                    end += 1;
+                }
+            }
+        }
+        self.starts[PairKind::ALL.len()] = end;
+        self.pairs.truncate(end);
+    }
+
     /// For each pair, the index of the same pair in another list, or `u32::MAX` if that list does not have
-    /// it.
+    /// it. They replace the content of `matches`.
     ///
     /// One pass over both lists, which are sorted. It serves to carry data of pairs, such as multipliers,
     /// from an old list to a new one.
-    pub fn match_with(&self, old: &PairList) -> Vec<u32> {
-        let mut matches = Vec::with_capacity(self.len());
+    pub fn match_with(&self, old: &PairList, matches: &mut Vec<u32>) {
+        matches.clear();
+        matches.reserve(self.len());
         for kind in PairKind::ALL {
             let range = old.range(kind);
             let mut next = range.start;
@@ -100,7 +130,6 @@ impl PairList {
                 matches.push(if same { next as u32 } else { u32::MAX });
             }
         }
-        matches
     }
 
     /// All pairs.

@@ -184,14 +184,7 @@ impl ProximitySearch {
         let filtered = self.collisions.some_forbidden;
         let scene = Scene { model, positions, radii, filtered, changed_only: false };
         self.search_kinds::<SWEPT>(&scene);
-        near_half_spaces(
-            model.half_spaces(),
-            &self.deformable,
-            positions,
-            displacements,
-            radii,
-            &mut self.half_space_pairs,
-        );
+        near_half_spaces(model, positions, displacements, |v| radii[v], &mut self.half_space_pairs);
         self.write(model, positions, pairs, separations);
         self.count(pairs.len());
         self.updated = false;

@@ -1,10 +1,10 @@
 //! Tests of elements against trees: which pairs are listed.
 
 use crate::bits::{append_places, append_sorted, bits, flag};
-use crate::candidates::Candidate;
 use crate::frame::UNIT_ROUNDOFF;
 use crate::narrow::separate_one;
 use crate::pair_test::{Batch, PairTest, classify};
+use crate::pairs::Candidate;
 use crate::tree::{LANES, Leaf, Node, Tree};
 use bowknot_geometry::{CollisionModel, Point};
 

@@ -15,10 +15,11 @@ pub struct ForwardParams {
     /// How far vertices may travel between two searches. Default per-vertex.
     pub trust_region: TrustRegionRule,
     /// Smallest radius of a trust region: in local edge lengths for `per-vertex` (default 0.1; with smaller
-    /// ones contacts come and go), in `delta` for `uniform` (D_min/2; paper: 2 delta / 2).
+    /// ones pairs are searched more often), in `delta` for `uniform` (D_min/2; paper: 2 delta / 2).
     pub trust_region_min: f64,
-    /// Largest radius of a trust region, in the same units (default 0.25; larger ones find many more pairs;
-    /// paper: D_max/2 = 4 delta / 2).
+    /// Longest travel of a vertex in a step, in local edge lengths, for `per-vertex` (default 0.35; larger
+    /// ones find many more pairs); radius of the trust regions, in `delta`, for `uniform` (paper: D_max/2 =
+    /// 4 delta / 2).
     pub trust_region_max: f64,
     /// Wanted travel, in mean edge lengths, above which the search follows the vertices along their paths
     /// while no contact presses. Larger: more steps in free flight. `inf` switches it off. Default 0.6.
@@ -42,7 +43,7 @@ pub enum TrustRegionRule {
     /// One distance for all vertices: the next search is due when the fastest vertex has used it up (paper,
     /// Algorithm 1).
     Uniform,
-    /// One ball per vertex, as large as the travel that the vertex wants.
+    /// One ball per vertex, about the path that the vertex wants to take.
     PerVertex,
 }
 
@@ -53,7 +54,7 @@ impl Default for ForwardParams {
             damping: 0.9,
             trust_region: TrustRegionRule::PerVertex,
             trust_region_min: 0.1,
-            trust_region_max: 0.25,
+            trust_region_max: 0.35,
             swept_travel: 0.6,
         }
     }

@@ -51,6 +51,8 @@ pub struct Stepper {
     /// Bits of alpha. Nonnegative floats are ordered as their bits are, so an atomic minimum of bits is a
     /// minimum of the numbers, and it gives the same result in any order.
     alphas: Vec<AtomicU64>,
+    /// Largest alpha of each vertex, whatever its pairs: planes are shared as if it went that far.
+    caps: Vec<f64>,
     /// The paper's r of each vertex.
     remaining_fractions: Vec<f64>,
     /// Group of each vertex, [`Self::NO_GROUP`] for none. Empty: no groups.
@@ -96,8 +98,36 @@ impl Stepper {
             }
         }
         self.alphas.iter_mut().for_each(|a| *a.get_mut() = 1.0f64.to_bits());
+        self.caps.clear();
+        self.caps.resize(positions.len(), 1.0);
         self.rounding = Some(Rounding::new(largest));
         not_finite
+    }
+
+    /// Lets no vertex travel farther than `longest(vertex)` [m]. Call it before the pairs limit the step: they
+    /// then share their gaps between the travels that remain. `obstacle_vertices` and the groups, of which
+    /// there are `group_count`, still move as one, see [`Self::limit_by_bodies`].
+    pub fn cap_travel(
+        &mut self,
+        model: &CollisionModel,
+        obstacle_vertices: &[u32],
+        group_count: usize,
+        longest: impl Fn(usize) -> f64,
+    ) {
+        for v in 0..self.displacements.len() {
+            self.limit_length(v, longest(v));
+        }
+        self.limit_by_bodies(model, obstacle_vertices);
+        self.limit_by_groups(group_count);
+        for v in 0..self.caps.len() {
+            self.caps[v] = self.alpha(v);
+        }
+    }
+
+    /// Largest step size of a vertex, whatever its pairs: 1, or what [`Self::cap_travel`] has left.
+    #[inline]
+    pub fn cap(&self, vertex: usize) -> f64 {
+        self.caps[vertex]
     }
 
     /// Wanted displacements d = y - x of this step [m].
@@ -131,21 +161,37 @@ impl Stepper {
     /// Limits the vertices of every pair by the pair's slab. Returns the number of frozen pairs: those for
     /// which no direction certifies a gap above rounding.
     pub fn limit_by_planes(&self, contacts: &Contacts<'_>, damping: f64) -> usize {
-        let rounding = self.rounding();
         let frozen = AtomicUsize::new(0);
         for kind in PairKind::ALL {
             contacts.pairs.range(kind).into_par_iter().with_min_len(CHUNK).for_each(|p| {
                 let vertices = &contacts.pairs.pairs()[p].vertices;
-                let separation = &contacts.separations[p];
-                if separation.width > rounding.frozen {
-                    let min_separation = contacts.min_separations[p];
-                    self.limit_pair(kind, vertices, separation, min_separation, damping, rounding.step);
-                } else if self.freeze(kind, vertices) {
+                let (separation, min_separation) = (&contacts.separations[p], contacts.min_separations[p]);
+                if self.limit_by_plane(kind, vertices, separation, min_separation, damping) {
                     frozen.fetch_add(1, Ordering::Relaxed);
                 }
             });
         }
         frozen.into_inner()
+    }
+
+    /// Limits the vertices of one pair by its slab, see [`Self::limit_by_planes`]. Returns whether the pair
+    /// is frozen.
+    #[inline]
+    pub fn limit_by_plane(
+        &self,
+        kind: PairKind,
+        vertices: &[u32; 4],
+        separation: &Separation,
+        min_separation: f64,
+        damping: f64,
+    ) -> bool {
+        let rounding = self.rounding();
+        if separation.width > rounding.frozen {
+            self.limit_pair(kind, vertices, separation, min_separation, damping, rounding.step);
+            false
+        } else {
+            self.freeze(kind, vertices)
+        }
     }
 
     /// As [`Self::limit_by_planes`], for vertices that move along `paths` [m], all at the same path time t in
@@ -220,7 +266,8 @@ impl Stepper {
         let mut closing = [0.0f64; 4];
         let mut speeds = [0.0f64; 2];
         for k in 0..count {
-            let along = n.dot(&self.displacements[vertices[k] as usize]);
+            let v = vertices[k] as usize;
+            let along = n.dot(&self.displacements[v]) * self.caps[v];
             closing[k] = if k < side_a { -along } else { along };
             let side = usize::from(k >= side_a);
             speeds[side] = speeds[side].max(closing[k]);
@@ -231,8 +278,8 @@ impl Stepper {
         }
         for k in 0..count {
             if closing[k] > 0.0 {
-                let share = speeds[usize::from(k >= side_a)] / total;
-                self.limit(vertices[k] as usize, (allowed * share / closing[k]).min(1.0));
+                let (v, share) = (vertices[k] as usize, speeds[usize::from(k >= side_a)] / total);
+                self.limit(v, (allowed * share / closing[k]).min(1.0) * self.caps[v]);
             }
         }
     }
@@ -305,8 +352,8 @@ impl Stepper {
         }
     }
 
-    /// Keeps every vertex in its trust region. Returns whether a trust region, rather than a pair, limits
-    /// some vertex: then the pairs should be searched again.
+    /// Keeps every vertex in its trust region. Returns whether a trust region, rather than a pair or a cap,
+    /// limits some vertex: then the pairs should be searched again.
     pub fn limit_by_trust_regions(&self, positions: &[Point], trust_regions: &TrustRegions) -> bool {
         (0..positions.len())
             .into_par_iter()

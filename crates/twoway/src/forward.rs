@@ -1,11 +1,13 @@
 //! The default forward stage.
 
 use crate::scene::CollisionScene;
+use crate::search::longest_path;
 use crate::stages::{Coverage, ForwardStep, Search};
 use crate::state::ResolveState;
 use crate::statistics::Statistics;
 use bowknot_geometry::Vector;
-use bowknot_stepper::{Bound, StepReport, Stepper};
+use bowknot_stepper::{Bound, StepReport, Stepper, TrustRegionRule};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Largest travel of a vertex in a swept step, in local edge lengths.
 const MAX_SWEPT_TRAVEL: f64 = 4.0;
@@ -35,6 +37,10 @@ pub struct CertifiedForward {
 }
 
 impl ForwardStep for CertifiedForward {
+    fn visits_ahead(&self) -> bool {
+        true
+    }
+
     fn begin(&mut self, scene: &CollisionScene, state: &ResolveState) {
         self.stepper.begin(scene.vertex_count());
         self.stepper.set_groups(state.call.groups().of_vertices());
@@ -51,25 +57,8 @@ impl ForwardStep for CertifiedForward {
         self.stepper.set_target(&state.x, &state.y);
         self.held.clear();
         if !self.sweep(scene, state, search, statistics) {
-            let damping = scene.params().solver.forward.damping;
-            let contacts = state.contacts.as_contacts();
-            statistics.frozen_pairs += match scene.params().solver.forward.bound {
-                Bound::Planes => self.stepper.limit_by_planes(&contacts, damping),
-                Bound::Isotropic => self.stepper.limit_by_distances(&contacts, damping),
-            };
-            self.limit_bodies(scene, state);
-            self.note_held(state);
-            match search.coverage() {
-                Coverage::Distance(distance) => {
-                    let room = distance - scene.spacing().largest_min_separation();
-                    self.stepper.limit_by_non_candidates(room, damping);
-                }
-                Coverage::TrustRegions(trust_regions) => {
-                    if self.stepper.limit_by_trust_regions(&state.x, trust_regions) {
-                        search.request();
-                    }
-                }
-            }
+            self.stepper.set_target(&state.x, &state.y);
+            self.step_within_trust_regions(scene, state, search, statistics);
         }
         self.limit_bodies(scene, state);
         let unhindered_lag = self.unhindered_lag(state);
@@ -79,6 +68,53 @@ impl ForwardStep for CertifiedForward {
 }
 
 impl CertifiedForward {
+    /// Limits a step within the trust regions: by the pairs at x, and by those that it could reach.
+    fn step_within_trust_regions(
+        &mut self,
+        scene: &CollisionScene,
+        state: &mut ResolveState,
+        search: &mut dyn Search,
+        statistics: &mut Statistics,
+    ) {
+        let params = &scene.params().solver.forward;
+        let damping = params.damping;
+        search.cover(scene, state, self.stepper.displacements(), statistics);
+        if params.trust_region == TrustRegionRule::PerVertex {
+            let groups = state.call.groups().count();
+            let longest = |v| longest_path(scene, v);
+            self.stepper.cap_travel(scene.model(), scene.obstacle_vertices(), groups, longest);
+        }
+        let contacts = state.contacts.as_contacts();
+        match params.bound {
+            Bound::Planes => {
+                statistics.frozen_pairs += self.stepper.limit_by_planes(&contacts, damping);
+                let (stepper, frozen) = (&self.stepper, AtomicUsize::new(0));
+                search.visit_ahead(scene, state, stepper.displacements(), &|kind, vertices, at, least| {
+                    if stepper.limit_by_plane(kind, vertices, at, least, damping) {
+                        frozen.fetch_add(1, Ordering::Relaxed);
+                    }
+                });
+                statistics.frozen_pairs += frozen.into_inner();
+            }
+            Bound::Isotropic => {
+                statistics.frozen_pairs += self.stepper.limit_by_distances(&contacts, damping);
+            }
+        }
+        self.limit_bodies(scene, state);
+        self.note_held(state);
+        match search.coverage() {
+            Coverage::Distance(distance) => {
+                let room = distance - scene.spacing().largest_min_separation();
+                self.stepper.limit_by_non_candidates(room, damping);
+            }
+            Coverage::TrustRegions(trust_regions) => {
+                if self.stepper.limit_by_trust_regions(&state.x, trust_regions) {
+                    search.request();
+                }
+            }
+        }
+    }
+
     /// Takes a long step where one pays and no contact presses: limits it by every pair that could meet along
     /// it, with all vertices at the same path time. Returns whether it did. If not, the step sizes so far are
     /// valid limits, but other limits are still missing.
@@ -160,7 +196,12 @@ impl CertifiedForward {
     fn note_held(&mut self, state: &ResolveState) {
         let Self { held, stepper, .. } = self;
         held.extend(
-            state.call.prescribed().iter().enumerate().map(|(v, given)| *given && stepper.alpha(v) < 1.0),
+            state
+                .call
+                .prescribed()
+                .iter()
+                .enumerate()
+                .map(|(v, given)| *given && stepper.alpha(v) < stepper.cap(v)),
         );
     }
 

@@ -65,7 +65,7 @@ pub use row_solver::{ColoredSweeps, RowSolver, RowSystem};
 pub use scene::{CollisionScene, Lengths};
 pub use search::TrustRegionSearch;
 pub use spacing::{MIN_SEPARATION_MARGIN, PairSpacing, Spacing};
-pub use stages::{BackwardStep, Coverage, ForwardStep, Search};
+pub use stages::{AheadVisitor, BackwardStep, Coverage, ForwardStep, Search};
 pub use state::{ContactSet, ResolveState};
 pub use statistics::{Skipped, StageSeconds, Statistics};
 pub use stop::{Residuals, StopParams, StopRule};

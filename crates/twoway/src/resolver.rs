@@ -226,7 +226,7 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
         let Self { scene, state, search, backward, forward } = self;
         let call = CallInput::new(scene, positions, target, input)?;
         state.begin(positions, target, call);
-        search.begin(scene, state);
+        search.begin(scene, state, !forward.visits_ahead());
         backward.begin(scene, state);
         forward.begin(scene, state);
         Ok(())
@@ -235,11 +235,10 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
     /// Adds what is known only at the end of a call to the statistics.
     fn finish(&mut self, statistics: &mut Statistics) {
         let Self { scene, state, search, backward, .. } = self;
-        // Contact geometry at the final x, for the smallest gap.
-        search.refresh(scene, state, statistics);
+        search.finish(scene, state, statistics);
         backward.finish(scene, state, statistics);
         statistics.steps = state.step;
-        statistics.pairs = state.contacts.pairs.len();
+        statistics.pairs = search.candidate_count();
         statistics.min_gap_m = state.contacts.separations.iter().map(|s| s.distance).reduce(f64::min);
         let (mut sum, mut free) = (0.0, 0usize);
         for v in 0..state.x.len() {

@@ -116,7 +116,8 @@ impl CollisionScene {
         self.mean_mass
     }
 
-    /// Mean rest length of the edges at a vertex [m]; the mean edge length of the scene if it has none.
+    /// Mean rest length of the edges at a vertex [m]; the mean edge length of the scene if it has none or
+    /// belongs to an obstacle.
     #[inline]
     pub fn local_edge(&self, vertex: usize) -> f64 {
         self.local_edges[vertex]
@@ -281,15 +282,11 @@ fn edge_lengths(
         let diagonal = (high - low).norm();
         if diagonal > 0.0 { 0.01 * diagonal } else { 0.01 }
     };
-    // The edges of an obstacle may be far longer than those of the cloth that it meets; its trust regions
-    // follow the shorter ones.
+    // The mesh of an obstacle says nothing about how far what it meets can move.
     let local = sums
         .iter()
         .enumerate()
-        .map(|(v, &(sum, n))| {
-            let own = if n > 0 && sum > 0.0 { sum / f64::from(n) } else { mean };
-            if obstacle[v] { own.min(mean) } else { own }
-        })
+        .map(|(v, &(sum, n))| if n > 0 && sum > 0.0 && !obstacle[v] { sum / f64::from(n) } else { mean })
         .collect();
     (mean, local)
 }

@@ -161,6 +161,14 @@ impl Spacing {
         }
     }
 
+    /// Distance within which a pair is a candidate, whatever moves [m]: its margins, at least the distance
+    /// within which it becomes a row.
+    #[inline]
+    pub fn reach(&self, model: &CollisionModel, kind: PairKind, pair: &Pair) -> f64 {
+        let margin = |place: usize| self.margin(model.vertex_body()[pair.vertices[place] as usize]);
+        margin(0) + if kind == PairKind::VertexHalfSpace { margin(0) } else { margin(kind.side_a()) }
+    }
+
     /// The part of [`Self::margin`] without which pairs that are no candidates could come closer than a
     /// guaranteed minimum separation [m].
     #[inline]

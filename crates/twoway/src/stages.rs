@@ -4,17 +4,42 @@ use crate::scene::CollisionScene;
 use crate::state::ResolveState;
 use crate::statistics::Statistics;
 use crate::stop::Residuals;
-use bowknot_geometry::Vector;
+use bowknot_geometry::{PairKind, Separation, Vector};
 use bowknot_stepper::{StepReport, TrustRegions};
 
 /// Finds the candidate pairs that the other stages work on.
 pub trait Search: Send {
-    /// Starts a call.
-    fn begin(&mut self, scene: &CollisionScene, state: &mut ResolveState);
+    /// Starts a call. `complete`: whether `state.contacts` must have every pair that could meet within the
+    /// trust regions. Otherwise it may lack pairs beyond contact range, and the forward stage asks for them
+    /// by [`Self::visit_ahead`].
+    fn begin(&mut self, scene: &CollisionScene, state: &mut ResolveState, complete: bool);
 
-    /// Makes `state.contacts` valid for `state.x`: it then has every pair that could meet within the trust
-    /// regions, with its contact geometry.
+    /// Makes `state.contacts` valid for `state.x`: it then has every pair within contact range, or every pair
+    /// that could meet, with its contact geometry.
     fn update(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics);
+
+    /// Makes trust regions hold the moves along `displacements` [m] from `state.x`, each at most
+    /// `solver.forward.trust_region_max` long, and the candidate pairs valid for them. Stages whose trust
+    /// regions do not follow displacements need nothing.
+    fn cover(
+        &mut self,
+        _scene: &CollisionScene,
+        _state: &mut ResolveState,
+        _displacements: &[Vector],
+        _statistics: &mut Statistics,
+    ) {
+    }
+
+    /// Calls `visit` with every pair that is not in `state.contacts` and could limit such moves. There is
+    /// none if `state.contacts` is complete.
+    fn visit_ahead(
+        &mut self,
+        _scene: &CollisionScene,
+        _state: &ResolveState,
+        _displacements: &[Vector],
+        _visit: &AheadVisitor<'_>,
+    ) {
+    }
 
     /// Instead finds every pair that could meet while the vertices move from x along `displacements`, all at
     /// the same path time, and deviate from there by at most `deviations` [m].
@@ -27,15 +52,21 @@ pub trait Search: Send {
         statistics: &mut Statistics,
     );
 
-    /// Updates the contact geometry of the candidate pairs to `state.x`, without a search.
-    fn refresh(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics);
+    /// Makes `state.contacts` valid for `state.x` at the end of a call.
+    fn finish(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics);
 
     /// Asks for a search in the next update.
     fn request(&mut self);
 
     /// How far vertices may go with the present candidates.
     fn coverage(&self) -> Coverage<'_>;
+
+    /// Number of pairs that the last search has listed.
+    fn candidate_count(&self) -> usize;
 }
+
+/// Is called with kind, vertices, contact geometry and minimum separation [m] of a pair, by several threads.
+pub type AheadVisitor<'a> = dyn Fn(PairKind, &[u32; 4], &Separation, f64) + Sync + 'a;
 
 /// How far vertices may go before the list of candidate pairs is incomplete.
 #[derive(Clone, Copy, Debug)]
@@ -74,6 +105,12 @@ pub trait BackwardStep: Send {
 
 /// Moves x toward y on paths without intersections.
 pub trait ForwardStep: Send {
+    /// Whether the stage asks the search for pairs beyond contact range by [`Search::visit_ahead`]. If not,
+    /// `state.contacts` has all pairs that could meet.
+    fn visits_ahead(&self) -> bool {
+        false
+    }
+
     /// Starts a call.
     fn begin(&mut self, scene: &CollisionScene, state: &ResolveState);
 

@@ -19,7 +19,7 @@ const DEFAULT_RESIDUAL: f64 = 1e-4;
 pub struct StopParams {
     /// Largest number of two-way steps, the paper's L. Default: by the time step, 512 up to dt = 1/100 s,
     /// 2048 from dt = 1/20 s, linear in dt between. In a simulation, a call that another Newton iteration
-    /// follows ends after 128.
+    /// follows ends after 24.
     pub max_steps: Option<usize>,
     /// Largest wall time of one call [s]. Default: no limit.
     pub max_seconds: Option<f64>,

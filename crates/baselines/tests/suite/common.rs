@@ -141,7 +141,7 @@ pub fn with_candidates(
         call: CallInput::new(collision, x, target, &input).unwrap(),
         ..ResolveState::default()
     };
-    search.begin(collision, &mut state);
+    search.begin(collision, &mut state, true);
     search.update(collision, &mut state, &mut Statistics::default());
     state
 }

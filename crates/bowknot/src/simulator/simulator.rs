@@ -30,10 +30,10 @@ use std::time::Instant;
 /// How many intersecting pairs of a refused start are named.
 const NAMED_PAIRS: usize = 5;
 
-/// Largest number of two-way steps of a collision stage that is not the last of its time step. Where folds
-/// lock each other on the way to a target that is far from the solution, the target of the next iteration is
-/// nearer.
-const MAX_INTERMEDIATE_STEPS: usize = 128;
+/// Largest number of two-way steps of a collision stage that is not the last of its time step. On the way to
+/// a target that is far from the solution folds lock each other, while the target of the next iteration knows
+/// the contacts that were found on the way.
+const MAX_INTERMEDIATE_STEPS: usize = 24;
 
 /// A running simulation.
 #[derive(Debug)]

@@ -42,7 +42,8 @@ fn an_old_list_is_matched_with_a_new_one() {
     let mut random = Random::new(3);
     scene.positions.iter_mut().for_each(|p| *p += random.vector(0.002));
     let (new, _) = scene.search();
-    let matches = new.match_with(&old);
+    let mut matches = Vec::new();
+    new.match_with(&old, &mut matches);
     assert_eq!(matches.len(), new.len());
     let mut both = 0;
     for (i, pair) in new.pairs().iter().enumerate() {
