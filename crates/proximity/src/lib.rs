@@ -8,7 +8,8 @@
 //!    obstacles that move (refitted) and of obstacles at rest (kept);
 //! 3. `traverse`, `pair_test`: every element against the trees; a certified `f32` test decides all but a few
 //!    pairs, and [`bowknot_geometry::separation::separate`] decides those;
-//! 4. `assemble`, `narrow`: the pairs in order, with their contact geometry.
+//! 4. `assemble`, `narrow`: the pairs in order, with their contact geometry; or `candidates`: a compact list
+//!    that takes the pairs of vertices that have changed.
 
 mod assemble;
 mod bits;

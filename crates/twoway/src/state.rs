@@ -18,7 +18,8 @@ pub struct ResolveState {
     pub previous: Vec<Point>,
     /// y^(l), the target as modified by the backward step [m].
     pub y: Vec<Point>,
-    /// Candidate pairs and what belongs to them.
+    /// The candidate pairs in contact range, or all of them, and what belongs to them; see
+    /// [`crate::Search::begin`].
     pub contacts: ContactSet,
     /// Number of two-way steps taken, l.
     pub step: usize,

@@ -225,6 +225,30 @@ fn the_result_has_the_same_bits_for_any_number_of_threads_and_on_every_call() {
     }
 }
 
+/// A plate rises through a free sheet and carries it along. With edges of 0.25 and of 0.05 of those of the
+/// sheet it takes about as many steps.
+#[test]
+fn the_mesh_of_an_obstacle_hardly_matters() {
+    let steps = |cells: usize| {
+        let (mut x, mut triangles) = (Vec::new(), Vec::new());
+        sheet(4, 0.1, 0.05, &mut x, &mut triangles);
+        let n = x.len();
+        sheet(cells, 0.4 / cells as f64, 0.0, &mut x, &mut triangles);
+        let bodies = (0..x.len()).map(|v| u32::from(v >= n)).collect();
+        let topology = Topology::builder(x.len()).triangles(triangles).build().unwrap();
+        let filters = vec![BodyFilter::DEFORMABLE, BodyFilter::OBSTACLE];
+        let model = CollisionModel::new(topology, bodies, filters, vec![]).unwrap();
+        let y: Vec<Point> =
+            x.iter().enumerate().map(|(v, p)| if v < n { *p } else { p + 0.3 * Vector::z() }).collect();
+        let mut resolver = Resolver::new(model, &x, &vec![1.0; x.len()], Params::fast()).unwrap();
+        let report = resolver.resolve(&mut x, &y).unwrap();
+        assert!(report.converged && report.prescribed_lag_m == 0.0, "{report:?}");
+        report.steps
+    };
+    let (coarse, fine) = (steps(16), steps(80));
+    assert!(fine <= coarse + coarse / 4, "{coarse} steps with a coarse mesh, {fine} with a fine one");
+}
+
 #[test]
 fn an_obstacle_waits_as_one_body() {
     // A rigid plate rises against a pinned sheet, which stops it.
