@@ -80,7 +80,7 @@ impl PartnerTable {
                 let partners = &tasks[*task as usize].partners[run.start as usize..][..head.len()];
                 write_pairs(kind, model, run.element, partners, head);
             }
-            separate_all(kind, pairs, positions, separations);
+            separate_all(model, kind, pairs, positions, separations);
         });
     }
 }

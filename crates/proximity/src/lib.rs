@@ -35,7 +35,7 @@ pub use bowknot_geometry as geometry;
 pub use bowknot_geometry::{BodyFilter, CollisionModel, ModelError};
 pub use candidates::{CandidateList, Candidates};
 pub use half_spaces::near_half_spaces;
-pub use narrow::separate_all;
+pub use narrow::{separate_all, separate_one};
 pub use pairs::{Candidate, Pair, PairList};
 pub use search::ProximitySearch;
 pub use statistics::SearchStatistics;

@@ -9,7 +9,7 @@
 use crate::min_max::{larger, smaller};
 use crate::pair_test::{EdgeEdge, PairTest, VertexEdge, VertexTriangle, VertexVertex};
 use crate::pairs::Pair;
-use bowknot_geometry::{PairKind, Point, Separation, Vector, separation};
+use bowknot_geometry::{CollisionModel, PairKind, Point, Separation, Vector, separation};
 
 /// Pairs that are computed side by side.
 const BATCH: usize = 8;
@@ -25,21 +25,39 @@ const MIN_WIDTH_RATIO: f64 = 0.9;
 pub const BLANK: Separation =
     Separation { normal: Vector::new(0.0, 0.0, 0.0), weights: [0.0; 4], distance: 0.0, width: 0.0 };
 
-/// Contact geometry of pairs of one kind. It does nothing for half-spaces.
-pub fn separate_all(kind: PairKind, pairs: &[Pair], positions: &[Point], separations: &mut [Separation]) {
+/// Contact geometry of pairs of one kind at `positions` [m].
+///
+/// # Panics
+/// If the model does not have a pair's vertices or half-space.
+pub fn separate_all(
+    model: &CollisionModel,
+    kind: PairKind,
+    pairs: &[Pair],
+    positions: &[Point],
+    separations: &mut [Separation],
+) {
     match kind {
+        PairKind::VertexHalfSpace => {
+            for (separation, pair) in separations.iter_mut().zip(pairs) {
+                let [vertex, half_space] = pair.elements.map(|element| element as usize);
+                *separation =
+                    separation::separate_half_space(&positions[vertex], &model.half_spaces()[half_space]);
+            }
+        }
         PairKind::VertexVertex => separate_kind::<VertexVertex, 1, 1>(pairs, positions, separations),
         PairKind::VertexEdge => separate_kind::<VertexEdge, 1, 2>(pairs, positions, separations),
         PairKind::VertexTriangle => separate_kind::<VertexTriangle, 1, 3>(pairs, positions, separations),
         PairKind::EdgeEdge => separate_kind::<EdgeEdge, 2, 2>(pairs, positions, separations),
-        PairKind::VertexHalfSpace => {}
     }
 }
 
 /// Contact geometry of one pair, with the same bits as among many.
-pub fn separate_one(kind: PairKind, vertices: [u32; 4], positions: &[Point]) -> Separation {
+///
+/// # Panics
+/// As [`separate_all`].
+pub fn separate_one(model: &CollisionModel, kind: PairKind, pair: &Pair, positions: &[Point]) -> Separation {
     let mut separation = [BLANK];
-    separate_all(kind, &[Pair { elements: [0; 2], vertices }], positions, &mut separation);
+    separate_all(model, kind, std::slice::from_ref(pair), positions, &mut separation);
     separation[0]
 }
 

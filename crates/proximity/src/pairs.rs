@@ -93,6 +93,12 @@ impl PairList {
         &mut self.pairs
     }
 
+    /// Removes all pairs and keeps the allocation.
+    pub fn clear(&mut self) {
+        self.pairs.clear();
+        self.starts = [0; 6];
+    }
+
     /// Keeps the pairs that `keep` accepts; it is called with index, kind and pair, in order.
     pub fn retain(&mut self, mut keep: impl FnMut(usize, PairKind, &Pair) -> bool) {
         let mut end = 0;

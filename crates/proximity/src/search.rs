@@ -6,14 +6,14 @@ use crate::collision_matrix::CollisionMatrix;
 use crate::frame::{self, LocalVertex};
 use crate::half_spaces::near_half_spaces;
 use crate::layer::Layer;
-use crate::narrow::BLANK;
+use crate::narrow::{BLANK, separate_all};
 use crate::obstacles::{Changes, ObstacleTracker};
 use crate::pair_test::{EdgeEdge, PairTest, VertexEdge, VertexTriangle, VertexVertex};
 use crate::pairs::{Pair, PairList};
 use crate::statistics::SearchStatistics;
 use crate::traverse::{Query, Scene, Scratch, TASK_LEAVES, TaskResult, overlapping_leaves, search_leaves};
 use crate::tree::Tree;
-use bowknot_geometry::{CollisionModel, PairKind, Point, Separation, Vector, separation};
+use bowknot_geometry::{CollisionModel, PairKind, Point, Separation, Vector};
 use rayon::prelude::*;
 
 /// Vertices that one task brings to the local frame.
@@ -367,16 +367,9 @@ impl ProximitySearch {
             separations = tail;
             self.tables[k].write(PairKind::ALL[k], &self.tasks[k], model, positions, head, geometry);
         }
-        for ((pair, separation), found) in
-            pairs.iter_mut().zip(separations).zip(self.half_space_pairs.iter().flatten())
-        {
-            let [vertex, half_space] = found.elements;
-            *pair = *found;
-            *separation = separation::separate_half_space(
-                &positions[vertex as usize],
-                &model.half_spaces()[half_space as usize],
-            );
-        }
+        let found = self.half_space_pairs.iter().flatten();
+        pairs.iter_mut().zip(found).for_each(|(pair, found)| *pair = *found);
+        separate_all(model, PairKind::VertexHalfSpace, pairs, positions, separations);
     }
 }
 

@@ -4,7 +4,7 @@ use crate::bits::{append_places, append_sorted, bits, flag};
 use crate::frame::UNIT_ROUNDOFF;
 use crate::narrow::separate_one;
 use crate::pair_test::{Batch, PairTest, classify};
-use crate::pairs::Candidate;
+use crate::pairs::{Candidate, Pair};
 use crate::tree::{LANES, Leaf, Node, Tree};
 use bowknot_geometry::{CollisionModel, Point};
 
@@ -373,7 +373,8 @@ fn is_near<K: PairTest<A, B>, const A: usize, const B: usize>(
     a.iter().chain(&b).zip(&mut vertices).for_each(|(&v, vertex)| *vertex = v);
     let largest = |side: &[u32]| side.iter().map(|&v| scene.radii[v as usize]).fold(0.0, f64::max);
     // Rounded up: a pair at exactly the sum of its radii must be listed.
-    separate_one(K::KIND, vertices, scene.positions).width <= (largest(&a) + largest(&b)).next_up()
+    let pair = Pair { elements: [0; 2], vertices };
+    separate_one(scene.model, K::KIND, &pair, scene.positions).width <= (largest(&a) + largest(&b)).next_up()
 }
 
 /// The boxes of an element at the start and at the end of the motion.

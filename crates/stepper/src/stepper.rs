@@ -58,6 +58,8 @@ pub struct Stepper {
     /// Group of each vertex, [`Self::NO_GROUP`] for none. Empty: no groups.
     groups: Vec<u32>,
     rounding: Option<Rounding>,
+    /// Largest coordinate of positions and targets [m].
+    largest_coordinate: f64,
 }
 
 impl Stepper {
@@ -101,6 +103,7 @@ impl Stepper {
         self.caps.clear();
         self.caps.resize(positions.len(), 1.0);
         self.rounding = Some(Rounding::new(largest));
+        self.largest_coordinate = largest;
         not_finite
     }
 
@@ -115,13 +118,20 @@ impl Stepper {
         longest: impl Fn(usize) -> f64,
     ) {
         for v in 0..self.displacements.len() {
-            self.limit_length(v, longest(v));
+            self.limit_travel(v, longest(v));
         }
         self.limit_by_bodies(model, obstacle_vertices);
         self.limit_by_groups(group_count);
         for v in 0..self.caps.len() {
             self.caps[v] = self.alpha(v);
         }
+    }
+
+    /// Lets a vertex travel by at most `longest` [m], and by at most half of the largest coordinate: the bounds
+    /// of [`Rounding`] hold for no more.
+    #[inline]
+    pub fn limit_travel(&self, vertex: usize, longest: f64) {
+        self.limit_length(vertex, longest.min(0.5 * self.largest_coordinate));
     }
 
     /// Largest step size of a vertex, whatever its pairs: 1, or what [`Self::cap_travel`] has left.
@@ -186,12 +196,12 @@ impl Stepper {
         damping: f64,
     ) -> bool {
         let rounding = self.rounding();
-        if separation.width > rounding.frozen {
-            self.limit_pair(kind, vertices, separation, min_separation, damping, rounding.step);
-            false
-        } else {
-            self.freeze(kind, vertices)
+        if separation.width <= rounding.frozen {
+            return self.freeze(kind, vertices);
         }
+        let allowed = (damping * (separation.width - min_separation) - 2.0 * rounding.step).max(0.0);
+        self.share_gap(kind, vertices, &separation.normal, allowed);
+        false
     }
 
     /// As [`Self::limit_by_planes`], for vertices that move along `paths` [m], all at the same path time t in
@@ -215,12 +225,6 @@ impl Stepper {
             contacts.pairs.range(kind).into_par_iter().with_min_len(CHUNK).for_each(|p| {
                 let vertices = &contacts.pairs.pairs()[p].vertices;
                 let separation = &contacts.separations[p];
-                if separation.width <= rounding.frozen {
-                    if self.freeze(kind, vertices) {
-                        frozen.fetch_add(1, Ordering::Relaxed);
-                    }
-                    return;
-                }
                 let side = |places: std::ops::Range<usize>, sign: f64| {
                     let mut closing = f64::NEG_INFINITY;
                     let mut tube = 0.0f64;
@@ -236,32 +240,24 @@ impl Stepper {
                 let closing = (closing_a + closing_b).max(0.0) + tube_a + tube_b;
                 let min_separation = contacts.min_separations[p];
                 let allowed = damping * (separation.width - min_separation) - 2.0 * rounding.step;
-                if closing > allowed {
-                    self.limit_pair(kind, vertices, separation, min_separation, damping, rounding.step);
+                let opens = separation.width > rounding.frozen && closing <= allowed;
+                if !opens && self.limit_by_plane(kind, vertices, separation, min_separation, damping) {
+                    frozen.fetch_add(1, Ordering::Relaxed);
                 }
             });
         }
         frozen.into_inner()
     }
 
+    /// Lets both sides of a pair together close its gap by at most `allowed` [m] along the unit normal `n`.
     #[inline]
-    fn limit_pair(
-        &self,
-        kind: PairKind,
-        vertices: &[u32; 4],
-        separation: &Separation,
-        min_separation: f64,
-        damping: f64,
-        step_rounding: f64,
-    ) {
+    fn share_gap(&self, kind: PairKind, vertices: &[u32; 4], n: &Vector, allowed: f64) {
         let (count, side_a) = (kind.vertex_count(), kind.side_a());
-        let n = separation.normal;
-        let allowed = (damping * (separation.width - min_separation) - 2.0 * step_rounding).max(0.0);
         if let Some(&group) = self.groups.get(vertices[0] as usize)
             && group != Self::NO_GROUP
             && vertices[..count].iter().all(|&v| self.groups[v as usize] == group)
         {
-            return self.limit_within_group(&vertices[..count], side_a, &n, allowed);
+            return self.limit_within_group(&vertices[..count], side_a, n, allowed);
         }
         let mut closing = [0.0f64; 4];
         let mut speeds = [0.0f64; 2];

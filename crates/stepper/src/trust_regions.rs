@@ -18,12 +18,6 @@ pub struct TrustRegions {
 }
 
 impl TrustRegions {
-    /// Radius of the ball in which a vertex can travel by `travel` [m] and arrive.
-    pub fn radius_for(travel: f64) -> f64 {
-        // The unusable share counts twice: the second time for the rounding of positions within the ball.
-        travel / (USABLE - (1.0 - USABLE))
-    }
-
     /// Largest alpha in [0, 1] with which vertex `v` stays in its ball, when it moves from `x` by alpha `d`.
     #[inline]
     pub fn limit(&self, v: usize, x: &Point, d: &Vector) -> f64 {

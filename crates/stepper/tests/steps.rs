@@ -143,3 +143,39 @@ fn an_obstacle_moves_as_one() {
         assert_eq!(next[v], x[v] + 0.25 * Vector::z());
     }
 }
+
+/// The vertex wants to go a hundred times as far as the triangle. With capped travels both get half of the gap
+/// that they can close, and the cap holds where no pair does.
+#[test]
+fn capped_travels_share_the_gap_and_no_vertex_goes_farther() {
+    let x = vertex_over_triangle(0.1);
+    let topology = bowknot_geometry::Topology::builder(4).triangles([[1, 2, 3]]).build().unwrap();
+    let model = CollisionModel::single_body(topology);
+    let up = Vector::z();
+    let y = [x[0] - 100.0 * up, x[1] + up, x[2] + up, x[3] + up];
+    let (pairs, min_separations) = (list(), [0.0]);
+    let separations = [separation::separate(PairKind::VertexTriangle, &[x[0], x[1], x[2], x[3]])];
+    let contacts = Contacts { pairs: &pairs, separations: &separations, min_separations: &min_separations };
+    let step = |with_pair: bool| {
+        let mut stepper = Stepper::default();
+        stepper.begin(4);
+        stepper.set_target(&x, &y);
+        stepper.cap_travel(&model, &[], 0, |_| 0.06);
+        assert!((stepper.cap(0) - 0.0006).abs() < 1e-15 && (stepper.cap(1) - 0.06).abs() < 1e-15);
+        if with_pair {
+            assert_eq!(stepper.limit_by_planes(&contacts, 0.9), 0);
+        }
+        let mut next = x.clone();
+        stepper.advance(&mut next);
+        [x[0].z - next[0].z, next[1].z]
+    };
+    let close = |found: [f64; 2], expected: f64| found.iter().all(|f| (f - expected).abs() < 1e-12);
+    assert!(close(step(true), 0.045), "{:?}", step(true));
+    assert!(close(step(false), 0.06), "{:?}", step(false));
+    // Beyond half of the largest coordinate, 100 - 0.1 here, the rounding bounds do not hold.
+    let mut stepper = Stepper::default();
+    stepper.begin(4);
+    stepper.set_target(&x, &y);
+    stepper.limit_travel(0, f64::INFINITY);
+    assert!((stepper.alpha(0) - 0.4995).abs() < 1e-12, "{}", stepper.alpha(0));
+}

@@ -57,7 +57,6 @@ impl ForwardStep for CertifiedForward {
         self.stepper.set_target(&state.x, &state.y);
         self.held.clear();
         if !self.sweep(scene, state, search, statistics) {
-            self.stepper.set_target(&state.x, &state.y);
             self.step_within_trust_regions(scene, state, search, statistics);
         }
         self.limit_bodies(scene, state);
@@ -116,8 +115,7 @@ impl CertifiedForward {
     }
 
     /// Takes a long step where one pays and no contact presses: limits it by every pair that could meet along
-    /// it, with all vertices at the same path time. Returns whether it did. If not, the step sizes so far are
-    /// valid limits, but other limits are still missing.
+    /// it, with all vertices at the same path time. Returns whether it did; if not, nothing is limited yet.
     ///
     /// All vertices are assumed to move along u = alpha_0 d. The search finds every pair whose boxes, moved
     /// along u and inflated by the tubes, meet at the same path time. There are three kinds of pairs:
@@ -157,14 +155,13 @@ impl CertifiedForward {
         for v in 0..count {
             let (length, h) = (self.stepper.displacements()[v].norm(), scene.local_edge(v));
             self.tubes.push(if length == 0.0 { 0.0 } else { SWEPT_TUBE_RADIUS * h });
-            if length > MAX_SWEPT_TRAVEL * h {
-                self.stepper.limit(v, MAX_SWEPT_TRAVEL * h / length);
-            }
+            self.stepper.limit_travel(v, MAX_SWEPT_TRAVEL * h);
         }
         // The present candidates tell whether any vertex can go far, before a search is made.
         self.assume_step_sizes();
         self.limit_by_moving_planes(scene, state, damping, statistics);
         if longest(&self.stepper) <= min_travel {
+            self.stepper.set_target(&state.x, &state.y);
             return false;
         }
         for round in 1..=MAX_SWEPT_ROUNDS {
@@ -196,12 +193,7 @@ impl CertifiedForward {
     fn note_held(&mut self, state: &ResolveState) {
         let Self { held, stepper, .. } = self;
         held.extend(
-            state
-                .call
-                .prescribed()
-                .iter()
-                .enumerate()
-                .map(|(v, given)| *given && stepper.alpha(v) < stepper.cap(v)),
+            (0..state.x.len()).map(|v| state.call.is_prescribed(v) && stepper.alpha(v) < stepper.cap(v)),
         );
     }
 

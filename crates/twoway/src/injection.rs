@@ -1,9 +1,9 @@
 //! The energy that separating contacts injects.
 
 use crate::scene::CollisionScene;
-use crate::search::evaluate;
 use crate::state::ResolveState;
 use bowknot_geometry::PairKind;
+use bowknot_proximity::separate_one;
 
 /// A bound of the kinetic energy [J] that a call adds by separating contacts to their desired distance.
 ///
@@ -19,8 +19,7 @@ pub(crate) fn injected_energy(scene: &CollisionScene, state: &ResolveState) -> f
     for kind in PairKind::ALL {
         for p in contacts.pairs.range(kind).filter(|&p| contacts.multipliers[p] > 0.0) {
             let pair = &contacts.pairs.pairs()[p];
-            let half_spaces = scene.model().half_spaces();
-            let at_start = evaluate(kind, &pair.vertices, pair.elements[1], &state.start, half_spaces);
+            let at_start = separate_one(scene.model(), kind, pair, &state.start);
             let asked = contacts.desired[p] - at_start.distance;
             for &v in &pair.vertices[..kind.vertex_count()] {
                 growth[v as usize] = growth[v as usize].max(asked);

@@ -167,6 +167,7 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
         let mut stall = StallDetector::default();
 
         while stop.allows_step(state.step) {
+            let searches = statistics.searches;
             // Within the thread pool: a parallel loop that starts outside of it pays for the crossing.
             let report = rayon::scope(|_| {
                 search.update(scene, state, &mut statistics);
@@ -176,6 +177,7 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
                 timed_project(backward, scene, state, &mut statistics);
                 timed_advance(forward, scene, state, search, &mut statistics)
             });
+            statistics.skipped.searches += usize::from(statistics.searches == searches);
             let observed = observer.accepted(&accepted(state));
             state.step += 1;
             state.remaining = report.remaining;

@@ -5,7 +5,7 @@ use super::regions::{Regions, longest_path};
 use crate::scene::CollisionScene;
 use crate::stages::AheadVisitor;
 use crate::state::ResolveState;
-use bowknot_geometry::{PairKind, Vector, separation};
+use bowknot_geometry::{PairKind, Vector};
 use bowknot_proximity::{CandidateList, Pair, near_half_spaces, separate_all};
 
 /// Share of the damping at which pairs count as ahead. A pair is left out if the vertices use up less of its
@@ -31,7 +31,8 @@ struct Motion {
 #[derive(Debug, Default)]
 pub(super) struct AheadPairs {
     motions: Vec<Motion>,
-    found: Vec<Vec<Pair>>,
+    /// Pairs ahead by kind and task.
+    found: [Vec<Vec<Pair>>; 5],
 }
 
 impl AheadPairs {
@@ -54,7 +55,7 @@ impl AheadPairs {
         for kind in PairKind::ALL {
             let Some(list) = candidates.of(kind) else { continue };
             let near = &state.contacts.pairs.pairs()[state.contacts.pairs.range(kind)];
-            for_each_range(list, &mut self.found, |elements, pairs| {
+            for_each_range(list, &mut self.found[kind as usize], |elements, pairs| {
                 let first = near.partition_point(|pair| (pair.elements[0] as usize) < elements.start);
                 let mut near = near[first..].iter().peekable();
                 for a in elements {
@@ -70,12 +71,12 @@ impl AheadPairs {
                 visit_batches(scene, state, kind, pairs, visit);
             });
         }
-        let model = scene.model();
-        let radius = |v: usize| 0.5 * f64::from(2.0 * motions[v].travel) / share;
-        near_half_spaces(model, &state.x, None, radius, &mut self.found);
         let kind = PairKind::VertexHalfSpace;
+        let found = &mut self.found[kind as usize];
+        let radius = |v: usize| f64::from(motions[v].travel) / share;
+        near_half_spaces(scene.model(), &state.x, None, radius, found);
         let near = &state.contacts.pairs.pairs()[state.contacts.pairs.range(kind)];
-        for pairs in &mut self.found {
+        for pairs in found {
             pairs.retain(|pair| near.binary_search_by_key(&pair.elements, |near| near.elements).is_err());
             visit_batches(scene, state, kind, pairs, visit);
         }
@@ -130,14 +131,7 @@ fn visit_batches(
     let mut separations = [BLANK; BATCH];
     for pairs in pairs.chunks(BATCH) {
         let separations = &mut separations[..pairs.len()];
-        if kind == PairKind::VertexHalfSpace {
-            for (separation, pair) in separations.iter_mut().zip(pairs) {
-                let [v, h] = pair.elements.map(|element| element as usize);
-                *separation = separation::separate_half_space(&state.x[v], &model.half_spaces()[h]);
-            }
-        } else {
-            separate_all(kind, pairs, &state.x, separations);
-        }
+        separate_all(model, kind, pairs, &state.x, separations);
         for (pair, separation) in pairs.iter().zip(&*separations) {
             let min_separation = spacing.of(model, kind, pair).min_separation.unwrap_or(default);
             visit(kind, &pair.vertices, separation, min_separation);

@@ -13,7 +13,7 @@ use crate::state::ResolveState;
 use crate::statistics::Statistics;
 use ahead::AheadPairs;
 use bowknot_constraints::FrictionModel;
-use bowknot_geometry::{HalfSpace, PairKind, Point, Separation, Vector, separation};
+use bowknot_geometry::Vector;
 use bowknot_proximity::{CandidateList, ProximitySearch};
 use bowknot_stepper::{Bound, TrustRegionRule};
 use near::NearPairs;
@@ -38,6 +38,8 @@ pub struct TrustRegionSearch {
     covered_distance: f64,
     /// Whether the next update searches everything.
     requested: bool,
+    /// Radii of swept searches [m].
+    swept_radii: Vec<f64>,
 }
 
 impl TrustRegionSearch {
@@ -53,6 +55,7 @@ impl TrustRegionSearch {
             ahead: AheadPairs::default(),
             covered_distance: 0.0,
             requested: true,
+            swept_radii: Vec::new(),
         }
     }
 
@@ -116,7 +119,7 @@ impl Search for TrustRegionSearch {
     }
 
     fn update(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
-        let (timer, before) = (Instant::now(), statistics.searches);
+        let timer = Instant::now();
         match self.rule {
             TrustRegionRule::Uniform => self.cover_uniform(scene, state, statistics),
             TrustRegionRule::PerVertex if self.requested => {
@@ -128,7 +131,6 @@ impl Search for TrustRegionSearch {
             }
             TrustRegionRule::PerVertex => {}
         }
-        statistics.skipped.searches += usize::from(statistics.searches == before);
         statistics.seconds.search += timer.elapsed().as_secs_f64();
         self.select(scene, state, statistics);
     }
@@ -175,18 +177,19 @@ impl Search for TrustRegionSearch {
         // margin for minimum separations: pairs that are no candidates must not come closer.
         let bodies = scene.model().vertex_body();
         let margin = |body: &u32| scene.spacing().min_separation_margin(*body);
-        let radii: Vec<f64> = deviations.iter().zip(bodies).map(|(d, body)| d + margin(body)).collect();
+        self.swept_radii.clear();
+        self.swept_radii.extend(deviations.iter().zip(bodies).map(|(d, body)| d + margin(body)));
         let contacts = &mut state.contacts;
-        let former = std::mem::take(&mut contacts.pairs);
+        self.near.keep(&mut contacts.pairs);
         self.search.search_swept(
             scene.model(),
             &state.x,
             displacements,
-            &radii,
+            &self.swept_radii,
             &mut contacts.pairs,
             &mut contacts.separations,
         );
-        self.near.replace(scene, state, former, statistics);
+        self.near.replace(scene, state, statistics);
         self.requested = true;
         statistics.searches += 1;
         statistics.seconds.search += timer.elapsed().as_secs_f64();
@@ -215,21 +218,5 @@ impl Search for TrustRegionSearch {
 
     fn candidate_count(&self) -> usize {
         self.candidates.len()
-    }
-}
-
-/// Contact geometry of a pair at `x`.
-pub(crate) fn evaluate(
-    kind: PairKind,
-    vertices: &[u32; 4],
-    half_space: u32,
-    x: &[Point],
-    half_spaces: &[HalfSpace],
-) -> Separation {
-    match kind {
-        PairKind::VertexHalfSpace => {
-            separation::separate_half_space(&x[vertices[0] as usize], &half_spaces[half_space as usize])
-        }
-        _ => separation::separate(kind, &vertices.map(|v| x[v as usize])),
     }
 }

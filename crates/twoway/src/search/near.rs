@@ -7,7 +7,7 @@ use crate::spacing::MIN_SEPARATION_MARGIN;
 use crate::state::ResolveState;
 use crate::statistics::Statistics;
 use bowknot_constraints::{DesiredDistance, FrictionModel};
-use bowknot_geometry::{PairKind, Separation, Vector, separation};
+use bowknot_geometry::{PairKind, Separation, Vector};
 use bowknot_proximity::{CandidateList, Candidates, Pair, PairList, near_half_spaces, separate_all};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -52,8 +52,8 @@ struct Inherited {
 impl NearPairs {
     /// Starts a call.
     pub fn begin(&mut self, state: &mut ResolveState) {
-        self.old = PairList::default();
-        state.contacts.pairs = PairList::default();
+        self.old.clear();
+        state.contacts.pairs.clear();
         state.contacts.desired.clear();
         state.contacts.multipliers.clear();
         state.contacts.frictions.clear();
@@ -94,7 +94,7 @@ impl NearPairs {
         let margin = |v: usize| scene.spacing().margin(bodies[v]);
         let radius = |v: usize| if complete { regions.radii[v] } else { margin(v) };
         near_half_spaces(model, &state.x, None, radius, &mut self.found[4]);
-        std::mem::swap(&mut self.old, &mut state.contacts.pairs);
+        self.keep(&mut state.contacts.pairs);
         state.contacts.pairs.refill(&self.found);
         state.contacts.pairs.match_with(&self.old, &mut self.matches);
         self.evaluate(scene, state, statistics);
@@ -124,16 +124,14 @@ impl NearPairs {
         matches.truncate(end);
     }
 
-    /// Takes pairs that were found otherwise, with their geometry, and carries the data of pairs over. The
-    /// former pairs are given.
-    pub fn replace(
-        &mut self,
-        scene: &CollisionScene,
-        state: &mut ResolveState,
-        former: PairList,
-        statistics: &mut Statistics,
-    ) {
-        self.old = former;
+    /// Keeps `pairs`, to carry their data over to those that replace them.
+    pub fn keep(&mut self, pairs: &mut PairList) {
+        std::mem::swap(&mut self.old, pairs);
+    }
+
+    /// Carries the data of the pairs that were [kept](Self::keep) over to those of the state, which were found
+    /// otherwise, with their geometry.
+    pub fn replace(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
         state.contacts.pairs.match_with(&self.old, &mut self.matches);
         self.inherit(scene, state, statistics);
     }
@@ -160,7 +158,6 @@ impl NearPairs {
         std::mem::swap(&mut self.separations, &mut contacts.separations);
         contacts.separations.resize(contacts.pairs.len(), BLANK);
         let (moved, old, x) = (&self.moved, &self.separations, &state.x);
-        let half_spaces = scene.model().half_spaces();
         let mut reused = 0;
         for kind in PairKind::ALL {
             let range = contacts.pairs.range(kind);
@@ -181,14 +178,8 @@ impl NearPairs {
                                 *separation = old[matched as usize];
                             }
                             reused += pairs.len();
-                        } else if kind == PairKind::VertexHalfSpace {
-                            for (separation, pair) in separations.iter_mut().zip(pairs) {
-                                let [vertex, half_space] = pair.elements.map(|element| element as usize);
-                                *separation =
-                                    separation::separate_half_space(&x[vertex], &half_spaces[half_space]);
-                            }
                         } else {
-                            separate_all(kind, pairs, x, separations);
+                            separate_all(scene.model(), kind, pairs, x, separations);
                         }
                     }
                     reused
