@@ -46,7 +46,7 @@ pub use body::{Body, BodyShape};
 pub use bowknot_errors::{Errors, ParamError, Parameters};
 pub use dynamics::{Dynamics, NewtonInfo, Residual, Touching};
 pub use error::{ModelError, StepError};
-pub use linear::cg::CgInfo;
+pub use linear::solver::CgInfo;
 pub use material::{ClothMaterial, ParticleMaterial, RestShape, SolidMaterial, SolidModel, StrandMaterial};
 pub use model::DynamicsModel;
 pub use observe::{ElasticEnergies, Energies};

@@ -1,6 +1,6 @@
 //! Results of Newton iterations.
 
-use crate::linear::cg::CgInfo;
+use crate::linear::solver::CgInfo;
 use serde::Serialize;
 
 /// Statistics of one target.

@@ -27,8 +27,7 @@ pub use info::{NewtonInfo, Residual};
 use crate::drag::DragSurfaces;
 use crate::error::StepError;
 use crate::linear::block::BlockValues;
-use crate::linear::cg::CgWorkspace;
-use crate::linear::preconditioner::Preconditioner;
+use crate::linear::solver::LinearSolver;
 use crate::model::DynamicsModel;
 use crate::nodes::NO_NODE;
 use crate::params::{DynamicsParams, Environment, PreconditionerKind};
@@ -74,11 +73,10 @@ impl Dynamics {
             guesses: [zero(), zero()],
             step: zero(),
             values: BlockValues::zeros(&model.pattern),
-            preconditioner: match params.newton.preconditioner {
-                PreconditionerKind::BlockJacobi => Preconditioner::default(),
+            solver: match params.newton.preconditioner {
+                PreconditionerKind::BlockJacobi => LinearSolver::default(),
                 PreconditionerKind::TwoLevel => two_level(&model),
             },
-            cg: CgWorkspace::default(),
             min_scale: 0.0,
             cache: EvaluationCache::default(),
         };

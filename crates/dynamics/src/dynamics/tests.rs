@@ -137,8 +137,7 @@ fn the_matrix_is_symmetric_positive_definite_and_matches_differences_under_tensi
 fn the_newton_step_equals_that_of_a_dense_solve() {
     for coarse in [false, true] {
         let (mut dynamics, x0, v0, prescribed) = crumpled();
-        dynamics.work.preconditioner =
-            if coarse { two_level(&dynamics.model) } else { Preconditioner::default() };
+        dynamics.work.solver = if coarse { two_level(&dynamics.model) } else { LinearSolver::default() };
         check_newton_step(dynamics, x0, v0, prescribed);
     }
 }

@@ -1,14 +1,14 @@
-//! The two-level preconditioner of a model.
+//! The linear solver of a model, with its two-level preconditioner.
 
 use crate::linear::coarse::Coarse;
 use crate::linear::direct::Direct;
-use crate::linear::preconditioner::Preconditioner;
+use crate::linear::solver::LinearSolver;
 use crate::model::DynamicsModel;
 use bowknot_geometry::Vector;
 
 /// Strands are solved exactly. Other components that elements join get a coarse correction. Single nodes need
 /// neither.
-pub(super) fn two_level(model: &DynamicsModel) -> Preconditioner {
+pub(super) fn two_level(model: &DynamicsModel) -> LinearSolver {
     let single = |n: usize| model.pattern.row(n).is_empty();
     // A component consists of strands only or, if strands are attached to other bodies, is in the coarse
     // space.
@@ -30,5 +30,5 @@ pub(super) fn two_level(model: &DynamicsModel) -> Preconditioner {
             model.bending.row(row).0.iter().for_each(|&column| visit(column));
         })
     });
-    Preconditioner::new(Direct::new(&model.pattern, &model.strands), coarse)
+    LinearSolver::new(Direct::new(&model.pattern, &model.strands), coarse)
 }

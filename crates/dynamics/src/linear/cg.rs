@@ -1,148 +1,157 @@
-//! Preconditioned conjugate gradients.
+//! Preconditioned conjugate gradients in single or double precision.
 
-use super::preconditioner::Preconditioner;
+use super::lane::{Lane, Real};
+use super::operator::Operator;
+use super::preconditioner::{Levels, Preconditioner};
 use super::system::System;
-use super::vectors::{add_scaled, dot};
 use crate::nodes::CHUNK;
 use bowknot_geometry::Vector;
 use rayon::prelude::*;
-use serde::Serialize;
 
-/// How a linear solve ended.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct CgInfo {
-    /// Number of iterations, each with one matrix-vector product.
-    pub iterations: usize,
-    /// Residual in the preconditioner's norm, relative to that of the right-hand side [1].
-    pub residual: f64,
-    /// Whether the residual fell below the tolerance. If not, the last iterate is used all the same: the
-    /// target is less accurate, but the step does not fail.
-    pub converged: bool,
-}
-
-/// When to stop. Norms are those of the preconditioner.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Limits {
-    /// Residual relative to b, or to `min_scale` if that is larger [1].
-    pub tolerance: f64,
-    /// Residual relative to b itself at which the solve may end as well [1].
-    pub own_tolerance: f64,
-    /// Smallest squared norm that `tolerance` is relative to: that of the first solve of the time step, which
-    /// the present one corrects.
-    pub min_scale: f64,
-    pub max_iterations: usize,
-}
-
-/// Buffers that are kept between solves.
+/// A system in the numbers that a solve computes with, and the vectors of the solve.
 #[derive(Debug, Default)]
-pub(crate) struct CgWorkspace {
-    residual: Vec<Vector>,
-    preconditioned: Vec<Vector>,
-    direction: Vec<Vector>,
-    image: Vec<Vector>,
-    guess_image: Vec<Vector>,
-    scale: f64,
+pub(crate) struct Krylov<T: Real> {
+    operator: Operator<T>,
+    preconditioner: Preconditioner<T>,
+    /// The solution.
+    x: Vec<Lane<T>>,
+    /// The residual.
+    r: Vec<Lane<T>>,
+    /// The preconditioned residual.
+    z: Vec<Lane<T>>,
+    /// The search direction, and H times it.
+    p: Vec<Lane<T>>,
+    q: Vec<Lane<T>>,
+    /// Directions of guesses with their images and curvatures.
+    guesses: Vec<Guess<T>>,
+    guess_count: usize,
+    partial: Vec<f64>,
 }
 
-impl CgWorkspace {
-    /// Squared norm of the last b in the preconditioner's norm.
-    pub fn scale(&self) -> f64 {
-        self.scale
-    }
-
-    /// b - H x at the end of the last solve.
-    pub fn residual(&self) -> &[Vector] {
-        &self.residual
-    }
-
-    fn resize(&mut self, count: usize) {
-        for vector in [
-            &mut self.residual,
-            &mut self.preconditioned,
-            &mut self.direction,
-            &mut self.image,
-            &mut self.guess_image,
-        ] {
-            vector.resize(count, Vector::zeros());
-        }
-    }
+#[derive(Debug, Default)]
+struct Guess<T: Real> {
+    direction: Vec<Lane<T>>,
+    image: Vec<Lane<T>>,
+    curvature: f64,
 }
 
-/// Solves H x = b over the free nodes; b and x are zero elsewhere.
-///
-/// The start is the combination of `guesses` with the least energy, or zero if there are none. The tolerance
-/// is relative to b, not to the first residual: a good guess saves iterations and does not raise the
-/// accuracy.
-pub(crate) fn solve(
-    system: &System<'_>,
-    preconditioner: &mut Preconditioner,
-    b: &[Vector],
-    guesses: &[&[Vector]],
-    limits: Limits,
-    x: &mut [Vector],
-    workspace: &mut CgWorkspace,
-) -> CgInfo {
-    workspace.resize(b.len());
-    let CgWorkspace { residual: r, preconditioned: z, direction: p, image: q, guess_image, scale: own_scale } =
-        workspace;
-    x.fill(Vector::zeros());
-    r.copy_from_slice(b);
-    let scale = preconditioner.apply(b, z);
-    if scale <= 0.0 || !scale.is_finite() {
-        return CgInfo { iterations: 0, residual: 0.0, converged: scale == 0.0 };
-    }
-    *own_scale = scale;
-    let enough = limits.own_tolerance * limits.own_tolerance * scale;
-    let scale = scale.max(limits.min_scale);
-
-    // Conjugate the guesses one after the other: p is the guess made conjugate to the previous one.
-    let mut previous: Option<(Vec<Vector>, Vec<Vector>, f64)> = None;
-    for guess in guesses {
-        p.copy_from_slice(guess);
-        let mut curvature = system.multiply(p, guess_image);
-        if let Some((direction, image, previous_curvature)) = &previous {
-            let share = dot(p, image) / previous_curvature;
-            add_scaled(p, -share, direction);
-            add_scaled(guess_image, -share, image);
-            curvature = dot(p, guess_image);
-        }
-        if curvature > 0.0 && curvature.is_finite() {
-            let step = dot(p, r) / curvature;
-            add_scaled(x, step, p);
-            add_scaled(r, -step, guess_image);
-            previous = Some((p.clone(), guess_image.clone(), curvature));
-        }
+impl<T: Real> Krylov<T> {
+    /// Prepares for preconditioning residuals of `system`, for which `levels` were built.
+    pub fn fill_preconditioner(&mut self, system: &System<'_>, levels: &Levels) {
+        self.preconditioner.fill(system, levels);
     }
 
-    let mut rz = preconditioner.apply(r, z);
-    p.copy_from_slice(z);
-    let goal = (limits.tolerance * limits.tolerance * scale).max(enough);
-    let mut info = CgInfo { iterations: 0, residual: (rz / scale).sqrt(), converged: rz <= goal };
-    while !info.converged && info.iterations < limits.max_iterations {
-        let curvature = system.multiply(p, q);
-        // H is positive definite; the loop ends here on numbers that are not finite and when p vanishes.
-        if !(curvature > 0.0 && curvature.is_finite()) {
-            break;
+    /// Prepares for solves.
+    pub fn fill_operator(&mut self, system: &System<'_>) {
+        self.operator.fill(system);
+    }
+
+    /// Starts from x = 0 with the residual `b` times `factor`. Returns its squared norm, that of the
+    /// preconditioner.
+    pub fn begin(&mut self, levels: &mut Levels, b: &[Vector], factor: f64) -> f64 {
+        for vector in [&mut self.x, &mut self.z, &mut self.p, &mut self.q] {
+            vector.resize(b.len(), Lane::default());
         }
-        let step = rz / curvature;
-        x.par_chunks_mut(CHUNK)
-            .zip(r.par_chunks_mut(CHUNK))
-            .zip(p.par_chunks(CHUNK).zip(q.par_chunks(CHUNK)))
-            .for_each(|((x, r), (p, q))| {
-                for k in 0..x.len() {
-                    x[k] += p[k] * step;
-                    r[k] -= q[k] * step;
-                }
+        self.x.fill(Lane::default());
+        self.guess_count = 0;
+        b.par_iter().with_min_len(CHUNK).map(|b| Lane::new(b, factor)).collect_into_vec(&mut self.r);
+        self.preconditioner.apply(levels, &self.r, &mut self.z)
+    }
+
+    /// The preconditioned residual, times `factor`.
+    pub fn preconditioned(&self, factor: f64) -> impl Iterator<Item = Vector> + '_ {
+        self.z.iter().map(move |z| z.vector() * factor)
+    }
+
+    /// Moves x to the minimum of the energy along `guess` times `factor`, made conjugate to the guesses
+    /// before.
+    pub fn try_guess(&mut self, system: &System<'_>, guess: &[Vector], factor: f64) {
+        if self.guesses.len() == self.guess_count {
+            self.guesses.push(Guess { direction: Vec::new(), image: Vec::new(), curvature: 0.0 });
+        }
+        let (before, rest) = self.guesses.split_at_mut(self.guess_count);
+        let Guess { direction: p, image: q, curvature } = &mut rest[0];
+        guess.par_iter().with_min_len(CHUNK).map(|g| Lane::new(g, factor)).collect_into_vec(p);
+        q.resize(guess.len(), Lane::default());
+        *curvature = self.operator.multiply(system, p, q);
+        for other in before {
+            let share = T::from_f64(-dot(p, &other.image, &mut self.partial) / other.curvature);
+            add_scaled(p, share, &other.direction);
+            add_scaled(q, share, &other.image);
+            *curvature = dot(p, q, &mut self.partial);
+        }
+        if *curvature > 0.0 && curvature.is_finite() {
+            let step = dot(p, &self.r, &mut self.partial) / *curvature;
+            add_scaled(&mut self.x, T::from_f64(step), p);
+            add_scaled(&mut self.r, T::from_f64(-step), q);
+            self.guess_count += 1;
+        }
+    }
+
+    /// Iterates until the squared norm of the residual is at most `goal` or `max_iterations` are made.
+    /// Returns the number of iterations and the squared norm.
+    pub fn iterate(
+        &mut self,
+        system: &System<'_>,
+        levels: &mut Levels,
+        goal: f64,
+        max_iterations: usize,
+    ) -> (usize, f64) {
+        let Self { operator, preconditioner, x, r, z, p, q, .. } = self;
+        let mut rz = preconditioner.apply(levels, r, z);
+        p.copy_from_slice(z);
+        let goal = goal.max(T::MAX_REDUCTION * T::MAX_REDUCTION * rz);
+        let mut iterations = 0;
+        while rz > goal && iterations < max_iterations {
+            let curvature = operator.multiply(system, p, q);
+            // H is positive definite; the loop ends here on numbers that are not finite and when p vanishes.
+            if !(curvature > 0.0 && curvature.is_finite()) {
+                break;
+            }
+            let step = T::from_f64(rz / curvature);
+            r.par_chunks_mut(CHUNK).zip(q.par_chunks(CHUNK)).for_each(|(r, q)| {
+                r.iter_mut().zip(q).for_each(|(r, q)| *r -= *q * step);
             });
-        let next = preconditioner.apply(r, z);
-        let ratio = next / rz;
-        rz = next;
-        p.par_chunks_mut(CHUNK).zip(z.par_chunks(CHUNK)).for_each(|(p, z)| {
-            p.iter_mut().zip(z).for_each(|(p, z)| *p = z + *p * ratio);
-        });
-        info.iterations += 1;
-        info.residual = (rz / scale).sqrt();
-        info.converged = rz <= goal;
+            let next = preconditioner.apply(levels, r, z);
+            let ratio = T::from_f64(next / rz);
+            rz = next;
+            // x moves along p here, where p is read in any case.
+            x.par_chunks_mut(CHUNK).zip(p.par_chunks_mut(CHUNK)).zip(z.par_chunks(CHUNK)).for_each(
+                |((x, p), z)| {
+                    for k in 0..x.len() {
+                        x[k] += p[k] * step;
+                        p[k] = z[k] + p[k] * ratio;
+                    }
+                },
+            );
+            iterations += 1;
+        }
+        (iterations, rz)
     }
-    info
+
+    /// Adds x times `factor` to `sum`.
+    pub fn add_solution(&self, factor: f64, sum: &mut [Vector]) {
+        sum.par_chunks_mut(CHUNK).zip(self.x.par_chunks(CHUNK)).for_each(|(sum, x)| {
+            sum.iter_mut().zip(x).for_each(|(sum, x)| *sum += x.vector() * factor);
+        });
+    }
+
+    /// The residual, times `factor`.
+    pub fn residual(&self, factor: f64) -> impl Iterator<Item = Vector> + '_ {
+        self.r.iter().map(move |r| r.vector() * factor)
+    }
+}
+
+fn dot<T: Real>(a: &[Lane<T>], b: &[Lane<T>], partial: &mut Vec<f64>) -> f64 {
+    a.par_chunks(CHUNK)
+        .zip(b.par_chunks(CHUNK))
+        .map(|(a, b)| a.iter().zip(b).map(|(a, b)| a.dot(b)).sum())
+        .collect_into_vec(partial);
+    partial.iter().sum()
+}
+
+fn add_scaled<T: Real>(y: &mut [Lane<T>], factor: T, x: &[Lane<T>]) {
+    y.par_chunks_mut(CHUNK).zip(x.par_chunks(CHUNK)).for_each(|(y, x)| {
+        y.iter_mut().zip(x).for_each(|(y, x)| *y += *x * factor);
+    });
 }

@@ -7,8 +7,10 @@
 //! then built anew, unless the factor would fill in too much.
 
 use super::cholesky::{Cholesky, PivotPolicy, Symbolic};
+use super::lane::{Lane, Real};
 use super::springs::LinearSprings;
 use super::system::System;
+use crate::nodes::CHUNK;
 use bowknot_geometry::Vector;
 use nalgebra::{Matrix3, Matrix6, Vector6};
 use rayon::prelude::*;
@@ -177,16 +179,24 @@ impl Coarse {
         }
     }
 
-    /// Solves for the motions of the aggregates that balance `r`; [`Self::displacement`] reads them.
-    pub fn solve(&mut self, r: &[Vector]) {
-        let arms = &self.arms;
+    /// Positions of nodes relative to their aggregates, as [`Lane`]s: offsets, and 1 if the node is free.
+    pub fn arms<'a, T: Real>(&'a self) -> impl IndexedParallelIterator<Item = Lane<T>> + 'a {
+        self.arms.par_iter().with_min_len(CHUNK).map(|arm| Lane::from_parts(&arm.offset, arm.free))
+    }
+
+    /// Solves for the motions of the aggregates that balance `r`; [`Self::motion`] reads them. `arms` are
+    /// [`Self::arms`].
+    pub fn solve<T: Real>(&mut self, r: &[Lane<T>], arms: &[Lane<T>]) {
         let forces = self.aggregates.par_iter().with_min_len(32).map(|range| {
-            let (mut force, mut torque) = (Vector::zeros(), Vector::zeros());
-            for node in range.start as usize..range.end as usize {
-                force += r[node] * arms[node].free;
-                torque += arms[node].offset.cross(&r[node]);
+            let range = range.start as usize..range.end as usize;
+            // Sums of the force and of its products with the offset: the torque is their antisymmetric part.
+            let mut sums = [Lane::<T>::default(); 4];
+            for (r, arm) in r[range.clone()].iter().zip(&arms[range]) {
+                let arm = arm.numbers();
+                (0..4).for_each(|k| sums[k] += *r * arm[k]);
             }
-            Vector6::new(force.x, force.y, force.z, torque.x, torque.y, torque.z)
+            let [x, y, z, force] = sums.map(|sum| sum.vector());
+            Vector6::new(force.x, force.y, force.z, y.z - z.y, z.x - x.z, x.y - y.x)
         });
         forces.collect_into_vec(&mut self.motions);
         let symbolic = &self.joined.as_ref().unwrap_or(&self.mesh).symbolic;
@@ -198,12 +208,36 @@ impl Coarse {
         }
     }
 
-    /// Displacement of a node in the last solution.
+    /// The aggregate of a node; 0 for nodes that are in none and have no arm.
     #[inline]
-    pub fn displacement(&self, node: usize) -> Vector {
-        let m = &self.motions[self.aggregate_of[node] as usize];
-        let arm = &self.arms[node];
-        Vector::new(m[0], m[1], m[2]) * arm.free + Vector::new(m[3], m[4], m[5]).cross(&arm.offset)
+    pub fn aggregate_of(&self, node: usize) -> u32 {
+        self.aggregate_of[node]
+    }
+
+    /// Motion of an aggregate in the last solution.
+    #[inline]
+    pub fn motion<T: Real>(&self, aggregate: u32) -> Motion<T> {
+        let m = &self.motions[aggregate as usize];
+        Motion([
+            Lane::new(&Vector::new(0.0, m[5], -m[4]), 1.0),
+            Lane::new(&Vector::new(-m[5], 0.0, m[3]), 1.0),
+            Lane::new(&Vector::new(m[4], -m[3], 0.0), 1.0),
+            Lane::new(&Vector::new(m[0], m[1], m[2]), 1.0),
+        ])
+    }
+}
+
+/// A rigid motion: the displacements of the three unit offsets, and the shift.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Motion<T: Real>([Lane<T>; 4]);
+
+impl<T: Real> Motion<T> {
+    /// Displacement of a node.
+    #[inline(always)]
+    pub fn displacement(&self, arm: &Lane<T>) -> Lane<T> {
+        let [x, y, z, shift] = self.0;
+        let arm = arm.numbers();
+        x * arm[0] + y * arm[1] + z * arm[2] + shift * arm[3]
     }
 }
 

@@ -8,6 +8,7 @@
 
 use super::block::BlockPattern;
 use super::cholesky::{Cholesky, PivotPolicy, Symbolic};
+use super::lane::{Lane, Real};
 use super::system::System;
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
@@ -90,10 +91,10 @@ impl Direct {
     }
 
     /// Solves with the right-hand side `r`; [`Self::displacement`] reads the solution.
-    pub fn solve(&mut self, r: &[Vector]) {
+    pub fn solve<T: Real>(&mut self, r: &[Lane<T>]) {
         self.groups.par_iter_mut().for_each(|group| {
             group.x.clear();
-            group.x.extend(group.nodes.iter().map(|&n| r[n as usize]));
+            group.x.extend(group.nodes.iter().map(|&n| r[n as usize].vector()));
             group.factor.solve(&group.symbolic, &mut group.x);
         });
     }

@@ -2,38 +2,25 @@
 
 use super::coarse::Coarse;
 use super::direct::Direct;
+use super::lane::{Lane, PackedBlocks, Real, pack};
 use super::system::System;
-use super::vectors::chunk_dot;
 use crate::nodes::CHUNK;
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
-/// Block-Jacobi with an exact solve over strands and a coarse correction, each if the model has nodes for it.
-/// It is rebuilt for every system.
+/// The parts of a preconditioner that join nodes, each if the model has nodes for it.
 #[derive(Debug, Default)]
-pub(crate) struct Preconditioner {
-    /// Inverses of the diagonal blocks; zero for nodes that are not free.
-    inverses: Vec<Matrix3<f64>>,
-    direct: Option<Direct>,
-    coarse: Option<Coarse>,
+pub(crate) struct Levels {
+    /// Exact solves over strands, which replace the blocks there.
+    pub direct: Option<Direct>,
+    /// A coarse correction, which is added.
+    pub coarse: Option<Coarse>,
 }
 
-impl Preconditioner {
-    /// Block-Jacobi, replaced by `direct` at the nodes of strands, plus `coarse`.
-    pub fn new(direct: Option<Direct>, coarse: Option<Coarse>) -> Self {
-        Self { inverses: Vec::new(), direct, coarse }
-    }
-
+impl Levels {
     /// Prepares for `system`, linearized at positions `x`.
     pub fn build(&mut self, system: &System<'_>, x: &[Vector]) {
-        self.inverses.resize(system.node_count(), Matrix3::zeros());
-        self.inverses.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, inverses)| {
-            for (k, inverse) in inverses.iter_mut().enumerate() {
-                let node = chunk * CHUNK + k;
-                *inverse = if system.free[node] { invert(system.diagonal(node)) } else { Matrix3::zeros() };
-            }
-        });
         if let Some(direct) = &mut self.direct {
             direct.build(system);
         }
@@ -41,37 +28,70 @@ impl Preconditioner {
             coarse.build(system, x);
         }
     }
+}
+
+/// Block-Jacobi with [`Levels`], in the numbers that a solve computes with.
+#[derive(Debug, Default)]
+pub(crate) struct Preconditioner<T: Real> {
+    /// Inverses of the diagonal blocks; zero for nodes that are not free.
+    inverses: PackedBlocks<T>,
+    /// Those of the coarse correction.
+    arms: Vec<Lane<T>>,
+    /// Partial sums of a dot product.
+    partial: Vec<f64>,
+}
+
+impl<T: Real> Preconditioner<T> {
+    /// Prepares for `system`, for which `levels` were built.
+    pub fn fill(&mut self, system: &System<'_>, levels: &Levels) {
+        self.inverses.resize(system.node_count());
+        self.inverses.as_mut_slice().par_chunks_mut(9 * CHUNK).enumerate().for_each(|(chunk, inverses)| {
+            for (k, numbers) in inverses.chunks_exact_mut(9).enumerate() {
+                let node = chunk * CHUNK + k;
+                let free = system.free[node];
+                pack(numbers, &if free { invert(system.diagonal(node)) } else { Matrix3::zeros() });
+            }
+        });
+        if let Some(coarse) = &levels.coarse {
+            coarse.arms().collect_into_vec(&mut self.arms);
+        }
+    }
 
     /// Sets z = M^-1 r; returns r . z.
-    pub fn apply(&mut self, r: &[Vector], z: &mut [Vector]) -> f64 {
-        if let Some(direct) = &mut self.direct {
+    pub fn apply(&mut self, levels: &mut Levels, r: &[Lane<T>], z: &mut [Lane<T>]) -> f64 {
+        if let Some(direct) = &mut levels.direct {
             direct.solve(r);
         }
-        if let Some(coarse) = &mut self.coarse {
-            coarse.solve(r);
+        if let Some(coarse) = &mut levels.coarse {
+            coarse.solve(r, &self.arms);
         }
-        let (direct, coarse) = (self.direct.as_ref(), self.coarse.as_ref());
-        let partial: Vec<f64> = z
-            .par_chunks_mut(CHUNK)
-            .zip(r.par_chunks(CHUNK))
-            .zip(self.inverses.par_chunks(CHUNK))
-            .enumerate()
-            .map(|(chunk, ((z, r), inverses))| {
-                for ((z, r), inverse) in z.iter_mut().zip(r).zip(inverses) {
-                    *z = inverse * r;
-                }
-                if let Some(direct) = direct {
-                    for (k, z) in z.iter_mut().enumerate() {
-                        *z = direct.displacement(chunk * CHUNK + k).unwrap_or(*z);
-                    }
-                }
+        let (direct, coarse) = (levels.direct.as_ref(), levels.coarse.as_ref());
+        let (inverses, arms) = (&self.inverses, &self.arms);
+        let chunks = z.par_chunks_mut(CHUNK).zip(r.par_chunks(CHUNK)).enumerate().map(|(chunk, (z, r))| {
+            let first = chunk * CHUNK;
+            let mut sum = 0.0;
+            let (mut aggregate, mut motion) = (u32::MAX, super::coarse::Motion::default());
+            for (k, (z, r)) in z.iter_mut().zip(r).enumerate() {
+                let node = first + k;
+                let mut value = match direct.and_then(|direct| direct.displacement(node)) {
+                    Some(exact) => Lane::new(&exact, 1.0),
+                    None => inverses.product(node, *r),
+                };
                 if let Some(coarse) = coarse {
-                    z.iter_mut().enumerate().for_each(|(k, z)| *z += coarse.displacement(chunk * CHUNK + k));
+                    if coarse.aggregate_of(node) != aggregate {
+                        aggregate = coarse.aggregate_of(node);
+                        motion = coarse.motion(aggregate);
+                    }
+                    value += motion.displacement(&arms[node]);
                 }
-                chunk_dot(r, z)
-            })
-            .collect();
-        partial.iter().sum()
+                let value = value.without_fourth();
+                sum += r.dot(&value);
+                *z = value;
+            }
+            sum
+        });
+        chunks.collect_into_vec(&mut self.partial);
+        self.partial.iter().sum()
     }
 }
 

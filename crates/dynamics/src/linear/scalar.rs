@@ -145,8 +145,26 @@ impl SplitForm {
     /// Columns and values of a row that are not in the block pattern.
     #[inline]
     pub fn off_pattern(&self, row: usize) -> (&[u32], &[f64]) {
-        let range = self.off_starts[row] as usize..self.off_starts[row + 1] as usize;
+        let range = self.off_range(row);
         (&self.off_columns[range.clone()], &self.off_values[range])
+    }
+
+    /// Where the entries of a row outside of the pattern stand in [`Self::off_columns`] and
+    /// [`Self::off_values`].
+    #[inline]
+    pub fn off_range(&self, row: usize) -> Range<usize> {
+        self.off_starts[row] as usize..self.off_starts[row + 1] as usize
+    }
+
+    /// Columns of all entries outside of the pattern.
+    #[inline]
+    pub fn off_columns(&self) -> &[u32] {
+        &self.off_columns
+    }
+
+    /// Values of all entries outside of the pattern.
+    pub fn off_values(&self) -> &[f64] {
+        &self.off_values
     }
 
     /// Adds `factor` times another form with the same entries.

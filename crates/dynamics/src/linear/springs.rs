@@ -119,8 +119,24 @@ impl LinearSprings {
         self.springs.iter().for_each(|spring| visit_nodes(&spring.nodes, &spring.weights, &mut visit));
     }
 
+    /// All springs.
+    pub fn all(&self) -> &[LinearSpring] {
+        &self.springs
+    }
+
+    /// Springs and weights of all nodes, node by node: those of a node are in its [`Self::entry_range`].
+    pub fn all_entries(&self) -> &[(u32, f64)] {
+        &self.entries
+    }
+
+    /// Where the springs of a node stand.
+    #[inline]
+    pub fn entry_range(&self, node: usize) -> std::ops::Range<usize> {
+        self.starts[node] as usize..self.starts[node + 1] as usize
+    }
+
     fn entries(&self, node: usize) -> &[(u32, f64)] {
-        &self.entries[self.starts[node] as usize..self.starts[node + 1] as usize]
+        &self.entries[self.entry_range(node)]
     }
 }
 

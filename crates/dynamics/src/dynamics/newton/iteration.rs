@@ -3,7 +3,7 @@
 use super::momentum::{Inertia, restore_momentum};
 use super::state::Newton;
 use crate::dynamics::info::NewtonInfo;
-use crate::linear::cg::{self, Limits};
+use crate::linear::solver::Limits;
 use crate::linear::system::System;
 use bowknot_geometry::Vector;
 
@@ -57,7 +57,7 @@ impl Newton<'_> {
         }
         let [inertia, last] = &work.guesses;
         let guesses: &[&[Vector]] = &[last.as_slice(), inertia.as_slice()][2 - guess_count..];
-        work.preconditioner.build(&system, &work.x);
+        work.solver.prepare(&system, &work.x);
         let limits = Limits {
             tolerance: params.newton.cg_tolerance,
             own_tolerance: match accuracy {
@@ -69,26 +69,18 @@ impl Newton<'_> {
         };
         let mut info = NewtonInfo {
             iterations: 1,
-            cg: cg::solve(
-                &system,
-                &mut work.preconditioner,
-                &work.right_side,
-                guesses,
-                limits,
-                &mut work.step,
-                &mut work.cg,
-            ),
+            cg: work.solver.solve(&system, &work.right_side, guesses, limits, &mut work.step),
             ..NewtonInfo::default()
         };
         if work.min_scale == 0.0 {
-            work.min_scale = work.cg.scale();
+            work.min_scale = work.solver.scale();
         }
         let inertia = Inertia {
             per_mass: 1.0 / (step.dt * step.dt) + params.environment.air_drag / step.dt,
             drag: step.drag.as_ref(),
             rate: 1.0 / step.dt,
         };
-        restore_momentum(model, repulsion, &inertia, &work.free, work.cg.residual(), &mut work.step);
+        restore_momentum(model, repulsion, &inertia, &work.free, work.solver.residual(), &mut work.step);
         self.search_line(&mut info);
         info.max_displacement = largest_distance(&self.work.trial, &self.work.x, &self.work.free);
         info

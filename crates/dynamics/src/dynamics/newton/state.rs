@@ -3,9 +3,8 @@
 use crate::drag::Drag;
 use crate::elements::filter::Filter;
 use crate::linear::block::BlockValues;
-use crate::linear::cg::CgWorkspace;
-use crate::linear::preconditioner::Preconditioner;
 use crate::linear::scalar::SplitForm;
+use crate::linear::solver::LinearSolver;
 use crate::linear::vectors::add_scaled;
 use crate::model::DynamicsModel;
 use crate::params::DynamicsParams;
@@ -54,9 +53,8 @@ pub struct Workspace {
     /// The Newton step.
     pub step: Vec<Vector>,
     pub values: BlockValues,
-    pub preconditioner: Preconditioner,
-    pub cg: CgWorkspace,
-    /// See [`crate::linear::cg::Limits::min_scale`]: that of the first solve of the time step; 0 before.
+    pub solver: LinearSolver,
+    /// See [`crate::linear::solver::Limits::min_scale`]: that of the first solve of the time step; 0 before.
     pub min_scale: f64,
     pub cache: EvaluationCache,
 }

@@ -44,7 +44,8 @@ fn strands_are_solved_exactly_and_fill_in_little() {
         .collect();
     let mut r = vec![Vector::zeros(); count as usize];
     system.multiply(&solution, &mut r);
-    direct.solve(&r);
+    let lanes: Vec<Lane<f64>> = r.iter().map(|r| Lane::new(r, 1.0)).collect();
+    direct.solve(&lanes);
     for k in 0..65 {
         let found = direct.displacement(k).expect("a member");
         assert!((found - solution[k]).norm() < 1e-11, "{k}: {found} {}", solution[k]);

@@ -1,0 +1,188 @@
+//! Linear solves of Newton's method: conjugate gradients in single precision, refined in double precision.
+//!
+//! A product with H reads the whole matrix, and a solve makes a hundred of them or more: at more than some ten
+//! thousand nodes it takes as long as memory needs to deliver the matrix. In single precision that is half as
+//! long. The residual b - H x at the end is computed in double precision; while it is above the tolerance, a
+//! further solve corrects x (iterative refinement, see N. J. Higham, "Accuracy and Stability of Numerical
+//! Algorithms", chapter 12). Where single precision gains nothing, the rest is done in double precision.
+
+use super::cg::Krylov;
+use super::coarse::Coarse;
+use super::direct::Direct;
+use super::lane::Real;
+use super::preconditioner::Levels;
+use super::system::System;
+use bowknot_geometry::Vector;
+use serde::Serialize;
+
+/// How a linear solve ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct CgInfo {
+    /// Number of iterations, each with one matrix-vector product.
+    pub iterations: usize,
+    /// Residual in the preconditioner's norm, relative to that of the right-hand side [1].
+    pub residual: f64,
+    /// Whether the residual fell below the tolerance. If not, the last iterate is used all the same: the
+    /// target is less accurate, but the step does not fail.
+    pub converged: bool,
+}
+
+/// When to stop. Norms are those of the preconditioner.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Limits {
+    /// Residual relative to b, or to `min_scale` if that is larger [1].
+    pub tolerance: f64,
+    /// Residual relative to b itself at which the solve may end as well [1].
+    pub own_tolerance: f64,
+    /// Smallest squared norm that `tolerance` is relative to: that of the first solve of the time step, which
+    /// the present one corrects.
+    pub min_scale: f64,
+    pub max_iterations: usize,
+}
+
+/// Share of the tolerance at which conjugate gradients end, so that the residual in double precision is below
+/// the tolerance as well.
+const MARGIN: f64 = 0.95;
+
+/// Share of the residual that a round in single precision must take away at least.
+const MIN_GAIN: f64 = 0.5;
+
+/// Solves systems and measures residuals. It keeps buffers only.
+#[derive(Debug, Default)]
+pub(crate) struct LinearSolver {
+    levels: Levels,
+    single: Krylov<f32>,
+    double: Krylov<f64>,
+    /// b - H x [N].
+    residual: Vec<Vector>,
+    scale: f64,
+}
+
+impl LinearSolver {
+    /// Block-Jacobi, replaced by `direct` at the nodes of strands, plus `coarse`.
+    pub fn new(direct: Option<Direct>, coarse: Option<Coarse>) -> Self {
+        Self { levels: Levels { direct, coarse }, ..Self::default() }
+    }
+
+    /// Builds the preconditioner for `system`, linearized at positions `x`.
+    pub fn prepare(&mut self, system: &System<'_>, x: &[Vector]) {
+        self.levels.build(system, x);
+        self.single.fill_preconditioner(system, &self.levels);
+    }
+
+    /// Sets `z` to the preconditioner times `r`.
+    pub fn precondition(&mut self, r: &[Vector], z: &mut [Vector]) {
+        let factor = unit_factor(r);
+        self.single.begin(&mut self.levels, r, factor);
+        z.iter_mut().zip(self.single.preconditioned(1.0 / factor)).for_each(|(to, z)| *to = z);
+    }
+
+    /// Squared norm of b in the last solve.
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// b - H x at the end of the last solve.
+    pub fn residual(&self) -> &[Vector] {
+        &self.residual
+    }
+
+    /// Solves H x = b over the free nodes for the `system` that was [prepared](Self::prepare); b and x are
+    /// zero elsewhere.
+    ///
+    /// The start is the combination of `guesses` with the least energy, or zero if there are none. The
+    /// tolerance is relative to b, not to the first residual: a good guess saves iterations and does not
+    /// raise the accuracy.
+    pub fn solve(
+        &mut self,
+        system: &System<'_>,
+        b: &[Vector],
+        guesses: &[&[Vector]],
+        limits: Limits,
+        x: &mut [Vector],
+    ) -> CgInfo {
+        x.fill(Vector::zeros());
+        self.residual.clear();
+        self.residual.extend_from_slice(b);
+        let Self { levels, single, double, residual, scale: own_scale } = self;
+
+        let factor = unit_factor(b);
+        let scale = single.begin(levels, b, factor) / (factor * factor);
+        if scale <= 0.0 || !scale.is_finite() {
+            return CgInfo { iterations: 0, residual: 0.0, converged: scale == 0.0 };
+        }
+        *own_scale = scale;
+        let enough = limits.own_tolerance * limits.own_tolerance * scale;
+        let scale = scale.max(limits.min_scale);
+        let goal = (limits.tolerance * limits.tolerance * scale).max(enough);
+
+        single.fill_operator(system);
+        guesses.iter().for_each(|guess| single.try_guess(system, guess, factor));
+        let mut round = Round { system, levels, goal, max_iterations: limits.max_iterations, iterations: 0 };
+        let mut norm = scale;
+        let mut factor = factor;
+        loop {
+            round.run(single, factor);
+            single.add_solution(1.0 / factor, x);
+            subtract_product(system, x, b, residual);
+            factor = unit_factor(residual);
+            let before = norm;
+            norm = single.begin(round.levels, residual, factor) / (factor * factor);
+            let left = norm > goal && norm.is_finite() && round.iterations < limits.max_iterations;
+            if !left {
+                break;
+            }
+            if norm > MIN_GAIN * MIN_GAIN * before {
+                tracing::debug!("single precision is not enough for a linear solve");
+                double.fill_preconditioner(system, round.levels);
+                double.fill_operator(system);
+                double.begin(round.levels, residual, factor);
+                norm = round.run(double, factor);
+                double.add_solution(1.0 / factor, x);
+                residual.clear();
+                residual.extend(double.residual(1.0 / factor));
+                break;
+            }
+        }
+        CgInfo { iterations: round.iterations, residual: (norm / scale).sqrt(), converged: norm <= goal }
+    }
+}
+
+/// Conjugate gradients in one precision.
+struct Round<'a> {
+    system: &'a System<'a>,
+    levels: &'a mut Levels,
+    /// Squared norm of the residual to reach.
+    goal: f64,
+    max_iterations: usize,
+    /// Iterations so far.
+    iterations: usize,
+}
+
+impl Round<'_> {
+    /// Iterates on a system whose right-hand side is that of H x = b times `factor`. Returns the squared norm
+    /// of the residual that the recurrence gives, without the factor.
+    fn run<T: Real>(&mut self, krylov: &mut Krylov<T>, factor: f64) -> f64 {
+        let square = factor * factor;
+        let goal = MARGIN * MARGIN * self.goal * square;
+        let left = self.max_iterations - self.iterations;
+        let (iterations, norm) = krylov.iterate(self.system, self.levels, goal, left);
+        self.iterations += iterations;
+        norm / square
+    }
+}
+
+/// Sets `residual` to b - H x over free nodes.
+fn subtract_product(system: &System<'_>, x: &[Vector], b: &[Vector], residual: &mut [Vector]) {
+    system.multiply(x, residual);
+    residual.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
+}
+
+/// A power of two that makes the largest entry nearly 1, so that numbers of any unit fit into single
+/// precision; 1 if that is not possible.
+fn unit_factor(values: &[Vector]) -> f64 {
+    const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
+    let largest: f64 = values.iter().map(|v| v.amax()).fold(0.0, f64::max);
+    let factor = 1.0 / f64::from_bits(largest.to_bits() & EXPONENT);
+    if factor.is_normal() { factor } else { 1.0 }
+}
