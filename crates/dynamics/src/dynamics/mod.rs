@@ -217,6 +217,7 @@ impl Dynamics {
         step.dt = dt;
         step.last_target = None;
         self.work.min_scale = 0.0;
+        self.work.solver.begin_step();
         self.work.cache.clear();
         step.max_potential = None;
         step.unprepared = true;

@@ -20,8 +20,27 @@ pub(crate) trait Element<const N: usize>: Send + Sync {
     /// Elastic energy [J] at `x` [m], plus the dissipation potential since `start` if that is given.
     fn energy(&self, x: &[Vector; N], start: Option<Start<'_, N>>) -> f64;
 
-    /// [`Self::energy`] with gradient and filtered Hessian.
-    fn linearize(&self, x: &[Vector; N], start: Option<Start<'_, N>>, filter: Filter) -> Linearization<N>;
+    /// What [`Self::linearize_in`] needs to know of a state, and is computed faster for four elements at once.
+    type Frame;
+
+    /// The frames of four elements at `x`. The frame of each depends on that element alone.
+    fn frames(elements: [&Self; 4], x: &[[Vector; N]; 4]) -> [Self::Frame; 4];
+
+    /// [`Self::energy`] with gradient and filtered Hessian; `frame` is that at `x`.
+    fn linearize_in(
+        &self,
+        frame: &Self::Frame,
+        x: &[Vector; N],
+        start: Option<Start<'_, N>>,
+        filter: Filter,
+    ) -> Linearization<N>;
+
+    /// [`Self::linearize_in`] with the frame at `x`.
+    #[cfg(test)]
+    fn linearize(&self, x: &[Vector; N], start: Option<Start<'_, N>>, filter: Filter) -> Linearization<N> {
+        let [frame, ..] = Self::frames([self; 4], &[*x; 4]);
+        self.linearize_in(&frame, x, start, filter)
+    }
 }
 
 /// Positions of an element's nodes at the start of the step [m], for damping.

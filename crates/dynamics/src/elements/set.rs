@@ -6,7 +6,7 @@
 //! are no locks, no atomics and no buffers, and sums always run in element order: the result has the same
 //! bits for any number of threads.
 
-use super::element::{Element, Start};
+use super::element::{Element, Linearization, Start};
 use super::filter::Filter;
 use crate::linear::block::BlockPattern;
 use crate::nodes::CHUNK;
@@ -164,33 +164,21 @@ impl<E: Element<N>, const N: usize> AnyElementSet for ElementSet<E, N> {
 
     fn linearize(&self, chunk: usize, motion: Motion<'_>, filter: Filter, rows: &mut Rows<'_>) -> f64 {
         let mut energy = 0.0;
-        for &index in self.chunk(chunk) {
-            let element = &self.elements[index as usize];
-            let nodes = element.nodes();
-            let x = nodes.map(|n| motion.x[n as usize]);
-            let x0 = nodes.map(|n| motion.start[n as usize]);
-            let start = Start { x: &x0, rate: motion.rate };
-            let part = element.linearize(&x, (motion.rate > 0.0).then_some(start), filter);
-            if Self::owner(&nodes) == chunk {
-                energy += part.energy;
-            }
-            let slots = &self.slots[index as usize];
-            for a in 0..N {
-                let node = nodes[a] as usize;
-                if !rows.nodes.contains(&node) {
-                    continue;
+        for four in self.chunk(chunk).chunks(4) {
+            // The last ones may be fewer; others fill their places.
+            let element = |k: usize| &self.elements[four[k.min(four.len() - 1)] as usize];
+            let elements: [&E; 4] = std::array::from_fn(element);
+            let x = elements.map(|element| element.nodes().map(|n| motion.x[n as usize]));
+            let frames = E::frames(elements, &x);
+            for (((&index, element), x), frame) in four.iter().zip(elements).zip(&x).zip(&frames) {
+                let x0 = element.nodes().map(|n| motion.start[n as usize]);
+                let start = Start { x: &x0, rate: motion.rate };
+                let part = element.linearize_in(frame, x, (motion.rate > 0.0).then_some(start), filter);
+                let nodes = element.nodes();
+                if Self::owner(&nodes) == chunk {
+                    energy += part.energy;
                 }
-                let row = node - rows.nodes.start;
-                rows.gradient[row] += part.gradient[a];
-                rows.diagonal[row] += part.hessian[a][a];
-                for b in 0..N {
-                    if a < b {
-                        rows.blocks[slots[a][b] as usize - rows.first_block] += part.hessian[a][b];
-                    } else if b < a {
-                        rows.blocks[slots[a][b] as usize - rows.first_block] +=
-                            part.hessian[b][a].transpose();
-                    }
-                }
+                add(&part, &nodes, &self.slots[index as usize], rows);
             }
         }
         energy
@@ -199,5 +187,31 @@ impl<E: Element<N>, const N: usize> AnyElementSet for ElementSet<E, N> {
     #[cfg(test)]
     fn len(&self) -> usize {
         self.elements.len()
+    }
+}
+
+/// Adds gradient and Hessian of an element to those of its `nodes` that are among the rows.
+#[inline]
+fn add<const N: usize>(
+    part: &Linearization<N>,
+    nodes: &[u32; N],
+    slots: &[[u32; N]; N],
+    rows: &mut Rows<'_>,
+) {
+    for a in 0..N {
+        let node = nodes[a] as usize;
+        if !rows.nodes.contains(&node) {
+            continue;
+        }
+        let row = node - rows.nodes.start;
+        rows.gradient[row] += part.gradient[a];
+        rows.diagonal[row] += part.hessian[a][a];
+        for b in 0..N {
+            if a < b {
+                rows.blocks[slots[a][b] as usize - rows.first_block] += part.hessian[a][b];
+            } else if b < a {
+                rows.blocks[slots[a][b] as usize - rows.first_block] += part.hessian[b][a].transpose();
+            }
+        }
     }
 }

@@ -102,7 +102,19 @@ impl<const N: usize> Element<N> for CurvedBend<N> {
         0.5 * (0..3).map(|e| r[e].dot(&stress[e])).sum::<f64>()
     }
 
-    fn linearize(&self, x: &[Vector; N], _start: Option<Start<'_, N>>, _filter: Filter) -> Linearization<N> {
+    type Frame = ();
+
+    fn frames(_: [&Self; 4], _: &[[Vector; N]; 4]) -> [(); 4] {
+        [(); 4]
+    }
+
+    fn linearize_in(
+        &self,
+        (): &(),
+        x: &[Vector; N],
+        _start: Option<Start<'_, N>>,
+        _filter: Filter,
+    ) -> Linearization<N> {
         let (r, [f1, f2, cross], scale) = self.residuals(x);
         let stress = self.weighted(&r);
         // With m = f1 x f2: dn = scale (I - m m^T / (m^2 + crushed^2)) (df1 x f2 + f1 x df2).

@@ -74,7 +74,19 @@ impl Element<2> for StrandEdge {
         0.5 * self.stiffness * self.length * twice
     }
 
-    fn linearize(&self, x: &[Vector; 2], start: Option<Start<'_, 2>>, filter: Filter) -> Linearization<2> {
+    type Frame = ();
+
+    fn frames(_: [&Self; 4], _: &[[Vector; 2]; 4]) -> [(); 4] {
+        [(); 4]
+    }
+
+    fn linearize_in(
+        &self,
+        (): &(),
+        x: &[Vector; 2],
+        start: Option<Start<'_, 2>>,
+        filter: Filter,
+    ) -> Linearization<2> {
         let d = x[1] - x[0];
         let stretch = d.norm() / self.length;
         let along = if stretch > 0.0 { d / (stretch * self.length) } else { Vector::x() };
@@ -168,7 +180,19 @@ impl Element<3> for StrandTurn {
         0.5 * self.stiffness * twice
     }
 
-    fn linearize(&self, x: &[Vector; 3], start: Option<Start<'_, 3>>, filter: Filter) -> Linearization<3> {
+    type Frame = ();
+
+    fn frames(_: [&Self; 4], _: &[[Vector; 3]; 4]) -> [(); 4] {
+        [(); 4]
+    }
+
+    fn linearize_in(
+        &self,
+        (): &(),
+        x: &[Vector; 3],
+        start: Option<Start<'_, 3>>,
+        filter: Filter,
+    ) -> Linearization<3> {
         let jump = self.jump(x);
         let turning = jump.norm();
         let along = if turning > 0.0 { jump / turning } else { Vector::zeros() };

@@ -2,6 +2,7 @@
 
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
+use wide::f64x4;
 
 /// Columns whose angle has a smaller cosine count as orthogonal: a few ulp.
 const ORTHOGONALITY_TOLERANCE: f64 = 1e-15;
@@ -21,32 +22,68 @@ pub(crate) struct Svd {
     pub v: Matrix3<f64>,
 }
 
+/// Decomposes four matrices.
+///
 /// One-sided Jacobi rotations make the columns of F V orthogonal; small singular values have full relative
 /// accuracy (Demmel and Veselic 1992). No trigonometric functions are used, which differ between platforms.
-/// The result is finite for any rank.
-#[inline]
-pub(crate) fn signed_svd(f: &Matrix3<f64>) -> Svd {
-    let mut b: [Vector; 3] = std::array::from_fn(|k| f.column(k).into_owned());
-    let mut v: [Vector; 3] = [Vector::x(), Vector::y(), Vector::z()];
+/// The result is finite for any rank. Four matrices are rotated at once, as divisions and square roots of one
+/// would wait for each other; the result for each does not depend on the others.
+pub(crate) fn signed_svds(f: &[Matrix3<f64>; 4]) -> [Svd; 4] {
+    let mut b: [Wide; 3] = std::array::from_fn(|c| {
+        std::array::from_fn(|row| f64x4::new(std::array::from_fn(|k| f[k][(row, c)])))
+    });
+    let (zero, one) = (f64x4::splat(0.0), f64x4::splat(1.0));
+    let mut v: [Wide; 3] = [[one, zero, zero], [zero, one, zero], [zero, zero, one]];
+    let tolerance = f64x4::splat(ORTHOGONALITY_TOLERANCE * ORTHOGONALITY_TOLERANCE);
     for _ in 0..MAX_SWEEPS {
         let mut rotated = false;
         for (p, q) in [(0, 1), (0, 2), (1, 2)] {
-            let (pp, qq, pq) = (b[p].norm_squared(), b[q].norm_squared(), b[p].dot(&b[q]));
-            if pq * pq <= ORTHOGONALITY_TOLERANCE * ORTHOGONALITY_TOLERANCE * pp * qq {
+            let (pp, qq, pq) = (dot(&b[p], &b[p]), dot(&b[q], &b[q]), dot(&b[p], &b[q]));
+            // Comparisons with numbers that are not finite are false, so such columns are not rotated.
+            let rotates = (pq * pq).simd_gt(tolerance * pp * qq);
+            if !rotates.any() {
                 continue;
             }
-            let tau = (qq - pp) / (2.0 * pq);
-            let t = 1.0f64.copysign(tau) / (tau.abs() + (1.0 + tau * tau).sqrt());
-            let c = 1.0 / (1.0 + t * t).sqrt();
-            let s = t * c;
-            (b[p], b[q]) = (b[p] * c - b[q] * s, b[p] * s + b[q] * c);
-            (v[p], v[q]) = (v[p] * c - v[q] * s, v[p] * s + v[q] * c);
             rotated = true;
+            let tau = (qq - pp) / (f64x4::splat(2.0) * pq);
+            let size = one / (tau.abs() + (one + tau * tau).sqrt());
+            let t = tau.simd_ge(zero).bitselect(size, -size);
+            // No rotation: t = 0.
+            let t = rotates.bitselect(t, zero);
+            let c = one / (one + t * t).sqrt();
+            let s = t * c;
+            rotate(&mut b, p, q, c, s);
+            rotate(&mut v, p, q, c, s);
         }
         if !rotated {
             break;
         }
     }
+    let columns = |wide: &[Wide; 3]| wide.map(|column| column.map(|number| number.to_array()));
+    let (b, v) = (columns(&b), columns(&v));
+    let pick = |of: &[[[f64; 4]; 3]; 3], k: usize| of.map(|[x, y, z]| Vector::new(x[k], y[k], z[k]));
+    std::array::from_fn(|k| sorted(pick(&b, k), pick(&v, k)))
+}
+
+/// A vector of each of four matrices.
+type Wide = [f64x4; 3];
+
+#[inline(always)]
+fn dot(a: &Wide, b: &Wide) -> f64x4 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+fn rotate(columns: &mut [Wide; 3], p: usize, q: usize, c: f64x4, s: f64x4) {
+    for row in 0..3 {
+        let (a, b) = (columns[p][row], columns[q][row]);
+        (columns[p][row], columns[q][row]) = (a * c - b * s, a * s + b * c);
+    }
+}
+
+/// The decomposition of F from the orthogonal columns `b` of F V and the columns of V.
+#[inline]
+fn sorted(mut b: [Vector; 3], mut v: [Vector; 3]) -> Svd {
     // Sort in descending order; a swap changes one sign, so that v stays a rotation.
     for (p, q) in [(0, 1), (1, 2), (0, 1)] {
         if b[p].norm_squared() < b[q].norm_squared() {
@@ -80,7 +117,11 @@ mod tests {
     use crate::test_support::Stream;
 
     fn check(f: &Matrix3<f64>) {
-        let Svd { u, s, v } = signed_svd(f);
+        // Beside others that need more sweeps and fewer.
+        let [svd, ..] = signed_svds(&[*f, Matrix3::identity(), f * 3.0, f.transpose()]);
+        let [same, ..] = signed_svds(&[*f; 4]);
+        assert_eq!((svd.u, svd.s, svd.v), (same.u, same.s, same.v));
+        let Svd { u, s, v } = svd;
         let back = u * Matrix3::from_diagonal(&s) * v.transpose();
         let size = f.abs().max();
         assert!((back - f).abs().max() <= 4e-15 * size, "{f} {back}");

@@ -12,7 +12,7 @@
 use super::element::{Element, Linearization, Start};
 use super::filter::Filter;
 use super::solid_law::{Principal, SolidLaw};
-use super::svd::{Svd, signed_svd};
+use super::svd::{Svd, signed_svds};
 use crate::material::solid::SolidMaterial;
 use bowknot_geometry::Vector;
 use nalgebra::{Matrix3, SMatrix};
@@ -163,10 +163,22 @@ impl Element<4> for Tetrahedron {
         self.volume * density
     }
 
-    fn linearize(&self, x: &[Vector; 4], start: Option<Start<'_, 4>>, filter: Filter) -> Linearization<4> {
+    /// The decomposition of F.
+    type Frame = Svd;
+
+    fn frames(elements: [&Self; 4], x: &[[Vector; 4]; 4]) -> [Svd; 4] {
+        signed_svds(&std::array::from_fn(|k| elements[k].deformation(&x[k])))
+    }
+
+    fn linearize_in(
+        &self,
+        Svd { u, s, v }: &Svd,
+        x: &[Vector; 4],
+        start: Option<Start<'_, 4>>,
+        filter: Filter,
+    ) -> Linearization<4> {
         let f = self.deformation(x);
-        let Svd { u, s, v } = signed_svd(&f);
-        let principal = self.law.principal(&s);
+        let principal = self.law.principal(s);
         // Shape function gradients along v_j, as rows.
         let shape = self.gradients * v;
         let h: [Vector; 3] = std::array::from_fn(|a| shape.row(a).transpose());
@@ -179,7 +191,7 @@ impl Element<4> for Tetrahedron {
             let strain = strain_increment(&f, &self.deformation(start.x));
             out.energy += self.volume * self.dissipation_density(&strain, start.rate);
             let strain = v.tr_mul(&strain) * v;
-            let (stress, curvature) = self.damped(&principal, &s, &strain, start.rate, filter);
+            let (stress, curvature) = self.damped(&principal, s, &strain, start.rate, filter);
             for a in 0..3 {
                 for b in a..3 {
                     let block = Matrix3::from_fn(|i, k| {

@@ -213,7 +213,19 @@ impl Element<3> for Triangle {
         self.area * density
     }
 
-    fn linearize(&self, x: &[Vector; 3], start: Option<Start<'_, 3>>, filter: Filter) -> Linearization<3> {
+    type Frame = ();
+
+    fn frames(_: [&Self; 4], _: &[[Vector; 3]; 4]) -> [(); 4] {
+        [(); 4]
+    }
+
+    fn linearize_in(
+        &self,
+        (): &(),
+        x: &[Vector; 3],
+        start: Option<Start<'_, 3>>,
+        filter: Filter,
+    ) -> Linearization<3> {
         let f = self.deformation(x);
         let decomposition = decompose(&f);
         let mut local = self.elastic(decomposition.s);

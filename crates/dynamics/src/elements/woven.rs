@@ -172,7 +172,19 @@ impl Element<3> for WovenTriangle {
         self.area * density
     }
 
-    fn linearize(&self, x: &[Vector; 3], start: Option<Start<'_, 3>>, filter: Filter) -> Linearization<3> {
+    type Frame = ();
+
+    fn frames(_: [&Self; 4], _: &[[Vector; 3]; 4]) -> [(); 4] {
+        [(); 4]
+    }
+
+    fn linearize_in(
+        &self,
+        (): &(),
+        x: &[Vector; 3],
+        start: Option<Start<'_, 3>>,
+        filter: Filter,
+    ) -> Linearization<3> {
         let f = deformation(&self.gradients, x);
         let decomposition = decompose(&f);
         let Decomposition { s: [s1, s2], v1: [c, s], .. } = decomposition;

@@ -58,9 +58,9 @@ impl<T: Real> Krylov<T> {
         self.preconditioner.apply(levels, &self.r, &mut self.z)
     }
 
-    /// The preconditioned residual, times `factor`.
-    pub fn preconditioned(&self, factor: f64) -> impl Iterator<Item = Vector> + '_ {
-        self.z.iter().map(move |z| z.vector() * factor)
+    /// Copies the preconditioned residual, times `factor`.
+    pub fn copy_preconditioned(&self, factor: f64, to: &mut [Vector]) {
+        to.iter_mut().zip(&self.z).for_each(|(to, z)| *to = z.vector() * factor);
     }
 
     /// Moves x to the minimum of the energy along `guess` times `factor`, made conjugate to the guesses
@@ -136,9 +136,9 @@ impl<T: Real> Krylov<T> {
         });
     }
 
-    /// The residual, times `factor`.
-    pub fn residual(&self, factor: f64) -> impl Iterator<Item = Vector> + '_ {
-        self.r.iter().map(move |r| r.vector() * factor)
+    /// Copies the residual, times `factor`.
+    pub fn copy_residual(&self, factor: f64, to: &mut [Vector]) {
+        to.iter_mut().zip(&self.r).for_each(|(to, r)| *to = r.vector() * factor);
     }
 }
 

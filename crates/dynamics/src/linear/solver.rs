@@ -9,7 +9,6 @@
 use super::cg::Krylov;
 use super::coarse::Coarse;
 use super::direct::Direct;
-use super::lane::Real;
 use super::preconditioner::Levels;
 use super::system::System;
 use bowknot_geometry::Vector;
@@ -47,10 +46,13 @@ const MARGIN: f64 = 0.95;
 /// Share of the residual that a round in single precision must take away at least.
 const MIN_GAIN: f64 = 0.5;
 
-/// Solves systems and measures residuals. It keeps buffers only.
+/// Solves systems and measures residuals.
 #[derive(Debug, Default)]
 pub(crate) struct LinearSolver {
     levels: Levels,
+    /// Whether single precision is left out: for models with strands, whose stiffness is up to 10^7 times
+    /// their inertia, and for the rest of a time step in which it was not enough.
+    precise: bool,
     single: Krylov<f32>,
     double: Krylov<f64>,
     /// b - H x [N].
@@ -61,20 +63,35 @@ pub(crate) struct LinearSolver {
 impl LinearSolver {
     /// Block-Jacobi, replaced by `direct` at the nodes of strands, plus `coarse`.
     pub fn new(direct: Option<Direct>, coarse: Option<Coarse>) -> Self {
-        Self { levels: Levels { direct, coarse }, ..Self::default() }
+        let precise = direct.is_some();
+        Self { levels: Levels { direct, coarse }, precise, ..Self::default() }
+    }
+
+    /// Forgets what depends on the time step before.
+    pub fn begin_step(&mut self) {
+        self.precise = self.levels.direct.is_some();
     }
 
     /// Builds the preconditioner for `system`, linearized at positions `x`.
     pub fn prepare(&mut self, system: &System<'_>, x: &[Vector]) {
         self.levels.build(system, x);
-        self.single.fill_preconditioner(system, &self.levels);
+        if self.precise {
+            self.double.fill_preconditioner(system, &self.levels);
+        } else {
+            self.single.fill_preconditioner(system, &self.levels);
+        }
     }
 
-    /// Sets `z` to the preconditioner times `r`.
+    /// Sets `z` to the preconditioner times `r`, after [`Self::prepare`].
     pub fn precondition(&mut self, r: &[Vector], z: &mut [Vector]) {
         let factor = unit_factor(r);
-        self.single.begin(&mut self.levels, r, factor);
-        z.iter_mut().zip(self.single.preconditioned(1.0 / factor)).for_each(|(to, z)| *to = z);
+        if self.precise {
+            self.double.begin(&mut self.levels, r, factor);
+            self.double.copy_preconditioned(1.0 / factor, z);
+        } else {
+            self.single.begin(&mut self.levels, r, factor);
+            self.single.copy_preconditioned(1.0 / factor, z);
+        }
     }
 
     /// Squared norm of b in the last solve.
@@ -104,71 +121,54 @@ impl LinearSolver {
         x.fill(Vector::zeros());
         self.residual.clear();
         self.residual.extend_from_slice(b);
-        let Self { levels, single, double, residual, scale: own_scale } = self;
+        let Self { levels, precise, single, double, residual, scale } = self;
 
-        let factor = unit_factor(b);
-        let scale = single.begin(levels, b, factor) / (factor * factor);
-        if scale <= 0.0 || !scale.is_finite() {
-            return CgInfo { iterations: 0, residual: 0.0, converged: scale == 0.0 };
+        let mut factor = unit_factor(b);
+        let norm = if *precise { double.begin(levels, b, factor) } else { single.begin(levels, b, factor) };
+        let mut norm = norm / (factor * factor);
+        if norm <= 0.0 || !norm.is_finite() {
+            return CgInfo { iterations: 0, residual: 0.0, converged: norm == 0.0 };
         }
-        *own_scale = scale;
-        let enough = limits.own_tolerance * limits.own_tolerance * scale;
-        let scale = scale.max(limits.min_scale);
+        *scale = norm;
+        let enough = limits.own_tolerance * limits.own_tolerance * norm;
+        let scale = norm.max(limits.min_scale);
         let goal = (limits.tolerance * limits.tolerance * scale).max(enough);
+        let mut left = limits.max_iterations;
 
-        single.fill_operator(system);
-        guesses.iter().for_each(|guess| single.try_guess(system, guess, factor));
-        let mut round = Round { system, levels, goal, max_iterations: limits.max_iterations, iterations: 0 };
-        let mut norm = scale;
-        let mut factor = factor;
-        loop {
-            round.run(single, factor);
-            single.add_solution(1.0 / factor, x);
-            subtract_product(system, x, b, residual);
-            factor = unit_factor(residual);
-            let before = norm;
-            norm = single.begin(round.levels, residual, factor) / (factor * factor);
-            let left = norm > goal && norm.is_finite() && round.iterations < limits.max_iterations;
-            if !left {
-                break;
-            }
-            if norm > MIN_GAIN * MIN_GAIN * before {
-                tracing::debug!("single precision is not enough for a linear solve");
-                double.fill_preconditioner(system, round.levels);
-                double.fill_operator(system);
-                double.begin(round.levels, residual, factor);
-                norm = round.run(double, factor);
-                double.add_solution(1.0 / factor, x);
-                residual.clear();
-                residual.extend(double.residual(1.0 / factor));
-                break;
+        if *precise {
+            double.fill_operator(system);
+            guesses.iter().for_each(|guess| double.try_guess(system, guess, factor));
+        } else {
+            single.fill_operator(system);
+            guesses.iter().for_each(|guess| single.try_guess(system, guess, factor));
+            loop {
+                let before = norm;
+                left -= single.iterate(system, levels, MARGIN * MARGIN * goal * factor * factor, left).0;
+                single.add_solution(1.0 / factor, x);
+                subtract_product(system, x, b, residual);
+                factor = unit_factor(residual);
+                norm = single.begin(levels, residual, factor) / (factor * factor);
+                if norm <= goal || left == 0 || !norm.is_finite() {
+                    break;
+                }
+                if norm > MIN_GAIN * MIN_GAIN * before {
+                    tracing::debug!("single precision is not enough for the linear solves of a time step");
+                    *precise = true;
+                    double.fill_preconditioner(system, levels);
+                    double.fill_operator(system);
+                    double.begin(levels, residual, factor);
+                    break;
+                }
             }
         }
-        CgInfo { iterations: round.iterations, residual: (norm / scale).sqrt(), converged: norm <= goal }
-    }
-}
-
-/// Conjugate gradients in one precision.
-struct Round<'a> {
-    system: &'a System<'a>,
-    levels: &'a mut Levels,
-    /// Squared norm of the residual to reach.
-    goal: f64,
-    max_iterations: usize,
-    /// Iterations so far.
-    iterations: usize,
-}
-
-impl Round<'_> {
-    /// Iterates on a system whose right-hand side is that of H x = b times `factor`. Returns the squared norm
-    /// of the residual that the recurrence gives, without the factor.
-    fn run<T: Real>(&mut self, krylov: &mut Krylov<T>, factor: f64) -> f64 {
-        let square = factor * factor;
-        let goal = MARGIN * MARGIN * self.goal * square;
-        let left = self.max_iterations - self.iterations;
-        let (iterations, norm) = krylov.iterate(self.system, self.levels, goal, left);
-        self.iterations += iterations;
-        norm / square
+        if *precise {
+            let (iterations, squared) = double.iterate(system, levels, goal * factor * factor, left);
+            (left, norm) = (left - iterations, squared / (factor * factor));
+            double.add_solution(1.0 / factor, x);
+            double.copy_residual(1.0 / factor, residual);
+        }
+        let iterations = limits.max_iterations - left;
+        CgInfo { iterations, residual: (norm / scale).sqrt(), converged: norm <= goal }
     }
 }
 
