@@ -18,6 +18,8 @@ mod reference;
 mod runs;
 /// The time-step loop: free motion, pins, obstacles, restarts, threads.
 mod simulation;
+/// Bodies at rest: falling asleep, waking, what sleep costs.
+mod sleep;
 
 use bowknot::Scene;
 

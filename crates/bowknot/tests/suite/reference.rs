@@ -6,7 +6,7 @@ use bowknot::dynamics::{
 };
 use bowknot::scene::{
     BodyKind, BodySpec, FrictionPair, Keyframe, Motion, ObstacleSpec, OutputParams, PinSpec, Region,
-    RepulsionParams, SimulationParams,
+    RepulsionParams, SimulationParams, SleepParams,
 };
 use bowknot::shapes::{
     Ball, Cone, Cuboid, Figure, Garment, HalfSpaceShape, Lathe, Ribbon, Sheet, Tube, Wedge,
@@ -347,6 +347,9 @@ fn page() -> String {
     );
     page.head(false);
     page.rows("RepulsionParams", &RepulsionParams::default(), None, all);
+    page.section("[solver.sleep]", "Bodies at rest, which take no time.");
+    page.head(false);
+    page.rows("SleepParams", &SleepParams::default(), None, all);
 
     page.section("[output]", "What a run writes.");
     page.head(false);
