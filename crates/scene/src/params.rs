@@ -120,10 +120,10 @@ impl Default for RepulsionParams {
 #[serde(deny_unknown_fields, default)]
 pub struct SleepParams {
     /// Whether bodies at rest fall asleep. What still creeps by less than `distance` in `time` is then
-    /// stopped. Default false.
+    /// stopped. Default true.
     pub enabled: bool,
-    /// Largest distance from where it was of a vertex at rest, in `contact.delta` [1]. Larger: bodies fall
-    /// asleep earlier, and faster creep is stopped. Default 0.1.
+    /// Largest distance of a vertex at rest from where it was [1], in the contact distance `contact.delta`.
+    /// Larger: bodies fall asleep earlier, and faster creep is stopped. Default 0.1.
     pub distance: f64,
     /// How long it must stay there [s]. Larger: what only pauses, such as a pendulum at its turning point,
     /// stays awake, and bodies fall asleep later. Default 0.5.
@@ -132,7 +132,7 @@ pub struct SleepParams {
 
 impl Default for SleepParams {
     fn default() -> Self {
-        Self { enabled: false, distance: 0.1, time: 0.5 }
+        Self { enabled: true, distance: 0.1, time: 0.5 }
     }
 }
 

@@ -1,5 +1,7 @@
 //! Integration tests of the facade, in one binary.
 
+/// What a scene lacks, and what is far away, takes no part.
+mod absent;
 /// The meshes and scenes of `assets`.
 mod assets;
 /// What users get wrong about kinds, materials, friction and sequences.

@@ -6,7 +6,7 @@ use bowknot::dynamics::{
 };
 use bowknot::scene::{
     BodyKind, BodySpec, FrictionPair, Keyframe, Motion, ObstacleSpec, OutputParams, PinSpec, Region,
-    RepulsionParams, SimulationParams, SleepParams,
+    RepulsionParams, SimulationParams,
 };
 use bowknot::shapes::{
     Ball, Cone, Cuboid, Figure, Garment, HalfSpaceShape, Lathe, Ribbon, Sheet, Tube, Wedge,
@@ -348,8 +348,14 @@ fn page() -> String {
     page.head(false);
     page.rows("RepulsionParams", &RepulsionParams::default(), None, all);
     page.section("[solver.sleep]", "Bodies at rest, which take no time.");
-    page.head(false);
-    page.rows("SleepParams", &SleepParams::default(), None, all);
+    page.head(true);
+    let sleep = |preset| bowknot::Scene::with_preset(preset).solver.sleep;
+    page.rows(
+        "SleepParams",
+        &sleep(bowknot::scene::Preset::Fast),
+        Some(&sleep(bowknot::scene::Preset::Paper)),
+        all,
+    );
 
     page.section("[output]", "What a run writes.");
     page.head(false);
@@ -519,6 +525,7 @@ fn every_key_that_a_scene_has_is_on_the_page() {
             "forward",
             "newton",
             "repulsion",
+            "sleep",
             "output",
             "body",
             "obstacle",
