@@ -15,8 +15,8 @@ fn simulator(text: &str) -> Simulator {
     Simulator::new(&scene(text)).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Far from all others there is no pair, no row, and one two-way step per Newton iteration, which goes all the
-/// way.
+/// Far from all others there is no pair and no row. Two-way steps end where vertices leave their trust regions,
+/// so that fast flight takes two.
 #[test]
 fn a_body_in_flight_takes_no_part_in_collisions() {
     let mut flying = simulator(FAR);
@@ -25,7 +25,7 @@ fn a_body_in_flight_takes_no_part_in_collisions() {
         let rows =
             [statistics.pairs, statistics.contact_rows, statistics.active_rows, statistics.friction_rows];
         assert_eq!(rows, [0; 4], "time step {}", statistics.step);
-        assert_eq!(statistics.two_way_steps, statistics.newton_iterations);
+        assert!(statistics.two_way_steps <= 2 * statistics.newton_iterations);
         assert_eq!(statistics.repulsion_springs, 0);
         assert!(statistics.remaining_m < 1e-15, "rounding at most: {}", statistics.remaining_m);
     }
