@@ -312,7 +312,7 @@ impl Awake {
             mass * all.model().gravity(v, gravity).dot(&x.coords)
         };
         Ok(Self {
-            dynamics: Dynamics::new(awake, all.params().clone()).map_err(SimulationError::Dynamics)?,
+            dynamics: Dynamics::new(awake, *all.params()).map_err(SimulationError::Dynamics)?,
             forces: Vec::new(),
             vertices: resting.masses().iter().filter(|mass| **mass > 0.0).count(),
             energies: Energies {
