@@ -15,16 +15,16 @@ fn simulator(text: &str) -> Simulator {
     Simulator::new(&scene(text)).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Far from all others there is no pair and no row. Two-way steps end where vertices leave their trust regions,
-/// so that fast flight takes two.
+/// Far from all others there is no row and no pair in range. In fast flight the search lists pairs of the sheet
+/// with itself, because trust regions grow with the way, and a step ends at their border.
 #[test]
 fn a_body_in_flight_takes_no_part_in_collisions() {
     let mut flying = simulator(FAR);
     for _ in 0..30 {
         let statistics = flying.step().expect("a step");
-        let rows =
-            [statistics.pairs, statistics.contact_rows, statistics.active_rows, statistics.friction_rows];
-        assert_eq!(rows, [0; 4], "time step {}", statistics.step);
+        let rows = [statistics.contact_rows, statistics.active_rows, statistics.friction_rows];
+        assert_eq!(rows, [0; 3], "time step {}", statistics.step);
+        assert!(flying.resolver().state().contacts.pairs.is_empty());
         assert!(statistics.two_way_steps <= 2 * statistics.newton_iterations);
         assert_eq!(statistics.repulsion_springs, 0);
         assert!(statistics.remaining_m < 1e-15, "rounding at most: {}", statistics.remaining_m);
