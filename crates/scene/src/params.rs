@@ -115,7 +115,7 @@ impl Default for RepulsionParams {
 /// of its vertices have stayed within `distance` of where they were for `time`, and something at rest holds
 /// it: an obstacle, a half-space or a pin. Bodies asleep do not move at all, take no time, and are obstacles
 /// at rest for others. An island wakes before something comes into its contact range, and when its pins, the
-/// wind or the forces on it change.
+/// wind or the forces on it change. A body sleeps as a whole: all of its strands or grains together.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SleepParams {

@@ -20,6 +20,7 @@ mod sleep;
 mod solved;
 mod statistics;
 mod taut;
+mod waking;
 
 pub use checkpoint::Checkpoint;
 pub use contacts::ContactForce;

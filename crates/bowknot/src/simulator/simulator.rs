@@ -16,7 +16,7 @@ use super::overlap;
 use super::process::cpu_seconds;
 use super::progress::Progress;
 use super::relaxation::relax_target;
-use super::rest::{Rest, time_of};
+use super::rest::Rest;
 use super::sleep::SleepState;
 use super::statistics::StepStatistics;
 use bowknot_check::{Judge, StateOptions, StateReport};
@@ -502,4 +502,9 @@ pub(super) fn resolve_error(world: &World, step: usize, source: ResolveError) ->
         _ => "",
     };
     SimulationError::Resolve { step, body: body.to_owned(), source }
+}
+
+/// Time after a number of time steps [s].
+pub(super) fn time_of(step: usize, dt: f64) -> f64 {
+    step as f64 * dt
 }
