@@ -88,7 +88,7 @@ pub fn meeting(offset: [f64; 2], modulus: f64, steps: usize, settings: &[String]
         )
     };
     let text = format!(
-        "[simulation]\ngravity = [0, 0, 0]\n[contact]\ndelta = 1e-3\n{}{}",
+        "[simulation]\ngravity = [0, 0, 0]\n[solver.sleep]\nenabled = false\n[contact]\ndelta = 1e-3\n{}{}",
         cube("left", -0.06, 0.0, 0.0, 1.0),
         cube("right", 0.06, offset[0], offset[1], -1.0)
     );
@@ -129,7 +129,7 @@ pub fn dropped_cube(
     let folder = tempfile::tempdir().expect("a folder");
     let [x, y, z] = rotate;
     let text = format!(
-        "[contact]\ndelta = 1e-3\n[[body]]\nname = \"cube\"\nkind = \"solid\"\nfriction = {friction:?}\n\
+        "[solver.sleep]\nenabled = false\n[contact]\ndelta = 1e-3\n[[body]]\nname = \"cube\"\nkind = \"solid\"\nfriction = {friction:?}\n\
          material = {{ base = \"jelly\", young_modulus = 1e5, density = 1000 }}\n\
          shape = {{ type = \"block\", size = [0.08, 0.08, 0.08], edge = 0.02 }}\n\
          rotate = [{x:?}, {y:?}, {z:?}]\ntranslate = [0, 0, 0.12]\n\
@@ -156,7 +156,7 @@ pub fn dropped_cube(
 pub fn thrown_cube(modulus: f64, mesh: bool, steps: usize, settings: &[String]) -> Vec<f64> {
     let folder = tempfile::tempdir().expect("a folder");
     let text = format!(
-        "[simulation]\ngravity = [0, 0, 0]\n[contact]\ndelta = 1e-3\n[[body]]\nname = \"cube\"\nkind = \"solid\"\n\
+        "[simulation]\ngravity = [0, 0, 0]\n[solver.sleep]\nenabled = false\n[contact]\ndelta = 1e-3\n[[body]]\nname = \"cube\"\nkind = \"solid\"\n\
          velocity = [0, 0, -3]\n\
          material = {{ base = \"jelly\", young_modulus = {modulus:?}, density = 1000 }}\n\
          shape = {{ type = \"block\", size = [0.08, 0.08, 0.08], edge = 0.02 }}\ntranslate = [0, 0, 0.1]\n\
@@ -200,7 +200,7 @@ pub fn rolling_ball(degrees: f64, edge: f64, dt: f64, range: Range<usize>, setti
     let folder = tempfile::tempdir().expect("a folder");
     let (sine, cosine) = degrees.to_radians().sin_cos();
     let text = format!(
-        "[simulation]\ndt = {dt:?}\ngravity = [{:?}, 0, {:?}]\n[contact]\ndelta = 1e-3\n\
+        "[simulation]\ndt = {dt:?}\ngravity = [{:?}, 0, {:?}]\n[solver.sleep]\nenabled = false\n[contact]\ndelta = 1e-3\n\
          [[body]]\nname = \"ball\"\nkind = \"solid\"\nfriction = 0.5\n\
          material = {{ base = \"rubber\", young_modulus = 1e6, density = 1000 }}\n\
          shape = {{ type = \"tet-ball\", radius = 0.05, edge = {edge:?} }}\n\
@@ -252,7 +252,7 @@ pub fn belt(degrees: f64, friction: f64, settings: &[String]) -> [f64; 2] {
     let drawn = (theta.cos(), -theta.sin());
     let reach = 0.02 * length;
     let text = format!(
-        "[simulation]\ngravity = [0, 0, 0]\nair_drag = 5\n[contact]\ndelta = 1e-3\n\
+        "[simulation]\ngravity = [0, 0, 0]\nair_drag = 5\n[solver.sleep]\nenabled = false\n[contact]\ndelta = 1e-3\n\
          [[body]]\nname = \"belt\"\nmesh = \"belt.obj\"\nmaterial = {{ base = \"cotton\", poisson_ratio = 0.0 }}\nfriction = {friction:?}\n\
          [[pin]]\nvertices = [{}]\n[[pin]]\nvertices = [{}]\n\
          motion = {{ keyframes = [{{ time = 1.0, translate = [{:?}, 0, {:?}] }}] }}\n\
@@ -339,7 +339,7 @@ pub fn table_edge(pull: f64, friction: f64, steps: usize, settings: &[String]) -
         .collect();
     strip("table.obj", &table, 0.0, 2, 0.1);
     let text = format!(
-        "[simulation]\nair_drag = 2\n[contact]\ndelta = {delta:?}\n\
+        "[simulation]\nair_drag = 2\n[solver.sleep]\nenabled = false\n[contact]\ndelta = {delta:?}\n\
          [[body]]\nname = \"sheet\"\nmesh = \"sheet.obj\"\nfriction = {friction:?}\n\
          [[obstacle]]\nname = \"table\"\nmesh = \"table.obj\"\nfriction = {friction:?}\n"
     );

@@ -132,6 +132,9 @@ fn progress_text(progress: &Progress<'_>) -> String {
     if let Some(gap) = statistics.min_gap_m {
         text += &format!(", gap {:.2} mm", 1e3 * gap);
     }
+    if statistics.asleep_vertices > 0 {
+        text += &format!(", {} asleep", counted(statistics.asleep_vertices, "vertex", "vertices"));
+    }
     if let (false, Some(body)) = (statistics.converged, &statistics.slowest_body) {
         text += &format!(", {body} is {:.1} mm short of its target", 1e3 * statistics.remaining_m);
     }

@@ -109,6 +109,15 @@ impl CollisionModel {
         Self { topology, vertex_body, bodies: vec![BodyFilter::DEFORMABLE], half_spaces: Vec::new() }
     }
 
+    /// Changes which bodies are obstacles, one entry per body. Nothing else changes.
+    ///
+    /// # Panics
+    /// If there is another number of entries than of bodies.
+    pub fn set_obstacles(&mut self, obstacle: &[bool]) {
+        assert_eq!(obstacle.len(), self.bodies.len(), "one entry per body");
+        self.bodies.iter_mut().zip(obstacle).for_each(|(body, obstacle)| body.obstacle = *obstacle);
+    }
+
     /// Vertices, edges and triangles.
     pub fn topology(&self) -> &Topology {
         &self.topology

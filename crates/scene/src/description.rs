@@ -4,7 +4,7 @@ use crate::body::BodySpec;
 use crate::friction::FrictionPair;
 use crate::obstacle::ObstacleSpec;
 use crate::origin::Origins;
-use crate::params::{OutputParams, Preset, SceneSolverParams, SimulationParams};
+use crate::params::{OutputParams, Preset, SceneSolverParams, SimulationParams, SleepParams};
 use crate::pin::PinSpec;
 use bowknot_dynamics::{DynamicsParams, Environment};
 use bowknot_twoway::ContactParams;
@@ -44,7 +44,9 @@ impl Scene {
     pub fn with_preset(preset: Preset) -> Self {
         let bowknot_twoway::Params { contact, solver } = preset.params();
         let bowknot_twoway::SolverParams { backward, forward, stop } = solver;
-        let solver = SceneSolverParams { backward, forward, stop, ..SceneSolverParams::default() };
+        // The paper's method knows no sleep.
+        let sleep = SleepParams { enabled: preset == Preset::Fast, ..SleepParams::default() };
+        let solver = SceneSolverParams { backward, forward, stop, sleep, ..SceneSolverParams::default() };
         Self { preset, contact, solver, ..Self::default() }
     }
 

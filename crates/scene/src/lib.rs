@@ -59,7 +59,7 @@ pub use open::twoway_params;
 pub use origin::{Origin, Origins};
 pub use params::{
     CollisionEvery, Format, InteriorFollows, OutputParams, Preset, RepulsionParams, SceneSolverParams,
-    SimulationParams,
+    SimulationParams, SleepParams,
 };
 pub use pin::{PinSpec, Region, Side};
 pub use world::{SceneInfo, World};

@@ -87,6 +87,8 @@ pub struct SceneSolverParams {
     pub newton: NewtonParams,
     /// Contact forces of the dynamics.
     pub repulsion: RepulsionParams,
+    /// Bodies at rest.
+    pub sleep: SleepParams,
 }
 
 /// Contact forces of the dynamics, `[solver.repulsion]` (paper, section 6.2): springs between surfaces that
@@ -106,6 +108,31 @@ pub struct RepulsionParams {
 impl Default for RepulsionParams {
     fn default() -> Self {
         Self { stiffness: 3.0 }
+    }
+}
+
+/// Bodies at rest, `[solver.sleep]`. An island, bodies in contact range of each other, falls asleep when all
+/// of its vertices have stayed within `distance` of where they were for `time`, and something at rest holds
+/// it: an obstacle, a half-space or a pin. Bodies asleep do not move at all, take no time, and are obstacles
+/// at rest for others. An island wakes before something comes into its contact range, and when its pins, the
+/// wind or the forces on it change. A body sleeps as a whole: all of its strands or grains together.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SleepParams {
+    /// Whether bodies at rest fall asleep. What still creeps by less than `distance` in `time` is then
+    /// stopped. Default true.
+    pub enabled: bool,
+    /// Largest distance of a vertex at rest from where it was [1], in the contact distance `contact.delta`.
+    /// Larger: bodies fall asleep earlier, and faster creep is stopped. Default 0.1.
+    pub distance: f64,
+    /// How long it must stay there [s]. Larger: what only pauses, such as a pendulum at its turning point,
+    /// stays awake, and bodies fall asleep later. Default 0.5.
+    pub time: f64,
+}
+
+impl Default for SleepParams {
+    fn default() -> Self {
+        Self { enabled: true, distance: 0.1, time: 0.5 }
     }
 }
 
@@ -176,6 +203,13 @@ impl Parameters for SimulationParams {
 impl Parameters for RepulsionParams {
     fn check(&self, checks: &mut Checks) {
         checks.non_negative("stiffness", self.stiffness);
+    }
+}
+
+impl Parameters for SleepParams {
+    fn check(&self, checks: &mut Checks) {
+        checks.positive("distance", self.distance);
+        checks.positive("time", self.time);
     }
 }
 

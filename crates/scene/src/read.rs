@@ -111,6 +111,7 @@ fn read_solver(reader: &mut Reader<'_>, root: &Table) -> Scene {
         stop,
         newton: solver_part(reader, &table, "newton", &base.solver.newton),
         repulsion: solver_part(reader, &table, "repulsion", &base.solver.repulsion),
+        sleep: solver_part(reader, &table, "sleep", &base.solver.sleep),
     };
     Scene { contact, solver, ..base }
 }

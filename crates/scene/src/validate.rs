@@ -18,6 +18,7 @@ pub(super) fn scene(scene: &Scene, source: &Source) -> Result<(), SceneError> {
     report_errors(&mut problems, source, "", &scene.twoway());
     report_errors(&mut problems, source, "solver.newton", &scene.solver.newton);
     report_errors(&mut problems, source, "solver.repulsion", &scene.solver.repulsion);
+    report_errors(&mut problems, source, "solver.sleep", &scene.solver.sleep);
     report_errors(&mut problems, source, "output", &scene.output);
     for (index, body) in scene.bodies.iter().enumerate() {
         report_errors(&mut problems, source, &format!("body[{index}]"), body);

@@ -56,6 +56,24 @@ impl Resolver {
         let search = TrustRegionSearch::new(&scene);
         Ok(Self::with_stages(scene, search, LcpBackward::default(), CertifiedForward::default()))
     }
+
+    /// Changes which bodies are obstacles from the next call on, one entry per body of the collision model,
+    /// for a caller who knows that bodies rest. As obstacles they have no rows and no pairs with other
+    /// obstacles, and their vertices go to their targets. Lengths, masses and edge lengths of vertices stay
+    /// those of the bodies that the resolver was made with. The next call searches for all pairs.
+    ///
+    /// **Two obstacles never form a pair.** A body that is made an obstacle is therefore safe from other
+    /// obstacles only as long as neither moves into the other.
+    ///
+    /// # Errors
+    /// A wrong number of entries; a body that would be deformable although its vertices have no mass. The
+    /// resolver is then unchanged.
+    pub fn set_obstacles(&mut self, obstacle: &[bool]) -> Result<(), ResolveError> {
+        self.scene.set_obstacles(obstacle)?;
+        self.search = TrustRegionSearch::new(&self.scene);
+        self.state = ResolveState::default();
+        Ok(())
+    }
 }
 
 impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {

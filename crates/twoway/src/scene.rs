@@ -6,7 +6,7 @@ use crate::params::Params;
 use crate::spacing::Spacing;
 use crate::validation::{check_finite, check_length};
 use bowknot_constraints::{DesiredDistance, Facing, Feature, FrictionModel, STRETCH_LIMIT};
-use bowknot_errors::Parameters;
+use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::{PairKind, Point, Separation, Vector};
 use bowknot_proximity::{CollisionModel, Pair};
 
@@ -220,6 +220,29 @@ impl CollisionScene {
     /// [`ResolveError::Contact`].
     pub fn set_pair_friction(&mut self, pairs: &[PairFriction]) -> Result<(), ResolveError> {
         self.contact.set_pairs(pairs)
+    }
+
+    /// Changes which bodies are obstacles, see [`crate::Resolver::set_obstacles`].
+    ///
+    /// # Errors
+    /// [`ResolveError::Contact`] if there is another number of entries than of bodies; [`ResolveError::Mass`]
+    /// if a body would be deformable whose vertices have no mass. The scene is then unchanged.
+    pub(crate) fn set_obstacles(&mut self, obstacle: &[bool]) -> Result<(), ResolveError> {
+        let mut checks = Checks::default();
+        let bodies = self.model.bodies().len();
+        let allowed = format!("must be {bodies}, one per body of the model");
+        checks.require(obstacle.len() == bodies, "obstacle.len()", obstacle.len(), allowed);
+        checks.finish().map_err(ResolveError::Contact)?;
+        for (vertex, &body) in self.model.vertex_body().iter().enumerate() {
+            let mass = self.relative_masses[vertex];
+            if !obstacle[body as usize] && mass == 0.0 {
+                return Err(ResolveError::Mass { vertex, body, mass });
+            }
+        }
+        self.model.set_obstacles(obstacle);
+        let vertices = 0..self.rest.len() as u32;
+        self.obstacle_vertices = vertices.filter(|&v| self.model.is_obstacle(v)).collect();
+        Ok(())
     }
 
     /// Derives the lengths from the contact data.

@@ -1,6 +1,6 @@
 //! The file of a checkpoint.
 
-use crate::simulator::{Checkpoint, ContactForce};
+use crate::simulator::{Checkpoint, ContactForce, SleepState};
 use bowknot_constraints::Feature;
 use bowknot_errors::counted;
 use bowknot_geometry::{Point, Vector};
@@ -14,7 +14,8 @@ use std::path::Path;
 impl Checkpoint {
     /// Writes the state as one NPZ file, atomically: `step[1]`, `positions[n,3]`, `velocities[n,3]`,
     /// `anchor_counts[p]`, `anchors[k,3]`, `contact_features[c,4]` (kind and index of either feature: 0
-    /// vertex, 1 edge, 2 triangle, 3 half-space), `contact_normals[c,3]`, `contact_forces[c,3]`.
+    /// vertex, 1 edge, 2 triangle, 3 half-space), `contact_normals[c,3]`, `contact_forces[c,3]`; where bodies
+    /// may sleep, `sleep_origins[n,3]`, `sleep_calm_steps[b]` and `sleep_islands[b]` (4294967295: awake).
     ///
     /// # Errors
     /// The system's refusal, with the path.
@@ -48,6 +49,15 @@ impl Checkpoint {
             for (name, array) in &arrays {
                 archive.add_array(*name, array).map_err(io::Error::other)?;
             }
+            let SleepState { origins, calm_steps, islands } = &self.sleep;
+            if !origins.is_empty() {
+                let origins = flat(origins.len(), points(origins))?;
+                archive.add_array("sleep_origins", &origins).map_err(io::Error::other)?;
+                for (name, numbers) in [("sleep_calm_steps", calm_steps), ("sleep_islands", islands)] {
+                    let numbers: Array1<u64> = numbers.iter().map(|&n| u64::from(n)).collect();
+                    archive.add_array(name, &numbers).map_err(io::Error::other)?;
+                }
+            }
             archive.finish().map_err(io::Error::other)?;
             Ok(())
         })
@@ -63,6 +73,8 @@ impl Checkpoint {
             |name: &str, message: String| IoError::content(path, Place::Array(name.to_owned()), message);
         let mut archive = NpzReader::new(file)
             .map_err(|e| IoError::content(path, Place::File, format!("not a checkpoint: {e}")))?;
+        let names = archive.names().map_err(|e| IoError::content(path, Place::File, e.to_string()))?;
+        let has_sleep = names.iter().any(|name| name.trim_end_matches(".npy") == "sleep_origins");
         let mut rows = |name: &str| -> Result<Vec<[f64; 3]>, IoError> {
             let array: Array2<f64> = archive.by_name(name).map_err(|e| fault(name, e.to_string()))?;
             if array.ncols() != 3 {
@@ -76,6 +88,7 @@ impl Checkpoint {
         let positions: Vec<Point> = rows("positions")?.into_iter().map(Point::from).collect();
         let velocities: Vec<Vector> = rows("velocities")?.into_iter().map(Vector::from).collect();
         let anchors: Vec<Point> = rows("anchors")?.into_iter().map(Point::from).collect();
+        let origins = if has_sleep { rows("sleep_origins")? } else { Vec::new() };
         let (normals, forces) = (rows("contact_normals")?, rows("contact_forces")?);
         let codes: Array2<u64> =
             archive.by_name("contact_features").map_err(|e| fault("contact_features", e.to_string()))?;
@@ -100,6 +113,13 @@ impl Checkpoint {
         let [step] = step[..] else {
             return Err(fault("step", format!("has {} entries, not 1", step.len())));
         };
+        let mut sleep = SleepState::default();
+        if has_sleep {
+            let narrow = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+            sleep.origins = origins.into_iter().map(Point::from).collect();
+            sleep.calm_steps = integers("sleep_calm_steps")?.into_iter().map(narrow).collect();
+            sleep.islands = integers("sleep_islands")?.into_iter().map(narrow).collect();
+        }
         let mut split = Vec::with_capacity(counts.len());
         let mut rest = anchors.as_slice();
         for count in counts {
@@ -109,7 +129,7 @@ impl Checkpoint {
             split.push(own.to_vec());
             rest = tail;
         }
-        Ok(Self { step, positions, velocities, anchors: split, contacts })
+        Ok(Self { step, positions, velocities, anchors: split, contacts, sleep })
     }
 }
 
@@ -152,11 +172,20 @@ mod tests {
                 normal: Vector::z(),
                 force: Vector::new(0.1, -0.0, 1e-300),
             }],
+            sleep: SleepState {
+                origins: vec![Point::new(0.2, -0.0, 1e-300), Point::origin()],
+                calm_steps: vec![3, 50],
+                islands: vec![SleepState::AWAKE, 1],
+            },
         };
         checkpoint.write(&path).expect("write");
         let read = Checkpoint::read(&path).expect("read");
         assert_eq!(read, checkpoint);
         assert!(read.positions[0].y.is_sign_negative());
+        // Runs in which nothing may sleep write nothing about sleep.
+        let checkpoint = Checkpoint { sleep: SleepState::default(), ..checkpoint };
+        checkpoint.write(&path).expect("write");
+        assert_eq!(Checkpoint::read(&path).expect("read"), checkpoint);
     }
 
     #[test]

@@ -40,6 +40,7 @@ pub struct Summary {
 #[serde(default)]
 pub struct StepNumbers {
     pub active_rows: Option<f64>,
+    pub asleep_vertices: Option<f64>,
     pub center_of_mass: [Option<f64>; 3],
     pub cg_iterations: Option<f64>,
     pub collision_energy_j: Option<f64>,

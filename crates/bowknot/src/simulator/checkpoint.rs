@@ -1,6 +1,7 @@
 //! All that a simulation must remember between two time steps.
 
 use super::contacts::ContactForce;
+use super::sleep::SleepState;
 use bowknot_geometry::{Point, Vector};
 
 /// The state between two time steps, in full: a simulation restored from it goes on to the same bits.
@@ -17,6 +18,8 @@ pub struct Checkpoint {
     /// For each pin that takes hold later than time 0 and has done so: where its vertices belong without
     /// its motion [m]. Empty for the others.
     pub anchors: Vec<Vec<Point>>,
-    /// The forces that contacts of the dynamics carry.
+    /// The forces that contacts of the dynamics carry, those between bodies asleep included.
     pub contacts: Vec<ContactForce>,
+    /// Which bodies sleep, and how long the others have been at rest. Empty if bodies never sleep.
+    pub sleep: SleepState,
 }

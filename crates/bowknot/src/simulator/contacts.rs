@@ -52,10 +52,21 @@ impl Contacts {
         // The velocity filter computes friction from the depth of the target, which springs would remove.
         let filtered = resolver.scene().friction_model() == FrictionModel::Filter;
         let stiffness = if filtered { 0.0 } else { params.stiffness };
-        let limited = LimitedEdges::new(resolver.scene(), world);
-        let mut solved = vec![false; world.positions.len()];
-        solved_vertices(world).for_each(|v| solved[v] = true);
-        Self { stiffness, limited, counted: solved.clone(), solved, ..Self::default() }
+        let mut contacts = Self { stiffness, ..Self::default() };
+        contacts.leave_out(world, resolver, &[]);
+        contacts
+    }
+
+    /// Leaves out the contacts of bodies `asleep`, one entry per body or none at all, which are obstacles of
+    /// the `resolver`. Contacts must be found anew.
+    pub fn leave_out(&mut self, world: &World, resolver: &Resolver, asleep: &[bool]) {
+        self.limited = LimitedEdges::new(resolver.scene(), world);
+        self.solved.clear();
+        self.solved.resize(world.positions.len(), false);
+        solved_vertices(world, asleep).for_each(|v| self.solved[v] = true);
+        self.counted.clone_from(&self.solved);
+        self.springs.clear();
+        self.features.clear();
     }
 
     /// The contacts.

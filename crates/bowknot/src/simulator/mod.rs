@@ -1,6 +1,7 @@
 //! The time-step loop: [`Simulator`], its statistics, errors and checkpoints, and what it shows to an
 //! observer.
 
+mod approach;
 mod checkpoint;
 mod contacts;
 mod error;
@@ -12,11 +13,14 @@ mod prescribed;
 mod process;
 mod progress;
 mod relaxation;
+mod rest;
 #[allow(clippy::module_inception, reason = "the type that the module is named for")]
 mod simulator;
+mod sleep;
 mod solved;
 mod statistics;
 mod taut;
+mod waking;
 
 pub use checkpoint::Checkpoint;
 pub use contacts::ContactForce;
@@ -24,4 +28,5 @@ pub use error::{SimulationError, describe_intersections};
 pub use observer::{AcceptedStep, CollisionProblem, Iterated, SimulationObserver};
 pub use process::{cpu_seconds, peak_memory_bytes};
 pub use simulator::Simulator;
+pub use sleep::SleepState;
 pub use statistics::{Energy, StepSeconds, StepStatistics};

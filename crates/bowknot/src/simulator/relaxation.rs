@@ -11,7 +11,7 @@ const RELAXATION: f64 = 0.5;
 /// Moves the target `y` back towards `x`, at the vertices that Newton's method solves with their contacts and
 /// that are not prescribed.
 pub(super) fn relax_target(world: &World, x: &[Point], y: &mut [Point], prescribed: &[bool]) {
-    for v in solved_vertices(world).filter(|&v| !prescribed[v]) {
+    for v in solved_vertices(world, &[]).filter(|&v| !prescribed[v]) {
         y[v] = x[v] + (y[v] - x[v]) * RELAXATION;
     }
 }

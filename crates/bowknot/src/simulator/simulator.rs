@@ -16,6 +16,8 @@ use super::overlap;
 use super::process::cpu_seconds;
 use super::progress::Progress;
 use super::relaxation::relax_target;
+use super::rest::Rest;
+use super::sleep::SleepState;
 use super::statistics::StepStatistics;
 use bowknot_check::{Judge, StateOptions, StateReport};
 use bowknot_dynamics::{Dynamics, DynamicsModel};
@@ -43,23 +45,31 @@ pub struct Simulator {
     newton_iterations: usize,
     step_tolerance: f64,
     collision_every: CollisionEvery,
-    dynamics: Dynamics,
+    pub(super) dynamics: Dynamics,
     pub(super) resolver: Resolver,
-    step: usize,
+    pub(super) step: usize,
     pub(super) positions: Vec<Point>,
-    velocities: Vec<Vector>,
+    pub(super) velocities: Vec<Vector>,
     pub(super) anchors: Vec<Vec<Point>>,
     /// Places of pins that follow an obstacle, by pin and vertex; made from the anchors when first needed.
     pub(super) attachments: Vec<Vec<Option<Attachment>>>,
     interior: Interior,
-    contacts: Contacts,
+    pub(super) contacts: Contacts,
+    /// Bodies at rest; none if they never sleep.
+    pub(super) rest: Option<Rest>,
+    /// Forces that the caller has set, by vertex [N]; empty before.
+    pub(super) external_forces: Vec<Vector>,
+    /// Bodies on which forces have been changed since the last time step; may be empty.
+    pub(super) pushed: Vec<bool>,
+    /// See [`Self::set_measured`].
+    measured: bool,
     scratch: Scratch,
 }
 
 /// Buffers of a time step; nothing in them outlives it.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
-    start: Vec<Point>,
+    pub(super) start: Vec<Point>,
     x: Vec<Point>,
     y: Vec<Point>,
     pub(super) prescribed: Vec<bool>,
@@ -116,6 +126,7 @@ impl Simulator {
         let contacts = Contacts::new(&scene.solver.repulsion, &world, &resolver);
         let dynamics = Dynamics::new(model, scene.dynamics()).map_err(SimulationError::Dynamics)?;
         let anchors = vec![Vec::new(); world.pins.len()];
+        let rest = Rest::new(&scene.solver.sleep, &world, &resolver, scene.simulation.dt);
         Ok(Self {
             dt: scene.simulation.dt,
             newton_iterations: scene.simulation.newton_iterations,
@@ -130,13 +141,24 @@ impl Simulator {
             anchors,
             interior: Interior::new(&world, scene.simulation.interior),
             contacts,
+            rest,
+            external_forces: Vec::new(),
+            pushed: Vec::new(),
+            measured: true,
             scratch: Scratch::default(),
             world: Arc::new(world),
         })
     }
 
+    /// Whether time steps measure what they report but do not need: energies, momentum, center of mass, largest
+    /// stretch and speed, inverted tetrahedra, and the residual of a last iteration. True at first. Otherwise
+    /// these are 0 in [`StepStatistics`], and a time step takes some hundredths less. Results do not change.
+    pub fn set_measured(&mut self, measured: bool) {
+        self.measured = measured;
+    }
+
     /// Finds the contacts at the present state, and refuses coordinates too large for the minimum separation.
-    fn find_contacts(&mut self, carried: &[ContactForce]) -> Result<(), SimulationError> {
+    pub(super) fn find_contacts(&mut self, carried: &[ContactForce]) -> Result<(), SimulationError> {
         let Self { world, resolver, contacts, positions, step, dt, .. } = self;
         let input = ResolveInput { time_step: Some(*dt), ..ResolveInput::default() };
         resolver
@@ -166,19 +188,30 @@ impl Simulator {
     ) -> Result<StepStatistics, SimulationError> {
         let (timer, cpu_start) = (Instant::now(), cpu_seconds());
         let step = self.step + 1;
-        let time = step as f64 * self.dt;
+        let time = time_of(step, self.dt);
         let mut statistics = StepStatistics { step, time, converged: true, ..StepStatistics::default() };
 
         let mut scratch = std::mem::take(&mut self.scratch);
         scratch.start.clone_from(&self.positions);
-        let (anchors, contacts) = (self.anchors.clone(), self.contacts.clone());
+        let anchors = self.anchors.clone();
         self.prescribe(time, &mut scratch);
+        // Bodies that wake here stay awake if the time step is abandoned: it would wake them again.
+        if let Err(error) = self.wake_for_step(time, &mut scratch) {
+            (self.anchors, self.scratch) = (anchors, scratch);
+            return Err(error);
+        }
+        if self.has_nothing_to_do() {
+            self.scratch = scratch;
+            self.step = step;
+            self.velocities.fill(Vector::zeros());
+            self.close(timer, cpu_start, &mut statistics);
+            return Ok(statistics);
+        }
+        let carried = self.contacts.carried();
         let result = self.iterate(step, &mut scratch, observer, &mut statistics);
         if let Err(error) = result {
             self.positions.clone_from(&scratch.start);
             self.anchors = anchors;
-            let carried = contacts.carried();
-            self.contacts = contacts;
             self.attachments.iter_mut().for_each(Vec::clear);
             self.scratch = scratch;
             // The resolver still has the pairs of the abandoned step.
@@ -186,28 +219,39 @@ impl Simulator {
             return Err(error);
         }
 
-        let Self { dynamics, positions, contacts, velocities, .. } = self;
+        let Self { dynamics, positions, contacts, velocities, rest, .. } = self;
+        let dynamics = rest.as_mut().and_then(Rest::dynamics).unwrap_or(dynamics);
         dynamics.end_velocities(positions, &scratch.prescribed, contacts.touching(), velocities);
         statistics.waiting = self.waiting(time, &scratch);
-        statistics.inverted_tets = interior::inverted(&self.world, &self.positions);
         self.scratch = scratch;
         self.step = step;
-
-        let model = self.dynamics.model();
-        statistics.max_stretch = model.max_stretch(&self.positions);
-        let (collide, inside) = self.velocities.split_at(self.world.collision_vertices());
-        let deformable = collide[..self.world.deformable_vertices].iter().chain(inside);
-        statistics.max_speed = deformable.map(Vector::norm).fold(0.0, f64::max);
-        statistics.finish(
-            &self.dynamics.energies(&self.positions, &self.velocities),
-            &model.momentum(&self.velocities),
-            &model.center_of_mass(&self.positions),
-        );
-        statistics.close(timer.elapsed().as_secs_f64(), cpu_seconds() - cpu_start);
+        self.fall_asleep()?;
+        self.close(timer, cpu_start, &mut statistics);
         if let Some(body) = &statistics.slowest_body {
             tracing::debug!(step, %body, remaining_m = statistics.remaining_m, "collisions did not converge");
         }
         Ok(statistics)
+    }
+
+    /// Closes the statistics of a time step that began at `timer` and `cpu_start` [s].
+    fn close(&self, timer: Instant, cpu_start: f64, statistics: &mut StepStatistics) {
+        statistics.asleep_vertices = self.asleep_vertices();
+        if self.measured {
+            self.measure_state(statistics);
+        }
+        statistics.close(timer.elapsed().as_secs_f64(), cpu_seconds() - cpu_start);
+    }
+
+    fn measure_state(&self, statistics: &mut StepStatistics) {
+        let model = self.dynamics.model();
+        statistics.inverted_tets = interior::inverted(&self.world, &self.positions);
+        let (energies, max_stretch) = self.measures();
+        statistics.max_stretch = max_stretch;
+        let (collide, inside) = self.velocities.split_at(self.world.collision_vertices());
+        let deformable = collide[..self.world.deformable_vertices].iter().chain(inside);
+        statistics.max_speed = deformable.map(Vector::norm).fold(0.0, f64::max);
+        let (momentum, center) = (model.momentum(&self.velocities), model.center_of_mass(&self.positions));
+        statistics.finish(&energies, &momentum, &center);
     }
 
     /// The Newton iterations of a time step, with their collision problems; moves `self.positions`.
@@ -228,8 +272,11 @@ impl Simulator {
             interior,
             contacts,
             step_tolerance,
+            rest,
+            measured,
             ..
         } = self;
+        let dynamics = rest.as_mut().and_then(Rest::dynamics).unwrap_or(dynamics);
         let Scratch { start, x, y, prescribed, keyframes, groups } = scratch;
         let target_error = |source| SimulationError::Target { step, source };
         let count = world.collision_vertices();
@@ -313,9 +360,15 @@ impl Simulator {
             if x[..count] != y[..count] {
                 statistics.interior_solves +=
                     interior.follow(dynamics, prescribed, y, x).map_err(target_error)?;
-                statistics.collision_energy_j += added_energy(dynamics, start, y, x, *dt);
+                if *measured {
+                    statistics.collision_energy_j += added_energy(dynamics, start, y, x, *dt);
+                }
             }
             contacts.apply(dynamics).map_err(target_error)?;
+            if last && !*measured {
+                statistics.seconds.dynamics += timer.elapsed().as_secs_f64();
+                break;
+            }
             let residual = dynamics.residual(x, prescribed, contacts.counted()).map_err(target_error)?;
             statistics.seconds.dynamics += timer.elapsed().as_secs_f64();
             (statistics.residual_n, statistics.residual_m) = (residual.force, residual.distance);
@@ -341,7 +394,7 @@ impl Simulator {
 
     /// Time of the state [s].
     pub fn time(&self) -> f64 {
-        self.step as f64 * self.dt
+        time_of(self.step, self.dt)
     }
 
     /// Time steps made.
@@ -376,7 +429,8 @@ impl Simulator {
             positions: self.positions.clone(),
             velocities: self.velocities.clone(),
             anchors: self.anchors.clone(),
-            contacts: self.contacts.carried(),
+            contacts: self.carried(),
+            sleep: self.sleep_state(),
         }
     }
 
@@ -403,10 +457,22 @@ impl Simulator {
         if !fits {
             return Err("its pins are not those of the scene".to_owned());
         }
+        let (bodies, sleep) = (self.world.bodies.len(), &checkpoint.sleep);
+        let is_island = |island: &u32| *island == SleepState::AWAKE || (*island as usize) < bodies;
+        let fits = sleep.origins.is_empty()
+            || (sleep.origins.len() == vertices
+                && sleep.calm_steps.len() == bodies
+                && sleep.islands.len() == bodies
+                && sleep.islands.iter().all(is_island));
+        if !fits {
+            return Err("its bodies asleep are not those of the scene".to_owned());
+        }
         let before = self.checkpoint();
         self.adopt(checkpoint);
-        self.find_contacts(&checkpoint.contacts).map_err(|error| {
+        self.take_out(&checkpoint.contacts).map_err(|error| {
             self.adopt(&before);
+            // The state before was a sound one.
+            let _ = self.take_out(&before.contacts);
             error.to_string()
         })
     }
@@ -417,6 +483,7 @@ impl Simulator {
         self.velocities.clone_from(&checkpoint.velocities);
         self.anchors.clone_from(&checkpoint.anchors);
         self.attachments.iter_mut().for_each(Vec::clear);
+        self.adopt_sleep_state(&checkpoint.sleep);
     }
 }
 
@@ -428,11 +495,16 @@ fn added_energy(dynamics: &Dynamics, start: &[Point], y: &[Point], x: &[Point], 
     (energy(x) - energy(y)).max(0.0)
 }
 
-fn resolve_error(world: &World, step: usize, source: ResolveError) -> SimulationError {
+pub(super) fn resolve_error(world: &World, step: usize, source: ResolveError) -> SimulationError {
     let body = match &source {
         ResolveError::NonFinite { body, .. } | ResolveError::Mass { body, .. } => world.name_of(*body),
         ResolveError::MinSeparationBelowRounding { vertex, .. } => world.body_name(*vertex),
         _ => "",
     };
     SimulationError::Resolve { step, body: body.to_owned(), source }
+}
+
+/// Time after a number of time steps [s].
+pub(super) fn time_of(step: usize, dt: f64) -> f64 {
+    step as f64 * dt
 }

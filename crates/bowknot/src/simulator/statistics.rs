@@ -98,6 +98,9 @@ pub struct StepStatistics {
     /// Elastic solves by which vertices inside of solids follow their surfaces.
     #[serde(default)]
     pub interior_solves: usize,
+    /// Vertices of bodies that sleep during the next time step, those inside of solids included.
+    #[serde(default)]
+    pub asleep_vertices: usize,
 }
 
 /// Energies [J].

@@ -45,7 +45,10 @@ impl LimitedEdges {
             let body = scene.model().vertex_body()[vertices[0] as usize];
             let limit = scene.stretch_limit(body) * (a - b).norm();
             let kind = world.bodies[body as usize].kind;
-            let limits = matches!(kind, Some(BodyKind::Cloth | BodyKind::Strands)) && limit.is_finite();
+            // Bodies asleep are obstacles for the collision stage.
+            let limits = matches!(kind, Some(BodyKind::Cloth | BodyKind::Strands))
+                && limit.is_finite()
+                && !scene.model().is_obstacle(vertices[0]);
             limits.then_some(LimitedEdge { index: index as u32, vertices, limit })
         };
         Self { edges: scene.model().topology().edges.iter().enumerate().filter_map(limited).collect() }

@@ -1,5 +1,7 @@
 //! Integration tests of the facade, in one binary.
 
+/// What a scene lacks, and what is far away, takes no part.
+mod absent;
 /// The meshes and scenes of `assets`.
 mod assets;
 /// What users get wrong about kinds, materials, friction and sequences.
@@ -18,6 +20,8 @@ mod reference;
 mod runs;
 /// The time-step loop: free motion, pins, obstacles, restarts, threads.
 mod simulation;
+/// Bodies at rest: falling asleep, waking, what sleep costs.
+mod sleep;
 
 use bowknot::Scene;
 

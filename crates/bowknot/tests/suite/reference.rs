@@ -347,6 +347,15 @@ fn page() -> String {
     );
     page.head(false);
     page.rows("RepulsionParams", &RepulsionParams::default(), None, all);
+    page.section("[solver.sleep]", "Bodies at rest, which take no time.");
+    page.head(true);
+    let sleep = |preset| bowknot::Scene::with_preset(preset).solver.sleep;
+    page.rows(
+        "SleepParams",
+        &sleep(bowknot::scene::Preset::Fast),
+        Some(&sleep(bowknot::scene::Preset::Paper)),
+        all,
+    );
 
     page.section("[output]", "What a run writes.");
     page.head(false);
@@ -516,6 +525,7 @@ fn every_key_that_a_scene_has_is_on_the_page() {
             "forward",
             "newton",
             "repulsion",
+            "sleep",
             "output",
             "body",
             "obstacle",

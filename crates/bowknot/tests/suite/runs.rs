@@ -92,6 +92,7 @@ fn a_run_leaves_the_folder_that_other_tools_rely_on() {
         "repulsion_springs",
         "inverted_tets",
         "interior_solves",
+        "asleep_vertices",
         "residual_n",
         "residual_m",
     ];

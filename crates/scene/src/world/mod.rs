@@ -229,6 +229,26 @@ impl World {
         DynamicsModel::new(self.positions.clone(), self.materials.clone()).map_err(joined)
     }
 
+    /// As [`Self::dynamics_model`], with bodies as obstacles where `is_obstacle` says so, by index of the
+    /// body. Vertices have the same numbers.
+    ///
+    /// # Errors
+    /// What the dynamics refuses, in words.
+    pub fn dynamics_model_with_obstacles(
+        &self,
+        is_obstacle: impl Fn(usize) -> bool,
+    ) -> Result<DynamicsModel, SceneError> {
+        let material = |(index, material): (usize, &Body)| {
+            if !is_obstacle(index) || material.shape.is_obstacle() {
+                return material.clone();
+            }
+            let body = &self.bodies[index];
+            Body::obstacle(&*body.name, body.vertices.clone().chain(body.interior.clone()).collect())
+        };
+        let materials = self.materials.iter().enumerate().map(material).collect();
+        DynamicsModel::new(self.positions.clone(), materials).map_err(joined)
+    }
+
     /// Ties the vertices of a pin that follows an obstacle, when they are at `homes`, to it: one entry
     /// per vertex, none where the obstacle has no triangle with an area.
     pub fn attach(&self, pin: &Pin, homes: &[Point]) -> Vec<Option<Attachment>> {

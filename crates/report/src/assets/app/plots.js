@@ -9,7 +9,7 @@ const lineColor = (k) => (theme() === "dark" ? LINES : LINES_LIGHT)[k % LINES.le
 /** Lengths [m] and times [s] below this are rounding: a logarithmic axis does not show their decades. */
 const ROUNDING = 1e-12;
 
-/** What is plotted; series whose column is missing are left out, and plots without series. */
+/** What is plotted; series whose column is missing are left out, and plots without series. `idle`: so are series that are always 0. */
 const PLOTS = [
     { title: "Two-way steps and searches", series: [["two_way_steps", "steps"], ["searches", "searches"]] },
     { title: "Pairs and rows", log: true, series: [["pairs", "pairs"], ["contact_rows", "contact rows"], ["edge_rows", "edge rows"], ["active_rows", "active rows"]] },
@@ -22,6 +22,7 @@ const PLOTS = [
     { title: "Largest stretch", series: [["max_stretch", "of rest length"], ["max_step_stretch", "within the step"]] },
     { title: "Energy", unit: "J", series: [] },
     { title: "Largest speed", unit: "m/s", series: [["max_speed", "speed"]] },
+    { title: "Vertices asleep", idle: true, series: [["asleep_vertices", "asleep"]] },
     { title: "Linear solve", series: [["cg_iterations", "CG iterations"], ["newton_iterations", "Newton iterations"]] },
 ];
 
@@ -30,7 +31,7 @@ function plotsOf() {
     const kinds = Object.keys(columns).filter((key) => key.startsWith("energy."));
     return PLOTS.map((plot) => {
         const series = plot.title === "Energy" ? kinds.map((key) => [key, key.slice("energy.".length)]) : plot.series;
-        return { ...plot, series: series.filter(([key]) => key in columns) };
+        return { ...plot, series: series.filter(([key]) => key in columns && !(plot.idle && columns[key].every((value) => !value))) };
     }).filter((plot) => plot.series.length > 0);
 }
 

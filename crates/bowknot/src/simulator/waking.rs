@@ -1,0 +1,217 @@
+//! Puts bodies to sleep after a time step, and wakes them before one.
+
+use super::approach::Motion;
+use super::contacts::ContactForce;
+use super::error::SimulationError;
+use super::rest::{Awake, Rest};
+use super::simulator::{Scratch, Simulator, resolve_error, time_of};
+use super::sleep::{SleepState, part};
+use bowknot_dynamics::{Energies, Errors, ParamError, StepError};
+use bowknot_geometry::Vector;
+use bowknot_scene::world::WorldBody;
+
+impl Simulator {
+    /// Which bodies of the world sleep during the next time step, see [`bowknot_scene::SleepParams`]. Empty
+    /// if bodies never sleep.
+    pub fn asleep(&self) -> &[bool] {
+        self.rest.as_ref().map_or(&[], |rest| &rest.asleep)
+    }
+
+    /// Sets the wind [m/s], [`bowknot_dynamics::Environment::wind`] at first, from the next time step on. It
+    /// has an effect where `air_density` is above 0, and then wakes all bodies. Checkpoints do not have it.
+    ///
+    /// # Errors
+    /// A component is not finite.
+    pub fn set_wind(&mut self, wind: Vector) -> Result<(), Errors<ParamError>> {
+        let environment = self.dynamics.params().environment;
+        self.dynamics.set_wind(wind)?;
+        if let Some(dynamics) = self.rest.as_mut().and_then(Rest::dynamics) {
+            dynamics.set_wind(wind)?;
+        }
+        if environment.wind != wind && environment.air_density > 0.0 {
+            self.pushed = vec![true; self.world.bodies.len()];
+        }
+        Ok(())
+    }
+
+    /// Sets the force on each vertex of the world [N], 0 at first, from the next time step on. It is kept
+    /// until it is set again, and wakes the bodies on which it changes. Checkpoints do not have it.
+    ///
+    /// # Errors
+    /// Another number of forces than of vertices, or one that is not finite.
+    pub fn set_external_forces(&mut self, forces: &[Vector]) -> Result<(), StepError> {
+        self.dynamics.set_external_forces(forces)?;
+        if let Some(dynamics) = self.rest.as_mut().and_then(Rest::dynamics) {
+            dynamics.set_external_forces(forces)?;
+        }
+        self.pushed.resize(self.world.bodies.len(), false);
+        let before = |v: usize| self.external_forces.get(v).copied().unwrap_or_else(Vector::zeros);
+        for (body, pushed) in self.world.bodies.iter().zip(&mut self.pushed) {
+            let mut vertices = body.vertices.clone().chain(body.interior.clone()).map(|v| v as usize);
+            *pushed |= vertices.any(|v| forces[v] != before(v));
+        }
+        self.external_forces = forces.to_vec();
+        Ok(())
+    }
+
+    /// Wakes bodies before a time step that ends at `time`: those that something comes near, those whose
+    /// pins take hold, let go or move, and those on which forces have changed. The other bodies asleep become
+    /// prescribed.
+    pub(super) fn wake_for_step(&mut self, time: f64, scratch: &mut Scratch) -> Result<(), SimulationError> {
+        let mut wakes = std::mem::take(&mut self.pushed);
+        let Some(rest) = &mut self.rest else { return Ok(()) };
+        rest.note_hold(&self.world, &scratch.prescribed, &scratch.keyframes, &scratch.start);
+        if wakes.contains(&true) {
+            rest.sleep.stir();
+        }
+        if rest.awake.is_none() {
+            return Ok(());
+        }
+        wakes.resize(self.world.bodies.len(), false);
+        let before = time_of(self.step, self.dt);
+        wakes.iter_mut().zip(&rest.hold.moved).for_each(|(wakes, moved)| *wakes |= *moved);
+        for pin in &self.world.pins {
+            if pin.holds(time, self.dt) != pin.holds(before, self.dt) {
+                for (body, wakes) in self.world.bodies.iter().zip(&mut wakes) {
+                    let has = |v: &u32| body.vertices.contains(v) || body.interior.contains(v);
+                    *wakes |= pin.vertices.iter().any(has);
+                }
+            }
+        }
+        self.predict(scratch);
+        let Some(rest) = &mut self.rest else { return Ok(()) };
+        let count = self.world.collision_vertices();
+        let motion = Motion {
+            start: &scratch.start[..count],
+            end: &rest.predicted[..count],
+            margins: &rest.margins,
+            asleep: &rest.asleep,
+        };
+        let approached = rest.elements.approached(&self.world, &motion);
+        wakes.iter_mut().zip(approached).for_each(|(wakes, near)| *wakes |= near);
+        if rest.sleep.wake(&wakes) {
+            let carried = self.carried();
+            self.take_out(&carried)?;
+        }
+        let Some(rest) = &self.rest else { return Ok(()) };
+        for (body, _) in self.world.bodies.iter().zip(&rest.asleep).filter(|(_, asleep)| **asleep) {
+            for range in [&body.vertices, &body.interior] {
+                scratch.prescribed[range.start as usize..range.end as usize].fill(true);
+            }
+        }
+        Ok(())
+    }
+
+    /// Predicts where vertices are at the end of the time step: at their keyframes, or where their velocities
+    /// and gravity take them.
+    fn predict(&mut self, scratch: &Scratch) {
+        let Some(rest) = &mut self.rest else { return };
+        let Scratch { prescribed, keyframes, start, .. } = scratch;
+        let (model, gravity) = (self.dynamics.model(), self.dynamics.params().environment.gravity);
+        rest.predicted.clone_from(start);
+        for (body, _) in self.world.bodies.iter().zip(&rest.asleep).filter(|(_, asleep)| !**asleep) {
+            let gravity = model.gravity(body.vertices.start as usize, gravity);
+            for v in body.vertices.start as usize..body.vertices.end as usize {
+                let way = (self.velocities[v] + gravity * self.dt) * self.dt;
+                rest.predicted[v] = if prescribed[v] { keyframes[v] } else { start[v] + way };
+            }
+        }
+    }
+
+    /// Whether a time step has nothing to do: all deformable bodies sleep, and nothing prescribed moves.
+    pub(super) fn has_nothing_to_do(&self) -> bool {
+        let all_rest = |rest: &Rest| rest.is_all_asleep(&self.world) && !rest.hold.moved.contains(&true);
+        self.rest.as_ref().is_some_and(all_rest)
+    }
+
+    /// Puts bodies to sleep after a time step, and wakes those that were touched in it.
+    pub(super) fn fall_asleep(&mut self) -> Result<(), SimulationError> {
+        let Self { world, rest, contacts, positions, .. } = self;
+        let Some(rest) = rest else { return Ok(()) };
+        if rest.sleep.update(world, positions, contacts.touching(), &rest.hold) {
+            let carried = self.carried();
+            self.take_out(&carried)?;
+        }
+        Ok(())
+    }
+
+    /// All contact forces, those between bodies asleep included.
+    pub(super) fn carried(&self) -> Vec<ContactForce> {
+        let mut carried = self.contacts.carried();
+        let put_aside = self.rest.as_ref().and_then(|rest| rest.awake.as_ref());
+        carried.extend(put_aside.iter().flat_map(|awake| &awake.forces));
+        carried
+    }
+
+    /// Makes the collision stage and the dynamics work on the bodies that are awake alone, and finds their
+    /// contacts; `carried` are all contact forces.
+    pub(super) fn take_out(&mut self, carried: &[ContactForce]) -> Result<(), SimulationError> {
+        let Self { world, resolver, contacts, step, dynamics, positions, velocities, rest, .. } = self;
+        let Some(rest) = rest else { return self.find_contacts(carried) };
+        let asleep = rest.sleep.asleep();
+        if asleep != rest.asleep {
+            let is_obstacle = |(body, asleep): (&WorldBody, &bool)| body.kind.is_none() || *asleep;
+            let obstacles: Vec<bool> = world.bodies.iter().zip(&asleep).map(is_obstacle).collect();
+            resolver.set_obstacles(&obstacles).map_err(|source| resolve_error(world, *step, source))?;
+            contacts.leave_out(world, resolver, &asleep);
+            rest.awake = None;
+            if asleep.contains(&true) {
+                let mut awake = Awake::new(world, &asleep, dynamics, positions)?;
+                if !self.external_forces.is_empty() {
+                    let forced = awake.dynamics.set_external_forces(&self.external_forces);
+                    forced.map_err(|source| SimulationError::Target { step: *step, source })?;
+                }
+                rest.awake = Some(awake);
+            }
+            rest.asleep = asleep;
+        }
+        let parted = part(world, &rest.asleep, carried);
+        if let Some(awake) = &mut rest.awake {
+            awake.forces = parted.asleep;
+        }
+        for (body, _) in world.bodies.iter().zip(&rest.asleep).filter(|(_, asleep)| **asleep) {
+            for range in [&body.vertices, &body.interior] {
+                velocities[range.start as usize..range.end as usize].fill(Vector::zeros());
+            }
+        }
+        self.find_contacts(&parted.awake)
+    }
+
+    /// The state of sleep, for a checkpoint.
+    pub(super) fn sleep_state(&self) -> SleepState {
+        self.rest.as_ref().map_or_else(SleepState::default, |rest| rest.sleep.state.clone())
+    }
+
+    /// Takes over the state of sleep of a checkpoint. Without one all bodies are awake.
+    pub(super) fn adopt_sleep_state(&mut self, state: &SleepState) {
+        let Some(rest) = &mut self.rest else { return };
+        if state.origins.is_empty() {
+            let bodies = self.world.bodies.len();
+            rest.sleep.state.origins.clone_from(&self.positions);
+            rest.sleep.state.calm_steps = vec![0; bodies];
+            rest.sleep.state.islands = vec![SleepState::AWAKE; bodies];
+        } else {
+            rest.sleep.state.clone_from(state);
+        }
+    }
+
+    /// Number of vertices asleep.
+    pub(super) fn asleep_vertices(&self) -> usize {
+        self.rest.as_ref().and_then(|rest| rest.awake.as_ref()).map_or(0, |awake| awake.vertices)
+    }
+
+    /// Energies, and the largest stretch of an edge, of all bodies.
+    pub(super) fn measures(&self) -> (Energies, f64) {
+        let Self { dynamics, positions, velocities, .. } = self;
+        let Some(awake) = self.rest.as_ref().and_then(|rest| rest.awake.as_ref()) else {
+            return (dynamics.energies(positions, velocities), dynamics.max_stretch(positions));
+        };
+        let own = awake.dynamics.energies(positions, velocities);
+        let energies = Energies {
+            kinetic: own.kinetic,
+            elastic: own.elastic + awake.energies.elastic,
+            potential: own.potential + awake.energies.potential,
+        };
+        (energies, awake.dynamics.max_stretch(positions).max(awake.stretch))
+    }
+}
