@@ -84,6 +84,11 @@ impl Candidates {
         &self.partners[self.starts[element] as usize..self.starts[element + 1] as usize]
     }
 
+    /// Whether there is no pair.
+    pub fn is_empty(&self) -> bool {
+        self.partners.is_empty()
+    }
+
     /// Number of partners of a range of elements.
     pub fn count(&self, elements: Range<usize>) -> usize {
         (self.starts[elements.end] - self.starts[elements.start]) as usize

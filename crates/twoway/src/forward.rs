@@ -7,8 +7,11 @@ use crate::state::ResolveState;
 use crate::statistics::Statistics;
 use bowknot_geometry::Vector;
 use bowknot_stepper::{Bound, StepReport, Stepper, TrustRegionRule};
+use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+/// Smallest number of vertices in one parallel task.
+const CHUNK: usize = 2048;
 /// Largest travel of a vertex in a swept step, in local edge lengths.
 const MAX_SWEPT_TRAVEL: f64 = 4.0;
 /// Radius of the tube around a swept path within which a vertex may deviate, in local edge lengths. It is so
@@ -61,7 +64,7 @@ impl ForwardStep for CertifiedForward {
         }
         self.limit_bodies(scene, state);
         let unhindered_lag = self.unhindered_lag(state);
-        state.previous.clone_from(&state.x);
+        state.previous.par_iter_mut().zip(&state.x).with_min_len(CHUNK).for_each(|(old, x)| *old = *x);
         StepReport { unhindered_lag, ..self.stepper.advance(&mut state.x) }
     }
 }
@@ -139,8 +142,8 @@ impl CertifiedForward {
         let params = &scene.params().solver.forward;
         let min_travel = params.swept_travel * scene.lengths().edge;
         let longest = |stepper: &Stepper| {
-            let displacements = stepper.displacements().iter().enumerate();
-            displacements.map(|(v, d)| stepper.alpha(v) * d.norm()).fold(0.0, f64::max)
+            let displacements = stepper.displacements().par_iter().with_min_len(CHUNK).enumerate();
+            displacements.map(|(v, d)| stepper.alpha(v) * d.norm()).reduce(|| 0.0, f64::max)
         };
         let usable = params.bound == Bound::Planes && matches!(search.coverage(), Coverage::TrustRegions(_));
         // Where contacts press, free vertices that move far ahead of held ones only make the rows between
@@ -192,17 +195,19 @@ impl CertifiedForward {
     /// Notes which prescribed vertices the pairs hold back: those with a limit before trust regions add theirs.
     fn note_held(&mut self, state: &ResolveState) {
         let Self { held, stepper, .. } = self;
-        held.extend(
-            (0..state.x.len()).map(|v| state.call.is_prescribed(v) && stepper.alpha(v) < stepper.cap(v)),
-        );
+        held.resize(state.x.len(), false);
+        let vertices = held.par_iter_mut().enumerate().with_min_len(CHUNK);
+        vertices
+            .for_each(|(v, held)| *held = state.call.is_prescribed(v) && stepper.alpha(v) < stepper.cap(v));
     }
 
     /// Largest distance that a prescribed vertex has left after this step although no pair holds it back [m].
     fn unhindered_lag(&self, state: &ResolveState) -> f64 {
         let is_held = |v: usize| self.held.get(v).is_some_and(|held| *held);
         let left = |v: usize| (1.0 - self.stepper.alpha(v)) * self.stepper.displacements()[v].norm();
-        let prescribed = state.call.prescribed().iter().enumerate().filter(|(_, given)| **given);
-        prescribed.filter(|(v, _)| !is_held(*v)).map(|(v, _)| left(v)).fold(0.0, f64::max)
+        let prescribed = state.call.prescribed().par_iter().with_min_len(CHUNK).enumerate();
+        let unhindered = prescribed.filter(|(v, given)| **given && !is_held(*v));
+        unhindered.map(|(v, _)| left(v)).reduce(|| 0.0, f64::max)
     }
 
     /// Assumes that the vertices take the present step sizes.
@@ -216,7 +221,7 @@ impl CertifiedForward {
 
     /// Limits the step by the candidate pairs whose slabs do not stay open along the assumed paths.
     fn limit_by_moving_planes(
-        &self,
+        &mut self,
         scene: &CollisionScene,
         state: &ResolveState,
         damping: f64,
@@ -229,7 +234,7 @@ impl CertifiedForward {
     }
 
     /// Makes each obstacle and each group of pinned vertices move together.
-    fn limit_bodies(&self, scene: &CollisionScene, state: &ResolveState) {
+    fn limit_bodies(&mut self, scene: &CollisionScene, state: &ResolveState) {
         self.stepper.limit_by_bodies(scene.model(), scene.obstacle_vertices());
         self.stepper.limit_by_groups(state.call.groups().count());
     }

@@ -1,12 +1,14 @@
 //! The candidate pairs that are not near, but that vertices could reach in one step.
 
-use super::near::{BLANK, for_each_range, round_up};
+use super::near::{BLANK, round_up};
 use super::regions::{Regions, longest_path};
+use super::sides::{Sides, range_count, range_of};
 use crate::scene::CollisionScene;
 use crate::stages::AheadVisitor;
 use crate::state::ResolveState;
 use bowknot_geometry::{PairKind, Vector};
 use bowknot_proximity::{CandidateList, Pair, near_half_spaces, separate_all};
+use rayon::prelude::*;
 
 /// Share of the damping at which pairs count as ahead. A pair is left out if the vertices use up less of its
 /// distance: then its slab, which is at least 0.9 times as wide, does not limit them either.
@@ -15,6 +17,8 @@ const SHARE: f64 = 0.8;
 /// Upper bound of the rounding of sums of distances in `f32`, relative.
 const LARGER: f32 = 1.0 + 16.0 * f32::EPSILON;
 
+/// Vertices that one task looks at.
+const CHUNK: usize = 1024;
 /// Pairs whose geometry is computed at once.
 const BATCH: usize = 32;
 
@@ -31,8 +35,10 @@ struct Motion {
 #[derive(Debug, Default)]
 pub(super) struct AheadPairs {
     motions: Vec<Motion>,
-    /// Pairs ahead by kind and task.
-    found: [Vec<Vec<Pair>>; 5],
+    /// What the vertices of each element may use up: the largest offset and the largest travel.
+    sides: Sides,
+    /// Pairs of half-spaces by task.
+    half_space_pairs: Vec<Vec<Pair>>,
 }
 
 impl AheadPairs {
@@ -50,36 +56,42 @@ impl AheadPairs {
         let share = SHARE * scene.params().solver.forward.damping.min(1.0);
         self.set_motions(scene, state, regions, displacements, share);
         let (motions, topology) = (&self.motions, scene.model().topology());
+        self.sides.fill(topology, candidates, |vertices| {
+            let largest = vertices.iter().map(|&v| motions[v as usize]).fold(Motion::default(), Motion::max);
+            largest.offset + largest.travel
+        });
         // Rounded down.
         let bound_share = share as f32 * (1.0 - f32::EPSILON);
+        let contacts = &state.contacts.pairs;
         for kind in PairKind::ALL {
             let Some(list) = candidates.of(kind) else { continue };
-            let near = &state.contacts.pairs.pairs()[state.contacts.pairs.range(kind)];
-            for_each_range(list, &mut self.found[kind as usize], |elements, pairs| {
-                let first = near.partition_point(|pair| (pair.elements[0] as usize) < elements.start);
-                let mut near = near[first..].iter().peekable();
-                for a in elements {
-                    for candidate in list.of(a) {
-                        let pair = Pair::of_elements(topology, kind, [a as u32, candidate.element]);
-                        while near.next_if(|near| near.elements < pair.elements).is_some() {}
-                        let is_near = near.peek().is_some_and(|near| near.elements == pair.elements);
-                        if !is_near && could_meet(kind, &pair, candidate.bound * bound_share, motions) {
-                            pairs.push(pair);
+            let [own, other] = self.sides.of(kind);
+            (0..range_count(list)).into_par_iter().filter_map(|index| range_of(list, index)).for_each(
+                |range| {
+                    let mut near = contacts.lookup(kind, [range.start as u32, 0]);
+                    let mut batch = Batch::new(scene, state, kind, visit);
+                    for a in range {
+                        for candidate in list.of(a) {
+                            let elements = [a as u32, candidate.element];
+                            let used_up = (own[a] + other[candidate.element as usize]) * LARGER;
+                            if candidate.bound * bound_share <= used_up && near.find(elements).is_none() {
+                                batch.push(Pair::of_elements(topology, kind, elements));
+                            }
                         }
                     }
-                }
-                visit_batches(scene, state, kind, pairs, visit);
-            });
+                    batch.visit();
+                },
+            );
         }
         let kind = PairKind::VertexHalfSpace;
-        let found = &mut self.found[kind as usize];
         let radius = |v: usize| f64::from(motions[v].travel) / share;
-        near_half_spaces(scene.model(), &state.x, None, radius, found);
-        let near = &state.contacts.pairs.pairs()[state.contacts.pairs.range(kind)];
-        for pairs in found {
-            pairs.retain(|pair| near.binary_search_by_key(&pair.elements, |near| near.elements).is_err());
-            visit_batches(scene, state, kind, pairs, visit);
-        }
+        near_half_spaces(scene.model(), &state.x, None, radius, &mut self.half_space_pairs);
+        self.half_space_pairs.par_iter().filter(|pairs| !pairs.is_empty()).for_each(|pairs| {
+            let mut near = contacts.lookup(kind, pairs[0].elements);
+            let mut batch = Batch::new(scene, state, kind, visit);
+            pairs.iter().filter(|pair| near.find(pair.elements).is_none()).for_each(|pair| batch.push(*pair));
+            batch.visit();
+        });
     }
 
     fn set_motions(
@@ -98,43 +110,65 @@ impl AheadPairs {
                 travel: round_up(displacements[v].norm().min(longest_path(scene, v)) + keep),
             }
         };
-        self.motions.clear();
-        self.motions.extend((0..state.x.len()).map(motion));
+        self.motions.resize(state.x.len(), Motion::default());
+        let motions = self.motions.par_iter_mut().enumerate().with_min_len(CHUNK);
+        motions.for_each(|(v, entry)| *entry = motion(v));
     }
 }
 
-/// Whether the vertices could use up the distance of a pair. `bound`: its share of the lower bound of that
-/// distance [m].
-#[inline]
-fn could_meet(kind: PairKind, pair: &Pair, bound: f32, motions: &[Motion]) -> bool {
-    let largest = |side: &[u32]| {
-        side.iter().map(|&v| motions[v as usize]).fold(Motion::default(), |a, b| Motion {
-            offset: a.offset.max(b.offset),
-            travel: a.travel.max(b.travel),
-        })
-    };
-    let (a, b) = pair.vertices[..kind.vertex_count()].split_at(kind.side_a());
-    let (a, b) = (largest(a), largest(b));
-    bound <= (a.offset + b.offset + a.travel + b.travel) * LARGER
+impl Motion {
+    fn max(self, other: Self) -> Self {
+        Self { offset: self.offset.max(other.offset), travel: self.travel.max(other.travel) }
+    }
 }
 
-/// Computes the geometry of pairs and visits them.
-fn visit_batches(
-    scene: &CollisionScene,
-    state: &ResolveState,
+/// Pairs whose geometry is computed together before they are visited.
+struct Batch<'a> {
+    scene: &'a CollisionScene,
+    state: &'a ResolveState,
     kind: PairKind,
-    pairs: &[Pair],
-    visit: &AheadVisitor<'_>,
-) {
-    let (model, spacing) = (scene.model(), scene.spacing());
-    let default = scene.lengths().min_separation;
-    let mut separations = [BLANK; BATCH];
-    for pairs in pairs.chunks(BATCH) {
+    visitor: &'a AheadVisitor<'a>,
+    pairs: [Pair; BATCH],
+    count: usize,
+}
+
+impl<'a> Batch<'a> {
+    fn new(
+        scene: &'a CollisionScene,
+        state: &'a ResolveState,
+        kind: PairKind,
+        visitor: &'a AheadVisitor<'a>,
+    ) -> Self {
+        Self {
+            scene,
+            state,
+            kind,
+            visitor,
+            pairs: [Pair { elements: [0; 2], vertices: [0; 4] }; BATCH],
+            count: 0,
+        }
+    }
+
+    fn push(&mut self, pair: Pair) {
+        self.pairs[self.count] = pair;
+        self.count += 1;
+        if self.count == BATCH {
+            self.visit();
+        }
+    }
+
+    /// Visits the pairs that are left.
+    fn visit(&mut self) {
+        let Self { scene, state, kind, visitor, .. } = *self;
+        let (model, spacing) = (scene.model(), scene.spacing());
+        let default = scene.lengths().min_separation;
+        let pairs = &self.pairs[..std::mem::take(&mut self.count)];
+        let mut separations = [BLANK; BATCH];
         let separations = &mut separations[..pairs.len()];
         separate_all(model, kind, pairs, &state.x, separations);
         for (pair, separation) in pairs.iter().zip(&*separations) {
             let min_separation = spacing.of(model, kind, pair).min_separation.unwrap_or(default);
-            visit(kind, &pair.vertices, separation, min_separation);
+            visitor(kind, &pair.vertices, separation, min_separation);
         }
     }
 }

@@ -4,6 +4,7 @@
 mod ahead;
 mod near;
 mod regions;
+mod sides;
 
 pub(crate) use regions::longest_path;
 
@@ -180,7 +181,7 @@ impl Search for TrustRegionSearch {
         self.swept_radii.clear();
         self.swept_radii.extend(deviations.iter().zip(bodies).map(|(d, body)| d + margin(body)));
         let contacts = &mut state.contacts;
-        self.near.keep(&mut contacts.pairs);
+        self.near.keep(contacts);
         self.search.search_swept(
             scene.model(),
             &state.x,
