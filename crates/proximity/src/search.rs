@@ -37,6 +37,8 @@ pub struct ProximitySearch {
     origin: Option<Point>,
     /// Whether the trees are those of the last [`Self::update`].
     updated: bool,
+    /// Whether there was an update: its list may be updated where vertices have changed.
+    listed: bool,
     local: Vec<LocalVertex>,
     end: Vec<LocalVertex>,
     layers: [Layer; 3],
@@ -130,8 +132,8 @@ impl ProximitySearch {
     ///
     /// With `changed`, only the vertices that it marks (one entry per vertex) have other positions or radii
     /// than in the last call, which must have been for the same list. Only pairs with such a vertex are then
-    /// searched for; all others stay. That pays where few vertices have changed. After a search of another
-    /// kind everything is searched.
+    /// searched for; all others stay. That pays where few vertices have changed. The first call searches
+    /// everything, and so does one for which an obstacle begins or ends to move.
     ///
     /// Which pairs are listed whose distance equals the sum of their radii up to rounding in `f32` may depend
     /// on earlier calls; no pair is lost.
@@ -149,9 +151,13 @@ impl ProximitySearch {
         self.begin(model, positions, radii);
         let obstacles = self.obstacles.update(model, positions, None, radii);
         // An obstacle that begins or ends to move changes its trees.
-        let changed = changed.filter(|_| self.updated && !obstacles.layers);
+        let changed = changed.filter(|_| self.listed && !obstacles.layers);
         match changed {
-            Some(changed) => self.update_changed_trees(positions, radii, changed),
+            Some(changed) if self.updated => self.update_changed_trees(positions, radii, changed),
+            Some(changed) => {
+                self.update_trees(model, positions, None, radii, obstacles);
+                self.layers.iter_mut().for_each(|layer| layer.mark_changed(changed));
+            }
             None => self.update_trees(model, positions, None, radii, obstacles),
         }
         let filtered = self.collisions.some_forbidden;
@@ -160,7 +166,35 @@ impl ProximitySearch {
         self.fill_tables(model);
         list.take(model.topology(), &self.tables, &self.tasks, changed);
         self.count(list.len());
-        self.updated = true;
+        (self.updated, self.listed) = (true, true);
+    }
+
+    /// Notes that vertices have moved although the next [`Self::update`] will not mark them as changed, such
+    /// as those of a body that has moved as a whole: boxes are then refitted, but the pairs of these vertices
+    /// stay. It is for the caller to know that none of the pairs left out has come nearer.
+    pub fn note_moved(&mut self) {
+        self.updated = false;
+    }
+
+    /// As [`Self::search_swept`], in compact form: without contact geometry and the pairs of half-spaces. The
+    /// lower bounds of the distances are 0.
+    ///
+    /// # Panics
+    /// If a slice has another length than the model has vertices.
+    pub fn list_swept(
+        &mut self,
+        model: &CollisionModel,
+        positions: &[Point],
+        displacements: &[Vector],
+        radii: &[f64],
+        list: &mut CandidateList,
+    ) {
+        assert_eq!(displacements.len(), positions.len(), "one displacement per vertex");
+        self.find::<true>(model, positions, Some(displacements), radii);
+        self.fill_tables(model);
+        list.take(model.topology(), &self.tables, &self.tasks, None);
+        self.count(list.len());
+        self.updated = false;
     }
 
     /// Counts of the last search.
@@ -177,17 +211,26 @@ impl ProximitySearch {
         pairs: &mut PairList,
         separations: &mut Vec<Separation>,
     ) {
-        self.begin(model, positions, radii);
-        let obstacles = self.obstacles.update(model, positions, displacements, radii);
-        self.update_trees(model, positions, displacements, radii, obstacles);
-
-        let filtered = self.collisions.some_forbidden;
-        let scene = Scene { model, positions, radii, filtered, changed_only: false };
-        self.search_kinds::<SWEPT>(&scene);
+        self.find::<SWEPT>(model, positions, displacements, radii);
         near_half_spaces(model, positions, displacements, |v| radii[v], &mut self.half_space_pairs);
         self.write(model, positions, pairs, separations);
         self.count(pairs.len());
         self.updated = false;
+    }
+
+    /// Finds the pairs of all kinds but those of half-spaces.
+    fn find<const SWEPT: bool>(
+        &mut self,
+        model: &CollisionModel,
+        positions: &[Point],
+        displacements: Option<&[Vector]>,
+        radii: &[f64],
+    ) {
+        self.begin(model, positions, radii);
+        let obstacles = self.obstacles.update(model, positions, displacements, radii);
+        self.update_trees(model, positions, displacements, radii, obstacles);
+        let filtered = self.collisions.some_forbidden;
+        self.search_kinds::<SWEPT>(&Scene { model, positions, radii, filtered, changed_only: false });
     }
 
     /// Begins a search.
@@ -219,8 +262,9 @@ impl ProximitySearch {
                 }
             }
         });
-        for (layer, index) in self.layers.iter_mut().zip(0_u8..) {
-            layer.refit_changed(&self.local, (index != RESTING).then_some(changed));
+        for layer in &mut self.layers {
+            layer.mark_changed(changed);
+            layer.refit_changed(&self.local);
         }
     }
 

@@ -219,35 +219,80 @@ impl Stepper {
         tubes: &[f64],
         damping: f64,
     ) -> usize {
-        let rounding = self.rounding();
         let frozen = AtomicUsize::new(0);
         for kind in PairKind::ALL {
-            let (count, side_a) = (kind.vertex_count(), kind.side_a());
             contacts.pairs.range(kind).into_par_iter().with_min_len(CHUNK).for_each(|p| {
                 let vertices = &contacts.pairs.pairs()[p].vertices;
-                let separation = &contacts.separations[p];
-                let side = |places: std::ops::Range<usize>, sign: f64| {
-                    let mut closing = f64::NEG_INFINITY;
-                    let mut tube = 0.0f64;
-                    for &v in &vertices[places] {
-                        closing = closing.max(sign * separation.normal.dot(&paths[v as usize]));
-                        tube = tube.max(tubes[v as usize]);
-                    }
-                    (closing, tube)
-                };
-                let (closing_a, tube_a) = side(0..side_a, -1.0);
-                // A half-space does not move.
-                let (closing_b, tube_b) = if side_a < count { side(side_a..count, 1.0) } else { (0.0, 0.0) };
-                let closing = (closing_a + closing_b).max(0.0) + tube_a + tube_b;
-                let min_separation = contacts.min_separations[p];
-                let allowed = damping * (separation.width - min_separation) - 2.0 * rounding.step;
-                let opens = separation.width > rounding.frozen && closing <= allowed;
-                if !opens && self.limit_by_plane(kind, vertices, separation, min_separation, damping) {
+                let (separation, min_separation) = (&contacts.separations[p], contacts.min_separations[p]);
+                if self.limit_by_moving_plane(
+                    kind,
+                    vertices,
+                    separation,
+                    min_separation,
+                    paths,
+                    tubes,
+                    damping,
+                ) {
                     frozen.fetch_add(1, Ordering::Relaxed);
                 }
             });
         }
         frozen.into_inner()
+    }
+
+    /// Limits the vertices of one pair, see [`Self::limit_by_moving_planes`]. Returns whether the pair is
+    /// frozen.
+    #[inline]
+    pub fn limit_by_moving_plane(
+        &self,
+        kind: PairKind,
+        vertices: &[u32; 4],
+        separation: &Separation,
+        min_separation: f64,
+        paths: &[Vector],
+        tubes: &[f64],
+        damping: f64,
+    ) -> bool {
+        let tube = |v: u32| tubes[v as usize];
+        !self.stays_open(kind, vertices, separation, min_separation, paths, tube, damping)
+            && self.limit_by_plane(kind, vertices, separation, min_separation, damping)
+    }
+
+    /// Whether the slab of a pair stays open while it moves along with the vertices, see
+    /// [`Self::limit_by_moving_planes`]. `tube(vertex)` is the radius of the vertex's tube [m].
+    #[inline]
+    pub fn stays_open(
+        &self,
+        kind: PairKind,
+        vertices: &[u32; 4],
+        separation: &Separation,
+        min_separation: f64,
+        paths: &[Vector],
+        tube: impl Fn(u32) -> f64,
+        damping: f64,
+    ) -> bool {
+        let (count, side_a) = (kind.vertex_count(), kind.side_a());
+        let side = |places: std::ops::Range<usize>, sign: f64| {
+            let mut closing = f64::NEG_INFINITY;
+            let mut radius = 0.0f64;
+            for &v in &vertices[places] {
+                closing = closing.max(sign * separation.normal.dot(&paths[v as usize]));
+                radius = radius.max(tube(v));
+            }
+            (closing, radius)
+        };
+        let (closing_a, tube_a) = side(0..side_a, -1.0);
+        // A half-space does not move.
+        let (closing_b, tube_b) = if side_a < count { side(side_a..count, 1.0) } else { (0.0, 0.0) };
+        let closing = (closing_a + closing_b).max(0.0) + tube_a + tube_b;
+        let rounding = self.rounding();
+        let allowed = damping * (separation.width - min_separation) - 2.0 * rounding.step;
+        separation.width > rounding.frozen && closing <= allowed
+    }
+
+    /// Largest coordinate of positions and targets of this step [m].
+    pub fn largest_coordinate(&self) -> f64 {
+        self.largest_coordinate
     }
 
     /// Lets both sides of a pair together close its gap by at most `allowed` [m] along the unit normal `n`.

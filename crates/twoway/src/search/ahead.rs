@@ -1,4 +1,5 @@
-//! The candidate pairs that are not near, but that vertices could reach in one step.
+//! Pairs that are not near, but that vertices could reach in one step: candidates, and what a swept search
+//! finds. They are visited as they are found, and not stored.
 
 use super::near::{BLANK, round_up};
 use super::regions::{Regions, longest_path};
@@ -7,7 +8,7 @@ use crate::scene::CollisionScene;
 use crate::stages::AheadVisitor;
 use crate::state::ResolveState;
 use bowknot_geometry::{PairKind, Vector};
-use bowknot_proximity::{CandidateList, Pair, near_half_spaces, separate_all};
+use bowknot_proximity::{Candidate, CandidateList, Pair, near_half_spaces, separate_all};
 use rayon::prelude::*;
 
 /// Share of the damping at which pairs count as ahead. A pair is left out if the vertices use up less of its
@@ -43,18 +44,20 @@ pub(super) struct AheadPairs {
 
 impl AheadPairs {
     /// Calls `visit` with all candidate pairs that are not pairs of `state.contacts` and that could limit a
-    /// step along `displacements` [m], with their contact geometry at x.
+    /// step along `displacements` [m], with their contact geometry at x. `rounding`: by how much distances may
+    /// be below their bounds [m].
     pub fn visit(
         &mut self,
         scene: &CollisionScene,
         state: &ResolveState,
         candidates: &CandidateList,
         regions: &Regions,
+        rounding: f64,
         displacements: &[Vector],
         visit: &AheadVisitor<'_>,
     ) {
         let share = SHARE * scene.params().solver.forward.damping.min(1.0);
-        self.set_motions(scene, state, regions, displacements, share);
+        self.set_motions(scene, state, regions, rounding, displacements, share);
         let (motions, topology) = (&self.motions, scene.model().topology());
         self.sides.fill(topology, candidates, |vertices| {
             let largest = vertices.iter().map(|&v| motions[v as usize]).fold(Motion::default(), Motion::max);
@@ -62,36 +65,30 @@ impl AheadPairs {
         });
         // Rounded down.
         let bound_share = share as f32 * (1.0 - f32::EPSILON);
-        let contacts = &state.contacts.pairs;
-        for kind in PairKind::ALL {
-            let Some(list) = candidates.of(kind) else { continue };
-            let [own, other] = self.sides.of(kind);
-            (0..range_count(list)).into_par_iter().filter_map(|index| range_of(list, index)).for_each(
-                |range| {
-                    let mut near = contacts.lookup(kind, [range.start as u32, 0]);
-                    let mut batch = Batch::new(scene, state, kind, visit);
-                    for a in range {
-                        for candidate in list.of(a) {
-                            let elements = [a as u32, candidate.element];
-                            let used_up = (own[a] + other[candidate.element as usize]) * LARGER;
-                            if candidate.bound * bound_share <= used_up && near.find(elements).is_none() {
-                                batch.push(Pair::of_elements(topology, kind, elements));
-                            }
-                        }
-                    }
-                    batch.visit();
-                },
-            );
-        }
-        let kind = PairKind::VertexHalfSpace;
+        let sides = &self.sides;
+        visit_candidates(scene, state, candidates, visit, |kind, a, candidate| {
+            let [own, other] = sides.of(kind);
+            candidate.bound * bound_share <= (own[a] + other[candidate.element as usize]) * LARGER
+        });
         let radius = |v: usize| f64::from(motions[v].travel) / share;
         near_half_spaces(scene.model(), &state.x, None, radius, &mut self.half_space_pairs);
-        self.half_space_pairs.par_iter().filter(|pairs| !pairs.is_empty()).for_each(|pairs| {
-            let mut near = contacts.lookup(kind, pairs[0].elements);
-            let mut batch = Batch::new(scene, state, kind, visit);
-            pairs.iter().filter(|pair| near.find(pair.elements).is_none()).for_each(|pair| batch.push(*pair));
-            batch.visit();
-        });
+        visit_half_spaces(scene, state, &self.half_space_pairs, visit);
+    }
+
+    /// Calls `visit` with all pairs of a swept search that are not pairs of `state.contacts`: `candidates` and
+    /// the pairs of half-spaces that come within twice the `radius` of a vertex along `displacements` [m].
+    pub fn visit_swept(
+        &mut self,
+        scene: &CollisionScene,
+        state: &ResolveState,
+        candidates: &CandidateList,
+        displacements: &[Vector],
+        radius: impl Fn(usize) -> f64 + Sync,
+        visit: &AheadVisitor<'_>,
+    ) {
+        visit_candidates(scene, state, candidates, visit, |_, _, _| true);
+        near_half_spaces(scene.model(), &state.x, Some(displacements), radius, &mut self.half_space_pairs);
+        visit_half_spaces(scene, state, &self.half_space_pairs, visit);
     }
 
     fn set_motions(
@@ -99,6 +96,7 @@ impl AheadPairs {
         scene: &CollisionScene,
         state: &ResolveState,
         regions: &Regions,
+        rounding: f64,
         displacements: &[Vector],
         share: f64,
     ) {
@@ -106,7 +104,7 @@ impl AheadPairs {
         let motion = |v: usize| {
             let keep = scene.spacing().min_separation_margin(scene.model().vertex_body()[v]).max(smallest);
             Motion {
-                offset: round_up(share * (state.x[v] - regions.balls.centers[v]).norm()),
+                offset: round_up(share * (rounding + (state.x[v] - regions.balls.centers[v]).norm())),
                 travel: round_up(displacements[v].norm().min(longest_path(scene, v)) + keep),
             }
         };
@@ -120,6 +118,50 @@ impl Motion {
     fn max(self, other: Self) -> Self {
         Self { offset: self.offset.max(other.offset), travel: self.travel.max(other.travel) }
     }
+}
+
+/// Visits the candidates that are `wanted` and are not pairs of the state. `wanted` is called with kind,
+/// element of side *a* and candidate.
+fn visit_candidates(
+    scene: &CollisionScene,
+    state: &ResolveState,
+    candidates: &CandidateList,
+    visit: &AheadVisitor<'_>,
+    wanted: impl Fn(PairKind, usize, &Candidate) -> bool + Sync,
+) {
+    let topology = scene.model().topology();
+    for kind in PairKind::ALL {
+        let Some(list) = candidates.of(kind) else { continue };
+        (0..range_count(list)).into_par_iter().filter_map(|index| range_of(list, index)).for_each(|range| {
+            let mut near = state.contacts.pairs.lookup(kind, [range.start as u32, 0]);
+            let mut batch = Batch::new(scene, state, kind, visit);
+            for a in range {
+                for candidate in list.of(a) {
+                    let elements = [a as u32, candidate.element];
+                    if wanted(kind, a, candidate) && near.find(elements).is_none() {
+                        batch.push(Pair::of_elements(topology, kind, elements));
+                    }
+                }
+            }
+            batch.visit();
+        });
+    }
+}
+
+/// Visits the pairs of half-spaces that are not pairs of the state.
+fn visit_half_spaces(
+    scene: &CollisionScene,
+    state: &ResolveState,
+    lists: &[Vec<Pair>],
+    visit: &AheadVisitor<'_>,
+) {
+    let kind = PairKind::VertexHalfSpace;
+    lists.par_iter().filter(|pairs| !pairs.is_empty()).for_each(|pairs| {
+        let mut near = state.contacts.pairs.lookup(kind, pairs[0].elements);
+        let mut batch = Batch::new(scene, state, kind, visit);
+        pairs.iter().filter(|pair| near.find(pair.elements).is_none()).for_each(|pair| batch.push(*pair));
+        batch.visit();
+    });
 }
 
 /// Pairs whose geometry is computed together before they are visited.

@@ -70,18 +70,20 @@ impl NearPairs {
     }
 
     /// Makes the candidates that are within contact range at x the pairs of `state.contacts`: what the other
-    /// stages see does not depend on which pairs are listed. `complete`: all candidates.
+    /// stages see does not depend on which pairs are listed. `rounding`: by how much distances may be below
+    /// their bounds [m]. `complete`: all candidates.
     pub fn select(
         &mut self,
         scene: &CollisionScene,
         state: &mut ResolveState,
         candidates: &CandidateList,
         regions: &Regions,
+        rounding: f64,
         complete: bool,
         statistics: &mut Statistics,
     ) {
         let model = scene.model();
-        self.set_reach(scene, state, regions, candidates);
+        self.set_reach(scene, state, regions, rounding, candidates);
         self.keep(&mut state.contacts);
         let x = state.x.as_slice();
         let selection = Selection { scene, x, moved: &self.moved, old: &self.old, complete };
@@ -135,6 +137,7 @@ impl NearPairs {
         scene: &CollisionScene,
         state: &ResolveState,
         regions: &Regions,
+        rounding: f64,
         candidates: &CandidateList,
     ) {
         let (model, count) = (scene.model(), state.x.len());
@@ -144,7 +147,7 @@ impl NearPairs {
         vertices.for_each(|(v, (reach, moved))| {
             let x = &state.x[v];
             let margin = scene.spacing().margin(model.vertex_body()[v]);
-            *reach = round_up((x - regions.balls.centers[v]).norm() + margin);
+            *reach = round_up((x - regions.balls.centers[v]).norm() + margin + rounding);
             *moved = *x != state.previous[v];
         });
         let reach = &self.reach;
