@@ -131,3 +131,16 @@ fn layers_of_a_body_that_close_after_a_flight_do_not_cross() {
         }
     }
 }
+
+/// As before, with bodies that come back so gently that none of their trust regions is new.
+#[test]
+fn bodies_that_come_back_beside_where_they_were_are_found() {
+    let mut layers = Layers::new([0.0, 0.12 * EDGE], 2, Params::fast());
+    let up = EDGE * Vector::z();
+    layers.step(-0.3 * up, 0.3 * up);
+    for away in [2.0 * up, EDGE * Vector::new(3.3, 1.4, 0.0), -2.3 * up] {
+        assert_eq!(layers.step(Vector::zeros(), away).searches, 0);
+    }
+    let report = layers.step(0.29 * up, -0.29 * up);
+    assert!(report.searches > 0 && report.min_gap_m.is_some());
+}
