@@ -297,8 +297,7 @@ impl Search for TrustRegionSearch {
             &mut contacts.separations,
         );
         self.near.replace(scene, state, statistics);
-        self.left = true;
-        self.requested |= self.flight.drift;
+        self.requested = true;
         statistics.searches += 1;
         statistics.seconds.search += timer.elapsed().as_secs_f64();
     }
