@@ -96,8 +96,8 @@ impl Flight {
                 let n = &half_space.normal;
                 self.boxes[body].iter().all(|bounds| {
                     let lowest = (0..3).map(|k| (n[k] * bounds.low[k]).min(n[k] * bounds.high[k]));
-                    // The comparison fails where the box is empty; such a body has no vertices.
-                    !(lowest.sum::<f64>() - half_space.offset <= 2.0 * margin(body) + 4.0 * slack)
+                    let is_empty = bounds.low.x > bounds.high.x;
+                    is_empty || lowest.sum::<f64>() - half_space.offset > 2.0 * margin(body) + 4.0 * slack
                 })
             })
         };
