@@ -84,6 +84,11 @@ impl Candidates {
         &self.partners[self.starts[element] as usize..self.starts[element + 1] as usize]
     }
 
+    /// Whether there is no pair.
+    pub fn is_empty(&self) -> bool {
+        self.partners.is_empty()
+    }
+
     /// Number of partners of a range of elements.
     pub fn count(&self, elements: Range<usize>) -> usize {
         (self.starts[elements.end] - self.starts[elements.start]) as usize
@@ -123,17 +128,7 @@ impl Candidates {
             next_starts[a + 1] += next_starts[a];
         }
         next.resize(next_starts[elements] as usize, Candidate::default());
-        let mut rest = next.as_mut_slice();
-        let mut jobs = Vec::with_capacity(elements.div_ceil(CHUNK));
-        for begin in (0..elements).step_by(CHUNK) {
-            let end = (begin + CHUNK).min(elements);
-            let (head, tail) = rest.split_at_mut((next_starts[end] - next_starts[begin]) as usize);
-            rest = tail;
-            if !head.is_empty() {
-                jobs.push((begin..end, head));
-            }
-        }
-        jobs.into_par_iter().for_each(|(elements, out)| {
+        let write = |elements: Range<usize>, out: &mut [Candidate]| {
             let mut end = 0;
             for a in elements {
                 let mut found = table.partners(tasks, a).iter().copied().peekable();
@@ -150,10 +145,33 @@ impl Candidates {
                     end += 1;
                 }
             }
-        });
+        };
+        for_each_chunk(0..elements, next_starts, next, &write);
         std::mem::swap(partners, next);
         std::mem::swap(starts, next_starts);
     }
+}
+
+/// Calls `write` for chunks of `elements` with their parts of `out`, which begins with that of the first.
+fn for_each_chunk(
+    elements: Range<usize>,
+    starts: &[u32],
+    out: &mut [Candidate],
+    write: &(impl Fn(Range<usize>, &mut [Candidate]) + Sync),
+) {
+    let chunks = elements.len().div_ceil(CHUNK);
+    if out.is_empty() {
+        return;
+    }
+    if chunks == 1 {
+        return write(elements, out);
+    }
+    let middle = elements.start + chunks / 2 * CHUNK;
+    let (left, right) = out.split_at_mut((starts[middle] - starts[elements.start]) as usize);
+    rayon::join(
+        || for_each_chunk(elements.start..middle, starts, left, write),
+        || for_each_chunk(middle..elements.end, starts, right, write),
+    );
 }
 
 /// Whether a vertex of an element has changed. The sides of a pair kind are numbered 0 and 1.

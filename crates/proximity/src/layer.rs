@@ -62,13 +62,22 @@ impl Layer {
         self.trees()
     }
 
-    /// Refits the boxes of elements with a vertex that has `changed`; none of them if nothing has.
-    pub fn refit_changed(&mut self, local: &[LocalVertex], changed: Option<&[bool]>) {
-        self.vertices.refit_changed(local, changed);
-        self.edges.refit_changed(local, changed);
-        self.triangles.refit_changed(local, changed);
-        self.particles.refit_changed(local, changed);
-        self.strands.refit_changed(local, changed);
+    /// Notes which elements have a vertex that has `changed`.
+    pub fn mark_changed(&mut self, changed: &[bool]) {
+        self.vertices.mark_changed(changed);
+        self.edges.mark_changed(changed);
+        self.triangles.mark_changed(changed);
+        self.particles.mark_changed(changed);
+        self.strands.mark_changed(changed);
+    }
+
+    /// Refits the boxes of the elements that are marked as changed.
+    pub fn refit_changed(&mut self, local: &[LocalVertex]) {
+        self.vertices.refit_changed(local);
+        self.edges.refit_changed(local);
+        self.triangles.refit_changed(local);
+        self.particles.refit_changed(local);
+        self.strands.refit_changed(local);
     }
 
     /// Rebuilds trees whose order is stale, and refits their boxes; returns how many trees that were.

@@ -36,7 +36,7 @@ pub use bowknot_geometry::{BodyFilter, CollisionModel, ModelError};
 pub use candidates::{CandidateList, Candidates};
 pub use half_spaces::near_half_spaces;
 pub use narrow::{separate_all, separate_one};
-pub use pairs::{Candidate, Pair, PairList};
+pub use pairs::{Candidate, Pair, PairList, PairLookup};
 pub use search::ProximitySearch;
 pub use statistics::SearchStatistics;
 

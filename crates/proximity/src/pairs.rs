@@ -1,7 +1,11 @@
 //! Lists of pairs.
 
 use bowknot_geometry::{PairKind, Topology};
+use rayon::prelude::*;
 use std::ops::Range;
+
+/// Pairs that one task matches.
+const CHUNK: usize = 4096;
 
 /// A partner of an element in a [`CandidateList`](crate::CandidateList): 8 bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -52,6 +56,27 @@ impl Pair {
     }
 }
 
+/// Looks up pairs in a sorted list, see [`PairList::lookup`].
+#[derive(Clone, Debug)]
+pub struct PairLookup<'a> {
+    /// The pairs up to the end of the kind.
+    pairs: &'a [Pair],
+    next: usize,
+}
+
+impl PairLookup<'_> {
+    /// The index of the pair of `elements` in its list, if the list has it. Elements must be asked for in
+    /// ascending order.
+    #[inline]
+    pub fn find(&mut self, elements: [u32; 2]) -> Option<u32> {
+        while self.pairs.get(self.next).is_some_and(|pair| pair.elements < elements) {
+            self.next += 1;
+        }
+        let found = self.pairs.get(self.next).is_some_and(|pair| pair.elements == elements);
+        found.then_some(self.next as u32)
+    }
+}
+
 /// Pairs grouped by kind in the order of [`PairKind::ALL`], sorted by `elements` within a kind.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PairList {
@@ -61,29 +86,20 @@ pub struct PairList {
 }
 
 impl PairList {
-    /// A list from the pairs of each kind in the order of [`PairKind::ALL`]; each is sorted.
+    /// A list from the pairs of each kind in the order of [`PairKind::ALL`]; they are sorted.
     pub fn from_kinds(kinds: [Vec<Pair>; 5]) -> Self {
         let mut list = Self::default();
-        list.refill(&kinds.map(|pairs| [pairs]));
+        for (k, mut pairs) in kinds.into_iter().enumerate() {
+            pairs.sort_unstable();
+            list.pairs.append(&mut pairs);
+            list.starts[k + 1] = list.pairs.len();
+        }
         list
     }
 
-    /// Replaces the content and keeps the allocation. `kinds` has some lists of pairs of each kind, which are
-    /// joined and sorted.
-    pub fn refill(&mut self, kinds: &[impl AsRef<[Vec<Pair>]>; 5]) {
-        self.pairs.clear();
-        self.starts = [0; 6];
-        for (k, lists) in kinds.iter().enumerate() {
-            let start = self.pairs.len();
-            lists.as_ref().iter().for_each(|list| self.pairs.extend_from_slice(list));
-            // Takes linear time for lists that are sorted.
-            self.pairs[start..].sort_unstable();
-            self.starts[k + 1] = self.pairs.len();
-        }
-    }
-
-    /// Resizes the list to the given number of pairs of each kind; the caller writes them in order.
-    pub(crate) fn resize_kinds(&mut self, counts: [usize; 5]) -> &mut [Pair] {
+    /// Resizes the list to the given number of pairs of each kind and returns it: the caller writes all pairs,
+    /// in order and sorted within a kind.
+    pub fn resize_kinds(&mut self, counts: [usize; 5]) -> &mut [Pair] {
         const BLANK: Pair = Pair { elements: [0; 2], vertices: [0; 4] };
         self.starts = [0; 6];
         for k in 0..5 {
@@ -99,43 +115,31 @@ impl PairList {
         self.starts = [0; 6];
     }
 
-    /// Keeps the pairs that `keep` accepts; it is called with index, kind and pair, in order.
-    pub fn retain(&mut self, mut keep: impl FnMut(usize, PairKind, &Pair) -> bool) {
-        let mut end = 0;
-        for kind in PairKind::ALL {
-            let range = self.range(kind);
-            self.starts[kind as usize] = end;
-            for p in range {
-                let pair = self.pairs[p];
-                if keep(p, kind, &pair) {
-                    self.pairs[end] = pair;
-                    end += 1;
-                }
-            }
-        }
-        self.starts[PairKind::ALL.len()] = end;
-        self.pairs.truncate(end);
-    }
-
     /// For each pair, the index of the same pair in another list, or `u32::MAX` if that list does not have
     /// it. They replace the content of `matches`.
     ///
-    /// One pass over both lists, which are sorted. It serves to carry data of pairs, such as multipliers,
-    /// from an old list to a new one.
+    /// Both lists are sorted, so it takes one pass over both. It serves to carry data of pairs, such as
+    /// multipliers, from an old list to a new one.
     pub fn match_with(&self, old: &PairList, matches: &mut Vec<u32>) {
-        matches.clear();
-        matches.reserve(self.len());
+        matches.resize(self.len(), u32::MAX);
         for kind in PairKind::ALL {
-            let range = old.range(kind);
-            let mut next = range.start;
-            for pair in &self.pairs[self.range(kind)] {
-                while next < range.end && old.pairs[next].elements < pair.elements {
-                    next += 1;
+            let range = self.range(kind);
+            let pairs = self.pairs[range.clone()].par_chunks(CHUNK);
+            pairs.zip(matches[range].par_chunks_mut(CHUNK)).for_each(|(pairs, matches)| {
+                let mut old = old.lookup(kind, pairs[0].elements);
+                for (pair, matched) in pairs.iter().zip(matches) {
+                    *matched = old.find(pair.elements).unwrap_or(u32::MAX);
                 }
-                let same = next < range.end && old.pairs[next].elements == pair.elements;
-                matches.push(if same { next as u32 } else { u32::MAX });
-            }
+            });
         }
+    }
+
+    /// Looks up pairs of a kind in ascending order, from `first` on.
+    pub fn lookup(&self, kind: PairKind, first: [u32; 2]) -> PairLookup<'_> {
+        let range = self.range(kind);
+        let pairs = &self.pairs[..range.end];
+        let before = pairs[range.start..].partition_point(|pair| pair.elements < first);
+        PairLookup { pairs, next: range.start + before }
     }
 
     /// All pairs.

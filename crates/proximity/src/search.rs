@@ -15,6 +15,7 @@ use crate::traverse::{Query, Scene, Scratch, TASK_LEAVES, TaskResult, overlappin
 use crate::tree::Tree;
 use bowknot_geometry::{CollisionModel, PairKind, Point, Separation, Vector};
 use rayon::prelude::*;
+use std::sync::Mutex;
 
 /// Vertices that one task brings to the local frame.
 const LOCAL_CHUNK: usize = 4096;
@@ -37,11 +38,15 @@ pub struct ProximitySearch {
     origin: Option<Point>,
     /// Whether the trees are those of the last [`Self::update`].
     updated: bool,
+    /// Whether there was an update: its list may be updated where vertices have changed.
+    listed: bool,
     local: Vec<LocalVertex>,
     end: Vec<LocalVertex>,
     layers: [Layer; 3],
 
     leaves: Leaves,
+    /// One for each thread.
+    scratch: Vec<Mutex<Scratch>>,
     tasks: [Vec<TaskResult>; 4],
     tables: [PartnerTable; 4],
     half_space_pairs: Vec<Vec<Pair>>,
@@ -130,8 +135,8 @@ impl ProximitySearch {
     ///
     /// With `changed`, only the vertices that it marks (one entry per vertex) have other positions or radii
     /// than in the last call, which must have been for the same list. Only pairs with such a vertex are then
-    /// searched for; all others stay. That pays where few vertices have changed. After a search of another
-    /// kind everything is searched.
+    /// searched for; all others stay. That pays where few vertices have changed. The first call searches
+    /// everything, and so does one for which an obstacle begins or ends to move.
     ///
     /// Which pairs are listed whose distance equals the sum of their radii up to rounding in `f32` may depend
     /// on earlier calls; no pair is lost.
@@ -149,9 +154,13 @@ impl ProximitySearch {
         self.begin(model, positions, radii);
         let obstacles = self.obstacles.update(model, positions, None, radii);
         // An obstacle that begins or ends to move changes its trees.
-        let changed = changed.filter(|_| self.updated && !obstacles.layers);
+        let changed = changed.filter(|_| self.listed && !obstacles.layers);
         match changed {
-            Some(changed) => self.update_changed_trees(positions, radii, changed),
+            Some(changed) if self.updated => self.update_changed_trees(positions, radii, changed),
+            Some(changed) => {
+                self.update_trees(model, positions, None, radii, obstacles);
+                self.layers.iter_mut().for_each(|layer| layer.mark_changed(changed));
+            }
             None => self.update_trees(model, positions, None, radii, obstacles),
         }
         let filtered = self.collisions.some_forbidden;
@@ -160,7 +169,35 @@ impl ProximitySearch {
         self.fill_tables(model);
         list.take(model.topology(), &self.tables, &self.tasks, changed);
         self.count(list.len());
-        self.updated = true;
+        (self.updated, self.listed) = (true, true);
+    }
+
+    /// Notes that vertices have moved although the next [`Self::update`] will not mark them as changed, such
+    /// as those of a body that has moved as a whole: boxes are then refitted, but the pairs of these vertices
+    /// stay. It is for the caller to know that none of the pairs left out has come nearer.
+    pub fn note_moved(&mut self) {
+        self.updated = false;
+    }
+
+    /// As [`Self::search_swept`], in compact form: without contact geometry and the pairs of half-spaces. The
+    /// lower bounds of the distances are 0.
+    ///
+    /// # Panics
+    /// If a slice has another length than the model has vertices.
+    pub fn list_swept(
+        &mut self,
+        model: &CollisionModel,
+        positions: &[Point],
+        displacements: &[Vector],
+        radii: &[f64],
+        list: &mut CandidateList,
+    ) {
+        assert_eq!(displacements.len(), positions.len(), "one displacement per vertex");
+        self.find::<true>(model, positions, Some(displacements), radii);
+        self.fill_tables(model);
+        list.take(model.topology(), &self.tables, &self.tasks, None);
+        self.count(list.len());
+        self.updated = false;
     }
 
     /// Counts of the last search.
@@ -177,17 +214,26 @@ impl ProximitySearch {
         pairs: &mut PairList,
         separations: &mut Vec<Separation>,
     ) {
-        self.begin(model, positions, radii);
-        let obstacles = self.obstacles.update(model, positions, displacements, radii);
-        self.update_trees(model, positions, displacements, radii, obstacles);
-
-        let filtered = self.collisions.some_forbidden;
-        let scene = Scene { model, positions, radii, filtered, changed_only: false };
-        self.search_kinds::<SWEPT>(&scene);
+        self.find::<SWEPT>(model, positions, displacements, radii);
         near_half_spaces(model, positions, displacements, |v| radii[v], &mut self.half_space_pairs);
         self.write(model, positions, pairs, separations);
         self.count(pairs.len());
         self.updated = false;
+    }
+
+    /// Finds the pairs of all kinds but those of half-spaces.
+    fn find<const SWEPT: bool>(
+        &mut self,
+        model: &CollisionModel,
+        positions: &[Point],
+        displacements: Option<&[Vector]>,
+        radii: &[f64],
+    ) {
+        self.begin(model, positions, radii);
+        let obstacles = self.obstacles.update(model, positions, displacements, radii);
+        self.update_trees(model, positions, displacements, radii, obstacles);
+        let filtered = self.collisions.some_forbidden;
+        self.search_kinds::<SWEPT>(&Scene { model, positions, radii, filtered, changed_only: false });
     }
 
     /// Begins a search.
@@ -219,8 +265,9 @@ impl ProximitySearch {
                 }
             }
         });
-        for (layer, index) in self.layers.iter_mut().zip(0_u8..) {
-            layer.refit_changed(&self.local, (index != RESTING).then_some(changed));
+        for layer in &mut self.layers {
+            layer.mark_changed(changed);
+            layer.refit_changed(&self.local);
         }
     }
 
@@ -281,7 +328,8 @@ impl ProximitySearch {
     }
 
     fn search_kinds<const SWEPT: bool>(&mut self, scene: &Scene<'_>) {
-        let Self { layers: [deformable, moving, resting], leaves, tasks, .. } = self;
+        self.scratch.resize_with(rayon::current_num_threads(), Mutex::default);
+        let Self { layers: [deformable, moving, resting], leaves, scratch, tasks, .. } = self;
         let obstacles = [&*moving, &*resting];
         let all_leaves = deformable.edges.leaves.len().max(deformable.vertices.leaves.len());
         let all_leaves = all_leaves.max(deformable.particles.leaves.len());
@@ -306,6 +354,7 @@ impl ProximitySearch {
             (&deformable.particles, &deformable.particles),
             obstacles.map(|o| (&o.particles, &o.particles)),
             &leaves.particles,
+            scratch,
             vertex_vertex,
         );
         search_kind::<VertexEdge, 1, 2, SWEPT>(
@@ -315,6 +364,7 @@ impl ProximitySearch {
             (&deformable.particles, &deformable.strands),
             obstacles.map(|o| (&o.particles, &o.strands)),
             &leaves.particles_near_strands,
+            scratch,
             vertex_edge,
         );
         search_kind::<VertexTriangle, 1, 3, SWEPT>(
@@ -324,6 +374,7 @@ impl ProximitySearch {
             (&deformable.vertices, &deformable.triangles),
             obstacles.map(|o| (&o.vertices, &o.triangles)),
             &leaves.vertices,
+            scratch,
             vertex_triangle,
         );
         search_kind::<EdgeEdge, 2, 2, SWEPT>(
@@ -333,6 +384,7 @@ impl ProximitySearch {
             (&deformable.edges, &deformable.edges),
             obstacles.map(|o| (&o.edges, &o.edges)),
             &leaves.edges,
+            scratch,
             edge_edge,
         );
     }
@@ -382,46 +434,59 @@ fn search_kind<K: PairTest<A, B>, const A: usize, const B: usize, const SWEPT: b
     deformable: (&Tree<A>, &Tree<B>),
     obstacles: [(&Tree<A>, &Tree<B>); 2],
     obstacle_leaves: &[Vec<u32>; 2],
+    scratch: &[Mutex<Scratch>],
     tasks: &mut Vec<TaskResult>,
 ) {
-    let mut targets = Vec::with_capacity(3);
-    if collisions.deformable {
-        targets.push(deformable.1);
+    let mut targets = [deformable.1; 3];
+    let mut target_count = 0;
+    let searched = [(collisions.deformable, deformable.1)].into_iter();
+    let searched = searched.chain(obstacles.map(|obstacle| (collisions.obstacle, obstacle.1)));
+    for (_, tree) in searched.filter(|(searched, tree)| *searched && !tree.is_empty()) {
+        targets[target_count] = tree;
+        target_count += 1;
     }
-    if collisions.obstacle {
-        targets.extend(obstacles.iter().map(|o| o.1));
-    }
-    targets.retain(|tree| !tree.is_empty());
-    let near = [deformable.1];
-    let mut queries = Vec::with_capacity(3);
-    if !targets.is_empty() {
-        queries.push(Query {
-            tree: deformable.0,
-            leaves: &all_leaves[..deformable.0.leaves.len()],
-            targets: &targets,
-        });
-    }
-    if collisions.obstacle && !deformable.1.is_empty() {
-        queries.extend((0..2).map(|k| Query {
-            tree: obstacles[k].0,
-            leaves: &obstacle_leaves[k],
-            targets: &near,
-        }));
-    }
+    let targets = &targets[..target_count];
+    let near = &[deformable.1];
+    let own_leaves = if targets.is_empty() { 0 } else { deformable.0.leaves.len() };
+    let meets_obstacles = collisions.obstacle && !deformable.1.is_empty();
+    let queries = [
+        Query { tree: deformable.0, leaves: &all_leaves[..own_leaves], targets },
+        Query { tree: obstacles[0].0, leaves: &obstacle_leaves[0][..], targets: near },
+        Query { tree: obstacles[1].0, leaves: &obstacle_leaves[1][..], targets: near },
+    ];
+    let used = if meets_obstacles { &queries[..] } else { &queries[..1] };
 
-    let jobs: Vec<Query<'_, A, B>> = queries
-        .iter()
-        .flat_map(|query| {
-            query.leaves.chunks(TASK_LEAVES).map(|leaves| Query {
-                tree: query.tree,
-                leaves,
-                targets: query.targets,
-            })
-        })
-        .collect();
-    tasks.truncate(jobs.len());
-    tasks.resize_with(jobs.len(), TaskResult::default);
-    jobs.par_iter().zip(tasks).for_each_init(Scratch::default, |scratch, (query, found)| {
-        search_leaves::<K, A, B, SWEPT>(scene, query, scratch, found);
+    let task_count = |query: &Query<'_, A, B>| query.leaves.len().div_ceil(TASK_LEAVES);
+    let total: usize = used.iter().map(task_count).sum();
+    if total == 0 {
+        return tasks.clear();
+    }
+    // Tasks beyond the total keep their buffers for a later search.
+    tasks.resize_with(total.max(tasks.len()), TaskResult::default);
+    tasks[total..].iter_mut().for_each(TaskResult::clear);
+    tasks[..total].par_iter_mut().enumerate().for_each(|(mut index, found)| {
+        found.clear();
+        for query in used {
+            let count = task_count(query);
+            if index < count {
+                let leaves = &query.leaves[index * TASK_LEAVES..];
+                let leaves = &leaves[..leaves.len().min(TASK_LEAVES)];
+                let scratch = &scratch[rayon::current_thread_index().unwrap_or(0) % scratch.len()];
+                // A search starts no other task, so that a thread never waits for itself here. After a panic
+                // the content may be anything.
+                let mut scratch = scratch.lock().unwrap_or_else(|poisoned| {
+                    let mut scratch = poisoned.into_inner();
+                    *scratch = Scratch::default();
+                    scratch
+                });
+                return search_leaves::<K, A, B, SWEPT>(
+                    scene,
+                    &Query { leaves, ..*query },
+                    &mut scratch,
+                    found,
+                );
+            }
+            index -= count;
+        }
     });
 }

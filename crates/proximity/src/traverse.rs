@@ -24,6 +24,7 @@ pub struct Scene<'a> {
 }
 
 /// Leaves of a tree whose elements are searched for in other trees.
+#[derive(Clone, Copy)]
 pub struct Query<'a, const A: usize, const B: usize> {
     /// The tree of the leaves.
     pub tree: &'a Tree<A>,
@@ -50,6 +51,15 @@ pub struct TaskResult {
     pub partners: Vec<Candidate>,
     pub candidates: u64,
     pub undecided: u64,
+}
+
+impl TaskResult {
+    /// Removes the results and keeps the buffers.
+    pub fn clear(&mut self) {
+        self.runs.clear();
+        self.partners.clear();
+        (self.candidates, self.undecided) = (0, 0);
+    }
 }
 
 /// What a thread needs for the current leaf.
@@ -90,7 +100,7 @@ pub fn overlapping_leaves<const V: usize>(tree: &Tree<V>, bounds: &[[f32; 3]; 2]
     out.sort_unstable();
 }
 
-/// Lists the partners of the elements in `query.leaves`.
+/// Adds the partners of the elements in `query.leaves` to `found`.
 ///
 /// Compiled for several instruction sets; the operations and hence the results are the same.
 #[multiversion::multiversion(targets(
@@ -103,10 +113,6 @@ pub fn search_leaves<K: PairTest<A, B>, const A: usize, const B: usize, const SW
     scratch: &mut Scratch,
     found: &mut TaskResult,
 ) {
-    found.runs.clear();
-    found.partners.clear();
-    found.candidates = 0;
-    found.undecided = 0;
     for &index in query.leaves {
         search_leaf::<K, A, B, SWEPT>(scene, query, index as usize, scratch, found);
     }

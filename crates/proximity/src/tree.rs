@@ -114,8 +114,8 @@ pub struct Tree<const V: usize> {
     /// Boxes at the start and the end of a motion; level 0 then holds their hull. Empty if the last refit was
     /// without motion.
     pub sweep: Vec<[Node; 2]>,
-    /// For each level and node, the children of which some vertex has changed, one bit each: those that
-    /// [`Self::refit_changed`] has refitted.
+    /// For each level and node, the children of which some vertex has changed, one bit each; see
+    /// [`Self::mark_changed`].
     pub changed: Vec<Vec<u16>>,
     len: usize,
     /// Sum of the extents of the leaves when the tree was built.
@@ -242,39 +242,52 @@ impl<const V: usize> Tree<V> {
         }
     }
 
-    /// Refits the boxes of the elements with a vertex that has `changed`, and notes which those are: none if
-    /// it is not given.
-    pub fn refit_changed(&mut self, local: &[LocalVertex], changed: Option<&[bool]>) {
-        let Some(changed) = changed.filter(|_| !self.is_empty()) else {
-            return self.changed.iter_mut().for_each(|level| level.fill(0));
-        };
+    /// Notes which elements have a vertex that has `changed`.
+    pub fn mark_changed(&mut self, changed: &[bool]) {
+        let Some((leaf_marks, inner_marks)) = self.changed.split_first_mut() else { return };
+        leaf_marks.par_chunks_mut(REFIT_CHUNK).zip(self.leaves.par_chunks(REFIT_CHUNK)).for_each(
+            |(marks, leaves)| {
+                for (mark, leaf) in marks.iter_mut().zip(leaves) {
+                    *mark = changed_lanes(leaf, changed);
+                }
+            },
+        );
+        let mut below: &[u16] = leaf_marks;
+        for marks in inner_marks {
+            for (mark, children) in marks.iter_mut().zip(below.chunks(LANES)) {
+                let bits = children.iter().enumerate();
+                *mark = bits.fold(0, |mark, (lane, &child)| mark | u16::from(child != 0) << lane);
+            }
+            below = marks;
+        }
+    }
+
+    /// Refits the boxes of the elements that are marked as changed.
+    pub fn refit_changed(&mut self, local: &[LocalVertex]) {
+        if self.is_empty() {
+            return;
+        }
         self.sweep.clear();
-        let (leaf_marks, inner_marks) = self.changed.split_at_mut(1);
         let (elements, inner) = self.levels.split_at_mut(1);
         elements[0]
             .par_chunks_mut(REFIT_CHUNK)
             .zip(self.leaves.par_chunks_mut(REFIT_CHUNK))
-            .zip(leaf_marks[0].par_chunks_mut(REFIT_CHUNK))
+            .zip(self.changed[0].par_chunks(REFIT_CHUNK))
             .for_each(|((nodes, leaves), marks)| {
                 for ((node, leaf), mark) in nodes.iter_mut().zip(leaves).zip(marks) {
-                    *mark = changed_lanes(leaf, changed);
                     if *mark != 0 {
                         refit_leaf(local, node, leaf);
                     }
                 }
             });
-        let (mut below, mut marks_below) = (&elements[0], &leaf_marks[0]);
-        for (level, marks) in inner.iter_mut().zip(inner_marks) {
-            for (n, (node, mark)) in level.iter_mut().zip(&mut *marks).enumerate() {
-                *mark = 0;
-                for child in n * LANES..((n + 1) * LANES).min(below.len()) {
-                    if marks_below[child] != 0 {
-                        *mark |= 1 << (child % LANES);
-                        node.set_lane(child % LANES, below[child].bounds());
-                    }
+        let mut below = &elements[0];
+        for (level, marks) in inner.iter_mut().zip(&self.changed[1..]) {
+            for ((node, mark), children) in level.iter_mut().zip(marks).zip(below.chunks(LANES)) {
+                for (lane, child) in children.iter().enumerate().filter(|(lane, _)| mark >> lane & 1 != 0) {
+                    node.set_lane(lane, child.bounds());
                 }
             }
-            (below, marks_below) = (level, marks);
+            below = level;
         }
     }
 

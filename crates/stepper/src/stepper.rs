@@ -57,6 +57,8 @@ pub struct Stepper {
     remaining_fractions: Vec<f64>,
     /// Group of each vertex, [`Self::NO_GROUP`] for none. Empty: no groups.
     groups: Vec<u32>,
+    /// Smallest step size of each obstacle or group, while they are limited.
+    smallest: Vec<f64>,
     rounding: Option<Rounding>,
     /// Largest coordinate of positions and targets [m].
     largest_coordinate: f64,
@@ -87,21 +89,22 @@ impl Stepper {
     /// returns the number of these vertices.
     pub fn set_target(&mut self, positions: &[Point], target: &[Point]) -> usize {
         self.displacements.resize(positions.len(), Vector::zeros());
-        let mut largest = 0.0f64;
-        let mut not_finite = 0;
-        for (d, (x, y)) in self.displacements.iter_mut().zip(positions.iter().zip(target)) {
+        self.caps.resize(positions.len(), 1.0);
+        let vertices =
+            (&mut self.displacements, &mut self.alphas, &mut self.caps, positions, target).into_par_iter();
+        let set = |(d, alpha, cap, x, y): (&mut Vector, &mut AtomicU64, &mut f64, &Point, &Point)| {
+            *alpha.get_mut() = 1.0f64.to_bits();
+            *cap = 1.0;
             *d = y - x;
             if d.iter().all(|c| c.is_finite()) {
-                largest = largest.max(x.coords.amax()).max(y.coords.amax());
-            } else {
-                *d = Vector::zeros();
-                largest = largest.max(x.coords.amax());
-                not_finite += 1;
+                return (x.coords.amax().max(y.coords.amax()), 0);
             }
-        }
-        self.alphas.iter_mut().for_each(|a| *a.get_mut() = 1.0f64.to_bits());
-        self.caps.clear();
-        self.caps.resize(positions.len(), 1.0);
+            *d = Vector::zeros();
+            (x.coords.amax(), 1)
+        };
+        // A maximum and a count: the order does not matter.
+        let (largest, not_finite) =
+            vertices.with_min_len(CHUNK).map(set).reduce(|| (0.0f64, 0), |a, b| (a.0.max(b.0), a.1 + b.1));
         self.rounding = Some(Rounding::new(largest));
         self.largest_coordinate = largest;
         not_finite
@@ -115,16 +118,14 @@ impl Stepper {
         model: &CollisionModel,
         obstacle_vertices: &[u32],
         group_count: usize,
-        longest: impl Fn(usize) -> f64,
+        longest: impl Fn(usize) -> f64 + Sync,
     ) {
-        for v in 0..self.displacements.len() {
-            self.limit_travel(v, longest(v));
-        }
+        let vertices = (0..self.displacements.len()).into_par_iter().with_min_len(CHUNK);
+        vertices.for_each(|v| self.limit_travel(v, longest(v)));
         self.limit_by_bodies(model, obstacle_vertices);
         self.limit_by_groups(group_count);
-        for v in 0..self.caps.len() {
-            self.caps[v] = self.alpha(v);
-        }
+        let caps = self.caps.par_iter_mut().zip(&mut self.alphas).with_min_len(CHUNK);
+        caps.for_each(|(cap, alpha)| *cap = f64::from_bits(*alpha.get_mut()));
     }
 
     /// Lets a vertex travel by at most `longest` [m], and by at most half of the largest coordinate: the bounds
@@ -218,35 +219,80 @@ impl Stepper {
         tubes: &[f64],
         damping: f64,
     ) -> usize {
-        let rounding = self.rounding();
         let frozen = AtomicUsize::new(0);
         for kind in PairKind::ALL {
-            let (count, side_a) = (kind.vertex_count(), kind.side_a());
             contacts.pairs.range(kind).into_par_iter().with_min_len(CHUNK).for_each(|p| {
                 let vertices = &contacts.pairs.pairs()[p].vertices;
-                let separation = &contacts.separations[p];
-                let side = |places: std::ops::Range<usize>, sign: f64| {
-                    let mut closing = f64::NEG_INFINITY;
-                    let mut tube = 0.0f64;
-                    for &v in &vertices[places] {
-                        closing = closing.max(sign * separation.normal.dot(&paths[v as usize]));
-                        tube = tube.max(tubes[v as usize]);
-                    }
-                    (closing, tube)
-                };
-                let (closing_a, tube_a) = side(0..side_a, -1.0);
-                // A half-space does not move.
-                let (closing_b, tube_b) = if side_a < count { side(side_a..count, 1.0) } else { (0.0, 0.0) };
-                let closing = (closing_a + closing_b).max(0.0) + tube_a + tube_b;
-                let min_separation = contacts.min_separations[p];
-                let allowed = damping * (separation.width - min_separation) - 2.0 * rounding.step;
-                let opens = separation.width > rounding.frozen && closing <= allowed;
-                if !opens && self.limit_by_plane(kind, vertices, separation, min_separation, damping) {
+                let (separation, min_separation) = (&contacts.separations[p], contacts.min_separations[p]);
+                if self.limit_by_moving_plane(
+                    kind,
+                    vertices,
+                    separation,
+                    min_separation,
+                    paths,
+                    tubes,
+                    damping,
+                ) {
                     frozen.fetch_add(1, Ordering::Relaxed);
                 }
             });
         }
         frozen.into_inner()
+    }
+
+    /// Limits the vertices of one pair, see [`Self::limit_by_moving_planes`]. Returns whether the pair is
+    /// frozen.
+    #[inline]
+    pub fn limit_by_moving_plane(
+        &self,
+        kind: PairKind,
+        vertices: &[u32; 4],
+        separation: &Separation,
+        min_separation: f64,
+        paths: &[Vector],
+        tubes: &[f64],
+        damping: f64,
+    ) -> bool {
+        let tube = |v: u32| tubes[v as usize];
+        !self.stays_open(kind, vertices, separation, min_separation, paths, tube, damping)
+            && self.limit_by_plane(kind, vertices, separation, min_separation, damping)
+    }
+
+    /// Whether the slab of a pair stays open while it moves along with the vertices, see
+    /// [`Self::limit_by_moving_planes`]. `tube(vertex)` is the radius of the vertex's tube [m].
+    #[inline]
+    pub fn stays_open(
+        &self,
+        kind: PairKind,
+        vertices: &[u32; 4],
+        separation: &Separation,
+        min_separation: f64,
+        paths: &[Vector],
+        tube: impl Fn(u32) -> f64,
+        damping: f64,
+    ) -> bool {
+        let (count, side_a) = (kind.vertex_count(), kind.side_a());
+        let side = |places: std::ops::Range<usize>, sign: f64| {
+            let mut closing = f64::NEG_INFINITY;
+            let mut radius = 0.0f64;
+            for &v in &vertices[places] {
+                closing = closing.max(sign * separation.normal.dot(&paths[v as usize]));
+                radius = radius.max(tube(v));
+            }
+            (closing, radius)
+        };
+        let (closing_a, tube_a) = side(0..side_a, -1.0);
+        // A half-space does not move.
+        let (closing_b, tube_b) = if side_a < count { side(side_a..count, 1.0) } else { (0.0, 0.0) };
+        let closing = (closing_a + closing_b).max(0.0) + tube_a + tube_b;
+        let rounding = self.rounding();
+        let allowed = damping * (separation.width - min_separation) - 2.0 * rounding.step;
+        separation.width > rounding.frozen && closing <= allowed
+    }
+
+    /// Largest coordinate of positions and targets of this step [m].
+    pub fn largest_coordinate(&self) -> f64 {
+        self.largest_coordinate
     }
 
     /// Lets both sides of a pair together close its gap by at most `allowed` [m] along the unit normal `n`.
@@ -365,11 +411,13 @@ impl Stepper {
 
     /// Makes every obstacle move as one: all its vertices take the smallest step size among them. Returns
     /// the smallest step size of all obstacles.
-    pub fn limit_by_bodies(&self, model: &CollisionModel, obstacle_vertices: &[u32]) -> f64 {
+    pub fn limit_by_bodies(&mut self, model: &CollisionModel, obstacle_vertices: &[u32]) -> f64 {
         if obstacle_vertices.is_empty() {
             return 1.0;
         }
-        let mut smallest = vec![1.0f64; model.bodies().len()];
+        let mut smallest = std::mem::take(&mut self.smallest);
+        smallest.clear();
+        smallest.resize(model.bodies().len(), 1.0);
         for &v in obstacle_vertices {
             let body = model.vertex_body()[v as usize] as usize;
             smallest[body] = smallest[body].min(self.alpha(v as usize));
@@ -377,50 +425,85 @@ impl Stepper {
         for &v in obstacle_vertices {
             self.limit(v as usize, smallest[model.vertex_body()[v as usize] as usize]);
         }
-        smallest.into_iter().fold(1.0, f64::min)
+        let of_all = smallest.iter().copied().fold(1.0, f64::min);
+        self.smallest = smallest;
+        of_all
     }
 
     /// Makes every group move as one, as [`Self::limit_by_bodies`] does with obstacles. `group_count` is one
     /// more than the largest group.
-    pub fn limit_by_groups(&self, group_count: usize) {
-        if self.groups.is_empty() {
+    pub fn limit_by_groups(&mut self, group_count: usize) {
+        if self.groups.is_empty() || group_count == 0 {
             return;
         }
-        let mut smallest = vec![1.0f64; group_count];
+        let mut smallest = std::mem::take(&mut self.smallest);
+        smallest.clear();
+        smallest.resize(group_count, 1.0);
         let members = || (0..self.groups.len()).filter(|&v| self.groups[v] != Self::NO_GROUP);
         for v in members() {
             let alpha = &mut smallest[self.groups[v] as usize];
             *alpha = alpha.min(self.alpha(v));
         }
         members().for_each(|v| self.limit(v, smallest[self.groups[v] as usize]));
+        self.smallest = smallest;
     }
 
     /// Takes the step x <- x + alpha d. The result is y up to rounding where alpha = 1, and exactly x where
     /// alpha = 0.
     pub fn advance(&mut self, positions: &mut [Point]) -> StepReport {
-        let mut report = StepReport::default();
-        for v in 0..positions.len() {
-            let alpha = f64::from_bits(*self.alphas[v].get_mut());
-            let d = self.displacements[v];
-            if alpha > 0.0 {
-                positions[v] += alpha * d;
-            }
-            self.remaining_fractions[v] *= 1.0 - alpha;
-            let length = d.norm();
-            let remaining = (1.0 - alpha) * length;
-            report.remaining_fraction = report.remaining_fraction.max(self.remaining_fractions[v]);
-            report.largest_move = report.largest_move.max(alpha * length);
-            if remaining > report.remaining {
-                report.remaining = remaining;
-                report.slowest = Some(v as u32);
-            }
-        }
-        report
+        let chunks = (
+            self.alphas.par_chunks_mut(CHUNK),
+            self.displacements.par_chunks(CHUNK),
+            self.remaining_fractions.par_chunks_mut(CHUNK),
+            positions.par_chunks_mut(CHUNK),
+        );
+        let advance = |(chunk, (alphas, displacements, fractions, positions)): (usize, _)| {
+            advance_chunk(chunk * CHUNK, alphas, displacements, fractions, positions)
+        };
+        chunks.into_par_iter().enumerate().map(advance).reduce(StepReport::default, join)
     }
 
     /// Remaining fraction r of each vertex: the product of (1 - alpha) over the steps of a call (paper, Eq.
     /// 20).
     pub fn remaining_fractions(&self) -> &[f64] {
         &self.remaining_fractions
+    }
+}
+
+/// Takes the step of the vertices from `first` on.
+fn advance_chunk(
+    first: usize,
+    alphas: &mut [AtomicU64],
+    displacements: &[Vector],
+    remaining_fractions: &mut [f64],
+    positions: &mut [Point],
+) -> StepReport {
+    let mut report = StepReport::default();
+    for k in 0..positions.len() {
+        let alpha = f64::from_bits(*alphas[k].get_mut());
+        let d = displacements[k];
+        if alpha > 0.0 {
+            positions[k] += alpha * d;
+        }
+        remaining_fractions[k] *= 1.0 - alpha;
+        let length = d.norm();
+        let remaining = (1.0 - alpha) * length;
+        report.remaining_fraction = report.remaining_fraction.max(remaining_fractions[k]);
+        report.largest_move = report.largest_move.max(alpha * length);
+        if remaining > report.remaining {
+            report.remaining = remaining;
+            report.slowest = Some((first + k) as u32);
+        }
+    }
+    report
+}
+
+/// The report of two ranges of vertices, of which `a` is the first. Of equally slow vertices the first counts.
+fn join(a: StepReport, b: StepReport) -> StepReport {
+    let slowest = if b.remaining > a.remaining { b } else { a };
+    StepReport {
+        remaining_fraction: a.remaining_fraction.max(b.remaining_fraction),
+        largest_move: a.largest_move.max(b.largest_move),
+        ..slowest
     }
 }

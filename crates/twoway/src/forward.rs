@@ -5,10 +5,13 @@ use crate::search::longest_path;
 use crate::stages::{Coverage, ForwardStep, Search};
 use crate::state::ResolveState;
 use crate::statistics::Statistics;
-use bowknot_geometry::Vector;
+use bowknot_geometry::{PairKind, Separation, Vector};
 use bowknot_stepper::{Bound, StepReport, Stepper, TrustRegionRule};
-use std::sync::atomic::{AtomicUsize, Ordering};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+/// Smallest number of vertices in one parallel task.
+const CHUNK: usize = 2048;
 /// Largest travel of a vertex in a swept step, in local edge lengths.
 const MAX_SWEPT_TRAVEL: f64 = 4.0;
 /// Radius of the tube around a swept path within which a vertex may deviate, in local edge lengths. It is so
@@ -56,12 +59,12 @@ impl ForwardStep for CertifiedForward {
     ) -> StepReport {
         self.stepper.set_target(&state.x, &state.y);
         self.held.clear();
-        if !self.sweep(scene, state, search, statistics) {
+        if !self.fly(scene, state, search, statistics) && !self.sweep(scene, state, search, statistics) {
             self.step_within_trust_regions(scene, state, search, statistics);
         }
         self.limit_bodies(scene, state);
         let unhindered_lag = self.unhindered_lag(state);
-        state.previous.clone_from(&state.x);
+        state.previous.par_iter_mut().zip(&state.x).with_min_len(CHUNK).for_each(|(old, x)| *old = *x);
         StepReport { unhindered_lag, ..self.stepper.advance(&mut state.x) }
     }
 }
@@ -114,6 +117,63 @@ impl CertifiedForward {
         }
     }
 
+    /// Takes the whole step in free flight, if no pair limits it. Returns whether it did; if not, nothing is
+    /// limited yet.
+    ///
+    /// In free flight no two bodies come near each other as long as all vertices go all the way. Within a
+    /// body, the slab of each pair moves along with the body: the pair cannot meet if its sides together close
+    /// less than the slab, see [`Stepper::limit_by_moving_planes`]. One pair that could meet ends the flight.
+    fn fly(
+        &mut self,
+        scene: &CollisionScene,
+        state: &ResolveState,
+        search: &mut dyn Search,
+        statistics: &mut Statistics,
+    ) -> bool {
+        let params = &scene.params().solver.forward;
+        let usable = params.bound == Bound::Planes && matches!(search.coverage(), Coverage::TrustRegions(_));
+        if !usable || state.contacts.any_presses() {
+            return false;
+        }
+        let (stepper, damping) = (&self.stepper, params.damping);
+        let displacements = stepper.displacements();
+        // The bounds of rounding hold for no longer moves.
+        let longest = 0.5 * stepper.largest_coordinate();
+        if !displacements.par_iter().with_min_len(CHUNK).all(|d| d.norm() <= longest) {
+            return false;
+        }
+        let stays_open = |kind, vertices: &[u32; 4], at: &Separation, least: f64| {
+            stepper.stays_open(kind, vertices, at, least, displacements, |_| 0.0, damping)
+        };
+        let contacts = &state.contacts;
+        for kind in PairKind::ALL {
+            let all_open = contacts.pairs.range(kind).into_par_iter().with_min_len(CHUNK).all(|p| {
+                let (pair, at) = (&contacts.pairs.pairs()[p], &contacts.separations[p]);
+                stays_open(kind, &pair.vertices, at, contacts.min_separations[p])
+            });
+            if !all_open {
+                return false;
+            }
+        }
+        let closes = AtomicBool::new(false);
+        let is_flight = search.visit_flight(
+            scene,
+            state,
+            displacements,
+            &|kind, vertices, at, least| {
+                if !stays_open(kind, vertices, at, least) {
+                    closes.store(true, Ordering::Relaxed);
+                }
+            },
+            statistics,
+        );
+        let takes = is_flight && !closes.into_inner();
+        if takes {
+            search.take_flight(scene, state, displacements, stepper.largest_coordinate());
+        }
+        takes
+    }
+
     /// Takes a long step where one pays and no contact presses: limits it by every pair that could meet along
     /// it, with all vertices at the same path time. Returns whether it did; if not, nothing is limited yet.
     ///
@@ -139,8 +199,8 @@ impl CertifiedForward {
         let params = &scene.params().solver.forward;
         let min_travel = params.swept_travel * scene.lengths().edge;
         let longest = |stepper: &Stepper| {
-            let displacements = stepper.displacements().iter().enumerate();
-            displacements.map(|(v, d)| stepper.alpha(v) * d.norm()).fold(0.0, f64::max)
+            let displacements = stepper.displacements().par_iter().with_min_len(CHUNK).enumerate();
+            displacements.map(|(v, d)| stepper.alpha(v) * d.norm()).reduce(|| 0.0, f64::max)
         };
         let usable = params.bound == Bound::Planes && matches!(search.coverage(), Coverage::TrustRegions(_));
         // Where contacts press, free vertices that move far ahead of held ones only make the rows between
@@ -166,7 +226,21 @@ impl CertifiedForward {
         }
         for round in 1..=MAX_SWEPT_ROUNDS {
             self.assume_step_sizes();
-            search.update_swept(scene, state, &self.paths, &self.tubes, statistics);
+            let Self { stepper, paths, tubes, .. } = &*self;
+            let frozen = AtomicUsize::new(0);
+            search.visit_swept(
+                scene,
+                state,
+                paths,
+                tubes,
+                &|kind, vertices, at, least| {
+                    if stepper.limit_by_moving_plane(kind, vertices, at, least, paths, tubes, damping) {
+                        frozen.fetch_add(1, Ordering::Relaxed);
+                    }
+                },
+                statistics,
+            );
+            statistics.frozen_pairs += frozen.into_inner();
             self.limit_by_moving_planes(scene, state, damping, statistics);
             let worst = (0..count)
                 .filter(|&v| self.tubes[v] > 0.0)
@@ -192,17 +266,19 @@ impl CertifiedForward {
     /// Notes which prescribed vertices the pairs hold back: those with a limit before trust regions add theirs.
     fn note_held(&mut self, state: &ResolveState) {
         let Self { held, stepper, .. } = self;
-        held.extend(
-            (0..state.x.len()).map(|v| state.call.is_prescribed(v) && stepper.alpha(v) < stepper.cap(v)),
-        );
+        held.resize(state.x.len(), false);
+        let vertices = held.par_iter_mut().enumerate().with_min_len(CHUNK);
+        vertices
+            .for_each(|(v, held)| *held = state.call.is_prescribed(v) && stepper.alpha(v) < stepper.cap(v));
     }
 
     /// Largest distance that a prescribed vertex has left after this step although no pair holds it back [m].
     fn unhindered_lag(&self, state: &ResolveState) -> f64 {
         let is_held = |v: usize| self.held.get(v).is_some_and(|held| *held);
         let left = |v: usize| (1.0 - self.stepper.alpha(v)) * self.stepper.displacements()[v].norm();
-        let prescribed = state.call.prescribed().iter().enumerate().filter(|(_, given)| **given);
-        prescribed.filter(|(v, _)| !is_held(*v)).map(|(v, _)| left(v)).fold(0.0, f64::max)
+        let prescribed = state.call.prescribed().par_iter().with_min_len(CHUNK).enumerate();
+        let unhindered = prescribed.filter(|(v, given)| **given && !is_held(*v));
+        unhindered.map(|(v, _)| left(v)).reduce(|| 0.0, f64::max)
     }
 
     /// Assumes that the vertices take the present step sizes.
@@ -216,7 +292,7 @@ impl CertifiedForward {
 
     /// Limits the step by the candidate pairs whose slabs do not stay open along the assumed paths.
     fn limit_by_moving_planes(
-        &self,
+        &mut self,
         scene: &CollisionScene,
         state: &ResolveState,
         damping: f64,
@@ -229,7 +305,7 @@ impl CertifiedForward {
     }
 
     /// Makes each obstacle and each group of pinned vertices move together.
-    fn limit_bodies(&self, scene: &CollisionScene, state: &ResolveState) {
+    fn limit_bodies(&mut self, scene: &CollisionScene, state: &ResolveState) {
         self.stepper.limit_by_bodies(scene.model(), scene.obstacle_vertices());
         self.stepper.limit_by_groups(state.call.groups().count());
     }

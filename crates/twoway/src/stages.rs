@@ -41,8 +41,46 @@ pub trait Search: Send {
     ) {
     }
 
-    /// Instead finds every pair that could meet while the vertices move from x along `displacements`, all at
-    /// the same path time, and deviate from there by at most `deviations` [m].
+    /// Calls `visit` with the pairs within bodies that are not in `state.contacts` and could limit a step in
+    /// free flight along `displacements` [m] from x: one in which no body comes near another or a half-space,
+    /// and the vertices of each body move almost alike. Returns whether the step is one. It must be a function
+    /// of x and the displacements.
+    fn visit_flight(
+        &mut self,
+        _scene: &CollisionScene,
+        _state: &ResolveState,
+        _displacements: &[Vector],
+        _visit: &AheadVisitor<'_>,
+        _statistics: &mut Statistics,
+    ) -> bool {
+        false
+    }
+
+    /// Notes that all vertices will take this step from x, all the way. `largest_coordinate` is that of the
+    /// step [m].
+    fn take_flight(
+        &mut self,
+        _scene: &CollisionScene,
+        _state: &ResolveState,
+        _displacements: &[Vector],
+        _largest_coordinate: f64,
+    ) {
+    }
+
+    /// Calls `visit` with every pair that is not in `state.contacts` and could meet while the vertices move
+    /// from x along `displacements`, all at the same path time, and deviate from there by at most `deviations`
+    /// [m].
+    fn visit_swept(
+        &mut self,
+        scene: &CollisionScene,
+        state: &ResolveState,
+        displacements: &[Vector],
+        deviations: &[f64],
+        visit: &AheadVisitor<'_>,
+        statistics: &mut Statistics,
+    );
+
+    /// Makes these the pairs of `state.contacts`, in place of [`Self::visit_swept`].
     fn update_swept(
         &mut self,
         scene: &CollisionScene,

@@ -79,7 +79,7 @@ impl PerVertexImpact {
         f64::from_bits(first.into_inner())
     }
 
-    fn limit_bodies(&self, scene: &CollisionScene, state: &ResolveState) {
+    fn limit_bodies(&mut self, scene: &CollisionScene, state: &ResolveState) {
         self.stepper.limit_by_bodies(scene.model(), scene.obstacle_vertices());
         self.stepper.limit_by_groups(state.call.groups().count());
     }

@@ -2,8 +2,10 @@
 //! paths leave their trust regions.
 
 mod ahead;
+mod flight;
 mod near;
 mod regions;
+mod sides;
 
 pub(crate) use regions::longest_path;
 
@@ -13,9 +15,10 @@ use crate::state::ResolveState;
 use crate::statistics::Statistics;
 use ahead::AheadPairs;
 use bowknot_constraints::FrictionModel;
-use bowknot_geometry::Vector;
+use bowknot_geometry::{PairKind, Vector};
 use bowknot_proximity::{CandidateList, ProximitySearch};
 use bowknot_stepper::{Bound, TrustRegionRule};
+use flight::Flight;
 use near::NearPairs;
 use regions::Regions;
 use std::time::Instant;
@@ -31,13 +34,18 @@ pub struct TrustRegionSearch {
     /// Whether all candidates are pairs of the state.
     complete: bool,
     candidates: CandidateList,
+    /// What the last swept search has found.
+    swept: CandidateList,
     regions: Regions,
     near: NearPairs,
     ahead: AheadPairs,
+    flight: Flight,
     /// The paper's D^(l), for the rule `uniform`.
     covered_distance: f64,
     /// Whether the next update searches everything.
     requested: bool,
+    /// Whether vertices may have left their trust regions, in a long step.
+    left: bool,
     /// Radii of swept searches [m].
     swept_radii: Vec<f64>,
 }
@@ -50,11 +58,14 @@ impl TrustRegionSearch {
             rule: scene.params().solver.forward.trust_region,
             complete: true,
             candidates: CandidateList::default(),
+            swept: CandidateList::default(),
             regions: Regions::default(),
             near: NearPairs::default(),
             ahead: AheadPairs::default(),
+            flight: Flight::default(),
             covered_distance: 0.0,
             requested: true,
+            left: false,
             swept_radii: Vec::new(),
         }
     }
@@ -68,16 +79,36 @@ impl TrustRegionSearch {
         wanted: impl Fn(usize) -> Vector + Sync,
         statistics: &mut Statistics,
     ) -> bool {
+        self.left = false;
         let all = std::mem::take(&mut self.requested);
         let renewed = self.regions.cover(scene, state, all, wanted);
-        let Self { search, regions, candidates, .. } = self;
+        let Self { search, regions, candidates, flight, .. } = self;
         if renewed > 0 {
             let few = !all && renewed as f64 <= MAX_CHANGED * state.x.len() as f64;
             let changed = few.then_some(regions.changed.as_slice());
             search.update(scene.model(), &regions.balls.centers, &regions.radii, changed, candidates);
+            if !few {
+                flight.settle();
+            }
             statistics.searches += 1;
         }
         renewed > 0
+    }
+
+    /// Asks for a search if bodies have moved relative to each other since the last one, unless all of them
+    /// are apart at x.
+    fn search_after_flight(&mut self, scene: &CollisionScene, state: &ResolveState) {
+        self.requested |= self.flight.drift && !self.flight.is_free(scene, &state.x, |_| Vector::zeros());
+    }
+
+    /// Sets the radii of a swept search: the `deviations` from the paths [m], and no margin for contacts that
+    /// are still farther, since the next update finds them. But a margin for minimum separations: pairs that
+    /// are no candidates must not come closer.
+    fn set_swept_radii(&mut self, scene: &CollisionScene, deviations: &[f64]) {
+        let bodies = scene.model().vertex_body();
+        let margin = |body: &u32| scene.spacing().min_separation_margin(*body);
+        self.swept_radii.clear();
+        self.swept_radii.extend(deviations.iter().zip(bodies).map(|(d, body)| d + margin(body)));
     }
 
     /// Searches within one distance for all vertices if it is due by the paper's rule: D^(l) < D^min.
@@ -102,8 +133,8 @@ impl TrustRegionSearch {
     /// Selects the pairs of the state.
     fn select(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
         let timer = Instant::now();
-        let Self { near, candidates, regions, complete, .. } = self;
-        near.select(scene, state, candidates, regions, *complete, statistics);
+        let Self { near, candidates, regions, flight, complete, .. } = self;
+        near.select(scene, state, candidates, regions, flight.rounding, *complete, statistics);
         statistics.seconds.evaluate += timer.elapsed().as_secs_f64();
     }
 }
@@ -120,9 +151,12 @@ impl Search for TrustRegionSearch {
 
     fn update(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
         let timer = Instant::now();
+        if state.step == 0 {
+            self.search_after_flight(scene, state);
+        }
         match self.rule {
             TrustRegionRule::Uniform => self.cover_uniform(scene, state, statistics),
-            TrustRegionRule::PerVertex if self.requested => {
+            TrustRegionRule::PerVertex if self.requested || self.left => {
                 self.cover_paths(scene, state, |v| state.y[v] - state.x[v], statistics);
             }
             // A list of an earlier call holds as long as the vertices are in their trust regions.
@@ -144,6 +178,8 @@ impl Search for TrustRegionSearch {
     ) {
         if self.rule == TrustRegionRule::PerVertex {
             let timer = Instant::now();
+            // This step is no free flight.
+            self.requested |= self.flight.drift;
             let searched = self.cover_paths(scene, state, |v| displacements[v], statistics);
             statistics.seconds.search += timer.elapsed().as_secs_f64();
             if searched && self.complete {
@@ -160,8 +196,84 @@ impl Search for TrustRegionSearch {
         visit: &AheadVisitor<'_>,
     ) {
         if !self.complete {
-            self.ahead.visit(scene, state, &self.candidates, &self.regions, displacements, visit);
+            let Self { ahead, candidates, regions, flight, .. } = self;
+            ahead.visit(scene, state, candidates, regions, flight.rounding, displacements, visit);
         }
+    }
+
+    fn visit_flight(
+        &mut self,
+        scene: &CollisionScene,
+        state: &ResolveState,
+        displacements: &[Vector],
+        visit: &AheadVisitor<'_>,
+        statistics: &mut Statistics,
+    ) -> bool {
+        if self.complete || self.rule != TrustRegionRule::PerVertex {
+            return false;
+        }
+        if !self.flight.plan(scene, state, displacements) {
+            return false;
+        }
+        let timer = Instant::now();
+        let relative = std::mem::take(&mut self.flight.relative);
+        let smallest = self.regions.smallest_radius(scene);
+        self.requested |= self.flight.is_spent(smallest);
+        self.cover_paths(scene, state, |v| relative[v], statistics);
+        statistics.seconds.search += timer.elapsed().as_secs_f64();
+        let Self { ahead, candidates, regions, flight, .. } = self;
+        let bodies = scene.model().vertex_body();
+        if !candidates.is_empty() {
+            // Pairs of different bodies may be listed with wrong bounds; they do not matter.
+            ahead.visit(
+                scene,
+                state,
+                candidates,
+                regions,
+                flight.rounding,
+                &relative,
+                &|kind, vertices, at, least| {
+                    let body = |side: usize| bodies[vertices[side] as usize];
+                    if kind != PairKind::VertexHalfSpace && body(0) == body(kind.side_a()) {
+                        visit(kind, vertices, at, least);
+                    }
+                },
+            );
+        }
+        flight.relative = relative;
+        true
+    }
+
+    fn take_flight(
+        &mut self,
+        scene: &CollisionScene,
+        state: &ResolveState,
+        displacements: &[Vector],
+        largest_coordinate: f64,
+    ) {
+        self.flight.take(scene, state, displacements, largest_coordinate, &mut self.regions);
+        self.search.note_moved();
+    }
+
+    fn visit_swept(
+        &mut self,
+        scene: &CollisionScene,
+        state: &ResolveState,
+        displacements: &[Vector],
+        deviations: &[f64],
+        visit: &AheadVisitor<'_>,
+        statistics: &mut Statistics,
+    ) {
+        let timer = Instant::now();
+        self.set_swept_radii(scene, deviations);
+        let Self { search, ahead, swept, swept_radii, .. } = self;
+        search.list_swept(scene.model(), &state.x, displacements, swept_radii, swept);
+        statistics.seconds.search += timer.elapsed().as_secs_f64();
+        let radius = |v: usize| swept_radii[v];
+        ahead.visit_swept(scene, state, swept, displacements, radius, visit);
+        self.left = true;
+        self.requested |= self.flight.drift;
+        statistics.searches += 1;
     }
 
     fn update_swept(
@@ -173,14 +285,9 @@ impl Search for TrustRegionSearch {
         statistics: &mut Statistics,
     ) {
         let timer = Instant::now();
-        // No margin for contacts that are still farther: the next update searches again and finds them. But a
-        // margin for minimum separations: pairs that are no candidates must not come closer.
-        let bodies = scene.model().vertex_body();
-        let margin = |body: &u32| scene.spacing().min_separation_margin(*body);
-        self.swept_radii.clear();
-        self.swept_radii.extend(deviations.iter().zip(bodies).map(|(d, body)| d + margin(body)));
+        self.set_swept_radii(scene, deviations);
         let contacts = &mut state.contacts;
-        self.near.keep(&mut contacts.pairs);
+        self.near.keep(contacts);
         self.search.search_swept(
             scene.model(),
             &state.x,
@@ -196,8 +303,11 @@ impl Search for TrustRegionSearch {
     }
 
     fn finish(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
-        // After a long step, the list knows the pairs along the path, but not all in range of its end.
-        if self.requested && self.rule == TrustRegionRule::PerVertex {
+        if state.step == 0 {
+            self.search_after_flight(scene, state);
+        }
+        // After a long step, vertices may have left their trust regions.
+        if (self.requested || self.left) && self.rule == TrustRegionRule::PerVertex {
             let timer = Instant::now();
             self.cover_paths(scene, state, |_| Vector::zeros(), statistics);
             statistics.seconds.search += timer.elapsed().as_secs_f64();

@@ -1,25 +1,24 @@
-//! The candidate pairs that may be within contact range at x, and their data, which are carried over from one
+//! The candidate pairs that are within contact range at x, and their data, which are carried over from one
 //! step to the next.
+//!
+//! One parallel pass over the candidates tests their 8 bytes, computes the geometry of those that may be in
+//! range, and keeps those that are.
 
 use super::regions::Regions;
+use super::sides::{Sides, range_count, range_of};
 use crate::scene::CollisionScene;
 use crate::spacing::MIN_SEPARATION_MARGIN;
-use crate::state::ResolveState;
+use crate::state::{ContactSet, ResolveState};
 use crate::statistics::Statistics;
 use bowknot_constraints::{DesiredDistance, FrictionModel};
-use bowknot_geometry::{PairKind, Separation, Vector};
-use bowknot_proximity::{CandidateList, Candidates, Pair, PairList, near_half_spaces, separate_all};
+use bowknot_geometry::{PairKind, Point, Separation, Vector};
+use bowknot_proximity::{CandidateList, Pair, near_half_spaces, separate_all};
 use rayon::prelude::*;
-use std::ops::Range;
 
-/// Elements whose candidates one task tests.
-const ELEMENTS: usize = 1024;
-/// Pairs whose geometry one task computes.
-const PAIRS: usize = 1024;
-/// Pairs that are computed together.
-const BATCH: usize = 8;
-/// Pairs of kinds that have candidates.
-const KINDS: usize = 4;
+/// Pairs whose data one task carries over, and vertices that one task looks at.
+const CHUNK: usize = 1024;
+/// Pairs whose geometry is computed at once.
+const BATCH: usize = 32;
 
 /// Upper bound of the rounding of a sum of distances in `f32`, relative.
 const LARGER: f32 = 1.0 + 8.0 * f32::EPSILON;
@@ -27,213 +26,313 @@ const LARGER: f32 = 1.0 + 8.0 * f32::EPSILON;
 /// Buffers of the selection.
 #[derive(Debug, Default)]
 pub(super) struct NearPairs {
-    /// The previous list, from which the data of pairs are carried over.
-    old: PairList,
+    /// The previous pairs, from which data are carried over.
+    old: ContactSet,
     /// Distance of each vertex from the center of its ball plus its margin [m], rounded up.
     reach: Vec<f32>,
-    /// Selected pairs by kind and task.
-    found: [Vec<Vec<Pair>>; 5],
-    matches: Vec<u32>,
+    /// The largest of these among the vertices of each element.
+    sides: Sides,
+    /// Whether each vertex has moved in the last step.
     moved: Vec<bool>,
-    separations: Vec<Separation>,
-    values: Vec<Inherited>,
-    friction: Vec<Vector>,
+    /// Selected pairs by kind and task.
+    found: [Vec<Found>; 5],
+    /// Pairs of half-spaces by task.
+    half_space_pairs: Vec<Vec<Pair>>,
+    /// The place of each pair in the previous list, `u32::MAX` if it was not there.
+    matches: Vec<u32>,
 }
 
-/// The data of a pair that are carried over from step to step.
-#[derive(Clone, Copy, Debug, Default)]
-struct Inherited {
-    desired: f64,
-    min_separation: f64,
-    multiplier: f64,
-    lowered: bool,
+/// The pairs that one task has selected, in order.
+#[derive(Debug, Default)]
+struct Found {
+    pairs: Vec<Pair>,
+    separations: Vec<Separation>,
+    matches: Vec<u32>,
+    /// Pairs whose geometry was that of the step before.
+    reused: usize,
+}
+
+/// What the tasks of a selection read.
+struct Selection<'a> {
+    scene: &'a CollisionScene,
+    x: &'a [Point],
+    moved: &'a [bool],
+    old: &'a ContactSet,
+    /// Whether pairs out of range are kept.
+    complete: bool,
 }
 
 impl NearPairs {
     /// Starts a call.
     pub fn begin(&mut self, state: &mut ResolveState) {
-        self.old.clear();
+        self.old.pairs.clear();
         state.contacts.pairs.clear();
-        state.contacts.desired.clear();
-        state.contacts.multipliers.clear();
-        state.contacts.frictions.clear();
-        state.contacts.friction_multipliers.clear();
     }
 
-    /// Makes the candidates that may be within contact range at x the pairs of `state.contacts`. `complete`:
-    /// all candidates.
+    /// Makes the candidates that are within contact range at x the pairs of `state.contacts`: what the other
+    /// stages see does not depend on which pairs are listed. `rounding`: by how much distances may be below
+    /// their bounds [m]. `complete`: all candidates.
     pub fn select(
         &mut self,
         scene: &CollisionScene,
         state: &mut ResolveState,
         candidates: &CandidateList,
         regions: &Regions,
+        rounding: f64,
         complete: bool,
         statistics: &mut Statistics,
     ) {
         let model = scene.model();
-        self.set_reach(scene, state, regions);
-        let (reach, topology) = (&self.reach, model.topology());
-        for (k, found) in self.found.iter_mut().enumerate().take(KINDS) {
-            let kind = PairKind::ALL[k];
+        self.set_reach(scene, state, regions, rounding, candidates);
+        self.keep(&mut state.contacts);
+        let x = state.x.as_slice();
+        let selection = Selection { scene, x, moved: &self.moved, old: &self.old, complete };
+        for kind in PairKind::ALL {
             let Some(list) = candidates.of(kind) else { continue };
-            let largest = |side: &[u32]| side.iter().map(|&v| reach[v as usize]).fold(0.0, f32::max);
-            for_each_range(list, found, |elements, pairs| {
-                for a in elements {
-                    for candidate in list.of(a) {
-                        let pair = Pair::of_elements(topology, kind, [a as u32, candidate.element]);
-                        let (own, other) = pair.vertices[..kind.vertex_count()].split_at(kind.side_a());
-                        if complete || candidate.bound <= (largest(own) + largest(other)) * LARGER {
-                            pairs.push(pair);
-                        }
-                    }
-                }
+            let ([own, other], found) = (self.sides.of(kind), &mut self.found[kind as usize]);
+            found.resize_with(range_count(list), Found::default);
+            found.par_iter_mut().enumerate().for_each(|(index, found)| {
+                let range = range_of(list, index);
+                let pairs = range.into_iter().flatten().flat_map(|a| {
+                    let partners = list.of(a).iter();
+                    let near = partners.filter(move |b| {
+                        complete || b.bound <= (own[a] + other[b.element as usize]) * LARGER
+                    });
+                    near.map(move |b| Pair::of_elements(model.topology(), kind, [a as u32, b.element]))
+                });
+                found.take(&selection, kind, pairs);
             });
         }
         let bodies = model.vertex_body();
         let margin = |v: usize| scene.spacing().margin(bodies[v]);
         let radius = |v: usize| if complete { regions.radii[v] } else { margin(v) };
-        near_half_spaces(model, &state.x, None, radius, &mut self.found[4]);
-        self.keep(&mut state.contacts.pairs);
-        state.contacts.pairs.refill(&self.found);
-        state.contacts.pairs.match_with(&self.old, &mut self.matches);
-        self.evaluate(scene, state, statistics);
-        if !complete {
-            self.keep_in_range(scene, state);
-        }
+        let kind = PairKind::VertexHalfSpace;
+        near_half_spaces(model, x, None, radius, &mut self.half_space_pairs);
+        let found = &mut self.found[kind as usize];
+        found.resize_with(self.half_space_pairs.len(), Found::default);
+        let lists = found.par_iter_mut().zip(&self.half_space_pairs);
+        lists.for_each(|(found, pairs)| found.take(&selection, kind, pairs.iter().copied()));
+
+        let found = self.found.iter().flatten();
+        statistics.skipped.evaluations += found.map(|found| found.reused).sum::<usize>();
+        self.gather(&mut state.contacts);
         self.inherit(scene, state, statistics);
     }
 
-    /// Keeps the pairs whose distance is within contact range: what the other stages see does not depend on
-    /// which pairs are listed.
-    fn keep_in_range(&mut self, scene: &CollisionScene, state: &mut ResolveState) {
-        let (model, spacing) = (scene.model(), scene.spacing());
-        let contacts = &mut state.contacts;
-        let (separations, matches) = (&mut contacts.separations, &mut self.matches);
-        let mut end = 0;
-        contacts.pairs.retain(|p, kind, pair| {
-            let keeps = separations[p].distance <= spacing.reach(model, kind, pair);
-            if keeps {
-                separations[end] = separations[p];
-                matches[end] = matches[p];
-                end += 1;
-            }
-            keeps
-        });
-        separations.truncate(end);
-        matches.truncate(end);
-    }
-
-    /// Keeps `pairs`, to carry their data over to those that replace them.
-    pub fn keep(&mut self, pairs: &mut PairList) {
-        std::mem::swap(&mut self.old, pairs);
+    /// Keeps the pairs, to carry their data over to those that replace them.
+    pub fn keep(&mut self, contacts: &mut ContactSet) {
+        std::mem::swap(&mut self.old, contacts);
     }
 
     /// Carries the data of the pairs that were [kept](Self::keep) over to those of the state, which were found
     /// otherwise, with their geometry.
     pub fn replace(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
-        state.contacts.pairs.match_with(&self.old, &mut self.matches);
+        state.contacts.pairs.match_with(&self.old.pairs, &mut self.matches);
         self.inherit(scene, state, statistics);
     }
 
-    fn set_reach(&mut self, scene: &CollisionScene, state: &ResolveState, regions: &Regions) {
-        let bodies = scene.model().vertex_body();
-        self.reach.clear();
-        self.reach.extend(
-            regions
-                .balls
-                .centers
-                .iter()
-                .zip(&state.x)
-                .zip(bodies)
-                .map(|((center, x), &body)| round_up((x - center).norm() + scene.spacing().margin(body))),
-        );
+    /// Notes how far vertices are from the centers of their balls, and which have moved.
+    fn set_reach(
+        &mut self,
+        scene: &CollisionScene,
+        state: &ResolveState,
+        regions: &Regions,
+        rounding: f64,
+        candidates: &CandidateList,
+    ) {
+        let (model, count) = (scene.model(), state.x.len());
+        self.reach.resize(count, 0.0);
+        self.moved.resize(count, false);
+        let vertices = self.reach.par_iter_mut().zip(&mut self.moved).enumerate().with_min_len(CHUNK);
+        vertices.for_each(|(v, (reach, moved))| {
+            let x = &state.x[v];
+            let margin = scene.spacing().margin(model.vertex_body()[v]);
+            *reach = round_up((x - regions.balls.centers[v]).norm() + margin + rounding);
+            *moved = *x != state.previous[v];
+        });
+        let reach = &self.reach;
+        let largest = |side: &[u32]| side.iter().map(|&v| reach[v as usize]).fold(0.0, f32::max);
+        self.sides.fill(model.topology(), candidates, largest);
     }
 
-    /// Computes the contact geometry of the pairs at x. That of pairs that have not moved is copied.
-    fn evaluate(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
-        self.moved.clear();
-        self.moved.extend(state.x.iter().zip(&state.previous).map(|(a, b)| a != b));
-        let contacts = &mut state.contacts;
-        std::mem::swap(&mut self.separations, &mut contacts.separations);
-        contacts.separations.resize(contacts.pairs.len(), BLANK);
-        let (moved, old, x) = (&self.moved, &self.separations, &state.x);
-        let mut reused = 0;
-        for kind in PairKind::ALL {
-            let range = contacts.pairs.range(kind);
-            let (pairs, matches) = (&contacts.pairs.pairs()[range.clone()], &self.matches[range.clone()]);
-            let jobs = contacts.separations[range].par_chunks_mut(PAIRS);
-            reused += jobs
-                .zip(pairs.par_chunks(PAIRS).zip(matches.par_chunks(PAIRS)))
-                .map(|(separations, (pairs, matches))| {
-                    let mut reused = 0;
-                    let batches = separations.chunks_mut(BATCH).zip(pairs.chunks(BATCH));
-                    for ((separations, pairs), matches) in batches.zip(matches.chunks(BATCH)) {
-                        let keeps = |(pair, matched): (&Pair, &u32)| {
-                            let used = &pair.vertices[..kind.vertex_count()];
-                            *matched != u32::MAX && !used.iter().any(|&v| moved[v as usize])
-                        };
-                        if pairs.iter().zip(matches).all(keeps) {
-                            for (separation, &matched) in separations.iter_mut().zip(matches) {
-                                *separation = old[matched as usize];
-                            }
-                            reused += pairs.len();
-                        } else {
-                            separate_all(scene.model(), kind, pairs, x, separations);
-                        }
-                    }
-                    reused
-                })
-                .sum::<usize>();
+    /// Joins what the tasks have found.
+    fn gather(&mut self, contacts: &mut ContactSet) {
+        let of_kind = |found: &Vec<Found>| found.iter().map(|found| found.pairs.len()).sum();
+        let counts: [usize; 5] = self.found.each_ref().map(of_kind);
+        let total = counts.iter().sum();
+        contacts.separations.resize(total, BLANK);
+        self.matches.resize(total, u32::MAX);
+        let mut rest = Lists {
+            pairs: contacts.pairs.resize_kinds(counts),
+            separations: &mut contacts.separations,
+            matches: &mut self.matches,
+        };
+        for (found, count) in self.found.iter().zip(counts) {
+            let (lists, others) = rest.split_at(count);
+            lists.copy(found);
+            rest = others;
         }
-        statistics.skipped.evaluations += reused;
     }
 
     /// Carries the data of pairs over to the new list, and initializes those of new pairs.
     fn inherit(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
-        let contacts = &mut state.contacts;
+        let (contacts, old) = (&mut state.contacts, &self.old);
         let growth = state.call.time_step().map_or(f64::INFINITY, |dt| scene.lengths().separation_speed * dt);
-        let model = scene.model();
-        let (pairs, separations) = (&contacts.pairs, &contacts.separations);
-        let (old_desired, old_multipliers) = (&contacts.desired, &contacts.multipliers);
-        let old_min_separations = &contacts.min_separations;
-        self.values.resize(pairs.len(), Inherited::default());
-        let places = self.values.par_iter_mut().zip(&self.matches).enumerate().with_min_len(PAIRS);
-        places.for_each(|(p, (value, &old))| {
-            *value = match old_desired.get(old as usize) {
-                Some(&desired) => Inherited {
-                    desired,
-                    min_separation: old_min_separations[old as usize],
-                    multiplier: old_multipliers[old as usize],
-                    lowered: false,
-                },
-                None => {
-                    let (kind, pair) = (pairs.kind(p), &pairs.pairs()[p]);
-                    first_values(scene, kind, pair, &separations[p], growth)
+        let count = contacts.pairs.len();
+        contacts.desired.resize(count, 0.0);
+        contacts.min_separations.resize(count, 0.0);
+        contacts.multipliers.resize(count, 0.0);
+        for kind in PairKind::ALL {
+            let range = contacts.pairs.range(kind);
+            let pairs = &contacts.pairs.pairs()[range.clone()];
+            let places = (
+                &mut contacts.desired[range.clone()],
+                &mut contacts.min_separations[range.clone()],
+                &mut contacts.multipliers[range.clone()],
+                &self.matches[range.clone()],
+                pairs,
+                &contacts.separations[range],
+            );
+            let places = places.into_par_iter().with_min_len(CHUNK);
+            let lowered = places.map(|(desired, min_separation, multiplier, &matched, pair, separation)| {
+                if let Some(&old_desired) = old.desired.get(matched as usize) {
+                    *desired = old_desired;
+                    *min_separation = old.min_separations[matched as usize];
+                    *multiplier = old.multipliers[matched as usize];
+                    return 0;
                 }
-            };
-        });
-        let values = &self.values;
-        statistics.lowered_pairs += values.iter().filter(|v| v.lowered).count();
-        contacts.desired.clear();
-        contacts.desired.extend(values.iter().map(|v| v.desired));
-        contacts.multipliers.clear();
-        contacts.multipliers.extend(values.iter().map(|v| v.multiplier));
-        contacts.min_separations.clear();
-        contacts.min_separations.extend(values.iter().map(|v| v.min_separation));
+                let first = first_values(scene, kind, pair, separation, growth);
+                (*desired, *min_separation, *multiplier) = (first.desired, first.min_separation, 0.0);
+                usize::from(first.lowered)
+            });
+            statistics.lowered_pairs += lowered.sum::<usize>();
+        }
         if scene.friction_model() == FrictionModel::Coulomb {
-            std::mem::swap(&mut self.friction, &mut contacts.friction_multipliers);
-            contacts.friction_multipliers.clear();
-            let old = |p: &u32| self.friction.get(*p as usize).copied().unwrap_or_else(Vector::zeros);
-            contacts.friction_multipliers.extend(self.matches.iter().map(old));
-            contacts.frictions.clear();
-            for kind in PairKind::ALL {
-                let list = &contacts.pairs.pairs()[contacts.pairs.range(kind)];
-                let friction = |pair| scene.contact().friction_of_pair(model, kind, pair);
-                contacts.frictions.extend(list.iter().map(friction));
+            self.inherit_friction(scene, contacts);
+        }
+    }
+
+    fn inherit_friction(&self, scene: &CollisionScene, contacts: &mut ContactSet) {
+        let (count, old) = (contacts.pairs.len(), &self.old.friction_multipliers);
+        contacts.friction_multipliers.resize(count, Vector::zeros());
+        contacts.frictions.resize(count, 0.0);
+        for kind in PairKind::ALL {
+            let range = contacts.pairs.range(kind);
+            let places = (
+                &mut contacts.friction_multipliers[range.clone()],
+                &mut contacts.frictions[range.clone()],
+                &self.matches[range.clone()],
+                &contacts.pairs.pairs()[range],
+            );
+            let places = places.into_par_iter().with_min_len(CHUNK);
+            places.for_each(|(multiplier, friction, &matched, pair)| {
+                *multiplier = old.get(matched as usize).copied().unwrap_or_else(Vector::zeros);
+                *friction = scene.contact().friction_of_pair(scene.model(), kind, pair);
+            });
+        }
+    }
+}
+
+impl Found {
+    /// Computes the geometry of `pairs` at x, which are in order, and keeps those within contact range. The
+    /// geometry of pairs that have not moved is copied.
+    fn take(&mut self, selection: &Selection<'_>, kind: PairKind, mut pairs: impl Iterator<Item = Pair>) {
+        self.pairs.clear();
+        self.separations.clear();
+        self.matches.clear();
+        self.reused = 0;
+        let mut batch = [Pair { elements: [0; 2], vertices: [0; 4] }; BATCH];
+        let mut fill = |batch: &mut [Pair; BATCH]| {
+            let mut count = 0;
+            for (slot, pair) in batch.iter_mut().zip(&mut pairs) {
+                *slot = pair;
+                count += 1;
+            }
+            count
+        };
+        let mut count = fill(&mut batch);
+        let mut old = selection.old.pairs.lookup(kind, batch[0].elements);
+        while count > 0 {
+            let batch_matches = std::array::from_fn(|k| {
+                let matched = if k < count { old.find(batch[k].elements) } else { None };
+                matched.unwrap_or(u32::MAX)
+            });
+            self.take_batch(selection, kind, &batch[..count], &batch_matches);
+            // A full batch may leave pairs behind.
+            count = if count == BATCH { fill(&mut batch) } else { 0 };
+        }
+    }
+
+    fn take_batch(
+        &mut self,
+        selection: &Selection<'_>,
+        kind: PairKind,
+        pairs: &[Pair],
+        matches: &[u32; BATCH],
+    ) {
+        let Selection { scene, x, moved, old, complete } = *selection;
+        let (model, spacing) = (scene.model(), scene.spacing());
+        let stays = |pair: &Pair| !pair.vertices[..kind.vertex_count()].iter().any(|&v| moved[v as usize]);
+        let may_reuse = |k: usize| matches[k] != u32::MAX && stays(&pairs[k]);
+        let mut separations = [BLANK; BATCH];
+        if (0..pairs.len()).all(may_reuse) {
+            for (separation, &matched) in separations.iter_mut().zip(&matches[..pairs.len()]) {
+                *separation = old.separations[matched as usize];
+            }
+            self.reused += pairs.len();
+        } else {
+            separate_all(model, kind, pairs, x, &mut separations[..pairs.len()]);
+        }
+        for ((pair, separation), &matched) in pairs.iter().zip(&separations).zip(matches) {
+            if complete || separation.distance <= spacing.reach(model, kind, pair) {
+                self.pairs.push(*pair);
+                self.separations.push(*separation);
+                self.matches.push(matched);
             }
         }
     }
+}
+
+/// Parts of the lists that [`NearPairs::gather`] writes.
+struct Lists<'a> {
+    pairs: &'a mut [Pair],
+    separations: &'a mut [Separation],
+    matches: &'a mut [u32],
+}
+
+impl Lists<'_> {
+    fn split_at(self, count: usize) -> (Self, Self) {
+        let (pairs, other_pairs) = self.pairs.split_at_mut(count);
+        let (separations, other_separations) = self.separations.split_at_mut(count);
+        let (matches, other_matches) = self.matches.split_at_mut(count);
+        let others = Self { pairs: other_pairs, separations: other_separations, matches: other_matches };
+        (Self { pairs, separations, matches }, others)
+    }
+
+    /// Copies what the tasks have found, one after the other.
+    fn copy(self, found: &[Found]) {
+        match found {
+            [] => {}
+            [one] => {
+                self.pairs.copy_from_slice(&one.pairs);
+                self.separations.copy_from_slice(&one.separations);
+                self.matches.copy_from_slice(&one.matches);
+            }
+            _ => {
+                let (first, second) = found.split_at(found.len() / 2);
+                let (left, right) = self.split_at(first.iter().map(|found| found.pairs.len()).sum());
+                rayon::join(|| left.copy(first), || right.copy(second));
+            }
+        }
+    }
+}
+
+/// Data of a pair that is new in this call.
+#[derive(Clone, Copy, Debug, Default)]
+struct FirstValues {
+    desired: f64,
+    min_separation: f64,
+    lowered: bool,
 }
 
 /// Desired distance and minimum separation of a pair that is new in this call. `growth`: by how much its gap
@@ -244,7 +343,7 @@ fn first_values(
     pair: &Pair,
     separation: &Separation,
     growth: f64,
-) -> Inherited {
+) -> FirstValues {
     let (model, rest) = (scene.model(), scene.rest());
     let spacing = scene.spacing().of(model, kind, pair);
     let rule = DesiredDistance { delta: spacing.delta, growth };
@@ -258,29 +357,12 @@ fn first_values(
             guaranteed.min(unlimited / MIN_SEPARATION_MARGIN).min(separation.width.max(0.0))
         }
     };
-    Inherited { desired, min_separation, multiplier: 0.0, lowered }
+    FirstValues { desired, min_separation, lowered }
 }
 
 /// Fills lists of separations before they are written.
 pub(super) const BLANK: Separation =
     Separation { normal: Vector::new(0.0, 0.0, 0.0), weights: [0.0; 4], distance: 0.0, width: 0.0 };
-
-/// Calls `visit` for ranges of elements, with the list of each range. Ranges without candidates are skipped.
-pub(super) fn for_each_range(
-    list: &Candidates,
-    found: &mut Vec<Vec<Pair>>,
-    visit: impl Fn(Range<usize>, &mut Vec<Pair>) + Sync,
-) {
-    let elements = list.elements().len();
-    found.resize_with(elements.div_ceil(ELEMENTS), Vec::new);
-    found.par_iter_mut().enumerate().for_each(|(chunk, pairs)| {
-        pairs.clear();
-        let range = chunk * ELEMENTS..((chunk + 1) * ELEMENTS).min(elements);
-        if list.count(range.clone()) > 0 {
-            visit(range, pairs);
-        }
-    });
-}
 
 /// A number of `f32` that is not below `value`.
 #[inline]

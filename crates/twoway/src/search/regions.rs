@@ -32,6 +32,8 @@ pub(super) struct Regions {
     pub radii: Vec<f64>,
     /// Which balls are new.
     pub changed: Vec<bool>,
+    /// Smallest radius of balls that are not at rest [m].
+    smallest: Option<f64>,
 }
 
 impl Regions {
@@ -80,6 +82,14 @@ impl Regions {
                 renewed
             })
             .sum()
+    }
+
+    /// Smallest radius of balls that are not at rest [m].
+    pub fn smallest_radius(&mut self, scene: &CollisionScene) -> f64 {
+        *self.smallest.get_or_insert_with(|| {
+            let edges = (0..scene.vertex_count()).map(|v| scene.local_edge(v));
+            scene.params().solver.forward.trust_region_min * edges.fold(f64::INFINITY, f64::min)
+        })
     }
 
     /// Gives all vertices balls of one `radius` [m] about x, which are searched without a margin.

@@ -2,6 +2,7 @@
 
 mod bodies;
 mod common;
+mod flight;
 mod friction;
 mod obstacles;
 mod resolve;
