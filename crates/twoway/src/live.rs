@@ -4,9 +4,9 @@
 //! vertices have y = y0 and it is within its limit there, which is looked up once per call. A vertex is *touched*
 //! if anything may move it away from y0: a proximal weight, or a row or an edge with a multiplier. After each
 //! sweep the vertices of rows and edges that got a multiplier are touched in turn. The edges of touched vertices
-//! are *watched*: those that are violated at y are swept, and stay so until the end of the step. They are looked
-//! at before the first sweep, after the first ones, and after the last. If one is violated then, some more sweeps
-//! follow. So no edge is violated that was not swept, but for what the very last sweeps do.
+//! are *watched*: after each sweep those that are violated at y join those that are swept, with the edges next to
+//! them, and stay until the end of the step. If the last sweep leaves new ones, some more sweeps follow. So sweeps
+//! do what sweeps over all edges would do, but for the order.
 
 use crate::chunks::Chunks;
 use crate::index_set::IndexSet;
@@ -25,10 +25,7 @@ const MOST: f64 = 0.25;
 const NONE: u32 = u32::MAX;
 const WATCHED: u32 = u32::MAX - 1;
 
-/// Numbers of sweeps after which watched edges are looked at, beside the last one. Most of what changes does so
-/// in the first sweeps.
-const LOOKS: [usize; 3] = [1, 2, 4];
-/// Number of sweeps that follow where the last look finds violated edges.
+/// Number of sweeps that follow where the last one leaves new violated edges.
 const MORE_SWEEPS: usize = 2;
 
 /// The edges that are swept, with their multipliers.
@@ -96,14 +93,24 @@ impl LiveEdges {
         self.acting = acting;
     }
 
-    /// Lists the watched edges that are violated at `y`; returns whether there are any.
+    /// Lists the watched edges that are violated at `y`; returns whether there are any. The edges next to them are
+    /// listed as well: they are swept after them, so the front of a pull moves on by two edges in a sweep.
     fn look(&mut self, edges: &EdgeLimits, y: &[Vector]) -> bool {
         let before = self.list.len();
         let mut watched = std::mem::take(&mut self.watched);
         watched.retain(|&edge| {
-            let violated = is_violated(&edges.balls[edge as usize], |v| y[v]);
+            if self.places[edge as usize] != WATCHED {
+                return false;
+            }
+            let ball = &edges.balls[edge as usize];
+            let violated = is_violated(ball, |v| y[v]);
             if violated {
                 self.add(edges, edge, Vector::zeros());
+                for &next in ball.vertices.iter().flat_map(|&v| edges.of_vertex(v)) {
+                    if self.places[next as usize] >= WATCHED {
+                        self.add(edges, next, Vector::zeros());
+                    }
+                }
             }
             !violated
         });
@@ -245,27 +252,11 @@ impl<'a> LiveRows<'a> {
         let mut done = 0;
         let mut end = sweeps;
         while done < end {
-            let (of_rows, of_edges) =
-                (std::mem::take(self.parts.spread), std::mem::take(&mut self.parts.live.spread));
-            let result = self.with_system(|rows, state| {
-                // One system serves until a row or an edge gets its first multiplier.
-                loop {
-                    sweep(rows, state)?;
-                    done += 1;
-                    let mut of_rows = of_rows.iter().zip(&*state.lambda);
-                    let mut of_edges = of_edges.iter().zip(&*state.limit_multipliers);
-                    let is_new = of_rows.any(|(spread, lambda)| !spread && *lambda != 0.0)
-                        || of_edges.any(|(spread, force)| !spread && *force != Vector::zeros());
-                    if is_new || done == end || LOOKS.contains(&done) {
-                        return Ok(());
-                    }
-                }
-            });
-            (*self.parts.spread, self.parts.live.spread) = (of_rows, of_edges);
-            result?;
+            self.with_system(&mut sweep)?;
+            done += 1;
             self.spread();
-            if (done == end || LOOKS.contains(&done)) && self.look() && done == sweeps {
-                end = sweeps + MORE_SWEEPS;
+            if self.look() && done == sweeps {
+                end += MORE_SWEEPS;
             }
         }
         Ok(())
