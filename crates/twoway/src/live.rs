@@ -158,8 +158,8 @@ impl LiveEdges {
 #[inline]
 fn is_violated(ball: &DistanceLimit, y: impl Fn(usize) -> Vector) -> bool {
     let [a, b] = ball.vertices.map(|v| y(v as usize));
-    // Not a number counts as violated.
-    !((a - b).norm_squared() <= ball.limit * ball.limit)
+    let squared = (a - b).norm_squared();
+    squared > ball.limit * ball.limit || squared.is_nan()
 }
 
 /// The rows of one backward step, linearized at x^(l), with the edges that act or could come to act. For solvers
