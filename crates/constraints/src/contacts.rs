@@ -5,9 +5,10 @@ use crate::coloring::Coloring;
 use crate::friction::friction_row;
 use crate::params::ContactForm;
 use crate::{face, volume};
-use bowknot_geometry::{PairKind, Point, Separation};
-use bowknot_lcp::{FrictionRow, LcpProblem, Row};
+use bowknot_geometry::{PairKind, Point, Separation, Vector};
+use bowknot_lcp::{FrictionRow, LcpProblem, Row, Schedule};
 use bowknot_proximity::PairList;
+use rayon::prelude::*;
 
 /// The row of one pair with desired distance `desired` [m].
 ///
@@ -56,7 +57,29 @@ pub fn predicted_gap(
     separation.distance.min(separation.width.max(0.0)) + change
 }
 
-/// Contact rows in color order. They are refilled in every backward step and keep their buffers.
+/// Rows of a cluster: so many that threads wait for each other rarely, and so few that a color has several
+/// clusters.
+const CLUSTER: usize = 128;
+/// Below this number of rows all are swept by one thread, one after the other, and need no colors.
+const MIN_CLUSTERED: usize = 2048;
+/// Rows that one parallel task builds.
+const CHUNK: usize = 512;
+
+/// A pair that gets a row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SelectedPair {
+    /// Index of the pair in the pair list.
+    pub pair: u32,
+    /// The distance that its row asks for [m].
+    pub desired: f64,
+}
+
+/// Contact rows in the order in which they are swept. They are refilled in every backward step and keep their
+/// buffers.
+///
+/// Successive rows form clusters of a fixed size, in the order of the pair list, so that a cluster has few
+/// vertices. Clusters are colored as wholes and stored by color. Few rows stay in the order of the pair list,
+/// without clusters. All that depends on the rows alone, never on the number of threads.
 #[derive(Clone, Debug, Default)]
 pub struct ContactRows {
     /// Index of each row's pair in the pair list.
@@ -68,40 +91,64 @@ pub struct ContactRows {
     /// Index of the friction row of each row, or [`LcpProblem::NO_FRICTION`]. Empty: no contact has friction.
     pub friction_of: Vec<u32>,
     coloring: Coloring,
-    selected: Vec<u32>,
+    /// Where each cluster starts, and the end. Empty: no clusters.
+    clusters: Vec<u32>,
+    /// The pairs in the order of the rows.
+    ordered: Vec<SelectedPair>,
 }
 
 impl ContactRows {
-    /// Fills in the rows of the pairs that `keep` accepts, ordered by color. `movable[v]` tells which
-    /// vertices a row may move; only they count for colors.
+    /// Fills in the rows of the `selected` pairs, which are in the order of the list. `movable[v]` tells which
+    /// vertices a row may move; only they count for colors. Rows are not prepared yet, see
+    /// [`bowknot_lcp::prepare_rows`].
     pub fn fill(
         &mut self,
         form: ContactForm,
         pairs: &PairList,
         separations: &[Separation],
-        desired: &[f64],
         positions: &[Point],
         movable: &[bool],
-        keep: impl Fn(usize, PairKind) -> bool,
+        selected: &[SelectedPair],
     ) {
-        self.selected.clear();
-        for kind in PairKind::ALL {
-            self.selected.extend(pairs.range(kind).filter(|&p| keep(p, kind)).map(|p| p as u32));
+        self.order(pairs, movable, selected);
+        self.pair.clear();
+        self.pair.extend(self.ordered.iter().map(|selected| selected.pair));
+        self.rows.resize(selected.len(), Row::new([0; 4], [Vector::zeros(); 4], 0.0));
+        let all = pairs.pairs();
+        let build = |(row, selected): (&mut Row, &SelectedPair)| {
+            let p = selected.pair as usize;
+            let (kind, vertices) = (pairs.kind(p), all[p].vertices);
+            *row = contact_row(form, kind, vertices, positions, &separations[p], selected.desired);
+        };
+        if self.rows.len() < MIN_CLUSTERED {
+            self.rows.iter_mut().zip(&self.ordered).for_each(build);
+        } else {
+            let chunks = self.rows.par_chunks_mut(CHUNK).zip(self.ordered.par_chunks(CHUNK));
+            chunks.for_each(|(rows, selected)| rows.iter_mut().zip(selected).for_each(build));
+        }
+    }
+
+    /// Orders the selected pairs by color and cluster.
+    fn order(&mut self, pairs: &PairList, movable: &[bool], selected: &[SelectedPair]) {
+        self.clusters.clear();
+        self.coloring.clear();
+        self.ordered.clear();
+        if selected.len() < MIN_CLUSTERED {
+            self.ordered.extend_from_slice(selected);
+            return;
         }
         let all = pairs.pairs();
-        let selected = &self.selected;
-        self.coloring.first_fit(movable.len(), selected.len(), |r| {
-            let pair = selected[r] as usize;
-            let kind = pairs.kind(pair);
-            all[pair].vertices.into_iter().take(kind.vertex_count()).filter(|&v| movable[v as usize])
+        self.coloring.clusters(movable.len(), selected.len(), CLUSTER, |r| {
+            let pair = selected[r].pair as usize;
+            let vertices = all[pair].vertices.into_iter().take(pairs.kind(pair).vertex_count());
+            vertices.filter(|&v| movable[v as usize])
         });
-        self.pair.clear();
-        self.pair.extend(self.coloring.order().iter().map(|&r| selected[r as usize]));
-        self.rows.clear();
-        self.rows.extend(self.pair.iter().map(|&p| {
-            let p = p as usize;
-            contact_row(form, pairs.kind(p), all[p].vertices, positions, &separations[p], desired[p])
-        }));
+        self.clusters.push(0);
+        for &cluster in self.coloring.order() {
+            let start = CLUSTER * cluster as usize;
+            self.ordered.extend_from_slice(&selected[start..selected.len().min(start + CLUSTER)]);
+            self.clusters.push(self.ordered.len() as u32);
+        }
     }
 
     /// Adds friction rows to the rows of pairs whose entry in `coefficients` is above 0. Slip is measured
@@ -113,35 +160,69 @@ impl ContactRows {
         start: &[Point],
         coefficients: &[f64],
     ) {
-        self.friction.clear();
         self.friction_of.clear();
         if coefficients.is_empty() {
+            self.friction.clear();
             return;
         }
-        for (row, &p) in self.pair.iter().enumerate() {
-            let p = p as usize;
-            if coefficients[p] > 0.0 {
-                self.friction_of.push(self.friction.len() as u32);
-                let vertices = self.rows[row].vertices;
-                let (kind, separation) = (pairs.kind(p), &separations[p]);
-                let friction = friction_row(kind, vertices, start, separation, coefficients[p], row as u32);
-                self.friction.push(friction);
+        let mut count = 0;
+        self.friction_of.extend(self.pair.iter().map(|&p| {
+            if coefficients[p as usize] > 0.0 {
+                count += 1;
+                count - 1
             } else {
-                self.friction_of.push(LcpProblem::NO_FRICTION);
+                LcpProblem::NO_FRICTION
             }
-        }
-        if self.friction.is_empty() {
+        }));
+        self.friction.resize(count as usize, BLANK);
+        if count == 0 {
             self.friction_of.clear();
+            return;
+        }
+        let rows = (&self.rows, &self.pair);
+        let build = |row: usize| {
+            let p = rows.1[row] as usize;
+            let vertices = rows.0[row].vertices;
+            friction_row(pairs.kind(p), vertices, start, &separations[p], coefficients[p], row as u32)
+        };
+        let rubbing = self.friction_of.iter().enumerate().filter(|(_, f)| **f != LcpProblem::NO_FRICTION);
+        self.friction.iter_mut().zip(rubbing).for_each(|(friction, (row, _))| friction.normal = row as u32);
+        if self.rows.len() < MIN_CLUSTERED {
+            self.friction.iter_mut().for_each(|friction| *friction = build(friction.normal as usize));
+        } else {
+            self.friction.par_chunks_mut(CHUNK).for_each(|friction| {
+                friction.iter_mut().for_each(|friction| *friction = build(friction.normal as usize));
+            });
         }
     }
 
-    /// Where each color starts, and the end.
-    pub fn color_starts(&self) -> &[u32] {
-        self.coloring.starts()
+    /// The order in which the rows are swept.
+    pub fn schedule(&self) -> Schedule<'_> {
+        if self.clusters.is_empty() {
+            Schedule::SERIAL
+        } else {
+            Schedule::clustered(self.coloring.starts(), &self.clusters)
+        }
     }
 
-    /// Number of colors.
+    /// How many groups of rows are swept one after the other: colors of clusters, or 1 without clusters. 0
+    /// without rows.
     pub fn color_count(&self) -> usize {
-        self.coloring.color_count()
+        if self.clusters.is_empty() {
+            usize::from(!self.rows.is_empty())
+        } else {
+            self.coloring.color_count()
+        }
     }
 }
+
+/// A friction row that is not filled in yet.
+const BLANK: FrictionRow = FrictionRow {
+    tangents: [Vector::new(0.0, 0.0, 0.0); 2],
+    coefficients: [0.0; 4],
+    offsets: [0.0; 2],
+    vertices: [0; 4],
+    friction: 0.0,
+    inverse_diagonal: f64::NAN,
+    normal: 0,
+};

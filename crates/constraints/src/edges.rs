@@ -4,11 +4,15 @@ use crate::coloring::Coloring;
 use crate::params::EdgeReference;
 use bowknot_geometry::{Point, Topology, Vector};
 use bowknot_lcp::{DistanceLimit, Row};
+use rayon::prelude::*;
 
 /// Smallest ratio of an edge's limit to its length at the start of the call. An edge that starts longer than
 /// its limit is shortened a little in each call, because asking for all of it at once is infeasible and
 /// diverges.
 const START_SHARE: f64 = 0.97;
+
+/// Fewest edges of a parallel task.
+const CHUNK: usize = 4096;
 
 /// Edge-length limits in color order.
 #[derive(Clone, Debug, Default)]
@@ -22,6 +26,9 @@ pub struct EdgeLimits {
     /// Largest ratio of each edge's length to its reference length, sigma [1].
     pub stretch_limits: Vec<f64>,
     color_starts: Vec<u32>,
+    /// The edges of each vertex: `incident[incident_starts[v]..incident_starts[v + 1]]`.
+    incident: Vec<u32>,
+    incident_starts: Vec<u32>,
 }
 
 impl EdgeLimits {
@@ -43,7 +50,10 @@ impl EdgeLimits {
         let balls: Vec<DistanceLimit> =
             vertices.map(|e| DistanceLimit { vertices: e, limit: length(&e, rest) }).collect();
         let rest_lengths: Vec<f64> = balls.iter().map(|b| b.limit).collect();
+        let (incident, incident_starts) = incident_edges(&balls, movable.len());
         Self {
+            incident,
+            incident_starts,
             stretch_limits: balls.iter().map(|b| stretch_limit(&b.vertices)).collect(),
             start_lengths: rest_lengths.clone(),
             rest_lengths,
@@ -60,14 +70,25 @@ impl EdgeLimits {
 
     /// Sets the limits of a call that starts at `positions`.
     pub fn begin(&mut self, positions: &[Point], reference: EdgeReference) {
-        for k in 0..self.balls.len() {
-            let stretch_limit = self.stretch_limits[k];
-            let start = length(&self.balls[k].vertices, positions);
-            self.start_lengths[k] = start;
-            self.balls[k].limit = match reference {
+        let Self { balls, rest_lengths, start_lengths, stretch_limits, .. } = self;
+        let edges = balls.par_iter_mut().zip(start_lengths.par_iter_mut());
+        let fixed = rest_lengths.par_iter().zip(stretch_limits.par_iter());
+        edges.zip(fixed).with_min_len(CHUNK).for_each(|((ball, start_length), (rest, stretch_limit))| {
+            let start = length(&ball.vertices, positions);
+            *start_length = start;
+            ball.limit = match reference {
                 EdgeReference::Start => stretch_limit * start,
-                EdgeReference::Rest => Self::of_rest(stretch_limit * self.rest_lengths[k], start),
+                EdgeReference::Rest => Self::of_rest(stretch_limit * rest, start),
             };
+        });
+    }
+
+    /// The edges of a vertex, ascending. Cost: constant.
+    pub fn of_vertex(&self, vertex: u32) -> &[u32] {
+        match self.incident_starts.get(vertex as usize..vertex as usize + 2) {
+            Some(&[start, end]) => &self.incident[start as usize..end as usize],
+            // Without any limits the vertices are not known.
+            _ => &[],
         }
     }
 
@@ -88,14 +109,19 @@ impl EdgeLimits {
     /// Largest ratios of an edge's length at `positions` to its limit, to its length at the start, and to its
     /// rest length. Each is 1 if there is no edge.
     pub fn stretch(&self, positions: &[Point]) -> Stretch {
-        let mut stretch = Stretch { to_limit: 0.0, to_start: 0.0, to_rest: 0.0 };
-        for k in 0..self.balls.len() {
-            let now = length(&self.balls[k].vertices, positions);
-            stretch.to_limit = ratio(now, self.balls[k].limit).max(stretch.to_limit);
-            stretch.to_start = ratio(now, self.start_lengths[k]).max(stretch.to_start);
-            stretch.to_rest = ratio(now, self.rest_lengths[k]).max(stretch.to_rest);
+        if self.balls.is_empty() {
+            return Stretch { to_limit: 1.0, to_start: 1.0, to_rest: 1.0 };
         }
-        if self.balls.is_empty() { Stretch { to_limit: 1.0, to_start: 1.0, to_rest: 1.0 } } else { stretch }
+        let of_edge = |k: usize| {
+            let now = length(&self.balls[k].vertices, positions);
+            Stretch {
+                to_limit: ratio(now, self.balls[k].limit),
+                to_start: ratio(now, self.start_lengths[k]),
+                to_rest: ratio(now, self.rest_lengths[k]),
+            }
+        };
+        let none = || Stretch { to_limit: 0.0, to_start: 0.0, to_rest: 0.0 };
+        (0..self.balls.len()).into_par_iter().with_min_len(CHUNK).map(of_edge).reduce(none, Stretch::larger)
     }
 
     /// Where each color starts, and the end.
@@ -118,6 +144,35 @@ pub struct Stretch {
     pub to_start: f64,
     /// To the rest length.
     pub to_rest: f64,
+}
+
+impl Stretch {
+    /// The larger of each ratio.
+    fn larger(self, other: Self) -> Self {
+        Self {
+            to_limit: self.to_limit.max(other.to_limit),
+            to_start: self.to_start.max(other.to_start),
+            to_rest: self.to_rest.max(other.to_rest),
+        }
+    }
+}
+
+/// The edges of each vertex, and where those of each vertex start.
+fn incident_edges(balls: &[DistanceLimit], vertex_count: usize) -> (Vec<u32>, Vec<u32>) {
+    let mut starts = vec![0; vertex_count + 1];
+    for v in balls.iter().flat_map(|ball| ball.vertices) {
+        starts[v as usize + 1] += 1;
+    }
+    (1..starts.len()).for_each(|v| starts[v] += starts[v - 1]);
+    let mut next = starts.clone();
+    let mut incident = vec![0; 2 * balls.len()];
+    for (edge, ball) in balls.iter().enumerate() {
+        for v in ball.vertices {
+            incident[next[v as usize] as usize] = edge as u32;
+            next[v as usize] += 1;
+        }
+    }
+    (incident, starts)
 }
 
 fn length(edge: &[u32; 2], positions: &[Point]) -> f64 {

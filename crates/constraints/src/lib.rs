@@ -22,7 +22,7 @@ pub use bowknot_proximity as proximity;
 
 pub use bowknot_errors::{Errors, ParamError, Parameters};
 pub use coloring::Coloring;
-pub use contacts::{ContactRows, contact_row, predicted_gap};
+pub use contacts::{ContactRows, SelectedPair, contact_row, predicted_gap};
 pub use desired::DesiredDistance;
 pub use edges::{EdgeLimits, Stretch};
 pub use facing::{Facing, Feature};

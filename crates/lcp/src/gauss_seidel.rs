@@ -2,7 +2,8 @@
 //! parallel.
 //!
 //! Both visit the rows in the order of the schedule and compute each row in the same way. Rows of a color
-//! share no node that moves, so both give the same bits for any number of threads.
+//! share no node that moves, unless one thread sweeps them one after the other as a cluster. So both give the
+//! same bits for any number of threads.
 
 use crate::error::LcpError;
 use crate::info::LcpInfo;
@@ -71,10 +72,7 @@ pub fn sweep_colored(
     state: &mut LcpState<'_>,
     params: &LcpParams,
 ) -> Result<(), LcpError> {
-    params.validate()?;
-    state.check(problem)?;
-    colored::<false>(problem, state, params, 1);
-    Ok(())
+    GaussSeidel::default().sweep(problem, state, params)
 }
 
 /// Sweeps, the rows of a color in parallel on the threads of the current rayon pool. The same bits as
@@ -87,15 +85,98 @@ pub fn solve_colored(
     state: &mut LcpState<'_>,
     params: &LcpParams,
 ) -> Result<LcpInfo, LcpError> {
-    params.validate()?;
-    state.check(problem)?;
-    repeat(params, |residual, sweeps| {
-        if residual {
-            colored::<true>(problem, state, params, sweeps)
-        } else {
-            colored::<false>(problem, state, params, sweeps)
+    GaussSeidel::default().solve(problem, state, params)
+}
+
+/// The solver of [`sweep_colored`] and [`solve_colored`] with its scratch memory, for callers that sweep often:
+/// it then allocates nothing. It may be dropped at any time.
+#[derive(Clone, Debug, Default)]
+pub struct GaussSeidel {
+    /// The phases of one sweep.
+    phases: Vec<Phase>,
+}
+
+impl GaussSeidel {
+    /// A solver with empty scratch memory.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// One sweep, see [`sweep_colored`].
+    ///
+    /// # Errors
+    /// As [`sweep_colored`].
+    pub fn sweep(
+        &mut self,
+        problem: &LcpProblem<'_>,
+        state: &mut LcpState<'_>,
+        params: &LcpParams,
+    ) -> Result<(), LcpError> {
+        params.validate()?;
+        state.check(problem)?;
+        self.colored::<false>(problem, state, params, 1);
+        Ok(())
+    }
+
+    /// Sweeps, see [`solve_colored`].
+    ///
+    /// # Errors
+    /// As [`solve_serial`].
+    pub fn solve(
+        &mut self,
+        problem: &LcpProblem<'_>,
+        state: &mut LcpState<'_>,
+        params: &LcpParams,
+    ) -> Result<LcpInfo, LcpError> {
+        params.validate()?;
+        state.check(problem)?;
+        repeat(params, |residual, sweeps| {
+            if residual {
+                self.colored::<true>(problem, state, params, sweeps)
+            } else {
+                self.colored::<false>(problem, state, params, sweeps)
+            }
+        })
+    }
+
+    fn colored<const RESIDUAL: bool>(
+        &mut self,
+        problem: &LcpProblem<'_>,
+        state: &mut LcpState<'_>,
+        params: &LcpParams,
+        sweeps: u32,
+    ) -> f64 {
+        let rows = problem.distance_limits().swept() + problem.rows().swept() + problem.friction().swept();
+        let threads = rayon::current_num_threads();
+        if threads == 1 || rows < PARALLEL_MIN || sweeps == 0 {
+            return serial::<RESIDUAL>(problem, state, params, sweeps);
         }
-    })
+        list_phases(problem, &mut self.phases);
+        // Nothing to share: one thread would do everything, and the others would wait.
+        if self.phases.iter().all(|phase| phase.end - phase.begin <= phase.chunk) {
+            return serial::<RESIDUAL>(problem, state, params, sweeps);
+        }
+        let views = (
+            atomics(state.y),
+            atomics(state.lambda),
+            atomics(state.limit_multipliers),
+            atomics(state.friction),
+        );
+        let (Some(y), Some(lambda), Some(limit_multipliers), Some(friction)) = views else {
+            return serial::<RESIDUAL>(problem, state, params, sweeps);
+        };
+        let sweep = Sweep::<_, _, _, _, RESIDUAL> {
+            problem,
+            params,
+            phases: &self.phases,
+            sweeps: sweeps as usize,
+            y,
+            lambda,
+            limit_multipliers,
+            friction,
+        };
+        team::run(&sweep, threads)
+    }
 }
 
 /// Repeats `sweep(whether to compute the residual, number of sweeps)`, which returns the residual of the last
@@ -125,7 +206,7 @@ fn serial<const RESIDUAL: bool>(
     let sweep = Sweep::<_, _, _, _, RESIDUAL> {
         problem,
         params,
-        phases: Vec::new(),
+        phases: &[],
         sweeps: sweeps as usize,
         y: cells(state.y),
         lambda: cells(state.lambda),
@@ -141,35 +222,6 @@ fn serial<const RESIDUAL: bool>(
     residual
 }
 
-fn colored<const RESIDUAL: bool>(
-    problem: &LcpProblem<'_>,
-    state: &mut LcpState<'_>,
-    params: &LcpParams,
-    sweeps: u32,
-) -> f64 {
-    let rows = problem.distance_limits().swept() + problem.rows().swept() + problem.friction().swept();
-    let threads = rayon::current_num_threads();
-    if threads == 1 || rows < PARALLEL_MIN || sweeps == 0 {
-        return serial::<RESIDUAL>(problem, state, params, sweeps);
-    }
-    let views =
-        (atomics(state.y), atomics(state.lambda), atomics(state.limit_multipliers), atomics(state.friction));
-    let (Some(y), Some(lambda), Some(limit_multipliers), Some(friction)) = views else {
-        return serial::<RESIDUAL>(problem, state, params, sweeps);
-    };
-    let sweep = Sweep::<_, _, _, _, RESIDUAL> {
-        problem,
-        params,
-        phases: phases(problem),
-        sweeps: sweeps as usize,
-        y,
-        lambda,
-        limit_multipliers,
-        friction,
-    };
-    team::run(&sweep, threads)
-}
-
 /// The larger of two numbers in one instruction; `f64::max` takes five, in a chain through all rows.
 #[inline(always)]
 fn larger(a: f64, b: f64) -> f64 {
@@ -177,7 +229,7 @@ fn larger(a: f64, b: f64) -> f64 {
 }
 
 /// The types of constraints, in the order of a sweep.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 enum ConstraintKind {
     Limit,
     Row,
@@ -189,7 +241,7 @@ struct Sweep<'a, Y, L, F, T, const RESIDUAL: bool> {
     problem: &'a LcpProblem<'a>,
     params: &'a LcpParams,
     /// The phases of one sweep, where threads share it.
-    phases: Vec<Phase>,
+    phases: &'a [Phase],
     sweeps: usize,
     y: Y,
     lambda: L,
@@ -294,34 +346,32 @@ fn friction_swept(problem: &LcpProblem<'_>) -> usize {
     if problem.attached().is_empty() { problem.friction().swept() } else { 0 }
 }
 
-/// Places of one schedule between two points at which all threads wait.
-#[derive(Clone, Copy)]
+/// Units of one schedule, clusters or places, between two points at which all threads wait.
+#[derive(Clone, Copy, Debug)]
 struct Phase {
     kind: ConstraintKind,
     begin: usize,
     end: usize,
-    /// Places that a thread takes at once; all of them if they depend on each other.
+    /// Units that a thread takes at once; all of them if they depend on each other.
     chunk: usize,
 }
 
-/// The phases of one sweep. Each color is a phase, but successive colors that one thread takes whole are
+/// Lists the phases of one sweep. Each color is a phase, but successive colors that one thread takes whole are
 /// joined into one. Contacts have many such small colors, and waiting for the other threads costs as much as
 /// a dozen rows.
-fn phases(problem: &LcpProblem<'_>) -> Vec<Phase> {
-    let mut phases = Vec::new();
+fn list_phases(problem: &LcpProblem<'_>, phases: &mut Vec<Phase>) {
+    phases.clear();
+    let (limits, rows, friction) = (problem.distance_limits(), problem.rows(), problem.friction());
     let sets = [
-        (
-            ConstraintKind::Limit,
-            problem.distance_limits().schedule,
-            problem.distance_limits().swept(),
-            LIMIT_CHUNK,
-        ),
-        (ConstraintKind::Row, problem.rows().schedule, problem.rows().swept(), ROW_CHUNK),
-        (ConstraintKind::Friction, problem.friction().schedule, friction_swept(problem), ROW_CHUNK),
+        (ConstraintKind::Limit, limits.schedule, limits.swept(), LIMIT_CHUNK),
+        (ConstraintKind::Row, rows.schedule, rows.swept(), ROW_CHUNK),
+        (ConstraintKind::Friction, friction.schedule, friction_swept(problem), ROW_CHUNK),
     ];
     for (kind, schedule, swept, chunk) in sets.into_iter().filter(|set| set.2 > 0) {
+        let chunk = if schedule.clusters.is_empty() { chunk } else { 1 };
         if schedule.starts.is_empty() {
-            phases.push(Phase { kind, begin: 0, end: swept, chunk: swept.max(1) });
+            let end = if schedule.clusters.is_empty() { swept } else { schedule.clusters.len() - 1 };
+            phases.push(Phase { kind, begin: 0, end, chunk: end.max(1) });
             continue;
         }
         let mut joined: Option<Phase> = None;
@@ -337,7 +387,6 @@ fn phases(problem: &LcpProblem<'_>) -> Vec<Phase> {
         }
         phases.extend(joined);
     }
-    phases
 }
 
 impl<Y, L, F, T, const RESIDUAL: bool> Phases for Sweep<'_, Y, L, F, T, RESIDUAL>
@@ -356,8 +405,10 @@ where
         (phase.end - phase.begin, phase.chunk)
     }
 
-    fn run(&self, phase: usize, places: Range<usize>, residual: &mut f64) {
+    fn run(&self, phase: usize, units: Range<usize>, residual: &mut f64) {
         let phase = self.phases[phase % self.phases.len()];
-        Sweep::run(self, phase.kind, phase.begin + places.start, phase.begin + places.end, residual);
+        let schedule = self.schedule(phase.kind);
+        let places = schedule.places(phase.begin + units.start..phase.begin + units.end);
+        Sweep::run(self, phase.kind, places.start, places.end, residual);
     }
 }

@@ -6,6 +6,7 @@
 //!
 //! - [`sweep_serial`], [`solve_serial`]: projected Gauss-Seidel, one row after the other;
 //! - [`sweep_colored`], [`solve_colored`]: the same, color by color in parallel, to the same bits;
+//!   [`GaussSeidel`] keeps their scratch memory;
 //! - [`Jacobi`]: all rows at once, with split masses, for comparison and where there are no colors;
 //! - [`solve_exact`]: an active-set method on the dense Delassus matrix, the reference for small problems.
 //!
@@ -37,7 +38,7 @@ pub use nalgebra;
 pub use colors::validate_colors;
 pub use error::LcpError;
 pub use exact::{delassus, solve_dense, solve_exact};
-pub use gauss_seidel::{solve_colored, solve_serial, sweep_colored, sweep_serial};
+pub use gauss_seidel::{GaussSeidel, solve_colored, solve_serial, sweep_colored, sweep_serial};
 pub use info::LcpInfo;
 pub use jacobi::Jacobi;
 pub use multipliers::apply_multipliers;

@@ -2,7 +2,7 @@
 //!
 //! A sweep has dozens of colors of a few hundred rows. One color is some microseconds of work, and a fork
 //! and join would cost as much. So one fork covers all sweeps. Each thread goes through the same sequence of
-//! phases (colors) and waits, spinning, until all places of the earlier phases are done. Each thread has its
+//! phases (colors) and waits until all places of the earlier phases are done. Each thread has its
 //! own share of every phase, the same fraction of the places: if rows are stored in spatial order, it
 //! accesses the same nodes in every color, in its own cache. A thread that has finished its share takes
 //! chunks of the shares of others.
@@ -13,6 +13,7 @@
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
 
 /// A sequence of phases. Within a phase any places may run at the same time.
 pub(crate) trait Phases: Sync {
@@ -99,15 +100,29 @@ fn claim(claimed: &AtomicUsize, end: usize) -> Option<usize> {
     None
 }
 
-/// Spins until `ready`; yields to other threads if that takes long, as when there are more threads than
-/// cores.
+/// Waits until `ready`. It spins at first: usually another thread ends its chunk within a microsecond. If that
+/// takes long, the system runs another program in place of that thread, or there are more threads than cores.
+/// It then yields, and in the end sleeps, so that a waiting thread leaves its core to others.
 fn wait(ready: impl Fn() -> bool) {
-    let mut spins = 0_u32;
+    let mut rounds = 0_u32;
     while !ready() {
-        spins += 1;
-        if spins < 256 { std::hint::spin_loop() } else { std::thread::yield_now() }
+        rounds += 1;
+        if rounds < SPINS {
+            std::hint::spin_loop();
+        } else if rounds < SPINS + YIELDS {
+            std::thread::yield_now();
+        } else {
+            std::thread::sleep(SLEEP);
+        }
     }
 }
+
+/// Rounds of [`wait`] that spin: some microseconds.
+const SPINS: u32 = 512;
+/// Rounds that yield: some tens of microseconds.
+const YIELDS: u32 = 32;
+/// Length of a sleep. The system adds about as much; a time slice of another program takes milliseconds.
+const SLEEP: Duration = Duration::from_micros(50);
 
 #[cfg(test)]
 mod tests;

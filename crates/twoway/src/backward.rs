@@ -6,125 +6,124 @@
 //! With w = 1/(m^ + mu):
 //!
 //! y = y' + W J^T lambda,   y' = w (m^ y0 + mu x).
+//!
+//! Most vertices are in no contact and at no taut edge: mu = 0 and y = y' = y0. Their entries are written once per
+//! call. A step writes those of the vertices that this step or the last one moves away from y0 (`live.rs`). It
+//! reads all pairs in range once, to select its rows (`selection.rs`), and copies y at the end.
 
+use crate::chunks::{self, Chunks};
 use crate::coarse::is_sliding;
+use crate::index_set::IndexSet;
+use crate::live::{LiveEdges, LiveParts, LiveRows};
 use crate::oscillation::OscillationDamping;
-use crate::proximal;
+use crate::proximal::{MAX_PROXIMAL_MASS, ProximalWeights};
 use crate::row_solver::{ColoredSweeps, RowSolver, RowSystem};
 use crate::scene::CollisionScene;
+use crate::selection::Selection;
 use crate::stages::BackwardStep;
 use crate::state::ResolveState;
 use crate::statistics::Statistics;
 use crate::stop::Residuals;
-use bowknot_constraints::{ContactRows, EdgeForm, EdgeLimits, predicted_gap};
-use bowknot_geometry::{PairKind, Vector};
+use bowknot_constraints::{ContactRows, EdgeForm, EdgeLimits};
+use bowknot_geometry::Vector;
 use bowknot_lcp::{self as lcp, ConstraintSet, Schedule, TangentVector};
-
-/// Sine of the largest angle by which the normals of rows may leave their cones. Rows are rebuilt in each
-/// step; a wide cone prevents that they come and go.
-const CONE_TOLERANCE: f64 = 0.02;
-
-/// Distance below which a pair has a row whatever its normal, in its desired distance: pressed vertices are
-/// held from all sides.
-const CLOSE: f64 = 1.001;
-
-/// Share of its distance that the row of such a pair asks for if the pair is no contact.
-///
-/// With the desired distance instead, the row would block bodies that slide on a mesh, and push them from
-/// behind: grains on an irregular mesh gain 17 % of their speed in a second. Without any row, the pair would
-/// stop the forward step where the target does not know of it. With a share of a half and no smallest
-/// distance, `funnel` at scale 0.2 reaches the limit of steps.
-const NON_CONTACT_SHARE: f64 = 0.9;
-
-/// Smallest distance that such a row asks for, in the desired distance of the pair. At the minimum separation
-/// the forward step closes no pair further, whatever its row allows. Without this bound, two of three
-/// variants of `funnel` reach the limit of steps.
-const MIN_NON_CONTACT_DISTANCE: f64 = 0.5;
 
 /// The default [`BackwardStep`]. `K` solves its rows, by default projected Gauss-Seidel.
 #[derive(Debug, Default)]
 pub struct LcpBackward<K = ColoredSweeps> {
     solver: K,
     edges: EdgeLimits,
-    /// The distance that the row of each pair asks for [m].
-    desired: Vec<f64>,
-    /// Which pairs may have a row.
-    has_row: Vec<bool>,
+    /// The edges that act; of solvers that keep to them.
+    live: LiveEdges,
+    selection: Selection,
     /// The movable vertices and the stretch limits of bodies for which `edges` was made.
     movable: Vec<bool>,
     stretch_limits: Vec<f64>,
-    /// Vector multipliers of the edges (ball form).
+    /// Multipliers of all edges (ball form); of solvers that do not keep to live edges.
     forces: Vec<Vector>,
     /// Scalar multipliers of the edges (linear form).
     edge_multipliers: Vec<f64>,
     /// Contact rows, followed by the rows of the edges in the linear form.
     contacts: ContactRows,
-    row_starts: Vec<u32>,
+    /// Colors and clusters of all rows (linear form).
+    colors: Vec<u32>,
+    clusters: Vec<u32>,
     lambda: Vec<f64>,
     /// Multipliers of the friction rows along their tangents.
     friction: Vec<TangentVector>,
-    proximal: Vec<f64>,
+    proximal: ProximalWeights,
     oscillation: OscillationDamping,
+    /// w; 1/m^ where mu is 0.
     weights: Vec<f64>,
-    /// y' [m].
+    /// y' [m]; y0 where mu is 0.
     free: Vec<Vector>,
     /// y [m].
     y: Vec<Vector>,
-    /// Sum of residuals times mass, and mass, of each body.
-    body_residuals: Vec<(Vector, f64)>,
+    /// Vertices whose y may differ from y0, after this step and after the last one.
+    touched: IndexSet,
+    last_touched: IndexSet,
+    /// Whether the vertices of each contact row are touched.
+    spread: Vec<bool>,
+    /// Residuals of the bodies.
+    residuals: Chunks<BodyResidual>,
+}
+
+/// Sums over some vertices of a body.
+#[derive(Clone, Copy, Debug)]
+struct BodyResidual {
+    body: u32,
+    mass: f64,
+    /// Of mass times residual [m].
+    sum: Vector,
+    /// Of mass times length of the residual [m].
+    lengths: f64,
+    /// Largest length of a residual [m].
+    largest: f64,
 }
 
 impl<K: RowSolver> BackwardStep for LcpBackward<K> {
     fn begin(&mut self, scene: &CollisionScene, state: &ResolveState) {
-        let limits: Vec<f64> =
-            (0..scene.model().bodies().len() as u32).map(|body| scene.stretch_limit(body)).collect();
-        let prescribed = state.call.prescribed();
-        let changed = self.stretch_limits != limits
-            || self.movable.len() != prescribed.len()
-            || self.movable.iter().zip(prescribed).any(|(movable, prescribed)| movable == prescribed);
         let params = &scene.params().contact;
-        if changed {
-            self.movable = prescribed.iter().map(|p| !p).collect();
+        if self.edges_changed(scene, state) {
+            let limits = &self.stretch_limits;
             self.edges = if params.edges {
                 let limit = |edge: &[u32; 2]| limits[scene.model().vertex_body()[edge[0] as usize] as usize];
                 EdgeLimits::new(scene.model().topology(), scene.rest(), &self.movable, limit)
             } else {
                 EdgeLimits::default()
             };
-            self.stretch_limits = limits;
         }
         self.edges.begin(&state.x, params.edge_reference);
-        self.forces.clear();
-        self.forces.resize(self.edges.balls.len(), Vector::zeros());
-        self.edge_multipliers.clear();
-        self.edge_multipliers.resize(self.edges.balls.len(), 0.0);
+        if !self.keeps_to_live_edges(scene) {
+            self.forces.clear();
+            self.forces.resize(self.edges.balls.len(), Vector::zeros());
+            self.edge_multipliers.clear();
+            self.edge_multipliers.resize(self.edges.balls.len(), 0.0);
+        }
+        self.proximal.begin(state.x.len());
+        self.touched.reset(state.x.len());
+        self.last_touched.reset(state.x.len());
         self.oscillation.begin(scene);
         self.solver.begin();
     }
 
     fn project(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
+        self.selection.select(scene, state);
         self.set_weights(scene, state);
         self.fill_rows(scene, state, statistics);
         self.solve(scene, state, statistics);
+        self.update_oscillation(scene, state);
         self.store(scene, state);
-        self.oscillation.update(scene, state);
     }
 
     fn residuals(&mut self, scene: &CollisionScene, state: &ResolveState) -> Residuals {
-        Residuals {
-            net_residual: self.net_residual(scene, state),
-            mean_residual: self.mean_residual(scene, state),
-            stretch_to_limit: self.edges.stretch(&state.x).to_limit,
-        }
+        let [net_residual, mean_residual, _] = self.body_residuals(scene, state);
+        Residuals { net_residual, mean_residual, stretch_to_limit: self.edges.stretch(&state.x).to_limit }
     }
 
     fn finish(&mut self, scene: &CollisionScene, state: &ResolveState, statistics: &mut Statistics) {
-        statistics.net_residual_m = self.net_residual(scene, state);
+        [statistics.net_residual_m, _, statistics.stationarity_m] = self.body_residuals(scene, state);
         statistics.edge_colors = self.edges.color_count();
-        statistics.stationarity_m = (0..self.y.len())
-            .filter(|&v| state.is_movable(v))
-            .map(|v| self.residual(scene, state, v).norm())
-            .fold(0.0, f64::max);
         statistics.complementarity_m = self
             .contacts
             .rows
@@ -144,6 +143,27 @@ impl<K: Default> LcpBackward<K> {
 }
 
 impl<K: RowSolver> LcpBackward<K> {
+    /// Whether the solver gets those edges only that act or could come to act.
+    fn keeps_to_live_edges(&self, scene: &CollisionScene) -> bool {
+        scene.params().contact.edge_form == EdgeForm::Ball && self.solver.keeps_to_live_edges()
+    }
+
+    /// Notes which vertices are movable, and the stretch limits; returns whether they differ from those of the
+    /// last call.
+    fn edges_changed(&mut self, scene: &CollisionScene, state: &ResolveState) -> bool {
+        let bodies = 0..scene.model().bodies().len() as u32;
+        let limits = || bodies.clone().map(|body| scene.stretch_limit(body));
+        let prescribed = state.call.prescribed();
+        let changed = !limits().eq(self.stretch_limits.iter().copied())
+            || self.movable.len() != prescribed.len()
+            || self.movable.iter().zip(prescribed).any(|(movable, prescribed)| movable == prescribed);
+        if changed {
+            self.stretch_limits = limits().collect();
+            self.movable = prescribed.iter().map(|p| !p).collect();
+        }
+        changed
+    }
+
     /// Counts the contacts that stick and slide, and finds the largest slip of a sticking one at `state.x`.
     fn report_friction(&self, state: &ResolveState, statistics: &mut Statistics) {
         if self.contacts.friction.is_empty() {
@@ -163,119 +183,119 @@ impl<K: RowSolver> LcpBackward<K> {
         }
     }
 
-    /// Largest net residual of a body [m], see [`Residuals`].
-    fn net_residual(&mut self, scene: &CollisionScene, state: &ResolveState) -> f64 {
-        self.body_residuals.clear();
-        self.body_residuals.resize(scene.model().bodies().len(), (Vector::zeros(), 0.0));
-        for v in (0..self.y.len()).filter(|&v| state.is_movable(v)) {
-            let mass = scene.relative_mass(v);
-            let residual = self.residual(scene, state, v);
-            let (sum, total) = &mut self.body_residuals[scene.model().vertex_body()[v] as usize];
-            *sum += mass * residual;
-            *total += mass;
+    /// Largest net and mean residual of a body [m], see [`Residuals`], and largest residual of a vertex [m].
+    fn body_residuals(&mut self, scene: &CollisionScene, state: &ResolveState) -> [f64; 3] {
+        let Self { y, free, weights, residuals, .. } = self;
+        // The stationarity residual is y0 + m^-1 J^T lambda - x, and J^T lambda = (y - y')/w. Successive vertices
+        // of one body make one entry.
+        residuals.run(y.len(), |range, entries| {
+            for v in range.filter(|&v| state.is_movable(v)) {
+                let (body, mass) = (scene.model().vertex_body()[v], scene.relative_mass(v));
+                let pull = (y[v] - free[v]) / (weights[v] * mass);
+                let residual = state.target[v] + pull - state.x[v];
+                let length = residual.norm();
+                if entries.last().is_none_or(|last| last.body != body) {
+                    let (sum, lengths, largest) = (Vector::zeros(), 0.0, 0.0);
+                    entries.push(BodyResidual { body, mass: 0.0, sum, lengths, largest });
+                }
+                if let Some(entry) = entries.last_mut() {
+                    entry.mass += mass;
+                    entry.sum += mass * residual;
+                    entry.lengths += mass * length;
+                    entry.largest = entry.largest.max(length);
+                }
+            }
+        });
+        let mut bodies = vec![(Vector::zeros(), 0.0, 0.0); scene.model().bodies().len()];
+        let mut largest = 0.0f64;
+        for entry in residuals.results() {
+            let (sum, lengths, mass) = &mut bodies[entry.body as usize];
+            *sum += entry.sum;
+            *lengths += entry.lengths;
+            *mass += entry.mass;
+            largest = largest.max(entry.largest);
         }
-        self.body_residuals
-            .iter()
-            .filter(|(_, mass)| *mass > 0.0)
-            .map(|(r, mass)| r.norm() / mass)
-            .fold(0.0, f64::max)
-    }
-
-    /// Largest mean residual of a body [m], see [`Residuals`].
-    fn mean_residual(&self, scene: &CollisionScene, state: &ResolveState) -> f64 {
-        let mut bodies = vec![(0.0, 0.0); scene.model().bodies().len()];
-        for v in (0..self.y.len()).filter(|&v| state.is_movable(v)) {
-            let mass = scene.relative_mass(v);
-            let (sum, total) = &mut bodies[scene.model().vertex_body()[v] as usize];
-            *sum += mass * self.residual(scene, state, v).norm();
-            *total += mass;
+        let (mut net, mut mean) = (0.0f64, 0.0f64);
+        for (sum, lengths, mass) in bodies.into_iter().filter(|(.., mass)| *mass > 0.0) {
+            net = net.max(sum.norm() / mass);
+            mean = mean.max(lengths / mass);
         }
-        bodies.iter().filter(|(_, mass)| *mass > 0.0).map(|(sum, mass)| sum / mass).fold(0.0, f64::max)
+        [net, mean, largest]
     }
 
-    /// Stationarity residual y0 + m^-1 J^T lambda - x of a movable vertex [m], by J^T lambda = (y - y')/w.
-    fn residual(&self, scene: &CollisionScene, state: &ResolveState, v: usize) -> Vector {
-        let pull = (self.y[v] - self.free[v]) / (self.weights[v] * scene.relative_mass(v));
-        state.target[v] + pull - state.x[v]
-    }
-
-    /// Computes mu from the last multipliers, then w and y'.
+    /// Computes mu from the last multipliers, then w and y', and sets y = y'.
     fn set_weights(&mut self, scene: &CollisionScene, state: &ResolveState) {
-        self.proximal.clear();
-        self.proximal.resize(state.x.len(), 0.0);
-        let (forces, scalars) = (&self.forces, &self.edge_multipliers);
-        proximal::add_edges(&mut self.proximal, scene, state, &self.edges.balls, forces, scalars);
-        proximal::add_contacts(&mut self.proximal, scene, state);
-        self.oscillation.apply(&mut self.proximal);
-        self.weights.clear();
-        self.free.clear();
-        for v in 0..state.x.len() {
+        std::mem::swap(&mut self.touched, &mut self.last_touched);
+        self.touched.clear();
+        if state.step == 0 {
+            self.set_all_weights(scene, state);
+        } else {
+            let changed = self.last_touched.members().iter().chain(self.proximal.damped());
+            for v in changed.map(|&v| v as usize) {
+                self.weights[v] = if state.is_movable(v) { 1.0 / scene.relative_mass(v) } else { 0.0 };
+                self.free[v] = state.target[v].coords;
+                self.y[v] = self.free[v];
+            }
+        }
+        self.add_proximal_weights(scene, state);
+        for &v in self.proximal.damped() {
+            let mu = self.proximal.of(v);
+            let v = v as usize;
             let mass = scene.relative_mass(v);
-            let mu = self.proximal[v].min(proximal::MAX_PROXIMAL_MASS * mass);
-            if state.is_movable(v) {
+            let mu = (mu * self.oscillation.factor(v)).min(MAX_PROXIMAL_MASS * mass);
+            if mu > 0.0 && state.is_movable(v) {
                 let weight = 1.0 / (mass + mu);
-                self.weights.push(weight);
-                self.free.push(weight * (mass * state.target[v].coords + mu * state.x[v].coords));
-            } else {
-                self.weights.push(0.0);
-                self.free.push(state.target[v].coords);
+                self.weights[v] = weight;
+                self.free[v] = weight * (mass * state.target[v].coords + mu * state.x[v].coords);
+                self.y[v] = self.free[v];
             }
         }
     }
 
-    /// Builds the rows of the pairs in range, with their multipliers of the last step.
+    /// The same for all vertices without a proximal weight, in the first step of a call.
+    fn set_all_weights(&mut self, scene: &CollisionScene, state: &ResolveState) {
+        let count = state.x.len();
+        self.weights.resize(count, 0.0);
+        self.free.resize(count, Vector::zeros());
+        chunks::for_each(&mut self.weights, |v, weight| {
+            *weight = if state.is_movable(v) { 1.0 / scene.relative_mass(v) } else { 0.0 };
+        });
+        chunks::for_each(&mut self.free, |v, free| *free = state.target[v].coords);
+        self.y.clone_from(&self.free);
+        if self.keeps_to_live_edges(scene) {
+            self.live.begin(&self.edges, &state.target);
+        }
+    }
+
+    fn add_proximal_weights(&mut self, scene: &CollisionScene, state: &ResolveState) {
+        self.proximal.clear();
+        let balls = &self.edges.balls;
+        if self.keeps_to_live_edges(scene) {
+            let acting = self.live.acting().iter();
+            let edges = acting.map(|(edge, force)| (&balls[*edge as usize], force.norm()));
+            self.proximal.add_edges(scene, state, edges);
+        } else if scene.params().contact.edge_form == EdgeForm::Ball {
+            let edges = balls.iter().zip(&self.forces).map(|(ball, force)| (ball, force.norm()));
+            self.proximal.add_edges(scene, state, edges);
+        } else {
+            let edges = balls.iter().zip(self.edge_multipliers.iter().copied());
+            self.proximal.add_edges(scene, state, edges);
+        }
+        self.proximal.add_contacts(scene, state, &self.selection.pressing);
+    }
+
+    /// Builds the rows of the selected pairs, with their multipliers of the last step.
     fn fill_rows(&mut self, scene: &CollisionScene, state: &ResolveState, statistics: &mut Statistics) {
         let params = &scene.params().contact;
         let contacts = &state.contacts;
-        let active = params.active;
-        let (uniform, range) = (scene.spacing().is_uniform(), scene.lengths().contact_range);
-        let in_range = |p: usize| {
-            let range = if uniform {
-                range
-            } else {
-                let pair = &contacts.pairs.pairs()[p];
-                scene.spacing().contact_range(scene.model(), contacts.pairs.kind(p), pair)
-            };
-            contacts.separations[p].distance <= range
-        };
-        self.desired.clone_from(&contacts.desired);
-        self.has_row.clear();
-        self.has_row.resize(contacts.desired.len(), false);
-        for kind in PairKind::ALL {
-            for p in contacts.pairs.range(kind).filter(|&p| in_range(p)) {
-                let (separation, desired) = (&contacts.separations[p], &mut self.desired[p]);
-                let contact = !params.contacts_only || {
-                    let features = scene.features(kind, &contacts.pairs.pairs()[p], separation);
-                    scene.is_contact(features, &separation.normal, &state.x, CONE_TOLERANCE)
-                };
-                let close = separation.distance < CLOSE * *desired || contacts.multipliers[p] > 0.0;
-                self.has_row[p] = contact || close;
-                if !contact {
-                    *desired = (NON_CONTACT_SHARE * separation.distance)
-                        .clamp(MIN_NON_CONTACT_DISTANCE * *desired, *desired);
-                }
-            }
-        }
-        let (has_row, desired) = (&self.has_row, &self.desired);
-        let only_active = scene.params().solver.backward.active_rows;
         self.contacts.fill(
             params.form,
             &contacts.pairs,
             &contacts.separations,
-            desired,
             &state.x,
             &self.movable,
-            |p, kind| {
-                has_row[p]
-                    && (!only_active || contacts.multipliers[p] > 0.0 || {
-                        let vertices = &contacts.pairs.pairs()[p].vertices;
-                        let gap = predicted_gap(kind, vertices, &contacts.separations[p], &state.x, &state.y);
-                        gap < active * desired[p]
-                    })
-            },
+            &self.selection.selected,
         );
-        self.row_starts.clear();
-        self.row_starts.extend_from_slice(self.contacts.color_starts());
         self.lambda.clear();
         self.lambda.extend(self.contacts.pair.iter().map(|&p| contacts.multipliers[p as usize]));
         self.contacts.fill_friction(
@@ -290,31 +310,56 @@ impl<K: RowSolver> LcpBackward<K> {
             TangentVector::new(row.tangents[0].dot(&kept), row.tangents[1].dot(&kept))
         }));
         let contact_rows = self.contacts.rows.len();
-        if params.edge_form == EdgeForm::Linear {
-            self.edges.linearize(&state.x, &mut self.contacts.rows);
-            if !self.contacts.friction_of.is_empty() {
-                self.contacts.friction_of.resize(self.contacts.rows.len(), lcp::LcpProblem::NO_FRICTION);
-            }
-            self.lambda.extend_from_slice(&self.edge_multipliers);
-            let starts = self.edges.color_starts().iter().skip(1);
-            if self.row_starts.is_empty() {
-                self.row_starts.push(0);
-            }
-            self.row_starts.extend(starts.map(|s| s + contact_rows as u32));
-        }
         statistics.contact_rows = contact_rows;
         statistics.friction_rows = self.contacts.friction.len();
         statistics.contact_colors = self.contacts.color_count();
         statistics.edge_rows = self.edges.balls.len();
-        if only_active {
-            statistics.skipped.rows +=
-                (0..contacts.pairs.len()).filter(|&p| in_range(p)).count() - contact_rows;
+        if scene.params().solver.backward.active_rows {
+            statistics.skipped.rows += self.selection.in_range - contact_rows;
         }
+        if params.edge_form == EdgeForm::Linear {
+            self.append_linear_edges(state);
+        }
+    }
+
+    /// Appends the linearized rows of all edges, in color order, and lists the colors and clusters of all rows.
+    fn append_linear_edges(&mut self, state: &ResolveState) {
+        /// Rows of a cluster. The rows of one color are independent, so any number will do.
+        const CLUSTER: usize = 128;
+        let contact_rows = self.contacts.rows.len();
+        let contacts = self.contacts.schedule();
+        self.clusters.clear();
+        self.colors.clear();
+        if contacts.clusters.is_empty() {
+            // One thread sweeps the contacts.
+            self.colors.extend([0, 1]);
+            self.clusters.extend([0, contact_rows as u32]);
+        } else {
+            self.colors.extend_from_slice(contacts.starts);
+            self.clusters.extend_from_slice(contacts.clusters);
+        }
+        for ends in self.edges.color_starts().windows(2) {
+            for start in (ends[0]..ends[1]).step_by(CLUSTER) {
+                let end = ends[1].min(start + CLUSTER as u32);
+                self.clusters.push(end + contact_rows as u32);
+            }
+            self.colors.push(self.clusters.len() as u32 - 1);
+        }
+        self.edges.linearize(&state.x, &mut self.contacts.rows);
+        if !self.contacts.friction_of.is_empty() {
+            self.contacts.friction_of.resize(self.contacts.rows.len(), lcp::LcpProblem::NO_FRICTION);
+        }
+        self.lambda.extend_from_slice(&self.edge_multipliers);
     }
 
     /// Improves the multipliers, and y with them.
     fn solve(&mut self, scene: &CollisionScene, state: &ResolveState, statistics: &mut Statistics) {
-        let solved = self.solve_rows(scene, state);
+        let solved = lcp::prepare_rows(&mut self.contacts.rows, &self.weights)
+            .and_then(|()| lcp::prepare_friction(&mut self.contacts.friction, &self.weights))
+            .and_then(|()| match self.keeps_to_live_edges(scene) {
+                true => self.solve_live(scene, state),
+                false => self.solve_all(scene, state),
+            });
         // Rows and schedules are built from checked parts. A refusal is an error of this crate.
         debug_assert!(solved.is_ok(), "{solved:?}");
         if let Err(error) = solved {
@@ -322,32 +367,54 @@ impl<K: RowSolver> LcpBackward<K> {
             self.y.clone_from(&self.free);
         }
         statistics.active_rows = self.lambda.iter().filter(|l| **l > 0.0).count()
+            + self.live.acting().len()
             + self.forces.iter().filter(|f| **f != Vector::zeros()).count();
     }
 
-    fn solve_rows(&mut self, scene: &CollisionScene, state: &ResolveState) -> Result<(), lcp::LcpError> {
-        let balls: &[lcp::DistanceLimit] = match scene.params().contact.edge_form {
-            EdgeForm::Ball => &self.edges.balls,
-            EdgeForm::Linear => &[],
+    /// Solves for the contacts and for those edges that act or could come to act.
+    fn solve_live(&mut self, scene: &CollisionScene, state: &ResolveState) -> Result<(), lcp::LcpError> {
+        let parts = LiveParts {
+            edges: &self.edges,
+            live: &mut self.live,
+            touched: &mut self.touched,
+            spread: &mut self.spread,
+            damped: self.proximal.damped(),
+            free: &self.free,
         };
-        let ball_starts = if balls.is_empty() { &[][..] } else { self.edges.color_starts() };
-        self.y.clone_from(&self.free);
-        lcp::prepare_rows(&mut self.contacts.rows, &self.weights)?;
-        lcp::prepare_friction(&mut self.contacts.friction, &self.weights)?;
+        let (weights, y) = (&self.weights, &mut self.y);
+        let (lambda, friction) = (&mut self.lambda, &mut self.friction);
+        let mut rows = LiveRows::new(scene, state, weights, &self.contacts, parts, y, lambda, friction)?;
+        let solved = self.solver.solve_live(&mut rows);
+        rows.finish();
+        solved
+    }
+
+    /// Solves for all rows and edges. All vertices are touched then.
+    fn solve_all(&mut self, scene: &CollisionScene, state: &ResolveState) -> Result<(), lcp::LcpError> {
+        let is_linear = scene.params().contact.edge_form == EdgeForm::Linear;
+        let (balls, ball_starts): (&[lcp::DistanceLimit], &[u32]) =
+            if is_linear { (&[], &[]) } else { (&self.edges.balls, self.edges.color_starts()) };
+        let schedule = if is_linear {
+            Schedule::clustered(&self.colors, &self.clusters)
+        } else {
+            self.contacts.schedule()
+        };
         let mut system = lcp::LcpProblem::new(
             &self.weights,
-            ConstraintSet::new(&self.contacts.rows, Schedule::colored(&self.row_starts)),
+            ConstraintSet::new(&self.contacts.rows, schedule),
             ConstraintSet::new(balls, Schedule::colored(ball_starts)),
             ConstraintSet::serial(&self.contacts.friction),
         )?;
         if !self.contacts.friction.is_empty() {
             system = system.attach_friction(&self.contacts.friction_of)?;
         }
-        let forces = if balls.is_empty() { &mut [][..] } else { &mut self.forces[..] };
+        (0..self.y.len() as u32).for_each(|v| {
+            self.touched.insert(v);
+        });
         let mut multipliers = lcp::LcpState {
             y: &mut self.y,
             lambda: &mut self.lambda,
-            limit_multipliers: forces,
+            limit_multipliers: if is_linear { &mut [] } else { &mut self.forces },
             friction: &mut self.friction,
         };
         lcp::apply_multipliers(&system, &mut multipliers)?;
@@ -355,25 +422,38 @@ impl<K: RowSolver> LcpBackward<K> {
         self.solver.solve(&rows, &mut multipliers)
     }
 
+    fn update_oscillation(&mut self, scene: &CollisionScene, state: &ResolveState) {
+        let (touched, last) = (&self.touched, &self.last_touched);
+        let only_last = last.members().iter().filter(|&&v| !touched.contains(v));
+        let changed = touched.members().iter().chain(only_last).copied();
+        let is_changed = |v| touched.contains(v) || last.contains(v);
+        self.oscillation.update(scene, state, &self.y, changed, is_changed);
+    }
+
     /// Stores y and the multipliers in the state.
     fn store(&mut self, scene: &CollisionScene, state: &mut ResolveState) {
-        for (target, y) in state.y.iter_mut().zip(&self.y) {
-            target.coords = *y;
+        // All of y, in case that something changed `state.y` since the last step.
+        let y = &self.y;
+        chunks::for_each(&mut state.y, |v, stored| stored.coords = y[v]);
+        let contacts = &mut state.contacts;
+        for &p in &self.selection.pressing {
+            contacts.multipliers[p as usize] = 0.0;
         }
-        state.contacts.multipliers.iter_mut().for_each(|m| *m = 0.0);
-        let contact_rows = self.contacts.pair.len();
         for (&p, &lambda) in self.contacts.pair.iter().zip(&self.lambda) {
-            state.contacts.multipliers[p as usize] = lambda;
+            contacts.multipliers[p as usize] = lambda;
         }
-        if !state.contacts.friction_multipliers.is_empty() {
-            state.contacts.friction_multipliers.iter_mut().for_each(|m| *m = Vector::zeros());
+        if !contacts.friction_multipliers.is_empty() {
+            // A pair without a multiplier has no friction, so only these can have had some.
+            for &p in &self.selection.pressing {
+                contacts.friction_multipliers[p as usize] = Vector::zeros();
+            }
             for (row, &multiplier) in self.contacts.friction.iter().zip(&self.friction) {
                 let pair = self.contacts.pair[row.normal as usize] as usize;
-                state.contacts.friction_multipliers[pair] = row.direction(multiplier);
+                contacts.friction_multipliers[pair] = row.direction(multiplier);
             }
         }
         if scene.params().contact.edge_form == EdgeForm::Linear {
-            self.edge_multipliers.copy_from_slice(&self.lambda[contact_rows..]);
+            self.edge_multipliers.copy_from_slice(&self.lambda[self.contacts.pair.len()..]);
         }
     }
 }

@@ -1,7 +1,9 @@
 //! The coarse correction of the backward step: one factor for all multipliers.
 
+use crate::chunks::{self, Chunks};
 use bowknot_geometry::Vector;
 use bowknot_lcp as lcp;
+use std::ops::Range;
 
 /// Range of the factor. The linear model that it comes from is not valid beyond.
 const MIN_FACTOR: f64 = 0.3;
@@ -31,69 +33,114 @@ pub(crate) fn is_sliding(row: &lcp::FrictionRow, normal: f64, multiplier: lcp::T
 /// In a call it multiplies the multipliers by a bounded factor in all. Where rows contradict each other, such
 /// as between pins too far apart, the dual has no maximum. The growing multipliers of such rows would raise
 /// all others, those of other bodies included.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 pub(crate) struct CoarseCorrection {
     /// The factor by which multipliers may still grow. It increases when they shrink.
     growth_left: f64,
+    sums: Chunks<f64>,
 }
 
 impl Default for CoarseCorrection {
     fn default() -> Self {
-        Self { growth_left: MAX_GROWTH }
+        Self { growth_left: MAX_GROWTH, sums: Chunks::default() }
     }
 }
 
 impl CoarseCorrection {
     /// Starts a call.
     pub fn begin(&mut self) {
-        *self = Self::default();
+        self.growth_left = MAX_GROWTH;
     }
 
-    /// Scales the multipliers, and y with them.
-    pub fn apply(&mut self, system: &lcp::LcpProblem<'_>, free: &[Vector], state: &mut lcp::LcpState<'_>) {
-        let best = best_factor(system, free, state);
+    /// Scales the multipliers, and y with them. Vertices that are not `touched`, if that is given, have y = y'.
+    pub fn apply(
+        &mut self,
+        system: &lcp::LcpProblem<'_>,
+        free: &[Vector],
+        touched: Option<&[u32]>,
+        state: &mut lcp::LcpState<'_>,
+    ) {
+        // From a good share on, all vertices in order take less time.
+        let touched = touched.filter(|touched| 3 * touched.len() < free.len());
+        let best = self.best_factor(system, free, touched, state);
         if !best.is_finite() {
             return;
         }
         let s = best.clamp(MIN_FACTOR, MAX_FACTOR.min(self.growth_left).max(1.0));
         self.growth_left /= s;
-        state.lambda.iter_mut().for_each(|l| *l *= s);
-        state.limit_multipliers.iter_mut().for_each(|f| *f *= s);
-        state.friction.iter_mut().for_each(|f| *f *= s);
-        for ((y, free), &weight) in state.y.iter_mut().zip(free).zip(system.weights()) {
-            if weight > 0.0 {
-                *y = free + s * (*y - free);
+        chunks::for_each(state.lambda, |_, l| *l *= s);
+        chunks::for_each(state.limit_multipliers, |_, f| *f *= s);
+        chunks::for_each(state.friction, |_, f| *f *= s);
+        let weights = system.weights();
+        let scale = |v: usize, y: &mut Vector| {
+            if weights[v] > 0.0 {
+                *y = free[v] + s * (*y - free[v]);
             }
+        };
+        match touched {
+            None => chunks::for_each(state.y, scale),
+            Some(touched) => touched.iter().for_each(|&v| scale(v as usize, &mut state.y[v as usize])),
         }
+    }
+
+    /// The maximizer. It is not finite if no multiplier acts.
+    fn best_factor(
+        &mut self,
+        system: &lcp::LcpProblem<'_>,
+        free: &[Vector],
+        touched: Option<&[u32]>,
+        state: &lcp::LcpState<'_>,
+    ) -> f64 {
+        let (rows, limits) = (system.rows().rows.len(), system.distance_limits().rows.len());
+        let slack = self.sums.sum(rows, |range| slack_of_rows(system, state, range))
+            + self.sums.sum(limits, |range| slack_of_limits(system, state, range));
+        let energy = |v: usize| {
+            let weight = system.weights()[v];
+            if weight > 0.0 { (state.y[v] - free[v]).norm_squared() / weight } else { 0.0 }
+        };
+        let energy = match touched {
+            None => self.sums.sum(free.len(), |range| range.map(energy).sum()),
+            Some(touched) => {
+                self.sums.sum(touched.len(), |range| touched[range].iter().map(|&v| energy(v as usize)).sum())
+            }
+        };
+        1.0 - slack / energy
     }
 }
 
-/// The maximizer. It is not finite if no multiplier acts.
-fn best_factor(system: &lcp::LcpProblem<'_>, free: &[Vector], state: &lcp::LcpState<'_>) -> f64 {
+/// Sum of lambda c(y) over rows, and of lambda_t . slip over the sticking ones. A row without a multiplier has no
+/// friction either.
+fn slack_of_rows(system: &lcp::LcpProblem<'_>, state: &lcp::LcpState<'_>, range: Range<usize>) -> f64 {
+    let (rows, friction) = (system.rows().rows, system.friction().rows);
     let mut slack = 0.0;
-    for (row, &lambda) in system.rows().rows.iter().zip(&*state.lambda) {
-        if lambda > 0.0 {
-            slack += lambda * row.value(state.y);
+    for k in range {
+        let lambda = state.lambda[k];
+        if lambda <= 0.0 {
+            continue;
         }
-    }
-    for (row, &multiplier) in system.friction().rows.iter().zip(&*state.friction) {
-        if multiplier != lcp::TangentVector::zeros()
-            && !is_sliding(row, state.lambda[row.normal as usize], multiplier)
+        slack += lambda * rows[k].value(state.y);
+        if let Some(&f) = system.attached().get(k)
+            && f != lcp::LcpProblem::NO_FRICTION
         {
-            slack += multiplier.dot(&row.slip(state.y));
+            let (row, multiplier) = (&friction[f as usize], state.friction[f as usize]);
+            if multiplier != lcp::TangentVector::zeros() && !is_sliding(row, lambda, multiplier) {
+                slack += multiplier.dot(&row.slip(state.y));
+            }
         }
     }
-    for (ball, force) in system.distance_limits().rows.iter().zip(&*state.limit_multipliers) {
+    slack
+}
+
+/// Sum of L |f| - f . (y_a - y_b) over distance limits.
+fn slack_of_limits(system: &lcp::LcpProblem<'_>, state: &lcp::LcpState<'_>, range: Range<usize>) -> f64 {
+    let mut slack = 0.0;
+    for (limit, force) in
+        system.distance_limits().rows[range.clone()].iter().zip(&state.limit_multipliers[range])
+    {
         if *force != Vector::zeros() {
-            let [a, b] = ball.vertices.map(|v| v as usize);
-            slack += ball.limit * force.norm() - force.dot(&(state.y[a] - state.y[b]));
+            let [a, b] = limit.vertices.map(|v| v as usize);
+            slack += limit.limit * force.norm() - force.dot(&(state.y[a] - state.y[b]));
         }
     }
-    let mut energy = 0.0;
-    for ((y, free), &weight) in state.y.iter().zip(free).zip(system.weights()) {
-        if weight > 0.0 {
-            energy += (y - free).norm_squared() / weight;
-        }
-    }
-    1.0 - slack / energy
+    slack
 }

@@ -5,10 +5,10 @@
 //! two crossing edges define the normal. It is the distance d if a vertex or one of two parallel edges does,
 //! because grains and hairs roll about each other; with h in place of d they do not come to rest.
 
+use crate::index_set::IndexSet;
 use crate::scene::CollisionScene;
 use crate::state::ResolveState;
-use bowknot_constraints::EdgeForm;
-use bowknot_geometry::{PairKind, Point, Separation, Vector};
+use bowknot_geometry::{PairKind, Point, Separation};
 use bowknot_lcp::DistanceLimit;
 
 /// Largest proximal weight of a vertex, in its mass.
@@ -21,55 +21,78 @@ pub(crate) const MAX_PROXIMAL_MASS: f64 = 100.0;
 /// A closest point is at a vertex if the other weights of its side are at most this.
 const AT_VERTEX: f64 = 1e-6;
 
-/// Adds the curvature of the edge limits to `proximal`, one entry per vertex [1]. Multipliers [m] are
-/// `forces` in the ball form and `scalars` in the linear form.
-pub(crate) fn add_edges(
-    proximal: &mut [f64],
-    scene: &CollisionScene,
-    state: &ResolveState,
-    balls: &[DistanceLimit],
-    forces: &[Vector],
-    scalars: &[f64],
-) {
-    let strength = scene.params().solver.backward.edge_proximal;
-    if strength == 0.0 {
-        return;
-    }
-    for (k, ball) in balls.iter().enumerate() {
-        let lambda = match scene.params().contact.edge_form {
-            EdgeForm::Ball => forces[k].norm(),
-            EdgeForm::Linear => scalars[k],
-        };
-        if lambda > 0.0 {
-            let [a, b] = ball.vertices.map(|v| v as usize);
-            let length = (state.x[a] - state.x[b]).norm().max(f64::MIN_POSITIVE);
-            let mu = strength * lambda / length;
-            proximal[a] += mu;
-            proximal[b] += mu;
-        }
-    }
+/// Proximal weights mu of the vertices [1]: of a few, which are listed.
+#[derive(Debug, Default)]
+pub(crate) struct ProximalWeights {
+    weights: Vec<f64>,
+    /// The vertices with a weight.
+    damped: IndexSet,
 }
 
-/// Adds the curvature of the contacts.
-pub(crate) fn add_contacts(proximal: &mut [f64], scene: &CollisionScene, state: &ResolveState) {
-    let strength = scene.params().solver.backward.contact_proximal;
-    if strength == 0.0 {
-        return;
+impl ProximalWeights {
+    /// Starts a call with so many vertices.
+    pub fn begin(&mut self, vertices: usize) {
+        self.clear();
+        self.damped.reset(vertices);
+        self.weights.resize(vertices, 0.0);
     }
-    let contacts = &state.contacts;
-    for kind in PairKind::ALL {
-        for p in contacts.pairs.range(kind) {
-            let lambda = contacts.multipliers[p];
-            if lambda == 0.0 {
-                continue;
-            }
+
+    /// Makes all weights 0.
+    pub fn clear(&mut self) {
+        self.damped.members().iter().for_each(|&v| self.weights[v as usize] = 0.0);
+        self.damped.clear();
+    }
+
+    /// The vertices with a weight, and perhaps some more.
+    pub fn damped(&self) -> &[u32] {
+        self.damped.members()
+    }
+
+    /// The weight of a vertex [1].
+    pub fn of(&self, vertex: u32) -> f64 {
+        self.weights[vertex as usize]
+    }
+
+    fn add(&mut self, vertex: u32, weight: f64) {
+        self.damped.insert(vertex);
+        self.weights[vertex as usize] += weight;
+    }
+
+    /// Adds the curvature of edge limits, each with its scalar multiplier [m].
+    pub fn add_edges<'a>(
+        &mut self,
+        scene: &CollisionScene,
+        state: &ResolveState,
+        edges: impl Iterator<Item = (&'a DistanceLimit, f64)>,
+    ) {
+        let strength = scene.params().solver.backward.edge_proximal;
+        if strength == 0.0 {
+            return;
+        }
+        for (ball, lambda) in edges.filter(|(_, lambda)| *lambda > 0.0) {
+            let [a, b] = ball.vertices;
+            let length = (state.x[a as usize] - state.x[b as usize]).norm().max(f64::MIN_POSITIVE);
+            let mu = strength * lambda / length;
+            self.add(a, mu);
+            self.add(b, mu);
+        }
+    }
+
+    /// Adds the curvature of the contacts with a multiplier, `pressing`.
+    pub fn add_contacts(&mut self, scene: &CollisionScene, state: &ResolveState, pressing: &[u32]) {
+        let strength = scene.params().solver.backward.contact_proximal;
+        if strength == 0.0 {
+            return;
+        }
+        let contacts = &state.contacts;
+        for p in pressing.iter().map(|&p| p as usize) {
+            let (kind, lambda) = (contacts.pairs.kind(p), contacts.multipliers[p]);
             let (vertices, separation) = (&contacts.pairs.pairs()[p].vertices, &contacts.separations[p]);
             let origin = origin(kind, separation, vertices, &state.x);
             let distance = separation.distance.max(contacts.desired[p]);
             for k in 0..kind.vertex_count() {
-                let v = vertices[k] as usize;
-                let radius = curvature_radius(origin, distance, scene.local_edge(v));
-                proximal[v] += strength * lambda * separation.weights[k] / radius;
+                let radius = curvature_radius(origin, distance, scene.local_edge(vertices[k] as usize));
+                self.add(vertices[k], strength * lambda * separation.weights[k] / radius);
             }
         }
     }

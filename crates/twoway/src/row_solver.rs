@@ -2,6 +2,7 @@
 //! everything else.
 
 use crate::coarse::CoarseCorrection;
+use crate::live::LiveRows;
 use crate::scene::CollisionScene;
 use crate::state::ResolveState;
 use bowknot_constraints::EdgeLimits;
@@ -40,12 +41,28 @@ pub trait RowSolver: Send {
     /// # Errors
     /// The solver refuses the rows; y' is then used as the target.
     fn solve(&mut self, rows: &RowSystem<'_>, state: &mut lcp::LcpState<'_>) -> Result<(), lcp::LcpError>;
+
+    /// Whether the solver implements [`Self::solve_live`], which then replaces [`Self::solve`] where edges have
+    /// the ball form. Default false.
+    fn keeps_to_live_edges(&self) -> bool {
+        false
+    }
+
+    /// The same, for the contact rows and those edges only that act or could come to act. The cost of a step is
+    /// then that of what acts.
+    ///
+    /// # Errors
+    /// As [`Self::solve`].
+    fn solve_live(&mut self, _rows: &mut LiveRows<'_>) -> Result<(), lcp::LcpError> {
+        Ok(())
+    }
 }
 
 /// Projected Gauss-Seidel by colors, with the coarse correction and the polishing that
 /// [`crate::BackwardParams`] ask for: the default [`RowSolver`].
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Debug, Default)]
 pub struct ColoredSweeps {
+    solver: lcp::GaussSeidel,
     coarse: CoarseCorrection,
 }
 
@@ -55,33 +72,60 @@ impl RowSolver for ColoredSweeps {
     }
 
     fn solve(&mut self, rows: &RowSystem<'_>, state: &mut lcp::LcpState<'_>) -> Result<(), lcp::LcpError> {
-        let (system, scene) = (&rows.system, rows.scene);
-        let params = &scene.params().solver.backward;
-        let one = lcp::LcpParams { max_sweeps: 1, ..lcp::LcpParams::default() };
-        let mut batch = |state: &mut lcp::LcpState<'_>, sweeps: usize| -> Result<(), lcp::LcpError> {
-            if params.coarse_correction {
-                for _ in 0..sweeps {
-                    self.coarse.apply(system, rows.free, state);
-                    lcp::solve_colored(system, state, &one)?;
+        let Self { solver, coarse } = self;
+        let corrects = rows.scene.params().solver.backward.coarse_correction;
+        let batch = |state: &mut lcp::LcpState<'_>, sweeps: usize| {
+            (0..sweeps).try_for_each(|_| {
+                if corrects {
+                    coarse.apply(&rows.system, rows.free, None, state);
                 }
-            } else {
-                let all = lcp::LcpParams { max_sweeps: sweeps as u32, ..one };
-                lcp::solve_colored(system, state, &all)?;
-            }
-            Ok(())
+                solver.sweep(&rows.system, state, &lcp::LcpParams::default())
+            })
         };
-        batch(state, params.sweeps)?;
-        if rows.state.remaining < params.polish_distance * scene.lengths().edge {
-            let allowed = 1.0 + 0.5 * scene.params().solver.stop.stretch_tolerance;
-            let mut sweeps = params.sweeps;
-            while sweeps < params.polish_sweeps && stretch(rows.edges, state.y) > allowed {
-                let more = POLISH_BATCH.min(params.polish_sweeps - sweeps);
-                batch(state, more)?;
-                sweeps += more;
-            }
-        }
-        Ok(())
+        sweep_and_polish(rows.scene, rows.state, state, batch, |state| stretch(rows.edges, state.y))
     }
+
+    fn keeps_to_live_edges(&self) -> bool {
+        true
+    }
+
+    fn solve_live(&mut self, rows: &mut LiveRows<'_>) -> Result<(), lcp::LcpError> {
+        let Self { solver, coarse } = self;
+        let (scene, state) = (rows.scene, rows.state);
+        let corrects = scene.params().solver.backward.coarse_correction;
+        let batch = |rows: &mut LiveRows<'_>, sweeps: usize| {
+            rows.sweep(sweeps, |live, state| {
+                if corrects {
+                    coarse.apply(&live.system, live.free, Some(live.touched), state);
+                }
+                solver.sweep(&live.system, state, &lcp::LcpParams::default())
+            })
+        };
+        sweep_and_polish(scene, state, rows, batch, |rows| rows.stretch())
+    }
+}
+
+/// Makes the sweeps that the parameters ask for by calls of `batch`, and more of them while x is near to y and
+/// the edges at y are too long.
+fn sweep_and_polish<R>(
+    scene: &CollisionScene,
+    state: &ResolveState,
+    rows: &mut R,
+    mut batch: impl FnMut(&mut R, usize) -> Result<(), lcp::LcpError>,
+    stretch: impl Fn(&R) -> f64,
+) -> Result<(), lcp::LcpError> {
+    let params = &scene.params().solver.backward;
+    batch(rows, params.sweeps)?;
+    if state.remaining < params.polish_distance * scene.lengths().edge {
+        let allowed = 1.0 + 0.5 * scene.params().solver.stop.stretch_tolerance;
+        let mut sweeps = params.sweeps;
+        while sweeps < params.polish_sweeps && stretch(rows) > allowed {
+            let more = POLISH_BATCH.min(params.polish_sweeps - sweeps);
+            batch(rows, more)?;
+            sweeps += more;
+        }
+    }
+    Ok(())
 }
 
 fn stretch(edges: &EdgeLimits, y: &[Vector]) -> f64 {

@@ -1,5 +1,6 @@
 //! Tests of the whole two-way loop: bodies, friction, obstacles, calls.
 
+mod backward;
 mod bodies;
 mod common;
 mod flight;
