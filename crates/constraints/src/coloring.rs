@@ -85,33 +85,6 @@ impl Coloring {
         }
     }
 
-    /// Colors clusters of rows as wholes: cluster k has the rows `k * length..(k + 1) * length`, the last one
-    /// may be shorter. Clusters that share a movable vertex get different colors; [`Self::order`] and
-    /// [`Self::starts`] then name clusters. Returns the number of clusters.
-    ///
-    /// # Panics
-    /// If `length` is 0.
-    pub fn clusters<I: IntoIterator<Item = u32>>(
-        &mut self,
-        vertex_count: usize,
-        row_count: usize,
-        length: usize,
-        vertices: impl Fn(usize) -> I,
-    ) -> usize {
-        let count = row_count.div_ceil(length);
-        self.first_fit(vertex_count, count, |cluster| {
-            (cluster * length..row_count.min((cluster + 1) * length)).flat_map(&vertices)
-        });
-        count
-    }
-
-    /// Removes all rows.
-    pub fn clear(&mut self) {
-        self.colors.clear();
-        self.order.clear();
-        self.starts.clear();
-    }
-
     /// Rows in color order.
     pub fn order(&self) -> &[u32] {
         &self.order

@@ -45,9 +45,8 @@ pub struct LcpBackward<K = ColoredSweeps> {
     edge_multipliers: Vec<f64>,
     /// Contact rows, followed by the rows of the edges in the linear form.
     contacts: ContactRows,
-    /// Colors and clusters of all rows (linear form).
+    /// Colors of all rows (linear form).
     colors: Vec<u32>,
-    clusters: Vec<u32>,
     lambda: Vec<f64>,
     /// Multipliers of the friction rows along their tangents.
     friction: Vec<TangentVector>,
@@ -322,29 +321,15 @@ impl<K: RowSolver> LcpBackward<K> {
         }
     }
 
-    /// Appends the linearized rows of all edges, in color order, and lists the colors and clusters of all rows.
+    /// Appends the linearized rows of all edges, in color order, and lists the colors of all rows.
     fn append_linear_edges(&mut self, state: &ResolveState) {
-        /// Rows of a cluster. The rows of one color are independent, so any number will do.
-        const CLUSTER: usize = 128;
-        let contact_rows = self.contacts.rows.len();
-        let contacts = self.contacts.schedule();
-        self.clusters.clear();
+        let contact_rows = self.contacts.rows.len() as u32;
         self.colors.clear();
-        if contacts.clusters.is_empty() {
-            // One thread sweeps the contacts.
-            self.colors.extend([0, 1]);
-            self.clusters.extend([0, contact_rows as u32]);
-        } else {
-            self.colors.extend_from_slice(contacts.starts);
-            self.clusters.extend_from_slice(contacts.clusters);
+        self.colors.extend_from_slice(self.contacts.schedule().starts);
+        if self.colors.is_empty() {
+            self.colors.push(0);
         }
-        for ends in self.edges.color_starts().windows(2) {
-            for start in (ends[0]..ends[1]).step_by(CLUSTER) {
-                let end = ends[1].min(start + CLUSTER as u32);
-                self.clusters.push(end + contact_rows as u32);
-            }
-            self.colors.push(self.clusters.len() as u32 - 1);
-        }
+        self.colors.extend(self.edges.color_starts().iter().skip(1).map(|start| start + contact_rows));
         self.edges.linearize(&state.x, &mut self.contacts.rows);
         if !self.contacts.friction_of.is_empty() {
             self.contacts.friction_of.resize(self.contacts.rows.len(), lcp::LcpProblem::NO_FRICTION);
@@ -394,11 +379,7 @@ impl<K: RowSolver> LcpBackward<K> {
         let is_linear = scene.params().contact.edge_form == EdgeForm::Linear;
         let (balls, ball_starts): (&[lcp::DistanceLimit], &[u32]) =
             if is_linear { (&[], &[]) } else { (&self.edges.balls, self.edges.color_starts()) };
-        let schedule = if is_linear {
-            Schedule::clustered(&self.colors, &self.clusters)
-        } else {
-            self.contacts.schedule()
-        };
+        let schedule = if is_linear { Schedule::colored(&self.colors) } else { self.contacts.schedule() };
         let mut system = lcp::LcpProblem::new(
             &self.weights,
             ConstraintSet::new(&self.contacts.rows, schedule),

@@ -37,24 +37,3 @@ fn rows_without_movable_vertices_and_no_rows_are_fine() {
     assert_eq!(check(&[vec![], vec![], vec![3]], 4), 1);
     assert_eq!(check(&[], 0), 0);
 }
-
-#[test]
-fn clusters_of_a_path_need_two_colors_and_share_no_vertex_within_one() {
-    let rows: Vec<[u32; 2]> = (0..1000).map(|i| [i, i + 1]).collect();
-    let mut coloring = Coloring::default();
-    assert_eq!(coloring.clusters(1001, rows.len(), 64, |r| rows[r]), 16);
-    assert_eq!(coloring.color_count(), 2);
-    for range in coloring.ranges() {
-        let mut owner = [None; 1001];
-        for &cluster in &coloring.order()[range] {
-            for row in &rows[cluster as usize * 64..rows.len().min(64 * (cluster as usize + 1))] {
-                for &v in row {
-                    let before = owner[v as usize].replace(cluster);
-                    assert!(before.is_none_or(|before| before == cluster), "two clusters share {v}");
-                }
-            }
-        }
-    }
-    coloring.clear();
-    assert_eq!(coloring.color_count(), 0);
-}
