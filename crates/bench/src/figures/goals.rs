@@ -169,8 +169,8 @@ fn sphere(bench: &Bench) -> Result<Vec<Goal>> {
     };
     let ratios: Vec<f64> = steps(true).iter().map(|&k| whole(&one, k) / whole(&two, k)).collect();
     let shares: Vec<f64> = steps(false).iter().map(|&k| one.collision[k] / whole(&one, k)).collect();
-    let what = "spmeasured: one thread's wall time over that of two, in contact".to_owned();
-    let share = "spmeasured: share of the collision stage in flight".to_owned();
+    let what = "measured: one thread's wall time over that of two, in contact".to_owned();
+    let share = "measured: share of the collision stage in flight".to_owned();
     Ok(vec![
         Goal { what, measured: median(&ratios), required: 1.6, aim: 1.9, unit: "x" },
         Goal { what: share, measured: 100.0 * median(&shares), required: 10.0, aim: 2.0, unit: " %" },
