@@ -66,12 +66,12 @@ pub enum LcpError {
         /// Index of the constraint.
         index: usize,
     },
-    /// The `starts` or `clusters` of a schedule decrease or do not end where the list ends.
-    #[error("the color or cluster starts of the {constraint}s must rise from 0 to {expected}")]
+    /// The `starts` of a schedule decrease or do not end where the list ends.
+    #[error("the color starts of the {constraint}s must rise from 0 to {expected}")]
     Starts {
         /// Type of the constraints.
         constraint: &'static str,
-        /// Where the last color or cluster must end.
+        /// Where the last color must end.
         expected: usize,
     },
     /// The `order` of a schedule names a constraint that does not exist.
@@ -84,7 +84,7 @@ pub enum LcpError {
         /// How many of these constraints there are.
         count: usize,
     },
-    /// Two constraints of one color, and of different clusters, share a node that can move.
+    /// Two constraints of one color share a node that can move.
     #[error("{constraint}s {first} and {second} of color {color} share node {node}, which can move")]
     Color {
         /// Type of the constraints.

@@ -2,8 +2,7 @@
 //! parallel.
 //!
 //! Both visit the rows in the order of the schedule and compute each row in the same way. Rows of a color
-//! share no node that moves, unless one thread sweeps them one after the other as a cluster. So both give the
-//! same bits for any number of threads.
+//! share no node that moves, so both give the same bits for any number of threads.
 
 use crate::error::LcpError;
 use crate::info::LcpInfo;
@@ -346,13 +345,13 @@ fn friction_swept(problem: &LcpProblem<'_>) -> usize {
     if problem.attached().is_empty() { problem.friction().swept() } else { 0 }
 }
 
-/// Units of one schedule, clusters or places, between two points at which all threads wait.
+/// Places of one schedule between two points at which all threads wait.
 #[derive(Clone, Copy, Debug)]
 struct Phase {
     kind: ConstraintKind,
     begin: usize,
     end: usize,
-    /// Units that a thread takes at once; all of them if they depend on each other.
+    /// Places that a thread takes at once; all of them if they depend on each other.
     chunk: usize,
 }
 
@@ -368,10 +367,8 @@ fn list_phases(problem: &LcpProblem<'_>, phases: &mut Vec<Phase>) {
         (ConstraintKind::Friction, friction.schedule, friction_swept(problem), ROW_CHUNK),
     ];
     for (kind, schedule, swept, chunk) in sets.into_iter().filter(|set| set.2 > 0) {
-        let chunk = if schedule.clusters.is_empty() { chunk } else { 1 };
         if schedule.starts.is_empty() {
-            let end = if schedule.clusters.is_empty() { swept } else { schedule.clusters.len() - 1 };
-            phases.push(Phase { kind, begin: 0, end, chunk: end.max(1) });
+            phases.push(Phase { kind, begin: 0, end: swept, chunk: swept.max(1) });
             continue;
         }
         let mut joined: Option<Phase> = None;
@@ -405,10 +402,8 @@ where
         (phase.end - phase.begin, phase.chunk)
     }
 
-    fn run(&self, phase: usize, units: Range<usize>, residual: &mut f64) {
+    fn run(&self, phase: usize, places: Range<usize>, residual: &mut f64) {
         let phase = self.phases[phase % self.phases.len()];
-        let schedule = self.schedule(phase.kind);
-        let places = schedule.places(phase.begin + units.start..phase.begin + units.end);
-        Sweep::run(self, phase.kind, places.start, places.end, residual);
+        Sweep::run(self, phase.kind, phase.begin + places.start, phase.begin + places.end, residual);
     }
 }

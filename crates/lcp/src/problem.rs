@@ -149,20 +149,16 @@ fn check_set<T: Constraint>(set: &ConstraintSet<'_, T>, nodes: usize) -> Result<
             return Err(LcpError::NotPrepared { constraint: name, index });
         }
     }
-    let Schedule { order, starts, clusters } = set.schedule;
+    let Schedule { order, starts } = set.schedule;
     if let Some(&index) = order.unwrap_or_default().iter().find(|&&r| r as usize >= count) {
         return Err(LcpError::Order { constraint: name, index, count });
     }
-    let check_starts = |starts: &[u32], expected: usize| {
-        let rising = starts.windows(2).all(|w| w[0] <= w[1]);
-        let spans = starts.first() == Some(&0) && starts.last().map(|&end| end as usize) == Some(expected);
-        if starts.is_empty() || (rising && spans) {
-            Ok(())
-        } else {
-            Err(LcpError::Starts { constraint: name, expected })
-        }
-    };
-    check_starts(clusters, set.swept())?;
-    // Without colors clusters mean nothing: rows are swept one after the other.
-    check_starts(starts, if clusters.is_empty() { set.swept() } else { clusters.len() - 1 })
+    let expected = set.swept();
+    let rising = starts.windows(2).all(|w| w[0] <= w[1]);
+    let spans = starts.first() == Some(&0) && starts.last().map(|&end| end as usize) == Some(expected);
+    if starts.is_empty() || (rising && spans) {
+        Ok(())
+    } else {
+        Err(LcpError::Starts { constraint: name, expected })
+    }
 }

@@ -11,30 +11,8 @@
 //! wherever they go, and a place at the end that is only predicted does no harm: what wakes later than it is
 //! touched has been an unyielding obstacle for a moment.
 
-use bowknot_geometry::{Point, Vector};
+use bowknot_geometry::{Aabb, Point};
 use bowknot_scene::world::World;
-
-/// A box with sides along the axes [m].
-#[derive(Clone, Copy, Debug)]
-struct Bounds {
-    low: Point,
-    high: Point,
-}
-
-impl Bounds {
-    /// The box of some points, larger by `margin` [m] on all sides. No points: a box that meets nothing.
-    fn of<'a>(points: impl Iterator<Item = &'a Point>, margin: f64) -> Self {
-        let [low, high] = [f64::INFINITY, f64::NEG_INFINITY].map(|c| Point::new(c, c, c));
-        let (low, high) = points.fold((low, high), |(low, high), p| (low.inf(p), high.sup(p)));
-        let margin = Vector::from_element(margin);
-        Self { low: low - margin, high: high + margin }
-    }
-
-    /// Whether two boxes have a point in common.
-    fn meets(&self, other: &Self) -> bool {
-        (0..3).all(|k| self.low[k] <= other.high[k] && other.low[k] <= self.high[k])
-    }
-}
 
 /// The elements of all bodies: triangles, edges and vertices, as three vertices with repetitions.
 #[derive(Clone, Debug, Default)]
@@ -74,7 +52,7 @@ impl BodyElements {
     /// collide: one entry per body. Obstacles that do not move are left out.
     pub fn approached(&self, world: &World, motion: &Motion<'_>) -> Vec<bool> {
         let bodies = 0..world.bodies.len();
-        let bounds: Vec<Bounds> = bodies.clone().map(|body| Self::bounds(world, body, motion)).collect();
+        let bounds: Vec<Aabb> = bodies.clone().map(|body| Self::bounds(world, body, motion)).collect();
         let moves = |body: usize| {
             let vertices = world.bodies[body].vertices.clone();
             world.bodies[body].kind.is_some()
@@ -84,7 +62,7 @@ impl BodyElements {
         let comes_near = |sleeper: usize| {
             let near = |mover: &usize| {
                 let collide = world.collision.may_collide(*mover as u32, sleeper as u32);
-                collide && bounds[*mover].meets(&bounds[sleeper]) && {
+                collide && bounds[*mover].overlaps(&bounds[sleeper]) && {
                     let [mut a, mut b] = [(*mover, sleeper), (sleeper, *mover)]
                         .map(|(body, other)| self.bounds_near(body, &bounds[other], motion));
                     any_meet(&mut a, &mut b)
@@ -95,35 +73,36 @@ impl BodyElements {
         bodies.map(|body| motion.asleep[body] && comes_near(body)).collect()
     }
 
-    fn bounds(world: &World, body: usize, motion: &Motion<'_>) -> Bounds {
+    fn bounds(world: &World, body: usize, motion: &Motion<'_>) -> Aabb {
         let vertices = &world.bodies[body].vertices;
         let range = vertices.start as usize..vertices.end as usize;
-        Bounds::of(motion.start[range.clone()].iter().chain(&motion.end[range]), motion.margins[body])
+        Aabb::of_points(motion.start[range.clone()].iter().chain(&motion.end[range]))
+            .inflated(motion.margins[body])
     }
 
     /// The boxes of a body's elements that meet the box of another body.
-    fn bounds_near(&self, body: usize, other: &Bounds, motion: &Motion<'_>) -> Vec<Bounds> {
+    fn bounds_near(&self, body: usize, other: &Aabb, motion: &Motion<'_>) -> Vec<Aabb> {
         let bounds = |element: &[u32; 3]| {
             let vertices = element.iter().map(|&v| v as usize);
             let points = vertices.flat_map(|v| [&motion.start[v], &motion.end[v]]);
-            Bounds::of(points, motion.margins[body])
+            Aabb::of_points(points).inflated(motion.margins[body])
         };
-        self.of_bodies[body].iter().map(bounds).filter(|own| own.meets(other)).collect()
+        self.of_bodies[body].iter().map(bounds).filter(|own| own.overlaps(other)).collect()
     }
 }
 
 /// Whether a box of one list meets one of the other, by a sweep along x.
-fn any_meet(a: &mut [Bounds], b: &mut [Bounds]) -> bool {
+fn any_meet(a: &mut [Aabb], b: &mut [Aabb]) -> bool {
     for list in [&mut *a, &mut *b] {
-        list.sort_unstable_by(|a, b| a.low.x.total_cmp(&b.low.x));
+        list.sort_unstable_by(|a, b| a.min.x.total_cmp(&b.min.x));
     }
     let (mut a, mut b) = (&*a, &*b);
     while let (Some(first_a), Some(first_b)) = (a.first(), b.first()) {
-        let (first, others) = if first_a.low.x <= first_b.low.x { (first_a, b) } else { (first_b, a) };
-        if others.iter().take_while(|other| other.low.x <= first.high.x).any(|other| first.meets(other)) {
+        let (first, others) = if first_a.min.x <= first_b.min.x { (first_a, b) } else { (first_b, a) };
+        if others.iter().take_while(|other| other.min.x <= first.max.x).any(|other| first.overlaps(other)) {
             return true;
         }
-        if first_a.low.x <= first_b.low.x {
+        if first_a.min.x <= first_b.min.x {
             a = &a[1..];
         } else {
             b = &b[1..];
@@ -146,16 +125,16 @@ mod tests {
         };
         let mut met = 0;
         for _ in 0..200 {
-            let mut boxes = || -> Vec<Bounds> {
+            let mut boxes = || -> Vec<Aabb> {
                 let mut point = || Point::new(random(), random(), random());
-                (0..4).map(|_| Bounds::of([point()].iter(), 0.08)).collect()
+                (0..4).map(|_| Aabb::of_points(&[point()]).inflated(0.08)).collect()
             };
             let (mut a, mut b) = (boxes(), boxes());
-            let expected = a.iter().any(|a| b.iter().any(|b| a.meets(b)));
+            let expected = a.iter().any(|a| b.iter().any(|b| a.overlaps(b)));
             assert_eq!(any_meet(&mut a, &mut b), expected);
             met += usize::from(expected);
         }
         assert!((20..180).contains(&met), "{met} of 200: both cases should occur");
-        assert!(!any_meet(&mut [], &mut [Bounds::of([Point::origin()].iter(), 1.0)]));
+        assert!(!any_meet(&mut [], &mut [Aabb::of_points(&[Point::origin()]).inflated(1.0)]));
     }
 }

@@ -104,10 +104,6 @@ impl<const N: usize> Element<N> for CurvedBend<N> {
 
     type Frame = ();
 
-    fn frames(_: [&Self; 4], _: &[[Vector; N]; 4]) -> [(); 4] {
-        [(); 4]
-    }
-
     fn linearize_in(
         &self,
         (): &(),

@@ -76,10 +76,6 @@ impl Element<2> for StrandEdge {
 
     type Frame = ();
 
-    fn frames(_: [&Self; 4], _: &[[Vector; 2]; 4]) -> [(); 4] {
-        [(); 4]
-    }
-
     fn linearize_in(
         &self,
         (): &(),
@@ -181,10 +177,6 @@ impl Element<3> for StrandTurn {
     }
 
     type Frame = ();
-
-    fn frames(_: [&Self; 4], _: &[[Vector; 3]; 4]) -> [(); 4] {
-        [(); 4]
-    }
 
     fn linearize_in(
         &self,

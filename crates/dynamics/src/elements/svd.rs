@@ -16,6 +16,7 @@ const MAX_SWEEPS: usize = 12;
 
 /// F = u diag(s) v^T with rotations u and v (no reflections) and s1 >= s2 >= |s3|; s3 is negative if F is
 /// inverted.
+#[derive(Default)]
 pub(crate) struct Svd {
     pub u: Matrix3<f64>,
     pub s: Vector,

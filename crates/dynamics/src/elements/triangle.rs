@@ -215,10 +215,6 @@ impl Element<3> for Triangle {
 
     type Frame = ();
 
-    fn frames(_: [&Self; 4], _: &[[Vector; 3]; 4]) -> [(); 4] {
-        [(); 4]
-    }
-
     fn linearize_in(
         &self,
         (): &(),

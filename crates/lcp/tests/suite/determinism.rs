@@ -1,7 +1,7 @@
 //! The same bits on any number of threads, and as the serial solver.
 #![allow(clippy::unwrap_used)] // helpers outside the test functions
 
-use crate::common::{Case, cloth, color};
+use crate::common::{Case, cloth};
 use bowknot_lcp::*;
 use nalgebra::Vector2;
 
@@ -87,57 +87,28 @@ fn results_have_the_same_bits_on_any_number_of_threads() {
     }
 }
 
-/// Groups rows, sorted by their first node, into clusters of `length`, and sorts the clusters by color. Returns
-/// the rows, where clusters start, and where colors start.
-fn clustered(case: &Case, length: usize) -> (Vec<Row>, Vec<u32>, Vec<u32>) {
-    let mut rows = case.rows.clone();
-    rows.sort_by_key(|row| row.vertices);
-    let clusters: Vec<&[Row]> = rows.chunks(length).collect();
-    let nodes = |cluster: &&[Row]| cluster.iter().flat_map(|row| row.vertices).collect();
-    let (clusters, colors) = color(&clusters, nodes, &case.weights);
-    let mut starts = vec![0];
-    for cluster in &clusters {
-        starts.push(starts[starts.len() - 1] + cluster.len() as u32);
-    }
-    (clusters.concat(), starts, colors)
-}
-
 #[test]
-fn clusters_have_the_same_bits_on_any_number_of_threads_and_converge_like_colors() {
-    let case = cloth(60, 6000, 9);
-    let (rows, clusters, colors) = clustered(&case, 48);
-    let problem = LcpProblem::new(
-        &case.weights,
-        ConstraintSet::new(&rows, Schedule::clustered(&colors, &clusters)),
-        ConstraintSet::new(&case.limits, Schedule::colored(&case.limit_starts)),
-        ConstraintSet::default(),
-    )
-    .unwrap();
-    validate_colors(&problem).unwrap();
-    let by_color = LcpProblem::new(
-        &case.weights,
-        ConstraintSet::new(&case.rows, Schedule::colored(&case.row_starts)),
-        ConstraintSet::new(&case.limits, Schedule::colored(&case.limit_starts)),
-        ConstraintSet::default(),
-    )
-    .unwrap();
+fn a_solver_that_keeps_its_memory_gives_the_same_bits() {
+    let cases = [cloth(60, 6000, 9), cloth(40, 3000, 4)];
     let params = LcpParams { max_sweeps: 8, ..LcpParams::default() };
-    let serial = bits(&problem, &case, |state| solve_serial(&problem, state, &params).unwrap());
     for threads in [1, 2, 3, 8] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let mut solver = GaussSeidel::new();
-        for _ in 0..5 {
-            let solver = std::sync::Mutex::new(&mut solver);
-            let solved = pool.install(|| {
-                bits(&problem, &case, |state| solver.lock().unwrap().solve(&problem, state, &params).unwrap())
+        let solver = std::sync::Mutex::new(GaussSeidel::new());
+        for case in cases.iter().chain(&cases) {
+            let problem = LcpProblem::new(
+                &case.weights,
+                ConstraintSet::new(&case.rows, Schedule::colored(&case.row_starts)),
+                ConstraintSet::new(&case.limits, Schedule::colored(&case.limit_starts)),
+                ConstraintSet::default(),
+            )
+            .unwrap();
+            let serial = bits(&problem, case, |state| solve_serial(&problem, state, &params).unwrap());
+            let kept = pool.install(|| {
+                bits(&problem, case, |state| solver.lock().unwrap().solve(&problem, state, &params).unwrap())
             });
-            assert!(solved == serial, "{threads} threads");
+            assert!(kept == serial, "{threads} threads");
         }
     }
-    let residual = |bits: &[u64]| f64::from_bits(bits[bits.len() - 1]);
-    let colored = bits(&by_color, &case, |state| solve_serial(&by_color, state, &params).unwrap());
-    let (by_cluster, by_color) = (residual(&serial), residual(&colored));
-    assert!(by_cluster < 1.5 * by_color, "{by_cluster} after 8 sweeps by clusters, {by_color} by colors");
 }
 
 #[test]

@@ -72,16 +72,6 @@ fn problems_with_faults_are_refused() {
         let result = new(&weights, ConstraintSet::new(&good, Schedule::colored(starts)));
         assert_eq!(result, Err(LcpError::Starts { constraint: "row", expected: 2 }), "{starts:?}");
     }
-    // One cluster has both rows: there may be one color, and neither more clusters nor other rows.
-    let clustered =
-        |starts, clusters| new(&weights, ConstraintSet::new(&good, Schedule::clustered(starts, clusters)));
-    assert_eq!(clustered(&[0, 1], &[0, 2]), Ok(()));
-    for (starts, clusters, expected) in
-        [(&[0, 2][..], &[0, 2][..], 1), (&[0, 1], &[0, 1], 2), (&[0, 2], &[0, 3, 2], 2)]
-    {
-        let result = clustered(starts, clusters);
-        assert_eq!(result, Err(LcpError::Starts { constraint: "row", expected }), "{starts:?} {clusters:?}");
-    }
     let result = new(&weights, ConstraintSet::new(&good, Schedule::active(&[0, 2], &[0, 2])));
     assert_eq!(result, Err(LcpError::Order { constraint: "row", index: 2, count: 2 }));
     let result = new(&weights, ConstraintSet::new(&good, Schedule::active(&[1], &[0, 2])));

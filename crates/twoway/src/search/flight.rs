@@ -16,7 +16,7 @@
 use super::regions::{Regions, longest_path};
 use crate::scene::CollisionScene;
 use crate::state::ResolveState;
-use bowknot_geometry::{Point, Vector};
+use bowknot_geometry::{Aabb, Point, Vector};
 use rayon::prelude::*;
 
 /// Vertices that one task looks at.
@@ -30,7 +30,7 @@ const ROUNDING_SHARE: f64 = 1e-3;
 #[derive(Debug, Default)]
 pub(super) struct Flight {
     /// Boxes of each body at x and at x + d, without margins [m].
-    boxes: Vec<[Bounds; 2]>,
+    boxes: Vec<[Aabb; 2]>,
     /// By how much the centers of each body's trust regions move in a step [m].
     translations: Vec<Vector>,
     /// What vertices move beyond that [m]; 0 in bodies that do not collide with themselves.
@@ -39,24 +39,6 @@ pub(super) struct Flight {
     pub drift: bool,
     /// Bound of the rounding that translations have added to a distance within a body since then [m].
     pub rounding: f64,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Bounds {
-    low: Point,
-    high: Point,
-}
-
-impl Bounds {
-    const EMPTY: Self = Self {
-        low: Point::new(f64::INFINITY, f64::INFINITY, f64::INFINITY),
-        high: Point::new(f64::NEG_INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY),
-    };
-
-    fn add(&mut self, point: &Point) {
-        self.low = self.low.inf(point);
-        self.high = self.high.sup(point);
-    }
 }
 
 impl Flight {
@@ -71,20 +53,21 @@ impl Flight {
         let model = scene.model();
         let (bodies, spacing) = (model.bodies(), scene.spacing());
         self.boxes.clear();
-        self.boxes.resize(bodies.len(), [Bounds::EMPTY; 2]);
+        self.boxes.resize(bodies.len(), [Aabb::EMPTY; 2]);
         for (v, (start, &body)) in x.iter().zip(model.vertex_body()).enumerate() {
             let [first, last] = &mut self.boxes[body as usize];
-            first.add(start);
-            last.add(&(start + displacement(v)));
+            *first = first.union(&Aabb { min: *start, max: *start });
+            let end = start + displacement(v);
+            *last = last.union(&Aabb { min: end, max: end });
         }
-        let corners = self.boxes.iter().flatten().flat_map(|b| [b.low, b.high]).filter(|p| p.x.is_finite());
+        let corners = self.boxes.iter().flatten().flat_map(|b| [b.min, b.max]).filter(|p| p.x.is_finite());
         let largest = corners.map(|p| p.coords.amax()).fold(0.0, f64::max);
         // Far above the rounding of sums of coordinates, and below any minimum separation.
         let slack = 8.0 * f64::EPSILON * largest;
         let margin = |body: usize| spacing.margin(body as u32) + slack;
         let apart = |a: usize, b: usize| {
             let least = margin(a) + margin(b);
-            let gap = |k: usize, a: &Bounds, b: &Bounds| b.low[k] - a.high[k];
+            let gap = |k: usize, a: &Aabb, b: &Aabb| b.min[k] - a.max[k];
             let (a, b) = (&self.boxes[a], &self.boxes[b]);
             (0..3).any(|k| {
                 (0..2).all(|end| gap(k, &a[end], &b[end]) > least)
@@ -95,8 +78,8 @@ impl Flight {
             model.half_spaces().iter().all(|half_space| {
                 let n = &half_space.normal;
                 self.boxes[body].iter().all(|bounds| {
-                    let lowest = (0..3).map(|k| (n[k] * bounds.low[k]).min(n[k] * bounds.high[k]));
-                    let is_empty = bounds.low.x > bounds.high.x;
+                    let lowest = (0..3).map(|k| (n[k] * bounds.min[k]).min(n[k] * bounds.max[k]));
+                    let is_empty = bounds.min.x > bounds.max.x;
                     is_empty || lowest.sum::<f64>() - half_space.offset > 2.0 * margin(body) + 4.0 * slack
                 })
             })
@@ -116,8 +99,8 @@ impl Flight {
         let model = scene.model();
         self.translations.clear();
         self.translations.extend(self.boxes.iter().zip(model.bodies()).map(|([first, last], body)| {
-            let moves = !body.obstacle && body.self_collision && first.low.x.is_finite();
-            let twice = (last.low - first.low) + (last.high - first.high);
+            let moves = !body.obstacle && body.self_collision && first.min.x.is_finite();
+            let twice = (last.min - first.min) + (last.max - first.max);
             if moves { 0.5 * twice } else { Vector::zeros() }
         }));
         let translations = &self.translations;
