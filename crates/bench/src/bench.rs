@@ -43,6 +43,8 @@ impl Size {
 pub struct Bench {
     pub size: Size,
     pub store: Store,
+    /// A program `bowknot` of an older commit, to compare with.
+    pub before: Option<PathBuf>,
     machine: Machine,
     out: PathBuf,
     /// When the run began.
@@ -55,13 +57,14 @@ pub struct Bench {
 
 impl Bench {
     /// A run of the code in `repository` that keeps its results in a folder per size in `out`.
-    pub fn new(size: Size, out: &Path, repository: &Path) -> Result<Self> {
+    pub fn new(size: Size, out: &Path, repository: &Path, before: Option<PathBuf>) -> Result<Self> {
         let machine = Machine::now(repository);
         let out = out.join(size.name());
         fs::create_dir_all(&out).with_context(|| format!("cannot create {}", out.display()))?;
         Ok(Self {
             size,
             store: Store::new(&out.join("measured"), &machine.commit),
+            before,
             machine,
             out,
             run_timer: Instant::now(),

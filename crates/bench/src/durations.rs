@@ -31,7 +31,7 @@ const QUICK: &[(&str, u32)] = &[
     ("joint", 10),
     ("funnel", 11),
     ("early-contact", 3),
-    ("goals", 31),
+    ("goals", 13),
     ("record", 150),
 ];
 

@@ -10,7 +10,7 @@
 //! | `bench`, `store`, `machine` | size, folder and time of a run; kept measurements; machine, commit |
 //! | `record`, `case`, `targets` | collision problems: recorded from scenes, loaded to be solved |
 //! | `methods`, `solve` | the methods that are compared; timing one on one problem |
-//! | `simulate`, `memory` | whole simulations and the distances between them; memory of a run |
+//! | `simulate`, `process` | whole simulations and the distances between them; simulations in other processes |
 //! | `summary` | results of settings on the problems of scenes |
 //! | `measures` | the quality of a result, measured alike for every method |
 //! | `chart`, `table` | SVG, CSV and Markdown |
@@ -32,9 +32,9 @@ mod files;
 mod git;
 mod machine;
 mod measures;
-mod memory;
 mod methods;
 mod page;
+mod process;
 mod record;
 mod run;
 mod simulate;
@@ -71,7 +71,10 @@ struct Arguments {
     /// Number of threads. With one, CPU seconds contain no waiting for other threads.
     #[arg(long, default_value_t = 1)]
     threads: usize,
-    /// The scene of `footprint`, which the command runs in a process of its own.
+    /// A program `bowknot` of an older commit: `goals` then compares with it.
+    #[arg(long, value_name = "BOWKNOT")]
+    before: Option<PathBuf>,
+    /// The scene of `simulate`, which the command runs in a process of its own.
     #[arg(long, hide = true, default_value = "drape")]
     of: String,
     /// Its scale.
@@ -126,8 +129,8 @@ fn run(arguments: &Arguments) -> Result<()> {
         return list();
     }
     rayon::ThreadPoolBuilder::new().num_threads(arguments.threads).build_global()?;
-    if arguments.name == "footprint" {
-        return memory::print_footprint(&arguments.of, arguments.scale, arguments.frames);
+    if arguments.name == "simulate" {
+        return process::print_run(&arguments.of, arguments.scale, arguments.frames);
     }
     let size = match (arguments.tiny, arguments.quick) {
         (true, _) => Size::Tiny,
@@ -141,7 +144,7 @@ fn run(arguments: &Arguments) -> Result<()> {
         // Before hours of measurements, not after them.
         docs.ensure_clean()?;
     }
-    let bench = Bench::new(size, &arguments.out, &repository)?;
+    let bench = Bench::new(size, &arguments.out, &repository, arguments.before.clone())?;
     let names: Vec<&str> = figures::ALL.iter().map(|figure| figure.name()).collect();
     match arguments.name.as_str() {
         "record" => record::all(&bench),

@@ -23,6 +23,8 @@ pub struct Coloring {
     order: Vec<u32>,
     /// Where each color starts in `order`, and the end.
     starts: Vec<u32>,
+    /// Where the next row of each color goes.
+    next: Vec<u32>,
 }
 
 impl Coloring {
@@ -71,12 +73,12 @@ impl Coloring {
         for c in 1..self.starts.len() {
             self.starts[c] += self.starts[c - 1];
         }
-        let mut next = self.starts.clone();
+        self.next.clone_from(&self.starts);
         self.order.clear();
         self.order.resize(row_count, 0);
         let mut tail = (row_count - overflow) as u32;
         for (row, &color) in self.colors.iter().enumerate() {
-            let place = if color == NONE { &mut tail } else { &mut next[color as usize] };
+            let place = if color == NONE { &mut tail } else { &mut self.next[color as usize] };
             self.order[*place as usize] = row as u32;
             *place += 1;
         }

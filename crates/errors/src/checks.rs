@@ -43,7 +43,8 @@ pub trait Parameters {
     }
 }
 
-/// Collects the errors of a struct of parameters. Its methods refuse NaN.
+/// Collects the errors of a struct of parameters. Its methods refuse NaN. Texts are written for errors alone, so
+/// that checks that succeed allocate nothing.
 #[derive(Debug, Default)]
 pub struct Checks {
     /// Path of the struct that is being checked, with a dot at its end unless it is empty.
@@ -53,20 +54,20 @@ pub struct Checks {
 
 impl Checks {
     /// Refuses `value` unless `fits`; `allowed` says what is allowed, "must be ...".
-    pub fn require(&mut self, fits: bool, field: &str, value: impl fmt::Display, allowed: impl Into<String>) {
+    pub fn require(&mut self, fits: bool, field: &str, value: impl fmt::Display, allowed: impl fmt::Display) {
         if !fits {
             let path = format!("{}{field}", self.prefix);
-            self.errors.push(ParamError { path, value: value.to_string(), allowed: allowed.into() });
+            self.errors.push(ParamError { path, value: value.to_string(), allowed: allowed.to_string() });
         }
     }
 
     /// Refuses `value`; `allowed` says what is allowed, "must be ...".
-    pub fn refuse(&mut self, field: &str, value: impl fmt::Display, allowed: impl Into<String>) {
+    pub fn refuse(&mut self, field: &str, value: impl fmt::Display, allowed: impl fmt::Display) {
         self.require(false, field, value, allowed);
     }
 
     /// Refuses a field that is missing or that contradicts another; `message` says which, and the remedy.
-    pub fn contradiction(&mut self, field: &str, message: impl Into<String>) {
+    pub fn contradiction(&mut self, field: &str, message: impl fmt::Display) {
         self.refuse(field, "", message);
     }
 
@@ -93,36 +94,37 @@ impl Checks {
     /// The value must be finite and at least `least`.
     pub fn at_least(&mut self, field: &str, value: f64, least: f64) {
         let fits = value.is_finite() && value >= least;
-        self.require(fits, field, value, format!("must be finite and at least {least}"));
+        self.require(fits, field, value, format_args!("must be finite and at least {least}"));
     }
 
     /// The value must be finite and above `bound`.
     pub fn above(&mut self, field: &str, value: f64, bound: f64) {
         let fits = value.is_finite() && value > bound;
-        self.require(fits, field, value, format!("must be finite and above {bound}"));
+        self.require(fits, field, value, format_args!("must be finite and above {bound}"));
     }
 
     /// The value must be above `bound`; infinity is allowed.
     pub fn above_or_infinite(&mut self, field: &str, value: f64, bound: f64) {
-        self.require(value > bound, field, value, format!("must be above {bound}, inf included"));
+        self.require(value > bound, field, value, format_args!("must be above {bound}, inf included"));
     }
 
     /// The value must lie between the bounds, which are not allowed themselves.
     pub fn between(&mut self, field: &str, value: f64, low: f64, high: f64) {
         let fits = value > low && value < high;
-        self.require(fits, field, value, format!("must lie between {low} and {high}"));
+        self.require(fits, field, value, format_args!("must lie between {low} and {high}"));
     }
 
     /// The number must be at least `least`.
     pub fn count_at_least(&mut self, field: &str, value: usize, least: usize) {
-        self.require(value >= least, field, value, format!("must be at least {least}"));
+        self.require(value >= least, field, value, format_args!("must be at least {least}"));
     }
 
     /// Every component must be finite.
-    pub fn all_finite<'a>(&mut self, field: &str, values: impl IntoIterator<Item = &'a f64>) {
-        let values: Vec<f64> = values.into_iter().copied().collect();
-        let fits = values.iter().all(|value| value.is_finite());
-        self.require(fits, field, format!("{values:?}"), "must be finite in every component");
+    pub fn all_finite<'a>(&mut self, field: &str, values: impl IntoIterator<Item = &'a f64> + Clone) {
+        if !values.clone().into_iter().all(|value| value.is_finite()) {
+            let values: Vec<f64> = values.into_iter().copied().collect();
+            self.refuse(field, format_args!("{values:?}"), "must be finite in every component");
+        }
     }
 
     /// Checks a nested struct: its fields are named `field.name`.

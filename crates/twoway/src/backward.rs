@@ -63,12 +63,13 @@ pub struct LcpBackward<K = ColoredSweeps> {
     last_touched: IndexSet,
     /// Whether the vertices of each contact row are touched.
     spread: Vec<bool>,
-    /// Residuals of the bodies.
+    /// Residuals of the bodies, by parts of them and in all.
     residuals: Chunks<BodyResidual>,
+    body_residuals: Vec<BodyResidual>,
 }
 
 /// Sums over some vertices of a body.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct BodyResidual {
     body: u32,
     mass: f64,
@@ -184,7 +185,7 @@ impl<K: RowSolver> LcpBackward<K> {
 
     /// Largest net and mean residual of a body [m], see [`Residuals`], and largest residual of a vertex [m].
     fn body_residuals(&mut self, scene: &CollisionScene, state: &ResolveState) -> [f64; 3] {
-        let Self { y, free, weights, residuals, .. } = self;
+        let Self { y, free, weights, residuals, body_residuals, .. } = self;
         // The stationarity residual is y0 + m^-1 J^T lambda - x, and J^T lambda = (y - y')/w. Successive vertices
         // of one body make one entry.
         residuals.run(y.len(), |range, entries| {
@@ -194,8 +195,7 @@ impl<K: RowSolver> LcpBackward<K> {
                 let residual = state.target[v] + pull - state.x[v];
                 let length = residual.norm();
                 if entries.last().is_none_or(|last| last.body != body) {
-                    let (sum, lengths, largest) = (Vector::zeros(), 0.0, 0.0);
-                    entries.push(BodyResidual { body, mass: 0.0, sum, lengths, largest });
+                    entries.push(BodyResidual { body, ..BodyResidual::default() });
                 }
                 if let Some(entry) = entries.last_mut() {
                     entry.mass += mass;
@@ -205,19 +205,20 @@ impl<K: RowSolver> LcpBackward<K> {
                 }
             }
         });
-        let mut bodies = vec![(Vector::zeros(), 0.0, 0.0); scene.model().bodies().len()];
+        body_residuals.clear();
+        body_residuals.resize(scene.model().bodies().len(), BodyResidual::default());
         let mut largest = 0.0f64;
         for entry in residuals.results() {
-            let (sum, lengths, mass) = &mut bodies[entry.body as usize];
-            *sum += entry.sum;
-            *lengths += entry.lengths;
-            *mass += entry.mass;
+            let body = &mut body_residuals[entry.body as usize];
+            body.sum += entry.sum;
+            body.lengths += entry.lengths;
+            body.mass += entry.mass;
             largest = largest.max(entry.largest);
         }
         let (mut net, mut mean) = (0.0f64, 0.0f64);
-        for (sum, lengths, mass) in bodies.into_iter().filter(|(.., mass)| *mass > 0.0) {
-            net = net.max(sum.norm() / mass);
-            mean = mean.max(lengths / mass);
+        for body in body_residuals.iter().filter(|body| body.mass > 0.0) {
+            net = net.max(body.sum.norm() / body.mass);
+            mean = mean.max(body.lengths / body.mass);
         }
         [net, mean, largest]
     }

@@ -133,7 +133,7 @@ impl Parameters for BackwardParams {
             self.polish_sweeps >= self.sweeps,
             "polish_sweeps",
             self.polish_sweeps,
-            format!("must be at least sweeps, {}", self.sweeps),
+            format_args!("must be at least sweeps, {}", self.sweeps),
         );
         checks.non_negative("polish_distance", self.polish_distance);
         checks.non_negative("edge_proximal", self.edge_proximal);

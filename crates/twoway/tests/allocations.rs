@@ -6,10 +6,7 @@
 
 use bowknot_geometry::{HalfSpace, Point, Topology, Vector};
 use bowknot_proximity::{BodyFilter, CollisionModel};
-use bowknot_twoway::{
-    AcceptedState, BackwardStep, CertifiedForward, CollisionScene, LcpBackward, Params, Residuals,
-    ResolveInput, ResolveState, Resolver, Statistics, StopRule, TrustRegionSearch,
-};
+use bowknot_twoway::{AcceptedState, Params, ResolveInput, Resolver, Statistics, StopRule};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::backtrace::Backtrace;
 use std::ops::ControlFlow;
@@ -61,36 +58,6 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// A backward step whose allocations do not count. Take it away to count those as well.
-struct Uncounted(LcpBackward);
-
-impl Uncounted {
-    fn pause<R>(run: impl FnOnce() -> R) -> R {
-        let counts = COUNTS.swap(false, Ordering::Relaxed);
-        let result = run();
-        COUNTS.store(counts, Ordering::Relaxed);
-        result
-    }
-}
-
-impl BackwardStep for Uncounted {
-    fn begin(&mut self, scene: &CollisionScene, state: &ResolveState) {
-        Self::pause(|| self.0.begin(scene, state));
-    }
-
-    fn project(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
-        Self::pause(|| self.0.project(scene, state, statistics));
-    }
-
-    fn residuals(&mut self, scene: &CollisionScene, state: &ResolveState) -> Residuals {
-        Self::pause(|| self.0.residuals(scene, state))
-    }
-
-    fn finish(&mut self, scene: &CollisionScene, state: &ResolveState, statistics: &mut Statistics) {
-        Self::pause(|| self.0.finish(scene, state, statistics));
-    }
-}
-
 /// Two sheets above the ground and each other.
 fn scene() -> (Vec<Point>, CollisionModel) {
     let (mut x, mut triangles, mut bodies) = (Vec::new(), Vec::new(), Vec::new());
@@ -105,16 +72,14 @@ fn scene() -> (Vec<Point>, CollisionModel) {
 }
 
 /// Allocations between the first and the last accepted state of the second of two equal calls toward `target`.
-fn allocations(backward: impl BackwardStep, target: impl Fn(&Point) -> Point) -> (usize, Statistics) {
+fn allocations(target: impl Fn(&Point) -> Point) -> (usize, Statistics) {
     let (start, model) = scene();
     let mut params = Params::fast();
     // As many steps as make progress, whatever the residuals.
     params.solver.stop.rule = StopRule::Clock { remaining_fraction: f64::MIN_POSITIVE };
     params.solver.stop.max_steps = Some(24);
     let masses = vec![1.0; start.len()];
-    let scene = CollisionScene::new(model, &start, &masses, params).unwrap();
-    let search = TrustRegionSearch::new(&scene);
-    let mut resolver = Resolver::with_stages(scene, search, backward, CertifiedForward::default());
+    let mut resolver = Resolver::new(model, &start, &masses, params).unwrap();
     let target: Vec<Point> = start.iter().map(target).collect();
     let mut statistics = Statistics::default();
     for call in 0..2 {
@@ -134,7 +99,7 @@ fn steps_after_the_first_call_allocate_nothing() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     // Down through the other sheet and the ground, with a wave that folds them.
     let pressed = |p: &Point| Point::new(p.x, p.y, 0.1 * (9.0 * p.x).sin() - p.z);
-    let (count, statistics) = pool.install(|| allocations(Uncounted(LcpBackward::default()), pressed));
+    let (count, statistics) = pool.install(|| allocations(pressed));
     assert!(statistics.contact_rows > 100 && statistics.active_rows > 0, "{statistics:?}");
     assert!(statistics.searches > 4 && statistics.steps >= 8, "{statistics:?}");
     let first: Vec<String> = FIRST.lock().unwrap().iter().map(Backtrace::to_string).collect();

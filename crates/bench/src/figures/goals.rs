@@ -2,14 +2,10 @@
 
 use crate::bench::Bench;
 use crate::figure::{Figure, Part, Report};
-use crate::memory::{Footprint, footprint};
-use crate::methods::Setting;
-use crate::simulate::{Simulation, run};
-use crate::solve::Against;
-use crate::summary::{Compared, Summary, on_scenes};
-use crate::table::{Entry, Table, median, short};
+use crate::process::{Case, ProcessRun, TimeStep};
+use crate::table::{Entry, Table, geometric_mean, largest, mean, short};
 use anyhow::Result;
-use bowknot::Scene;
+use bowknot::simulator::StepSeconds;
 
 pub struct Goals;
 
@@ -24,37 +20,31 @@ struct Goal {
     unit: &'static str,
 }
 
-/// Ratios of other methods to `fast` in a scene: required, and aimed at.
-struct RatioGoals {
-    scene: &'static str,
-    steps_of_paper: [f64; 2],
-    time_of_paper: [f64; 2],
-    time_of_barrier: [f64; 2],
-}
-
-const PRESETS: [RatioGoals; 3] = [
-    RatioGoals {
-        scene: "needle-unaware",
-        steps_of_paper: [15.0, 60.0],
-        time_of_paper: [8.0, 20.0],
-        time_of_barrier: [5.0, 25.0],
-    },
-    RatioGoals {
-        scene: "stack-unaware",
-        steps_of_paper: [12.0, 20.0],
-        time_of_paper: [8.0, 20.0],
-        time_of_barrier: [12.0, 25.0],
-    },
-    RatioGoals {
-        scene: "tube-unaware",
-        steps_of_paper: [8.0, 11.0],
-        time_of_paper: [8.0, 20.0],
-        time_of_barrier: [12.0, 25.0],
-    },
+/// A row of the paper's Table 2 at the paper's size: the scene, the number of its first time steps, and seconds
+/// per time step of the paper's collision stage, on its GPU.
+const TABLE_2: [(&str, usize, f64); 12] = [
+    ("needle", 8, 0.036),
+    ("blade", 2, 0.267),
+    ("funnel", 2, 0.087),
+    ("sphere", 18, 0.044),
+    ("dress", 6, 0.133),
+    ("gown", 6, 0.092),
+    ("bow-knot", 12, 0.034),
+    ("reef-knot", 12, 0.024),
+    ("tube", 8, 0.308),
+    ("mat", 8, 0.020),
+    ("hair", 10, 0.252),
+    ("sand", 40, 0.223),
 ];
 
-/// Seconds per time step of the paper's collision stage, on its GPU (Table 2).
-const KNOTS: [(&str, f64); 2] = [("bow-knot", 0.034), ("reef-knot", 0.024)];
+/// Scenes in which the time of the dynamics is compared, beside those of [`TABLE_2`] of the same name.
+const DYNAMICS: [&str; 3] = ["drape", "dress", "mat"];
+
+/// Scales of `drape` for the growth of the time with the number of vertices; the number grows with the square.
+const SCALES: [f64; 4] = [0.64, 1.28, 2.56, 5.12];
+
+/// Time steps of `drape` for that growth; it touches the ball in the last ones.
+const GROWTH_FRAMES: usize = 16;
 
 impl Figure for Goals {
     fn name(&self) -> &'static str {
@@ -66,13 +56,13 @@ impl Figure for Goals {
     }
 
     fn question(&self) -> &'static str {
-        "`fast` against `paper` and the log barrier on recorded problems with contact-unaware targets: \
-         ratios of the mean steps and of the mean CPU seconds of two problems, at most 4 s per solve. \
-         `sphere` at scale 1, 50,176 vertices: one thread against two, medians of time steps in contact, and \
-         the share of the collision stage in flight. Knots at the paper's size: wall seconds of the \
-         collision stage on two threads, as multiples of the paper's on a GPU. Memory: peak of a run less \
-         that of a very small run, dynamics included, per surface vertex. The proximity search is compared \
-         with the IPC Toolkit's in the section on peers."
+        "First time steps of the scenes of Table 2 at the paper's size, see `goals-table-2.csv`: seconds of the \
+         collision stage on two threads as multiples of the paper's on a GPU, two-way steps per time step, all \
+         its collision problems together, and peak memory of the process per vertex. With `--before BOWKNOT`, \
+         a program of an older commit: its time with one thread over the present one, geometric mean for the \
+         collision stage. `sphere`, 50,176 vertices: one thread's wall time over that of two, and the share of \
+         the collision stage before contact. `drape`: growth of the time per time step with the number of \
+         vertices, as the exponent of a fitted power, over the time steps in contact."
     }
 
     fn on_page(&self) -> bool {
@@ -80,17 +70,42 @@ impl Figure for Goals {
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {
-        let mut goals = presets(bench)?;
-        goals.extend(sphere(bench)?);
-        goals.extend(knots(bench)?);
-        goals.extend(memory(bench)?);
+        let runs = Runs { bench };
+        let mut table = Table::new([
+            "scene",
+            "time_steps",
+            "in_contact",
+            "vertices",
+            "collision_s",
+            "collision_before",
+            "dynamics_s",
+            "dynamics_before",
+            "collision_s_2_threads",
+            "paper_gpu_collision_s",
+            "steps",
+            "most_steps",
+            "kb_per_vertex",
+        ]);
+        let mut goals = table_2(&runs, &mut table)?;
+        goals.extend(dynamics(&runs)?);
+        goals.extend(threads(&runs)?);
+        goals.extend(growth(&runs)?);
+        // Small runs lack time steps in contact.
+        goals.retain(|goal| goal.measured.is_finite());
         let met = goals.iter().filter(|g| g.is_met(g.required)).count();
         let reached = goals.iter().filter(|g| g.is_met(g.aim)).count();
-        let mut table = Table::new(["goal", "measured", "required", "aim", "verdict"]);
-        goals.iter().for_each(|goal| table.row(goal.row()));
+        let mut page = Table::new(["goal", "measured", "required", "aim", "verdict"]);
+        goals.iter().for_each(|goal| page.row(goal.row()));
         Ok(Report {
             finding: format!("{met} of {} goals are met, {reached} of them reach the aim.", goals.len()),
-            parts: vec![Part::table(self.name(), "", table)],
+            parts: vec![
+                Part::table(self.name(), "", page),
+                Part::table(
+                    "goals-table-2",
+                    "times, steps and memory of the scenes of Table 2 at scale 1",
+                    table,
+                ),
+            ],
         })
     }
 }
@@ -119,107 +134,228 @@ impl Goal {
     }
 }
 
-fn presets(bench: &Bench) -> Result<Vec<Goal>> {
-    let scenes: Vec<&'static str> = PRESETS.iter().map(|goals| goals.scene).collect();
-    let scenes = bench.size.pick(&scenes[..], &scenes[..2], &scenes[..1]);
-    let methods = ["fast", "paper", "log barrier"];
-    let settings = methods.iter().map(|m| Setting::of(m)).collect::<Result<Vec<_>>>()?;
-    let compared = on_scenes(bench, scenes, bench.size.pick(2, 1, 1), &settings, 1, Against::Residuals)?;
-    let mut goals = Vec::new();
-    for RatioGoals { scene, steps_of_paper, time_of_paper, time_of_barrier } in PRESETS {
-        let Some(c) = compared.iter().find(|c: &&Compared| c.scene == scene) else { continue };
-        let ratio = |method: &str, value: fn(&Summary) -> f64| {
-            Some(value(c.find(method, "")?) / value(c.find("fast", "")?))
-        };
-        let all = [
-            ("steps of `paper` over those of `fast`", ratio("paper", |s| s.steps), steps_of_paper),
-            ("CPU time of `paper` over that of `fast`", ratio("paper", |s| s.cpu), time_of_paper),
-            (
-                "CPU time of the log barrier over that of `fast`",
-                ratio("log barrier", |s| s.cpu),
-                time_of_barrier,
-            ),
-        ];
-        goals.extend(all.into_iter().filter_map(|(what, measured, [required, aim])| {
-            Some(Goal { what: format!("{scene}: {what}"), measured: measured?, required, aim, unit: "x" })
-        }));
+/// Runs cases once and keeps the results.
+struct Runs<'a> {
+    bench: &'a Bench,
+}
+
+impl Runs<'_> {
+    /// The case at the size of the run of this command.
+    fn sized(&self, scene: &'static str, scale: f64, frames: usize, threads: usize) -> Case {
+        let size = self.bench.size;
+        Case {
+            scene,
+            scale: scale * size.pick(1.0, 0.3, 0.1),
+            frames: frames.min(size.pick(frames, 4, 1)),
+            threads,
+        }
     }
+
+    /// None if no time is left.
+    fn now(&self, case: &Case) -> Result<Option<ProcessRun>> {
+        self.kept(&format!("goals/now-{}", case.key()), || case.run())
+    }
+
+    /// None if there is no program to compare with, or no time is left.
+    fn before(&self, case: &Case) -> Result<Option<ProcessRun>> {
+        let Some(program) = &self.bench.before else { return Ok(None) };
+        self.kept(&format!("goals/before-{}", case.key()), || case.run_with(program, self.bench.out()))
+    }
+
+    fn kept(&self, key: &str, run: impl FnOnce() -> Result<ProcessRun>) -> Result<Option<ProcessRun>> {
+        match self.bench.store.find(key) {
+            Some(kept) => Ok(Some(kept)),
+            None if self.bench.has_time() => self.bench.store.measured(key, run).map(Some),
+            None => Ok(None),
+        }
+    }
+}
+
+fn collision(seconds: &StepSeconds) -> f64 {
+    seconds.search + seconds.evaluate + seconds.backward + seconds.forward
+}
+
+/// Mean over the time steps.
+fn mean_of(run: &ProcessRun, value: impl Fn(&TimeStep) -> f64) -> f64 {
+    mean(&run.steps.iter().map(value).collect::<Vec<f64>>())
+}
+
+fn collision_of(run: &ProcessRun) -> f64 {
+    mean_of(run, |step| collision(&step.seconds))
+}
+
+fn dynamics_of(run: &ProcessRun) -> f64 {
+    mean_of(run, |step| step.seconds.dynamics)
+}
+
+fn table_2(runs: &Runs<'_>, table: &mut Table) -> Result<Vec<Goal>> {
+    let (mut ratios, mut walls, mut steps, mut most, mut memory) = (vec![], vec![], vec![], vec![], vec![]);
+    let count = runs.bench.size.pick(TABLE_2.len(), 3, 1);
+    for &(scene, frames, paper) in &TABLE_2[..count] {
+        let case = runs.sized(scene, 1.0, frames, 1);
+        let Some(now) = runs.now(&case)? else { break };
+        let before = runs.before(&case)?;
+        let Some(two) = runs.now(&Case { threads: 2, ..case })? else { break };
+        let two_way_steps: Vec<f64> = now.steps.iter().map(|step| step.two_way_steps as f64).collect();
+        let kilobytes = 1e-3 * now.bytes as f64 / now.vertices as f64;
+        let of_before = |value: fn(&ProcessRun) -> f64| before.as_ref().map_or(f64::NAN, value);
+        let [seconds, seconds_before] = [collision_of(&now), of_before(collision_of)];
+        ratios.extend(before.as_ref().map(|_| seconds_before / seconds));
+        walls.push(collision_of(&two) / paper);
+        steps.push(mean(&two_way_steps));
+        most.push(largest(&two_way_steps));
+        memory.push(kilobytes);
+        table.row([
+            scene.into(),
+            now.steps.len().into(),
+            now.steps.iter().filter(|step| step.contact_rows > 0).count().into(),
+            now.vertices.into(),
+            seconds.into(),
+            seconds_before.into(),
+            dynamics_of(&now).into(),
+            of_before(dynamics_of).into(),
+            collision_of(&two).into(),
+            paper.into(),
+            mean(&two_way_steps).into(),
+            largest(&two_way_steps).into(),
+            kilobytes.into(),
+        ]);
+    }
+    let goal = |what: &str, measured, [required, aim]: [f64; 2], unit| Goal {
+        what: what.to_owned(),
+        measured,
+        required,
+        aim,
+        unit,
+    };
+    let mut goals = Vec::new();
+    if !ratios.is_empty() {
+        let what = "Table 2: collision seconds before, over those now";
+        goals.push(goal(what, geometric_mean(&ratios), [4.0, 8.0], "x"));
+    }
+    goals.push(goal(
+        "Table 2: collision seconds over the paper's, worst",
+        largest(&walls),
+        [40.0, 10.0],
+        "x",
+    ));
+    goals.push(goal("Table 2: two-way steps per time step, worst mean", largest(&steps), [20.0, 10.0], ""));
+    goals.push(goal("Table 2: two-way steps per time step, most", largest(&most), [100.0, 50.0], ""));
+    goals.push(goal("Table 2: memory per vertex, worst", largest(&memory), [3.0, 1.5], " kB"));
     Ok(goals)
 }
 
-/// A run on that many threads, whatever `--threads` says.
-fn timed(bench: &Bench, scene: &str, scale: f64, frames: usize, threads: usize) -> Result<Simulation> {
-    let key = format!("goals/{scene}-{scale}-{frames}-{threads}");
-    bench.store.measured(&key, || {
-        let scene = Scene::builtin(scene, scale)?;
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build()?.install(|| run(&scene, frames, 1))
-    })
-}
-
-fn sphere(bench: &Bench) -> Result<Vec<Goal>> {
-    if !bench.has_time() {
-        return Ok(Vec::new());
-    }
-    let scale = bench.size.pick(1.0, 0.4, 0.2);
-    let [one, two] = [timed(bench, "sphere", scale, 20, 1)?, timed(bench, "sphere", scale, 20, 2)?];
-    let whole = |s: &Simulation, k: usize| s.collision[k] + s.dynamics[k];
-    let steps = |contact: bool| {
-        // The first time step allocates buffers.
-        (1..one.steps.len()).filter(|&k| (one.contact_rows[k] > 0) == contact).collect::<Vec<usize>>()
-    };
-    let ratios: Vec<f64> = steps(true).iter().map(|&k| whole(&one, k) / whole(&two, k)).collect();
-    let shares: Vec<f64> = steps(false).iter().map(|&k| one.collision[k] / whole(&one, k)).collect();
-    let what = "measured: one thread's wall time over that of two, in contact".to_owned();
-    let share = "measured: share of the collision stage in flight".to_owned();
-    Ok(vec![
-        Goal { what, measured: median(&ratios), required: 1.6, aim: 1.9, unit: "x" },
-        Goal { what: share, measured: 100.0 * median(&shares), required: 10.0, aim: 2.0, unit: " %" },
-    ])
-}
-
-fn knots(bench: &Bench) -> Result<Vec<Goal>> {
+fn dynamics(runs: &Runs<'_>) -> Result<Vec<Goal>> {
     let mut goals = Vec::new();
-    for (scene, paper) in KNOTS {
-        if !bench.has_time() {
-            break;
-        }
-        let frames = bench.size.pick(30, 10, 2);
-        let done = timed(bench, scene, bench.size.pick(1.0, 0.2, 0.1), frames, 2)?;
-        let seconds = done.collision.iter().sum::<f64>() / frames as f64;
+    for scene in DYNAMICS {
+        let frames = TABLE_2.iter().find(|row| row.0 == scene).map_or(40, |row| row.1);
+        let case = runs.sized(scene, 1.0, frames, 1);
+        let Some(before) = runs.before(&case)? else { continue };
+        let Some(now) = runs.now(&case)? else { break };
         goals.push(Goal {
-            what: format!("{scene}: collision seconds over the paper's, first {frames} time steps"),
-            measured: seconds / paper,
-            required: 10.0,
-            aim: 3.0,
+            what: format!("{scene}: seconds of the dynamics before, over those now"),
+            measured: dynamics_of(&before) / dynamics_of(&now),
+            required: 2.0,
+            aim: 4.0,
             unit: "x",
         });
     }
     Ok(goals)
 }
 
-fn memory(bench: &Bench) -> Result<Vec<Goal>> {
-    let scale = bench.size.pick(1.0, 0.4, 0.2);
-    let of = |scene: &str, scale: f64, frames: usize| -> Result<Footprint> {
-        bench.store.measured(&format!("goals/memory-{scene}-{scale}"), || footprint(scene, scale, frames))
-    };
-    let nothing = of("drape", 0.05, 1)?;
+/// The seconds of a stage.
+type Stage = fn(&StepSeconds) -> f64;
+
+/// Stages by name, in the order of a time step.
+const STAGES: [(&str, Stage); 6] = [
+    ("whole time step", |s| s.total),
+    ("dynamics", |s| s.dynamics),
+    ("search", |s| s.search),
+    ("evaluation", |s| s.evaluate),
+    ("backward step", |s| s.backward),
+    ("forward step", |s| s.forward),
+];
+
+fn threads(runs: &Runs<'_>) -> Result<Vec<Goal>> {
     let mut goals = Vec::new();
-    for (scene, frames) in [("needle", 12), ("stack", 60), ("sphere", 16)] {
-        if !bench.has_time() {
-            break;
+    let two_threads = |case: &Case| -> Result<Option<[ProcessRun; 2]>> {
+        let Some(one) = runs.now(case)? else { return Ok(None) };
+        Ok(runs.now(&Case { threads: 2, ..*case })?.map(|two| [one, two]))
+    };
+    if let Some([one, two]) = two_threads(&runs.sized("sphere", 1.0, 18, 1))? {
+        // The first time step allocates buffers.
+        let later = 1..one.steps.len();
+        let (contact, flight): (Vec<usize>, Vec<usize>) = later.partition(|&k| one.steps[k].contact_rows > 0);
+        let sum = |run: &ProcessRun, stage: Stage| -> f64 {
+            contact.iter().map(|&k| stage(&run.steps[k].seconds)).sum()
+        };
+        for (name, stage) in STAGES {
+            goals.push(Goal {
+                what: format!("sphere, in contact: one thread's seconds over those of two, {name}"),
+                measured: sum(&one, stage) / sum(&two, stage),
+                required: 1.6,
+                aim: 1.9,
+                unit: "x",
+            });
         }
-        let found = of(scene, scale, frames)?;
-        let each = found.bytes.saturating_sub(nothing.bytes) as f64 / found.vertices as f64;
-        let pairs = found.pairs as f64 / found.vertices as f64;
+        let shares: Vec<f64> =
+            flight.iter().map(|&k| collision(&one.steps[k].seconds) / one.steps[k].seconds.total).collect();
         goals.push(Goal {
-            what: format!("{scene}: memory per vertex, at {} candidate pairs per vertex", short(pairs)),
-            measured: 1e-3 * each,
-            required: 3.0,
-            aim: 1.5,
-            unit: " kB",
+            what: "sphere, in flight: share of the collision stage".to_owned(),
+            measured: 100.0 * mean(&shares),
+            required: 10.0,
+            aim: 2.0,
+            unit: " %",
+        });
+    }
+    if let Some([one, two]) = two_threads(&runs.sized("drape", 0.44, 100, 1))? {
+        goals.push(Goal {
+            what: "drape, 500 vertices: one thread's seconds over those of two".to_owned(),
+            measured: mean_of(&one, |s| s.seconds.total) / mean_of(&two, |s| s.seconds.total),
+            required: 1.0,
+            aim: 1.1,
+            unit: "x",
         });
     }
     Ok(goals)
+}
+
+fn growth(runs: &Runs<'_>) -> Result<Vec<Goal>> {
+    let mut measured = Vec::new();
+    for scale in SCALES {
+        let Some(run) = runs.now(&runs.sized("drape", scale, GROWTH_FRAMES, 1))? else {
+            return Ok(Vec::new());
+        };
+        measured.push(run);
+    }
+    let [low, high] = [measured[0].vertices, measured[SCALES.len() - 1].vertices];
+    let exponent = |value: &dyn Fn(&TimeStep) -> f64| {
+        let points = measured.iter().map(|run| {
+            let contact: Vec<f64> = run.steps.iter().filter(|s| s.contact_rows > 0).map(value).collect();
+            ((run.vertices as f64).ln(), mean(&contact).ln())
+        });
+        slope(&points.collect::<Vec<_>>())
+    };
+    let goal = |name: &str, measured: f64| Goal {
+        what: format!("drape, {low} to {high} vertices: growth of the time, {name}"),
+        measured,
+        required: 1.1,
+        aim: 1.05,
+        unit: "",
+    };
+    let mut goals: Vec<Goal> =
+        STAGES.iter().map(|(name, stage)| goal(name, exponent(&|s| stage(&s.seconds)))).collect();
+    let per_iteration = exponent(&|s| s.seconds.dynamics / s.cg_iterations.max(1) as f64);
+    goals.push(goal("dynamics per iteration of the linear solver", per_iteration));
+    Ok(goals)
+}
+
+/// Slope of the line with the least squares.
+fn slope(points: &[(f64, f64)]) -> f64 {
+    let x = mean(&points.iter().map(|p| p.0).collect::<Vec<_>>());
+    let y = mean(&points.iter().map(|p| p.1).collect::<Vec<_>>());
+    let products: f64 = points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum();
+    products / points.iter().map(|p| (p.0 - x) * (p.0 - x)).sum::<f64>()
 }
 
 #[cfg(test)]
@@ -233,5 +369,12 @@ mod tests {
         assert_eq!(verdict(&goal(2.0, 1.5, 3.0)), (true, false));
         assert_eq!(verdict(&goal(2.0, 10.0, 3.0)), (true, true));
         assert_eq!(verdict(&goal(4.0, 3.0, 1.5)), (false, false));
+    }
+
+    #[test]
+    fn the_slope_is_the_exponent_of_a_power() {
+        let points: Vec<(f64, f64)> =
+            [1.0f64, 4.0, 9.0].map(|n| (n.ln(), (5.0 * n.powf(1.25)).ln())).to_vec();
+        assert!((slope(&points) - 1.25).abs() < 1e-12);
     }
 }

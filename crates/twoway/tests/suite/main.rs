@@ -3,6 +3,7 @@
 mod backward;
 mod bodies;
 mod common;
+mod fingers;
 mod flight;
 mod friction;
 mod obstacles;
