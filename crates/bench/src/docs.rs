@@ -85,6 +85,7 @@ impl Docs {
                     write(&folder.join(format!("{name}.csv")), &table.csv())?;
                 }
                 Part::Table { .. } => {}
+                Part::File { name, table, .. } => write(&folder.join(format!("{name}.csv")), &table.csv())?,
                 Part::Chart { name, chart } => {
                     write(&folder.join(format!("{name}.svg")), &chart::svg(chart))?;
                 }

@@ -37,6 +37,8 @@ pub struct Report {
 pub enum Part {
     /// A table, NAME.csv; `shows` says in one line what is in it, and may be empty for figures on the page.
     Table { name: String, shows: String, table: Table },
+    /// A table that the page links as NAME.csv and does not show; `shows` says in one line what is in it.
+    File { name: String, shows: String, table: Table },
     /// A chart, NAME.svg.
     Chart { name: String, chart: Chart },
 }
@@ -44,6 +46,10 @@ pub enum Part {
 impl Part {
     pub fn table(name: impl Into<String>, shows: impl Into<String>, table: Table) -> Self {
         Self::Table { name: name.into(), shows: shows.into(), table }
+    }
+
+    pub fn file(name: impl Into<String>, shows: impl Into<String>, table: Table) -> Self {
+        Self::File { name: name.into(), shows: shows.into(), table }
     }
 }
 

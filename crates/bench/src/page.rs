@@ -9,7 +9,7 @@ const LINE: usize = 110;
 /// Name of the block with the index.
 const INDEX: &str = "index";
 
-/// The section of a figure: text, tables, charts, conditions. `charts` is where the charts are, seen from the
+/// The section of a figure: text, tables, charts, conditions. `charts` is where charts and files are, seen from the
 /// file with the section: empty if beside it, else a folder with a slash at its end.
 pub fn section(figure: &dyn Figure, report: &Report, conditions: &str, charts: &str) -> String {
     let mut text = format!(
@@ -24,6 +24,7 @@ pub fn section(figure: &dyn Figure, report: &Report, conditions: &str, charts: &
             Part::Table { shows, table, .. } => {
                 format!("{}:\n\n{}", wrap(shows), table.markdown().trim_end())
             }
+            Part::File { name, shows, .. } => format!("[{name}.csv]({charts}{name}.csv): {shows}."),
             Part::Chart { name, chart } => format!("![{}]({charts}{name}.svg)", chart.title),
         };
         text.push_str(&format!("\n{part}\n"));
@@ -43,12 +44,12 @@ pub fn index_rows(figure: &dyn Figure, report: &Report, conditions: &str) -> Vec
                 let short = if short.is_empty() { "chart" } else { short };
                 Some(format!("[{short}](benchmarks/{name}.svg)"))
             }
-            Part::Table { .. } => None,
+            Part::Table { .. } | Part::File { .. } => None,
         })
         .collect();
     let mut charts = charts.join(", ");
     let tables = report.parts.iter().filter_map(|part| match part {
-        Part::Table { name, shows, .. } => Some((name, shows)),
+        Part::Table { name, shows, .. } | Part::File { name, shows, .. } => Some((name, shows)),
         Part::Chart { .. } => None,
     });
     tables

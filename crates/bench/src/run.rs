@@ -19,7 +19,9 @@ pub fn measure(bench: &Bench, docs: &Docs, figure: &dyn Figure, order: &[&str]) 
     let folder = bench.out().join(figure.name());
     for part in &report.parts {
         match part {
-            Part::Table { name, table, .. } => write(&folder.join(format!("{name}.csv")), &table.csv())?,
+            Part::Table { name, table, .. } | Part::File { name, table, .. } => {
+                write(&folder.join(format!("{name}.csv")), &table.csv())?
+            }
             Part::Chart { name, chart } => write(&folder.join(format!("{name}.svg")), &chart::svg(chart))?,
         }
     }
