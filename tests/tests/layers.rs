@@ -74,6 +74,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
         ],
     ),
     ("bowknot-render", &["bowknot-geometry"]),
+    ("bowknot-gpu", &["bowknot-check", "bowknot-geometry", "bowknot-proximity"]),
     ("bowknot-cli", &["bowknot", "bowknot-render"]),
     ("xtask", &[]),
 ];

@@ -1,0 +1,88 @@
+// The data that all stages share: see layout.rs. Lengths are in quanta of the grid.
+
+const NONE: u32 = 0xffffffffu;
+
+struct Vertex {
+    edge: f32,
+    margin: f32,
+    body: u32,
+    flags: u32,
+    groups: u32,
+    mask: u32,
+    group: u32,
+    padding: u32,
+}
+
+const OBSTACLE: u32 = 1u;
+const PRESCRIBED: u32 = 2u;
+const SELF_COLLIDES: u32 = 4u;
+
+struct Ball {
+    center: vec3<i32>,
+    radius: i32,
+}
+
+struct Slot {
+    v0: u32,
+    v1: u32,
+    v2: u32,
+    element: u32,
+}
+
+struct NodeBox {
+    low: vec3<i32>,
+    deformable: u32,
+    high: vec3<i32>,
+    padding: u32,
+}
+
+struct Candidate {
+    kind_and_a: u32,
+    b: u32,
+}
+
+const ELEMENT_BITS: u32 = 29u;
+const ELEMENT_MASK: u32 = 0x1fffffffu;
+
+const VERTEX_VERTEX: u32 = 0u;
+const VERTEX_EDGE: u32 = 1u;
+const VERTEX_TRIANGLE: u32 = 2u;
+const EDGE_EDGE: u32 = 3u;
+const VERTEX_HALF_SPACE: u32 = 4u;
+
+struct Separation {
+    normal: vec3<f32>,
+    width: f32,
+    weights: vec3<f32>,
+    distance: f32,
+}
+
+struct Plane {
+    normal: vec3<f32>,
+    rounding: f32,
+    point: vec3<i32>,
+    padding: u32,
+}
+
+struct Control {
+    changed: atomic<u32>,
+    overflow: atomic<u32>,
+    most_partners: atomic<u32>,
+    frozen: atomic<u32>,
+    remaining: atomic<u32>,
+    unhindered_lag: atomic<u32>,
+    remaining_fraction: atomic<u32>,
+    largest_move: atomic<u32>,
+    candidates: atomic<u32>,
+}
+
+// Whether two elements, given by one vertex of each, may form a pair.
+fn may_collide(a: Vertex, b: Vertex) -> bool {
+    if (a.flags & b.flags & OBSTACLE) != 0u {
+        return false;
+    }
+    if a.body == b.body {
+        return (a.flags & SELF_COLLIDES) != 0u;
+    }
+    return (a.groups & b.mask) != 0u && (b.groups & a.mask) != 0u;
+}

@@ -1,0 +1,47 @@
+// Second part of the list of candidates: where those of each block begin, and how many there are. One workgroup.
+
+struct Params {
+    blocks: u32,
+    // Candidates that the list holds.
+    capacity: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read_write> blocks: array<u32>;
+@group(0) @binding(2) var<storage, read_write> control: Control;
+
+var<workgroup> sums: array<u32, 256>;
+
+@compute @workgroup_size(256)
+fn main(@builtin(local_invocation_id) local: vec3<u32>) {
+    var total = 0u;
+    for (var first = 0u; first < params.blocks; first += 256u) {
+        let block = first + local.x;
+        var count = 0u;
+        if block < params.blocks {
+            count = blocks[block];
+        }
+        sums[local.x] = count;
+        workgroupBarrier();
+        for (var reach = 1u; reach < 256u; reach *= 2u) {
+            var before = 0u;
+            if local.x >= reach {
+                before = sums[local.x - reach];
+            }
+            workgroupBarrier();
+            sums[local.x] += before;
+            workgroupBarrier();
+        }
+        if block < params.blocks {
+            blocks[block] = total + sums[local.x] - count;
+        }
+        total += sums[255];
+        workgroupBarrier();
+    }
+    if local.x == 0u {
+        atomicStore(&control.candidates, total);
+        if total > params.capacity {
+            atomicStore(&control.overflow, 1u);
+        }
+    }
+}

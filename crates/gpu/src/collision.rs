@@ -1,0 +1,585 @@
+//! Steps toward a target that nothing passes through: search, contact geometry and forward step on an engine.
+//!
+//! Positions, targets, trust regions and pairs stay on the device. A step is the list of dispatches that
+//! [`Collision::record_step`] writes; the host reads [`Control`] alone, and grows buffers that were too small. A step
+//! with a buffer that is too small moves nothing and is made again.
+
+use crate::cpu;
+use crate::engine::Engine;
+use crate::error::GpuError;
+use crate::grid::{Grid, GridError, GridPoint};
+use crate::layout::{Ball, Candidate, Control, Kind, Separation, Slot, Vertex};
+use crate::model::{self, Constraints, Lengths};
+use crate::recording::{BufferId, Recording};
+use crate::stages;
+use crate::tree::Tree;
+use bowknot_geometry::{CollisionModel, Point, Topology};
+use bytemuck::Pod;
+
+/// Longest travel of a vertex in a step, and smallest radius of a trust region, in local edge lengths.
+const LONGEST_TRAVEL: f32 = 0.35;
+const SMALLEST_RADIUS: f32 = 0.1;
+
+/// Partners of an element for which there is room at first, and candidates per vertex.
+const FIRST_PARTNERS: usize = 24;
+const FIRST_CANDIDATES: usize = 16;
+
+/// Words of a row before its partners: their number, and the element.
+const ROW_HEADER: usize = 2;
+
+/// Why collisions cannot be computed on the device.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CollisionError {
+    /// There is no grid for the scene.
+    #[error(transparent)]
+    Grid(#[from] GridError),
+    /// The device failed.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// An array has another length than the model has vertices.
+    #[error("{what} has {given} entries for {vertices} vertices")]
+    Length {
+        /// The array.
+        what: &'static str,
+        /// Its length.
+        given: usize,
+        /// Vertices of the model.
+        vertices: usize,
+    },
+    /// A position lies outside of the grid.
+    #[error("vertex {vertex} has left the grid of the device: use --backend cpu")]
+    OutsideGrid {
+        /// The vertex.
+        vertex: usize,
+    },
+}
+
+/// What a step did.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepReport {
+    /// Candidate pairs.
+    pub candidates: usize,
+    /// Whether they were searched for.
+    pub searched: bool,
+    /// Pairs that nothing certifies.
+    pub frozen: usize,
+    /// Largest remaining distance of a vertex [m].
+    pub remaining: f64,
+    /// Largest remaining distance of a prescribed vertex that no pair holds back [m].
+    pub unhindered_lag: f64,
+    /// Longest move of a vertex [m].
+    pub largest_move: f64,
+}
+
+/// The collision stage of a scene on an engine.
+#[derive(Debug)]
+pub struct Collision<E> {
+    engine: E,
+    grid: Grid,
+    lengths: StepLengths,
+    counts: Counts,
+    buffers: Buffers,
+    trees: Trees,
+    /// Partners of an element that fit into a row, and candidates that fit into their list.
+    most_partners: usize,
+    capacity: usize,
+    /// Whether all trust regions are new.
+    all_new: bool,
+}
+
+/// Lengths in quanta that all steps share.
+#[derive(Clone, Copy, Debug)]
+struct StepLengths {
+    min_separation: f32,
+    damping: f32,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Counts {
+    vertices: usize,
+    groups: usize,
+    planes: usize,
+}
+
+/// Buffers that all stages share.
+#[derive(Clone, Copy, Debug)]
+struct Buffers {
+    positions: BufferId,
+    targets: BufferId,
+    vertices: BufferId,
+    edges: BufferId,
+    triangles: BufferId,
+    planes: BufferId,
+    paths: BufferId,
+    alphas: BufferId,
+    group_caps: BufferId,
+    group_alphas: BufferId,
+    balls: BufferId,
+    control: BufferId,
+    partners: BufferId,
+    starts: BufferId,
+    blocks: BufferId,
+    candidates: BufferId,
+    separations: BufferId,
+}
+
+/// Trees by the primitives that they hold, and the queries into them.
+#[derive(Debug)]
+struct Trees {
+    surface: DeviceTree,
+    edges: DeviceTree,
+    triangles: DeviceTree,
+    particles: DeviceTree,
+    strands: DeviceTree,
+}
+
+/// A tree with its buffers. One without elements has buffers too, which no stage reads.
+#[derive(Debug)]
+struct DeviceTree {
+    tree: Tree,
+    slots: BufferId,
+    boxes: BufferId,
+}
+
+impl<E: Engine> Collision<E> {
+    /// Prepares the scene of `model` at `positions` [m], which no two elements intersect. `damping` is the share of a
+    /// gap that a step may use up.
+    ///
+    /// # Errors
+    /// No grid has room for the scene; the device has no memory; wrong lengths.
+    pub fn new(
+        mut engine: E,
+        model: &CollisionModel,
+        positions: &[Point],
+        lengths: &Lengths<'_>,
+        constraints: &Constraints<'_>,
+        damping: f64,
+    ) -> Result<Self, CollisionError> {
+        let count = model.topology().vertex_count;
+        for (what, given) in [
+            ("positions", positions.len()),
+            ("edges", lengths.edges.len()),
+            ("margins", lengths.margins.len()),
+        ] {
+            check_length(what, given, count)?;
+        }
+        let extent = extent(positions);
+        let grid = Grid::around(positions, extent, lengths.min_separation)?;
+        let on_grid = snapped(&grid, positions)?;
+        let vertices = model::vertices(model, lengths, constraints, &grid);
+        let planes = model::planes(model, &grid);
+        let groups = vertices.iter().filter(|v| v.group != crate::layout::NONE).map(|v| v.group as usize + 1);
+        let counts = Counts { vertices: count, groups: groups.max().unwrap_or(0), planes: planes.len() };
+        let trees = Trees::new(&mut engine, model.topology(), &on_grid)?;
+        let (most_partners, capacity) = (FIRST_PARTNERS, (FIRST_CANDIDATES * count).max(64));
+        let rows = trees.rows(&counts);
+        let topology = model.topology();
+        let triangles: Vec<[u32; 4]> = topology.triangles.iter().map(|&[a, b, c]| [a, b, c, 0]).collect();
+        let buffers = Buffers {
+            positions: engine.buffer("positions", 4 * count)?,
+            targets: engine.buffer("targets", 4 * count)?,
+            vertices: engine.buffer("vertices", words::<Vertex>(count))?,
+            edges: engine.buffer("edges", 2 * topology.edges.len())?,
+            triangles: engine.buffer("triangles", 4 * triangles.len())?,
+            planes: engine.buffer("planes", words::<crate::layout::Plane>(planes.len().max(1)))?,
+            paths: engine.buffer("paths", 4 * count)?,
+            alphas: engine.buffer("step sizes", count)?,
+            group_caps: engine.buffer("group caps", counts.groups)?,
+            group_alphas: engine.buffer("group step sizes", counts.groups)?,
+            balls: engine.buffer("trust regions", words::<Ball>(count))?,
+            control: engine.buffer("control", words::<Control>(1))?,
+            partners: engine.buffer("partners", rows * (ROW_HEADER + most_partners))?,
+            starts: engine.buffer("starts", rows)?,
+            blocks: engine.buffer("blocks", rows.div_ceil(cpu::count::BLOCK))?,
+            candidates: engine.buffer("candidates", words::<Candidate>(capacity))?,
+            separations: engine.buffer("separations", words::<Separation>(capacity))?,
+        };
+        let mut setup = Recording::default();
+        setup.write(buffers.positions, &padded(&on_grid));
+        setup.write(buffers.vertices, &vertices);
+        setup.write(buffers.edges, &topology.edges);
+        setup.write(buffers.triangles, &triangles);
+        setup.write(buffers.planes, &planes);
+        trees.all().iter().for_each(|tree| tree.upload(&mut setup));
+        engine.run(&setup, &[])?;
+        let lengths = StepLengths {
+            min_separation: grid.length(lengths.min_separation).next_up(),
+            damping: damping as f32,
+        };
+        Ok(Self { engine, grid, lengths, counts, buffers, trees, most_partners, capacity, all_new: true })
+    }
+
+    /// The grid on which all positions lie.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// Sets where the vertices want to go [m]; targets outside of the grid are moved to its border.
+    ///
+    /// # Errors
+    /// A wrong length; the device failed.
+    pub fn set_target(&mut self, target: &[Point]) -> Result<(), CollisionError> {
+        check_length("target", target.len(), self.counts.vertices)?;
+        let inside: Vec<GridPoint> = target.iter().map(|y| self.grid.nearest_inside(y)).collect();
+        let mut recording = Recording::default();
+        recording.write(self.buffers.targets, &padded(&inside));
+        self.engine.run(&recording, &[])?;
+        Ok(())
+    }
+
+    /// Moves the vertices toward their target as far as all candidate pairs allow.
+    ///
+    /// # Errors
+    /// The device failed, or has no memory for all candidates.
+    pub fn step(&mut self) -> Result<StepReport, CollisionError> {
+        loop {
+            let mut recording = Recording::default();
+            self.record_step(&mut recording);
+            let read = [(self.buffers.control, words::<Control>(1))];
+            let words = self.engine.run(&recording, &read)?.swap_remove(0);
+            let control: Control = bytemuck::cast_slice(&words)[0];
+            if control.overflow == 0 {
+                self.all_new = false;
+                return Ok(self.report(&control));
+            }
+            self.grow(&control)?;
+        }
+    }
+
+    /// The positions [m], exactly as they are on the device.
+    ///
+    /// # Errors
+    /// The device failed.
+    pub fn positions(&mut self) -> Result<Vec<Point>, CollisionError> {
+        let read = [(self.buffers.positions, 4 * self.counts.vertices)];
+        let words = self.engine.run(&Recording::default(), &read)?.swap_remove(0);
+        let positions: &[[i32; 4]] = bytemuck::cast_slice(&words);
+        Ok(positions.iter().map(|&[x, y, z, _]| self.grid.position([x, y, z])).collect())
+    }
+
+    /// The candidates of the last step, sorted.
+    ///
+    /// # Errors
+    /// The device failed.
+    pub fn candidates(&mut self) -> Result<Vec<Candidate>, CollisionError> {
+        let read = [
+            (self.buffers.control, words::<Control>(1)),
+            (self.buffers.candidates, words::<Candidate>(self.capacity)),
+        ];
+        let all = self.engine.run(&Recording::default(), &read)?;
+        let control: Control = bytemuck::cast_slice(&all[0])[0];
+        let candidates: &[Candidate] = bytemuck::cast_slice(&all[1]);
+        let mut candidates = candidates[..control.candidates as usize].to_vec();
+        candidates.sort_unstable();
+        Ok(candidates)
+    }
+
+    /// The dispatches of a step, in order.
+    fn record_step(&self, recording: &mut Recording) {
+        self.record_start(recording);
+        self.record_paths(recording);
+        self.record_search(recording);
+        self.record_forward(recording);
+    }
+
+    /// Resets what the stages of a step add to.
+    fn record_start(&self, recording: &mut Recording) {
+        let buffers = &self.buffers;
+        let ones = vec![1.0f32; self.counts.groups];
+        recording.write(buffers.group_caps, &ones);
+        recording.write(buffers.group_alphas, &ones);
+        recording.write(buffers.control, &[0u32; Control::RESET_WORDS]);
+    }
+
+    /// How far each vertex wants to go, and which trust regions do not cover it.
+    fn record_paths(&self, recording: &mut Recording) {
+        let (b, vertices) = (&self.buffers, self.counts.vertices as u32);
+        recording.dispatch(
+            &stages::PLAN,
+            &[b.positions, b.targets, b.vertices, b.paths, b.group_caps],
+            cpu::plan::Params { vertices, longest: LONGEST_TRAVEL },
+            self.counts.vertices,
+        );
+        recording.dispatch(
+            &stages::JOIN,
+            &[b.vertices, b.group_caps, b.paths, b.alphas],
+            cpu::join::Params { vertices },
+            self.counts.vertices,
+        );
+        recording.dispatch(
+            &stages::COVER,
+            &[b.positions, b.paths, b.vertices, b.balls, b.control],
+            cpu::cover::Params { vertices, all: u32::from(self.all_new), smallest: SMALLEST_RADIUS },
+            self.counts.vertices,
+        );
+    }
+
+    /// The candidates, if trust regions have changed.
+    fn record_search(&self, recording: &mut Recording) {
+        let b = &self.buffers;
+        for tree in self.trees.targets() {
+            tree.record_fit(b, recording);
+        }
+        let mut row = 0;
+        for (kind, queries, targets) in self.trees.searches() {
+            self.record_traverse(kind, queries, targets, row, recording);
+            row += queries.tree.slots.len();
+        }
+        if self.counts.planes > 0 {
+            let queries = &self.trees.surface;
+            let params = cpu::near_planes::Params {
+                queries: queries.tree.slots.len() as u32,
+                planes: self.counts.planes as u32,
+                first_row: row as u32,
+                stride: self.stride(),
+                most: self.most_partners as u32,
+            };
+            let buffers = [queries.slots, b.planes, b.balls, b.vertices, b.partners, b.control];
+            recording.dispatch(&stages::NEAR_PLANES, &buffers, params, queries.tree.slots.len());
+            row += queries.tree.slots.len();
+        }
+        let (rows, most, capacity) = (row as u32, self.most_partners as u32, self.capacity as u32);
+        recording.dispatch(
+            &stages::COUNT,
+            &[b.partners, b.starts, b.blocks, b.control],
+            cpu::count::Params { rows, stride: self.stride(), most },
+            row,
+        );
+        recording.dispatch(
+            &stages::TOTAL,
+            &[b.blocks, b.control],
+            cpu::total::Params { blocks: rows.div_ceil(cpu::count::BLOCK as u32), capacity },
+            1,
+        );
+        recording.dispatch(
+            &stages::GATHER,
+            &[b.partners, b.starts, b.blocks, b.candidates, b.control],
+            cpu::gather::Params { rows, stride: self.stride(), most, capacity },
+            row,
+        );
+    }
+
+    fn record_traverse(
+        &self,
+        kind: Kind,
+        queries: &DeviceTree,
+        targets: &DeviceTree,
+        row: usize,
+        recording: &mut Recording,
+    ) {
+        let b = &self.buffers;
+        let mut level_first = [[0; 4]; 3];
+        for (k, level) in targets.tree.levels.iter().enumerate() {
+            level_first[k / 4][k % 4] = level.first as u32;
+        }
+        let params = cpu::traverse::Params {
+            queries: queries.tree.slots.len() as u32,
+            count: queries.tree.vertex_count as u32,
+            kind: kind as u32,
+            symmetric: u32::from(queries.slots == targets.slots),
+            first_row: row as u32,
+            stride: self.stride(),
+            most: self.most_partners as u32,
+            levels: targets.tree.levels.len() as u32,
+            level_first,
+        };
+        let buffers =
+            [queries.slots, targets.slots, targets.boxes, b.balls, b.vertices, b.partners, b.control];
+        recording.dispatch(&stages::TRAVERSE, &buffers, params, queries.tree.slots.len());
+    }
+
+    /// Contact geometry, step sizes and the move.
+    fn record_forward(&self, recording: &mut Recording) {
+        let (b, vertices, capacity) = (&self.buffers, self.counts.vertices as u32, self.capacity as u32);
+        recording.dispatch(
+            &stages::SEPARATE,
+            &[b.positions, b.edges, b.triangles, b.planes, b.candidates, b.separations, b.control],
+            cpu::separate::Params { capacity },
+            self.capacity,
+        );
+        recording.dispatch(
+            &stages::LIMIT,
+            &[b.edges, b.triangles, b.vertices, b.candidates, b.separations, b.paths, b.alphas, b.control],
+            cpu::limit::Params {
+                capacity,
+                damping: self.lengths.damping,
+                min_separation: self.lengths.min_separation,
+            },
+            self.capacity,
+        );
+        recording.dispatch(
+            &stages::LIMIT_GROUPS,
+            &[b.vertices, b.alphas, b.group_alphas],
+            cpu::limit_groups::Params { vertices },
+            self.counts.vertices,
+        );
+        recording.dispatch(
+            &stages::ADVANCE,
+            &[b.targets, b.vertices, b.paths, b.alphas, b.group_alphas, b.positions, b.control],
+            cpu::advance::Params { vertices },
+            self.counts.vertices,
+        );
+    }
+
+    /// Words of a row of partners.
+    fn stride(&self) -> u32 {
+        (ROW_HEADER + self.most_partners) as u32
+    }
+
+    /// Makes room for what did not fit. What is read afterwards is written anew, as all trust regions are new.
+    fn grow(&mut self, control: &Control) -> Result<(), CollisionError> {
+        let Self { engine, buffers, .. } = self;
+        let (partners, candidates) = (control.most_partners as usize, control.candidates as usize);
+        if partners > self.most_partners {
+            self.most_partners = partners + partners / 4;
+            engine.free(buffers.partners);
+            let rows = self.trees.rows(&self.counts);
+            buffers.partners = engine.buffer("partners", rows * (ROW_HEADER + self.most_partners))?;
+        }
+        if candidates > self.capacity {
+            self.capacity = candidates + candidates / 4;
+            engine.free(buffers.candidates);
+            engine.free(buffers.separations);
+            buffers.candidates = engine.buffer("candidates", words::<Candidate>(self.capacity))?;
+            buffers.separations = engine.buffer("separations", words::<Separation>(self.capacity))?;
+        }
+        tracing::debug!(partners, candidates, "buffers grew");
+        self.all_new = true;
+        Ok(())
+    }
+
+    fn report(&self, control: &Control) -> StepReport {
+        let length = |bits: u32| f64::from(f32::from_bits(bits)) * self.grid.quantum();
+        StepReport {
+            candidates: control.candidates as usize,
+            searched: control.changed != 0,
+            frozen: control.frozen as usize,
+            remaining: length(control.remaining),
+            unhindered_lag: length(control.unhindered_lag),
+            largest_move: length(control.largest_move),
+        }
+    }
+}
+
+impl Trees {
+    fn new(engine: &mut impl Engine, topology: &Topology, positions: &[GridPoint]) -> Result<Self, GpuError> {
+        let points = |list: &[u32]| -> Vec<(u32, [u32; 1])> { list.iter().map(|&v| (v, [v])).collect() };
+        let edge = |e: u32| (e, topology.edges[e as usize]);
+        let edges: Vec<(u32, [u32; 2])> = (0..topology.edges.len() as u32).map(edge).collect();
+        let triangles: Vec<(u32, [u32; 3])> = (0..).zip(topology.triangles.iter().copied()).collect();
+        let strands: Vec<(u32, [u32; 2])> = topology.strand_edges.iter().map(|&e| edge(e)).collect();
+        let mut device = |tree: Tree| DeviceTree::new(engine, tree);
+        Ok(Self {
+            surface: device(Tree::new(&points(&topology.surface_vertices), positions))?,
+            edges: device(Tree::new(&edges, positions))?,
+            triangles: device(Tree::new(&triangles, positions))?,
+            particles: device(Tree::new(&points(&topology.particles), positions))?,
+            strands: device(Tree::new(&strands, positions))?,
+        })
+    }
+
+    fn all(&self) -> [&DeviceTree; 5] {
+        [&self.surface, &self.edges, &self.triangles, &self.particles, &self.strands]
+    }
+
+    /// Those that are searched in.
+    fn targets(&self) -> impl Iterator<Item = &DeviceTree> {
+        let mut targets: Vec<&DeviceTree> = Vec::new();
+        for (_, _, target) in self.searches() {
+            if targets.iter().all(|known| known.slots != target.slots) {
+                targets.push(target);
+            }
+        }
+        targets.into_iter()
+    }
+
+    /// Kinds of pairs with the tree of the queries and the one that they search in. What the scene does not have takes
+    /// no part.
+    fn searches(&self) -> impl Iterator<Item = (Kind, &DeviceTree, &DeviceTree)> {
+        [
+            (Kind::VertexVertex, &self.particles, &self.particles),
+            (Kind::VertexEdge, &self.particles, &self.strands),
+            (Kind::VertexTriangle, &self.surface, &self.triangles),
+            (Kind::EdgeEdge, &self.edges, &self.edges),
+        ]
+        .into_iter()
+        .filter(|(_, queries, targets)| !queries.tree.is_empty() && !targets.tree.is_empty())
+    }
+
+    /// Rows of partners of all queries.
+    fn rows(&self, counts: &Counts) -> usize {
+        let slots = |tree: &DeviceTree| tree.tree.slots.len();
+        let searched: usize = self.searches().map(|(_, queries, _)| slots(queries)).sum();
+        let near_planes = if counts.planes > 0 { slots(&self.surface) } else { 0 };
+        searched + near_planes
+    }
+}
+
+impl DeviceTree {
+    fn new(engine: &mut impl Engine, tree: Tree) -> Result<Self, GpuError> {
+        let slots = engine.buffer("elements", words::<Slot>(tree.slots.len()))?;
+        let boxes = engine.buffer("boxes", words::<crate::layout::NodeBox>(tree.box_count))?;
+        Ok(Self { tree, slots, boxes })
+    }
+
+    fn upload(&self, recording: &mut Recording) {
+        if !self.tree.is_empty() {
+            recording.write(self.slots, &self.tree.slots);
+            recording.write(self.boxes, &self.tree.blank_boxes());
+        }
+    }
+
+    /// Fits the boxes, level by level.
+    fn record_fit(&self, b: &Buffers, recording: &mut Recording) {
+        let slots = self.tree.slots.len();
+        recording.dispatch(
+            &stages::BOXES,
+            &[self.slots, b.balls, b.vertices, self.boxes, b.control],
+            cpu::boxes::Params { slots: slots as u32, count: self.tree.vertex_count as u32 },
+            slots,
+        );
+        for levels in self.tree.levels.windows(2) {
+            let [below, level] = [levels[0], levels[1]];
+            recording.dispatch(
+                &stages::REFIT,
+                &[self.boxes, b.control],
+                cpu::refit::Params {
+                    first: level.first as u32,
+                    nodes: level.nodes as u32,
+                    first_child: below.first as u32,
+                    children: below.nodes as u32,
+                },
+                level.nodes,
+            );
+        }
+    }
+}
+
+/// Words of 32 bits of so many entries.
+fn words<T: Pod>(count: usize) -> usize {
+    count * size_of::<T>() / 4
+}
+
+/// With a fourth coordinate, as the device stores positions.
+fn padded(points: &[GridPoint]) -> Vec<[i32; 4]> {
+    points.iter().map(|&[x, y, z]| [x, y, z, 0]).collect()
+}
+
+fn check_length(what: &'static str, given: usize, vertices: usize) -> Result<(), CollisionError> {
+    if given == vertices { Ok(()) } else { Err(CollisionError::Length { what, given, vertices }) }
+}
+
+/// Largest side of the box around the positions [m].
+fn extent(positions: &[Point]) -> f64 {
+    let side = |k: usize| {
+        let coordinates = || positions.iter().map(|x| x[k]);
+        coordinates().fold(f64::NEG_INFINITY, f64::max) - coordinates().fold(f64::INFINITY, f64::min)
+    };
+    (0..3).map(side).fold(0.0, f64::max)
+}
+
+fn snapped(grid: &Grid, positions: &[Point]) -> Result<Vec<GridPoint>, CollisionError> {
+    let snap = |(vertex, x): (usize, &Point)| grid.nearest(x).ok_or(CollisionError::OutsideGrid { vertex });
+    positions.iter().enumerate().map(snap).collect()
+}

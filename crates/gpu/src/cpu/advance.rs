@@ -1,0 +1,63 @@
+//! Twin of `shader/advance.wgsl`.
+
+use super::{difference, dot, scaled, truncated};
+use crate::bound::Bound;
+use crate::layout::{Control, NONE, Vertex};
+use bytemuck::{Pod, Zeroable};
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Params {
+    pub vertices: u32,
+}
+
+pub fn bound(buffers: Bound<'_>) {
+    advance(
+        buffers.params(),
+        &buffers.read(0),
+        &buffers.read(1),
+        &buffers.read(2),
+        &buffers.read(3),
+        &buffers.read(4),
+        &mut buffers.write(5),
+        &mut buffers.write::<Control>(6)[0],
+    );
+}
+
+pub fn advance(
+    params: Params,
+    targets: &[[i32; 4]],
+    vertices: &[Vertex],
+    paths: &[[f32; 4]],
+    alphas: &[u32],
+    group_alphas: &[u32],
+    positions: &mut [[i32; 4]],
+    control: &mut Control,
+) {
+    if control.overflow != 0 {
+        return;
+    }
+    for v in 0..params.vertices as usize {
+        let vertex = vertices[v];
+        let mut alpha = f32::from_bits(alphas[v]);
+        if vertex.group != NONE {
+            alpha = f32::from_bits(group_alphas[vertex.group as usize]);
+        }
+        let position = positions[v];
+        let displacement = difference(targets[v], position);
+        let length = dot(displacement, displacement).sqrt();
+        let left = (1.0 - alpha) * length;
+        control.remaining = control.remaining.max(left.to_bits());
+        control.remaining_fraction = control.remaining_fraction.max((1.0 - alpha).to_bits());
+        control.largest_move = control.largest_move.max((alpha * length).to_bits());
+        if vertex.flags & Vertex::PRESCRIBED != 0 && alpha >= paths[v][3] {
+            control.unhindered_lag = control.unhindered_lag.max(left.to_bits());
+        }
+        if alpha == 1.0 {
+            positions[v] = targets[v];
+        } else {
+            let step = truncated(scaled(displacement, alpha));
+            positions[v] = [position[0] + step[0], position[1] + step[1], position[2] + step[2], 0];
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! The CPU twins of the kernels: the same arithmetic in `f32` and the same loops, one thread after the other.
+//!
+//! A twin is a function over slices; its `bound` takes them from the buffers of a dispatch. Kernels and twins differ by
+//! rounding alone, since a shader compiler may fuse and reorder operations.
+
+pub mod advance;
+pub mod boxes;
+pub mod closest;
+pub mod count;
+pub mod cover;
+pub mod gather;
+pub mod join;
+pub mod limit;
+pub mod limit_groups;
+pub mod near_planes;
+pub mod pair;
+pub mod plan;
+pub mod refit;
+pub mod separate;
+pub mod total;
+pub mod traverse;
+
+use crate::layout::Vertex;
+
+type V3 = [f32; 3];
+
+pub fn dot(a: V3, b: V3) -> f32 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+pub fn added(a: V3, b: V3) -> V3 {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+pub fn subtracted(a: V3, b: V3) -> V3 {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+pub fn scaled(a: V3, factor: f32) -> V3 {
+    a.map(|x| x * factor)
+}
+
+pub fn divided(a: V3, divisor: f32) -> V3 {
+    a.map(|x| x / divisor)
+}
+
+pub fn negated(a: V3) -> V3 {
+    a.map(|x| -x)
+}
+
+pub fn crossed(a: V3, b: V3) -> V3 {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// Largest absolute coordinate.
+pub fn largest(a: V3) -> f32 {
+    a[0].abs().max(a[1].abs()).max(a[2].abs())
+}
+
+pub fn to_f32(a: [i32; 3]) -> V3 {
+    a.map(|x| x as f32)
+}
+
+/// Rounded toward zero.
+pub fn truncated(a: V3) -> [i32; 3] {
+    a.map(|x| x as i32)
+}
+
+/// Difference of two positions.
+pub fn difference(a: [i32; 4], b: [i32; 4]) -> V3 {
+    to_f32([0, 1, 2].map(|k| a[k].wrapping_sub(b[k])))
+}
+
+/// Whether two elements, given by one vertex of each, may form a pair.
+pub fn may_collide(a: &Vertex, b: &Vertex) -> bool {
+    if a.flags & b.flags & Vertex::OBSTACLE != 0 {
+        return false;
+    }
+    if a.body == b.body {
+        return a.flags & Vertex::SELF_COLLIDES != 0;
+    }
+    a.groups & b.mask != 0 && b.groups & a.mask != 0
+}

@@ -1,0 +1,29 @@
+//! Twin of `shader/total.wgsl`.
+
+use crate::bound::Bound;
+use crate::layout::Control;
+use bytemuck::{Pod, Zeroable};
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Params {
+    pub blocks: u32,
+    pub capacity: u32,
+}
+
+pub fn bound(buffers: Bound<'_>) {
+    total(buffers.params(), &mut buffers.write(0), &mut buffers.write::<Control>(1)[0]);
+}
+
+pub fn total(params: Params, blocks: &mut [u32], control: &mut Control) {
+    let mut total = 0;
+    for block in &mut blocks[..params.blocks as usize] {
+        let count = *block;
+        *block = total;
+        total += count;
+    }
+    control.candidates = total;
+    if total > params.capacity {
+        control.overflow = 1;
+    }
+}

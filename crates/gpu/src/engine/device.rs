@@ -1,0 +1,296 @@
+//! Runs recordings on a device.
+
+use super::traits::Engine;
+use crate::adapter::{Adapter, wait};
+use crate::error::GpuError;
+use crate::recording::{BufferId, Command, Dispatch, Recording};
+use crate::stages::{Access, Stage};
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Bytes between the parameters of two dispatches: what every device can offset by.
+const PARAMS_STRIDE: u64 = 256;
+
+/// Most workgroups in one dimension that every device runs.
+const MAX_WORKGROUPS: usize = 65535;
+
+/// A device with its buffers and pipelines.
+#[derive(Debug)]
+pub struct DeviceEngine {
+    name: String,
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    buffers: Vec<Option<wgpu::Buffer>>,
+    pipelines: HashMap<&'static str, Pipeline>,
+    /// The parameters of the dispatches of a recording.
+    params: wgpu::Buffer,
+    /// What the driver reported since the last look: it does so from other threads.
+    failure: Arc<Mutex<Option<Failure>>>,
+}
+
+#[derive(Debug)]
+struct Pipeline {
+    pipeline: wgpu::ComputePipeline,
+    layout: wgpu::BindGroupLayout,
+}
+
+#[derive(Debug)]
+enum Failure {
+    Driver(String),
+    Lost(String),
+}
+
+impl DeviceEngine {
+    /// Opens an adapter.
+    ///
+    /// # Errors
+    /// [`GpuError::Driver`] if it refuses.
+    pub fn open(adapter: &Adapter) -> Result<Self, GpuError> {
+        let name = adapter.name().to_owned();
+        let driver = |message: String| GpuError::Driver { adapter: name.clone(), message };
+        let (device, queue) = adapter.open().map_err(driver)?;
+        let failure: Arc<Mutex<Option<Failure>>> = Arc::default();
+        let note = |failure: &Arc<Mutex<Option<Failure>>>, found: Failure| {
+            let mut first = failure.lock().unwrap_or_else(PoisonError::into_inner);
+            first.get_or_insert(found);
+        };
+        let shared = Arc::clone(&failure);
+        device.on_uncaptured_error(Arc::new(move |error| note(&shared, Failure::Driver(error.to_string()))));
+        let shared = Arc::clone(&failure);
+        device.set_device_lost_callback(move |reason, message| {
+            let message = if message.is_empty() { format!("{reason:?}") } else { message };
+            note(&shared, Failure::Lost(message));
+        });
+        let params = params_buffer(&device, 64);
+        Ok(Self { name, device, queue, buffers: Vec::new(), pipelines: HashMap::new(), params, failure })
+    }
+
+    /// Name of the adapter.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Ends the device as a reset or a removal would: for tests of what happens then.
+    pub fn lose(&self) {
+        self.device.destroy();
+    }
+
+    /// The first failure since the last look, as an error.
+    fn check(&self) -> Result<(), GpuError> {
+        let found = self.failure.lock().unwrap_or_else(PoisonError::into_inner).take();
+        match found {
+            None => Ok(()),
+            Some(Failure::Driver(message)) => Err(GpuError::Driver { adapter: self.name.clone(), message }),
+            Some(Failure::Lost(reason)) => Err(GpuError::Lost { adapter: self.name.clone(), reason }),
+        }
+    }
+
+    fn buffer_of(&self, id: BufferId) -> &wgpu::Buffer {
+        self.buffers[id.0 as usize].as_ref().expect("a buffer is not used after it was freed")
+    }
+
+    /// Uploads the parameters of all dispatches.
+    fn upload_params(&mut self, dispatches: usize, recording: &Recording) {
+        let needed = dispatches as u64 * PARAMS_STRIDE;
+        if self.params.size() < needed {
+            self.params = params_buffer(&self.device, dispatches.next_power_of_two());
+        }
+        let mut bytes = vec![0u8; needed as usize];
+        let mut place = 0;
+        for command in &recording.commands {
+            if let Command::Dispatch(dispatch) = command {
+                let params: &[u8] = bytemuck::cast_slice(&dispatch.params);
+                bytes[place..place + params.len()].copy_from_slice(params);
+                place += PARAMS_STRIDE as usize;
+            }
+        }
+        self.queue.write_buffer(&self.params, 0, &bytes);
+    }
+
+    fn prepare(&mut self, stage: &'static Stage) {
+        let device = &self.device;
+        self.pipelines.entry(stage.name).or_insert_with(|| pipeline(device, stage));
+    }
+
+    fn encode(&self, encoder: &mut wgpu::CommandEncoder, dispatches: &[(&Dispatch, u64)]) {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        for (dispatch, place) in dispatches {
+            let Pipeline { pipeline, layout } = &self.pipelines[dispatch.stage.name];
+            let params = wgpu::BufferBinding {
+                buffer: &self.params,
+                offset: 0,
+                size: std::num::NonZeroU64::new(PARAMS_STRIDE),
+            };
+            let mut entries =
+                vec![wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::Buffer(params) }];
+            entries.extend(dispatch.buffers.iter().zip(1..).map(|(&buffer, binding)| wgpu::BindGroupEntry {
+                binding,
+                resource: self.buffer_of(buffer).as_entire_binding(),
+            }));
+            let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some(dispatch.stage.name),
+                layout,
+                entries: &entries,
+            });
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, &group, &[(place * PARAMS_STRIDE) as u32]);
+            // Kernels go on with strides, so any number of workgroups does all of the work.
+            let workgroups = dispatch.threads.div_ceil(dispatch.stage.workgroup).min(MAX_WORKGROUPS);
+            pass.dispatch_workgroups(workgroups as u32, 1, 1);
+        }
+    }
+
+    /// Copies the buffers that are read into `staging`.
+    fn encode_reads(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        read: &[(BufferId, usize)],
+        staging: &wgpu::Buffer,
+    ) {
+        let mut offset = 0;
+        for &(buffer, words) in read {
+            let bytes = 4 * words as u64;
+            encoder.copy_buffer_to_buffer(self.buffer_of(buffer), 0, staging, offset, bytes);
+            offset += bytes;
+        }
+    }
+
+    fn map(&self, staging: &wgpu::Buffer) -> Result<Vec<u32>, GpuError> {
+        staging.map_async(wgpu::MapMode::Read, .., |_| {});
+        let polled = self.device.poll(wgpu::PollType::wait_indefinitely());
+        self.check()?;
+        let driver = |message: String| GpuError::Driver { adapter: self.name.clone(), message };
+        polled.map_err(|error| driver(error.to_string()))?;
+        let view = staging.get_mapped_range(..).map_err(|error| driver(error.to_string()))?;
+        Ok(bytemuck::pod_collect_to_vec(&view[..]))
+    }
+}
+
+impl Engine for DeviceEngine {
+    fn buffer(&mut self, label: &'static str, words: usize) -> Result<BufferId, GpuError> {
+        let size = 4 * words.max(1) as u64;
+        let limits = self.device.limits();
+        let largest = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
+        let out_of_memory = || GpuError::OutOfMemory { adapter: self.name.clone(), what: label, bytes: size };
+        if size > largest {
+            return Err(out_of_memory());
+        }
+        let scope = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
+        let descriptor =
+            wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
+        let buffer = self.device.create_buffer(&descriptor);
+        if wait(scope.pop()).is_some() {
+            return Err(out_of_memory());
+        }
+        self.buffers.push(Some(buffer));
+        Ok(BufferId(self.buffers.len() as u32 - 1))
+    }
+
+    fn free(&mut self, buffer: BufferId) {
+        self.buffers[buffer.0 as usize] = None;
+    }
+
+    fn words(&self, buffer: BufferId) -> usize {
+        self.buffer_of(buffer).size() as usize / 4
+    }
+
+    fn run(&mut self, recording: &Recording, read: &[(BufferId, usize)]) -> Result<Vec<Vec<u32>>, GpuError> {
+        self.check()?;
+        let dispatches = recording.dispatch_count();
+        if dispatches > 0 {
+            self.upload_params(dispatches, recording);
+        }
+        for command in &recording.commands {
+            if let Command::Dispatch(dispatch) = command {
+                self.prepare(dispatch.stage);
+            }
+        }
+        // Writes take place before the next submit: what was recorded before them is submitted first.
+        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut waiting: Vec<(&Dispatch, u64)> = Vec::new();
+        let mut place = 0;
+        for command in &recording.commands {
+            match command {
+                Command::Dispatch(dispatch) => {
+                    waiting.push((dispatch, place));
+                    place += 1;
+                }
+                Command::Write { buffer, words } => {
+                    if !waiting.is_empty() {
+                        self.encode(&mut encoder, &waiting);
+                        waiting.clear();
+                        self.queue.submit([encoder.finish()]);
+                        let descriptor = wgpu::CommandEncoderDescriptor::default();
+                        encoder = self.device.create_command_encoder(&descriptor);
+                    }
+                    self.queue.write_buffer(self.buffer_of(*buffer), 0, bytemuck::cast_slice(words));
+                }
+            }
+        }
+        if !waiting.is_empty() {
+            self.encode(&mut encoder, &waiting);
+        }
+        let words: usize = read.iter().map(|(_, words)| words).sum();
+        if words == 0 {
+            self.queue.submit([encoder.finish()]);
+            return self.check().map(|()| read.iter().map(|_| Vec::new()).collect());
+        }
+        let staging = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("read"),
+            size: 4 * words as u64,
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        self.encode_reads(&mut encoder, read, &staging);
+        self.queue.submit([encoder.finish()]);
+        let mut all = self.map(&staging)?.into_iter();
+        Ok(read.iter().map(|&(_, words)| all.by_ref().take(words).collect()).collect())
+    }
+}
+
+fn params_buffer(device: &wgpu::Device, dispatches: usize) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("params"),
+        size: dispatches as u64 * PARAMS_STRIDE,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
+fn pipeline(device: &wgpu::Device, stage: &'static Stage) -> Pipeline {
+    let entry =
+        |binding: u32, ty: wgpu::BufferBindingType, has_dynamic_offset: bool| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset, min_binding_size: None },
+            count: None,
+        };
+    let mut entries = vec![entry(0, wgpu::BufferBindingType::Uniform, true)];
+    entries.extend(stage.bindings.iter().zip(1..).map(|(access, binding)| {
+        let read_only = *access == Access::Read;
+        entry(binding, wgpu::BufferBindingType::Storage { read_only }, false)
+    }));
+    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some(stage.name),
+        entries: &entries,
+    });
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(stage.name),
+        source: wgpu::ShaderSource::Wgsl(stage.source().into()),
+    });
+    let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(stage.name),
+        bind_group_layouts: &[Some(&layout)],
+        immediate_size: 0,
+    });
+    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some(stage.name),
+        layout: Some(&pipeline_layout),
+        module: &module,
+        entry_point: Some("main"),
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    });
+    Pipeline { pipeline, layout }
+}

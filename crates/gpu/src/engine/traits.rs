@@ -1,0 +1,25 @@
+//! What every engine does.
+
+use crate::error::GpuError;
+use crate::recording::{BufferId, Recording};
+
+/// Holds buffers and runs recordings. A buffer is a list of words of 32 bits.
+pub trait Engine {
+    /// Makes a buffer of `words` zeros, at least one.
+    ///
+    /// # Errors
+    /// [`GpuError::OutOfMemory`].
+    fn buffer(&mut self, label: &'static str, words: usize) -> Result<BufferId, GpuError>;
+
+    /// Frees a buffer, which must not be used any more.
+    fn free(&mut self, buffer: BufferId);
+
+    /// Number of words of a buffer.
+    fn words(&self, buffer: BufferId) -> usize;
+
+    /// Runs a recording, then reads the first words of some buffers.
+    ///
+    /// # Errors
+    /// [`GpuError::Driver`], [`GpuError::Lost`].
+    fn run(&mut self, recording: &Recording, read: &[(BufferId, usize)]) -> Result<Vec<Vec<u32>>, GpuError>;
+}

@@ -1,0 +1,59 @@
+//! Runs recordings with the twins of the kernels, on one thread.
+
+use super::traits::Engine;
+use crate::bound::Bound;
+use crate::error::GpuError;
+use crate::recording::{BufferId, Command, Dispatch, Recording};
+use std::cell::{Ref, RefCell};
+
+/// Buffers in the memory of the host.
+#[derive(Debug, Default)]
+pub struct TwinEngine {
+    buffers: Vec<RefCell<Vec<u32>>>,
+}
+
+impl TwinEngine {
+    /// Without buffers.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    pub(super) fn dispatch(&self, dispatch: &Dispatch) {
+        let buffers: Vec<&RefCell<Vec<u32>>> =
+            dispatch.buffers.iter().map(|buffer| &self.buffers[buffer.0 as usize]).collect();
+        (dispatch.stage.twin)(Bound::new(&buffers, &dispatch.params));
+    }
+
+    pub(super) fn write(&self, buffer: BufferId, words: &[u32]) {
+        self.buffers[buffer.0 as usize].borrow_mut()[..words.len()].copy_from_slice(words);
+    }
+
+    pub(super) fn content(&self, buffer: BufferId) -> Ref<'_, Vec<u32>> {
+        self.buffers[buffer.0 as usize].borrow()
+    }
+}
+
+impl Engine for TwinEngine {
+    fn buffer(&mut self, _label: &'static str, words: usize) -> Result<BufferId, GpuError> {
+        self.buffers.push(RefCell::new(vec![0; words.max(1)]));
+        Ok(BufferId(self.buffers.len() as u32 - 1))
+    }
+
+    fn free(&mut self, buffer: BufferId) {
+        *self.buffers[buffer.0 as usize].borrow_mut() = Vec::new();
+    }
+
+    fn words(&self, buffer: BufferId) -> usize {
+        self.content(buffer).len()
+    }
+
+    fn run(&mut self, recording: &Recording, read: &[(BufferId, usize)]) -> Result<Vec<Vec<u32>>, GpuError> {
+        for command in &recording.commands {
+            match command {
+                Command::Write { buffer, words } => self.write(*buffer, words),
+                Command::Dispatch(dispatch) => self.dispatch(dispatch),
+            }
+        }
+        Ok(read.iter().map(|&(buffer, words)| self.content(buffer)[..words].to_vec()).collect())
+    }
+}

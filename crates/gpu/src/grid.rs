@@ -1,0 +1,160 @@
+//! The grid on which positions lie: integers in place of floating point.
+//!
+//! A position is three integers, multiples of a quantum, a power of two, relative to an origin. On a grid
+//! - differences of positions are exact, and so are boxes and their tests: nothing is rounded outward;
+//! - a step is a sum of integers, the same on every device, whatever order a compiler gives to additions;
+//! - every state is a state in `f64` too, bit by bit, and can be judged exactly.
+//!
+//! With single precision in place of it, coordinates would have a rounding error of 2^-24 of their distance from the
+//! origin; here it is 2^-30 of the size of the scene, and a difference of near positions, converted to `f32`, keeps
+//! 24 bits of its own.
+
+use bowknot_geometry::{Point, Vector};
+
+/// A position in quanta.
+pub type GridPoint = [i32; 3];
+
+/// Coordinates stay below this: differences then stay below 2^30.
+const MAX_COORDINATE: f64 = (1 << 29) as f64;
+
+/// Largest exponent of a quantum, and the smallest: all multiples of them below 2^31 are numbers in `f64` and, as
+/// lengths, in `f32`.
+const EXPONENTS: std::ops::RangeInclusive<i32> = -60..=30;
+
+/// A grid of positions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    /// Position of the integer zero [m], a multiple of the quantum.
+    origin: Point,
+    /// Length of the integer one [m], a power of two.
+    quantum: f64,
+}
+
+/// Why there is no grid.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum GridError {
+    /// A coordinate is not finite.
+    #[error("the position of vertex {vertex} is not finite")]
+    NotFinite {
+        /// The vertex.
+        vertex: usize,
+    },
+    /// The scene is too large for the smallest length that must be resolved.
+    #[error(
+        "a scene of {extent:.3e} m has a grid of {quantum:.3e} m, which is too coarse for gaps of {smallest:.3e} m: \
+         use --backend cpu, a larger minimum separation, or remove what is far away"
+    )]
+    TooCoarse {
+        /// Size of the scene [m].
+        extent: f64,
+        /// The quantum that it needs [m].
+        quantum: f64,
+        /// The smallest length that must be resolved [m].
+        smallest: f64,
+    },
+}
+
+impl Grid {
+    /// How many quanta the smallest length has at least.
+    const RESOLUTION: f64 = 256.0;
+
+    /// The finest grid that has room for `positions` [m] with `room` [m] around them, and that resolves lengths of
+    /// `smallest` [m] by 256 quanta at least.
+    ///
+    /// # Errors
+    /// A position that is not finite; a scene too large for `smallest`.
+    pub fn around(positions: &[Point], room: f64, smallest: f64) -> Result<Self, GridError> {
+        let (mut low, mut high) = (Vector::repeat(f64::INFINITY), Vector::repeat(f64::NEG_INFINITY));
+        for (vertex, x) in positions.iter().enumerate() {
+            if !x.iter().all(|c| c.is_finite()) {
+                return Err(GridError::NotFinite { vertex });
+            }
+            (low, high) = (low.inf(&x.coords), high.sup(&x.coords));
+        }
+        if positions.is_empty() {
+            (low, high) = (Vector::zeros(), Vector::zeros());
+        }
+        let half = 0.5 * (high - low).amax() + room;
+        let exponent = (half / MAX_COORDINATE).log2().floor().clamp(-1e9, 1e9) as i32 + 1;
+        let quantum = 2f64.powi(exponent.clamp(*EXPONENTS.start(), *EXPONENTS.end()));
+        let too_coarse = GridError::TooCoarse { extent: 2.0 * half, quantum, smallest };
+        if !(half / quantum < MAX_COORDINATE && Self::RESOLUTION * quantum <= smallest) {
+            return Err(too_coarse);
+        }
+        let middle = (low + high) * 0.5;
+        let origin = Point::from(middle.map(|c| (c / quantum).round() * quantum));
+        // Far from the origin of the scene's own coordinates the quanta are no numbers in `f64`.
+        let largest = origin.coords.amax() + half;
+        if largest / quantum >= 2f64.powi(53) { Err(too_coarse) } else { Ok(Self { origin, quantum }) }
+    }
+
+    /// Length of the integer one [m].
+    pub fn quantum(&self) -> f64 {
+        self.quantum
+    }
+
+    /// The nearest position of the grid; None outside of it.
+    pub fn nearest(&self, x: &Point) -> Option<GridPoint> {
+        let scaled = (x - self.origin) / self.quantum;
+        let inside = scaled.iter().all(|c| c.abs() < MAX_COORDINATE);
+        inside.then(|| [0, 1, 2].map(|k| scaled[k].round_ties_even() as i32))
+    }
+
+    /// The position of the grid that is nearest; outside of the grid each coordinate is moved to its border. The origin
+    /// takes the place of coordinates that are no numbers.
+    pub fn nearest_inside(&self, x: &Point) -> GridPoint {
+        let scaled = (x - self.origin) / self.quantum;
+        [0, 1, 2]
+            .map(|k| scaled[k].round_ties_even().clamp(1.0 - MAX_COORDINATE, MAX_COORDINATE - 1.0) as i32)
+    }
+
+    /// The position [m], exactly.
+    pub fn position(&self, x: GridPoint) -> Point {
+        // Both terms are multiples of the quantum below 2^53 of it: the sum is exact.
+        self.origin + Vector::from(x.map(f64::from)) * self.quantum
+    }
+
+    /// A length [m] in quanta.
+    pub fn length(&self, length: f64) -> f32 {
+        (length / self.quantum) as f32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positions_of_the_grid_come_back_to_the_bit() {
+        let mut random = fastrand::Rng::with_seed(1);
+        for (scale, offset) in [(1e-3, 0.0), (1.0, 5.0), (1e3, -2e4)] {
+            let mut coordinate = || offset + scale * (random.f64() - 0.5);
+            let points: Vec<Point> =
+                (0..100).map(|_| Point::new(coordinate(), coordinate(), coordinate())).collect();
+            let grid = Grid::around(&points, scale, 1e-5 * scale).expect("fine enough");
+            for x in &points {
+                let on_grid = grid.nearest(x).expect("inside");
+                let back = grid.position(on_grid);
+                assert!((back - x).amax() <= 0.5 * grid.quantum());
+                assert_eq!(grid.nearest(&back), Some(on_grid));
+                let next = grid.position([on_grid[0] + 1, on_grid[1], on_grid[2]]);
+                assert_eq!((next - back).x, grid.quantum());
+            }
+            assert!(scale / grid.quantum() > 1e8, "{scale} {}", grid.quantum());
+        }
+    }
+
+    #[test]
+    fn scenes_that_do_not_fit_are_refused() {
+        let far = [Point::origin(), Point::new(1e4, 0.0, 0.0)];
+        assert!(matches!(Grid::around(&far, 1.0, 1e-5), Err(GridError::TooCoarse { .. })));
+        assert!(Grid::around(&far, 1.0, 1e-2).is_ok());
+        let shifted = far.map(|x| x + Vector::repeat(1e13));
+        assert!(matches!(Grid::around(&shifted, 1.0, 1e-2), Err(GridError::TooCoarse { .. })));
+        let broken = [Point::origin(), Point::new(f64::NAN, 0.0, 0.0)];
+        assert_eq!(Grid::around(&broken, 1.0, 1.0), Err(GridError::NotFinite { vertex: 1 }));
+        let grid = Grid::around(&far, 1.0, 1e-2).expect("fine enough");
+        assert_eq!(grid.nearest(&Point::new(9e4, 0.0, 0.0)), None);
+    }
+}

@@ -1,0 +1,179 @@
+//! The data that host, kernels and twins share, as they lie in buffers. A test compares every struct with what the
+//! shaders declare (`stages/tests.rs`).
+//!
+//! Lengths are in quanta of the [grid](crate::Grid), so that no number has a unit.
+
+use bytemuck::{Pod, Zeroable};
+
+/// No element, no group.
+pub const NONE: u32 = u32::MAX;
+
+/// Children of a node of a [tree](crate::tree), elements of a leaf.
+pub const BRANCHING: usize = 8;
+
+/// Most levels of a tree: 8^10 elements are more than `u32` counts.
+pub const MAX_LEVELS: usize = 11;
+
+/// What does not change during a call, by vertex.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct Vertex {
+    /// Local edge length.
+    pub edge: f32,
+    /// Half of the largest contact range of a pair with this vertex.
+    pub margin: f32,
+    /// Body of the vertex.
+    pub body: u32,
+    /// [`Vertex::OBSTACLE`], [`Vertex::PRESCRIBED`], [`Vertex::SELF_COLLIDES`].
+    pub flags: u32,
+    /// Collision groups of the body, and those that it collides with.
+    pub groups: u32,
+    pub mask: u32,
+    /// Vertices of a group move by one fraction of their displacements; [`NONE`] for no group.
+    pub group: u32,
+    pub padding: u32,
+}
+
+impl Vertex {
+    /// The vertex belongs to an obstacle: two obstacles form no pair.
+    pub const OBSTACLE: u32 = 1;
+    /// The vertex is prescribed: of an obstacle, or pinned.
+    pub const PRESCRIBED: u32 = 2;
+    /// The body collides with itself.
+    pub const SELF_COLLIDES: u32 = 4;
+}
+
+/// A trust region: no pair that is searched for outside of it is found.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub struct Ball {
+    pub center: [i32; 3],
+    pub radius: i32,
+}
+
+/// The place of an element in a tree.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+pub struct Slot {
+    /// Vertices; the first fills places that the element does not have.
+    pub vertices: [u32; 3],
+    /// Index of the element among its kind; [`NONE`] for a place without one.
+    pub element: u32,
+}
+
+/// The box of a node of a tree; empty if a low coordinate is above a high one.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+pub struct NodeBox {
+    pub low: [i32; 3],
+    /// 1 if something in it is no obstacle.
+    pub deformable: u32,
+    pub high: [i32; 3],
+    pub padding: u32,
+}
+
+impl NodeBox {
+    pub const EMPTY: Self = Self { low: [i32::MAX; 3], deformable: 0, high: [i32::MIN; 3], padding: 0 };
+}
+
+/// A pair of elements that may meet.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Pod, Zeroable)]
+pub struct Candidate {
+    /// The kind ([`Kind`]) in the upper three bits, the element of side *a* in the others.
+    pub kind_and_a: u32,
+    /// The element of side *b*.
+    pub b: u32,
+}
+
+/// Kinds of pairs, by the primitives of both sides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u32)]
+pub enum Kind {
+    /// Two particles.
+    VertexVertex = 0,
+    /// A particle and an edge of a strand.
+    VertexEdge = 1,
+    /// A vertex of a surface, or a particle, and a triangle.
+    VertexTriangle = 2,
+    /// Two edges.
+    EdgeEdge = 3,
+    /// A vertex and a half-space.
+    VertexHalfSpace = 4,
+}
+
+impl Candidate {
+    /// Bits of the element of side *a*.
+    pub const ELEMENT_BITS: u32 = 29;
+
+    /// A pair of that kind.
+    pub fn new(kind: Kind, a: u32, b: u32) -> Self {
+        Self { kind_and_a: (kind as u32) << Self::ELEMENT_BITS | a, b }
+    }
+
+    /// The element of side *a*.
+    pub fn a(&self) -> u32 {
+        self.kind_and_a & ((1 << Self::ELEMENT_BITS) - 1)
+    }
+
+    /// The number of the kind.
+    pub fn kind(&self) -> u32 {
+        self.kind_and_a >> Self::ELEMENT_BITS
+    }
+}
+
+/// Contact geometry of a candidate.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct Separation {
+    /// Unit direction from side *b* to side *a*.
+    pub normal: [f32; 3],
+    /// Certified lower bound of the width of the slab between both sides; 0 or less if nothing is certified.
+    pub width: f32,
+    /// Weights of the second, third and fourth vertex in the closest points; the weights of a side sum to 1.
+    pub weights: [f32; 3],
+    /// Computed distance of the closest points.
+    pub distance: f32,
+}
+
+/// A half-space, the solid below a plane.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct Plane {
+    /// Unit normal, out of the solid.
+    pub normal: [f32; 3],
+    /// How far the computed height of a vertex may be off, relative to its distance from `point`.
+    pub rounding: f32,
+    /// A point of the plane.
+    pub point: [i32; 3],
+    pub padding: u32,
+}
+
+/// What the device reports and decides by itself.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub struct Control {
+    /// 1 if a trust region is new: the candidates must be searched for.
+    pub changed: u32,
+    /// 1 if a buffer was too small: nothing moves then.
+    pub overflow: u32,
+    /// Largest number of partners of an element: what a row should hold.
+    pub most_partners: u32,
+    /// Pairs that nothing certifies, and whose vertices wanted to move.
+    pub frozen: u32,
+    /// Bits of the largest remaining distance of a vertex, of a prescribed vertex that no pair holds back, of the
+    /// largest remaining fraction, and of the longest move. They are `f32` of at least 0, so their bits are ordered
+    /// as they are.
+    pub remaining: u32,
+    pub unhindered_lag: u32,
+    pub remaining_fraction: u32,
+    pub largest_move: u32,
+    /// Number of candidates: what their list should hold. It stays from step to step, for the list does.
+    pub candidates: u32,
+    pub padding: [u32; 3],
+}
+
+impl Control {
+    /// Words that a step begins with as zeros: all before the number of candidates.
+    pub const RESET_WORDS: usize = 8;
+}

@@ -1,0 +1,41 @@
+//! The two-way method on any GPU that wgpu reaches, with a CPU twin of every kernel.
+//!
+//! | module | holds |
+//! |---|---|
+//! | `grid` | the grid of integers on which positions lie |
+//! | `layout` | data that host, kernels and twins share |
+//! | `stages`, `shader/`, `cpu` | the stages: kernels and their twins |
+//! | `bound` | what a twin sees of a dispatch |
+//! | `recording`, `engine` | lists of dispatches; a device or the twins run them |
+//! | `adapter` | the devices of this machine |
+//! | `tree`, `model` | what the host prepares for a scene |
+//! | `collision` | steps toward a target that nothing passes through |
+
+mod adapter;
+mod bound;
+mod collision;
+mod cpu;
+mod engine;
+mod error;
+mod grid;
+mod layout;
+mod model;
+mod recording;
+mod stages;
+mod tree;
+
+pub use bowknot_geometry as geometry;
+
+pub use adapter::Adapter;
+pub use collision::{Collision, CollisionError, StepReport};
+pub use engine::{BisectingEngine, DeviceEngine, Engine, TwinEngine};
+pub use error::GpuError;
+pub use grid::{Grid, GridError, GridPoint};
+pub use layout::{Candidate, Kind, NONE};
+pub use model::{Constraints, Lengths};
+pub use recording::{BufferId, Recording};
+
+/// The README's example is tested with the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeDoctests;

@@ -1,0 +1,86 @@
+//! What is fixed for a scene, as the device needs it.
+
+use crate::grid::Grid;
+use crate::layout::{NONE, Plane, Vertex};
+use bowknot_geometry::{CollisionModel, HalfSpace};
+
+/// Lengths of a scene [m].
+#[derive(Clone, Copy, Debug)]
+pub struct Lengths<'a> {
+    /// Local edge length of each vertex.
+    pub edges: &'a [f64],
+    /// Half of the largest contact range of a pair with each vertex.
+    pub margins: &'a [f64],
+    /// No step makes a gap smaller than this.
+    pub min_separation: f64,
+}
+
+/// Which vertices do not move freely in a call.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Constraints<'a> {
+    /// Whether each vertex is prescribed, those of obstacles included.
+    pub prescribed: &'a [bool],
+    /// The group of each vertex, [`NONE`] for none: its vertices move by one fraction of their displacements. Each
+    /// obstacle has one of its own in any case.
+    pub groups: &'a [u32],
+}
+
+/// The static data of the vertices.
+pub(crate) fn vertices(
+    model: &CollisionModel,
+    lengths: &Lengths<'_>,
+    constraints: &Constraints<'_>,
+    grid: &Grid,
+) -> Vec<Vertex> {
+    let bodies = model.bodies();
+    let group_count = constraints.groups.iter().filter(|g| **g != NONE).max().map_or(0, |last| last + 1);
+    let vertex = |v: usize| {
+        let body = model.vertex_body()[v];
+        let filter = &bodies[body as usize];
+        let prescribed = filter.obstacle || constraints.prescribed.get(v).is_some_and(|p| *p);
+        let group = if filter.obstacle {
+            group_count + body
+        } else {
+            constraints.groups.get(v).copied().unwrap_or(NONE)
+        };
+        Vertex {
+            edge: grid.length(lengths.edges[v]),
+            // Rounded up.
+            margin: grid.length(lengths.margins[v]).next_up(),
+            body,
+            flags: [
+                (filter.obstacle, Vertex::OBSTACLE),
+                (prescribed, Vertex::PRESCRIBED),
+                (filter.self_collision, Vertex::SELF_COLLIDES),
+            ]
+            .into_iter()
+            .fold(0, |flags, (holds, flag)| if holds { flags | flag } else { flags }),
+            groups: filter.groups,
+            mask: filter.mask,
+            group,
+            padding: 0,
+        }
+    };
+    (0..model.topology().vertex_count).map(vertex).collect()
+}
+
+/// The half-spaces. Their points are those of the planes that are nearest to the middle of the grid; a plane outside of
+/// the grid, which nothing touches, is moved to a place inside of it that is as good.
+pub(crate) fn planes(model: &CollisionModel, grid: &Grid) -> Vec<Plane> {
+    let middle = grid.position([0; 3]);
+    let farthest = f64::from(1 << 28) * grid.quantum();
+    let plane = |plane: &HalfSpace| {
+        let length = plane.normal.norm();
+        let normal = plane.normal / length;
+        let height = (plane.normal.dot(&middle.coords) - plane.offset) / length;
+        let point = middle - normal * height.clamp(-farthest, farthest);
+        Plane {
+            normal: [normal.x as f32, normal.y as f32, normal.z as f32],
+            // Each coordinate of the normal is off by 2^-25, the height by four roundings of 2^-24 more.
+            rounding: 8.0 * f32::EPSILON,
+            point: grid.nearest(&point).unwrap_or([0; 3]),
+            padding: 0,
+        }
+    };
+    model.half_spaces().iter().map(plane).collect()
+}

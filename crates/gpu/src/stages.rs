@@ -1,0 +1,181 @@
+//! The stages: each is a kernel in `shader/NAME.wgsl` and its twin in `cpu/NAME.rs`, with the same bindings in the same
+//! order.
+//!
+//! Binding 0 holds the parameters of a dispatch. Threads go on with strides, so that any number of workgroups does all
+//! of the work; only `count` and `total` depend on the size of a workgroup, for they scan.
+
+use crate::bound::Bound;
+use crate::cpu;
+
+/// What a stage does with a buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Access {
+    Read,
+    /// It reads or writes it.
+    Write,
+}
+
+/// A stage.
+pub(crate) struct Stage {
+    pub name: &'static str,
+    /// Shared parts of the shader, then its own.
+    pub parts: &'static [&'static str],
+    /// Threads of a workgroup.
+    pub workgroup: usize,
+    /// The storage buffers, from binding 1 on.
+    pub bindings: &'static [Access],
+    pub twin: fn(Bound<'_>),
+}
+
+impl Stage {
+    /// The whole shader.
+    pub fn source(&self) -> String {
+        self.parts.concat()
+    }
+}
+
+impl std::fmt::Debug for Stage {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+const TYPES: &str = include_str!("../shader/shared/types.wgsl");
+const CLOSEST: &str = include_str!("../shader/shared/closest.wgsl");
+const PAIR: &str = include_str!("../shader/shared/pair.wgsl");
+
+use Access::{Read, Write};
+
+pub(crate) static PLAN: Stage = Stage {
+    name: "plan",
+    parts: &[TYPES, include_str!("../shader/plan.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Read, Read, Write, Write],
+    twin: cpu::plan::bound,
+};
+
+pub(crate) static JOIN: Stage = Stage {
+    name: "join",
+    parts: &[TYPES, include_str!("../shader/join.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Read, Write, Write],
+    twin: cpu::join::bound,
+};
+
+pub(crate) static COVER: Stage = Stage {
+    name: "cover",
+    parts: &[TYPES, include_str!("../shader/cover.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Read, Read, Write, Write],
+    twin: cpu::cover::bound,
+};
+
+pub(crate) static BOXES: Stage = Stage {
+    name: "boxes",
+    parts: &[TYPES, include_str!("../shader/boxes.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Read, Read, Write, Write],
+    twin: cpu::boxes::bound,
+};
+
+pub(crate) static REFIT: Stage = Stage {
+    name: "refit",
+    parts: &[TYPES, include_str!("../shader/refit.wgsl")],
+    workgroup: 256,
+    bindings: &[Write, Write],
+    twin: cpu::refit::bound,
+};
+
+pub(crate) static TRAVERSE: Stage = Stage {
+    name: "traverse",
+    parts: &[TYPES, include_str!("../shader/traverse.wgsl")],
+    workgroup: 64,
+    bindings: &[Read, Read, Read, Read, Read, Write, Write],
+    twin: cpu::traverse::bound,
+};
+
+pub(crate) static NEAR_PLANES: Stage = Stage {
+    name: "near_planes",
+    parts: &[TYPES, include_str!("../shader/near_planes.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Read, Read, Read, Write, Write],
+    twin: cpu::near_planes::bound,
+};
+
+pub(crate) static COUNT: Stage = Stage {
+    name: "count",
+    parts: &[TYPES, include_str!("../shader/count.wgsl")],
+    workgroup: cpu::count::BLOCK,
+    bindings: &[Read, Write, Write, Write],
+    twin: cpu::count::bound,
+};
+
+pub(crate) static TOTAL: Stage = Stage {
+    name: "total",
+    parts: &[TYPES, include_str!("../shader/total.wgsl")],
+    workgroup: 256,
+    bindings: &[Write, Write],
+    twin: cpu::total::bound,
+};
+
+pub(crate) static GATHER: Stage = Stage {
+    name: "gather",
+    parts: &[TYPES, include_str!("../shader/gather.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Read, Read, Write, Write],
+    twin: cpu::gather::bound,
+};
+
+pub(crate) static SEPARATE: Stage = Stage {
+    name: "separate",
+    parts: &[TYPES, CLOSEST, PAIR, include_str!("../shader/separate.wgsl")],
+    workgroup: 128,
+    bindings: &[Read, Read, Read, Read, Read, Write, Write],
+    twin: cpu::separate::bound,
+};
+
+pub(crate) static LIMIT: Stage = Stage {
+    name: "limit",
+    parts: &[TYPES, PAIR, include_str!("../shader/limit.wgsl")],
+    workgroup: 128,
+    bindings: &[Read, Read, Read, Read, Read, Read, Write, Write],
+    twin: cpu::limit::bound,
+};
+
+pub(crate) static LIMIT_GROUPS: Stage = Stage {
+    name: "limit_groups",
+    parts: &[TYPES, include_str!("../shader/limit_groups.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Read, Write],
+    twin: cpu::limit_groups::bound,
+};
+
+pub(crate) static ADVANCE: Stage = Stage {
+    name: "advance",
+    parts: &[TYPES, include_str!("../shader/advance.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Read, Read, Read, Read, Write, Write],
+    twin: cpu::advance::bound,
+};
+
+/// All of them.
+#[cfg(test)]
+pub(crate) static ALL: &[&Stage] = &[
+    &PLAN,
+    &JOIN,
+    &COVER,
+    &BOXES,
+    &REFIT,
+    &TRAVERSE,
+    &NEAR_PLANES,
+    &COUNT,
+    &TOTAL,
+    &GATHER,
+    &SEPARATE,
+    &LIMIT,
+    &LIMIT_GROUPS,
+    &ADVANCE,
+];
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,263 @@
+//! Steps toward random targets, by twins and by a device: nothing ever intersects, and both agree.
+#![allow(clippy::unwrap_used)] // helpers of tests are outside the functions that the lint knows as tests
+
+use bowknot_check::{Judge, StateOptions};
+use bowknot_geometry::{BodyFilter, CollisionModel, HalfSpace, PairKind, Point, Topology, Vector};
+use bowknot_gpu::{
+    Adapter, BisectingEngine, Candidate, Collision, Constraints, DeviceEngine, Engine, Kind, Lengths, NONE,
+    TwinEngine,
+};
+use bowknot_proximity::{PairList, ProximitySearch};
+
+const EDGE: f64 = 0.02;
+const MIN_SEPARATION: f64 = 1e-4;
+const MARGIN: f64 = 2e-3;
+
+/// A scene with everything that collides: two sheets, an obstacle, strands, particles, the ground.
+struct Scene {
+    model: CollisionModel,
+    x: Vec<Point>,
+}
+
+fn scene() -> Scene {
+    let (mut x, mut triangles, mut strands, mut bodies) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let n = 9usize;
+    for (body, height) in [0.03, 0.033, 0.027].into_iter().enumerate() {
+        let first = x.len() as u32;
+        for k in 0..n * n {
+            let warp = 1e-4 * ((k * 37 % 11) as f64 - 5.0);
+            x.push(Point::new((k % n) as f64 * EDGE, (k / n) as f64 * EDGE, height + warp));
+        }
+        for k in (0..n * n - n).filter(|k| k % n != n - 1) {
+            let [a, b, c, d] = [k, k + 1, k + n + 1, k + n].map(|v| first + v as u32);
+            triangles.extend([[a, b, c], [a, c, d]]);
+        }
+        bodies.resize(x.len(), body as u32);
+    }
+    for strand in 0..3 {
+        let first = x.len() as u32;
+        let y = 0.03 + 0.04 * f64::from(strand);
+        x.extend((0..8).map(|k| Point::new(0.01 + EDGE * f64::from(k), y, 0.036 + 1e-4 * f64::from(strand))));
+        strands.extend((first..first + 7).map(|v| [v, v + 1]));
+    }
+    bodies.resize(x.len(), 3);
+    let first = x.len() as u32;
+    for k in 0..27 {
+        let place = [k % 3, k / 3 % 3, k / 9].map(f64::from);
+        x.push(Point::new(0.05 + 0.003 * place[0], 0.068 + 0.003 * place[1], 0.039 + 0.003 * place[2]));
+    }
+    bodies.resize(x.len(), 4);
+    let topology = Topology::builder(x.len())
+        .triangles(triangles)
+        .strand_edges(strands)
+        .particles((first..x.len() as u32).collect::<Vec<_>>())
+        .build()
+        .unwrap();
+    let mut filters = vec![BodyFilter::DEFORMABLE; 5];
+    filters[2] = BodyFilter::OBSTACLE;
+    let ground = HalfSpace::new(Point::origin(), Vector::new(0.1, 0.0, 1.0)).unwrap();
+    let model = CollisionModel::new(topology, bodies, filters, vec![ground]).unwrap();
+    let x = x.into_iter().map(|p| p + Vector::new(3.0, -2.0, 0.05) - Vector::new(0.0, 0.0, 0.3)).collect();
+    Scene { model, x }
+}
+
+fn collision<E: Engine>(engine: E, scene: &Scene, constraints: &Constraints<'_>) -> Collision<E> {
+    let count = scene.x.len();
+    let lengths =
+        Lengths { edges: &vec![EDGE; count], margins: &vec![MARGIN; count], min_separation: MIN_SEPARATION };
+    Collision::new(engine, &scene.model, &scene.x, &lengths, constraints, 0.9).unwrap()
+}
+
+fn device() -> DeviceEngine {
+    let adapter = Adapter::choose(None).unwrap_or_else(|error| panic!("{error}"));
+    DeviceEngine::open(&adapter).unwrap()
+}
+
+/// Targets that fold the sheets through each other, the obstacle, the strands and the ground.
+fn target(scene: &Scene, random: &mut fastrand::Rng) -> Vec<Point> {
+    let body = scene.model.vertex_body();
+    let wave = 20.0 + 60.0 * random.f64();
+    let shift = Vector::new(random.f64() - 0.5, random.f64() - 0.5, random.f64() - 0.5) * 0.2;
+    let target = |(v, x): (usize, &Point)| {
+        let bent = Vector::new(0.0, 0.0, 0.05 * (wave * x.x).sin() * (wave * x.y).cos());
+        match body[v] {
+            2 => x + shift * 0.2,
+            k => x + bent + if k % 2 == 0 { shift } else { -shift },
+        }
+    };
+    scene.x.iter().enumerate().map(target).collect()
+}
+
+fn assert_no_intersections(scene: &Scene, x: &[Point], what: &str) {
+    let judge = Judge::from_model(&scene.model);
+    let report = judge.check_state(x, &StateOptions { limit: 1, distance: true }).unwrap();
+    assert_eq!(report.intersection_count, 0, "{what}: {report:?}");
+}
+
+#[test]
+fn nothing_intersects_on_the_way_to_random_targets() {
+    let mut random = fastrand::Rng::with_seed(5);
+    let mut limited = false;
+    for round in 0..4 {
+        let mut scene = scene();
+        let mut collision = collision(TwinEngine::new(), &scene, &Constraints::default());
+        for _ in 0..3 {
+            collision.set_target(&target(&scene, &mut random)).unwrap();
+            for step in 0..20 {
+                let report = collision.step().unwrap();
+                scene.x = collision.positions().unwrap();
+                assert_no_intersections(&scene, &scene.x, &format!("round {round} step {step}"));
+                limited |= report.remaining > 0.05 && report.largest_move < 2.5e-3;
+                assert_eq!(report.frozen, 0, "{report:?}");
+            }
+        }
+    }
+    assert!(limited, "contacts must limit the motion");
+}
+
+/// Checks that all pairs within contact range at `x` are among the candidates; counts them by kind.
+fn assert_complete(scene: &Scene, x: &[Point], candidates: &[Candidate]) -> [usize; 5] {
+    let (mut pairs, mut separations) = (PairList::default(), Vec::new());
+    let radii = vec![MARGIN; x.len()];
+    let mut search = ProximitySearch::new(&scene.model);
+    search.search(&scene.model, x, &radii, &mut pairs, &mut separations);
+    let mut kinds = [0; 5];
+    for kind in PairKind::ALL {
+        let here = match kind {
+            PairKind::VertexVertex => Kind::VertexVertex,
+            PairKind::VertexEdge => Kind::VertexEdge,
+            PairKind::VertexTriangle => Kind::VertexTriangle,
+            PairKind::EdgeEdge => Kind::EdgeEdge,
+            PairKind::VertexHalfSpace => Kind::VertexHalfSpace,
+        };
+        for pair in &pairs.pairs()[pairs.range(kind)] {
+            let [a, b] = pair.elements;
+            kinds[here as usize] += 1;
+            assert!(candidates.binary_search(&Candidate::new(here, a, b)).is_ok(), "{kind:?} {a} {b}");
+        }
+    }
+    kinds
+}
+
+#[test]
+fn every_pair_within_range_before_and_after_a_step_is_a_candidate() {
+    let scene = scene();
+    let mut collision = collision(TwinEngine::new(), &scene, &Constraints::default());
+    let mut target = target(&scene, &mut fastrand::Rng::with_seed(3));
+    // Down to the ground.
+    target.iter_mut().for_each(|y| y.z -= 0.1);
+    collision.set_target(&target).unwrap();
+    let (mut x, mut kinds) = (scene.x.clone(), [0; 5]);
+    for _ in 0..20 {
+        let report = collision.step().unwrap();
+        let candidates = collision.candidates().unwrap();
+        assert_eq!(candidates.len(), report.candidates);
+        assert!(candidates.windows(2).all(|two| two[0] != two[1]), "no pair twice");
+        let after = collision.positions().unwrap();
+        for x in [&x, &after] {
+            let found = assert_complete(&scene, x, &candidates);
+            (0..5).for_each(|k| kinds[k] += found[k]);
+        }
+        x = after;
+    }
+    assert!(kinds.iter().all(|count| *count > 0), "{kinds:?}");
+}
+
+#[test]
+fn a_device_agrees_with_the_twins() {
+    let mut random = fastrand::Rng::with_seed(6);
+    let scene = scene();
+    let target = target(&scene, &mut random);
+    let mut twin = collision(TwinEngine::new(), &scene, &Constraints::default());
+    let mut device = collision(device(), &scene, &Constraints::default());
+    twin.set_target(&target).unwrap();
+    device.set_target(&target).unwrap();
+    let mut scene = Scene { model: scene.model.clone(), x: scene.x };
+    for step in 0..10 {
+        let (expected, report) = (twin.step().unwrap(), device.step().unwrap());
+        let (x, y) = (twin.positions().unwrap(), device.positions().unwrap());
+        let worst = x.iter().zip(&y).map(|(x, y)| (x - y).amax()).fold(0.0, f64::max);
+        // Rounding differs by some 2^-20 of a step, and grows with the steps.
+        let tolerance = 1e-7 * EDGE * f64::from(1 << step);
+        assert!(worst <= tolerance, "step {step}: {worst:e} m, {expected:?} {report:?}");
+        if step == 0 {
+            assert_eq!(twin.candidates().unwrap(), device.candidates().unwrap());
+        }
+        scene.x = y;
+        assert_no_intersections(&scene, &scene.x, &format!("step {step}"));
+    }
+}
+
+#[test]
+fn two_runs_on_one_device_have_the_same_bits() {
+    let run = || {
+        let scene = scene();
+        let mut collision = collision(device(), &scene, &Constraints::default());
+        collision.set_target(&target(&scene, &mut fastrand::Rng::with_seed(8))).unwrap();
+        (0..8).for_each(|_| {
+            collision.step().unwrap();
+        });
+        collision.positions().unwrap()
+    };
+    assert_eq!(run(), run());
+}
+
+#[test]
+fn twins_may_take_over_before_any_stage() {
+    let scene = scene();
+    let target = target(&scene, &mut fastrand::Rng::with_seed(9));
+    let run = |mut collision: Collision<BisectingEngine>| {
+        collision.set_target(&target).unwrap();
+        (0..3).for_each(|_| {
+            collision.step().unwrap();
+        });
+        collision.positions().unwrap()
+    };
+    let all_on_device = run(collision(BisectingEngine::new(device(), 0), &scene, &Constraints::default()));
+    for from in [1, 5, 40, 1000] {
+        let mixed = run(collision(BisectingEngine::new(device(), from), &scene, &Constraints::default()));
+        let worst = mixed.iter().zip(&all_on_device).map(|(x, y)| (x - y).amax()).fold(0.0, f64::max);
+        assert!(worst < 1e-8, "{from}: {worst:e}");
+    }
+}
+
+#[test]
+fn bodies_that_move_as_one_stay_as_they_are() {
+    let scene = scene();
+    let mut random = fastrand::Rng::with_seed(7);
+    let target = target(&scene, &mut random);
+    // The strands are a group of pinned vertices.
+    let is_strand = |v: usize| scene.model.vertex_body()[v] == 3;
+    let groups: Vec<u32> = (0..scene.x.len()).map(|v| if is_strand(v) { 0 } else { NONE }).collect();
+    let prescribed: Vec<bool> = (0..scene.x.len()).map(is_strand).collect();
+    let constraints = Constraints { prescribed: &prescribed, groups: &groups };
+    let mut collision = collision(TwinEngine::new(), &scene, &constraints);
+    collision.set_target(&target).unwrap();
+    (0..10).for_each(|_| {
+        collision.step().unwrap();
+    });
+    let end = collision.positions().unwrap();
+    for body in [2, 3] {
+        let vertices: Vec<usize> = (0..end.len()).filter(|&v| scene.model.vertex_body()[v] == body).collect();
+        let share = |v: usize| (end[v] - scene.x[v]).norm() / (target[v] - scene.x[v]).norm();
+        let first = share(vertices[0]);
+        assert!(first > 0.01, "body {body}: {first}");
+        for &v in &vertices {
+            assert!((share(v) - first).abs() < 1e-4, "body {body}: {} {first}", share(v));
+        }
+    }
+}
+
+#[test]
+fn a_lost_device_is_an_error_and_no_panic() {
+    let scene = scene();
+    let engine = device();
+    let name = engine.name().to_owned();
+    engine.lose();
+    let count = scene.x.len();
+    let lengths =
+        Lengths { edges: &vec![EDGE; count], margins: &vec![MARGIN; count], min_separation: MIN_SEPARATION };
+    let collision = Collision::new(engine, &scene.model, &scene.x, &lengths, &Constraints::default(), 0.9);
+    let error = collision.expect_err("the device is lost").to_string();
+    assert!(error.contains(&name), "{error}");
+}

@@ -1,0 +1,28 @@
+//! A triangle is asked to go far below another one; step by step it comes near, and never passes through.
+#![allow(clippy::print_stdout, reason = "a command")]
+
+use bowknot_gpu::geometry::{CollisionModel, Point, Topology};
+use bowknot_gpu::{Collision, Constraints, Lengths, TwinEngine};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let at = |z: f64| [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(x, y)| Point::new(x, y, z));
+    let topology = Topology::builder(6).triangles([[0, 1, 2], [3, 4, 5]]).build()?;
+    let model = CollisionModel::single_body(topology);
+    let start = [at(0.5), at(0.0)].concat();
+    let lengths = Lengths { edges: &[1.0; 6], margins: &[0.05; 6], min_separation: 1e-3 };
+    let mut collision =
+        Collision::new(TwinEngine::new(), &model, &start, &lengths, &Constraints::default(), 0.9)?;
+    collision.set_target(&[at(-10.0), at(0.0)].concat())?;
+    for step in 0..12 {
+        let report = collision.step()?;
+        let lowest = collision.positions()?[..3].iter().map(|x| x.z).fold(f64::INFINITY, f64::min);
+        println!("step {step:2}: height {lowest:.3e} m, moved {:.3e} m", report.largest_move);
+        assert!(lowest > 1e-3);
+    }
+    Ok(())
+}
+
+#[test]
+fn runs() {
+    main().unwrap_or_else(|error| panic!("{error}"));
+}
