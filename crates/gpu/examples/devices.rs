@@ -11,9 +11,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let topology = Topology::builder(6).triangles([[0, 1, 2], [3, 4, 5]]).build()?;
     let model = CollisionModel::single_body(topology);
     let start = [at(0.5), at(0.0)].concat();
-    let lengths = Lengths { edges: &[1.0; 6], margins: &[0.05; 6], min_separation: 1e-3 };
-    let mut collision = Collision::new(engine, &model, &start, &lengths, &Constraints::default(), 0.9)?;
-    collision.set_target(&[at(-10.0), at(0.0)].concat())?;
+    let lengths = Lengths {
+        edges: &[1.0; 6],
+        margins: &[0.05; 6],
+        deltas: &[0.02; 6],
+        thicknesses: &[],
+        min_separation: 1e-3,
+    };
+    let mut collision =
+        Collision::new(engine, &model, &start, &start, &lengths, &Constraints::default(), 0.9)?;
+    collision.begin(&[at(-10.0), at(0.0)].concat(), f64::INFINITY)?;
     for step in 0..12 {
         let report = collision.step()?;
         println!(

@@ -10,8 +10,6 @@ struct Params {
     capacity: u32,
     // Share of a gap that a step may use up.
     damping: f32,
-    // No step makes a gap smaller than this.
-    min_separation: f32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -56,7 +54,7 @@ fn limit_pair(candidate: Candidate, separation: Separation) {
         atomicAdd(&control.frozen, 1u);
         return;
     }
-    let allowed = max(params.damping * (separation.width - params.min_separation) - rounding, 0.0);
+    let allowed = max(params.damping * (separation.width - separation.min_separation) - rounding, 0.0);
 
     var closing: array<f32, 4>;
     var speeds = vec2<f32>(0.0);

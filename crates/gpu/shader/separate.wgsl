@@ -50,7 +50,7 @@ fn separate_plane(v: u32, p: u32) -> Separation {
     let plane = planes[p];
     let offset = vec3<f32>(positions[v].xyz - plane.point);
     let height = dot(plane.normal, offset);
-    return Separation(plane.normal, height - plane.rounding * size(offset) - POINT_ROUNDING, vec3<f32>(0.0), height);
+    return Separation(plane.normal, height - plane.rounding * size(offset) - POINT_ROUNDING, vec2<f32>(0.0), height, 0.0);
 }
 
 fn separate_pair(candidate: Candidate) -> Separation {
@@ -101,7 +101,11 @@ fn separate_pair(candidate: Candidate) -> Separation {
     differences.slack = WIDTH_ROUNDING * largest;
 
     let distance = sqrt(dot(closest.offset, closest.offset));
-    var separation = Separation(vec3<f32>(0.0, 0.0, 1.0), -1.0, closest.weights, distance);
+    var weights = closest.weights.yz;
+    if pair.kind == EDGE_EDGE {
+        weights = closest.weights.xz;
+    }
+    var separation = Separation(vec3<f32>(0.0, 0.0, 1.0), -1.0, weights, distance, 0.0);
     if distance > 0.0 {
         separation.normal = closest.offset / distance;
         separation.width = width_along(separation.normal, differences);

@@ -8,7 +8,7 @@ use crate::cpu;
 use crate::engine::Engine;
 use crate::error::GpuError;
 use crate::grid::{Grid, GridError, GridPoint};
-use crate::layout::{Ball, Candidate, Control, Kind, Separation, Slot, Vertex};
+use crate::layout::{Ball, Candidate, Control, Kind, OldRow, PairState, Separation, Slot, Vertex};
 use crate::model::{self, Constraints, Lengths};
 use crate::recording::{BufferId, Recording};
 use crate::stages;
@@ -84,14 +84,20 @@ pub struct Collision<E> {
     /// Partners of an element that fit into a row, and candidates that fit into their list.
     most_partners: usize,
     capacity: usize,
+    /// Candidates of the time before a search for which there is room.
+    old_capacity: usize,
     /// Whether all trust regions are new.
     all_new: bool,
+    /// Whether the step is made again, because a buffer was too small.
+    again: bool,
 }
 
 /// Lengths in quanta that all steps share.
 #[derive(Clone, Copy, Debug)]
 struct StepLengths {
     min_separation: f32,
+    /// By how much the rows of a call ask a small gap to grow.
+    growth: f32,
     damping: f32,
 }
 
@@ -122,6 +128,11 @@ struct Buffers {
     blocks: BufferId,
     candidates: BufferId,
     separations: BufferId,
+    states: BufferId,
+    rest: BufferId,
+    old_rows: BufferId,
+    old_elements: BufferId,
+    old_states: BufferId,
 }
 
 /// Trees by the primitives that they hold, and the queries into them.
@@ -143,8 +154,8 @@ struct DeviceTree {
 }
 
 impl<E: Engine> Collision<E> {
-    /// Prepares the scene of `model` at `positions` [m], which no two elements intersect. `damping` is the share of a
-    /// gap that a step may use up.
+    /// Prepares the scene of `model` at `positions` [m], where no two elements intersect; `rest` are the rest positions
+    /// [m]. `damping` is the share of a gap that a step may use up.
     ///
     /// # Errors
     /// No grid has room for the scene; the device has no memory; wrong lengths.
@@ -152,6 +163,7 @@ impl<E: Engine> Collision<E> {
         mut engine: E,
         model: &CollisionModel,
         positions: &[Point],
+        rest: &[Point],
         lengths: &Lengths<'_>,
         constraints: &Constraints<'_>,
         damping: f64,
@@ -159,14 +171,18 @@ impl<E: Engine> Collision<E> {
         let count = model.topology().vertex_count;
         for (what, given) in [
             ("positions", positions.len()),
+            ("rest positions", rest.len()),
             ("edges", lengths.edges.len()),
             ("margins", lengths.margins.len()),
+            ("deltas", lengths.deltas.len()),
         ] {
             check_length(what, given, count)?;
         }
-        let extent = extent(positions);
-        let grid = Grid::around(positions, extent, lengths.min_separation)?;
+        let room = extent(positions).max(extent(rest));
+        let grid = Grid::around(positions, room, lengths.min_separation)?;
         let on_grid = snapped(&grid, positions)?;
+        let rest_grid = grid.around_others(rest).ok_or(CollisionError::OutsideGrid { vertex: 0 })?;
+        let rest_on_grid = snapped(&rest_grid, rest)?;
         let vertices = model::vertices(model, lengths, constraints, &grid);
         let planes = model::planes(model, &grid);
         let groups = vertices.iter().filter(|v| v.group != crate::layout::NONE).map(|v| v.group as usize + 1);
@@ -194,9 +210,15 @@ impl<E: Engine> Collision<E> {
             blocks: engine.buffer("blocks", rows.div_ceil(cpu::count::BLOCK))?,
             candidates: engine.buffer("candidates", words::<Candidate>(capacity))?,
             separations: engine.buffer("separations", words::<Separation>(capacity))?,
+            states: engine.buffer("states of pairs", words::<PairState>(capacity))?,
+            rest: engine.buffer("rest positions", 4 * count)?,
+            old_rows: engine.buffer("old rows", words::<OldRow>(rows))?,
+            old_elements: engine.buffer("old partners", capacity)?,
+            old_states: engine.buffer("old states of pairs", words::<PairState>(capacity))?,
         };
         let mut setup = Recording::default();
         setup.write(buffers.positions, &padded(&on_grid));
+        setup.write(buffers.rest, &padded(&rest_on_grid));
         setup.write(buffers.vertices, &vertices);
         setup.write(buffers.edges, &topology.edges);
         setup.write(buffers.triangles, &triangles);
@@ -205,9 +227,22 @@ impl<E: Engine> Collision<E> {
         engine.run(&setup, &[])?;
         let lengths = StepLengths {
             min_separation: grid.length(lengths.min_separation).next_up(),
+            growth: f32::MAX,
             damping: damping as f32,
         };
-        Ok(Self { engine, grid, lengths, counts, buffers, trees, most_partners, capacity, all_new: true })
+        Ok(Self {
+            engine,
+            grid,
+            lengths,
+            counts,
+            buffers,
+            trees,
+            most_partners,
+            capacity,
+            old_capacity: capacity,
+            all_new: true,
+            again: false,
+        })
     }
 
     /// The grid on which all positions lie.
@@ -215,16 +250,21 @@ impl<E: Engine> Collision<E> {
         &self.grid
     }
 
-    /// Sets where the vertices want to go [m]; targets outside of the grid are moved to its border.
+    /// Begins a call: sets where the vertices want to go [m]; targets outside of the grid are moved to its border. Pairs
+    /// that are closer than they should be ask to open by at most `growth` [m] in the call.
     ///
     /// # Errors
     /// A wrong length; the device failed.
-    pub fn set_target(&mut self, target: &[Point]) -> Result<(), CollisionError> {
+    pub fn begin(&mut self, target: &[Point], growth: f64) -> Result<(), CollisionError> {
         check_length("target", target.len(), self.counts.vertices)?;
         let inside: Vec<GridPoint> = target.iter().map(|y| self.grid.nearest_inside(y)).collect();
         let mut recording = Recording::default();
         recording.write(self.buffers.targets, &padded(&inside));
+        // Without candidates nothing is inherited from the call before.
+        recording.write(self.buffers.control, &[Control::default()]);
         self.engine.run(&recording, &[])?;
+        self.lengths.growth = self.grid.length(growth).min(f32::MAX);
+        self.all_new = true;
         Ok(())
     }
 
@@ -233,6 +273,7 @@ impl<E: Engine> Collision<E> {
     /// # Errors
     /// The device failed, or has no memory for all candidates.
     pub fn step(&mut self) -> Result<StepReport, CollisionError> {
+        self.make_room_for_old()?;
         loop {
             let mut recording = Recording::default();
             self.record_step(&mut recording);
@@ -240,7 +281,7 @@ impl<E: Engine> Collision<E> {
             let words = self.engine.run(&recording, &read)?.swap_remove(0);
             let control: Control = bytemuck::cast_slice(&words)[0];
             if control.overflow == 0 {
-                self.all_new = false;
+                (self.all_new, self.again) = (false, false);
                 return Ok(self.report(&control));
             }
             self.grow(&control)?;
@@ -273,6 +314,19 @@ impl<E: Engine> Collision<E> {
         let mut candidates = candidates[..control.candidates as usize].to_vec();
         candidates.sort_unstable();
         Ok(candidates)
+    }
+
+    /// Makes room to keep all present candidates.
+    fn make_room_for_old(&mut self) -> Result<(), GpuError> {
+        if self.old_capacity < self.capacity {
+            let Self { engine, buffers, capacity, .. } = self;
+            engine.free(buffers.old_elements);
+            engine.free(buffers.old_states);
+            buffers.old_elements = engine.buffer("old partners", *capacity)?;
+            buffers.old_states = engine.buffer("old states of pairs", words::<PairState>(*capacity))?;
+            self.old_capacity = self.capacity;
+        }
+        Ok(())
     }
 
     /// The dispatches of a step, in order.
@@ -318,6 +372,7 @@ impl<E: Engine> Collision<E> {
     /// The candidates, if trust regions have changed.
     fn record_search(&self, recording: &mut Recording) {
         let b = &self.buffers;
+        self.record_keep(recording);
         for tree in self.trees.targets() {
             tree.record_fit(b, recording);
         }
@@ -340,10 +395,11 @@ impl<E: Engine> Collision<E> {
             row += queries.tree.slots.len();
         }
         let (rows, most, capacity) = (row as u32, self.most_partners as u32, self.capacity as u32);
+        let stride = self.stride();
         recording.dispatch(
             &stages::COUNT,
             &[b.partners, b.starts, b.blocks, b.control],
-            cpu::count::Params { rows, stride: self.stride(), most },
+            cpu::count::Params { rows, stride, most },
             row,
         );
         recording.dispatch(
@@ -355,8 +411,34 @@ impl<E: Engine> Collision<E> {
         recording.dispatch(
             &stages::GATHER,
             &[b.partners, b.starts, b.blocks, b.candidates, b.control],
-            cpu::gather::Params { rows, stride: self.stride(), most, capacity },
+            cpu::gather::Params { rows, stride, most, capacity },
             row,
+        );
+        recording.dispatch(
+            &stages::INHERIT,
+            &[b.partners, b.starts, b.blocks, b.old_rows, b.old_elements, b.old_states, b.states, b.control],
+            cpu::inherit::Params { rows, stride, most, capacity },
+            row,
+        );
+    }
+
+    /// Keeps the present candidates with their states. If the step is made again they have been kept already, and the
+    /// present ones are not whole.
+    fn record_keep(&self, recording: &mut Recording) {
+        if self.again {
+            return;
+        }
+        let (b, rows) = (&self.buffers, self.trees.rows(&self.counts));
+        recording.dispatch(
+            &stages::KEEP,
+            &[b.partners, b.starts, b.blocks, b.states, b.old_rows, b.old_elements, b.old_states, b.control],
+            cpu::keep::Params {
+                rows: rows as u32,
+                stride: self.stride(),
+                most: self.most_partners as u32,
+                capacity: self.capacity as u32,
+            },
+            rows,
         );
     }
 
@@ -399,13 +481,19 @@ impl<E: Engine> Collision<E> {
             self.capacity,
         );
         recording.dispatch(
+            &stages::SPACE,
+            &[b.rest, b.edges, b.triangles, b.vertices, b.candidates, b.separations, b.states, b.control],
+            cpu::space::Params {
+                capacity,
+                min_separation: self.lengths.min_separation,
+                growth: self.lengths.growth,
+            },
+            self.capacity,
+        );
+        recording.dispatch(
             &stages::LIMIT,
             &[b.edges, b.triangles, b.vertices, b.candidates, b.separations, b.paths, b.alphas, b.control],
-            cpu::limit::Params {
-                capacity,
-                damping: self.lengths.damping,
-                min_separation: self.lengths.min_separation,
-            },
+            cpu::limit::Params { capacity, damping: self.lengths.damping },
             self.capacity,
         );
         recording.dispatch(
@@ -443,9 +531,11 @@ impl<E: Engine> Collision<E> {
             engine.free(buffers.separations);
             buffers.candidates = engine.buffer("candidates", words::<Candidate>(self.capacity))?;
             buffers.separations = engine.buffer("separations", words::<Separation>(self.capacity))?;
+            engine.free(buffers.states);
+            buffers.states = engine.buffer("states of pairs", words::<PairState>(self.capacity))?;
         }
         tracing::debug!(partners, candidates, "buffers grew");
-        self.all_new = true;
+        (self.all_new, self.again) = (true, true);
         Ok(())
     }
 
@@ -583,3 +673,6 @@ fn snapped(grid: &Grid, positions: &[Point]) -> Result<Vec<GridPoint>, Collision
     let snap = |(vertex, x): (usize, &Point)| grid.nearest(x).ok_or(CollisionError::OutsideGrid { vertex });
     positions.iter().enumerate().map(snap).collect()
 }
+
+#[cfg(test)]
+mod tests;

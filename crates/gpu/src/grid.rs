@@ -89,6 +89,16 @@ impl Grid {
         if largest / quantum >= 2f64.powi(53) { Err(too_coarse) } else { Ok(Self { origin, quantum }) }
     }
 
+    /// A grid with the same quantum around other positions [m]; None if they need more room than there is.
+    pub fn around_others(&self, positions: &[Point]) -> Option<Self> {
+        let first = positions.first().map_or_else(Vector::zeros, |x| x.coords);
+        let bounds = positions.iter().fold((first, first), |(l, h), x| (l.inf(&x.coords), h.sup(&x.coords)));
+        let middle = (bounds.0 + bounds.1) * 0.5;
+        let origin = Point::from(middle.map(|c| (c / self.quantum).round() * self.quantum));
+        let other = Self { origin, ..*self };
+        positions.iter().all(|x| other.nearest(x).is_some()).then_some(other)
+    }
+
     /// Length of the integer one [m].
     pub fn quantum(&self) -> f64 {
         self.quantum

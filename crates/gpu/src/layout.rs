@@ -31,6 +31,10 @@ pub struct Vertex {
     pub mask: u32,
     /// Vertices of a group move by one fraction of their displacements; [`NONE`] for no group.
     pub group: u32,
+    /// Desired distance of the body's contacts.
+    pub delta: f32,
+    /// Thickness of the body, a minimum separation that is guaranteed; below 0 if it has none.
+    pub thickness: f32,
     pub padding: u32,
 }
 
@@ -130,10 +134,42 @@ pub struct Separation {
     pub normal: [f32; 3],
     /// Certified lower bound of the width of the slab between both sides; 0 or less if nothing is certified.
     pub width: f32,
-    /// Weights of the second, third and fourth vertex in the closest points; the weights of a side sum to 1.
-    pub weights: [f32; 3],
+    /// Weights in the closest points: of the last two vertices of a pair with a triangle, of the last vertices of both
+    /// sides otherwise. The weights of a side sum to 1.
+    pub weights: [f32; 2],
     /// Computed distance of the closest points.
     pub distance: f32,
+    /// No step makes the gap smaller than this; see [`PairState`].
+    pub min_separation: f32,
+}
+
+/// What a candidate keeps from step to step.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct PairState {
+    /// Multiplier of the friction rows, along the tangents that they have now.
+    pub friction: [f32; 3],
+    /// Multiplier of the contact row.
+    pub multiplier: f32,
+    /// Distance that the contact row asks for; below 0 for a candidate that is new.
+    pub desired: f32,
+    /// Minimum separation.
+    pub min_separation: f32,
+    pub padding: [u32; 2],
+}
+
+impl PairState {
+    /// A candidate that is new.
+    pub const NEW: Self =
+        Self { friction: [0.0; 3], multiplier: 0.0, desired: -1.0, min_separation: 0.0, padding: [0; 2] };
+}
+
+/// The candidates of a row before the present search.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub struct OldRow {
+    pub first: u32,
+    pub count: u32,
 }
 
 /// A half-space, the solid below a plane.

@@ -11,7 +11,13 @@ pub struct Lengths<'a> {
     pub edges: &'a [f64],
     /// Half of the largest contact range of a pair with each vertex.
     pub margins: &'a [f64],
-    /// No step makes a gap smaller than this.
+    /// Desired distance of the contacts of each vertex with others like it.
+    pub deltas: &'a [f64],
+    /// Thickness of the body of each vertex, a guaranteed minimum separation; none where it is not a number. May be
+    /// empty: no body has any.
+    pub thicknesses: &'a [f64],
+    /// No step makes a gap between bodies without a thickness smaller than this, nor smaller than a tenth of the pair's
+    /// desired distance if that is less.
     pub min_separation: f64,
 }
 
@@ -58,6 +64,12 @@ pub(crate) fn vertices(
             groups: filter.groups,
             mask: filter.mask,
             group,
+            delta: grid.length(lengths.deltas[v]),
+            thickness: lengths
+                .thicknesses
+                .get(v)
+                .filter(|t| **t >= 0.0)
+                .map_or(-1.0, |t| grid.length(*t).next_up()),
             padding: 0,
         }
     };

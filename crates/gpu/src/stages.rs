@@ -134,6 +134,30 @@ pub(crate) static SEPARATE: Stage = Stage {
     twin: cpu::separate::bound,
 };
 
+pub(crate) static KEEP: Stage = Stage {
+    name: "keep",
+    parts: &[TYPES, include_str!("../shader/keep.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Read, Read, Read, Write, Write, Write, Write],
+    twin: cpu::keep::bound,
+};
+
+pub(crate) static INHERIT: Stage = Stage {
+    name: "inherit",
+    parts: &[TYPES, include_str!("../shader/inherit.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Read, Read, Read, Read, Read, Write, Write],
+    twin: cpu::inherit::bound,
+};
+
+pub(crate) static SPACE: Stage = Stage {
+    name: "space",
+    parts: &[TYPES, CLOSEST, PAIR, include_str!("../shader/space.wgsl")],
+    workgroup: 128,
+    bindings: &[Read, Read, Read, Read, Read, Write, Write, Write],
+    twin: cpu::space::bound,
+};
+
 pub(crate) static LIMIT: Stage = Stage {
     name: "limit",
     parts: &[TYPES, PAIR, include_str!("../shader/limit.wgsl")],
@@ -171,7 +195,10 @@ pub(crate) static ALL: &[&Stage] = &[
     &COUNT,
     &TOTAL,
     &GATHER,
+    &KEEP,
+    &INHERIT,
     &SEPARATE,
+    &SPACE,
     &LIMIT,
     &LIMIT_GROUPS,
     &ADVANCE,

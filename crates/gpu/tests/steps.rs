@@ -12,6 +12,7 @@ use bowknot_proximity::{PairList, ProximitySearch};
 const EDGE: f64 = 0.02;
 const MIN_SEPARATION: f64 = 1e-4;
 const MARGIN: f64 = 2e-3;
+const DELTA: f64 = 1e-3;
 
 /// A scene with everything that collides: two sheets, an obstacle, strands, particles, the ground.
 struct Scene {
@@ -63,9 +64,14 @@ fn scene() -> Scene {
 
 fn collision<E: Engine>(engine: E, scene: &Scene, constraints: &Constraints<'_>) -> Collision<E> {
     let count = scene.x.len();
-    let lengths =
-        Lengths { edges: &vec![EDGE; count], margins: &vec![MARGIN; count], min_separation: MIN_SEPARATION };
-    Collision::new(engine, &scene.model, &scene.x, &lengths, constraints, 0.9).unwrap()
+    let lengths = Lengths {
+        edges: &vec![EDGE; count],
+        margins: &vec![MARGIN; count],
+        deltas: &vec![DELTA; count],
+        thicknesses: &[],
+        min_separation: MIN_SEPARATION,
+    };
+    Collision::new(engine, &scene.model, &scene.x, &scene.x, &lengths, constraints, 0.9).unwrap()
 }
 
 fn device() -> DeviceEngine {
@@ -102,7 +108,7 @@ fn nothing_intersects_on_the_way_to_random_targets() {
         let mut scene = scene();
         let mut collision = collision(TwinEngine::new(), &scene, &Constraints::default());
         for _ in 0..3 {
-            collision.set_target(&target(&scene, &mut random)).unwrap();
+            collision.begin(&target(&scene, &mut random), f64::INFINITY).unwrap();
             for step in 0..20 {
                 let report = collision.step().unwrap();
                 scene.x = collision.positions().unwrap();
@@ -146,7 +152,7 @@ fn every_pair_within_range_before_and_after_a_step_is_a_candidate() {
     let mut target = target(&scene, &mut fastrand::Rng::with_seed(3));
     // Down to the ground.
     target.iter_mut().for_each(|y| y.z -= 0.1);
-    collision.set_target(&target).unwrap();
+    collision.begin(&target, f64::INFINITY).unwrap();
     let (mut x, mut kinds) = (scene.x.clone(), [0; 5]);
     for _ in 0..20 {
         let report = collision.step().unwrap();
@@ -170,8 +176,8 @@ fn a_device_agrees_with_the_twins() {
     let target = target(&scene, &mut random);
     let mut twin = collision(TwinEngine::new(), &scene, &Constraints::default());
     let mut device = collision(device(), &scene, &Constraints::default());
-    twin.set_target(&target).unwrap();
-    device.set_target(&target).unwrap();
+    twin.begin(&target, f64::INFINITY).unwrap();
+    device.begin(&target, f64::INFINITY).unwrap();
     let mut scene = Scene { model: scene.model.clone(), x: scene.x };
     for step in 0..10 {
         let (expected, report) = (twin.step().unwrap(), device.step().unwrap());
@@ -193,7 +199,7 @@ fn two_runs_on_one_device_have_the_same_bits() {
     let run = || {
         let scene = scene();
         let mut collision = collision(device(), &scene, &Constraints::default());
-        collision.set_target(&target(&scene, &mut fastrand::Rng::with_seed(8))).unwrap();
+        collision.begin(&target(&scene, &mut fastrand::Rng::with_seed(8)), f64::INFINITY).unwrap();
         (0..8).for_each(|_| {
             collision.step().unwrap();
         });
@@ -207,7 +213,7 @@ fn twins_may_take_over_before_any_stage() {
     let scene = scene();
     let target = target(&scene, &mut fastrand::Rng::with_seed(9));
     let run = |mut collision: Collision<BisectingEngine>| {
-        collision.set_target(&target).unwrap();
+        collision.begin(&target, f64::INFINITY).unwrap();
         (0..3).for_each(|_| {
             collision.step().unwrap();
         });
@@ -232,7 +238,7 @@ fn bodies_that_move_as_one_stay_as_they_are() {
     let prescribed: Vec<bool> = (0..scene.x.len()).map(is_strand).collect();
     let constraints = Constraints { prescribed: &prescribed, groups: &groups };
     let mut collision = collision(TwinEngine::new(), &scene, &constraints);
-    collision.set_target(&target).unwrap();
+    collision.begin(&target, f64::INFINITY).unwrap();
     (0..10).for_each(|_| {
         collision.step().unwrap();
     });
@@ -255,9 +261,15 @@ fn a_lost_device_is_an_error_and_no_panic() {
     let name = engine.name().to_owned();
     engine.lose();
     let count = scene.x.len();
-    let lengths =
-        Lengths { edges: &vec![EDGE; count], margins: &vec![MARGIN; count], min_separation: MIN_SEPARATION };
-    let collision = Collision::new(engine, &scene.model, &scene.x, &lengths, &Constraints::default(), 0.9);
+    let lengths = Lengths {
+        edges: &vec![EDGE; count],
+        margins: &vec![MARGIN; count],
+        deltas: &vec![DELTA; count],
+        thicknesses: &[],
+        min_separation: MIN_SEPARATION,
+    };
+    let collision =
+        Collision::new(engine, &scene.model, &scene.x, &scene.x, &lengths, &Constraints::default(), 0.9);
     let error = collision.expect_err("the device is lost").to_string();
     assert!(error.contains(&name), "{error}");
 }

@@ -10,6 +10,8 @@ struct Vertex {
     groups: u32,
     mask: u32,
     group: u32,
+    delta: f32,
+    thickness: f32,
     padding: u32,
 }
 
@@ -53,8 +55,22 @@ const VERTEX_HALF_SPACE: u32 = 4u;
 struct Separation {
     normal: vec3<f32>,
     width: f32,
-    weights: vec3<f32>,
+    weights: vec2<f32>,
     distance: f32,
+    min_separation: f32,
+}
+
+struct PairState {
+    friction: vec3<f32>,
+    multiplier: f32,
+    desired: f32,
+    min_separation: f32,
+    padding: vec2<u32>,
+}
+
+struct OldRow {
+    first: u32,
+    count: u32,
 }
 
 struct Plane {

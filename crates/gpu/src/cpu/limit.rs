@@ -11,7 +11,6 @@ use bytemuck::{Pod, Zeroable};
 pub struct Params {
     pub capacity: u32,
     pub damping: f32,
-    pub min_separation: f32,
 }
 
 const STEP: f32 = 8.0;
@@ -84,7 +83,7 @@ fn limit_pair(
         control.frozen += 1;
         return;
     }
-    let allowed = (params.damping * (separation.width - params.min_separation) - rounding).max(0.0);
+    let allowed = (params.damping * (separation.width - separation.min_separation) - rounding).max(0.0);
 
     let (mut closing, mut speeds, mut extremes) = ([0.0f32; 4], [0.0f32; 2], [-3.0e38f32; 2]);
     let group = vertices[at[0]].group;

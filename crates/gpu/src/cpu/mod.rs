@@ -9,7 +9,9 @@ pub mod closest;
 pub mod count;
 pub mod cover;
 pub mod gather;
+pub mod inherit;
 pub mod join;
+pub mod keep;
 pub mod limit;
 pub mod limit_groups;
 pub mod near_planes;
@@ -17,6 +19,7 @@ pub mod pair;
 pub mod plan;
 pub mod refit;
 pub mod separate;
+pub mod space;
 pub mod total;
 pub mod traverse;
 

@@ -44,11 +44,13 @@ fn structs_lie_alike_on_both_sides() {
         };
     }
     let structs = [
-        offsets!(Vertex: edge, margin, body, flags, groups, mask, group, padding),
+        offsets!(Vertex: edge, margin, body, flags, groups, mask, group, delta, thickness, padding),
         offsets!(Ball: center, radius),
         offsets!(NodeBox: low, deformable, high, padding),
         offsets!(Candidate: kind_and_a, b),
-        offsets!(Separation: normal, width, weights, distance),
+        offsets!(Separation: normal, width, weights, distance, min_separation),
+        offsets!(PairState: friction, multiplier, desired, min_separation, padding),
+        offsets!(OldRow: first, count),
         offsets!(Plane: normal, rounding, point, padding),
     ];
     let source = ALL.iter().find(|stage| stage.name == "separate").expect("a stage").source();

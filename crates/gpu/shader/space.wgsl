@@ -1,0 +1,83 @@
+// Desired distance and minimum separation of candidates that are new, and the minimum separation of all for the forward
+// step.
+//
+// The desired distance of two elements of one body is at most half of their rest distance: otherwise it would tear a fine
+// mesh apart. A pair that starts closer opens by at most `growth` in a call.
+
+struct Params {
+    capacity: u32,
+    // Minimum separation of bodies without a thickness.
+    min_separation: f32,
+    growth: f32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read> rest: array<vec4<i32>>;
+@group(0) @binding(2) var<storage, read> edges: array<vec2<u32>>;
+@group(0) @binding(3) var<storage, read> triangles: array<vec4<u32>>;
+@group(0) @binding(4) var<storage, read> vertices: array<Vertex>;
+@group(0) @binding(5) var<storage, read> candidates: array<Candidate>;
+@group(0) @binding(6) var<storage, read_write> separations: array<Separation>;
+@group(0) @binding(7) var<storage, read_write> states: array<PairState>;
+@group(0) @binding(8) var<storage, read_write> control: Control;
+
+// A minimum separation that is no guarantee is at most this part of the desired distance.
+const MIN_SEPARATION_SHARE: f32 = 0.1;
+// Smallest ratio of a desired distance to a guaranteed minimum separation.
+const MIN_SEPARATION_MARGIN: f32 = 1.5;
+
+fn rest_distance(pair: Pair) -> f32 {
+    let p = rest[pair.vertices[0]].xyz;
+    let a = vec3<f32>(rest[pair.vertices[1]].xyz - p);
+    var offset = a;
+    if pair.kind == VERTEX_EDGE {
+        offset = closest_vertex_edge(a, vec3<f32>(rest[pair.vertices[2]].xyz - p)).offset;
+    } else if pair.kind != VERTEX_VERTEX {
+        let b = vec3<f32>(rest[pair.vertices[2]].xyz - p);
+        let c = vec3<f32>(rest[pair.vertices[3]].xyz - p);
+        if pair.kind == EDGE_EDGE {
+            offset = closest_edge_edge(a, b, c).offset;
+        } else {
+            offset = closest_vertex_triangle(a, b, c).offset;
+        }
+    }
+    return sqrt(dot(offset, offset));
+}
+
+fn first_state(candidate: Candidate, separation: Separation) -> PairState {
+    let pair = pair_of(candidate);
+    let a = vertices[pair.vertices[0]];
+    var delta = a.delta;
+    var thickness = -1.0;
+    if pair.kind == VERTEX_HALF_SPACE {
+        thickness = a.thickness;
+    } else {
+        let b = vertices[pair.vertices[pair.side_a]];
+        delta = 0.5 * (a.delta + b.delta);
+        if max(a.thickness, b.thickness) >= 0.0 {
+            let of_a = select(params.min_separation, a.thickness, a.thickness >= 0.0);
+            let of_b = select(params.min_separation, b.thickness, b.thickness >= 0.0);
+            thickness = 0.5 * (of_a + of_b);
+        }
+        if a.body == b.body {
+            delta = min(delta, 0.5 * rest_distance(pair));
+        }
+    }
+    let desired = min(delta, max(separation.distance, 0.0) + params.growth);
+    var least = min(params.min_separation, MIN_SEPARATION_SHARE * desired);
+    if thickness >= 0.0 {
+        least = min(min(thickness, delta / MIN_SEPARATION_MARGIN), max(separation.width, 0.0));
+    }
+    return PairState(vec3<f32>(0.0), 0.0, desired, least, vec2<u32>(0u));
+}
+
+@compute @workgroup_size(128)
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let count = min(atomicLoad(&control.candidates), params.capacity);
+    for (var c = id.x; c < count; c += 128u * groups.x) {
+        if states[c].desired < 0.0 {
+            states[c] = first_state(candidates[c], separations[c]);
+        }
+        separations[c].min_separation = states[c].min_separation;
+    }
+}

@@ -1,0 +1,100 @@
+//! Twin of `shader/space.wgsl`.
+
+use super::closest::{edge_edge, vertex_edge, vertex_triangle};
+use super::pair::{Pair, pair_of};
+use super::{difference, dot};
+use crate::bound::Bound;
+use crate::layout::{Candidate, Control, Kind, PairState, Separation, Vertex};
+use bytemuck::{Pod, Zeroable};
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Params {
+    pub capacity: u32,
+    pub min_separation: f32,
+    pub growth: f32,
+}
+
+const MIN_SEPARATION_SHARE: f32 = 0.1;
+const MIN_SEPARATION_MARGIN: f32 = 1.5;
+
+pub fn bound(buffers: Bound<'_>) {
+    space(
+        buffers.params(),
+        &buffers.read(0),
+        &buffers.read(1),
+        &buffers.read(2),
+        &buffers.read(3),
+        &buffers.read(4),
+        &mut buffers.write(5),
+        &mut buffers.write(6),
+        &buffers.read::<Control>(7)[0],
+    );
+}
+
+pub fn space(
+    params: Params,
+    rest: &[[i32; 4]],
+    edges: &[[u32; 2]],
+    triangles: &[[u32; 4]],
+    vertices: &[Vertex],
+    candidates: &[Candidate],
+    separations: &mut [Separation],
+    states: &mut [PairState],
+    control: &Control,
+) {
+    for c in 0..control.candidates.min(params.capacity) as usize {
+        if states[c].desired < 0.0 {
+            let pair = pair_of(candidates[c], edges, triangles);
+            states[c] = first_state(&params, &pair, &separations[c], rest, vertices);
+        }
+        separations[c].min_separation = states[c].min_separation;
+    }
+}
+
+fn rest_distance(pair: &Pair, rest: &[[i32; 4]]) -> f32 {
+    let x = pair.vertices.map(|v| rest[v as usize]);
+    let [a, b, c] = [1, 2, 3].map(|k| difference(x[k], x[0]));
+    let offset = if pair.kind == Kind::VertexVertex as u32 {
+        a
+    } else if pair.kind == Kind::VertexEdge as u32 {
+        vertex_edge(a, b).offset
+    } else if pair.kind == Kind::EdgeEdge as u32 {
+        edge_edge(a, b, c).offset
+    } else {
+        vertex_triangle(a, b, c).offset
+    };
+    dot(offset, offset).sqrt()
+}
+
+fn first_state(
+    params: &Params,
+    pair: &Pair,
+    separation: &Separation,
+    rest: &[[i32; 4]],
+    vertices: &[Vertex],
+) -> PairState {
+    let a = vertices[pair.vertices[0] as usize];
+    let mut delta = a.delta;
+    let mut thickness = -1.0;
+    if pair.kind == Kind::VertexHalfSpace as u32 {
+        thickness = a.thickness;
+    } else {
+        let b = vertices[pair.vertices[pair.side_a] as usize];
+        delta = 0.5 * (a.delta + b.delta);
+        if a.thickness.max(b.thickness) >= 0.0 {
+            let of = |thickness: f32| if thickness >= 0.0 { thickness } else { params.min_separation };
+            thickness = 0.5 * (of(a.thickness) + of(b.thickness));
+        }
+        if a.body == b.body {
+            delta = delta.min(0.5 * rest_distance(pair, rest));
+        }
+    }
+    let desired = delta.min(separation.distance.max(0.0) + params.growth);
+    let min_separation = if thickness >= 0.0 {
+        thickness.min(delta / MIN_SEPARATION_MARGIN).min(separation.width.max(0.0))
+    } else {
+        params.min_separation.min(MIN_SEPARATION_SHARE * desired)
+    };
+    PairState { desired, min_separation, ..PairState::default() }
+}
