@@ -17,6 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         deltas: &[0.02; 6],
         thicknesses: &[],
         min_separation: 1e-3,
+        edge_limits: &[],
     };
     let mut collision =
         Collision::new(engine, &model, &start, &start, &lengths, &Constraints::default(), 0.9)?;

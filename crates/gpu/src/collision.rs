@@ -5,10 +5,11 @@
 //! with a buffer that is too small moves nothing and is made again.
 
 use crate::cpu;
+use crate::edges::Edges;
 use crate::engine::Engine;
 use crate::error::GpuError;
 use crate::grid::{Grid, GridError, GridPoint};
-use crate::layout::{Ball, Candidate, Control, Kind, OldRow, PairState, Separation, Slot, Vertex};
+use crate::layout::{Ball, Candidate, Control, EdgeLimit, Kind, OldRow, PairState, Separation, Slot, Vertex};
 use crate::model::{self, Constraints, Lengths};
 use crate::recording::{BufferId, Recording};
 use crate::stages;
@@ -23,6 +24,10 @@ const SMALLEST_RADIUS: f32 = 0.1;
 /// Partners of an element for which there is room at first, and candidates per vertex.
 const FIRST_PARTNERS: usize = 24;
 const FIRST_CANDIDATES: usize = 16;
+
+/// Sweeps of a backward step, and the part of the curvature of edges that damps it.
+const SWEEPS: usize = 8;
+const EDGE_PROXIMAL: f32 = 0.1;
 
 /// Words of a row before its partners: their number, and the element.
 const ROW_HEADER: usize = 2;
@@ -81,6 +86,7 @@ pub struct Collision<E> {
     counts: Counts,
     buffers: Buffers,
     trees: Trees,
+    edges: Edges,
     /// Partners of an element that fit into a row, and candidates that fit into their list.
     most_partners: usize,
     capacity: usize,
@@ -133,6 +139,11 @@ struct Buffers {
     old_rows: BufferId,
     old_elements: BufferId,
     old_states: BufferId,
+    limits: BufferId,
+    proximal: BufferId,
+    displacements: BufferId,
+    /// Where the vertices go in this step: those of the backward step or, if there is none, the targets.
+    aims: BufferId,
 }
 
 /// Trees by the primitives that they hold, and the queries into them.
@@ -192,9 +203,10 @@ impl<E: Engine> Collision<E> {
         let rows = trees.rows(&counts);
         let topology = model.topology();
         let triangles: Vec<[u32; 4]> = topology.triangles.iter().map(|&[a, b, c]| [a, b, c, 0]).collect();
-        let buffers = Buffers {
+        let targets = engine.buffer("targets", 4 * count)?;
+        let mut buffers = Buffers {
             positions: engine.buffer("positions", 4 * count)?,
-            targets: engine.buffer("targets", 4 * count)?,
+            targets,
             vertices: engine.buffer("vertices", words::<Vertex>(count))?,
             edges: engine.buffer("edges", 2 * topology.edges.len())?,
             triangles: engine.buffer("triangles", 4 * triangles.len())?,
@@ -215,7 +227,19 @@ impl<E: Engine> Collision<E> {
             old_rows: engine.buffer("old rows", words::<OldRow>(rows))?,
             old_elements: engine.buffer("old partners", capacity)?,
             old_states: engine.buffer("old states of pairs", words::<PairState>(capacity))?,
+            limits: targets,
+            proximal: targets,
+            displacements: targets,
+            aims: targets,
         };
+        let moves = |v: u32| vertices[v as usize].flags & Vertex::PRESCRIBED == 0;
+        let edges = Edges::new(&topology.edges, lengths.edge_limits, moves);
+        if edges.len() > 0 {
+            buffers.limits = engine.buffer("edge limits", words::<EdgeLimit>(edges.len()))?;
+            buffers.proximal = engine.buffer("proximal weights", count)?;
+            buffers.displacements = engine.buffer("displacements", 4 * count)?;
+            buffers.aims = engine.buffer("aims", 4 * count)?;
+        }
         let mut setup = Recording::default();
         setup.write(buffers.positions, &padded(&on_grid));
         setup.write(buffers.rest, &padded(&rest_on_grid));
@@ -237,6 +261,7 @@ impl<E: Engine> Collision<E> {
             counts,
             buffers,
             trees,
+            edges,
             most_partners,
             capacity,
             old_capacity: capacity,
@@ -260,6 +285,10 @@ impl<E: Engine> Collision<E> {
         let inside: Vec<GridPoint> = target.iter().map(|y| self.grid.nearest_inside(y)).collect();
         let mut recording = Recording::default();
         recording.write(self.buffers.targets, &padded(&inside));
+        if self.edges.len() > 0 {
+            let start = self.positions()?;
+            recording.write(self.buffers.limits, &self.edges.limits(&start, &self.grid));
+        }
         // Without candidates nothing is inherited from the call before.
         recording.write(self.buffers.control, &[Control::default()]);
         self.engine.run(&recording, &[])?;
@@ -332,6 +361,10 @@ impl<E: Engine> Collision<E> {
     /// The dispatches of a step, in order.
     fn record_step(&self, recording: &mut Recording) {
         self.record_start(recording);
+        // If the step is made again, the aims are known.
+        if !self.again {
+            self.record_backward(recording);
+        }
         self.record_paths(recording);
         self.record_search(recording);
         self.record_forward(recording);
@@ -346,12 +379,53 @@ impl<E: Engine> Collision<E> {
         recording.write(buffers.control, &[0u32; Control::RESET_WORDS]);
     }
 
+    /// Where the vertices should go so that no edge is too long.
+    fn record_backward(&self, recording: &mut Recording) {
+        if self.edges.len() == 0 {
+            return;
+        }
+        let (b, vertices) = (&self.buffers, self.counts.vertices as u32);
+        recording.dispatch(
+            &stages::CURVE_EDGES,
+            &[b.positions, b.limits, b.proximal],
+            cpu::curve_edges::Params { edges: self.edges.len() as u32, strength: EDGE_PROXIMAL },
+            self.edges.len(),
+        );
+        recording.dispatch(
+            &stages::RELEASE,
+            &[b.positions, b.targets, b.vertices, b.proximal, b.displacements],
+            cpu::release::Params { vertices },
+            self.counts.vertices,
+        );
+        // First the multipliers of the last step are applied.
+        for sweep in 0..=SWEEPS {
+            for color in self.edges.colors() {
+                recording.dispatch(
+                    &stages::SWEEP_EDGES,
+                    &[b.positions, b.limits, b.displacements],
+                    cpu::sweep_edges::Params {
+                        first: color.start as u32,
+                        end: color.end as u32,
+                        only_apply: u32::from(sweep == 0),
+                    },
+                    color.len(),
+                );
+            }
+        }
+        recording.dispatch(
+            &stages::AIM,
+            &[b.positions, b.targets, b.displacements, b.aims],
+            cpu::aim::Params { vertices },
+            self.counts.vertices,
+        );
+    }
+
     /// How far each vertex wants to go, and which trust regions do not cover it.
     fn record_paths(&self, recording: &mut Recording) {
         let (b, vertices) = (&self.buffers, self.counts.vertices as u32);
         recording.dispatch(
             &stages::PLAN,
-            &[b.positions, b.targets, b.vertices, b.paths, b.group_caps],
+            &[b.positions, b.aims, b.vertices, b.paths, b.group_caps],
             cpu::plan::Params { vertices, longest: LONGEST_TRAVEL },
             self.counts.vertices,
         );
@@ -504,7 +578,7 @@ impl<E: Engine> Collision<E> {
         );
         recording.dispatch(
             &stages::ADVANCE,
-            &[b.targets, b.vertices, b.paths, b.alphas, b.group_alphas, b.positions, b.control],
+            &[b.aims, b.vertices, b.paths, b.alphas, b.group_alphas, b.positions, b.control],
             cpu::advance::Params { vertices },
             self.counts.vertices,
         );

@@ -35,7 +35,8 @@ pub struct Vertex {
     pub delta: f32,
     /// Thickness of the body, a minimum separation that is guaranteed; below 0 if it has none.
     pub thickness: f32,
-    pub padding: u32,
+    /// Mass over the mean mass; of a vertex that is not prescribed it is above 0.
+    pub mass: f32,
 }
 
 impl Vertex {
@@ -162,6 +163,19 @@ impl PairState {
     /// A candidate that is new.
     pub const NEW: Self =
         Self { friction: [0.0; 3], multiplier: 0.0, desired: -1.0, min_separation: 0.0, padding: [0; 2] };
+}
+
+/// The largest length of an edge, in the order of the colors of the edges.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct EdgeLimit {
+    pub a: u32,
+    pub b: u32,
+    pub limit: f32,
+    pub padding: u32,
+    /// Multiplier: the force that pulls a toward b, times -1 on a.
+    pub multiplier: [f32; 3],
+    pub padding_1: u32,
 }
 
 /// The candidates of a row before the present search.

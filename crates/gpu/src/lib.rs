@@ -8,13 +8,14 @@
 //! | `bound` | what a twin sees of a dispatch |
 //! | `recording`, `engine` | lists of dispatches; a device or the twins run them |
 //! | `adapter` | the devices of this machine |
-//! | `tree`, `model` | what the host prepares for a scene |
+//! | `tree`, `model`, `edges` | what the host prepares for a scene |
 //! | `collision` | steps toward a target that nothing passes through |
 
 mod adapter;
 mod bound;
 mod collision;
 mod cpu;
+mod edges;
 mod engine;
 mod error;
 mod grid;

@@ -19,9 +19,11 @@ pub struct Lengths<'a> {
     /// No step makes a gap between bodies without a thickness smaller than this, nor smaller than a tenth of the pair's
     /// desired distance if that is less.
     pub min_separation: f64,
+    /// Largest length of each edge of the topology, infinite for no limit. May be empty: no edge has one.
+    pub edge_limits: &'a [f64],
 }
 
-/// Which vertices do not move freely in a call.
+/// How vertices move.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Constraints<'a> {
     /// Whether each vertex is prescribed, those of obstacles included.
@@ -29,6 +31,8 @@ pub struct Constraints<'a> {
     /// The group of each vertex, [`NONE`] for none: its vertices move by one fraction of their displacements. Each
     /// obstacle has one of its own in any case.
     pub groups: &'a [u32],
+    /// Mass of each vertex, above 0 for those that are not prescribed. May be empty: all have the same.
+    pub masses: &'a [f64],
 }
 
 /// The static data of the vertices.
@@ -39,6 +43,10 @@ pub(crate) fn vertices(
     grid: &Grid,
 ) -> Vec<Vertex> {
     let bodies = model.bodies();
+    let deformable = |v: &usize| !model.is_obstacle(*v as u32);
+    let masses: Vec<f64> =
+        (0..constraints.masses.len()).filter(deformable).map(|v| constraints.masses[v]).collect();
+    let mean_mass = masses.iter().sum::<f64>() / masses.len().max(1) as f64;
     let group_count = constraints.groups.iter().filter(|g| **g != NONE).max().map_or(0, |last| last + 1);
     let vertex = |v: usize| {
         let body = model.vertex_body()[v];
@@ -70,7 +78,7 @@ pub(crate) fn vertices(
                 .get(v)
                 .filter(|t| **t >= 0.0)
                 .map_or(-1.0, |t| grid.length(*t).next_up()),
-            padding: 0,
+            mass: constraints.masses.get(v).map_or(1.0, |mass| (mass / mean_mass) as f32),
         }
     };
     (0..model.topology().vertex_count).map(vertex).collect()

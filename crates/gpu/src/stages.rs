@@ -43,8 +43,41 @@ impl std::fmt::Debug for Stage {
 const TYPES: &str = include_str!("../shader/shared/types.wgsl");
 const CLOSEST: &str = include_str!("../shader/shared/closest.wgsl");
 const PAIR: &str = include_str!("../shader/shared/pair.wgsl");
+const FIXED: &str = include_str!("../shader/shared/fixed.wgsl");
 
 use Access::{Read, Write};
+
+pub(crate) static CURVE_EDGES: Stage = Stage {
+    name: "curve_edges",
+    parts: &[TYPES, FIXED, include_str!("../shader/curve_edges.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Read, Write],
+    twin: cpu::curve_edges::bound,
+};
+
+pub(crate) static RELEASE: Stage = Stage {
+    name: "release",
+    parts: &[TYPES, FIXED, include_str!("../shader/release.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Read, Read, Write, Write],
+    twin: cpu::release::bound,
+};
+
+pub(crate) static SWEEP_EDGES: Stage = Stage {
+    name: "sweep_edges",
+    parts: &[TYPES, include_str!("../shader/sweep_edges.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Write, Write],
+    twin: cpu::sweep_edges::bound,
+};
+
+pub(crate) static AIM: Stage = Stage {
+    name: "aim",
+    parts: &[TYPES, include_str!("../shader/aim.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Read, Read, Write],
+    twin: cpu::aim::bound,
+};
 
 pub(crate) static PLAN: Stage = Stage {
     name: "plan",
@@ -185,6 +218,10 @@ pub(crate) static ADVANCE: Stage = Stage {
 /// All of them.
 #[cfg(test)]
 pub(crate) static ALL: &[&Stage] = &[
+    &CURVE_EDGES,
+    &RELEASE,
+    &SWEEP_EDGES,
+    &AIM,
     &PLAN,
     &JOIN,
     &COVER,

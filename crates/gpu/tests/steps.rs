@@ -4,8 +4,8 @@
 use bowknot_check::{Judge, StateOptions};
 use bowknot_geometry::{BodyFilter, CollisionModel, HalfSpace, PairKind, Point, Topology, Vector};
 use bowknot_gpu::{
-    Adapter, BisectingEngine, Candidate, Collision, Constraints, DeviceEngine, Engine, Kind, Lengths, NONE,
-    TwinEngine,
+    Adapter, BisectingEngine, Candidate, Collision, CollisionError, Constraints, DeviceEngine, Engine, Kind,
+    Lengths, NONE, TwinEngine,
 };
 use bowknot_proximity::{PairList, ProximitySearch};
 
@@ -13,6 +13,7 @@ const EDGE: f64 = 0.02;
 const MIN_SEPARATION: f64 = 1e-4;
 const MARGIN: f64 = 2e-3;
 const DELTA: f64 = 1e-3;
+const STRETCH: f64 = 1.1;
 
 /// A scene with everything that collides: two sheets, an obstacle, strands, particles, the ground.
 struct Scene {
@@ -63,15 +64,26 @@ fn scene() -> Scene {
 }
 
 fn collision<E: Engine>(engine: E, scene: &Scene, constraints: &Constraints<'_>) -> Collision<E> {
+    try_collision(engine, scene, constraints).unwrap()
+}
+
+fn try_collision<E: Engine>(
+    engine: E,
+    scene: &Scene,
+    constraints: &Constraints<'_>,
+) -> Result<Collision<E>, CollisionError> {
     let count = scene.x.len();
+    let edges = &scene.model.topology().edges;
+    let length = |[a, b]: [u32; 2]| (scene.x[a as usize] - scene.x[b as usize]).norm();
     let lengths = Lengths {
         edges: &vec![EDGE; count],
         margins: &vec![MARGIN; count],
         deltas: &vec![DELTA; count],
         thicknesses: &[],
         min_separation: MIN_SEPARATION,
+        edge_limits: &edges.iter().map(|edge| STRETCH * length(*edge)).collect::<Vec<f64>>(),
     };
-    Collision::new(engine, &scene.model, &scene.x, &scene.x, &lengths, constraints, 0.9).unwrap()
+    Collision::new(engine, &scene.model, &scene.x, &scene.x, &lengths, constraints, 0.9)
 }
 
 fn device() -> DeviceEngine {
@@ -194,6 +206,37 @@ fn a_device_agrees_with_the_twins() {
     }
 }
 
+/// A sheet hangs from a row of vertices that do not move, with a target a meter below.
+#[test]
+fn edges_stay_below_their_limits() {
+    let n = 9u32;
+    let x: Vec<Point> =
+        (0..n * n).map(|k| Point::new(EDGE * f64::from(k % n), 0.0, -EDGE * f64::from(k / n))).collect();
+    let triangles = (0..n * (n - 1)).filter(|k| k % n != n - 1);
+    let triangles = triangles.flat_map(|k| [[k, k + 1, k + n + 1], [k, k + n + 1, k + n]]);
+    let topology = Topology::builder(x.len()).triangles(triangles).build().unwrap();
+    let scene = Scene { model: CollisionModel::single_body(topology), x: x.clone() };
+    let pinned: Vec<bool> = (0..n * n).map(|k| k < n).collect();
+    let constraints = Constraints { prescribed: &pinned, ..Constraints::default() };
+    let mut collision = collision(TwinEngine::new(), &scene, &constraints);
+    let below = |(x, pinned): (&Point, &bool)| if *pinned { *x } else { x - Vector::z() };
+    let target: Vec<Point> = x.iter().zip(&pinned).map(below).collect();
+    collision.begin(&target, f64::INFINITY).unwrap();
+    (0..60).for_each(|_| {
+        collision.step().unwrap();
+    });
+    let end = collision.positions().unwrap();
+    let stretch = |[a, b]: &[u32; 2]| {
+        let length = |x: &[Point]| (x[*a as usize] - x[*b as usize]).norm();
+        length(&end) / length(&x)
+    };
+    let worst = scene.model.topology().edges.iter().map(stretch).fold(0.0, f64::max);
+    let lowest = end.iter().map(|x| x.z).fold(f64::INFINITY, f64::min);
+    let hanging = f64::from(n - 1) * EDGE * STRETCH;
+    assert!(worst < 1.02 * STRETCH, "{worst}");
+    assert!(lowest < -0.99 * hanging && lowest > -1.02 * hanging, "{lowest} {hanging}");
+}
+
 #[test]
 fn two_runs_on_one_device_have_the_same_bits() {
     let run = || {
@@ -236,7 +279,7 @@ fn bodies_that_move_as_one_stay_as_they_are() {
     let is_strand = |v: usize| scene.model.vertex_body()[v] == 3;
     let groups: Vec<u32> = (0..scene.x.len()).map(|v| if is_strand(v) { 0 } else { NONE }).collect();
     let prescribed: Vec<bool> = (0..scene.x.len()).map(is_strand).collect();
-    let constraints = Constraints { prescribed: &prescribed, groups: &groups };
+    let constraints = Constraints { prescribed: &prescribed, groups: &groups, masses: &[] };
     let mut collision = collision(TwinEngine::new(), &scene, &constraints);
     collision.begin(&target, f64::INFINITY).unwrap();
     (0..10).for_each(|_| {
@@ -260,16 +303,7 @@ fn a_lost_device_is_an_error_and_no_panic() {
     let engine = device();
     let name = engine.name().to_owned();
     engine.lose();
-    let count = scene.x.len();
-    let lengths = Lengths {
-        edges: &vec![EDGE; count],
-        margins: &vec![MARGIN; count],
-        deltas: &vec![DELTA; count],
-        thicknesses: &[],
-        min_separation: MIN_SEPARATION,
-    };
-    let collision =
-        Collision::new(engine, &scene.model, &scene.x, &scene.x, &lengths, &Constraints::default(), 0.9);
+    let collision = try_collision(engine, &scene, &Constraints::default());
     let error = collision.expect_err("the device is lost").to_string();
     assert!(error.contains(&name), "{error}");
 }

@@ -12,7 +12,7 @@ struct Vertex {
     group: u32,
     delta: f32,
     thickness: f32,
-    padding: u32,
+    mass: f32,
 }
 
 const OBSTACLE: u32 = 1u;
@@ -66,6 +66,15 @@ struct PairState {
     desired: f32,
     min_separation: f32,
     padding: vec2<u32>,
+}
+
+struct EdgeLimit {
+    a: u32,
+    b: u32,
+    limit: f32,
+    padding: u32,
+    multiplier: vec3<f32>,
+    padding_1: u32,
 }
 
 struct OldRow {

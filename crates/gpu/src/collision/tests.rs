@@ -40,6 +40,7 @@ fn collision(
         deltas: &vec![DELTA; count],
         thicknesses: &thickness.map_or(vec![], |t| vec![t; count]),
         min_separation: MIN_SEPARATION,
+        edge_limits: &[],
     };
     Collision::new(TwinEngine::new(), model, x, rest, &lengths, &Constraints::default(), 0.9).unwrap()
 }

@@ -4,10 +4,12 @@
 //! rounding alone, since a shader compiler may fuse and reorder operations.
 
 pub mod advance;
+pub mod aim;
 pub mod boxes;
 pub mod closest;
 pub mod count;
 pub mod cover;
+pub mod curve_edges;
 pub mod gather;
 pub mod inherit;
 pub mod join;
@@ -18,8 +20,10 @@ pub mod near_planes;
 pub mod pair;
 pub mod plan;
 pub mod refit;
+pub mod release;
 pub mod separate;
 pub mod space;
+pub mod sweep_edges;
 pub mod total;
 pub mod traverse;
 

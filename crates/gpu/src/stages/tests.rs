@@ -44,12 +44,13 @@ fn structs_lie_alike_on_both_sides() {
         };
     }
     let structs = [
-        offsets!(Vertex: edge, margin, body, flags, groups, mask, group, delta, thickness, padding),
+        offsets!(Vertex: edge, margin, body, flags, groups, mask, group, delta, thickness, mass),
         offsets!(Ball: center, radius),
         offsets!(NodeBox: low, deformable, high, padding),
         offsets!(Candidate: kind_and_a, b),
         offsets!(Separation: normal, width, weights, distance, min_separation),
         offsets!(PairState: friction, multiplier, desired, min_separation, padding),
+        offsets!(EdgeLimit: a, b, limit, padding, multiplier, padding_1),
         offsets!(OldRow: first, count),
         offsets!(Plane: normal, rounding, point, padding),
     ];

@@ -15,6 +15,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         deltas: &[0.02; 6],
         thicknesses: &[],
         min_separation: 1e-3,
+        edge_limits: &[],
     };
     let mut collision =
         Collision::new(TwinEngine::new(), &model, &start, &start, &lengths, &Constraints::default(), 0.9)?;

@@ -1,0 +1,33 @@
+// The displacement of each vertex without any multiplier: the minimum of m |u - u0|^2 + mu |u|^2, with u0 the way to the
+// target and mu the proximal weight, which is reset. Prescribed vertices go all the way and have no inverse weight.
+
+struct Params {
+    vertices: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read> positions: array<vec4<i32>>;
+@group(0) @binding(2) var<storage, read> targets: array<vec4<i32>>;
+@group(0) @binding(3) var<storage, read> vertices: array<Vertex>;
+@group(0) @binding(4) var<storage, read_write> proximal: array<u32>;
+// Displacement and inverse weight.
+@group(0) @binding(5) var<storage, read_write> displacements: array<vec4<f32>>;
+
+// Largest proximal weight, in the mass of the vertex.
+const MOST_PROXIMAL: f32 = 100.0;
+
+@compute @workgroup_size(256)
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    for (var v = id.x; v < params.vertices; v += 256u * groups.x) {
+        let vertex = vertices[v];
+        let wanted = vec3<f32>(targets[v].xyz - positions[v].xyz);
+        if (vertex.flags & PRESCRIBED) != 0u {
+            displacements[v] = vec4<f32>(wanted, 0.0);
+        } else {
+            let damping = min(f32(proximal[v]) / WEIGHT_UNITS, MOST_PROXIMAL * vertex.mass);
+            let weight = 1.0 / (vertex.mass + damping);
+            displacements[v] = vec4<f32>(wanted * (weight * vertex.mass), weight);
+        }
+        proximal[v] = 0u;
+    }
+}

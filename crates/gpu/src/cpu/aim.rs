@@ -1,0 +1,39 @@
+//! Twin of `shader/aim.wgsl`.
+
+use crate::bound::Bound;
+use bytemuck::{Pod, Zeroable};
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Params {
+    pub vertices: u32,
+}
+
+const BORDER: i32 = 536_870_911;
+const FARTHEST: f32 = 1_073_741_824.0;
+
+pub fn bound(buffers: Bound<'_>) {
+    aim(buffers.params(), &buffers.read(0), &buffers.read(1), &buffers.read(2), &mut buffers.write(3));
+}
+
+pub fn aim(
+    params: Params,
+    positions: &[[i32; 4]],
+    targets: &[[i32; 4]],
+    displacements: &[[f32; 4]],
+    aims: &mut [[i32; 4]],
+) {
+    for v in 0..params.vertices as usize {
+        let [x, y, z, weight] = displacements[v];
+        let mut aim = positions[v];
+        if weight == 0.0 {
+            aim = targets[v];
+        } else if [x, y, z].iter().all(|d| d.to_bits() & 0x7fff_ffff <= FARTHEST.to_bits()) {
+            for (k, d) in [x, y, z].into_iter().enumerate() {
+                let near = positions[v][k].clamp(-BORDER, BORDER);
+                aim[k] = (near + d.round_ties_even() as i32).clamp(-BORDER, BORDER);
+            }
+        }
+        aims[v] = aim;
+    }
+}
