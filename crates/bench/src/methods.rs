@@ -30,6 +30,7 @@ pub struct Entry {
 /// All of them.
 pub const METHODS: &[Entry] = &[
     Entry { name: "fast", params: Params::fast, build: two_way },
+    Entry { name: "quick", params: Params::quick, build: two_way },
     Entry { name: "paper", params: Params::paper, build: two_way },
     Entry { name: "log barrier", params: Params::paper, build: |p| log_barrier(p, BarrierParams::default()) },
     Entry { name: "log barrier, Newton", params: Params::paper, build: newton_barrier },

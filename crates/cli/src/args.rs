@@ -333,6 +333,7 @@ impl Method {
     pub fn assignments(&self) -> Vec<String> {
         let preset = self.preset.map(|preset| match preset {
             Preset::Fast => "contact.preset=\"fast\"".to_owned(),
+            Preset::Quick => "contact.preset=\"quick\"".to_owned(),
             Preset::Paper => "contact.preset=\"paper\"".to_owned(),
         });
         preset.into_iter().chain(self.sets.iter().cloned()).collect()
@@ -375,6 +376,8 @@ pub enum Backend {
 pub enum Preset {
     /// The method with the improvements that measurements support
     Fast,
+    /// For previews: `fast` with loose tolerances, and as safe
+    Quick,
     /// The method as its paper describes it
     Paper,
 }

@@ -6,7 +6,7 @@ use crate::obstacle::ObstacleSpec;
 use crate::origin::Origins;
 use crate::params::{OutputParams, Preset, SceneSolverParams, SimulationParams, SleepParams};
 use crate::pin::PinSpec;
-use bowknot_dynamics::{DynamicsParams, Environment};
+use bowknot_dynamics::{DynamicsParams, Environment, NewtonParams};
 use bowknot_twoway::ContactParams;
 use std::path::PathBuf;
 
@@ -45,8 +45,14 @@ impl Scene {
         let bowknot_twoway::Params { contact, solver } = preset.params();
         let bowknot_twoway::SolverParams { backward, forward, stop } = solver;
         // The paper's method knows no sleep.
-        let sleep = SleepParams { enabled: preset == Preset::Fast, ..SleepParams::default() };
-        let solver = SceneSolverParams { backward, forward, stop, sleep, ..SceneSolverParams::default() };
+        let sleep = SleepParams { enabled: preset != Preset::Paper, ..SleepParams::default() };
+        let mut newton = NewtonParams::default();
+        if preset == Preset::Quick {
+            // Most time steps then end after one iteration.
+            newton.step_tolerance = 0.3;
+        }
+        let solver =
+            SceneSolverParams { backward, forward, stop, newton, sleep, ..SceneSolverParams::default() };
         Self { preset, contact, solver, ..Self::default() }
     }
 

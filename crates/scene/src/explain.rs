@@ -95,7 +95,7 @@ mod tests {
             ),
             (
                 "[contact]\npreset = \"Paper\"",
-                "contact.preset: \"Paper\" must be one of fast, paper; did you mean \"paper\"?",
+                "contact.preset: \"Paper\" must be one of fast, quick, paper; did you mean \"paper\"?",
             ),
             (
                 "[output]\nformats = [\"PLY\"]",

@@ -38,8 +38,10 @@ pub struct StepReport {
     pub slowest: Option<u32>,
     /// Largest |alpha (y - x)| [m].
     pub largest_move: f64,
-    /// Largest remaining distance of a prescribed vertex that no pair holds back [m]. The caller knows which
-    /// vertices these are; [`Stepper::advance`] leaves it 0.
+    /// Largest remaining distance of a vertex that no pair holds back [m]. The caller knows which vertices these are;
+    /// [`Stepper::advance`] leaves it 0, and the next one as well.
+    pub unhindered: f64,
+    /// The same of prescribed vertices alone [m].
     pub unhindered_lag: f64,
 }
 

@@ -32,7 +32,7 @@ pub struct CertifiedForward {
     paths: Vec<Vector>,
     /// Radii of the tubes around the paths [m].
     tubes: Vec<f64>,
-    /// Whether a pair holds back the vertex in this step; of prescribed vertices only. Empty: none is held.
+    /// Whether a pair holds back the vertex in this step. Empty: none is held.
     held: Vec<bool>,
     /// Whether a swept step of this call had to be shortened. In such hard contact swept steps do not pay,
     /// and the call takes no more of them.
@@ -63,9 +63,9 @@ impl ForwardStep for CertifiedForward {
             self.step_within_trust_regions(scene, state, search, statistics);
         }
         self.limit_bodies(scene, state);
-        let unhindered_lag = self.unhindered_lag(state);
+        let (unhindered, unhindered_lag) = self.unhindered(state);
         state.previous.par_iter_mut().zip(&state.x).with_min_len(CHUNK).for_each(|(old, x)| *old = *x);
-        StepReport { unhindered_lag, ..self.stepper.advance(&mut state.x) }
+        StepReport { unhindered, unhindered_lag, ..self.stepper.advance(&mut state.x) }
     }
 }
 
@@ -263,22 +263,25 @@ impl CertifiedForward {
         true
     }
 
-    /// Notes which prescribed vertices the pairs hold back: those with a limit before trust regions add theirs.
+    /// Notes which vertices the pairs hold back: those with a limit before trust regions add theirs.
     fn note_held(&mut self, state: &ResolveState) {
         let Self { held, stepper, .. } = self;
         held.resize(state.x.len(), false);
         let vertices = held.par_iter_mut().enumerate().with_min_len(CHUNK);
-        vertices
-            .for_each(|(v, held)| *held = state.call.is_prescribed(v) && stepper.alpha(v) < stepper.cap(v));
+        vertices.for_each(|(v, held)| *held = stepper.alpha(v) < stepper.cap(v));
     }
 
-    /// Largest distance that a prescribed vertex has left after this step although no pair holds it back [m].
-    fn unhindered_lag(&self, state: &ResolveState) -> f64 {
-        let is_held = |v: usize| self.held.get(v).is_some_and(|held| *held);
-        let left = |v: usize| (1.0 - self.stepper.alpha(v)) * self.stepper.displacements()[v].norm();
-        let prescribed = state.call.prescribed().par_iter().with_min_len(CHUNK).enumerate();
-        let unhindered = prescribed.filter(|(v, given)| **given && !is_held(*v));
-        unhindered.map(|(v, _)| left(v)).reduce(|| 0.0, f64::max)
+    /// Largest distance that a vertex has left after this step although no pair holds it back, and the largest of a
+    /// prescribed vertex [m].
+    fn unhindered(&self, state: &ResolveState) -> (f64, f64) {
+        let left = |v: usize| {
+            let is_held = self.held.get(v).is_some_and(|held| *held);
+            let share = if is_held { 0.0 } else { 1.0 - self.stepper.alpha(v) };
+            if share == 0.0 { 0.0 } else { share * self.stepper.displacements()[v].norm() }
+        };
+        let of_vertex = |v: usize| (left(v), if state.call.is_prescribed(v) { left(v) } else { 0.0 });
+        let vertices = (0..state.x.len()).into_par_iter().with_min_len(CHUNK);
+        vertices.map(of_vertex).reduce(|| (0.0, 0.0), |a, b| (a.0.max(b.0), a.1.max(b.1)))
     }
 
     /// Assumes that the vertices take the present step sizes.

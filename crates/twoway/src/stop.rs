@@ -8,6 +8,10 @@ use serde::{Deserialize, Serialize};
 /// to the bit, and momentum with it.
 const MAX_FINISHING_STEPS: usize = 2;
 
+/// Largest remaining distance of a vertex that no pair holds back, in mean edge lengths, however large
+/// [`StopParams::distance`] is: what moves freely would be slowed down otherwise.
+const UNHINDERED: f64 = 0.01;
+
 /// Default of the field `residual` of [`StopRule::Travel`].
 const DEFAULT_RESIDUAL: f64 = 1e-4;
 
@@ -41,8 +45,8 @@ pub enum StopRule {
         /// Rule `clock`: largest remaining fraction r of any vertex, the paper's epsilon. Default 1e-4.
         remaining_fraction: f64,
     },
-    /// All vertices have arrived, max |(1 - alpha)(y - x)| < `distance`, and prescribed vertices exactly
-    /// unless a pair holds them back; the stretch limits hold; and both residuals are small. Small residuals
+    /// All vertices have arrived, max |(1 - alpha)(y - x)| < `distance`; those that no pair holds back within 0.01 mean
+    /// edge lengths, prescribed ones among them exactly; the stretch limits hold; and both residuals are small. Small residuals
     /// are needed because the proximal term may still hold back a motion that is common to a body. Where no
     /// contact presses, up to two more steps reach the target to the bit.
     Travel {
@@ -85,6 +89,15 @@ impl StopRule {
     /// The default rule.
     pub fn travel() -> Self {
         Self::Travel { net_residual: 0.2, residual: None }
+    }
+}
+
+impl StopParams {
+    /// Those of [`crate::Params::quick`]: a call ends as soon as all vertices are near their targets. The residuals are
+    /// so loose that they rarely take another step.
+    pub fn quick() -> Self {
+        let rule = StopRule::Travel { net_residual: 1.0, residual: Some(1.0) };
+        Self { rule, distance: 0.1, ..Self::default() }
     }
 }
 
@@ -168,7 +181,9 @@ impl StopTest {
         match params.rule {
             StopRule::Clock { remaining_fraction } => report.remaining_fraction < remaining_fraction,
             StopRule::Travel { net_residual, residual } => {
-                let has_arrived = report.remaining < params.distance * edge && report.unhindered_lag == 0.0;
+                let has_arrived = report.remaining < params.distance * edge
+                    && report.unhindered < UNHINDERED * edge
+                    && report.unhindered_lag == 0.0;
                 if !has_arrived {
                     return false;
                 }

@@ -24,7 +24,8 @@ const STEPS: usize = 8;
 /// call does not change the positions.
 pub fn resolve(data: &[u8]) -> bool {
     let mut draw = Draw::new(data);
-    let mut params = if draw.below(3) == 0 { Params::paper() } else { Params::fast() };
+    let presets = [Params::fast, Params::fast, Params::quick, Params::paper];
+    let mut params = presets[draw.below(4)]();
     params.solver.stop.max_steps = Some(1 + draw.below(STEPS));
     if draw.below(2) == 0 {
         params.contact.min_separation = draw.pick(&[0.0, 1e-9, 1e-6, 1e-3]);

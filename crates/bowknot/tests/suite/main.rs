@@ -14,6 +14,8 @@ mod bodies;
 mod fabrics;
 /// The walking figure, what follows it, and its dresses.
 mod figure;
+/// Sets of defaults: what `quick` saves, and that nothing intersects.
+mod presets;
 /// `docs/scene-reference.md` follows the structs.
 mod reference;
 /// Output folders: what they hold, resuming, failing.

@@ -307,13 +307,15 @@ fn page() -> String {
     page.section(
         "[contact]",
         "Contact and stretch limits. `preset` sets the defaults of this table, of `[solver.backward]`, `[solver.forward]` \
-         and `[solver.stop]`: `fast`, the default, or `paper`, the method as the paper describes it. The column `paper` \
-         has its values where they differ.",
+         and `[solver.stop]`: `fast`, the default, `quick` or `paper`, the method as the paper describes it. The column \
+         `paper` has its values where they differ.",
     );
+    let _ =
+        writeln!(page.text, "\n`quick` is for previews: as safe as `fast`, with {}.", quick_differences());
     page.head(true);
     let _ = writeln!(
         page.text,
-        "| `preset` | name |  | `\"fast\"` | `\"paper\"` | Set of defaults. One of `fast`, `paper`. |"
+        "| `preset` | name |  | `\"fast\"` | `\"paper\"` | Set of defaults. One of `fast`, `quick`, `paper`. |"
     );
     let (fast, paper) = (Params::fast(), Params::paper());
     page.rows::<ContactParams>("ContactParams", &fast.contact, Some(&paper.contact), all);
@@ -475,6 +477,32 @@ fn page() -> String {
     page.head(false);
     page.rows("Grains", &Grains::default(), None, all);
     page.text
+}
+
+/// The keys in which the preset `quick` differs from `fast`, with its values.
+fn quick_differences() -> String {
+    use bowknot::scene::Preset;
+    let table = |preset| -> Table {
+        bowknot::Scene::with_preset(preset).to_toml().parse().unwrap_or_else(|error| panic!("{error}"))
+    };
+    let (fast, quick) = (table(Preset::Fast), table(Preset::Quick));
+    let mut differences = Vec::new();
+    collect_differences("", &fast, &quick, &mut differences);
+    differences.retain(|text| !text.starts_with("`contact.preset"));
+    let last = differences.pop().unwrap_or_default();
+    format!("{} and {last}", differences.join(", "))
+}
+
+fn collect_differences(path: &str, of: &Table, other: &Table, differences: &mut Vec<String>) {
+    for (key, value) in other {
+        match (of.get(key), value) {
+            (Some(Value::Table(of)), Value::Table(value)) => {
+                collect_differences(&format!("{path}{key}."), of, value, differences);
+            }
+            (of, value) if of != Some(value) => differences.push(format!("`{path}{key} = {value}`")),
+            _ => {}
+        }
+    }
 }
 
 fn path() -> PathBuf {

@@ -102,7 +102,7 @@ fn unknown_options_and_formats() {
     let place = Place::new();
     place.run("run drape --fast").refused(2, &["--fast"]);
     place.run("run drape --format stl").refused(2, &["stl", "ply", "obj", "npz"]);
-    place.run("run drape --preset slow").refused(2, &["slow", "fast", "paper"]);
+    place.run("run drape --preset slow").refused(2, &["slow", "fast", "quick", "paper"]);
     place.run("dance").refused(2, &["dance"]);
     place.run("run").refused(2, &["SCENE"]);
     place.write("scene.toml", SCENE);

@@ -120,7 +120,8 @@ impl Zoo {
 fn however_violent_the_targets_bodies_of_all_kinds_keep_their_thickness() {
     let zoo = zoo();
     zoo.check(&zoo.x, "the start");
-    for (preset, mut params) in [("fast", Params::fast()), ("paper", Params::paper())] {
+    let presets = [("fast", Params::fast()), ("quick", Params::quick()), ("paper", Params::paper())];
+    for (preset, mut params) in presets {
         params.solver.stop.max_steps = Some(40);
         let mut resolver = zoo.resolver(params);
         let mut draw = Draw::new(7);
