@@ -12,6 +12,8 @@ struct Params {
 @group(0) @binding(4) var<storage, read_write> proximal: array<u32>;
 // Displacement and inverse weight.
 @group(0) @binding(5) var<storage, read_write> displacements: array<vec4<f32>>;
+// Colors in use, which are reset.
+@group(0) @binding(6) var<storage, read_write> in_use: array<vec4<u32>>;
 
 // Largest proximal weight, in the mass of the vertex.
 const MOST_PROXIMAL: f32 = 100.0;
@@ -29,5 +31,6 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
             displacements[v] = vec4<f32>(wanted * (weight * vertex.mass), weight);
         }
         proximal[v] = 0u;
+        in_use[v] = vec4<u32>(0u);
     }
 }

@@ -9,6 +9,8 @@ struct Params {
     // Minimum separation of bodies without a thickness.
     min_separation: f32,
     growth: f32,
+    // Distance within which a pair can have a row, in desired distances.
+    range: f32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -48,6 +50,7 @@ fn first_state(candidate: Candidate, separation: Separation) -> PairState {
     let pair = pair_of(candidate);
     let a = vertices[pair.vertices[0]];
     var delta = a.delta;
+    var range = params.range * delta;
     var thickness = -1.0;
     if pair.kind == VERTEX_HALF_SPACE {
         thickness = a.thickness;
@@ -59,6 +62,7 @@ fn first_state(candidate: Candidate, separation: Separation) -> PairState {
             let of_b = select(params.min_separation, b.thickness, b.thickness >= 0.0);
             thickness = 0.5 * (of_a + of_b);
         }
+        range = params.range * delta;
         if a.body == b.body {
             delta = min(delta, 0.5 * rest_distance(pair));
         }
@@ -68,7 +72,7 @@ fn first_state(candidate: Candidate, separation: Separation) -> PairState {
     if thickness >= 0.0 {
         least = min(min(thickness, delta / MIN_SEPARATION_MARGIN), max(separation.width, 0.0));
     }
-    return PairState(vec3<f32>(0.0), 0.0, desired, least, vec2<u32>(0u));
+    return PairState(vec3<f32>(0.0), 0.0, desired, least, range, NONE);
 }
 
 @compute @workgroup_size(128)

@@ -1,9 +1,11 @@
-// Second part of the list of candidates: where those of each block begin, and how many there are. One workgroup.
+// Second part of a list, of candidates or of rows: where those of each block begin, and how many there are. One workgroup.
 
 struct Params {
     blocks: u32,
-    // Candidates that the list holds.
+    // Entries that the list holds.
     capacity: u32,
+    // 0: the list of candidates; 1: that of rows.
+    list: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -39,7 +41,11 @@ fn main(@builtin(local_invocation_id) local: vec3<u32>) {
         workgroupBarrier();
     }
     if local.x == 0u {
-        atomicStore(&control.candidates, total);
+        if params.list == 0u {
+            atomicStore(&control.candidates, total);
+        } else {
+            atomicStore(&control.rows, total);
+        }
         if total > params.capacity {
             atomicStore(&control.overflow, 1u);
         }

@@ -5,6 +5,9 @@
 
 use bytemuck::{Pod, Zeroable};
 
+/// Colors of rows; rows that get none of them are swept one by one.
+pub const COLORS: usize = 128;
+
 /// No element, no group.
 pub const NONE: u32 = u32::MAX;
 
@@ -146,7 +149,7 @@ pub struct Separation {
 
 /// What a candidate keeps from step to step.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct PairState {
     /// Multiplier of the friction rows, along the tangents that they have now.
     pub friction: [f32; 3],
@@ -156,13 +159,41 @@ pub struct PairState {
     pub desired: f32,
     /// Minimum separation.
     pub min_separation: f32,
-    pub padding: [u32; 2],
+    /// Distance within which the pair can have a row.
+    pub range: f32,
+    /// Color of the contact row, [`NONE`] if it has none.
+    pub color: u32,
 }
 
 impl PairState {
     /// A candidate that is new.
-    pub const NEW: Self =
-        Self { friction: [0.0; 3], multiplier: 0.0, desired: -1.0, min_separation: 0.0, padding: [0; 2] };
+    pub const NEW: Self = Self {
+        friction: [0.0; 3],
+        multiplier: 0.0,
+        desired: -1.0,
+        min_separation: 0.0,
+        range: 0.0,
+        color: NONE,
+    };
+}
+
+/// A contact row, linearized at the positions: value + normal . sum of weights u >= 0.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct Row {
+    /// Unused places repeat the first vertex, with the weight 0.
+    pub vertices: [u32; 4],
+    /// With the sign of the change of the gap: + on side *a*, - on side *b*.
+    pub weights: [f32; 4],
+    pub normal: [f32; 3],
+    /// Gap less the desired distance.
+    pub value: f32,
+    /// 1 / sum of inverse weights times squared weights; 0 if nothing moves.
+    pub inverse_diagonal: f32,
+    pub multiplier: f32,
+    /// The candidate of the row, and its color; [`NONE`] before it has one, [`COLORS`] if there is none for it.
+    pub candidate: u32,
+    pub color: u32,
 }
 
 /// The largest length of an edge, in the order of the colors of the edges.
@@ -218,12 +249,16 @@ pub struct Control {
     pub unhindered_lag: u32,
     pub remaining_fraction: u32,
     pub largest_move: u32,
+    /// Contact rows that have no color yet.
+    pub waiting: u32,
     /// Number of candidates: what their list should hold. It stays from step to step, for the list does.
     pub candidates: u32,
-    pub padding: [u32; 3],
+    /// Number of contact rows.
+    pub rows: u32,
+    pub padding: u32,
 }
 
 impl Control {
     /// Words that a step begins with as zeros: all before the number of candidates.
-    pub const RESET_WORDS: usize = 8;
+    pub const RESET_WORDS: usize = 9;
 }

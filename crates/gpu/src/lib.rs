@@ -29,7 +29,7 @@ pub use bowknot_geometry as geometry;
 
 pub use adapter::Adapter;
 pub use collision::{Collision, CollisionError, StepReport};
-pub use engine::{BisectingEngine, DeviceEngine, Engine, TwinEngine};
+pub use engine::{ComparingEngine, DeviceEngine, Difference, Engine, TwinEngine};
 pub use error::GpuError;
 pub use grid::{Grid, GridError, GridPoint};
 pub use layout::{Candidate, Kind, NONE};

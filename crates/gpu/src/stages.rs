@@ -59,7 +59,7 @@ pub(crate) static RELEASE: Stage = Stage {
     name: "release",
     parts: &[TYPES, FIXED, include_str!("../shader/release.wgsl")],
     workgroup: 256,
-    bindings: &[Read, Read, Read, Write, Write],
+    bindings: &[Read, Read, Read, Write, Write, Write],
     twin: cpu::release::bound,
 };
 
@@ -77,6 +77,94 @@ pub(crate) static AIM: Stage = Stage {
     workgroup: 256,
     bindings: &[Read, Read, Read, Write],
     twin: cpu::aim::bound,
+};
+
+pub(crate) static RECALL: Stage = Stage {
+    name: "recall",
+    parts: &[TYPES, include_str!("../shader/recall.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Read, Write],
+    twin: cpu::recall::bound,
+};
+
+pub(crate) static PICK: Stage = Stage {
+    name: "pick",
+    parts: &[TYPES, PAIR, include_str!("../shader/pick.wgsl")],
+    workgroup: 128,
+    bindings: &[Read, Read, Read, Read, Read, Write, Write, Write],
+    twin: cpu::pick::bound,
+};
+
+pub(crate) static LIST: Stage = Stage {
+    name: "list",
+    parts: &[TYPES, include_str!("../shader/list.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Read, Read, Write, Write],
+    twin: cpu::list::bound,
+};
+
+pub(crate) static BUILD: Stage = Stage {
+    name: "build",
+    parts: &[TYPES, PAIR, FIXED, include_str!("../shader/build.wgsl")],
+    workgroup: 128,
+    bindings: &[Read, Read, Read, Read, Read, Read, Write, Write],
+    twin: cpu::build::bound,
+};
+
+pub(crate) static RESUME_COLORS: Stage = Stage {
+    name: "resume_colors",
+    parts: &[TYPES, include_str!("../shader/resume_colors.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Read, Write, Write, Write],
+    twin: cpu::resume_colors::bound,
+};
+
+pub(crate) static COLOR: Stage = Stage {
+    name: "color",
+    parts: &[TYPES, include_str!("../shader/color.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Write, Write, Write, Write, Write],
+    twin: cpu::color::bound,
+};
+
+pub(crate) static TALLY: Stage = Stage {
+    name: "tally",
+    parts: &[TYPES, include_str!("../shader/tally.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Write, Write, Write],
+    twin: cpu::tally::bound,
+};
+
+pub(crate) static START_COLORS: Stage = Stage {
+    name: "start_colors",
+    parts: &[TYPES, include_str!("../shader/start_colors.wgsl")],
+    workgroup: 1,
+    bindings: &[Write, Write],
+    twin: cpu::start_colors::bound,
+};
+
+pub(crate) static SORT: Stage = Stage {
+    name: "sort",
+    parts: &[TYPES, include_str!("../shader/sort.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Write, Write, Write],
+    twin: cpu::sort::bound,
+};
+
+pub(crate) static SWEEP_ROWS: Stage = Stage {
+    name: "sweep_rows",
+    parts: &[TYPES, include_str!("../shader/sweep_rows.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Read, Write, Write],
+    twin: cpu::sweep_rows::bound,
+};
+
+pub(crate) static STORE: Stage = Stage {
+    name: "store",
+    parts: &[TYPES, include_str!("../shader/store.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Write, Write],
+    twin: cpu::store::bound,
 };
 
 pub(crate) static PLAN: Stage = Stage {
@@ -218,6 +306,17 @@ pub(crate) static ADVANCE: Stage = Stage {
 /// All of them.
 #[cfg(test)]
 pub(crate) static ALL: &[&Stage] = &[
+    &RECALL,
+    &PICK,
+    &LIST,
+    &BUILD,
+    &RESUME_COLORS,
+    &COLOR,
+    &TALLY,
+    &START_COLORS,
+    &SORT,
+    &SWEEP_ROWS,
+    &STORE,
     &CURVE_EDGES,
     &RELEASE,
     &SWEEP_EDGES,

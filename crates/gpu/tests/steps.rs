@@ -4,7 +4,7 @@
 use bowknot_check::{Judge, StateOptions};
 use bowknot_geometry::{BodyFilter, CollisionModel, HalfSpace, PairKind, Point, Topology, Vector};
 use bowknot_gpu::{
-    Adapter, BisectingEngine, Candidate, Collision, CollisionError, Constraints, DeviceEngine, Engine, Kind,
+    Adapter, Candidate, Collision, CollisionError, ComparingEngine, Constraints, DeviceEngine, Engine, Kind,
     Lengths, NONE, TwinEngine,
 };
 use bowknot_proximity::{PairList, ProximitySearch};
@@ -115,22 +115,26 @@ fn assert_no_intersections(scene: &Scene, x: &[Point], what: &str) {
 #[test]
 fn nothing_intersects_on_the_way_to_random_targets() {
     let mut random = fastrand::Rng::with_seed(5);
-    let mut limited = false;
+    let mut hindered = false;
     for round in 0..4 {
         let mut scene = scene();
         let mut collision = collision(TwinEngine::new(), &scene, &Constraints::default());
         for _ in 0..3 {
-            collision.begin(&target(&scene, &mut random), f64::INFINITY).unwrap();
+            let target = target(&scene, &mut random);
+            collision.begin(&target, f64::INFINITY).unwrap();
+            let mut rests = false;
             for step in 0..20 {
                 let report = collision.step().unwrap();
                 scene.x = collision.positions().unwrap();
                 assert_no_intersections(&scene, &scene.x, &format!("round {round} step {step}"));
-                limited |= report.remaining > 0.05 && report.largest_move < 2.5e-3;
                 assert_eq!(report.frozen, 0, "{report:?}");
+                rests |= report.largest_move < 1e-3;
             }
+            let far = scene.x.iter().zip(&target).filter(|(x, y)| (*x - *y).norm() > EDGE).count();
+            hindered |= rests && far > scene.x.len() / 10;
         }
     }
-    assert!(limited, "contacts must limit the motion");
+    assert!(hindered, "contacts must keep vertices that rest from their targets");
 }
 
 /// Checks that all pairs within contact range at `x` are among the candidates; counts them by kind.
@@ -182,27 +186,43 @@ fn every_pair_within_range_before_and_after_a_step_is_a_candidate() {
 }
 
 #[test]
-fn a_device_agrees_with_the_twins() {
+fn every_kernel_computes_what_its_twin_does() {
     let mut random = fastrand::Rng::with_seed(6);
+    let mut scene = scene();
+    let mut collision = collision(ComparingEngine::new(device()), &scene, &Constraints::default());
+    for _ in 0..2 {
+        collision.begin(&target(&scene, &mut random), f64::INFINITY).unwrap();
+        for step in 0..5 {
+            collision.step().unwrap();
+            scene.x = collision.positions().unwrap();
+            assert_no_intersections(&scene, &scene.x, &format!("step {step}"));
+        }
+    }
+    let (words, differences) = (collision.engine().words_compared(), collision.engine().differences());
+    // Where a number is compared with a threshold, rounding may decide.
+    assert!(
+        differences.len() < 50,
+        "{} of {words} words differ, first {:?}",
+        differences.len(),
+        &differences[..differences.len().min(5)]
+    );
+}
+
+#[test]
+fn a_device_agrees_with_the_twins_as_long_as_rounding_decides_nothing() {
     let scene = scene();
-    let target = target(&scene, &mut random);
+    let target = target(&scene, &mut fastrand::Rng::with_seed(6));
     let mut twin = collision(TwinEngine::new(), &scene, &Constraints::default());
     let mut device = collision(device(), &scene, &Constraints::default());
     twin.begin(&target, f64::INFINITY).unwrap();
     device.begin(&target, f64::INFINITY).unwrap();
-    let mut scene = Scene { model: scene.model.clone(), x: scene.x };
-    for step in 0..10 {
-        let (expected, report) = (twin.step().unwrap(), device.step().unwrap());
+    // Rounding of displacements of 0.2 m, which 8 sweeps and the next step amplify.
+    for tolerance in [2e-8, 2e-7] {
+        let reports = (twin.step().unwrap(), device.step().unwrap());
         let (x, y) = (twin.positions().unwrap(), device.positions().unwrap());
         let worst = x.iter().zip(&y).map(|(x, y)| (x - y).amax()).fold(0.0, f64::max);
-        // Rounding differs by some 2^-20 of a step, and grows with the steps.
-        let tolerance = 1e-7 * EDGE * f64::from(1 << step);
-        assert!(worst <= tolerance, "step {step}: {worst:e} m, {expected:?} {report:?}");
-        if step == 0 {
-            assert_eq!(twin.candidates().unwrap(), device.candidates().unwrap());
-        }
-        scene.x = y;
-        assert_no_intersections(&scene, &scene.x, &format!("step {step}"));
+        assert!(worst <= tolerance, "{worst:e} m, {reports:?}");
+        assert_eq!(twin.candidates().unwrap(), device.candidates().unwrap());
     }
 }
 
@@ -249,25 +269,6 @@ fn two_runs_on_one_device_have_the_same_bits() {
         collision.positions().unwrap()
     };
     assert_eq!(run(), run());
-}
-
-#[test]
-fn twins_may_take_over_before_any_stage() {
-    let scene = scene();
-    let target = target(&scene, &mut fastrand::Rng::with_seed(9));
-    let run = |mut collision: Collision<BisectingEngine>| {
-        collision.begin(&target, f64::INFINITY).unwrap();
-        (0..3).for_each(|_| {
-            collision.step().unwrap();
-        });
-        collision.positions().unwrap()
-    };
-    let all_on_device = run(collision(BisectingEngine::new(device(), 0), &scene, &Constraints::default()));
-    for from in [1, 5, 40, 1000] {
-        let mixed = run(collision(BisectingEngine::new(device(), from), &scene, &Constraints::default()));
-        let worst = mixed.iter().zip(&all_on_device).map(|(x, y)| (x - y).amax()).fold(0.0, f64::max);
-        assert!(worst < 1e-8, "{from}: {worst:e}");
-    }
 }
 
 #[test]

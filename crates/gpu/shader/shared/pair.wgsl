@@ -34,3 +34,27 @@ fn pair_of(candidate: Candidate) -> Pair {
         }
     }
 }
+
+// Weights of the vertices in the gap: + on side a, - on side b.
+fn signed_weights(pair: Pair, separation: Separation) -> vec4<f32> {
+    let s = separation.weights.x;
+    let t = separation.weights.y;
+    switch pair.kind {
+        case VERTEX_VERTEX: {
+            return vec4<f32>(1.0, -1.0, 0.0, 0.0);
+        }
+        case VERTEX_EDGE: {
+            // The weight of the last vertex is the first of the two; that of the other is what is left.
+            return vec4<f32>(1.0, s - 1.0, -s, 0.0);
+        }
+        case VERTEX_TRIANGLE: {
+            return vec4<f32>(1.0, s + t - 1.0, -s, -t);
+        }
+        case EDGE_EDGE: {
+            return vec4<f32>(1.0 - s, s, t - 1.0, -t);
+        }
+        default: {
+            return vec4<f32>(1.0, 0.0, 0.0, 0.0);
+        }
+    }
+}

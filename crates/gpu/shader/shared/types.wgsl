@@ -65,8 +65,23 @@ struct PairState {
     multiplier: f32,
     desired: f32,
     min_separation: f32,
-    padding: vec2<u32>,
+    range: f32,
+    color: u32,
 }
+
+struct Row {
+    vertices: vec4<u32>,
+    weights: vec4<f32>,
+    normal: vec3<f32>,
+    value: f32,
+    inverse_diagonal: f32,
+    multiplier: f32,
+    candidate: u32,
+    color: u32,
+}
+
+// Colors of rows; rows that get none of them are swept one by one.
+const COLORS: u32 = 128u;
 
 struct EdgeLimit {
     a: u32,
@@ -98,7 +113,9 @@ struct Control {
     unhindered_lag: atomic<u32>,
     remaining_fraction: atomic<u32>,
     largest_move: atomic<u32>,
+    waiting: atomic<u32>,
     candidates: atomic<u32>,
+    rows: atomic<u32>,
 }
 
 // Whether two elements, given by one vertex of each, may form a pair.

@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::TwinEngine;
-use bowknot_geometry::{BodyFilter, PairKind, Vector, distance};
+use crate::layout::{COLORS, Kind, PairState, Row};
+use bowknot_geometry::{BodyFilter, PairKind, Topology, Vector, distance};
 use std::collections::HashMap;
 
 const EDGE: f64 = 0.02;
@@ -50,8 +51,8 @@ fn states(collision: &mut Collision<TwinEngine>) -> HashMap<Candidate, PairState
     let b = collision.buffers;
     let read = [
         (b.control, words::<Control>(1)),
-        (b.candidates, words::<Candidate>(collision.capacity)),
-        (b.states, words::<PairState>(collision.capacity)),
+        (b.candidates, words::<Candidate>(collision.buffers.capacity)),
+        (b.states, words::<PairState>(collision.buffers.capacity)),
     ];
     let all = collision.engine.run(&Recording::default(), &read).unwrap();
     let control: Control = bytemuck::cast_slice(&all[0])[0];
@@ -109,7 +110,7 @@ fn pairs_keep_their_states_while_they_are_candidates_and_buffers_grow() {
         let mut collision = collision(&model, &x, &x, None);
         collision.begin(&target, f64::INFINITY).unwrap();
         collision.step().unwrap();
-        // Multipliers that tell pairs apart.
+        // Values that tell pairs apart.
         let before = states(&mut collision);
         let mark = |c: &Candidate| (c.kind_and_a.wrapping_mul(31).wrapping_add(c.b) % 1000 + 1) as f32;
         let b = collision.buffers;
@@ -117,7 +118,7 @@ fn pairs_keep_their_states_while_they_are_candidates_and_buffers_grow() {
         let list = collision.engine.run(&Recording::default(), &read).unwrap().swap_remove(0);
         let marked: Vec<PairState> = bytemuck::cast_slice::<u32, Candidate>(&list)
             .iter()
-            .map(|c| PairState { multiplier: mark(c), friction: [mark(c), 0.0, 1.0], ..before[c] })
+            .map(|c| PairState { friction: [mark(c), 0.0, 1.0], ..before[c] })
             .collect();
         let mut recording = Recording::default();
         recording.write(b.states, &marked);
@@ -128,24 +129,84 @@ fn pairs_keep_their_states_while_they_are_candidates_and_buffers_grow() {
             let known = states(&mut collision);
             if small {
                 // Without any room for more.
-                collision.capacity = known.len();
+                collision.buffers.capacity = known.len();
             }
-            let capacity = collision.capacity;
+            let capacity = collision.buffers.capacity;
             collision.step().unwrap();
-            grown += usize::from(collision.capacity > capacity);
+            grown += usize::from(collision.buffers.capacity > capacity);
             for (candidate, state) in states(&mut collision) {
                 match known.get(&candidate) {
-                    Some(old) => assert_eq!(state, *old, "step {step}"),
-                    None => assert_eq!(state.multiplier, 0.0, "step {step}"),
+                    Some(old) => {
+                        let expected = PairState { multiplier: state.multiplier, color: state.color, ..*old };
+                        assert_eq!(state, expected, "step {step}");
+                    }
+                    None => assert_eq!(state.friction, [0.0; 3], "step {step}"),
                 }
-                kept += usize::from(state.multiplier == mark(&candidate));
+                kept += usize::from(state.friction[0] == mark(&candidate));
                 new += usize::from(!known.contains_key(&candidate));
             }
         }
         assert!(kept > 100 && new > 10 && (grown > 0) == small, "{kept} {new} {grown}");
-        // A new call begins without multipliers.
+        // A new call begins without them.
         collision.begin(&target, f64::INFINITY).unwrap();
-        collision.step().unwrap();
-        assert!(states(&mut collision).values().all(|state| state.multiplier == 0.0));
+        assert!(states(&mut collision).values().all(|state| state.friction == [0.0; 3]));
     }
+}
+
+/// Contact rows of the last step.
+fn rows(collision: &mut Collision<TwinEngine>) -> Vec<Row> {
+    let b = collision.buffers;
+    let read = [(b.control, words::<Control>(1)), (b.rows.rows, words::<Row>(collision.buffers.capacity))];
+    let all = collision.engine.run(&Recording::default(), &read).unwrap();
+    let control: Control = bytemuck::cast_slice(&all[0])[0];
+    bytemuck::cast_slice(&all[1])[..control.rows as usize].to_vec()
+}
+
+#[test]
+fn rows_of_a_color_share_no_vertex_and_pairs_keep_their_colors() {
+    let (model, x) = sheets();
+    let target: Vec<Point> = x.iter().map(|x| x - Vector::new(0.0, 0.0, 2.0 * x.z)).collect();
+    let mut collision = collision(&model, &x, &x, None);
+    collision.begin(&target, f64::INFINITY).unwrap();
+    let (mut colored, mut kept, mut known) = (0, 0, HashMap::new());
+    for step in 0..8 {
+        collision.step().unwrap();
+        let mut vertices = std::collections::HashSet::new();
+        let rows = rows(&mut collision);
+        for row in rows.iter().filter(|row| (row.color as usize) < COLORS) {
+            // Unused places repeat the first vertex.
+            let own: std::collections::BTreeSet<u32> = row.vertices.into_iter().collect();
+            assert!(own.iter().all(|v| vertices.insert((row.color, *v))), "step {step}: {row:?}");
+            colored += 1;
+        }
+        let states = states(&mut collision);
+        for (candidate, state) in states.iter().filter(|(_, state)| (state.color as usize) < COLORS) {
+            kept += usize::from(known.get(candidate) == Some(&state.color));
+        }
+        known = states.into_iter().map(|(candidate, state)| (candidate, state.color)).collect();
+    }
+    let all: usize = rows(&mut collision).len();
+    assert!(colored > 1000 && kept > 500 && all > 100, "{colored} {kept} {all}");
+}
+
+#[test]
+fn two_sheets_that_are_pressed_together_rest_at_the_desired_distance() {
+    let (model, x) = sheets();
+    // Both want to be where the other is.
+    let target: Vec<Point> = x.iter().map(|x| Point::new(x.x, x.y, 3e-3 - x.z)).collect();
+    let mut collision = collision(&model, &x, &x, None);
+    collision.begin(&target, f64::INFINITY).unwrap();
+    for _ in 0..40 {
+        collision.step().unwrap();
+    }
+    let end = collision.positions().unwrap();
+    let quantum = collision.grid.quantum();
+    let (mut presses, mut least) = (0, f64::INFINITY);
+    for row in rows(&mut collision).iter().filter(|row| row.multiplier > 0.0) {
+        least = least.min(f64::from(row.value) * quantum);
+        presses += 1;
+    }
+    assert!(presses > 10 && least > -0.1 * DELTA, "{presses} {least}");
+    // Their corners lie above each other.
+    assert!(end[0].z > end[49].z, "{} {}", end[0], end[49]);
 }

@@ -22,6 +22,7 @@ pub fn bound(buffers: Bound<'_>) {
         &buffers.read(2),
         &mut buffers.write(3),
         &mut buffers.write(4),
+        &mut buffers.write(5),
     );
 }
 
@@ -32,6 +33,7 @@ pub fn release(
     vertices: &[Vertex],
     proximal: &mut [u32],
     displacements: &mut [[f32; 4]],
+    in_use: &mut [[u32; 4]],
 ) {
     for v in 0..params.vertices as usize {
         let vertex = vertices[v];
@@ -45,5 +47,6 @@ pub fn release(
             displacements[v] = [x, y, z, weight];
         }
         proximal[v] = 0;
+        in_use[v] = [0; 4];
     }
 }

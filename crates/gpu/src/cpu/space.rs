@@ -13,6 +13,7 @@ pub struct Params {
     pub capacity: u32,
     pub min_separation: f32,
     pub growth: f32,
+    pub range: f32,
 }
 
 const MIN_SEPARATION_SHARE: f32 = 0.1;
@@ -76,6 +77,7 @@ fn first_state(
 ) -> PairState {
     let a = vertices[pair.vertices[0] as usize];
     let mut delta = a.delta;
+    let mut range = params.range * delta;
     let mut thickness = -1.0;
     if pair.kind == Kind::VertexHalfSpace as u32 {
         thickness = a.thickness;
@@ -86,6 +88,7 @@ fn first_state(
             let of = |thickness: f32| if thickness >= 0.0 { thickness } else { params.min_separation };
             thickness = 0.5 * (of(a.thickness) + of(b.thickness));
         }
+        range = params.range * delta;
         if a.body == b.body {
             delta = delta.min(0.5 * rest_distance(pair, rest));
         }
@@ -96,5 +99,5 @@ fn first_state(
     } else {
         params.min_separation.min(MIN_SEPARATION_SHARE * desired)
     };
-    PairState { desired, min_separation, ..PairState::default() }
+    PairState { desired, min_separation, range, ..PairState::NEW }
 }

@@ -9,6 +9,7 @@ use bytemuck::{Pod, Zeroable};
 pub struct Params {
     pub blocks: u32,
     pub capacity: u32,
+    pub list: u32,
 }
 
 pub fn bound(buffers: Bound<'_>) {
@@ -22,7 +23,11 @@ pub fn total(params: Params, blocks: &mut [u32], control: &mut Control) {
         *block = total;
         total += count;
     }
-    control.candidates = total;
+    if params.list == 0 {
+        control.candidates = total;
+    } else {
+        control.rows = total;
+    }
     if total > params.capacity {
         control.overflow = 1;
     }

@@ -1,0 +1,66 @@
+// Contact rows, linearized at the positions, and the curvature of those that press: lambda |weight| / radius, where the
+// radius of a contact is the length of the edges if a face or two crossing edges define its normal, and the gap if a
+// vertex or parallel edges do.
+
+struct Params {
+    capacity: u32,
+    // Part of the curvature that counts.
+    strength: f32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read> edges: array<vec2<u32>>;
+@group(0) @binding(2) var<storage, read> triangles: array<vec4<u32>>;
+@group(0) @binding(3) var<storage, read> vertices: array<Vertex>;
+@group(0) @binding(4) var<storage, read> candidates: array<Candidate>;
+@group(0) @binding(5) var<storage, read> separations: array<Separation>;
+@group(0) @binding(6) var<storage, read> states: array<PairState>;
+@group(0) @binding(7) var<storage, read_write> rows: array<Row>;
+@group(0) @binding(8) var<storage, read_write> proximal: array<atomic<u32>>;
+
+// A closest point is at a vertex if the other weights of its side are at most this.
+const AT_VERTEX: f32 = 1e-5;
+
+fn inside(weight: f32) -> u32 {
+    return u32(abs(weight) > AT_VERTEX);
+}
+
+// Whether a face or two edges define the normal: the contact then does not roll about a point.
+fn is_flat(pair: Pair, weights: vec4<f32>) -> bool {
+    if pair.kind == VERTEX_HALF_SPACE {
+        return true;
+    }
+    let on_b = inside(weights.y) + inside(weights.z) + inside(weights.w);
+    if pair.kind == VERTEX_TRIANGLE {
+        return on_b == 3u;
+    }
+    return pair.kind == EDGE_EDGE && inside(weights.x) + on_b == 4u;
+}
+
+@compute @workgroup_size(128)
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    for (var r = id.x; r < params.capacity; r += 128u * groups.x) {
+        let c = rows[r].candidate;
+        // The list ends here; rows beyond are those of other steps.
+        if c == NONE {
+            continue;
+        }
+        let separation = separations[c];
+        let state = states[c];
+        let pair = pair_of(candidates[c]);
+        let weights = signed_weights(pair, separation);
+        let v = vec4<u32>(pair.vertices[0], pair.vertices[1], pair.vertices[2], pair.vertices[3]);
+        if state.multiplier > 0.0 {
+            let flat = is_flat(pair, weights);
+            let gap = max(max(separation.distance, state.desired), 1.0);
+            for (var k = 0u; k < pair.count; k += 1u) {
+                let edge = vertices[v[k]].edge;
+                let radius = select(min(gap, edge), edge, flat);
+                atomicAdd(&proximal[v[k]], weight_units(params.strength * state.multiplier * abs(weights[k]) / radius));
+            }
+        }
+        rows[r] = Row(
+            v, weights, separation.normal, separation.distance - state.desired, 0.0, state.multiplier, c, state.color
+        );
+    }
+}

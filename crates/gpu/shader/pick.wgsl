@@ -1,0 +1,53 @@
+// Which candidates get a contact row: those in range that press, or whose gap would be too small at the last aim. What
+// gets no row does not press any more, and gives back its color.
+
+struct Params {
+    capacity: u32,
+    // Gap below which a pair gets a row, in its desired distance.
+    threshold: f32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read> displacements: array<vec4<f32>>;
+@group(0) @binding(2) var<storage, read> edges: array<vec2<u32>>;
+@group(0) @binding(3) var<storage, read> triangles: array<vec4<u32>>;
+@group(0) @binding(4) var<storage, read> candidates: array<Candidate>;
+@group(0) @binding(5) var<storage, read> separations: array<Separation>;
+@group(0) @binding(6) var<storage, read_write> states: array<PairState>;
+@group(0) @binding(7) var<storage, read_write> picked: array<u32>;
+@group(0) @binding(8) var<storage, read_write> control: Control;
+
+fn is_picked(c: u32) -> bool {
+    let state = states[c];
+    let separation = separations[c];
+    if separation.distance > state.range {
+        return false;
+    }
+    if state.multiplier > 0.0 {
+        return true;
+    }
+    let pair = pair_of(candidates[c]);
+    let weights = signed_weights(pair, separation);
+    var gap = separation.distance;
+    for (var k = 0u; k < pair.count; k += 1u) {
+        gap += weights[k] * dot(separation.normal, displacements[pair.vertices[k]].xyz);
+    }
+    return gap < params.threshold * state.desired;
+}
+
+@compute @workgroup_size(128)
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let count = min(atomicLoad(&control.candidates), params.capacity);
+    for (var c = id.x; c < params.capacity; c += 128u * groups.x) {
+        var flag = 0u;
+        if c < count {
+            if is_picked(c) {
+                flag = 1u;
+            } else {
+                states[c].multiplier = 0.0;
+                states[c].color = NONE;
+            }
+        }
+        picked[c] = flag;
+    }
+}

@@ -1,0 +1,58 @@
+// A sweep over all contact rows, color by color, by one workgroup: its threads take the rows of a color in turn and wait
+// for each other between colors. The rows without a color of their own come last, one after the other.
+
+struct Params {
+    // 1: multipliers are only applied, they do not change.
+    only_apply: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read> order: array<u32>;
+// Where each color ends in the order.
+@group(0) @binding(2) var<storage, read> ends: array<u32>;
+@group(0) @binding(3) var<storage, read_write> rows: array<Row>;
+@group(0) @binding(4) var<storage, read_write> displacements: array<vec4<f32>>;
+
+fn relax(r: u32) {
+    let row = rows[r];
+    if row.inverse_diagonal == 0.0 {
+        return;
+    }
+    var change = row.multiplier;
+    if params.only_apply == 0u {
+        var value = row.value;
+        for (var k = 0u; k < 4u; k += 1u) {
+            value += row.weights[k] * dot(row.normal, displacements[row.vertices[k]].xyz);
+        }
+        let multiplier = max(row.multiplier - value * row.inverse_diagonal, 0.0);
+        change = multiplier - row.multiplier;
+        rows[r].multiplier = multiplier;
+    }
+    for (var k = 0u; k < 4u; k += 1u) {
+        let v = row.vertices[k];
+        let displacement = displacements[v];
+        let step = displacement.w * row.weights[k] * change;
+        if step != 0.0 {
+            displacements[v] = vec4<f32>(displacement.xyz + row.normal * step, displacement.w);
+        }
+    }
+}
+
+@compute @workgroup_size(256)
+fn main(@builtin(local_invocation_id) local: vec3<u32>) {
+    for (var color = 0u; color < COLORS; color += 1u) {
+        var start = 0u;
+        if color > 0u {
+            start = ends[color - 1u];
+        }
+        for (var place = start + local.x; place < ends[color]; place += 256u) {
+            relax(order[place]);
+        }
+        storageBarrier();
+    }
+    if local.x == 0u {
+        for (var place = ends[COLORS - 1u]; place < ends[COLORS]; place += 1u) {
+            relax(order[place]);
+        }
+    }
+}

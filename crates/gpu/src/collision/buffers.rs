@@ -1,0 +1,206 @@
+//! The buffers of a scene on an engine, and how they grow.
+
+use crate::cpu::count::BLOCK;
+use crate::engine::Engine;
+use crate::error::GpuError;
+use crate::layout::{
+    Ball, COLORS, Candidate, Control, EdgeLimit, OldRow, PairState, Plane, Row, Separation, Vertex,
+};
+use crate::recording::BufferId;
+use bytemuck::Pod;
+
+/// Partners of an element for which there is room at first, and candidates per vertex.
+const FIRST_PARTNERS: usize = 24;
+const FIRST_CANDIDATES: usize = 16;
+
+/// Words of a row before its partners: their number, and the element.
+pub const ROW_HEADER: usize = 2;
+
+/// Numbers of what the buffers hold.
+#[derive(Clone, Copy, Debug)]
+pub struct Sizes {
+    pub vertices: usize,
+    pub groups: usize,
+    pub edges: usize,
+    pub triangles: usize,
+    pub planes: usize,
+    pub limits: usize,
+    /// Rows of partners.
+    pub rows: usize,
+}
+
+/// Buffers that all stages share.
+#[derive(Clone, Copy, Debug)]
+pub struct Buffers {
+    /// Partners of an element that fit into a row, and candidates that fit into their list.
+    pub most_partners: usize,
+    pub capacity: usize,
+    /// Candidates of the time before a search for which there is room.
+    pub old_capacity: usize,
+    pub positions: BufferId,
+    pub targets: BufferId,
+    pub vertices: BufferId,
+    pub edges: BufferId,
+    pub triangles: BufferId,
+    pub planes: BufferId,
+    pub paths: BufferId,
+    pub alphas: BufferId,
+    pub group_caps: BufferId,
+    pub group_alphas: BufferId,
+    pub balls: BufferId,
+    pub control: BufferId,
+    pub partners: BufferId,
+    pub starts: BufferId,
+    pub blocks: BufferId,
+    pub candidates: BufferId,
+    pub separations: BufferId,
+    pub states: BufferId,
+    pub rest: BufferId,
+    pub old_rows: BufferId,
+    pub old_elements: BufferId,
+    pub old_states: BufferId,
+    pub limits: BufferId,
+    pub proximal: BufferId,
+    pub displacements: BufferId,
+    /// Where the vertices go in this step.
+    pub aims: BufferId,
+    pub rows: RowBuffers,
+}
+
+/// Buffers of the contact rows, one entry per candidate.
+#[derive(Clone, Copy, Debug)]
+pub struct RowBuffers {
+    /// Whether each candidate has a row, and the places of the rows by candidate.
+    pub picked: BufferId,
+    pub starts: BufferId,
+    pub blocks: BufferId,
+    pub rows: BufferId,
+    /// Rows in the order of their colors.
+    pub order: BufferId,
+    /// Colors in use at each vertex, rows that wait for a color, and the keys of the rows that hold each vertex.
+    pub colors_in_use: BufferId,
+    pub waiting: BufferId,
+    pub claims: BufferId,
+    /// Number of rows of each color, and where each ends in the order.
+    pub tally: BufferId,
+    pub ends: BufferId,
+}
+
+impl Buffers {
+    /// Buffers of zeros.
+    ///
+    /// # Errors
+    /// The device has no memory.
+    pub fn new(engine: &mut impl Engine, sizes: &Sizes) -> Result<Self, GpuError> {
+        let &Sizes { vertices, groups, edges, triangles, planes, limits, rows } = sizes;
+        let (most_partners, capacity) = (FIRST_PARTNERS, (FIRST_CANDIDATES * vertices).max(64));
+        Ok(Self {
+            most_partners,
+            capacity,
+            old_capacity: capacity,
+            positions: engine.buffer("positions", 4 * vertices)?,
+            rest: engine.buffer("rest positions", 4 * vertices)?,
+            targets: engine.buffer("targets", 4 * vertices)?,
+            vertices: engine.buffer("vertices", words::<Vertex>(vertices))?,
+            edges: engine.buffer("edges", 2 * edges)?,
+            triangles: engine.buffer("triangles", 4 * triangles)?,
+            planes: engine.buffer("planes", words::<Plane>(planes))?,
+            paths: engine.buffer("paths", 4 * vertices)?,
+            alphas: engine.buffer("step sizes", vertices)?,
+            group_caps: engine.buffer("group caps", groups)?,
+            group_alphas: engine.buffer("group step sizes", groups)?,
+            balls: engine.buffer("trust regions", words::<Ball>(vertices))?,
+            control: engine.buffer("control", words::<Control>(1))?,
+            partners: engine.buffer("partners", rows * (ROW_HEADER + most_partners))?,
+            starts: engine.buffer("starts", rows)?,
+            blocks: engine.buffer("blocks", rows.div_ceil(BLOCK))?,
+            candidates: engine.buffer("candidates", words::<Candidate>(capacity))?,
+            separations: engine.buffer("separations", words::<Separation>(capacity))?,
+            states: engine.buffer("states of pairs", words::<PairState>(capacity))?,
+            old_rows: engine.buffer("old rows", words::<OldRow>(rows))?,
+            old_elements: engine.buffer("old partners", capacity)?,
+            old_states: engine.buffer("old states of pairs", words::<PairState>(capacity))?,
+            limits: engine.buffer("edge limits", words::<EdgeLimit>(limits))?,
+            proximal: engine.buffer("proximal weights", vertices)?,
+            displacements: engine.buffer("displacements", 4 * vertices)?,
+            aims: engine.buffer("aims", 4 * vertices)?,
+            rows: RowBuffers::new(engine, vertices, capacity)?,
+        })
+    }
+
+    /// Makes room for as many partners and candidates as `control` tells. What was there is lost.
+    ///
+    /// # Errors
+    /// The device has no memory.
+    pub fn grow(
+        &mut self,
+        engine: &mut impl Engine,
+        sizes: &Sizes,
+        control: &Control,
+    ) -> Result<(), GpuError> {
+        let (partners, candidates) = (control.most_partners as usize, control.candidates as usize);
+        if partners > self.most_partners {
+            self.most_partners = partners + partners / 4;
+            engine.free(self.partners);
+            self.partners = engine.buffer("partners", sizes.rows * (ROW_HEADER + self.most_partners))?;
+        }
+        if candidates > self.capacity {
+            let capacity = candidates + candidates / 4;
+            for old in [self.candidates, self.separations, self.states] {
+                engine.free(old);
+            }
+            self.rows.free(engine);
+            self.capacity = capacity;
+            self.candidates = engine.buffer("candidates", words::<Candidate>(capacity))?;
+            self.separations = engine.buffer("separations", words::<Separation>(capacity))?;
+            self.states = engine.buffer("states of pairs", words::<PairState>(capacity))?;
+            self.rows = RowBuffers::new(engine, sizes.vertices, capacity)?;
+        }
+        tracing::debug!(partners, candidates, "buffers grew");
+        Ok(())
+    }
+
+    /// Makes room to keep all present candidates.
+    ///
+    /// # Errors
+    /// The device has no memory.
+    pub fn make_room_for_old(&mut self, engine: &mut impl Engine) -> Result<(), GpuError> {
+        if self.old_capacity < self.capacity {
+            engine.free(self.old_elements);
+            engine.free(self.old_states);
+            self.old_capacity = self.capacity;
+            self.old_elements = engine.buffer("old partners", self.capacity)?;
+            self.old_states = engine.buffer("old states of pairs", words::<PairState>(self.capacity))?;
+        }
+        Ok(())
+    }
+}
+
+impl RowBuffers {
+    fn new(engine: &mut impl Engine, vertices: usize, capacity: usize) -> Result<Self, GpuError> {
+        Ok(Self {
+            picked: engine.buffer("picked candidates", capacity)?,
+            starts: engine.buffer("starts of rows", capacity)?,
+            blocks: engine.buffer("blocks of rows", capacity.div_ceil(BLOCK))?,
+            rows: engine.buffer("contact rows", words::<Row>(capacity))?,
+            order: engine.buffer("order of rows", capacity)?,
+            colors_in_use: engine.buffer("colors in use", 4 * vertices)?,
+            waiting: engine.buffer("rows without a color", 2 * capacity)?,
+            claims: engine.buffer("claims", vertices)?,
+            tally: engine.buffer("colors of rows", COLORS + 1)?,
+            ends: engine.buffer("ends of colors", COLORS + 1)?,
+        })
+    }
+
+    fn free(&self, engine: &mut impl Engine) {
+        let Self { picked, starts, blocks, rows, order, colors_in_use, waiting, claims, tally, ends } = *self;
+        for buffer in [picked, starts, blocks, rows, order, colors_in_use, waiting, claims, tally, ends] {
+            engine.free(buffer);
+        }
+    }
+}
+
+/// Words of 32 bits of so many entries.
+pub fn words<T: Pod>(count: usize) -> usize {
+    count * size_of::<T>() / 4
+}

@@ -1,0 +1,115 @@
+//! The stages of a step, in their order.
+
+use super::Collision;
+use crate::cpu;
+use crate::engine::Engine;
+use crate::layout::Control;
+use crate::recording::Recording;
+use crate::stages;
+
+/// Longest travel of a vertex in a step, and smallest radius of a trust region, in local edge lengths.
+const LONGEST_TRAVEL: f32 = 0.35;
+const SMALLEST_RADIUS: f32 = 0.1;
+
+/// Distance within which a pair can have a row, in its desired distance.
+const RANGE: f32 = 4.0;
+
+impl<E: Engine> Collision<E> {
+    /// The dispatches of a step, in order.
+    pub(super) fn record_step(&self, recording: &mut Recording) {
+        self.record_start(recording);
+        // If the step is made again, the aims are known.
+        if !self.again {
+            self.record_rows(recording);
+            self.record_backward(recording);
+        }
+        self.record_paths(recording);
+        self.record_search(recording);
+        self.record_geometry(recording);
+        self.record_forward(recording);
+    }
+
+    /// Resets what the stages of a step add to.
+    pub(super) fn record_start(&self, recording: &mut Recording) {
+        let buffers = &self.buffers;
+        let ones = vec![1.0f32; self.sizes.groups];
+        recording.write(buffers.group_caps, &ones);
+        recording.write(buffers.group_alphas, &ones);
+        recording.write(buffers.control, &[0u32; Control::RESET_WORDS]);
+    }
+
+    /// How far each vertex wants to go, and which trust regions do not cover it.
+    pub(super) fn record_paths(&self, recording: &mut Recording) {
+        let (b, vertices) = (&self.buffers, self.sizes.vertices as u32);
+        recording.dispatch(
+            &stages::PLAN,
+            &[b.positions, b.aims, b.vertices, b.paths, b.group_caps],
+            cpu::plan::Params { vertices, longest: LONGEST_TRAVEL },
+            self.sizes.vertices,
+        );
+        recording.dispatch(
+            &stages::JOIN,
+            &[b.vertices, b.group_caps, b.paths, b.alphas],
+            cpu::join::Params { vertices },
+            self.sizes.vertices,
+        );
+        self.record_cover(recording);
+    }
+
+    /// New trust regions where the paths need them.
+    pub(super) fn record_cover(&self, recording: &mut Recording) {
+        let (b, vertices) = (&self.buffers, self.sizes.vertices as u32);
+        recording.dispatch(
+            &stages::COVER,
+            &[b.positions, b.paths, b.vertices, b.balls, b.control],
+            cpu::cover::Params { vertices, all: u32::from(self.all_new), smallest: SMALLEST_RADIUS },
+            self.sizes.vertices,
+        );
+    }
+
+    /// Contact geometry of all candidates at the present positions.
+    pub(super) fn record_geometry(&self, recording: &mut Recording) {
+        let (b, capacity) = (&self.buffers, self.buffers.capacity as u32);
+        recording.dispatch(
+            &stages::SEPARATE,
+            &[b.positions, b.edges, b.triangles, b.planes, b.candidates, b.separations, b.control],
+            cpu::separate::Params { capacity },
+            self.buffers.capacity,
+        );
+        recording.dispatch(
+            &stages::SPACE,
+            &[b.rest, b.edges, b.triangles, b.vertices, b.candidates, b.separations, b.states, b.control],
+            cpu::space::Params {
+                capacity,
+                min_separation: self.lengths.min_separation,
+                growth: self.lengths.growth,
+                range: RANGE,
+            },
+            self.buffers.capacity,
+        );
+    }
+
+    /// Step sizes and the move.
+    pub(super) fn record_forward(&self, recording: &mut Recording) {
+        let (b, vertices, capacity) =
+            (&self.buffers, self.sizes.vertices as u32, self.buffers.capacity as u32);
+        recording.dispatch(
+            &stages::LIMIT,
+            &[b.edges, b.triangles, b.vertices, b.candidates, b.separations, b.paths, b.alphas, b.control],
+            cpu::limit::Params { capacity, damping: self.lengths.damping },
+            self.buffers.capacity,
+        );
+        recording.dispatch(
+            &stages::LIMIT_GROUPS,
+            &[b.vertices, b.alphas, b.group_alphas],
+            cpu::limit_groups::Params { vertices },
+            self.sizes.vertices,
+        );
+        recording.dispatch(
+            &stages::ADVANCE,
+            &[b.aims, b.vertices, b.paths, b.alphas, b.group_alphas, b.positions, b.control],
+            cpu::advance::Params { vertices },
+            self.sizes.vertices,
+        );
+    }
+}

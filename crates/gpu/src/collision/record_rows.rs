@@ -1,0 +1,155 @@
+//! The stages of the backward step: contact rows, their colors, the sweeps.
+
+use super::Collision;
+use crate::cpu;
+use crate::engine::Engine;
+use crate::layout::COLORS;
+use crate::recording::Recording;
+use crate::stages;
+
+/// Sweeps of a backward step, and the part of the curvature of edges and contacts that damps it.
+const SWEEPS: usize = 8;
+const EDGE_PROXIMAL: f32 = 0.1;
+const CONTACT_PROXIMAL: f32 = 0.1;
+
+/// Gap below which a pair gets a row, in its desired distance.
+const ACTIVE: f32 = 1.5;
+
+impl<E: Engine> Collision<E> {
+    /// The contact rows at the present positions: which candidates have one, and their colors.
+    pub(super) fn record_rows(&self, recording: &mut Recording) {
+        let (b, r) = (&self.buffers, &self.buffers.rows);
+        let (vertices, capacity) = (self.sizes.vertices, self.buffers.capacity as u32);
+        recording.dispatch(
+            &stages::RECALL,
+            &[b.positions, b.aims, b.displacements],
+            cpu::recall::Params { vertices: vertices as u32 },
+            vertices,
+        );
+        self.record_geometry(recording);
+        recording.dispatch(
+            &stages::PICK,
+            &[
+                b.displacements,
+                b.edges,
+                b.triangles,
+                b.candidates,
+                b.separations,
+                b.states,
+                r.picked,
+                b.control,
+            ],
+            cpu::pick::Params { capacity, threshold: ACTIVE },
+            self.buffers.capacity,
+        );
+        recording.dispatch(
+            &stages::COUNT,
+            &[r.picked, r.starts, r.blocks, b.control],
+            cpu::count::Params { rows: capacity, stride: 1, most: 1 },
+            self.buffers.capacity,
+        );
+        let blocks = self.buffers.capacity.div_ceil(cpu::count::BLOCK) as u32;
+        recording.dispatch(
+            &stages::TOTAL,
+            &[r.blocks, b.control],
+            cpu::total::Params { blocks, capacity, list: 1 },
+            1,
+        );
+        recording.dispatch(
+            &stages::LIST,
+            &[r.picked, r.starts, r.blocks, r.rows, b.control],
+            cpu::list::Params { capacity },
+            self.buffers.capacity,
+        );
+        recording.dispatch(
+            &stages::BUILD,
+            &[b.edges, b.triangles, b.vertices, b.candidates, b.separations, b.states, r.rows, b.proximal],
+            cpu::build::Params { capacity, strength: CONTACT_PROXIMAL },
+            self.buffers.capacity,
+        );
+    }
+
+    /// Colors the rows: rows of one color share no vertex that moves.
+    pub(super) fn record_colors(&self, recording: &mut Recording) {
+        let (b, r, capacity) = (&self.buffers, &self.buffers.rows, self.buffers.capacity as u32);
+        recording.dispatch(
+            &stages::RESUME_COLORS,
+            &[r.rows, b.displacements, r.colors_in_use, r.waiting, b.control],
+            cpu::resume_colors::Params { capacity },
+            self.buffers.capacity,
+        );
+        recording.dispatch(
+            &stages::COLOR,
+            &[b.displacements, r.rows, r.colors_in_use, r.claims, r.waiting, b.control],
+            cpu::color::Params { capacity },
+            1,
+        );
+        recording.dispatch(
+            &stages::TALLY,
+            &[b.displacements, r.rows, r.tally, b.control],
+            cpu::tally::Params { capacity },
+            self.buffers.capacity,
+        );
+        recording.dispatch(
+            &stages::START_COLORS,
+            &[r.tally, r.ends],
+            cpu::start_colors::Params { colors: COLORS as u32 + 1 },
+            1,
+        );
+        recording.dispatch(
+            &stages::SORT,
+            &[r.rows, r.ends, r.order, b.control],
+            cpu::sort::Params { capacity },
+            self.buffers.capacity,
+        );
+    }
+
+    /// Where the vertices should go so that no edge is too long and no gap too small.
+    pub(super) fn record_backward(&self, recording: &mut Recording) {
+        let (b, r) = (&self.buffers, &self.buffers.rows);
+        let vertices = self.sizes.vertices as u32;
+        recording.dispatch(
+            &stages::CURVE_EDGES,
+            &[b.positions, b.limits, b.proximal],
+            cpu::curve_edges::Params { edges: self.edges.len() as u32, strength: EDGE_PROXIMAL },
+            self.edges.len(),
+        );
+        recording.dispatch(
+            &stages::RELEASE,
+            &[b.positions, b.targets, b.vertices, b.proximal, b.displacements, r.colors_in_use],
+            cpu::release::Params { vertices },
+            self.sizes.vertices,
+        );
+        self.record_colors(recording);
+        // First the multipliers of the last step are applied.
+        for sweep in 0..=SWEEPS {
+            let only_apply = u32::from(sweep == 0);
+            recording.dispatch(
+                &stages::SWEEP_ROWS,
+                &[r.order, r.ends, r.rows, b.displacements],
+                cpu::sweep_rows::Params { only_apply },
+                1,
+            );
+            for color in self.edges.colors() {
+                recording.dispatch(
+                    &stages::SWEEP_EDGES,
+                    &[b.positions, b.limits, b.displacements],
+                    cpu::sweep_edges::Params { first: color.start as u32, end: color.end as u32, only_apply },
+                    color.len(),
+                );
+            }
+        }
+        recording.dispatch(
+            &stages::STORE,
+            &[r.rows, b.states, b.control],
+            cpu::store::Params { capacity: self.buffers.capacity as u32 },
+            self.buffers.capacity,
+        );
+        recording.dispatch(
+            &stages::AIM,
+            &[b.positions, b.targets, b.displacements, b.aims],
+            cpu::aim::Params { vertices },
+            self.sizes.vertices,
+        );
+    }
+}

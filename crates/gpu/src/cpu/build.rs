@@ -1,0 +1,81 @@
+//! Twin of `shader/build.wgsl`.
+
+use super::curve_edges::weight_units;
+use super::pair::{Pair, pair_of, signed_weights};
+use crate::bound::Bound;
+use crate::layout::{Candidate, Kind, NONE, PairState, Row, Separation, Vertex};
+use bytemuck::{Pod, Zeroable};
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Params {
+    pub capacity: u32,
+    pub strength: f32,
+}
+
+const AT_VERTEX: f32 = 1e-5;
+
+pub fn bound(buffers: Bound<'_>) {
+    build(
+        buffers.params(),
+        &buffers.read(0),
+        &buffers.read(1),
+        &buffers.read(2),
+        &buffers.read(3),
+        &buffers.read(4),
+        &buffers.read(5),
+        &mut buffers.write(6),
+        &mut buffers.write(7),
+    );
+}
+
+fn is_flat(pair: &Pair, weights: &[f32; 4]) -> bool {
+    let inside = |weights: &[f32]| weights.iter().filter(|w| w.abs() > AT_VERTEX).count();
+    let kind = pair.kind;
+    kind == Kind::VertexHalfSpace as u32
+        || (kind == Kind::VertexTriangle as u32 && inside(&weights[1..]) == 3)
+        || (kind == Kind::EdgeEdge as u32 && inside(weights) == 4)
+}
+
+pub fn build(
+    params: Params,
+    edges: &[[u32; 2]],
+    triangles: &[[u32; 4]],
+    vertices: &[Vertex],
+    candidates: &[Candidate],
+    separations: &[Separation],
+    states: &[PairState],
+    rows: &mut [Row],
+    proximal: &mut [u32],
+) {
+    for row in &mut rows[..params.capacity as usize] {
+        let c = row.candidate;
+        if c == NONE {
+            continue;
+        }
+        let (separation, state) = (separations[c as usize], states[c as usize]);
+        let pair = pair_of(candidates[c as usize], edges, triangles);
+        let weights = signed_weights(&pair, &separation);
+        if state.multiplier > 0.0 {
+            let flat = is_flat(&pair, &weights);
+            let gap = separation.distance.max(state.desired).max(1.0);
+            for k in 0..pair.count {
+                let v = pair.vertices[k] as usize;
+                let edge = vertices[v].edge;
+                let radius = if flat { edge } else { gap.min(edge) };
+                let units = weight_units(params.strength * state.multiplier * weights[k].abs() / radius);
+                proximal[v] = proximal[v].wrapping_add(units);
+            }
+        }
+        *row = Row {
+            vertices: pair.vertices,
+            weights,
+            normal: separation.normal,
+            value: separation.distance - state.desired,
+            inverse_diagonal: 0.0,
+            multiplier: state.multiplier,
+            candidate: c,
+            color: state.color,
+        };
+    }
+}

@@ -1,0 +1,22 @@
+//! Twin of `shader/recall.wgsl`.
+
+use super::difference;
+use crate::bound::Bound;
+use bytemuck::{Pod, Zeroable};
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Params {
+    pub vertices: u32,
+}
+
+pub fn bound(buffers: Bound<'_>) {
+    recall(buffers.params(), &buffers.read(0), &buffers.read(1), &mut buffers.write(2));
+}
+
+pub fn recall(params: Params, positions: &[[i32; 4]], aims: &[[i32; 4]], displacements: &mut [[f32; 4]]) {
+    for v in 0..params.vertices as usize {
+        let [x, y, z] = difference(aims[v], positions[v]);
+        displacements[v] = [x, y, z, 0.0];
+    }
+}

@@ -1,0 +1,22 @@
+//! Twin of `shader/store.wgsl`.
+
+use crate::bound::Bound;
+use crate::layout::{Control, PairState, Row};
+use bytemuck::{Pod, Zeroable};
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Params {
+    pub capacity: u32,
+}
+
+pub fn bound(buffers: Bound<'_>) {
+    store(buffers.params(), &buffers.read(0), &mut buffers.write(1), &buffers.read::<Control>(2)[0]);
+}
+
+pub fn store(params: Params, rows: &[Row], states: &mut [PairState], control: &Control) {
+    for row in &rows[..control.rows.min(params.capacity) as usize] {
+        let state = &mut states[row.candidate as usize];
+        (state.multiplier, state.color) = (row.multiplier, row.color);
+    }
+}
