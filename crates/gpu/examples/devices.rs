@@ -2,7 +2,7 @@
 #![allow(clippy::print_stdout, reason = "an example")]
 
 use bowknot_geometry::{CollisionModel, Point, Topology};
-use bowknot_gpu::{Adapter, Collision, Constraints, DeviceEngine, Lengths};
+use bowknot_gpu::{Adapter, Call, Collision, Constraints, DeviceEngine, Lengths, Settings};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     Adapter::all().iter().enumerate().for_each(|(number, adapter)| println!("device {number}: {adapter}"));
@@ -19,9 +19,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         min_separation: 1e-3,
         edge_limits: &[],
     };
-    let mut collision =
-        Collision::new(engine, &model, &start, &start, &lengths, &Constraints::default(), 0.9)?;
-    collision.begin(&[at(-10.0), at(0.0)].concat(), f64::INFINITY)?;
+    let mut collision = Collision::new(
+        engine,
+        &model,
+        &start,
+        &start,
+        &lengths,
+        &Constraints::default(),
+        &Settings::default(),
+    )?;
+    collision.begin(&Call::toward(&[at(-10.0), at(0.0)].concat()))?;
     for step in 0..12 {
         let report = collision.step()?;
         println!(

@@ -31,8 +31,11 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
         atomicMax(&control.remaining, bitcast<u32>(left));
         atomicMax(&control.remaining_fraction, bitcast<u32>(1.0 - alpha));
         atomicMax(&control.largest_move, bitcast<u32>(alpha * length));
-        if (vertex.flags & PRESCRIBED) != 0u && alpha >= paths[v].w {
-            atomicMax(&control.unhindered_lag, bitcast<u32>(left));
+        if alpha >= paths[v].w {
+            atomicMax(&control.unhindered, bitcast<u32>(left));
+            if (vertex.flags & PRESCRIBED) != 0u {
+                atomicMax(&control.unhindered_lag, bitcast<u32>(left));
+            }
         }
         // The whole way leads to the target to the bit; a part is rounded toward its start.
         if alpha == 1.0 {

@@ -3,6 +3,8 @@
 
 struct Params {
     vertices: u32,
+    // Largest factor on the proximal weight of a vertex.
+    growth: f32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -10,9 +12,15 @@ struct Params {
 @group(0) @binding(2) var<storage, read> targets: array<vec4<i32>>;
 @group(0) @binding(3) var<storage, read> displacements: array<vec4<f32>>;
 @group(0) @binding(4) var<storage, read_write> aims: array<vec4<i32>>;
+// Last displacement, and the factor on the proximal weight. A displacement that reverses oscillates about the position: the
+// weight is too small there.
+@group(0) @binding(5) var<storage, read_write> swings: array<vec4<f32>>;
 
 // Coordinates of the grid stay below this.
 const BORDER: i32 = 536870911;
+// Change of the factor each time that a displacement reverses, and each time that it does not.
+const GROWTH: f32 = 2.0;
+const DECAY: f32 = 0.8;
 // A displacement of more than this is no result.
 const FARTHEST: f32 = 1073741824.0;
 
@@ -34,5 +42,14 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
             }
         }
         aims[v] = vec4<i32>(aim, 0);
+        let last = swings[v];
+        let turn = dot(displacement.xyz, last.xyz);
+        var factor = last.w;
+        if turn < 0.0 {
+            factor = min(factor * GROWTH, params.growth);
+        } else if turn > 0.0 {
+            factor = max(factor * DECAY, 1.0);
+        }
+        swings[v] = vec4<f32>(displacement.xyz, factor);
     }
 }

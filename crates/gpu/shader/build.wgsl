@@ -60,7 +60,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
             }
         }
         rows[r] = Row(
-            v, weights, separation.normal, separation.distance - state.desired, 0.0, state.multiplier, c, state.color
+            v, weights, separation.normal, separation.distance - separation.wanted, 0.0, state.multiplier, c, state.color,
+            vec3<f32>(0.0), 0.0, vec3<f32>(0.0), 0u
         );
     }
 }

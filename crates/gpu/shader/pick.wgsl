@@ -3,7 +3,7 @@
 
 struct Params {
     capacity: u32,
-    // Gap below which a pair gets a row, in its desired distance.
+    // Gap below which a pair gets a row, in the distance that the row asks for.
     threshold: f32,
 }
 
@@ -20,7 +20,7 @@ struct Params {
 fn is_picked(c: u32) -> bool {
     let state = states[c];
     let separation = separations[c];
-    if separation.distance > state.range {
+    if separation.distance > state.range || separation.wanted == 0.0 {
         return false;
     }
     if state.multiplier > 0.0 {
@@ -32,7 +32,7 @@ fn is_picked(c: u32) -> bool {
     for (var k = 0u; k < pair.count; k += 1u) {
         gap += weights[k] * dot(separation.normal, displacements[pair.vertices[k]].xyz);
     }
-    return gap < params.threshold * state.desired;
+    return gap < params.threshold * separation.wanted;
 }
 
 @compute @workgroup_size(128)
@@ -46,6 +46,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
             } else {
                 states[c].multiplier = 0.0;
                 states[c].color = NONE;
+                states[c].friction = vec3<f32>(0.0);
             }
         }
         picked[c] = flag;

@@ -14,6 +14,8 @@ struct Params {
 @group(0) @binding(5) var<storage, read_write> displacements: array<vec4<f32>>;
 // Colors in use, which are reset.
 @group(0) @binding(6) var<storage, read_write> in_use: array<vec4<u32>>;
+// Last displacement, and the factor on the proximal weight.
+@group(0) @binding(7) var<storage, read> swings: array<vec4<f32>>;
 
 // Largest proximal weight, in the mass of the vertex.
 const MOST_PROXIMAL: f32 = 100.0;
@@ -26,7 +28,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
         if (vertex.flags & PRESCRIBED) != 0u {
             displacements[v] = vec4<f32>(wanted, 0.0);
         } else {
-            let damping = min(f32(proximal[v]) / WEIGHT_UNITS, MOST_PROXIMAL * vertex.mass);
+            let damping = min(f32(proximal[v]) / WEIGHT_UNITS * swings[v].w, MOST_PROXIMAL * vertex.mass);
             let weight = 1.0 / (vertex.mass + damping);
             displacements[v] = vec4<f32>(wanted * (weight * vertex.mass), weight);
         }

@@ -50,7 +50,7 @@ fn separate_plane(v: u32, p: u32) -> Separation {
     let plane = planes[p];
     let offset = vec3<f32>(positions[v].xyz - plane.point);
     let height = dot(plane.normal, offset);
-    return Separation(plane.normal, height - plane.rounding * size(offset) - POINT_ROUNDING, vec2<f32>(0.0), height, 0.0);
+    return Separation(plane.normal, height - plane.rounding * size(offset) - POINT_ROUNDING, vec2<f32>(0.0), height, 0.0, 0.0, 0u, 0u, 0u);
 }
 
 fn separate_pair(candidate: Candidate) -> Separation {
@@ -105,7 +105,7 @@ fn separate_pair(candidate: Candidate) -> Separation {
     if pair.kind == EDGE_EDGE {
         weights = closest.weights.xz;
     }
-    var separation = Separation(vec3<f32>(0.0, 0.0, 1.0), -1.0, weights, distance, 0.0);
+    var separation = Separation(vec3<f32>(0.0, 0.0, 1.0), -1.0, weights, distance, 0.0, 0.0, 0u, 0u, 0u);
     if distance > 0.0 {
         separation.normal = closest.offset / distance;
         separation.width = width_along(separation.normal, differences);

@@ -83,5 +83,6 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
             states[c] = first_state(candidates[c], separations[c]);
         }
         separations[c].min_separation = states[c].min_separation;
+        separations[c].wanted = states[c].desired;
     }
 }

@@ -15,5 +15,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
     for (var r = id.x; r < count; r += 256u * groups.x) {
         states[rows[r].candidate].multiplier = rows[r].multiplier;
         states[rows[r].candidate].color = rows[r].color;
+        if rows[r].multiplier > 0.0 {
+            atomicAdd(&control.pressing, 1u);
+        }
+        states[rows[r].candidate].friction = rows[r].friction;
     }
 }

@@ -18,22 +18,48 @@ fn relax(r: u32) {
     if row.inverse_diagonal == 0.0 {
         return;
     }
-    var change = row.multiplier;
-    if params.only_apply == 0u {
-        var value = row.value;
-        for (var k = 0u; k < 4u; k += 1u) {
-            value += row.weights[k] * dot(row.normal, displacements[row.vertices[k]].xyz);
-        }
-        let multiplier = max(row.multiplier - value * row.inverse_diagonal, 0.0);
-        change = multiplier - row.multiplier;
-        rows[r].multiplier = multiplier;
+    if params.only_apply != 0u {
+        push(row, row.normal * row.multiplier + row.friction);
+        return;
     }
+    let value = row.value + dot(row.normal, relative_displacement(row));
+    let multiplier = max(row.multiplier - value * row.inverse_diagonal, 0.0);
+    push(row, row.normal * (multiplier - row.multiplier));
+    rows[r].multiplier = multiplier;
+    let has_friction = row.coefficient > 0.0 && (multiplier > 0.0 || any(row.friction != vec3<f32>(0.0)));
+    if has_friction {
+        // The motion along the normal is taken away once more, because the multiplier must stay across it.
+        let moved = row.slip + relative_displacement(row);
+        let slip = moved - row.normal * dot(row.normal, moved);
+        let wanted = row.friction - slip * row.inverse_diagonal;
+        let size = sqrt(dot(wanted, wanted));
+        let largest = row.coefficient * multiplier;
+        var friction = wanted;
+        if size > largest {
+            friction = wanted * (largest / size);
+        }
+        push(row, friction - row.friction);
+        rows[r].friction = friction;
+    }
+}
+
+// Displacement of side a less that of side b, at the closest points.
+fn relative_displacement(row: Row) -> vec3<f32> {
+    var sum = vec3<f32>(0.0);
+    for (var k = 0u; k < 4u; k += 1u) {
+        sum += row.weights[k] * displacements[row.vertices[k]].xyz;
+    }
+    return sum;
+}
+
+// Moves the vertices of a row by a change of its multipliers.
+fn push(row: Row, change: vec3<f32>) {
     for (var k = 0u; k < 4u; k += 1u) {
         let v = row.vertices[k];
         let displacement = displacements[v];
-        let step = displacement.w * row.weights[k] * change;
+        let step = displacement.w * row.weights[k];
         if step != 0.0 {
-            displacements[v] = vec4<f32>(displacement.xyz + row.normal * step, displacement.w);
+            displacements[v] = vec4<f32>(displacement.xyz + change * step, displacement.w);
         }
     }
 }

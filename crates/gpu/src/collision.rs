@@ -10,6 +10,7 @@ mod record_rows;
 mod record_search;
 mod trees;
 
+use crate::adjacency::Adjacency;
 use crate::edges::Edges;
 use crate::engine::Engine;
 use crate::error::GpuError;
@@ -49,6 +50,60 @@ pub enum CollisionError {
     },
 }
 
+/// How steps are made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Gauss-Seidel sweeps of a backward step.
+    pub sweeps: usize,
+    /// Strength of the proximal term of edges: the part of their curvature that counts.
+    pub edge_proximal: f64,
+    /// The same of contacts.
+    pub contact_proximal: f64,
+    /// Largest factor on the proximal term of a vertex, which grows while its displacements reverse.
+    pub proximal_growth: f64,
+    /// Distance within which a pair can have a row, in its desired distance without regard to rest positions.
+    pub range: f64,
+    /// Predicted gap below which a pair gets a row, in the distance that the row asks for.
+    pub active: f64,
+    /// Whether only contacts get rows, and pairs that are merely close guard a part of their gap.
+    pub contacts_only: bool,
+    /// Share of a gap that a step may use up.
+    pub damping: f64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            sweeps: 8,
+            edge_proximal: 0.1,
+            contact_proximal: 0.1,
+            proximal_growth: 32.0,
+            range: 2.0,
+            active: 1.1,
+            contacts_only: true,
+            damping: 0.9,
+        }
+    }
+}
+
+/// What a call starts from.
+#[derive(Clone, Copy, Debug)]
+pub struct Call<'a> {
+    /// Where the vertices want to go [m].
+    pub target: &'a [Point],
+    /// By how much pairs that are closer than they should be open at most in the call [m].
+    pub growth: f64,
+    /// Where the vertices were at the start of the time step, from where slip counts [m]. Empty: the present positions.
+    pub slip_start: &'a [Point],
+}
+
+impl<'a> Call<'a> {
+    /// Toward a target. Pairs may open at once, and slip counts from here.
+    pub fn toward(target: &'a [Point]) -> Self {
+        Self { target, growth: f64::INFINITY, slip_start: &[] }
+    }
+}
+
 /// What a step did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepReport {
@@ -60,10 +115,22 @@ pub struct StepReport {
     pub frozen: usize,
     /// Largest remaining distance of a vertex [m].
     pub remaining: f64,
-    /// Largest remaining distance of a prescribed vertex that no pair holds back [m].
+    /// Largest remaining distance of a vertex that no pair holds back [m].
+    pub unhindered: f64,
+    /// The same of prescribed vertices alone [m].
     pub unhindered_lag: f64,
     /// Longest move of a vertex [m].
     pub largest_move: f64,
+    /// Contact rows.
+    pub contact_rows: usize,
+    /// Those of them that press.
+    pub pressing: usize,
+    /// Largest net residual of a body [m]: how far it is as a whole from where the forces on it balance.
+    pub net_residual: f64,
+    /// Largest mean residual of the vertices of a body [m].
+    pub mean_residual: f64,
+    /// Largest ratio of an edge's length to its limit [1]; 0 without limits.
+    pub stretch_to_limit: f64,
 }
 
 /// The collision stage of a scene on an engine.
@@ -71,11 +138,16 @@ pub struct StepReport {
 pub struct Collision<E> {
     engine: E,
     grid: Grid,
+    settings: Settings,
     lengths: StepLengths,
     sizes: Sizes,
     buffers: Buffers,
     trees: Trees,
     edges: Edges,
+    /// Where the edges and the triangles begin in the adjacency.
+    adjacency_starts: [u32; 2],
+    /// Whether any contact may have friction.
+    frictional: bool,
     /// Whether all trust regions are new.
     all_new: bool,
     /// Whether the step is made again, because a buffer was too small.
@@ -93,7 +165,7 @@ struct StepLengths {
 
 impl<E: Engine> Collision<E> {
     /// Prepares the scene of `model` at `positions` [m], where no two elements intersect; `rest` are the rest positions
-    /// [m]. `damping` is the share of a gap that a step may use up.
+    /// [m].
     ///
     /// # Errors
     /// No grid has room for the scene; the device has no memory; wrong lengths.
@@ -104,7 +176,7 @@ impl<E: Engine> Collision<E> {
         rest: &[Point],
         lengths: &Lengths<'_>,
         constraints: &Constraints<'_>,
-        damping: f64,
+        settings: &Settings,
     ) -> Result<Self, CollisionError> {
         let count = model.topology().vertex_count;
         for (what, given) in [
@@ -122,13 +194,15 @@ impl<E: Engine> Collision<E> {
         let rest_grid = grid.around_others(rest).ok_or(CollisionError::OutsideGrid { vertex: 0 })?;
         let rest_on_grid = snapped(&rest_grid, rest)?;
         let vertices = model::vertices(model, lengths, constraints, &grid);
-        let planes = model::planes(model, &grid);
+        let planes = model::planes(model, constraints, &grid);
         let groups = vertices.iter().filter(|v| v.group != NONE).map(|v| v.group as usize + 1);
         let topology = model.topology();
         let triangles: Vec<[u32; 4]> = topology.triangles.iter().map(|&[a, b, c]| [a, b, c, 0]).collect();
         let moves = |v: u32| vertices[v as usize].flags & Vertex::PRESCRIBED == 0;
         let edges = Edges::new(&topology.edges, lengths.edge_limits, moves);
         let trees = Trees::new(&mut engine, topology, &on_grid)?;
+        let adjacency = Adjacency::new(topology);
+        let blocks = model::blocks(model);
         let sizes = Sizes {
             vertices: count,
             groups: groups.max().unwrap_or(0),
@@ -136,8 +210,11 @@ impl<E: Engine> Collision<E> {
             triangles: triangles.len(),
             planes: planes.len(),
             limits: edges.len(),
+            adjacency: adjacency.words.len(),
+            blocks: blocks.len(),
             rows: trees.rows(planes.len()),
         };
+        let frictional = constraints.frictions.iter().any(|friction| *friction > 0.0);
         let buffers = Buffers::new(&mut engine, &sizes)?;
         let mut setup = Recording::default();
         setup.write(buffers.positions, &padded(&on_grid));
@@ -146,14 +223,29 @@ impl<E: Engine> Collision<E> {
         setup.write(buffers.edges, &topology.edges);
         setup.write(buffers.triangles, &triangles);
         setup.write(buffers.planes, &planes);
+        setup.write(buffers.adjacency, &adjacency.words);
+        setup.write(buffers.vertex_blocks, &blocks);
         trees.all().iter().for_each(|tree| tree.upload(&mut setup));
         engine.run(&setup, &[])?;
         let lengths = StepLengths {
             min_separation: grid.length(lengths.min_separation).next_up(),
             growth: f32::MAX,
-            damping: damping as f32,
+            damping: settings.damping as f32,
         };
-        Ok(Self { engine, grid, lengths, sizes, buffers, trees, edges, all_new: true, again: false })
+        Ok(Self {
+            engine,
+            grid,
+            settings: settings.clone(),
+            lengths,
+            sizes,
+            buffers,
+            trees,
+            edges,
+            adjacency_starts: [adjacency.edges_first, adjacency.triangles_first],
+            frictional,
+            all_new: true,
+            again: false,
+        })
     }
 
     /// The grid on which all positions lie.
@@ -161,25 +253,31 @@ impl<E: Engine> Collision<E> {
         &self.grid
     }
 
-    /// Begins a call: sets where the vertices want to go [m]; targets outside of the grid are moved to its border. Pairs
-    /// that are closer than they should be ask to open by at most `growth` [m] in the call.
+    /// Begins a call. Targets outside of the grid are moved to its border.
     ///
     /// # Errors
     /// A wrong length; the device failed.
-    pub fn begin(&mut self, target: &[Point], growth: f64) -> Result<(), CollisionError> {
-        check_length("target", target.len(), self.sizes.vertices)?;
-        let inside: Vec<GridPoint> = target.iter().map(|y| self.grid.nearest_inside(y)).collect();
-        let mut recording = Recording::default();
-        recording.write(self.buffers.targets, &padded(&inside));
-        recording.write(self.buffers.aims, &padded(&inside));
-        if self.edges.len() > 0 {
-            let start = self.positions()?;
-            recording.write(self.buffers.limits, &self.edges.limits(&start, &self.grid));
+    pub fn begin(&mut self, call: &Call<'_>) -> Result<(), CollisionError> {
+        check_length("target", call.target.len(), self.sizes.vertices)?;
+        let inside = |points: &[Point]| -> Vec<GridPoint> {
+            points.iter().map(|y| self.grid.nearest_inside(y)).collect()
+        };
+        let (target, mut slip_start) = (inside(call.target), inside(call.slip_start));
+        let start = self.positions()?;
+        if slip_start.is_empty() {
+            slip_start = start.iter().map(|x| self.grid.nearest_inside(x)).collect();
         }
+        check_length("slip_start", slip_start.len(), self.sizes.vertices)?;
+        let mut recording = Recording::default();
+        recording.write(self.buffers.targets, &padded(&target));
+        recording.write(self.buffers.aims, &padded(&target));
+        recording.write(self.buffers.slip_start, &padded(&slip_start));
+        recording.write(self.buffers.swings, &vec![[0.0f32, 0.0, 0.0, 1.0]; start.len()]);
+        recording.write(self.buffers.limits, &self.edges.limits(&start, &self.grid));
         // Without candidates nothing is inherited from the call before.
         recording.write(self.buffers.control, &[Control::default()]);
         self.engine.run(&recording, &[])?;
-        self.lengths.growth = self.grid.length(growth).min(f32::MAX);
+        self.lengths.growth = self.grid.length(call.growth).min(f32::MAX);
         self.search()
     }
 
@@ -271,8 +369,14 @@ impl<E: Engine> Collision<E> {
             searched: control.changed != 0,
             frozen: control.frozen as usize,
             remaining: length(control.remaining),
+            unhindered: length(control.unhindered),
             unhindered_lag: length(control.unhindered_lag),
             largest_move: length(control.largest_move),
+            contact_rows: control.rows as usize,
+            pressing: control.pressing as usize,
+            net_residual: length(control.net_residual),
+            mean_residual: length(control.mean_residual),
+            stretch_to_limit: f64::from(f32::from_bits(control.stretch_to_limit)),
         }
     }
 }

@@ -40,6 +40,8 @@ pub struct Vertex {
     pub thickness: f32,
     /// Mass over the mean mass; of a vertex that is not prescribed it is above 0.
     pub mass: f32,
+    /// Square root of the coefficient of friction of the body.
+    pub root_of_friction: f32,
 }
 
 impl Vertex {
@@ -145,13 +147,18 @@ pub struct Separation {
     pub distance: f32,
     /// No step makes the gap smaller than this; see [`PairState`].
     pub min_separation: f32,
+    /// Distance that a row of the pair asks for; 0 if it gets none.
+    pub wanted: f32,
+    pub padding_0: u32,
+    pub padding_1: u32,
+    pub padding_2: u32,
 }
 
 /// What a candidate keeps from step to step.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct PairState {
-    /// Multiplier of the friction rows, along the tangents that they have now.
+    /// Multiplier of friction.
     pub friction: [f32; 3],
     /// Multiplier of the contact row.
     pub multiplier: f32,
@@ -194,6 +201,13 @@ pub struct Row {
     /// The candidate of the row, and its color; [`NONE`] before it has one, [`COLORS`] if there is none for it.
     pub candidate: u32,
     pub color: u32,
+    /// How far the contact has slipped since the start of the time step, across the normal.
+    pub slip: [f32; 3],
+    /// Coefficient of friction.
+    pub coefficient: f32,
+    /// Multiplier of friction, across the normal.
+    pub friction: [f32; 3],
+    pub padding: u32,
 }
 
 /// The largest length of an edge, in the order of the colors of the edges.
@@ -227,7 +241,35 @@ pub struct Plane {
     pub rounding: f32,
     /// A point of the plane.
     pub point: [i32; 3],
-    pub padding: u32,
+    /// Square root of the coefficient of friction.
+    pub root_of_friction: f32,
+}
+
+/// Successive vertices of one body.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub struct Block {
+    pub first: u32,
+    /// At most [`Block::MOST`].
+    pub count: u32,
+    pub body: u32,
+}
+
+impl Block {
+    /// Most vertices of a block: the threads of a workgroup.
+    pub const MOST: usize = 256;
+}
+
+/// Sums over the vertices of a block that move.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct BlockSum {
+    /// Of the residuals, times the masses.
+    pub residual: [f32; 3],
+    pub mass: f32,
+    /// Of the lengths of the residuals, times the masses.
+    pub lengths: f32,
+    pub padding: [u32; 3],
 }
 
 /// What the device reports and decides by itself.
@@ -251,14 +293,21 @@ pub struct Control {
     pub largest_move: u32,
     /// Contact rows that have no color yet.
     pub waiting: u32,
+    /// Bits of the largest remaining distance of a vertex that no pair holds back, of the largest net residual of a body,
+    /// of the largest mean residual, and of the largest ratio of an edge's length to its limit.
+    pub unhindered: u32,
+    pub net_residual: u32,
+    pub mean_residual: u32,
+    pub stretch_to_limit: u32,
+    /// Contact rows that press.
+    pub pressing: u32,
     /// Number of candidates: what their list should hold. It stays from step to step, for the list does.
     pub candidates: u32,
     /// Number of contact rows.
     pub rows: u32,
-    pub padding: u32,
 }
 
 impl Control {
     /// Words that a step begins with as zeros: all before the number of candidates.
-    pub const RESET_WORDS: usize = 9;
+    pub const RESET_WORDS: usize = 14;
 }

@@ -8,10 +8,11 @@
 //! | `bound` | what a twin sees of a dispatch |
 //! | `recording`, `engine` | lists of dispatches; a device or the twins run them |
 //! | `adapter` | the devices of this machine |
-//! | `tree`, `model`, `edges` | what the host prepares for a scene |
+//! | `tree`, `model`, `edges`, `adjacency` | what the host prepares for a scene |
 //! | `collision` | steps toward a target that nothing passes through |
 
 mod adapter;
+mod adjacency;
 mod bound;
 mod collision;
 mod cpu;
@@ -28,7 +29,7 @@ mod tree;
 pub use bowknot_geometry as geometry;
 
 pub use adapter::Adapter;
-pub use collision::{Collision, CollisionError, StepReport};
+pub use collision::{Call, Collision, CollisionError, Settings, StepReport};
 pub use engine::{ComparingEngine, DeviceEngine, Difference, Engine, TwinEngine};
 pub use error::GpuError;
 pub use grid::{Grid, GridError, GridPoint};

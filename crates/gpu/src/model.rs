@@ -1,7 +1,7 @@
 //! What is fixed for a scene, as the device needs it.
 
 use crate::grid::Grid;
-use crate::layout::{NONE, Plane, Vertex};
+use crate::layout::{Block, NONE, Plane, Vertex};
 use bowknot_geometry::{CollisionModel, HalfSpace};
 
 /// Lengths of a scene [m].
@@ -23,7 +23,7 @@ pub struct Lengths<'a> {
     pub edge_limits: &'a [f64],
 }
 
-/// How vertices move.
+/// How vertices move, and what slows them down.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Constraints<'a> {
     /// Whether each vertex is prescribed, those of obstacles included.
@@ -33,6 +33,11 @@ pub struct Constraints<'a> {
     pub groups: &'a [u32],
     /// Mass of each vertex, above 0 for those that are not prescribed. May be empty: all have the same.
     pub masses: &'a [f64],
+    /// Coefficient of friction of the body of each vertex; of a contact counts the geometric mean of both sides'. May be
+    /// empty: there is no friction.
+    pub frictions: &'a [f64],
+    /// Coefficient of friction of each half-space. May be empty.
+    pub half_space_frictions: &'a [f64],
 }
 
 /// The static data of the vertices.
@@ -79,6 +84,7 @@ pub(crate) fn vertices(
                 .filter(|t| **t >= 0.0)
                 .map_or(-1.0, |t| grid.length(*t).next_up()),
             mass: constraints.masses.get(v).map_or(1.0, |mass| (mass / mean_mass) as f32),
+            root_of_friction: root(constraints.frictions.get(v)),
         }
     };
     (0..model.topology().vertex_count).map(vertex).collect()
@@ -86,10 +92,10 @@ pub(crate) fn vertices(
 
 /// The half-spaces. Their points are those of the planes that are nearest to the middle of the grid; a plane outside of
 /// the grid, which nothing touches, is moved to a place inside of it that is as good.
-pub(crate) fn planes(model: &CollisionModel, grid: &Grid) -> Vec<Plane> {
+pub(crate) fn planes(model: &CollisionModel, constraints: &Constraints<'_>, grid: &Grid) -> Vec<Plane> {
     let middle = grid.position([0; 3]);
     let farthest = f64::from(1 << 28) * grid.quantum();
-    let plane = |plane: &HalfSpace| {
+    let plane = |(h, plane): (usize, &HalfSpace)| {
         let length = plane.normal.norm();
         let normal = plane.normal / length;
         let height = (plane.normal.dot(&middle.coords) - plane.offset) / length;
@@ -99,8 +105,24 @@ pub(crate) fn planes(model: &CollisionModel, grid: &Grid) -> Vec<Plane> {
             // Each coordinate of the normal is off by 2^-25, the height by four roundings of 2^-24 more.
             rounding: 8.0 * f32::EPSILON,
             point: grid.nearest(&point).unwrap_or([0; 3]),
-            padding: 0,
+            root_of_friction: root(constraints.half_space_frictions.get(h)),
         }
     };
-    model.half_spaces().iter().map(plane).collect()
+    model.half_spaces().iter().enumerate().map(plane).collect()
+}
+
+fn root(friction: Option<&f64>) -> f32 {
+    friction.map_or(0.0, |friction| friction.sqrt() as f32)
+}
+
+/// Blocks of successive vertices of one body.
+pub(crate) fn blocks(model: &CollisionModel) -> Vec<Block> {
+    let mut blocks: Vec<Block> = Vec::new();
+    for (v, &body) in (0..).zip(model.vertex_body()) {
+        match blocks.last_mut() {
+            Some(last) if last.body == body && (last.count as usize) < Block::MOST => last.count += 1,
+            _ => blocks.push(Block { first: v, count: 1, body }),
+        }
+    }
+    blocks
 }

@@ -59,7 +59,7 @@ pub(crate) static RELEASE: Stage = Stage {
     name: "release",
     parts: &[TYPES, FIXED, include_str!("../shader/release.wgsl")],
     workgroup: 256,
-    bindings: &[Read, Read, Read, Write, Write, Write],
+    bindings: &[Read, Read, Read, Write, Write, Write, Read],
     twin: cpu::release::bound,
 };
 
@@ -75,7 +75,7 @@ pub(crate) static AIM: Stage = Stage {
     name: "aim",
     parts: &[TYPES, include_str!("../shader/aim.wgsl")],
     workgroup: 256,
-    bindings: &[Read, Read, Read, Write],
+    bindings: &[Read, Read, Read, Write, Write],
     twin: cpu::aim::bound,
 };
 
@@ -95,6 +95,14 @@ pub(crate) static PICK: Stage = Stage {
     twin: cpu::pick::bound,
 };
 
+pub(crate) static FACING: Stage = Stage {
+    name: "facing",
+    parts: &[TYPES, PAIR, include_str!("../shader/facing.wgsl")],
+    workgroup: 128,
+    bindings: &[Read, Read, Read, Read, Read, Read, Write, Write],
+    twin: cpu::facing::bound,
+};
+
 pub(crate) static LIST: Stage = Stage {
     name: "list",
     parts: &[TYPES, include_str!("../shader/list.wgsl")],
@@ -109,6 +117,14 @@ pub(crate) static BUILD: Stage = Stage {
     workgroup: 128,
     bindings: &[Read, Read, Read, Read, Read, Read, Write, Write],
     twin: cpu::build::bound,
+};
+
+pub(crate) static SLIP: Stage = Stage {
+    name: "slip",
+    parts: &[TYPES, include_str!("../shader/slip.wgsl")],
+    workgroup: 128,
+    bindings: &[Read, Read, Read, Read, Read, Read, Write],
+    twin: cpu::slip::bound,
 };
 
 pub(crate) static RESUME_COLORS: Stage = Stage {
@@ -303,13 +319,39 @@ pub(crate) static ADVANCE: Stage = Stage {
     twin: cpu::advance::bound,
 };
 
+pub(crate) static RESIDUALS: Stage = Stage {
+    name: "residuals",
+    parts: &[TYPES, include_str!("../shader/residuals.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Read, Read, Read, Read, Write],
+    twin: cpu::residuals::bound,
+};
+
+pub(crate) static BALANCE: Stage = Stage {
+    name: "balance",
+    parts: &[TYPES, include_str!("../shader/balance.wgsl")],
+    workgroup: 64,
+    bindings: &[Read, Read, Write],
+    twin: cpu::balance::bound,
+};
+
+pub(crate) static STRETCH: Stage = Stage {
+    name: "stretch",
+    parts: &[TYPES, include_str!("../shader/stretch.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Read, Write],
+    twin: cpu::stretch::bound,
+};
+
 /// All of them.
 #[cfg(test)]
 pub(crate) static ALL: &[&Stage] = &[
     &RECALL,
+    &FACING,
     &PICK,
     &LIST,
     &BUILD,
+    &SLIP,
     &RESUME_COLORS,
     &COLOR,
     &TALLY,
@@ -338,6 +380,9 @@ pub(crate) static ALL: &[&Stage] = &[
     &LIMIT,
     &LIMIT_GROUPS,
     &ADVANCE,
+    &RESIDUALS,
+    &BALANCE,
+    &STRETCH,
 ];
 
 #[cfg(test)]

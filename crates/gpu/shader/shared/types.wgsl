@@ -13,6 +13,7 @@ struct Vertex {
     delta: f32,
     thickness: f32,
     mass: f32,
+    root_of_friction: f32,
 }
 
 const OBSTACLE: u32 = 1u;
@@ -58,6 +59,10 @@ struct Separation {
     weights: vec2<f32>,
     distance: f32,
     min_separation: f32,
+    wanted: f32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32,
 }
 
 struct PairState {
@@ -78,6 +83,10 @@ struct Row {
     multiplier: f32,
     candidate: u32,
     color: u32,
+    slip: vec3<f32>,
+    coefficient: f32,
+    friction: vec3<f32>,
+    padding: u32,
 }
 
 // Colors of rows; rows that get none of them are swept one by one.
@@ -101,7 +110,22 @@ struct Plane {
     normal: vec3<f32>,
     rounding: f32,
     point: vec3<i32>,
-    padding: u32,
+    root_of_friction: f32,
+}
+
+struct Block {
+    first: u32,
+    count: u32,
+    body: u32,
+}
+
+struct BlockSum {
+    residual: vec3<f32>,
+    mass: f32,
+    lengths: f32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32,
 }
 
 struct Control {
@@ -114,6 +138,11 @@ struct Control {
     remaining_fraction: atomic<u32>,
     largest_move: atomic<u32>,
     waiting: atomic<u32>,
+    unhindered: atomic<u32>,
+    net_residual: atomic<u32>,
+    mean_residual: atomic<u32>,
+    stretch_to_limit: atomic<u32>,
+    pressing: atomic<u32>,
     candidates: atomic<u32>,
     rows: atomic<u32>,
 }

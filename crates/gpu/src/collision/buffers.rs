@@ -4,7 +4,8 @@ use crate::cpu::count::BLOCK;
 use crate::engine::Engine;
 use crate::error::GpuError;
 use crate::layout::{
-    Ball, COLORS, Candidate, Control, EdgeLimit, OldRow, PairState, Plane, Row, Separation, Vertex,
+    Ball, Block, BlockSum, COLORS, Candidate, Control, EdgeLimit, OldRow, PairState, Plane, Row, Separation,
+    Vertex,
 };
 use crate::recording::BufferId;
 use bytemuck::Pod;
@@ -25,6 +26,10 @@ pub struct Sizes {
     pub triangles: usize,
     pub planes: usize,
     pub limits: usize,
+    /// Words of the adjacency.
+    pub adjacency: usize,
+    /// Blocks of vertices.
+    pub blocks: usize,
     /// Rows of partners.
     pub rows: usize,
 }
@@ -39,6 +44,8 @@ pub struct Buffers {
     pub old_capacity: usize,
     pub positions: BufferId,
     pub targets: BufferId,
+    /// Where the vertices were at the start of the time step, from where slip counts.
+    pub slip_start: BufferId,
     pub vertices: BufferId,
     pub edges: BufferId,
     pub triangles: BufferId,
@@ -59,9 +66,14 @@ pub struct Buffers {
     pub old_rows: BufferId,
     pub old_elements: BufferId,
     pub old_states: BufferId,
+    pub adjacency: BufferId,
+    pub vertex_blocks: BufferId,
+    pub block_sums: BufferId,
     pub limits: BufferId,
     pub proximal: BufferId,
     pub displacements: BufferId,
+    /// Displacement of the last step, and the factor on the proximal weight.
+    pub swings: BufferId,
     /// Where the vertices go in this step.
     pub aims: BufferId,
     pub rows: RowBuffers,
@@ -92,7 +104,7 @@ impl Buffers {
     /// # Errors
     /// The device has no memory.
     pub fn new(engine: &mut impl Engine, sizes: &Sizes) -> Result<Self, GpuError> {
-        let &Sizes { vertices, groups, edges, triangles, planes, limits, rows } = sizes;
+        let &Sizes { vertices, groups, edges, triangles, planes, limits, adjacency, blocks, rows } = sizes;
         let (most_partners, capacity) = (FIRST_PARTNERS, (FIRST_CANDIDATES * vertices).max(64));
         Ok(Self {
             most_partners,
@@ -101,6 +113,7 @@ impl Buffers {
             positions: engine.buffer("positions", 4 * vertices)?,
             rest: engine.buffer("rest positions", 4 * vertices)?,
             targets: engine.buffer("targets", 4 * vertices)?,
+            slip_start: engine.buffer("start of slip", 4 * vertices)?,
             vertices: engine.buffer("vertices", words::<Vertex>(vertices))?,
             edges: engine.buffer("edges", 2 * edges)?,
             triangles: engine.buffer("triangles", 4 * triangles)?,
@@ -120,8 +133,12 @@ impl Buffers {
             old_rows: engine.buffer("old rows", words::<OldRow>(rows))?,
             old_elements: engine.buffer("old partners", capacity)?,
             old_states: engine.buffer("old states of pairs", words::<PairState>(capacity))?,
+            adjacency: engine.buffer("adjacency", adjacency)?,
+            vertex_blocks: engine.buffer("blocks of vertices", words::<Block>(blocks))?,
+            block_sums: engine.buffer("sums of blocks", words::<BlockSum>(blocks))?,
             limits: engine.buffer("edge limits", words::<EdgeLimit>(limits))?,
             proximal: engine.buffer("proximal weights", vertices)?,
+            swings: engine.buffer("swings", 4 * vertices)?,
             displacements: engine.buffer("displacements", 4 * vertices)?,
             aims: engine.buffer("aims", 4 * vertices)?,
             rows: RowBuffers::new(engine, vertices, capacity)?,

@@ -3,16 +3,13 @@
 use super::Collision;
 use crate::cpu;
 use crate::engine::Engine;
-use crate::layout::Control;
+use crate::layout::{Block, Control};
 use crate::recording::Recording;
 use crate::stages;
 
 /// Longest travel of a vertex in a step, and smallest radius of a trust region, in local edge lengths.
 const LONGEST_TRAVEL: f32 = 0.35;
 const SMALLEST_RADIUS: f32 = 0.1;
-
-/// Distance within which a pair can have a row, in its desired distance.
-const RANGE: f32 = 4.0;
 
 impl<E: Engine> Collision<E> {
     /// The dispatches of a step, in order.
@@ -83,13 +80,13 @@ impl<E: Engine> Collision<E> {
                 capacity,
                 min_separation: self.lengths.min_separation,
                 growth: self.lengths.growth,
-                range: RANGE,
+                range: self.settings.range as f32,
             },
             self.buffers.capacity,
         );
     }
 
-    /// Step sizes and the move.
+    /// Step sizes, the move, and how far its end is from a solution.
     pub(super) fn record_forward(&self, recording: &mut Recording) {
         let (b, vertices, capacity) =
             (&self.buffers, self.sizes.vertices as u32, self.buffers.capacity as u32);
@@ -110,6 +107,25 @@ impl<E: Engine> Collision<E> {
             &[b.aims, b.vertices, b.paths, b.alphas, b.group_alphas, b.positions, b.control],
             cpu::advance::Params { vertices },
             self.sizes.vertices,
+        );
+        recording.dispatch(
+            &stages::STRETCH,
+            &[b.positions, b.limits, b.control],
+            cpu::stretch::Params { edges: self.edges.len() as u32 },
+            self.edges.len(),
+        );
+        let blocks = self.sizes.blocks as u32;
+        recording.dispatch(
+            &stages::RESIDUALS,
+            &[b.vertex_blocks, b.positions, b.aims, b.displacements, b.vertices, b.block_sums],
+            cpu::residuals::Params { blocks },
+            Block::MOST * self.sizes.blocks,
+        );
+        recording.dispatch(
+            &stages::BALANCE,
+            &[b.vertex_blocks, b.block_sums, b.control],
+            cpu::balance::Params { blocks },
+            self.sizes.blocks,
         );
     }
 }

@@ -7,14 +7,6 @@ use crate::layout::COLORS;
 use crate::recording::Recording;
 use crate::stages;
 
-/// Sweeps of a backward step, and the part of the curvature of edges and contacts that damps it.
-const SWEEPS: usize = 8;
-const EDGE_PROXIMAL: f32 = 0.1;
-const CONTACT_PROXIMAL: f32 = 0.1;
-
-/// Gap below which a pair gets a row, in its desired distance.
-const ACTIVE: f32 = 1.5;
-
 impl<E: Engine> Collision<E> {
     /// The contact rows at the present positions: which candidates have one, and their colors.
     pub(super) fn record_rows(&self, recording: &mut Recording) {
@@ -27,6 +19,24 @@ impl<E: Engine> Collision<E> {
             vertices,
         );
         self.record_geometry(recording);
+        if self.settings.contacts_only {
+            let [edges_first, triangles_first] = self.adjacency_starts;
+            recording.dispatch(
+                &stages::FACING,
+                &[
+                    b.positions,
+                    b.edges,
+                    b.triangles,
+                    b.adjacency,
+                    b.candidates,
+                    b.states,
+                    b.separations,
+                    b.control,
+                ],
+                cpu::facing::Params { capacity, edges_first, triangles_first },
+                self.buffers.capacity,
+            );
+        }
         recording.dispatch(
             &stages::PICK,
             &[
@@ -39,7 +49,7 @@ impl<E: Engine> Collision<E> {
                 r.picked,
                 b.control,
             ],
-            cpu::pick::Params { capacity, threshold: ACTIVE },
+            cpu::pick::Params { capacity, threshold: self.settings.active as f32 },
             self.buffers.capacity,
         );
         recording.dispatch(
@@ -64,9 +74,17 @@ impl<E: Engine> Collision<E> {
         recording.dispatch(
             &stages::BUILD,
             &[b.edges, b.triangles, b.vertices, b.candidates, b.separations, b.states, r.rows, b.proximal],
-            cpu::build::Params { capacity, strength: CONTACT_PROXIMAL },
+            cpu::build::Params { capacity, strength: self.settings.contact_proximal as f32 },
             self.buffers.capacity,
         );
+        if self.frictional {
+            recording.dispatch(
+                &stages::SLIP,
+                &[b.positions, b.slip_start, b.vertices, b.planes, b.candidates, b.states, r.rows],
+                cpu::slip::Params { capacity },
+                self.buffers.capacity,
+            );
+        }
     }
 
     /// Colors the rows: rows of one color share no vertex that moves.
@@ -111,18 +129,21 @@ impl<E: Engine> Collision<E> {
         recording.dispatch(
             &stages::CURVE_EDGES,
             &[b.positions, b.limits, b.proximal],
-            cpu::curve_edges::Params { edges: self.edges.len() as u32, strength: EDGE_PROXIMAL },
+            cpu::curve_edges::Params {
+                edges: self.edges.len() as u32,
+                strength: self.settings.edge_proximal as f32,
+            },
             self.edges.len(),
         );
         recording.dispatch(
             &stages::RELEASE,
-            &[b.positions, b.targets, b.vertices, b.proximal, b.displacements, r.colors_in_use],
+            &[b.positions, b.targets, b.vertices, b.proximal, b.displacements, r.colors_in_use, b.swings],
             cpu::release::Params { vertices },
             self.sizes.vertices,
         );
         self.record_colors(recording);
         // First the multipliers of the last step are applied.
-        for sweep in 0..=SWEEPS {
+        for sweep in 0..=self.settings.sweeps {
             let only_apply = u32::from(sweep == 0);
             recording.dispatch(
                 &stages::SWEEP_ROWS,
@@ -147,8 +168,8 @@ impl<E: Engine> Collision<E> {
         );
         recording.dispatch(
             &stages::AIM,
-            &[b.positions, b.targets, b.displacements, b.aims],
-            cpu::aim::Params { vertices },
+            &[b.positions, b.targets, b.displacements, b.aims, b.swings],
+            cpu::aim::Params { vertices, growth: self.settings.proximal_growth as f32 },
             self.sizes.vertices,
         );
     }

@@ -43,7 +43,8 @@ fn collision(
         min_separation: MIN_SEPARATION,
         edge_limits: &[],
     };
-    Collision::new(TwinEngine::new(), model, x, rest, &lengths, &Constraints::default(), 0.9).unwrap()
+    Collision::new(TwinEngine::new(), model, x, rest, &lengths, &Constraints::default(), &Settings::default())
+        .unwrap()
 }
 
 /// The candidates with their states.
@@ -67,7 +68,7 @@ fn desired_distances_are_those_of_bodies_rest_shapes_and_gaps() {
     let rest: Vec<Point> = x.iter().map(|x| x * 1.5 + Vector::new(7.0, 0.0, 0.0)).collect();
     for (thickness, growth) in [(None, f64::INFINITY), (None, 1e-4), (Some(2e-3), f64::INFINITY)] {
         let mut collision = collision(&model, &x, &rest, thickness);
-        collision.begin(&x, growth).unwrap();
+        collision.begin(&Call { growth, ..Call::toward(&x) }).unwrap();
         collision.step().unwrap();
         let (mut neighbors, mut close) = (0, 0);
         for (candidate, state) in states(&mut collision) {
@@ -108,7 +109,7 @@ fn pairs_keep_their_states_while_they_are_candidates_and_buffers_grow() {
     let target: Vec<Point> = x.iter().map(|x| x + Vector::new(0.1, 0.02, -0.03) * (1.0 + x.y)).collect();
     for small in [false, true] {
         let mut collision = collision(&model, &x, &x, None);
-        collision.begin(&target, f64::INFINITY).unwrap();
+        collision.begin(&Call::toward(&target)).unwrap();
         collision.step().unwrap();
         // Values that tell pairs apart.
         let before = states(&mut collision);
@@ -118,7 +119,7 @@ fn pairs_keep_their_states_while_they_are_candidates_and_buffers_grow() {
         let list = collision.engine.run(&Recording::default(), &read).unwrap().swap_remove(0);
         let marked: Vec<PairState> = bytemuck::cast_slice::<u32, Candidate>(&list)
             .iter()
-            .map(|c| PairState { friction: [mark(c), 0.0, 1.0], ..before[c] })
+            .map(|c| PairState { range: mark(c), ..before[c] })
             .collect();
         let mut recording = Recording::default();
         recording.write(b.states, &marked);
@@ -140,16 +141,16 @@ fn pairs_keep_their_states_while_they_are_candidates_and_buffers_grow() {
                         let expected = PairState { multiplier: state.multiplier, color: state.color, ..*old };
                         assert_eq!(state, expected, "step {step}");
                     }
-                    None => assert_eq!(state.friction, [0.0; 3], "step {step}"),
+                    None => assert!(state.range > 1e6, "step {step}"),
                 }
-                kept += usize::from(state.friction[0] == mark(&candidate));
+                kept += usize::from(state.range == mark(&candidate));
                 new += usize::from(!known.contains_key(&candidate));
             }
         }
         assert!(kept > 100 && new > 10 && (grown > 0) == small, "{kept} {new} {grown}");
         // A new call begins without them.
-        collision.begin(&target, f64::INFINITY).unwrap();
-        assert!(states(&mut collision).values().all(|state| state.friction == [0.0; 3]));
+        collision.begin(&Call::toward(&target)).unwrap();
+        assert!(states(&mut collision).values().all(|state| *state == PairState::NEW));
     }
 }
 
@@ -167,7 +168,7 @@ fn rows_of_a_color_share_no_vertex_and_pairs_keep_their_colors() {
     let (model, x) = sheets();
     let target: Vec<Point> = x.iter().map(|x| x - Vector::new(0.0, 0.0, 2.0 * x.z)).collect();
     let mut collision = collision(&model, &x, &x, None);
-    collision.begin(&target, f64::INFINITY).unwrap();
+    collision.begin(&Call::toward(&target)).unwrap();
     let (mut colored, mut kept, mut known) = (0, 0, HashMap::new());
     for step in 0..8 {
         collision.step().unwrap();
@@ -186,7 +187,7 @@ fn rows_of_a_color_share_no_vertex_and_pairs_keep_their_colors() {
         known = states.into_iter().map(|(candidate, state)| (candidate, state.color)).collect();
     }
     let all: usize = rows(&mut collision).len();
-    assert!(colored > 1000 && kept > 500 && all > 100, "{colored} {kept} {all}");
+    assert!(colored > 300 && kept > 150 && all > 40, "{colored} {kept} {all}");
 }
 
 #[test]
@@ -195,7 +196,7 @@ fn two_sheets_that_are_pressed_together_rest_at_the_desired_distance() {
     // Both want to be where the other is.
     let target: Vec<Point> = x.iter().map(|x| Point::new(x.x, x.y, 3e-3 - x.z)).collect();
     let mut collision = collision(&model, &x, &x, None);
-    collision.begin(&target, f64::INFINITY).unwrap();
+    collision.begin(&Call::toward(&target)).unwrap();
     for _ in 0..40 {
         collision.step().unwrap();
     }
@@ -209,4 +210,84 @@ fn two_sheets_that_are_pressed_together_rest_at_the_desired_distance() {
     assert!(presses > 10 && least > -0.1 * DELTA, "{presses} {least}");
     // Their corners lie above each other.
     assert!(end[0].z > end[49].z, "{} {}", end[0], end[49]);
+}
+
+/// A triangle that is pressed onto the ground and pulled along it.
+#[test]
+fn friction_holds_up_to_its_coefficient_times_the_pressure() {
+    const PULL: f64 = 5e-3;
+    let x = [(0.0, 0.0), (EDGE, 0.0), (0.0, EDGE)].map(|(x, y)| Point::new(x, y, 1.01 * DELTA));
+    let topology = Topology::builder(3).triangles(vec![[0, 1, 2]]).build().unwrap();
+    let ground = bowknot_geometry::HalfSpace::new(Point::origin(), Vector::z()).unwrap();
+    let model =
+        CollisionModel::new(topology, vec![0; 3], vec![BodyFilter::DEFORMABLE], vec![ground]).unwrap();
+    for (of_body, of_ground, expected) in [(0.0, 0.5, 0.0), (0.8, 0.2, 0.4), (0.5, 0.5, 0.5), (2.0, 2.0, 1.0)]
+    {
+        let lengths = Lengths {
+            edges: &[EDGE; 3],
+            margins: &[DELTA; 3],
+            deltas: &[DELTA; 3],
+            thicknesses: &[],
+            min_separation: MIN_SEPARATION,
+            edge_limits: &[],
+        };
+        let constraints = Constraints {
+            frictions: &[of_body; 3],
+            half_space_frictions: &[of_ground],
+            ..Constraints::default()
+        };
+        let settings = Settings::default();
+        let engine = TwinEngine::new();
+        let mut collision =
+            Collision::new(engine, &model, &x, &x, &lengths, &constraints, &settings).unwrap();
+        // As far down as along: the pressure is worth the way that the ground takes.
+        let down = PULL + 0.01 * DELTA;
+        let target = x.map(|x| x + Vector::new(PULL, 0.0, -down));
+        collision.begin(&Call::toward(&target)).unwrap();
+        let last = (0..30).map(|_| collision.step().unwrap()).last().unwrap();
+        assert_eq!((last.contact_rows, last.pressing), (3, 3));
+        assert!(last.mean_residual < 1e-4 * EDGE && last.net_residual < 1e-4 * EDGE, "{last:?}");
+        for (end, start) in collision.positions().unwrap().iter().zip(x) {
+            let moved = end - start;
+            let held = 1.0 - moved.x / PULL;
+            assert!((held - expected).abs() < 0.01, "{of_body}, {of_ground}: {held}");
+            assert!((end.z - DELTA).abs() < 1e-3 * DELTA && moved.y.abs() < 1e-9, "{end}");
+        }
+    }
+}
+
+/// A vertex slides on a sheet whose edges it crosses: only the contact below it has a row.
+#[test]
+fn pairs_that_are_no_contacts_get_no_rows() {
+    let (n, edge) = (9u32, EDGE);
+    let mut x: Vec<Point> =
+        (0..n * n).map(|k| Point::new(edge * f64::from(k % n), edge * f64::from(k / n), 0.0)).collect();
+    let triangles = (0..n * (n - 1)).filter(|k| k % n != n - 1);
+    let triangles = triangles.flat_map(|k| [[k, k + 1, k + n + 1], [k, k + n + 1, k + n]]);
+    x.push(Point::new(2.05 * edge, 3.02 * edge, DELTA));
+    let v = x.len() - 1;
+    let topology = Topology::builder(x.len()).triangles(triangles).particles([v as u32]).build().unwrap();
+    let bodies = (0..x.len()).map(|k| u32::from(k == v)).collect();
+    let filters = vec![BodyFilter::OBSTACLE, BodyFilter::DEFORMABLE];
+    let model = CollisionModel::new(topology, bodies, filters, vec![]).unwrap();
+    let rows_with = |contacts_only: bool| {
+        let count = x.len();
+        let lengths = Lengths {
+            edges: &vec![EDGE; count],
+            margins: &vec![DELTA; count],
+            deltas: &vec![DELTA; count],
+            thicknesses: &[],
+            min_separation: MIN_SEPARATION,
+            edge_limits: &[],
+        };
+        let settings = Settings { contacts_only, ..Settings::default() };
+        let (engine, constraints) = (TwinEngine::new(), Constraints::default());
+        let mut collision =
+            Collision::new(engine, &model, &x, &x, &lengths, &constraints, &settings).unwrap();
+        let mut target = x.clone();
+        target[v] += Vector::new(0.3 * edge, 0.0, -0.1 * edge);
+        collision.begin(&Call::toward(&target)).unwrap();
+        collision.step().unwrap().contact_rows
+    };
+    assert!(rows_with(true) == 1 && rows_with(false) > 2, "{} {}", rows_with(true), rows_with(false));
 }

@@ -50,8 +50,11 @@ pub fn advance(
         control.remaining = control.remaining.max(left.to_bits());
         control.remaining_fraction = control.remaining_fraction.max((1.0 - alpha).to_bits());
         control.largest_move = control.largest_move.max((alpha * length).to_bits());
-        if vertex.flags & Vertex::PRESCRIBED != 0 && alpha >= paths[v][3] {
-            control.unhindered_lag = control.unhindered_lag.max(left.to_bits());
+        if alpha >= paths[v][3] {
+            control.unhindered = control.unhindered.max(left.to_bits());
+            if vertex.flags & Vertex::PRESCRIBED != 0 {
+                control.unhindered_lag = control.unhindered_lag.max(left.to_bits());
+            }
         }
         if alpha == 1.0 {
             positions[v] = targets[v];

@@ -1,5 +1,6 @@
 //! Twin of `shader/aim.wgsl`.
 
+use super::dot;
 use crate::bound::Bound;
 use bytemuck::{Pod, Zeroable};
 
@@ -7,13 +8,23 @@ use bytemuck::{Pod, Zeroable};
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Params {
     pub vertices: u32,
+    pub growth: f32,
 }
 
+const GROWTH: f32 = 2.0;
+const DECAY: f32 = 0.8;
 const BORDER: i32 = 536_870_911;
 const FARTHEST: f32 = 1_073_741_824.0;
 
 pub fn bound(buffers: Bound<'_>) {
-    aim(buffers.params(), &buffers.read(0), &buffers.read(1), &buffers.read(2), &mut buffers.write(3));
+    aim(
+        buffers.params(),
+        &buffers.read(0),
+        &buffers.read(1),
+        &buffers.read(2),
+        &mut buffers.write(3),
+        &mut buffers.write(4),
+    );
 }
 
 pub fn aim(
@@ -22,6 +33,7 @@ pub fn aim(
     targets: &[[i32; 4]],
     displacements: &[[f32; 4]],
     aims: &mut [[i32; 4]],
+    swings: &mut [[f32; 4]],
 ) {
     for v in 0..params.vertices as usize {
         let [x, y, z, weight] = displacements[v];
@@ -35,5 +47,13 @@ pub fn aim(
             }
         }
         aims[v] = aim;
+        let [last_x, last_y, last_z, mut factor] = swings[v];
+        let turn = dot([x, y, z], [last_x, last_y, last_z]);
+        if turn < 0.0 {
+            factor = (factor * GROWTH).min(params.growth);
+        } else if turn > 0.0 {
+            factor = (factor * DECAY).max(1.0);
+        }
+        swings[v] = [x, y, z, factor];
     }
 }

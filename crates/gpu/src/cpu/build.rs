@@ -71,11 +71,15 @@ pub fn build(
             vertices: pair.vertices,
             weights,
             normal: separation.normal,
-            value: separation.distance - state.desired,
+            value: separation.distance - separation.wanted,
             inverse_diagonal: 0.0,
             multiplier: state.multiplier,
             candidate: c,
             color: state.color,
+            slip: [0.0; 3],
+            coefficient: 0.0,
+            friction: [0.0; 3],
+            padding: 0,
         };
     }
 }

@@ -40,7 +40,7 @@ pub fn pick(
 ) {
     let count = control.candidates.min(params.capacity) as usize;
     let is_picked = |state: &PairState, candidate: Candidate, separation: &Separation| {
-        if separation.distance > state.range {
+        if separation.distance > state.range || separation.wanted == 0.0 {
             return false;
         }
         if state.multiplier > 0.0 {
@@ -53,7 +53,7 @@ pub fn pick(
             let [x, y, z, _] = displacements[pair.vertices[k] as usize];
             gap += weights[k] * dot(separation.normal, [x, y, z]);
         }
-        gap < params.threshold * state.desired
+        gap < params.threshold * separation.wanted
     };
     for c in 0..params.capacity as usize {
         picked[c] = 0;
@@ -63,6 +63,7 @@ pub fn pick(
             } else {
                 states[c].multiplier = 0.0;
                 states[c].color = NONE;
+                states[c].friction = [0.0; 3];
             }
         }
     }

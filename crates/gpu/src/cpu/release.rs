@@ -23,6 +23,7 @@ pub fn bound(buffers: Bound<'_>) {
         &mut buffers.write(3),
         &mut buffers.write(4),
         &mut buffers.write(5),
+        &buffers.read(6),
     );
 }
 
@@ -34,6 +35,7 @@ pub fn release(
     proximal: &mut [u32],
     displacements: &mut [[f32; 4]],
     in_use: &mut [[u32; 4]],
+    swings: &[[f32; 4]],
 ) {
     for v in 0..params.vertices as usize {
         let vertex = vertices[v];
@@ -41,7 +43,7 @@ pub fn release(
         if vertex.flags & Vertex::PRESCRIBED != 0 {
             displacements[v] = [wanted[0], wanted[1], wanted[2], 0.0];
         } else {
-            let damping = (proximal[v] as f32 / WEIGHT_UNITS).min(MOST_PROXIMAL * vertex.mass);
+            let damping = (proximal[v] as f32 / WEIGHT_UNITS * swings[v][3]).min(MOST_PROXIMAL * vertex.mass);
             let weight = 1.0 / (vertex.mass + damping);
             let [x, y, z] = scaled(wanted, weight * vertex.mass);
             displacements[v] = [x, y, z, weight];

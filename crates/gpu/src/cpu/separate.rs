@@ -42,7 +42,14 @@ fn separate_plane(position: [i32; 4], plane: &Plane) -> Separation {
     let offset = difference(position, [plane.point[0], plane.point[1], plane.point[2], 0]);
     let height = dot(plane.normal, offset);
     let width = height - plane.rounding * largest(offset) - POINT_ROUNDING;
-    Separation { normal: plane.normal, width, weights: [0.0; 2], distance: height, min_separation: 0.0 }
+    Separation {
+        normal: plane.normal,
+        width,
+        weights: [0.0; 2],
+        distance: height,
+        min_separation: 0.0,
+        ..Separation::default()
+    }
 }
 
 pub fn separate(
@@ -107,8 +114,14 @@ fn separate_pair(
     let distance = dot(closest.offset, closest.offset).sqrt();
     let [first, second, third] = closest.weights;
     let weights = if pair.kind == Kind::EdgeEdge as u32 { [first, third] } else { [second, third] };
-    let mut separation =
-        Separation { normal: [0.0, 0.0, 1.0], width: -1.0, weights, distance, min_separation: 0.0 };
+    let mut separation = Separation {
+        normal: [0.0, 0.0, 1.0],
+        width: -1.0,
+        weights,
+        distance,
+        min_separation: 0.0,
+        ..Separation::default()
+    };
     if distance > 0.0 {
         separation.normal = divided(closest.offset, distance);
         separation.width = width_along(separation.normal, differences, slack);

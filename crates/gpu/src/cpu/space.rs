@@ -50,6 +50,7 @@ pub fn space(
             states[c] = first_state(&params, &pair, &separations[c], rest, vertices);
         }
         separations[c].min_separation = states[c].min_separation;
+        separations[c].wanted = states[c].desired;
     }
 }
 

@@ -11,12 +11,13 @@ pub struct Params {
 }
 
 pub fn bound(buffers: Bound<'_>) {
-    store(buffers.params(), &buffers.read(0), &mut buffers.write(1), &buffers.read::<Control>(2)[0]);
+    store(buffers.params(), &buffers.read(0), &mut buffers.write(1), &mut buffers.write::<Control>(2)[0]);
 }
 
-pub fn store(params: Params, rows: &[Row], states: &mut [PairState], control: &Control) {
+pub fn store(params: Params, rows: &[Row], states: &mut [PairState], control: &mut Control) {
     for row in &rows[..control.rows.min(params.capacity) as usize] {
+        control.pressing += u32::from(row.multiplier > 0.0);
         let state = &mut states[row.candidate as usize];
-        (state.multiplier, state.color) = (row.multiplier, row.color);
+        (state.multiplier, state.color, state.friction) = (row.multiplier, row.color, row.friction);
     }
 }

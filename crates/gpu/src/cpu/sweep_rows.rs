@@ -1,6 +1,6 @@
 //! Twin of `shader/sweep_rows.wgsl`.
 
-use super::{added, dot, scaled};
+use super::{added, dot, scaled, subtracted};
 use crate::bound::Bound;
 use crate::layout::{COLORS, Row};
 use bytemuck::{Pod, Zeroable};
@@ -37,23 +37,39 @@ fn relax(params: Params, row: &mut Row, displacements: &mut [[f32; 4]]) {
     if row.inverse_diagonal == 0.0 {
         return;
     }
-    let mut change = row.multiplier;
-    if params.only_apply == 0 {
-        let mut value = row.value;
-        for k in 0..4 {
-            let [x, y, z, _] = displacements[row.vertices[k] as usize];
-            value += row.weights[k] * dot(row.normal, [x, y, z]);
-        }
-        let multiplier = (row.multiplier - value * row.inverse_diagonal).max(0.0);
-        change = multiplier - row.multiplier;
-        row.multiplier = multiplier;
+    if params.only_apply != 0 {
+        push(row, added(scaled(row.normal, row.multiplier), row.friction), displacements);
+        return;
     }
-    for k in 0..4 {
-        let place = &mut displacements[row.vertices[k] as usize];
+    let value = row.value + dot(row.normal, relative_displacement(row, displacements));
+    let multiplier = (row.multiplier - value * row.inverse_diagonal).max(0.0);
+    push(row, scaled(row.normal, multiplier - row.multiplier), displacements);
+    row.multiplier = multiplier;
+    if row.coefficient > 0.0 && (multiplier > 0.0 || row.friction != [0.0; 3]) {
+        let moved = added(row.slip, relative_displacement(row, displacements));
+        let slip = subtracted(moved, scaled(row.normal, dot(row.normal, moved)));
+        let wanted = subtracted(row.friction, scaled(slip, row.inverse_diagonal));
+        let (size, largest) = (dot(wanted, wanted).sqrt(), row.coefficient * multiplier);
+        let friction = if size > largest { scaled(wanted, largest / size) } else { wanted };
+        push(row, subtracted(friction, row.friction), displacements);
+        row.friction = friction;
+    }
+}
+
+fn relative_displacement(row: &Row, displacements: &[[f32; 4]]) -> [f32; 3] {
+    row.vertices.into_iter().zip(row.weights).fold([0.0; 3], |sum, (v, weight)| {
+        let [x, y, z, _] = displacements[v as usize];
+        added(sum, scaled([x, y, z], weight))
+    })
+}
+
+fn push(row: &Row, change: [f32; 3], displacements: &mut [[f32; 4]]) {
+    for (v, beta) in row.vertices.into_iter().zip(row.weights) {
+        let place = &mut displacements[v as usize];
         let [x, y, z, weight] = *place;
-        let step = weight * row.weights[k] * change;
+        let step = weight * beta;
         if step != 0.0 {
-            let [x, y, z] = added([x, y, z], scaled(row.normal, step));
+            let [x, y, z] = added([x, y, z], scaled(change, step));
             *place = [x, y, z, weight];
         }
     }

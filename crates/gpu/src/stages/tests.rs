@@ -44,16 +44,18 @@ fn structs_lie_alike_on_both_sides() {
         };
     }
     let structs = [
-        offsets!(Vertex: edge, margin, body, flags, groups, mask, group, delta, thickness, mass),
+        offsets!(Vertex: edge, margin, body, flags, groups, mask, group, delta, thickness, mass, root_of_friction),
         offsets!(Ball: center, radius),
         offsets!(NodeBox: low, deformable, high, padding),
         offsets!(Candidate: kind_and_a, b),
-        offsets!(Separation: normal, width, weights, distance, min_separation),
+        offsets!(Separation: normal, width, weights, distance, min_separation, wanted, padding_0, padding_1, padding_2),
         offsets!(PairState: friction, multiplier, desired, min_separation, range, color),
-        offsets!(Row: vertices, weights, normal, value, inverse_diagonal, multiplier, candidate, color),
+        offsets!(Row: vertices, weights, normal, value, inverse_diagonal, multiplier, candidate, color, slip, coefficient,
+            friction, padding),
         offsets!(EdgeLimit: a, b, limit, padding, multiplier, padding_1),
         offsets!(OldRow: first, count),
-        offsets!(Plane: normal, rounding, point, padding),
+        offsets!(Block: first, count, body),
+        offsets!(Plane: normal, rounding, point, root_of_friction),
     ];
     let source = ALL.iter().find(|stage| stage.name == "separate").expect("a stage").source();
     let module = naga::front::wgsl::parse_str(&source).expect("valid");

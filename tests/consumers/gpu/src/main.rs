@@ -2,7 +2,7 @@
 #![allow(clippy::print_stdout, reason = "a command")]
 
 use bowknot_gpu::geometry::{CollisionModel, Point, Topology};
-use bowknot_gpu::{Collision, Constraints, Lengths, TwinEngine};
+use bowknot_gpu::{Call, Collision, Constraints, Lengths, Settings, TwinEngine};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let at = |z: f64| [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(x, y)| Point::new(x, y, z));
@@ -17,9 +17,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         min_separation: 1e-3,
         edge_limits: &[],
     };
-    let mut collision =
-        Collision::new(TwinEngine::new(), &model, &start, &start, &lengths, &Constraints::default(), 0.9)?;
-    collision.begin(&[at(-10.0), at(0.0)].concat(), f64::INFINITY)?;
+    let mut collision = Collision::new(
+        TwinEngine::new(),
+        &model,
+        &start,
+        &start,
+        &lengths,
+        &Constraints::default(),
+        &Settings::default(),
+    )?;
+    collision.begin(&Call::toward(&[at(-10.0), at(0.0)].concat()))?;
     for step in 0..12 {
         let report = collision.step()?;
         let lowest = collision.positions()?[..3].iter().map(|x| x.z).fold(f64::INFINITY, f64::min);
