@@ -57,6 +57,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     // The judge shares no code with what it judges.
     ("bowknot-check", &["bowknot-geometry"]),
     ("bowknot-report", &["bowknot-geometry", "bowknot-io"]),
+    ("bowknot-gpu", &["bowknot-check", "bowknot-geometry", "bowknot-proximity"]),
     (
         "bowknot",
         &[
@@ -64,6 +65,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "bowknot-constraints",
             "bowknot-dynamics",
             "bowknot-geometry",
+            "bowknot-gpu",
             "bowknot-io",
             "bowknot-lcp",
             "bowknot-proximity",
@@ -74,7 +76,6 @@ const ALLOWED: &[(&str, &[&str])] = &[
         ],
     ),
     ("bowknot-render", &["bowknot-geometry"]),
-    ("bowknot-gpu", &["bowknot-check", "bowknot-geometry", "bowknot-proximity"]),
     ("bowknot-cli", &["bowknot", "bowknot-render"]),
     ("xtask", &[]),
 ];

@@ -18,6 +18,7 @@
 //! | [`simulator`] | the time-step loop, its statistics, checkpoints |
 //! | `run` | whole runs: the output folder, resuming, checking as it goes (feature `files`) |
 //! | `recording` | collision problems, recorded and solved again (feature `files`) |
+//! | `gpu` | collision problems on a GPU (feature `gpu`) |
 //! | `repair` | cleaning of meshes whose seams intersect (feature `files`) |
 //! | [`scene`], [`shapes`], [`world`] | scene files, built-in scenes, generated meshes, the assembled world |
 //! | [`io`] | mesh files, archives, atomic writes |
@@ -28,12 +29,15 @@
 //! |---|---|---|
 //! | `files` | NumPy archives, checkpoint files, runs, recordings, repair | ndarray, zip, flate2 |
 //! | `report` | the HTML page | `files`, and 1 MB of scripts |
+//! | `gpu` | collision problems on a GPU | wgpu |
 //!
-//! Neither is on by default; the command has both. A feature never changes a result.
+//! None is on by default; the command has all. A feature never changes a result.
 //!
 //! The crates below are re-exported under short names. This crate does not know terminals: it never
 //! prints, it logs through `tracing`.
 
+#[cfg(feature = "gpu")]
+pub mod gpu;
 #[cfg(feature = "files")]
 pub mod recording;
 #[cfg(feature = "files")]

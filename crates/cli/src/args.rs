@@ -297,7 +297,7 @@ pub struct InfoOptions {
     /// Print at most this many parts, borders, odd edges and problems of a mesh; all are counted
     #[arg(long, value_name = "N", default_value_t = 5)]
     pub list: usize,
-    /// List the GPUs that could compute; none can yet
+    /// List the GPUs of this machine, for --device
     #[arg(long, conflicts_with = "scene")]
     pub gpus: bool,
     /// Print JSON
@@ -314,6 +314,9 @@ pub struct Machine {
     /// Where to compute
     #[arg(long, value_enum, default_value_t = Backend::Auto)]
     pub backend: Backend,
+    /// Which GPU: its number in `bowknot info --gpus` [default: the first that is usable]
+    #[arg(long, value_name = "N")]
+    pub device: Option<usize>,
 }
 
 /// How collisions are resolved.
@@ -366,9 +369,9 @@ impl Up {
 pub enum Backend {
     /// The CPU
     Cpu,
-    /// A GPU; none is built in yet
+    /// A GPU: `resolve` only, without coarse corrections (docs/GPU.md)
     Gpu,
-    /// The fastest that is built in, at present the CPU
+    /// The one that can do all that is asked, at present the CPU
     Auto,
 }
 

@@ -2,7 +2,7 @@
 
 use crate::args::InfoOptions;
 use crate::exit::{Exit, Failure};
-use crate::{archive, bare_mesh, output, setup};
+use crate::{archive, bare_mesh, gpu, output};
 use bowknot::geometry::{MeshEdge, MeshProblem, MeshStructure, Point, check_mesh};
 use bowknot::io::{Import, Mesh, read_mesh};
 use bowknot::{Scene, SceneInfo, World};
@@ -41,7 +41,8 @@ struct Surface {
 
 pub fn info(options: &InfoOptions) -> Result<Exit, Failure> {
     let Some(name) = options.scene.as_deref().filter(|_| !options.gpus) else {
-        return Err(setup::no_gpu());
+        output::print(&gpu::list()?)?;
+        return Ok(Exit::Success);
     };
     let info = if bare_mesh::is_mesh(name) {
         info_of_file(name, &bare_mesh::assignments(options.up, options.scale))?

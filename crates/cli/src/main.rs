@@ -11,6 +11,7 @@ mod check;
 mod dump;
 mod exit;
 mod export;
+mod gpu;
 mod info;
 mod interrupt;
 mod output;
@@ -33,7 +34,7 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     // With a wrong option clap prints a message and exits with code 2.
     let arguments = Arguments::parse();
-    #[cfg(all(feature = "render", target_os = "linux"))]
+    #[cfg(all(any(feature = "gpu", feature = "render"), target_os = "linux"))]
     setup::no_display();
     setup::logging(matches!(&arguments.command, Command::Run(options) if options.quiet));
     let result = match arguments.command {

@@ -1,9 +1,9 @@
 //! `bowknot resolve`: resolves one recorded collision problem.
 
-use crate::args::ResolveOptions;
+use crate::args::{Backend, ResolveOptions};
 use crate::exit::{Exit, Failure};
 use crate::interrupt::Interrupt;
-use crate::{output, setup, sizes};
+use crate::{gpu, output, setup, sizes};
 use bowknot::check::{Judge, StateOptions};
 use bowknot::proximity::CollisionModel;
 use bowknot::recording::{States, write_result};
@@ -66,11 +66,18 @@ pub fn resolve(options: &ResolveOptions) -> Result<Exit, Failure> {
     };
     let mut x = states.x.clone();
     let cpu = bowknot::simulator::cpu_seconds();
-    let statistics = resolver
-        .resolve_with(&mut x, &states.y, &states.input(), &mut watch)
-        .map_err(|error| bad_input(error.to_string()))?;
-    let waiting =
-        (0..x.len()).filter(|&v| (states.fixed[v] || states.obstacle[v]) && x[v] != states.y[v]).count();
+    let statistics = match options.machine.backend {
+        Backend::Gpu => {
+            gpu::resolve(&options.machine, &resolver, &mut x, &states, &mut || !interrupt.is_set())?
+        }
+        Backend::Cpu | Backend::Auto => resolver
+            .resolve_with(&mut x, &states.y, &states.input(), &mut watch)
+            .map_err(|error| bad_input(error.to_string()))?,
+    };
+    let is_waiting = |v: &usize| (states.fixed[*v] || states.obstacle[*v]) && x[*v] != states.y[*v];
+    // On a GPU, a vertex on the point of its grid next to the target has arrived.
+    let waits = statistics.prescribed_lag_m > 0.0;
+    let waiting = if waits { (0..x.len()).filter(is_waiting).count() } else { 0 };
     let summary = summarize(&statistics, bowknot::simulator::cpu_seconds() - cpu, waiting);
     write_result(&options.out, &states, &x)?;
 

@@ -16,6 +16,7 @@ use std::path::Path;
 const MAX_SIZES: usize = 10;
 
 pub fn run(options: &RunOptions) -> Result<Exit, Failure> {
+    setup::refuse_gpu(&options.machine)?;
     setup::machine(&options.machine)?;
     if let Some(dump) = &options.dump {
         output::refuse_overwrite(dump, &[Path::new(&options.scene)])?;

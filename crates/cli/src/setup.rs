@@ -35,7 +35,7 @@ fn colors() -> bool {
 /// user selects a GPU through it.
 ///
 /// To be called while the process has one thread.
-#[cfg(all(feature = "render", target_os = "linux"))]
+#[cfg(all(any(feature = "gpu", feature = "render"), target_os = "linux"))]
 pub fn no_display() {
     let set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     if set("XDG_RUNTIME_DIR") || set("MESA_VK_DEVICE_SELECT") {
@@ -48,18 +48,23 @@ pub fn no_display() {
     }
 }
 
-/// Starts the threads, and refuses a backend that is not built in.
-pub fn machine(machine: &Machine) -> Result<(), Failure> {
+/// Refuses a GPU for what none can do yet.
+pub fn refuse_gpu(machine: &Machine) -> Result<(), Failure> {
     if machine.backend == Backend::Gpu {
-        return Err(no_gpu());
+        let message = "whole simulations do not run on a GPU yet, only `bowknot resolve` does: use --backend cpu or leave \
+                       the option out";
+        return Err(Failure::backend(message));
+    }
+    Ok(())
+}
+
+/// Starts the threads.
+pub fn machine(machine: &Machine) -> Result<(), Failure> {
+    if machine.device.is_some() && machine.backend != Backend::Gpu {
+        return Err(Failure::input("--device needs --backend gpu"));
     }
     let threads = machine.threads.unwrap_or(0);
     rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().map_err(|error| {
         Failure::input(format!("cannot start {}: {error}; try fewer", counted(threads, "thread", "threads")))
     })
-}
-
-/// The failure of a command that asks for a GPU.
-pub fn no_gpu() -> Failure {
-    Failure::backend("no GPU backend is built in yet: use --backend cpu or leave the option out")
 }

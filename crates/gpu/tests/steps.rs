@@ -223,6 +223,44 @@ fn a_device_agrees_with_the_twins_as_long_as_rounding_decides_nothing() {
     }
 }
 
+/// Two bodies of one kind that meet, with friction, and nothing else: what a scene lacks has no buffers.
+#[test]
+fn scenes_of_one_kind_of_body_run_on_a_device() {
+    let corner = [(0.0, 0.0), (EDGE, 0.0), (0.0, EDGE)];
+    let at = |z: f64| corner.map(|(x, y)| Point::new(x, y, z));
+    let x = [at(0.0), at(0.5 * EDGE)].concat();
+    let target = [at(0.5 * EDGE), at(0.0)].concat();
+    let ground = HalfSpace::new(Point::new(0.0, 0.0, -0.1 * EDGE), Vector::z()).unwrap();
+    let mut pressed = Vec::new();
+    for (what, planes) in [(0, vec![]), (1, vec![]), (2, vec![]), (2, vec![ground])] {
+        let builder = Topology::builder(6);
+        let builder = match what {
+            0 => builder.triangles([[0, 1, 2], [3, 4, 5]]),
+            1 => builder.strand_edges([[0, 1], [1, 2], [3, 4], [4, 5]]),
+            _ => builder.particles([0, 1, 2, 3, 4, 5]),
+        };
+        let model = CollisionModel::new(
+            builder.build().unwrap(),
+            vec![0, 0, 0, 1, 1, 1],
+            vec![BodyFilter::DEFORMABLE; 2],
+            planes.clone(),
+        );
+        let scene = Scene { model: model.unwrap(), x: x.clone() };
+        let constraints = Constraints {
+            frictions: &[0.3; 6],
+            half_space_frictions: &vec![0.3; planes.len()],
+            ..Constraints::default()
+        };
+        let mut collision = collision(ComparingEngine::new(device()), &scene, &constraints);
+        collision.begin(&Call::toward(&target)).unwrap();
+        let last = (0..12).map(|_| collision.step().unwrap()).last().unwrap();
+        pressed.push(last.pressing > 0);
+        assert_eq!(collision.engine().differences(), []);
+        assert_no_intersections(&scene, &collision.positions().unwrap(), &format!("{what}"));
+    }
+    assert_eq!(pressed, [true; 4]);
+}
+
 /// A sheet hangs from a row of vertices that do not move, with a target a meter below.
 #[test]
 fn edges_stay_below_their_limits() {

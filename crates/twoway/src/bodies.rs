@@ -101,6 +101,11 @@ impl ContactTable {
         self.frictional
     }
 
+    /// Whether pairs have coefficients of friction of their own.
+    pub fn has_pair_friction(&self) -> bool {
+        !self.pairs.is_empty()
+    }
+
     /// Coefficient of friction between two sides [1].
     pub fn friction(&self, a: ContactSide, b: ContactSide) -> f64 {
         if !self.frictional {

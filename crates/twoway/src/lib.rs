@@ -73,7 +73,8 @@ pub use spacing::{MIN_SEPARATION_MARGIN, PairSpacing, Spacing};
 pub use stages::{AheadVisitor, BackwardStep, Coverage, ForwardStep, Search};
 pub use state::{ContactSet, ResolveState};
 pub use statistics::{Skipped, StageSeconds, Statistics};
-pub use stop::{Residuals, StopParams, StopRule};
+pub use stop::{Residuals, StopParams, StopRule, StopTest};
+pub use stretch::max_stretch;
 
 /// The README's example is tested with the documentation.
 #[cfg(doctest)]

@@ -139,7 +139,7 @@ impl Parameters for StopParams {
 
 /// Decides during a call whether it ends.
 #[derive(Debug)]
-pub(crate) struct StopTest {
+pub struct StopTest {
     params: StopParams,
     /// Mean edge length [m].
     edge: f64,

@@ -5,7 +5,7 @@ use bowknot_geometry::Point;
 
 /// Largest ratios of the length of a deformable body's edge at `end` to its lengths in two `references`; 1 where
 /// no edge has a length.
-pub(crate) fn max_stretch(scene: &CollisionScene, references: [&[Point]; 2], end: &[Point]) -> [f64; 2] {
+pub fn max_stretch(scene: &CollisionScene, references: [&[Point]; 2], end: &[Point]) -> [f64; 2] {
     let model = scene.model();
     let mut largest = [None; 2];
     for &[a, b] in &model.topology().edges {

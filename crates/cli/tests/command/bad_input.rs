@@ -110,10 +110,10 @@ fn unknown_options_and_formats() {
 }
 
 #[test]
-fn a_gpu_is_not_to_be_had() {
+fn whole_runs_do_not_compute_on_a_gpu() {
     let place = Place::new();
-    place.run(&format!("{SMALL} --backend gpu")).refused(3, &["no GPU backend is built in", "--backend cpu"]);
-    place.run("info --gpus").refused(3, &["no GPU backend"]);
+    place.run(&format!("{SMALL} --backend gpu")).refused(3, &["do not run on a GPU yet", "--backend cpu"]);
+    place.run(&format!("{SMALL} --device 1")).refused(2, &["--backend gpu"]);
     assert!(!place.path("out").exists());
 }
 

@@ -26,9 +26,15 @@ fn heights(place: &Place, name: &str) -> (f64, f64) {
 fn layers_stay_in_order() {
     let place = Place::new();
     problem(&place, "in.npz");
-    for (preset, error) in [("fast", 0.005), ("quick", 0.02), ("paper", 0.005)] {
+    let runs = [
+        ("fast", "--preset fast", 0.005),
+        ("quick", "--preset quick", 0.02),
+        ("paper", "--preset paper", 0.005),
+        ("gpu", "--backend gpu", 0.005),
+    ];
+    for (preset, options, error) in runs {
         let out = format!("{preset}.npz");
-        let ended = place.run(&format!("resolve in.npz --out {out} --preset {preset} --json")).ok();
+        let ended = place.run(&format!("resolve in.npz --out {out} {options} --json")).ok();
         let summary = ended.json();
         for key in ["steps", "searches"] {
             assert!(summary[key].as_u64().unwrap() >= 1, "{key}: {summary}");
@@ -151,7 +157,10 @@ fn what_is_refused() {
     place.run("resolve in.npz --out none/out.npz").refused(2, &["none/out.npz", "no such"]);
     place.run("resolve in.npz --out out.npz --max-seconds 0").refused(2, &["--max-seconds"]);
     place.run("resolve in.npz --out out.npz --set contact.gama=1").refused(2, &["contact.gama"]);
-    place.run("resolve in.npz --out out.npz --backend gpu").refused(3, &["no GPU backend"]);
+    place.run("resolve in.npz --out out.npz --backend gpu --device 99").refused(3, &["no device 99"]);
+    place
+        .run("resolve in.npz --out out.npz --backend gpu --preset paper")
+        .refused(3, &["contact.form", "--backend cpu", "--preset fast"]);
     assert!(!place.path("out.npz").exists());
 
     let start = |name: &str, x: Array2<f64>, extra: Option<(&str, Array2<f64>)>| {

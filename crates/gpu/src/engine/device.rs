@@ -1,6 +1,6 @@
 //! Runs recordings on a device.
 
-use super::traits::Engine;
+use super::traits::{Engine, SMALLEST_BUFFER};
 use crate::adapter::{Adapter, wait};
 use crate::error::GpuError;
 use crate::recording::{BufferId, Command, Dispatch, Recording};
@@ -168,7 +168,7 @@ impl DeviceEngine {
 
 impl Engine for DeviceEngine {
     fn buffer(&mut self, label: &'static str, words: usize) -> Result<BufferId, GpuError> {
-        let size = 4 * words.max(1) as u64;
+        let size = 4 * words.max(SMALLEST_BUFFER) as u64;
         let limits = self.device.limits();
         let largest = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
         let out_of_memory = || GpuError::OutOfMemory { adapter: self.name.clone(), what: label, bytes: size };

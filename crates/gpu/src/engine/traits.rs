@@ -3,9 +3,12 @@
 use crate::error::GpuError;
 use crate::recording::{BufferId, Recording};
 
+/// Words of the smallest buffer: a buffer that is bound must hold an entry of its array, whatever is in it.
+pub(super) const SMALLEST_BUFFER: usize = 32;
+
 /// Holds buffers and runs recordings. A buffer is a list of words of 32 bits.
 pub trait Engine {
-    /// Makes a buffer of `words` zeros, at least one.
+    /// Makes a buffer of at least `words` zeros.
     ///
     /// # Errors
     /// [`GpuError::OutOfMemory`].

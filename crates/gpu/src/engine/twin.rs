@@ -1,6 +1,6 @@
 //! Runs recordings with the twins of the kernels, on one thread.
 
-use super::traits::Engine;
+use super::traits::{Engine, SMALLEST_BUFFER};
 use crate::bound::Bound;
 use crate::error::GpuError;
 use crate::recording::{BufferId, Command, Dispatch, Recording};
@@ -35,7 +35,7 @@ impl TwinEngine {
 
 impl Engine for TwinEngine {
     fn buffer(&mut self, _label: &'static str, words: usize) -> Result<BufferId, GpuError> {
-        self.buffers.push(RefCell::new(vec![0; words.max(1)]));
+        self.buffers.push(RefCell::new(vec![0; words.max(SMALLEST_BUFFER)]));
         Ok(BufferId(self.buffers.len() as u32 - 1))
     }
 
