@@ -62,6 +62,12 @@ fn no_small_scene_is_ever_brought_to_intersect() {
 }
 
 #[test]
+fn no_small_scene_is_brought_to_intersect_by_the_twins_of_the_kernels() {
+    let reached = share(fuzz::resolve_on_twins, 2_000 * seeds(), 800);
+    assert!(reached > 0.05, "only {reached:.3} of the scenes were taken");
+}
+
+#[test]
 fn arrays_of_any_kind_are_read_or_refused() {
     let compose = |data: &[u8]| fuzz::read_mesh(&[&[3], data].concat());
     let reached = share(compose, 500 * seeds(), 600);

@@ -3,8 +3,9 @@
 //! The device takes the same two-way steps and stops by the same rule. Its sweeps make no coarse corrections and do not
 //! polish the target, so that it may take other steps than the CPU. Positions lie on a grid, see [`bowknot_gpu::Grid`].
 
-use bowknot_check::{CheckError, Judge, StateOptions, StateReport};
+use bowknot_check::{CheckError, Intersection, Judge, StateOptions, StateReport};
 use bowknot_constraints::{ContactForm, EdgeForm, EdgeReference, FrictionModel};
+use bowknot_errors::counted;
 use bowknot_geometry::Point;
 use bowknot_gpu::{Call, Collision, CollisionError, Constraints, Engine, Lengths, Settings};
 use bowknot_stepper::{Bound, StepReport, TrustRegionRule};
@@ -47,12 +48,15 @@ pub enum GpuResolveError {
     },
     /// The device computed a state that intersects: its driver does not compute what it should.
     #[error(
-        "{count} pairs intersect in the state that the device computed, which nothing was done with: its driver does not \
-         compute what it should. Use --backend cpu, and report this with the output of `bowknot info --gpus`"
+        "{} in the state that the device computed, which was thrown away: {first}. Its driver does not compute what it \
+         should. Use --backend cpu, and report this with the output of `bowknot info --gpus`",
+        counted(*count, "pair intersects", "pairs intersect")
     )]
     Intersects {
         /// Pairs that intersect.
         count: usize,
+        /// The first of them.
+        first: Box<Intersection>,
     },
 }
 
@@ -116,9 +120,9 @@ pub fn resolve_on<E: Engine>(
         }
     }
     let end = collision.positions()?;
-    let state = judge.check_state(&end, &StateOptions { limit: 0, distance: true })?;
-    if !state.is_clear() {
-        return Err(GpuResolveError::Intersects { count: state.intersection_count });
+    let mut state = judge.check_state(&end, &StateOptions { limit: 1, distance: true })?;
+    if let Some(first) = state.intersections.pop() {
+        return Err(GpuResolveError::Intersects { count: state.intersection_count, first: Box::new(first) });
     }
     finish(&mut statistics, scene, &call, [positions, &end, target], &state, collision.grid().quantum());
     positions.copy_from_slice(&end);
@@ -169,6 +173,9 @@ fn collision<E: Engine>(
     let backward = &params.solver.backward;
     let settings = Settings {
         sweeps: backward.sweeps,
+        polish_sweeps: backward.polish_sweeps,
+        polish_distance: backward.polish_distance * scene.lengths().edge,
+        polish_stretch: 1.0 + 0.5 * params.solver.stop.stretch_tolerance,
         edge_proximal: backward.edge_proximal,
         contact_proximal: backward.contact_proximal,
         proximal_growth: backward.proximal_growth,

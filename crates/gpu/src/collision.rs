@@ -55,6 +55,12 @@ pub enum CollisionError {
 pub struct Settings {
     /// Gauss-Seidel sweeps of a backward step.
     pub sweeps: usize,
+    /// Sweeps while the last step left less than `polish_distance` and stretched an edge beyond `polish_stretch`.
+    pub polish_sweeps: usize,
+    /// Remaining distance of a vertex [m].
+    pub polish_distance: f64,
+    /// Ratio of an edge's length to its limit [1].
+    pub polish_stretch: f64,
     /// Strength of the proximal term of edges: the part of their curvature that counts.
     pub edge_proximal: f64,
     /// The same of contacts.
@@ -75,6 +81,9 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             sweeps: 8,
+            polish_sweeps: 8,
+            polish_distance: 0.0,
+            polish_stretch: 1.01,
             edge_proximal: 0.1,
             contact_proximal: 0.1,
             proximal_growth: 32.0,
@@ -83,6 +92,14 @@ impl Default for Settings {
             contacts_only: true,
             damping: 0.9,
         }
+    }
+}
+
+impl Settings {
+    fn sweeps_after(&self, report: &StepReport) -> usize {
+        let is_near = report.remaining < self.polish_distance;
+        let polishes = is_near && report.stretch_to_limit > self.polish_stretch;
+        if polishes { self.polish_sweeps.max(self.sweeps) } else { self.sweeps }
     }
 }
 
@@ -148,6 +165,8 @@ pub struct Collision<E> {
     adjacency_starts: [u32; 2],
     /// Whether any contact may have friction.
     frictional: bool,
+    /// Sweeps of the next step.
+    sweeps: usize,
     /// Whether all trust regions are new.
     all_new: bool,
     /// Whether the step is made again, because a buffer was too small.
@@ -188,7 +207,10 @@ impl<E: Engine> Collision<E> {
         ] {
             check_length(what, given, count)?;
         }
-        let room = extent(positions).max(extent(rest));
+        // Trust regions and boxes must fit as well: no radius is above an edge length, none of a box above two margins more.
+        let lengths_of_vertices = lengths.edges.iter().chain(lengths.margins);
+        let largest = lengths_of_vertices.fold(0.0, |largest: f64, length| largest.max(*length));
+        let room = extent(positions).max(extent(rest)).max(4.0 * largest);
         let grid = Grid::around(positions, room, lengths.min_separation)?;
         let on_grid = snapped(&grid, positions)?;
         let rest_grid = grid.around_others(rest).ok_or(CollisionError::OutsideGrid { vertex: 0 })?;
@@ -243,6 +265,7 @@ impl<E: Engine> Collision<E> {
             edges,
             adjacency_starts: [adjacency.edges_first, adjacency.triangles_first],
             frictional,
+            sweeps: settings.sweeps,
             all_new: true,
             again: false,
         })
@@ -277,6 +300,7 @@ impl<E: Engine> Collision<E> {
         // Without candidates nothing is inherited from the call before.
         recording.write(self.buffers.control, &[Control::default()]);
         self.engine.run(&recording, &[])?;
+        self.sweeps = self.settings.sweeps;
         self.lengths.growth = self.grid.length(call.growth).min(f32::MAX);
         self.search()
     }
@@ -317,7 +341,9 @@ impl<E: Engine> Collision<E> {
             let control = self.run(&recording)?;
             if control.overflow == 0 {
                 (self.all_new, self.again) = (false, false);
-                return Ok(self.report(&control));
+                let report = self.report(&control);
+                self.sweeps = self.settings.sweeps_after(&report);
+                return Ok(report);
             }
             self.grow(&control)?;
         }

@@ -1,7 +1,7 @@
 //! Steps toward random targets, by twins and by a device: nothing ever intersects, and both agree.
 #![allow(clippy::unwrap_used)] // helpers of tests are outside the functions that the lint knows as tests
 
-use bowknot_check::{Judge, StateOptions};
+use bowknot_check::{Judge, PathOptions, StateOptions};
 use bowknot_geometry::{BodyFilter, CollisionModel, HalfSpace, PairKind, Point, Topology, Vector};
 use bowknot_gpu::{
     Adapter, Call, Candidate, Collision, CollisionError, ComparingEngine, Constraints, DeviceEngine, Engine,
@@ -124,14 +124,29 @@ fn nothing_intersects_on_the_way_to_random_targets() {
             collision.begin(&Call::toward(&target)).unwrap();
             for step in 0..20 {
                 let report = collision.step().unwrap();
-                scene.x = collision.positions().unwrap();
+                let before = std::mem::replace(&mut scene.x, collision.positions().unwrap());
                 assert_no_intersections(&scene, &scene.x, &format!("round {round} step {step}"));
+                let judge = Judge::from_model(&scene.model);
+                let path = judge.check_path(&before, &scene.x, &PathOptions::default()).unwrap();
+                assert!(path.is_clear(), "round {round} step {step}: {path:?}");
                 assert_eq!(report.frozen, 0, "{report:?}");
                 hindered |= report.pressing > 20;
             }
         }
     }
     assert!(hindered, "contacts must press");
+}
+
+/// Trust regions and boxes are integers of 32 bits too: radii up to an edge length, and margins.
+#[test]
+fn the_grid_has_room_for_edges_and_margins_that_are_larger_than_the_scene() {
+    for scale in [1.0, 1e-3, 1e-6] {
+        let mut scene = scene();
+        scene.x.iter_mut().for_each(|x| *x = Point::from(scale * x.coords));
+        let collision = collision(TwinEngine::new(), &scene, &Constraints::default());
+        let half = collision.grid().quantum() * f64::from(1 << 29);
+        assert!(half >= 4.0 * EDGE.max(MARGIN), "{scale}: {half}");
+    }
 }
 
 /// Checks that all pairs within contact range at `x` are among the candidates; counts them by kind.

@@ -12,5 +12,5 @@ mod separate;
 
 pub use draw::Draw;
 pub use read_mesh::read_mesh;
-pub use resolve::resolve;
+pub use resolve::{resolve, resolve_on_twins};
 pub use separate::separate;

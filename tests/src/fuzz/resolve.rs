@@ -4,9 +4,10 @@
 use super::Draw;
 use crate::{Case, StepChecker};
 use bowknot::check::{Judge, StateOptions};
+use bowknot::gpu::{GpuResolveError, TwinEngine, resolve_on};
 use bowknot_geometry::{HalfSpace, Point, Topology, Vector};
 use bowknot_proximity::{BodyFilter, CollisionModel};
-use bowknot_twoway::{AcceptedState, Params, ResolveError, ResolveInput, Resolver};
+use bowknot_twoway::{AcceptedState, CollisionScene, Params, ResolveError, ResolveInput, Resolver};
 use std::ops::ControlFlow;
 
 /// Largest number of bodies.
@@ -23,47 +24,84 @@ const STEPS: usize = 8;
 /// `resolve` does not panic, every state and path that it accepts is free of intersections, and a refused
 /// call does not change the positions.
 pub fn resolve(data: &[u8]) -> bool {
-    let mut draw = Draw::new(data);
-    let presets = [Params::fast, Params::fast, Params::quick, Params::paper];
-    let mut params = presets[draw.below(4)]();
-    params.solver.stop.max_steps = Some(1 + draw.below(STEPS));
-    if draw.below(2) == 0 {
-        params.contact.min_separation = draw.pick(&[0.0, 1e-9, 1e-6, 1e-3]);
-    }
-    let Some(case) = case(&mut draw) else { return false };
-    let start = &case.positions;
-    let report =
-        Judge::from_model(&case.model).check_state(start, &StateOptions { limit: 1, distance: false });
-    if !report.is_ok_and(|report| report.is_clear()) {
-        return false;
-    }
-    let targets = targets(&mut draw, start);
-    let rest = if draw.below(4) == 0 { targets.clone() } else { start.clone() };
-    let masses: Vec<f64> = start.iter().map(|_| mass(&mut draw)).collect();
-    let pinned: Vec<bool> = start.iter().map(|_| draw.rarely(40)).collect();
-    let time_step = draw.pick(&[None, Some(0.05), Some(1e-4)]).flatten();
-    let input = ResolveInput { prescribed: &pinned, time_step, ..ResolveInput::default() };
-
-    let mut x = start.clone();
-    match run(&case, params, &rest, &masses, &input, &mut x, &targets) {
+    let Some(problem) = Problem::draw(&mut Draw::new(data)) else { return false };
+    let mut x = problem.case.positions.clone();
+    match run(&problem, &mut x) {
         Ok(()) => true,
         Err(_) => {
-            assert!(x == *start, "a refused call has moved the positions");
+            assert!(x == problem.case.positions, "a refused call has moved the positions");
             false
         }
     }
 }
 
-fn run(
-    case: &Case,
+/// The same with the twins of the kernels: no state that they come to intersects, whatever the problem.
+pub fn resolve_on_twins(data: &[u8]) -> bool {
+    let Some(problem) = Problem::draw(&mut Draw::new(data)) else { return false };
+    let (start, params) = (&problem.case.positions, problem.params.clone());
+    let scene = CollisionScene::new(problem.case.model.clone(), &problem.rest, &problem.masses, params);
+    let Ok(scene) = scene else { return false };
+    let mut x = start.clone();
+    let solved =
+        resolve_on(TwinEngine::new(), &scene, &mut x, &problem.targets, &problem.input(), &mut || true);
+    match solved {
+        Ok(statistics) => {
+            assert!(statistics.remaining_m >= 0.0, "{statistics:?}");
+            let judge = Judge::from_model(&problem.case.model);
+            let report = judge.check_state(&x, &StateOptions { limit: 1, distance: false });
+            assert!(report.as_ref().is_ok_and(|report| report.is_clear()), "{report:?}");
+            true
+        }
+        Err(error) => {
+            assert!(x == *start, "a refused call has moved the positions");
+            assert!(!matches!(error, GpuResolveError::Intersects { .. }), "{error}");
+            false
+        }
+    }
+}
+
+/// A small collision problem whose start is free of intersections.
+struct Problem {
+    case: Case,
     params: Params,
-    rest: &[Point],
-    masses: &[f64],
-    call: &ResolveInput<'_>,
-    x: &mut [Point],
-    targets: &[Point],
-) -> Result<(), ResolveError> {
-    let mut resolver = Resolver::new(case.model.clone(), rest, masses, params)?;
+    rest: Vec<Point>,
+    masses: Vec<f64>,
+    pinned: Vec<bool>,
+    time_step: Option<f64>,
+    targets: Vec<Point>,
+}
+
+impl Problem {
+    fn draw(draw: &mut Draw<'_>) -> Option<Self> {
+        let presets = [Params::fast, Params::fast, Params::quick, Params::paper];
+        let mut params = presets[draw.below(4)]();
+        params.solver.stop.max_steps = Some(1 + draw.below(STEPS));
+        if draw.below(2) == 0 {
+            params.contact.min_separation = draw.pick(&[0.0, 1e-9, 1e-6, 1e-3]);
+        }
+        let case = case(draw)?;
+        let start = &case.positions;
+        let judge = Judge::from_model(&case.model);
+        let report = judge.check_state(start, &StateOptions { limit: 1, distance: false });
+        if !report.is_ok_and(|report| report.is_clear()) {
+            return None;
+        }
+        let targets = targets(draw, start);
+        let rest = if draw.below(4) == 0 { targets.clone() } else { start.clone() };
+        let masses: Vec<f64> = start.iter().map(|_| mass(draw)).collect();
+        let pinned: Vec<bool> = start.iter().map(|_| draw.rarely(40)).collect();
+        let time_step = draw.pick(&[None, Some(0.05), Some(1e-4)]).flatten();
+        Some(Self { case, params, rest, masses, pinned, time_step, targets })
+    }
+
+    fn input(&self) -> ResolveInput<'_> {
+        ResolveInput { prescribed: &self.pinned, time_step: self.time_step, ..ResolveInput::default() }
+    }
+}
+
+fn run(problem: &Problem, x: &mut [Point]) -> Result<(), ResolveError> {
+    let Problem { case, params, rest, masses, targets, .. } = problem;
+    let mut resolver = Resolver::new(case.model.clone(), rest, masses, params.clone())?;
     let mut checker = StepChecker::new(case);
     let is_judged = targets.iter().chain(rest).all(|p| p.coords.amax() < JUDGED);
     let mut last = x.to_vec();
@@ -77,7 +115,7 @@ fn run(
             ControlFlow::Break(())
         }
     };
-    let statistics = resolver.resolve_with(x, targets, call, &mut observer)?;
+    let statistics = resolver.resolve_with(x, targets, &problem.input(), &mut observer)?;
     assert!(checker.fault.is_none(), "{:?}", checker.fault);
     assert!(x == last, "the result is not the last accepted state");
     assert!(statistics.remaining_m >= 0.0 && statistics.remaining_r >= 0.0, "{statistics:?}");

@@ -143,7 +143,7 @@ impl<E: Engine> Collision<E> {
         );
         self.record_colors(recording);
         // First the multipliers of the last step are applied.
-        for sweep in 0..=self.settings.sweeps {
+        for sweep in 0..=self.sweeps {
             let only_apply = u32::from(sweep == 0);
             recording.dispatch(
                 &stages::SWEEP_ROWS,

@@ -291,3 +291,16 @@ fn pairs_that_are_no_contacts_get_no_rows() {
     };
     assert!(rows_with(true) == 1 && rows_with(false) > 2, "{} {}", rows_with(true), rows_with(false));
 }
+
+#[test]
+fn targets_are_polished_near_the_end_while_edges_are_too_long() {
+    let settings = Settings { polish_sweeps: 64, polish_distance: EDGE, ..Settings::default() };
+    let report = |remaining: f64, stretch_to_limit: f64| StepReport {
+        remaining,
+        stretch_to_limit,
+        ..StepReport::default()
+    };
+    assert_eq!(settings.sweeps_after(&report(0.5 * EDGE, 1.02)), 64);
+    assert_eq!(settings.sweeps_after(&report(0.5 * EDGE, 1.0)), 8);
+    assert_eq!(settings.sweeps_after(&report(2.0 * EDGE, 1.02)), 8);
+}
