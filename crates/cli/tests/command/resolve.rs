@@ -147,6 +147,12 @@ fn the_input_is_not_overwritten() {
 }
 
 #[test]
+fn devices_are_listed_by_number() {
+    let ended = Place::new().run("info --gpus").ok();
+    assert!(ended.stdout.starts_with("0: "), "{ended:#?}");
+}
+
+#[test]
 fn what_is_refused() {
     let place = Place::new();
     problem(&place, "in.npz");
