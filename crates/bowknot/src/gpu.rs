@@ -1,7 +1,7 @@
 //! Collision problems on a GPU: scenes as the CPU knows them, solved by `bowknot-gpu`.
 //!
-//! The device takes the same two-way steps and stops by the same rule. Its sweeps make no coarse corrections and do not
-//! polish the target, so that it may take other steps than the CPU. Positions lie on a grid, see [`bowknot_gpu::Grid`].
+//! The device takes the same two-way steps and stops by the same rule. Its sweeps make no coarse corrections, so that it may
+//! take other steps than the CPU. Positions lie on a grid, see [`bowknot_gpu::Grid`].
 
 use bowknot_check::{CheckError, Intersection, Judge, StateOptions, StateReport};
 use bowknot_constraints::{ContactForm, EdgeForm, EdgeReference, FrictionModel};
@@ -10,8 +10,8 @@ use bowknot_geometry::Point;
 use bowknot_gpu::{Call, Collision, CollisionError, Constraints, Engine, Lengths, Settings};
 use bowknot_stepper::{Bound, StepReport, TrustRegionRule};
 use bowknot_twoway::{
-    CallInput, CollisionScene, MIN_SEPARATION_MARGIN, Residuals, ResolveError, ResolveInput, Statistics,
-    StopRule, StopTest, max_stretch,
+    CallInput, CollisionScene, Residuals, ResolveError, ResolveInput, Statistics, StopRule, StopTest,
+    max_stretch,
 };
 use std::time::Instant;
 
@@ -142,10 +142,6 @@ fn collision<E: Engine>(
     let vertices = 0..scene.vertex_count();
     let body = |v: usize| model.vertex_body()[v];
     let contact = |v: usize| &scene.contact().bodies()[body(v) as usize];
-    let delta = |v: usize| {
-        let own = contact(v).delta.unwrap_or(scene.lengths().delta);
-        own.max(MIN_SEPARATION_MARGIN * contact(v).thickness.unwrap_or(0.0))
-    };
     let limit = |[a, b]: &[u32; 2]| {
         let rest = (scene.rest()[*a as usize] - scene.rest()[*b as usize]).norm();
         let limits = params.contact.edges;
@@ -158,7 +154,7 @@ fn collision<E: Engine>(
     let lengths = Lengths {
         edges: &of_vertices(&|v| scene.local_edge(v)),
         margins: &of_vertices(&|v| scene.spacing().margin(body(v))),
-        deltas: &of_vertices(&delta),
+        deltas: &of_vertices(&|v| scene.spacing().delta(body(v))),
         thicknesses: &of_vertices(&|v| contact(v).thickness.unwrap_or(f64::NAN)),
         min_separation: scene.lengths().min_separation,
         edge_limits: &model.topology().edges.iter().map(limit).collect::<Vec<f64>>(),
@@ -199,6 +195,7 @@ fn refuse_unsupported(scene: &CollisionScene) -> Result<(), GpuResolveError> {
         (filter, "contact.friction_model = \"filter\"", FAST),
         (contact.edge_form != EdgeForm::Ball, "contact.edge_form other than \"ball\"", FAST),
         (contact.edge_reference != EdgeReference::Rest, "contact.edge_reference other than \"rest\"", FAST),
+        (!solver.backward.active_rows, "solver.backward.active_rows = false", FAST),
         (solver.forward.bound != Bound::Planes, "solver.forward.bound other than \"planes\"", FAST),
         (
             solver.forward.trust_region != TrustRegionRule::PerVertex,

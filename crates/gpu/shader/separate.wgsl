@@ -9,6 +9,8 @@
 struct Params {
     // Candidates that the list holds.
     capacity: u32,
+    // 1: nothing is to be done unless a search has changed the candidates.
+    after_search: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -133,6 +135,9 @@ fn separate_pair(candidate: Candidate) -> Separation {
 
 @compute @workgroup_size(128)
 fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    if params.after_search != 0u && atomicLoad(&control.changed) == 0u {
+        return;
+    }
     let count = min(atomicLoad(&control.candidates), params.capacity);
     for (var c = id.x; c < count; c += 128u * groups.x) {
         separations[c] = separate_pair(candidates[c]);

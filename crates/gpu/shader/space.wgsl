@@ -6,6 +6,8 @@
 
 struct Params {
     capacity: u32,
+    // 1: nothing is to be done unless a search has changed the candidates.
+    after_search: u32,
     // Minimum separation of bodies without a thickness.
     min_separation: f32,
     growth: f32,
@@ -77,6 +79,9 @@ fn first_state(candidate: Candidate, separation: Separation) -> PairState {
 
 @compute @workgroup_size(128)
 fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    if params.after_search != 0u && atomicLoad(&control.changed) == 0u {
+        return;
+    }
     let count = min(atomicLoad(&control.candidates), params.capacity);
     for (var c = id.x; c < count; c += 128u * groups.x) {
         if states[c].desired < 0.0 {

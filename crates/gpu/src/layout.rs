@@ -299,7 +299,7 @@ pub struct Control {
     pub net_residual: u32,
     pub mean_residual: u32,
     pub stretch_to_limit: u32,
-    /// Contact rows that press.
+    /// Contact rows that press; the last of the words that are reset.
     pub pressing: u32,
     /// Number of candidates: what their list should hold. It stays from step to step, for the list does.
     pub candidates: u32,

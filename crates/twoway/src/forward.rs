@@ -279,7 +279,10 @@ impl CertifiedForward {
             let share = if is_held { 0.0 } else { 1.0 - self.stepper.alpha(v) };
             if share == 0.0 { 0.0 } else { share * self.stepper.displacements()[v].norm() }
         };
-        let of_vertex = |v: usize| (left(v), if state.call.is_prescribed(v) { left(v) } else { 0.0 });
+        let of_vertex = |v: usize| {
+            let left = left(v);
+            (left, if state.call.is_prescribed(v) { left } else { 0.0 })
+        };
         let vertices = (0..state.x.len()).into_par_iter().with_min_len(CHUNK);
         vertices.map(of_vertex).reduce(|| (0.0, 0.0), |a, b| (a.0.max(b.0), a.1.max(b.1)))
     }

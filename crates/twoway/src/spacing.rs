@@ -150,6 +150,11 @@ impl Spacing {
         self.uniform
     }
 
+    /// Desired distance of a body's contacts with others like it [m].
+    pub fn delta(&self, body: u32) -> f64 {
+        self.bodies[body as usize].delta
+    }
+
     /// What a vertex of `body` adds to its search radius [m]: pairs closer than the range of rows, or than
     /// the minimum separation, are candidates.
     #[inline]

@@ -46,7 +46,8 @@ pub enum StopRule {
         remaining_fraction: f64,
     },
     /// All vertices have arrived, max |(1 - alpha)(y - x)| < `distance`; those that no pair holds back within 0.01 mean
-    /// edge lengths, prescribed ones among them exactly; the stretch limits hold; and both residuals are small. Small residuals
+    /// edge lengths, prescribed ones among them exactly; the stretch limits hold; and both residuals are small. Small
+    /// residuals
     /// are needed because the proximal term may still hold back a motion that is common to a body. Where no
     /// contact presses, up to two more steps reach the target to the bit.
     Travel {

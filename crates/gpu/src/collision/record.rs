@@ -22,7 +22,7 @@ impl<E: Engine> Collision<E> {
         }
         self.record_paths(recording);
         self.record_search(recording);
-        self.record_geometry(recording);
+        self.record_geometry(true, recording);
         self.record_forward(recording);
     }
 
@@ -32,7 +32,9 @@ impl<E: Engine> Collision<E> {
         let ones = vec![1.0f32; self.sizes.groups];
         recording.write(buffers.group_caps, &ones);
         recording.write(buffers.group_alphas, &ones);
-        recording.write(buffers.control, &[0u32; Control::RESET_WORDS]);
+        // A step that is made again has no backward step, which alone counts the rows that press.
+        let words = Control::RESET_WORDS - usize::from(self.again);
+        recording.write(buffers.control, &[0u32; Control::RESET_WORDS][..words]);
     }
 
     /// How far each vertex wants to go, and which trust regions do not cover it.
@@ -64,13 +66,14 @@ impl<E: Engine> Collision<E> {
         );
     }
 
-    /// Contact geometry of all candidates at the present positions.
-    pub(super) fn record_geometry(&self, recording: &mut Recording) {
+    /// Contact geometry of all candidates at the present positions; after a search only if there was one, for nothing has
+    /// moved since the geometry of the backward step.
+    pub(super) fn record_geometry(&self, after_search: bool, recording: &mut Recording) {
         let (b, capacity) = (&self.buffers, self.buffers.capacity as u32);
         recording.dispatch(
             &stages::SEPARATE,
             &[b.positions, b.edges, b.triangles, b.planes, b.candidates, b.separations, b.control],
-            cpu::separate::Params { capacity },
+            cpu::separate::Params { capacity, after_search: u32::from(after_search) },
             self.buffers.capacity,
         );
         recording.dispatch(
@@ -78,6 +81,7 @@ impl<E: Engine> Collision<E> {
             &[b.rest, b.edges, b.triangles, b.vertices, b.candidates, b.separations, b.states, b.control],
             cpu::space::Params {
                 capacity,
+                after_search: u32::from(after_search),
                 min_separation: self.lengths.min_separation,
                 growth: self.lengths.growth,
                 range: self.settings.range as f32,

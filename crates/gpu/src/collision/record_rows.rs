@@ -18,7 +18,7 @@ impl<E: Engine> Collision<E> {
             cpu::recall::Params { vertices: vertices as u32 },
             vertices,
         );
-        self.record_geometry(recording);
+        self.record_geometry(false, recording);
         if self.settings.contacts_only {
             let [edges_first, triangles_first] = self.adjacency_starts;
             recording.dispatch(

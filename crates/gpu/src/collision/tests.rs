@@ -212,6 +212,25 @@ fn two_sheets_that_are_pressed_together_rest_at_the_desired_distance() {
     assert!(end[0].z > end[49].z, "{} {}", end[0], end[49]);
 }
 
+#[test]
+fn a_step_that_is_made_again_reports_what_presses() {
+    let (model, x) = sheets();
+    // The small sheet goes below the large one, and presses.
+    let target: Vec<Point> =
+        x.iter().map(|x| Point::new(x.x + if x.z == 0.0 { 0.04 } else { 0.0 }, x.y, 3e-3 - x.z)).collect();
+    let mut collision = collision(&model, &x, &x, None);
+    collision.begin(&Call::toward(&target)).unwrap();
+    let mut again = 0;
+    for _ in 0..6 {
+        // Without any room for more.
+        collision.buffers.capacity = states(&mut collision).len();
+        let capacity = collision.buffers.capacity;
+        let report = collision.step().unwrap();
+        again += usize::from(collision.buffers.capacity > capacity && report.pressing > 0);
+    }
+    assert!(again > 0);
+}
+
 /// A triangle that is pressed onto the ground and pulled along it.
 #[test]
 fn friction_holds_up_to_its_coefficient_times_the_pressure() {

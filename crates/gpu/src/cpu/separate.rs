@@ -11,6 +11,7 @@ use bytemuck::{Pod, Zeroable};
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Params {
     pub capacity: u32,
+    pub after_search: u32,
 }
 
 const WIDTH_ROUNDING: f32 = 3.814_697_3e-6;
@@ -62,6 +63,9 @@ pub fn separate(
     separations: &mut [Separation],
     control: &Control,
 ) {
+    if params.after_search != 0 && control.changed == 0 {
+        return;
+    }
     let count = control.candidates.min(params.capacity) as usize;
     for c in 0..count {
         separations[c] = separate_pair(candidates[c], positions, edges, triangles, planes);

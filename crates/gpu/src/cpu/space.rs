@@ -11,6 +11,7 @@ use bytemuck::{Pod, Zeroable};
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Params {
     pub capacity: u32,
+    pub after_search: u32,
     pub min_separation: f32,
     pub growth: f32,
     pub range: f32,
@@ -44,6 +45,9 @@ pub fn space(
     states: &mut [PairState],
     control: &Control,
 ) {
+    if params.after_search != 0 && control.changed == 0 {
+        return;
+    }
     for c in 0..control.candidates.min(params.capacity) as usize {
         if states[c].desired < 0.0 {
             let pair = pair_of(candidates[c], edges, triangles);
