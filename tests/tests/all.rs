@@ -13,6 +13,7 @@ mod interior_points;
 // The properties of the fuzz targets hold for seeded random bytes.
 mod fuzz_bodies;
 // Bodies in contact move as theory predicts, and none is crushed.
+mod backends;
 mod folds;
 mod friction;
 mod momentum;

@@ -1,10 +1,8 @@
-//! What the command does on a GPU: the devices, and `resolve --backend gpu`.
+//! What the command does on a GPU: the devices, and the backends of `run` and `resolve`.
 
-use crate::args::Machine;
+use crate::args::{Backend, Machine};
 use crate::exit::Failure;
-use bowknot::geometry::Point;
-use bowknot::recording::States;
-use bowknot::twoway::{Resolver, Statistics};
+use bowknot::simulator::{CollisionBackend, Cpu};
 
 /// The devices, one per line, with what those that cannot be used lack.
 #[cfg(feature = "gpu")]
@@ -22,26 +20,23 @@ pub fn list() -> Result<String, Failure> {
     Ok(adapters.iter().enumerate().map(line).collect())
 }
 
-/// Solves a problem on the device that `machine` names. `go_on` is asked after each step.
+/// What resolves collisions on the machine that the options name.
+pub fn backend(machine: &Machine) -> Result<Box<dyn CollisionBackend>, Failure> {
+    match machine.backend {
+        Backend::Gpu => device(machine),
+        Backend::Cpu | Backend::Auto => Ok(Box::new(Cpu)),
+    }
+}
+
 #[cfg(feature = "gpu")]
-pub fn resolve(
-    machine: &Machine,
-    resolver: &Resolver,
-    x: &mut [Point],
-    states: &States,
-    go_on: &mut dyn FnMut() -> bool,
-) -> Result<Statistics, Failure> {
-    use bowknot::gpu::{Adapter, DeviceEngine, GpuResolveError, resolve_on};
+fn device(machine: &Machine) -> Result<Box<dyn CollisionBackend>, Failure> {
+    use bowknot::gpu::{Adapter, Device, DeviceEngine};
     let adapter = Adapter::choose(machine.device).map_err(Failure::backend)?;
     if adapter.is_software() {
         eprintln!("warning: {adapter} computes on the CPU: slower than --backend cpu");
     }
     let engine = DeviceEngine::open(&adapter).map_err(Failure::backend)?;
-    let solved = resolve_on(engine, resolver.scene(), x, &states.y, &states.input(), go_on);
-    solved.map_err(|error| match error {
-        GpuResolveError::Input(error) => Failure::input(error),
-        error => Failure::backend(error),
-    })
+    Ok(Box::new(Device::new(format!("gpu: {adapter}"), engine)))
 }
 
 #[cfg(not(feature = "gpu"))]
@@ -50,13 +45,7 @@ pub fn list() -> Result<String, Failure> {
 }
 
 #[cfg(not(feature = "gpu"))]
-pub fn resolve(
-    _machine: &Machine,
-    _resolver: &Resolver,
-    _x: &mut [Point],
-    _states: &States,
-    _go_on: &mut dyn FnMut() -> bool,
-) -> Result<Statistics, Failure> {
+fn device(_machine: &Machine) -> Result<Box<dyn CollisionBackend>, Failure> {
     Err(not_built_in())
 }
 

@@ -1,12 +1,13 @@
 //! `bowknot resolve`: resolves one recorded collision problem.
 
-use crate::args::{Backend, ResolveOptions};
+use crate::args::ResolveOptions;
 use crate::exit::{Exit, Failure};
 use crate::interrupt::Interrupt;
 use crate::{gpu, output, setup, sizes};
 use bowknot::check::{Judge, StateOptions};
 use bowknot::proximity::CollisionModel;
 use bowknot::recording::{States, write_result};
+use bowknot::simulator::BackendError;
 use bowknot::twoway::{AcceptedState, Statistics};
 use bowknot_errors::counted;
 use serde::Serialize;
@@ -66,14 +67,15 @@ pub fn resolve(options: &ResolveOptions) -> Result<Exit, Failure> {
     };
     let mut x = states.x.clone();
     let cpu = bowknot::simulator::cpu_seconds();
-    let statistics = match options.machine.backend {
-        Backend::Gpu => {
-            gpu::resolve(&options.machine, &resolver, &mut x, &states, &mut || !interrupt.is_set())?
-        }
-        Backend::Cpu | Backend::Auto => resolver
-            .resolve_with(&mut x, &states.y, &states.input(), &mut watch)
-            .map_err(|error| bad_input(error.to_string()))?,
+    let failure = |error: BackendError| match error {
+        BackendError::Refused(error) => bad_input(error.to_string()),
+        BackendError::Failed(error) => Failure::backend(error),
     };
+    let mut backend = gpu::backend(&options.machine)?;
+    let statistics = backend
+        .prepare(resolver.scene(), &x)
+        .and_then(|()| backend.resolve(&mut resolver, &mut x, &states.y, &states.input(), &mut watch))
+        .map_err(failure)?;
     let is_waiting = |v: &usize| (states.fixed[*v] || states.obstacle[*v]) && x[*v] != states.y[*v];
     // On a GPU, a vertex on the point of its grid next to the target has arrived.
     let waits = statistics.prescribed_lag_m > 0.0;

@@ -4,7 +4,7 @@ use crate::args::RunOptions;
 use crate::exit::{Exit, Failure};
 use crate::interrupt::Interrupt;
 use crate::progress::Bar;
-use crate::{bare_mesh, output, setup};
+use crate::{bare_mesh, gpu, output, setup};
 use bowknot::check::{Judge, StateReport};
 use bowknot::run::{Outcome, Progress, Summary};
 use bowknot::{Scene, SimulationError, Simulator, World};
@@ -16,13 +16,13 @@ use std::path::Path;
 const MAX_SIZES: usize = 10;
 
 pub fn run(options: &RunOptions) -> Result<Exit, Failure> {
-    setup::refuse_gpu(&options.machine)?;
     setup::machine(&options.machine)?;
     if let Some(dump) = &options.dump {
         output::refuse_overwrite(dump, &[Path::new(&options.scene)])?;
     }
     let scene = open(options)?;
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(scene.name()));
+    let backend = gpu::backend(&options.machine)?;
     let interrupt = Interrupt::listen();
     let run_options = bowknot::run::RunOptions {
         out: out.clone(),
@@ -41,7 +41,7 @@ pub fn run(options: &RunOptions) -> Result<Exit, Failure> {
         bar.set_position(progress.step, &progress_text(progress));
         ControlFlow::Continue(())
     };
-    let result = bowknot::run::run(&scene, &run_options, &mut show);
+    let result = bowknot::run::run_on(&scene, &run_options, backend, &mut show);
     if let Some(bar) = bar {
         bar.finish();
     }
@@ -95,6 +95,9 @@ fn open(options: &RunOptions) -> Result<Scene, Failure> {
 
 /// The failure of a run. If the start intersects, writes the dump that `--dump` asks for.
 fn run_failure(scene: &Scene, error: SimulationError, dump: Option<&Path>) -> Failure {
+    if matches!(error, SimulationError::Backend { .. }) {
+        return Failure::backend(error);
+    }
     let failure = Failure::input(&error);
     let (SimulationError::StartIntersects { .. }, Some(path)) = (&error, dump) else { return failure };
     match write_dump(scene, path) {

@@ -48,16 +48,6 @@ pub fn no_display() {
     }
 }
 
-/// Refuses a GPU for what none can do yet.
-pub fn refuse_gpu(machine: &Machine) -> Result<(), Failure> {
-    if machine.backend == Backend::Gpu {
-        let message = "whole simulations do not run on a GPU yet, only `bowknot resolve` does: use --backend cpu or leave \
-                       the option out";
-        return Err(Failure::backend(message));
-    }
-    Ok(())
-}
-
 /// Starts the threads.
 pub fn machine(machine: &Machine) -> Result<(), Failure> {
     if machine.device.is_some() && machine.backend != Backend::Gpu {

@@ -11,14 +11,15 @@ mod record_search;
 mod trees;
 
 use crate::adjacency::Adjacency;
+use crate::cpu;
 use crate::edges::Edges;
 use crate::engine::Engine;
 use crate::error::GpuError;
 use crate::grid::{Grid, GridError, GridPoint};
-use crate::layout::{Candidate, Control, NONE, Vertex};
+use crate::layout::{Candidate, Control, NONE, Row, Vertex};
 use crate::model::{self, Constraints, Lengths};
-use crate::recording::Recording;
-use bowknot_geometry::{CollisionModel, Point};
+use crate::recording::{BufferId, Recording};
+use bowknot_geometry::{CollisionModel, Point, Vector};
 use buffers::{Buffers, Sizes, words};
 use trees::Trees;
 
@@ -73,6 +74,8 @@ pub struct Settings {
     pub active: f64,
     /// Whether only contacts get rows, and pairs that are merely close guard a part of their gap.
     pub contacts_only: bool,
+    /// Whether all multipliers are scaled by one factor before each sweep.
+    pub coarse_correction: bool,
     /// Share of a gap that a step may use up.
     pub damping: f64,
 }
@@ -90,6 +93,7 @@ impl Default for Settings {
             range: 2.0,
             active: 1.1,
             contacts_only: true,
+            coarse_correction: true,
             damping: 0.9,
         }
     }
@@ -148,6 +152,21 @@ pub struct StepReport {
     pub mean_residual: f64,
     /// Largest ratio of an edge's length to its limit [1]; 0 without limits.
     pub stretch_to_limit: f64,
+}
+
+/// What a contact row of a step came to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactRow {
+    /// The pair.
+    pub candidate: Candidate,
+    /// Multiplier [m, in units of the mean mass].
+    pub multiplier: f64,
+    /// Multiplier of friction on side *a*, across the normal, in the same units.
+    pub friction: Vector,
+    /// How far the contact had slipped since the start of the time step, before the step [m].
+    pub slip: Vector,
+    /// Coefficient of friction [1].
+    pub coefficient: f64,
 }
 
 /// The collision stage of a scene on an engine.
@@ -271,6 +290,26 @@ impl<E: Engine> Collision<E> {
         })
     }
 
+    /// Puts the vertices at other positions [m], where no two elements intersect; each goes to the nearest point of the
+    /// grid. They may be far from where the scene was prepared, but steps then take longer: trees keep the order of the
+    /// elements.
+    ///
+    /// # Errors
+    /// A wrong length; a position outside of the grid; the device failed.
+    pub fn place(&mut self, positions: &[Point]) -> Result<(), CollisionError> {
+        check_length("positions", positions.len(), self.sizes.vertices)?;
+        let mut recording = Recording::default();
+        recording.write(self.buffers.positions, &padded(&snapped(&self.grid, positions)?));
+        self.engine.run(&recording, &[])?;
+        Ok(())
+    }
+
+    /// Frees the buffers and gives the engine back.
+    pub fn into_engine(mut self) -> E {
+        self.engine.clear();
+        self.engine
+    }
+
     /// The grid on which all positions lie.
     pub fn grid(&self) -> &Grid {
         &self.grid
@@ -296,6 +335,7 @@ impl<E: Engine> Collision<E> {
         recording.write(self.buffers.aims, &padded(&target));
         recording.write(self.buffers.slip_start, &padded(&slip_start));
         recording.write(self.buffers.swings, &vec![[0.0f32, 0.0, 0.0, 1.0]; start.len()]);
+        recording.write(self.buffers.factor, &[1.0, cpu::factor::MOST_GROWTH]);
         recording.write(self.buffers.limits, &self.edges.limits(&start, &self.grid));
         // Without candidates nothing is inherited from the call before.
         recording.write(self.buffers.control, &[Control::default()]);
@@ -359,10 +399,53 @@ impl<E: Engine> Collision<E> {
     /// # Errors
     /// The device failed.
     pub fn positions(&mut self) -> Result<Vec<Point>, CollisionError> {
-        let read = [(self.buffers.positions, 4 * self.sizes.vertices)];
-        let words = self.engine.run(&Recording::default(), &read)?.swap_remove(0);
-        let positions: &[[i32; 4]] = bytemuck::cast_slice(&words);
-        Ok(positions.iter().map(|&[x, y, z, _]| self.grid.position([x, y, z])).collect())
+        let [positions] = self.points([self.buffers.positions])?;
+        Ok(positions)
+    }
+
+    /// The points of some buffers [m].
+    fn points<const N: usize>(&mut self, buffers: [BufferId; N]) -> Result<[Vec<Point>; N], CollisionError> {
+        let read = buffers.map(|buffer| (buffer, 4 * self.sizes.vertices));
+        let words = self.engine.run(&Recording::default(), &read)?;
+        let position = |&[x, y, z, _]: &[i32; 4]| self.grid.position([x, y, z]);
+        let points = |k: usize| bytemuck::cast_slice(&words[k]).iter().map(position).collect();
+        Ok(std::array::from_fn(points))
+    }
+
+    /// The positions, and where the last step wanted to go [m].
+    ///
+    /// # Errors
+    /// The device failed.
+    pub fn positions_and_aims(&mut self) -> Result<(Vec<Point>, Vec<Point>), CollisionError> {
+        let [positions, aims] = self.points([self.buffers.positions, self.buffers.aims])?;
+        Ok((positions, aims))
+    }
+
+    /// The contact rows of the last step.
+    ///
+    /// # Errors
+    /// The device failed.
+    pub fn contact_rows(&mut self) -> Result<Vec<ContactRow>, CollisionError> {
+        let read = [(self.buffers.control, words::<Control>(1))];
+        let control = self.engine.run(&Recording::default(), &read)?.swap_remove(0);
+        let count = bytemuck::cast_slice::<u32, Control>(&control)[0].rows as usize;
+        let read = [
+            (self.buffers.rows.rows, words::<Row>(count)),
+            (self.buffers.candidates, words::<Candidate>(self.buffers.capacity)),
+        ];
+        let all = self.engine.run(&Recording::default(), &read)?;
+        let (rows, candidates): (&[Row], &[Candidate]) =
+            (bytemuck::cast_slice(&all[0]), bytemuck::cast_slice(&all[1]));
+        let quantum = self.grid.quantum();
+        let vector = |v: [f32; 3]| Vector::from(v.map(f64::from)) * quantum;
+        let row = |row: &Row| ContactRow {
+            candidate: candidates[row.candidate as usize],
+            multiplier: f64::from(row.multiplier) * quantum,
+            friction: vector(row.friction),
+            slip: vector(row.slip),
+            coefficient: f64::from(row.coefficient),
+        };
+        Ok(rows.iter().map(row).collect())
     }
 
     /// The candidates of the last step, sorted.

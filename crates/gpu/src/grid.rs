@@ -59,8 +59,11 @@ impl Grid {
     /// How many quanta the smallest length has at least.
     const RESOLUTION: f64 = 256.0;
 
-    /// The finest grid that has room for `positions` [m] with `room` [m] around them, and that resolves lengths of
-    /// `smallest` [m] by 256 quanta at least.
+    /// How many it has where the scene is small enough. More would leave less room for what moves.
+    const WANTED_RESOLUTION: f64 = 16384.0;
+
+    /// A grid that has room for `positions` [m] with `room` [m] around them. It resolves lengths of `smallest` [m] by
+    /// 16384 quanta, or by fewer in a large scene, but by 256 at least.
     ///
     /// # Errors
     /// A position that is not finite; a scene too large for `smallest`.
@@ -76,7 +79,10 @@ impl Grid {
             (low, high) = (Vector::zeros(), Vector::zeros());
         }
         let half = 0.5 * (high - low).amax() + room;
-        let exponent = (half / MAX_COORDINATE).log2().floor().clamp(-1e9, 1e9) as i32 + 1;
+        // The finest grid that has the room, and the coarsest with the wanted resolution.
+        let exponent = |length: f64| length.log2().floor().clamp(-1e9, 1e9) as i32;
+        let exponent =
+            (exponent(half / MAX_COORDINATE) + 1).max(exponent(smallest / Self::WANTED_RESOLUTION));
         let quantum = 2f64.powi(exponent.clamp(*EXPONENTS.start(), *EXPONENTS.end()));
         let too_coarse = GridError::TooCoarse { extent: 2.0 * half, quantum, smallest };
         if !(half / quantum < MAX_COORDINATE && Self::RESOLUTION * quantum <= smallest) {
@@ -109,6 +115,13 @@ impl Grid {
         let scaled = (x - self.origin) / self.quantum;
         let inside = scaled.iter().all(|c| c.abs() < MAX_COORDINATE);
         inside.then(|| [0, 1, 2].map(|k| scaled[k].round_ties_even() as i32))
+    }
+
+    /// Whether all positions [m] are so far from the border that half of the grid's width is free around them.
+    pub fn has_room(&self, positions: &[Point]) -> bool {
+        let scaled = |x: &Point| ((x - self.origin) / self.quantum).amax();
+        // What is not a number has no room.
+        positions.iter().all(|x| scaled(x) < 0.5 * MAX_COORDINATE)
     }
 
     /// The position of the grid that is nearest; outside of the grid each coordinate is moved to its border. The origin
@@ -151,7 +164,11 @@ mod tests {
                 let next = grid.position([on_grid[0] + 1, on_grid[1], on_grid[2]]);
                 assert_eq!((next - back).x, grid.quantum());
             }
-            assert!(scale / grid.quantum() > 1e8, "{scale} {}", grid.quantum());
+            let resolution = 1e-5 * scale / grid.quantum();
+            assert!((256.0..32768.0).contains(&resolution), "{scale} {resolution}");
+            assert!(grid.has_room(&points));
+            let far = Point::from(points[0].coords + Vector::repeat(0.6 * MAX_COORDINATE * grid.quantum()));
+            assert!(!grid.has_room(&[far]) && grid.nearest(&far).is_some());
         }
     }
 

@@ -29,7 +29,7 @@ mod tree;
 pub use bowknot_geometry as geometry;
 
 pub use adapter::Adapter;
-pub use collision::{Call, Collision, CollisionError, Settings, StepReport};
+pub use collision::{Call, Collision, CollisionError, ContactRow, Settings, StepReport};
 pub use engine::{ComparingEngine, DeviceEngine, Difference, Engine, TwinEngine};
 pub use error::GpuError;
 pub use grid::{Grid, GridError, GridPoint};

@@ -71,6 +71,30 @@ pub(crate) static SWEEP_EDGES: Stage = Stage {
     twin: cpu::sweep_edges::bound,
 };
 
+pub(crate) static SLACK: Stage = Stage {
+    name: "slack",
+    parts: &[TYPES, include_str!("../shader/slack.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Read, Read, Read, Read, Read, Write, Write],
+    twin: cpu::slack::bound,
+};
+
+pub(crate) static FACTOR: Stage = Stage {
+    name: "factor",
+    parts: &[TYPES, include_str!("../shader/factor.wgsl")],
+    workgroup: 1,
+    bindings: &[Read, Write],
+    twin: cpu::factor::bound,
+};
+
+pub(crate) static RESCALE: Stage = Stage {
+    name: "rescale",
+    parts: &[TYPES, include_str!("../shader/rescale.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Write, Write, Read, Read, Read, Write, Write],
+    twin: cpu::rescale::bound,
+};
+
 pub(crate) static AIM: Stage = Stage {
     name: "aim",
     parts: &[TYPES, include_str!("../shader/aim.wgsl")],
@@ -362,6 +386,9 @@ pub(crate) static ALL: &[&Stage] = &[
     &CURVE_EDGES,
     &RELEASE,
     &SWEEP_EDGES,
+    &SLACK,
+    &FACTOR,
+    &RESCALE,
     &AIM,
     &PLAN,
     &JOIN,

@@ -29,7 +29,7 @@ pub enum PrescribedEntity {
 /// The entities that lag by more than the distance at which vertices have arrived, in the order of
 /// [`PrescribedEntity`].
 pub(crate) fn lags(scene: &CollisionScene, state: &ResolveState) -> Vec<Lag> {
-    let tolerance = scene.params().solver.stop.distance * scene.lengths().edge;
+    let tolerance = scene.arrival_distance();
     let mut lags = BTreeMap::new();
     for v in (0..state.x.len()).filter(|&v| state.call.is_prescribed(v)) {
         let distance = (state.target[v] - state.x[v]).norm();

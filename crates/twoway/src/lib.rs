@@ -6,6 +6,7 @@
 //! intersections ([`ForwardStep`]). Friction changes the target alone, so it does not affect that
 //! certificate. The stages are traits, and other methods implement them.
 
+mod adopt;
 mod backward;
 mod bodies;
 mod call;
@@ -51,6 +52,7 @@ pub use bowknot_proximity as proximity;
 /// The certified forward step, and its part of the parameters.
 pub use bowknot_stepper as stepper;
 
+pub use adopt::{CallEnd, PairMultipliers};
 pub use backward::LcpBackward;
 pub use bodies::{BodyContact, ContactSide, ContactTable, HalfSpaceContact, PairFriction};
 pub use bowknot_constraints::ContactParams;
@@ -71,6 +73,7 @@ pub use scene::{CollisionScene, Lengths};
 pub use search::TrustRegionSearch;
 pub use spacing::{MIN_SEPARATION_MARGIN, PairSpacing, Spacing};
 pub use stages::{AheadVisitor, BackwardStep, Coverage, ForwardStep, Search};
+pub use stall::StallDetector;
 pub use state::{ContactSet, ResolveState};
 pub use statistics::{Skipped, StageSeconds, Statistics};
 pub use stop::{Residuals, StopParams, StopRule, StopTest};

@@ -29,9 +29,9 @@ use std::time::Instant;
 /// Moves positions toward a target without intersections. It keeps its workspace between calls.
 #[derive(Debug)]
 pub struct Resolver<S = TrustRegionSearch, B = LcpBackward, F = CertifiedForward> {
-    scene: CollisionScene,
-    state: ResolveState,
-    search: S,
+    pub(crate) scene: CollisionScene,
+    pub(crate) state: ResolveState,
+    pub(crate) search: S,
     backward: B,
     forward: F,
 }
@@ -182,7 +182,7 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
         let mut statistics = Statistics::default();
         let stop = &scene.params().solver.stop;
         let mut stop = StopTest::new(stop, scene.lengths().edge, input.time_step, input.max_steps);
-        let mut stall = StallDetector::default();
+        let mut stall = StallDetector::new(scene.lengths().edge, scene.arrival_distance());
 
         while stop.allows_step(state.step) {
             let searches = statistics.searches;
@@ -207,7 +207,8 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
                 None => stop.is_met(&report, || backward.residuals(scene, state)),
             };
             let is_out_of_time = stop.is_out_of_time(timer.elapsed().as_secs_f64());
-            let is_stalled = stall.update(scene, state);
+            let is_stalled =
+                stall.update(farthest(state, true, &state.target), || farthest(state, false, &state.y));
             if statistics.converged && stop.takes_finishing_step(&report, state.step, || is_free(state)) {
                 statistics.converged = false;
             }
@@ -237,7 +238,7 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
     }
 
     /// Starts a call: x^(0) = x^[k], y^(0) = y^[k+1], no candidates, r = 1.
-    fn begin(
+    pub(crate) fn begin(
         &mut self,
         positions: &[Point],
         target: &[Point],
@@ -259,6 +260,12 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
         backward.finish(scene, state, statistics);
         statistics.steps = state.step;
         statistics.pairs = search.candidate_count();
+        self.describe_end(statistics);
+    }
+
+    /// What can be told of the state at the end of a call.
+    pub(crate) fn describe_end(&self, statistics: &mut Statistics) {
+        let Self { scene, state, .. } = self;
         statistics.min_gap_m = state.contacts.separations.iter().map(|s| s.distance).reduce(f64::min);
         let (mut sum, mut free) = (0.0, 0usize);
         for v in 0..state.x.len() {
@@ -278,6 +285,12 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
             statistics.slowest_body = None;
         }
     }
+}
+
+/// Largest distance of a vertex to its place in `ends` [m], of those that are prescribed or of the others.
+fn farthest(state: &ResolveState, prescribed: bool, ends: &[Point]) -> f64 {
+    let vertices = (0..state.x.len()).filter(|&v| state.call.is_prescribed(v) == prescribed);
+    vertices.map(|v| (ends[v] - state.x[v]).norm()).fold(0.0, f64::max)
 }
 
 /// The backward step, with its seconds.

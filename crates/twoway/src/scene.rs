@@ -138,6 +138,11 @@ impl CollisionScene {
         &self.lengths
     }
 
+    /// Distance to its target at which a vertex has arrived [m].
+    pub fn arrival_distance(&self) -> f64 {
+        self.params.solver.stop.distance * self.lengths.edge
+    }
+
     /// Desired distances and minimum separations of the pairs.
     pub fn spacing(&self) -> &Spacing {
         &self.spacing

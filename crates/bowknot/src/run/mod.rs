@@ -16,8 +16,8 @@ pub use summary::{EnergyNumbers, SecondsNumbers, SkippedNumbers, StepNumbers, Su
 pub use writer::RunWriter;
 
 use crate::simulator::{
-    AcceptedStep, CollisionProblem, SimulationError, SimulationObserver, Simulator, StepStatistics,
-    peak_memory_bytes,
+    AcceptedStep, CollisionBackend, CollisionProblem, Cpu, SimulationError, SimulationObserver, Simulator,
+    StepStatistics, peak_memory_bytes,
 };
 use bowknot_io::{IoError, write_text};
 use bowknot_scene::Scene;
@@ -73,7 +73,7 @@ pub struct Outcome {
     pub warnings: Vec<String>,
 }
 
-/// Runs a scene to its last frame. `progress` is called before the first time step and after each;
+/// Runs a scene to its last frame on the CPU. `progress` is called before the first time step and after each;
 /// `Break` ends the run there.
 ///
 /// # Errors
@@ -84,7 +84,22 @@ pub fn run(
     options: &RunOptions,
     progress: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Outcome, SimulationError> {
+    run_on(scene, options, Box::new(Cpu), progress)
+}
+
+/// As [`run`], with a backend for the collisions.
+///
+/// # Errors
+/// As [`run`]; [`SimulationError::Backend`] if the backend does not have what the scene needs, or fails. The
+/// checkpoint then holds the last state before it failed.
+pub fn run_on(
+    scene: &Scene,
+    options: &RunOptions,
+    backend: Box<dyn CollisionBackend>,
+    progress: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Outcome, SimulationError> {
     let mut simulator = Simulator::new(scene)?;
+    simulator.set_backend(backend)?;
     let mut writer = if options.resume {
         RunWriter::resume(&options.out, scene, &mut simulator)?
     } else {
@@ -125,6 +140,10 @@ pub fn run(
                 interrupted = report(simulator.step_index(), Some(&statistics), &checker).is_break();
             }
             Err(SimulationError::Interrupted) => interrupted = true,
+            Err(error @ SimulationError::Backend { .. }) => {
+                writer.finish(&simulator)?;
+                return Err(error);
+            }
             Err(error) => return Err(error),
         }
         interrupted |= stop_asked();
@@ -140,7 +159,7 @@ pub fn run(
         info,
         frames: totals.steps(),
         threads: rayon::current_num_threads(),
-        backend: "cpu".to_owned(),
+        backend: simulator.backend().name(),
         mean: totals.mean().map_err(unwritable)?,
         max: totals.max().map_err(unwritable)?,
         min_gap_m: totals.min_gap(),

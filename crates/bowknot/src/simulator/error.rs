@@ -52,6 +52,14 @@ pub enum SimulationError {
         /// Why.
         source: ResolveError,
     },
+    /// What resolves the collisions has failed; the simulator is as it was before the time step.
+    #[error("time step {step}: {source}")]
+    Backend {
+        /// The time step, from 1; 0 before the first.
+        step: usize,
+        /// Why.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
     /// A file cannot be read or written.
     #[error(transparent)]
     Io(#[from] IoError),

@@ -2,6 +2,7 @@
 //! observer.
 
 mod approach;
+mod backend;
 mod checkpoint;
 mod contacts;
 mod error;
@@ -22,6 +23,7 @@ mod statistics;
 mod taut;
 mod waking;
 
+pub use backend::{BackendError, CollisionBackend, Cpu};
 pub use checkpoint::Checkpoint;
 pub use contacts::ContactForce;
 pub use error::{SimulationError, describe_intersections};

@@ -70,7 +70,8 @@ impl Simulator {
         let obstacles = obstacles.map(|body| (&body.name, behind(&mut body.vertices.clone())));
         let pins = self.world.pins.iter().filter(|pin| pin.holds(time, self.dt));
         let pins = pins.map(|pin| (&pin.name, behind(&mut pin.vertices.iter().copied())));
-        let waiting = obstacles.chain(pins).filter(|(_, behind)| *behind > NO_DISTANCE);
+        let rounding = NO_DISTANCE.max(self.backend.resolution());
+        let waiting = obstacles.chain(pins).filter(|(_, behind)| *behind > rounding);
         waiting.map(|(name, behind)| (name.clone(), behind)).collect()
     }
 }

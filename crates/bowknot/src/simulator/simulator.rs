@@ -6,6 +6,7 @@
 //! iterations run without collisions, and the two-way method resolves once, from the start of the step to the
 //! last target.
 
+use super::backend::{BackendError, CollisionBackend, Cpu};
 use super::checkpoint::Checkpoint;
 use super::contacts::{ContactForce, Contacts};
 use super::error::{SimulationError, describe_intersections};
@@ -47,6 +48,7 @@ pub struct Simulator {
     collision_every: CollisionEvery,
     pub(super) dynamics: Dynamics,
     pub(super) resolver: Resolver,
+    pub(super) backend: Box<dyn CollisionBackend>,
     pub(super) step: usize,
     pub(super) positions: Vec<Point>,
     pub(super) velocities: Vec<Vector>,
@@ -134,6 +136,7 @@ impl Simulator {
             collision_every: scene.simulation.collision_every,
             dynamics,
             resolver,
+            backend: Box::new(Cpu),
             step: 0,
             positions: world.positions.clone(),
             velocities: world.velocities.clone(),
@@ -155,6 +158,23 @@ impl Simulator {
     /// these are 0 in [`StepStatistics`], and a time step takes some hundredths less. Results do not change.
     pub fn set_measured(&mut self, measured: bool) {
         self.measured = measured;
+    }
+
+    /// Lets a backend resolve the collisions from the next time step on, in place of the CPU.
+    ///
+    /// # Errors
+    /// [`SimulationError::Backend`] if it does not have what the scene needs.
+    pub fn set_backend(&mut self, mut backend: Box<dyn CollisionBackend>) -> Result<(), SimulationError> {
+        let home = &self.world.positions[..self.world.collision_vertices()];
+        let prepared = backend.prepare(self.resolver.scene(), home);
+        prepared.map_err(|source| backend_error(&self.world, self.step, source))?;
+        self.backend = backend;
+        Ok(())
+    }
+
+    /// What resolves the collisions.
+    pub fn backend(&self) -> &dyn CollisionBackend {
+        &*self.backend
     }
 
     /// Finds the contacts at the present state, and refuses coordinates too large for the minimum separation.
@@ -266,6 +286,7 @@ impl Simulator {
             world,
             dynamics,
             resolver,
+            backend,
             positions,
             velocities,
             dt,
@@ -344,11 +365,11 @@ impl Simulator {
                 groups,
                 max_steps: (!last).then_some(MAX_INTERMEDIATE_STEPS),
             };
-            let resolved = resolver.resolve_with(&mut x[..count], &y[..count], &input, &mut relay);
+            let resolved = backend.resolve(resolver, &mut x[..count], &y[..count], &input, &mut relay);
             if relay.stopped {
                 return Err(SimulationError::Interrupted);
             }
-            let resolved = resolved.map_err(|source| resolve_error(world, step, source))?;
+            let resolved = resolved.map_err(|source| backend_error(world, step, source))?;
             let cut = !last && !resolved.converged && resolved.steps >= MAX_INTERMEDIATE_STEPS;
             statistics.add_collision(&resolved, |body| world.name_of(body).to_owned());
 
@@ -357,7 +378,7 @@ impl Simulator {
             let carried = contacts.carried_after(&forces, resolver, *dt);
             contacts.find(resolver, &carried, start, *dt);
             x[count..].copy_from_slice(&y[count..]);
-            if x[..count] != y[..count] {
+            if differ(&x[..count], &y[..count], backend.resolution()) {
                 statistics.interior_solves +=
                     interior.follow(dynamics, prescribed, y, x).map_err(target_error)?;
                 if *measured {
@@ -487,6 +508,12 @@ impl Simulator {
     }
 }
 
+/// Whether any of the positions differ by more than the `resolution` [m].
+fn differ(x: &[Point], y: &[Point], resolution: f64) -> bool {
+    // Positions that are not numbers differ.
+    !x.iter().zip(y).all(|(x, y)| (x - y).amax() <= resolution)
+}
+
 fn added_energy(dynamics: &Dynamics, start: &[Point], y: &[Point], x: &[Point], dt: f64) -> f64 {
     let energy = |end: &[Point]| {
         let velocities: Vec<Vector> = end.iter().zip(start).map(|(x, x0)| (x - x0) / dt).collect();
@@ -502,6 +529,13 @@ pub(super) fn resolve_error(world: &World, step: usize, source: ResolveError) ->
         _ => "",
     };
     SimulationError::Resolve { step, body: body.to_owned(), source }
+}
+
+fn backend_error(world: &World, step: usize, source: BackendError) -> SimulationError {
+    match source {
+        BackendError::Refused(source) => resolve_error(world, step, source),
+        BackendError::Failed(source) => SimulationError::Backend { step, source },
+    }
 }
 
 /// Time after a number of time steps [s].

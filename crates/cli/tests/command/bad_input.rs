@@ -110,9 +110,12 @@ fn unknown_options_and_formats() {
 }
 
 #[test]
-fn whole_runs_do_not_compute_on_a_gpu() {
+fn gpus_that_are_not_there_and_settings_that_they_do_not_have() {
     let place = Place::new();
-    place.run(&format!("{SMALL} --backend gpu")).refused(3, &["do not run on a GPU yet", "--backend cpu"]);
+    place.run(&format!("{SMALL} --backend gpu --device 99")).refused(3, &["no device 99"]);
+    place
+        .run(&format!("{SMALL} --backend gpu --preset paper"))
+        .refused(3, &["contact.form", "--backend cpu", "--preset fast"]);
     place.run(&format!("{SMALL} --device 1")).refused(2, &["--backend gpu"]);
     assert!(!place.path("out").exists());
 }

@@ -86,6 +86,27 @@ fn json_is_the_only_output() {
 }
 
 #[test]
+fn a_run_on_a_gpu_goes_on_from_its_checkpoint_there_and_on_the_cpu() {
+    let place = Place::new();
+    let run = |frames: u32, options: &str| {
+        let start = "--set body.0.velocity=[0,0,-4] --check --json --threads 1";
+        place.run(&format!("run drape --scale 0.2 --frames {frames} {start} {options}")).ok().json()
+    };
+    let summary = run(12, "--backend gpu --out whole");
+    let backend = summary["backend"].as_str().unwrap();
+    assert!(backend.starts_with("gpu: "), "{backend}");
+    assert!(summary["max"]["contact_rows"].as_f64().unwrap() > 0.0, "{summary}");
+    run(7, "--backend gpu --out parts");
+    let summary = run(12, "--backend gpu --out parts --resume");
+    assert_eq!(summary["intersections"], 0);
+    let last = "frames/000012.ply";
+    let bytes = |run: &str| std::fs::read(place.path(&format!("{run}/{last}"))).unwrap();
+    assert_eq!(bytes("whole"), bytes("parts"));
+    let summary = run(14, "--backend cpu --out parts --resume");
+    assert_eq!((&summary["backend"], &summary["intersections"]), (&"cpu".into(), &0.into()));
+}
+
+#[test]
 fn formats_of_frames() {
     let place = Place::new();
     place.run(&format!("{SMALL} --format obj,npz --out run")).ok();

@@ -1,6 +1,7 @@
 //! The buffers of a scene on an engine, and how they grow.
 
 use crate::cpu::count::BLOCK;
+use crate::cpu::slack::MOST_BLOCKS;
 use crate::engine::Engine;
 use crate::error::GpuError;
 use crate::layout::{
@@ -76,6 +77,9 @@ pub struct Buffers {
     pub swings: BufferId,
     /// Where the vertices go in this step.
     pub aims: BufferId,
+    /// Sums of the coarse correction by block; its factor, and by how much the multipliers may still grow.
+    pub slack: BufferId,
+    pub factor: BufferId,
     pub rows: RowBuffers,
 }
 
@@ -141,6 +145,8 @@ impl Buffers {
             swings: engine.buffer("swings", 4 * vertices)?,
             displacements: engine.buffer("displacements", 4 * vertices)?,
             aims: engine.buffer("aims", 4 * vertices)?,
+            slack: engine.buffer("slack", 2 * MOST_BLOCKS)?,
+            factor: engine.buffer("factor", 2)?,
             rows: RowBuffers::new(engine, vertices, capacity)?,
         })
     }

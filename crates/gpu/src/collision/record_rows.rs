@@ -122,6 +122,33 @@ impl<E: Engine> Collision<E> {
         );
     }
 
+    /// Scales all multipliers, and the displacements with them.
+    fn record_coarse_correction(&self, recording: &mut Recording) {
+        let (b, r) = (&self.buffers, &self.buffers.rows);
+        let [vertices, limits] = [self.sizes.vertices, self.edges.len()].map(|count| count as u32);
+        let capacity = self.buffers.capacity as u32;
+        let threads = self.buffers.capacity.max(self.sizes.vertices).max(self.edges.len());
+        let blocks = threads.div_ceil(cpu::slack::BLOCK).min(cpu::slack::MOST_BLOCKS);
+        recording.dispatch(
+            &stages::SLACK,
+            &[r.rows, b.limits, b.positions, b.targets, b.vertices, b.displacements, b.control, b.slack],
+            cpu::slack::Params { blocks: blocks as u32, capacity, limits, vertices },
+            blocks * cpu::slack::BLOCK,
+        );
+        recording.dispatch(
+            &stages::FACTOR,
+            &[b.slack, b.factor],
+            cpu::factor::Params { blocks: blocks as u32 },
+            1,
+        );
+        recording.dispatch(
+            &stages::RESCALE,
+            &[b.factor, r.rows, b.limits, b.positions, b.targets, b.vertices, b.displacements, b.control],
+            cpu::rescale::Params { capacity, limits, vertices },
+            threads,
+        );
+    }
+
     /// Where the vertices should go so that no edge is too long and no gap too small.
     pub(super) fn record_backward(&self, recording: &mut Recording) {
         let (b, r) = (&self.buffers, &self.buffers.rows);
@@ -145,6 +172,9 @@ impl<E: Engine> Collision<E> {
         // First the multipliers of the last step are applied.
         for sweep in 0..=self.sweeps {
             let only_apply = u32::from(sweep == 0);
+            if sweep > 0 && self.settings.coarse_correction {
+                self.record_coarse_correction(recording);
+            }
             recording.dispatch(
                 &stages::SWEEP_ROWS,
                 &[r.order, r.ends, r.rows, b.displacements],

@@ -111,6 +111,11 @@ impl Engine for ComparingEngine {
         self.twin.free(buffer);
     }
 
+    fn clear(&mut self) {
+        self.device.clear();
+        self.twin.clear();
+    }
+
     fn words(&self, buffer: BufferId) -> usize {
         self.twin.words(buffer)
     }

@@ -191,6 +191,10 @@ impl Engine for DeviceEngine {
         self.buffers[buffer.0 as usize] = None;
     }
 
+    fn clear(&mut self) {
+        self.buffers.clear();
+    }
+
     fn words(&self, buffer: BufferId) -> usize {
         self.buffer_of(buffer).size() as usize / 4
     }

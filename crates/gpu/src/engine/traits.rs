@@ -17,6 +17,9 @@ pub trait Engine {
     /// Frees a buffer, which must not be used any more.
     fn free(&mut self, buffer: BufferId);
 
+    /// Frees all buffers.
+    fn clear(&mut self);
+
     /// Number of words of a buffer.
     fn words(&self, buffer: BufferId) -> usize;
 

@@ -43,6 +43,10 @@ impl Engine for TwinEngine {
         *self.buffers[buffer.0 as usize].borrow_mut() = Vec::new();
     }
 
+    fn clear(&mut self) {
+        self.buffers.clear();
+    }
+
     fn words(&self, buffer: BufferId) -> usize {
         self.content(buffer).len()
     }

@@ -1,0 +1,294 @@
+//! The collision stage on a device.
+
+use super::error::GpuResolveError;
+use super::setup;
+use crate::simulator::{BackendError, CollisionBackend};
+use bowknot_check::{Judge, StateOptions};
+use bowknot_geometry::{PairKind, Point};
+use bowknot_gpu::{Call, Collision, ContactRow, Engine, Grid, Kind, StepReport};
+use bowknot_twoway::{
+    AcceptedState, CallEnd, CallInput, CollisionScene, Observer, PairMultipliers, Residuals, ResolveInput,
+    Resolver, StallDetector, Statistics, StopTest, max_stretch,
+};
+use std::fmt::Debug;
+use std::time::Instant;
+
+/// Share of the largest friction from which on a contact slides: single precision.
+const SLIDES: f64 = 1.0 - 1e-5;
+
+/// Moves `positions` from an intersection-free state toward `target` on an engine, as [`Resolver::resolve_with`] does on
+/// the CPU. The state of the resolver becomes that of the call.
+///
+/// Statistics that the device does not compute are 0: colors, complementarity, stages.
+///
+/// # Errors
+/// [`GpuResolveError`]; `positions` are then unchanged.
+pub fn resolve_on<E: Engine + Debug + Send>(
+    engine: E,
+    resolver: &mut Resolver,
+    positions: &mut [Point],
+    target: &[Point],
+    input: &ResolveInput<'_>,
+    observer: &mut dyn Observer,
+) -> Result<Statistics, GpuResolveError> {
+    let mut device = Device::new(String::new(), engine);
+    device.set_home(resolver.scene(), positions)?;
+    device.solve(resolver, positions, target, input, observer)
+}
+
+/// Resolves collisions on an engine.
+#[derive(Debug)]
+pub struct Device<E> {
+    name: String,
+    /// None while a scene has it.
+    engine: Option<E>,
+    prepared: Option<Prepared<E>>,
+    /// Positions that the scene begins with [m]: the grid and the trees are made from them, so that a run that is
+    /// resumed has the same.
+    home: Vec<Point>,
+    /// The grid around them.
+    home_grid: Option<Grid>,
+}
+
+/// A scene on the device.
+#[derive(Debug)]
+struct Prepared<E> {
+    collision: Collision<E>,
+    constraints: CallConstraints,
+    /// Whether it was prepared at home.
+    at_home: bool,
+}
+
+/// What a call may change of a scene.
+#[derive(Debug, PartialEq)]
+struct CallConstraints {
+    prescribed: Vec<bool>,
+    groups: Vec<u32>,
+    obstacles: Vec<bool>,
+}
+
+impl<E: Engine + Debug + Send> Device<E> {
+    /// Resolves on that engine, whose name goes to `summary.json`.
+    pub fn new(name: String, engine: E) -> Self {
+        Self { name, engine: Some(engine), prepared: None, home: Vec::new(), home_grid: None }
+    }
+
+    /// What runs the stages; none before a scene is prepared.
+    pub fn engine(&self) -> Option<&E> {
+        self.prepared.as_ref().map(|prepared| prepared.collision.engine())
+    }
+
+    fn set_home(&mut self, scene: &CollisionScene, home: &[Point]) -> Result<(), GpuResolveError> {
+        setup::refuse_unsupported(scene)?;
+        self.home = home.to_vec();
+        self.home_grid = None;
+        self.release();
+        Ok(())
+    }
+
+    /// Takes the engine back from a scene.
+    fn release(&mut self) {
+        if let Some(prepared) = self.prepared.take() {
+            self.engine = Some(prepared.collision.into_engine());
+        }
+    }
+
+    /// The scene with the constraints of a call, and room around `positions` [m].
+    fn prepare_call(
+        &mut self,
+        scene: &CollisionScene,
+        call: &CallInput,
+        input: &ResolveInput<'_>,
+        positions: &[Point],
+    ) -> Result<&mut Collision<E>, GpuResolveError> {
+        let constraints = CallConstraints {
+            prescribed: call.prescribed().to_vec(),
+            groups: input.groups.to_vec(),
+            obstacles: scene.model().bodies().iter().map(|body| body.obstacle).collect(),
+        };
+        // Far from home the scene is prepared anew in each call: results depend on the state alone.
+        let at_home = self.home_grid.is_none_or(|grid| grid.has_room(positions));
+        let fits =
+            |prepared: &Prepared<E>| prepared.at_home && at_home && prepared.constraints == constraints;
+        if !self.prepared.as_ref().is_some_and(fits) {
+            self.release();
+            let at = if at_home { &self.home } else { positions };
+            let engine = self.engine.take().ok_or(GpuResolveError::NoEngine)?;
+            let collision = setup::collision(engine, scene, at, call, input)?;
+            if self.home_grid.is_none() {
+                self.home_grid = Some(*collision.grid());
+            }
+            self.prepared = Some(Prepared { collision, constraints, at_home });
+            if at_home && !self.home_grid.is_some_and(|grid| grid.has_room(positions)) {
+                return self.prepare_call(scene, call, input, positions);
+            }
+        }
+        self.prepared.as_mut().map(|prepared| &mut prepared.collision).ok_or(GpuResolveError::NoEngine)
+    }
+
+    fn solve(
+        &mut self,
+        resolver: &mut Resolver,
+        positions: &mut [Point],
+        target: &[Point],
+        input: &ResolveInput<'_>,
+        observer: &mut dyn Observer,
+    ) -> Result<Statistics, GpuResolveError> {
+        let timer = Instant::now();
+        let scene = resolver.scene();
+        let call = CallInput::new(scene, positions, target, input)?;
+        let judge = Judge::from_model(scene.model());
+        let collision = self.prepare_call(scene, &call, input, positions)?;
+        let start = place(collision, positions, &judge)?;
+        let speed = scene.lengths().separation_speed;
+        let growth = input.time_step.map_or(f64::INFINITY, |dt| speed * dt);
+        collision.begin(&Call { target, growth, slip_start: call.slip_start() })?;
+
+        let edge = scene.lengths().edge;
+        let mut stop = StopTest::new(&scene.params().solver.stop, edge, input.time_step, input.max_steps);
+        let mut stall = StallDetector::new(edge, scene.arrival_distance());
+        let mut statistics = Statistics::default();
+        let (mut end, mut aims) = (start.clone(), target.to_vec());
+        while stop.allows_step(statistics.steps) {
+            let report = collision.step()?;
+            let previous = end;
+            (end, aims) = collision.positions_and_aims()?;
+            let accepted =
+                AcceptedState { step: statistics.steps, previous: &previous, positions: &end, target: &aims };
+            let observed = observer.accepted(&accepted);
+            note(&mut statistics, &report);
+            statistics.converged = is_met(&mut stop, &report, statistics.steps);
+            let is_stalled =
+                stall.update(farthest(&call, true, target, &end), || farthest(&call, false, &aims, &end));
+            let is_out_of_time = stop.is_out_of_time(timer.elapsed().as_secs_f64());
+            if statistics.converged || observed.is_break() || is_out_of_time || is_stalled {
+                break;
+            }
+        }
+        let mut state = judge.check_state(&end, &StateOptions { limit: 1, distance: false })?;
+        if let Some(first) = state.intersections.pop() {
+            return Err(GpuResolveError::Intersects {
+                count: state.intersection_count,
+                first: Box::new(first),
+            });
+        }
+        let rows = collision.contact_rows()?;
+        let quantum = collision.grid().quantum();
+        note_friction(&mut statistics, &rows);
+        [statistics.max_step_stretch, statistics.max_stretch] =
+            max_stretch(scene, [&start, scene.rest()], &end);
+        let contacts: Vec<PairMultipliers> =
+            rows.iter().filter(|row| row.multiplier > 0.0).map(multipliers).collect();
+        let call_end = CallEnd { start: &start, positions: &end, target, aims: &aims, contacts: &contacts };
+        resolver.adopt(&call_end, input, &mut statistics)?;
+        if statistics.prescribed_lag_m <= quantum {
+            // On the nearest point of the grid.
+            statistics.prescribed_lag_m = 0.0;
+        }
+        positions.copy_from_slice(&end);
+        statistics.seconds.total = timer.elapsed().as_secs_f64();
+        Ok(statistics)
+    }
+}
+
+impl<E: Engine + Debug + Send> CollisionBackend for Device<E> {
+    fn name(&self) -> String {
+        self.name.clone()
+    }
+
+    fn prepare(&mut self, scene: &CollisionScene, home: &[Point]) -> Result<(), BackendError> {
+        Ok(self.set_home(scene, home)?)
+    }
+
+    fn resolution(&self) -> f64 {
+        self.prepared.as_ref().map_or(0.0, |prepared| prepared.collision.grid().quantum())
+    }
+
+    fn resolve(
+        &mut self,
+        resolver: &mut Resolver,
+        positions: &mut [Point],
+        target: &[Point],
+        input: &ResolveInput<'_>,
+        observer: &mut dyn Observer,
+    ) -> Result<Statistics, BackendError> {
+        Ok(self.solve(resolver, positions, target, input, observer)?)
+    }
+}
+
+/// Puts the vertices on the grid and returns where they are [m]. Nothing may pass through on the way there: each vertex
+/// moves by less than 0.87 quanta, so that gaps of two quanta stay open.
+fn place<E: Engine>(
+    collision: &mut Collision<E>,
+    positions: &[Point],
+    judge: &Judge,
+) -> Result<Vec<Point>, GpuResolveError> {
+    collision.place(positions)?;
+    let start = collision.positions()?;
+    if start != positions {
+        let quantum = collision.grid().quantum();
+        let state = judge.check_state(positions, &StateOptions { limit: 0, distance: true })?;
+        let is_open = state.nearest.is_none_or(|nearest| nearest.distance > 2.0 * quantum);
+        if !(state.intersection_count == 0 && is_open) {
+            return Err(GpuResolveError::TooTight { quantum });
+        }
+    }
+    Ok(start)
+}
+
+/// Whether a call has converged after so many steps.
+fn is_met(stop: &mut StopTest, report: &StepReport, steps: usize) -> bool {
+    let step = bowknot_stepper::StepReport {
+        remaining: report.remaining,
+        largest_move: report.largest_move,
+        unhindered: report.unhindered,
+        unhindered_lag: report.unhindered_lag,
+        ..bowknot_stepper::StepReport::default()
+    };
+    let residuals = || Residuals {
+        net_residual: report.net_residual,
+        mean_residual: report.mean_residual,
+        stretch_to_limit: report.stretch_to_limit,
+    };
+    stop.is_met(&step, residuals) && !stop.takes_finishing_step(&step, steps, || report.pressing == 0)
+}
+
+/// Largest distance of a vertex to its place in `ends` [m], of those that are prescribed or of the others.
+fn farthest(call: &CallInput, prescribed: bool, ends: &[Point], x: &[Point]) -> f64 {
+    let vertices = (0..x.len()).filter(|&v| call.is_prescribed(v) == prescribed);
+    vertices.map(|v| (ends[v] - x[v]).norm()).fold(0.0, f64::max)
+}
+
+fn note(statistics: &mut Statistics, report: &StepReport) {
+    statistics.steps += 1;
+    statistics.searches += usize::from(report.searched);
+    statistics.skipped.searches += usize::from(!report.searched);
+    statistics.pairs = report.candidates;
+    statistics.contact_rows = report.contact_rows;
+    statistics.active_rows = report.pressing;
+    statistics.frozen_pairs += report.frozen;
+    statistics.net_residual_m = report.net_residual;
+}
+
+/// Which contacts stick and slide. Slip is that before the last step.
+fn note_friction(statistics: &mut Statistics, rows: &[ContactRow]) {
+    for row in rows.iter().filter(|row| row.coefficient > 0.0) {
+        statistics.friction_rows += 1;
+        let largest = row.coefficient * row.multiplier;
+        if largest > 0.0 && row.friction.norm() >= SLIDES * largest {
+            statistics.sliding_contacts += 1;
+        } else if largest > 0.0 {
+            statistics.sticking_contacts += 1;
+            statistics.sticking_slip_m = statistics.sticking_slip_m.max(row.slip.norm());
+        }
+    }
+}
+
+/// What a contact carries, with the elements in the order of the CPU.
+fn multipliers(row: &ContactRow) -> PairMultipliers {
+    let kind = PairKind::ALL[row.candidate.kind() as usize];
+    let (a, b) = (row.candidate.a(), row.candidate.b);
+    let is_symmetric = [Kind::VertexVertex, Kind::EdgeEdge].map(|k| k as u32).contains(&row.candidate.kind());
+    let (elements, sign) = if is_symmetric && b < a { ([b, a], -1.0) } else { ([a, b], 1.0) };
+    PairMultipliers { kind, elements, normal: row.multiplier, friction: row.friction * sign }
+}

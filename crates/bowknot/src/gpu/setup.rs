@@ -1,0 +1,92 @@
+//! A scene of the CPU as the device needs it.
+
+use super::error::GpuResolveError;
+use bowknot_constraints::{ContactForm, EdgeForm, EdgeReference, FrictionModel};
+use bowknot_geometry::Point;
+use bowknot_gpu::{Collision, CollisionError, Constraints, Engine, Lengths, Settings};
+use bowknot_stepper::{Bound, TrustRegionRule};
+use bowknot_twoway::{CallInput, CollisionScene, ResolveInput, StopRule};
+
+/// The scene on the engine, at `positions`.
+pub fn collision<E: Engine>(
+    engine: E,
+    scene: &CollisionScene,
+    positions: &[Point],
+    call: &CallInput,
+    input: &ResolveInput<'_>,
+) -> Result<Collision<E>, CollisionError> {
+    let (model, params) = (scene.model(), scene.params());
+    let vertices = 0..scene.vertex_count();
+    let body = |v: usize| model.vertex_body()[v];
+    let contact = |v: usize| &scene.contact().bodies()[body(v) as usize];
+    let limit = |[a, b]: &[u32; 2]| {
+        let rest = (scene.rest()[*a as usize] - scene.rest()[*b as usize]).norm();
+        let limits = params.contact.edges;
+        if limits { scene.stretch_limit(body(*a as usize)) * rest } else { f64::INFINITY }
+    };
+    let has_friction = scene.friction_model() != FrictionModel::None;
+    let of_vertices = |value: &dyn Fn(usize) -> f64| -> Vec<f64> { vertices.clone().map(value).collect() };
+    let frictions = if has_friction { of_vertices(&|v| contact(v).friction) } else { Vec::new() };
+    let half_space_frictions: Vec<f64> = scene.contact().half_spaces().iter().map(|h| h.friction).collect();
+    let lengths = Lengths {
+        edges: &of_vertices(&|v| scene.local_edge(v)),
+        margins: &of_vertices(&|v| scene.spacing().margin(body(v))),
+        deltas: &of_vertices(&|v| scene.spacing().delta(body(v))),
+        thicknesses: &of_vertices(&|v| contact(v).thickness.unwrap_or(f64::NAN)),
+        min_separation: scene.lengths().min_separation,
+        edge_limits: &model.topology().edges.iter().map(limit).collect::<Vec<f64>>(),
+    };
+    let constraints = Constraints {
+        prescribed: call.prescribed(),
+        groups: input.groups,
+        masses: &of_vertices(&|v| scene.relative_mass(v)),
+        frictions: &frictions,
+        half_space_frictions: &half_space_frictions,
+    };
+    let backward = &params.solver.backward;
+    let settings = Settings {
+        sweeps: backward.sweeps,
+        polish_sweeps: backward.polish_sweeps,
+        polish_distance: backward.polish_distance * scene.lengths().edge,
+        polish_stretch: 1.0 + 0.5 * params.solver.stop.stretch_tolerance,
+        edge_proximal: backward.edge_proximal,
+        contact_proximal: backward.contact_proximal,
+        proximal_growth: backward.proximal_growth,
+        range: params.contact.range,
+        active: params.contact.active,
+        contacts_only: params.contact.contacts_only,
+        coarse_correction: backward.coarse_correction,
+        damping: params.solver.forward.damping,
+    };
+    Collision::new(engine, model, positions, scene.rest(), &lengths, &constraints, &settings)
+}
+
+/// Refuses what the kernels do not have.
+pub fn refuse_unsupported(scene: &CollisionScene) -> Result<(), GpuResolveError> {
+    const FAST: Option<&str> = Some("--preset fast");
+    let params = scene.params();
+    let (contact, solver) = (&params.contact, &params.solver);
+    let filter = scene.friction_model() == FrictionModel::Filter;
+    let thick_half_space = scene.contact().half_spaces().iter().any(|h| h.thickness.is_some());
+    let refused = [
+        (contact.form != ContactForm::Gap, "contact.form other than \"gap\"", FAST),
+        (filter, "contact.friction_model = \"filter\"", FAST),
+        (contact.edge_form != EdgeForm::Ball, "contact.edge_form other than \"ball\"", FAST),
+        (contact.edge_reference != EdgeReference::Rest, "contact.edge_reference other than \"rest\"", FAST),
+        (!solver.backward.active_rows, "solver.backward.active_rows = false", FAST),
+        (solver.forward.bound != Bound::Planes, "solver.forward.bound other than \"planes\"", FAST),
+        (
+            solver.forward.trust_region != TrustRegionRule::PerVertex,
+            "solver.forward.trust_region other than \"per-vertex\"",
+            FAST,
+        ),
+        (!matches!(solver.stop.rule, StopRule::Travel { .. }), "solver.stop.rule = \"clock\"", FAST),
+        (scene.contact().has_pair_friction(), "friction of a pair of bodies", None),
+        (thick_half_space, "the thickness of a half-space", None),
+        (scene.lengths().min_separation == 0.0, "contact.min_separation = 0", None),
+    ];
+    match refused.into_iter().find(|(refused, ..)| *refused) {
+        Some((_, what, instead)) => Err(GpuResolveError::Unsupported { what: what.to_owned(), instead }),
+        None => Ok(()),
+    }
+}

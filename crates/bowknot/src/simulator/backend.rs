@@ -1,0 +1,73 @@
+//! What resolves the collisions of a simulation.
+
+use bowknot_geometry::Point;
+use bowknot_twoway::{CollisionScene, Observer, ResolveError, ResolveInput, Resolver, Statistics};
+use std::error::Error;
+use std::fmt::Debug;
+
+/// Resolves the collision problems of a simulation, in place of the stages of its [`Resolver`].
+pub trait CollisionBackend: Debug + Send {
+    /// What `summary.json` calls it.
+    fn name(&self) -> String;
+
+    /// Prepares for a scene. `home` are the positions that the scene begins with [m]; results depend on them, but
+    /// not on the positions that a run is resumed from.
+    ///
+    /// # Errors
+    /// Settings of the scene that the backend does not have.
+    fn prepare(&mut self, scene: &CollisionScene, home: &[Point]) -> Result<(), BackendError>;
+
+    /// How far positions may be off because the backend rounds them [m].
+    fn resolution(&self) -> f64;
+
+    /// As [`Resolver::resolve_with`]. It leaves the state of the resolver as such a call does.
+    ///
+    /// # Errors
+    /// As [`Resolver::resolve_with`], or what the backend fails of; `positions` are then unchanged.
+    fn resolve(
+        &mut self,
+        resolver: &mut Resolver,
+        positions: &mut [Point],
+        target: &[Point],
+        input: &ResolveInput<'_>,
+        observer: &mut dyn Observer,
+    ) -> Result<Statistics, BackendError>;
+}
+
+/// Why a backend did not resolve a collision problem.
+#[derive(Debug)]
+pub enum BackendError {
+    /// The problem is refused.
+    Refused(ResolveError),
+    /// The backend has failed, or does not have what the scene needs.
+    Failed(Box<dyn Error + Send + Sync>),
+}
+
+/// The resolver itself, on the CPU.
+#[derive(Debug, Default)]
+pub struct Cpu;
+
+impl CollisionBackend for Cpu {
+    fn name(&self) -> String {
+        "cpu".to_owned()
+    }
+
+    fn prepare(&mut self, _: &CollisionScene, _: &[Point]) -> Result<(), BackendError> {
+        Ok(())
+    }
+
+    fn resolution(&self) -> f64 {
+        0.0
+    }
+
+    fn resolve(
+        &mut self,
+        resolver: &mut Resolver,
+        positions: &mut [Point],
+        target: &[Point],
+        input: &ResolveInput<'_>,
+        observer: &mut dyn Observer,
+    ) -> Result<Statistics, BackendError> {
+        resolver.resolve_with(positions, target, input, observer).map_err(BackendError::Refused)
+    }
+}

@@ -1,0 +1,43 @@
+//! Twin of `shader/factor.wgsl`.
+
+use crate::bound::Bound;
+use bytemuck::{Pod, Zeroable};
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct Params {
+    pub blocks: u32,
+}
+
+/// Largest growth of the multipliers in a call.
+pub const MOST_GROWTH: f32 = 1e3;
+
+const LEAST: f32 = 0.3;
+const MOST: f32 = 2.0;
+const LARGE: f32 = 1e6;
+
+pub fn bound(buffers: Bound<'_>) {
+    factor(buffers.params(), &buffers.read(0), &mut buffers.write(1));
+}
+
+pub fn factor(params: Params, sums: &[[f32; 2]], factor: &mut [f32]) {
+    let mut sum = [0.0f32; 2];
+    for [slack, energy] in &sums[..params.blocks as usize] {
+        sum = [sum[0] + slack, sum[1] + energy];
+    }
+    let [slack, energy] = sum;
+    let mut best = 1.0;
+    if energy > 0.0 {
+        if slack.abs() < LARGE * energy {
+            best = 1.0 - slack / energy;
+        } else if slack > 0.0 {
+            best = LEAST;
+        } else {
+            best = MOST;
+        }
+    }
+    let most = MOST.min(factor[1]).max(1.0);
+    let s = best.max(LEAST).min(most);
+    factor[0] = s;
+    factor[1] /= s;
+}

@@ -1,0 +1,79 @@
+//! Takes over the end of a call that something else has made, such as a device.
+
+use crate::error::ResolveError;
+use crate::input::ResolveInput;
+use crate::resolver::Resolver;
+use crate::stages::{BackwardStep, ForwardStep, Search};
+use crate::statistics::Statistics;
+use bowknot_geometry::{PairKind, Point, Vector};
+
+/// The end of a call.
+#[derive(Clone, Copy, Debug)]
+pub struct CallEnd<'a> {
+    /// Where the call started [m].
+    pub start: &'a [Point],
+    /// Where it ended, free of intersections [m].
+    pub positions: &'a [Point],
+    /// Where the dynamics wants to be [m].
+    pub target: &'a [Point],
+    /// Where the last step wanted to go: y [m].
+    pub aims: &'a [Point],
+    /// What the contacts carry, in any order. Pairs without an entry carry nothing.
+    pub contacts: &'a [PairMultipliers],
+}
+
+/// What a contact carries at the end of a call.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PairMultipliers {
+    /// The pair's kind.
+    pub kind: PairKind,
+    /// The pair's elements, as [`bowknot_proximity::Pair`] has them.
+    pub elements: [u32; 2],
+    /// Multiplier of the contact row [m, in units of relative mass].
+    pub normal: f64,
+    /// Friction multiplier, in space [m, in units of relative mass].
+    pub friction: Vector,
+}
+
+impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
+    /// Makes [`Self::state`] that of a call which something else has made: pairs in range at its end, their
+    /// contact geometry, and what they carry. Adds to `statistics` what [`Self::resolve_with`] adds at the end
+    /// of a call, but for residuals and counts of the stages. Entries of pairs that are out of range are
+    /// dropped: nothing presses there.
+    ///
+    /// # Errors
+    /// As [`Self::resolve`].
+    pub fn adopt(
+        &mut self,
+        end: &CallEnd<'_>,
+        input: &ResolveInput<'_>,
+        statistics: &mut Statistics,
+    ) -> Result<(), ResolveError> {
+        let input = ResolveInput { start: Some(input.start.unwrap_or(end.start)), ..*input };
+        self.begin(end.positions, end.target, &input)?;
+        let Self { scene, state, search, .. } = self;
+        search.update(scene, state, &mut Statistics::default());
+        state.start.copy_from_slice(end.start);
+        state.y.copy_from_slice(end.aims);
+        state.step = statistics.steps;
+        let contacts = &mut state.contacts;
+        let mut sorted = end.contacts.to_vec();
+        sorted.sort_unstable_by_key(|contact| (contact.kind, contact.elements));
+        for kind in PairKind::ALL {
+            let mut lookup = contacts.pairs.lookup(kind, [0; 2]);
+            let found: Vec<(u32, &PairMultipliers)> = sorted
+                .iter()
+                .filter(|contact| contact.kind == kind)
+                .filter_map(|contact| Some((lookup.find(contact.elements)?, contact)))
+                .collect();
+            for (pair, contact) in found {
+                contacts.multipliers[pair as usize] = contact.normal;
+                if let Some(friction) = contacts.friction_multipliers.get_mut(pair as usize) {
+                    *friction = contact.friction;
+                }
+            }
+        }
+        self.describe_end(statistics);
+        Ok(())
+    }
+}

@@ -1,0 +1,175 @@
+//! Whole simulations with the collisions on the twins of the kernels: nothing intersects, the first contacts are those
+//! of the CPU, and so are the statistics of the runs.
+//!
+//! Where bodies crumple, differences of the size of a tolerance grow. The yardstick for them is a run on the CPU with
+//! one sweep more per backward step, which should make no difference either.
+//!
+//! `BOWKNOT_ALL=1` runs every scene of the paper and prints a table; without it there are some small ones.
+
+use bowknot::check::StateOptions;
+use bowknot::gpu::{Device, TwinEngine};
+use bowknot::{Scene, Simulator, StepStatistics};
+use bowknot_geometry::Point;
+
+/// A scene, its scale, assignments to its keys, and the number of time steps.
+type Case = (&'static str, f64, &'static [&'static str], usize);
+
+const SMALL: [Case; 5] = [
+    ("drape", 0.25, &["body.0.velocity=[0,0,-4]"], 16),
+    ("needle", 0.12, &[], 12),
+    ("trampoline", 0.2, &[], 40),
+    ("hair", 0.05, &[], 10),
+    ("sand", 0.05, &[], 40),
+];
+
+const ALL: [Case; 15] = [
+    ("drape", 0.5, &[], 60),
+    ("needle", 0.2, &[], 40),
+    ("stack", 0.2, &[], 80),
+    ("sphere", 0.1, &[], 80),
+    ("tube", 0.15, &[], 50),
+    ("dress", 0.1, &[], 40),
+    ("gown", 0.1, &[], 40),
+    ("blade", 0.1, &[], 40),
+    ("funnel", 0.1, &[], 30),
+    ("bow-knot", 0.08, &[], 60),
+    ("reef-knot", 0.15, &[], 60),
+    ("mat", 0.12, &[], 60),
+    ("hair", 0.05, &[], 60),
+    ("sand", 0.08, &[], 80),
+    ("trampoline", 0.4, &[], 80),
+];
+
+/// What a run did.
+struct Course {
+    /// Mean edge length [m].
+    edge: f64,
+    two_way_steps: usize,
+    newton_iterations: usize,
+    largest_stretch: f64,
+    most_pairs: usize,
+    /// Mean friction and contact rows per time step.
+    contact_rows: f64,
+    /// First time step with contact rows.
+    first_contact: usize,
+    converged: usize,
+    /// Center of mass after each time step.
+    centers: Vec<Point>,
+    end: Vec<Point>,
+}
+
+/// Where the collisions are resolved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum On {
+    Cpu,
+    /// With one sweep more.
+    CpuOnceMore,
+    Twins,
+}
+
+fn run((name, scale, sets, steps): Case, on: On) -> Course {
+    let mut sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
+    if on == On::CpuOnceMore {
+        sets.push("solver.backward.sweeps=9".to_owned());
+    }
+    let scene = Scene::builtin(name, scale).and_then(|scene| scene.with_sets(&sets)).expect("a scene");
+    let mut simulator = Simulator::new(&scene).expect("a simulator");
+    if on == On::Twins {
+        let device = Device::new("twins".to_owned(), TwinEngine::new());
+        simulator.set_backend(Box::new(device)).expect("settings that the kernels have");
+    }
+    let judge = simulator.judge();
+    let count = simulator.world().collision_vertices();
+    let options = StateOptions { limit: 1, distance: false };
+    let mut all: Vec<StepStatistics> = Vec::new();
+    for step in 0..steps {
+        all.push(simulator.step().unwrap_or_else(|error| panic!("{name}: {error}")));
+        let state = judge.check_state(&simulator.positions()[..count], &options).expect("a report");
+        assert!(state.is_clear(), "{name}, step {step}, {on:?}: {state:?}");
+    }
+    let rows: usize = all.iter().map(|s| s.contact_rows).sum();
+    Course {
+        edge: simulator.resolver().scene().lengths().edge,
+        two_way_steps: all.iter().map(|s| s.two_way_steps).sum(),
+        newton_iterations: all.iter().map(|s| s.newton_iterations).sum(),
+        largest_stretch: all.iter().map(|s| s.max_stretch).fold(0.0, f64::max),
+        most_pairs: all.iter().map(|s| s.pairs).max().unwrap_or(0),
+        contact_rows: rows as f64 / steps as f64,
+        first_contact: all.iter().position(|s| s.contact_rows > 0).unwrap_or(steps),
+        converged: all.iter().filter(|s| s.converged).count(),
+        centers: all.iter().map(|s| Point::from(s.center_of_mass)).collect(),
+        end: simulator.positions().to_vec(),
+    }
+}
+
+/// Largest distance of the centers of mass in the first `steps` time steps [m].
+fn centers_apart(a: &Course, b: &Course, steps: usize) -> f64 {
+    a.centers.iter().zip(&b.centers).take(steps).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
+}
+
+/// Root mean square distance of the vertices at the end [m].
+fn ends_apart(a: &Course, b: &Course) -> f64 {
+    let sum: f64 = a.end.iter().zip(&b.end).map(|(a, b)| (a - b).norm_squared()).sum();
+    (sum / a.end.len() as f64).sqrt()
+}
+
+#[test]
+fn runs_on_the_kernels_go_as_on_the_cpu() {
+    for case in SMALL {
+        let [cpu, once_more, twins] = [On::Cpu, On::CpuOnceMore, On::Twins].map(|on| run(case, on));
+        let (name, steps) = (case.0, case.3);
+        assert!(cpu.first_contact < steps, "{name}: the scene has not come to its contacts");
+        assert_eq!(cpu.first_contact, twins.first_contact, "{name}");
+        // Two vertices may stop short of their targets by the tolerance of the stopping rule each.
+        let tolerance = 0.02 * cpu.edge;
+        for steps in [cpu.first_contact + 2, steps] {
+            let [apart, own] = [&twins, &once_more].map(|course| centers_apart(&cpu, course, steps));
+            assert!(
+                apart < 2.0 * own + tolerance,
+                "{name}, step {steps}: {apart} m, the yardstick is {own} m"
+            );
+        }
+        let ratio = |of: fn(&Course) -> f64| of(&twins) / of(&cpu);
+        let steps = ratio(|course| course.two_way_steps as f64);
+        assert!((0.8..1.25).contains(&steps), "{name}: {steps} times the two-way steps");
+        let rows = ratio(|course| course.contact_rows);
+        assert!((0.6..1.7).contains(&rows), "{name}: {rows} times the contact rows");
+        // Grains have no edges.
+        let stretch = ratio(|course| 1.0 + course.largest_stretch);
+        assert!((0.99..1.01).contains(&stretch), "{name}: {stretch} times the stretch");
+    }
+}
+
+/// The table of `docs/GPU.md`.
+#[test]
+fn all_scenes_of_the_paper_if_asked_for() {
+    if std::env::var_os("BOWKNOT_ALL").is_none() {
+        return;
+    }
+    println!(
+        "| scene | vertices | time steps | two-way steps | iterations | contact rows | converged | largest stretch | most \
+         pairs | apart mm: centers | ends |"
+    );
+    for case in ALL {
+        let courses = [On::Cpu, On::CpuOnceMore, On::Twins].map(|on| run(case, on));
+        let all = |of: &dyn Fn(&Course) -> String| courses.each_ref().map(of).join(", ");
+        let [cpu, once_more, twins] = &courses;
+        let apart = |of: &dyn Fn(&Course) -> f64| {
+            [once_more, twins].map(|course| format!("{:.3}", 1e3 * of(course))).join(", ")
+        };
+        println!(
+            "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
+            case.0,
+            cpu.end.len(),
+            case.3,
+            all(&|c| c.two_way_steps.to_string()),
+            all(&|c| c.newton_iterations.to_string()),
+            all(&|c| format!("{:.0}", c.contact_rows)),
+            all(&|c| c.converged.to_string()),
+            all(&|c| format!("{:.3}", c.largest_stretch)),
+            all(&|c| c.most_pairs.to_string()),
+            apart(&|c| centers_apart(cpu, c, case.3)),
+            apart(&|c| ends_apart(cpu, c)),
+        );
+    }
+}
