@@ -7,6 +7,7 @@
 use crate::Random;
 use bowknot::geometry::{Point, Vector};
 use bowknot::io::{MeshView, write_obj};
+use bowknot::simulator::{CollisionBackend, Cpu};
 use bowknot::{Scene, Simulator};
 use std::ops::Range;
 use std::path::Path;
@@ -259,9 +260,15 @@ impl Slope {
 
     /// Follows the slider for `steps` time steps.
     pub fn run(&self, steps: usize) -> Track {
+        self.run_on(Box::new(Cpu), steps)
+    }
+
+    /// The same with a backend for the collisions.
+    pub fn run_on(&self, backend: Box<dyn CollisionBackend>, steps: usize) -> Track {
         let folder = tempfile::tempdir().expect("a folder");
         let mut simulator =
             Simulator::new(&self.scene(folder.path())).unwrap_or_else(|error| panic!("{error}"));
+        simulator.set_backend(backend).unwrap_or_else(|error| panic!("{error}"));
         let heading = self.heading.to_radians();
         let along = Vector::new(heading.cos(), heading.sin(), 0.0);
         let mut track = Track {

@@ -18,7 +18,7 @@
 //! | [`simulator`] | the time-step loop, its statistics, checkpoints |
 //! | `run` | whole runs: the output folder, resuming, checking as it goes (feature `files`) |
 //! | `recording` | collision problems, recorded and solved again (feature `files`) |
-//! | `gpu` | collision problems on a GPU (feature `gpu`) |
+//! | `gpu` | collisions on a GPU (feature `gpu`) |
 //! | `repair` | cleaning of meshes whose seams intersect (feature `files`) |
 //! | [`scene`], [`shapes`], [`world`] | scene files, built-in scenes, generated meshes, the assembled world |
 //! | [`io`] | mesh files, archives, atomic writes |
@@ -29,7 +29,7 @@
 //! |---|---|---|
 //! | `files` | NumPy archives, checkpoint files, runs, recordings, repair | ndarray, zip, flate2 |
 //! | `report` | the HTML page | `files`, and 1 MB of scripts |
-//! | `gpu` | collision problems on a GPU | wgpu |
+//! | `gpu` | collisions on a GPU | wgpu |
 //!
 //! None is on by default; the command has all. A feature never changes a result.
 //!

@@ -208,7 +208,7 @@ impl<E: Engine> Collision<E> {
     /// # Errors
     /// No grid has room for the scene; the device has no memory; wrong lengths.
     pub fn new(
-        mut engine: E,
+        engine: E,
         model: &CollisionModel,
         positions: &[Point],
         rest: &[Point],
@@ -216,9 +216,50 @@ impl<E: Engine> Collision<E> {
         constraints: &Constraints<'_>,
         settings: &Settings,
     ) -> Result<Self, CollisionError> {
+        let grid = Self::grid_around(positions, rest, lengths)?;
+        let mut collision =
+            Self::on_grid(engine, &grid, model, positions, rest, lengths, constraints, settings)?;
+        collision.place(positions)?;
+        Ok(collision)
+    }
+
+    /// A grid for a scene that begins at `positions` [m].
+    ///
+    /// # Errors
+    /// There is none with room for the scene.
+    pub fn grid_around(
+        positions: &[Point],
+        rest: &[Point],
+        lengths: &Lengths<'_>,
+    ) -> Result<Grid, CollisionError> {
+        // Trust regions and boxes must fit as well: no radius is above an edge length, none of a box above two margins more.
+        let lengths_of_vertices = lengths.edges.iter().chain(lengths.margins);
+        let largest = lengths_of_vertices.fold(0.0, |largest: f64, length| largest.max(*length));
+        let room = extent(positions).max(extent(rest)).max(4.0 * largest);
+        Ok(Grid::around(positions, room, lengths.min_separation)?)
+    }
+
+    /// Longest travel of a vertex in a step, in local edge lengths.
+    pub const LONGEST_TRAVEL: f64 = record::LONGEST_TRAVEL as f64;
+
+    /// Prepares the scene on a grid, without [positions](Self::place). The
+    /// elements are ordered in space by `order`, any positions that are typical of the scene [m].
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn on_grid(
+        mut engine: E,
+        grid: &Grid,
+        model: &CollisionModel,
+        order: &[Point],
+        rest: &[Point],
+        lengths: &Lengths<'_>,
+        constraints: &Constraints<'_>,
+        settings: &Settings,
+    ) -> Result<Self, CollisionError> {
         let count = model.topology().vertex_count;
         for (what, given) in [
-            ("positions", positions.len()),
+            ("positions", order.len()),
             ("rest positions", rest.len()),
             ("edges", lengths.edges.len()),
             ("margins", lengths.margins.len()),
@@ -226,22 +267,18 @@ impl<E: Engine> Collision<E> {
         ] {
             check_length(what, given, count)?;
         }
-        // Trust regions and boxes must fit as well: no radius is above an edge length, none of a box above two margins more.
-        let lengths_of_vertices = lengths.edges.iter().chain(lengths.margins);
-        let largest = lengths_of_vertices.fold(0.0, |largest: f64, length| largest.max(*length));
-        let room = extent(positions).max(extent(rest)).max(4.0 * largest);
-        let grid = Grid::around(positions, room, lengths.min_separation)?;
-        let on_grid = snapped(&grid, positions)?;
+        let order_grid = grid.around_others(order).ok_or(CollisionError::OutsideGrid { vertex: 0 })?;
+        let order = snapped(&order_grid, order)?;
         let rest_grid = grid.around_others(rest).ok_or(CollisionError::OutsideGrid { vertex: 0 })?;
         let rest_on_grid = snapped(&rest_grid, rest)?;
-        let vertices = model::vertices(model, lengths, constraints, &grid);
-        let planes = model::planes(model, constraints, &grid);
+        let vertices = model::vertices(model, lengths, constraints, grid);
+        let planes = model::planes(model, constraints, grid);
         let groups = vertices.iter().filter(|v| v.group != NONE).map(|v| v.group as usize + 1);
         let topology = model.topology();
         let triangles: Vec<[u32; 4]> = topology.triangles.iter().map(|&[a, b, c]| [a, b, c, 0]).collect();
         let moves = |v: u32| vertices[v as usize].flags & Vertex::PRESCRIBED == 0;
         let edges = Edges::new(&topology.edges, lengths.edge_limits, moves);
-        let trees = Trees::new(&mut engine, topology, &on_grid)?;
+        let trees = Trees::new(&mut engine, topology, &order)?;
         let adjacency = Adjacency::new(topology);
         let blocks = model::blocks(model);
         let sizes = Sizes {
@@ -258,7 +295,6 @@ impl<E: Engine> Collision<E> {
         let frictional = constraints.frictions.iter().any(|friction| *friction > 0.0);
         let buffers = Buffers::new(&mut engine, &sizes)?;
         let mut setup = Recording::default();
-        setup.write(buffers.positions, &padded(&on_grid));
         setup.write(buffers.rest, &padded(&rest_on_grid));
         setup.write(buffers.vertices, &vertices);
         setup.write(buffers.edges, &topology.edges);
@@ -275,7 +311,7 @@ impl<E: Engine> Collision<E> {
         };
         Ok(Self {
             engine,
-            grid,
+            grid: *grid,
             settings: settings.clone(),
             lengths,
             sizes,

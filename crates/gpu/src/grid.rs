@@ -68,17 +68,11 @@ impl Grid {
     /// # Errors
     /// A position that is not finite; a scene too large for `smallest`.
     pub fn around(positions: &[Point], room: f64, smallest: f64) -> Result<Self, GridError> {
-        let (mut low, mut high) = (Vector::repeat(f64::INFINITY), Vector::repeat(f64::NEG_INFINITY));
-        for (vertex, x) in positions.iter().enumerate() {
-            if !x.iter().all(|c| c.is_finite()) {
-                return Err(GridError::NotFinite { vertex });
-            }
-            (low, high) = (low.inf(&x.coords), high.sup(&x.coords));
+        if let Some(vertex) = positions.iter().position(|x| !x.iter().all(|c| c.is_finite())) {
+            return Err(GridError::NotFinite { vertex });
         }
-        if positions.is_empty() {
-            (low, high) = (Vector::zeros(), Vector::zeros());
-        }
-        let half = 0.5 * (high - low).amax() + room;
+        let (size, middle) = bounds(positions.iter());
+        let half = 0.5 * size.amax() + room;
         // The finest grid that has the room, and the coarsest with the wanted resolution.
         let exponent = |length: f64| length.log2().floor().clamp(-1e9, 1e9) as i32;
         let exponent =
@@ -88,7 +82,6 @@ impl Grid {
         if !(half / quantum < MAX_COORDINATE && Self::RESOLUTION * quantum <= smallest) {
             return Err(too_coarse);
         }
-        let middle = (low + high) * 0.5;
         let origin = Point::from(middle.map(|c| (c / quantum).round() * quantum));
         // Far from the origin of the scene's own coordinates the quanta are no numbers in `f64`.
         let largest = origin.coords.amax() + half;
@@ -97,12 +90,35 @@ impl Grid {
 
     /// A grid with the same quantum around other positions [m]; None if they need more room than there is.
     pub fn around_others(&self, positions: &[Point]) -> Option<Self> {
-        let first = positions.first().map_or_else(Vector::zeros, |x| x.coords);
-        let bounds = positions.iter().fold((first, first), |(l, h), x| (l.inf(&x.coords), h.sup(&x.coords)));
-        let middle = (bounds.0 + bounds.1) * 0.5;
+        let (_, middle) = bounds(positions.iter());
         let origin = Point::from(middle.map(|c| (c / self.quantum).round() * self.quantum));
         let other = Self { origin, ..*self };
         positions.iter().all(|x| other.nearest(x).is_some()).then_some(other)
+    }
+
+    /// The grid for a call in which vertices move from `positions` to `ends` [m] at the farthest: this one if it has
+    /// room, else one that is shifted to there, else a coarser one of both kinds that still resolves `smallest` [m].
+    /// Shifts are multiples of an eighth of the width, so that the same grid serves for a while. None if none has room.
+    pub fn for_motion(&self, positions: &[Point], ends: &[Point], smallest: f64) -> Option<Self> {
+        let both = || positions.iter().chain(ends);
+        let (_, middle) = bounds(both());
+        let has_room =
+            |grid: &Self| grid.has_room(positions) && ends.iter().all(|x| grid.nearest(x).is_some());
+        let mut quantum = self.quantum;
+        while Self::RESOLUTION * quantum <= smallest {
+            let home = self.origin.coords.map(|c| (c / quantum).round() * quantum);
+            let unit = 0.25 * MAX_COORDINATE * quantum;
+            let shift = (middle - home).map(|c| (c / unit).round() * unit);
+            for origin in [home, home + shift] {
+                let grid = Self { origin: Point::from(origin), quantum };
+                let is_number = origin.amax() / quantum < 2f64.powi(52);
+                if is_number && has_room(&grid) {
+                    return Some(grid);
+                }
+            }
+            quantum *= 2.0;
+        }
+        None
     }
 
     /// Length of the integer one [m].
@@ -144,6 +160,13 @@ impl Grid {
     }
 }
 
+/// Size and middle of the box around the positions [m]; zeros if there are none.
+fn bounds<'a>(mut positions: impl Iterator<Item = &'a Point>) -> (Vector, Vector) {
+    let first = positions.next().map_or_else(Vector::zeros, |x| x.coords);
+    let (low, high) = positions.fold((first, first), |(l, h), x| (l.inf(&x.coords), h.sup(&x.coords)));
+    (high - low, (low + high) * 0.5)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -169,6 +192,28 @@ mod tests {
             assert!(grid.has_room(&points));
             let far = Point::from(points[0].coords + Vector::repeat(0.6 * MAX_COORDINATE * grid.quantum()));
             assert!(!grid.has_room(&[far]) && grid.nearest(&far).is_some());
+            let smallest = 1e-5 * scale;
+            assert_eq!(grid.for_motion(&points, &points, smallest), Some(grid));
+            let on_grid = |grid: &Grid, x: &Point| grid.nearest(x).map(|there| grid.position(there));
+            for times in [1.5, 40.0, 1e5] {
+                let way = Vector::new(times, -0.2, 3.0 * times) * (MAX_COORDINATE * grid.quantum());
+                let moved: Vec<Point> = points.iter().map(|x| x + way).collect();
+                let shifted = grid.for_motion(&moved, &moved, smallest).expect("as much room as before");
+                assert!(shifted.has_room(&moved) && shifted.quantum() == grid.quantum());
+                // The points of one grid are those of the other.
+                let there = on_grid(&shifted, &moved[0]).expect("inside");
+                assert_eq!((there - grid.origin).map(|c| (c / grid.quantum()).fract()), Vector::zeros());
+            }
+            // A long way needs a coarser grid, whose points are among those of the finer one.
+            let ends: Vec<Point> =
+                points.iter().map(|x| x + Vector::x() * (3.0 * MAX_COORDINATE * grid.quantum())).collect();
+            let coarser = grid.for_motion(&points, &ends, smallest).expect("a coarser one");
+            let ratio = coarser.quantum() / grid.quantum();
+            assert!((2.0..=8.0).contains(&ratio), "{ratio}");
+            let there = on_grid(&coarser, &points[0]).expect("inside");
+            assert_eq!(on_grid(&grid, &there), Some(there));
+            let far = [Point::new(1e300, 0.0, 0.0)];
+            assert_eq!(grid.for_motion(&points, &far, smallest), None);
         }
     }
 

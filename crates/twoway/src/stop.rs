@@ -165,6 +165,11 @@ impl StopTest {
         }
     }
 
+    /// Largest number of two-way steps.
+    pub fn max_steps(&self) -> usize {
+        self.max_steps
+    }
+
     /// Whether the call may take another step after `steps` steps.
     pub fn allows_step(&self, steps: usize) -> bool {
         steps < self.max_steps

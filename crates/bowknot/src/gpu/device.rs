@@ -46,8 +46,6 @@ pub struct Device<E> {
     /// Positions that the scene begins with [m]: the grid and the trees are made from them, so that a run that is
     /// resumed has the same.
     home: Vec<Point>,
-    /// The grid around them.
-    home_grid: Option<Grid>,
 }
 
 /// A scene on the device.
@@ -55,8 +53,8 @@ pub struct Device<E> {
 struct Prepared<E> {
     collision: Collision<E>,
     constraints: CallConstraints,
-    /// Whether it was prepared at home.
-    at_home: bool,
+    /// The grid around the positions that the scene begins with.
+    home_grid: Grid,
 }
 
 /// What a call may change of a scene.
@@ -70,7 +68,7 @@ struct CallConstraints {
 impl<E: Engine + Debug + Send> Device<E> {
     /// Resolves on that engine, whose name goes to `summary.json`.
     pub fn new(name: String, engine: E) -> Self {
-        Self { name, engine: Some(engine), prepared: None, home: Vec::new(), home_grid: None }
+        Self { name, engine: Some(engine), prepared: None, home: Vec::new() }
     }
 
     /// What runs the stages; none before a scene is prepared.
@@ -81,7 +79,6 @@ impl<E: Engine + Debug + Send> Device<E> {
     fn set_home(&mut self, scene: &CollisionScene, home: &[Point]) -> Result<(), GpuResolveError> {
         setup::refuse_unsupported(scene)?;
         self.home = home.to_vec();
-        self.home_grid = None;
         self.release();
         Ok(())
     }
@@ -93,35 +90,30 @@ impl<E: Engine + Debug + Send> Device<E> {
         }
     }
 
-    /// The scene with the constraints of a call, and room around `positions` [m].
+    /// The scene with the constraints of a call, and room from `positions` to `ends` [m].
     fn prepare_call(
         &mut self,
         scene: &CollisionScene,
         call: &CallInput,
         input: &ResolveInput<'_>,
         positions: &[Point],
+        ends: &[Point],
     ) -> Result<&mut Collision<E>, GpuResolveError> {
         let constraints = CallConstraints {
             prescribed: call.prescribed().to_vec(),
             groups: input.groups.to_vec(),
             obstacles: scene.model().bodies().iter().map(|body| body.obstacle).collect(),
         };
-        // Far from home the scene is prepared anew in each call: results depend on the state alone.
-        let at_home = self.home_grid.is_none_or(|grid| grid.has_room(positions));
-        let fits =
-            |prepared: &Prepared<E>| prepared.at_home && at_home && prepared.constraints == constraints;
+        let fits = |prepared: &Prepared<E>| {
+            let grid = prepared.home_grid.for_motion(positions, ends, scene.lengths().min_separation);
+            prepared.constraints == constraints && grid.as_ref() == Some(prepared.collision.grid())
+        };
         if !self.prepared.as_ref().is_some_and(fits) {
             self.release();
-            let at = if at_home { &self.home } else { positions };
             let engine = self.engine.take().ok_or(GpuResolveError::NoEngine)?;
-            let collision = setup::collision(engine, scene, at, call, input)?;
-            if self.home_grid.is_none() {
-                self.home_grid = Some(*collision.grid());
-            }
-            self.prepared = Some(Prepared { collision, constraints, at_home });
-            if at_home && !self.home_grid.is_some_and(|grid| grid.has_room(positions)) {
-                return self.prepare_call(scene, call, input, positions);
-            }
+            let (collision, home_grid) =
+                setup::collision(engine, scene, [&self.home, positions, ends], call, input)?;
+            self.prepared = Some(Prepared { collision, constraints, home_grid });
         }
         self.prepared.as_mut().map(|prepared| &mut prepared.collision).ok_or(GpuResolveError::NoEngine)
     }
@@ -138,14 +130,16 @@ impl<E: Engine + Debug + Send> Device<E> {
         let scene = resolver.scene();
         let call = CallInput::new(scene, positions, target, input)?;
         let judge = Judge::from_model(scene.model());
-        let collision = self.prepare_call(scene, &call, input, positions)?;
+        let edge = scene.lengths().edge;
+        let mut stop = StopTest::new(&scene.params().solver.stop, edge, input.time_step, input.max_steps);
+        let ends =
+            farthest_ends(scene, positions, target, stop.max_steps() as f64 * Collision::<E>::LONGEST_TRAVEL);
+        let collision = self.prepare_call(scene, &call, input, positions, &ends)?;
         let start = place(collision, positions, &judge)?;
         let speed = scene.lengths().separation_speed;
         let growth = input.time_step.map_or(f64::INFINITY, |dt| speed * dt);
         collision.begin(&Call { target, growth, slip_start: call.slip_start() })?;
 
-        let edge = scene.lengths().edge;
-        let mut stop = StopTest::new(&scene.params().solver.stop, edge, input.time_step, input.max_steps);
         let mut stall = StallDetector::new(edge, scene.arrival_distance());
         let mut statistics = Statistics::default();
         let (mut end, mut aims) = (start.clone(), target.to_vec());
@@ -214,6 +208,16 @@ impl<E: Engine + Debug + Send> CollisionBackend for Device<E> {
     ) -> Result<Statistics, BackendError> {
         Ok(self.solve(resolver, positions, target, input, observer)?)
     }
+}
+
+/// How far toward the target vertices can come [m] if they travel by `most` local edge lengths.
+fn farthest_ends(scene: &CollisionScene, positions: &[Point], target: &[Point], most: f64) -> Vec<Point> {
+    let end = |(v, (x, y)): (usize, (&Point, &Point))| {
+        let (way, reach) = (y - x, most * scene.local_edge(v));
+        let length = way.norm();
+        if length > reach { x + way * (reach / length) } else { *y }
+    };
+    positions.iter().zip(target).enumerate().map(end).collect()
 }
 
 /// Puts the vertices on the grid and returns where they are [m]. Nothing may pass through on the way there: each vertex

@@ -3,18 +3,19 @@
 use super::error::GpuResolveError;
 use bowknot_constraints::{ContactForm, EdgeForm, EdgeReference, FrictionModel};
 use bowknot_geometry::Point;
-use bowknot_gpu::{Collision, CollisionError, Constraints, Engine, Lengths, Settings};
+use bowknot_gpu::{Collision, CollisionError, Constraints, Engine, Grid, Lengths, Settings};
 use bowknot_stepper::{Bound, TrustRegionRule};
 use bowknot_twoway::{CallInput, CollisionScene, ResolveInput, StopRule};
 
-/// The scene on the engine, at `positions`.
+/// The scene on the engine, on a grid with room from `positions` to `ends` [m], and the grid around the positions `home`
+/// that it begins with.
 pub fn collision<E: Engine>(
     engine: E,
     scene: &CollisionScene,
-    positions: &[Point],
+    [home, positions, ends]: [&[Point]; 3],
     call: &CallInput,
     input: &ResolveInput<'_>,
-) -> Result<Collision<E>, CollisionError> {
+) -> Result<(Collision<E>, Grid), CollisionError> {
     let (model, params) = (scene.model(), scene.params());
     let vertices = 0..scene.vertex_count();
     let body = |v: usize| model.vertex_body()[v];
@@ -58,7 +59,14 @@ pub fn collision<E: Engine>(
         coarse_correction: backward.coarse_correction,
         damping: params.solver.forward.damping,
     };
-    Collision::new(engine, model, positions, scene.rest(), &lengths, &constraints, &settings)
+    let home_grid = Collision::<E>::grid_around(home, scene.rest(), &lengths)?;
+    let grid = home_grid.for_motion(positions, ends, lengths.min_separation);
+    let grid = grid.ok_or_else(|| CollisionError::OutsideGrid {
+        vertex: ends.iter().position(|x| home_grid.nearest(x).is_none()).unwrap_or(0),
+    })?;
+    let collision =
+        Collision::on_grid(engine, &grid, model, home, scene.rest(), &lengths, &constraints, &settings)?;
+    Ok((collision, home_grid))
 }
 
 /// Refuses what the kernels do not have.

@@ -8,7 +8,7 @@ use crate::recording::Recording;
 use crate::stages;
 
 /// Longest travel of a vertex in a step, and smallest radius of a trust region, in local edge lengths.
-const LONGEST_TRAVEL: f32 = 0.35;
+pub(super) const LONGEST_TRAVEL: f32 = 0.35;
 const SMALLEST_RADIUS: f32 = 0.1;
 
 impl<E: Engine> Collision<E> {
