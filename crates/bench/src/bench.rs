@@ -45,6 +45,8 @@ pub struct Bench {
     pub store: Store,
     /// A program `bowknot` of an older commit, to compare with.
     pub before: Option<PathBuf>,
+    /// A part of the names of the cases that are wanted; none: all are.
+    pub cases: Option<String>,
     machine: Machine,
     out: PathBuf,
     /// When the run began.
@@ -65,6 +67,7 @@ impl Bench {
             size,
             store: Store::new(&out.join("measured"), &machine.commit),
             before,
+            cases: None,
             machine,
             out,
             run_timer: Instant::now(),
@@ -76,6 +79,11 @@ impl Bench {
     /// Folder of all results of this size.
     pub fn out(&self) -> &Path {
         &self.out
+    }
+
+    /// Whether the case of that name is wanted.
+    pub fn wants(&self, name: &str) -> bool {
+        self.cases.as_ref().is_none_or(|part| name.contains(part.as_str()))
     }
 
     /// Starts the time of a figure.

@@ -12,7 +12,10 @@ use anyhow::{Context, Result, bail, ensure};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const PAGE: &str = "docs/benchmarks.md";
+/// The page of figures and tables, with an index of them.
+pub const BENCHMARKS: &str = "docs/benchmarks.md";
+/// The page of [`crate::stability`].
+pub const STABILITY: &str = "docs/stability.md";
 const FOLDER: &str = "docs/benchmarks";
 
 /// The documentation in a repository.
@@ -33,14 +36,14 @@ impl Docs {
     /// # Errors
     /// If the tree is not clean, or is no git tree.
     pub fn ensure_clean(&self) -> Result<()> {
-        let exclude = [PAGE, FOLDER].map(|path| format!(":(exclude){path}"));
-        let arguments = ["status", "--porcelain", "--", ".", &exclude[0], &exclude[1]];
+        let exclude = [BENCHMARKS, STABILITY, FOLDER].map(|path| format!(":(exclude){path}"));
+        let arguments = ["status", "--porcelain", "--", ".", &exclude[0], &exclude[1], &exclude[2]];
         let Some(changes) = git::output(&self.repository, &arguments) else {
-            bail!("{} is no git tree: {PAGE} has to name the commit", self.repository.display());
+            bail!("{} is no git tree: {BENCHMARKS} has to name the commit", self.repository.display());
         };
         ensure!(
             changes.is_empty(),
-            "{PAGE} is written from a clean git tree only, so that its commits are those of the code; commit \
+            "results are written from a clean git tree only, so that its commits are those of the code; commit \
              these files first, or measure with --quick:\n{changes}"
         );
         Ok(())
@@ -62,11 +65,11 @@ impl Docs {
         self.ensure_clean()?;
         ensure!(
             !conditions.contains(WITH_CHANGES),
-            "{PAGE} is not written: measurements of {} come from a tree that was not clean ({conditions}); \
-             remove them",
+            "{} is not written: measurements of {} come from a tree that was not clean ({conditions}); remove them",
+            figure.page(),
             figure.name()
         );
-        let path = self.repository.join(PAGE);
+        let path = self.repository.join(figure.page());
         let page = fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
         let page = if figure.on_page() {
             page::with_section(

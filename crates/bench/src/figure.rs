@@ -2,6 +2,7 @@
 
 use crate::bench::Bench;
 use crate::chart::Chart;
+use crate::docs;
 use crate::table::Table;
 use anyhow::Result;
 
@@ -13,9 +14,14 @@ pub trait Figure: Sync {
     fn title(&self) -> &'static str;
     /// The question that it answers, and how it is measured.
     fn question(&self) -> &'static str;
-    /// Whether the page shows its text and its tables. The page's index lists the files of all other figures.
+    /// Whether its page shows its text and its tables. The index of docs/benchmarks.md lists the files of all other
+    /// figures.
     fn on_page(&self) -> bool {
         false
+    }
+    /// The page that publishes it, from the root of the repository.
+    fn page(&self) -> &'static str {
+        docs::BENCHMARKS
     }
     /// Measures it.
     ///

@@ -12,6 +12,7 @@
 //! | `methods`, `solve` | the methods that are compared; timing one on one problem |
 //! | `simulate`, `process` | whole simulations and the distances between them; simulations in other processes |
 //! | `summary` | results of settings on the problems of scenes |
+//! | `stability` | small scenes at the ends of what users ask for, under the judge |
 //! | `measures` | the quality of a result, measured alike for every method |
 //! | `chart`, `table` | SVG, CSV and Markdown |
 //!
@@ -39,6 +40,7 @@ mod record;
 mod run;
 mod simulate;
 mod solve;
+mod stability;
 mod store;
 mod summary;
 mod table;
@@ -74,6 +76,9 @@ struct Arguments {
     /// A program `bowknot` of an older commit: `goals` then compares with it.
     #[arg(long, value_name = "BOWKNOT")]
     before: Option<PathBuf>,
+    /// Measures only the cases of `stability` whose names contain TEXT, and publishes nothing.
+    #[arg(long, value_name = "TEXT")]
+    cases: Option<String>,
     /// The scene of `simulate`, which the command runs in a process of its own.
     #[arg(long, hide = true, default_value = "drape")]
     of: String,
@@ -140,11 +145,12 @@ fn run(arguments: &Arguments) -> Result<()> {
     // The repository that the command was built from.
     let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let docs = Docs::new(&repository);
-    if size == Size::Full && arguments.name != "record" {
+    if size == Size::Full && arguments.name != "record" && arguments.cases.is_none() {
         // Before hours of measurements, not after them.
         docs.ensure_clean()?;
     }
-    let bench = Bench::new(size, &arguments.out, &repository, arguments.before.clone())?;
+    let mut bench = Bench::new(size, &arguments.out, &repository, arguments.before.clone())?;
+    bench.cases.clone_from(&arguments.cases);
     let names: Vec<&str> = figures::ALL.iter().map(|figure| figure.name()).collect();
     match arguments.name.as_str() {
         "record" => record::all(&bench),

@@ -28,7 +28,7 @@ pub fn measure(bench: &Bench, docs: &Docs, figure: &dyn Figure, order: &[&str]) 
     println!("  {}\n  {:.0} s, {}", report.finding, bench.figure_seconds(), folder.display());
     let conditions = bench.conditions(&load);
     write(&folder.join("report.md"), &page::section(figure, &report, &conditions, ""))?;
-    if bench.size == Size::Full {
+    if bench.size == Size::Full && bench.cases.is_none() {
         docs.publish(figure, &report, &conditions, order)?;
     }
     Ok(())

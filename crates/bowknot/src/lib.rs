@@ -36,6 +36,9 @@
 //! The crates below are re-exported under short names. This crate does not know terminals: it never
 //! prints, it logs through `tracing`.
 
+// Results have the same bits on every machine; tests may use the system's functions.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 #[cfg(feature = "gpu")]
 pub mod gpu;
 #[cfg(feature = "files")]

@@ -24,6 +24,9 @@
 //! **What is not judged:** two edges that share a vertex folded exactly onto each other, as no pair
 //! kind covers them; and which side of a surface a body is on.
 
+// Results have the same bits on every machine; tests may use the system's functions.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod closest;
 mod dump;
 mod error;

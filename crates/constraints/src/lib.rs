@@ -3,6 +3,9 @@
 //! The crate turns pairs and their contact geometry into the rows that `bowknot-lcp` solves. It knows no
 //! solver.
 
+// Results have the same bits on every machine; tests may use the system's functions.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod coloring;
 mod contacts;
 mod desired;

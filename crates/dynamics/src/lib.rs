@@ -23,6 +23,9 @@
 //! | [`repulsion`] | [`RepulsionSpring`] |
 //! | [`observe`] | [`Energies`], momenta, stretch, volumes |
 
+// Results have the same bits on every machine; tests may use the system's functions.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 pub mod body;
 mod drag;
 pub mod dynamics;

@@ -17,6 +17,9 @@
 //!
 //! Function names follow one pattern: `module::pair_kind`, for example [`distance::vertex_triangle`].
 
+// Results have the same bits on every machine; tests may use the system's functions.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 pub mod bounds;
 mod collision_model;
 pub mod distance;

@@ -13,6 +13,9 @@
 //! The crate knows neither meshes nor contacts. Positions and row values share one unit, usually meters. With
 //! weights relative to their mean, multipliers have it too.
 
+// Results have the same bits on every machine; tests may use the system's functions.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod colors;
 mod error;
 mod exact;

@@ -36,7 +36,7 @@ pub fn origin(positions: &[Point], vertices: &[u32]) -> Point {
     // The grid is at least a few centimeters wide; with a finer one a lone particle would change the origin
     // all the time.
     let extent = (0..3).fold(0.06, |e: f64, k| e.max(high[k] - low[k]));
-    let grid = extent.log2().ceil().exp2();
+    let grid = libm::exp2(libm::log2(extent).ceil());
     let center =
         |k: usize| if low[k] <= high[k] { (0.5 * (low[k] + high[k]) / grid).round() * grid } else { 0.0 };
     Point::new(center(0), center(1), center(2))

@@ -11,6 +11,9 @@
 //! 4. `assemble`, `narrow`: the pairs in order, with their contact geometry; or `candidates`: a compact list
 //!    that takes the pairs of vertices that have changed.
 
+// Results have the same bits on every machine; tests may use the system's functions.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod assemble;
 mod bits;
 mod candidates;

@@ -12,6 +12,9 @@
 //!
 //! `docs/scene-reference.md` lists every key; a test keeps it in step with the structs.
 
+// Results have the same bits on every machine; tests may use the system's functions.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod body;
 mod builtin;
 mod description;
@@ -34,6 +37,7 @@ mod short;
 mod source;
 #[cfg(test)]
 mod tests;
+mod turn;
 mod validate;
 mod values;
 pub mod world;

@@ -1,5 +1,6 @@
 //! Prescribed rigid motion of obstacles and pins.
 
+use crate::turn;
 use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::{Point, Vector};
 use nalgebra::{Rotation3, Unit};
@@ -55,7 +56,7 @@ impl Motion {
         let angle = angle + self.spin * time;
         let rotation = Unit::try_new(self.axis, 0.0)
             .filter(|_| angle != 0.0)
-            .map(|axis| Rotation3::from_axis_angle(&axis, angle.to_radians()));
+            .map(|axis| turn::about_axis(&axis, angle.to_radians()));
         Placement { rotation, center: self.center, translate }
     }
 

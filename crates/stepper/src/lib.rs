@@ -3,6 +3,9 @@
 //!
 //! It knows pairs and their slabs. It knows no constraint, and not where targets come from.
 
+// Results have the same bits on every machine; tests may use the system's functions.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod params;
 mod rounding;
 mod stepper;

@@ -6,6 +6,9 @@
 //! intersections ([`ForwardStep`]). Friction changes the target alone, so it does not affect that
 //! certificate. The stages are traits, and other methods implement them.
 
+// Results have the same bits on every machine; tests may use the system's functions.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod adopt;
 mod backward;
 mod bodies;

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `check` | runs everything that CI runs |
 //! | `pictures` | draws the built-in scenes into `assets/pictures` |
+//! | `miri` | runs unit tests of the numerical crates under Miri |
 //! | `hashes` | prints a hash of the frames of each built-in scene, to show that a change leaves every bit as it is |
 //!
 //! `cargo xtask help` prints the options.
@@ -14,6 +15,7 @@ mod bowknot;
 mod check;
 mod docs;
 mod hashes;
+mod miri;
 mod pictures;
 mod readers;
 mod workspace;
@@ -22,11 +24,14 @@ use std::process::ExitCode;
 
 const USAGE: &str = "\
 Usage: cargo xtask check [--fast]
+       cargo xtask miri [CRATE..]
        cargo xtask pictures [SCENE..]
        cargo xtask hashes [--scenes A,B] [--jobs N]
 
 check     run what CI runs, in named steps: format, clippy, docs, wasm, a small run, its exports read back, tests
           --fast        format, clippy and unit tests only
+miri      run unit tests of geometry, lcp and stepper, or of the crates named, under Miri, which finds undefined
+          behavior; needs the nightly toolchain with the components miri and rust-src
 pictures  run built-in scenes, all or those named, and draw them into assets/pictures; needs a graphics driver
 hashes    run built-in scenes at a small scale on one thread each, and print for each its name, the number of its frames
           and a hash of all bytes of the frames: compare the lines before and after a change that is to leave every
@@ -40,6 +45,9 @@ fn main() -> ExitCode {
     match arguments.as_slice() {
         ["check"] => check::run(false),
         ["check", "--fast"] => check::run(true),
+        ["miri", names @ ..] if names.iter().all(|name| !name.starts_with('-')) => {
+            miri::run(&workspace::root(), names)
+        }
         ["pictures", names @ ..] if names.iter().all(|name| !name.starts_with('-')) => {
             pictures::run(&workspace::root(), names)
         }

@@ -50,7 +50,7 @@ const EMPTY_PAGE: &str = "# Benchmarks\n\n<!-- begin shown -->\n<!-- end shown -
 fn repository() -> TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     write(&folder.path().join("crates/code.rs"), "fn main() {}\n").expect("a file");
-    write(&folder.path().join(PAGE), EMPTY_PAGE).expect("a file");
+    write(&folder.path().join(BENCHMARKS), EMPTY_PAGE).expect("a file");
     for arguments in [
         &["init", "--quiet"][..],
         &["add", "."],
@@ -72,7 +72,7 @@ fn results_are_written_from_a_clean_tree() {
     // The page has changed now; results that figures wrote do not count.
     publish(&folder, false, "Commit abc.").expect("published");
     let read = |path: &str| fs::read_to_string(folder.path().join(path)).expect("a file");
-    let page = read(PAGE);
+    let page = read(BENCHMARKS);
     assert!(page.contains("## An example") && page.contains("| fast | 1.25 |"), "{page}");
     assert!(page.contains("| [indexed.csv](benchmarks/indexed.csv) | times |"), "{page}");
     assert_eq!(read("docs/benchmarks/indexed.csv"), "method,cpu_s\nfast,1.25\n");
@@ -87,7 +87,7 @@ fn nothing_is_written_from_a_dirty_tree() {
             let refused = publish(&folder, on_page, "Commit abc.").expect_err("the tree is dirty");
             assert!(refused.to_string().contains(path), "{refused}");
         }
-        assert_eq!(fs::read_to_string(folder.path().join(PAGE)).expect("a file"), EMPTY_PAGE);
+        assert_eq!(fs::read_to_string(folder.path().join(BENCHMARKS)).expect("a file"), EMPTY_PAGE);
         assert!(!folder.path().join(FOLDER).exists());
     }
 }

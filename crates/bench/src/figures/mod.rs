@@ -18,6 +18,7 @@ mod overview;
 mod parameters;
 mod row_solvers;
 mod simulation_error;
+mod stability;
 mod step_sizes;
 mod steps;
 mod sweeps;
@@ -55,4 +56,5 @@ pub const ALL: &[&dyn Figure] = &[
     &funnel::Funnel,
     &early_contact::EarlyContact,
     &goals::Goals,
+    &stability::Stability,
 ];

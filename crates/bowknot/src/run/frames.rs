@@ -212,7 +212,7 @@ fn typical_width(part: &Part, start: &[Point]) -> f64 {
     let width = if strands.is_empty() {
         let first = positions.first().copied().unwrap_or_default();
         let bounds = positions.iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)));
-        ((bounds.1 - bounds.0).product() / positions.len() as f64).cbrt()
+        libm::cbrt((bounds.1 - bounds.0).product() / positions.len() as f64)
     } else {
         let length = |&[i, j]: &[u32; 2]| (positions[i as usize] - positions[j as usize]).norm();
         0.1 * strands.iter().map(length).sum::<f64>() / strands.len() as f64

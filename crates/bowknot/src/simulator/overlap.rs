@@ -106,8 +106,8 @@ fn positions(world: &World, body: u32) -> &[Point] {
 
 /// A length that is a little larger, with two digits, in m.
 fn length(meters: f64) -> String {
-    let unit = 10f64.powi(meters.max(1e-9).log10().floor() as i32 - 1);
-    let digits = (1.0 - unit.log10()).round().max(1.0) as usize - 1;
+    let unit = 10f64.powi(libm::log10(meters.max(1e-9)).floor() as i32 - 1);
+    let digits = (1.0 - libm::log10(unit)).round().max(1.0) as usize - 1;
     format!("{:.digits$} m", (1.02 * meters / unit).ceil() * unit)
 }
 

@@ -14,6 +14,8 @@ mod bodies;
 mod fabrics;
 /// The walking figure, what follows it, and its dresses.
 mod figure;
+/// The same bits on every machine, on any number of threads.
+mod golden;
 /// Sets of defaults: what `quick` saves, and that nothing intersects.
 mod presets;
 /// `docs/scene-reference.md` follows the structs.

@@ -96,6 +96,25 @@ fn the_gradient_matches_differences_of_the_incremental_potential() {
     }
 }
 
+/// Steps of 10^6 times the size of the body, as an ill-conditioned system can have them, once raised energies from 10^-8 J
+/// to 10^240 J within one time step.
+#[test]
+fn a_step_that_only_raises_the_potential_is_not_taken() {
+    let (mut dynamics, x0, v0, _) = crumpled();
+    dynamics.begin_step(&x0, &v0, 0.02).expect("begins");
+    let nodes = dynamics.model.node_vertex.clone();
+    let x: Vec<Vector> = nodes.iter().map(|&v| x0[v as usize].coords).collect();
+    let mut step = linearized(&mut dynamics, &x);
+    let work = &mut dynamics.work;
+    work.right_side = work.gradient.iter().map(|g| -g).collect();
+    work.step = work.gradient.iter().map(|g| g * 1e6).collect();
+    work.trial.clone_from(&x);
+    let mut info = NewtonInfo::default();
+    newton(&mut dynamics, &mut step).search_line(&mut info);
+    assert_eq!((info.step_length, info.energy_after), (0.0, info.energy_before));
+    assert_eq!(dynamics.work.trial, x);
+}
+
 #[test]
 fn the_matrix_is_symmetric_positive_definite_and_matches_differences_under_tension() {
     let (mut dynamics, x0, v0, _) = crumpled();

@@ -71,7 +71,7 @@ impl SolidLaw {
                     (j - 1.0, 2.0 * trace - 2.0 * (j - 1.0))
                 };
                 let half = 0.5 * trace;
-                0.375 * mu * first_order + 0.5 * mu * (half - half.ln_1p()) + 0.5 * lambda * grow * grow
+                0.375 * mu * first_order + 0.5 * mu * (half - libm::log1p(half)) + 0.5 * lambda * grow * grow
             }
         }
     }

@@ -40,14 +40,14 @@ pub(super) fn scene(scale: f64) -> Scene {
     };
     // Half a card's extent across and upward at an angle off the vertical [deg].
     let half = |angle: f64| {
-        let (sin, cos) = angle.to_radians().sin_cos();
+        let (sin, cos) = libm::sincos(angle.to_radians());
         (0.5 * LENGTH * sin, 0.5 * LENGTH * cos)
     };
     let (left, right, third) = (22.0, 20.0, 25.0);
     // The upper edge of the left card, at x = 0, touches the face of the right one, which ends a little
     // higher.
     let ((left_x, left_z), (right_x, right_z)) = (half(left), half(right));
-    let top = GAP / right.to_radians().cos() - 2.0 * (right_z - left_z) * right.to_radians().tan();
+    let top = GAP / libm::cos(right.to_radians()) - 2.0 * (right_z - left_z) * libm::tan(right.to_radians());
     let (third_y, third_z) = half(third);
     let along = [LENGTH, WIDTH];
     let mut scene = Scene {

@@ -77,7 +77,7 @@ pub(super) fn scene(scale: f64) -> Scene {
 /// The funnel's wall as a closed profile, inside downwards and outside upwards, its corners rounded.
 fn profile(top: f64, edge: f64) -> Vec<[f64; 2]> {
     // The offset of a wall at 45 degrees shifts its corner with the upright wall by tan(22.5 degrees).
-    let shift = WALL * (std::f64::consts::FRAC_PI_8).tan();
+    let shift = WALL * libm::tan(std::f64::consts::FRAC_PI_8);
     let corners = [
         ([MOUTH, top], 0.4 * WALL),
         ([NECK, THROAT], 0.04),
@@ -93,14 +93,14 @@ fn profile(top: f64, edge: f64) -> Vec<[f64; 2]> {
         let (before, corner, after) = (at(k + n - 1), at(k), at(k + 1));
         let (to, from) = ((before - corner).normalize(), (after - corner).normalize());
         // The arc touches both sides at this distance from the corner.
-        let half_angle = 0.5 * to.dot(&from).acos();
-        let (reach, turn) = (radius / half_angle.tan(), std::f64::consts::PI - 2.0 * half_angle);
-        let center = corner + (to + from).normalize() * (radius / half_angle.sin());
+        let half_angle = 0.5 * libm::acos(to.dot(&from));
+        let (reach, turn) = (radius / libm::tan(half_angle), std::f64::consts::PI - 2.0 * half_angle);
+        let center = corner + (to + from).normalize() * (radius / libm::sin(half_angle));
         let (start, end) = (corner + to * reach - center, corner + from * reach - center);
         let steps = (radius * turn / edge).ceil().max(3.0) as u32;
         for step in 0..=steps {
             let s = f64::from(step) / f64::from(steps);
-            let weight = |s: f64| (s * turn).sin() / turn.sin();
+            let weight = |s: f64| libm::sin(s * turn) / libm::sin(turn);
             let arm = start * weight(1.0 - s) + end * weight(s);
             points.push([center.x + arm.x, center.y + arm.y]);
         }

@@ -13,7 +13,7 @@ use bowknot_geometry::Vector;
 /// larger ones in the same volume.
 pub(super) fn scene(scale: f64) -> Scene {
     // Sheets double their edge length where the scale halves; so do grains.
-    let diameter = 0.004 / scale.powf(2.0 / 3.0);
+    let diameter = 0.004 / libm::pow(scale, 2.0 / 3.0);
     let material = ParticleMaterial { radius: 0.5 * diameter, ..ParticleMaterial::sand() };
     let spacing = 1.06 * diameter;
     // A column of square cross-section within the mouth.

@@ -104,7 +104,7 @@ fn corners() -> [Vector; 12] {
         _ => {
             let lower = c > 5;
             let turn = ((c - 1) % 5) as f64 + if lower { 0.5 } else { 0.0 };
-            let (sin, cos) = (std::f64::consts::TAU * turn / 5.0).sin_cos();
+            let (sin, cos) = libm::sincos(std::f64::consts::TAU * turn / 5.0);
             Vector::new(r * cos, r * sin, if lower { -z } else { z })
         }
     })

@@ -30,7 +30,7 @@ impl Cone {
     /// The mesh: the tip, rings from the tip down to the rim, rings across the base, its center.
     pub fn mesh(&self) -> TriangleMesh {
         let n = self.sides.clamp(3, 1000);
-        let down = segments(self.radius.hypot(self.height), self.edge);
+        let down = segments(libm::hypot(self.radius, self.height), self.edge);
         let across = segments(self.radius, self.edge);
         let mut mesh = TriangleMesh::default();
         mesh.positions.push(Point::new(0.0, 0.0, self.height));
@@ -43,7 +43,7 @@ impl Cone {
         let mut rings = 0;
         for (radius, z) in side.chain(base) {
             for i in 0..n {
-                let (sin, cos) = (TAU * f64::from(i) / f64::from(n)).sin_cos();
+                let (sin, cos) = libm::sincos(TAU * f64::from(i) / f64::from(n));
                 mesh.positions.push(Point::new(radius * cos, radius * sin, z));
             }
             rings += 1;

@@ -99,7 +99,7 @@ impl Garment {
         let mut last = (height(0), mean(height(0)));
         for k in 1..=fine {
             let next = (height(k), mean(height(k)));
-            lengths.push(lengths[k as usize - 1] + (next.0 - last.0).hypot(next.1 - last.1));
+            lengths.push(lengths[k as usize - 1] + libm::hypot(next.0 - last.0, next.1 - last.1));
             last = next;
         }
         let whole = lengths[fine as usize];
@@ -120,7 +120,7 @@ impl Garment {
 
     /// How far below the waist, from 0 to 1 at the hem, as the flare grows.
     fn below(&self, z: f64) -> f64 {
-        ((self.waist - z) / (self.waist - self.hem)).max(0.0).powf(self.curve)
+        libm::pow(((self.waist - z) / (self.waist - self.hem)).max(0.0), self.curve)
     }
 
     /// An area that that of the cloth does not exceed [m^2].
@@ -198,7 +198,7 @@ impl Profile {
             let row = &self.radii[k];
             row[d] + (row[(d + 1) % DIRECTIONS] - row[d]) * v
         };
-        let pleat = 0.5 + 0.5 * (f64::from(garment.pleats) * angle).cos();
+        let pleat = 0.5 + 0.5 * libm::cos(f64::from(garment.pleats) * angle);
         let pleat = if garment.pleats > 0 { garment.pleat_depth * pleat } else { 0.0 };
         along(k) + (along(k + 1) - along(k)) * u + (garment.flare + pleat) * garment.below(z)
     }
@@ -209,7 +209,7 @@ impl Profile {
         let at = |d: usize| {
             let angle = TAU * d as f64 / fine as f64;
             let radius = self.radius(garment, angle, z);
-            Point::new(radius * angle.cos(), radius * angle.sin(), z)
+            Point::new(radius * libm::cos(angle), radius * libm::sin(angle), z)
         };
         let mut lengths = vec![0.0];
         let curve: Vec<Point> = (0..=fine).map(at).collect();
@@ -231,7 +231,7 @@ impl Profile {
 /// For each direction the distance from the axis to the hull of what is nearer than `gap` to the body.
 fn section(body: &RestBody, z: f64, gap: f64) -> [f64; DIRECTIONS] {
     let reach: [f64; DIRECTIONS] = std::array::from_fn(|d| {
-        let (sin, cos) = angle(d).sin_cos();
+        let (sin, cos) = libm::sincos(angle(d));
         // Inwards by what the field guarantees to be free.
         let mut radius = OUTSIDE;
         while radius > 0.0 {
@@ -244,7 +244,7 @@ fn section(body: &RestBody, z: f64, gap: f64) -> [f64; DIRECTIONS] {
         radius.max(0.0)
     });
     // The hull by its supporting lines, one for each direction.
-    let cosines: [f64; DIRECTIONS] = std::array::from_fn(|d| angle(d).cos());
+    let cosines: [f64; DIRECTIONS] = std::array::from_fn(|d| libm::cos(angle(d)));
     let between = |d: usize, e: usize| cosines[(d + DIRECTIONS - e) % DIRECTIONS];
     let support: [f64; DIRECTIONS] =
         std::array::from_fn(|d| (0..DIRECTIONS).map(|e| reach[e] * between(d, e)).fold(0.0, f64::max));

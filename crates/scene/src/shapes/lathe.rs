@@ -38,7 +38,7 @@ impl Lathe {
         let mut mesh = TriangleMesh::default();
         for [radius, z] in &profile {
             for i in 0..around {
-                let (sin, cos) = (TAU * f64::from(i) / f64::from(around)).sin_cos();
+                let (sin, cos) = libm::sincos(TAU * f64::from(i) / f64::from(around));
                 mesh.positions.push(Point::new(radius * cos, radius * sin, *z));
             }
         }
@@ -61,7 +61,7 @@ impl Lathe {
 
     /// Length of the profile [m].
     pub fn profile_length(&self) -> f64 {
-        self.sides().map(|(a, b)| (b[0] - a[0]).hypot(b[1] - a[1])).sum()
+        self.sides().map(|(a, b)| libm::hypot(b[0] - a[0], b[1] - a[1])).sum()
     }
 
     /// Neighboring corners.
@@ -74,7 +74,7 @@ impl Lathe {
     fn resampled(&self) -> Vec<[f64; 2]> {
         let mut points = Vec::new();
         for (a, b) in self.sides() {
-            let n = segments((b[0] - a[0]).hypot(b[1] - a[1]), self.edge);
+            let n = segments(libm::hypot(b[0] - a[0], b[1] - a[1]), self.edge);
             for k in 0..n {
                 let s = f64::from(k) / f64::from(n);
                 points.push([a[0] + (b[0] - a[0]) * s, a[1] + (b[1] - a[1]) * s]);

@@ -72,7 +72,7 @@ impl Strands {
             let first = mesh.positions.len() as u32;
             for k in 0..=self.segments {
                 let share = k as f64 / self.segments as f64;
-                let (sin, cos) = (TAU * self.turns * share).sin_cos();
+                let (sin, cos) = libm::sincos(TAU * self.turns * share);
                 // The helix begins at the root.
                 let curl = (across * (cos - 1.0) + other * sin) * self.curl;
                 mesh.positions.push(root + along * (self.length * share) + curl);
@@ -95,9 +95,9 @@ impl Strands {
             Root::Sphere => {
                 // A spiral of equal areas: every golden angle a root (Vogel 1979, on the sphere).
                 let golden = TAU * (1.0 - 2.0 / (1.0 + 5.0f64.sqrt()));
-                let depth = 1.0 - self.patch.to_radians().cos();
+                let depth = 1.0 - libm::cos(self.patch.to_radians());
                 let z = 1.0 - depth * (index as f64 + 0.5) / self.count as f64;
-                let (sin, cos) = (golden * index as f64).sin_cos();
+                let (sin, cos) = libm::sincos(golden * index as f64);
                 let r = (1.0 - z * z).max(0.0).sqrt();
                 let along = Vector::new(r * cos, r * sin, z);
                 (Point::from(along * self.radius), along)

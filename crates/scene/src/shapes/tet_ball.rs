@@ -39,7 +39,7 @@ impl TetBall {
             if shell == 0.0 {
                 return Point::origin();
             }
-            let direction = place.map(|c| (FRAC_PI_4 * c / shell).tan());
+            let direction = place.map(|c| libm::tan(FRAC_PI_4 * c / shell));
             Point::from(direction * (self.radius * shell / direction.norm()))
         })
     }

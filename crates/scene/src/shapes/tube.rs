@@ -35,7 +35,7 @@ impl Tube {
         for j in 0..=along {
             let x = self.length * (f64::from(j) / f64::from(along) - 0.5);
             for i in 0..around {
-                let (sin, cos) = (TAU * f64::from(i) / f64::from(around)).sin_cos();
+                let (sin, cos) = libm::sincos(TAU * f64::from(i) / f64::from(around));
                 mesh.positions.push(Point::new(x, self.radius * cos, self.radius * sin));
             }
         }

@@ -32,7 +32,7 @@ impl Wedge {
     /// downwards, the right side downwards.
     pub fn mesh(&self) -> TriangleMesh {
         let along = segments(self.length, self.edge);
-        let down = segments(self.height.hypot(0.5 * self.thickness), self.edge);
+        let down = segments(libm::hypot(self.height, 0.5 * self.thickness), self.edge);
         let mut mesh = TriangleMesh::default();
         for j in 0..=along {
             let y = self.length * (f64::from(j) / f64::from(along) - 0.5);

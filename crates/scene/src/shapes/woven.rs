@@ -51,7 +51,7 @@ impl Woven {
                     // One is up where the other is down: at crossing (i, j) the one along x has the sign of
                     // (-1)^(i+j).
                     let sign = if (strand + axis) % 2 == 0 { 1.0 } else { -1.0 };
-                    let height = sign * self.amplitude * (PI * at).cos();
+                    let height = sign * self.amplitude * libm::cos(PI * at);
                     mesh.positions.push(match axis {
                         0 => Point::new(along, across, height),
                         _ => Point::new(across, along, height),

@@ -2,6 +2,7 @@
 
 use crate::motion::Motion;
 use crate::shapes::Animated;
+use crate::turn;
 use bowknot_geometry::{Point, Vector};
 use bowknot_io::Import;
 use nalgebra::Rotation3;
@@ -97,7 +98,7 @@ impl Placing {
     /// The rotation of [`Self::rotate`].
     pub fn rotation(&self) -> Rotation3<f64> {
         let [x, y, z] = [self.rotate.x, self.rotate.y, self.rotate.z].map(f64::to_radians);
-        Rotation3::from_euler_angles(x, y, z)
+        turn::euler(x, y, z)
     }
 
     /// Axes and unit.

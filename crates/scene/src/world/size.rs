@@ -69,7 +69,7 @@ pub(super) fn warnings(sizes: &[BodySize]) -> Vec<String> {
 
 /// Three digits.
 fn rounded(value: f64) -> f64 {
-    let digits = 2 - value.abs().max(f64::MIN_POSITIVE).log10().floor() as i32;
+    let digits = 2 - libm::log10(value.abs().max(f64::MIN_POSITIVE)).floor() as i32;
     let factor = 10f64.powi(digits.clamp(-300, 300));
     (value * factor).round() / factor
 }

@@ -19,8 +19,10 @@ impl Newton<'_> {
     /// Prescribed nodes are at their keyframes in all trials: the line is over free nodes only and starts
     /// from the state with free nodes at x. The predicted decrease p.b is that of the quadratic model from
     /// there. If no trial passes (the keyframes jump far, so that the model is inaccurate), the trial with
-    /// the lowest potential is taken.
-    pub(super) fn search_line(&mut self, info: &mut NewtonInfo) {
+    /// the lowest potential is taken; if all of them raise it, the free nodes stay at x. Where a step is 10^6
+    /// times too long, even the shortest trial would raise the potential by orders of magnitude, and that of
+    /// the next iteration still more, until numbers overflow.
+    pub fn search_line(&mut self, info: &mut NewtonInfo) {
         self.work.place(0.0);
         let (before, scale) = self.at_trial(Self::potential);
         info.energy_before = before;
@@ -29,7 +31,7 @@ impl Newton<'_> {
         let largest = |values: &[Vector]| values.iter().map(|v| v.amax()).fold(0.0, f64::max);
         let halvings = self.params.newton.line_search_halvings;
         let accept = halvings == 0 || largest(&self.work.step) <= NEGLIGIBLE_STEP * largest(&self.work.x);
-        let mut best = (f64::INFINITY, 1.0);
+        let mut best = (before, 0.0);
         let mut length = 1.0;
         for halving in 0..=halvings {
             self.work.place(length);

@@ -6,8 +6,8 @@
 
 use super::Figure;
 use super::skeleton::{CHEST, FOOT, FOREARM, HEAD, Pose, SHIN, SPINE, THIGH, UPPER_ARM};
+use crate::turn;
 use bowknot_geometry::Vector;
-use nalgebra::Rotation3;
 use std::f64::consts::{PI, TAU};
 
 /// From hip to ankle [m].
@@ -47,16 +47,17 @@ impl Figure {
         let phase = PI * self.cadence * walked;
         let mut pose = Pose { heading: self.heading(time), place: self.place(time), ..Pose::default() };
 
-        let (sin, cos) = phase.sin_cos();
+        let (sin, cos) = libm::sincos(phase);
         let swing = walk * self.leg_swing.to_radians();
-        let about = |axis: Vector, degrees: f64| Rotation3::new(axis * degrees.to_radians());
+        let about = |axis: Vector, degrees: f64| turn::about(&(axis * degrees.to_radians()));
         let (x, y, z) = (Vector::x(), Vector::y(), Vector::z());
         // The left leg comes forward through the middle at phase 0, when the right one stands.
         let [turn, drop] = PELVIS_TURN.map(|degrees| walk * degrees);
         pose.shift = Vector::new(
             0.0,
             -walk * self.hip_sway * cos,
-            LEG_LENGTH * ((swing * sin).cos() - 1.0) - walk * LEG_LENGTH * (1.0 - KNEE[0].to_radians().cos()),
+            LEG_LENGTH * (libm::cos(swing * sin) - 1.0)
+                - walk * LEG_LENGTH * (1.0 - libm::cos(KNEE[0].to_radians())),
         );
         pose.turns[0] = about(z, -turn * sin) * about(x, -drop * cos);
         pose.turns[SPINE] = about(z, turn * sin) * about(x, drop * cos);
@@ -94,7 +95,7 @@ impl Figure {
         for step in 0..steps {
             let from = f64::from(step) * PATH_STEP;
             let to = (from + PATH_STEP).min(time);
-            let (sin, cos) = (self.heading(0.5 * (from + to)) % TAU).sin_cos();
+            let (sin, cos) = libm::sincos(self.heading(0.5 * (from + to)) % TAU);
             place += Vector::new(cos, sin, 0.0) * (self.walk_speed * (walked(to) - walked(from)));
         }
         place

@@ -3,6 +3,7 @@
 //! The figure is 1.7 m tall, stands at the origin on the xy plane, looks along x and has its left along
 //! y. In the rest pose the arms are held away from the body (an A-pose), the legs a little apart.
 
+use crate::turn;
 use bowknot_geometry::{Point, Vector};
 use nalgebra::{Isometry3, Rotation3, Translation3, UnitQuaternion};
 
@@ -88,7 +89,7 @@ impl Default for Pose {
 impl Pose {
     /// For each bone the map from its points at rest to those in this pose.
     pub fn placements(&self) -> [Isometry3<f64>; BONES] {
-        let heading = UnitQuaternion::from_axis_angle(&Vector::z_axis(), self.heading);
+        let heading = turn::quaternion(&Vector::z_axis(), self.heading);
         let root =
             Isometry3::from_parts(Translation3::from(self.place), heading) * Translation3::from(self.shift);
         let mut placements = [root; BONES];

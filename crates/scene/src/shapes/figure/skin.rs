@@ -29,7 +29,7 @@ impl Skin {
             .map(|p| {
                 let distances: [f64; BONES] = body.bone_distances(p);
                 let nearest = distances.iter().copied().fold(f64::INFINITY, f64::min);
-                normalized(distances.map(|d| ((nearest - d) / FALLOFF).exp()))
+                normalized(distances.map(|d| libm::exp((nearest - d) / FALLOFF)))
             })
             .collect();
         let rounds = (SMOOTHING / edge).powi(2).round().clamp(0.0, 40.0) as usize;

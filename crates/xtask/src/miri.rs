@@ -1,0 +1,59 @@
+//! `cargo xtask miri`: unit tests under Miri.
+//!
+//! Miri interprets programs and finds undefined behavior: reads out of bounds, broken aliasing, data races. It is
+//! hundreds of times slower than a release build, so only unit tests of crates with `unsafe` of their own, and of
+//! those that index the most, run under it.
+
+use std::path::Path;
+use std::process::{Command, ExitCode};
+
+/// The crates that are tested if none is named.
+const CRATES: [&str; 3] = ["geometry", "lcp", "stepper"];
+
+/// Runs the unit tests of `crates`, of [`CRATES`] if there are none.
+pub fn run(root: &Path, crates: &[&str]) -> ExitCode {
+    let mut command = command(root, if crates.is_empty() { &CRATES } else { crates });
+    match command.status() {
+        Ok(status) if status.success() => ExitCode::SUCCESS,
+        Ok(_) => {
+            eprintln!(
+                "Miri failed. If it is missing: rustup toolchain install nightly --component miri --component rust-src"
+            );
+            ExitCode::FAILURE
+        }
+        Err(error) => {
+            eprintln!("cannot start cargo: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn command(root: &Path, crates: &[&str]) -> Command {
+    // Through rustup: within `cargo xtask` the variable CARGO names the pinned compiler's cargo, which knows no `+`.
+    let mut command = Command::new("rustup");
+    command.current_dir(root).args(["run", "nightly", "cargo", "miri", "test", "--lib"]);
+    for name in crates {
+        command.arg("--package").arg(format!("bowknot-{name}"));
+    }
+    // Random tests read the clock for their seed, and rayon's queue is sound but not under stacked borrows.
+    command.env("MIRIFLAGS", "-Zmiri-disable-isolation -Zmiri-tree-borrows -Zmiri-ignore-leaks");
+    // What the build of this command passes on belongs to another compiler.
+    ["RUSTC", "RUSTDOC", "CARGO", "RUSTUP_TOOLCHAIN"].iter().for_each(|name| {
+        command.env_remove(name);
+    });
+    command
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn packages_are_named() {
+        let command = command(Path::new("."), &CRATES);
+        let words: Vec<_> = command.get_args().map(|word| word.to_string_lossy()).collect();
+        assert!(words.join(" ").ends_with(
+            "miri test --lib --package bowknot-geometry --package bowknot-lcp --package bowknot-stepper"
+        ));
+    }
+}
