@@ -8,8 +8,14 @@ mod bad_input;
 mod check;
 /// `export` of runs and of folders of frames.
 mod export;
+/// Damaged checkpoints, locks, signals, panics, folders and disks that cannot be written.
+#[cfg(unix)]
+mod faults;
 /// Runs that are interrupted, resumed, or meet a full disk.
 mod interruptions;
+/// Runs that are killed.
+#[cfg(unix)]
+mod kills;
 /// Pictures of runs.
 #[cfg(feature = "render")]
 mod render;
