@@ -3,6 +3,7 @@
 //! | command | does |
 //! |---|---|
 //! | `check` | runs everything that CI runs |
+//! | `faults` | kills runs, damages files and fills disks, for longer than CI does |
 //! | `pictures` | draws the built-in scenes into `assets/pictures` |
 //! | `hashes` | prints a hash of the frames of each built-in scene, to show that a change leaves every bit as it is |
 //!
@@ -13,6 +14,7 @@
 mod bowknot;
 mod check;
 mod docs;
+mod faults;
 mod hashes;
 mod pictures;
 mod readers;
@@ -22,11 +24,16 @@ use std::process::ExitCode;
 
 const USAGE: &str = "\
 Usage: cargo xtask check [--fast]
+       cargo xtask faults [--kills N] [--seeds N]
        cargo xtask pictures [SCENE..]
        cargo xtask hashes [--scenes A,B] [--jobs N]
 
 check     run what CI runs, in named steps: format, clippy, docs, wasm, a small run, its exports read back, tests
           --fast        format, clippy and unit tests only
+faults    kill runs at random moments and resume them, damage checkpoints, files and folders, fill a disk: the tests of CI,
+          for longer
+          --kills N     kills [default: 200; CI: 5]
+          --seeds N     inputs of the readers, in halves of what CI tries [default: 20]
 pictures  run built-in scenes, all or those named, and draw them into assets/pictures; needs a graphics driver
 hashes    run built-in scenes at a small scale on one thread each, and print for each its name, the number of its frames
           and a hash of all bytes of the frames: compare the lines before and after a change that is to leave every
@@ -40,6 +47,13 @@ fn main() -> ExitCode {
     match arguments.as_slice() {
         ["check"] => check::run(false),
         ["check", "--fast"] => check::run(true),
+        ["faults", options @ ..] => match faults::Options::parse(options) {
+            Ok(options) => faults::run(&workspace::root(), &options),
+            Err(message) => {
+                eprintln!("{message}\n\n{USAGE}");
+                ExitCode::from(2)
+            }
+        },
         ["pictures", names @ ..] if names.iter().all(|name| !name.starts_with('-')) => {
             pictures::run(&workspace::root(), names)
         }
