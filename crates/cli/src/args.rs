@@ -6,7 +6,7 @@ use std::path::PathBuf;
 /// Simulates deformable bodies that never intersect.
 ///
 /// Exit codes: 0 done; 1 a check found an intersection or too small a distance; 2 bad input; 3 no such
-/// backend or device; 130 interrupted, with a valid checkpoint.
+/// backend or device; 4 a fault of the program itself; 130 interrupted, with a valid checkpoint.
 #[derive(Debug, Parser)]
 #[command(name = "bowknot", version, arg_required_else_help = true)]
 pub struct Arguments {

@@ -36,6 +36,11 @@ impl Failure {
         Self { code: 3, message: message.to_string() }
     }
 
+    /// A fault of the program itself: exit code 4.
+    pub fn internal(message: impl Display) -> Self {
+        Self { code: 4, message: message.to_string() }
+    }
+
     /// A file that cannot be checked.
     pub fn check(path: &Path, error: &CheckError) -> Self {
         Self::input(format!("{}: {error}", path.display()))

@@ -11,6 +11,7 @@ mod check;
 mod dump;
 mod exit;
 mod export;
+mod fault;
 mod gpu;
 mod info;
 mod interrupt;
@@ -37,7 +38,7 @@ fn main() -> ExitCode {
     #[cfg(all(any(feature = "gpu", feature = "render"), target_os = "linux"))]
     setup::no_display();
     setup::logging(matches!(&arguments.command, Command::Run(options) if options.quiet));
-    let result = match arguments.command {
+    let result = fault::guarded(|| match arguments.command {
         Command::Scenes(options) => scenes::scenes(&options),
         Command::Run(options) => run::run(&options),
         Command::Resolve(options) => resolve::resolve(&options),
@@ -48,7 +49,7 @@ fn main() -> ExitCode {
         #[cfg(feature = "render")]
         Command::Render(options) => render::render(&options),
         Command::Info(options) => info::info(&options),
-    };
+    });
     match result {
         Ok(Exit::Success) => ExitCode::SUCCESS,
         Ok(Exit::CheckFailed) => ExitCode::from(1),

@@ -4,7 +4,7 @@ use crate::args::RunOptions;
 use crate::exit::{Exit, Failure};
 use crate::interrupt::Interrupt;
 use crate::progress::Bar;
-use crate::{bare_mesh, gpu, output, setup};
+use crate::{bare_mesh, fault, gpu, output, setup};
 use bowknot::check::{Judge, StateReport};
 use bowknot::run::{Outcome, Progress, Summary};
 use bowknot::{Scene, SimulationError, Simulator, World};
@@ -39,6 +39,7 @@ pub fn run(options: &RunOptions) -> Result<Exit, Failure> {
             Bar::new(progress.frames, "frames", options.quiet)
         });
         bar.set_position(progress.step, &progress_text(progress));
+        fault::panic_if_asked(progress.step);
         ControlFlow::Continue(())
     };
     let result = bowknot::run::run_on(&scene, &run_options, backend, &mut show);
@@ -95,10 +96,11 @@ fn open(options: &RunOptions) -> Result<Scene, Failure> {
 
 /// The failure of a run. If the start intersects, writes the dump that `--dump` asks for.
 fn run_failure(scene: &Scene, error: SimulationError, dump: Option<&Path>) -> Failure {
-    if matches!(error, SimulationError::Backend { .. }) {
-        return Failure::backend(error);
-    }
-    let failure = Failure::input(&error);
+    let failure = match error {
+        SimulationError::Internal { .. } => Failure::internal(&error),
+        SimulationError::Backend { .. } => Failure::backend(&error),
+        _ => Failure::input(&error),
+    };
     let (SimulationError::StartIntersects { .. }, Some(path)) = (&error, dump) else { return failure };
     match write_dump(scene, path) {
         Ok(triangles) => {

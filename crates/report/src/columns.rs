@@ -6,13 +6,19 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
+/// Longest path of a key that is kept. A damaged file could repeat a long one for each of its numbers.
+const MAX_KEY: usize = 200;
+
 /// Every number of every time step, by the path of its key: `energy.kinetic`, `momentum.2`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Columns {
     pub(super) rows: usize,
     /// Lines that are no JSON object.
     pub(super) damaged: usize,
-    values: BTreeMap<String, Vec<Option<f64>>>,
+    /// Keys of few rows that were left out, because their columns would take more memory than the file justifies.
+    pub(super) rare: usize,
+    /// Rows that have a number, ascending, and the number.
+    values: BTreeMap<String, Vec<(usize, f64)>>,
 }
 
 impl Columns {
@@ -36,43 +42,67 @@ impl Columns {
                 None => columns.damaged += 1,
             }
         }
-        let rows = columns.rows;
-        columns.values.values_mut().for_each(|column| column.resize(rows, None));
+        columns.drop_rare(text.len());
         columns
     }
 
+    /// Drops the columns of the fewest numbers until there are no more places for numbers than bytes in the file. A
+    /// sound file has ten bytes for each.
+    fn drop_rare(&mut self, bytes: usize) {
+        let fitting = bytes.max(1 << 16) / self.rows.max(1);
+        if self.values.len() <= fitting {
+            return;
+        }
+        let mut lengths: Vec<usize> = self.values.values().map(Vec::len).collect();
+        lengths.sort_unstable_by(|a, b| b.cmp(a));
+        let fewest = lengths[fitting];
+        let before = self.values.len();
+        self.values.retain(|_, column| column.len() > fewest);
+        self.rare += before - self.values.len();
+    }
+
     fn add(&mut self, key: &str, value: &Value) {
+        if key.len() > MAX_KEY {
+            self.rare += 1;
+            return;
+        }
         match value {
             Value::Object(fields) => fields.iter().for_each(|(k, v)| self.add(&format!("{key}.{k}"), v)),
             Value::Array(list) => {
                 list.iter().enumerate().for_each(|(k, v)| self.add(&format!("{key}.{k}"), v));
             }
-            Value::Number(_) | Value::Bool(_) | Value::Null => {
+            Value::Number(_) | Value::Bool(_) => {
                 let number = match value {
                     Value::Bool(flag) => Some(f64::from(u8::from(*flag))),
                     other => other.as_f64().filter(|x| x.is_finite()).map(short),
                 };
+                let Some(number) = number else { return };
                 let column = self.values.entry(key.to_owned()).or_default();
-                // Rows before that had no such key.
-                column.resize(self.rows, None);
-                column.push(number);
+                // A key may be there twice, as "a.b" and as "b" of "a".
+                if column.last().is_none_or(|(row, _)| *row < self.rows) {
+                    column.push((self.rows, number));
+                }
             }
             // Words cannot be plotted.
-            Value::String(_) => {}
+            Value::String(_) | Value::Null => {}
         }
     }
 
     /// The time at the end of a time step [s], if it was recorded.
     pub(super) fn time(&self, step: usize) -> Option<f64> {
-        let steps = self.values.get("step")?;
-        let row = steps.iter().rposition(|&s| s == Some(step as f64))?;
-        self.values.get("time")?.get(row).copied().flatten()
+        let (row, _) = self.values.get("step")?.iter().rfind(|(_, s)| *s == step as f64)?;
+        let times = self.values.get("time")?;
+        times.binary_search_by_key(row, |(row, _)| *row).ok().map(|place| times[place].1)
     }
 
     /// Key to list of numbers and nulls; columns of nothing are left out.
     pub(super) fn to_json(&self) -> Value {
-        let filled = self.values.iter().filter(|(_, column)| column.iter().any(Option::is_some));
-        Value::Object(filled.map(|(key, column)| (key.clone(), Value::from(column.clone()))).collect())
+        let full = |column: &Vec<(usize, f64)>| {
+            let mut values = vec![Value::Null; self.rows];
+            column.iter().for_each(|&(row, number)| values[row] = Value::from(number));
+            Value::from(values)
+        };
+        Value::Object(self.values.iter().map(|(key, column)| (key.clone(), full(column))).collect())
     }
 }
 

@@ -122,6 +122,10 @@ fn left_out(frames: &FrameSource, facts: &Facts, columns: &Columns, pack: &Pack)
     if columns.rows == 0 {
         left_out.push("statistics: stats.jsonl is missing or empty".to_owned());
     }
+    if columns.rare > 0 {
+        let keys = counted(columns.rare, "rare or overlong key", "rare or overlong keys");
+        left_out.push(format!("{keys} of stats.jsonl"));
+    }
     if columns.damaged > 0 {
         left_out
             .push(format!("{} of stats.jsonl", counted(columns.damaged, "damaged line", "damaged lines")));

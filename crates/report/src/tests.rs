@@ -285,6 +285,31 @@ fn a_page_asks_nothing_of_a_network() {
     }
 }
 
+/// Each key had a place in each row: 20,000 lines of a key of their own took gigabytes.
+#[test]
+fn statistics_with_a_key_per_line_take_no_more_places_than_bytes() {
+    let mut text = "{\"step\":1}\n{\"step\":2}\n".to_owned();
+    (0..20_000).for_each(|k| text += &format!("{{\"k{k}\":1}}\n"));
+    let columns = Columns::parse(&text);
+    assert_eq!((columns.rows, columns.rare), (20_002, 20_000));
+    let json = columns.to_json();
+    assert_eq!(json.as_object().map(|columns| columns.len()), Some(1), "the key of two lines stays");
+    assert_eq!(json["step"][1], 2.0);
+
+    // Each number had the path of its key to itself.
+    let long = format!("{{\"{}\":[{}1]}}\n", "k".repeat(10_000), "1,".repeat(10_000));
+    let columns = Columns::parse(&long);
+    assert_eq!((columns.rows, columns.rare, columns.to_json()), (1, 1, json!({})));
+}
+
+/// The second value moved all later ones of its column by a row.
+#[test]
+fn a_key_that_a_line_gives_twice_counts_once() {
+    let columns = Columns::parse("{\"a.b\":1,\"a\":{\"b\":2}}\n{\"a.b\":3}\n");
+    let json = columns.to_json();
+    assert_eq!(json["a.b"][1], 3.0, "{json}");
+}
+
 #[test]
 fn statistics_become_columns() {
     let columns = Columns::parse(

@@ -3,6 +3,7 @@
 //! | command | does |
 //! |---|---|
 //! | `check` | runs everything that CI runs |
+//! | `faults` | kills runs, damages files and fills disks, for longer than CI does |
 //! | `pictures` | draws the built-in scenes into `assets/pictures` |
 //! | `miri` | runs unit tests of the numerical crates under Miri |
 //! | `hashes` | prints a hash of the frames of each built-in scene, to show that a change leaves every bit as it is |
@@ -14,6 +15,7 @@
 mod bowknot;
 mod check;
 mod docs;
+mod faults;
 mod hashes;
 mod miri;
 mod pictures;
@@ -25,6 +27,7 @@ use std::process::ExitCode;
 const USAGE: &str = "\
 Usage: cargo xtask check [--fast]
        cargo xtask miri [CRATE..]
+       cargo xtask faults [--kills N] [--seeds N]
        cargo xtask pictures [SCENE..]
        cargo xtask hashes [--scenes A,B] [--jobs N]
 
@@ -32,6 +35,10 @@ check     run what CI runs, in named steps: format, clippy, docs, wasm, a small 
           --fast        format, clippy and unit tests only
 miri      run unit tests of geometry, lcp and stepper, or of the crates named, under Miri, which finds undefined
           behavior; needs the nightly toolchain with the components miri and rust-src
+faults    kill runs at random moments and resume them, damage checkpoints, files and folders, fill a disk: the tests of CI,
+          for longer
+          --kills N     kills [default: 200; CI: 5]
+          --seeds N     inputs of the readers, in halves of what CI tries [default: 20]
 pictures  run built-in scenes, all or those named, and draw them into assets/pictures; needs a graphics driver
 hashes    run built-in scenes at a small scale on one thread each, and print for each its name, the number of its frames
           and a hash of all bytes of the frames: compare the lines before and after a change that is to leave every
@@ -48,6 +55,13 @@ fn main() -> ExitCode {
         ["miri", names @ ..] if names.iter().all(|name| !name.starts_with('-')) => {
             miri::run(&workspace::root(), names)
         }
+        ["faults", options @ ..] => match faults::Options::parse(options) {
+            Ok(options) => faults::run(&workspace::root(), &options),
+            Err(message) => {
+                eprintln!("{message}\n\n{USAGE}");
+                ExitCode::from(2)
+            }
+        },
         ["pictures", names @ ..] if names.iter().all(|name| !name.starts_with('-')) => {
             pictures::run(&workspace::root(), names)
         }

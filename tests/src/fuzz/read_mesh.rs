@@ -40,11 +40,11 @@ pub fn read_mesh(data: &[u8]) -> bool {
     match choice % 7 {
         0 => write(&file("obj")) && mesh(&file("obj"), |path, mesh| write_obj(path, &mesh.view()), read_obj),
         1 => write(&file("ply")) && mesh(&file("ply"), |path, mesh| write_ply(path, &mesh.view()), read_ply),
-        2 => write(&file("npz")) && archive(&file("npz")),
+        2 => write(&file("npz")) && check_archive(&file("npz")),
         4 => write(&file("msh")) && solid(&file("msh")),
         5 => write(&file("t")) && solid(&file("t")),
         6 => write(&file("seg")) && mesh(&file("seg"), |path, mesh| write_obj(path, &mesh.view()), read_obj),
-        _ => write_arrays(&file("npz"), &mut Draw::new(bytes)).is_ok() && archive(&file("npz")),
+        _ => write_arrays(&file("npz"), &mut Draw::new(bytes)).is_ok() && check_archive(&file("npz")),
     }
 }
 
@@ -131,7 +131,7 @@ fn check_sound(mesh: &Mesh) {
 }
 
 /// Reads a file as a collision problem and as a stack of frames.
-fn archive(path: &Path) -> bool {
+pub(super) fn check_archive(path: &Path) -> bool {
     let frames = match FrameStack::read(path) {
         Ok(frames) => {
             let again = frames.write(path).and_then(|()| FrameStack::read(path));

@@ -1,5 +1,6 @@
 //! Makes files of the collision problems of a simulation.
 
+use crate::recording::filters;
 use crate::recording::states::States;
 use crate::simulator::{CollisionProblem, Simulator};
 
@@ -30,6 +31,7 @@ impl Recorder {
                 body_contacts: contact.bodies.clone(),
                 half_space_contacts: contact.half_spaces.clone(),
                 pair_frictions: contact.pairs.clone(),
+                filters: filters::kept(world.collision.bodies().to_vec()),
                 ..States::default()
             },
         }

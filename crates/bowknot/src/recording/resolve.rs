@@ -1,5 +1,6 @@
 //! Solves a recorded collision problem again.
 
+use crate::recording::filters::default_filter;
 use crate::recording::states::States;
 use bowknot_geometry::Topology;
 use bowknot_proximity::{BodyFilter, CollisionModel};
@@ -7,7 +8,8 @@ use bowknot_twoway::{Params, ResolveError, ResolveInput, Resolver};
 use std::collections::BTreeMap;
 
 impl States {
-    /// The collision model of the problem: a body is an obstacle if all its vertices are.
+    /// The collision model of the problem: a body is an obstacle if all its vertices are. Which bodies collide is
+    /// what [`Self::filters`] says.
     ///
     /// # Errors
     /// A mesh that is none, a body with obstacle and deformable vertices; in words.
@@ -28,9 +30,10 @@ impl States {
             }
         }
         let count = obstacle.keys().next_back().map_or(0, |&body| body as usize + 1);
-        let filter = |body: u32| match obstacle.get(&body) {
-            Some(true) => BodyFilter::OBSTACLE,
-            _ => BodyFilter::DEFORMABLE,
+        let filter = |body: u32| {
+            let obstacle = obstacle.get(&body) == Some(&true);
+            let given = self.filters.get(body as usize);
+            given.map_or(default_filter(obstacle), |&given| BodyFilter { obstacle, ..given })
         };
         let filters = (0..count as u32).map(filter).collect();
         CollisionModel::new(topology, self.body.clone(), filters, self.half_spaces.clone())

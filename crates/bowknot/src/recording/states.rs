@@ -1,7 +1,8 @@
 //! Collision problems: a state x, a target y, and what collides.
 
+use super::filters;
 use bowknot_errors::counted;
-use bowknot_geometry::{HalfSpace, Point, Vector};
+use bowknot_geometry::{BodyFilter, HalfSpace, Point, Vector};
 use bowknot_io::IoError;
 use bowknot_io::npz::{Archive, write_archive};
 use bowknot_scene::nearest;
@@ -12,7 +13,7 @@ use std::io::{Seek, Write};
 use std::path::Path;
 
 /// The arrays of a problem.
-const ARRAYS: [&str; 21] = [
+const ARRAYS: [&str; 24] = [
     "x",
     "y",
     "F",
@@ -34,6 +35,9 @@ const ARRAYS: [&str; 21] = [
     "pair_friction",
     "group",
     "start",
+    filters::GROUPS,
+    filters::MASK,
+    filters::SELF_COLLISION,
 ];
 
 /// One collision problem as `--record` writes it and `resolve` reads it.
@@ -46,7 +50,8 @@ const ARRAYS: [&str; 21] = [
 /// `delta` [m], `friction`, `stretch_limit` [1], each nan where the body leaves it open; `plane_thickness[h]`
 /// [m] and `plane_friction[h]` likewise; `pair_friction[k,3]`: two bodies, half-spaces numbered after the
 /// bodies, and their coefficient. `group[n]`: pins that go as one, -1 for none. `start[n,3]` [m]: what
-/// friction measures slip from.
+/// friction measures slip from. `collision_groups[b]`, `collides_with[b]` (bits of the groups that a body is in,
+/// and of those that it meets) and `self_collision[b]`: which bodies collide.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct States {
     /// The state, free of intersections.
@@ -83,6 +88,8 @@ pub struct States {
     pub groups: Vec<u32>,
     /// Positions at the start of the time step; empty: those of `x`.
     pub start: Vec<Point>,
+    /// Which bodies each body collides with; empty: each with all, and deformable ones with themselves.
+    pub filters: Vec<BodyFilter>,
 }
 
 impl States {
@@ -120,6 +127,7 @@ impl States {
             pair_frictions: pair_frictions(&mut archive, count, half_spaces.len())?,
             groups: groups(&mut archive, n)?,
             start: archive.points("start", Some(n))?.unwrap_or_default(),
+            filters: filters::read(&mut archive, &body, &obstacle)?,
             triangles: archive.elements("F", n)?,
             strands: archive.elements("E", n)?,
             particles,
@@ -163,7 +171,8 @@ impl States {
         archive.add_array("body", &Array1::from_iter(self.body.iter().map(|&b| b as i32)))?;
         let rows: Vec<[f64; 4]> =
             self.half_spaces.iter().map(|h| [h.normal.x, h.normal.y, h.normal.z, h.offset]).collect();
-        archive.add_array("planes", &table(&rows, |v| v))
+        archive.add_array("planes", &table(&rows, |v| v))?;
+        filters::write(archive, &self.filters)
     }
 
     /// What the problem has beyond geometry, each array only where it says something.
@@ -203,7 +212,7 @@ impl States {
 }
 
 /// Writes the answer to a problem, atomically: the resolved `x[n,3]` [m] as f64, and of the problem what tells
-/// whether a state intersects, `y`, `F`, `E`, `P`, `O`, `body` and `planes`.
+/// whether a state intersects, `y`, `F`, `E`, `P`, `O`, `body`, `planes` and the collision groups.
 ///
 /// # Errors
 /// The system's refusal, with the path.
@@ -295,7 +304,7 @@ fn time_step(archive: &mut Archive<'_>) -> Result<Option<f64>, IoError> {
 }
 
 /// A column of one number for each of `count` things; nan for all if the archive has none.
-fn per(
+pub(super) fn per(
     archive: &mut Archive<'_>,
     name: &str,
     count: usize,

@@ -2,7 +2,7 @@ use super::*;
 use crate::Scene;
 use crate::simulator::SimulationObserver;
 use crate::simulator::{CollisionProblem, Simulator};
-use bowknot_geometry::{HalfSpace, Point, Vector};
+use bowknot_geometry::{BodyFilter, HalfSpace, Point, Vector};
 use bowknot_twoway::Params;
 use bowknot_twoway::{BodyContact, ContactSide, HalfSpaceContact, PairFriction, ResolveInput};
 use std::fs;
@@ -74,6 +74,45 @@ fn a_recorded_problem_ends_where_the_simulation_did() {
     }
 }
 
+/// Bodies that pass through each other and one that passes through itself, as collision groups allow: without the
+/// groups the recorded start would be refused, and the bodies pushed apart.
+#[test]
+fn bodies_of_other_collision_groups_pass_through_each_other_in_a_recorded_problem() {
+    let text = r#"
+        [[body]]
+        shape = { type = "sheet", size = [0.1, 0.1], edge = 0.02 }
+        self_collision = false
+
+        [[body]]
+        shape = { type = "sheet", size = [0.1, 0.1], edge = 0.02 }
+        rotate = [80.0, 0.0, 0.0]
+        groups = [2, 31]
+        collides_with = [5]
+
+        [[obstacle]]
+        shape = { type = "sheet", size = [0.3, 0.3], edge = 0.05 }
+        translate = [0.0, 0.0, -0.004]
+        collides_with = [0]
+    "#;
+    let scene = Scene::from_toml(text, ".").expect("a scene");
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut simulator = Simulator::new(&scene).expect("a simulator");
+    let mut again = Again {
+        recorder: Recorder::new(&simulator),
+        params: scene.twoway(),
+        path: folder.path().join("problem.npz"),
+        ends: Vec::new(),
+    };
+    for step in 0..6 {
+        simulator.step_observed(&mut again).expect("a step");
+        let count = simulator.world().collision_vertices();
+        let end = again.ends.last().expect("a problem in each step");
+        assert!(*end == simulator.positions()[..count], "step {step} ends elsewhere");
+    }
+    let read = States::read(&again.path).expect("read");
+    assert_eq!(read.collision_model().expect("a model").bodies(), simulator.world().collision.bodies());
+}
+
 /// A problem with every array, and numbers that do not survive a careless print.
 fn states() -> States {
     let x = [
@@ -110,6 +149,11 @@ fn states() -> States {
             friction: 0.75,
         }],
         groups: vec![3, 3, ResolveInput::NO_GROUP, 0, ResolveInput::NO_GROUP, ResolveInput::NO_GROUP],
+        filters: vec![
+            BodyFilter { groups: 1 << 31, self_collision: false, ..BodyFilter::DEFORMABLE },
+            BodyFilter { groups: 0b1010, mask: 0x8000_0001, ..BodyFilter::DEFORMABLE },
+            BodyFilter::OBSTACLE,
+        ],
     }
 }
 

@@ -2,134 +2,193 @@
 
 use crate::simulator::{Checkpoint, ContactForce, SleepState};
 use bowknot_constraints::Feature;
-use bowknot_errors::counted;
 use bowknot_geometry::{Point, Vector};
-use bowknot_io::{IoError, Place, write_atomic};
+use bowknot_io::IoError;
+use bowknot_io::npz::{Archive, write_archive};
 use ndarray::{Array1, Array2};
-use ndarray_npy::{NpzReader, NpzWriter};
-use std::fs::File;
-use std::io;
 use std::path::Path;
+
+/// The array of the checksum, as bytes: readers widen numbers to f64, which does not hold all of 64 bits.
+const CHECKSUM: &str = "checksum";
 
 impl Checkpoint {
     /// Writes the state as one NPZ file, atomically: `step[1]`, `positions[n,3]`, `velocities[n,3]`,
     /// `anchor_counts[p]`, `anchors[k,3]`, `contact_features[c,4]` (kind and index of either feature: 0
     /// vertex, 1 edge, 2 triangle, 3 half-space), `contact_normals[c,3]`, `contact_forces[c,3]`; where bodies
-    /// may sleep, `sleep_origins[n,3]`, `sleep_calm_steps[b]` and `sleep_islands[b]` (4294967295: awake).
+    /// may sleep, `sleep_origins[n,3]`, `sleep_calm_steps[b]` and `sleep_islands[b]` (4294967295: awake); and
+    /// `checksum[8]` of all that.
     ///
     /// # Errors
     /// The system's refusal, with the path.
     pub fn write(&self, path: &Path) -> Result<(), IoError> {
-        let flat = |rows: usize, values: Vec<f64>| {
-            Array2::from_shape_vec((rows, 3), values).map_err(io::Error::other)
+        let points = |points: &[Point]| table(points.iter().map(|p| [p.x, p.y, p.z]));
+        let vectors = |vectors: &[Vector]| table(vectors.iter().map(|v| [v.x, v.y, v.z]));
+        let of_contacts = |vector: fn(&ContactForce) -> Vector| {
+            vectors(&self.contacts.iter().map(vector).collect::<Vec<Vector>>())
         };
-        write_atomic(path, |out| {
-            let mut archive = NpzWriter::new(out);
-            let points = |points: &[Point]| points.iter().flat_map(|p| [p.x, p.y, p.z]).collect();
-            let velocities = self.velocities.iter().flat_map(|v| [v.x, v.y, v.z]).collect();
-            let anchors: Vec<Point> = self.anchors.concat();
+        let codes = self.contacts.iter().map(|c| {
+            let [a, b] = c.features.map(code);
+            [a[0], a[1], b[0], b[1]]
+        });
+        write_archive(path, false, |archive| {
+            archive.add_array("step", &Array1::from_elem(1, self.step as u64))?;
             let counts: Array1<u64> = self.anchors.iter().map(|a| a.len() as u64).collect();
-            let codes = self.contacts.iter().flat_map(|c| c.features.map(code)).flatten().collect();
-            let codes = Array2::from_shape_vec((self.contacts.len(), 4), codes).map_err(io::Error::other)?;
-            let of_contacts = |vector: fn(&ContactForce) -> Vector| {
-                let values = self.contacts.iter().map(vector).flat_map(|v| [v.x, v.y, v.z]).collect();
-                flat(self.contacts.len(), values)
-            };
-            let arrays = [
-                ("contact_normals", of_contacts(|c| c.normal)?),
-                ("contact_forces", of_contacts(|c| c.force)?),
-                ("positions", flat(self.positions.len(), points(&self.positions))?),
-                ("velocities", flat(self.velocities.len(), velocities)?),
-                ("anchors", flat(anchors.len(), points(&anchors))?),
-            ];
-            let step = Array1::from_elem(1, self.step as u64);
-            archive.add_array("step", &step).map_err(io::Error::other)?;
-            archive.add_array("anchor_counts", &counts).map_err(io::Error::other)?;
-            archive.add_array("contact_features", &codes).map_err(io::Error::other)?;
-            for (name, array) in &arrays {
-                archive.add_array(*name, array).map_err(io::Error::other)?;
-            }
+            archive.add_array("anchor_counts", &counts)?;
+            archive.add_array("contact_features", &table(codes))?;
+            archive.add_array("contact_normals", &of_contacts(|c| c.normal))?;
+            archive.add_array("contact_forces", &of_contacts(|c| c.force))?;
+            archive.add_array("positions", &points(&self.positions))?;
+            archive.add_array("velocities", &vectors(&self.velocities))?;
+            archive.add_array("anchors", &points(&self.anchors.concat()))?;
             let SleepState { origins, calm_steps, islands } = &self.sleep;
             if !origins.is_empty() {
-                let origins = flat(origins.len(), points(origins))?;
-                archive.add_array("sleep_origins", &origins).map_err(io::Error::other)?;
+                archive.add_array("sleep_origins", &points(origins))?;
                 for (name, numbers) in [("sleep_calm_steps", calm_steps), ("sleep_islands", islands)] {
-                    let numbers: Array1<u64> = numbers.iter().map(|&n| u64::from(n)).collect();
-                    archive.add_array(name, &numbers).map_err(io::Error::other)?;
+                    archive
+                        .add_array(name, &numbers.iter().map(|&n| u64::from(n)).collect::<Array1<u64>>())?;
                 }
             }
-            archive.finish().map_err(io::Error::other)?;
-            Ok(())
+            archive.add_array(CHECKSUM, &Array1::from_iter(checksum(self)))
         })
     }
 
     /// Reads a state written by [`Self::write`].
     ///
     /// # Errors
-    /// A missing or malformed file.
+    /// A missing, malformed or damaged file: one whose content is not what its checksum was computed of.
     pub fn read(path: &Path) -> Result<Self, IoError> {
-        let file = File::open(path).map_err(|source| IoError::system("read", path, source))?;
-        let fault =
-            |name: &str, message: String| IoError::content(path, Place::Array(name.to_owned()), message);
-        let mut archive = NpzReader::new(file)
-            .map_err(|e| IoError::content(path, Place::File, format!("not a checkpoint: {e}")))?;
-        let names = archive.names().map_err(|e| IoError::content(path, Place::File, e.to_string()))?;
-        let has_sleep = names.iter().any(|name| name.trim_end_matches(".npy") == "sleep_origins");
-        let mut rows = |name: &str| -> Result<Vec<[f64; 3]>, IoError> {
-            let array: Array2<f64> = archive.by_name(name).map_err(|e| fault(name, e.to_string()))?;
-            if array.ncols() != 3 {
-                return Err(fault(
-                    name,
-                    format!("has {}, not 3", counted(array.ncols(), "column", "columns")),
-                ));
-            }
-            Ok(array.rows().into_iter().map(|row| [row[0], row[1], row[2]]).collect())
-        };
-        let positions: Vec<Point> = rows("positions")?.into_iter().map(Point::from).collect();
-        let velocities: Vec<Vector> = rows("velocities")?.into_iter().map(Vector::from).collect();
-        let anchors: Vec<Point> = rows("anchors")?.into_iter().map(Point::from).collect();
-        let origins = if has_sleep { rows("sleep_origins")? } else { Vec::new() };
-        let (normals, forces) = (rows("contact_normals")?, rows("contact_forces")?);
-        let codes: Array2<u64> =
-            archive.by_name("contact_features").map_err(|e| fault("contact_features", e.to_string()))?;
-        if codes.ncols() != 4 || codes.nrows() != forces.len() || normals.len() != forces.len() {
-            let message = "is not of 4 columns and a row for each normal and each force".to_owned();
-            return Err(fault("contact_features", message));
-        }
-        let contacts = codes.rows().into_iter().zip(normals.into_iter().zip(forces));
-        let contacts = contacts.map(|(row, (normal, force))| {
-            let features = [feature(row[0], row[1])?, feature(row[2], row[3])?];
-            Some(ContactForce { features, normal: Vector::from(normal), force: Vector::from(force) })
-        });
-        let contacts: Option<Vec<ContactForce>> = contacts.collect();
-        let contacts =
-            contacts.ok_or_else(|| fault("contact_features", "has an unknown kind of feature".to_owned()))?;
-        let mut integers = |name: &str| -> Result<Vec<usize>, IoError> {
-            let array: Array1<u64> = archive.by_name(name).map_err(|e| fault(name, e.to_string()))?;
-            Ok(array.iter().map(|&count| count as usize).collect())
-        };
-        let counts = integers("anchor_counts")?;
-        let step = integers("step")?;
+        let mut archive = Archive::open(path)?;
+        let step = integers(&mut archive, "step")?;
         let [step] = step[..] else {
-            return Err(fault("step", format!("has {} entries, not 1", step.len())));
+            return Err(archive.fault("step", format!("has {} entries, not 1", step.len())));
         };
-        let mut sleep = SleepState::default();
-        if has_sleep {
-            let narrow = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
-            sleep.origins = origins.into_iter().map(Point::from).collect();
-            sleep.calm_steps = integers("sleep_calm_steps")?.into_iter().map(narrow).collect();
-            sleep.islands = integers("sleep_islands")?.into_iter().map(narrow).collect();
+        let mut checkpoint = Self {
+            step: step as usize,
+            positions: rows(&mut archive, "positions")?.into_iter().map(Point::from).collect(),
+            velocities: rows(&mut archive, "velocities")?.into_iter().map(Vector::from).collect(),
+            anchors: anchors(&mut archive)?,
+            contacts: contacts(&mut archive)?,
+            sleep: SleepState::default(),
+        };
+        if archive.has("sleep_origins") {
+            let narrow = |n: u64| u32::try_from(n).unwrap_or(u32::MAX);
+            let narrow = |numbers: Vec<u64>| numbers.into_iter().map(narrow).collect();
+            checkpoint.sleep.origins =
+                rows(&mut archive, "sleep_origins")?.into_iter().map(Point::from).collect();
+            checkpoint.sleep.calm_steps = narrow(integers(&mut archive, "sleep_calm_steps")?);
+            checkpoint.sleep.islands = narrow(integers(&mut archive, "sleep_islands")?);
         }
-        let mut split = Vec::with_capacity(counts.len());
-        let mut rest = anchors.as_slice();
-        for count in counts {
-            let Some((own, tail)) = rest.split_at_checked(count) else {
-                return Err(fault("anchors", "has fewer rows than anchor_counts says".to_owned()));
-            };
-            split.push(own.to_vec());
-            rest = tail;
+        let sum: Vec<u64> = checksum(&checkpoint).iter().map(|&byte| u64::from(byte)).collect();
+        if integers(&mut archive, CHECKSUM)? != sum {
+            let message = "the content is not what was written: the file is damaged";
+            return Err(archive.fault(CHECKSUM, message));
         }
-        Ok(Self { step, positions, velocities, anchors: split, contacts, sleep })
+        Ok(checkpoint)
+    }
+}
+
+/// Rows as an array.
+fn table<T: Copy, const N: usize>(rows: impl Iterator<Item = [T; N]>) -> Array2<T> {
+    let rows: Vec<[T; N]> = rows.collect();
+    Array2::from_shape_fn((rows.len(), N), |(i, k)| rows[i][k])
+}
+
+fn missing(archive: &Archive<'_>, name: &str) -> IoError {
+    archive.file_fault(format!("array {name} is missing: not a checkpoint, or one of an earlier version"))
+}
+
+/// An array of points or vectors, which must be there.
+fn rows(archive: &mut Archive<'_>, name: &str) -> Result<Vec<[f64; 3]>, IoError> {
+    archive.rows::<3>(name)?.ok_or_else(|| missing(archive, name))
+}
+
+/// An array of whole numbers, which must be there.
+fn integers(archive: &mut Archive<'_>, name: &str) -> Result<Vec<u64>, IoError> {
+    let values = archive.column(name, None)?.ok_or_else(|| missing(archive, name))?;
+    whole(archive, name, &values)
+}
+
+fn whole(archive: &Archive<'_>, name: &str, values: &[f64]) -> Result<Vec<u64>, IoError> {
+    /// Whole numbers below it are exact in f64.
+    const LIMIT: f64 = (1u64 << 53) as f64;
+    match values.iter().find(|v| !(**v >= 0.0 && **v < LIMIT && v.fract() == 0.0)) {
+        Some(bad) => Err(archive.fault(name, format!("{bad} is no whole number from 0 up"))),
+        None => Ok(values.iter().map(|&v| v as u64).collect()),
+    }
+}
+
+fn anchors(archive: &mut Archive<'_>) -> Result<Vec<Vec<Point>>, IoError> {
+    let counts = integers(archive, "anchor_counts")?;
+    let all: Vec<Point> = rows(archive, "anchors")?.into_iter().map(Point::from).collect();
+    let mut rest = all.as_slice();
+    let mut split = Vec::with_capacity(counts.len());
+    for count in counts {
+        let Some((own, tail)) = rest.split_at_checked(count as usize) else {
+            return Err(archive.fault("anchors", "has fewer rows than anchor_counts says"));
+        };
+        split.push(own.to_vec());
+        rest = tail;
+    }
+    Ok(split)
+}
+
+fn contacts(archive: &mut Archive<'_>) -> Result<Vec<ContactForce>, IoError> {
+    const FEATURES: &str = "contact_features";
+    let (normals, forces) = (rows(archive, "contact_normals")?, rows(archive, "contact_forces")?);
+    let codes = archive.rows::<4>(FEATURES)?.ok_or_else(|| missing(archive, FEATURES))?;
+    let codes = whole(archive, FEATURES, codes.as_flattened())?;
+    let codes = codes.as_chunks::<4>().0;
+    if codes.len() != forces.len() || normals.len() != forces.len() {
+        return Err(archive.fault(FEATURES, "has not one row for each normal and each force"));
+    }
+    let contacts = codes.iter().zip(normals.into_iter().zip(forces)).map(|(row, (normal, force))| {
+        let features = [feature(row[0], row[1])?, feature(row[2], row[3])?];
+        Some(ContactForce { features, normal: Vector::from(normal), force: Vector::from(force) })
+    });
+    let contacts: Option<Vec<ContactForce>> = contacts.collect();
+    contacts.ok_or_else(|| archive.fault(FEATURES, "has an unknown kind of feature"))
+}
+
+/// The checksum of a checkpoint's content. CRCs of the archive guard its arrays one by one; this one guards them
+/// together, so that no array is of another checkpoint, or left out.
+fn checksum(checkpoint: &Checkpoint) -> [u8; 8] {
+    let Checkpoint { step, positions, velocities, anchors, contacts, sleep } = checkpoint;
+    let mut sum = Checksum(0);
+    sum.add(*step as u64);
+    sum.points(positions);
+    sum.vectors(velocities);
+    sum.add(anchors.len() as u64);
+    anchors.iter().for_each(|anchors| sum.points(anchors));
+    sum.add(contacts.len() as u64);
+    for contact in contacts {
+        contact.features.iter().flat_map(|&feature| code(feature)).for_each(|word| sum.add(word));
+        sum.vectors(&[contact.normal, contact.force]);
+    }
+    sum.points(&sleep.origins);
+    for numbers in [&sleep.calm_steps, &sleep.islands] {
+        sum.add(numbers.len() as u64);
+        numbers.iter().for_each(|&n| sum.add(u64::from(n)));
+    }
+    sum.0.to_le_bytes()
+}
+
+/// A sum of words that depends on their order. Each step is one to one, so a single changed word always changes it.
+struct Checksum(u64);
+
+impl Checksum {
+    fn add(&mut self, word: u64) {
+        // The golden ratio in 64 bits spreads each bit upward, the rotation brings it down again.
+        self.0 = (self.0 ^ word).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
+    }
+
+    fn points(&mut self, points: &[Point]) {
+        self.add(points.len() as u64);
+        points.iter().flat_map(|p| p.coords.iter()).for_each(|c| self.add(c.to_bits()));
+    }
+
+    fn vectors(&mut self, vectors: &[Vector]) {
+        self.add(vectors.len() as u64);
+        vectors.iter().flatten().for_each(|c| self.add(c.to_bits()));
     }
 }
 
@@ -189,11 +248,69 @@ mod tests {
     }
 
     #[test]
+    fn no_flipped_bit_and_no_cut_gives_another_state() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("state.npz");
+        let checkpoint = Checkpoint {
+            step: 3,
+            positions: vec![Point::new(0.1, 0.2, 0.3)],
+            velocities: vec![Vector::x()],
+            ..Checkpoint::default()
+        };
+        checkpoint.write(&path).expect("write");
+        let bytes = std::fs::read(&path).expect("just written");
+        let mut refused = 0;
+        for bit in 0..8 * bytes.len() {
+            let mut flipped = bytes.clone();
+            flipped[bit / 8] ^= 1 << (bit % 8);
+            std::fs::write(&path, &flipped).expect("write");
+            match Checkpoint::read(&path) {
+                // Dates and the like may be wrong.
+                Ok(read) => assert_eq!(read, checkpoint, "bit {bit}"),
+                Err(_) => refused += 1,
+            }
+        }
+        assert!(refused > 4 * bytes.len(), "{refused} of {} bits", 8 * bytes.len());
+        for length in 0..bytes.len() {
+            std::fs::write(&path, &bytes[..length]).expect("write");
+            Checkpoint::read(&path).expect_err("a cut file");
+        }
+    }
+
+    /// The archive's own sums hold for each array, so an array of another checkpoint passes them.
+    #[test]
+    fn an_array_of_another_checkpoint_is_noticed() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("state.npz");
+        let checkpoint = Checkpoint { step: 3, positions: vec![Point::origin()], ..Checkpoint::default() };
+        checkpoint.write(&path).expect("write");
+        let bytes = std::fs::read(&path).expect("just written");
+        let other = Checkpoint { step: 4, ..checkpoint };
+        write_archive(&path, false, |archive| {
+            let mut old = ndarray_npy::NpzReader::new(std::io::Cursor::new(&bytes)).expect("an archive");
+            for name in ["positions", "velocities", "anchors", "contact_normals", "contact_forces"] {
+                let array: Array2<f64> = old.by_name(name).expect("an array");
+                archive.add_array(name, &array)?;
+            }
+            let codes: Array2<u64> = old.by_name("contact_features").expect("an array");
+            archive.add_array("contact_features", &codes)?;
+            let counts: Array1<u64> = old.by_name("anchor_counts").expect("an array");
+            archive.add_array("anchor_counts", &counts)?;
+            let sum: Array1<u8> = old.by_name(CHECKSUM).expect("an array");
+            archive.add_array(CHECKSUM, &sum)?;
+            archive.add_array("step", &Array1::from_elem(1, other.step as u64))
+        })
+        .expect("write");
+        let error = Checkpoint::read(&path).expect_err("mixed").to_string();
+        assert!(error.contains("checksum") && error.contains("damaged"), "{error}");
+    }
+
+    #[test]
     fn a_damaged_checkpoint_is_an_error() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("state.npz");
         assert!(Checkpoint::read(&path).expect_err("missing").to_string().contains("no such file"));
         std::fs::write(&path, b"PK but not really").expect("write");
-        assert!(Checkpoint::read(&path).expect_err("damaged").to_string().contains("not a checkpoint"));
+        assert!(Checkpoint::read(&path).expect_err("damaged").to_string().contains("not an NPZ archive"));
     }
 }

@@ -6,6 +6,8 @@ mod differences;
 mod export;
 mod frames;
 mod layout;
+mod lock;
+mod saved;
 mod spool;
 mod summary;
 mod writer;
@@ -22,7 +24,9 @@ use crate::simulator::{
 use bowknot_io::{IoError, write_text};
 use bowknot_scene::Scene;
 use bowknot_scene::world::{SceneInfo, World};
+use std::cell::Cell;
 use std::ops::ControlFlow;
+use std::panic::{self, AssertUnwindSafe};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -78,7 +82,8 @@ pub struct Outcome {
 ///
 /// # Errors
 /// Whatever [`Simulator::new`] and [`Simulator::step`] refuse; a folder that cannot be written, holds a
-/// run already, or cannot be resumed. Frames written so far stay.
+/// run already, is in use by another run, or cannot be resumed. A panic of any thread, `progress` included, is
+/// [`SimulationError::Internal`]. Frames written so far stay.
 pub fn run(
     scene: &Scene,
     options: &RunOptions,
@@ -97,6 +102,25 @@ pub fn run_on(
     options: &RunOptions,
     backend: Box<dyn CollisionBackend>,
     progress: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+) -> Result<Outcome, SimulationError> {
+    let step = Cell::new(0);
+    // What a panic leaves behind in memory is dropped, and files are written as a whole or not at all.
+    panic::catch_unwind(AssertUnwindSafe(|| run_steps(scene, options, backend, progress, &step)))
+        .unwrap_or_else(|panic| {
+            let message = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+            let message = message.or_else(|| panic.downcast_ref::<String>().cloned());
+            let message = message.unwrap_or_else(|| "a panic without a message".to_owned());
+            Err(SimulationError::Internal { step: step.get(), message })
+        })
+}
+
+/// The run itself; `present` is the time step that it is at, from 1.
+fn run_steps(
+    scene: &Scene,
+    options: &RunOptions,
+    backend: Box<dyn CollisionBackend>,
+    progress: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
+    present: &Cell<usize>,
 ) -> Result<Outcome, SimulationError> {
     let mut simulator = Simulator::new(scene)?;
     simulator.set_backend(backend)?;
@@ -117,6 +141,7 @@ pub fn run_on(
     let stop_asked = || options.interrupt.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed));
     let mut interrupted = report(simulator.step_index(), None, &checker).is_break();
     while !interrupted && simulator.step_index() < frames {
+        present.set(simulator.step_index() + 1);
         let mut observer = RunObserver {
             writer: &writer,
             checker: checker.as_mut(),

@@ -7,6 +7,8 @@
 //! stats.jsonl               one line per time step
 //! summary.json              written at the end
 //! checkpoint/state.npz      the state to resume from
+//! checkpoint/previous.npz   the one before it, for the case that the last is damaged
+//! checkpoint/lock           one run at a time, see `lock.rs`
 //! checkpoint/frames.f64     the positions so far, for formats that are one file in the end
 //! trace/STEP_ITER_L.ply     every x^(l), if asked for; L = 0 is where the problem starts
 //! states/STEP_ITER.npz      the collision problems, if asked for
@@ -19,9 +21,11 @@
 use super::differences::differences;
 use super::frames::FrameWriter;
 use super::layout::Layout;
+use super::lock::{LOCK, Lock};
+use super::saved::Saved;
 use super::summary::Totals;
 use crate::recording::Recorder;
-use crate::simulator::{Checkpoint, CollisionProblem, SimulationError, Simulator, StepStatistics};
+use crate::simulator::{CollisionProblem, SimulationError, Simulator, StepStatistics};
 use bowknot_errors::counted;
 use bowknot_geometry::Point;
 use bowknot_io::{self as io, IoError, create_folder, write_ply};
@@ -51,10 +55,13 @@ pub struct RunWriter {
     checkpoint_every: usize,
     frames: FrameWriter,
     recorder: Recorder,
+    saved: Saved,
     statistics: File,
     /// Length of `stats.jsonl` up to its last whole line [bytes].
     statistics_length: u64,
     totals: Totals,
+    /// Keeps other runs away.
+    _lock: Lock,
 }
 
 /// Says where a run would be.
@@ -86,26 +93,49 @@ impl RunWriter {
     /// # Errors
     /// A folder that holds a run already or cannot be written.
     pub fn create(folder: &Path, scene: &Scene, simulator: &Simulator) -> Result<Self, SimulationError> {
-        if PARTS.iter().any(|part| folder.join(part).exists()) {
-            return Err(SimulationError::RunExists { path: folder.to_owned() });
-        }
+        // A folder that another run writes to is said to be in use; one that holds anything else gets no lock file.
+        let held = folder.join(LOCK).exists().then(|| Lock::take(folder)).transpose()?;
+        refuse_run(folder)?;
+        let lock = held.map_or_else(|| Lock::take(folder), Ok)?;
+        // Another run may have begun here in between.
+        refuse_run(folder)?;
+        Self::begin(folder, scene, simulator, lock)
+    }
+
+    fn begin(
+        folder: &Path,
+        scene: &Scene,
+        simulator: &Simulator,
+        mut lock: Lock,
+    ) -> Result<Self, SimulationError> {
+        remove_leftovers(folder, lock.sign()?);
         prepare(folder, scene)?;
         io::write_text(&folder.join("scene.toml"), &scene.to_toml())?;
         let path = folder.join("stats.jsonl");
         let statistics = File::create(&path).map_err(|source| IoError::system("create", &path, source))?;
-        let writer = Self::new(folder, scene, simulator, statistics)?;
+        let writer = Self::new(folder, scene, simulator, statistics, lock)?;
         writer.write_frame(simulator)?;
         Ok(writer)
     }
 
-    /// Continues the run of a folder: restores the simulator to its checkpoint and drops the statistics
-    /// of later time steps, whose frames will be written again.
+    /// Continues the run of a folder: restores the simulator to its checkpoint, or to the one before it if that
+    /// is damaged, and drops the statistics of later time steps, whose frames will be written again.
     ///
     /// # Errors
     /// A folder without a run, a run of another scene, a damaged checkpoint.
     pub fn resume(folder: &Path, scene: &Scene, simulator: &mut Simulator) -> Result<Self, SimulationError> {
         let fault = |message: String| SimulationError::Resume { path: folder.to_owned(), message };
         let path = folder.join("scene.toml");
+        let was_begun = folder.join(LOCK).exists();
+        if !path.exists() && !was_begun {
+            return Err(fault(NO_RUN.to_owned()));
+        }
+        let mut lock = Lock::take(folder)?;
+        if !path.exists() && refuse_run(folder).is_ok() {
+            // A run that was killed before it wrote its scene.
+            return Self::begin(folder, scene, simulator, lock);
+        }
+        remove_leftovers(folder, lock.sign()?);
         let text = fs::read_to_string(&path).map_err(|_| fault(NO_RUN.to_owned()))?;
         if let Some(differences) = differences(&text, &scene.to_toml()) {
             let message =
@@ -113,10 +143,13 @@ impl RunWriter {
             return Err(fault(message));
         }
         warn_of_left_formats(&text, scene);
-        let checkpoint = checkpoint_path(folder);
+        let mut saved = Saved::new(folder);
+        let checkpoint = saved.latest().map_err(|error| {
+            fault(format!("{error}; without the folder checkpoint, --resume computes the run from its start"))
+        })?;
         // A run that ended before its first checkpoint goes on from the start.
-        if checkpoint.exists() {
-            simulator.restore(&Checkpoint::read(&checkpoint)?).map_err(fault)?;
+        if let Some(checkpoint) = checkpoint {
+            simulator.restore(&checkpoint).map_err(fault)?;
         }
         prepare(folder, scene)?;
         io::write_text(&path, &scene.to_toml())?;
@@ -141,7 +174,8 @@ impl RunWriter {
         let statistics = OpenOptions::new().create(true).append(true).open(&path).map_err(system)?;
         statistics.set_len(length).map_err(system)?;
 
-        let mut writer = Self::new(folder, scene, simulator, statistics)?;
+        let mut writer = Self::new(folder, scene, simulator, statistics, lock)?;
+        writer.saved = saved;
         writer.statistics_length = length;
         kept.iter().for_each(|statistics| writer.totals.add(statistics));
         if simulator.step_index() == 0 {
@@ -151,7 +185,13 @@ impl RunWriter {
         Ok(writer)
     }
 
-    fn new(folder: &Path, scene: &Scene, simulator: &Simulator, statistics: File) -> Result<Self, IoError> {
+    fn new(
+        folder: &Path,
+        scene: &Scene,
+        simulator: &Simulator,
+        statistics: File,
+        lock: Lock,
+    ) -> Result<Self, IoError> {
         let spool = folder.join("checkpoint").join("frames.f64");
         let width = scene.contact.delta;
         let layout = Layout::new(simulator.world());
@@ -163,9 +203,11 @@ impl RunWriter {
             checkpoint_every: scene.output.checkpoint_every,
             frames,
             recorder: Recorder::new(simulator),
+            saved: Saved::new(folder),
             statistics,
             statistics_length: 0,
             totals: Totals::default(),
+            _lock: lock,
         })
     }
 
@@ -182,7 +224,7 @@ impl RunWriter {
         self.append(statistics)?;
         self.totals.add(statistics);
         if self.checkpoint_every > 0 && simulator.step_index().is_multiple_of(self.checkpoint_every) {
-            self.write_checkpoint(simulator)?;
+            self.saved.write(&simulator.checkpoint())?;
         }
         Ok(())
     }
@@ -192,7 +234,7 @@ impl RunWriter {
     /// # Errors
     /// The system's refusal.
     pub fn finish(&mut self, simulator: &Simulator) -> Result<(), SimulationError> {
-        self.write_checkpoint(simulator)?;
+        self.saved.write(&simulator.checkpoint())?;
         Ok(self.frames.finish(simulator.step_index() + 1)?)
     }
 
@@ -243,15 +285,37 @@ impl RunWriter {
         self.statistics_length += line.len() as u64;
         Ok(())
     }
+}
 
-    fn write_checkpoint(&self, simulator: &Simulator) -> Result<(), SimulationError> {
-        simulator.checkpoint().write(&checkpoint_path(&self.folder))?;
-        Ok(())
+/// Refuses a folder that holds a run. Empty folders are what a run leaves that was killed at its very beginning.
+fn refuse_run(folder: &Path) -> Result<(), SimulationError> {
+    let holds = |part: &&str| {
+        let path = folder.join(part);
+        match fs::read_dir(&path) {
+            Ok(entries) => entries.flatten().any(|entry| entry.path() != folder.join(LOCK)),
+            Err(_) => path.exists(),
+        }
+    };
+    match PARTS.iter().any(holds) {
+        true => Err(SimulationError::RunExists { path: folder.to_owned() }),
+        false => Ok(()),
     }
 }
 
-fn checkpoint_path(folder: &Path) -> PathBuf {
-    folder.join("checkpoint").join("state.npz")
+/// Removes the temporary files of a run that was killed. They have the number of its process in their names; those of
+/// others may be in use.
+fn remove_leftovers(folder: &Path, process: Option<u32>) {
+    let Some(process) = process.filter(|&process| process != std::process::id()) else { return };
+    let of_process = format!(".{process}-");
+    for below in ["", "frames", "checkpoint", "pc2", "surface", "trace", "states"] {
+        for entry in fs::read_dir(folder.join(below)).into_iter().flatten().flatten() {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            if name.starts_with('.') && name.contains(&of_process) && name.ends_with(".part") {
+                // What cannot be removed is only in the way.
+                let _ = fs::remove_file(entry.path());
+            }
+        }
+    }
 }
 
 /// Creates the folders of a run.

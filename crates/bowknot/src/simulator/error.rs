@@ -9,9 +9,9 @@ use bowknot_scene::world::World;
 use bowknot_twoway::ResolveError;
 use std::path::PathBuf;
 
-/// Why a simulation cannot begin or go on. All but [`SimulationError::Interrupted`] are the user's input
-/// or an unwritable output (exit code 2 of the command); that a check found an intersection is no
-/// error but a result, see [`crate::run::Summary::intersections`].
+/// Why a simulation cannot begin or go on. All but [`SimulationError::Interrupted`] and
+/// [`SimulationError::Internal`] are the user's input or an unwritable output (exit code 2 of the command); that
+/// a check found an intersection is no error but a result, see [`crate::run::Summary::intersections`].
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimulationError {
@@ -72,6 +72,28 @@ pub enum SimulationError {
         /// The folder.
         path: PathBuf,
     },
+    /// Another run writes to the output folder.
+    #[error(
+        "{} is in use by another run{}: wait for it, end it, or choose another folder with --out",
+        path.display(), process_words(.process)
+    )]
+    RunInUse {
+        /// The folder.
+        path: PathBuf,
+        /// The process of the other run, if known.
+        process: Option<u32>,
+    },
+    /// The program itself failed within a run.
+    #[error(
+        "time step {step}: internal error: {message}\nThis is a fault of the program, please report it. What was written \
+         so far is whole; --resume goes on from the last checkpoint."
+    )]
+    Internal {
+        /// The time step, from 1; 0 before the first.
+        step: usize,
+        /// The message of the panic.
+        message: String,
+    },
     /// A run cannot be resumed.
     #[error("cannot resume {}: {message}", path.display())]
     Resume {
@@ -83,6 +105,10 @@ pub enum SimulationError {
     /// An observer stopped the time step; the simulator is as it was before the step.
     #[error("interrupted")]
     Interrupted,
+}
+
+fn process_words(process: &Option<u32>) -> String {
+    process.map_or_else(String::new, |id| format!(" (process {id})"))
 }
 
 /// The first intersections of a state in words: bodies by name, vertices by index in their body's mesh.

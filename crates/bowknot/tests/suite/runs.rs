@@ -53,7 +53,7 @@ fn a_run_leaves_the_folder_that_other_tools_rely_on() {
     assert_eq!(names(&out), ["checkpoint", "frames", "scene.toml", "stats.jsonl", "summary.json"]);
     let frames: Vec<String> = (0..7).map(|frame| format!("{frame:06}.ply")).collect();
     assert_eq!(names(&out.join("frames")), frames);
-    assert_eq!(names(&out.join("checkpoint")), ["state.npz"]);
+    assert_eq!(names(&out.join("checkpoint")), ["lock", "previous.npz", "state.npz"]);
 
     let lines = lines(&out);
     assert_eq!(lines.len(), 6);

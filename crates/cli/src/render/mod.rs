@@ -134,9 +134,11 @@ fn select(options: &RenderOptions, output: Output, run: &RunFolder) -> Result<(V
         run.check_frame(end)?;
     }
     run.check_frame(range.first)?;
-    let frames: Vec<usize> = (range.first..=range.last.unwrap_or(last)).step_by(range.step).collect();
-    for &frame in &frames {
+    // The first that is missing ends it: a stray file of a large number would ask for as many frames.
+    let mut frames = Vec::new();
+    for frame in (range.first..=range.last.unwrap_or(last)).step_by(range.step) {
         run.check_frame(frame)?;
+        frames.push(frame);
     }
     Ok((frames, options.fps.unwrap_or(1.0 / (dt * range.step as f64))))
 }

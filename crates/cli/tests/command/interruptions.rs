@@ -1,6 +1,5 @@
 use crate::{Ended, Place, SMALL};
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::process::Command;
 
 /// The bytes of the frames of a run.
 fn frames(place: &Place, run: &str, count: usize) -> Vec<Vec<u8>> {
@@ -47,32 +46,6 @@ fn runs_that_cannot_be_resumed() {
         .refused(2, &["cannot resume run", "simulation.dt"]);
     place.write("run/checkpoint/state.npz", "no checkpoint");
     place.run(&format!("{SMALL} --out run --resume")).refused(2, &["state.npz"]);
-}
-
-#[cfg(unix)]
-#[test]
-fn an_interrupted_run_continues_with_the_same_bits() {
-    let place = Place::new();
-    let words = "run drape --scale 0.5 --frames 30";
-    let mut child = place
-        .command(&format!("{words} --out cut"))
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    // Interrupt it once it has written some frames.
-    let start = Instant::now();
-    while !place.path("cut/frames/000003.ply").exists() {
-        assert!(start.elapsed() < Duration::from_secs(60) && child.try_wait().unwrap().is_none());
-        std::thread::sleep(Duration::from_millis(2));
-    }
-    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-    let ended = Ended::new(words, child.wait_with_output().unwrap()).refused(130, &["stopping"]);
-    assert!(ended.stdout.contains("interrupted after") && ended.stdout.contains("--resume"), "{ended:#?}");
-
-    place.run(&format!("{words} --out cut --resume")).ok();
-    place.run(&format!("{words} --out whole")).ok();
-    assert!(frames(&place, "whole", 30) == frames(&place, "cut", 30), "the frames differ");
 }
 
 /// A limit on the size of files stands for a full disk: the files written so far stay complete.

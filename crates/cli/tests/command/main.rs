@@ -6,10 +6,19 @@
 mod bad_input;
 /// `check` on clear and on intersecting states and paths.
 mod check;
+/// Commands on folders of runs whose files are damaged.
+#[cfg(unix)]
+mod damaged_runs;
 /// `export` of runs and of folders of frames.
 mod export;
+/// Damaged checkpoints, locks, signals, panics, folders and disks that cannot be written.
+#[cfg(unix)]
+mod faults;
 /// Runs that are interrupted, resumed, or meet a full disk.
 mod interruptions;
+/// Runs that are killed.
+#[cfg(unix)]
+mod kills;
 /// Pictures of runs.
 #[cfg(feature = "render")]
 mod render;

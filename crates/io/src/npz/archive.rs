@@ -5,11 +5,16 @@ use crate::error::{IoError, Place};
 use bowknot_errors::counted;
 use bowknot_geometry::Point;
 use ndarray::ArrayD;
-use ndarray_npy::{NpzReader, NpzWriter, ReadDataError, ReadNpyError, ReadNpzError, ReadableElement};
+use ndarray_npy::{NpzWriter, ReadDataError, ReadNpyError, ReadNpyExt, ReadableElement};
 use py_literal::Value as PyValue;
 use std::fs::File;
 use std::io::{BufReader, BufWriter, ErrorKind, Read};
 use std::path::Path;
+use zip::ZipArchive;
+use zip::result::ZipError;
+
+/// Longest header of an array [bytes]. NumPy writes 118 for our arrays, and reads no more than 10,000.
+const MAX_HEADER: usize = 10_000;
 
 /// A number of an archive, widened from whatever type it was stored as. Integers above 2^53 lose their last
 /// digits; none that we read are indices.
@@ -71,6 +76,27 @@ fn read_numbers<R: Read, const N: usize>(
     Ok(values)
 }
 
+/// Reads an array. Its header is read as a whole before it is parsed: the parser believes any length that it claims.
+fn read_array(mut reader: impl Read) -> Result<ArrayD<Number>, ReadNpyError> {
+    let refuse = |message: String| ReadNpyError::Io(std::io::Error::new(ErrorKind::InvalidData, message));
+    // Magic, version, and the length of the header in two bytes, from version 2 on in four.
+    let mut header = vec![0; 10];
+    reader.read_exact(&mut header)?;
+    let mut length = usize::from(u16::from_le_bytes([header[8], header[9]]));
+    if header[6] > 1 {
+        header.resize(12, 0);
+        reader.read_exact(&mut header[10..])?;
+        length += usize::from(u16::from_le_bytes([header[10], header[11]])) << 16;
+    }
+    if length > MAX_HEADER {
+        return Err(refuse(format!("its header claims {length} bytes, more than {MAX_HEADER}")));
+    }
+    let start = header.len();
+    header.resize(start + length, 0);
+    reader.read_exact(&mut header[start..])?;
+    ArrayD::read_npy(header.chain(reader))
+}
+
 /// Lengths of an array's axes.
 pub type Shape = Vec<usize>;
 
@@ -78,7 +104,7 @@ pub type Shape = Vec<usize>;
 /// names the file and the array.
 pub struct Archive<'a> {
     path: &'a Path,
-    reader: NpzReader<BufReader<File>>,
+    zip: ZipArchive<BufReader<File>>,
     names: Vec<String>,
 }
 
@@ -93,13 +119,18 @@ impl<'a> Archive<'a> {
         if file.metadata().is_ok_and(|m| m.is_dir()) {
             return Err(IoError::system("read", path, ErrorKind::IsADirectory.into()));
         }
-        let not_npz = |_| {
+        let not_npz = |_: ZipError| {
             let hint = if starts_as_npy(path) { "; it is a single array, use np.savez" } else { "" };
             IoError::content(path, Place::File, format!("not an NPZ archive, as np.savez writes it{hint}"))
         };
-        let mut reader = NpzReader::new(BufReader::new(file)).map_err(not_npz)?;
-        let names = reader.names().map_err(not_npz)?;
-        Ok(Self { path, reader, names })
+        let mut zip = ZipArchive::new(BufReader::new(file)).map_err(not_npz)?;
+        let mut names = Vec::new();
+        for index in 0..zip.len() {
+            let entry = zip.by_index(index).map_err(not_npz)?;
+            let name = entry.name();
+            names.push(name.strip_suffix(".npy").unwrap_or(name).to_owned());
+        }
+        Ok(Self { path, zip, names })
     }
 
     /// Whether the archive has an array of this name.
@@ -120,9 +151,13 @@ impl<'a> Archive<'a> {
         if !self.has(name) {
             return Ok(None);
         }
-        let array: ArrayD<Number> = match self.reader.by_name::<ndarray::OwnedRepr<Number>, _>(name) {
+        let file_name = format!("{name}.npy");
+        let entry = if self.zip.index_for_name(&file_name).is_some() { &file_name } else { name };
+        let array = self.zip.by_name(entry).map_err(|error| error.to_string()).map(read_array);
+        let array = array.map_err(|error| self.fault(name, format!("unreadable: {error}")))?;
+        let array = match array {
             Ok(array) => array,
-            Err(ReadNpzError::Npy(ReadNpyError::WrongDescriptor(descriptor))) => {
+            Err(ReadNpyError::WrongDescriptor(descriptor)) => {
                 let allowed = "f32, f64, bool and integers of 8 to 64 bits can be read";
                 return Err(self.fault(name, format!("its type is {descriptor}; {allowed}")));
             }

@@ -45,3 +45,25 @@ fn a_stack_that_is_streamed_is_the_stack() {
     assert!(message(failing).contains("the disk is full"));
     assert_eq!(FrameStack::read(&streamed).unwrap(), stack, "the old file stays");
 }
+
+/// An archive of one array `X` with these bytes.
+fn archive_of(bytes: &[u8], path: &Path) -> zip::result::ZipResult<()> {
+    use std::io::Write;
+    let mut zip = zip::ZipWriter::new(std::fs::File::create(path)?);
+    zip.start_file("X.npy", zip::write::SimpleFileOptions::default())?;
+    zip.write_all(bytes)?;
+    zip.finish().map(drop)
+}
+
+/// Four gigabytes were allocated on the word of eight bytes.
+#[test]
+fn an_array_whose_header_claims_gigabytes_is_refused() {
+    let folder = folder();
+    let path = folder.path().join("frames.npz");
+    for version in [2, 3] {
+        archive_of(&[b"\x93NUMPY", &[version, 0, 0xff, 0xff, 0xff, 0xff][..], b"{}"].concat(), &path)
+            .expect("written");
+        let says = message(FrameStack::read(&path));
+        assert!(says.contains("array X") && says.contains("claims 4294967295 bytes"), "{says}");
+    }
+}
