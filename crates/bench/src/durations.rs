@@ -32,6 +32,7 @@ const QUICK: &[(&str, u32)] = &[
     ("funnel", 11),
     ("early-contact", 3),
     ("goals", 13),
+    ("gpu", 60),
     ("stability", 60),
     ("record", 150),
 ];

@@ -78,7 +78,7 @@ impl Adapter {
         (!missing.is_empty()).then(|| missing.join(", "))
     }
 
-    /// Opens the device with the largest buffers that it allows.
+    /// Opens the device with the largest buffers that it allows, and with time stamps where it has them.
     pub(crate) fn open(&self) -> Result<(wgpu::Device, wgpu::Queue), String> {
         let has = self.adapter.limits();
         let required_limits = wgpu::Limits {
@@ -88,6 +88,7 @@ impl Adapter {
         };
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("bowknot"),
+            required_features: self.adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
             required_limits,
             ..wgpu::DeviceDescriptor::default()
         };

@@ -30,7 +30,7 @@ pub use bowknot_geometry as geometry;
 
 pub use adapter::Adapter;
 pub use collision::{Call, Collision, CollisionError, ContactRow, Settings, StepReport};
-pub use engine::{ComparingEngine, DeviceEngine, Difference, Engine, TwinEngine};
+pub use engine::{ComparingEngine, DeviceEngine, Difference, Engine, Profile, StageTime, TwinEngine};
 pub use error::GpuError;
 pub use grid::{Grid, GridError, GridPoint};
 pub use layout::{Candidate, Kind, NONE};

@@ -22,7 +22,7 @@ struct Goal {
 
 /// A row of the paper's Table 2 at the paper's size: the scene, the number of its first time steps, and seconds
 /// per time step of the paper's collision stage, on its GPU.
-const TABLE_2: [(&str, usize, f64); 12] = [
+pub(super) const TABLE_2: [(&str, usize, f64); 12] = [
     ("needle", 8, 0.036),
     ("blade", 2, 0.267),
     ("funnel", 2, 0.087),

@@ -10,6 +10,7 @@ mod early_contact;
 mod edge_limits;
 mod funnel;
 mod goals;
+mod gpu;
 mod impact_zones;
 mod joint;
 mod lengths;
@@ -56,5 +57,6 @@ pub const ALL: &[&dyn Figure] = &[
     &funnel::Funnel,
     &early_contact::EarlyContact,
     &goals::Goals,
+    &gpu::Gpu,
     &stability::Stability,
 ];

@@ -10,6 +10,6 @@ mod device;
 mod error;
 mod setup;
 
-pub use bowknot_gpu::{Adapter, ComparingEngine, DeviceEngine, GpuError, TwinEngine};
+pub use bowknot_gpu::{Adapter, ComparingEngine, DeviceEngine, GpuError, Profile, StageTime, TwinEngine};
 pub use device::{Device, resolve_on};
 pub use error::GpuResolveError;

@@ -1,5 +1,6 @@
 //! Runs recordings on a device.
 
+use super::profile::Profile;
 use super::traits::{Engine, SMALLEST_BUFFER};
 use crate::adapter::{Adapter, wait};
 use crate::error::GpuError;
@@ -24,6 +25,8 @@ pub struct DeviceEngine {
     pipelines: HashMap<&'static str, Pipeline>,
     /// The parameters of the dispatches of a recording.
     params: wgpu::Buffer,
+    /// Where the times of the stages go, if they are measured.
+    profile: Option<Profile>,
     /// What the driver reported since the last look: it does so from other threads.
     failure: Arc<Mutex<Option<Failure>>>,
 }
@@ -62,7 +65,26 @@ impl DeviceEngine {
             note(&shared, Failure::Lost(message));
         });
         let params = params_buffer(&device, 64);
-        Ok(Self { name, device, queue, buffers: Vec::new(), pipelines: HashMap::new(), params, failure })
+        Ok(Self {
+            name,
+            device,
+            queue,
+            buffers: Vec::new(),
+            pipelines: HashMap::new(),
+            params,
+            profile: None,
+            failure,
+        })
+    }
+
+    /// Measures the stages from now on. Each dispatch then waits for the one before it, and the host for all of them.
+    pub fn measure(&mut self, profile: Profile) {
+        self.profile = Some(profile);
+    }
+
+    /// Whether the device has time stamps.
+    pub fn has_time_stamps(&self) -> bool {
+        self.device.features().contains(wgpu::Features::TIMESTAMP_QUERY)
     }
 
     /// Name of the adapter.
@@ -114,6 +136,72 @@ impl DeviceEngine {
 
     fn encode(&self, encoder: &mut wgpu::CommandEncoder, dispatches: &[(&Dispatch, u64)]) {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        self.encode_pass(&mut pass, dispatches);
+    }
+
+    /// Runs the dispatches, each in a pass of its own between two time stamps, and waits for them.
+    fn run_measured(&self, dispatches: &[(&Dispatch, u64)], profile: &Profile) -> Result<(), GpuError> {
+        for part in dispatches.chunks(wgpu::QUERY_SET_MAX_QUERIES as usize / 2) {
+            let times =
+                if self.has_time_stamps() { self.time_stamps(part)? } else { vec![0; 2 * part.len()] };
+            if !self.has_time_stamps() {
+                let mut encoder = self.encoder();
+                self.encode(&mut encoder, part);
+                self.queue.submit([encoder.finish()]);
+            }
+            let unit = 1e-9 * f64::from(self.queue.get_timestamp_period());
+            for ((dispatch, _), times) in part.iter().zip(times.chunks_exact(2)) {
+                let bytes = dispatch.buffers.iter().map(|&buffer| self.buffer_of(buffer).size()).sum();
+                let seconds = times[1].saturating_sub(times[0]) as f64 * unit;
+                profile.add(dispatch.stage.name, seconds, bytes);
+            }
+        }
+        Ok(())
+    }
+
+    /// Time stamps before and after each dispatch.
+    fn time_stamps(&self, dispatches: &[(&Dispatch, u64)]) -> Result<Vec<u64>, GpuError> {
+        let count = 2 * dispatches.len() as u32;
+        let queries = self.device.create_query_set(&wgpu::QuerySetDescriptor {
+            label: Some("times"),
+            ty: wgpu::QueryType::Timestamp,
+            count,
+        });
+        let buffer = |label, usage| {
+            let size = 8 * u64::from(count);
+            self.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage,
+                mapped_at_creation: false,
+            })
+        };
+        let resolved = buffer("times", wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC);
+        let staging = buffer("read times", wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
+        let mut encoder = self.encoder();
+        for (first, dispatch) in (0..count).step_by(2).zip(dispatches) {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: None,
+                timestamp_writes: Some(wgpu::ComputePassTimestampWrites {
+                    query_set: &queries,
+                    beginning_of_pass_write_index: Some(first),
+                    end_of_pass_write_index: Some(first + 1),
+                }),
+            });
+            self.encode_pass(&mut pass, std::slice::from_ref(dispatch));
+        }
+        encoder.resolve_query_set(&queries, 0..count, &resolved, 0);
+        encoder.copy_buffer_to_buffer(&resolved, 0, &staging, 0, resolved.size());
+        self.queue.submit([encoder.finish()]);
+        let words = self.map(&staging)?;
+        Ok(words.chunks_exact(2).map(|pair| u64::from(pair[1]) << 32 | u64::from(pair[0])).collect())
+    }
+
+    fn encoder(&self) -> wgpu::CommandEncoder {
+        self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
+    }
+
+    fn encode_pass(&self, pass: &mut wgpu::ComputePass<'_>, dispatches: &[(&Dispatch, u64)]) {
         for (dispatch, place) in dispatches {
             let Pipeline { pipeline, layout } = &self.pipelines[dispatch.stage.name];
             let params = wgpu::BufferBinding {
@@ -211,7 +299,7 @@ impl Engine for DeviceEngine {
             }
         }
         // Writes take place before the next submit: what was recorded before them is submitted first.
-        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut encoder = self.encoder();
         let mut waiting: Vec<(&Dispatch, u64)> = Vec::new();
         let mut place = 0;
         for command in &recording.commands {
@@ -222,18 +310,22 @@ impl Engine for DeviceEngine {
                 }
                 Command::Write { buffer, words } => {
                     if !waiting.is_empty() {
-                        self.encode(&mut encoder, &waiting);
+                        match &self.profile {
+                            Some(profile) => self.run_measured(&waiting, profile)?,
+                            None => self.encode(&mut encoder, &waiting),
+                        }
                         waiting.clear();
                         self.queue.submit([encoder.finish()]);
-                        let descriptor = wgpu::CommandEncoderDescriptor::default();
-                        encoder = self.device.create_command_encoder(&descriptor);
+                        encoder = self.encoder();
                     }
                     self.queue.write_buffer(self.buffer_of(*buffer), 0, bytemuck::cast_slice(words));
                 }
             }
         }
-        if !waiting.is_empty() {
-            self.encode(&mut encoder, &waiting);
+        match &self.profile {
+            Some(profile) => self.run_measured(&waiting, profile)?,
+            None if waiting.is_empty() => {}
+            None => self.encode(&mut encoder, &waiting),
         }
         let words: usize = read.iter().map(|(_, words)| words).sum();
         if words == 0 {

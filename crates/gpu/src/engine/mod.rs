@@ -2,10 +2,12 @@
 
 mod compare;
 mod device;
+mod profile;
 mod traits;
 mod twin;
 
 pub use compare::{ComparingEngine, Difference};
 pub use device::DeviceEngine;
+pub use profile::{Profile, StageTime};
 pub use traits::Engine;
 pub use twin::TwinEngine;
