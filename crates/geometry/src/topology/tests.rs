@@ -99,3 +99,13 @@ fn an_empty_scene_is_a_topology() {
     assert_eq!(topology.connected_components().count, 0);
     assert_eq!(topology.edge_triangles().starts, [0]);
 }
+
+/// Indices of vertices beyond 2^32 wrapped around: such vertices collided with nothing.
+#[test]
+fn more_vertices_than_indices_are_refused() {
+    let count = u32::MAX as usize + 1;
+    let refused = Topology::builder(count).triangles([[0, 1, 2]]).build().expect_err("refused");
+    assert_eq!(refused.iter().collect::<Vec<_>>(), [&TopologyError::TooMany { elements: "vertices", count }]);
+    let said = refused.to_string();
+    assert!(said.contains("4294967296 vertices; at most 4294967295 are possible"), "{said}");
+}
