@@ -109,6 +109,7 @@ fn run_steps(
     present: &Cell<usize>,
 ) -> Result<Outcome, SimulationError> {
     let mut simulator = Simulator::new(scene)?;
+    simulator.check_motions(scene.simulation.frames)?;
     let mut writer = if options.resume {
         RunWriter::resume(&options.out, scene, &mut simulator)?
     } else {
