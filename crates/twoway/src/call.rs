@@ -97,7 +97,7 @@ impl CallInput {
 }
 
 /// Refuses coordinates so large that the smallest minimum separation of any pair is below their rounding.
-fn check_min_separation(
+pub(crate) fn check_min_separation(
     scene: &CollisionScene,
     positions: &[Point],
     target: &[Point],

@@ -2,7 +2,7 @@
 
 use crate::backward::LcpBackward;
 use crate::bodies::{BodyContact, HalfSpaceContact, PairFriction};
-use crate::call::CallInput;
+use crate::call::{CallInput, check_min_separation};
 use crate::error::ResolveError;
 use crate::filter::filter_slip;
 use crate::forward::CertifiedForward;
@@ -117,6 +117,15 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
     /// The moving state as the last call left it.
     pub fn state(&self) -> &ResolveState {
         &self.state
+    }
+
+    /// Refuses positions [m] with coordinates so large that their rounding exceeds the smallest minimum separation, as a
+    /// call does with its start and its target.
+    ///
+    /// # Errors
+    /// [`ResolveError::MinSeparationBelowRounding`] with the farthest vertex.
+    pub fn check_coordinates(&self, positions: &[Point]) -> Result<(), ResolveError> {
+        check_min_separation(&self.scene, positions, positions)
     }
 
     /// Finds the candidate pairs at intersection-free positions, with their contact geometry, as the first

@@ -124,6 +124,7 @@ fn run_steps(
 ) -> Result<Outcome, SimulationError> {
     let mut simulator = Simulator::new(scene)?;
     simulator.set_backend(backend)?;
+    simulator.check_motions(scene.simulation.frames)?;
     let mut writer = if options.resume {
         RunWriter::resume(&options.out, scene, &mut simulator)?
     } else {

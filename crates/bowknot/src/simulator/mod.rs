@@ -13,6 +13,7 @@ mod overlap;
 mod prescribed;
 mod process;
 mod progress;
+mod reach;
 mod relaxation;
 mod rest;
 #[allow(clippy::module_inception, reason = "the type that the module is named for")]

@@ -242,6 +242,25 @@ fn coordinates_beyond_rounding() {
     place
         .run("run scene.toml")
         .refused(2, &["body cloth", "16 ulp", "minimum separation", "closer to the origin"]);
+    assert!(!place.path("out").exists());
+}
+
+/// Motions are known from the beginning: the run was refused at the time step that they took too far.
+#[test]
+fn motions_beyond_rounding_are_refused_before_anything_is_written() {
+    let place = Place::new();
+    let ball =
+        "[[obstacle]]\nname = \"ball\"\nshape = { type = \"ball\", radius = 0.1, edge = 0.05 }\nmotion = ";
+    let far = "{ keyframes = [{ time = 0.01 }, { time = 0.02, translate = [1e13, 0.0, 0.0] }] }";
+    let pin = "[[pin]]\nbody = \"cloth\"\nvertices = [0]\nmotion = ";
+    for (what, start) in [("ball", ball), ("cloth", pin)] {
+        place.write("scene.toml", format!("{SCENE}{start}{far}\n"));
+        let body = format!("body {what}");
+        place.run("run scene.toml").refused(2, &["time step 2", &body, "16 ulp", "closer to the origin"]);
+        assert!(!place.path("out").exists(), "{what}");
+        // What lies beyond the end of the run is of no matter.
+        place.run(&format!("run scene.toml --frames 1 --out near-{what}")).ok();
+    }
 }
 
 #[test]
