@@ -4,10 +4,6 @@
 mod imports;
 mod layers;
 mod paths;
-// The generators of hard states draw what they claim.
-mod generators;
-// No step of the forward stage, alone or within the two-way loop, intersects.
-mod safety;
 // No step of the interior point baselines intersects.
 mod interior_points;
 // The properties of the fuzz targets hold for seeded random bytes.
