@@ -6,6 +6,8 @@ mod layers;
 mod paths;
 // No step of the interior point baselines intersects.
 mod interior_points;
+// Degenerate contacts never intersect.
+mod degenerate;
 // The properties of the fuzz targets hold for seeded random bytes.
 mod fuzz_bodies;
 // Bodies in contact move as theory predicts, and none is crushed.
