@@ -4,12 +4,10 @@
 mod imports;
 mod layers;
 mod paths;
-// The generators of hard states draw what they claim.
-mod generators;
-// No step of the forward stage, alone or within the two-way loop, intersects.
-mod safety;
 // No step of the interior point baselines intersects.
 mod interior_points;
+// Degenerate contacts never intersect.
+mod degenerate;
 // The properties of the fuzz targets hold for seeded random bytes.
 mod fuzz_bodies;
 // Bodies in contact move as theory predicts, and none is crushed.

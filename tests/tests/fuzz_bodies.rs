@@ -3,7 +3,7 @@
 //!
 //! `BOWKNOT_SEEDS=20 cargo test --release -p bowknot-tests fuzz_bodies` tries ten times as many.
 
-use crate::safety::seeds;
+use crate::interior_points::seeds;
 use bowknot::io::{MeshView, write_obj, write_ply};
 use bowknot::recording::States;
 use bowknot_tests::states::GENERATORS;

@@ -56,7 +56,7 @@ pub(super) fn closest(kind: PairKind, x: &[Point; 4]) -> Closest {
 /// The normal of the triangle, or of both edges, toward side a. None for other pairs.
 pub(super) fn common_normal(kind: PairKind, x: &[Point; 4]) -> Option<Vector> {
     let normal = match kind {
-        PairKind::VertexTriangle => (x[2] - x[1]).cross(&(x[3] - x[1])),
+        PairKind::VertexTriangle => triangle_normal([x[1], x[2], x[3]]),
         PairKind::EdgeEdge => (x[1] - x[0]).cross(&(x[3] - x[2])),
         _ => return None,
     };
@@ -81,6 +81,16 @@ pub(super) fn across_edges(kind: PairKind, x: &[Point; 4]) -> impl Iterator<Item
     })
 }
 
+/// The normal of a triangle, as long as twice its area. It is computed at the corner across from the longest
+/// edge: the two long edges of a sliver are nearly parallel, so that their product is mostly rounding.
+fn triangle_normal([a, b, c]: [Point; 3]) -> Vector {
+    let corners = [[a, b, c], [b, c, a], [c, a, b]];
+    let across = |[_, q, r]: &[Point; 3]| (r - q).norm_squared();
+    let best = corners.iter().reduce(|best, next| if across(next) > across(best) { next } else { best });
+    let [p, q, r] = *best.unwrap_or(&corners[0]);
+    (q - p).cross(&(r - p))
+}
+
 fn vertex_edge(p: Point, [a, b]: [Point; 2]) -> Closest {
     let along = b - a;
     let length_squared = along.norm_squared();
@@ -99,7 +109,7 @@ fn vertex_triangle(p: Point, [a, b, c]: [Point; 3]) -> Closest {
     let edges = [[a, b], [b, c], [c, a]];
     let nearest = edges.map(|edge| vertex_edge(p, edge)).into_iter().reduce(Closest::nearer);
     let nearest = nearest.unwrap_or(Closest::of(p, a));
-    let normal = (b - a).cross(&(c - a));
+    let normal = triangle_normal([a, b, c]);
     let inside = edges.iter().all(|[i, j]| (j - i).cross(&(p - i)).dot(&normal) >= 0.0);
     let norm_squared = normal.norm_squared();
     if !(inside && norm_squared > 0.0) {

@@ -7,6 +7,8 @@
 //! | `pictures` | draws the built-in scenes into `assets/pictures` |
 //! | `miri` | runs unit tests of the numerical crates under Miri |
 //! | `hashes` | prints a hash of the frames of each built-in scene, to show that a change leaves every bit as it is |
+//! | `soak` | draws collision problems for minutes or hours, and judges every accepted step |
+//! | `mutations` | makes mistakes in a copy of the code, and requires that the safety tests catch each |
 //!
 //! `cargo xtask help` prints the options.
 // A command for people and CI logs: printing is what it does.
@@ -18,8 +20,10 @@ mod docs;
 mod faults;
 mod hashes;
 mod miri;
+mod mutations;
 mod pictures;
 mod readers;
+mod soak;
 mod workspace;
 
 use std::process::ExitCode;
@@ -30,6 +34,9 @@ Usage: cargo xtask check [--fast]
        cargo xtask faults [--kills N] [--seeds N]
        cargo xtask pictures [SCENE..]
        cargo xtask hashes [--scenes A,B] [--jobs N]
+       cargo xtask soak [--minutes N] [--seed S] [--jobs J] [--generated]
+       cargo xtask soak --replay SEED [--generated]
+       cargo xtask mutations [NAME..]
 
 check     run what CI runs, in named steps: format, clippy, docs, wasm, a small run, its exports read back, tests
           --fast        format, clippy and unit tests only
@@ -44,7 +51,15 @@ hashes    run built-in scenes at a small scale on one thread each, and print for
           and a hash of all bytes of the frames: compare the lines before and after a change that is to leave every
           result as it is, on the same machine
           --scenes A,B  these scenes only
-          --jobs N      run N scenes at the same time [default: as many as there are cores]";
+          --jobs N      run N scenes at the same time [default: as many as there are cores]
+soak      draw collision problems and judge each accepted step; a failure ends it with the smallest case and its seed
+          --minutes N   how long [default: 10]
+          --seed S      seed of all problems [default: from the clock]
+          --jobs J      number of problems at a time, on a thread each [default: 1]
+          --generated   large generated states only, instead of mostly small pieces
+          --replay SEED draw, check and shrink one problem again
+mutations make the mistakes of tests/safety/mutations, all or those named, one at a time in a copy of the workspace, and
+          require that the safety tests catch each; some minutes per mutation";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -72,6 +87,10 @@ fn main() -> ExitCode {
                 ExitCode::from(2)
             }
         },
+        ["soak", options @ ..] => soak::run(&workspace::root(), options),
+        ["mutations", names @ ..] if names.iter().all(|name| !name.starts_with('-')) => {
+            mutations::run(&workspace::root(), names)
+        }
         ["help" | "--help" | "-h"] => {
             println!("{USAGE}");
             ExitCode::SUCCESS

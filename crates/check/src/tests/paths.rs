@@ -16,6 +16,23 @@ fn hits(judge: &Judge, x0: &[Point], x1: &[Point]) -> usize {
     judge.check_path(x0, x1, &options).expect("valid points").hit_count
 }
 
+/// A vertex 2e-13 m above a triangle of 0.5 m by 1e-7 m, by exact arithmetic over these coordinates. The plane
+/// through the triangle was taken from its two long edges, and was off by 4.5e-11 m.
+#[test]
+fn a_vertex_that_rests_just_above_a_sliver_is_no_hit() {
+    let x = [
+        Point::new(-0.15732715683201304, -0.4050834654500105, 2.0414598060059657),
+        Point::new(-1.8757292049730676e-7, 5.5146084164496204e-8, 2.288756320508448),
+        Point::new(-0.3146541771730918, -0.810166986875561, 1.7941633253593121),
+        Point::new(-0.3146540750091194, -0.8101669852166491, 1.7941632576464703),
+    ];
+    let judge = pair_judge(false);
+    assert_eq!(hits(&judge, &x, &x), 0);
+    let nearest = judge.check_state(&x, &StateOptions::default()).expect("valid points").nearest;
+    let distance = nearest.expect("a pair").distance;
+    assert!((distance - 1.98684e-13).abs() < 1e-15, "{distance:e}");
+}
+
 /// Random integer queries: a certain hit is never missed, a certain miss is never flagged (integers
 /// leave gaps far above rounding). The shift and the scale exercise rounding: both are exact in
 /// doubles, and the answer is the same.

@@ -11,7 +11,7 @@ pub use bodies::{mixed, spike_on_spike, vertex_over_edge};
 pub use codimensional::{particles, strands};
 pub use sheets::{crumpled_sheet, folded_sheet, slivers};
 
-use bowknot::check::{Judge, StateOptions};
+use bowknot_check::{Judge, StateOptions};
 use bowknot_geometry::{HalfSpace, Point, Topology};
 use bowknot_proximity::{BodyFilter, CollisionModel};
 
@@ -35,14 +35,14 @@ pub const GENERATORS: [Generator; 8] =
 
 /// The parts of a scene under construction.
 #[derive(Default)]
-struct Draft {
-    positions: Vec<Point>,
+pub(crate) struct Draft {
+    pub(crate) positions: Vec<Point>,
     triangles: Vec<[u32; 3]>,
     strands: Vec<[u32; 2]>,
     particles: Vec<u32>,
     body: Vec<u32>,
     filters: Vec<BodyFilter>,
-    half_spaces: Vec<HalfSpace>,
+    pub(crate) half_spaces: Vec<HalfSpace>,
 }
 
 impl Draft {
@@ -75,13 +75,29 @@ impl Draft {
         self.add_points(filter, points);
     }
 
+    /// Adds a body of triangles, strand edges and particles over its own vertices.
+    pub(crate) fn add_elements(
+        &mut self,
+        filter: BodyFilter,
+        points: Vec<Point>,
+        triangles: &[[u32; 3]],
+        strands: &[[u32; 2]],
+        particles: &[u32],
+    ) {
+        let first = self.next();
+        self.triangles.extend(triangles.iter().map(|t| t.map(|v| first + v)));
+        self.strands.extend(strands.iter().map(|e| e.map(|v| first + v)));
+        self.particles.extend(particles.iter().map(|v| first + v));
+        self.add_points(filter, points);
+    }
+
     fn add_points(&mut self, filter: BodyFilter, points: Vec<Point>) {
         self.body.extend(points.iter().map(|_| self.filters.len() as u32));
         self.filters.push(filter);
         self.positions.extend(points);
     }
 
-    fn finish(self, name: &str, seed: u64) -> Case {
+    pub(crate) fn finish(self, name: &str, seed: u64) -> Case {
         let topology = Topology::builder(self.positions.len())
             .triangles(self.triangles)
             .strand_edges(self.strands.iter().copied())

@@ -1,10 +1,10 @@
 //! The hard states are free of intersections, nearly intersecting, and the same in every run. The targets
 //! lead through other elements.
 
-use bowknot::check::{Judge, PathOptions, StateOptions};
-use bowknot_tests::states::GENERATORS;
-use bowknot_tests::targets::Rule;
-use bowknot_tests::{Random, StepChecker};
+use bowknot_check::{Judge, PathOptions, StateOptions};
+use bowknot_safety::states::GENERATORS;
+use bowknot_safety::targets::Rule;
+use bowknot_safety::{Random, StepChecker};
 
 #[test]
 fn states_are_clear_but_nearly_intersecting() {
@@ -31,7 +31,9 @@ fn states_are_clear_but_nearly_intersecting() {
 fn most_targets_lead_through_other_elements() {
     let (mut cases, mut crossings) = (0, 0);
     for generator in GENERATORS {
-        for rule in Rule::ALL {
+        // To one point or into one plane everything leads through something, and the judge takes a minute to say so.
+        let rules = Rule::ALL.into_iter().filter(|rule| !matches!(rule, Rule::Collapsed | Rule::Flattened));
+        for rule in rules {
             let case = generator(1);
             let targets = rule.targets(&case, 0.02, &mut Random::new(2));
             let judge = Judge::from_model(&case.model);
@@ -46,7 +48,7 @@ fn most_targets_lead_through_other_elements() {
 
 #[test]
 fn the_checker_finds_a_step_that_intersects() {
-    let case = bowknot_tests::states::folded_sheet(3);
+    let case = bowknot_safety::states::folded_sheet(3);
     let targets = Rule::Scattered.targets(&case, 1e-2, &mut Random::new(3));
     let mut checker = StepChecker::new(&case);
     checker.follow(&case, &targets, 10, |_, y| y.to_vec());

@@ -1,7 +1,7 @@
 //! A check of every step that moves the vertices of a case.
 
 use crate::Case;
-use bowknot::check::{Judge, PathOptions, StateOptions};
+use bowknot_check::{Judge, PathOptions, StateOptions};
 use bowknot_geometry::Point;
 
 /// Checks the steps of one case and keeps the first fault.

@@ -1,0 +1,10 @@
+//! Tests that no step of the collision stage intersects.
+
+// The generators of hard states draw what they claim.
+mod generators;
+// No step of the forward stage alone intersects.
+mod forward;
+// Faults that searches have found stay repaired.
+mod regressions;
+// No step of the whole method intersects, whatever the problem.
+mod steps;

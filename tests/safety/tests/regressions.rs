@@ -1,0 +1,39 @@
+//! Smallest cases of faults that searches have found, by their symptoms.
+
+use bowknot_safety::check;
+use bowknot_safety::scenario::{
+    Drive, Masses, Motion, Piece, Pins, Role, Scenario, Seat, Setup, Shape, Start, Turn,
+};
+use bowknot_safety::targets::Rule;
+
+fn piece(shape: Shape, turn: u32, seat: Seat, gap: f64) -> Piece {
+    Piece { shape, role: Role::Deformable, size: 1.0, flipped: false, turn: Turn::Any(turn), seat, gap }
+}
+
+/// One call without pins, for equal masses.
+fn problem(pieces: Vec<Piece>, calls: Vec<Motion>, setup: Setup) -> Scenario {
+    Scenario {
+        start: Start::Pieces { pieces, ground: None, scale: 1.0, offset: [0.0; 3] },
+        masses: Masses { decades: 0.0, seed: 0 },
+        pins: Pins { every: 0, groups: 0 },
+        rest: 1.0,
+        calls,
+        setup,
+    }
+}
+
+fn scattered() -> Motion {
+    Motion { rule: Rule::Scattered, magnitude: 1.0, drive: Drive::Still, way: 1.0, time_step: None, seed: 0 }
+}
+
+/// The judge took a vertex 2e-13 m above a sliver for a hit. The step was safe.
+#[test]
+fn a_vertex_just_above_a_sliver_is_not_taken_for_a_hit() {
+    let folded = Shape::Sheet { cells: [2, 1], layers: 3, gap: 1.0963670256852885e-7 };
+    let pieces = vec![
+        piece(folded, 52280, Seat::Above, 1.0),
+        piece(Shape::Block { height: 1.0 }, 151_903, Seat::Triangle(13), 2.9605160276888466e-13),
+    ];
+    let checked = check(&problem(pieces, vec![scattered()], Setup { steps: 1, ..Setup::default() }));
+    assert!(checked.as_ref().is_ok_and(|tally| tally.steps == 1), "{checked:?}");
+}
