@@ -3,7 +3,7 @@
 //! A problem without them is another one wherever bodies of a scene pass through each other on purpose: it would
 //! even be refused, because such bodies intersect at the start.
 
-use super::states::per;
+use super::columns::per;
 use bowknot_geometry::BodyFilter;
 use bowknot_io::IoError;
 use bowknot_io::npz::Archive;

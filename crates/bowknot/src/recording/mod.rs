@@ -1,5 +1,6 @@
 //! Collision problems: recorded from a simulation, solved again outside of it.
 
+mod columns;
 mod filters;
 mod recorder;
 mod resolve;

@@ -1,5 +1,6 @@
 //! Collision problems: a state x, a target y, and what collides.
 
+use super::columns::per;
 use super::filters;
 use bowknot_errors::counted;
 use bowknot_geometry::{BodyFilter, HalfSpace, Point, Vector};
@@ -301,21 +302,6 @@ fn time_step(archive: &mut Archive<'_>) -> Result<Option<f64>, IoError> {
         [dt] if dt.is_finite() && *dt > 0.0 => Ok(Some(*dt)),
         _ => Err(archive.fault("dt", format!("{values:?} must be one finite number above 0"))),
     }
-}
-
-/// A column of one number for each of `count` things; nan for all if the archive has none.
-pub(super) fn per(
-    archive: &mut Archive<'_>,
-    name: &str,
-    count: usize,
-    [one, many]: [&str; 2],
-) -> Result<Vec<Option<f64>>, IoError> {
-    let Some(values) = archive.column(name, None)? else { return Ok(vec![None; count]) };
-    if values.len() != count {
-        let given = counted(values.len(), "entry", "entries");
-        return Err(archive.fault(name, format!("it has {given} for {}", counted(count, one, many))));
-    }
-    Ok(values.into_iter().map(|v| Some(v).filter(|v| !v.is_nan())).collect())
 }
 
 /// Ranges are checked where the numbers are used, by [`bowknot_twoway::Resolver::with_bodies`].
