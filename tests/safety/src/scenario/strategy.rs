@@ -16,15 +16,19 @@ pub fn any() -> impl Strategy<Value = Scenario> {
     (drawn, bool::weighted(0.25)).prop_map(|(drawn, is_loose)| if is_loose { loosened(drawn) } else { drawn })
 }
 
-/// The problem with a contact range so short that contacts press late, and targets so far that steps are swept
-/// or free flights.
+/// The problem with a contact range so short that contacts press late. The targets of the first call are so far
+/// that its steps are swept or free flights, of all bodies together in half of the problems: what the later calls
+/// know of pairs then is what these steps have left.
 fn loosened(mut scenario: Scenario) -> Scenario {
     let Setup { delta, stretch, steps, .. } = scenario.setup;
     let delta = Some(1e-3 * delta.unwrap_or(1.0).min(1.0));
     scenario.setup = Setup { delta, floor: Some(0.0), stretch, steps, ..Setup::default() };
-    for call in &mut scenario.calls {
-        call.magnitude = call.magnitude.clamp(0.3, 30.0);
-        call.way = call.way.clamp(0.3, 30.0);
+    if let Some(first) = scenario.calls.first_mut() {
+        first.magnitude = first.magnitude.clamp(0.3, 30.0);
+        first.way = first.way.clamp(0.3, 30.0);
+        if first.seed.is_multiple_of(2) {
+            first.rule = Rule::Together;
+        }
     }
     scenario
 }
