@@ -64,3 +64,40 @@ fn sheets_that_a_flight_has_brought_together_do_not_pass() {
         assert!(steps >= 2);
     }
 }
+
+/// A plate moves along x by `way`, a smaller one follows it at the distance `gap`, and a third, at `wall`, stops the
+/// first but is not in the way of the second.
+fn convoy(way: f64, wall: f64, gap: f64) {
+    let plate = |x: f64, [y, z]: [[f64; 2]; 2]| {
+        (at(x, y[0], z[0]), [Vector::y() * (y[1] - y[0]), Vector::z() * (z[1] - z[0])])
+    };
+    let case = rectangles(&[
+        plate(0.0, [[0.0, 1.0], [0.0, 1.0]]),
+        plate(-gap, [[0.2, 0.8], [0.1, 0.4]]),
+        plate(wall, [[0.2, 0.8], [0.6, 0.9]]),
+    ]);
+    let moves = [Vector::x() * way, Vector::x() * way, Vector::zeros()];
+    follow(&case, &[&moves, &moves]);
+}
+
+/// The search along the assumed paths does not see the followers, because they move alike: they are safe only as
+/// long as both stay in their tubes.
+#[test]
+fn plates_that_follow_one_another_stop_when_the_first_is_stopped() {
+    for gap in [0.3, 0.5, 0.7] {
+        for wall in [0.1, 0.3, 0.6] {
+            convoy(1.5, wall, gap);
+        }
+    }
+}
+
+/// The first plate ends within its tube, and the follower is so near that it meets it there: the search must take the
+/// tubes into account.
+#[test]
+fn plates_that_follow_closely_do_not_pass_one_that_lags_within_its_tube() {
+    for gap in [0.02, 0.05, 0.08] {
+        for way in [0.8, 0.9, 1.0] {
+            convoy(way, way - 0.01, gap);
+        }
+    }
+}
