@@ -7,15 +7,12 @@ use crate::chart;
 use crate::figure::{Figure, Part, Report};
 use crate::files::write;
 use crate::machine::WITH_CHANGES;
+use crate::pages::{BENCHMARKS, STABILITY};
 use crate::{git, page};
 use anyhow::{Context, Result, bail, ensure};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The page of figures and tables, with an index of them.
-pub const BENCHMARKS: &str = "docs/benchmarks.md";
-/// The page of [`crate::stability`].
-pub const STABILITY: &str = "docs/stability.md";
 const FOLDER: &str = "docs/benchmarks";
 
 /// The documentation in a repository.

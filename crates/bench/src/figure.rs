@@ -2,7 +2,7 @@
 
 use crate::bench::Bench;
 use crate::chart::Chart;
-use crate::docs;
+use crate::pages;
 use crate::table::Table;
 use anyhow::Result;
 
@@ -21,7 +21,7 @@ pub trait Figure: Sync {
     }
     /// The page that publishes it, from the root of the repository.
     fn page(&self) -> &'static str {
-        docs::BENCHMARKS
+        pages::BENCHMARKS
     }
     /// Measures it.
     ///

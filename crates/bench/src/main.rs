@@ -6,7 +6,7 @@
 //! | `figures` | one file per figure or table |
 //! | `figure` | the trait that they implement, and what they report |
 //! | `run`, `durations` | measuring a figure; how long that takes |
-//! | `docs`, `page` | writing its results into docs/benchmarks and docs/benchmarks.md |
+//! | `docs`, `page`, `pages` | writing its results into docs/benchmarks and docs/benchmarks.md |
 //! | `bench`, `store`, `machine` | size, folder and time of a run; kept measurements; machine, commit |
 //! | `record`, `case`, `targets` | collision problems: recorded from scenes, loaded to be solved |
 //! | `methods`, `solve` | the methods that are compared; timing one on one problem |
@@ -35,6 +35,7 @@ mod machine;
 mod measures;
 mod methods;
 mod page;
+mod pages;
 mod process;
 mod record;
 mod run;

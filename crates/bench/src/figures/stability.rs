@@ -2,8 +2,8 @@
 //! convergence, energy and stretch.
 
 use crate::bench::{Bench, Size};
-use crate::docs;
 use crate::figure::{Figure, Part, Report};
+use crate::pages;
 use crate::stability::{Case, Outcome, cases, run};
 use crate::table::Table;
 use anyhow::Result;
@@ -37,7 +37,7 @@ impl Figure for Stability {
     }
 
     fn page(&self) -> &'static str {
-        docs::STABILITY
+        pages::STABILITY
     }
 
     fn on_page(&self) -> bool {
