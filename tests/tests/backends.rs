@@ -4,7 +4,7 @@
 //! Where bodies crumple, differences of the size of a tolerance grow. The yardstick for them is a run on the CPU with
 //! one sweep more per backward step, which should make no difference either.
 //!
-//! `BOWKNOT_ALL=1` runs every scene of the paper and prints a table; without it there are some small ones.
+//! `--ignored` runs every scene of the paper and prints a table; without it there are some small ones.
 
 use bowknot::check::StateOptions;
 use bowknot::gpu::{Device, TwinEngine};
@@ -172,10 +172,8 @@ fn bodies_slide_and_stick_on_the_kernels_as_theory_has_it() {
 
 /// The table of `docs/GPU.md`.
 #[test]
-fn all_scenes_of_the_paper_if_asked_for() {
-    if std::env::var_os("BOWKNOT_ALL").is_none() {
-        return;
-    }
+#[ignore = "it takes minutes"]
+fn nothing_intersects_in_any_scene_of_the_paper() {
     println!(
         "| scene | vertices | time steps | two-way steps | iterations | contact rows | converged | largest stretch | most \
          pairs | apart mm: centers | ends |"

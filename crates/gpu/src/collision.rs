@@ -326,18 +326,19 @@ impl<E: Engine> Collision<E> {
         })
     }
 
-    /// Puts the vertices at other positions [m], where no two elements intersect; each goes to the nearest point of the
-    /// grid. They may be far from where the scene was prepared, but steps then take longer: trees keep the order of the
+    /// Puts the vertices at other positions [m], where no two elements intersect. Each goes to the nearest point of the
+    /// grid; returns these points [m]. They may be far from where the scene was prepared, but steps then take longer: trees keep the order of the
     /// elements.
     ///
     /// # Errors
     /// A wrong length; a position outside of the grid; the device failed.
-    pub fn place(&mut self, positions: &[Point]) -> Result<(), CollisionError> {
+    pub fn place(&mut self, positions: &[Point]) -> Result<Vec<Point>, CollisionError> {
         check_length("positions", positions.len(), self.sizes.vertices)?;
+        let on_grid = snapped(&self.grid, positions)?;
         let mut recording = Recording::default();
-        recording.write(self.buffers.positions, &padded(&snapped(&self.grid, positions)?));
+        recording.write(self.buffers.positions, &padded(&on_grid));
         self.engine.run(&recording, &[])?;
-        Ok(())
+        Ok(on_grid.into_iter().map(|x| self.grid.position(x)).collect())
     }
 
     /// Frees the buffers and gives the engine back.

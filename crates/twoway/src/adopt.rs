@@ -59,14 +59,10 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
         let contacts = &mut state.contacts;
         let mut sorted = end.contacts.to_vec();
         sorted.sort_unstable_by_key(|contact| (contact.kind, contact.elements));
-        for kind in PairKind::ALL {
-            let mut lookup = contacts.pairs.lookup(kind, [0; 2]);
-            let found: Vec<(u32, &PairMultipliers)> = sorted
-                .iter()
-                .filter(|contact| contact.kind == kind)
-                .filter_map(|contact| Some((lookup.find(contact.elements)?, contact)))
-                .collect();
-            for (pair, contact) in found {
+        for of_kind in sorted.chunk_by(|a, b| a.kind == b.kind) {
+            let mut lookup = contacts.pairs.lookup(of_kind[0].kind, [0; 2]);
+            for contact in of_kind {
+                let Some(pair) = lookup.find(contact.elements) else { continue };
                 contacts.multipliers[pair as usize] = contact.normal;
                 if let Some(friction) = contacts.friction_multipliers.get_mut(pair as usize) {
                     *friction = contact.friction;

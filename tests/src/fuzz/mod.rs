@@ -8,6 +8,7 @@
 
 mod archive;
 mod draw;
+mod msh;
 mod mutate;
 mod parts;
 mod read_mesh;
@@ -18,6 +19,7 @@ mod separate;
 
 pub use archive::{arrays, arrays_of, checkpoint, restore, sound_checkpoint, write_run};
 pub use draw::Draw;
+pub use msh::binary_msh_4;
 pub use mutate::mutate;
 pub use read_mesh::read_mesh;
 pub use resolve::{resolve, resolve_on_twins};

@@ -41,7 +41,7 @@ pub fn meshes() -> Vec<Vec<u8>> {
     add(4, MSH_2.as_bytes());
     add(4, MSH_4.as_bytes());
     for size in [4, 8] {
-        add(4, &binary_msh_4(size));
+        add(4, &fuzz::binary_msh_4(size));
     }
     add(4, &binary_msh_2());
     add(5, b"Vertex 0 0 0 0\nVertex 1 1 0 0 {rgb=(1 0 0)}\nVertex 2 0 1 0\nVertex 3 0 0 1\nTet 0 0 1 2 3\nFace 1 0 1 2\n# end\n");
@@ -96,27 +96,6 @@ fn binary_msh_2() -> Vec<u8> {
     }
     file.extend(b"\n$EndNodes\n$Elements\n1\n");
     [4, 1, 2, 1, 0, 1, 1, 2, 3, 4].iter().for_each(|n: &i32| file.extend(n.to_le_bytes()));
-    file.extend(b"\n$EndElements\n");
-    file
-}
-
-/// A tetrahedron with counts of `size` bytes.
-fn binary_msh_4(size: usize) -> Vec<u8> {
-    let mut file = format!("$MeshFormat\n4.1 1 {size}\n").into_bytes();
-    file.extend(1_i32.to_le_bytes());
-    file.extend(b"\n$EndMeshFormat\n$Nodes\n");
-    let count = |file: &mut Vec<u8>, n: u64| file.extend(&n.to_le_bytes()[..size]);
-    let int = |file: &mut Vec<u8>, n: i32| file.extend(n.to_le_bytes());
-    [1, 4, 1, 4].iter().for_each(|&n| count(&mut file, n));
-    [3, 1, 0].iter().for_each(|&n| int(&mut file, n));
-    [4, 1, 2, 3, 4].iter().for_each(|&n| count(&mut file, n));
-    for k in 0..4 {
-        (1..4).for_each(|axis| file.extend(f64::from(u8::from(k == axis)).to_le_bytes()));
-    }
-    file.extend(b"\n$EndNodes\n$Elements\n");
-    [1, 1, 1, 1].iter().for_each(|&n| count(&mut file, n));
-    [3, 1, 4].iter().for_each(|&n| int(&mut file, n));
-    [1, 1, 1, 2, 3, 4].iter().for_each(|&n| count(&mut file, n));
     file.extend(b"\n$EndElements\n");
     file
 }

@@ -227,8 +227,7 @@ fn place<E: Engine>(
     positions: &[Point],
     judge: &Judge,
 ) -> Result<Vec<Point>, GpuResolveError> {
-    collision.place(positions)?;
-    let start = collision.positions()?;
+    let start = collision.place(positions)?;
     if start != positions {
         let quantum = collision.grid().quantum();
         let state = judge.check_state(positions, &StateOptions { limit: 0, distance: true })?;

@@ -57,6 +57,12 @@ fn a_recorded_problem_ends_where_the_simulation_did() {
         shape = { type = "half-space" }
         friction = 0.3
     "#;
+    solve_again(text, 8);
+}
+
+/// Makes time steps of a scene and solves each of their problems again from its file, to the same end. Returns the last
+/// of them.
+fn solve_again(text: &str, steps: usize) -> (Simulator, States) {
     let scene = Scene::from_toml(text, ".").expect("a scene");
     let folder = tempfile::tempdir().expect("a folder");
     let mut simulator = Simulator::new(&scene).expect("a simulator");
@@ -66,12 +72,14 @@ fn a_recorded_problem_ends_where_the_simulation_did() {
         path: folder.path().join("problem.npz"),
         ends: Vec::new(),
     };
-    for step in 0..8 {
+    for step in 0..steps {
         simulator.step_observed(&mut again).expect("a step");
         let count = simulator.world().collision_vertices();
         let end = again.ends.last().expect("a problem in each step");
         assert!(*end == simulator.positions()[..count], "step {step} ends elsewhere");
     }
+    let last = States::read(&again.path).expect("read");
+    (simulator, last)
 }
 
 /// Bodies that pass through each other and one that passes through itself, as collision groups allow: without the
@@ -94,22 +102,7 @@ fn bodies_of_other_collision_groups_pass_through_each_other_in_a_recorded_proble
         translate = [0.0, 0.0, -0.004]
         collides_with = [0]
     "#;
-    let scene = Scene::from_toml(text, ".").expect("a scene");
-    let folder = tempfile::tempdir().expect("a folder");
-    let mut simulator = Simulator::new(&scene).expect("a simulator");
-    let mut again = Again {
-        recorder: Recorder::new(&simulator),
-        params: scene.twoway(),
-        path: folder.path().join("problem.npz"),
-        ends: Vec::new(),
-    };
-    for step in 0..6 {
-        simulator.step_observed(&mut again).expect("a step");
-        let count = simulator.world().collision_vertices();
-        let end = again.ends.last().expect("a problem in each step");
-        assert!(*end == simulator.positions()[..count], "step {step} ends elsewhere");
-    }
-    let read = States::read(&again.path).expect("read");
+    let (simulator, read) = solve_again(text, 6);
     assert_eq!(read.collision_model().expect("a model").bodies(), simulator.world().collision.bodies());
 }
 
