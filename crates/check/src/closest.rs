@@ -57,7 +57,7 @@ pub(super) fn closest(kind: PairKind, x: &[Point; 4]) -> Closest {
 pub(super) fn common_normal(kind: PairKind, x: &[Point; 4]) -> Option<Vector> {
     let normal = match kind {
         PairKind::VertexTriangle => triangle_normal([x[1], x[2], x[3]]),
-        PairKind::EdgeEdge => (x[1] - x[0]).cross(&(x[3] - x[2])),
+        PairKind::EdgeEdge => perpendicular(x[1] - x[0], x[3] - x[2]),
         _ => return None,
     };
     let side = normal.dot(&(x[0] - x[kind.side_a()]));
@@ -81,14 +81,27 @@ pub(super) fn across_edges(kind: PairKind, x: &[Point; 4]) -> impl Iterator<Item
     })
 }
 
-/// The normal of a triangle, as long as twice its area. It is computed at the corner across from the longest
-/// edge: the two long edges of a sliver are nearly parallel, so that their product is mostly rounding.
+/// The normal of a triangle, of any length. It is computed at the corner across from the longest edge: the two long
+/// edges of a sliver are nearly parallel.
 fn triangle_normal([a, b, c]: [Point; 3]) -> Vector {
     let corners = [[a, b, c], [b, c, a], [c, a, b]];
     let across = |[_, q, r]: &[Point; 3]| (r - q).norm_squared();
     let best = corners.iter().reduce(|best, next| if across(next) > across(best) { next } else { best });
     let [p, q, r] = *best.unwrap_or(&corners[0]);
-    (q - p).cross(&(r - p))
+    perpendicular(q - p, r - p)
+}
+
+/// A vector along the cross product of two others, of any length; zero if they are parallel to rounding. If they are
+/// nearly parallel, the computed product is mostly rounding along them. That of one and of the rest of the other across
+/// it is perpendicular to both within rounding (Gram and Schmidt's method, once repeated).
+fn perpendicular(a: Vector, b: Vector) -> Vector {
+    if a.norm_squared() < b.norm_squared() {
+        return -perpendicular(b, a);
+    }
+    let Some(along) = a.try_normalize(0.0) else { return Vector::zeros() };
+    let across = b - along * along.dot(&b);
+    let across = across - along * along.dot(&across);
+    along.cross(&across)
 }
 
 fn vertex_edge(p: Point, [a, b]: [Point; 2]) -> Closest {
@@ -128,15 +141,15 @@ fn edge_edge(first: [Point; 2], second: [Point; 2]) -> Closest {
     ];
     let nearest = ends.into_iter().reduce(Closest::nearer).unwrap_or(ends[0]);
     let (d, e) = (first[1] - first[0], second[1] - second[0]);
-    let normal = d.cross(&e);
-    let norm_squared = normal.norm_squared();
-    if norm_squared <= 0.0 {
+    let normal = perpendicular(d, e);
+    let (norm_squared, area) = (normal.norm_squared(), d.cross(&e).dot(&normal));
+    if norm_squared <= 0.0 || area == 0.0 {
         return nearest;
     }
     // Where the common normal meets either edge, as shares of their lengths.
     let between = second[0] - first[0];
-    let on_first = between.cross(&e).dot(&normal) / norm_squared;
-    let on_second = between.cross(&d).dot(&normal) / norm_squared;
+    let on_first = between.cross(&e).dot(&normal) / area;
+    let on_second = between.cross(&d).dot(&normal) / area;
     if !((0.0..=1.0).contains(&on_first) && (0.0..=1.0).contains(&on_second)) {
         return nearest;
     }

@@ -37,3 +37,20 @@ fn a_vertex_just_above_a_sliver_is_not_taken_for_a_hit() {
     let checked = check(&problem(pieces, vec![scattered()], Setup { steps: 1, ..Setup::default() }));
     assert!(checked.as_ref().is_ok_and(|tally| tally.steps == 1), "{checked:?}");
 }
+
+/// The judge took two edges that cross at an angle of 5e-6, 4e-13 m apart, for a hit. The step was safe.
+#[test]
+fn nearly_parallel_edges_that_do_not_touch_are_not_taken_for_a_hit() {
+    let sheet = Shape::Sheet { cells: [2, 2], layers: 2, gap: 9.228779644329812e-7 };
+    let strand = Shape::Strands { count: 1, vertices: 2, spacing: 1.0 };
+    let other = Shape::Sheet { cells: [1, 1], layers: 1, gap: 0.31622776601683794 };
+    let pieces = vec![
+        Piece { size: 4.516089197763698, ..piece(sheet, 402_364, Seat::Above, 1.0) },
+        Piece { turn: Turn::None, ..piece(strand, 0, Seat::Edge(7), 9.714949411321357e-15) },
+        Piece { turn: Turn::None, ..piece(other, 0, Seat::Above, 1.0) },
+    ];
+    let call = Motion { rule: Rule::Together, seed: 220_730, ..scattered() };
+    let setup = Setup { floor: Some(0.0), delta: Some(0.001), steps: 8, ..Setup::default() };
+    let checked = check(&problem(pieces, vec![call], setup));
+    assert!(checked.as_ref().is_ok_and(|tally| tally.steps == 8), "{checked:?}");
+}

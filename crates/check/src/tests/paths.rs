@@ -33,6 +33,32 @@ fn a_vertex_that_rests_just_above_a_sliver_is_no_hit() {
     assert!((distance - 1.98684e-13).abs() < 1e-15, "{distance:e}");
 }
 
+/// Two edges of 2.3 m that cross at an angle of 5e-6 come to 5.7e-14 m of each other, by exact arithmetic over these
+/// coordinates. Their cross product is off by an angle of 1e-10.
+#[test]
+fn edges_that_pass_close_by_and_nearly_parallel_are_no_hit() {
+    let first = [
+        [0.6734231152249678, 3.6721091504738834, 5.761036572072917],
+        [2.5954011054771153, 4.087732768141032, 4.651071246495226],
+    ];
+    let before = [
+        [0.6734226991298278, 3.6721061087793494, 5.761036357829615],
+        [2.595400262180916, 4.087734265565661, 4.651071992183279],
+    ];
+    let after = [
+        [0.6734226991299403, 3.6721061087792832, 5.761036357829933],
+        [2.5954002621810286, 4.087734265565595, 4.651071992183597],
+    ];
+    let judge = pair_judge(true);
+    let at = |second: [[f64; 3]; 2]| points(&[first, second].concat());
+    assert_eq!(hits(&judge, &at(before), &at(after)), 0);
+    for (second, distance) in [(before, 3.926_092e-13), (after, 5.665_665e-14)] {
+        let nearest = judge.check_state(&at(second), &StateOptions::default()).expect("valid points").nearest;
+        let found = nearest.expect("a pair").distance;
+        assert!((found - distance).abs() < 2e-15, "{found:e}");
+    }
+}
+
 /// Random integer queries: a certain hit is never missed, a certain miss is never flagged (integers
 /// leave gaps far above rounding). The shift and the scale exercise rounding: both are exact in
 /// doubles, and the answer is the same.
