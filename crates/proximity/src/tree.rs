@@ -169,6 +169,8 @@ impl<const V: usize> Tree<V> {
             }
             leaf
         }));
+        // Lanes that lose their element must not keep its box.
+        self.sweep.clear();
         self.levels.clear();
         let mut count = self.leaves.len();
         while count > 0 {

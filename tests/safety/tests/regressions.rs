@@ -54,3 +54,39 @@ fn nearly_parallel_edges_that_do_not_touch_are_not_taken_for_a_hit() {
     let checked = check(&problem(pieces, vec![call], setup));
     assert!(checked.as_ref().is_ok_and(|tally| tally.steps == 8), "{checked:?}");
 }
+
+/// An obstacle stopped between two swept searches. The tree of those that move was built anew without it and kept
+/// its boxes, so that the search panicked.
+#[test]
+fn an_obstacle_that_stops_between_swept_steps_leaves_no_boxes_behind() {
+    let shape =
+        |shape: Shape, role: Role| Piece { role, turn: Turn::None, ..piece(shape, 0, Seat::Above, 1.0) };
+    let pieces = vec![
+        shape(Shape::Hinge { slope: -0.1173903635367452 }, Role::Obstacle),
+        Piece {
+            size: 2.557355163566862,
+            flipped: true,
+            seat: Seat::Vertex(11),
+            gap: 0.0019547435318732114,
+            ..shape(Shape::Spike { sides: 5, radius: 0.1551294893880613 }, Role::Deformable)
+        },
+        Piece {
+            gap: 0.05476138188364474,
+            ..shape(Shape::Slivers { columns: 1, width: 3.03252632640527e-5 }, Role::Obstacle)
+        },
+        Piece {
+            turn: Turn::Quarter,
+            gap: 1.3637948177344007e-11,
+            ..shape(Shape::Strands { count: 2, vertices: 2, spacing: 0.005138127476513455 }, Role::Deformable)
+        },
+    ];
+    let call = Motion { rule: Rule::Scattered, drive: Drive::Through, seed: 167_751, ..scattered() };
+    let setup = Setup { floor: Some(0.0), delta: Some(0.001), steps: 11, ..Setup::default() };
+    let mut problem = problem(pieces, vec![call], setup);
+    problem.pins = Pins { every: 1, groups: 3 };
+    if let Start::Pieces { offset, .. } = &mut problem.start {
+        *offset = [1.0, -1.0, -97548.91972308858];
+    }
+    let checked = check(&problem);
+    assert!(checked.as_ref().is_ok_and(|tally| tally.moved == 1), "{checked:?}");
+}
