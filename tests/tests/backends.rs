@@ -11,7 +11,7 @@ use bowknot::gpu::{Device, TwinEngine};
 use bowknot::run::{self, Progress, RunOptions};
 use bowknot::simulator::{BackendError, CollisionBackend, Cpu};
 use bowknot::{Scene, SimulationError, Simulator, StepStatistics};
-use bowknot_geometry::Point;
+use bowknot_geometry::{Point, Vector};
 use bowknot_tests::contact::{Ground, Slider, Slope};
 use bowknot_twoway::{CollisionScene, Observer, ResolveInput, Resolver, Statistics};
 use std::ops::ControlFlow;
@@ -249,6 +249,73 @@ fn the_grid_follows_bodies_and_a_resumed_run_has_the_same_bits() {
     let center = |simulator: &Simulator| simulator.dynamics_model().center_of_mass(simulator.positions());
     let apart = (center(&whole) - center(&cpu)).norm();
     assert!(apart < 1e-3, "{apart}");
+}
+
+/// Grains and two patches of cloth fall side by side; friction stops all but the second patch.
+const SIDE_BY_SIDE: &str = r#"
+[simulation]
+dt = 0.01
+gravity = [3, 0, -9]
+[solver.sleep]
+enabled = false
+[contact]
+delta = 0.002
+[[contact.friction_pairs]]
+bodies = ["ground", "smooth"]
+friction = 0
+[[obstacle]]
+name = "ground"
+shape = "half-space"
+friction = 1
+[[body]]
+name = "grains"
+kind = "particles"
+material = { base = "sand", radius = 0.006 }
+shape = { type = "grains", count = [3, 3, 1], spacing = 0.04 }
+translate = [0, 0, 0.01]
+friction = 1
+[[body]]
+name = "rough"
+shape = { type = "sheet", edge = 0.05, size = [0.2, 0.2] }
+translate = [0, 0.5, 0.02]
+friction = 1
+[[body]]
+name = "smooth"
+shape = { type = "sheet", edge = 0.05, size = [0.2, 0.2] }
+translate = [0, 1, 0.02]
+friction = 1
+thickness = 0.003
+"#;
+
+#[test]
+fn bodies_rest_as_high_above_a_half_space_and_rub_as_on_the_cpu() {
+    for ground in ["friction = 1", "friction = 1\nthickness = 0.01"] {
+        let text = SIDE_BY_SIDE.replacen("friction = 1", ground, 1);
+        let [mut cpu, mut device] = [(); 2].map(|()| {
+            let scene = Scene::from_toml(&text, std::path::Path::new(".")).expect("a scene");
+            Simulator::new(&scene).expect("a simulator")
+        });
+        device.set_backend(Box::new(twins())).expect("settings that the kernels have");
+        let start = cpu.positions().to_vec();
+        for _ in 0..40 {
+            cpu.step().expect("a step");
+            device.step().expect("a step");
+        }
+        for (body, slides) in [false, false, true].into_iter().enumerate() {
+            let mean = |x: &[Point]| mean(&cpu, body, x);
+            let [start, end, other] = [mean(&start), mean(cpu.positions()), mean(device.positions())];
+            assert!((end - other).norm() < 1e-6, "{ground}, body {body}: {other}, not {end}");
+            assert_eq!(end.x - start.x > 0.2, slides, "{ground}, body {body}: {start} to {end}");
+        }
+    }
+}
+
+/// Mean position of the vertices of a body [m].
+fn mean(simulator: &Simulator, body: usize, x: &[Point]) -> Point {
+    let of_body = simulator.resolver().scene().model().vertex_body();
+    let all: Vec<&Point> =
+        x.iter().zip(of_body).filter(|(_, b)| **b as usize == body).map(|(x, _)| x).collect();
+    Point::from(all.iter().map(|x| x.coords).sum::<Vector>() / all.len() as f64)
 }
 
 /// The CPU, which fails in one of its calls.

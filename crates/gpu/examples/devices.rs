@@ -15,7 +15,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         edges: &[1.0; 6],
         margins: &[0.05; 6],
         deltas: &[0.02; 6],
+        half_space_deltas: &[],
         thicknesses: &[],
+        half_space_thicknesses: &[],
         min_separation: 1e-3,
         edge_limits: &[],
     };

@@ -1,6 +1,4 @@
-// Contact rows, linearized at the positions, and the curvature of those that press: lambda |weight| / radius, where the
-// radius of a contact is the length of the edges if a face or two crossing edges define its normal, and the gap if a
-// vertex or parallel edges do.
+// Contact rows, linearized at the positions, and the curvature of those that press: lambda |weight| / radius.
 
 struct Params {
     capacity: u32,
@@ -25,16 +23,28 @@ fn inside(weight: f32) -> u32 {
     return u32(abs(weight) > AT_VERTEX);
 }
 
-// Whether a face or two edges define the normal: the contact then does not roll about a point.
-fn is_flat(pair: Pair, weights: vec4<f32>) -> bool {
+// Radius of curvature of a contact, for a vertex with edges of that length: how far it moves while the normal turns by
+// about one radian. A face does not turn, two edges that cross turn less the more they do, and things roll about edges
+// and points.
+fn radius_of(pair: Pair, weights: vec4<f32>, gap: f32, sine: f32, edge: f32) -> f32 {
+    var inside_a = 1u;
+    var inside_b = 1u;
     if pair.kind == VERTEX_HALF_SPACE {
-        return true;
+        return edge;
+    } else if pair.kind == EDGE_EDGE {
+        inside_a = inside(weights.x) + inside(weights.y);
+        inside_b = inside(weights.z) + inside(weights.w);
+    } else if pair.kind != VERTEX_VERTEX {
+        inside_b = inside(weights.y) + inside(weights.z) + inside(weights.w);
     }
-    let on_b = inside(weights.y) + inside(weights.z) + inside(weights.w);
-    if pair.kind == VERTEX_TRIANGLE {
-        return on_b == 3u;
+    if inside_a == 2u && inside_b == 2u {
+        return min(max(edge * sine, gap), edge);
+    } else if inside_b == 3u {
+        return edge;
+    } else if inside_a == 2u || inside_b == 2u {
+        return min(gap, edge);
     }
-    return pair.kind == EDGE_EDGE && inside(weights.x) + on_b == 4u;
+    return gap;
 }
 
 @compute @workgroup_size(128)
@@ -51,11 +61,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
         let weights = signed_weights(pair, separation);
         let v = vec4<u32>(pair.vertices[0], pair.vertices[1], pair.vertices[2], pair.vertices[3]);
         if state.multiplier > 0.0 {
-            let flat = is_flat(pair, weights);
             let gap = max(max(separation.distance, state.desired), 1.0);
             for (var k = 0u; k < pair.count; k += 1u) {
-                let edge = vertices[v[k]].edge;
-                let radius = select(min(gap, edge), edge, flat);
+                let radius = radius_of(pair, weights, gap, separation.sine, vertices[v[k]].edge);
                 atomicAdd(&proximal[v[k]], weight_units(params.strength * state.multiplier * abs(weights[k]) / radius));
             }
         }

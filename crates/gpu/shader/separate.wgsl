@@ -48,11 +48,17 @@ fn width_along(n: vec3<f32>, differences: Differences) -> f32 {
     return width - differences.slack;
 }
 
+// Edges whose ends lie on different points of the grid are at least 1 long.
+fn sine_between(a: vec3<f32>, b: vec3<f32>) -> f32 {
+    let product = cross(a / max(sqrt(dot(a, a)), 1.0), b / max(sqrt(dot(b, b)), 1.0));
+    return sqrt(dot(product, product));
+}
+
 fn separate_plane(v: u32, p: u32) -> Separation {
     let plane = planes[p];
     let offset = vec3<f32>(positions[v].xyz - plane.point);
     let height = dot(plane.normal, offset);
-    return Separation(plane.normal, height - plane.rounding * size(offset) - POINT_ROUNDING, vec2<f32>(0.0), height, 0.0, 0.0, 0u, 0u, 0u);
+    return Separation(plane.normal, height - plane.rounding * size(offset) - POINT_ROUNDING, vec2<f32>(0.0), height, 0.0, 0.0, 0.0, 0u, 0u);
 }
 
 fn separate_pair(candidate: Candidate) -> Separation {
@@ -64,6 +70,7 @@ fn separate_pair(candidate: Candidate) -> Separation {
     var closest: Closest;
     // A direction that no cancellation disturbs: the normal of a face or of two edges.
     var other = vec3<f32>(0.0);
+    var sine = 0.0;
     let p = positions[pair.vertices[0]].xyz;
     let q = positions[pair.vertices[1]].xyz;
     if pair.kind == EDGE_EDGE {
@@ -76,7 +83,9 @@ fn separate_pair(candidate: Candidate) -> Separation {
         differences.count = 4u;
         let along = vec3<f32>(q - p);
         closest = closest_edge_edge(along, -differences.d[0], -differences.d[1]);
-        other = cross(along, vec3<f32>(b1 - b0));
+        let across = vec3<f32>(b1 - b0);
+        other = cross(along, across);
+        sine = sine_between(along, across);
     } else {
         differences.d[0] = vec3<f32>(p - q);
         differences.count = 1u;
@@ -107,7 +116,7 @@ fn separate_pair(candidate: Candidate) -> Separation {
     if pair.kind == EDGE_EDGE {
         weights = closest.weights.xz;
     }
-    var separation = Separation(vec3<f32>(0.0, 0.0, 1.0), -1.0, weights, distance, 0.0, 0.0, 0u, 0u, 0u);
+    var separation = Separation(vec3<f32>(0.0, 0.0, 1.0), -1.0, weights, distance, 0.0, 0.0, sine, 0u, 0u);
     if distance > 0.0 {
         separation.normal = closest.offset / distance;
         separation.width = width_along(separation.normal, differences);

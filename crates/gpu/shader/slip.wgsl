@@ -5,19 +5,43 @@
 
 struct Params {
     capacity: u32,
+    pair_frictions: u32,
+    // The half-spaces lie behind the vertices.
+    first_half_space: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> positions: array<vec4<i32>>;
 @group(0) @binding(2) var<storage, read> slip_start: array<vec4<i32>>;
 @group(0) @binding(3) var<storage, read> vertices: array<Vertex>;
-@group(0) @binding(4) var<storage, read> planes: array<Plane>;
+@group(0) @binding(4) var<storage, read> pair_frictions: array<PairFriction>;
 @group(0) @binding(5) var<storage, read> candidates: array<Candidate>;
 @group(0) @binding(6) var<storage, read> states: array<PairState>;
 @group(0) @binding(7) var<storage, read_write> rows: array<Row>;
 
 fn across(normal: vec3<f32>, v: vec3<f32>) -> vec3<f32> {
     return v - normal * dot(normal, v);
+}
+
+// The coefficient of the two sides if they have one (the list is sorted), else the geometric mean of both sides'.
+fn friction_of(one: u32, other: u32) -> f32 {
+    let a = min(vertices[one].body, vertices[other].body);
+    let b = max(vertices[one].body, vertices[other].body);
+    var low = 0u;
+    var high = params.pair_frictions;
+    while low < high {
+        let middle = (low + high) / 2u;
+        let pair = pair_frictions[middle];
+        if pair.a == a && pair.b == b {
+            return pair.coefficient;
+        }
+        if pair.a < a || (pair.a == a && pair.b < b) {
+            low = middle + 1u;
+        } else {
+            high = middle;
+        }
+    }
+    return vertices[one].root_of_friction * vertices[other].root_of_friction;
 }
 
 @compute @workgroup_size(128)
@@ -30,20 +54,17 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
         let v = rows[r].vertices;
         let candidate = candidates[c];
         let kind = candidate.kind_and_a >> ELEMENT_BITS;
-        // Geometric mean of the coefficients of both sides.
-        var root = vertices[v.x].root_of_friction;
+        var other = v.y;
         if kind == VERTEX_HALF_SPACE {
-            root *= planes[candidate.b].root_of_friction;
+            other = params.first_half_space + candidate.b;
         } else if kind == EDGE_EDGE {
-            root *= vertices[v.z].root_of_friction;
-        } else {
-            root *= vertices[v.y].root_of_friction;
+            other = v.z;
         }
         var slip = vec3<f32>(0.0);
         for (var k = 0u; k < 4u; k += 1u) {
             slip += rows[r].weights[k] * vec3<f32>(positions[v[k]].xyz - slip_start[v[k]].xyz);
         }
-        rows[r].coefficient = root;
+        rows[r].coefficient = friction_of(v.x, other);
         rows[r].slip = across(rows[r].normal, slip);
         rows[r].friction = across(rows[r].normal, states[c].friction);
     }

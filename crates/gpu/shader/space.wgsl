@@ -13,6 +13,8 @@ struct Params {
     growth: f32,
     // Distance within which a pair can have a row, in desired distances.
     range: f32,
+    // The half-spaces lie behind the vertices.
+    first_half_space: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -51,11 +53,19 @@ fn rest_distance(pair: Pair) -> f32 {
 fn first_state(candidate: Candidate, separation: Separation) -> PairState {
     let pair = pair_of(candidate);
     let a = vertices[pair.vertices[0]];
-    var delta = a.delta;
+    var delta = a.half_space_delta;
     var range = params.range * delta;
     var thickness = -1.0;
     if pair.kind == VERTEX_HALF_SPACE {
-        thickness = a.thickness;
+        let b = vertices[params.first_half_space + candidate.b];
+        if b.thickness >= 0.0 {
+            delta = max(delta, 0.5 * (a.delta + MIN_SEPARATION_MARGIN * b.thickness));
+            range = params.range * delta;
+        }
+        if max(a.thickness, b.thickness) >= 0.0 {
+            let of_a = select(params.min_separation, a.thickness, a.thickness >= 0.0);
+            thickness = 0.5 * (of_a + max(b.thickness, 0.0));
+        }
     } else {
         let b = vertices[pair.vertices[pair.side_a]];
         delta = 0.5 * (a.delta + b.delta);

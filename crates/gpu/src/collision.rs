@@ -272,7 +272,8 @@ impl<E: Engine> Collision<E> {
         let rest_grid = grid.around_others(rest).ok_or(CollisionError::OutsideGrid { vertex: 0 })?;
         let rest_on_grid = snapped(&rest_grid, rest)?;
         let vertices = model::vertices(model, lengths, constraints, grid);
-        let planes = model::planes(model, constraints, grid);
+        let planes = model::planes(model, grid);
+        let pair_frictions = model::pair_frictions(constraints);
         let groups = vertices.iter().filter(|v| v.group != NONE).map(|v| v.group as usize + 1);
         let topology = model.topology();
         let triangles: Vec<[u32; 4]> = topology.triangles.iter().map(|&[a, b, c]| [a, b, c, 0]).collect();
@@ -287,12 +288,14 @@ impl<E: Engine> Collision<E> {
             edges: topology.edges.len(),
             triangles: triangles.len(),
             planes: planes.len(),
+            pair_frictions: pair_frictions.len(),
             limits: edges.len(),
             adjacency: adjacency.words.len(),
             blocks: blocks.len(),
             rows: trees.rows(planes.len()),
         };
-        let frictional = constraints.frictions.iter().any(|friction| *friction > 0.0);
+        let frictional = constraints.frictions.iter().any(|friction| *friction > 0.0)
+            || pair_frictions.iter().any(|pair| pair.coefficient > 0.0);
         let buffers = Buffers::new(&mut engine, &sizes)?;
         let mut setup = Recording::default();
         setup.write(buffers.rest, &padded(&rest_on_grid));
@@ -300,6 +303,7 @@ impl<E: Engine> Collision<E> {
         setup.write(buffers.edges, &topology.edges);
         setup.write(buffers.triangles, &triangles);
         setup.write(buffers.planes, &planes);
+        setup.write(buffers.pair_frictions, &pair_frictions);
         setup.write(buffers.adjacency, &adjacency.words);
         setup.write(buffers.vertex_blocks, &blocks);
         trees.all().iter().for_each(|tree| tree.upload(&mut setup));

@@ -17,7 +17,7 @@ pub const BRANCHING: usize = 8;
 /// Most levels of a tree: 8^10 elements are more than `u32` counts.
 pub const MAX_LEVELS: usize = 11;
 
-/// What does not change during a call, by vertex.
+/// What does not change during a call, by vertex; behind the vertices, by half-space.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Vertex {
@@ -36,6 +36,8 @@ pub struct Vertex {
     pub group: u32,
     /// Desired distance of the body's contacts.
     pub delta: f32,
+    /// The same of its contacts with half-spaces that have no thickness.
+    pub half_space_delta: f32,
     /// Thickness of the body, a minimum separation that is guaranteed; below 0 if it has none.
     pub thickness: f32,
     /// Mass over the mean mass; of a vertex that is not prescribed it is above 0.
@@ -149,9 +151,10 @@ pub struct Separation {
     pub min_separation: f32,
     /// Distance that a row of the pair asks for; 0 if it gets none.
     pub wanted: f32,
+    /// Sine of the angle between two edges; 0 for other pairs.
+    pub sine: f32,
     pub padding_0: u32,
     pub padding_1: u32,
-    pub padding_2: u32,
 }
 
 /// What a candidate keeps from step to step.
@@ -241,8 +244,18 @@ pub struct Plane {
     pub rounding: f32,
     /// A point of the plane.
     pub point: [i32; 3],
-    /// Square root of the coefficient of friction.
-    pub root_of_friction: f32,
+    pub padding: u32,
+}
+
+/// Friction between two sides that have a coefficient of their own: bodies, and behind them half-spaces.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct PairFriction {
+    /// The lower number.
+    pub a: u32,
+    pub b: u32,
+    /// Coefficient of friction.
+    pub coefficient: f32,
 }
 
 /// Successive vertices of one body.

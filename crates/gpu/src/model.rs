@@ -1,7 +1,7 @@
 //! What is fixed for a scene, as the device needs it.
 
 use crate::grid::Grid;
-use crate::layout::{Block, NONE, Plane, Vertex};
+use crate::layout::{Block, NONE, PairFriction, Plane, Vertex};
 use bowknot_geometry::{CollisionModel, HalfSpace};
 
 /// Lengths of a scene [m].
@@ -13,9 +13,13 @@ pub struct Lengths<'a> {
     pub margins: &'a [f64],
     /// Desired distance of the contacts of each vertex with others like it.
     pub deltas: &'a [f64],
+    /// The same of contacts with half-spaces that have no thickness. May be empty: as with others like it.
+    pub half_space_deltas: &'a [f64],
     /// Thickness of the body of each vertex, a guaranteed minimum separation; none where it is not a number. May be
     /// empty: no body has any.
     pub thicknesses: &'a [f64],
+    /// Thickness of each half-space, likewise.
+    pub half_space_thicknesses: &'a [f64],
     /// No step makes a gap between bodies without a thickness smaller than this, nor smaller than a tenth of the pair's
     /// desired distance if that is less.
     pub min_separation: f64,
@@ -38,9 +42,12 @@ pub struct Constraints<'a> {
     pub frictions: &'a [f64],
     /// Coefficient of friction of each half-space. May be empty.
     pub half_space_frictions: &'a [f64],
+    /// Coefficients of friction that two sides have with each other instead, each pair once. A side is a body, or a
+    /// half-space, whose numbers follow those of the bodies. May be empty.
+    pub pair_frictions: &'a [([u32; 2], f64)],
 }
 
-/// The static data of the vertices.
+/// The static data of the vertices, and behind them that of the half-spaces.
 pub(crate) fn vertices(
     model: &CollisionModel,
     lengths: &Lengths<'_>,
@@ -78,24 +85,45 @@ pub(crate) fn vertices(
             mask: filter.mask,
             group,
             delta: grid.length(lengths.deltas[v]),
-            thickness: lengths
-                .thicknesses
-                .get(v)
-                .filter(|t| **t >= 0.0)
-                .map_or(-1.0, |t| grid.length(*t).next_up()),
+            half_space_delta: grid.length(*lengths.half_space_deltas.get(v).unwrap_or(&lengths.deltas[v])),
+            thickness: thickness(grid, lengths.thicknesses.get(v)),
             mass: constraints.masses.get(v).map_or(1.0, |mass| (mass / mean_mass) as f32),
             root_of_friction: root(constraints.frictions.get(v)),
         }
     };
-    (0..model.topology().vertex_count).map(vertex).collect()
+    let half_space = |h: usize| Vertex {
+        body: (bodies.len() + h) as u32,
+        thickness: thickness(grid, lengths.half_space_thicknesses.get(h)),
+        root_of_friction: root(constraints.half_space_frictions.get(h)),
+        ..Vertex::default()
+    };
+    let half_spaces = (0..model.half_spaces().len()).map(half_space);
+    (0..model.topology().vertex_count).map(vertex).chain(half_spaces).collect()
+}
+
+/// Rounded up; below 0 for none.
+fn thickness(grid: &Grid, thickness: Option<&f64>) -> f32 {
+    thickness.filter(|t| **t >= 0.0).map_or(-1.0, |t| grid.length(*t).next_up())
+}
+
+/// The friction of pairs, sorted by their sides.
+pub(crate) fn pair_frictions(constraints: &Constraints<'_>) -> Vec<PairFriction> {
+    let pair = |&([a, b], coefficient): &([u32; 2], f64)| PairFriction {
+        a: a.min(b),
+        b: a.max(b),
+        coefficient: coefficient as f32,
+    };
+    let mut pairs: Vec<PairFriction> = constraints.pair_frictions.iter().map(pair).collect();
+    pairs.sort_by_key(|pair| [pair.a, pair.b]);
+    pairs
 }
 
 /// The half-spaces. Their points are those of the planes that are nearest to the middle of the grid; a plane outside of
 /// the grid, which nothing touches, is moved to a place inside of it that is as good.
-pub(crate) fn planes(model: &CollisionModel, constraints: &Constraints<'_>, grid: &Grid) -> Vec<Plane> {
+pub(crate) fn planes(model: &CollisionModel, grid: &Grid) -> Vec<Plane> {
     let middle = grid.position([0; 3]);
     let farthest = f64::from(1 << 28) * grid.quantum();
-    let plane = |(h, plane): (usize, &HalfSpace)| {
+    let plane = |plane: &HalfSpace| {
         let length = plane.normal.norm();
         let normal = plane.normal / length;
         let height = (plane.normal.dot(&middle.coords) - plane.offset) / length;
@@ -105,10 +133,10 @@ pub(crate) fn planes(model: &CollisionModel, constraints: &Constraints<'_>, grid
             // Each coordinate of the normal is off by 2^-25, the height by four roundings of 2^-24 more.
             rounding: 8.0 * f32::EPSILON,
             point: grid.nearest(&point).unwrap_or([0; 3]),
-            root_of_friction: root(constraints.half_space_frictions.get(h)),
+            padding: 0,
         }
     };
-    model.half_spaces().iter().enumerate().map(plane).collect()
+    model.half_spaces().iter().map(plane).collect()
 }
 
 fn root(friction: Option<&f64>) -> f32 {

@@ -79,7 +79,9 @@ fn try_collision<E: Engine>(
         edges: &vec![EDGE; count],
         margins: &vec![MARGIN; count],
         deltas: &vec![DELTA; count],
+        half_space_deltas: &[],
         thicknesses: &[],
+        half_space_thicknesses: &[],
         min_separation: MIN_SEPARATION,
         edge_limits: &edges.iter().map(|edge| STRETCH * length(*edge)).collect::<Vec<f64>>(),
     };

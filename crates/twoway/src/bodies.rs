@@ -101,9 +101,9 @@ impl ContactTable {
         self.frictional
     }
 
-    /// Whether pairs have coefficients of friction of their own.
-    pub fn has_pair_friction(&self) -> bool {
-        !self.pairs.is_empty()
+    /// Coefficients of friction [1] that pairs of sides have of their own, sorted by the sides.
+    pub fn pair_frictions(&self) -> &[([ContactSide; 2], f64)] {
+        &self.pairs
     }
 
     /// Coefficient of friction between two sides [1].

@@ -155,6 +155,12 @@ impl Spacing {
         self.bodies[body as usize].delta
     }
 
+    /// Desired distance of a body's contacts with half-spaces that have no thickness [m].
+    pub fn half_space_delta(&self, body: u32) -> f64 {
+        let side = &self.bodies[body as usize];
+        0.5 * (side.delta + if side.own_delta { 0.0 } else { self.delta })
+    }
+
     /// What a vertex of `body` adds to its search radius [m]: pairs closer than the range of rows, or than
     /// the minimum separation, are candidates.
     #[inline]

@@ -5,7 +5,7 @@ use bowknot_constraints::{ContactForm, EdgeForm, EdgeReference, FrictionModel};
 use bowknot_geometry::Point;
 use bowknot_gpu::{Collision, CollisionError, Constraints, Engine, Grid, Lengths, Settings};
 use bowknot_stepper::{Bound, TrustRegionRule};
-use bowknot_twoway::{CallInput, CollisionScene, ResolveInput, StopRule};
+use bowknot_twoway::{CallInput, CollisionScene, ContactSide, ResolveInput, StopRule};
 
 /// The scene on the engine, on a grid with room from `positions` to `ends` [m], and the grid around the positions `home`
 /// that it begins with.
@@ -28,12 +28,24 @@ pub fn collision<E: Engine>(
     let has_friction = scene.friction_model() != FrictionModel::None;
     let of_vertices = |value: &dyn Fn(usize) -> f64| -> Vec<f64> { vertices.clone().map(value).collect() };
     let frictions = if has_friction { of_vertices(&|v| contact(v).friction) } else { Vec::new() };
-    let half_space_frictions: Vec<f64> = scene.contact().half_spaces().iter().map(|h| h.friction).collect();
+    let half_spaces = scene.contact().half_spaces();
+    let side = |side: ContactSide| match side {
+        ContactSide::Body(b) => b,
+        ContactSide::HalfSpace(h) => model.bodies().len() as u32 + h,
+    };
+    let pair_friction = |&(sides, friction): &([ContactSide; 2], f64)| (sides.map(side), friction);
+    let pair_frictions: Vec<([u32; 2], f64)> =
+        scene.contact().pair_frictions().iter().filter(|_| has_friction).map(pair_friction).collect();
     let lengths = Lengths {
         edges: &of_vertices(&|v| scene.local_edge(v)),
         margins: &of_vertices(&|v| scene.spacing().margin(body(v))),
         deltas: &of_vertices(&|v| scene.spacing().delta(body(v))),
+        half_space_deltas: &of_vertices(&|v| scene.spacing().half_space_delta(body(v))),
         thicknesses: &of_vertices(&|v| contact(v).thickness.unwrap_or(f64::NAN)),
+        half_space_thicknesses: &half_spaces
+            .iter()
+            .map(|h| h.thickness.unwrap_or(f64::NAN))
+            .collect::<Vec<_>>(),
         min_separation: scene.lengths().min_separation,
         edge_limits: &model.topology().edges.iter().map(limit).collect::<Vec<f64>>(),
     };
@@ -42,7 +54,8 @@ pub fn collision<E: Engine>(
         groups: input.groups,
         masses: &of_vertices(&|v| scene.relative_mass(v)),
         frictions: &frictions,
-        half_space_frictions: &half_space_frictions,
+        half_space_frictions: &half_spaces.iter().map(|h| h.friction).collect::<Vec<_>>(),
+        pair_frictions: &pair_frictions,
     };
     let backward = &params.solver.backward;
     let settings = Settings {
@@ -75,7 +88,6 @@ pub fn refuse_unsupported(scene: &CollisionScene) -> Result<(), GpuResolveError>
     let params = scene.params();
     let (contact, solver) = (&params.contact, &params.solver);
     let filter = scene.friction_model() == FrictionModel::Filter;
-    let thick_half_space = scene.contact().half_spaces().iter().any(|h| h.thickness.is_some());
     let refused = [
         (contact.form != ContactForm::Gap, "contact.form other than \"gap\"", FAST),
         (filter, "contact.friction_model = \"filter\"", FAST),
@@ -89,8 +101,6 @@ pub fn refuse_unsupported(scene: &CollisionScene) -> Result<(), GpuResolveError>
             FAST,
         ),
         (!matches!(solver.stop.rule, StopRule::Travel { .. }), "solver.stop.rule = \"clock\"", FAST),
-        (scene.contact().has_pair_friction(), "friction of a pair of bodies", None),
-        (thick_half_space, "the thickness of a half-space", None),
         (scene.lengths().min_separation == 0.0, "contact.min_separation = 0", None),
     ];
     match refused.into_iter().find(|(refused, ..)| *refused) {

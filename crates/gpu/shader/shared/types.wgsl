@@ -11,6 +11,7 @@ struct Vertex {
     mask: u32,
     group: u32,
     delta: f32,
+    half_space_delta: f32,
     thickness: f32,
     mass: f32,
     root_of_friction: f32,
@@ -60,9 +61,9 @@ struct Separation {
     distance: f32,
     min_separation: f32,
     wanted: f32,
+    sine: f32,
     padding_0: u32,
     padding_1: u32,
-    padding_2: u32,
 }
 
 struct PairState {
@@ -110,7 +111,13 @@ struct Plane {
     normal: vec3<f32>,
     rounding: f32,
     point: vec3<i32>,
-    root_of_friction: f32,
+    padding: u32,
+}
+
+struct PairFriction {
+    a: u32,
+    b: u32,
+    coefficient: f32,
 }
 
 struct Block {

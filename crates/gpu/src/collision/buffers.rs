@@ -5,8 +5,8 @@ use crate::cpu::slack::MOST_BLOCKS;
 use crate::engine::Engine;
 use crate::error::GpuError;
 use crate::layout::{
-    Ball, Block, BlockSum, COLORS, Candidate, Control, EdgeLimit, OldRow, PairState, Plane, Row, Separation,
-    Vertex,
+    Ball, Block, BlockSum, COLORS, Candidate, Control, EdgeLimit, OldRow, PairFriction, PairState, Plane,
+    Row, Separation, Vertex,
 };
 use crate::recording::BufferId;
 use bytemuck::Pod;
@@ -26,6 +26,8 @@ pub struct Sizes {
     pub edges: usize,
     pub triangles: usize,
     pub planes: usize,
+    /// Pairs of sides with a coefficient of friction of their own.
+    pub pair_frictions: usize,
     pub limits: usize,
     /// Words of the adjacency.
     pub adjacency: usize,
@@ -51,6 +53,7 @@ pub struct Buffers {
     pub edges: BufferId,
     pub triangles: BufferId,
     pub planes: BufferId,
+    pub pair_frictions: BufferId,
     pub paths: BufferId,
     pub alphas: BufferId,
     pub group_caps: BufferId,
@@ -108,7 +111,8 @@ impl Buffers {
     /// # Errors
     /// The device has no memory.
     pub fn new(engine: &mut impl Engine, sizes: &Sizes) -> Result<Self, GpuError> {
-        let &Sizes { vertices, groups, edges, triangles, planes, limits, adjacency, blocks, rows } = sizes;
+        let &Sizes { vertices, groups, edges, triangles, planes, limits, adjacency, blocks, rows, .. } =
+            sizes;
         let (most_partners, capacity) = (FIRST_PARTNERS, (FIRST_CANDIDATES * vertices).max(64));
         Ok(Self {
             most_partners,
@@ -118,10 +122,12 @@ impl Buffers {
             rest: engine.buffer("rest positions", 4 * vertices)?,
             targets: engine.buffer("targets", 4 * vertices)?,
             slip_start: engine.buffer("start of slip", 4 * vertices)?,
-            vertices: engine.buffer("vertices", words::<Vertex>(vertices))?,
+            vertices: engine.buffer("vertices", words::<Vertex>(vertices + planes))?,
             edges: engine.buffer("edges", 2 * edges)?,
             triangles: engine.buffer("triangles", 4 * triangles)?,
             planes: engine.buffer("planes", words::<Plane>(planes))?,
+            pair_frictions: engine
+                .buffer("friction of pairs", words::<PairFriction>(sizes.pair_frictions))?,
             paths: engine.buffer("paths", 4 * vertices)?,
             alphas: engine.buffer("step sizes", vertices)?,
             group_caps: engine.buffer("group caps", groups)?,

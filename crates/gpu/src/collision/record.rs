@@ -85,6 +85,7 @@ impl<E: Engine> Collision<E> {
                 min_separation: self.lengths.min_separation,
                 growth: self.lengths.growth,
                 range: self.settings.range as f32,
+                first_half_space: self.sizes.vertices as u32,
             },
             self.buffers.capacity,
         );

@@ -80,8 +80,12 @@ impl<E: Engine> Collision<E> {
         if self.frictional {
             recording.dispatch(
                 &stages::SLIP,
-                &[b.positions, b.slip_start, b.vertices, b.planes, b.candidates, b.states, r.rows],
-                cpu::slip::Params { capacity },
+                &[b.positions, b.slip_start, b.vertices, b.pair_frictions, b.candidates, b.states, r.rows],
+                cpu::slip::Params {
+                    capacity,
+                    pair_frictions: self.sizes.pair_frictions as u32,
+                    first_half_space: vertices as u32,
+                },
                 self.buffers.capacity,
             );
         }

@@ -39,7 +39,9 @@ fn collision(
         edges: &vec![EDGE; count],
         margins: &vec![DELTA; count],
         deltas: &vec![DELTA; count],
+        half_space_deltas: &[],
         thicknesses: &thickness.map_or(vec![], |t| vec![t; count]),
+        half_space_thicknesses: &[],
         min_separation: MIN_SEPARATION,
         edge_limits: &[],
     };
@@ -249,7 +251,9 @@ fn friction_holds_up_to_its_coefficient_times_the_pressure() {
             edges: &[EDGE; 3],
             margins: &[DELTA; 3],
             deltas: &[DELTA; 3],
+            half_space_deltas: &[],
             thicknesses: &[],
+            half_space_thicknesses: &[],
             min_separation: MIN_SEPARATION,
             edge_limits: &[],
         };
@@ -301,7 +305,9 @@ fn pairs_that_are_no_contacts_get_no_rows() {
             edges: &vec![EDGE; count],
             margins: &vec![DELTA; count],
             deltas: &vec![DELTA; count],
+            half_space_deltas: &[],
             thicknesses: &[],
+            half_space_thicknesses: &[],
             min_separation: MIN_SEPARATION,
             edge_limits: &[],
         };

@@ -29,12 +29,24 @@ pub fn bound(buffers: Bound<'_>) {
     );
 }
 
-fn is_flat(pair: &Pair, weights: &[f32; 4]) -> bool {
+fn radius_of(pair: &Pair, weights: &[f32; 4], gap: f32, sine: f32, edge: f32) -> f32 {
     let inside = |weights: &[f32]| weights.iter().filter(|w| w.abs() > AT_VERTEX).count();
     let kind = pair.kind;
-    kind == Kind::VertexHalfSpace as u32
-        || (kind == Kind::VertexTriangle as u32 && inside(&weights[1..]) == 3)
-        || (kind == Kind::EdgeEdge as u32 && inside(weights) == 4)
+    let (inside_a, inside_b) = if kind == Kind::VertexHalfSpace as u32 {
+        return edge;
+    } else if kind == Kind::EdgeEdge as u32 {
+        (inside(&weights[..2]), inside(&weights[2..]))
+    } else if kind == Kind::VertexVertex as u32 {
+        (1, 1)
+    } else {
+        (1, inside(&weights[1..]))
+    };
+    match (inside_a, inside_b) {
+        (2, 2) => (edge * sine).max(gap).min(edge),
+        (_, 3) => edge,
+        (2, _) | (_, 2) => gap.min(edge),
+        _ => gap,
+    }
 }
 
 pub fn build(
@@ -57,12 +69,10 @@ pub fn build(
         let pair = pair_of(candidates[c as usize], edges, triangles);
         let weights = signed_weights(&pair, &separation);
         if state.multiplier > 0.0 {
-            let flat = is_flat(&pair, &weights);
             let gap = separation.distance.max(state.desired).max(1.0);
             for k in 0..pair.count {
                 let v = pair.vertices[k] as usize;
-                let edge = vertices[v].edge;
-                let radius = if flat { edge } else { gap.min(edge) };
+                let radius = radius_of(&pair, &weights, gap, separation.sine, vertices[v].edge);
                 let units = weight_units(params.strength * state.multiplier * weights[k].abs() / radius);
                 proximal[v] = proximal[v].wrapping_add(units);
             }

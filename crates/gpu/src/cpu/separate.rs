@@ -72,6 +72,12 @@ pub fn separate(
     }
 }
 
+fn sine_between(a: [f32; 3], b: [f32; 3]) -> f32 {
+    let unit = |v: [f32; 3]| divided(v, dot(v, v).sqrt().max(1.0));
+    let product = crossed(unit(a), unit(b));
+    dot(product, product).sqrt()
+}
+
 fn separate_pair(
     candidate: Candidate,
     positions: &[[i32; 4]],
@@ -88,12 +94,15 @@ fn separate_pair(
     let count;
     let closest;
     let mut other = [0.0; 3];
+    let mut sine = 0.0;
     if pair.kind == Kind::EdgeEdge as u32 {
         d = [difference(x[0], x[2]), difference(x[0], x[3]), difference(x[1], x[2]), difference(x[1], x[3])];
         count = 4;
         let along = difference(x[1], x[0]);
         closest = edge_edge(along, negated(d[0]), negated(d[1]));
-        other = crossed(along, difference(x[3], x[2]));
+        let across = difference(x[3], x[2]);
+        other = crossed(along, across);
+        sine = sine_between(along, across);
     } else {
         d[0] = difference(x[0], x[1]);
         if pair.kind == Kind::VertexVertex as u32 {
@@ -124,6 +133,7 @@ fn separate_pair(
         weights,
         distance,
         min_separation: 0.0,
+        sine,
         ..Separation::default()
     };
     if distance > 0.0 {

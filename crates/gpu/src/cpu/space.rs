@@ -15,6 +15,7 @@ pub struct Params {
     pub min_separation: f32,
     pub growth: f32,
     pub range: f32,
+    pub first_half_space: u32,
 }
 
 const MIN_SEPARATION_SHARE: f32 = 0.1;
@@ -51,7 +52,7 @@ pub fn space(
     for c in 0..control.candidates.min(params.capacity) as usize {
         if states[c].desired < 0.0 {
             let pair = pair_of(candidates[c], edges, triangles);
-            states[c] = first_state(&params, &pair, &separations[c], rest, vertices);
+            states[c] = first_state(&params, candidates[c], &pair, &separations[c], rest, vertices);
         }
         separations[c].min_separation = states[c].min_separation;
         separations[c].wanted = states[c].desired;
@@ -75,17 +76,26 @@ fn rest_distance(pair: &Pair, rest: &[[i32; 4]]) -> f32 {
 
 fn first_state(
     params: &Params,
+    candidate: Candidate,
     pair: &Pair,
     separation: &Separation,
     rest: &[[i32; 4]],
     vertices: &[Vertex],
 ) -> PairState {
     let a = vertices[pair.vertices[0] as usize];
-    let mut delta = a.delta;
+    let mut delta = a.half_space_delta;
     let mut range = params.range * delta;
     let mut thickness = -1.0;
     if pair.kind == Kind::VertexHalfSpace as u32 {
-        thickness = a.thickness;
+        let b = vertices[(params.first_half_space + candidate.b) as usize];
+        if b.thickness >= 0.0 {
+            delta = delta.max(0.5 * (a.delta + MIN_SEPARATION_MARGIN * b.thickness));
+            range = params.range * delta;
+        }
+        if a.thickness.max(b.thickness) >= 0.0 {
+            let of_a = if a.thickness >= 0.0 { a.thickness } else { params.min_separation };
+            thickness = 0.5 * (of_a + b.thickness.max(0.0));
+        }
     } else {
         let b = vertices[pair.vertices[pair.side_a] as usize];
         delta = 0.5 * (a.delta + b.delta);

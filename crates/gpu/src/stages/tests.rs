@@ -44,18 +44,19 @@ fn structs_lie_alike_on_both_sides() {
         };
     }
     let structs = [
-        offsets!(Vertex: edge, margin, body, flags, groups, mask, group, delta, thickness, mass, root_of_friction),
+        offsets!(Vertex: edge, margin, body, flags, groups, mask, group, delta, half_space_delta, thickness, mass, root_of_friction),
         offsets!(Ball: center, radius),
         offsets!(NodeBox: low, deformable, high, padding),
         offsets!(Candidate: kind_and_a, b),
-        offsets!(Separation: normal, width, weights, distance, min_separation, wanted, padding_0, padding_1, padding_2),
+        offsets!(Separation: normal, width, weights, distance, min_separation, wanted, sine, padding_0, padding_1),
         offsets!(PairState: friction, multiplier, desired, min_separation, range, color),
         offsets!(Row: vertices, weights, normal, value, inverse_diagonal, multiplier, candidate, color, slip, coefficient,
             friction, padding),
         offsets!(EdgeLimit: a, b, limit, padding, multiplier, padding_1),
         offsets!(OldRow: first, count),
         offsets!(Block: first, count, body),
-        offsets!(Plane: normal, rounding, point, root_of_friction),
+        offsets!(Plane: normal, rounding, point, padding),
+        offsets!(PairFriction: a, b, coefficient),
     ];
     let source = ALL.iter().find(|stage| stage.name == "separate").expect("a stage").source();
     let module = naga::front::wgsl::parse_str(&source).expect("valid");
