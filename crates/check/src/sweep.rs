@@ -104,22 +104,16 @@ impl<'a> Sweep<'a> {
         }
         let points = self.points(0.5 * (start + end));
         let closest = closest(self.kind, &points).offset;
-        let candidates = [Some(closest), common_normal(self.kind, &points)];
-        for candidate in candidates.into_iter().flatten() {
-            // Unit to rounding; its length is of no matter to the certificate.
-            let Some(direction) = candidate.try_normalize(0.0) else { continue };
-            if self.separates(&direction, start, end) {
-                *last = Some(direction);
-                return true;
-            }
-        }
-        if let Some(direction) = self.correct(&closest, start, end)
-            && self.separates(&direction, start, end)
-        {
-            *last = Some(direction);
-            return true;
-        }
-        false
+        let near = [Some(closest), common_normal(self.kind, &points)].into_iter().flatten();
+        let corrected = std::iter::once_with(|| self.correct(&closest, start, end)).flatten();
+        // Units to rounding; their lengths are of no matter to the certificate.
+        let found = near
+            .chain(corrected)
+            .chain(across_edges(self.kind, &points))
+            .filter_map(|candidate| candidate.try_normalize(0.0))
+            .find(|direction| self.separates(direction, start, end));
+        *last = found.or(*last);
+        found.is_some()
     }
 
     /// Whether n . (a - b) > 0 for all vertices a and b of the sides, from `start` to `end`: certain if

@@ -90,3 +90,19 @@ fn an_obstacle_that_stops_between_swept_steps_leaves_no_boxes_behind() {
     let checked = check(&problem);
     assert!(checked.as_ref().is_ok_and(|tally| tally.moved == 1), "{checked:?}");
 }
+
+/// The judge took an edge that slides off the side of a much longer one, 4e-12 m from it, for a hit. The step was safe.
+#[test]
+fn an_edge_that_slides_off_a_long_one_is_not_taken_for_a_hit() {
+    let strand = Shape::Strands { count: 1, vertices: 3, spacing: 1.0 };
+    let slivers = Shape::Slivers { columns: 2, width: 1.2830382688149725e-6 };
+    let sheet = Shape::Sheet { cells: [1, 2], layers: 2, gap: 0.31622776601683794 };
+    let pieces = vec![
+        Piece { role: Role::Obstacle, ..piece(strand, 521_180, Seat::Above, 1e-9) },
+        Piece { turn: Turn::None, ..piece(slivers, 0, Seat::Edge(32), 5.147079482680101e-14) },
+        piece(sheet, 693_156, Seat::Aside, 1.0),
+    ];
+    let call = Motion { rule: Rule::Collapsed, magnitude: 0.001, time_step: Some(0.01), ..scattered() };
+    let checked = check(&problem(pieces, vec![call], Setup { steps: 1, ..Setup::default() }));
+    assert!(checked.as_ref().is_ok_and(|tally| tally.steps == 1), "{checked:?}");
+}

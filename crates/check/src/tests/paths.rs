@@ -59,6 +59,24 @@ fn edges_that_pass_close_by_and_nearly_parallel_are_no_hit() {
     }
 }
 
+/// A short edge slides past an edge that is 400,000 times as long, 3e-14 m beside it. By exact arithmetic over these
+/// coordinates the lines of both cross at 4e-6 of the path, 4.5e-12 m beyond the end of the short edge. There only
+/// directions across the long edge certify anything.
+#[test]
+fn an_edge_that_slides_off_the_side_of_a_long_one_is_no_hit() {
+    let long = [[0.0, 0.0, 1e-9], [-0.006109734554016352, -0.31226992782155005, 0.4030510688834673]];
+    let before = [
+        [-0.003054867277008176, -0.15613496391077503, 0.20152553494178513],
+        [-0.003053584238739361, -0.15613496391077503, 0.20152553494178513],
+    ];
+    let after = [
+        [-0.0030537702794087, -0.15613487590660766, 0.20152540883909553],
+        [-0.003052487241139884, -0.15613487590727304, 0.20152540883842765],
+    ];
+    let at = |short: [[f64; 3]; 2]| points(&[long, short].concat());
+    assert_eq!(hits(&pair_judge(true), &at(before), &at(after)), 0);
+}
+
 /// Random integer queries: a certain hit is never missed, a certain miss is never flagged (integers
 /// leave gaps far above rounding). The shift and the scale exercise rounding: both are exact in
 /// doubles, and the answer is the same.
