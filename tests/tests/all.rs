@@ -14,5 +14,6 @@ mod fuzz_bodies;
 mod backends;
 mod folds;
 mod friction;
+mod heaps;
 mod momentum;
 mod slopes;

@@ -13,6 +13,11 @@ const MAX_FACTOR: f64 = 2.0;
 /// of 600 taut edges, the first 16 sweeps ask for 870.
 const MAX_GROWTH: f64 = 1e3;
 
+/// Largest number of corrections in a backward step. They remove the large error that sweeps begin with. With
+/// friction there is no energy that all of them lower, and in heaps of grains, which take thousands of sweeps,
+/// corrections without end keep the multipliers from converging.
+const MAX_CORRECTIONS: usize = 64;
+
 /// Whether a friction multiplier is at its bound: the contact slides.
 pub(crate) fn is_sliding(row: &lcp::FrictionRow, normal: f64, multiplier: lcp::TangentVector) -> bool {
     multiplier.norm() >= (1.0 - 1e-9) * row.friction * normal
@@ -37,12 +42,14 @@ pub(crate) fn is_sliding(row: &lcp::FrictionRow, normal: f64, multiplier: lcp::T
 pub(crate) struct CoarseCorrection {
     /// The factor by which multipliers may still grow. It increases when they shrink.
     growth_left: f64,
+    /// Corrections left in the backward step.
+    corrections_left: usize,
     sums: Chunks<f64>,
 }
 
 impl Default for CoarseCorrection {
     fn default() -> Self {
-        Self { growth_left: MAX_GROWTH, sums: Chunks::default() }
+        Self { growth_left: MAX_GROWTH, corrections_left: 0, sums: Chunks::default() }
     }
 }
 
@@ -50,6 +57,11 @@ impl CoarseCorrection {
     /// Starts a call.
     pub fn begin(&mut self) {
         self.growth_left = MAX_GROWTH;
+    }
+
+    /// Starts a backward step.
+    pub fn begin_step(&mut self) {
+        self.corrections_left = MAX_CORRECTIONS;
     }
 
     /// Scales the multipliers, and y with them. Vertices that are not `touched`, if that is given, have y = y'.
@@ -60,6 +72,8 @@ impl CoarseCorrection {
         touched: Option<&[u32]>,
         state: &mut lcp::LcpState<'_>,
     ) {
+        let Some(left) = self.corrections_left.checked_sub(1) else { return };
+        self.corrections_left = left;
         // From a good share on, all vertices in order take less time.
         let touched = touched.filter(|touched| 3 * touched.len() < free.len());
         let best = self.best_factor(system, free, touched, state);

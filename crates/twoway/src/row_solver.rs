@@ -73,6 +73,7 @@ impl RowSolver for ColoredSweeps {
 
     fn solve(&mut self, rows: &RowSystem<'_>, state: &mut lcp::LcpState<'_>) -> Result<(), lcp::LcpError> {
         let Self { solver, coarse } = self;
+        coarse.begin_step();
         let corrects = rows.scene.params().solver.backward.coarse_correction;
         let batch = |state: &mut lcp::LcpState<'_>, sweeps: usize| {
             (0..sweeps).try_for_each(|_| {
@@ -91,6 +92,7 @@ impl RowSolver for ColoredSweeps {
 
     fn solve_live(&mut self, rows: &mut LiveRows<'_>) -> Result<(), lcp::LcpError> {
         let Self { solver, coarse } = self;
+        coarse.begin_step();
         let (scene, state) = (rows.scene, rows.state);
         let corrects = scene.params().solver.backward.coarse_correction;
         let batch = |rows: &mut LiveRows<'_>, sweeps: usize| {

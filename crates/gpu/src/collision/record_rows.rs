@@ -7,6 +7,9 @@ use crate::layout::COLORS;
 use crate::recording::Recording;
 use crate::stages;
 
+/// Largest number of coarse corrections in a backward step, as on the CPU.
+const MAX_COARSE_CORRECTIONS: usize = 64;
+
 impl<E: Engine> Collision<E> {
     /// The contact rows at the present positions: which candidates have one, and their colors.
     pub(super) fn record_rows(&self, recording: &mut Recording) {
@@ -176,7 +179,7 @@ impl<E: Engine> Collision<E> {
         // First the multipliers of the last step are applied.
         for sweep in 0..=self.sweeps {
             let only_apply = u32::from(sweep == 0);
-            if sweep > 0 && self.settings.coarse_correction {
+            if (1..=MAX_COARSE_CORRECTIONS).contains(&sweep) && self.settings.coarse_correction {
                 self.record_coarse_correction(recording);
             }
             recording.dispatch(
