@@ -2,11 +2,15 @@
 
 use crate::args::CheckOptions;
 use crate::exit::{Exit, Failure};
+use crate::interrupt::Interrupt;
 use crate::progress::Bar;
-use crate::{archive, output};
+use crate::{archive, failure_dump, output};
 use bowknot::check::{Judge, Parts, PathOptions, StateOptions};
 use bowknot::geometry::{MeshProblem, Point, check_mesh};
 use bowknot::io::{Import, Mesh, files_in, read_mesh};
+use bowknot::recording::{Failure as Shown, States};
+use bowknot::run::SmallestState;
+use bowknot::twoway::Params;
 use bowknot_errors::counted;
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -49,12 +53,18 @@ pub fn check(options: &CheckOptions) -> Result<Exit, Failure> {
         let paths: Vec<&Path> = options.paths.iter().map(PathBuf::as_path).collect();
         output::refuse_overwrite(dump, &paths)?;
     }
+    if let Some(dump) = &options.dump_on_failure {
+        let paths: Vec<&Path> = options.paths.iter().map(PathBuf::as_path).collect();
+        failure_dump::refuse(dump, &paths)?;
+    }
     let groups = options.paths.iter().map(|path| groups_of(path)).collect::<Result<Vec<_>, _>>()?.concat();
     let mut checker = Checker {
         min_distance: options.min_distance,
         list: options.list,
         dump: options.dump.as_deref(),
         dumped: None,
+        failure_dump: options.dump_on_failure.as_deref(),
+        smallest: None,
         previous: None,
         report: Report::default(),
         bar: Bar::new(groups.iter().map(|g| g.files.len()).sum(), "files", false),
@@ -62,7 +72,7 @@ pub fn check(options: &CheckOptions) -> Result<Exit, Failure> {
     for group in &groups {
         checker.group(group)?;
     }
-    let dumped = checker.dumped;
+    let (dumped, smallest) = (checker.dumped, checker.smallest);
     let mut report = checker.report;
     report.clear = report.intersections == 0 && report.path_hits == 0 && !report.too_near;
     checker.bar.finish();
@@ -78,6 +88,9 @@ pub fn check(options: &CheckOptions) -> Result<Exit, Failure> {
                 path.display()
             ))?;
         }
+    }
+    if let Some(text) = smallest {
+        eprintln!("{text}");
     }
     Ok(if report.clear { Exit::Success } else { Exit::CheckFailed })
 }
@@ -142,6 +155,10 @@ struct Checker<'a> {
     dump: Option<&'a Path>,
     /// Number of triangles written there.
     dumped: Option<usize>,
+    /// File for the fewest elements that intersect.
+    failure_dump: Option<&'a Path>,
+    /// What was written there, in words.
+    smallest: Option<String>,
     previous: Option<PreviousState>,
     report: Report,
     bar: Bar,
@@ -169,11 +186,29 @@ impl Checker<'_> {
 
     /// Checks an archive: its frames `X`, or the start of a recorded problem.
     fn archive(&mut self, file: &Path) -> Result<(), Failure> {
+        self.previous = None;
+        if archive::is_problem(file)? {
+            return self.problem(file, &States::read(file)?);
+        }
         let frames = archive::read(file)?;
         for index in 0..frames.len() {
             self.state(file, format!("{}[{index}]", file.display()), frames.frame_mesh(index), false)?;
         }
         Ok(())
+    }
+
+    /// Checks the start of a problem, with its half-spaces and collision groups.
+    fn problem(&mut self, file: &Path, states: &States) -> Result<(), Failure> {
+        let name = file.display().to_string();
+        let model = states.collision_model().map_err(|error| Failure::input(format!("{name}: {error}")))?;
+        let judge = Judge::from_model(&model);
+        let mesh = Mesh {
+            obstacle: Some(states.obstacle.clone()),
+            body: Some(states.body.clone()),
+            ..Mesh::default()
+        };
+        self.note_problems(&name, &states.x, &states.triangles);
+        self.judged(file, name, &judge, &mesh, &states.x, None, || states.clone())
     }
 
     /// Checks a state, and the path from the previous one if `joined`.
@@ -206,15 +241,34 @@ impl Checker<'_> {
             }
         };
 
+        let path = last.filter(|_| joined);
+        self.judged(file, name, &judge, &mesh, &positions, path.as_deref(), || state_of(&mesh, &positions))?;
+        self.previous = Some(PreviousState { elements: mesh, judge, positions });
+        Ok(())
+    }
+
+    /// Adds the verdict on a state, and on the path from `last`. The mesh says what is of an obstacle and of which
+    /// body.
+    fn judged(
+        &mut self,
+        file: &Path,
+        name: String,
+        judge: &Judge,
+        mesh: &Mesh,
+        positions: &[Point],
+        last: Option<&[Point]>,
+        states: impl FnOnce() -> States,
+    ) -> Result<(), Failure> {
+        let bad_input = |error| Failure::check(file, &error);
         let dump = self.dump.filter(|_| self.dumped.is_none());
         let limit = if dump.is_some() { usize::MAX } else { self.list };
         let state =
-            judge.check_state(&positions, &StateOptions { limit, distance: true }).map_err(bad_input)?;
+            judge.check_state(positions, &StateOptions { limit, distance: true }).map_err(bad_input)?;
         let listed = state.intersections.iter().take(self.list);
         let mut findings: Vec<String> = listed.map(ToString::to_string).collect();
         findings.extend(more(state.intersection_count, findings.len()));
         if let Some(path) = dump.filter(|_| !state.is_clear()) {
-            let offending = judge.offending_mesh(&positions, &state.intersections);
+            let offending = judge.offending_mesh(positions, &state.intersections);
             let obstacle: Vec<bool> = offending
                 .vertices
                 .iter()
@@ -228,6 +282,16 @@ impl Checker<'_> {
             crate::dump::write(path, &offending, &obstacle, &body)?;
             self.dumped = Some(offending.triangles.len());
         }
+        if let Some(file) = self.failure_dump.filter(|_| !state.is_clear() && self.smallest.is_none()) {
+            let states = states();
+            let smallest = failure_dump::reduce(&Interrupt::default(), |limits| {
+                let reduction = states.reduce(&Params::default(), Shown::Intersects, limits)?;
+                Some(SmallestState { failure: Some(Shown::Intersects), reduction })
+            });
+            // What the judge of the file finds, that of the same elements in an archive finds as well.
+            self.smallest =
+                smallest.map(|smallest| failure_dump::write(file, &smallest, None)).transpose()?;
+        }
         let distance = state.nearest.as_ref().map(|nearest| nearest.distance);
         if let (Some(limit), Some(nearest)) = (self.min_distance, &state.nearest)
             && nearest.distance < limit
@@ -238,9 +302,9 @@ impl Checker<'_> {
         self.report.too_near |= distance.zip(self.min_distance).is_some_and(|(found, limit)| found < limit);
 
         let mut path_hits = None;
-        if let Some(last) = last.filter(|_| joined) {
+        if let Some(last) = last {
             let options = PathOptions { limit: self.list, ..PathOptions::default() };
-            let path = judge.check_path(&last, &positions, &options).map_err(bad_input)?;
+            let path = judge.check_path(last, positions, &options).map_err(bad_input)?;
             findings.extend(path.hits.iter().map(ToString::to_string));
             findings.extend(more(path.hit_count, path.hits.len()));
             path_hits = Some(path.hit_count);
@@ -262,7 +326,6 @@ impl Checker<'_> {
             findings,
         };
         self.report.files.push(entry);
-        self.previous = Some(PreviousState { elements: mesh, judge, positions });
         Ok(())
     }
 }
@@ -282,6 +345,30 @@ impl Checker<'_> {
                 counted(problems.len(), "such triangle", "such triangles")
             ));
         }
+    }
+}
+
+/// The state of a mesh as a problem that moves nothing. Bodies are numbered anew: any numbers may stand in a mesh, and
+/// obstacles share them with what is none.
+fn state_of(mesh: &Mesh, positions: &[Point]) -> States {
+    let count = positions.len();
+    let obstacle = mesh.obstacle.clone().unwrap_or_else(|| vec![false; count]);
+    let body = mesh.body.clone().unwrap_or_else(|| vec![0; count]);
+    let keys: Vec<(u32, bool)> = body.into_iter().zip(obstacle.iter().copied()).collect();
+    let numbers: BTreeSet<(u32, bool)> = keys.iter().copied().collect();
+    let numbers: Vec<(u32, bool)> = numbers.into_iter().collect();
+    States {
+        x: positions.to_vec(),
+        y: positions.to_vec(),
+        rest: positions.to_vec(),
+        masses: vec![1.0; count],
+        triangles: mesh.triangles.clone(),
+        strands: mesh.strands.clone(),
+        particles: mesh.particles.clone(),
+        fixed: vec![false; count],
+        obstacle,
+        body: keys.iter().map(|key| numbers.partition_point(|other| other < key) as u32).collect(),
+        ..States::default()
     }
 }
 

@@ -4,9 +4,9 @@ use crate::args::RunOptions;
 use crate::exit::{Exit, Failure};
 use crate::interrupt::Interrupt;
 use crate::progress::Bar;
-use crate::{bare_mesh, fault, gpu, output, setup};
+use crate::{bare_mesh, failure_dump, fault, gpu, output, setup};
 use bowknot::check::{Judge, StateReport};
-use bowknot::run::{Outcome, Progress, Summary};
+use bowknot::run::{FailureWatch, Outcome, Progress, Summary};
 use bowknot::{Scene, SimulationError, Simulator, World};
 use bowknot_errors::counted;
 use std::ops::ControlFlow;
@@ -20,6 +20,9 @@ pub fn run(options: &RunOptions) -> Result<Exit, Failure> {
     if let Some(dump) = &options.dump {
         output::refuse_overwrite(dump, &[Path::new(&options.scene)])?;
     }
+    if let Some(dump) = &options.dump_on_failure {
+        failure_dump::refuse(dump, &[Path::new(&options.scene)])?;
+    }
     let scene = open(options)?;
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(scene.name()));
     let backend = gpu::backend(&options.machine)?;
@@ -29,6 +32,7 @@ pub fn run(options: &RunOptions) -> Result<Exit, Failure> {
         resume: options.resume,
         check: options.check,
         interrupt: Some(interrupt.flag()),
+        watch: options.dump_on_failure.is_some().then(FailureWatch::default),
     };
     let mut bar: Option<Bar> = None;
     let mut show = |progress: &Progress<'_>| {
@@ -46,10 +50,18 @@ pub fn run(options: &RunOptions) -> Result<Exit, Failure> {
     if let Some(bar) = bar {
         bar.finish();
     }
-    let outcome = result.map_err(|error| run_failure(&scene, error, options.dump.as_deref()))?;
+    let smallest = match (&run_options.watch, &options.dump_on_failure) {
+        (Some(watch), Some(file)) => dump_failure(&scene, watch, &interrupt, &result, file),
+        _ => None,
+    };
+    let outcome = result.map_err(|error| {
+        let failure = run_failure(&scene, error, options.dump.as_deref());
+        let more = smallest.iter().map(|text| format!("\n{text}"));
+        Failure { message: std::iter::once(failure.message).chain(more).collect(), ..failure }
+    })?;
 
-    for finding in &outcome.findings {
-        eprintln!("{finding}");
+    for line in outcome.findings.iter().chain(&smallest) {
+        eprintln!("{line}");
     }
     if options.json {
         output::print_json(&outcome.summary)?;
@@ -61,6 +73,28 @@ pub fn run(options: &RunOptions) -> Result<Exit, Failure> {
         _ if outcome.interrupted => Exit::Interrupted,
         _ => Exit::Success,
     })
+}
+
+/// Writes the smallest state that shows what a run failed of, and says what it wrote; none if it did not fail.
+fn dump_failure(
+    scene: &Scene,
+    watch: &FailureWatch,
+    interrupt: &Interrupt,
+    result: &Result<Outcome, SimulationError>,
+    file: &Path,
+) -> Option<String> {
+    let is_whole = |outcome: &Outcome| {
+        outcome.summary.intersections.is_none_or(|count| count == 0)
+            && (outcome.interrupted
+                || outcome.summary.mean.as_ref().is_none_or(|mean| mean.converged == Some(1.0)))
+    };
+    if result.as_ref().is_ok_and(is_whole) {
+        return None;
+    }
+    let error = result.as_ref().err();
+    let smallest = failure_dump::reduce(interrupt, |limits| watch.smallest(scene, error, limits))?;
+    let written = failure_dump::write(file, &smallest, Some(&scene.twoway()));
+    Some(written.unwrap_or_else(|failure| failure.message))
 }
 
 /// The scene, with the options applied as assignments to its keys.

@@ -10,11 +10,13 @@ mod lock;
 mod saved;
 mod spool;
 mod summary;
+mod watch;
 mod writer;
 
 pub use checker::Checker;
 pub use export::{ExportOptions, Exported, export};
 pub use summary::{EnergyNumbers, SecondsNumbers, SkippedNumbers, StepNumbers, Summary};
+pub use watch::{FailureWatch, SmallestState};
 pub use writer::RunWriter;
 
 use crate::simulator::{
@@ -45,6 +47,8 @@ pub struct RunOptions {
     /// When this becomes true the run stops as soon as it can, even within a time step, which is then
     /// abandoned.
     pub interrupt: Option<Arc<AtomicBool>>,
+    /// Keeps what shows a failure of the run. Copies each collision problem in memory.
+    pub watch: Option<FailureWatch>,
 }
 
 /// Where a run is.
@@ -133,6 +137,9 @@ fn run_steps(
     let info = simulator.world().info(scene.simulation.dt);
     let world = Arc::clone(simulator.world());
     let mut checker = options.check.then(|| Checker::new(&simulator));
+    if let Some(watch) = &options.watch {
+        watch.begin(&simulator);
+    }
     let frames = scene.simulation.frames;
     let mut report = |step: usize, statistics: Option<&StepStatistics>, checker: &Option<Checker>| {
         let intersections = checker.as_ref().map(Checker::intersections);
@@ -146,6 +153,7 @@ fn run_steps(
         let mut observer = RunObserver {
             writer: &writer,
             checker: checker.as_mut(),
+            watch: options.watch.as_ref(),
             world: &world,
             trace: scene.output.trace,
             record: scene.output.record,
@@ -160,7 +168,14 @@ fn run_steps(
             Ok(statistics) => {
                 if let Some(checker) = &mut checker {
                     let positions = &simulator.positions()[..world.collision_vertices()];
+                    let before = checker.intersections();
                     checker.judge_end(statistics.step, positions, &world)?;
+                    if let Some(watch) = options.watch.as_ref().filter(|_| checker.intersections() > before) {
+                        watch.found_intersection(positions);
+                    }
+                }
+                if let Some(watch) = options.watch.as_ref().filter(|_| !statistics.converged) {
+                    watch.not_converged();
                 }
                 writer.step(&statistics, &simulator)?;
                 interrupted = report(simulator.step_index(), Some(&statistics), &checker).is_break();
@@ -202,6 +217,7 @@ fn run_steps(
 struct RunObserver<'a> {
     writer: &'a RunWriter,
     checker: Option<&'a mut Checker>,
+    watch: Option<&'a FailureWatch>,
     world: &'a World,
     trace: bool,
     record: bool,
@@ -224,6 +240,9 @@ impl RunObserver<'_> {
 
 impl SimulationObserver for RunObserver<'_> {
     fn problem(&mut self, problem: &CollisionProblem<'_>) -> ControlFlow<()> {
+        if let Some(watch) = self.watch {
+            watch.problem(problem);
+        }
         let write = || -> Result<(), SimulationError> {
             if self.record {
                 self.writer.write_problem(problem)?;
@@ -244,7 +263,11 @@ impl SimulationObserver for RunObserver<'_> {
                 self.writer.write_trace(accepted.step, accepted.iteration, l, accepted.state.positions)?;
             }
             if let Some(checker) = &mut self.checker {
+                let before = checker.intersections();
                 checker.judge(accepted, self.world)?;
+                if let Some(watch) = self.watch.filter(|_| checker.intersections() > before) {
+                    watch.found_intersection(accepted.state.positions);
+                }
             }
             Ok(())
         };

@@ -11,6 +11,8 @@ mod check;
 mod damaged_runs;
 /// `export` of runs and of folders of frames.
 mod export;
+/// `--dump-on-failure` of `run`, `resolve` and `check`.
+mod failures;
 /// Damaged checkpoints, locks, signals, panics, folders and disks that cannot be written.
 #[cfg(unix)]
 mod faults;
