@@ -2,9 +2,11 @@
 
 use crate::args::RunOptions;
 use crate::exit::{Exit, Failure};
+#[cfg(test)]
+use crate::fault;
 use crate::interrupt::Interrupt;
 use crate::progress::Bar;
-use crate::{bare_mesh, failure_dump, fault, gpu, output, setup};
+use crate::{bare_mesh, failure_dump, gpu, output, setup};
 use bowknot::check::{Judge, StateReport};
 use bowknot::run::{FailureWatch, Outcome, Progress, Summary};
 use bowknot::{Scene, SimulationError, Simulator, World};
@@ -17,6 +19,11 @@ const MAX_SIZES: usize = 10;
 
 pub fn run(options: &RunOptions) -> Result<Exit, Failure> {
     setup::machine(&options.machine)?;
+    simulate(options)
+}
+
+/// Simulates with the threads that there are.
+pub fn simulate(options: &RunOptions) -> Result<Exit, Failure> {
     if let Some(dump) = &options.dump {
         output::refuse_overwrite(dump, &[Path::new(&options.scene)])?;
     }
@@ -43,6 +50,7 @@ pub fn run(options: &RunOptions) -> Result<Exit, Failure> {
             Bar::new(progress.frames, "frames", options.quiet)
         });
         bar.set_position(progress.step, &progress_text(progress));
+        #[cfg(test)]
         fault::panic_if_asked(progress.step);
         ControlFlow::Continue(())
     };
@@ -167,6 +175,14 @@ fn print_sizes(world: &World) {
 
 /// The text beside the progress bar.
 fn progress_text(progress: &Progress<'_>) -> String {
+    if let Some(within) = &progress.within {
+        let steps = counted(within.two_way_steps, "two-way step", "two-way steps");
+        let mut text = format!("step {}: {steps} in {:.0} s", progress.step + 1, within.seconds);
+        if let Some(wait) = within.waits.first() {
+            text += &format!(", waits for {}", wait.short());
+        }
+        return text;
+    }
     let Some(statistics) = progress.statistics else { return String::new() };
     let mut text = counted(statistics.two_way_steps, "step", "steps");
     if let Some(gap) = statistics.min_gap_m {
@@ -177,6 +193,9 @@ fn progress_text(progress: &Progress<'_>) -> String {
     }
     if let (false, Some(body)) = (statistics.converged, &statistics.slowest_body) {
         text += &format!(", {body} is {:.1} mm short of its target", 1e3 * statistics.remaining_m);
+    }
+    if let Some(wait) = statistics.waits.first() {
+        text += &format!(", waited for {}", wait.short());
     }
     if let Some(count) = progress.intersections.filter(|&count| count > 0) {
         text += &format!(", {}", counted(count, "INTERSECTION", "INTERSECTIONS"));
@@ -219,6 +238,11 @@ fn to_text(outcome: &Outcome, out: &Path, frames: usize) -> String {
         number(max.and_then(|max| max.max_stretch), 3),
     ));
     lines.extend(unreached_targets(summary));
+    if let Some(slowest) = &summary.slowest_step {
+        let steps = counted(slowest.two_way_steps, "two-way step", "two-way steps");
+        lines.push(format!("slowest: time step {} with {steps}, which waited for", slowest.step));
+        lines.extend(slowest.waits.iter().map(|wait| format!("  {wait}")));
+    }
     if let Some(count) = summary.intersections {
         lines.push(match count {
             0 => "checked every accepted state and path: no intersection".to_owned(),

@@ -7,6 +7,7 @@ mod export;
 mod frames;
 mod layout;
 mod lock;
+mod progress;
 mod saved;
 mod spool;
 mod summary;
@@ -15,17 +16,19 @@ mod writer;
 
 pub use checker::Checker;
 pub use export::{ExportOptions, Exported, export};
-pub use summary::{EnergyNumbers, SecondsNumbers, SkippedNumbers, StepNumbers, Summary};
+pub use progress::{Progress, WithinStep};
+pub use summary::{EnergyNumbers, SecondsNumbers, SkippedNumbers, SlowStep, StepNumbers, Summary};
 pub use watch::{FailureWatch, SmallestState};
 pub use writer::RunWriter;
 
 use crate::simulator::{
     AcceptedStep, CollisionBackend, CollisionProblem, Cpu, SimulationError, SimulationObserver, Simulator,
-    StepStatistics, peak_memory_bytes,
+    WaitingElements, peak_memory_bytes,
 };
 use bowknot_io::{IoError, write_text};
 use bowknot_scene::Scene;
-use bowknot_scene::world::{SceneInfo, World};
+use bowknot_scene::world::World;
+use progress::Reporter;
 use std::cell::Cell;
 use std::ops::ControlFlow;
 use std::panic::{self, AssertUnwindSafe};
@@ -51,23 +54,6 @@ pub struct RunOptions {
     pub watch: Option<FailureWatch>,
 }
 
-/// Where a run is.
-#[derive(Clone, Copy, Debug)]
-pub struct Progress<'a> {
-    /// Time steps made, those before a resumption included.
-    pub step: usize,
-    /// Time steps to be made.
-    pub frames: usize,
-    /// What is simulated.
-    pub world: &'a World,
-    /// Counts of it.
-    pub info: &'a SceneInfo,
-    /// The last time step; none before the first.
-    pub statistics: Option<&'a StepStatistics>,
-    /// Intersections found so far, if checked.
-    pub intersections: Option<usize>,
-}
-
 /// How a run ended.
 #[derive(Clone, Debug)]
 pub struct Outcome {
@@ -81,8 +67,8 @@ pub struct Outcome {
     pub warnings: Vec<String>,
 }
 
-/// Runs a scene to its last frame on the CPU. `progress` is called before the first time step and after each;
-/// `Break` ends the run there.
+/// Runs a scene to its last frame on the CPU. `progress` is called before the first time step and after each, and every
+/// second within one that takes longer than two; `Break` ends the run there, and abandons a time step that is not done.
 ///
 /// # Errors
 /// Whatever [`Simulator::new`] and [`Simulator::step`] refuse; a folder that cannot be written, holds a
@@ -141,13 +127,10 @@ fn run_steps(
         watch.begin(&simulator);
     }
     let frames = scene.simulation.frames;
-    let mut report = |step: usize, statistics: Option<&StepStatistics>, checker: &Option<Checker>| {
-        let intersections = checker.as_ref().map(Checker::intersections);
-        progress(&Progress { step, frames, world: &world, info: &info, statistics, intersections })
-    };
+    let mut reporter = Reporter::new(progress, frames, &world, &info);
 
     let stop_asked = || options.interrupt.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed));
-    let mut interrupted = report(simulator.step_index(), None, &checker).is_break();
+    let mut interrupted = reporter.between_steps(simulator.step_index(), None, checker.as_ref()).is_break();
     while !interrupted && simulator.step_index() < frames {
         present.set(simulator.step_index() + 1);
         let mut observer = RunObserver {
@@ -158,6 +141,7 @@ fn run_steps(
             trace: scene.output.trace,
             record: scene.output.record,
             stop_asked: &stop_asked,
+            reporter: &mut reporter,
             error: None,
         };
         let result = simulator.step_observed(&mut observer);
@@ -178,7 +162,8 @@ fn run_steps(
                     watch.not_converged();
                 }
                 writer.step(&statistics, &simulator)?;
-                interrupted = report(simulator.step_index(), Some(&statistics), &checker).is_break();
+                let step = simulator.step_index();
+                interrupted = reporter.between_steps(step, Some(&statistics), checker.as_ref()).is_break();
             }
             Err(SimulationError::Interrupted) => interrupted = true,
             Err(error @ SimulationError::Backend { .. }) => {
@@ -204,6 +189,7 @@ fn run_steps(
         mean: totals.mean().map_err(unwritable)?,
         max: totals.max().map_err(unwritable)?,
         min_gap_m: totals.min_gap(),
+        slowest_step: totals.slowest().cloned(),
         peak_memory_bytes: peak_memory_bytes(),
         intersections: checker.as_ref().map(Checker::intersections),
     };
@@ -214,7 +200,7 @@ fn run_steps(
 }
 
 /// What happens within the time steps of a run.
-struct RunObserver<'a> {
+struct RunObserver<'a, 'p> {
     writer: &'a RunWriter,
     checker: Option<&'a mut Checker>,
     watch: Option<&'a FailureWatch>,
@@ -222,10 +208,11 @@ struct RunObserver<'a> {
     trace: bool,
     record: bool,
     stop_asked: &'a dyn Fn() -> bool,
+    reporter: &'a mut Reporter<'p>,
     error: Option<SimulationError>,
 }
 
-impl RunObserver<'_> {
+impl RunObserver<'_, '_> {
     fn go_on(&mut self, result: Result<(), SimulationError>) -> ControlFlow<()> {
         match result {
             Ok(()) if (self.stop_asked)() => ControlFlow::Break(()),
@@ -238,7 +225,7 @@ impl RunObserver<'_> {
     }
 }
 
-impl SimulationObserver for RunObserver<'_> {
+impl SimulationObserver for RunObserver<'_, '_> {
     fn problem(&mut self, problem: &CollisionProblem<'_>) -> ControlFlow<()> {
         if let Some(watch) = self.watch {
             watch.problem(problem);
@@ -272,6 +259,13 @@ impl SimulationObserver for RunObserver<'_> {
             Ok(())
         };
         let result = handle();
-        self.go_on(result)
+        match self.reporter.accepted(accepted) {
+            ControlFlow::Continue(()) => self.go_on(result),
+            stop => stop,
+        }
+    }
+
+    fn waiting(&mut self, tell: &dyn Fn() -> Vec<WaitingElements>) {
+        self.reporter.waiting(tell, self.checker.as_deref());
     }
 }

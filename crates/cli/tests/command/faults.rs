@@ -1,5 +1,5 @@
-//! What a run meets from outside: damaged checkpoints, a second run, signals, disks and folders that cannot be written;
-//! and a panic.
+//! What a run meets from outside: damaged checkpoints, a second run, signals, disks and folders that cannot be written.
+//! Panics are tested in `fault.rs` of the command.
 
 use crate::{Ended, Place, SMALL};
 use std::fs::{self, Permissions};
@@ -122,23 +122,6 @@ fn signals_end_a_run_after_a_whole_frame() {
         place.run(&format!("{words} --out {run} --resume")).ok();
         same_frames(&place, "whole", &run, 24);
     }
-}
-
-#[test]
-fn a_panic_of_a_worker_thread_ends_the_run_with_whole_frames() {
-    let place = Place::new();
-    let words = format!("{SHORT} --frames 12");
-    place.run(&format!("{words} --out whole")).ok();
-    let mut command = place.command(&format!("{words} --out run"));
-    let ended = Ended::new(&words, command.env("BOWKNOT_PANIC_AT_STEP", "6").output().unwrap());
-    assert_eq!(ended.code, 4, "{ended:#?}");
-    for words in ["error: time step 6: internal error", "BOWKNOT_PANIC_AT_STEP", "--resume"] {
-        assert!(ended.stderr.contains(words), "{ended:#?}");
-    }
-    same_frames(&place, "whole", "run", 6);
-    assert_eq!(place.files("run/frames").len(), 7);
-    place.run(&format!("{words} --out run --resume")).ok();
-    same_frames(&place, "whole", "run", 12);
 }
 
 /// A small file system in memory, unmounted at the end.

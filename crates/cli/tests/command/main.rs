@@ -13,7 +13,7 @@ mod damaged_runs;
 mod export;
 /// `--dump-on-failure` of `run`, `resolve` and `check`.
 mod failures;
-/// Damaged checkpoints, locks, signals, panics, folders and disks that cannot be written.
+/// Damaged checkpoints, locks, signals, folders and disks that cannot be written.
 #[cfg(unix)]
 mod faults;
 /// Runs that are interrupted, resumed, or meet a full disk.
