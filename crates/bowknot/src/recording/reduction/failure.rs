@@ -27,14 +27,14 @@ impl States {
     /// What the problem fails of, and where [m], if there is a place; none if it does not fail. With `judged`, the
     /// judge looks at every accepted step. `give_up` is asked after each step, and ends the call without a failure.
     ///
-    /// A panic is caught; the hook of the program is called first.
+    /// A panic is caught; the hook of the program is called first. Arrays of the wrong length are no failure.
     pub fn failure(
         &self,
         params: &Params,
         judged: bool,
         give_up: &dyn Fn() -> bool,
     ) -> Option<(Failure, Option<Point>)> {
-        let model = self.collision_model().ok()?;
+        let model = self.collision_model().ok().filter(|_| self.is_consistent())?;
         let judge = Judge::from_model(&model);
         if let Some(place) = intersection(&judge, &self.x) {
             return Some((Failure::Intersects, Some(place)));
@@ -70,6 +70,23 @@ impl States {
             }
             Ok(Ok(_)) => None,
         }
+    }
+}
+
+impl States {
+    /// Whether all arrays that are there have an entry for each vertex, body or half-space.
+    fn is_consistent(&self) -> bool {
+        let n = self.x.len();
+        let bodies = self.body.iter().max().map_or(0, |&b| b as usize + 1);
+        let optional = |length: usize, count: usize| length == 0 || length == count;
+        [self.y.len(), self.rest.len(), self.masses.len(), self.obstacle.len(), self.body.len()]
+            .iter()
+            .all(|&length| length == n)
+            && [self.fixed.len(), self.groups.len(), self.start.len()]
+                .iter()
+                .all(|&length| optional(length, n))
+            && [self.body_contacts.len(), self.filters.len()].iter().all(|&length| optional(length, bodies))
+            && optional(self.half_space_contacts.len(), self.half_spaces.len())
     }
 }
 

@@ -80,6 +80,16 @@ fn of_a_call_that_ends_at_its_limit_few_elements_are_left() {
 }
 
 #[test]
+fn a_problem_with_arrays_of_the_wrong_length_is_not_reduced() {
+    let mut states = sheets(2, &[0.0, 0.1]);
+    states.x[12].z = -0.5;
+    let reduce = |states: &States| states.reduce(&Params::default(), Failure::Intersects, Limits::default());
+    assert!(reduce(&states).is_some());
+    states.body_contacts.pop();
+    assert!(reduce(&states).is_none());
+}
+
+#[test]
 fn of_a_call_that_is_refused_the_element_that_it_is_about_is_left() {
     let mut states = sheets(4, &[0.0, 0.1]);
     states.y[30].z = 1e13;
