@@ -1,19 +1,19 @@
 //! `bowknot check`: checks states, and the straight paths between the states of a trace, for intersections.
 
+mod files;
+mod smallest;
+
 use crate::args::CheckOptions;
 use crate::exit::{Exit, Failure};
-use crate::interrupt::Interrupt;
 use crate::progress::Bar;
 use crate::{archive, failure_dump, output};
 use bowknot::check::{Judge, Parts, PathOptions, StateOptions};
 use bowknot::geometry::{MeshProblem, Point, check_mesh};
-use bowknot::io::{Import, Mesh, files_in, read_mesh};
-use bowknot::recording::{Failure as Shown, States};
-use bowknot::run::SmallestState;
-use bowknot::twoway::Params;
+use bowknot::io::{Import, Mesh, read_mesh};
+use bowknot::recording::States;
 use bowknot_errors::counted;
+use files::{Group, extension, groups_of};
 use serde::Serialize;
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// The result, as `--json` prints it.
@@ -93,50 +93,6 @@ pub fn check(options: &CheckOptions) -> Result<Exit, Failure> {
         eprintln!("{text}");
     }
     Ok(if report.clear { Exit::Success } else { Exit::CheckFailed })
-}
-
-/// Files that are checked in order. If they are a trace, the straight paths between them are checked too.
-#[derive(Clone, Debug)]
-struct Group {
-    files: Vec<PathBuf>,
-    trace: bool,
-}
-
-/// The groups of an argument: a single file, the frames of a folder, or the frames and the trace of a run.
-fn groups_of(path: &Path) -> Result<Vec<Group>, Failure> {
-    if !path.is_dir() {
-        return Ok(vec![Group { files: vec![path.to_owned()], trace: false }]);
-    }
-    let mut groups = Vec::new();
-    for folder in [path.join("frames"), path.join("trace")] {
-        if folder.is_dir() {
-            groups.extend(frames_in(&folder)?);
-        }
-    }
-    // In the folder of a run this finds `frames.npz`, in any other folder its frames.
-    groups.extend(frames_in(path)?);
-    if groups.is_empty() {
-        let message = "no frames (.ply, .obj, .npz) in it, nor in frames/ or trace/ below it";
-        return Err(Failure::input(format!("{}: {message}", path.display())));
-    }
-    Ok(groups)
-}
-
-/// The frames directly in a folder, in natural order.
-fn frames_in(folder: &Path) -> Result<Option<Group>, Failure> {
-    let mut files = files_in(folder, &["ply", "obj", "npz"])?;
-    // Frames that a run wrote in two formats are the same states: the binary ones, which are exact, count.
-    let binary: BTreeSet<PathBuf> =
-        files.iter().filter(|file| extension(file) == "ply").map(|file| file.with_extension("")).collect();
-    files.retain(|file| extension(file) != "obj" || !binary.contains(&file.with_extension("")));
-    // The canonical path has a file name even where the argument ends with a dot, as `trace/.` does.
-    let real = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
-    let trace = real.file_name().is_some_and(|n| n == "trace");
-    Ok((!files.is_empty()).then_some(Group { files, trace }))
-}
-
-fn extension(path: &Path) -> String {
-    path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
 }
 
 /// The state that was checked last, with the judge for its elements.
@@ -242,7 +198,9 @@ impl Checker<'_> {
         };
 
         let path = last.filter(|_| joined);
-        self.judged(file, name, &judge, &mesh, &positions, path.as_deref(), || state_of(&mesh, &positions))?;
+        self.judged(file, name, &judge, &mesh, &positions, path.as_deref(), || {
+            smallest::state_of(&mesh, &positions)
+        })?;
         self.previous = Some(PreviousState { elements: mesh, judge, positions });
         Ok(())
     }
@@ -283,14 +241,7 @@ impl Checker<'_> {
             self.dumped = Some(offending.triangles.len());
         }
         if let Some(file) = self.failure_dump.filter(|_| !state.is_clear() && self.smallest.is_none()) {
-            let states = states();
-            let smallest = failure_dump::reduce(&Interrupt::default(), |limits| {
-                let reduction = states.reduce(&Params::default(), Shown::Intersects, limits)?;
-                Some(SmallestState { failure: Some(Shown::Intersects), reduction })
-            });
-            // What the judge of the file finds, that of the same elements in an archive finds as well.
-            self.smallest =
-                smallest.map(|smallest| failure_dump::write(file, &smallest, None)).transpose()?;
+            self.smallest = Some(smallest::write(file, &states())?);
         }
         let distance = state.nearest.as_ref().map(|nearest| nearest.distance);
         if let (Some(limit), Some(nearest)) = (self.min_distance, &state.nearest)
@@ -345,30 +296,6 @@ impl Checker<'_> {
                 counted(problems.len(), "such triangle", "such triangles")
             ));
         }
-    }
-}
-
-/// The state of a mesh as a problem that moves nothing. Bodies are numbered anew: any numbers may stand in a mesh, and
-/// obstacles share them with what is none.
-fn state_of(mesh: &Mesh, positions: &[Point]) -> States {
-    let count = positions.len();
-    let obstacle = mesh.obstacle.clone().unwrap_or_else(|| vec![false; count]);
-    let body = mesh.body.clone().unwrap_or_else(|| vec![0; count]);
-    let keys: Vec<(u32, bool)> = body.into_iter().zip(obstacle.iter().copied()).collect();
-    let numbers: BTreeSet<(u32, bool)> = keys.iter().copied().collect();
-    let numbers: Vec<(u32, bool)> = numbers.into_iter().collect();
-    States {
-        x: positions.to_vec(),
-        y: positions.to_vec(),
-        rest: positions.to_vec(),
-        masses: vec![1.0; count],
-        triangles: mesh.triangles.clone(),
-        strands: mesh.strands.clone(),
-        particles: mesh.particles.clone(),
-        fixed: vec![false; count],
-        obstacle,
-        body: keys.iter().map(|key| numbers.partition_point(|other| other < key) as u32).collect(),
-        ..States::default()
     }
 }
 
