@@ -199,6 +199,42 @@ fn every_library_is_usable_alone() {
 }
 
 /// The rule itself can fail.
+/// What a registry needs of a crate that its manifest lacks.
+fn publishing_faults(folder: &Path, manifest: &Table) -> Vec<String> {
+    let package = manifest["package"].as_table().expect("a table");
+    if package.get("publish").and_then(toml::Value::as_bool) == Some(false) {
+        return Vec::new();
+    }
+    let fields = ["description", "license", "repository", "readme", "keywords", "categories"];
+    let mut faults: Vec<String> = fields
+        .iter()
+        .filter(|field| !package.contains_key(**field))
+        .map(|field| format!("no {field}"))
+        .collect();
+    if let Some(readme) = package.get("readme").and_then(toml::Value::as_str)
+        && !folder.join(readme).exists()
+    {
+        faults.push(format!("no file {readme}"));
+    }
+    faults
+}
+
+/// Public crates have what `cargo publish` asks for; their dependencies on each other name a version.
+#[test]
+fn public_crates_can_be_published() {
+    for folder in folders(&root().join("crates")) {
+        let manifest = manifest(&folder);
+        assert_eq!(publishing_faults(&folder, &manifest), Vec::<String>::new(), "{}", folder.display());
+    }
+    let workspace = manifest(&root());
+    let dependencies = workspace["workspace"]["dependencies"].as_table().expect("a table");
+    for (name, _) in ALLOWED.iter().filter(|(name, _)| dependencies.contains_key(*name)) {
+        assert!(dependencies[*name].get("version").is_some(), "{name} has no version");
+    }
+    let bare: Table = toml::from_str("[package]\nname = \"x\"\nreadme = \"NONE.md\"").expect("a manifest");
+    assert_eq!(publishing_faults(&root(), &bare).len(), 6, "five fields and a file are missing");
+}
+
 #[test]
 fn forbidden_edges_are_seen() {
     let manifest: Table = r#"

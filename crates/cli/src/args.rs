@@ -88,6 +88,10 @@ pub struct RunOptions {
     /// If the start intersects, write the triangles that do to this file (.ply or .obj)
     #[arg(long, value_name = "FILE")]
     pub dump: Option<PathBuf>,
+    /// If the run ends with an error, a panic, an intersection found by --check, or a target that was not reached,
+    /// write the smallest state that shows it to this file (.npz), for `bowknot resolve` and `bowknot check`
+    #[arg(long, value_name = "FILE.npz")]
+    pub dump_on_failure: Option<PathBuf>,
     /// Continue the run in the folder --out from its checkpoint
     #[arg(long)]
     pub resume: bool,
@@ -113,6 +117,13 @@ pub struct ResolveOptions {
     /// Stop after this many seconds, with a valid state
     #[arg(long, value_name = "S", value_parser = positive)]
     pub max_seconds: Option<f64>,
+    /// Check the path to every accepted state by a certificate: exit code 1 if anything intersects
+    #[arg(long)]
+    pub check: bool,
+    /// If the start intersects, or the call is refused, panics, does not converge, or is found to intersect by
+    /// --check, write the smallest part of the problem that shows it to this file (.npz)
+    #[arg(long, value_name = "FILE.npz")]
+    pub dump_on_failure: Option<PathBuf>,
     /// Print JSON
     #[arg(long)]
     pub json: bool,
@@ -135,6 +146,9 @@ pub struct CheckOptions {
     /// any do
     #[arg(long, value_name = "FILE")]
     pub dump: Option<PathBuf>,
+    /// Write the fewest elements that intersect to this file (.npz), for the first state where any do
+    #[arg(long, value_name = "FILE.npz")]
+    pub dump_on_failure: Option<PathBuf>,
     /// Print JSON
     #[arg(long)]
     pub json: bool,

@@ -11,6 +11,7 @@ mod check;
 mod dump;
 mod exit;
 mod export;
+mod failure_dump;
 mod fault;
 mod gpu;
 mod info;

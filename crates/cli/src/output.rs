@@ -7,12 +7,7 @@ use std::path::Path;
 
 /// Refuses to write over a file that the command reads.
 pub fn refuse_overwrite(out: &Path, inputs: &[&Path]) -> Result<(), Failure> {
-    let same = |input: &Path| match (out.canonicalize(), input.canonicalize()) {
-        (Ok(out), Ok(input)) => out == input,
-        // A file that does not exist yet is none that is read.
-        _ => false,
-    };
-    match inputs.iter().find(|input| same(input)) {
+    match inputs.iter().find(|input| is_same(out, input)) {
         Some(input) => {
             let message = format!(
                 "{}: is the file that is read, {}, and would be lost: name another one",
@@ -22,6 +17,14 @@ pub fn refuse_overwrite(out: &Path, inputs: &[&Path]) -> Result<(), Failure> {
             Err(Failure::input(message))
         }
         None => Ok(()),
+    }
+}
+
+/// Whether two paths name the same file. A file that does not exist yet is known by its name alone.
+pub fn is_same(a: &Path, b: &Path) -> bool {
+    match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => a == b,
     }
 }
 

@@ -3,17 +3,18 @@
 use crate::args::ResolveOptions;
 use crate::exit::{Exit, Failure};
 use crate::interrupt::Interrupt;
-use crate::{gpu, output, setup, sizes};
-use bowknot::check::{Judge, StateOptions};
-use bowknot::proximity::CollisionModel;
+use crate::{failure_dump, gpu, output, setup, sizes};
+use bowknot::check::{Judge, MotionJudge, PathOptions, StateOptions};
 use bowknot::recording::{States, write_result};
+use bowknot::run::SmallestState;
 use bowknot::simulator::BackendError;
-use bowknot::twoway::{AcceptedState, Statistics};
+use bowknot::twoway::{AcceptedState, Params, Statistics};
 use bowknot_errors::counted;
 use serde::Serialize;
 use std::ops::ControlFlow;
+use std::panic::{self, AssertUnwindSafe};
 
-/// Largest number of intersections that are printed when the start is refused.
+/// Largest number of intersections that are printed, of the start or of all paths.
 const MAX_LISTED: usize = 5;
 
 /// The result, as `--json` prints it.
@@ -39,9 +40,54 @@ struct Summary {
     max_step_stretch: f64,
     max_stretch: f64,
     converged: bool,
+    /// Pairs that meet on the paths between accepted states; none if not checked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    intersections: Option<usize>,
 }
 
 pub fn resolve(options: &ResolveOptions) -> Result<Exit, Failure> {
+    let interrupt = Interrupt::listen();
+    let mut given = None;
+    let Some(file) = &options.dump_on_failure else {
+        return attempt(options, &interrupt, &mut given).map(|ended| ended.exit);
+    };
+    failure_dump::refuse(file, &[&options.states])?;
+    if output::is_same(file, &options.out) {
+        return Err(Failure::input(format!("{}: is the file of --out as well", file.display())));
+    }
+    let result = panic::catch_unwind(AssertUnwindSafe(|| attempt(options, &interrupt, &mut given)));
+    let went_well =
+        |ended: &Ended| ended.exit != Exit::CheckFailed && (ended.converged || interrupt.is_set());
+    let Some((states, params)) = given.filter(|_| !matches!(&result, Ok(Ok(ended)) if went_well(ended)))
+    else {
+        return result.unwrap_or_else(|panic| panic::resume_unwind(panic)).map(|ended| ended.exit);
+    };
+    let smallest = failure_dump::reduce(&interrupt, |limits| {
+        let (failure, _) = states.failure(&params, options.check, limits.stop)?;
+        let reduction = states.reduce(&params, failure, limits)?;
+        Some(SmallestState { failure: Some(failure), reduction })
+    });
+    match smallest.map(|smallest| failure_dump::write(file, &smallest, Some(&params))) {
+        Some(written) => eprintln!("{}", written.unwrap_or_else(|failure| failure.message)),
+        None => {
+            eprintln!("the CPU does not show the failure again: nothing was written to {}", file.display())
+        }
+    }
+    result.unwrap_or_else(|panic| panic::resume_unwind(panic)).map(|ended| ended.exit)
+}
+
+/// How an attempt ended that was not refused.
+struct Ended {
+    exit: Exit,
+    converged: bool,
+}
+
+/// Resolves the problem and writes the result. `given` is the problem, once it is read.
+fn attempt(
+    options: &ResolveOptions,
+    interrupt: &Interrupt,
+    given: &mut Option<(States, Params)>,
+) -> Result<Ended, Failure> {
     setup::machine(&options.machine)?;
     let mut params = bowknot::scene::twoway_params(&options.method.assignments()).map_err(Failure::input)?;
     if options.max_seconds.is_some() {
@@ -49,21 +95,39 @@ pub fn resolve(options: &ResolveOptions) -> Result<Exit, Failure> {
     }
     output::refuse_overwrite(&options.out, &[&options.states])?;
     output::refuse_unwritable(&options.out, "npz")?;
-    let states = States::read(&options.states)?;
+    let (states, params) = given.insert((States::read(&options.states)?, params));
     if states.triangles.is_empty() && states.strands.is_empty() && states.particles.is_empty() {
         eprintln!("warning: {}: no elements (F, E, P): nothing can collide", options.states.display());
     }
     let bad_input = |message: String| Failure::input(format!("{}: {message}", options.states.display()));
-    for oddity in sizes::oddities(&states) {
+    for oddity in sizes::oddities(states) {
         eprintln!("warning: {}: {oddity}", options.states.display());
     }
     let model = states.collision_model().map_err(bad_input)?;
-    refuse_intersections(&model, &states).map_err(bad_input)?;
+    let judge = Judge::from_model(&model);
+    refuse_intersections(&judge, states).map_err(bad_input)?;
 
-    let mut resolver = states.resolver(model, params).map_err(|error| bad_input(error.to_string()))?;
-    let interrupt = Interrupt::listen();
-    let mut watch = |_: &AcceptedState<'_>| {
-        if interrupt.is_set() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    let mut resolver =
+        states.resolver(model, params.clone()).map_err(|error| bad_input(error.to_string()))?;
+    let mut checker = options.check.then(|| MotionJudge::new(judge));
+    let (mut intersections, mut unjudged) = (0, None);
+    let mut watch = |accepted: &AcceptedState<'_>| {
+        if let Some(judge) = &mut checker {
+            match judge.check_path(accepted.previous, accepted.positions, &PathOptions::default()) {
+                Ok(report) => {
+                    let left = MAX_LISTED.saturating_sub(intersections);
+                    let step = accepted.step;
+                    report.hits.iter().take(left).for_each(|hit| eprintln!("two-way step {step}: {hit}"));
+                    intersections += report.hit_count;
+                }
+                Err(error) => unjudged = Some(error),
+            }
+        }
+        if interrupt.is_set() || unjudged.is_some() {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
     };
     let mut x = states.x.clone();
     let cpu = bowknot::simulator::cpu_seconds();
@@ -76,24 +140,33 @@ pub fn resolve(options: &ResolveOptions) -> Result<Exit, Failure> {
         .prepare(resolver.scene(), &x)
         .and_then(|()| backend.resolve(&mut resolver, &mut x, &states.y, &states.input(), &mut watch))
         .map_err(failure)?;
+    if let Some(error) = unjudged {
+        return Err(bad_input(error.to_string()));
+    }
     let is_waiting = |v: &usize| (states.fixed[*v] || states.obstacle[*v]) && x[*v] != states.y[*v];
     // On a GPU, a vertex on the point of its grid next to the target has arrived.
     let waits = statistics.prescribed_lag_m > 0.0;
     let waiting = if waits { (0..x.len()).filter(is_waiting).count() } else { 0 };
-    let summary = summarize(&statistics, bowknot::simulator::cpu_seconds() - cpu, waiting);
-    write_result(&options.out, &states, &x)?;
+    let mut summary = summarize(&statistics, bowknot::simulator::cpu_seconds() - cpu, waiting);
+    summary.intersections = options.check.then_some(intersections);
+    write_result(&options.out, states, &x)?;
 
     if options.json {
         output::print_json(&summary)?;
     } else {
         output::print(&to_text(&summary, options))?;
     }
-    Ok(if interrupt.is_set() { Exit::Interrupted } else { Exit::Success })
+    let exit = match intersections {
+        0 if interrupt.is_set() => Exit::Interrupted,
+        0 => Exit::Success,
+        _ => Exit::CheckFailed,
+    };
+    Ok(Ended { exit, converged: statistics.converged })
 }
 
 /// Refuses a start that intersects.
-fn refuse_intersections(model: &CollisionModel, states: &States) -> Result<(), String> {
-    let report = Judge::from_model(model)
+fn refuse_intersections(judge: &Judge, states: &States) -> Result<(), String> {
+    let report = judge
         .check_state(&states.x, &StateOptions { limit: MAX_LISTED, distance: false })
         .map_err(|error| error.to_string())?;
     if report.is_clear() {
@@ -127,6 +200,7 @@ fn summarize(statistics: &Statistics, cpu_seconds: f64, prescribed_waiting: usiz
         max_step_stretch: statistics.max_step_stretch,
         max_stretch: statistics.max_stretch,
         converged: statistics.converged,
+        intersections: None,
     }
 }
 
@@ -151,10 +225,18 @@ fn to_text(summary: &Summary, options: &ResolveOptions) -> String {
     } else {
         String::new()
     };
+    let checked = match summary.intersections {
+        None => String::new(),
+        Some(0) => "checked every accepted state and path: no intersection\n".to_owned(),
+        Some(count) => format!(
+            "checked every accepted state and path: {}\n",
+            counted(count, "INTERSECTION", "INTERSECTIONS")
+        ),
+    };
     format!(
         "{end} after {} and {} in {:.3} s ({:.3} s of CPU)\n\
          distance to target {:.3e} m (RMS of free vertices), not travelled {:.3e} m, stationarity {:.3e} m\n{lag}\
-         smallest gap {gap}, largest stretch {:.4} of the lengths at the start, {:.4} at rest\nwrote {}",
+         smallest gap {gap}, largest stretch {:.4} of the lengths at the start, {:.4} at rest\n{checked}wrote {}",
         counted(summary.steps, "step", "steps"),
         counted(summary.searches, "search", "searches"),
         summary.seconds,

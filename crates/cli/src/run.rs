@@ -2,11 +2,13 @@
 
 use crate::args::RunOptions;
 use crate::exit::{Exit, Failure};
+#[cfg(test)]
+use crate::fault;
 use crate::interrupt::Interrupt;
 use crate::progress::Bar;
-use crate::{bare_mesh, fault, gpu, output, setup};
+use crate::{bare_mesh, failure_dump, gpu, output, setup};
 use bowknot::check::{Judge, StateReport};
-use bowknot::run::{Outcome, Progress, Summary};
+use bowknot::run::{FailureWatch, Outcome, Progress, Summary};
 use bowknot::{Scene, SimulationError, Simulator, World};
 use bowknot_errors::counted;
 use std::ops::ControlFlow;
@@ -17,8 +19,16 @@ const MAX_SIZES: usize = 10;
 
 pub fn run(options: &RunOptions) -> Result<Exit, Failure> {
     setup::machine(&options.machine)?;
+    simulate(options)
+}
+
+/// Simulates with the threads that there are.
+pub fn simulate(options: &RunOptions) -> Result<Exit, Failure> {
     if let Some(dump) = &options.dump {
         output::refuse_overwrite(dump, &[Path::new(&options.scene)])?;
+    }
+    if let Some(dump) = &options.dump_on_failure {
+        failure_dump::refuse(dump, &[Path::new(&options.scene)])?;
     }
     let scene = open(options)?;
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(scene.name()));
@@ -29,6 +39,7 @@ pub fn run(options: &RunOptions) -> Result<Exit, Failure> {
         resume: options.resume,
         check: options.check,
         interrupt: Some(interrupt.flag()),
+        watch: options.dump_on_failure.is_some().then(FailureWatch::default),
     };
     let mut bar: Option<Bar> = None;
     let mut show = |progress: &Progress<'_>| {
@@ -39,6 +50,7 @@ pub fn run(options: &RunOptions) -> Result<Exit, Failure> {
             Bar::new(progress.frames, "frames", options.quiet)
         });
         bar.set_position(progress.step, &progress_text(progress));
+        #[cfg(test)]
         fault::panic_if_asked(progress.step);
         ControlFlow::Continue(())
     };
@@ -46,10 +58,18 @@ pub fn run(options: &RunOptions) -> Result<Exit, Failure> {
     if let Some(bar) = bar {
         bar.finish();
     }
-    let outcome = result.map_err(|error| run_failure(&scene, error, options.dump.as_deref()))?;
+    let smallest = match (&run_options.watch, &options.dump_on_failure) {
+        (Some(watch), Some(file)) => dump_failure(&scene, watch, &interrupt, &result, file),
+        _ => None,
+    };
+    let outcome = result.map_err(|error| {
+        let failure = run_failure(&scene, error, options.dump.as_deref());
+        let more = smallest.iter().map(|text| format!("\n{text}"));
+        Failure { message: std::iter::once(failure.message).chain(more).collect(), ..failure }
+    })?;
 
-    for finding in &outcome.findings {
-        eprintln!("{finding}");
+    for line in outcome.findings.iter().chain(&smallest) {
+        eprintln!("{line}");
     }
     if options.json {
         output::print_json(&outcome.summary)?;
@@ -61,6 +81,28 @@ pub fn run(options: &RunOptions) -> Result<Exit, Failure> {
         _ if outcome.interrupted => Exit::Interrupted,
         _ => Exit::Success,
     })
+}
+
+/// Writes the smallest state that shows what a run failed of, and says what it wrote; none if it did not fail.
+fn dump_failure(
+    scene: &Scene,
+    watch: &FailureWatch,
+    interrupt: &Interrupt,
+    result: &Result<Outcome, SimulationError>,
+    file: &Path,
+) -> Option<String> {
+    let is_whole = |outcome: &Outcome| {
+        outcome.summary.intersections.is_none_or(|count| count == 0)
+            && (outcome.interrupted
+                || outcome.summary.mean.as_ref().is_none_or(|mean| mean.converged == Some(1.0)))
+    };
+    if result.as_ref().is_ok_and(is_whole) {
+        return None;
+    }
+    let error = result.as_ref().err();
+    let smallest = failure_dump::reduce(interrupt, |limits| watch.smallest(scene, error, limits))?;
+    let written = failure_dump::write(file, &smallest, Some(&scene.twoway()));
+    Some(written.unwrap_or_else(|failure| failure.message))
 }
 
 /// The scene, with the options applied as assignments to its keys.
@@ -133,6 +175,14 @@ fn print_sizes(world: &World) {
 
 /// The text beside the progress bar.
 fn progress_text(progress: &Progress<'_>) -> String {
+    if let Some(within) = &progress.within {
+        let steps = counted(within.two_way_steps, "two-way step", "two-way steps");
+        let mut text = format!("step {}: {steps} in {:.0} s", progress.step + 1, within.seconds);
+        if let Some(wait) = within.waits.first() {
+            text += &format!(", waits for {}", wait.short());
+        }
+        return text;
+    }
     let Some(statistics) = progress.statistics else { return String::new() };
     let mut text = counted(statistics.two_way_steps, "step", "steps");
     if let Some(gap) = statistics.min_gap_m {
@@ -143,6 +193,9 @@ fn progress_text(progress: &Progress<'_>) -> String {
     }
     if let (false, Some(body)) = (statistics.converged, &statistics.slowest_body) {
         text += &format!(", {body} is {:.1} mm short of its target", 1e3 * statistics.remaining_m);
+    }
+    if let Some(wait) = statistics.waits.first() {
+        text += &format!(", waited for {}", wait.short());
     }
     if let Some(count) = progress.intersections.filter(|&count| count > 0) {
         text += &format!(", {}", counted(count, "INTERSECTION", "INTERSECTIONS"));
@@ -185,6 +238,11 @@ fn to_text(outcome: &Outcome, out: &Path, frames: usize) -> String {
         number(max.and_then(|max| max.max_stretch), 3),
     ));
     lines.extend(unreached_targets(summary));
+    if let Some(slowest) = &summary.slowest_step {
+        let steps = counted(slowest.two_way_steps, "two-way step", "two-way steps");
+        lines.push(format!("slowest: time step {} with {steps}, which waited for", slowest.step));
+        lines.extend(slowest.waits.iter().map(|wait| format!("  {wait}")));
+    }
     if let Some(count) = summary.intersections {
         lines.push(match count {
             0 => "checked every accepted state and path: no intersection".to_owned(),

@@ -38,8 +38,8 @@ pub struct ContactParams {
     pub friction_model: FrictionModel,
     /// Whether edge lengths are limited at all. Default true.
     pub edges: bool,
-    /// Largest ratio of an edge's length to its reference length, sigma, for every body without its own.
-    /// Default: the limit of the body's material if it is a cloth, otherwise 1.1 (paper: 1.1 for all).
+    /// Largest ratio of an edge's length to its reference length, sigma, for every body without its own; above 1,
+    /// inf: no limit. Default: the limit of the body's material if it is a cloth, otherwise 1.1 (paper: 1.1 for all).
     pub stretch_limit: Option<f64>,
     /// The reference length of an edge. Default rest.
     pub edge_reference: EdgeReference,
@@ -147,7 +147,7 @@ impl Parameters for ContactParams {
             checks.positive("separation_speed", speed);
         }
         if let Some(limit) = self.stretch_limit {
-            checks.above("stretch_limit", limit, 1.0);
+            checks.above_or_infinite("stretch_limit", limit, 1.0);
         }
     }
 }
@@ -160,13 +160,12 @@ mod tests {
     fn every_number_must_be_in_range_and_nan_is_refused() {
         assert!(ContactParams::default().validate().is_ok() && ContactParams::paper().validate().is_ok());
         type Set = fn(&mut ContactParams, f64);
-        let fields: [(&str, Set); 6] = [
+        let fields: [(&str, Set); 5] = [
             ("delta", |p, value| p.delta = Some(value)),
             ("min_separation", |p, value| p.min_separation = Some(value)),
             ("range", |p, value| p.range = value),
             ("active", |p, value| p.active = value),
             ("separation_speed", |p, value| p.separation_speed = Some(value)),
-            ("stretch_limit", |p, value| p.stretch_limit = Some(value)),
         ];
         for (path, set) in fields {
             for value in [f64::NAN, f64::INFINITY, -1.0] {
@@ -176,5 +175,11 @@ mod tests {
                 assert_eq!((errors.len(), errors[0].path.as_str()), (1, path), "{value}");
             }
         }
+        let limited = |limit| ContactParams { stretch_limit: Some(limit), ..ContactParams::default() };
+        for limit in [f64::NAN, -1.0, 1.0] {
+            let errors = limited(limit).validate().expect_err("out of range");
+            assert_eq!((errors.len(), errors[0].path.as_str()), (1, "stretch_limit"), "{limit}");
+        }
+        assert!(limited(f64::INFINITY).validate().is_ok(), "no limit");
     }
 }

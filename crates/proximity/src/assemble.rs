@@ -47,9 +47,7 @@ impl PartnerTable {
     #[inline]
     pub fn partners<'a>(&self, tasks: &'a [TaskResult], element: usize) -> &'a [Candidate] {
         let (task, run) = &self.entries[element];
-        tasks
-            .get(*task as usize)
-            .map_or(&[][..], |task| &task.partners[run.start as usize..][..run.count as usize])
+        tasks.get(*task as usize).map_or(&[][..], |task| &task.partners[run.start..][..run.count as usize])
     }
 
     /// Writes the pairs of `kind` in order.
@@ -77,7 +75,7 @@ impl PartnerTable {
             for (task, run) in entries.iter().filter(|(_, run)| run.count > 0) {
                 let (head, tail) = std::mem::take(&mut rest).split_at_mut(run.count as usize);
                 rest = tail;
-                let partners = &tasks[*task as usize].partners[run.start as usize..][..head.len()];
+                let partners = &tasks[*task as usize].partners[run.start..][..head.len()];
                 write_pairs(kind, model, run.element, partners, head);
             }
             separate_all(model, kind, pairs, positions, separations);

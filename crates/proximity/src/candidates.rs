@@ -22,11 +22,11 @@ pub struct CandidateList {
 #[derive(Clone, Debug, Default)]
 pub struct Candidates {
     /// Partners of element a: `partners[starts[a]..starts[a + 1]]`, ascending. Empty: there are none.
-    starts: Vec<u32>,
+    starts: Vec<usize>,
     partners: Vec<Candidate>,
     /// The list that is being written.
     next: Vec<Candidate>,
-    next_starts: Vec<u32>,
+    next_starts: Vec<usize>,
 }
 
 impl CandidateList {
@@ -81,7 +81,7 @@ impl Candidates {
     /// The partners of an element of side *a*, ascending.
     #[inline]
     pub fn of(&self, element: usize) -> &[Candidate] {
-        &self.partners[self.starts[element] as usize..self.starts[element + 1] as usize]
+        &self.partners[self.starts[element]..self.starts[element + 1]]
     }
 
     /// Whether there is no pair.
@@ -91,7 +91,7 @@ impl Candidates {
 
     /// Number of partners of a range of elements.
     pub fn count(&self, elements: Range<usize>) -> usize {
-        (self.starts[elements.end] - self.starts[elements.start]) as usize
+        self.starts[elements.end] - self.starts[elements.start]
     }
 
     /// Replaces the pairs of which an element is `replaced` (by side and index) by those of the tasks.
@@ -112,7 +112,7 @@ impl Candidates {
             starts.resize(elements + 1, 0);
         }
         let kept = |a: usize| {
-            let old = &partners[starts[a] as usize..starts[a + 1] as usize];
+            let old = &partners[starts[a]..starts[a + 1]];
             let none = old.is_empty() || replaced(0, a as u32);
             let old = if none { &[][..] } else { old };
             old.iter().copied().filter(|candidate| !replaced(1, candidate.element))
@@ -121,13 +121,13 @@ impl Candidates {
         next_starts.resize(elements + 1, 0);
         next_starts[1..].par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, counts)| {
             for (count, a) in counts.iter_mut().zip(chunk * CHUNK..) {
-                *count = (kept(a).count() + table.partners(tasks, a).len()) as u32;
+                *count = kept(a).count() + table.partners(tasks, a).len();
             }
         });
         for a in 0..elements {
             next_starts[a + 1] += next_starts[a];
         }
-        next.resize(next_starts[elements] as usize, Candidate::default());
+        next.resize(next_starts[elements], Candidate::default());
         let write = |elements: Range<usize>, out: &mut [Candidate]| {
             let mut end = 0;
             for a in elements {
@@ -155,7 +155,7 @@ impl Candidates {
 /// Calls `write` for chunks of `elements` with their parts of `out`, which begins with that of the first.
 fn for_each_chunk(
     elements: Range<usize>,
-    starts: &[u32],
+    starts: &[usize],
     out: &mut [Candidate],
     write: &(impl Fn(Range<usize>, &mut [Candidate]) + Sync),
 ) {
@@ -167,7 +167,7 @@ fn for_each_chunk(
         return write(elements, out);
     }
     let middle = elements.start + chunks / 2 * CHUNK;
-    let (left, right) = out.split_at_mut((starts[middle] - starts[elements.start]) as usize);
+    let (left, right) = out.split_at_mut(starts[middle] - starts[elements.start]);
     rayon::join(
         || for_each_chunk(elements.start..middle, starts, left, write),
         || for_each_chunk(middle..elements.end, starts, right, write),

@@ -39,7 +39,8 @@ pub struct Query<'a, const A: usize, const B: usize> {
 pub struct PartnerRange {
     pub element: u32,
     /// Where its partners begin in [`TaskResult::partners`].
-    pub start: u32,
+    pub start: usize,
+    /// At most the number of elements.
     pub count: u32,
 }
 
@@ -159,7 +160,7 @@ fn search_leaf<K: PairTest<A, B>, const A: usize, const B: usize, const SWEPT: b
     for lane in 0..LANES {
         let count = std::mem::take(&mut scratch.lengths[lane]);
         if count > 0 {
-            let start = found.partners.len() as u32;
+            let start = found.partners.len();
             found.runs.push(PartnerRange { element: leaf.elements[lane], start, count: count as u32 });
             append_sorted(&scratch.lists[lane][..count], &scratch.bounds[lane][..count], &mut found.partners);
         }

@@ -198,12 +198,29 @@ impl Stepper {
         min_separation: f64,
         damping: f64,
     ) -> bool {
+        self.visit_plane_limits(kind, vertices, separation, min_separation, damping, |v, alpha| {
+            self.limit(v, alpha);
+        })
+    }
+
+    /// Calls `limit` with every vertex that the slab of a pair limits, and the step size that it allows; see
+    /// [`Self::limit_by_planes`]. Returns whether the pair is frozen.
+    #[inline]
+    pub fn visit_plane_limits(
+        &self,
+        kind: PairKind,
+        vertices: &[u32; 4],
+        separation: &Separation,
+        min_separation: f64,
+        damping: f64,
+        limit: impl FnMut(usize, f64),
+    ) -> bool {
         let rounding = self.rounding();
         if separation.width <= rounding.frozen {
-            return self.freeze(kind, vertices);
+            return self.freeze(kind, vertices, limit);
         }
         let allowed = (damping * (separation.width - min_separation) - 2.0 * rounding.step).max(0.0);
-        self.share_gap(kind, vertices, &separation.normal, allowed);
+        self.share_gap(kind, vertices, &separation.normal, allowed, limit);
         false
     }
 
@@ -299,13 +316,20 @@ impl Stepper {
 
     /// Lets both sides of a pair together close its gap by at most `allowed` [m] along the unit normal `n`.
     #[inline]
-    fn share_gap(&self, kind: PairKind, vertices: &[u32; 4], n: &Vector, allowed: f64) {
+    fn share_gap(
+        &self,
+        kind: PairKind,
+        vertices: &[u32; 4],
+        n: &Vector,
+        allowed: f64,
+        mut limit: impl FnMut(usize, f64),
+    ) {
         let (count, side_a) = (kind.vertex_count(), kind.side_a());
         if let Some(&group) = self.groups.get(vertices[0] as usize)
             && group != Self::NO_GROUP
             && vertices[..count].iter().all(|&v| self.groups[v as usize] == group)
         {
-            return self.limit_within_group(&vertices[..count], side_a, n, allowed);
+            return self.limit_within_group(&vertices[..count], side_a, n, allowed, limit);
         }
         let mut closing = [0.0f64; 4];
         let mut speeds = [0.0f64; 2];
@@ -323,7 +347,7 @@ impl Stepper {
         for k in 0..count {
             if closing[k] > 0.0 {
                 let (v, share) = (vertices[k] as usize, speeds[usize::from(k >= side_a)] / total);
-                self.limit(v, (allowed * share / closing[k]).min(1.0) * self.caps[v]);
+                limit(v, (allowed * share / closing[k]).min(1.0) * self.caps[v]);
             }
         }
     }
@@ -331,7 +355,14 @@ impl Stepper {
     /// Limits a pair whose vertices move by the same fraction. If the slab moves with the pair, only the
     /// difference of both sides' motion closes it, and that is linear in the fraction (see
     /// [`Self::limit_by_moving_planes`]). Common motion is free.
-    fn limit_within_group(&self, vertices: &[u32], side_a: usize, n: &Vector, allowed: f64) {
+    fn limit_within_group(
+        &self,
+        vertices: &[u32],
+        side_a: usize,
+        n: &Vector,
+        allowed: f64,
+        mut limit: impl FnMut(usize, f64),
+    ) {
         let largest = |side: &[u32], sign: f64| {
             let along = side.iter().map(|&v| sign * n.dot(&self.displacements[v as usize]));
             along.fold(f64::NEG_INFINITY, f64::max)
@@ -340,17 +371,17 @@ impl Stepper {
         let other = if side_a < vertices.len() { largest(&vertices[side_a..], 1.0) } else { 0.0 };
         let closing = largest(&vertices[..side_a], -1.0) + other;
         if closing > allowed {
-            vertices.iter().for_each(|&v| self.limit(v as usize, allowed / closing));
+            vertices.iter().for_each(|&v| limit(v as usize, allowed / closing));
         }
     }
 
     /// Stops all vertices of a pair. Returns whether any of them wanted to move.
-    fn freeze(&self, kind: PairKind, vertices: &[u32; 4]) -> bool {
+    fn freeze(&self, kind: PairKind, vertices: &[u32; 4], mut limit: impl FnMut(usize, f64)) -> bool {
         let mut moving = false;
         for &v in &vertices[..kind.vertex_count()] {
             if self.displacements[v as usize] != Vector::zeros() {
                 moving = true;
-                self.limit(v as usize, 0.0);
+                limit(v as usize, 0.0);
             }
         }
         moving
@@ -366,7 +397,7 @@ impl Stepper {
                 let vertices = &contacts.pairs.pairs()[p].vertices;
                 let width = contacts.separations[p].width;
                 if width <= rounding.touching() {
-                    if self.freeze(kind, vertices) {
+                    if self.freeze(kind, vertices, |v, alpha| self.limit(v, alpha)) {
                         frozen.fetch_add(1, Ordering::Relaxed);
                     }
                     return;

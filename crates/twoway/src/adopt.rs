@@ -2,7 +2,7 @@
 
 use crate::error::ResolveError;
 use crate::input::ResolveInput;
-use crate::resolver::Resolver;
+use crate::resolver::{Resolver, check_pairs};
 use crate::stages::{BackwardStep, ForwardStep, Search};
 use crate::statistics::Statistics;
 use bowknot_geometry::{PairKind, Point, Vector};
@@ -53,6 +53,7 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
         self.begin(end.positions, end.target, &input)?;
         let Self { scene, state, search, .. } = self;
         search.update(scene, state, &mut Statistics::default());
+        check_pairs(scene, state)?;
         state.start.copy_from_slice(end.start);
         state.y.copy_from_slice(end.aims);
         state.step = statistics.steps;

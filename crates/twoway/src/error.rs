@@ -63,6 +63,19 @@ pub enum ResolveError {
     /// Parameters out of their range.
     #[error("parameters out of range:\n{0}")]
     Params(Errors<ParamError>),
+    /// More rows than indices of 32 bits can number.
+    #[error(
+        "{pairs} pairs within contact range and {edges} edges: together at most {limit} are possible; use a shorter \
+         contact distance (contact.delta, contact.range) or fewer elements"
+    )]
+    TooManyRows {
+        /// Pairs within contact range.
+        pairs: usize,
+        /// Edges of all meshes.
+        edges: usize,
+        /// The largest sum of both.
+        limit: usize,
+    },
     /// Coordinates so large that their rounding exceeds the minimum separation.
     #[error(
         "the minimum separation of {min_separation:.3e} m is below 16 ulp of the largest coordinate ({coordinate:.3e} m, \

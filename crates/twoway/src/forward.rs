@@ -5,6 +5,7 @@ use crate::search::longest_path;
 use crate::stages::{Coverage, ForwardStep, Search};
 use crate::state::ResolveState;
 use crate::statistics::Statistics;
+use crate::waits::{Wait, waits};
 use bowknot_geometry::{PairKind, Separation, Vector};
 use bowknot_stepper::{Bound, StepReport, Stepper, TrustRegionRule};
 use rayon::prelude::*;
@@ -66,6 +67,10 @@ impl ForwardStep for CertifiedForward {
         let (unhindered, unhindered_lag) = self.unhindered(state);
         state.previous.par_iter_mut().zip(&state.x).with_min_len(CHUNK).for_each(|(old, x)| *old = *x);
         StepReport { unhindered, unhindered_lag, ..self.stepper.advance(&mut state.x) }
+    }
+
+    fn waits(&self, scene: &CollisionScene, state: &ResolveState) -> Vec<Wait> {
+        waits(scene, state, &self.stepper, &self.held)
     }
 }
 

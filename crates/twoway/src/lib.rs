@@ -41,6 +41,7 @@ mod statistics;
 mod stop;
 mod stretch;
 mod validation;
+mod waits;
 
 /// The judge of states and paths, which finds intersections by exact predicates.
 pub use bowknot_check as check;
@@ -81,6 +82,7 @@ pub use state::{ContactSet, ResolveState};
 pub use statistics::{Skipped, StageSeconds, Statistics};
 pub use stop::{Residuals, StopParams, StopRule, StopTest};
 pub use stretch::max_stretch;
+pub use waits::{Wait, WaitPair, WaitReason};
 
 /// The README's example is tested with the documentation.
 #[cfg(doctest)]

@@ -1,5 +1,6 @@
 //! Observes the loop, and may stop it.
 
+use crate::waits::Wait;
 use bowknot_geometry::Point;
 use std::ops::ControlFlow;
 
@@ -20,6 +21,10 @@ pub struct AcceptedState<'a> {
 pub trait Observer {
     /// Called after every forward step; `Break` ends the call with this state.
     fn accepted(&mut self, state: &AcceptedState<'_>) -> ControlFlow<()>;
+
+    /// Called after [`Self::accepted`], with what tells why the vertices that have farthest to go wait. Telling
+    /// takes about as long as the forward step, and only if it is asked for.
+    fn waiting(&mut self, _tell: &dyn Fn() -> Vec<Wait>) {}
 }
 
 /// Observes nothing.

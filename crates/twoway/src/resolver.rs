@@ -19,12 +19,16 @@ use crate::state::{ContactSet, ResolveState};
 use crate::statistics::Statistics;
 use crate::stop::StopTest;
 use crate::stretch::max_stretch;
+use crate::validation::check_rows;
 use bowknot_check::{CheckError, Judge, StateOptions, StateReport};
 use bowknot_constraints::FrictionModel;
 use bowknot_geometry::Point;
 use bowknot_proximity::CollisionModel;
 use bowknot_stepper::StepReport;
 use std::time::Instant;
+
+/// From this number of steps on the statistics of a call tell what it waited for.
+const SLOW_STEPS: usize = 32;
 
 /// Moves positions toward a target without intersections. It keeps its workspace between calls.
 #[derive(Debug)]
@@ -140,6 +144,7 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
     ) -> Result<&ContactSet, ResolveError> {
         self.begin(positions, positions, input)?;
         self.search.update(&self.scene, &mut self.state, &mut Statistics::default());
+        check_pairs(&self.scene, &self.state)?;
         Ok(&self.state.contacts)
     }
 
@@ -162,8 +167,8 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
     /// and the statistics do not tell.
     ///
     /// # Errors
-    /// Wrong lengths, non-finite numbers and coordinates too large for the minimum separation; in debug builds
-    /// a start that intersects. The call is then refused, and `positions` are unchanged.
+    /// Wrong lengths, non-finite numbers and coordinates too large for the minimum separation; more pairs than can be
+    /// numbered; in debug builds a start that intersects. The call is then refused, and `positions` are unchanged.
     pub fn resolve(&mut self, positions: &mut [Point], target: &[Point]) -> Result<Statistics, ResolveError> {
         self.resolve_with(positions, target, &ResolveInput::default(), &mut ())
     }
@@ -198,14 +203,18 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
             // Within the thread pool: a parallel loop that starts outside of it pays for the crossing.
             let report = rayon::scope(|_| {
                 search.update(scene, state, &mut statistics);
+                check_pairs(scene, state)?;
                 if state.step == 0 && scene.friction_model() == FrictionModel::Filter {
                     filter_slip(scene, state);
                 }
                 timed_project(backward, scene, state, &mut statistics);
-                timed_advance(forward, scene, state, search, &mut statistics)
-            });
+                let report = timed_advance(forward, scene, state, search, &mut statistics);
+                // A swept step lists pairs of its own.
+                check_pairs(scene, state).map(|()| report)
+            })?;
             statistics.skipped.searches += usize::from(statistics.searches == searches);
             let observed = observer.accepted(&accepted(state));
+            observer.waiting(&|| forward.waits(scene, state));
             state.step += 1;
             state.remaining = report.remaining;
             statistics.remaining_r = report.remaining_fraction;
@@ -226,7 +235,13 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
             }
         }
 
+        // A call that the caller wants cut short is not slow.
+        let is_cut = input.max_steps.is_some_and(|most| state.step >= most);
+        if state.step >= SLOW_STEPS || (!statistics.converged && !is_cut && state.step > 0) {
+            statistics.waits = forward.waits(scene, state);
+        }
         self.finish(&mut statistics);
+        check_pairs(&self.scene, &self.state)?;
         [statistics.max_step_stretch, statistics.max_stretch] =
             max_stretch(&self.scene, [positions, self.scene.rest()], &self.state.x);
         positions.copy_from_slice(&self.state.x);
@@ -327,6 +342,11 @@ fn timed_advance(
     let searched = statistics.seconds.of_search() - before;
     statistics.seconds.forward += timer.elapsed().as_secs_f64() - searched;
     report
+}
+
+/// Refuses a state with so many pairs that rows could not be numbered.
+pub(crate) fn check_pairs(scene: &CollisionScene, state: &ResolveState) -> Result<(), ResolveError> {
+    check_rows(state.contacts.pairs.len(), scene.model().topology().edges.len())
 }
 
 /// The state after a forward step, for the observer.

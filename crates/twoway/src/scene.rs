@@ -4,7 +4,7 @@ use crate::bodies::{BodyContact, ContactTable, HalfSpaceContact, PairFriction};
 use crate::error::ResolveError;
 use crate::params::Params;
 use crate::spacing::Spacing;
-use crate::validation::{check_finite, check_length};
+use crate::validation::{check_finite, check_length, check_rows};
 use bowknot_constraints::{DesiredDistance, Facing, Feature, FrictionModel, STRETCH_LIMIT};
 use bowknot_errors::{Checks, Parameters};
 use bowknot_geometry::{PairKind, Point, Separation, Vector};
@@ -55,6 +55,7 @@ impl CollisionScene {
     ) -> Result<Self, ResolveError> {
         params.validate().map_err(ResolveError::Params)?;
         let vertices = model.topology().vertex_count;
+        check_rows(0, model.topology().edges.len())?;
         check_length("rest positions", rest.len(), vertices)?;
         check_length("masses", masses.len(), vertices)?;
         check_finite("the rest position", &model, rest)?;

@@ -4,6 +4,7 @@ use crate::scene::CollisionScene;
 use crate::state::ResolveState;
 use crate::statistics::Statistics;
 use crate::stop::Residuals;
+use crate::waits::Wait;
 use bowknot_geometry::{PairKind, Separation, Vector};
 use bowknot_stepper::{StepReport, TrustRegions};
 
@@ -160,4 +161,10 @@ pub trait ForwardStep: Send {
         search: &mut dyn Search,
         statistics: &mut Statistics,
     ) -> StepReport;
+
+    /// What holds back the vertices that have farthest to go after [`Self::advance`], farthest first; see
+    /// [`Wait`]. Called before the next update of `state.contacts`.
+    fn waits(&self, _scene: &CollisionScene, _state: &ResolveState) -> Vec<Wait> {
+        Vec::new()
+    }
 }

@@ -20,3 +20,36 @@ pub(crate) fn check_finite(
         None => Ok(()),
     }
 }
+
+/// Largest number of contact and edge rows. Solvers list up to four vertices per row by indices of 32 bits.
+const MAX_ROWS: usize = u32::MAX as usize / 4;
+
+/// Refuses so many pairs within contact range that rows could not be numbered.
+pub(crate) fn check_rows(pairs: usize, edges: usize) -> Result<(), ResolveError> {
+    check_rows_within(pairs, edges, MAX_ROWS)
+}
+
+fn check_rows_within(pairs: usize, edges: usize, limit: usize) -> Result<(), ResolveError> {
+    let fits = pairs.checked_add(edges).is_some_and(|rows| rows <= limit);
+    if fits { Ok(()) } else { Err(ResolveError::TooManyRows { pairs, edges, limit }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_rows_than_can_be_numbered_are_refused_with_their_counts() {
+        assert_eq!(check_rows_within(7, 3, 10), Ok(()));
+        let refused = ResolveError::TooManyRows { pairs: 8, edges: 3, limit: 10 };
+        assert_eq!(check_rows_within(8, 3, 10), Err(refused.clone()));
+        assert!(check_rows_within(usize::MAX, 1, usize::MAX).is_err());
+        let words = refused.to_string();
+        for part in ["8 pairs", "3 edges", "at most 10", "contact.delta"] {
+            assert!(words.contains(part), "{words}");
+        }
+        assert_eq!(check_rows(1 << 29, (1 << 29) - 1), Ok(()));
+        // As many rows as places of 32 bits, four for each: the last would have no number.
+        assert!(check_rows(1 << 30, 0).is_err());
+    }
+}

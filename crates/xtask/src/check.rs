@@ -4,7 +4,7 @@
 //! compiled. The tests come last and nothing follows them: the log ends with the test runner's own lines.
 
 use crate::workspace::{cargo, root, target_folder};
-use crate::{bowknot, docs, readers};
+use crate::{bowknot, docs, nightly, readers};
 use std::path::Path;
 use std::process::{Command, ExitCode};
 use std::time::Instant;
@@ -75,6 +75,20 @@ fn all_steps(root: &Path) -> Vec<Step> {
     } else {
         println!("==> wasm: skipped, because the target is missing: rustup target add {WASM_TARGET}");
     }
+    if is_there("deny") {
+        // Advisories need a database from the network.
+        let deny = cargo(root, "deny --config .deny.toml check bans licenses sources");
+        steps.push(Step::new("deny", deny));
+    } else {
+        println!("==> deny: skipped, because cargo-deny is missing: cargo install cargo-deny --locked");
+    }
+    if nightly::is_installed(root) {
+        steps.push(Step::new("fuzz targets", fuzz_targets(root)));
+    } else {
+        println!(
+            "==> fuzz targets: skipped, because there is no nightly compiler: rustup toolchain install nightly"
+        );
+    }
     steps.push(Step::new("build tests", cargo(root, "test --release --workspace --no-run")));
     // The step above built the command. `cargo run` would build it anew, with the features of its own package
     // alone.
@@ -105,6 +119,20 @@ fn run_afresh(command: &mut Command) -> std::io::Result<bool> {
         std::fs::remove_dir_all(out)?;
     }
     Ok(command.status()?.success())
+}
+
+/// Checks the fuzz targets, which are no members of the workspace, with the compiler that runs them.
+fn fuzz_targets(root: &Path) -> Command {
+    let mut command = nightly::cargo(root);
+    command.args("check --release --manifest-path tests/fuzz/Cargo.toml --target-dir".split(' '));
+    command.arg(target_folder(root).join("fuzz"));
+    command
+}
+
+/// Whether cargo has this subcommand.
+fn is_there(subcommand: &str) -> bool {
+    let output = Command::new("cargo").args([subcommand, "--version"]).output();
+    output.is_ok_and(|output| output.status.success())
 }
 
 fn format(root: &Path) -> Step {

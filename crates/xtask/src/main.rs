@@ -21,6 +21,7 @@ mod faults;
 mod hashes;
 mod miri;
 mod mutations;
+mod nightly;
 mod pictures;
 mod readers;
 mod soak;
@@ -38,7 +39,8 @@ Usage: cargo xtask check [--fast]
        cargo xtask soak --replay SEED [--generated]
        cargo xtask mutations [NAME..]
 
-check     run what CI runs, in named steps: format, clippy, docs, wasm, a small run, its exports read back, tests
+check     run what CI runs, in named steps: format, clippy, docs, wasm, a small run, its exports read back, tests; the fuzz targets if there
+          is a nightly compiler, `cargo deny` if it is installed
           --fast        format, clippy and unit tests only
 miri      run unit tests of geometry, lcp and stepper, or of the crates named, under Miri, which finds undefined
           behavior; needs the nightly toolchain with the components miri and rust-src

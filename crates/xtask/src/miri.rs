@@ -4,6 +4,7 @@
 //! hundreds of times slower than a release build, so only unit tests of crates with `unsafe` of their own, and of
 //! those that index the most, run under it.
 
+use crate::nightly;
 use std::path::Path;
 use std::process::{Command, ExitCode};
 
@@ -29,9 +30,8 @@ pub fn run(root: &Path, crates: &[&str]) -> ExitCode {
 }
 
 fn command(root: &Path, crates: &[&str]) -> Command {
-    // Through rustup: within `cargo xtask` the variable CARGO names the pinned compiler's cargo, which knows no `+`.
-    let mut command = Command::new("rustup");
-    command.current_dir(root).args(["run", "nightly", "cargo", "miri", "test", "--lib"]);
+    let mut command = nightly::cargo(root);
+    command.args(["miri", "test", "--lib"]);
     for name in crates {
         command.arg("--package").arg(format!("bowknot-{name}"));
     }
@@ -39,10 +39,6 @@ fn command(root: &Path, crates: &[&str]) -> Command {
     command.args(["--", "--skip", "threads"]);
     // Random tests read the clock for their seed, and rayon's queue is sound but not under stacked borrows.
     command.env("MIRIFLAGS", "-Zmiri-disable-isolation -Zmiri-tree-borrows -Zmiri-ignore-leaks");
-    // What the build of this command passes on belongs to another compiler.
-    ["RUSTC", "RUSTDOC", "CARGO", "RUSTUP_TOOLCHAIN"].iter().for_each(|name| {
-        command.env_remove(name);
-    });
     command
 }
 

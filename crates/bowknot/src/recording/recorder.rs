@@ -3,6 +3,8 @@
 use crate::recording::filters;
 use crate::recording::states::States;
 use crate::simulator::{CollisionProblem, Simulator};
+use bowknot_geometry::Point;
+use bowknot_scene::world::World;
 
 /// Makes files of the collision problems of one simulation.
 #[derive(Clone, Debug)]
@@ -14,7 +16,11 @@ pub struct Recorder {
 impl Recorder {
     /// A recorder of the simulation's problems.
     pub fn new(simulator: &Simulator) -> Self {
-        let world = simulator.world();
+        Self::of_world(simulator.world(), simulator.dynamics_model().masses())
+    }
+
+    /// A recorder of problems of a scene whose vertices have these masses [kg].
+    pub(crate) fn of_world(world: &World, masses: &[f64]) -> Self {
         let count = world.collision_vertices();
         let topology = world.collision.topology();
         let contact = &world.contact;
@@ -24,7 +30,7 @@ impl Recorder {
                 strands: topology.strand_edges.iter().map(|&e| topology.edges[e as usize]).collect(),
                 particles: topology.particles.clone(),
                 rest: world.positions[..count].to_vec(),
-                masses: simulator.dynamics_model().masses()[..count].to_vec(),
+                masses: masses[..count].to_vec(),
                 obstacle: (0..count as u32).map(|v| world.collision.is_obstacle(v)).collect(),
                 body: world.collision.vertex_body().to_vec(),
                 half_spaces: world.collision.half_spaces().to_vec(),
@@ -35,6 +41,12 @@ impl Recorder {
                 ..States::default()
             },
         }
+    }
+
+    /// The problem that has these positions [m] as its start and as its target.
+    pub(crate) fn at_rest(&self, positions: &[Point]) -> States {
+        let fixed = self.fixed.obstacle.clone();
+        States { x: positions.to_vec(), y: positions.to_vec(), fixed, ..self.fixed.clone() }
     }
 
     /// The problem as a file holds it: all that its solution depends on but the parameters of the method.

@@ -7,23 +7,28 @@ mod export;
 mod frames;
 mod layout;
 mod lock;
+mod progress;
 mod saved;
 mod spool;
 mod summary;
+mod watch;
 mod writer;
 
 pub use checker::Checker;
 pub use export::{ExportOptions, Exported, export};
-pub use summary::{EnergyNumbers, SecondsNumbers, SkippedNumbers, StepNumbers, Summary};
+pub use progress::{Progress, WithinStep};
+pub use summary::{EnergyNumbers, SecondsNumbers, SkippedNumbers, SlowStep, StepNumbers, Summary};
+pub use watch::{FailureWatch, SmallestState};
 pub use writer::RunWriter;
 
 use crate::simulator::{
     AcceptedStep, CollisionBackend, CollisionProblem, Cpu, SimulationError, SimulationObserver, Simulator,
-    StepStatistics, peak_memory_bytes,
+    WaitingElements, peak_memory_bytes,
 };
 use bowknot_io::{IoError, write_text};
 use bowknot_scene::Scene;
-use bowknot_scene::world::{SceneInfo, World};
+use bowknot_scene::world::World;
+use progress::Reporter;
 use std::cell::Cell;
 use std::ops::ControlFlow;
 use std::panic::{self, AssertUnwindSafe};
@@ -45,23 +50,8 @@ pub struct RunOptions {
     /// When this becomes true the run stops as soon as it can, even within a time step, which is then
     /// abandoned.
     pub interrupt: Option<Arc<AtomicBool>>,
-}
-
-/// Where a run is.
-#[derive(Clone, Copy, Debug)]
-pub struct Progress<'a> {
-    /// Time steps made, those before a resumption included.
-    pub step: usize,
-    /// Time steps to be made.
-    pub frames: usize,
-    /// What is simulated.
-    pub world: &'a World,
-    /// Counts of it.
-    pub info: &'a SceneInfo,
-    /// The last time step; none before the first.
-    pub statistics: Option<&'a StepStatistics>,
-    /// Intersections found so far, if checked.
-    pub intersections: Option<usize>,
+    /// Keeps what shows a failure of the run. Copies each collision problem in memory.
+    pub watch: Option<FailureWatch>,
 }
 
 /// How a run ended.
@@ -77,8 +67,8 @@ pub struct Outcome {
     pub warnings: Vec<String>,
 }
 
-/// Runs a scene to its last frame on the CPU. `progress` is called before the first time step and after each;
-/// `Break` ends the run there.
+/// Runs a scene to its last frame on the CPU. `progress` is called before the first time step and after each, and every
+/// second within one that takes longer than two; `Break` ends the run there, and abandons a time step that is not done.
 ///
 /// # Errors
 /// Whatever [`Simulator::new`] and [`Simulator::step`] refuse; a folder that cannot be written, holds a
@@ -133,23 +123,25 @@ fn run_steps(
     let info = simulator.world().info(scene.simulation.dt);
     let world = Arc::clone(simulator.world());
     let mut checker = options.check.then(|| Checker::new(&simulator));
+    if let Some(watch) = &options.watch {
+        watch.begin(&simulator);
+    }
     let frames = scene.simulation.frames;
-    let mut report = |step: usize, statistics: Option<&StepStatistics>, checker: &Option<Checker>| {
-        let intersections = checker.as_ref().map(Checker::intersections);
-        progress(&Progress { step, frames, world: &world, info: &info, statistics, intersections })
-    };
+    let mut reporter = Reporter::new(progress, frames, &world, &info);
 
     let stop_asked = || options.interrupt.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed));
-    let mut interrupted = report(simulator.step_index(), None, &checker).is_break();
+    let mut interrupted = reporter.between_steps(simulator.step_index(), None, checker.as_ref()).is_break();
     while !interrupted && simulator.step_index() < frames {
         present.set(simulator.step_index() + 1);
         let mut observer = RunObserver {
             writer: &writer,
             checker: checker.as_mut(),
+            watch: options.watch.as_ref(),
             world: &world,
             trace: scene.output.trace,
             record: scene.output.record,
             stop_asked: &stop_asked,
+            reporter: &mut reporter,
             error: None,
         };
         let result = simulator.step_observed(&mut observer);
@@ -160,10 +152,18 @@ fn run_steps(
             Ok(statistics) => {
                 if let Some(checker) = &mut checker {
                     let positions = &simulator.positions()[..world.collision_vertices()];
+                    let before = checker.intersections();
                     checker.judge_end(statistics.step, positions, &world)?;
+                    if let Some(watch) = options.watch.as_ref().filter(|_| checker.intersections() > before) {
+                        watch.found_intersection(positions);
+                    }
+                }
+                if let Some(watch) = options.watch.as_ref().filter(|_| !statistics.converged) {
+                    watch.not_converged();
                 }
                 writer.step(&statistics, &simulator)?;
-                interrupted = report(simulator.step_index(), Some(&statistics), &checker).is_break();
+                let step = simulator.step_index();
+                interrupted = reporter.between_steps(step, Some(&statistics), checker.as_ref()).is_break();
             }
             Err(SimulationError::Interrupted) => interrupted = true,
             Err(error @ SimulationError::Backend { .. }) => {
@@ -189,6 +189,7 @@ fn run_steps(
         mean: totals.mean().map_err(unwritable)?,
         max: totals.max().map_err(unwritable)?,
         min_gap_m: totals.min_gap(),
+        slowest_step: totals.slowest().cloned(),
         peak_memory_bytes: peak_memory_bytes(),
         intersections: checker.as_ref().map(Checker::intersections),
     };
@@ -199,17 +200,19 @@ fn run_steps(
 }
 
 /// What happens within the time steps of a run.
-struct RunObserver<'a> {
+struct RunObserver<'a, 'p> {
     writer: &'a RunWriter,
     checker: Option<&'a mut Checker>,
+    watch: Option<&'a FailureWatch>,
     world: &'a World,
     trace: bool,
     record: bool,
     stop_asked: &'a dyn Fn() -> bool,
+    reporter: &'a mut Reporter<'p>,
     error: Option<SimulationError>,
 }
 
-impl RunObserver<'_> {
+impl RunObserver<'_, '_> {
     fn go_on(&mut self, result: Result<(), SimulationError>) -> ControlFlow<()> {
         match result {
             Ok(()) if (self.stop_asked)() => ControlFlow::Break(()),
@@ -222,8 +225,11 @@ impl RunObserver<'_> {
     }
 }
 
-impl SimulationObserver for RunObserver<'_> {
+impl SimulationObserver for RunObserver<'_, '_> {
     fn problem(&mut self, problem: &CollisionProblem<'_>) -> ControlFlow<()> {
+        if let Some(watch) = self.watch {
+            watch.problem(problem);
+        }
         let write = || -> Result<(), SimulationError> {
             if self.record {
                 self.writer.write_problem(problem)?;
@@ -244,11 +250,22 @@ impl SimulationObserver for RunObserver<'_> {
                 self.writer.write_trace(accepted.step, accepted.iteration, l, accepted.state.positions)?;
             }
             if let Some(checker) = &mut self.checker {
+                let before = checker.intersections();
                 checker.judge(accepted, self.world)?;
+                if let Some(watch) = self.watch.filter(|_| checker.intersections() > before) {
+                    watch.found_intersection(accepted.state.positions);
+                }
             }
             Ok(())
         };
         let result = handle();
-        self.go_on(result)
+        match self.reporter.accepted(accepted) {
+            ControlFlow::Continue(()) => self.go_on(result),
+            stop => stop,
+        }
+    }
+
+    fn waiting(&mut self, tell: &dyn Fn() -> Vec<WaitingElements>) {
+        self.reporter.waiting(tell, self.checker.as_deref());
     }
 }

@@ -1,6 +1,6 @@
 //! The summary of a run: `summary.json`.
 
-use crate::simulator::StepStatistics;
+use crate::simulator::{StepStatistics, WaitingElements};
 use bowknot_scene::world::SceneInfo;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -26,11 +26,25 @@ pub struct Summary {
     pub max: Option<StepNumbers>,
     /// Smallest gap of all time steps [m]; none if there never was a candidate pair.
     pub min_gap_m: Option<f64>,
+    /// The time step with the most two-way steps, if a step was so slow that it tells what it waited for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub slowest_step: Option<SlowStep>,
     /// Largest resident memory so far [bytes]; none where the system does not report it.
     pub peak_memory_bytes: Option<u64>,
     /// Intersections found in accepted states and on the paths between them; none if not checked.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub intersections: Option<usize>,
+}
+
+/// A slow time step.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SlowStep {
+    /// Its index, from 1.
+    pub step: usize,
+    /// Two-way steps.
+    pub two_way_steps: usize,
+    /// What held back the vertices that had farthest to go.
+    pub waits: Vec<WaitingElements>,
 }
 
 /// The numbers of [`StepStatistics`], combined over time steps. Each is none if no time step has it; flags
@@ -117,15 +131,22 @@ pub(super) struct Totals {
     count: Value,
     max: Value,
     min_gap: Option<f64>,
+    slowest: Option<SlowStep>,
 }
 
 impl Totals {
     pub fn add(&mut self, statistics: &StepStatistics) {
-        // The index, the time and the name of a body have no mean.
+        // The index, the time, the name of a body and what was waited for have no mean.
         let Ok(Value::Object(mut values)) = serde_json::to_value(statistics) else { return };
         values.remove("step");
         values.remove("time");
         values.remove("slowest_body");
+        values.remove("waits");
+        let slowest = self.slowest.as_ref().map_or(0, |slowest| slowest.two_way_steps);
+        if !statistics.waits.is_empty() && statistics.two_way_steps > slowest {
+            let StepStatistics { step, two_way_steps, .. } = *statistics;
+            self.slowest = Some(SlowStep { step, two_way_steps, waits: statistics.waits.clone() });
+        }
         let values = Value::Object(values);
         self.steps += 1;
         merge(&mut self.sum, &values, &|sum, x| sum + x);
@@ -149,6 +170,10 @@ impl Totals {
 
     pub fn max(&self) -> serde_json::Result<Option<StepNumbers>> {
         serde_json::from_value(self.max.clone())
+    }
+
+    pub fn slowest(&self) -> Option<&SlowStep> {
+        self.slowest.as_ref()
     }
 
     pub fn min_gap(&self) -> Option<f64> {

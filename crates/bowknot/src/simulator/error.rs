@@ -1,5 +1,6 @@
 //! Why a simulation cannot begin or go on.
 
+use super::waits::element_words;
 use bowknot_check::{CheckError, Intersection};
 use bowknot_dynamics::{Errors, ParamError, StepError};
 use bowknot_errors::counted;
@@ -115,19 +116,12 @@ fn process_words(process: &Option<u32>) -> String {
 pub fn describe_intersections(world: &World, intersections: &[Intersection]) -> Vec<String> {
     let side = |intersection: &Intersection, side: usize| {
         let kind = intersection.class.sides()[side];
-        let Some(body) = intersection.bodies[side] else {
+        if intersection.bodies[side].is_none() {
             let plane = intersection.elements[side] as usize;
             let name = world.half_space_names.get(plane).map_or("", String::as_str);
             return format!("half-space {name}");
         };
-        let number = |v: &u32| world.bodies.get(body as usize).map_or(*v, |b| b.mesh_number(*v));
-        let vertices: Vec<String> =
-            intersection.vertices[side].iter().map(|v| number(v).to_string()).collect();
-        let element = match vertices.as_slice() {
-            [vertex] => format!("{kind} {vertex}"),
-            list => format!("{kind} (vertices {})", list.join(", ")),
-        };
-        format!("{element} of {}", world.name_of(body))
+        element_words(world, kind, &intersection.vertices[side])
     };
     intersections
         .iter()

@@ -22,6 +22,7 @@ mod sleep;
 mod solved;
 mod statistics;
 mod taut;
+mod waits;
 mod waking;
 
 pub use backend::{BackendError, CollisionBackend, Cpu};
@@ -33,3 +34,4 @@ pub use process::{cpu_seconds, peak_memory_bytes};
 pub use simulator::Simulator;
 pub use sleep::SleepState;
 pub use statistics::{Energy, StepSeconds, StepStatistics};
+pub use waits::WaitingElements;

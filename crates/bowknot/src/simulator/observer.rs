@@ -1,10 +1,12 @@
 //! What a simulation shows of a time step while it makes it.
 
+use super::waits::WaitingElements;
 use bowknot_dynamics::Residual;
 use bowknot_geometry::Point;
+use bowknot_scene::world::World;
 #[cfg(doc)]
 use bowknot_twoway::ResolveInput;
-use bowknot_twoway::{AcceptedState, Observer};
+use bowknot_twoway::{AcceptedState, Observer, Wait};
 use std::ops::ControlFlow;
 
 /// A collision problem on its way to the two-way method. Slices have one entry per vertex that collides.
@@ -64,6 +66,12 @@ pub trait SimulationObserver {
         ControlFlow::Continue(())
     }
 
+    /// Called after [`Self::accepted`], with what tells why the vertices that have farthest to go wait. Telling takes
+    /// about as long as a forward step, and only if it is asked for.
+    fn waiting(&mut self, tell: &dyn Fn() -> Vec<WaitingElements>) {
+        let _ = tell;
+    }
+
     /// Called after the collision stage of each Newton iteration, with the residual of the whole time step.
     fn iterated(&mut self, iterated: &Iterated) {
         let _ = iterated;
@@ -76,6 +84,7 @@ impl SimulationObserver for () {}
 /// Passes accepted states on, with their time step and iteration.
 pub(super) struct Relay<'a> {
     pub observer: &'a mut dyn SimulationObserver,
+    pub world: &'a World,
     pub step: usize,
     pub iteration: usize,
     /// Whether the observer has stopped the time step.
@@ -91,5 +100,10 @@ impl Observer for Relay<'_> {
         });
         self.stopped |= flow.is_break();
         flow
+    }
+
+    fn waiting(&mut self, tell: &dyn Fn() -> Vec<Wait>) {
+        let world = self.world;
+        self.observer.waiting(&|| tell().iter().map(|wait| WaitingElements::new(world, wait)).collect());
     }
 }

@@ -20,6 +20,7 @@ use super::relaxation::relax_target;
 use super::rest::Rest;
 use super::sleep::SleepState;
 use super::statistics::StepStatistics;
+use super::waits::WaitingElements;
 use bowknot_check::{Judge, StateOptions, StateReport};
 use bowknot_dynamics::{Dynamics, DynamicsModel};
 use bowknot_errors::counted;
@@ -357,7 +358,7 @@ impl Simulator {
             if observer.problem(&problem).is_break() {
                 return Err(SimulationError::Interrupted);
             }
-            let mut relay = Relay { observer: &mut *observer, step, iteration, stopped: false };
+            let mut relay = Relay { observer: &mut *observer, world, step, iteration, stopped: false };
             let input = ResolveInput {
                 prescribed: &prescribed[..count],
                 time_step: Some(*dt),
@@ -372,6 +373,10 @@ impl Simulator {
             let resolved = resolved.map_err(|source| backend_error(world, step, source))?;
             let cut = !last && !resolved.converged && resolved.steps >= MAX_INTERMEDIATE_STEPS;
             statistics.add_collision(&resolved, |body| world.name_of(body).to_owned());
+            if !resolved.waits.is_empty() {
+                statistics.waits =
+                    resolved.waits.iter().map(|wait| WaitingElements::new(world, wait)).collect();
+            }
 
             let timer = Instant::now();
             contacts.note_touching(resolver);

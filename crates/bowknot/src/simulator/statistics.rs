@@ -1,5 +1,6 @@
 //! What a time step reports: one line of `stats.jsonl`.
 
+use super::waits::WaitingElements;
 use bowknot_dynamics::{Energies, NewtonInfo};
 use bowknot_geometry::{Point, Vector};
 use bowknot_twoway::{Skipped, Statistics};
@@ -62,6 +63,10 @@ pub struct StepStatistics {
     /// Name of the body with the largest remaining distance, if the last collision problem did not converge.
     #[serde(default)]
     pub slowest_body: Option<String>,
+    /// What held back the vertices that had farthest to go, if a collision problem took 32 two-way steps or more, or
+    /// did not converge although nothing cut it short.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub waits: Vec<WaitingElements>,
     /// Largest distance by which an obstacle or pin lags behind its keyframe at the end [m].
     #[serde(default)]
     pub prescribed_lag_m: f64,

@@ -69,6 +69,7 @@ fn a_body_a_scene_and_a_preset_override_what_the_fabric_says() {
         ("material = \"wool\"\nstretch_limit = inf", "", f64::INFINITY),
         ("material = \"wool\"", "stretch_limit = 1.01", 1.01),
         ("material = \"wool\"\nstretch_limit = 1.3", "stretch_limit = 1.01", 1.3),
+        ("material = \"wool\"", "stretch_limit = inf", f64::INFINITY),
         ("material = \"wool\"", "preset = \"paper\"", 1.1),
         ("material = { stretch_limit = inf }", "preset = \"paper\"", 1.1),
         ("material = \"wool\"", "preset = \"paper\"\nstretch_limit = 1.01", 1.01),

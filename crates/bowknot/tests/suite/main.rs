@@ -16,6 +16,8 @@ mod fabrics;
 mod figure;
 /// The same bits on every machine, on any number of threads.
 mod golden;
+/// Numbers far out of range at every key of a scene.
+mod hostile;
 /// Sets of defaults: what `quick` saves, and that nothing intersects.
 mod presets;
 /// `docs/scene-reference.md` follows the structs.

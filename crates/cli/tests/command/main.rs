@@ -11,7 +11,9 @@ mod check;
 mod damaged_runs;
 /// `export` of runs and of folders of frames.
 mod export;
-/// Damaged checkpoints, locks, signals, panics, folders and disks that cannot be written.
+/// `--dump-on-failure` of `run`, `resolve` and `check`.
+mod failures;
+/// Damaged checkpoints, locks, signals, folders and disks that cannot be written.
 #[cfg(unix)]
 mod faults;
 /// Runs that are interrupted, resumed, or meet a full disk.

@@ -204,3 +204,39 @@ fn a_pin_that_would_go_through_the_ground_waits_and_is_named() {
     let free = place.run(&format!("{SMALL} --out free")).ok();
     assert!(!free.stdout.contains("held up") && !free.stdout.contains("ended at the limit"), "{free:#?}");
 }
+
+#[test]
+fn a_slow_time_step_names_what_it_waits_for() {
+    let place = Place::new();
+    let words = "run drape --scale 0.3 --frames 30 --dt 0.03 --set solver.stop.max_steps=1 --out run";
+    let ended = place.run(words).ok();
+    let lines: Vec<serde_json::Value> =
+        place.read("run/stats.jsonl").lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let slow: Vec<&serde_json::Value> = lines.iter().filter(|line| line["converged"] == false).collect();
+    assert!(!slow.is_empty());
+    assert!(lines.iter().any(|line| line.get("waits").is_none()), "steps that need not wait say nothing");
+    for line in &lines {
+        // A problem before the last one may have ended short of its target as well.
+        assert!(line.get("waits").is_some() || line["converged"] == true, "{line}");
+    }
+    for wait in slow.iter().flat_map(|line| line["waits"].as_array().unwrap()) {
+        let elements = wait["elements"].as_array().unwrap();
+        assert!(elements.iter().all(|element| element.as_str().unwrap().contains(" of ")), "{wait}");
+        assert_eq!(wait["bodies"].as_array().unwrap().len(), elements.len());
+        // The sheet is within a box of 2 m around the ball.
+        assert!(
+            wait["place_m"].as_array().unwrap().iter().all(|c| c.as_f64().unwrap().abs() < 1.0),
+            "{wait}"
+        );
+        assert!(wait["remaining_m"].as_f64().unwrap() > 0.0, "{wait}");
+    }
+    let pairs = slow.iter().flat_map(|line| line["waits"].as_array().unwrap());
+    let with_ball = pairs.filter(|wait| wait["bodies"] == serde_json::json!(["sheet", "ball"]));
+    assert!(with_ball.count() > 0, "{slow:?}");
+    let summary: serde_json::Value = serde_json::from_str(&place.read("run/summary.json")).unwrap();
+    let slowest = &summary["slowest_step"];
+    let line = &lines[slowest["step"].as_u64().unwrap() as usize - 1];
+    assert_eq!((&slowest["waits"], &slowest["two_way_steps"]), (&line["waits"], &line["two_way_steps"]));
+    let words = format!("slowest: time step {} with", slowest["step"]);
+    assert!(ended.stdout.contains(&words) && ended.stdout.contains("short of the target: "), "{ended:#?}");
+}

@@ -22,8 +22,11 @@ fn finite() -> impl Strategy<Value = f64> {
     prop_oneof![-10.0..10.0, any::<f64>().prop_filter("finite", |x| x.is_finite())]
 }
 
+/// Miri takes minutes for a thousand.
+const CASES: u32 = if cfg!(miri) { 20 } else { 20_000 };
+
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 20_000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: CASES, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn inflating_rounds_outward(bounds in boxes(), radius in prop_oneof![Just(0.0), 0.0..1e-3, 1e-20..1e-12]) {

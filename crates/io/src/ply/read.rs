@@ -122,8 +122,9 @@ impl<'a> Sink<'a> {
                 }
                 if let Some(property) = body {
                     let value = row.values[*property];
-                    if !(0.0..=f64::from(u32::MAX)).contains(&value) {
-                        return Err(format!("body {value} must be a whole number, at least 0"));
+                    // Bodies are written as `int`.
+                    if !(0.0..=f64::from(i32::MAX)).contains(&value) {
+                        return Err(format!("body {value} must be a whole number from 0 to {}", i32::MAX));
                     }
                     mesh.body.get_or_insert_default().push(value as u32);
                 }

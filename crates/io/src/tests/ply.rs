@@ -96,3 +96,24 @@ fn ply_faults_name_the_place() {
     let text = message(read_ply(&path, &Import::default()));
     assert!(text.contains("infinite.ply: vertex 3: coordinates"), "{text}");
 }
+
+/// Bodies are written as `int`: a larger number would come back as another one, or not at all.
+#[test]
+fn ply_bodies_are_numbers_that_can_be_written() {
+    let folder = folder();
+    let read = |body: &str| {
+        let text = ASCII.replace("uchar red", "uint body");
+        let rows = format!("0 0 0 {body}\n1. 0 0 7\n\n1 1 .5 7\n0 1 0 2147483647\n");
+        let text = text.replace("0 0 0 255\n1. 0 0 0\n\n1 1 .5 0\n0 1 0 0\n", &rows);
+        read_ply(&write(&folder, "bodies.ply", text), &Import::default())
+    };
+    let mesh = read("3").unwrap();
+    assert_eq!(mesh.body.as_deref(), Some(&[3, 7, 7, i32::MAX as u32][..]));
+    let again = folder.path().join("again.ply");
+    write_ply(&again, &mesh.view()).unwrap();
+    assert_eq!(read_ply(&again, &Import::default()).unwrap().body, mesh.body);
+    for body in ["2147483648", "-1"] {
+        let text = message(read(body));
+        assert!(text.contains(&format!("body {body} must be a whole number from 0 to 2147483647")), "{text}");
+    }
+}

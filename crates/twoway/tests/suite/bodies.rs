@@ -329,19 +329,26 @@ fn stretch_limits_are_those_of_each_body_and_none_costs_nothing() {
     assert!(worst[1] > 1.25 && worst[1] < 1.3 * 1.02 + 1e-12, "{worst:?}");
     assert!(worst[2] > 1.05 && worst[2] < 1.1 * 1.02 + 1e-12, "{worst:?}");
 
-    // Without any limit the stopping rule has no edges.
+    // Without any limit the stopping rule has no edges. Infinity for all bodies is as good as for each.
     let topology = Topology::builder(n)
         .triangles(resolver.scene().model().topology().triangles[..18].iter().copied())
         .build()
         .unwrap();
     let mut resolver =
-        Resolver::new(CollisionModel::single_body(topology), &x[..n], &vec![1.0; n], Params::fast())
+        Resolver::new(CollisionModel::single_body(topology.clone()), &x[..n], &vec![1.0; n], Params::fast())
             .unwrap()
             .with_bodies(vec![limit(Some(f64::INFINITY))])
             .unwrap();
     let mut moved = x[..n].to_vec();
     let report = resolver.resolve(&mut moved, &y[..n]).unwrap();
     assert!(report.converged && report.edge_rows == 0 && report.max_stretch > 1.0, "{report:?}");
+    let mut params = Params::fast();
+    params.contact.stretch_limit = Some(f64::INFINITY);
+    let mut resolver =
+        Resolver::new(CollisionModel::single_body(topology), &x[..n], &vec![1.0; n], params).unwrap();
+    let mut again = x[..n].to_vec();
+    assert_eq!(resolver.resolve(&mut again, &y[..n]).unwrap().edge_rows, 0);
+    assert_eq!(again, moved);
 }
 
 #[test]

@@ -9,3 +9,5 @@ mod friction;
 mod obstacles;
 mod resolve;
 mod tutorial;
+/// What a call says that it waits for.
+mod waits;

@@ -1,15 +1,19 @@
 //! `bowknot check`: checks states, and the straight paths between the states of a trace, for intersections.
 
+mod files;
+mod smallest;
+
 use crate::args::CheckOptions;
 use crate::exit::{Exit, Failure};
 use crate::progress::Bar;
-use crate::{archive, output};
+use crate::{archive, failure_dump, output};
 use bowknot::check::{Judge, Parts, PathOptions, StateOptions};
 use bowknot::geometry::{MeshProblem, Point, check_mesh};
-use bowknot::io::{Import, Mesh, files_in, read_mesh};
+use bowknot::io::{Import, Mesh, read_mesh};
+use bowknot::recording::States;
 use bowknot_errors::counted;
+use files::{Group, extension, groups_of};
 use serde::Serialize;
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// The result, as `--json` prints it.
@@ -49,12 +53,18 @@ pub fn check(options: &CheckOptions) -> Result<Exit, Failure> {
         let paths: Vec<&Path> = options.paths.iter().map(PathBuf::as_path).collect();
         output::refuse_overwrite(dump, &paths)?;
     }
+    if let Some(dump) = &options.dump_on_failure {
+        let paths: Vec<&Path> = options.paths.iter().map(PathBuf::as_path).collect();
+        failure_dump::refuse(dump, &paths)?;
+    }
     let groups = options.paths.iter().map(|path| groups_of(path)).collect::<Result<Vec<_>, _>>()?.concat();
     let mut checker = Checker {
         min_distance: options.min_distance,
         list: options.list,
         dump: options.dump.as_deref(),
         dumped: None,
+        failure_dump: options.dump_on_failure.as_deref(),
+        smallest: None,
         previous: None,
         report: Report::default(),
         bar: Bar::new(groups.iter().map(|g| g.files.len()).sum(), "files", false),
@@ -62,7 +72,7 @@ pub fn check(options: &CheckOptions) -> Result<Exit, Failure> {
     for group in &groups {
         checker.group(group)?;
     }
-    let dumped = checker.dumped;
+    let (dumped, smallest) = (checker.dumped, checker.smallest);
     let mut report = checker.report;
     report.clear = report.intersections == 0 && report.path_hits == 0 && !report.too_near;
     checker.bar.finish();
@@ -79,51 +89,10 @@ pub fn check(options: &CheckOptions) -> Result<Exit, Failure> {
             ))?;
         }
     }
+    if let Some(text) = smallest {
+        eprintln!("{text}");
+    }
     Ok(if report.clear { Exit::Success } else { Exit::CheckFailed })
-}
-
-/// Files that are checked in order. If they are a trace, the straight paths between them are checked too.
-#[derive(Clone, Debug)]
-struct Group {
-    files: Vec<PathBuf>,
-    trace: bool,
-}
-
-/// The groups of an argument: a single file, the frames of a folder, or the frames and the trace of a run.
-fn groups_of(path: &Path) -> Result<Vec<Group>, Failure> {
-    if !path.is_dir() {
-        return Ok(vec![Group { files: vec![path.to_owned()], trace: false }]);
-    }
-    let mut groups = Vec::new();
-    for folder in [path.join("frames"), path.join("trace")] {
-        if folder.is_dir() {
-            groups.extend(frames_in(&folder)?);
-        }
-    }
-    // In the folder of a run this finds `frames.npz`, in any other folder its frames.
-    groups.extend(frames_in(path)?);
-    if groups.is_empty() {
-        let message = "no frames (.ply, .obj, .npz) in it, nor in frames/ or trace/ below it";
-        return Err(Failure::input(format!("{}: {message}", path.display())));
-    }
-    Ok(groups)
-}
-
-/// The frames directly in a folder, in natural order.
-fn frames_in(folder: &Path) -> Result<Option<Group>, Failure> {
-    let mut files = files_in(folder, &["ply", "obj", "npz"])?;
-    // Frames that a run wrote in two formats are the same states: the binary ones, which are exact, count.
-    let binary: BTreeSet<PathBuf> =
-        files.iter().filter(|file| extension(file) == "ply").map(|file| file.with_extension("")).collect();
-    files.retain(|file| extension(file) != "obj" || !binary.contains(&file.with_extension("")));
-    // The canonical path has a file name even where the argument ends with a dot, as `trace/.` does.
-    let real = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
-    let trace = real.file_name().is_some_and(|n| n == "trace");
-    Ok((!files.is_empty()).then_some(Group { files, trace }))
-}
-
-fn extension(path: &Path) -> String {
-    path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
 }
 
 /// The state that was checked last, with the judge for its elements.
@@ -142,6 +111,10 @@ struct Checker<'a> {
     dump: Option<&'a Path>,
     /// Number of triangles written there.
     dumped: Option<usize>,
+    /// File for the fewest elements that intersect.
+    failure_dump: Option<&'a Path>,
+    /// What was written there, in words.
+    smallest: Option<String>,
     previous: Option<PreviousState>,
     report: Report,
     bar: Bar,
@@ -169,11 +142,29 @@ impl Checker<'_> {
 
     /// Checks an archive: its frames `X`, or the start of a recorded problem.
     fn archive(&mut self, file: &Path) -> Result<(), Failure> {
+        self.previous = None;
+        if archive::is_problem(file)? {
+            return self.problem(file, &States::read(file)?);
+        }
         let frames = archive::read(file)?;
         for index in 0..frames.len() {
             self.state(file, format!("{}[{index}]", file.display()), frames.frame_mesh(index), false)?;
         }
         Ok(())
+    }
+
+    /// Checks the start of a problem, with its half-spaces and collision groups.
+    fn problem(&mut self, file: &Path, states: &States) -> Result<(), Failure> {
+        let name = file.display().to_string();
+        let model = states.collision_model().map_err(|error| Failure::input(format!("{name}: {error}")))?;
+        let judge = Judge::from_model(&model);
+        let mesh = Mesh {
+            obstacle: Some(states.obstacle.clone()),
+            body: Some(states.body.clone()),
+            ..Mesh::default()
+        };
+        self.note_problems(&name, &states.x, &states.triangles);
+        self.judged(file, name, &judge, &mesh, &states.x, None, || states.clone())
     }
 
     /// Checks a state, and the path from the previous one if `joined`.
@@ -206,15 +197,36 @@ impl Checker<'_> {
             }
         };
 
+        let path = last.filter(|_| joined);
+        self.judged(file, name, &judge, &mesh, &positions, path.as_deref(), || {
+            smallest::state_of(&mesh, &positions)
+        })?;
+        self.previous = Some(PreviousState { elements: mesh, judge, positions });
+        Ok(())
+    }
+
+    /// Adds the verdict on a state, and on the path from `last`. The mesh says what is of an obstacle and of which
+    /// body.
+    fn judged(
+        &mut self,
+        file: &Path,
+        name: String,
+        judge: &Judge,
+        mesh: &Mesh,
+        positions: &[Point],
+        last: Option<&[Point]>,
+        states: impl FnOnce() -> States,
+    ) -> Result<(), Failure> {
+        let bad_input = |error| Failure::check(file, &error);
         let dump = self.dump.filter(|_| self.dumped.is_none());
         let limit = if dump.is_some() { usize::MAX } else { self.list };
         let state =
-            judge.check_state(&positions, &StateOptions { limit, distance: true }).map_err(bad_input)?;
+            judge.check_state(positions, &StateOptions { limit, distance: true }).map_err(bad_input)?;
         let listed = state.intersections.iter().take(self.list);
         let mut findings: Vec<String> = listed.map(ToString::to_string).collect();
         findings.extend(more(state.intersection_count, findings.len()));
         if let Some(path) = dump.filter(|_| !state.is_clear()) {
-            let offending = judge.offending_mesh(&positions, &state.intersections);
+            let offending = judge.offending_mesh(positions, &state.intersections);
             let obstacle: Vec<bool> = offending
                 .vertices
                 .iter()
@@ -228,6 +240,9 @@ impl Checker<'_> {
             crate::dump::write(path, &offending, &obstacle, &body)?;
             self.dumped = Some(offending.triangles.len());
         }
+        if let Some(file) = self.failure_dump.filter(|_| !state.is_clear() && self.smallest.is_none()) {
+            self.smallest = Some(smallest::write(file, &states())?);
+        }
         let distance = state.nearest.as_ref().map(|nearest| nearest.distance);
         if let (Some(limit), Some(nearest)) = (self.min_distance, &state.nearest)
             && nearest.distance < limit
@@ -238,9 +253,9 @@ impl Checker<'_> {
         self.report.too_near |= distance.zip(self.min_distance).is_some_and(|(found, limit)| found < limit);
 
         let mut path_hits = None;
-        if let Some(last) = last.filter(|_| joined) {
+        if let Some(last) = last {
             let options = PathOptions { limit: self.list, ..PathOptions::default() };
-            let path = judge.check_path(&last, &positions, &options).map_err(bad_input)?;
+            let path = judge.check_path(last, positions, &options).map_err(bad_input)?;
             findings.extend(path.hits.iter().map(ToString::to_string));
             findings.extend(more(path.hit_count, path.hits.len()));
             path_hits = Some(path.hit_count);
@@ -262,7 +277,6 @@ impl Checker<'_> {
             findings,
         };
         self.report.files.push(entry);
-        self.previous = Some(PreviousState { elements: mesh, judge, positions });
         Ok(())
     }
 }
