@@ -1,5 +1,6 @@
 //! The linear system of a Newton iteration: storage, products, preconditioners, conjugate gradients.
 
+pub(crate) mod backend;
 pub(crate) mod block;
 pub(crate) mod cg;
 pub(crate) mod cholesky;
@@ -9,6 +10,7 @@ pub(crate) mod lane;
 pub(crate) mod operator;
 pub(crate) mod ordering;
 pub(crate) mod preconditioner;
+mod refinement;
 pub(crate) mod scalar;
 pub(crate) mod solver;
 pub(crate) mod springs;
