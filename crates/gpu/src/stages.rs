@@ -4,8 +4,12 @@
 //! Binding 0 holds the parameters of a dispatch. Threads go on with strides, so that any number of workgroups does all
 //! of the work; only `count` and `total` depend on the size of a workgroup, for they scan.
 
+mod linear;
+
 use crate::bound::Bound;
 use crate::cpu;
+
+pub(crate) use linear::{CLIMB, DESCEND, MULTIPLY, REACT, REDIRECT};
 
 /// What a stage does with a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -410,6 +414,11 @@ pub(crate) static ALL: &[&Stage] = &[
     &RESIDUALS,
     &BALANCE,
     &STRETCH,
+    &REACT,
+    &MULTIPLY,
+    &DESCEND,
+    &CLIMB,
+    &REDIRECT,
 ];
 
 #[cfg(test)]
