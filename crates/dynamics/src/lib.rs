@@ -44,6 +44,8 @@ mod test_support;
 
 /// Points and vectors: the types of states.
 pub use bowknot_geometry as geometry;
+/// The blocks of a [`LinearSystem`].
+pub use nalgebra::Matrix3;
 
 pub use body::{Body, BodyShape};
 pub use bowknot_errors::{Errors, ParamError, Parameters};

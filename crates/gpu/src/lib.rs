@@ -28,6 +28,7 @@ mod recording;
 mod stages;
 mod tree;
 
+pub use bowknot_dynamics as dynamics;
 pub use bowknot_geometry as geometry;
 
 pub use adapter::Adapter;

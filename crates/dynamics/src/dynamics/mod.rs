@@ -107,6 +107,11 @@ impl Dynamics {
         self.work.solver.set_backend(backend, patches);
     }
 
+    /// Takes away what does the linear solves in single precision: the CPU does them from now on.
+    pub fn take_linear_backend(&mut self) -> Option<Box<dyn LinearBackend>> {
+        self.work.solver.take_backend()
+    }
+
     /// What does the linear solves in single precision; None if it is the CPU.
     pub fn linear_backend(&self) -> Option<&dyn LinearBackend> {
         self.work.solver.backend()

@@ -88,6 +88,11 @@ impl LinearSolver {
         self.failure = None;
     }
 
+    /// Takes the backend away, if there is one.
+    pub fn take_backend(&mut self) -> Option<Box<dyn LinearBackend>> {
+        self.backend.take().map(|(refinement, _)| refinement.backend)
+    }
+
     /// The backend, if there is one.
     pub fn backend(&self) -> Option<&dyn LinearBackend> {
         self.backend.as_ref().map(|(refinement, _)| &*refinement.backend)

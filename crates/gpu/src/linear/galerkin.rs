@@ -6,6 +6,7 @@
 //! Schwarz Preconditioner for Cloth and Deformable Body Simulation", SIGGRAPH 2022, whose groups only shift). It is made in
 //! double precision and rounded at the end.
 
+use super::inverse::inverse;
 use super::layout::{CHILDREN, DOMAIN_UNKNOWNS, Domain, PatchSlot};
 use super::patches::Patches;
 use super::rigid::{Link, Mode, Rigid};
@@ -13,9 +14,6 @@ use bowknot_dynamics::LinearSystem;
 use bowknot_geometry::Vector;
 use nalgebra::{Matrix3, Matrix6};
 use rayon::prelude::*;
-
-/// A pivot at most this share of its diagonal entry counts as zero: the motion moves nothing that others do not.
-const ZERO_PIVOT: f64 = 1e-11;
 
 /// What the device reads.
 #[derive(Debug, Default)]
@@ -25,26 +23,52 @@ pub struct Multilevel {
     pub domains: Vec<Domain>,
 }
 
-/// Center and size of a group.
+/// Spins about axes with less than this share of the largest moment of inertia are held: a strand that is straight hardly
+/// moves when it spins about itself, and in single precision the force on that spin is rounding.
+const SMALLEST_MOMENT: f64 = 1e-4;
+
+/// Center and size of a group, and the mean of o o^T over the arms o of its nodes.
 #[derive(Clone, Copy, Debug, Default)]
 struct Frame {
     center: Vector,
     size: f64,
+    moment: Matrix3<f64>,
 }
 
 impl Frame {
-    /// Around points with radii.
-    fn around(points: &[(Vector, f64)]) -> Self {
-        if points.is_empty() {
-            return Self { center: Vector::zeros(), size: 1.0 };
+    fn of_point(center: Vector) -> Self {
+        Self { center, ..Self::default() }
+    }
+
+    /// Of a group of groups, or of points.
+    fn around(parts: &[Self]) -> Self {
+        if parts.is_empty() {
+            return Self { size: 1.0, ..Self::default() };
         }
-        let center = points.iter().map(|(point, _)| point).sum::<Vector>() / points.len() as f64;
-        let size = points.iter().map(|(point, radius)| (point - center).norm() + radius).fold(0.0, f64::max);
-        Self { center, size: if size > 0.0 { size } else { 1.0 } }
+        let count = parts.len() as f64;
+        let center = parts.iter().map(|part| part.center).sum::<Vector>() / count;
+        let size = parts.iter().map(|part| (part.center - center).norm() + part.size).fold(0.0, f64::max);
+        let mut frame = Self { center, size: if size > 0.0 { size } else { 1.0 }, ..Self::default() };
+        for part in parts {
+            let Link { way, ratio } = frame.link(part);
+            frame.moment += (way * way.transpose() + part.moment * (ratio * ratio)) / count;
+        }
+        frame
     }
 
     fn link(&self, child: &Self) -> Link {
         Link { way: (child.center - self.center) / self.size, ratio: child.size / self.size }
+    }
+
+    /// The sum of a a^T over the axes a about which spins are held.
+    fn held_spins(&self) -> Matrix3<f64> {
+        let eigen = (Matrix3::from_diagonal_element(self.moment.trace()) - self.moment).symmetric_eigen();
+        let smallest = SMALLEST_MOMENT * eigen.eigenvalues.max();
+        let is_held = |k: &usize| eigen.eigenvalues[*k] <= smallest;
+        (0..3)
+            .filter(is_held)
+            .map(|k| eigen.eigenvectors.column(k))
+            .fold(Matrix3::zeros(), |sum, axis| sum + axis * axis.transpose())
     }
 }
 
@@ -85,31 +109,22 @@ impl Multilevel {
         let parts: Vec<(Vec<f64>, Row)> =
             (0..patches.grouped).into_par_iter().map(|k| patch_matrix(system, patches, &places, k)).collect();
         let (matrices, mut rows): (Vec<Vec<f64>>, Rows) = parts.into_iter().unzip();
-        let invert = |(matrix, links): (Vec<f64>, [Link; CHILDREN])| domain(matrix, &links);
-        let links = frames.iter().map(|(groups, patch)| groups.map(|group| patch.link(&group)));
-        let whole: Vec<(Vec<f64>, [Link; CHILDREN])> = matrices.into_iter().zip(links).collect();
-        let mut domains: Vec<Domain> = whole.into_par_iter().map(invert).collect();
+        let invert = |(matrix, (groups, parent)): (Vec<f64>, &([Frame; CHILDREN], Frame))| {
+            domain(matrix, groups, parent)
+        };
+        let mut domains: Vec<Domain> = matrices.into_par_iter().zip(&frames).map(invert).collect();
 
         let mut level: Vec<Frame> = frames.iter().map(|(_, patch)| *patch).collect();
         for _ in &patches.levels {
-            let parents: Vec<Frame> = level
-                .chunks(CHILDREN)
-                .map(|children| {
-                    let points: Vec<(Vector, f64)> = children.iter().map(|f| (f.center, f.size)).collect();
-                    Frame::around(&points)
-                })
-                .collect();
+            let parents: Vec<Frame> = level.chunks(CHILDREN).map(Frame::around).collect();
+            domains.par_extend(
+                parents
+                    .par_iter()
+                    .zip(level.par_chunks(CHILDREN))
+                    .enumerate()
+                    .map(|(k, (parent, children))| domain(domain_matrix(&rows, k), children, parent)),
+            );
             let link = |child: usize| parents[child / CHILDREN].link(&level[child]);
-            let whole: Vec<(Vec<f64>, [Link; CHILDREN])> = (0..parents.len())
-                .map(|k| {
-                    let links = std::array::from_fn(|m| {
-                        let child = CHILDREN * k + m;
-                        if child < level.len() { link(child) } else { Link::default() }
-                    });
-                    (domain_matrix(&rows, k), links)
-                })
-                .collect();
-            domains.par_extend(whole.into_par_iter().map(invert));
             rows = coarsened(&rows, parents.len(), link);
             level = parents;
         }
@@ -118,8 +133,8 @@ impl Multilevel {
 }
 
 fn frames_of(system: &LinearSystem<'_>, slots: &[Option<u32>]) -> ([Frame; CHILDREN], Frame) {
-    let points = |slots: &[Option<u32>]| -> Vec<(Vector, f64)> {
-        slots.iter().flatten().map(|&node| (system.positions[node as usize], 0.0)).collect()
+    let points = |slots: &[Option<u32>]| -> Vec<Frame> {
+        slots.iter().flatten().map(|&node| Frame::of_point(system.positions[node as usize])).collect()
     };
     let groups = std::array::from_fn(|g| Frame::around(&points(&slots[CHILDREN * g..][..CHILDREN])));
     (groups, Frame::around(&points(slots)))
@@ -224,59 +239,21 @@ fn coarsened(rows: &Rows, parents: usize, link: impl Fn(usize) -> Link) -> Rows 
     coarse
 }
 
-/// A domain from its matrix and the links of its groups.
-fn domain(matrix: Vec<f64>, links: &[Link; CHILDREN]) -> Domain {
+/// A domain from the matrix of its groups.
+fn domain(mut matrix: Vec<f64>, groups: &[Frame], parent: &Frame) -> Domain {
+    for (g, group) in groups.iter().enumerate() {
+        let diagonal = |k: usize| matrix[(DOMAIN_UNKNOWNS + 1) * (6 * g + k)];
+        let stiffness: f64 = (0..6).map(diagonal).sum();
+        let held = group.held_spins() * stiffness;
+        for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
+            matrix[DOMAIN_UNKNOWNS * (6 * g + 3 + i) + 6 * g + 3 + j] += held[(i, j)];
+        }
+    }
     let inverse = inverse(matrix);
-    Domain {
-        inverse: std::array::from_fn(|k| inverse[k] as f32),
-        links: links.map(|link| [link.way.x as f32, link.way.y as f32, link.way.z as f32, link.ratio as f32]),
+    let mut links = [[0.0; 4]; CHILDREN];
+    for (link, group) in links.iter_mut().zip(groups) {
+        let Link { way, ratio } = parent.link(group);
+        *link = [way.x as f32, way.y as f32, way.z as f32, ratio as f32];
     }
-}
-
-/// The inverse of a symmetric positive semi-definite matrix; rows and columns of pivots that vanish are zero.
-fn inverse(mut l: Vec<f64>) -> Vec<f64> {
-    const N: usize = DOMAIN_UNKNOWNS;
-    // Cholesky, row by row; a dropped unknown has a zero row in L and no pivot.
-    let mut pivots = [0.0f64; N];
-    for i in 0..N {
-        let diagonal = l[N * i + i];
-        for j in 0..=i {
-            let (head, tail) = l.split_at_mut(N * i);
-            let (mine, theirs) =
-                if j < i { (&mut tail[..N], &head[N * j..N * j + N]) } else { (&mut tail[..N], &[][..]) };
-            if j < i {
-                let sum: f64 = (0..j).map(|k| mine[k] * theirs[k]).sum();
-                mine[j] = if pivots[j] > 0.0 { (mine[j] - sum) / pivots[j] } else { 0.0 };
-            } else {
-                let rest = diagonal - (0..i).map(|k| mine[k] * mine[k]).sum::<f64>();
-                if rest > ZERO_PIVOT * diagonal && rest.is_finite() {
-                    pivots[i] = rest.sqrt();
-                } else {
-                    mine[..i].fill(0.0);
-                }
-            }
-        }
-    }
-    // Column c of the inverse solves L L^T y = e_c.
-    let mut inverse = vec![0.0; N * N];
-    for c in (0..N).filter(|&c| pivots[c] > 0.0) {
-        let mut y = [0.0f64; N];
-        for i in c..N {
-            if pivots[i] > 0.0 {
-                let sum: f64 = (c..i).map(|k| l[N * i + k] * y[k]).sum();
-                y[i] = (if i == c { 1.0 } else { 0.0 } - sum) / pivots[i];
-            }
-        }
-        for i in (c..N).rev().filter(|&i| pivots[i] > 0.0) {
-            y[i] /= pivots[i];
-            for k in c..i {
-                y[k] -= l[N * i + k] * y[i];
-            }
-        }
-        for i in c..N {
-            inverse[N * i + c] = y[i];
-            inverse[N * c + i] = y[i];
-        }
-    }
-    inverse
+    Domain { inverse: std::array::from_fn(|k| inverse[k] as f32), links }
 }

@@ -4,13 +4,14 @@
 //! |---|---|
 //! | `layout` | data that host, kernels and twins share |
 //! | `matrix` | the matrix as it lies on the device |
-//! | `patches`, `rigid`, `galerkin` | the preconditioner: patches and groups of nodes, their motions, their matrices |
+//! | `patches`, `rigid`, `galerkin`, `inverse` | the preconditioner: patches and groups of nodes, their motions, their matrices |
 //! | `buffers` | the buffers of a system |
 //! | `record` | the dispatches of an iteration |
 //! | `solver` | the backend of the dynamics |
 
 mod buffers;
 mod galerkin;
+mod inverse;
 mod layout;
 mod matrix;
 mod patches;

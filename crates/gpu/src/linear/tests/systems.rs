@@ -2,7 +2,7 @@
 
 use bowknot_dynamics::{LinearSpring, LinearSystem, SparseRows};
 use bowknot_geometry::Vector;
-use nalgebra::{DMatrix, DVector, Matrix3};
+use nalgebra::{DMatrix, DVector, Matrix3, Rotation3};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -15,6 +15,8 @@ pub struct Shape {
     pub patch: usize,
     pub springs: usize,
     pub grains: usize,
+    /// How far nodes are from their places in the grid.
+    pub jitter: f64,
     /// Inertia of a node.
     pub inertia: f64,
     /// One of so many nodes is not free; 0 for none.
@@ -49,8 +51,10 @@ impl Owned {
         let random = &mut fastrand::Rng::with_seed(seed);
         let grid = shape.columns * shape.rows;
         let count = grid + shape.grains;
+        let turn = Rotation3::from_euler_angles(0.3, 0.5, 0.7);
         let at = |k: usize| Vector::new((k % shape.columns) as f64, (k / shape.columns) as f64, 0.0);
-        let positions: Vec<Vector> = (0..count).map(|k| at(k) + 0.3 * random_vector(random)).collect();
+        let positions: Vec<Vector> =
+            (0..count).map(|k| turn * (at(k) + shape.jitter * random_vector(random))).collect();
         let mut diagonal: Vec<Matrix3<f64>> = (0..count)
             .map(|_| Matrix3::from_diagonal_element(shape.inertia * (1.0 + random.f64())))
             .collect();
