@@ -115,13 +115,13 @@ fn preconditioner_by_definition(system: &LinearSystem<'_>, patches: &Patches) ->
         for domain in groups.chunks(CHILDREN) {
             let mut columns: Vec<DVector<f64>> = Vec::new();
             for group in domain {
+                let points = || group.iter().map(|&node| system.positions[node as usize]);
+                let center = points().sum::<Vector>() / points().count().max(1) as f64;
                 for k in 0..6 {
                     let mut column = DVector::zeros(count);
                     for &node in group {
-                        let axis = Vector::ith(k % 3, 1.0);
-                        let at = system.positions[node as usize];
-                        let motion =
-                            if k < 3 { axis } else { axis.cross(&(at - Vector::new(0.3, -0.2, 0.1))) };
+                        let (axis, at) = (Vector::ith(k % 3, 1.0), system.positions[node as usize]);
+                        let motion = if k < 3 { axis } else { axis.cross(&(at - center)) };
                         column.fixed_rows_mut::<3>(3 * node as usize).copy_from(&motion);
                     }
                     columns.push(column);
@@ -129,11 +129,11 @@ fn preconditioner_by_definition(system: &LinearSystem<'_>, patches: &Patches) ->
             }
             let motions = DMatrix::from_columns(&columns);
             let galerkin = motions.transpose() * &matrix * &motions;
-            // Motions that move nothing of their own have eigenvalues of zero.
+            // Motions that move nothing of their own have eigenvalues near zero.
             let eigen = galerkin.symmetric_eigen();
             let largest = eigen.eigenvalues.max();
             let inverse =
-                eigen.eigenvalues.map(|value| if value > 1e-10 * largest { 1.0 / value } else { 0.0 });
+                eigen.eigenvalues.map(|value| if value > 1e-7 * largest { 1.0 / value } else { 0.0 });
             let inverse =
                 &eigen.eigenvectors * DMatrix::from_diagonal(&inverse) * eigen.eigenvectors.transpose();
             sum += &motions * inverse * motions.transpose();
@@ -157,10 +157,11 @@ fn the_preconditioner_is_the_sum_over_levels() {
     assert!(error < 2e-5 * size, "{error:e} of {size:e}");
 }
 
-/// The spin of a straight strand about itself moves nothing: in single precision the force on it is rounding.
+/// The spin of a strand that is nearly straight about itself moves next to nothing: in single precision the force on it is
+/// rounding.
 #[test]
 fn straight_strands_do_not_spin_about_themselves() {
-    let shape = Shape { columns: 1, rows: 150, patch: 64, jitter: 0.0, held: 0, ..PLAIN };
+    let shape = Shape { columns: 1, rows: 150, patch: 64, jitter: 1e-5, held: 0, ..PLAIN };
     let owned = Owned::random(&shape, 5);
     let system = owned.system();
     let expected = preconditioner_by_definition(&system, &Patches::new(&system));
@@ -171,7 +172,7 @@ fn straight_strands_do_not_spin_about_themselves() {
         let flat = DVector::from_iterator(3 * r.len(), r.iter().flat_map(|v| [v.x, v.y, v.z]));
         let norm = (flat.transpose() * &expected * &flat)[0];
         let found = solver.begin(&r, 1.0).expect("runs");
-        assert!((found - norm).abs() < 1e-4 * norm, "{found:e}, not {norm:e}");
+        assert!((found - norm).abs() < 1e-5 * norm, "{found:e}, not {norm:e}");
     }
 }
 
