@@ -7,7 +7,9 @@ use super::layout::{CHILDREN, DOMAIN_UNKNOWNS, PATCH_SLOTS};
 use super::patches::Patches;
 use crate::adapter::Adapter;
 use crate::engine::{ComparingEngine, DeviceEngine, Engine, TwinEngine};
+use crate::error::GpuError;
 use crate::linear::ConjugateGradients;
+use crate::recording::{BufferId, Recording};
 use bowknot_dynamics::{LinearBackend, LinearSystem};
 use bowknot_geometry::Vector;
 use nalgebra::{DMatrix, DVector};
@@ -235,6 +237,70 @@ fn buffers_are_used_again_and_grow() {
         let (system, b) = (owned.system(), owned.right_side(k as u64));
         let alone = refined(&mut super::tests::solver(TwinEngine::new()), &system, &b);
         assert!(refined(&mut solver, &system, &b) == alone, "{:?}", SHAPES[k]);
+    }
+}
+
+/// The twins, and how much the host asks of them.
+#[derive(Debug, Default)]
+struct Counting {
+    twins: TwinEngine,
+    dispatches: usize,
+    runs: usize,
+    words_read: usize,
+}
+
+impl Engine for Counting {
+    fn buffer(&mut self, label: &'static str, words: usize) -> Result<BufferId, GpuError> {
+        self.twins.buffer(label, words)
+    }
+
+    fn free(&mut self, buffer: BufferId) {
+        self.twins.free(buffer);
+    }
+
+    fn clear(&mut self) {
+        self.twins.clear();
+    }
+
+    fn words(&self, buffer: BufferId) -> usize {
+        self.twins.words(buffer)
+    }
+
+    fn run(&mut self, recording: &Recording, read: &[(BufferId, usize)]) -> Result<Vec<Vec<u32>>, GpuError> {
+        self.dispatches += recording.dispatch_count();
+        self.runs += 1;
+        self.words_read += read.iter().map(|(_, words)| words).sum::<usize>();
+        self.twins.run(recording, read)
+    }
+}
+
+/// Dispatches of an iteration, and what the host reads for 16 of them beside the solution: the figures of `docs/GPU.md`.
+#[test]
+fn an_iteration_takes_few_dispatches() {
+    let springs = 10;
+    for (rows, patch, springs, expected) in [
+        (30, 0, 0, 3),
+        (30, 0, springs, 4),
+        (2, 60, 0, 3),
+        (10, 60, 0, 4),
+        (30, 50, 0, 5),
+        (30, 50, springs, 6),
+    ] {
+        let shape = Shape { columns: 30, rows, patch, springs, ..PLAIN };
+        let owned = Owned::random(&shape, 2);
+        let (system, b) = (owned.system(), owned.right_side(2));
+        let mut solver = solver(Counting::default());
+        solver.prepare(&system).expect("room");
+        let mut count = |iterations: usize| {
+            solver.begin(&b, 1.0).expect("runs");
+            let before = (solver.engine().dispatches, solver.engine().runs, solver.engine().words_read);
+            let mut x = vec![Vector::zeros(); b.len()];
+            assert_eq!(solver.iterate(0.0, iterations, 1.0, &mut x).expect("runs"), iterations);
+            let engine = solver.engine();
+            (engine.dispatches - before.0, engine.runs - before.1, engine.words_read - before.2)
+        };
+        assert_eq!(count(1), (expected, 2, 2 + 4 * b.len()), "{shape:?}");
+        assert_eq!(count(16), (16 * expected, 2, 2 + 4 * b.len()), "{shape:?}");
     }
 }
 
