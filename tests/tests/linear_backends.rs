@@ -7,8 +7,9 @@
 
 use bowknot::dynamics::{LinearBackend, LinearBackendError, LinearSystem};
 use bowknot::geometry::{Point, Vector};
-use bowknot::gpu::{ConjugateGradients, TwinEngine};
+use bowknot::gpu::{Adapter, ComparingEngine, ConjugateGradients, DeviceEngine, Engine, TwinEngine};
 use bowknot::{Scene, SimulationError, Simulator};
+use std::fmt::Debug;
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
@@ -47,25 +48,41 @@ struct Counts {
     seconds: f64,
     rounds: usize,
     iterations: usize,
+    differences: usize,
 }
 
-/// The twins, counted.
+/// An engine that says how many words of it differ from those of the twins.
+trait Watched: Engine + Debug + Send {
+    fn differences(&self) -> usize {
+        0
+    }
+}
+
+impl Watched for TwinEngine {}
+
+impl Watched for ComparingEngine {
+    fn differences(&self) -> usize {
+        self.differences().len()
+    }
+}
+
+/// Linear solves on an engine, counted.
 #[derive(Debug)]
-struct Counted {
-    inner: ConjugateGradients<TwinEngine>,
+struct Counted<E> {
+    inner: ConjugateGradients<E>,
     counts: Arc<Mutex<Counts>>,
     fails_at: Option<usize>,
 }
 
-impl Counted {
-    fn new(fails_at: Option<usize>) -> (Box<Self>, Arc<Mutex<Counts>>) {
+impl<E: Watched> Counted<E> {
+    fn new(engine: E, fails_at: Option<usize>) -> (Box<Self>, Arc<Mutex<Counts>>) {
         let counts: Arc<Mutex<Counts>> = Arc::default();
-        let inner = ConjugateGradients::new("twins".to_owned(), TwinEngine::new());
+        let inner = ConjugateGradients::new("twins".to_owned(), engine);
         (Box::new(Self { inner, counts: Arc::clone(&counts), fails_at }), counts)
     }
 }
 
-impl LinearBackend for Counted {
+impl<E: Watched> LinearBackend for Counted<E> {
     fn name(&self) -> String {
         self.inner.name()
     }
@@ -97,6 +114,7 @@ impl LinearBackend for Counted {
         let mut counts = self.counts.lock().expect("no panic");
         counts.rounds += 1;
         counts.iterations += iterations;
+        counts.differences = self.inner.engine().differences();
         Ok(iterations)
     }
 }
@@ -122,7 +140,7 @@ fn simulator((name, scale, sets, _): Case, more: &[&str]) -> Simulator {
 
 fn course(case: Case, more: &[&str], on_twins: bool) -> Course {
     let mut simulator = simulator(case, more);
-    let (backend, counts) = Counted::new(None);
+    let (backend, counts) = Counted::new(TwinEngine::new(), None);
     if on_twins {
         simulator.set_linear_backend(Some(backend));
     }
@@ -174,7 +192,7 @@ fn runs_with_solves_on_the_kernels_go_as_on_the_cpu() {
 fn a_lost_device_ends_a_step_that_can_be_made_again() {
     let case = SMALL[0];
     let [mut lost, mut whole] = [(); 2].map(|()| simulator(case, &[]));
-    lost.set_linear_backend(Some(Counted::new(Some(4)).0));
+    lost.set_linear_backend(Some(Counted::new(TwinEngine::new(), Some(4)).0));
     let mut error = None;
     for _ in 0..case.3 {
         let before = lost.positions().to_vec();
@@ -192,6 +210,83 @@ fn a_lost_device_ends_a_step_that_can_be_made_again() {
     lost.step().expect("a step on the CPU");
     whole.step().expect("a step on the CPU");
     assert!(lost.positions() == whole.positions());
+}
+
+#[test]
+fn kernels_solve_the_systems_of_scenes_as_their_twins() {
+    for case in SMALL {
+        let mut simulator = simulator(case, &[]);
+        let adapter = Adapter::choose(None).expect("a device, of software if need be");
+        let engine = ComparingEngine::new(DeviceEngine::open(&adapter).expect("it opens"));
+        let (backend, counts) = Counted::new(engine, None);
+        simulator.set_linear_backend(Some(backend));
+        for _ in 0..3 {
+            simulator.step().expect("a step");
+        }
+        let counts = *counts.lock().expect("no panic");
+        assert!(counts.iterations > 0 && counts.differences == 0, "{}: {counts:?}", case.0);
+    }
+}
+
+#[test]
+fn a_resumed_run_has_the_same_bits() {
+    let case = SMALL[0];
+    let [mut whole, mut resumed] = [(); 2].map(|()| simulator(case, &[]));
+    for simulator in [&mut whole, &mut resumed] {
+        simulator.set_linear_backend(Some(Counted::new(TwinEngine::new(), None).0));
+    }
+    for step in 0..10 {
+        whole.step().expect("a step");
+        if step == 4 {
+            resumed.restore(&whole.checkpoint()).expect("the same scene");
+        } else if step > 4 {
+            resumed.step().expect("a step");
+        }
+    }
+    assert!(whole.positions() == resumed.positions());
+}
+
+/// A block that comes to rest and sleeps, and a sheet that falls all the time.
+const SLEEPER: &str = r#"
+[solver.sleep]
+enabled = true
+time = 0.1
+[[body]]
+name = "block"
+kind = "solid"
+friction = 0.5
+shape = { type = "block", size = [0.1, 0.1, 0.1], edge = 0.05 }
+translate = [0, 0, 0.052]
+[[body]]
+name = "sheet"
+shape = { type = "sheet", size = [0.2, 0.2], edge = 0.05 }
+translate = [3, 0, 90]
+[[obstacle]]
+name = "ground"
+shape = { type = "half-space" }
+friction = 0.5
+"#;
+
+#[test]
+fn solves_stay_on_the_device_while_bodies_sleep_and_after() {
+    let scene = Scene::from_toml(SLEEPER, std::path::Path::new(".")).expect("a scene");
+    let mut simulator = Simulator::new(&scene).expect("a simulator");
+    let (backend, counts) = Counted::new(TwinEngine::new(), None);
+    simulator.set_linear_backend(Some(backend));
+    let systems = || counts.lock().expect("no panic").systems;
+    let mut step = |simulator: &mut Simulator| {
+        let before = systems();
+        simulator.step().expect("a step");
+        assert!(systems() > before, "the CPU has solved alone");
+        simulator.asleep().contains(&true)
+    };
+    let slept = (0..200).any(|_| step(&mut simulator));
+    assert!(slept && step(&mut simulator), "the block does not sleep");
+    assert_eq!(simulator.linear_backend().map(LinearBackend::name).as_deref(), Some("twins"));
+    let force = vec![Vector::z() * 0.2; simulator.positions().len()];
+    simulator.set_external_forces(&force).expect("finite");
+    assert!((0..5).any(|_| !step(&mut simulator)), "the block does not wake");
+    step(&mut simulator);
 }
 
 /// The table of `docs/GPU.md`.

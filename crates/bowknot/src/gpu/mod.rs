@@ -12,7 +12,8 @@ mod error;
 mod setup;
 
 pub use bowknot_gpu::{
-    Adapter, ComparingEngine, ConjugateGradients, DeviceEngine, GpuError, Profile, StageTime, TwinEngine,
+    Adapter, ComparingEngine, ConjugateGradients, DeviceEngine, Engine, GpuError, Profile, StageTime,
+    TwinEngine,
 };
 pub use device::{Device, resolve_on};
 pub use error::GpuResolveError;

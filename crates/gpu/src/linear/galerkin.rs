@@ -142,14 +142,19 @@ fn frames_of(system: &LinearSystem<'_>, slots: &[Option<u32>]) -> ([Frame; CHILD
 
 fn slot_of(system: &LinearSystem<'_>, places: &[Option<Place>], node: Option<u32>) -> PatchSlot {
     let Some(node) = node else { return PatchSlot::EMPTY };
-    // The smallest eigenvalue is at least the inertia of the node: the block is singular only if the input is not finite.
-    // Conjugate gradients detect that.
-    let block = system.diagonal_with_springs(node as usize);
-    let m = block.try_inverse().unwrap_or_else(Matrix3::identity);
-    let half = |i: usize, j: usize| (0.5 * (m[(i, j)] + m[(j, i)])) as f32;
-    let inverse = [half(0, 0), half(0, 1), half(0, 2), half(1, 1), half(1, 2), half(2, 2)];
+    let inverse = inverse_of_block(system, node as usize);
     let arm = places[node as usize].map_or([0.0; 3], |place| <[f64; 3]>::from(place.arm).map(|x| x as f32));
     PatchSlot { node, inverse, arm, padding: [0; 2] }
+}
+
+/// Inverse of the diagonal block of a node: xx, xy, xz, yy, yz, zz.
+fn inverse_of_block(system: &LinearSystem<'_>, node: usize) -> [f32; 6] {
+    // The smallest eigenvalue is at least the inertia of the node: the block is singular only if the input is not finite.
+    // Conjugate gradients detect that.
+    let block = system.diagonal_with_springs(node);
+    let m = block.try_inverse().unwrap_or_else(Matrix3::identity);
+    let half = |i: usize, j: usize| (0.5 * (m[(i, j)] + m[(j, i)])) as f32;
+    [half(0, 0), half(0, 1), half(0, 2), half(1, 1), half(1, 2), half(2, 2)]
 }
 
 /// Calls `visit` with every entry of row `i` of H.
@@ -178,17 +183,19 @@ fn patch_matrix(
     let mut row: Row = Vec::new();
     for &node in patches.slots_of(k).iter().flatten() {
         let Some(place) = places[node as usize] else { continue };
-        let mut on_groups = [Rigid::default(); CHILDREN];
+        let mut on_groups: [Option<Rigid>; CHILDREN] = [None; CHILDREN];
         let mut on_patches: Vec<(u32, Rigid)> = Vec::new();
         visit_row(system, node as usize, &mut |other, block| {
             let Some(other) = places[other] else { return };
             if other.patch as usize == k {
-                on_groups[other.group as usize].add(block, &other.arm);
+                on_groups[other.group as usize].get_or_insert_default().add(block, &other.arm);
             }
             entry(&mut on_patches, other.patch).add(block, &other.patch_arm);
         });
         for (g, sum) in on_groups.iter().enumerate() {
-            add_block(&mut matrix, place.group as usize, g, &sum.restricted(&place.arm));
+            if let Some(sum) = sum {
+                add_block(&mut matrix, place.group as usize, g, &sum.restricted(&place.arm));
+            }
         }
         for (other, sum) in on_patches {
             *entry(&mut row, other) += sum.restricted(&place.patch_arm);

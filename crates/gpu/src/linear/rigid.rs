@@ -15,7 +15,14 @@ impl Rigid {
     /// Adds a block times the motion of a node at `arm`.
     pub fn add(&mut self, block: &Matrix3<f64>, arm: &Vector) {
         self.shift += block;
-        self.spin += block * spin_matrix(arm);
+        // The block times the spin matrix, without its zeros.
+        let [a, b, c] = [block.column(0), block.column(1), block.column(2)];
+        for (k, column) in
+            [c * arm.y - b * arm.z, a * arm.z - c * arm.x, b * arm.x - a * arm.y].iter().enumerate()
+        {
+            let mut sum = self.spin.column_mut(k);
+            sum += column;
+        }
     }
 
     /// The motion of a node at `arm`, transposed, times the sum.
