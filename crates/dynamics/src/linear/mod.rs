@@ -1,5 +1,6 @@
 //! The linear system of a Newton iteration: storage, products, preconditioners, conjugate gradients.
 
+pub(crate) mod accuracy;
 pub(crate) mod backend;
 pub(crate) mod block;
 pub(crate) mod cg;

@@ -1,7 +1,7 @@
 //! A linear solve by a backend in single precision, refined in double precision.
 
+use super::accuracy::{CgInfo, Limits, MARGIN, MIN_GAIN, subtract_product, unit_factor};
 use super::backend::{LinearBackend, LinearBackendError};
-use super::solver::{CgInfo, Limits, MARGIN, MIN_GAIN, subtract_product, unit_factor};
 use super::system::System;
 use super::vectors::{add_scaled, dot};
 use bowknot_geometry::Vector;

@@ -1,7 +1,7 @@
 //! The stages of linear solves.
 
-use super::Access::{Read, Write};
-use super::Stage;
+use super::stage::Access::{Read, Write};
+use super::stage::Stage;
 use crate::cpu;
 
 const LINEAR: &str = include_str!("../../shader/shared/linear.wgsl");

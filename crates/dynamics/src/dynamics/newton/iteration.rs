@@ -3,7 +3,7 @@
 use super::momentum::{Inertia, restore_momentum};
 use super::state::Newton;
 use crate::dynamics::info::NewtonInfo;
-use crate::linear::solver::Limits;
+use crate::linear::accuracy::Limits;
 use crate::linear::system::System;
 use bowknot_geometry::Vector;
 
