@@ -11,6 +11,8 @@
 
 use super::layout::Spring;
 use bowknot_dynamics::{LinearSpring, LinearSystem};
+use rayon::prelude::*;
+use std::ops::Range;
 
 /// Rows of a slice.
 pub const SLICE: usize = 32;
@@ -35,9 +37,26 @@ impl PackedMatrix {
     pub fn new(system: &LinearSystem<'_>) -> Self {
         let nodes = system.free.len();
         let mut packed = Self::default();
+        let row_lengths =
+            |starts: &[u32], rows: Range<usize>| rows.map(|i| starts[i + 1] - starts[i]).max().unwrap_or(0);
+        let mut end = 0;
         for first in (0..nodes).step_by(SLICE) {
-            packed.add_slice(system, first..(first + SLICE).min(nodes));
+            let rows = first..(first + SLICE).min(nodes);
+            let blocks = 1 + row_lengths(system.blocks.starts, rows.clone());
+            let scalars = row_lengths(system.scalars.starts, rows);
+            packed.slices.push([end as u32, blocks, scalars, 0]);
+            end += SLICE * (BLOCK_WORDS * blocks as usize + 2 * scalars as usize);
         }
+        packed.words.resize(end, 0);
+        let mut slices = Vec::with_capacity(packed.slices.len());
+        let mut rest = packed.words.as_mut_slice();
+        for (k, slice) in packed.slices.iter().enumerate() {
+            let next = packed.slices.get(k + 1).map_or(end, |next| next[0] as usize);
+            let (words, others) = rest.split_at_mut(next - slice[0] as usize);
+            slices.push((SLICE * k..(SLICE * (k + 1)).min(nodes), slice, words));
+            rest = others;
+        }
+        slices.into_par_iter().for_each(|(rows, slice, words)| fill_slice(system, rows, slice, words));
         if !system.springs.is_empty() {
             packed.springs = system.springs.iter().map(spring).collect();
             let shift = nodes as u32 + 1;
@@ -48,42 +67,39 @@ impl PackedMatrix {
         }
         packed
     }
+}
 
-    fn add_slice(&mut self, system: &LinearSystem<'_>, rows: std::ops::Range<usize>) {
-        let blocks = rows.clone().map(|i| system.blocks.row(i).count()).max().unwrap_or(0) + 1;
-        let scalars = rows.clone().map(|i| system.scalars.row(i).count()).max().unwrap_or(0);
-        let start = self.words.len();
-        self.slices.push([start as u32, blocks as u32, scalars as u32, 0]);
-        self.words.resize(start + SLICE * (BLOCK_WORDS * blocks + 2 * scalars), 0);
-        for (lane, i) in rows.enumerate() {
-            let mut at = start + lane;
-            let mut put = |word: u32| {
-                self.words[at] = word;
-                at += SLICE;
-            };
+/// Packs the rows of a slice.
+fn fill_slice(system: &LinearSystem<'_>, rows: Range<usize>, slice: &[u32; 4], words: &mut [u32]) {
+    let [_, blocks, scalars, _] = *slice;
+    for (lane, i) in rows.enumerate() {
+        let mut at = lane;
+        let mut put = |word: u32| {
+            words[at] = word;
+            at += SLICE;
+        };
+        put(i as u32);
+        system.row_sum(i).iter().for_each(|number| put((*number as f32).to_bits()));
+        let mut count = 1;
+        for (column, block) in system.blocks.row(i) {
+            put(column as u32);
+            block.iter().for_each(|number| put((*number as f32).to_bits()));
+            count += 1;
+        }
+        // Padding names the row itself: differences to it are zero.
+        for _ in count..blocks {
             put(i as u32);
-            system.row_sum(i).iter().for_each(|number| put((*number as f32).to_bits()));
-            let mut count = 1;
-            for (column, block) in system.blocks.row(i) {
-                put(column as u32);
-                block.iter().for_each(|number| put((*number as f32).to_bits()));
-                count += 1;
-            }
-            // Padding names the row itself: differences to it are zero.
-            for _ in count..blocks {
-                put(i as u32);
-                (1..BLOCK_WORDS).for_each(|_| put(0));
-            }
-            let mut count = 0;
-            for (column, value) in system.scalars.row(i) {
-                put(column as u32);
-                put((*value as f32).to_bits());
-                count += 1;
-            }
-            for _ in count..scalars {
-                put(i as u32);
-                put(0);
-            }
+            (1..BLOCK_WORDS).for_each(|_| put(0));
+        }
+        let mut count = 0;
+        for (column, value) in system.scalars.row(i) {
+            put(column as u32);
+            put((*value as f32).to_bits());
+            count += 1;
+        }
+        for _ in count..scalars {
+            put(i as u32);
+            put(0);
         }
     }
 }

@@ -68,7 +68,8 @@ impl<E: Engine> ConjugateGradients<E> {
         let Some(recorder) = &self.recorder else { return Ok((0, Vec::new())) };
         let goal = goal.max(MAX_REDUCTION * self.norm) as f32;
         let mut made = 0;
-        let mut is_moving = true;
+        // Without a free node no stage runs that could end the iterations.
+        let mut is_moving = self.norm > 0.0 && recorder.sizes.patches > 0;
         while is_moving && made < max_iterations {
             let mut recording = Recording::default();
             let end = max_iterations.min(made + BATCH);

@@ -321,6 +321,54 @@ fn groups_save_iterations() {
 }
 
 #[test]
+fn units_make_no_difference() {
+    // Powers of two change no digit.
+    let count = |factor: f64| {
+        let owned = Owned::random(&SHAPES[4], 8).scaled(factor);
+        let b = owned.right_side(8);
+        let (x, iterations) = refined(&mut solver(TwinEngine::new()), &owned.system(), &b);
+        (x.iter().map(|x| x * factor).collect::<Vec<_>>(), iterations)
+    };
+    let one = count(1.0);
+    for exponent in [-40, 40] {
+        assert!(count(2f64.powi(exponent)) == one, "{exponent}");
+    }
+}
+
+#[test]
+fn numbers_that_are_not_finite_end_a_solve() {
+    for value in [f64::NAN, f64::INFINITY, 1e300] {
+        let owned = Owned::random(&SHAPES[4], 9).spoiled(value);
+        let b = owned.right_side(9);
+        let system = owned.system();
+        assert!(iterations(&mut solver(TwinEngine::new()), &system, &b) < 1000, "{value}");
+        assert!(iterations(&mut solver(device()), &system, &b) < 1000, "{value}");
+    }
+}
+
+#[test]
+fn without_free_nodes_there_is_nothing_to_solve() {
+    for shape in [SHAPES[1], SHAPES[3], Shape { rows: 0, ..PLAIN }] {
+        let owned = Owned::random(&shape, 2).held();
+        let b = owned.right_side(2);
+        assert_eq!(iterations(&mut solver(TwinEngine::new()), &owned.system(), &b), 0, "{shape:?}");
+        assert_eq!(iterations(&mut solver(device()), &owned.system(), &b), 0, "{shape:?}");
+    }
+}
+
+/// Iterations toward a residual of zero, 1000 at most.
+fn iterations<E: Engine + Debug + Send>(
+    solver: &mut ConjugateGradients<E>,
+    system: &LinearSystem<'_>,
+    b: &[Vector],
+) -> usize {
+    let mut x = vec![Vector::zeros(); b.len()];
+    solver.prepare(system).expect("room");
+    solver.begin(b, 1.0).expect("runs");
+    solver.iterate(0.0, 1000, 1.0, &mut x).expect("runs")
+}
+
+#[test]
 fn limits_of_iterations_are_kept_and_nothing_is_no_work() {
     let owned = Owned::random(&SHAPES[4], 1);
     let (system, b) = (owned.system(), owned.right_side(1));

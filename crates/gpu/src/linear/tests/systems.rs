@@ -136,6 +136,27 @@ impl Owned {
         }
     }
 
+    /// The same system in other units.
+    pub fn scaled(mut self, factor: f64) -> Self {
+        self.diagonal.iter_mut().chain(&mut self.blocks).for_each(|block| *block *= factor);
+        self.scalars.iter_mut().for_each(|value| *value *= factor);
+        self.springs.iter_mut().for_each(|spring| spring.hessian *= factor);
+        self
+    }
+
+    /// The same system without a free node.
+    pub fn held(mut self) -> Self {
+        self.free.fill(false);
+        self
+    }
+
+    /// The same system with an entry that is not finite.
+    pub fn spoiled(mut self, value: f64) -> Self {
+        self.blocks[7][(1, 2)] = value;
+        self.diagonal[5][(0, 0)] = value;
+        self
+    }
+
     /// Zero at nodes that are not free.
     pub fn right_side(&self, seed: u64) -> Vec<Vector> {
         let random = &mut fastrand::Rng::with_seed(seed);
