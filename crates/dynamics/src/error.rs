@@ -176,6 +176,12 @@ pub enum StepError {
         /// The reason.
         problem: &'static str,
     },
+    /// What solves the linear systems has failed, see [`crate::Dynamics::set_linear_backend`].
+    #[error("{message}")]
+    LinearBackend {
+        /// What it says.
+        message: String,
+    },
     /// A Newton iteration was asked for before [`crate::Dynamics::begin_step`].
     #[error("newton_target was called before begin_step")]
     NotBegun,

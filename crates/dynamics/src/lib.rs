@@ -44,12 +44,16 @@ mod test_support;
 
 /// Points and vectors: the types of states.
 pub use bowknot_geometry as geometry;
+/// The blocks of a [`LinearSystem`].
+pub use nalgebra::Matrix3;
 
 pub use body::{Body, BodyShape};
 pub use bowknot_errors::{Errors, ParamError, Parameters};
 pub use dynamics::{Dynamics, NewtonInfo, Residual, Touching};
 pub use error::{ModelError, StepError};
-pub use linear::solver::CgInfo;
+pub use linear::accuracy::CgInfo;
+pub use linear::backend::{LinearBackend, LinearBackendError, LinearSystem, SparseRows};
+pub use linear::springs::LinearSpring;
 pub use material::{ClothMaterial, ParticleMaterial, RestShape, SolidMaterial, SolidModel, StrandMaterial};
 pub use model::DynamicsModel;
 pub use observe::{ElasticEnergies, Energies};

@@ -10,6 +10,7 @@
 //! | `adapter` | the devices of this machine |
 //! | `tree`, `model`, `edges`, `adjacency` | what the host prepares for a scene |
 //! | `collision` | steps toward a target that nothing passes through |
+//! | `linear` | linear solves of the dynamics |
 
 mod adapter;
 mod adjacency;
@@ -21,11 +22,13 @@ mod engine;
 mod error;
 mod grid;
 mod layout;
+mod linear;
 mod model;
 mod recording;
 mod stages;
 mod tree;
 
+pub use bowknot_dynamics as dynamics;
 pub use bowknot_geometry as geometry;
 
 pub use adapter::Adapter;
@@ -34,6 +37,7 @@ pub use engine::{ComparingEngine, DeviceEngine, Difference, Engine, Profile, Sta
 pub use error::GpuError;
 pub use grid::{Grid, GridError, GridPoint};
 pub use layout::{Candidate, Kind, NONE};
+pub use linear::ConjugateGradients;
 pub use model::{Constraints, Lengths};
 pub use recording::{BufferId, Recording};
 

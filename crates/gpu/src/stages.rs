@@ -4,41 +4,13 @@
 //! Binding 0 holds the parameters of a dispatch. Threads go on with strides, so that any number of workgroups does all
 //! of the work; only `count` and `total` depend on the size of a workgroup, for they scan.
 
-use crate::bound::Bound;
+mod linear;
+mod stage;
+
 use crate::cpu;
 
-/// What a stage does with a buffer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Access {
-    Read,
-    /// It reads or writes it.
-    Write,
-}
-
-/// A stage.
-pub(crate) struct Stage {
-    pub name: &'static str,
-    /// Shared parts of the shader, then its own.
-    pub parts: &'static [&'static str],
-    /// Threads of a workgroup.
-    pub workgroup: usize,
-    /// The storage buffers, from binding 1 on.
-    pub bindings: &'static [Access],
-    pub twin: fn(Bound<'_>),
-}
-
-impl Stage {
-    /// The whole shader.
-    pub fn source(&self) -> String {
-        self.parts.concat()
-    }
-}
-
-impl std::fmt::Debug for Stage {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(self.name)
-    }
-}
+pub(crate) use linear::{CLIMB, DESCEND, MULTIPLY, REACT, REDIRECT};
+pub(crate) use stage::{Access, Stage};
 
 const TYPES: &str = include_str!("../shader/shared/types.wgsl");
 const CLOSEST: &str = include_str!("../shader/shared/closest.wgsl");
@@ -410,6 +382,11 @@ pub(crate) static ALL: &[&Stage] = &[
     &RESIDUALS,
     &BALANCE,
     &STRETCH,
+    &REACT,
+    &MULTIPLY,
+    &DESCEND,
+    &CLIMB,
+    &REDIRECT,
 ];
 
 #[cfg(test)]

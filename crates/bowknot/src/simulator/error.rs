@@ -53,7 +53,7 @@ pub enum SimulationError {
         /// Why.
         source: ResolveError,
     },
-    /// What resolves the collisions has failed; the simulator is as it was before the time step.
+    /// What resolves the collisions or solves linear systems has failed; the simulator is as it was before the time step.
     #[error("time step {step}: {source}")]
     Backend {
         /// The time step, from 1; 0 before the first.
@@ -106,6 +106,16 @@ pub enum SimulationError {
     /// An observer stopped the time step; the simulator is as it was before the step.
     #[error("interrupted")]
     Interrupted,
+}
+
+impl SimulationError {
+    /// The dynamics has no target in a time step.
+    pub(super) fn target(step: usize, source: StepError) -> Self {
+        match source {
+            StepError::LinearBackend { .. } => Self::Backend { step, source: Box::new(source) },
+            source => Self::Target { step, source },
+        }
+    }
 }
 
 fn process_words(process: &Option<u32>) -> String {

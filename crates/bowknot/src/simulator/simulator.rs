@@ -22,7 +22,7 @@ use super::sleep::SleepState;
 use super::statistics::StepStatistics;
 use super::waits::WaitingElements;
 use bowknot_check::{Judge, StateOptions, StateReport};
-use bowknot_dynamics::{Dynamics, DynamicsModel};
+use bowknot_dynamics::{Dynamics, DynamicsModel, LinearBackend};
 use bowknot_errors::counted;
 use bowknot_geometry::{Point, Vector};
 use bowknot_scene::world::{Attachment, World};
@@ -178,6 +178,22 @@ impl Simulator {
         &*self.backend
     }
 
+    /// Lets a backend do the linear solves of the dynamics from the next time step on, in place of the CPU; None for the
+    /// CPU.
+    pub fn set_linear_backend(&mut self, backend: Option<Box<dyn LinearBackend>>) {
+        self.active_dynamics().set_linear_backend(backend);
+    }
+
+    /// What does the linear solves of the dynamics; None if it is the CPU.
+    pub fn linear_backend(&mut self) -> Option<&dyn LinearBackend> {
+        self.active_dynamics().linear_backend()
+    }
+
+    /// The dynamics of all bodies that are awake.
+    fn active_dynamics(&mut self) -> &mut Dynamics {
+        self.rest.as_mut().and_then(Rest::dynamics).unwrap_or(&mut self.dynamics)
+    }
+
     /// Finds the contacts at the present state, and refuses coordinates too large for the minimum separation.
     pub(super) fn find_contacts(&mut self, carried: &[ContactForce]) -> Result<(), SimulationError> {
         let Self { world, resolver, contacts, positions, step, dt, .. } = self;
@@ -300,7 +316,7 @@ impl Simulator {
         } = self;
         let dynamics = rest.as_mut().and_then(Rest::dynamics).unwrap_or(dynamics);
         let Scratch { start, x, y, prescribed, keyframes, groups } = scratch;
-        let target_error = |source| SimulationError::Target { step, source };
+        let target_error = |source| SimulationError::target(step, source);
         let count = world.collision_vertices();
 
         let timer = Instant::now();

@@ -1,6 +1,6 @@
 //! Results of Newton iterations.
 
-use crate::linear::solver::CgInfo;
+use crate::linear::accuracy::CgInfo;
 use serde::Serialize;
 
 /// Statistics of one target.

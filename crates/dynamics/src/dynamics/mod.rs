@@ -26,6 +26,7 @@ pub use info::{NewtonInfo, Residual};
 
 use crate::drag::DragSurfaces;
 use crate::error::StepError;
+use crate::linear::backend::LinearBackend;
 use crate::linear::block::BlockValues;
 use crate::linear::solver::LinearSolver;
 use crate::model::DynamicsModel;
@@ -93,6 +94,27 @@ impl Dynamics {
     /// The parameters.
     pub fn params(&self) -> &DynamicsParams {
         &self.params
+    }
+
+    /// Lets a backend do the linear solves of Newton iterations in single precision from the next target on; None
+    /// for the CPU, as at first. The CPU refines them in double precision and solves alone where single precision
+    /// gains nothing. Residuals of time steps are measured on the CPU.
+    pub fn set_linear_backend(&mut self, backend: Option<Box<dyn LinearBackend>>) {
+        let patches = match self.params.newton.preconditioner {
+            PreconditionerKind::BlockJacobi => Vec::new(),
+            PreconditionerKind::TwoLevel => self.model.leaves.clone(),
+        };
+        self.work.solver.set_backend(backend, patches);
+    }
+
+    /// Takes away what does the linear solves in single precision: the CPU does them from now on.
+    pub fn take_linear_backend(&mut self) -> Option<Box<dyn LinearBackend>> {
+        self.work.solver.take_backend()
+    }
+
+    /// What does the linear solves in single precision; None if it is the CPU.
+    pub fn linear_backend(&self) -> Option<&dyn LinearBackend> {
+        self.work.solver.backend()
     }
 
     /// Sets the force on each vertex [N], 0 at first. It is kept until it is set again and takes effect at
@@ -241,7 +263,7 @@ impl Dynamics {
     /// then solves the time step, inertia included, with the surface held.
     ///
     /// # Errors
-    /// A length is wrong, an entry is not finite, or no step was begun.
+    /// A length is wrong, an entry is not finite, no step was begun, or the backend of linear solves has failed.
     pub fn newton_target(
         &mut self,
         x: &[Point],
@@ -274,6 +296,10 @@ impl Dynamics {
         let mut info = rayon::scope(|_| {
             Newton { model: &self.model, params: &self.params, repulsion, step: &mut step, work }.solve()
         });
+        if let Some(message) = work.solver.take_failure() {
+            self.step = Some(step);
+            return Err(StepError::LinearBackend { message });
+        }
         info.max_displacement = displacement(&self.model, &work.trial, &work.free, x);
         // `trial` is the target by node.
         for (vertex, y) in y.iter_mut().enumerate() {

@@ -1,5 +1,7 @@
 //! The linear system of a Newton iteration: storage, products, preconditioners, conjugate gradients.
 
+pub(crate) mod accuracy;
+pub(crate) mod backend;
 pub(crate) mod block;
 pub(crate) mod cg;
 pub(crate) mod cholesky;
@@ -9,6 +11,7 @@ pub(crate) mod lane;
 pub(crate) mod operator;
 pub(crate) mod ordering;
 pub(crate) mod preconditioner;
+mod refinement;
 pub(crate) mod scalar;
 pub(crate) mod solver;
 pub(crate) mod springs;

@@ -167,6 +167,11 @@ impl SplitForm {
         &self.off_values
     }
 
+    /// Starts of rows, columns and values of the entries outside of the pattern.
+    pub fn off_rows(&self) -> (&[u32], &[u32], &[f64]) {
+        (&self.off_starts, &self.off_columns, &self.off_values)
+    }
+
     /// Adds `factor` times another form with the same entries.
     pub fn add_scaled(&mut self, factor: f64, other: &SplitForm) {
         let add = |to: &mut [f64], from: &[f64]| to.iter_mut().zip(from).for_each(|(t, f)| *t += factor * f);

@@ -6,45 +6,16 @@
 //! further solve corrects x (iterative refinement, see N. J. Higham, "Accuracy and Stability of Numerical
 //! Algorithms", chapter 12). Where single precision gains nothing, the rest is done in double precision.
 
+use super::accuracy::{CgInfo, Limits, MARGIN, MIN_GAIN, subtract_product, unit_factor};
+use super::backend::LinearBackend;
 use super::cg::Krylov;
 use super::coarse::Coarse;
 use super::direct::Direct;
 use super::preconditioner::Levels;
+use super::refinement::Refinement;
 use super::system::System;
 use bowknot_geometry::Vector;
-use serde::Serialize;
-
-/// How a linear solve ended.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct CgInfo {
-    /// Number of iterations, each with one matrix-vector product.
-    pub iterations: usize,
-    /// Residual in the preconditioner's norm, relative to that of the right-hand side [1].
-    pub residual: f64,
-    /// Whether the residual fell below the tolerance. If not, the last iterate is used all the same: the
-    /// target is less accurate, but the step does not fail.
-    pub converged: bool,
-}
-
-/// When to stop. Norms are those of the preconditioner.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Limits {
-    /// Residual relative to b, or to `min_scale` if that is larger [1].
-    pub tolerance: f64,
-    /// Residual relative to b itself at which the solve may end as well [1].
-    pub own_tolerance: f64,
-    /// Smallest squared norm that `tolerance` is relative to: that of the first solve of the time step, which
-    /// the present one corrects.
-    pub min_scale: f64,
-    pub max_iterations: usize,
-}
-
-/// Share of the tolerance at which conjugate gradients end, so that the residual in double precision is below
-/// the tolerance as well.
-const MARGIN: f64 = 0.95;
-
-/// Share of the residual that a round in single precision must take away at least.
-const MIN_GAIN: f64 = 0.5;
+use std::ops::Range;
 
 /// Solves systems and measures residuals.
 #[derive(Debug, Default)]
@@ -55,6 +26,12 @@ pub(crate) struct LinearSolver {
     precise: bool,
     single: Krylov<f32>,
     double: Krylov<f64>,
+    /// Solves in place of `single`, with the patches of nodes for its preconditioner.
+    backend: Option<(Refinement, Vec<Range<u32>>)>,
+    /// Whether the backend is left out for the rest of the time step.
+    on_cpu: bool,
+    /// What the backend failed of.
+    failure: Option<String>,
     /// b - H x [N].
     residual: Vec<Vector>,
     scale: f64,
@@ -69,11 +46,33 @@ impl LinearSolver {
 
     /// Forgets what depends on the time step before.
     pub fn begin_step(&mut self) {
+        self.on_cpu = false;
         self.precise = self.levels.direct.is_some();
     }
 
-    /// Builds the preconditioner for `system`, linearized at positions `x`.
-    pub fn prepare(&mut self, system: &System<'_>, x: &[Vector]) {
+    /// Lets a backend solve in single precision; None for the CPU.
+    pub fn set_backend(&mut self, backend: Option<Box<dyn LinearBackend>>, patches: Vec<Range<u32>>) {
+        self.backend = backend.map(|backend| (Refinement::new(backend), patches));
+        self.failure = None;
+    }
+
+    /// Takes the backend away, if there is one.
+    pub fn take_backend(&mut self) -> Option<Box<dyn LinearBackend>> {
+        self.backend.take().map(|(refinement, _)| refinement.backend)
+    }
+
+    /// The backend, if there is one.
+    pub fn backend(&self) -> Option<&dyn LinearBackend> {
+        self.backend.as_ref().map(|(refinement, _)| &*refinement.backend)
+    }
+
+    /// What the backend has failed of since the last call.
+    pub fn take_failure(&mut self) -> Option<String> {
+        self.failure.take()
+    }
+
+    /// Builds the preconditioner of the CPU for `system`, linearized at positions `x`.
+    fn prepare(&mut self, system: &System<'_>, x: &[Vector]) {
         self.levels.build(system, x);
         if self.precise {
             self.double.fill_preconditioner(system, &self.levels);
@@ -82,8 +81,9 @@ impl LinearSolver {
         }
     }
 
-    /// Sets `z` to the preconditioner times `r`, after [`Self::prepare`].
-    pub fn precondition(&mut self, r: &[Vector], z: &mut [Vector]) {
+    /// Sets `z` to the preconditioner of `system`, linearized at positions `x`, times `r`.
+    pub fn precondition(&mut self, system: &System<'_>, x: &[Vector], r: &[Vector], z: &mut [Vector]) {
+        self.prepare(system, x);
         let factor = unit_factor(r);
         if self.precise {
             self.double.begin(&mut self.levels, r, factor);
@@ -104,24 +104,64 @@ impl LinearSolver {
         &self.residual
     }
 
-    /// Solves H x = b over the free nodes for the `system` that was [prepared](Self::prepare); b and x are
-    /// zero elsewhere.
+    /// Solves H x = b over the free nodes for the `system`, linearized at `positions`; b and x are zero elsewhere.
     ///
     /// The start is the combination of `guesses` with the least energy, or zero if there are none. The
     /// tolerance is relative to b, not to the first residual: a good guess saves iterations and does not
     /// raise the accuracy.
+    ///
+    /// If the backend fails, the CPU solves and [`Self::take_failure`] tells. Where single precision gains nothing,
+    /// the CPU does the rest of the time step in double precision.
     pub fn solve(
         &mut self,
         system: &System<'_>,
+        positions: &[Vector],
         b: &[Vector],
         guesses: &[&[Vector]],
         limits: Limits,
         x: &mut [Vector],
     ) -> CgInfo {
+        if let Some((refinement, patches)) = self.backend.as_mut().filter(|_| !self.on_cpu) {
+            x.fill(Vector::zeros());
+            let prepared = refinement.backend.prepare(&system.for_backend(positions, patches));
+            let solved =
+                prepared.and_then(|()| refinement.solve(system, b, guesses, limits, x, &mut self.residual));
+            match solved {
+                Ok(refined) if !refined.stalled => {
+                    self.scale = refined.scale;
+                    return refined.info;
+                }
+                Ok(refined) => {
+                    tracing::debug!("single precision is not enough for the linear solves of a time step");
+                    let start = x.to_vec();
+                    (self.on_cpu, self.precise) = (true, true);
+                    let mut info = self.solve_on_cpu(system, positions, b, &[&start], limits, x);
+                    info.iterations += refined.info.iterations;
+                    return info;
+                }
+                Err(error) => {
+                    self.failure = Some(error.to_string());
+                    self.on_cpu = true;
+                }
+            }
+        }
+        self.solve_on_cpu(system, positions, b, guesses, limits, x)
+    }
+
+    fn solve_on_cpu(
+        &mut self,
+        system: &System<'_>,
+        positions: &[Vector],
+        b: &[Vector],
+        guesses: &[&[Vector]],
+        limits: Limits,
+        x: &mut [Vector],
+    ) -> CgInfo {
+        self.prepare(system, positions);
         x.fill(Vector::zeros());
         self.residual.clear();
         self.residual.extend_from_slice(b);
-        let Self { levels, precise, single, double, residual, scale } = self;
+        let Self { levels, precise, single, double, residual, scale, .. } = self;
 
         let mut factor = unit_factor(b);
         let norm = if *precise { double.begin(levels, b, factor) } else { single.begin(levels, b, factor) };
@@ -170,19 +210,4 @@ impl LinearSolver {
         let iterations = limits.max_iterations - left;
         CgInfo { iterations, residual: (norm / scale).sqrt(), converged: norm <= goal }
     }
-}
-
-/// Sets `residual` to b - H x over free nodes.
-fn subtract_product(system: &System<'_>, x: &[Vector], b: &[Vector], residual: &mut [Vector]) {
-    system.multiply(x, residual);
-    residual.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
-}
-
-/// A power of two that makes the largest entry nearly 1, so that numbers of any unit fit into single
-/// precision; 1 if that is not possible.
-fn unit_factor(values: &[Vector]) -> f64 {
-    const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
-    let largest: f64 = values.iter().map(|v| v.amax()).fold(0.0, f64::max);
-    let factor = 1.0 / f64::from_bits(largest.to_bits() & EXPONENT);
-    if factor.is_normal() { factor } else { 1.0 }
 }

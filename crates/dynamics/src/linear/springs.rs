@@ -12,8 +12,8 @@ use rayon::prelude::*;
 
 /// A linearized spring.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct LinearSpring {
-    /// [`NO_NODE`] for vertices of obstacles and vertices with weight 0.
+pub struct LinearSpring {
+    /// `u32::MAX` for vertices of obstacles and vertices with weight 0.
     pub nodes: [u32; 4],
     /// The weights beta [1].
     pub weights: [f64; 4],
@@ -127,6 +127,11 @@ impl LinearSprings {
     /// Springs and weights of all nodes, node by node: those of a node are in its [`Self::entry_range`].
     pub fn all_entries(&self) -> &[(u32, f64)] {
         &self.entries
+    }
+
+    /// Where the springs of each node begin, and the number of all entries.
+    pub fn starts(&self) -> &[u32] {
+        &self.starts
     }
 
     /// Where the springs of a node stand.

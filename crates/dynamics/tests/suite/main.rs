@@ -1,6 +1,7 @@
 //! Bodies against closed forms.
 
 mod air;
+mod backend;
 mod common;
 mod physics;
 mod repulsion;

@@ -1,16 +1,12 @@
 //! Runs recordings on a device.
 
+use super::pipelines::{PARAMS_STRIDE, Pipelines};
 use super::profile::Profile;
 use super::traits::{Engine, SMALLEST_BUFFER};
 use crate::adapter::{Adapter, wait};
 use crate::error::GpuError;
 use crate::recording::{BufferId, Command, Dispatch, Recording};
-use crate::stages::{Access, Stage};
-use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
-
-/// Bytes between the parameters of two dispatches: what every device can offset by.
-const PARAMS_STRIDE: u64 = 256;
 
 /// Most workgroups in one dimension that every device runs.
 const MAX_WORKGROUPS: usize = 65535;
@@ -22,19 +18,13 @@ pub struct DeviceEngine {
     device: wgpu::Device,
     queue: wgpu::Queue,
     buffers: Vec<Option<wgpu::Buffer>>,
-    pipelines: HashMap<&'static str, Pipeline>,
+    pipelines: Pipelines,
     /// The parameters of the dispatches of a recording.
     params: wgpu::Buffer,
     /// Where the times of the stages go, if they are measured.
     profile: Option<Profile>,
     /// What the driver reported since the last look: it does so from other threads.
     failure: Arc<Mutex<Option<Failure>>>,
-}
-
-#[derive(Debug)]
-struct Pipeline {
-    pipeline: wgpu::ComputePipeline,
-    layout: wgpu::BindGroupLayout,
 }
 
 #[derive(Debug)]
@@ -70,7 +60,7 @@ impl DeviceEngine {
             device,
             queue,
             buffers: Vec::new(),
-            pipelines: HashMap::new(),
+            pipelines: Pipelines::default(),
             params,
             profile: None,
             failure,
@@ -108,7 +98,7 @@ impl DeviceEngine {
     }
 
     fn buffer_of(&self, id: BufferId) -> &wgpu::Buffer {
-        self.buffers[id.0 as usize].as_ref().expect("a buffer is not used after it was freed")
+        find(&self.buffers, id)
     }
 
     /// Uploads the parameters of all dispatches.
@@ -116,6 +106,7 @@ impl DeviceEngine {
         let needed = dispatches as u64 * PARAMS_STRIDE;
         if self.params.size() < needed {
             self.params = params_buffer(&self.device, dispatches.next_power_of_two());
+            self.pipelines.forget_all();
         }
         let mut bytes = vec![0u8; needed as usize];
         let mut place = 0;
@@ -129,9 +120,9 @@ impl DeviceEngine {
         self.queue.write_buffer(&self.params, 0, &bytes);
     }
 
-    fn prepare(&mut self, stage: &'static Stage) {
-        let device = &self.device;
-        self.pipelines.entry(stage.name).or_insert_with(|| pipeline(device, stage));
+    fn prepare(&mut self, dispatch: &Dispatch) {
+        let Self { device, buffers, pipelines, params, .. } = self;
+        pipelines.prepare(device, dispatch, params, |id| find(buffers, id));
     }
 
     fn encode(&self, encoder: &mut wgpu::CommandEncoder, dispatches: &[(&Dispatch, u64)]) {
@@ -203,25 +194,9 @@ impl DeviceEngine {
 
     fn encode_pass(&self, pass: &mut wgpu::ComputePass<'_>, dispatches: &[(&Dispatch, u64)]) {
         for (dispatch, place) in dispatches {
-            let Pipeline { pipeline, layout } = &self.pipelines[dispatch.stage.name];
-            let params = wgpu::BufferBinding {
-                buffer: &self.params,
-                offset: 0,
-                size: std::num::NonZeroU64::new(PARAMS_STRIDE),
-            };
-            let mut entries =
-                vec![wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::Buffer(params) }];
-            entries.extend(dispatch.buffers.iter().zip(1..).map(|(&buffer, binding)| wgpu::BindGroupEntry {
-                binding,
-                resource: self.buffer_of(buffer).as_entire_binding(),
-            }));
-            let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some(dispatch.stage.name),
-                layout,
-                entries: &entries,
-            });
+            let (pipeline, group) = self.pipelines.of(dispatch);
             pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, &group, &[(place * PARAMS_STRIDE) as u32]);
+            pass.set_bind_group(0, group, &[(place * PARAMS_STRIDE) as u32]);
             // Kernels go on with strides, so any number of workgroups does all of the work.
             let workgroups = dispatch.threads.div_ceil(dispatch.stage.workgroup).min(MAX_WORKGROUPS);
             pass.dispatch_workgroups(workgroups as u32, 1, 1);
@@ -277,10 +252,12 @@ impl Engine for DeviceEngine {
 
     fn free(&mut self, buffer: BufferId) {
         self.buffers[buffer.0 as usize] = None;
+        self.pipelines.forget(buffer);
     }
 
     fn clear(&mut self) {
         self.buffers.clear();
+        self.pipelines.forget_all();
     }
 
     fn words(&self, buffer: BufferId) -> usize {
@@ -295,7 +272,7 @@ impl Engine for DeviceEngine {
         }
         for command in &recording.commands {
             if let Command::Dispatch(dispatch) = command {
-                self.prepare(dispatch.stage);
+                self.prepare(dispatch);
             }
         }
         // Writes take place before the next submit: what was recorded before them is submitted first.
@@ -345,6 +322,10 @@ impl Engine for DeviceEngine {
     }
 }
 
+fn find(buffers: &[Option<wgpu::Buffer>], id: BufferId) -> &wgpu::Buffer {
+    buffers[id.0 as usize].as_ref().expect("a buffer is not used after it was freed")
+}
+
 fn params_buffer(device: &wgpu::Device, dispatches: usize) -> wgpu::Buffer {
     device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("params"),
@@ -352,41 +333,4 @@ fn params_buffer(device: &wgpu::Device, dispatches: usize) -> wgpu::Buffer {
         usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     })
-}
-
-fn pipeline(device: &wgpu::Device, stage: &'static Stage) -> Pipeline {
-    let entry =
-        |binding: u32, ty: wgpu::BufferBindingType, has_dynamic_offset: bool| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset, min_binding_size: None },
-            count: None,
-        };
-    let mut entries = vec![entry(0, wgpu::BufferBindingType::Uniform, true)];
-    entries.extend(stage.bindings.iter().zip(1..).map(|(access, binding)| {
-        let read_only = *access == Access::Read;
-        entry(binding, wgpu::BufferBindingType::Storage { read_only }, false)
-    }));
-    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some(stage.name),
-        entries: &entries,
-    });
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some(stage.name),
-        source: wgpu::ShaderSource::Wgsl(stage.source().into()),
-    });
-    let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some(stage.name),
-        bind_group_layouts: &[Some(&layout)],
-        immediate_size: 0,
-    });
-    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some(stage.name),
-        layout: Some(&pipeline_layout),
-        module: &module,
-        entry_point: Some("main"),
-        compilation_options: wgpu::PipelineCompilationOptions::default(),
-        cache: None,
-    });
-    Pipeline { pipeline, layout }
 }

@@ -2,6 +2,7 @@
 
 mod compare;
 mod device;
+mod pipelines;
 mod profile;
 mod traits;
 mod twin;

@@ -1,5 +1,5 @@
 use super::{ALL, Access};
-use crate::layout;
+use crate::{cpu, layout, linear};
 use naga::{AddressSpace, StorageAccess, TypeInner};
 
 /// Shaders are valid without a device, and their bindings, workgroups and structs are those of the table.
@@ -34,44 +34,71 @@ fn shaders_fit_their_stages() {
     }
 }
 
-/// Structs have the same size and the same places of fields here and in the shaders.
-#[test]
-fn structs_lie_alike_on_both_sides() {
-    macro_rules! offsets {
-        ($type:ident: $($field:ident),*) => {
-            (stringify!($type), size_of::<layout::$type>(),
-             vec![$((stringify!($field), std::mem::offset_of!(layout::$type, $field))),*])
-        };
-    }
-    let structs = [
-        offsets!(Vertex: edge, margin, body, flags, groups, mask, group, delta, half_space_delta, thickness, mass, root_of_friction),
-        offsets!(Ball: center, radius),
-        offsets!(NodeBox: low, deformable, high, padding),
-        offsets!(Candidate: kind_and_a, b),
-        offsets!(Separation: normal, width, weights, distance, min_separation, wanted, sine, padding_0, padding_1),
-        offsets!(PairState: friction, multiplier, desired, min_separation, range, color),
-        offsets!(Row: vertices, weights, normal, value, inverse_diagonal, multiplier, candidate, color, slip, coefficient,
-            friction, padding),
-        offsets!(EdgeLimit: a, b, limit, padding, multiplier, padding_1),
-        offsets!(OldRow: first, count),
-        offsets!(Block: first, count, body),
-        offsets!(Plane: normal, rounding, point, padding),
-        offsets!(PairFriction: a, b, coefficient),
-    ];
-    let source = ALL.iter().find(|stage| stage.name == "separate").expect("a stage").source();
-    let module = naga::front::wgsl::parse_str(&source).expect("valid");
+/// A struct: its name, its size, the places of its fields.
+type Struct = (&'static str, usize, Vec<(&'static str, usize)>);
+
+macro_rules! offsets {
+    ($type:ty: $($field:ident),*) => {
+        (stringify!($type).rsplit("::").next().unwrap_or_default().trim(), size_of::<$type>(),
+         vec![$((stringify!($field), std::mem::offset_of!($type, $field))),*])
+    };
+}
+
+fn module_of(stage: &str) -> naga::Module {
+    let source = ALL.iter().find(|found| found.name == stage).expect("a stage").source();
+    naga::front::wgsl::parse_str(&source).expect("valid")
+}
+
+fn assert_structs(module: &naga::Module, structs: &[Struct]) {
     for (name, size, fields) in structs {
         let (_, found) = module
             .types
             .iter()
-            .find(|(_, found)| found.name.as_deref() == Some(name))
+            .find(|(_, found)| found.name.as_deref() == Some(*name))
             .unwrap_or_else(|| panic!("{name} is in no shader"));
         let TypeInner::Struct { members, span } = &found.inner else { panic!("{name} is no struct") };
-        assert_eq!(*span as usize, size, "{name}");
+        assert_eq!(*span as usize, *size, "{name}");
         let found: Vec<(&str, usize)> =
             members.iter().map(|m| (m.name.as_deref().unwrap_or(""), m.offset as usize)).collect();
-        assert_eq!(found, fields, "{name}");
+        assert_eq!(found, *fields, "{name}");
     }
+}
+
+#[test]
+fn structs_of_linear_solves_lie_alike_on_both_sides() {
+    let structs = [
+        offsets!(linear::PatchSlot: node, inverse, arm, padding),
+        offsets!(linear::Domain: inverse, links),
+        offsets!(linear::Spring: nodes, weights, hessian),
+        offsets!(linear::Progress: moving, iterations),
+    ];
+    assert_structs(&module_of("react"), &structs[2..3]);
+    assert_structs(&module_of("descend"), &structs);
+    // Parameters with an array, which a uniform buffer aligns to 16 bytes.
+    let params = offsets!(cpu::redirect::Params: patches, grouped, start, workgroups, levels, norms, present, next, firsts);
+    assert_structs(&module_of("redirect"), &[params]);
+}
+
+/// Structs have the same size and the same places of fields here and in the shaders.
+#[test]
+fn structs_lie_alike_on_both_sides() {
+    let structs = [
+        offsets!(layout::Vertex: edge, margin, body, flags, groups, mask, group, delta, half_space_delta, thickness, mass, root_of_friction),
+        offsets!(layout::Ball: center, radius),
+        offsets!(layout::NodeBox: low, deformable, high, padding),
+        offsets!(layout::Candidate: kind_and_a, b),
+        offsets!(layout::Separation: normal, width, weights, distance, min_separation, wanted, sine, padding_0, padding_1),
+        offsets!(layout::PairState: friction, multiplier, desired, min_separation, range, color),
+        offsets!(layout::Row: vertices, weights, normal, value, inverse_diagonal, multiplier, candidate, color, slip, coefficient,
+            friction, padding),
+        offsets!(layout::EdgeLimit: a, b, limit, padding, multiplier, padding_1),
+        offsets!(layout::OldRow: first, count),
+        offsets!(layout::Block: first, count, body),
+        offsets!(layout::Plane: normal, rounding, point, padding),
+        offsets!(layout::PairFriction: a, b, coefficient),
+    ];
+    let module = module_of("separate");
+    assert_structs(&module, &structs);
     let control = module.types.iter().find(|(_, t)| t.name.as_deref() == Some("Control")).expect("in all").1;
     let TypeInner::Struct { members, .. } = &control.inner else { panic!("no struct") };
     let candidates = members.iter().find(|m| m.name.as_deref() == Some("candidates")).expect("a field");

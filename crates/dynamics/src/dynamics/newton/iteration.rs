@@ -3,7 +3,7 @@
 use super::momentum::{Inertia, restore_momentum};
 use super::state::Newton;
 use crate::dynamics::info::NewtonInfo;
-use crate::linear::solver::Limits;
+use crate::linear::accuracy::Limits;
 use crate::linear::system::System;
 use bowknot_geometry::Vector;
 
@@ -57,7 +57,6 @@ impl Newton<'_> {
         }
         let [inertia, last] = &work.guesses;
         let guesses: &[&[Vector]] = &[last.as_slice(), inertia.as_slice()][2 - guess_count..];
-        work.solver.prepare(&system, &work.x);
         let limits = Limits {
             tolerance: params.newton.cg_tolerance,
             own_tolerance: match accuracy {
@@ -69,7 +68,7 @@ impl Newton<'_> {
         };
         let mut info = NewtonInfo {
             iterations: 1,
-            cg: work.solver.solve(&system, &work.right_side, guesses, limits, &mut work.step),
+            cg: work.solver.solve(&system, &work.x, &work.right_side, guesses, limits, &mut work.step),
             ..NewtonInfo::default()
         };
         if work.min_scale == 0.0 {

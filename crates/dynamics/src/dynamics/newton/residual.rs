@@ -23,8 +23,7 @@ impl Newton<'_> {
             springs: None,
             free: &work.free,
         };
-        work.solver.prepare(&system, &work.x);
-        work.solver.precondition(&work.right_side, &mut work.step);
+        work.solver.precondition(&system, &work.x, &work.right_side, &mut work.step);
         let mut largest: f64 = 0.0;
         for component in &model.components {
             let nodes = || (component.start as usize..component.end as usize).filter(|&n| work.free[n]);

@@ -54,7 +54,7 @@ pub struct Workspace {
     pub step: Vec<Vector>,
     pub values: BlockValues,
     pub solver: LinearSolver,
-    /// See [`crate::linear::solver::Limits::min_scale`]: that of the first solve of the time step; 0 before.
+    /// See [`crate::linear::accuracy::Limits::min_scale`]: that of the first solve of the time step; 0 before.
     pub min_scale: f64,
     pub cache: EvaluationCache,
 }

@@ -1,0 +1,120 @@
+//! A linear solve by a backend in single precision, refined in double precision.
+
+use super::accuracy::{CgInfo, Limits, MARGIN, MIN_GAIN, subtract_product, unit_factor};
+use super::backend::{LinearBackend, LinearBackendError};
+use super::system::System;
+use super::vectors::{add_scaled, dot};
+use bowknot_geometry::Vector;
+
+/// The backend and the buffers of a refinement.
+#[derive(Debug)]
+pub(super) struct Refinement {
+    pub backend: Box<dyn LinearBackend>,
+    guesses: Vec<Guess>,
+}
+
+/// A direction, its image under H and its curvature.
+#[derive(Debug, Default)]
+struct Guess {
+    direction: Vec<Vector>,
+    image: Vec<Vector>,
+    curvature: f64,
+}
+
+/// How a solve ended.
+#[derive(Debug)]
+pub(super) struct Refined {
+    pub info: CgInfo,
+    /// Squared norm of b.
+    pub scale: f64,
+    /// Whether a round in single precision gained too little: x is then the best so far, above the tolerance.
+    pub stalled: bool,
+}
+
+impl Refinement {
+    pub fn new(backend: Box<dyn LinearBackend>) -> Self {
+        Self { backend, guesses: Vec::new() }
+    }
+
+    /// Solves H x = b, as [`super::solver::LinearSolver::solve`] does, for the system that the backend was
+    /// prepared for. `residual` becomes b - H x.
+    pub fn solve(
+        &mut self,
+        system: &System<'_>,
+        b: &[Vector],
+        guesses: &[&[Vector]],
+        limits: Limits,
+        x: &mut [Vector],
+        residual: &mut Vec<Vector>,
+    ) -> Result<Refined, LinearBackendError> {
+        residual.clear();
+        residual.extend_from_slice(b);
+        let mut factor = unit_factor(b);
+        let scale = self.backend.begin(b, factor)? / (factor * factor);
+        if scale <= 0.0 || !scale.is_finite() {
+            let info = CgInfo { iterations: 0, residual: 0.0, converged: scale == 0.0 };
+            return Ok(Refined { info, scale, stalled: false });
+        }
+        let relative = scale.max(limits.min_scale);
+        let goal = limits.tolerance * limits.tolerance * relative;
+        let goal = goal.max(limits.own_tolerance * limits.own_tolerance * scale);
+
+        guesses.iter().enumerate().for_each(|(k, guess)| self.try_guess(k, system, guess, x, residual));
+        let mut norm = scale;
+        if !guesses.is_empty() {
+            subtract_product(system, x, b, residual);
+            factor = unit_factor(residual);
+            norm = self.backend.begin(residual, factor)? / (factor * factor);
+        }
+        let mut left = limits.max_iterations;
+        let mut stalled = false;
+        while norm > goal && left > 0 && norm.is_finite() && !stalled {
+            let before = norm;
+            let goal_here = MARGIN * MARGIN * goal * factor * factor;
+            left -= self.backend.iterate(goal_here, left, 1.0 / factor, x)?.min(left);
+            subtract_product(system, x, b, residual);
+            factor = unit_factor(residual);
+            norm = self.backend.begin(residual, factor)? / (factor * factor);
+            stalled = norm > goal && (norm > MIN_GAIN * MIN_GAIN * before || !norm.is_finite());
+        }
+        let iterations = limits.max_iterations - left;
+        let info = CgInfo { iterations, residual: (norm / relative).sqrt(), converged: norm <= goal };
+        Ok(Refined { info, scale, stalled })
+    }
+
+    /// Moves x to the minimum of the energy along guess `k`, made conjugate to the guesses before, in double
+    /// precision.
+    fn try_guess(
+        &mut self,
+        k: usize,
+        system: &System<'_>,
+        guess: &[Vector],
+        x: &mut [Vector],
+        residual: &mut [Vector],
+    ) {
+        if self.guesses.len() == k {
+            self.guesses.push(Guess::default());
+        }
+        let (before, rest) = self.guesses.split_at_mut(k);
+        let Guess { direction: p, image: q, curvature } = &mut rest[0];
+        p.clear();
+        p.extend_from_slice(guess);
+        q.resize(p.len(), Vector::zeros());
+        *curvature = system.multiply(p, q);
+        for other in before.iter().filter(|other| is_positive(other.curvature)) {
+            let share = -dot(p, &other.image) / other.curvature;
+            add_scaled(p, share, &other.direction);
+            add_scaled(q, share, &other.image);
+            *curvature = dot(p, q);
+        }
+        if is_positive(*curvature) {
+            let step = dot(p, residual) / *curvature;
+            add_scaled(x, step, p);
+            add_scaled(residual, -step, q);
+        }
+    }
+}
+
+fn is_positive(curvature: f64) -> bool {
+    curvature > 0.0 && curvature.is_finite()
+}

@@ -1,0 +1,133 @@
+// A step of conjugate gradients along the direction p with the image q, and the fine part of the preconditioner:
+// block-Jacobi, and rigid motions of the groups of each patch. See linear/patches.rs. One workgroup per patch, which go on
+// with strides.
+//
+// z overwrites q. The squared norm r . M r is summed level by level: r . D^-1 r + sum f . A^-1 f, with the forces f on the
+// rigid motions of a level and the matrix A of a domain.
+
+struct Params {
+    nodes: u32,
+    patches: u32,
+    // Patches with groups come first.
+    grouped: u32,
+    // 1 at the start: p is the residual then, and nothing is stepped.
+    start: u32,
+    workgroups: u32,
+    curvatures: u32,
+    // Partial sums of the squared norm: their number, and where the present ones and the next ones begin.
+    norms: u32,
+    present: u32,
+    next: u32,
+    goal: f32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read> slots: array<PatchSlot>;
+@group(0) @binding(2) var<storage, read> domains: array<Domain>;
+@group(0) @binding(3) var<storage, read> direction: array<vec4<f32>>;
+@group(0) @binding(4) var<storage, read_write> image: array<vec4<f32>>;
+// Of each node x, then of each node r.
+@group(0) @binding(5) var<storage, read_write> solution: array<vec4<f32>>;
+@group(0) @binding(6) var<storage, read_write> forces: array<f32>;
+@group(0) @binding(7) var<storage, read_write> sums: array<f32>;
+@group(0) @binding(8) var<storage, read_write> progress: Progress;
+
+var<workgroup> decision: u32;
+// Of each slot the force and its moment; of each group both, and its motion.
+var<workgroup> slot_forces: array<f32, 384>;
+var<workgroup> group_forces: array<f32, 48>;
+var<workgroup> motions: array<f32, 48>;
+
+fn is_positive(number: f32) -> bool {
+    return number > 0.0 && (bitcast<u32>(number) & 0x7f800000u) != 0x7f800000u;
+}
+
+fn times_inverse(slot: PatchSlot, r: vec3<f32>) -> vec3<f32> {
+    let m = slot.inverse;
+    return vec3<f32>(
+        m[0] * r.x + m[1] * r.y + m[2] * r.z,
+        m[1] * r.x + m[3] * r.y + m[4] * r.z,
+        m[2] * r.x + m[4] * r.y + m[5] * r.z,
+    );
+}
+
+@compute @workgroup_size(64)
+fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
+    let t = local.x;
+    var step = 0.0;
+    if params.start == 0u {
+        let norm = sum_of_parts(t, params.present, params.norms);
+        let curvature = sum_of_parts(t, 0u, params.curvatures);
+        if t == 0u {
+            let goes_on = norm > params.goal && is_positive(norm) && is_positive(curvature);
+            decision = select(0u, 1u, goes_on && atomicLoad(&progress.moving) == 1u);
+        }
+        if workgroupUniformLoad(&decision) == 0u {
+            if t == 0u {
+                sums[params.next + group.x] = sums[params.present + group.x];
+                atomicStore(&progress.moving, 0u);
+            }
+            return;
+        }
+        step = norm / curvature;
+    }
+    var squares = 0.0;
+    for (var k = group.x; k < params.patches; k += params.workgroups) {
+        let slot = slots[64u * k + t];
+        let i = slot.node;
+        var r = vec3<f32>(0.0);
+        if i != NONE {
+            let p = direction[i].xyz;
+            if params.start == 1u {
+                r = p;
+                solution[i] = vec4<f32>(0.0);
+            } else {
+                r = solution[params.nodes + i].xyz - step * image[i].xyz;
+                solution[i] = vec4<f32>(solution[i].xyz + step * p, 0.0);
+            }
+            solution[params.nodes + i] = vec4<f32>(r, 0.0);
+        }
+        var z = times_inverse(slot, r);
+        squares += dot(r, z);
+        if k < params.grouped {
+            let arm = vec3<f32>(slot.arm[0], slot.arm[1], slot.arm[2]);
+            let moment = cross(arm, r);
+            for (var c = 0u; c < 3u; c += 1u) {
+                slot_forces[6u * t + c] = r[c];
+                slot_forces[6u * t + 3u + c] = moment[c];
+            }
+            workgroupBarrier();
+            if t < 48u {
+                var f = 0.0;
+                for (var m = 0u; m < 8u; m += 1u) {
+                    f += slot_forces[6u * (8u * (t / 6u) + m) + t % 6u];
+                }
+                group_forces[t] = f;
+            }
+            workgroupBarrier();
+            if t < 48u {
+                var motion = 0.0;
+                for (var m = 0u; m < 48u; m += 1u) {
+                    motion += domains[k].inverse[48u * m + t] * group_forces[m];
+                }
+                motions[t] = motion;
+                squares += motion * group_forces[t];
+            }
+            // The force on the rigid motion of the patch.
+            if t < 6u {
+                forces[6u * k + t] = force_on_parent(k, t);
+            }
+            workgroupBarrier();
+            let g = 6u * (t / 8u);
+            let spin = vec3<f32>(motions[g + 3u], motions[g + 4u], motions[g + 5u]);
+            z += vec3<f32>(motions[g], motions[g + 1u], motions[g + 2u]) + cross(spin, arm);
+        }
+        if i != NONE {
+            image[i] = vec4<f32>(z, 0.0);
+        }
+    }
+    let sum = sum_of_threads(t, squares);
+    if t == 0u {
+        sums[params.next + group.x] = sum;
+    }
+}

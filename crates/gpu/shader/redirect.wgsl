@@ -1,0 +1,95 @@
+// The next search direction p = z + (rz' / rz) p. The motions of the coarse levels are added to z here: each group of a
+// patch moves with all groups above it. One workgroup per patch, which go on with strides.
+
+struct Params {
+    patches: u32,
+    grouped: u32,
+    start: u32,
+    workgroups: u32,
+    // Coarse levels, and the place of the first group of each.
+    levels: u32,
+    norms: u32,
+    present: u32,
+    next: u32,
+    firsts: array<vec4<u32>, 3>,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read> slots: array<PatchSlot>;
+@group(0) @binding(2) var<storage, read> domains: array<Domain>;
+@group(0) @binding(3) var<storage, read> group_motions: array<f32>;
+@group(0) @binding(4) var<storage, read> image: array<vec4<f32>>;
+@group(0) @binding(5) var<storage, read_write> direction: array<vec4<f32>>;
+@group(0) @binding(6) var<storage, read> sums: array<f32>;
+@group(0) @binding(7) var<storage, read_write> progress: Progress;
+
+var<workgroup> is_moving: u32;
+var<workgroup> shifts: array<vec3<f32>, 8>;
+var<workgroup> spins: array<vec3<f32>, 8>;
+
+fn first_of(level: u32) -> u32 {
+    return params.firsts[level / 4u][level % 4u];
+}
+
+// Motion of group g of patch k with all groups above it.
+fn find_motion(k: u32, g: u32) {
+    var shift = vec3<f32>(0.0);
+    var spin = vec3<f32>(0.0);
+    for (var level = params.levels; level > 0u; level -= 1u) {
+        let index = k >> (3u * (level - 1u));
+        if level < params.levels {
+            let parent = first_of(level) + (index >> 3u);
+            let link = domains[parent].links[index & 7u];
+            shift += cross(spin, link.xyz);
+            spin *= link.w;
+        }
+        let at = 6u * (first_of(level - 1u) + index);
+        shift += vec3<f32>(group_motions[at], group_motions[at + 1u], group_motions[at + 2u]);
+        spin += vec3<f32>(group_motions[at + 3u], group_motions[at + 4u], group_motions[at + 5u]);
+    }
+    let link = domains[k].links[g];
+    shifts[g] = shift + cross(spin, link.xyz);
+    spins[g] = spin * link.w;
+}
+
+@compute @workgroup_size(64)
+fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
+    let t = local.x;
+    if t == 0u {
+        is_moving = atomicLoad(&progress.moving);
+    }
+    if workgroupUniformLoad(&is_moving) == 0u {
+        return;
+    }
+    var ratio = 0.0;
+    if params.start == 0u {
+        let before = sum_of_parts(t, params.present, params.norms);
+        ratio = sum_of_parts(t, params.next, params.norms) / before;
+        if group.x == 0u && t == 0u {
+            atomicAdd(&progress.iterations, 1u);
+        }
+    }
+    for (var k = group.x; k < params.patches; k += params.workgroups) {
+        let slot = slots[64u * k + t];
+        let i = slot.node;
+        var z = vec3<f32>(0.0);
+        if i != NONE {
+            z = image[i].xyz;
+        }
+        if k < params.grouped && params.levels > 0u {
+            workgroupBarrier();
+            if t < 8u {
+                find_motion(k, t);
+            }
+            workgroupBarrier();
+            let arm = vec3<f32>(slot.arm[0], slot.arm[1], slot.arm[2]);
+            z += shifts[t / 8u] + cross(spins[t / 8u], arm);
+        }
+        if i != NONE {
+            if params.start == 0u {
+                z += ratio * direction[i].xyz;
+            }
+            direction[i] = vec4<f32>(z, 0.0);
+        }
+    }
+}

@@ -1,0 +1,26 @@
+// The data that the stages of a linear solve share: see linear/layout.rs.
+
+const NONE: u32 = 0xffffffffu;
+
+struct Progress {
+    moving: atomic<u32>,
+    iterations: atomic<u32>,
+}
+
+struct PatchSlot {
+    node: u32,
+    inverse: array<f32, 6>,
+    arm: array<f32, 3>,
+    padding: array<u32, 2>,
+}
+
+struct Domain {
+    inverse: array<f32, 2304>,
+    links: array<vec4<f32>, 8>,
+}
+
+struct Spring {
+    nodes: vec4<u32>,
+    weights: vec4<f32>,
+    hessian: array<vec4<f32>, 3>,
+}

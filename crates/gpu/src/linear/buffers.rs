@@ -1,0 +1,135 @@
+//! The buffers of a linear system on an engine.
+
+use super::galerkin::Multilevel;
+use super::layout::{Domain, MOST_LEVELS, Progress};
+use super::matrix::PackedMatrix;
+use super::patches::Patches;
+use crate::cpu::sum::{MOST_WORKGROUPS, THREADS};
+use crate::engine::Engine;
+use crate::error::GpuError;
+use crate::recording::{BufferId, Recording};
+use bytemuck::Pod;
+
+/// Most workgroups of a coarse level, which has few domains.
+pub const MOST_COARSE_WORKGROUPS: usize = 128;
+
+/// Most partial sums of a squared norm.
+pub const MOST_NORMS: usize = MOST_WORKGROUPS + MOST_LEVELS * MOST_COARSE_WORKGROUPS;
+
+/// What the stages bind.
+#[derive(Clone, Copy, Debug)]
+pub struct Buffers {
+    pub slices: BufferId,
+    pub words: BufferId,
+    pub springs: BufferId,
+    pub spring_words: BufferId,
+    pub slots: BufferId,
+    pub domains: BufferId,
+    pub reactions: BufferId,
+    /// Search direction p; the residual before the start.
+    pub direction: BufferId,
+    /// q = H p, then z.
+    pub image: BufferId,
+    /// x of all nodes, then r of all nodes.
+    pub solution: BufferId,
+    /// Forces on the motions of patches and of the groups above them, and these motions.
+    pub forces: BufferId,
+    pub motions: BufferId,
+    /// Partial sums: of p . q, then twice those of r . z.
+    pub sums: BufferId,
+    pub progress: BufferId,
+}
+
+/// Numbers of what the buffers hold.
+#[derive(Clone, Debug)]
+pub struct Sizes {
+    pub nodes: usize,
+    pub springs: usize,
+    pub patches: usize,
+    pub grouped: usize,
+    /// Groups of each coarse level.
+    pub levels: Vec<usize>,
+}
+
+impl Sizes {
+    pub fn new(nodes: usize, matrix: &PackedMatrix, patches: &Patches) -> Self {
+        let levels = patches.levels.clone();
+        let (patches, grouped) = (patches.count(), patches.grouped);
+        Self { nodes, springs: matrix.springs.len(), patches, grouped, levels }
+    }
+
+    /// Workgroups that multiply, and that step.
+    pub fn multiplying(&self) -> usize {
+        self.nodes.div_ceil(THREADS).min(MOST_WORKGROUPS)
+    }
+
+    pub fn stepping(&self) -> usize {
+        self.patches.min(MOST_WORKGROUPS)
+    }
+}
+
+/// Finds or makes the buffers of a system: those of the one before if they are large enough.
+#[derive(Debug, Default)]
+pub struct Pool {
+    buffers: Option<Buffers>,
+}
+
+impl Pool {
+    /// Writes the matrix and its preconditioner.
+    pub fn upload<E: Engine>(
+        &mut self,
+        engine: &mut E,
+        sizes: &Sizes,
+        matrix: &PackedMatrix,
+        preconditioner: &Multilevel,
+    ) -> Result<Buffers, GpuError> {
+        let before = self.buffers.take();
+        let mut room = |label, of: fn(&Buffers) -> BufferId, words: usize| {
+            if let Some(buffer) = before.as_ref().map(of) {
+                if engine.words(buffer) >= words {
+                    return Ok(buffer);
+                }
+                engine.free(buffer);
+            }
+            engine.buffer(label, words)
+        };
+        let groups = sizes.levels.iter().sum::<usize>().max(sizes.grouped) + 1;
+        let buffers = Buffers {
+            slices: room("slices of the matrix", |b| b.slices, 4 * matrix.slices.len())?,
+            words: room("the matrix", |b| b.words, matrix.words.len())?,
+            springs: room("springs", |b| b.springs, words(&matrix.springs))?,
+            spring_words: room("springs of nodes", |b| b.spring_words, matrix.spring_words.len())?,
+            slots: room("slots of patches", |b| b.slots, words(&preconditioner.slots))?,
+            // A buffer that is bound holds one of its entries at least.
+            domains: room(
+                "domains",
+                |b| b.domains,
+                words(&preconditioner.domains).max(size_of::<Domain>() / 4),
+            )?,
+            reactions: room("reactions", |b| b.reactions, 4 * matrix.springs.len())?,
+            direction: room("search direction", |b| b.direction, 4 * sizes.nodes)?,
+            image: room("image", |b| b.image, 4 * sizes.nodes)?,
+            solution: room("solution", |b| b.solution, 8 * sizes.nodes)?,
+            forces: room("forces on groups", |b| b.forces, 6 * groups)?,
+            motions: room("motions of groups", |b| b.motions, 6 * groups)?,
+            sums: room("partial sums", |b| b.sums, MOST_WORKGROUPS + 2 * MOST_NORMS)?,
+            progress: room("progress", |b| b.progress, size_of::<Progress>() / 4)?,
+        };
+        self.buffers = Some(buffers);
+        let mut recording = Recording::default();
+        recording.write(buffers.slices, &matrix.slices);
+        recording.write(buffers.words, &matrix.words);
+        recording.write(buffers.springs, &matrix.springs);
+        recording.write(buffers.spring_words, &matrix.spring_words);
+        recording.write(buffers.slots, &preconditioner.slots);
+        recording.write(buffers.domains, &preconditioner.domains);
+        // Nodes that are not free keep this: no patch has them.
+        recording.write(buffers.solution, &vec![0u32; 8 * sizes.nodes]);
+        engine.run(&recording, &[])?;
+        Ok(buffers)
+    }
+}
+
+fn words<T: Pod>(entries: &[T]) -> usize {
+    size_of_val(entries) / 4
+}

@@ -1,0 +1,63 @@
+//! The data of a linear solve that host, kernels and twins share. A test compares every struct with what the shaders
+//! declare (`stages/tests.rs`).
+
+use bytemuck::{Pod, Zeroable};
+
+/// Slots of a patch, each for a node: eight groups of eight slots.
+pub const PATCH_SLOTS: usize = 64;
+
+/// Groups of a patch, children of a domain, slots of a group.
+pub const CHILDREN: usize = 8;
+
+/// Unknowns of a domain: the six rigid motions of eight children.
+pub const DOMAIN_UNKNOWNS: usize = 6 * CHILDREN;
+
+/// Most coarse levels: 8^8 patches are more than a buffer holds.
+pub const MOST_LEVELS: usize = 8;
+
+/// A node of a patch, with its part of the preconditioner.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct PatchSlot {
+    /// [`crate::NONE`] for an empty slot.
+    pub node: u32,
+    /// Inverse of the diagonal block: xx, xy, xz, yy, yz, zz.
+    pub inverse: [f32; 6],
+    /// From the center of the group to the node, over the size of the group.
+    pub arm: [f32; 3],
+    pub padding: [u32; 2],
+}
+
+impl PatchSlot {
+    pub const EMPTY: Self = Self { node: u32::MAX, inverse: [0.0; 6], arm: [0.0; 3], padding: [0; 2] };
+}
+
+/// Eight groups that move as rigid bodies.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct Domain {
+    /// Inverse of the matrix of their motions, three shifts and three spins each; zero for motions that move nothing.
+    pub inverse: [f32; DOMAIN_UNKNOWNS * DOMAIN_UNKNOWNS],
+    /// From the center of all eight to that of each, over the size of all; the ratio of the sizes.
+    pub links: [[f32; 4]; CHILDREN],
+}
+
+/// A spring over the weighted sum of four nodes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct Spring {
+    pub nodes: [u32; 4],
+    /// 0 for places without a node.
+    pub weights: [f32; 4],
+    /// By columns.
+    pub hessian: [[f32; 4]; 3],
+}
+
+/// How far the iterations are.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub struct Progress {
+    /// 1 until the residual is small enough or numbers are no longer positive.
+    pub moving: u32,
+    pub iterations: u32,
+}

@@ -1,0 +1,131 @@
+//! The dispatches of linear solves.
+
+use super::buffers::{Buffers, MOST_COARSE_WORKGROUPS, MOST_NORMS, Sizes};
+use super::layout::{CHILDREN, MOST_LEVELS, Progress};
+use crate::cpu;
+use crate::cpu::sum::{MOST_WORKGROUPS, THREADS};
+use crate::recording::Recording;
+use crate::stages;
+
+/// The dispatches of a system.
+#[derive(Debug)]
+pub struct Recorder {
+    pub buffers: Buffers,
+    pub sizes: Sizes,
+}
+
+impl Recorder {
+    /// Starts from x = 0 with the residual `r` [N].
+    pub fn record_start(&self, r: &[[f32; 4]], recording: &mut Recording) {
+        recording.write(self.buffers.direction, r);
+        recording.write(self.buffers.progress, &[Progress { moving: 1, iterations: 0 }]);
+        // The partial sums of the first iteration are its "next" ones.
+        self.record_step(true, 1, 0.0, recording);
+    }
+
+    /// Iteration `k` after the start: nothing is done if the squared norm is at most `goal` already.
+    pub fn record_iteration(&self, k: usize, goal: f32, recording: &mut Recording) {
+        let (b, s) = (&self.buffers, &self.sizes);
+        recording.dispatch(
+            &stages::REACT,
+            &[b.springs, b.direction, b.reactions],
+            cpu::react::Params { springs: s.springs as u32 },
+            s.springs,
+        );
+        recording.dispatch(
+            &stages::MULTIPLY,
+            &[b.slices, b.words, b.spring_words, b.reactions, b.direction, b.image, b.sums, b.progress],
+            cpu::multiply::Params {
+                nodes: s.nodes as u32,
+                springs: s.springs as u32,
+                workgroups: s.multiplying() as u32,
+            },
+            THREADS * s.multiplying(),
+        );
+        self.record_step(false, k % 2, goal, recording);
+    }
+
+    /// Where the partial sums of squared norms are that the last of `iterations` wrote, in words, and their number.
+    pub fn norms(&self, iterations: usize) -> std::ops::Range<usize> {
+        let first = norms_at(iterations % 2);
+        first..first + self.norm_count()
+    }
+
+    fn norm_count(&self) -> usize {
+        self.sizes.stepping()
+            + self.sizes.levels.iter().map(|groups| coarse_workgroups(*groups)).sum::<usize>()
+    }
+
+    /// The step, the preconditioner and the next direction. The present partial sums are those in half `present`.
+    fn record_step(&self, is_start: bool, present: usize, goal: f32, recording: &mut Recording) {
+        let (b, s) = (&self.buffers, &self.sizes);
+        let start = u32::from(is_start);
+        let (mut present, mut next) = (norms_at(present) as u32, norms_at(1 - present) as u32);
+        let (patches, grouped) = (s.patches as u32, s.grouped as u32);
+        let (workgroups, norms) = (s.stepping() as u32, self.norm_count() as u32);
+        let (all_present, all_next) = (present, next);
+        recording.dispatch(
+            &stages::DESCEND,
+            &[b.slots, b.domains, b.direction, b.image, b.solution, b.forces, b.sums, b.progress],
+            cpu::descend::Params {
+                nodes: s.nodes as u32,
+                patches,
+                grouped,
+                start,
+                workgroups,
+                curvatures: s.multiplying() as u32,
+                norms,
+                present,
+                next,
+                goal,
+            },
+            THREADS * s.stepping(),
+        );
+        (present, next) = (present + workgroups, next + workgroups);
+        let mut firsts = [0u32; MOST_LEVELS + 4];
+        for (level, &groups) in s.levels.iter().enumerate() {
+            firsts[level + 1] = firsts[level] + groups as u32;
+            let workgroups = coarse_workgroups(groups);
+            recording.dispatch(
+                &stages::CLIMB,
+                &[b.domains, b.forces, b.motions, b.sums, b.progress],
+                cpu::climb::Params {
+                    groups: groups as u32,
+                    first: firsts[level],
+                    first_parent: firsts[level + 1],
+                    domains: groups.div_ceil(CHILDREN) as u32,
+                    workgroups: workgroups as u32,
+                    present,
+                    next,
+                },
+                THREADS * workgroups,
+            );
+            (present, next) = (present + workgroups as u32, next + workgroups as u32);
+        }
+        recording.dispatch(
+            &stages::REDIRECT,
+            &[b.slots, b.domains, b.motions, b.image, b.direction, b.sums, b.progress],
+            cpu::redirect::Params {
+                patches,
+                grouped,
+                start,
+                workgroups,
+                levels: s.levels.len() as u32,
+                norms,
+                present: all_present,
+                next: all_next,
+                firsts,
+            },
+            THREADS * s.stepping(),
+        );
+    }
+}
+
+/// Where the partial sums of squared norms of a half begin.
+fn norms_at(half: usize) -> usize {
+    MOST_WORKGROUPS + half * MOST_NORMS
+}
+
+fn coarse_workgroups(groups: usize) -> usize {
+    groups.div_ceil(CHILDREN).min(MOST_COARSE_WORKGROUPS)
+}

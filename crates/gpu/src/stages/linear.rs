@@ -1,0 +1,49 @@
+//! The stages of linear solves.
+
+use super::stage::Access::{Read, Write};
+use super::stage::Stage;
+use crate::cpu;
+
+const LINEAR: &str = include_str!("../../shader/shared/linear.wgsl");
+const SUM: &str = include_str!("../../shader/shared/sum.wgsl");
+const RIGID: &str = include_str!("../../shader/shared/rigid.wgsl");
+
+pub(crate) static REACT: Stage = Stage {
+    name: "react",
+    parts: &[LINEAR, include_str!("../../shader/react.wgsl")],
+    workgroup: 64,
+    bindings: &[Read, Read, Write],
+    twin: cpu::react::bound,
+};
+
+pub(crate) static MULTIPLY: Stage = Stage {
+    name: "multiply",
+    parts: &[LINEAR, SUM, include_str!("../../shader/multiply.wgsl")],
+    workgroup: 64,
+    bindings: &[Read, Read, Read, Read, Read, Write, Write, Write],
+    twin: cpu::multiply::bound,
+};
+
+pub(crate) static DESCEND: Stage = Stage {
+    name: "descend",
+    parts: &[LINEAR, SUM, RIGID, include_str!("../../shader/descend.wgsl")],
+    workgroup: 64,
+    bindings: &[Read, Read, Read, Write, Write, Write, Write, Write],
+    twin: cpu::descend::bound,
+};
+
+pub(crate) static CLIMB: Stage = Stage {
+    name: "climb",
+    parts: &[LINEAR, SUM, RIGID, include_str!("../../shader/climb.wgsl")],
+    workgroup: 64,
+    bindings: &[Read, Write, Write, Write, Write],
+    twin: cpu::climb::bound,
+};
+
+pub(crate) static REDIRECT: Stage = Stage {
+    name: "redirect",
+    parts: &[LINEAR, SUM, include_str!("../../shader/redirect.wgsl")],
+    workgroup: 64,
+    bindings: &[Read, Read, Read, Read, Write, Read, Write],
+    twin: cpu::redirect::bound,
+};

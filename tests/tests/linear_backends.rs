@@ -1,0 +1,313 @@
+//! Whole simulations with the linear solves of the dynamics on the twins of the kernels: they go as on the CPU.
+//!
+//! Where bodies crumple, differences of the size of a tolerance grow. The yardstick for them are runs on the CPU with more
+//! accurate linear solves and with another preconditioner, which should make no difference either.
+//!
+//! `--ignored` counts iterations in larger scenes and prints a table; see `docs/GPU.md`.
+
+use bowknot::dynamics::{LinearBackend, LinearBackendError, LinearSystem};
+use bowknot::geometry::{Point, Vector};
+use bowknot::gpu::{Adapter, ComparingEngine, ConjugateGradients, DeviceEngine, Engine, TwinEngine};
+use bowknot::{Scene, SimulationError, Simulator};
+use std::fmt::Debug;
+use std::sync::{Arc, Mutex};
+
+/// A scene, its scale, assignments to its keys, and the number of time steps.
+type Case = (&'static str, f64, &'static [&'static str], usize);
+
+/// Cloth, a jelly on a trampoline, strands.
+const SMALL: [Case; 3] = [
+    ("drape", 0.25, &["body.0.velocity=[0,0,-4]"], 16),
+    ("trampoline", 0.2, &[], 40),
+    ("hair", 0.05, &[], 10),
+];
+
+const OTHERS: [&str; 4] = [
+    "solver.newton.cg_tolerance=5e-5",
+    "solver.newton.cg_tolerance=1e-5",
+    "solver.newton.cg_tolerance=1e-6",
+    "solver.newton.preconditioner=\"block-jacobi\"",
+];
+
+const LARGE: [Case; 7] = [
+    ("drape", 0.7, &[], 25),
+    ("drape", 1.8, &[], 24),
+    ("stack", 0.35, &[], 40),
+    ("dress", 0.15, &[], 12),
+    ("gown", 0.15, &[], 12),
+    ("trampoline", 0.5, &[], 30),
+    ("hair", 0.1, &[], 12),
+];
+
+/// What the solves of a run were.
+#[derive(Clone, Copy, Debug, Default)]
+struct Counts {
+    systems: usize,
+    rounds: usize,
+    iterations: usize,
+    differences: usize,
+}
+
+/// An engine that says how many words of it differ from those of the twins.
+trait Watched: Engine + Debug + Send {
+    fn differences(&self) -> usize {
+        0
+    }
+}
+
+impl Watched for TwinEngine {}
+
+impl Watched for ComparingEngine {
+    fn differences(&self) -> usize {
+        self.differences().len()
+    }
+}
+
+/// Linear solves on an engine, counted.
+#[derive(Debug)]
+struct Counted<E> {
+    inner: ConjugateGradients<E>,
+    counts: Arc<Mutex<Counts>>,
+    fails_at: Option<usize>,
+}
+
+impl<E: Watched> Counted<E> {
+    fn new(engine: E, fails_at: Option<usize>) -> (Box<Self>, Arc<Mutex<Counts>>) {
+        let counts: Arc<Mutex<Counts>> = Arc::default();
+        let inner = ConjugateGradients::new("twins".to_owned(), engine);
+        (Box::new(Self { inner, counts: Arc::clone(&counts), fails_at }), counts)
+    }
+}
+
+impl<E: Watched> LinearBackend for Counted<E> {
+    fn name(&self) -> String {
+        self.inner.name()
+    }
+
+    fn prepare(&mut self, system: &LinearSystem<'_>) -> Result<(), LinearBackendError> {
+        let mut counts = self.counts.lock().expect("no panic");
+        counts.systems += 1;
+        if self.fails_at == Some(counts.systems) {
+            return Err("the device was lost".into());
+        }
+        self.inner.prepare(system)
+    }
+
+    fn begin(&mut self, r: &[Vector], factor: f64) -> Result<f64, LinearBackendError> {
+        self.inner.begin(r, factor)
+    }
+
+    fn iterate(
+        &mut self,
+        goal: f64,
+        max_iterations: usize,
+        factor: f64,
+        x: &mut [Vector],
+    ) -> Result<usize, LinearBackendError> {
+        let iterations = self.inner.iterate(goal, max_iterations, factor, x)?;
+        let mut counts = self.counts.lock().expect("no panic");
+        counts.rounds += 1;
+        counts.iterations += iterations;
+        counts.differences = self.inner.engine().differences();
+        Ok(iterations)
+    }
+}
+
+#[derive(Debug)]
+struct Course {
+    edge: f64,
+    centers: Vec<Point>,
+    newton_iterations: usize,
+    cg_iterations: usize,
+    converged: usize,
+    /// First time step with contact rows.
+    first_contact: usize,
+    /// Of the backend, if there was one.
+    counts: Counts,
+}
+
+fn simulator((name, scale, sets, _): Case, more: &[&str]) -> Simulator {
+    let sets: Vec<String> = sets.iter().chain(more).map(|set| (*set).to_owned()).collect();
+    let scene = Scene::builtin(name, scale).and_then(|scene| scene.with_sets(&sets)).expect("a scene");
+    Simulator::new(&scene).expect("a simulator")
+}
+
+fn course(case: Case, more: &[&str], on_twins: bool) -> Course {
+    let mut simulator = simulator(case, more);
+    let (backend, counts) = Counted::new(TwinEngine::new(), None);
+    if on_twins {
+        simulator.set_linear_backend(Some(backend));
+    }
+    let steps: Vec<_> = (0..case.3).map(|_| simulator.step().expect("a step")).collect();
+    let counts = *counts.lock().expect("no panic");
+    Course {
+        edge: simulator.resolver().scene().lengths().edge,
+        centers: steps.iter().map(|s| Point::from(s.center_of_mass)).collect(),
+        newton_iterations: steps.iter().map(|s| s.newton_iterations).sum(),
+        cg_iterations: steps.iter().map(|s| s.cg_iterations).sum(),
+        converged: steps.iter().filter(|s| s.converged).count(),
+        first_contact: steps.iter().position(|s| s.contact_rows > 0).unwrap_or(case.3),
+        counts,
+    }
+}
+
+/// Largest distance of the centers of mass in the first `steps` time steps [m].
+fn apart(a: &Course, b: &Course, steps: usize) -> f64 {
+    a.centers.iter().zip(&b.centers).take(steps).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
+}
+
+#[test]
+fn runs_with_solves_on_the_kernels_go_as_on_the_cpu() {
+    for case in SMALL {
+        let cpu = course(case, &[], false);
+        let others = OTHERS.map(|set| course(case, &[set], false));
+        let twins = course(case, &[], true);
+        let most = |steps: usize| others.iter().map(|other| apart(&cpu, other, steps)).fold(0.0, f64::max);
+        // Two solutions of a time step may differ by the tolerance of the stopping rule each.
+        let tolerance = 0.02 * cpu.edge;
+        assert!(cpu.first_contact < case.3, "{}: the scene has not come to its contacts", case.0);
+        for steps in [cpu.first_contact, case.3] {
+            let (found, own) = (apart(&cpu, &twins, steps), most(steps));
+            assert!(
+                found < 1.5 * own + tolerance,
+                "{}, step {steps}: {found} m, the yardstick is {own} m",
+                case.0
+            );
+        }
+        assert_eq!((cpu.converged, twins.converged), (case.3, case.3), "{}", case.0);
+        let ratio = twins.newton_iterations as f64 / cpu.newton_iterations as f64;
+        assert!((0.8..1.25).contains(&ratio), "{}: {ratio} times the Newton iterations", case.0);
+        let Counts { systems, rounds, .. } = twins.counts;
+        assert!(systems > 0 && rounds > 0, "{}: {:?}", case.0, twins.counts);
+    }
+}
+
+#[test]
+fn a_lost_device_ends_a_step_that_can_be_made_again() {
+    let case = SMALL[0];
+    let [mut lost, mut whole] = [(); 2].map(|()| simulator(case, &[]));
+    lost.set_linear_backend(Some(Counted::new(TwinEngine::new(), Some(4)).0));
+    let mut error = None;
+    for _ in 0..case.3 {
+        let before = lost.positions().to_vec();
+        if let Err(found) = lost.step() {
+            assert!(before == lost.positions(), "a failed step has moved something");
+            error = Some(found);
+            break;
+        }
+        whole.restore(&lost.checkpoint()).expect("the same scene");
+    }
+    let error = error.expect("the device was lost");
+    assert!(matches!(error, SimulationError::Backend { .. }), "{error:?}");
+    assert!(error.to_string().contains("the device was lost"), "{error}");
+    lost.set_linear_backend(None);
+    lost.step().expect("a step on the CPU");
+    whole.step().expect("a step on the CPU");
+    assert!(lost.positions() == whole.positions());
+}
+
+#[test]
+fn kernels_solve_the_systems_of_scenes_as_their_twins() {
+    for case in SMALL {
+        let mut simulator = simulator(case, &[]);
+        let adapter = Adapter::choose(None).expect("a device, of software if need be");
+        let engine = ComparingEngine::new(DeviceEngine::open(&adapter).expect("it opens"));
+        let (backend, counts) = Counted::new(engine, None);
+        simulator.set_linear_backend(Some(backend));
+        for _ in 0..3 {
+            simulator.step().expect("a step");
+        }
+        let counts = *counts.lock().expect("no panic");
+        assert!(counts.iterations > 0 && counts.differences == 0, "{}: {counts:?}", case.0);
+    }
+}
+
+#[test]
+fn a_resumed_run_has_the_same_bits() {
+    let case = SMALL[0];
+    let [mut whole, mut resumed] = [(); 2].map(|()| simulator(case, &[]));
+    for simulator in [&mut whole, &mut resumed] {
+        simulator.set_linear_backend(Some(Counted::new(TwinEngine::new(), None).0));
+    }
+    for step in 0..10 {
+        whole.step().expect("a step");
+        if step == 4 {
+            resumed.restore(&whole.checkpoint()).expect("the same scene");
+        } else if step > 4 {
+            resumed.step().expect("a step");
+        }
+    }
+    assert!(whole.positions() == resumed.positions());
+}
+
+/// A block that comes to rest and sleeps, and a sheet that falls all the time.
+const SLEEPER: &str = r#"
+[solver.sleep]
+enabled = true
+time = 0.1
+[[body]]
+name = "block"
+kind = "solid"
+friction = 0.5
+shape = { type = "block", size = [0.1, 0.1, 0.1], edge = 0.05 }
+translate = [0, 0, 0.052]
+[[body]]
+name = "sheet"
+shape = { type = "sheet", size = [0.2, 0.2], edge = 0.05 }
+translate = [3, 0, 90]
+[[obstacle]]
+name = "ground"
+shape = { type = "half-space" }
+friction = 0.5
+"#;
+
+#[test]
+fn solves_stay_on_the_device_while_bodies_sleep_and_after() {
+    let scene = Scene::from_toml(SLEEPER, std::path::Path::new(".")).expect("a scene");
+    let mut simulator = Simulator::new(&scene).expect("a simulator");
+    let (backend, counts) = Counted::new(TwinEngine::new(), None);
+    simulator.set_linear_backend(Some(backend));
+    let systems = || counts.lock().expect("no panic").systems;
+    let step = |simulator: &mut Simulator| {
+        let before = systems();
+        simulator.step().expect("a step");
+        assert!(systems() > before, "the CPU has solved alone");
+        simulator.asleep().contains(&true)
+    };
+    let slept = (0..200).any(|_| step(&mut simulator));
+    assert!(slept && step(&mut simulator), "the block does not sleep");
+    assert_eq!(simulator.linear_backend().map(LinearBackend::name).as_deref(), Some("twins"));
+    let force = vec![Vector::z() * 0.2; simulator.positions().len()];
+    simulator.set_external_forces(&force).expect("finite");
+    assert!((0..5).any(|_| !step(&mut simulator)), "the block does not wake");
+    step(&mut simulator);
+}
+
+/// The table of `docs/GPU.md`.
+#[test]
+#[ignore = "it takes minutes"]
+fn iterations_in_scenes() {
+    println!(
+        "| scene | nodes | time steps | systems | CPU: two-level | block-Jacobi | twins: block-Jacobi | groups | centers apart mm |"
+    );
+    for case in LARGE {
+        let jacobi = ["solver.newton.preconditioner=\"block-jacobi\""];
+        let [cpu, cpu_jacobi] = [course(case, &[], false), course(case, &jacobi, false)];
+        let [twins, twins_jacobi] = [course(case, &[], true), course(case, &jacobi, true)];
+        println!(
+            "| {} | {} | {} | {}, {} | {} | {} | {} | {} | {:.3}, {:.3}, {:.3} |",
+            case.0,
+            simulator(case, &[]).world().deformable_vertices,
+            case.3,
+            twins.counts.systems,
+            twins_jacobi.counts.systems,
+            cpu.cg_iterations,
+            cpu_jacobi.cg_iterations,
+            twins_jacobi.cg_iterations,
+            twins.cg_iterations,
+            1e3 * apart(&cpu, &cpu_jacobi, case.3),
+            1e3 * apart(&cpu, &twins_jacobi, case.3),
+            1e3 * apart(&cpu, &twins, case.3),
+        );
+    }
+}
