@@ -11,6 +11,7 @@
 //! call. A step writes those of the vertices that this step or the last one moves away from y0 (`live.rs`). It
 //! reads all pairs in range once, to select its rows (`selection.rs`), and copies y at the end.
 
+use crate::blocked::Blocked;
 use crate::chunks::{self, Chunks};
 use crate::coarse::is_sliding;
 use crate::index_set::IndexSet;
@@ -25,7 +26,7 @@ use crate::state::ResolveState;
 use crate::statistics::Statistics;
 use crate::stop::Residuals;
 use bowknot_constraints::{ContactRows, EdgeForm, EdgeLimits};
-use bowknot_geometry::Vector;
+use bowknot_geometry::{Point, Vector};
 use bowknot_lcp::{self as lcp, ConstraintSet, Schedule, TangentVector};
 
 /// The default [`BackwardStep`]. `K` solves its rows, by default projected Gauss-Seidel.
@@ -50,6 +51,10 @@ pub struct LcpBackward<K = ColoredSweeps> {
     lambda: Vec<f64>,
     /// Multipliers of the friction rows along their tangents.
     friction: Vec<TangentVector>,
+    /// Prescribed vertices whose rows take them to be where they are.
+    blocked: Blocked,
+    /// Where the rows take vertices to want to go [m], while some are blocked.
+    reachable: Vec<Point>,
     proximal: ProximalWeights,
     oscillation: OscillationDamping,
     /// w; 1/m^ where mu is 0.
@@ -100,6 +105,7 @@ impl<K: RowSolver> BackwardStep for LcpBackward<K> {
             self.edge_multipliers.clear();
             self.edge_multipliers.resize(self.edges.balls.len(), 0.0);
         }
+        self.blocked.begin(state.x.len());
         self.proximal.begin(state.x.len());
         self.touched.reset(state.x.len());
         self.last_touched.reset(state.x.len());
@@ -108,8 +114,10 @@ impl<K: RowSolver> BackwardStep for LcpBackward<K> {
     }
 
     fn project(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
-        self.selection.select(scene, state);
+        let changed = self.blocked.update(scene, state);
+        self.selection.select(scene, state, &self.blocked);
         self.set_weights(scene, state);
+        self.place_blocked(scene, state, changed);
         self.fill_rows(scene, state, statistics);
         self.solve(scene, state, statistics);
         self.update_oscillation(scene, state);
@@ -249,6 +257,22 @@ impl<K: RowSolver> LcpBackward<K> {
                 self.free[v] = weight * (mass * state.target[v].coords + mu * state.x[v].coords);
                 self.y[v] = self.free[v];
             }
+        }
+    }
+
+    /// Puts blocked vertices where they are, and those that are no longer blocked at their targets.
+    fn place_blocked(&mut self, scene: &CollisionScene, state: &ResolveState, changed: bool) {
+        let Self { blocked, free, y, .. } = self;
+        let (now, before) = (blocked.vertices(), if changed { blocked.before() } else { &[] });
+        for &vertex in before.iter().chain(now) {
+            let v = vertex as usize;
+            free[v] = blocked.aim(state, vertex).coords;
+            y[v] = free[v];
+        }
+        if changed && self.keeps_to_live_edges(scene) {
+            self.reachable.clone_from(&state.target);
+            self.blocked.vertices().iter().for_each(|&v| self.reachable[v as usize] = state.x[v as usize]);
+            self.live.look_up_violated(&self.edges, &self.reachable);
         }
     }
 
@@ -417,6 +441,9 @@ impl<K: RowSolver> LcpBackward<K> {
         // All of y, in case that something changed `state.y` since the last step.
         let y = &self.y;
         chunks::for_each(&mut state.y, |v, stored| stored.coords = y[v]);
+        for v in self.blocked.vertices().iter().map(|&v| v as usize) {
+            state.y[v] = state.target[v];
+        }
         let contacts = &mut state.contacts;
         for &p in &self.selection.pressing {
             contacts.multipliers[p as usize] = 0.0;

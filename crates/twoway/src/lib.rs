@@ -11,6 +11,7 @@
 
 mod adopt;
 mod backward;
+mod blocked;
 mod bodies;
 mod call;
 mod chunks;

@@ -52,15 +52,20 @@ pub(crate) struct LiveEdges {
 impl LiveEdges {
     /// Starts a call in which vertices want to go to `target`, and those that are not movable do.
     pub fn begin(&mut self, edges: &EdgeLimits, target: &[Point]) {
+        self.look_up_violated(edges, target);
+        self.acting.clear();
+        self.clear();
+        self.places.clear();
+        self.places.resize(edges.balls.len(), NONE);
+    }
+
+    /// Notes which edges are violated at `target`, where vertices are that nothing moves away from there.
+    pub fn look_up_violated(&mut self, edges: &EdgeLimits, target: &[Point]) {
         self.violated.run(edges.balls.len(), |range, violated| {
             violated.extend(
                 range.filter(|&e| is_violated(&edges.balls[e], |v| target[v].coords)).map(|e| e as u32),
             );
         });
-        self.acting.clear();
-        self.clear();
-        self.places.clear();
-        self.places.resize(edges.balls.len(), NONE);
     }
 
     /// The edges with a multiplier after the last step, and their multipliers [m].

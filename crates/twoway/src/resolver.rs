@@ -225,8 +225,11 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
                 None => stop.is_met(&report, || backward.residuals(scene, state)),
             };
             let is_out_of_time = stop.is_out_of_time(timer.elapsed().as_secs_f64());
-            let is_stalled =
-                stall.update(farthest(state, true, &state.target), || farthest(state, false, &state.y));
+            let is_stalled = stall.update(
+                farthest(state, true, &state.target),
+                || farthest(state, false, &state.y),
+                || farthest(state, false, &state.previous),
+            );
             if statistics.converged && stop.takes_finishing_step(&report, state.step, || is_free(state)) {
                 statistics.converged = false;
             }

@@ -1,10 +1,11 @@
 //! Which pairs get a row in a backward step, and the distance that each row asks for.
 
+use crate::blocked::Blocked;
 use crate::chunks::Chunks;
 use crate::scene::CollisionScene;
 use crate::state::ResolveState;
 use bowknot_constraints::{SelectedPair, predicted_gap};
-use bowknot_geometry::PairKind;
+use bowknot_geometry::{PairKind, Separation, Vector};
 use std::ops::Range;
 
 /// Sine of the largest angle by which the normals of rows may leave their cones. Rows are rebuilt in each
@@ -55,8 +56,8 @@ enum Found {
 
 impl Selection {
     /// Selects pairs for rows that are linearized at `state.x`.
-    pub fn select(&mut self, scene: &CollisionScene, state: &ResolveState) {
-        let rule = Rule::new(scene, state);
+    pub fn select(&mut self, scene: &CollisionScene, state: &ResolveState, blocked: &Blocked) {
+        let rule = Rule::new(scene, state, blocked);
         self.chunks.run(state.contacts.pairs.len(), |range, found| rule.find(range, found));
         self.selected.clear();
         self.pressing.clear();
@@ -74,15 +75,16 @@ impl Selection {
 struct Rule<'a> {
     scene: &'a CollisionScene,
     state: &'a ResolveState,
+    blocked: &'a Blocked,
     /// By how much any gap can close [m].
     closing: f64,
     only_active: bool,
 }
 
 impl<'a> Rule<'a> {
-    fn new(scene: &'a CollisionScene, state: &'a ResolveState) -> Self {
+    fn new(scene: &'a CollisionScene, state: &'a ResolveState, blocked: &'a Blocked) -> Self {
         let only_active = scene.params().solver.backward.active_rows;
-        Self { scene, state, closing: CLOSING * state.remaining, only_active }
+        Self { scene, state, blocked, closing: CLOSING * state.remaining, only_active }
     }
 
     fn find(&self, range: Range<usize>, found: &mut Vec<Found>) {
@@ -141,11 +143,44 @@ impl<'a> Rule<'a> {
             scene.is_contact(features, &separation.normal, &state.x, CONE_TOLERANCE)
         };
         if is_contact {
-            return Some(largest);
+            return Some(self.within_reach(kind, &pair.vertices, separation, largest));
         }
         let is_close = separation.distance < CLOSE * largest || presses;
         let desired =
             (NON_CONTACT_SHARE * separation.distance).clamp(MIN_NON_CONTACT_DISTANCE * largest, largest);
-        (is_close && gap < params.active * desired).then_some(desired)
+        let desired = (is_close && gap < params.active * desired).then_some(desired);
+        desired.map(|desired| self.within_reach(kind, &pair.vertices, separation, desired))
+    }
+
+    /// The part of a desired distance [m] that the movable vertices of a pair can answer for.
+    ///
+    /// Where prescribed vertices end nearer than desired, the other vertices of their side would have to make up for it.
+    /// With a closest point near a prescribed vertex they have a short lever, and would have to go far. So they are asked
+    /// for no more than the distance in their own places: what prescribed vertices lack is not asked for.
+    fn within_reach(
+        &self,
+        kind: PairKind,
+        vertices: &[u32; 4],
+        separation: &Separation,
+        desired: f64,
+    ) -> f64 {
+        let state = self.state;
+        let sides = [0..kind.side_a(), kind.side_a()..kind.vertex_count()];
+        let is_prescribed = |k: usize| state.call.is_prescribed(vertices[k] as usize);
+        let place = |k: usize| match is_prescribed(k) {
+            true => self.blocked.aim(state, vertices[k]).coords,
+            false => state.x[vertices[k] as usize].coords,
+        };
+        let mut lacking = 0.0;
+        for (side, other, sign) in [(0, 1, 1.0), (1, 0, -1.0)] {
+            let mut prescribed = sides[side].clone().filter(|&k| is_prescribed(k)).peekable();
+            if prescribed.peek().is_none() || sides[side].clone().all(is_prescribed) {
+                continue;
+            }
+            let opposite: Vector = sides[other].clone().map(|k| separation.weights[k] * place(k)).sum();
+            let gap = |k: usize| sign * separation.normal.dot(&(place(k) - opposite));
+            lacking += prescribed.map(|k| separation.weights[k] * (desired - gap(k)).max(0.0)).sum::<f64>();
+        }
+        desired - lacking
     }
 }

@@ -152,8 +152,11 @@ impl<E: Engine + Debug + Send> Device<E> {
             let observed = observer.accepted(&accepted);
             note(&mut statistics, &report);
             statistics.converged = is_met(&mut stop, &report, statistics.steps);
-            let is_stalled =
-                stall.update(farthest(&call, true, target, &end), || farthest(&call, false, &aims, &end));
+            let is_stalled = stall.update(
+                farthest(&call, true, target, &end),
+                || farthest(&call, false, &aims, &end),
+                || farthest(&call, false, &previous, &end),
+            );
             let is_out_of_time = stop.is_out_of_time(timer.elapsed().as_secs_f64());
             if statistics.converged || observed.is_break() || is_out_of_time || is_stalled {
                 break;

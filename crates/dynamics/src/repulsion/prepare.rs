@@ -39,6 +39,7 @@ impl Repulsion {
         iterate: Option<&[Vector]>,
     ) {
         self.guessed = true;
+        self.note_lacking(free, iterate.unwrap_or(inertial));
         let softest = self.softest_stiffness(model, diagonal);
         let mut states = std::mem::take(&mut self.states);
         states.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(|(spring, state)| {

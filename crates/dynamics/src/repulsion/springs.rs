@@ -17,6 +17,8 @@ pub(crate) struct Repulsion {
     pub(super) nodes: Vec<[u32; 4]>,
     /// The share of obstacles in s [m].
     fixed: Vec<Vector>,
+    /// The part of the desired gap that prescribed nodes lack, see [`Self::note_lacking`] [m].
+    lacking: Vec<f64>,
     /// s at the start of the time step [m].
     anchors: Vec<Vector>,
     pub(super) states: Vec<SpringState>,
@@ -52,6 +54,7 @@ impl Repulsion {
             springs: springs.to_vec(),
             nodes,
             fixed: vec![Vector::zeros(); count],
+            lacking: vec![0.0; count],
             anchors: vec![Vector::zeros(); count],
             states: vec![SpringState::INACTIVE; count],
             guessed: false,
@@ -87,6 +90,34 @@ impl Repulsion {
         }
     }
 
+    /// Notes the part of each desired gap that springs do not ask for, with nodes at `x`, those that are not `free` at
+    /// their ends.
+    ///
+    /// Where prescribed nodes come nearer than desired, the free nodes of their side would have to make up for it. With
+    /// a closest point near a prescribed node they have a short lever, and would have to go far. So springs ask free
+    /// nodes for no more than the gap in their own places.
+    pub(super) fn note_lacking(&mut self, free: &[bool], x: &[Vector]) {
+        for (spring, lacking) in self.lacking.iter_mut().enumerate() {
+            let (s, nodes) = (&self.springs[spring], &self.nodes[spring]);
+            *lacking = 0.0;
+            for sign in [1.0, -1.0] {
+                let on_side = |k: &usize| nodes[*k] != NO_NODE && sign * s.weights[*k] > 0.0;
+                let is_free = |k: usize| free[nodes[k] as usize];
+                let prescribed = (0..4).filter(on_side).filter(|&k| !is_free(k));
+                if prescribed.clone().next().is_none() || !(0..4).filter(on_side).any(is_free) {
+                    continue;
+                }
+                // The other side's closest point, with the sign of its weights; obstacles are one side of a pair.
+                let others = (0..4).filter(|&k| nodes[k] != NO_NODE && sign * s.weights[k] < 0.0);
+                let opposite: Vector = others.map(|k| x[nodes[k] as usize] * s.weights[k]).sum();
+                let opposite = opposite + self.fixed[spring];
+                let gap = |k: usize| s.normal.dot(&(x[nodes[k] as usize] * sign + opposite)) - s.offset;
+                *lacking +=
+                    prescribed.map(|k| s.weights[k].abs() * (s.desired - gap(k)).max(0.0)).sum::<f64>();
+            }
+        }
+    }
+
     /// Depth below the desired gap [m] and slip [m] with nodes at `x`.
     #[inline]
     pub(super) fn depth_and_slip(&self, spring: usize, x: &[Vector]) -> (f64, Vector) {
@@ -98,7 +129,8 @@ impl Repulsion {
             }
         }
         let moved = sides - self.anchors[spring];
-        (s.desired + s.offset - s.normal.dot(&sides), moved - s.normal * s.normal.dot(&moved))
+        let desired = s.desired - self.lacking[spring];
+        (desired + s.offset - s.normal.dot(&sides), moved - s.normal * s.normal.dot(&moved))
     }
 
     /// Forces of the springs with nodes at `x` [N], by spring: the multipliers that the next solve starts

@@ -222,3 +222,36 @@ fn removed_springs_change_no_bit_and_bad_ones_are_refused() {
     let (_, problem) = refuse(&mut dynamics, RepulsionSpring { normal: Vector::repeat(f64::NAN), ..good[0] });
     assert!(problem.starts_with("its weights"), "{problem}");
 }
+
+/// A contact near a held vertex that is nearer than desired, on one that is free: to keep the gap the free vertex would
+/// have to rise by a hundred gaps. It is asked for no more than the gap in its own place.
+#[test]
+fn springs_do_not_throw_what_hangs_on_held_vertices() {
+    let rest = vec![
+        Point::origin(),
+        Point::new(0.1, 0.0, 0.0),
+        Point::new(0.0, 0.1, 0.0),
+        Point::new(0.0, 0.0, -0.001),
+    ];
+    let bodies = vec![
+        Body::cloth("sheet", vec![[0, 1, 2]], ClothMaterial::cotton()),
+        Body::obstacle("point", vec![3]),
+    ];
+    let mut dynamics = dynamics(&rest, bodies, weightless(with_tolerance(1e-8)));
+    let spring = RepulsionSpring {
+        vertices: [0, 1, 2, 3],
+        weights: [0.98, 0.01, 0.01, -1.0],
+        normal: Vector::z(),
+        offset: 0.0,
+        desired: GAP,
+        stiffness: 10.0,
+        friction: 0.0,
+        force: Vector::zeros(),
+    };
+    dynamics.set_repulsion(&[spring]).expect("valid");
+    let (mut x, mut v) = (rest.clone(), vec![Vector::zeros(); 4]);
+    let held = [true, false, false, true];
+    dynamics.solve_step(&mut x, &mut v, 0.01, &held, &rest, 4).expect("solves");
+    let risen = x[1].z.max(x[2].z);
+    assert!(risen > 0.5 * GAP && risen < 1.1 * GAP, "{risen}");
+}

@@ -273,6 +273,44 @@ fn an_obstacle_waits_as_one_body() {
     assert!(report.prescribed_lag_m > 0.9);
 }
 
+/// A sheet whose pinned vertices are led onto and then below the top of a pyramid, which is just beside one of them. The
+/// rows of triangles with that vertex have a short lever on the others.
+#[test]
+fn cloth_stays_where_it_is_when_its_pins_are_led_into_an_obstacle() {
+    let edge = 0.1;
+    for depth in [-0.005, 0.005, 0.05] {
+        let (mut x, mut triangles) = (Vec::new(), Vec::new());
+        sheet(8, edge, 0.02, &mut x, &mut triangles);
+        let first = x.len();
+        let pinned: Vec<usize> = vec![30, 31, 39, 40];
+        let top = Point::new(x[30].x + 1e-4, x[30].y + 2e-4, 0.0);
+        x.push(top);
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        x.extend(corners.map(|(a, b)| top + edge * Vector::new(a, b, -1.0)));
+        let peak = first as u32;
+        triangles.extend((0..4).map(|k| [peak, peak + 1 + k, peak + 1 + (k + 1) % 4]));
+        let topology = Topology::builder(x.len()).triangles(triangles).build().unwrap();
+        let bodies = (0..x.len()).map(|v| u32::from(v >= first)).collect();
+        let filters = vec![BodyFilter::DEFORMABLE, BodyFilter::OBSTACLE];
+        let model = CollisionModel::new(topology, bodies, filters, vec![]).unwrap();
+        let mut resolver = Resolver::new(model, &x, &vec![1.0; x.len()], Params::fast()).unwrap();
+        let fall = 0.02 + depth;
+        let mut y = x.clone();
+        y[..first].iter_mut().for_each(|p| p.z -= fall);
+        let (mut prescribed, mut groups) = (vec![false; x.len()], vec![ResolveInput::NO_GROUP; x.len()]);
+        for &v in &pinned {
+            (prescribed[v], groups[v]) = (true, 0);
+        }
+        let input = ResolveInput { prescribed: &prescribed, groups: &groups, ..ResolveInput::default() };
+        let report = resolver.resolve_with(&mut x, &y, &input, &mut ()).unwrap();
+        // Nothing asks for more than to stay above the pyramid, by the contact distance of a tenth of an edge.
+        let far = (0..first).map(|v| (x[v] - y[v]).norm()).fold(0.0, f64::max);
+        assert!(far < depth.max(0.0) + 0.25 * edge, "{depth}: {far}, {report:?}");
+        assert!(report.steps <= 40, "{depth}: {} steps", report.steps);
+        assert_eq!(report.prescribed_lag_m == 0.0, depth < 0.0, "{depth}: {report:?}");
+    }
+}
+
 #[test]
 fn prescribed_vertices_arrive_exactly_where_nothing_is_in_their_way() {
     // A small obstacle under a coarse sheet: a hundredth of the mean edge, at which a call may end, is large
