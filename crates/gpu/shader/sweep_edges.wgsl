@@ -15,8 +15,8 @@ struct Params {
 @group(0) @binding(3) var<storage, read_write> displacements: array<vec4<f32>>;
 
 @compute @workgroup_size(256)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    for (var e = params.first + id.x; e < params.end; e += 256u * groups.x) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    for (var e = params.first + id.x; e < params.end; e += 256u * MOST_WORKGROUPS) {
         let edge = limits[e];
         let old = edge.multiplier;
         var change = old;

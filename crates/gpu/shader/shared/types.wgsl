@@ -2,6 +2,10 @@
 
 const NONE: u32 = 0xffffffffu;
 
+// Most workgroups of a dispatch. Loops go on by as many, of which there may be fewer: an indirect dispatch does not know
+// its own number on every interface.
+const MOST_WORKGROUPS: u32 = 65535u;
+
 struct Vertex {
     edge: f32,
     margin: f32,
@@ -140,9 +144,9 @@ struct Control {
     overflow: atomic<u32>,
     most_partners: atomic<u32>,
     frozen: atomic<u32>,
-    remaining: atomic<u32>,
+    free_remaining: atomic<u32>,
     unhindered_lag: atomic<u32>,
-    remaining_fraction: atomic<u32>,
+    lag: atomic<u32>,
     largest_move: atomic<u32>,
     waiting: atomic<u32>,
     unhindered: atomic<u32>,
@@ -152,6 +156,10 @@ struct Control {
     pressing: atomic<u32>,
     candidates: atomic<u32>,
     rows: atomic<u32>,
+    halted: atomic<u32>,
+    steps: atomic<u32>,
+    last_mean_residual: atomic<u32>,
+    finishing_steps: atomic<u32>,
 }
 
 // Whether two elements, given by one vertex of each, may form a pair.

@@ -70,7 +70,7 @@ impl<E: Engine> Collision<E> {
         );
         recording.dispatch(
             &stages::LIST,
-            &[r.picked, r.starts, r.blocks, r.rows, b.control],
+            &[r.picked, r.starts, r.blocks, b.candidates, r.rows, r.pairs, b.control],
             cpu::list::Params { capacity },
             self.buffers.capacity,
         );
@@ -177,7 +177,8 @@ impl<E: Engine> Collision<E> {
         );
         self.record_colors(recording);
         // First the multipliers of the last step are applied.
-        for sweep in 0..=self.sweeps {
+        let settings = &self.settings;
+        for sweep in 0..=if self.polishes { settings.polish_sweeps } else { settings.sweeps } {
             let only_apply = u32::from(sweep == 0);
             if (1..=MAX_COARSE_CORRECTIONS).contains(&sweep) && self.settings.coarse_correction {
                 self.record_coarse_correction(recording);

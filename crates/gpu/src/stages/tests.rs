@@ -17,6 +17,11 @@ fn shaders_fit_their_stages() {
             .validate(&module)
             .unwrap_or_else(|error| panic!("{}: {}", stage.name, error.emit_to_string(&source)));
         assert_eq!(module.entry_points[0].name, "main");
+        let asks_for_workgroups =
+            module.entry_points[0].function.arguments.iter().any(|argument| {
+                argument.binding == Some(naga::Binding::BuiltIn(naga::BuiltIn::NumWorkGroups))
+            });
+        assert!(!asks_for_workgroups, "{}: an indirect dispatch does not know it everywhere", stage.name);
         assert_eq!(module.entry_points[0].workgroup_size, [stage.workgroup as u32, 1, 1], "{}", stage.name);
         assert!(stage.bindings.len() <= 8, "{}: no more storage buffers are portable", stage.name);
         let mut found = vec![None; stage.bindings.len() + 1];
@@ -104,4 +109,5 @@ fn structs_lie_alike_on_both_sides() {
     let candidates = members.iter().find(|m| m.name.as_deref() == Some("candidates")).expect("a field");
     assert_eq!(candidates.offset as usize, 4 * layout::Control::RESET_WORDS);
     assert_eq!(std::mem::offset_of!(layout::Control, candidates), 4 * layout::Control::RESET_WORDS);
+    assert_eq!(members.len(), size_of::<layout::Control>() / 4);
 }
