@@ -60,6 +60,8 @@ pub enum CollisionError {
 pub struct Settings {
     /// Gauss-Seidel sweeps of a backward step.
     pub sweeps: usize,
+    /// How often a sweep goes over each cluster of edges before the next one.
+    pub cluster_sweeps: usize,
     /// Sweeps while the last step left less than `polish_distance` and stretched an edge beyond `polish_stretch`.
     pub polish_sweeps: usize,
     /// Remaining distance of a vertex [m].
@@ -88,6 +90,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             sweeps: 8,
+            cluster_sweeps: 2,
             polish_sweeps: 8,
             polish_distance: 0.0,
             polish_stretch: 1.01,
@@ -300,7 +303,7 @@ impl<E: Engine> Collision<E> {
         let topology = model.topology();
         let triangles: Vec<[u32; 4]> = topology.triangles.iter().map(|&[a, b, c]| [a, b, c, 0]).collect();
         let moves = |v: u32| vertices[v as usize].flags & Vertex::PRESCRIBED == 0;
-        let edges = Edges::new(&topology.edges, lengths.edge_limits, moves);
+        let edges = Edges::new(&topology.edges, lengths.edge_limits, rest, moves);
         let trees = Trees::new(&mut engine, topology, &order)?;
         let adjacency = Adjacency::new(topology);
         let blocks = model::blocks(model);
@@ -312,6 +315,7 @@ impl<E: Engine> Collision<E> {
             planes: planes.len(),
             pair_frictions: pair_frictions.len(),
             limits: edges.len(),
+            clusters: [edges.clusters.len(), edges.vertices.len(), edges.color_ends.len()],
             adjacency: adjacency.words.len(),
             blocks: blocks.len(),
             rows: trees.rows(planes.len()),
@@ -328,6 +332,9 @@ impl<E: Engine> Collision<E> {
         setup.write(buffers.pair_frictions, &pair_frictions);
         setup.write(buffers.adjacency, &adjacency.words);
         setup.write(buffers.vertex_blocks, &blocks);
+        setup.write(buffers.clusters, &edges.clusters);
+        setup.write(buffers.cluster_vertices, &edges.vertices);
+        setup.write(buffers.cluster_colors, &edges.color_ends);
         trees.all().iter().for_each(|tree| tree.upload(&mut setup));
         engine.run(&setup, &[])?;
         let lengths = StepLengths {

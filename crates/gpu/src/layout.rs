@@ -213,17 +213,37 @@ pub struct Row {
     pub padding: u32,
 }
 
-/// The largest length of an edge, in the order of the colors of the edges.
+/// Successive edges that a workgroup sweeps in its own memory.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub struct EdgeCluster {
+    /// Its vertices that move, in a list of those of all clusters.
+    pub first_vertex: u32,
+    pub vertices: u32,
+    pub first_edge: u32,
+    /// Its colors, in a list of those of all clusters.
+    pub first_color: u32,
+    pub colors: u32,
+}
+
+/// The largest length of an edge, in the order of the clusters and of their colors.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct EdgeLimit {
     pub a: u32,
     pub b: u32,
     pub limit: f32,
-    pub padding: u32,
+    /// Places of a (lower half) and b in the list of vertices of the cluster; [`EdgeLimit::FIXED`] for a vertex that does not
+    /// move.
+    pub places: u32,
     /// Multiplier: the force that pulls a toward b, times -1 on a.
     pub multiplier: [f32; 3],
     pub padding_1: u32,
+}
+
+impl EdgeLimit {
+    /// The place of a vertex that does not move.
+    pub const FIXED: u32 = 0xffff;
 }
 
 /// The candidates of a row before the present search.

@@ -55,7 +55,7 @@ pub(crate) static SWEEP_EDGES: Stage = Stage {
     name: "sweep_edges",
     parts: &[TYPES, include_str!("../shader/sweep_edges.wgsl")],
     workgroup: 256,
-    bindings: &[Read, Write, Write],
+    bindings: &[Read, Read, Read, Read, Write, Write],
     twin: cpu::sweep_edges::bound,
 };
 

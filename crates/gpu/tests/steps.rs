@@ -369,23 +369,30 @@ fn errors_by_number_of_sweeps() {
         ("1600 vertices, an edge below", &lowered.0, &lowered.1[..], &lowered.2),
         ("everything", &folded, &[][..], &folded_target),
     ] {
-        let aims = |sweeps: usize, coarse_correction: bool| {
-            let settings =
-                Settings { sweeps, polish_sweeps: sweeps, coarse_correction, ..Settings::default() };
+        let aims = |sweeps: usize, cluster_sweeps: usize, coarse_correction: bool| {
+            let settings = Settings {
+                cluster_sweeps,
+                sweeps,
+                polish_sweeps: sweeps,
+                coarse_correction,
+                ..Settings::default()
+            };
             let constraints = Constraints { prescribed: pinned, ..Constraints::default() };
             let mut collision = with_settings(TwinEngine::new(), scene, &constraints, &settings).unwrap();
             collision.begin(&Call::toward(target)).unwrap();
             collision.step().unwrap();
             collision.end().unwrap().aims
         };
-        let solved = aims(MANY, true);
-        for coarse_correction in [false, true] {
+        let solved = aims(MANY, 1, true);
+        for (cluster_sweeps, coarse_correction) in
+            [1, 2, 3, 4].into_iter().flat_map(|s| [(s, false), (s, true)])
+        {
             let errors = [1, 2, 4, 8, 16, 32, 64].map(|sweeps| {
-                let aims = aims(sweeps, coarse_correction);
+                let aims = aims(sweeps, cluster_sweeps, coarse_correction);
                 let squares = aims.iter().zip(&solved).map(|(a, b)| (a - b).norm_squared()).sum::<f64>();
                 format!("{:.3}", (squares / aims.len() as f64).sqrt() / EDGE)
             });
-            println!("| {name} | {coarse_correction} | {} |", errors.join(" | "));
+            println!("| {name} | {cluster_sweeps} | {coarse_correction} | {} |", errors.join(" | "));
         }
     }
 }

@@ -97,11 +97,21 @@ struct Row {
 // Colors of rows; rows that get none of them are swept one by one.
 const COLORS: u32 = 128u;
 
+struct EdgeCluster {
+    first_vertex: u32,
+    vertices: u32,
+    first_edge: u32,
+    first_color: u32,
+    colors: u32,
+}
+
+const FIXED: u32 = 0xffffu;
+
 struct EdgeLimit {
     a: u32,
     b: u32,
     limit: f32,
-    padding: u32,
+    places: u32,
     multiplier: vec3<f32>,
     padding_1: u32,
 }

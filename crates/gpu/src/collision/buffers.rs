@@ -5,8 +5,8 @@ use crate::cpu::slack::MOST_BLOCKS;
 use crate::engine::Engine;
 use crate::error::GpuError;
 use crate::layout::{
-    Ball, Block, BlockSum, COLORS, Candidate, Control, EdgeLimit, OldRow, PairFriction, PairState, Plane,
-    Row, Separation, Vertex,
+    Ball, Block, BlockSum, COLORS, Candidate, Control, EdgeCluster, EdgeLimit, OldRow, PairFriction,
+    PairState, Plane, Row, Separation, Vertex,
 };
 use crate::recording::BufferId;
 use bytemuck::Pod;
@@ -29,6 +29,8 @@ pub struct Sizes {
     /// Pairs of sides with a coefficient of friction of their own.
     pub pair_frictions: usize,
     pub limits: usize,
+    /// Clusters of limited edges, their vertices and colors.
+    pub clusters: [usize; 3],
     /// Words of the adjacency.
     pub adjacency: usize,
     /// Blocks of vertices.
@@ -78,6 +80,10 @@ pub struct Buffers {
     pub vertex_blocks: BufferId,
     pub block_sums: BufferId,
     pub limits: BufferId,
+    /// Clusters of limited edges, their vertices and the ends of their colors.
+    pub clusters: BufferId,
+    pub cluster_vertices: BufferId,
+    pub cluster_colors: BufferId,
     pub proximal: BufferId,
     pub displacements: BufferId,
     /// Displacement of the last step, and the factor on the proximal weight.
@@ -119,6 +125,7 @@ impl Buffers {
     pub fn new(engine: &mut impl Engine, sizes: &Sizes) -> Result<Self, GpuError> {
         let &Sizes { vertices, groups, edges, triangles, planes, limits, adjacency, blocks, rows, .. } =
             sizes;
+        let [clusters, cluster_vertices, cluster_colors] = sizes.clusters;
         let (most_partners, capacity) = (FIRST_PARTNERS, (FIRST_CANDIDATES * vertices).max(64));
         Ok(Self {
             most_partners,
@@ -156,6 +163,9 @@ impl Buffers {
             vertex_blocks: engine.buffer("blocks of vertices", words::<Block>(blocks))?,
             block_sums: engine.buffer("sums of blocks", words::<BlockSum>(blocks))?,
             limits: engine.buffer("edge limits", words::<EdgeLimit>(limits))?,
+            clusters: engine.buffer("clusters of edges", words::<EdgeCluster>(clusters))?,
+            cluster_vertices: engine.buffer("vertices of clusters", cluster_vertices)?,
+            cluster_colors: engine.buffer("colors of clusters", cluster_colors)?,
             proximal: engine.buffer("proximal weights", vertices)?,
             swings: engine.buffer("swings", 4 * vertices)?,
             displacements: engine.buffer("displacements", 4 * vertices)?,

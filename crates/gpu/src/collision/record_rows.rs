@@ -189,12 +189,24 @@ impl<E: Engine> Collision<E> {
                 cpu::sweep_rows::Params { only_apply },
                 1,
             );
-            for color in self.edges.colors() {
+            for round in self.edges.rounds() {
                 recording.dispatch(
                     &stages::SWEEP_EDGES,
-                    &[b.positions, b.limits, b.displacements],
-                    cpu::sweep_edges::Params { first: color.start as u32, end: color.end as u32, only_apply },
-                    color.len(),
+                    &[
+                        b.positions,
+                        b.clusters,
+                        b.cluster_vertices,
+                        b.cluster_colors,
+                        b.limits,
+                        b.displacements,
+                    ],
+                    cpu::sweep_edges::Params {
+                        first: round.start as u32,
+                        end: round.end as u32,
+                        only_apply,
+                        sweeps: if sweep == 0 { 1 } else { self.settings.cluster_sweeps as u32 },
+                    },
+                    stages::SWEEP_EDGES.workgroup * round.len(),
                 );
             }
         }
