@@ -488,7 +488,7 @@ impl<E: Engine> Collision<E> {
         Ok(End { positions, aims, rows: rows.iter().zip(pairs).map(row).collect() })
     }
 
-    /// The candidates of the last step, sorted.
+    /// The candidates of the last step or of [`Self::search`], sorted.
     ///
     /// # Errors
     /// The device failed.

@@ -323,6 +323,16 @@ mod tests {
     }
 
     #[test]
+    fn large_meshes_have_few_rounds() {
+        for (n, most) in [(10, 1), (100, 4), (300, 4)] {
+            let (all, points) = edges(n);
+            let divided = Edges::new(&all, &vec![1.0; all.len()], &points, |v| v > 0);
+            let sizes: Vec<usize> = divided.rounds().map(|round| round.len()).collect();
+            assert!(sizes.len() <= most, "{sizes:?}");
+        }
+    }
+
+    #[test]
     fn edges_between_many_vertices_that_lie_apart_are_divided_as_well() {
         // All vertices of one side with all of the other side: no part that is compact holds an edge.
         let all: Vec<[u32; 2]> =
