@@ -1,6 +1,6 @@
-// Decides after a step whether the submission goes on: not if the call has ended by its rule, if the next step makes another
-// number of sweeps, or if a buffer was too small. The dispatches of the following steps are then left without workgroups.
-// It keeps what the step came to.
+// Decides after a step whether the submission goes on: not if the call has ended by its rule, if the next step makes
+// another number of sweeps, or if a buffer was too small. The dispatches of the following steps are then left without
+// workgroups. It keeps what the step came to.
 
 struct Params {
     // A distance below which vertices have arrived, those that no pair holds back, and the residuals below which a call

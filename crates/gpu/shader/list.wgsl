@@ -1,5 +1,5 @@
-// The candidates of the rows, in the order of the candidates. Places that no row takes have none. A search renumbers the
-// candidates, so rows keep their pairs as well.
+// The candidates of the rows, in the order of the candidates. Places that no row takes have none. A search renumbers
+// the candidates, so rows keep their pairs as well.
 
 struct Params {
     capacity: u32,

@@ -1,7 +1,7 @@
-// A sweep over the edges of the clusters of a round, which share no vertex that moves. A workgroup takes a cluster at a time,
-// with the displacements of its vertices in its own memory, and waits between the colors of its edges: edges of one color
-// share no vertex that moves. The ball |x_a - x_b + u_a - u_b| <= L is convex, so nothing is linearized: each edge is
-// projected onto its own ball, with the multiplier that it had taken back first (Boyle and Dykstra 1986).
+// A sweep over the edges of the clusters of a round, which share no vertex that moves. A workgroup takes a cluster at a
+// time, with the displacements of its vertices in its own memory, and waits between the colors of its edges: edges of
+// one color share no vertex that moves. The ball |x_a - x_b + u_a - u_b| <= L is convex, so nothing is linearized: each
+// edge is projected onto its own ball, with the multiplier that it had taken back first (Boyle and Dykstra 1986).
 
 struct Params {
     // Clusters of the round.

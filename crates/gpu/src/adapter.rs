@@ -19,8 +19,9 @@ impl Adapter {
     /// All adapters of this machine, GPUs before software drivers. Their order is the order of their numbers.
     pub fn all() -> Vec<Self> {
         let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-        // Numbers of workgroups come from the host or are 0. The check of indirect dispatches would be one more dispatch
-        // each; without it no shader may ask for the number of workgroups, which DirectX 12 does not know then.
+        // Numbers of workgroups come from the host or are 0. The check of indirect dispatches would be one more
+        // dispatch each; without it no shader may ask for the number of workgroups, which DirectX 12 does not know
+        // then.
         descriptor.flags.remove(wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL);
         let instance = wgpu::Instance::new(descriptor);
         let adapters = wait(instance.enumerate_adapters(wgpu::Backends::PRIMARY));

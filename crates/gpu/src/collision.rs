@@ -2,8 +2,8 @@
 //!
 //! Positions, targets, trust regions and pairs stay on the device. A step is the list of dispatches that
 //! [`Collision::record_step`] writes; the host submits several of them at once, reads [`Control`] and a report per step
-//! alone, and grows buffers that were too small. A step with a buffer that is too small moves nothing, those after it are
-//! not made, and it is made again.
+//! alone, and grows buffers that were too small. A step with a buffer that is too small moves nothing, those after it
+//! are not made, and it is made again.
 
 mod buffers;
 mod record;

@@ -233,8 +233,8 @@ pub struct EdgeLimit {
     pub a: u32,
     pub b: u32,
     pub limit: f32,
-    /// Places of a (lower half) and b in the list of vertices of the cluster; [`EdgeLimit::FIXED`] for a vertex that does not
-    /// move.
+    /// Places of a (lower half) and b in the list of vertices of the cluster; [`EdgeLimit::FIXED`] for a vertex that
+    /// does not move.
     pub places: u32,
     /// Multiplier: the force that pulls a toward b, times -1 on a.
     pub multiplier: [f32; 3],
@@ -317,9 +317,9 @@ pub struct Control {
     pub most_partners: u32,
     /// Pairs that nothing certifies, and whose vertices wanted to move.
     pub frozen: u32,
-    /// Bits of the largest remaining distance of a vertex that is not prescribed, of a prescribed one that no pair holds
-    /// back, of any prescribed one, and of the longest move. They are `f32` of at least 0, so their bits are ordered as
-    /// they are.
+    /// Bits of the largest remaining distance of a vertex that is not prescribed, of a prescribed one that no pair
+    /// holds back, of any prescribed one, and of the longest move. They are `f32` of at least 0, so their bits are
+    /// ordered as they are.
     pub free_remaining: u32,
     pub unhindered_lag: u32,
     pub lag: u32,
@@ -338,8 +338,8 @@ pub struct Control {
     pub candidates: u32,
     /// Number of contact rows.
     pub rows: u32,
-    /// 1 if the steps that a submission still has are not made: the call may end, or a buffer was too small, or the next
-    /// step makes another number of sweeps; [`Control::HALTED_BY_SEARCH`].
+    /// 1 if the steps that a submission still has are not made: the call may end, or a buffer was too small, or the
+    /// next step makes another number of sweeps; [`Control::HALTED_BY_SEARCH`].
     pub halted: u32,
     /// Steps made by a submission.
     pub steps: u32,

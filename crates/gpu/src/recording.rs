@@ -75,9 +75,10 @@ impl Recording {
         }
     }
 
-    /// Adds what another recording does, if a stage before it leaves it: the numbers of workgroups of its dispatches are
-    /// in `arguments` when they run, and a dispatch without workgroups does nothing. Dispatches that bind that buffer
-    /// themselves run in any case. Returns the number of dispatches with arguments so far, of which there were `before`.
+    /// Adds what another recording does, if a stage before it leaves it: the numbers of workgroups of its dispatches
+    /// are in `arguments` when they run, and a dispatch without workgroups does nothing. Dispatches that bind that
+    /// buffer themselves run in any case. Returns the number of dispatches with arguments so far, of which there were
+    /// `before`.
     pub(crate) fn append_conditional(&mut self, other: &Self, arguments: BufferId, before: usize) -> usize {
         let mut place = before;
         for command in &other.commands {

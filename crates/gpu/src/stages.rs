@@ -2,7 +2,8 @@
 //! order.
 //!
 //! Binding 0 holds the parameters of a dispatch. Threads go on with strides, so that any number of workgroups up to
-//! [`recording::MAX_WORKGROUPS`](crate::recording::MAX_WORKGROUPS) does all of the work; only `count` and `total` depend on the size of a workgroup, for they scan.
+//! [`recording::MAX_WORKGROUPS`](crate::recording::MAX_WORKGROUPS) does all of the work; only `count` and `total`
+//! depend on the size of a workgroup, for they scan.
 
 mod linear;
 mod stage;

@@ -287,7 +287,8 @@ fn scenes_of_one_kind_of_body_run_on_a_device() {
     assert_eq!(pressed, [true; 4]);
 }
 
-/// A sheet of n x n vertices that hangs from a row of vertices that do not move; which these are, and targets so far below.
+/// A sheet of n x n vertices that hangs from a row of vertices that do not move; which these are, and targets so far
+/// below.
 fn hanging_sheet(n: u32, depth: f64) -> (Scene, Vec<bool>, Vec<Point>) {
     let x: Vec<Point> =
         (0..n * n).map(|k| Point::new(EDGE * f64::from(k % n), 0.0, -EDGE * f64::from(k / n))).collect();

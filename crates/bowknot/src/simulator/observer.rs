@@ -72,8 +72,8 @@ pub trait SimulationObserver {
         let _ = tell;
     }
 
-    /// Whether [`Self::accepted`] must see each state. If not, a backend may make several two-way steps at once and call
-    /// [`Self::advanced`] in its place.
+    /// Whether [`Self::accepted`] must see each state. If not, a backend may make several two-way steps at once and
+    /// call [`Self::advanced`] in its place.
     fn sees_each_state(&self) -> bool {
         true
     }

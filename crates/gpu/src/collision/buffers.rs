@@ -176,8 +176,8 @@ impl Buffers {
         })
     }
 
-    /// Makes room for as many partners and candidates as `control` tells, what was there is lost. The rows of the step stay,
-    /// and what was kept from before the search.
+    /// Makes room for as many partners and candidates as `control` tells, what was there is lost. The rows of the step
+    /// stay, and what was kept from before the search.
     ///
     /// # Errors
     /// The device has no memory.

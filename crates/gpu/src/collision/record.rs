@@ -12,8 +12,8 @@ pub(super) const LONGEST_TRAVEL: f32 = 0.35;
 const SMALLEST_RADIUS: f32 = 0.1;
 
 impl<E: Engine> Collision<E> {
-    /// The dispatches of a step, in order. `first`: it is the first one of its submission, of which so many dispatches can
-    /// be left out.
+    /// The dispatches of a step, in order. `first`: it is the first one of its submission, of which so many dispatches
+    /// can be left out.
     pub(super) fn record_step(&self, first: bool, dispatches: usize, recording: &mut Recording) {
         self.record_restart(first, recording);
         // If the step is made again, the aims are known.

@@ -29,8 +29,9 @@ impl<E: Engine> Collision<E> {
         Ok(self.steps(1)?[0])
     }
 
-    /// Makes up to `most` steps, at least one. The host submits them together and reads what they came to once; after the
-    /// end of the call ([`Call::stop`](super::Call::stop)) none is made. The states are the same bits for any `most`.
+    /// Makes up to `most` steps, at least one. The host submits them together and reads what they came to once; after
+    /// the end of the call ([`Call::stop`](super::Call::stop)) none is made. The states are the same bits for any
+    /// `most`.
     ///
     /// # Errors
     /// As [`Self::step`].
@@ -62,8 +63,8 @@ impl<E: Engine> Collision<E> {
         self.expected_steps[usize::from(self.polishes)]
     }
 
-    /// Submits steps, after a search if the call begins. Adds the reports of those that were made, and makes room if one was
-    /// not because a buffer was too small.
+    /// Submits steps, after a search if the call begins. Adds the reports of those that were made, and makes room if
+    /// one was not because a buffer was too small.
     fn submit(&mut self, steps: usize, reports: &mut Vec<StepReport>) -> Result<Control, CollisionError> {
         if self.fresh || !self.again {
             self.buffers.make_room_for_step(&mut self.engine, &self.sizes)?;
@@ -102,8 +103,8 @@ impl<E: Engine> Collision<E> {
         }
     }
 
-    /// The search of a call that begins, and steps. The device leaves out those after the end of the call or after a buffer
-    /// that is too small.
+    /// The search of a call that begins, and steps. The device leaves out those after the end of the call or after a
+    /// buffer that is too small.
     fn record_submission(&mut self, steps: usize) -> Result<Recording, GpuError> {
         let mut recording = Recording::default();
         let conditional = if self.fresh { steps } else { steps.saturating_sub(1) };
@@ -134,8 +135,8 @@ impl<E: Engine> Collision<E> {
         Ok(recording)
     }
 
-    /// Makes room for what did not fit. The step is made again with the trust regions that it has found, so that it has the
-    /// same bits as if there had been room.
+    /// Makes room for what did not fit. The step is made again with the trust regions that it has found, so that it has
+    /// the same bits as if there had been room.
     fn grow(&mut self, control: &Control) -> Result<(), GpuError> {
         self.again = true;
         self.buffers.grow(&mut self.engine, &self.sizes, control)

@@ -217,8 +217,8 @@ fn two_sheets_that_are_pressed_together_rest_at_the_desired_distance() {
     assert!(end[0].z > end[49].z, "{} {}", end[0], end[49]);
 }
 
-/// Two sheets that fall through each other, and come to rest: how many steps are submitted together makes no difference,
-/// though the device ends submissions, and buffers overflow in the middle of some.
+/// Two sheets that fall through each other, and come to rest: how many steps are submitted together makes no
+/// difference, though the device ends submissions, and buffers overflow in the middle of some.
 #[test]
 fn steps_that_are_submitted_together_have_the_same_bits() {
     let (model, x) = sheets();
