@@ -18,3 +18,4 @@ mod friction;
 mod heaps;
 mod momentum;
 mod slopes;
+mod submissions;

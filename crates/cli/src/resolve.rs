@@ -4,11 +4,11 @@ use crate::args::ResolveOptions;
 use crate::exit::{Exit, Failure};
 use crate::interrupt::Interrupt;
 use crate::{failure_dump, gpu, output, setup, sizes};
-use bowknot::check::{Judge, MotionJudge, PathOptions, StateOptions};
+use bowknot::check::{CheckError, Judge, MotionJudge, PathOptions, StateOptions};
 use bowknot::recording::{States, write_result};
 use bowknot::run::SmallestState;
 use bowknot::simulator::BackendError;
-use bowknot::twoway::{AcceptedState, Params, Statistics};
+use bowknot::twoway::{AcceptedState, Observer, Params, Statistics};
 use bowknot_errors::counted;
 use serde::Serialize;
 use std::ops::ControlFlow;
@@ -76,6 +76,51 @@ pub fn resolve(options: &ResolveOptions) -> Result<Exit, Failure> {
     result.unwrap_or_else(|panic| panic::resume_unwind(panic)).map(|ended| ended.exit)
 }
 
+/// Judges the path to every accepted state, if asked to, and ends the call when the user does.
+struct Watch<'a> {
+    interrupt: &'a Interrupt,
+    checker: Option<MotionJudge>,
+    /// Intersections found.
+    intersections: usize,
+    /// Why a path could not be judged.
+    unjudged: Option<CheckError>,
+}
+
+impl Watch<'_> {
+    fn go_on(&self) -> ControlFlow<()> {
+        if self.interrupt.is_set() || self.unjudged.is_some() {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    }
+}
+
+impl Observer for Watch<'_> {
+    fn accepted(&mut self, accepted: &AcceptedState<'_>) -> ControlFlow<()> {
+        if let Some(judge) = &mut self.checker {
+            match judge.check_path(accepted.previous, accepted.positions, &PathOptions::default()) {
+                Ok(report) => {
+                    let left = MAX_LISTED.saturating_sub(self.intersections);
+                    let step = accepted.step;
+                    report.hits.iter().take(left).for_each(|hit| eprintln!("two-way step {step}: {hit}"));
+                    self.intersections += report.hit_count;
+                }
+                Err(error) => self.unjudged = Some(error),
+            }
+        }
+        self.go_on()
+    }
+
+    fn sees_each_state(&self) -> bool {
+        self.checker.is_some()
+    }
+
+    fn advanced(&mut self, _steps: usize) -> ControlFlow<()> {
+        self.go_on()
+    }
+}
+
 /// How an attempt ended that was not refused.
 struct Ended {
     exit: Exit,
@@ -109,26 +154,8 @@ fn attempt(
 
     let mut resolver =
         states.resolver(model, params.clone()).map_err(|error| bad_input(error.to_string()))?;
-    let mut checker = options.check.then(|| MotionJudge::new(judge));
-    let (mut intersections, mut unjudged) = (0, None);
-    let mut watch = |accepted: &AcceptedState<'_>| {
-        if let Some(judge) = &mut checker {
-            match judge.check_path(accepted.previous, accepted.positions, &PathOptions::default()) {
-                Ok(report) => {
-                    let left = MAX_LISTED.saturating_sub(intersections);
-                    let step = accepted.step;
-                    report.hits.iter().take(left).for_each(|hit| eprintln!("two-way step {step}: {hit}"));
-                    intersections += report.hit_count;
-                }
-                Err(error) => unjudged = Some(error),
-            }
-        }
-        if interrupt.is_set() || unjudged.is_some() {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
-    };
+    let checker = options.check.then(|| MotionJudge::new(judge));
+    let mut watch = Watch { interrupt, checker, intersections: 0, unjudged: None };
     let mut x = states.x.clone();
     let cpu = bowknot::simulator::cpu_seconds();
     let failure = |error: BackendError| match error {
@@ -140,6 +167,7 @@ fn attempt(
         .prepare(resolver.scene(), &x)
         .and_then(|()| backend.resolve(&mut resolver, &mut x, &states.y, &states.input(), &mut watch))
         .map_err(failure)?;
+    let Watch { intersections, unjudged, .. } = watch;
     if let Some(error) = unjudged {
         return Err(bad_input(error.to_string()));
     }

@@ -14,11 +14,11 @@ struct Params {
 @group(0) @binding(7) var<storage, read_write> control: Control;
 
 @compute @workgroup_size(256)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if atomicLoad(&control.overflow) != 0u {
         return;
     }
-    for (var v = id.x; v < params.vertices; v += 256u * groups.x) {
+    for (var v = id.x; v < params.vertices; v += 256u * MOST_WORKGROUPS) {
         let vertex = vertices[v];
         var alpha = bitcast<f32>(alphas[v]);
         if vertex.group != NONE {
@@ -28,8 +28,12 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) g
         let displacement = vec3<f32>(targets[v].xyz - position);
         let length = sqrt(dot(displacement, displacement));
         let left = (1.0 - alpha) * length;
-        atomicMax(&control.remaining, bitcast<u32>(left));
-        atomicMax(&control.remaining_fraction, bitcast<u32>(1.0 - alpha));
+        if (vertex.flags & PRESCRIBED) != 0u {
+            atomicMax(&control.lag, bitcast<u32>(left));
+        } else {
+            atomicMax(&control.free_remaining, bitcast<u32>(left));
+            atomicMax(&control.free_move, bitcast<u32>(alpha * length));
+        }
         atomicMax(&control.largest_move, bitcast<u32>(alpha * length));
         if alpha >= paths[v].w {
             atomicMax(&control.unhindered, bitcast<u32>(left));

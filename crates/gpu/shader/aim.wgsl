@@ -25,8 +25,8 @@ const DECAY: f32 = 0.8;
 const FARTHEST: f32 = 1073741824.0;
 
 @compute @workgroup_size(256)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    for (var v = id.x; v < params.vertices; v += 256u * groups.x) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    for (var v = id.x; v < params.vertices; v += 256u * MOST_WORKGROUPS) {
         let displacement = displacements[v];
         let position = positions[v].xyz;
         var aim = position;

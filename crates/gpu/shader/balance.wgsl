@@ -11,8 +11,8 @@ struct Params {
 @group(0) @binding(3) var<storage, read_write> control: Control;
 
 @compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    for (var b = id.x; b < params.blocks; b += 64u * groups.x) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    for (var b = id.x; b < params.blocks; b += 64u * MOST_WORKGROUPS) {
         let body = blocks[b].body;
         // The first block of a body adds up the others.
         if b > 0u && blocks[b - 1u].body == body {

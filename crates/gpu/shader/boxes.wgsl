@@ -25,11 +25,11 @@ fn grown(box: NodeBox, v: u32) -> NodeBox {
 }
 
 @compute @workgroup_size(256)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if atomicLoad(&control.changed) == 0u {
         return;
     }
-    for (var s = id.x; s < params.slots; s += 256u * groups.x) {
+    for (var s = id.x; s < params.slots; s += 256u * MOST_WORKGROUPS) {
         let slot = slots[s];
         var box = EMPTY;
         if slot.element != NONE {

@@ -48,8 +48,8 @@ fn radius_of(pair: Pair, weights: vec4<f32>, gap: f32, sine: f32, edge: f32) -> 
 }
 
 @compute @workgroup_size(128)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    for (var r = id.x; r < params.capacity; r += 128u * groups.x) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    for (var r = id.x; r < params.capacity; r += 128u * MOST_WORKGROUPS) {
         let c = rows[r].candidate;
         // The list ends here; rows beyond are those of other steps.
         if c == NONE {

@@ -23,8 +23,8 @@ const SLACK: f32 = 0.05;
 const ROOM: f32 = 4096.0;
 
 @compute @workgroup_size(256)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    for (var v = id.x; v < params.vertices; v += 256u * groups.x) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    for (var v = id.x; v < params.vertices; v += 256u * MOST_WORKGROUPS) {
         let path = paths[v].xyz;
         let position = positions[v].xyz;
         let ball = balls[v];

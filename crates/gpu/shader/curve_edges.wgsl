@@ -12,8 +12,8 @@ struct Params {
 @group(0) @binding(3) var<storage, read_write> proximal: array<atomic<u32>>;
 
 @compute @workgroup_size(256)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    for (var e = id.x; e < params.edges; e += 256u * groups.x) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    for (var e = id.x; e < params.edges; e += 256u * MOST_WORKGROUPS) {
         let edge = limits[e];
         let pull = sqrt(dot(edge.multiplier, edge.multiplier));
         if pull > 0.0 {

@@ -146,9 +146,9 @@ fn is_contact(pair: Pair, candidate: Candidate, separation: Separation) -> bool 
 }
 
 @compute @workgroup_size(128)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let count = min(atomicLoad(&control.candidates), params.capacity);
-    for (var c = id.x; c < count; c += 128u * groups.x) {
+    for (var c = id.x; c < count; c += 128u * MOST_WORKGROUPS) {
         let separation = separations[c];
         let state = states[c];
         if separation.distance > state.range || is_contact(pair_of(candidates[c]), candidates[c], separation) {

@@ -15,11 +15,11 @@ struct Params {
 @group(0) @binding(5) var<storage, read_write> control: Control;
 
 @compute @workgroup_size(256)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if atomicLoad(&control.changed) == 0u {
         return;
     }
-    for (var row = id.x; row < params.rows; row += 256u * groups.x) {
+    for (var row = id.x; row < params.rows; row += 256u * MOST_WORKGROUPS) {
         let words = row * params.stride;
         let count = min(partners[words], params.most);
         let first = blocks[row / 256u] + starts[row];

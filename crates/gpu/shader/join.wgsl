@@ -12,8 +12,8 @@ struct Params {
 @group(0) @binding(4) var<storage, read_write> alphas: array<u32>;
 
 @compute @workgroup_size(256)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    for (var v = id.x; v < params.vertices; v += 256u * groups.x) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    for (var v = id.x; v < params.vertices; v += 256u * MOST_WORKGROUPS) {
         let group = vertices[v].group;
         var path = paths[v];
         if group != NONE {

@@ -18,12 +18,12 @@ struct Params {
 @group(0) @binding(8) var<storage, read_write> control: Control;
 
 @compute @workgroup_size(256)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if atomicLoad(&control.changed) == 0u {
         return;
     }
     let total = min(atomicLoad(&control.candidates), params.capacity);
-    for (var row = id.x; row < params.rows; row += 256u * groups.x) {
+    for (var row = id.x; row < params.rows; row += 256u * MOST_WORKGROUPS) {
         let words = row * params.stride;
         let first = min(blocks[row / 256u] + starts[row], total);
         let count = min(min(partners[words], params.most), total - first);

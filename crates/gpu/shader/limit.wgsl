@@ -92,9 +92,9 @@ fn limit_pair(candidate: Candidate, separation: Separation) {
 }
 
 @compute @workgroup_size(128)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let count = min(atomicLoad(&control.candidates), params.capacity);
-    for (var c = id.x; c < count; c += 128u * groups.x) {
+    for (var c = id.x; c < count; c += 128u * MOST_WORKGROUPS) {
         limit_pair(candidates[c], separations[c]);
     }
 }

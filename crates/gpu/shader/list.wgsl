@@ -1,4 +1,5 @@
-// The candidates of the rows, in the order of the candidates. Places that no row takes have none.
+// The candidates of the rows, in the order of the candidates. Places that no row takes have none. A search renumbers
+// the candidates, so rows keep their pairs as well.
 
 struct Params {
     capacity: u32,
@@ -8,15 +9,19 @@ struct Params {
 @group(0) @binding(1) var<storage, read> picked: array<u32>;
 @group(0) @binding(2) var<storage, read> starts: array<u32>;
 @group(0) @binding(3) var<storage, read> blocks: array<u32>;
-@group(0) @binding(4) var<storage, read_write> rows: array<Row>;
-@group(0) @binding(5) var<storage, read_write> control: Control;
+@group(0) @binding(4) var<storage, read> candidates: array<Candidate>;
+@group(0) @binding(5) var<storage, read_write> rows: array<Row>;
+@group(0) @binding(6) var<storage, read_write> pairs: array<Candidate>;
+@group(0) @binding(7) var<storage, read_write> control: Control;
 
 @compute @workgroup_size(256)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let count = atomicLoad(&control.rows);
-    for (var c = id.x; c < params.capacity; c += 256u * groups.x) {
+    for (var c = id.x; c < params.capacity; c += 256u * MOST_WORKGROUPS) {
         if picked[c] != 0u {
-            rows[blocks[c / 256u] + starts[c]].candidate = c;
+            let place = blocks[c / 256u] + starts[c];
+            rows[place].candidate = c;
+            pairs[place] = candidates[c];
         }
         if c >= count {
             rows[c].candidate = NONE;

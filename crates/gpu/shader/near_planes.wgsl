@@ -17,11 +17,11 @@ struct Params {
 @group(0) @binding(6) var<storage, read_write> control: Control;
 
 @compute @workgroup_size(256)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if atomicLoad(&control.changed) == 0u {
         return;
     }
-    for (var q = id.x; q < params.queries; q += 256u * groups.x) {
+    for (var q = id.x; q < params.queries; q += 256u * MOST_WORKGROUPS) {
         let row = (params.first_row + q) * params.stride;
         let query = queries[q];
         var found = 0u;

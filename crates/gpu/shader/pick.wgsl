@@ -36,9 +36,9 @@ fn is_picked(c: u32) -> bool {
 }
 
 @compute @workgroup_size(128)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let count = min(atomicLoad(&control.candidates), params.capacity);
-    for (var c = id.x; c < params.capacity; c += 128u * groups.x) {
+    for (var c = id.x; c < params.capacity; c += 128u * MOST_WORKGROUPS) {
         var flag = 0u;
         if c < count {
             if is_picked(c) {

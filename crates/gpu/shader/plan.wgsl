@@ -16,8 +16,8 @@ struct Params {
 @group(0) @binding(5) var<storage, read_write> group_caps: array<atomic<u32>>;
 
 @compute @workgroup_size(256)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    for (var v = id.x; v < params.vertices; v += 256u * groups.x) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    for (var v = id.x; v < params.vertices; v += 256u * MOST_WORKGROUPS) {
         let vertex = vertices[v];
         let displacement = vec3<f32>(targets[v].xyz - positions[v].xyz);
         let length = sqrt(dot(displacement, displacement));

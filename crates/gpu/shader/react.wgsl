@@ -10,8 +10,8 @@ struct Params {
 @group(0) @binding(3) var<storage, read_write> reactions: array<vec4<f32>>;
 
 @compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    for (var s = id.x; s < params.springs; s += 64u * groups.x) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    for (var s = id.x; s < params.springs; s += 64u * MOST_WORKGROUPS) {
         let spring = springs[s];
         var sum = vec3<f32>(0.0);
         for (var k = 0u; k < 4u; k += 1u) {

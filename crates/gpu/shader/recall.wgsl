@@ -10,8 +10,8 @@ struct Params {
 @group(0) @binding(3) var<storage, read_write> displacements: array<vec4<f32>>;
 
 @compute @workgroup_size(256)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    for (var v = id.x; v < params.vertices; v += 256u * groups.x) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    for (var v = id.x; v < params.vertices; v += 256u * MOST_WORKGROUPS) {
         displacements[v] = vec4<f32>(vec3<f32>(aims[v].xyz - positions[v].xyz), 0.0);
     }
 }

@@ -14,11 +14,11 @@ struct Params {
 @group(0) @binding(2) var<storage, read_write> control: Control;
 
 @compute @workgroup_size(256)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if atomicLoad(&control.changed) == 0u {
         return;
     }
-    for (var n = id.x; n < params.nodes; n += 256u * groups.x) {
+    for (var n = id.x; n < params.nodes; n += 256u * MOST_WORKGROUPS) {
         var box = boxes[params.first_child + 8u * n];
         let end = min(8u * n + 8u, params.children);
         for (var child = 8u * n + 1u; child < end; child += 1u) {

@@ -21,8 +21,8 @@ struct Params {
 const MOST_PROXIMAL: f32 = 100.0;
 
 @compute @workgroup_size(256)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    for (var v = id.x; v < params.vertices; v += 256u * groups.x) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    for (var v = id.x; v < params.vertices; v += 256u * MOST_WORKGROUPS) {
         let vertex = vertices[v];
         let wanted = vec3<f32>(targets[v].xyz - positions[v].xyz);
         if (vertex.flags & PRESCRIBED) != 0u {

@@ -17,9 +17,9 @@ struct Params {
 @group(0) @binding(8) var<storage, read_write> control: Control;
 
 @compute @workgroup_size(256)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let s = factor[0];
-    let stride = 256u * groups.x;
+    let stride = 256u * MOST_WORKGROUPS;
     for (var r = id.x; r < min(atomicLoad(&control.rows), params.capacity); r += stride) {
         rows[r].multiplier *= s;
         rows[r].friction *= s;

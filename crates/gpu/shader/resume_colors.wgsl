@@ -14,9 +14,9 @@ struct Params {
 @group(0) @binding(5) var<storage, read_write> control: Control;
 
 @compute @workgroup_size(256)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let count = min(atomicLoad(&control.rows), params.capacity);
-    for (var r = id.x; r < count; r += 256u * groups.x) {
+    for (var r = id.x; r < count; r += 256u * MOST_WORKGROUPS) {
         let color = rows[r].color;
         if color == NONE {
             waiting[atomicAdd(&control.waiting, 1u)] = r;

@@ -45,8 +45,8 @@ fn friction_of(one: u32, other: u32) -> f32 {
 }
 
 @compute @workgroup_size(128)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    for (var r = id.x; r < params.capacity; r += 128u * groups.x) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    for (var r = id.x; r < params.capacity; r += 128u * MOST_WORKGROUPS) {
         let c = rows[r].candidate;
         if c == NONE {
             continue;

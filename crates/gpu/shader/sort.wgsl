@@ -13,9 +13,9 @@ struct Params {
 @group(0) @binding(4) var<storage, read_write> control: Control;
 
 @compute @workgroup_size(256)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let count = min(atomicLoad(&control.rows), params.capacity);
-    for (var r = id.x; r < count; r += 256u * groups.x) {
+    for (var r = id.x; r < count; r += 256u * MOST_WORKGROUPS) {
         let color = rows[r].color;
         if color < COLORS {
             order[atomicAdd(&ends[color], 1u)] = r;

@@ -88,12 +88,12 @@ fn first_state(candidate: Candidate, separation: Separation) -> PairState {
 }
 
 @compute @workgroup_size(128)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if params.after_search != 0u && atomicLoad(&control.changed) == 0u {
         return;
     }
     let count = min(atomicLoad(&control.candidates), params.capacity);
-    for (var c = id.x; c < count; c += 128u * groups.x) {
+    for (var c = id.x; c < count; c += 128u * MOST_WORKGROUPS) {
         if states[c].desired < 0.0 {
             states[c] = first_state(candidates[c], separations[c]);
         }

@@ -10,9 +10,9 @@ struct Params {
 @group(0) @binding(3) var<storage, read_write> control: Control;
 
 @compute @workgroup_size(256)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let count = min(atomicLoad(&control.rows), params.capacity);
-    for (var r = id.x; r < count; r += 256u * groups.x) {
+    for (var r = id.x; r < count; r += 256u * MOST_WORKGROUPS) {
         states[rows[r].candidate].multiplier = rows[r].multiplier;
         states[rows[r].candidate].color = rows[r].color;
         if rows[r].multiplier > 0.0 {

@@ -10,8 +10,8 @@ struct Params {
 @group(0) @binding(3) var<storage, read_write> control: Control;
 
 @compute @workgroup_size(256)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    for (var e = id.x; e < params.edges; e += 256u * groups.x) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    for (var e = id.x; e < params.edges; e += 256u * MOST_WORKGROUPS) {
         let edge = vec3<f32>(positions[limits[e].b].xyz - positions[limits[e].a].xyz);
         atomicMax(&control.stretch_to_limit, bitcast<u32>(sqrt(dot(edge, edge)) / limits[e].limit));
     }

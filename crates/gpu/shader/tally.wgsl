@@ -12,9 +12,9 @@ struct Params {
 @group(0) @binding(4) var<storage, read_write> control: Control;
 
 @compute @workgroup_size(256)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let count = min(atomicLoad(&control.rows), params.capacity);
-    for (var r = id.x; r < count; r += 256u * groups.x) {
+    for (var r = id.x; r < count; r += 256u * MOST_WORKGROUPS) {
         var diagonal = 0.0;
         for (var k = 0u; k < 4u; k += 1u) {
             let weight = rows[r].weights[k];

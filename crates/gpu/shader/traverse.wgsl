@@ -98,11 +98,11 @@ fn find(q: u32) {
 }
 
 @compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if atomicLoad(&control.changed) == 0u {
         return;
     }
-    for (var q = id.x; q < params.queries; q += 64u * groups.x) {
+    for (var q = id.x; q < params.queries; q += 64u * MOST_WORKGROUPS) {
         find(q);
     }
 }

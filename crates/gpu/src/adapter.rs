@@ -19,7 +19,9 @@ impl Adapter {
     /// All adapters of this machine, GPUs before software drivers. Their order is the order of their numbers.
     pub fn all() -> Vec<Self> {
         let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-        // Nothing is dispatched indirectly; the check of such dispatches would cost time.
+        // Numbers of workgroups come from the host or are 0. The check of indirect dispatches would be one more
+        // dispatch each; without it no shader may ask for the number of workgroups, which DirectX 12 does not know
+        // then.
         descriptor.flags.remove(wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL);
         let instance = wgpu::Instance::new(descriptor);
         let adapters = wait(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
@@ -70,6 +72,7 @@ impl Adapter {
         let flags = self.adapter.get_downlevel_capabilities().flags;
         let missing = [
             (!flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS), "compute shaders"),
+            (!flags.contains(wgpu::DownlevelFlags::INDIRECT_EXECUTION), "indirect dispatches"),
             (limits.max_storage_buffers_per_shader_stage < STORAGE_BUFFERS, "8 storage buffers per stage"),
             (limits.max_compute_invocations_per_workgroup < WORKGROUP_THREADS, "workgroups of 256 threads"),
         ];

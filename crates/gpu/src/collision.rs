@@ -1,13 +1,16 @@
 //! Steps toward a target that nothing passes through: search, backward step and forward step on an engine.
 //!
 //! Positions, targets, trust regions and pairs stay on the device. A step is the list of dispatches that
-//! [`Collision::record_step`] writes; the host reads [`Control`] alone, and grows buffers that were too small. A step
-//! with a buffer that is too small moves nothing and is made again.
+//! [`Collision::record_step`] writes; the host submits several of them at once, reads [`Control`] and a report per step
+//! alone, and grows buffers that were too small. A step with a buffer that is too small moves nothing, those after it
+//! are not made, and it is made again.
 
 mod buffers;
 mod record;
 mod record_rows;
 mod record_search;
+mod steps;
+mod stop;
 mod trees;
 
 use crate::adjacency::Adjacency;
@@ -21,6 +24,7 @@ use crate::model::{self, Constraints, Lengths};
 use crate::recording::{BufferId, Recording};
 use bowknot_geometry::{CollisionModel, Point, Vector};
 use buffers::{Buffers, Sizes, words};
+pub use stop::Stop;
 use trees::Trees;
 
 /// Why collisions cannot be computed on the device.
@@ -56,6 +60,8 @@ pub enum CollisionError {
 pub struct Settings {
     /// Gauss-Seidel sweeps of a backward step.
     pub sweeps: usize,
+    /// How often a sweep goes over each cluster of edges before the next one.
+    pub cluster_sweeps: usize,
     /// Sweeps while the last step left less than `polish_distance` and stretched an edge beyond `polish_stretch`.
     pub polish_sweeps: usize,
     /// Remaining distance of a vertex [m].
@@ -84,6 +90,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             sweeps: 8,
+            cluster_sweeps: 2,
             polish_sweeps: 8,
             polish_distance: 0.0,
             polish_stretch: 1.01,
@@ -99,14 +106,6 @@ impl Default for Settings {
     }
 }
 
-impl Settings {
-    fn sweeps_after(&self, report: &StepReport) -> usize {
-        let is_near = report.remaining < self.polish_distance;
-        let polishes = is_near && report.stretch_to_limit > self.polish_stretch;
-        if polishes { self.polish_sweeps.max(self.sweeps) } else { self.sweeps }
-    }
-}
-
 /// What a call starts from.
 #[derive(Clone, Copy, Debug)]
 pub struct Call<'a> {
@@ -116,12 +115,14 @@ pub struct Call<'a> {
     pub growth: f64,
     /// Where the vertices were at the start of the time step, from where slip counts [m]. Empty: the present positions.
     pub slip_start: &'a [Point],
+    /// When the call ends.
+    pub stop: Stop,
 }
 
 impl<'a> Call<'a> {
-    /// Toward a target. Pairs may open at once, and slip counts from here.
+    /// Toward a target. Pairs may open at once, slip counts from here, and the host alone ends the call.
     pub fn toward(target: &'a [Point]) -> Self {
-        Self { target, growth: f64::INFINITY, slip_start: &[] }
+        Self { target, growth: f64::INFINITY, slip_start: &[], stop: Stop::NEVER }
     }
 }
 
@@ -136,12 +137,18 @@ pub struct StepReport {
     pub frozen: usize,
     /// Largest remaining distance of a vertex [m].
     pub remaining: f64,
+    /// The same of vertices that are not prescribed [m].
+    pub free_remaining: f64,
+    /// The same of prescribed vertices [m].
+    pub lag: f64,
     /// Largest remaining distance of a vertex that no pair holds back [m].
     pub unhindered: f64,
     /// The same of prescribed vertices alone [m].
     pub unhindered_lag: f64,
     /// Longest move of a vertex [m].
     pub largest_move: f64,
+    /// The same of vertices that are not prescribed [m].
+    pub free_move: f64,
     /// Contact rows.
     pub contact_rows: usize,
     /// Those of them that press.
@@ -169,6 +176,17 @@ pub struct ContactRow {
     pub coefficient: f64,
 }
 
+/// How a call ends.
+#[derive(Clone, Debug, PartialEq)]
+pub struct End {
+    /// The positions [m], exactly as they are on the device.
+    pub positions: Vec<Point>,
+    /// Where the last step wanted to go [m].
+    pub aims: Vec<Point>,
+    /// The contact rows of the last step.
+    pub rows: Vec<ContactRow>,
+}
+
 /// The collision stage of a scene on an engine.
 #[derive(Debug)]
 pub struct Collision<E> {
@@ -184,10 +202,19 @@ pub struct Collision<E> {
     adjacency_starts: [u32; 2],
     /// Whether any contact may have friction.
     frictional: bool,
-    /// Sweeps of the next step.
-    sweeps: usize,
-    /// Whether all trust regions are new.
-    all_new: bool,
+    /// The positions [m] where [`Self::place`] has put them; none after a step.
+    placed: Option<Vec<Point>>,
+    /// The rule of the call, and the contact rows of its last step.
+    stop: Stop,
+    row_count: usize,
+    /// Whether the next step polishes.
+    polishes: bool,
+    /// Number of steps that a submission is likely to make, of those that do not polish and of those that do.
+    expected_steps: [usize; 2],
+    /// Steps since the call began or the device last halted a submission.
+    steps_in_a_row: usize,
+    /// Whether a call has begun whose candidates were not yet searched for: all trust regions are new.
+    fresh: bool,
     /// Whether the step is made again, because a buffer was too small.
     again: bool,
 }
@@ -278,7 +305,7 @@ impl<E: Engine> Collision<E> {
         let topology = model.topology();
         let triangles: Vec<[u32; 4]> = topology.triangles.iter().map(|&[a, b, c]| [a, b, c, 0]).collect();
         let moves = |v: u32| vertices[v as usize].flags & Vertex::PRESCRIBED == 0;
-        let edges = Edges::new(&topology.edges, lengths.edge_limits, moves);
+        let edges = Edges::new(&topology.edges, lengths.edge_limits, rest, moves);
         let trees = Trees::new(&mut engine, topology, &order)?;
         let adjacency = Adjacency::new(topology);
         let blocks = model::blocks(model);
@@ -290,6 +317,7 @@ impl<E: Engine> Collision<E> {
             planes: planes.len(),
             pair_frictions: pair_frictions.len(),
             limits: edges.len(),
+            clusters: [edges.clusters.len(), edges.vertices.len(), edges.color_ends.len()],
             adjacency: adjacency.words.len(),
             blocks: blocks.len(),
             rows: trees.rows(planes.len()),
@@ -306,6 +334,9 @@ impl<E: Engine> Collision<E> {
         setup.write(buffers.pair_frictions, &pair_frictions);
         setup.write(buffers.adjacency, &adjacency.words);
         setup.write(buffers.vertex_blocks, &blocks);
+        setup.write(buffers.clusters, &edges.clusters);
+        setup.write(buffers.cluster_vertices, &edges.vertices);
+        setup.write(buffers.cluster_colors, &edges.color_ends);
         trees.all().iter().for_each(|tree| tree.upload(&mut setup));
         engine.run(&setup, &[])?;
         let lengths = StepLengths {
@@ -324,8 +355,13 @@ impl<E: Engine> Collision<E> {
             edges,
             adjacency_starts: [adjacency.edges_first, adjacency.triangles_first],
             frictional,
-            sweeps: settings.sweeps,
-            all_new: true,
+            placed: None,
+            stop: Stop::NEVER,
+            row_count: 0,
+            polishes: false,
+            expected_steps: [1; 2],
+            steps_in_a_row: 0,
+            fresh: false,
             again: false,
         })
     }
@@ -342,7 +378,9 @@ impl<E: Engine> Collision<E> {
         let mut recording = Recording::default();
         recording.write(self.buffers.positions, &padded(&on_grid));
         self.engine.run(&recording, &[])?;
-        Ok(on_grid.into_iter().map(|x| self.grid.position(x)).collect())
+        let placed: Vec<Point> = on_grid.into_iter().map(|x| self.grid.position(x)).collect();
+        self.placed = Some(placed.clone());
+        Ok(placed)
     }
 
     /// Frees the buffers and gives the engine back.
@@ -366,7 +404,10 @@ impl<E: Engine> Collision<E> {
             points.iter().map(|y| self.grid.nearest_inside(y)).collect()
         };
         let (target, mut slip_start) = (inside(call.target), inside(call.slip_start));
-        let start = self.positions()?;
+        let start = match self.placed.take() {
+            Some(placed) => placed,
+            None => self.positions()?,
+        };
         if slip_start.is_empty() {
             slip_start = start.iter().map(|x| self.grid.nearest_inside(x)).collect();
         }
@@ -378,56 +419,12 @@ impl<E: Engine> Collision<E> {
         recording.write(self.buffers.swings, &vec![[0.0f32, 0.0, 0.0, 1.0]; start.len()]);
         recording.write(self.buffers.factor, &[1.0, cpu::factor::MOST_GROWTH]);
         recording.write(self.buffers.limits, &self.edges.limits(&start, &self.grid));
-        // Without candidates nothing is inherited from the call before.
-        recording.write(self.buffers.control, &[Control::default()]);
+        recording.write(self.buffers.control, &[Control::of_new_call()]);
         self.engine.run(&recording, &[])?;
-        self.sweeps = self.settings.sweeps;
+        (self.stop, self.row_count, self.polishes) = (call.stop, 0, false);
         self.lengths.growth = self.grid.length(call.growth).min(f32::MAX);
-        self.search()
-    }
-
-    /// Finds the candidates at the present positions.
-    fn search(&mut self) -> Result<(), CollisionError> {
-        (self.all_new, self.again) = (true, false);
-        loop {
-            let mut recording = Recording::default();
-            self.record_start(&mut recording);
-            recording.write(self.buffers.paths, &vec![[0.0f32; 4]; self.sizes.vertices]);
-            self.record_cover(&mut recording);
-            self.record_search(&mut recording);
-            let control = self.run(&recording)?;
-            if control.overflow == 0 {
-                (self.all_new, self.again) = (false, false);
-                return Ok(());
-            }
-            self.grow(&control)?;
-        }
-    }
-
-    fn run(&mut self, recording: &Recording) -> Result<Control, GpuError> {
-        let read = [(self.buffers.control, words::<Control>(1))];
-        let words = self.engine.run(recording, &read)?.swap_remove(0);
-        Ok(bytemuck::cast_slice(&words)[0])
-    }
-
-    /// Moves the vertices toward their target as far as all candidate pairs allow.
-    ///
-    /// # Errors
-    /// The device failed, or has no memory for all candidates.
-    pub fn step(&mut self) -> Result<StepReport, CollisionError> {
-        self.buffers.make_room_for_old(&mut self.engine)?;
-        loop {
-            let mut recording = Recording::default();
-            self.record_step(&mut recording);
-            let control = self.run(&recording)?;
-            if control.overflow == 0 {
-                (self.all_new, self.again) = (false, false);
-                let report = self.report(&control);
-                self.sweeps = self.settings.sweeps_after(&report);
-                return Ok(report);
-            }
-            self.grow(&control)?;
-        }
+        (self.fresh, self.again, self.steps_in_a_row) = (true, false, 0);
+        Ok(())
     }
 
     /// What runs the stages.
@@ -448,9 +445,12 @@ impl<E: Engine> Collision<E> {
     fn points<const N: usize>(&mut self, buffers: [BufferId; N]) -> Result<[Vec<Point>; N], CollisionError> {
         let read = buffers.map(|buffer| (buffer, 4 * self.sizes.vertices));
         let words = self.engine.run(&Recording::default(), &read)?;
+        Ok(std::array::from_fn(|k| self.points_of(&words[k])))
+    }
+
+    fn points_of(&self, words: &[u32]) -> Vec<Point> {
         let position = |&[x, y, z, _]: &[i32; 4]| self.grid.position([x, y, z]);
-        let points = |k: usize| bytemuck::cast_slice(&words[k]).iter().map(position).collect();
-        Ok(std::array::from_fn(points))
+        bytemuck::cast_slice(words).iter().map(position).collect()
     }
 
     /// The positions, and where the last step wanted to go [m].
@@ -462,34 +462,35 @@ impl<E: Engine> Collision<E> {
         Ok((positions, aims))
     }
 
-    /// The contact rows of the last step.
+    /// How the call ends after the steps so far.
     ///
     /// # Errors
     /// The device failed.
-    pub fn contact_rows(&mut self) -> Result<Vec<ContactRow>, CollisionError> {
-        let read = [(self.buffers.control, words::<Control>(1))];
-        let control = self.engine.run(&Recording::default(), &read)?.swap_remove(0);
-        let count = bytemuck::cast_slice::<u32, Control>(&control)[0].rows as usize;
+    pub fn end(&mut self) -> Result<End, CollisionError> {
+        let vertices = 4 * self.sizes.vertices;
         let read = [
-            (self.buffers.rows.rows, words::<Row>(count)),
-            (self.buffers.candidates, words::<Candidate>(self.buffers.capacity)),
+            (self.buffers.positions, vertices),
+            (self.buffers.aims, vertices),
+            (self.buffers.rows.rows, words::<Row>(self.row_count)),
+            (self.buffers.rows.pairs, words::<Candidate>(self.row_count)),
         ];
         let all = self.engine.run(&Recording::default(), &read)?;
-        let (rows, candidates): (&[Row], &[Candidate]) =
-            (bytemuck::cast_slice(&all[0]), bytemuck::cast_slice(&all[1]));
+        let [positions, aims] = [0, 1].map(|k| self.points_of(&all[k]));
+        let (rows, pairs): (&[Row], &[Candidate]) =
+            (bytemuck::cast_slice(&all[2]), bytemuck::cast_slice(&all[3]));
         let quantum = self.grid.quantum();
         let vector = |v: [f32; 3]| Vector::from(v.map(f64::from)) * quantum;
-        let row = |row: &Row| ContactRow {
-            candidate: candidates[row.candidate as usize],
+        let row = |(row, pair): (&Row, &Candidate)| ContactRow {
+            candidate: *pair,
             multiplier: f64::from(row.multiplier) * quantum,
             friction: vector(row.friction),
             slip: vector(row.slip),
             coefficient: f64::from(row.coefficient),
         };
-        Ok(rows.iter().map(row).collect())
+        Ok(End { positions, aims, rows: rows.iter().zip(pairs).map(row).collect() })
     }
 
-    /// The candidates of the last step, sorted.
+    /// The candidates of the last step or of [`Self::search`], sorted.
     ///
     /// # Errors
     /// The device failed.
@@ -504,30 +505,6 @@ impl<E: Engine> Collision<E> {
         let mut candidates = candidates[..control.candidates as usize].to_vec();
         candidates.sort_unstable();
         Ok(candidates)
-    }
-
-    /// Makes room for what did not fit. What is read afterwards is written anew, as all trust regions are new.
-    fn grow(&mut self, control: &Control) -> Result<(), GpuError> {
-        (self.all_new, self.again) = (true, true);
-        self.buffers.grow(&mut self.engine, &self.sizes, control)
-    }
-
-    fn report(&self, control: &Control) -> StepReport {
-        let length = |bits: u32| f64::from(f32::from_bits(bits)) * self.grid.quantum();
-        StepReport {
-            candidates: control.candidates as usize,
-            searched: control.changed != 0,
-            frozen: control.frozen as usize,
-            remaining: length(control.remaining),
-            unhindered: length(control.unhindered),
-            unhindered_lag: length(control.unhindered_lag),
-            largest_move: length(control.largest_move),
-            contact_rows: control.rows as usize,
-            pressing: control.pressing as usize,
-            net_residual: length(control.net_residual),
-            mean_residual: length(control.mean_residual),
-            stretch_to_limit: f64::from(f32::from_bits(control.stretch_to_limit)),
-        }
     }
 }
 

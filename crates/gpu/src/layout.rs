@@ -213,17 +213,37 @@ pub struct Row {
     pub padding: u32,
 }
 
-/// The largest length of an edge, in the order of the colors of the edges.
+/// Successive edges that a workgroup sweeps in its own memory.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub struct EdgeCluster {
+    /// Its vertices that move, in a list of those of all clusters.
+    pub first_vertex: u32,
+    pub vertices: u32,
+    pub first_edge: u32,
+    /// Its colors, in a list of those of all clusters.
+    pub first_color: u32,
+    pub colors: u32,
+}
+
+/// The largest length of an edge, in the order of the clusters and of their colors.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct EdgeLimit {
     pub a: u32,
     pub b: u32,
     pub limit: f32,
-    pub padding: u32,
+    /// Places of a (lower half) and b in the list of vertices of the cluster; [`EdgeLimit::FIXED`] for a vertex that
+    /// does not move.
+    pub places: u32,
     /// Multiplier: the force that pulls a toward b, times -1 on a.
     pub multiplier: [f32; 3],
     pub padding_1: u32,
+}
+
+impl EdgeLimit {
+    /// The place of a vertex that does not move.
+    pub const FIXED: u32 = 0xffff;
 }
 
 /// The candidates of a row before the present search.
@@ -297,13 +317,14 @@ pub struct Control {
     pub most_partners: u32,
     /// Pairs that nothing certifies, and whose vertices wanted to move.
     pub frozen: u32,
-    /// Bits of the largest remaining distance of a vertex, of a prescribed vertex that no pair holds back, of the
-    /// largest remaining fraction, and of the longest move. They are `f32` of at least 0, so their bits are ordered
-    /// as they are.
-    pub remaining: u32,
+    /// Bits of the largest remaining distance of a vertex that is not prescribed, of a prescribed one that no pair
+    /// holds back, of any prescribed one, and of the longest move of any vertex and of one that is not prescribed. They
+    /// are `f32` of at least 0, so their bits are ordered as they are.
+    pub free_remaining: u32,
     pub unhindered_lag: u32,
-    pub remaining_fraction: u32,
+    pub lag: u32,
     pub largest_move: u32,
+    pub free_move: u32,
     /// Contact rows that have no color yet.
     pub waiting: u32,
     /// Bits of the largest remaining distance of a vertex that no pair holds back, of the largest net residual of a body,
@@ -318,9 +339,32 @@ pub struct Control {
     pub candidates: u32,
     /// Number of contact rows.
     pub rows: u32,
+    /// 1 if the steps that a submission still has are not made: the call may end, or a buffer was too small, or the
+    /// next step makes another number of sweeps; [`Control::HALTED_BY_SEARCH`].
+    pub halted: u32,
+    /// Steps made by a submission.
+    pub steps: u32,
+    /// Bits of the mean residual after the last step of the call that met all other conditions of the rule
+    /// ([`crate::Stop`]).
+    pub last_mean_residual: u32,
+    /// Steps that the call has made beyond the rule.
+    pub finishing_steps: u32,
 }
 
 impl Control {
     /// Words that a step begins with as zeros: all before the number of candidates.
-    pub const RESET_WORDS: usize = 14;
+    pub const RESET_WORDS: usize = 15;
+
+    /// A buffer was too small for the search at the start of a call.
+    pub const HALTED_BY_SEARCH: u32 = 2;
+
+    /// At the start of a call, without candidates: nothing is inherited from the call before.
+    pub fn of_new_call() -> Self {
+        Self { last_mean_residual: f32::MAX.to_bits(), ..Self::default() }
+    }
+
+    /// Bits of the largest remaining distance of any vertex.
+    pub fn remaining(&self) -> u32 {
+        self.free_remaining.max(self.lag)
+    }
 }

@@ -32,7 +32,7 @@ pub use bowknot_dynamics as dynamics;
 pub use bowknot_geometry as geometry;
 
 pub use adapter::Adapter;
-pub use collision::{Call, Collision, CollisionError, ContactRow, Settings, StepReport};
+pub use collision::{Call, Collision, CollisionError, ContactRow, End, Settings, StepReport, Stop};
 pub use engine::{ComparingEngine, DeviceEngine, Difference, Engine, Profile, StageTime, TwinEngine};
 pub use error::GpuError;
 pub use grid::{Grid, GridError, GridPoint};

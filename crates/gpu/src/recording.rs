@@ -16,6 +16,9 @@ pub(crate) enum Command {
     Dispatch(Dispatch),
 }
 
+/// Most workgroups of a dispatch, which every device runs.
+pub(crate) const MAX_WORKGROUPS: usize = 65535;
+
 /// A run of a stage.
 #[derive(Clone, Debug)]
 pub(crate) struct Dispatch {
@@ -26,6 +29,16 @@ pub(crate) struct Dispatch {
     pub params: Vec<u32>,
     /// Number of threads that have work.
     pub threads: usize,
+    /// Where its number of workgroups is if a stage may take it away: a buffer with three words per dispatch, and the
+    /// place in it.
+    pub arguments: Option<(BufferId, usize)>,
+}
+
+impl Dispatch {
+    /// Workgroups for all threads. Kernels go on with strides, so any number of workgroups does all of the work.
+    pub fn workgroups(&self) -> usize {
+        self.threads.div_ceil(self.stage.workgroup).min(MAX_WORKGROUPS)
+    }
 }
 
 /// A list of commands, which run in order: each sees all that those before it have written.
@@ -57,7 +70,40 @@ impl Recording {
                 buffers: buffers.to_vec(),
                 params,
                 threads,
+                arguments: None,
             }));
+        }
+    }
+
+    /// Adds what another recording does, if a stage before it leaves it: the numbers of workgroups of its dispatches
+    /// are in `arguments` when they run, and a dispatch without workgroups does nothing. Dispatches that bind that
+    /// buffer themselves run in any case. Returns the number of dispatches with arguments so far, of which there were
+    /// `before`.
+    pub(crate) fn append_conditional(&mut self, other: &Self, arguments: BufferId, before: usize) -> usize {
+        let mut place = before;
+        for command in &other.commands {
+            let mut command = command.clone();
+            if let Command::Dispatch(dispatch) = &mut command
+                && !dispatch.buffers.contains(&arguments)
+            {
+                dispatch.arguments = Some((arguments, place));
+                place += 1;
+            }
+            self.commands.push(command);
+        }
+        place
+    }
+
+    /// Fills `arguments` at the start with the workgroups of all dispatches that have theirs there.
+    pub(crate) fn fill_arguments(&mut self, arguments: BufferId) {
+        let with_arguments = |command: &Command| match command {
+            Command::Dispatch(dispatch) if dispatch.arguments.is_some() => Some(dispatch.workgroups()),
+            _ => None,
+        };
+        let counts = self.commands.iter().filter_map(with_arguments);
+        let words: Vec<u32> = counts.flat_map(|count| [count as u32, 1, 1]).collect();
+        if !words.is_empty() {
+            self.commands.insert(0, Command::Write { buffer: arguments, words });
         }
     }
 

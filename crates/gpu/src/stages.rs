@@ -1,8 +1,9 @@
 //! The stages: each is a kernel in `shader/NAME.wgsl` and its twin in `cpu/NAME.rs`, with the same bindings in the same
 //! order.
 //!
-//! Binding 0 holds the parameters of a dispatch. Threads go on with strides, so that any number of workgroups does all
-//! of the work; only `count` and `total` depend on the size of a workgroup, for they scan.
+//! Binding 0 holds the parameters of a dispatch. Threads go on with strides, so that any number of workgroups up to
+//! [`recording::MAX_WORKGROUPS`](crate::recording::MAX_WORKGROUPS) does all of the work; only `count` and `total`
+//! depend on the size of a workgroup, for they scan.
 
 mod linear;
 mod stage;
@@ -18,6 +19,22 @@ const PAIR: &str = include_str!("../shader/shared/pair.wgsl");
 const FIXED: &str = include_str!("../shader/shared/fixed.wgsl");
 
 use Access::{Read, Write};
+
+pub(crate) static RESTART: Stage = Stage {
+    name: "restart",
+    parts: &[TYPES, include_str!("../shader/restart.wgsl")],
+    workgroup: 256,
+    bindings: &[Write, Write, Write],
+    twin: cpu::restart::bound,
+};
+
+pub(crate) static DECIDE: Stage = Stage {
+    name: "decide",
+    parts: &[TYPES, include_str!("../shader/decide.wgsl")],
+    workgroup: 256,
+    bindings: &[Write, Write, Write],
+    twin: cpu::decide::bound,
+};
 
 pub(crate) static CURVE_EDGES: Stage = Stage {
     name: "curve_edges",
@@ -39,7 +56,7 @@ pub(crate) static SWEEP_EDGES: Stage = Stage {
     name: "sweep_edges",
     parts: &[TYPES, include_str!("../shader/sweep_edges.wgsl")],
     workgroup: 256,
-    bindings: &[Read, Write, Write],
+    bindings: &[Read, Read, Read, Read, Write, Write],
     twin: cpu::sweep_edges::bound,
 };
 
@@ -103,7 +120,7 @@ pub(crate) static LIST: Stage = Stage {
     name: "list",
     parts: &[TYPES, include_str!("../shader/list.wgsl")],
     workgroup: 256,
-    bindings: &[Read, Read, Read, Write, Write],
+    bindings: &[Read, Read, Read, Read, Write, Write, Write],
     twin: cpu::list::bound,
 };
 
@@ -342,6 +359,8 @@ pub(crate) static STRETCH: Stage = Stage {
 /// All of them.
 #[cfg(test)]
 pub(crate) static ALL: &[&Stage] = &[
+    &RESTART,
+    &DECIDE,
     &RECALL,
     &FACING,
     &PICK,

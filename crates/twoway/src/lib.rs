@@ -81,7 +81,7 @@ pub use stages::{AheadVisitor, BackwardStep, Coverage, ForwardStep, Search};
 pub use stall::StallDetector;
 pub use state::{ContactSet, ResolveState};
 pub use statistics::{Skipped, StageSeconds, Statistics};
-pub use stop::{Residuals, StopParams, StopRule, StopTest};
+pub use stop::{Residuals, StopParams, StopRule, StopTest, TravelLimits};
 pub use stretch::max_stretch;
 pub use waits::{Wait, WaitPair, WaitReason};
 

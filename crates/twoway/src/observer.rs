@@ -25,12 +25,27 @@ pub trait Observer {
     /// Called after [`Self::accepted`], with what tells why the vertices that have farthest to go wait. Telling
     /// takes about as long as the forward step, and only if it is asked for.
     fn waiting(&mut self, _tell: &dyn Fn() -> Vec<Wait>) {}
+
+    /// Whether [`Self::accepted`] must see each state. If not, a backend may make several steps at once and call
+    /// [`Self::advanced`] in its place.
+    fn sees_each_state(&self) -> bool {
+        true
+    }
+
+    /// Called after so many steps whose states were not shown; `Break` ends the call with the state after them.
+    fn advanced(&mut self, _steps: usize) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
 }
 
 /// Observes nothing.
 impl Observer for () {
     fn accepted(&mut self, _: &AcceptedState<'_>) -> ControlFlow<()> {
         ControlFlow::Continue(())
+    }
+
+    fn sees_each_state(&self) -> bool {
+        false
     }
 }
 

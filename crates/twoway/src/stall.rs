@@ -28,6 +28,11 @@ impl StallDetector {
         Self { edge, tolerance, smallest_lag: None, steps_without_progress: 0 }
     }
 
+    /// The number of steps that the call can make before it may stall after the last of them.
+    pub fn steps_left(&self) -> usize {
+        Self::MAX_STEPS_WITHOUT_PROGRESS - self.steps_without_progress
+    }
+
     /// Whether the call stalls, as of the state after a step. `lag` is the largest distance of a prescribed
     /// vertex to its keyframe [m], `remaining` that of a free vertex to where the step wanted to go [m]. A
     /// stage may move prescribed vertices to their keyframes by way of other positions, so where the step

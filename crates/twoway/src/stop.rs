@@ -138,6 +138,36 @@ impl Parameters for StopParams {
     }
 }
 
+/// What [`StopRule::Travel`] compares with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TravelLimits {
+    /// The remaining distances of all vertices are below this [m].
+    pub remaining: f64,
+    /// Those of vertices that no pair holds back are below this [m].
+    pub unhindered: f64,
+    /// The net residuals are below this [m].
+    pub net_residual: f64,
+    /// The largest mean residual is below this [m], or the last step has not halved it.
+    pub mean_residual: f64,
+    /// Largest ratio of an edge's length to its limit [1].
+    pub stretch_to_limit: f64,
+    /// Most steps beyond the rule, made while vertices have some way to go and no contact presses.
+    pub finishing_steps: usize,
+}
+
+impl TravelLimits {
+    fn new(params: &StopParams, edge: f64, net_residual: f64, residual: Option<f64>) -> Self {
+        Self {
+            remaining: params.distance * edge,
+            unhindered: UNHINDERED * edge,
+            net_residual: net_residual * edge,
+            mean_residual: residual.unwrap_or(DEFAULT_RESIDUAL) * edge,
+            stretch_to_limit: 1.0 + params.stretch_tolerance,
+            finishing_steps: MAX_FINISHING_STEPS,
+        }
+    }
+}
+
 /// Decides during a call whether it ends.
 #[derive(Debug)]
 pub struct StopTest {
@@ -187,22 +217,32 @@ impl StopTest {
         match params.rule {
             StopRule::Clock { remaining_fraction } => report.remaining_fraction < remaining_fraction,
             StopRule::Travel { net_residual, residual } => {
-                let has_arrived = report.remaining < params.distance * edge
-                    && report.unhindered < UNHINDERED * edge
+                let limits = TravelLimits::new(params, edge, net_residual, residual);
+                let has_arrived = report.remaining < limits.remaining
+                    && report.unhindered < limits.unhindered
                     && report.unhindered_lag == 0.0;
                 if !has_arrived {
                     return false;
                 }
                 let now = residuals();
-                let balances = now.net_residual < net_residual * edge;
-                let limits_hold = now.stretch_to_limit <= 1.0 + params.stretch_tolerance;
+                let balances = now.net_residual < limits.net_residual;
+                let limits_hold = now.stretch_to_limit <= limits.stretch_to_limit;
                 if !(balances && limits_hold) {
                     return false;
                 }
                 let last = std::mem::replace(&mut self.mean_residual, now.mean_residual);
-                now.mean_residual < residual.unwrap_or(DEFAULT_RESIDUAL) * edge
-                    || now.mean_residual > 0.5 * last
+                now.mean_residual < limits.mean_residual || now.mean_residual > 0.5 * last
             }
+        }
+    }
+
+    /// What the rule [`StopRule::Travel`] compares with, for a backend that decides by itself; none with another rule.
+    pub fn travel_limits(&self) -> Option<TravelLimits> {
+        match self.params.rule {
+            StopRule::Travel { net_residual, residual } => {
+                Some(TravelLimits::new(&self.params, self.edge, net_residual, residual))
+            }
+            StopRule::Clock { .. } => None,
         }
     }
 

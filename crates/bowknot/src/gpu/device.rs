@@ -5,7 +5,7 @@ use super::setup;
 use crate::simulator::{BackendError, CollisionBackend};
 use bowknot_check::{Judge, StateOptions};
 use bowknot_geometry::{PairKind, Point};
-use bowknot_gpu::{Call, Collision, ContactRow, Engine, Grid, Kind, StepReport};
+use bowknot_gpu::{Call, Collision, ContactRow, End, Engine, Grid, Kind, StepReport, Stop};
 use bowknot_twoway::{
     AcceptedState, CallEnd, CallInput, CollisionScene, Observer, PairMultipliers, Residuals, ResolveInput,
     Resolver, StallDetector, Statistics, StopTest, max_stretch,
@@ -46,7 +46,12 @@ pub struct Device<E> {
     /// Positions that the scene begins with [m]: the grid and the trees are made from them, so that a run that is
     /// resumed has the same.
     home: Vec<Point>,
+    /// Most steps that are submitted together.
+    steps_per_submission: usize,
 }
+
+/// Default of [`Device::set_steps_per_submission`].
+const STEPS_PER_SUBMISSION: usize = 8;
 
 /// A scene on the device.
 #[derive(Debug)]
@@ -68,7 +73,19 @@ struct CallConstraints {
 impl<E: Engine + Debug + Send> Device<E> {
     /// Resolves on that engine, whose name goes to `summary.json`.
     pub fn new(name: String, engine: E) -> Self {
-        Self { name, engine: Some(engine), prepared: None, home: Vec::new() }
+        Self {
+            name,
+            engine: Some(engine),
+            prepared: None,
+            home: Vec::new(),
+            steps_per_submission: STEPS_PER_SUBMISSION,
+        }
+    }
+
+    /// Submits at most `most` two-way steps together, 8 if this is not called. States are the same bits for any number.
+    /// With an observer that sees each state it is 1.
+    pub fn set_steps_per_submission(&mut self, most: usize) {
+        self.steps_per_submission = most.max(1);
     }
 
     /// What runs the stages; none before a scene is prepared.
@@ -127,6 +144,7 @@ impl<E: Engine + Debug + Send> Device<E> {
         observer: &mut dyn Observer,
     ) -> Result<Statistics, GpuResolveError> {
         let timer = Instant::now();
+        let steps_per_submission = self.steps_per_submission;
         let scene = resolver.scene();
         let call = CallInput::new(scene, positions, target, input)?;
         let judge = Judge::from_model(scene.model());
@@ -138,30 +156,40 @@ impl<E: Engine + Debug + Send> Device<E> {
         let start = place(collision, positions, &judge)?;
         let speed = scene.lengths().separation_speed;
         let growth = input.time_step.map_or(f64::INFINITY, |dt| speed * dt);
-        collision.begin(&Call { target, growth, slip_start: call.slip_start() })?;
+        collision.begin(&Call { target, growth, slip_start: call.slip_start(), stop: rule(&stop) })?;
 
         let mut stall = StallDetector::new(edge, scene.arrival_distance());
         let mut statistics = Statistics::default();
-        let (mut end, mut aims) = (start.clone(), target.to_vec());
+        let sees_each_state = observer.sees_each_state();
+        let mut previous = start.clone();
         while stop.allows_step(statistics.steps) {
-            let report = collision.step()?;
-            let previous = end;
-            (end, aims) = collision.positions_and_aims()?;
-            let accepted =
-                AcceptedState { step: statistics.steps, previous: &previous, positions: &end, target: &aims };
-            let observed = observer.accepted(&accepted);
-            note(&mut statistics, &report);
-            statistics.converged = is_met(&mut stop, &report, statistics.steps);
-            let is_stalled = stall.update(
-                farthest(&call, true, target, &end),
-                || farthest(&call, false, &aims, &end),
-                || farthest(&call, false, &previous, &end),
-            );
+            let most = if sees_each_state { 1 } else { steps_per_submission };
+            // A stall can then end the call after the last of them alone.
+            let most = most.min(stall.steps_left()).min(stop.max_steps() - statistics.steps);
+            let reports = collision.steps(most)?;
+            let observed = if sees_each_state {
+                let (positions, aims) = collision.positions_and_aims()?;
+                let step = statistics.steps;
+                let accepted =
+                    AcceptedState { step, previous: &previous, positions: &positions, target: &aims };
+                let observed = observer.accepted(&accepted);
+                previous = positions;
+                observed
+            } else {
+                observer.advanced(reports.len())
+            };
+            let mut is_stalled = false;
+            for report in &reports {
+                note(&mut statistics, report);
+                statistics.converged = is_met(&mut stop, report, statistics.steps);
+                is_stalled = stall.update(report.lag, || report.free_remaining, || report.free_move);
+            }
             let is_out_of_time = stop.is_out_of_time(timer.elapsed().as_secs_f64());
             if statistics.converged || observed.is_break() || is_out_of_time || is_stalled {
                 break;
             }
         }
+        let End { positions: end, aims, rows } = collision.end()?;
         let mut state = judge.check_state(&end, &StateOptions { limit: 1, distance: false })?;
         if let Some(first) = state.intersections.pop() {
             return Err(GpuResolveError::Intersects {
@@ -169,7 +197,6 @@ impl<E: Engine + Debug + Send> Device<E> {
                 first: Box::new(first),
             });
         }
-        let rows = collision.contact_rows()?;
         let quantum = collision.grid().quantum();
         note_friction(&mut statistics, &rows);
         [statistics.max_step_stretch, statistics.max_stretch] =
@@ -242,6 +269,18 @@ fn place<E: Engine>(
     Ok(start)
 }
 
+/// The rule as the device decides by it.
+fn rule(stop: &StopTest) -> Stop {
+    stop.travel_limits().map_or(Stop::NEVER, |limits| Stop {
+        distance: limits.remaining,
+        unhindered: limits.unhindered,
+        net_residual: limits.net_residual,
+        mean_residual: limits.mean_residual,
+        stretch_to_limit: limits.stretch_to_limit,
+        finishing_steps: limits.finishing_steps,
+    })
+}
+
 /// Whether a call has converged after so many steps.
 fn is_met(stop: &mut StopTest, report: &StepReport, steps: usize) -> bool {
     let step = bowknot_stepper::StepReport {
@@ -257,12 +296,6 @@ fn is_met(stop: &mut StopTest, report: &StepReport, steps: usize) -> bool {
         stretch_to_limit: report.stretch_to_limit,
     };
     stop.is_met(&step, residuals) && !stop.takes_finishing_step(&step, steps, || report.pressing == 0)
-}
-
-/// Largest distance of a vertex to its place in `ends` [m], of those that are prescribed or of the others.
-fn farthest(call: &CallInput, prescribed: bool, ends: &[Point], x: &[Point]) -> f64 {
-    let vertices = (0..x.len()).filter(|&v| call.is_prescribed(v) == prescribed);
-    vertices.map(|v| (ends[v] - x[v]).norm()).fold(0.0, f64::max)
 }
 
 fn note(statistics: &mut Statistics, report: &StepReport) {

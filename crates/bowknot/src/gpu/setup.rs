@@ -60,6 +60,7 @@ pub fn collision<E: Engine>(
     let backward = &params.solver.backward;
     let settings = Settings {
         sweeps: backward.sweeps,
+        cluster_sweeps: Settings::default().cluster_sweeps,
         polish_sweeps: backward.polish_sweeps,
         polish_distance: backward.polish_distance * scene.lengths().edge,
         polish_stretch: 1.0 + 0.5 * params.solver.stop.stretch_tolerance,

@@ -259,8 +259,19 @@ impl SimulationObserver for RunObserver<'_, '_> {
             Ok(())
         };
         let result = handle();
-        match self.reporter.accepted(accepted) {
+        match self.reporter.advanced(1) {
             ControlFlow::Continue(()) => self.go_on(result),
+            stop => stop,
+        }
+    }
+
+    fn sees_each_state(&self) -> bool {
+        self.trace || self.checker.is_some()
+    }
+
+    fn advanced(&mut self, steps: usize) -> ControlFlow<()> {
+        match self.reporter.advanced(steps) {
+            ControlFlow::Continue(()) => self.go_on(Ok(())),
             stop => stop,
         }
     }

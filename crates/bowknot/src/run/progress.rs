@@ -1,7 +1,7 @@
 //! Where a run is, between time steps and within slow ones.
 
 use super::checker::Checker;
-use crate::simulator::{AcceptedStep, StepStatistics, WaitingElements};
+use crate::simulator::{StepStatistics, WaitingElements};
 use bowknot_scene::world::{SceneInfo, World};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -93,9 +93,9 @@ impl<'a> Reporter<'a> {
         flow
     }
 
-    /// Counts a two-way step. Breaks if the caller has said so since the last one.
-    pub fn accepted(&mut self, _: &AcceptedStep<'_>) -> ControlFlow<()> {
-        self.two_way_steps += 1;
+    /// Counts two-way steps. Breaks if the caller has said so since the last ones.
+    pub fn advanced(&mut self, steps: usize) -> ControlFlow<()> {
+        self.two_way_steps += steps;
         self.flow
     }
 
@@ -128,7 +128,7 @@ impl<'a> Reporter<'a> {
 mod tests {
     use super::*;
     use crate::Scene;
-    use bowknot_twoway::{AcceptedState, WaitReason};
+    use bowknot_twoway::WaitReason;
     use std::cell::Cell;
 
     #[test]
@@ -154,25 +154,23 @@ mod tests {
                 reason: WaitReason::Planes,
             }]
         };
-        let state = AcceptedState { step: 0, previous: &[], positions: &[], target: &[] };
-        let accepted = AcceptedStep { step: 1, iteration: 0, state };
         let mut reporter = Reporter::new(&mut progress, 5, &world, &info);
         assert!(reporter.between_steps(4, None, None).is_continue());
         // Fast so far.
         for _ in 0..3 {
-            assert!(reporter.accepted(&accepted).is_continue());
+            assert!(reporter.advanced(1).is_continue());
             reporter.waiting(&tell, None);
         }
         assert_eq!(asked.get(), 0);
         reporter.slow = [Duration::ZERO, Duration::from_secs(1000)];
         for _ in 0..2 {
-            assert!(reporter.accepted(&accepted).is_continue());
+            assert!(reporter.advanced(1).is_continue());
             reporter.waiting(&tell, None);
         }
         assert_eq!(asked.get(), 1, "the second report is not due yet");
         reporter.slow[1] = Duration::ZERO;
         reporter.waiting(&tell, None);
-        assert!(reporter.accepted(&accepted).is_break(), "as the caller has answered");
+        assert!(reporter.advanced(1).is_break(), "as the caller has answered");
         assert_eq!(seen, [(4, None), (4, Some((4, 1))), (4, Some((5, 1)))]);
     }
 }

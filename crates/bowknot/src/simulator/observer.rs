@@ -72,6 +72,18 @@ pub trait SimulationObserver {
         let _ = tell;
     }
 
+    /// Whether [`Self::accepted`] must see each state. If not, a backend may make several two-way steps at once and
+    /// call [`Self::advanced`] in its place.
+    fn sees_each_state(&self) -> bool {
+        true
+    }
+
+    /// Called after so many two-way steps whose states were not shown; `Break` abandons the time step.
+    fn advanced(&mut self, steps: usize) -> ControlFlow<()> {
+        let _ = steps;
+        ControlFlow::Continue(())
+    }
+
     /// Called after the collision stage of each Newton iteration, with the residual of the whole time step.
     fn iterated(&mut self, iterated: &Iterated) {
         let _ = iterated;
@@ -79,7 +91,11 @@ pub trait SimulationObserver {
 }
 
 /// Observes nothing.
-impl SimulationObserver for () {}
+impl SimulationObserver for () {
+    fn sees_each_state(&self) -> bool {
+        false
+    }
+}
 
 /// Passes accepted states on, with their time step and iteration.
 pub(super) struct Relay<'a> {
@@ -98,6 +114,16 @@ impl Observer for Relay<'_> {
             iteration: self.iteration,
             state: *state,
         });
+        self.stopped |= flow.is_break();
+        flow
+    }
+
+    fn sees_each_state(&self) -> bool {
+        self.observer.sees_each_state()
+    }
+
+    fn advanced(&mut self, steps: usize) -> ControlFlow<()> {
+        let flow = self.observer.advanced(steps);
         self.stopped |= flow.is_break();
         flow
     }

@@ -2,6 +2,10 @@
 
 const NONE: u32 = 0xffffffffu;
 
+// Most workgroups of a dispatch. Loops go on by as many, of which there may be fewer: an indirect dispatch does not
+// know its own number on every interface.
+const MOST_WORKGROUPS: u32 = 65535u;
+
 struct Vertex {
     edge: f32,
     margin: f32,
@@ -93,11 +97,21 @@ struct Row {
 // Colors of rows; rows that get none of them are swept one by one.
 const COLORS: u32 = 128u;
 
+struct EdgeCluster {
+    first_vertex: u32,
+    vertices: u32,
+    first_edge: u32,
+    first_color: u32,
+    colors: u32,
+}
+
+const FIXED: u32 = 0xffffu;
+
 struct EdgeLimit {
     a: u32,
     b: u32,
     limit: f32,
-    padding: u32,
+    places: u32,
     multiplier: vec3<f32>,
     padding_1: u32,
 }
@@ -140,10 +154,11 @@ struct Control {
     overflow: atomic<u32>,
     most_partners: atomic<u32>,
     frozen: atomic<u32>,
-    remaining: atomic<u32>,
+    free_remaining: atomic<u32>,
     unhindered_lag: atomic<u32>,
-    remaining_fraction: atomic<u32>,
+    lag: atomic<u32>,
     largest_move: atomic<u32>,
+    free_move: atomic<u32>,
     waiting: atomic<u32>,
     unhindered: atomic<u32>,
     net_residual: atomic<u32>,
@@ -152,6 +167,10 @@ struct Control {
     pressing: atomic<u32>,
     candidates: atomic<u32>,
     rows: atomic<u32>,
+    halted: atomic<u32>,
+    steps: atomic<u32>,
+    last_mean_residual: atomic<u32>,
+    finishing_steps: atomic<u32>,
 }
 
 // Whether two elements, given by one vertex of each, may form a pair.

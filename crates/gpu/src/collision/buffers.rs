@@ -5,8 +5,8 @@ use crate::cpu::slack::MOST_BLOCKS;
 use crate::engine::Engine;
 use crate::error::GpuError;
 use crate::layout::{
-    Ball, Block, BlockSum, COLORS, Candidate, Control, EdgeLimit, OldRow, PairFriction, PairState, Plane,
-    Row, Separation, Vertex,
+    Ball, Block, BlockSum, COLORS, Candidate, Control, EdgeCluster, EdgeLimit, OldRow, PairFriction,
+    PairState, Plane, Row, Separation, Vertex,
 };
 use crate::recording::BufferId;
 use bytemuck::Pod;
@@ -29,6 +29,8 @@ pub struct Sizes {
     /// Pairs of sides with a coefficient of friction of their own.
     pub pair_frictions: usize,
     pub limits: usize,
+    /// Clusters of limited edges, their vertices and colors.
+    pub clusters: [usize; 3],
     /// Words of the adjacency.
     pub adjacency: usize,
     /// Blocks of vertices.
@@ -43,8 +45,9 @@ pub struct Buffers {
     /// Partners of an element that fit into a row, and candidates that fit into their list.
     pub most_partners: usize,
     pub capacity: usize,
-    /// Candidates of the time before a search for which there is room.
+    /// Candidates of the time before a search for which there is room, and rows.
     pub old_capacity: usize,
+    pub row_capacity: usize,
     pub positions: BufferId,
     pub targets: BufferId,
     /// Where the vertices were at the start of the time step, from where slip counts.
@@ -60,6 +63,9 @@ pub struct Buffers {
     pub group_alphas: BufferId,
     pub balls: BufferId,
     pub control: BufferId,
+    /// What each step of a submission came to, and the workgroups of the dispatches of all but its first step.
+    pub reports: BufferId,
+    pub arguments: BufferId,
     pub partners: BufferId,
     pub starts: BufferId,
     pub blocks: BufferId,
@@ -74,6 +80,10 @@ pub struct Buffers {
     pub vertex_blocks: BufferId,
     pub block_sums: BufferId,
     pub limits: BufferId,
+    /// Clusters of limited edges, their vertices and the ends of their colors.
+    pub clusters: BufferId,
+    pub cluster_vertices: BufferId,
+    pub cluster_colors: BufferId,
     pub proximal: BufferId,
     pub displacements: BufferId,
     /// Displacement of the last step, and the factor on the proximal weight.
@@ -94,6 +104,8 @@ pub struct RowBuffers {
     pub starts: BufferId,
     pub blocks: BufferId,
     pub rows: BufferId,
+    /// The pair of each row.
+    pub pairs: BufferId,
     /// Rows in the order of their colors.
     pub order: BufferId,
     /// Colors in use at each vertex, rows that wait for a color, and the keys of the rows that hold each vertex.
@@ -113,11 +125,13 @@ impl Buffers {
     pub fn new(engine: &mut impl Engine, sizes: &Sizes) -> Result<Self, GpuError> {
         let &Sizes { vertices, groups, edges, triangles, planes, limits, adjacency, blocks, rows, .. } =
             sizes;
+        let [clusters, cluster_vertices, cluster_colors] = sizes.clusters;
         let (most_partners, capacity) = (FIRST_PARTNERS, (FIRST_CANDIDATES * vertices).max(64));
         Ok(Self {
             most_partners,
             capacity,
             old_capacity: capacity,
+            row_capacity: capacity,
             positions: engine.buffer("positions", 4 * vertices)?,
             rest: engine.buffer("rest positions", 4 * vertices)?,
             targets: engine.buffer("targets", 4 * vertices)?,
@@ -134,6 +148,8 @@ impl Buffers {
             group_alphas: engine.buffer("group step sizes", groups)?,
             balls: engine.buffer("trust regions", words::<Ball>(vertices))?,
             control: engine.buffer("control", words::<Control>(1))?,
+            reports: engine.buffer("reports", words::<Control>(1))?,
+            arguments: engine.buffer("arguments", 0)?,
             partners: engine.buffer("partners", rows * (ROW_HEADER + most_partners))?,
             starts: engine.buffer("starts", rows)?,
             blocks: engine.buffer("blocks", rows.div_ceil(BLOCK))?,
@@ -147,6 +163,9 @@ impl Buffers {
             vertex_blocks: engine.buffer("blocks of vertices", words::<Block>(blocks))?,
             block_sums: engine.buffer("sums of blocks", words::<BlockSum>(blocks))?,
             limits: engine.buffer("edge limits", words::<EdgeLimit>(limits))?,
+            clusters: engine.buffer("clusters of edges", words::<EdgeCluster>(clusters))?,
+            cluster_vertices: engine.buffer("vertices of clusters", cluster_vertices)?,
+            cluster_colors: engine.buffer("colors of clusters", cluster_colors)?,
             proximal: engine.buffer("proximal weights", vertices)?,
             swings: engine.buffer("swings", 4 * vertices)?,
             displacements: engine.buffer("displacements", 4 * vertices)?,
@@ -157,7 +176,8 @@ impl Buffers {
         })
     }
 
-    /// Makes room for as many partners and candidates as `control` tells. What was there is lost.
+    /// Makes room for as many partners and candidates as `control` tells, what was there is lost. The rows of the step
+    /// stay, and what was kept from before the search.
     ///
     /// # Errors
     /// The device has no memory.
@@ -178,22 +198,48 @@ impl Buffers {
             for old in [self.candidates, self.separations, self.states] {
                 engine.free(old);
             }
-            self.rows.free(engine);
             self.capacity = capacity;
             self.candidates = engine.buffer("candidates", words::<Candidate>(capacity))?;
             self.separations = engine.buffer("separations", words::<Separation>(capacity))?;
             self.states = engine.buffer("states of pairs", words::<PairState>(capacity))?;
-            self.rows = RowBuffers::new(engine, sizes.vertices, capacity)?;
         }
         tracing::debug!(partners, candidates, "buffers grew");
         Ok(())
     }
 
-    /// Makes room to keep all present candidates.
+    /// Makes room for submissions of so many steps, in which `dispatches` can be left out.
     ///
     /// # Errors
     /// The device has no memory.
-    pub fn make_room_for_old(&mut self, engine: &mut impl Engine) -> Result<(), GpuError> {
+    pub fn make_room_for_steps(
+        &mut self,
+        engine: &mut impl Engine,
+        steps: usize,
+        dispatches: usize,
+    ) -> Result<(), GpuError> {
+        for (buffer, label, words) in [
+            (&mut self.reports, "reports", words::<Control>(steps)),
+            (&mut self.arguments, "arguments", 3 * dispatches),
+        ] {
+            if engine.words(*buffer) < words {
+                engine.free(*buffer);
+                *buffer = engine.buffer(label, words)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes room for a step that is not made again: for rows of all present candidates, and to keep these. The rows of
+    /// the last step are lost if there was too little.
+    ///
+    /// # Errors
+    /// The device has no memory.
+    pub fn make_room_for_step(&mut self, engine: &mut impl Engine, sizes: &Sizes) -> Result<(), GpuError> {
+        if self.row_capacity < self.capacity {
+            self.rows.free(engine);
+            self.row_capacity = self.capacity;
+            self.rows = RowBuffers::new(engine, sizes.vertices, self.capacity)?;
+        }
         if self.old_capacity < self.capacity {
             engine.free(self.old_elements);
             engine.free(self.old_states);
@@ -212,6 +258,7 @@ impl RowBuffers {
             starts: engine.buffer("starts of rows", capacity)?,
             blocks: engine.buffer("blocks of rows", capacity.div_ceil(BLOCK))?,
             rows: engine.buffer("contact rows", words::<Row>(capacity))?,
+            pairs: engine.buffer("pairs of rows", words::<Candidate>(capacity))?,
             order: engine.buffer("order of rows", capacity)?,
             colors_in_use: engine.buffer("colors in use", 4 * vertices)?,
             waiting: engine.buffer("rows without a color", 2 * capacity)?,
@@ -222,10 +269,11 @@ impl RowBuffers {
     }
 
     fn free(&self, engine: &mut impl Engine) {
-        let Self { picked, starts, blocks, rows, order, colors_in_use, waiting, claims, tally, ends } = *self;
-        for buffer in [picked, starts, blocks, rows, order, colors_in_use, waiting, claims, tally, ends] {
-            engine.free(buffer);
-        }
+        let &Self { picked, starts, blocks, rows, pairs, order, colors_in_use, waiting, claims, tally, ends } =
+            self;
+        [picked, starts, blocks, rows, pairs, order, colors_in_use, waiting, claims, tally, ends]
+            .into_iter()
+            .for_each(|buffer| engine.free(buffer));
     }
 }
 

@@ -3,7 +3,7 @@
 use super::Collision;
 use crate::cpu;
 use crate::engine::Engine;
-use crate::layout::{Block, Control};
+use crate::layout::Block;
 use crate::recording::Recording;
 use crate::stages;
 
@@ -12,9 +12,10 @@ pub(super) const LONGEST_TRAVEL: f32 = 0.35;
 const SMALLEST_RADIUS: f32 = 0.1;
 
 impl<E: Engine> Collision<E> {
-    /// The dispatches of a step, in order.
-    pub(super) fn record_step(&self, recording: &mut Recording) {
-        self.record_start(recording);
+    /// The dispatches of a step, in order. `first`: it is the first one of its submission, of which so many dispatches
+    /// can be left out.
+    pub(super) fn record_step(&self, first: bool, dispatches: usize, recording: &mut Recording) {
+        self.record_restart(first, recording);
         // If the step is made again, the aims are known.
         if !self.again {
             self.record_rows(recording);
@@ -24,17 +25,48 @@ impl<E: Engine> Collision<E> {
         self.record_search(recording);
         self.record_geometry(true, recording);
         self.record_forward(recording);
+        self.record_decision(false, dispatches, recording);
+    }
+
+    /// The first search of a call, without a step. `dispatches` as for a step.
+    pub(super) fn record_first_search(&self, dispatches: usize, recording: &mut Recording) {
+        recording.write(self.buffers.paths, &vec![[0.0f32; 4]; self.sizes.vertices]);
+        self.record_restart(true, recording);
+        self.record_cover(recording);
+        self.record_search(recording);
+        self.record_decision(true, dispatches, recording);
+    }
+
+    /// Whether the submission goes on.
+    fn record_decision(&self, after_search: bool, dispatches: usize, recording: &mut Recording) {
+        let (b, settings) = (&self.buffers, &self.settings);
+        let polishing = (settings.polish_distance, settings.polish_stretch);
+        recording.dispatch(
+            &stages::DECIDE,
+            &[b.control, b.reports, b.arguments],
+            cpu::decide::Params {
+                polishes: u32::from(self.polishes),
+                after_search: u32::from(after_search),
+                dispatches: dispatches as u32,
+                ..self.stop.params(&self.grid, settings.has_polishing().then_some(polishing))
+            },
+            1,
+        );
     }
 
     /// Resets what the stages of a step add to.
-    pub(super) fn record_start(&self, recording: &mut Recording) {
-        let buffers = &self.buffers;
-        let ones = vec![1.0f32; self.sizes.groups];
-        recording.write(buffers.group_caps, &ones);
-        recording.write(buffers.group_alphas, &ones);
-        // A step that is made again has no backward step, which alone counts the rows that press.
-        let words = Control::RESET_WORDS - usize::from(self.again);
-        recording.write(buffers.control, &[0u32; Control::RESET_WORDS][..words]);
+    pub(super) fn record_restart(&self, first: bool, recording: &mut Recording) {
+        let (b, groups) = (&self.buffers, self.sizes.groups);
+        recording.dispatch(
+            &stages::RESTART,
+            &[b.group_caps, b.group_alphas, b.control],
+            cpu::restart::Params {
+                groups: groups as u32,
+                again: u32::from(self.again),
+                first: u32::from(first),
+            },
+            groups.max(1),
+        );
     }
 
     /// How far each vertex wants to go, and which trust regions do not cover it.
@@ -61,7 +93,7 @@ impl<E: Engine> Collision<E> {
         recording.dispatch(
             &stages::COVER,
             &[b.positions, b.paths, b.vertices, b.balls, b.control],
-            cpu::cover::Params { vertices, all: u32::from(self.all_new), smallest: SMALLEST_RADIUS },
+            cpu::cover::Params { vertices, all: u32::from(self.fresh), smallest: SMALLEST_RADIUS },
             self.sizes.vertices,
         );
     }

@@ -70,7 +70,7 @@ impl<E: Engine> Collision<E> {
         );
         recording.dispatch(
             &stages::LIST,
-            &[r.picked, r.starts, r.blocks, r.rows, b.control],
+            &[r.picked, r.starts, r.blocks, b.candidates, r.rows, r.pairs, b.control],
             cpu::list::Params { capacity },
             self.buffers.capacity,
         );
@@ -177,7 +177,8 @@ impl<E: Engine> Collision<E> {
         );
         self.record_colors(recording);
         // First the multipliers of the last step are applied.
-        for sweep in 0..=self.sweeps {
+        let settings = &self.settings;
+        for sweep in 0..=if self.polishes { settings.polish_sweeps } else { settings.sweeps } {
             let only_apply = u32::from(sweep == 0);
             if (1..=MAX_COARSE_CORRECTIONS).contains(&sweep) && self.settings.coarse_correction {
                 self.record_coarse_correction(recording);
@@ -188,12 +189,24 @@ impl<E: Engine> Collision<E> {
                 cpu::sweep_rows::Params { only_apply },
                 1,
             );
-            for color in self.edges.colors() {
+            for round in self.edges.rounds() {
                 recording.dispatch(
                     &stages::SWEEP_EDGES,
-                    &[b.positions, b.limits, b.displacements],
-                    cpu::sweep_edges::Params { first: color.start as u32, end: color.end as u32, only_apply },
-                    color.len(),
+                    &[
+                        b.positions,
+                        b.clusters,
+                        b.cluster_vertices,
+                        b.cluster_colors,
+                        b.limits,
+                        b.displacements,
+                    ],
+                    cpu::sweep_edges::Params {
+                        first: round.start as u32,
+                        end: round.end as u32,
+                        only_apply,
+                        sweeps: if sweep == 0 { 1 } else { self.settings.cluster_sweeps as u32 },
+                    },
+                    stages::SWEEP_EDGES.workgroup * round.len(),
                 );
             }
         }

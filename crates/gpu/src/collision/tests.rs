@@ -154,6 +154,7 @@ fn pairs_keep_their_states_while_they_are_candidates_and_buffers_grow() {
         assert!(kept > 100 && new > 10 && (grown > 0) == small, "{kept} {new} {grown}");
         // A new call begins without them.
         collision.begin(&Call::toward(&target)).unwrap();
+        collision.search().unwrap();
         assert!(states(&mut collision).values().all(|state| *state == PairState::NEW));
     }
 }
@@ -161,10 +162,9 @@ fn pairs_keep_their_states_while_they_are_candidates_and_buffers_grow() {
 /// Contact rows of the last step.
 fn rows(collision: &mut Collision<TwinEngine>) -> Vec<Row> {
     let b = collision.buffers;
-    let read = [(b.control, words::<Control>(1)), (b.rows.rows, words::<Row>(collision.buffers.capacity))];
+    let read = [(b.rows.rows, words::<Row>(collision.row_count))];
     let all = collision.engine.run(&Recording::default(), &read).unwrap();
-    let control: Control = bytemuck::cast_slice(&all[0])[0];
-    bytemuck::cast_slice(&all[1])[..control.rows as usize].to_vec()
+    bytemuck::cast_slice(&all[0]).to_vec()
 }
 
 #[test]
@@ -217,6 +217,159 @@ fn two_sheets_that_are_pressed_together_rest_at_the_desired_distance() {
     assert!(end[0].z > end[49].z, "{} {}", end[0], end[49]);
 }
 
+/// Two sheets that fall through each other, and come to rest: how many steps are submitted together makes no
+/// difference, though the device ends submissions, and buffers overflow in the middle of some.
+#[test]
+fn steps_that_are_submitted_together_have_the_same_bits() {
+    let (model, x) = sheets();
+    let target: Vec<Point> =
+        x.iter().map(|x| Point::new(x.x + if x.z == 0.0 { 0.04 } else { 0.0 }, x.y, 3e-3 - x.z)).collect();
+    let stop = Stop {
+        distance: EDGE,
+        unhindered: EDGE,
+        net_residual: EDGE,
+        mean_residual: 0.2 * EDGE,
+        stretch_to_limit: 1.0,
+        finishing_steps: 2,
+    };
+    let run = |most: usize| {
+        let mut collision = collision(&model, &x, &x, None);
+        // It submits as many as it may.
+        collision.expected_steps = [most; 2];
+        collision.begin(&Call { stop, ..Call::toward(&target) }).unwrap();
+        let (mut reports, mut halted, mut overflows) = (Vec::new(), 0, 0);
+        while reports.len() < 24 {
+            // With room for one more step or so.
+            collision.search().unwrap();
+            let capacity = states(&mut collision).len() + 200;
+            collision.buffers.capacity = capacity;
+            let wanted = most.min(24 - reports.len());
+            let made = collision.steps(wanted).unwrap();
+            let grew = collision.buffers.capacity > capacity;
+            halted += usize::from(!grew && made.len() < wanted);
+            overflows += usize::from(grew && made.len() > 1);
+            reports.extend(made);
+        }
+        let end = collision.end().unwrap();
+        assert_eq!(end.positions, collision.positions().unwrap());
+        (reports, end, [halted, overflows])
+    };
+    let (reports, end, _) = run(1);
+    for most in [3, 8] {
+        let (others, other_end, counts) = run(most);
+        assert_eq!(others, reports, "{most}");
+        assert_eq!(other_end, end, "{most}");
+        assert!(!end.rows.is_empty() && counts.iter().all(|count| *count > 0), "{most}: {counts:?}");
+    }
+}
+
+/// Room in buffers that grow, the same as is told to the kernels: they find no room beyond it.
+#[derive(Clone, Copy, Debug)]
+struct Room {
+    partners: usize,
+    candidates: usize,
+    old: usize,
+    rows: usize,
+}
+
+impl Room {
+    /// More than the sheets need.
+    const PLENTY: Self = Self { partners: 400, candidates: 40_000, old: 40_000, rows: 40_000 };
+
+    /// Makes buffers of that size, before anything is in them.
+    fn give(self, collision: &mut Collision<TwinEngine>) {
+        let Collision { engine, buffers: b, sizes, .. } = collision;
+        let mut replace = |buffer: &mut BufferId, words: usize| {
+            engine.free(*buffer);
+            *buffer = engine.buffer("of that size", words).unwrap();
+        };
+        (b.most_partners, b.capacity) = (self.partners, self.candidates);
+        (b.old_capacity, b.row_capacity) = (self.old, self.rows);
+        replace(&mut b.partners, sizes.rows * (super::buffers::ROW_HEADER + self.partners));
+        replace(&mut b.candidates, words::<Candidate>(self.candidates));
+        replace(&mut b.separations, words::<crate::layout::Separation>(self.candidates));
+        replace(&mut b.states, words::<PairState>(self.candidates));
+        replace(&mut b.old_elements, self.old);
+        replace(&mut b.old_states, words::<PairState>(self.old));
+        replace(&mut b.rows.picked, self.rows);
+        replace(&mut b.rows.starts, self.rows);
+        replace(&mut b.rows.blocks, self.rows.div_ceil(cpu::count::BLOCK));
+        replace(&mut b.rows.rows, words::<Row>(self.rows));
+        replace(&mut b.rows.pairs, words::<Candidate>(self.rows));
+        replace(&mut b.rows.order, self.rows);
+        replace(&mut b.rows.waiting, 2 * self.rows);
+    }
+
+    fn of(collision: &Collision<TwinEngine>) -> [usize; 4] {
+        let b = &collision.buffers;
+        [b.most_partners, b.capacity, b.old_capacity, b.row_capacity]
+    }
+}
+
+/// What two calls of eight steps came to.
+struct TwoCalls {
+    reports: Vec<StepReport>,
+    ends: [End; 2],
+    /// Which buffers grew, and how many steps were made again because of one.
+    grew: [bool; 4],
+    again: usize,
+    /// Partners and candidates that the first search has found.
+    first: [usize; 2],
+}
+
+fn two_calls(room: Room) -> TwoCalls {
+    let (model, x) = sheets();
+    let down: Vec<Point> = x.iter().map(|x| Point::new(x.x + 0.5 * EDGE, x.y, 3e-3 - x.z)).collect();
+    let up: Vec<Point> = x.iter().map(|x| x + Vector::new(0.1, 0.02, -0.03) * (1.0 + x.y)).collect();
+    let mut collision = collision(&model, &x, &x, None);
+    room.give(&mut collision);
+    let (mut reports, mut again, mut first) = (Vec::new(), 0, [0; 2]);
+    let ends = [down, up].map(|target| {
+        collision.begin(&Call::toward(&target)).unwrap();
+        collision.search().unwrap();
+        if reports.is_empty() {
+            let read = [(collision.buffers.control, words::<Control>(1))];
+            let control = collision.engine.run(&Recording::default(), &read).unwrap().swap_remove(0);
+            first = [2, 14].map(|word| control[word] as usize);
+        }
+        for _ in 0..8 {
+            let before = Room::of(&collision);
+            reports.extend(collision.steps(1).unwrap());
+            again += usize::from(Room::of(&collision)[..2] != before[..2]);
+        }
+        collision.end().unwrap()
+    });
+    let given = [room.partners, room.candidates, room.old, room.rows];
+    let now = Room::of(&collision);
+    TwoCalls { reports, ends, grew: [0, 1, 2, 3].map(|k| now[k] > given[k]), again, first }
+}
+
+#[test]
+fn buffers_that_are_too_small_change_no_bits() {
+    let plenty = Room::PLENTY;
+    let with_room = two_calls(plenty);
+    assert!((with_room.grew, with_room.again) == ([false; 4], 0) && !with_room.ends[0].rows.is_empty());
+    let agree = |room: Room| {
+        let calls = two_calls(room);
+        assert!(calls.reports == with_room.reports && calls.ends == with_room.ends, "{room:?}");
+        calls
+    };
+    for (room, buffers) in [
+        (Room { partners: 1, ..plenty }, [true, false, false, false]),
+        (Room { candidates: 64, ..plenty }, [false, true, false, false]),
+        (Room { old: 64, ..plenty }, [false, false, true, false]),
+        (Room { rows: 64, ..plenty }, [false, false, false, true]),
+        (Room { partners: 1, candidates: 64, old: 64, rows: 64 }, [true; 4]),
+    ] {
+        assert_eq!(agree(room).grew, buffers, "{room:?}");
+    }
+    // Just room for the first search: later ones find more.
+    let [partners, candidates] = with_room.first;
+    let few = agree(Room { candidates, old: candidates, rows: candidates, ..plenty });
+    let short = agree(Room { partners, ..plenty });
+    assert!(few.again > 0 && short.again > 0, "{} {}", few.again, short.again);
+}
+
 #[test]
 fn a_step_that_is_made_again_reports_what_presses() {
     let (model, x) = sheets();
@@ -225,6 +378,7 @@ fn a_step_that_is_made_again_reports_what_presses() {
         x.iter().map(|x| Point::new(x.x + if x.z == 0.0 { 0.04 } else { 0.0 }, x.y, 3e-3 - x.z)).collect();
     let mut collision = collision(&model, &x, &x, None);
     collision.begin(&Call::toward(&target)).unwrap();
+    collision.search().unwrap();
     let mut again = 0;
     for _ in 0..6 {
         // Without any room for more.
@@ -331,7 +485,9 @@ fn targets_are_polished_near_the_end_while_edges_are_too_long() {
         stretch_to_limit,
         ..StepReport::default()
     };
-    assert_eq!(settings.sweeps_after(&report(0.5 * EDGE, 1.02)), 64);
-    assert_eq!(settings.sweeps_after(&report(0.5 * EDGE, 1.0)), 8);
-    assert_eq!(settings.sweeps_after(&report(2.0 * EDGE, 1.02)), 8);
+    assert!(settings.polishes_after(&report(0.5 * EDGE, 1.02)));
+    assert!(!settings.polishes_after(&report(0.5 * EDGE, 1.0)));
+    assert!(!settings.polishes_after(&report(2.0 * EDGE, 1.02)));
+    let settings = Settings { polish_sweeps: 8, ..settings };
+    assert!(!settings.polishes_after(&report(0.5 * EDGE, 1.02)));
 }

@@ -47,8 +47,12 @@ pub fn advance(
         let displacement = difference(targets[v], position);
         let length = dot(displacement, displacement).sqrt();
         let left = (1.0 - alpha) * length;
-        control.remaining = control.remaining.max(left.to_bits());
-        control.remaining_fraction = control.remaining_fraction.max((1.0 - alpha).to_bits());
+        if vertex.flags & Vertex::PRESCRIBED != 0 {
+            control.lag = control.lag.max(left.to_bits());
+        } else {
+            control.free_remaining = control.free_remaining.max(left.to_bits());
+            control.free_move = control.free_move.max((alpha * length).to_bits());
+        }
         control.largest_move = control.largest_move.max((alpha * length).to_bits());
         if alpha >= paths[v][3] {
             control.unhindered = control.unhindered.max(left.to_bits());

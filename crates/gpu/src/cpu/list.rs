@@ -2,7 +2,7 @@
 
 use super::count::BLOCK;
 use crate::bound::Bound;
-use crate::layout::{Control, NONE, Row};
+use crate::layout::{Candidate, Control, NONE, Row};
 use bytemuck::{Pod, Zeroable};
 
 #[repr(C)]
@@ -17,8 +17,10 @@ pub fn bound(buffers: Bound<'_>) {
         &buffers.read(0),
         &buffers.read(1),
         &buffers.read(2),
-        &mut buffers.write(3),
-        &buffers.read::<Control>(4)[0],
+        &buffers.read(3),
+        &mut buffers.write(4),
+        &mut buffers.write(5),
+        &buffers.read::<Control>(6)[0],
     );
 }
 
@@ -27,12 +29,16 @@ pub fn list(
     picked: &[u32],
     starts: &[u32],
     blocks: &[u32],
+    candidates: &[Candidate],
     rows: &mut [Row],
+    pairs: &mut [Candidate],
     control: &Control,
 ) {
     for c in 0..params.capacity as usize {
         if picked[c] != 0 {
-            rows[(blocks[c / BLOCK] + starts[c]) as usize].candidate = c as u32;
+            let place = (blocks[c / BLOCK] + starts[c]) as usize;
+            rows[place].candidate = c as u32;
+            pairs[place] = candidates[c];
         }
         if c >= control.rows as usize {
             rows[c].candidate = NONE;

@@ -8,9 +8,6 @@ use crate::error::GpuError;
 use crate::recording::{BufferId, Command, Dispatch, Recording};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Most workgroups in one dimension that every device runs.
-const MAX_WORKGROUPS: usize = 65535;
-
 /// A device with its buffers and pipelines.
 #[derive(Debug)]
 pub struct DeviceEngine {
@@ -197,9 +194,12 @@ impl DeviceEngine {
             let (pipeline, group) = self.pipelines.of(dispatch);
             pass.set_pipeline(pipeline);
             pass.set_bind_group(0, group, &[(place * PARAMS_STRIDE) as u32]);
-            // Kernels go on with strides, so any number of workgroups does all of the work.
-            let workgroups = dispatch.threads.div_ceil(dispatch.stage.workgroup).min(MAX_WORKGROUPS);
-            pass.dispatch_workgroups(workgroups as u32, 1, 1);
+            match dispatch.arguments {
+                None => pass.dispatch_workgroups(dispatch.workgroups() as u32, 1, 1),
+                Some((arguments, place)) => {
+                    pass.dispatch_workgroups_indirect(self.buffer_of(arguments), 12 * place as u64);
+                }
+            }
         }
     }
 
@@ -239,7 +239,10 @@ impl Engine for DeviceEngine {
             return Err(out_of_memory());
         }
         let scope = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
+        let usage = wgpu::BufferUsages::STORAGE
+            | wgpu::BufferUsages::INDIRECT
+            | wgpu::BufferUsages::COPY_DST
+            | wgpu::BufferUsages::COPY_SRC;
         let descriptor =
             wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
         let buffer = self.device.create_buffer(&descriptor);

@@ -19,6 +19,9 @@ impl TwinEngine {
     }
 
     pub(super) fn dispatch(&self, dispatch: &Dispatch) {
+        if dispatch.arguments.is_some_and(|(buffer, place)| self.content(buffer)[3 * place] == 0) {
+            return;
+        }
         let buffers: Vec<&RefCell<Vec<u32>>> =
             dispatch.buffers.iter().map(|buffer| &self.buffers[buffer.0 as usize]).collect();
         (dispatch.stage.twin)(Bound::new(&buffers, &dispatch.params));

@@ -17,6 +17,11 @@ fn shaders_fit_their_stages() {
             .validate(&module)
             .unwrap_or_else(|error| panic!("{}: {}", stage.name, error.emit_to_string(&source)));
         assert_eq!(module.entry_points[0].name, "main");
+        let asks_for_workgroups =
+            module.entry_points[0].function.arguments.iter().any(|argument| {
+                argument.binding == Some(naga::Binding::BuiltIn(naga::BuiltIn::NumWorkGroups))
+            });
+        assert!(!asks_for_workgroups, "{}: an indirect dispatch does not know it everywhere", stage.name);
         assert_eq!(module.entry_points[0].workgroup_size, [stage.workgroup as u32, 1, 1], "{}", stage.name);
         assert!(stage.bindings.len() <= 8, "{}: no more storage buffers are portable", stage.name);
         let mut found = vec![None; stage.bindings.len() + 1];
@@ -91,7 +96,8 @@ fn structs_lie_alike_on_both_sides() {
         offsets!(layout::PairState: friction, multiplier, desired, min_separation, range, color),
         offsets!(layout::Row: vertices, weights, normal, value, inverse_diagonal, multiplier, candidate, color, slip, coefficient,
             friction, padding),
-        offsets!(layout::EdgeLimit: a, b, limit, padding, multiplier, padding_1),
+        offsets!(layout::EdgeLimit: a, b, limit, places, multiplier, padding_1),
+        offsets!(layout::EdgeCluster: first_vertex, vertices, first_edge, first_color, colors),
         offsets!(layout::OldRow: first, count),
         offsets!(layout::Block: first, count, body),
         offsets!(layout::Plane: normal, rounding, point, padding),
@@ -104,4 +110,5 @@ fn structs_lie_alike_on_both_sides() {
     let candidates = members.iter().find(|m| m.name.as_deref() == Some("candidates")).expect("a field");
     assert_eq!(candidates.offset as usize, 4 * layout::Control::RESET_WORDS);
     assert_eq!(std::mem::offset_of!(layout::Control, candidates), 4 * layout::Control::RESET_WORDS);
+    assert_eq!(members.len(), size_of::<layout::Control>() / 4);
 }

@@ -1,0 +1,165 @@
+//! Submissions of steps, and what they came to.
+
+use super::buffers::words;
+use super::{Collision, CollisionError, Settings, StepReport};
+use crate::engine::Engine;
+use crate::error::GpuError;
+use crate::layout::Control;
+use crate::recording::Recording;
+
+impl Settings {
+    /// Whether steps can polish.
+    pub(super) fn has_polishing(&self) -> bool {
+        self.polish_sweeps > self.sweeps
+    }
+
+    /// Whether the step after this one polishes.
+    pub(super) fn polishes_after(&self, report: &StepReport) -> bool {
+        let is_near = report.remaining < self.polish_distance;
+        self.has_polishing() && is_near && report.stretch_to_limit > self.polish_stretch
+    }
+}
+
+impl<E: Engine> Collision<E> {
+    /// Moves the vertices toward their target as far as all candidate pairs allow.
+    ///
+    /// # Errors
+    /// The device failed, or has no memory for all candidates.
+    pub fn step(&mut self) -> Result<StepReport, CollisionError> {
+        Ok(self.steps(1)?[0])
+    }
+
+    /// Makes up to `most` steps, at least one. The host submits them together and reads what they came to once; after
+    /// the end of the call ([`Call::stop`](super::Call::stop)) none is made. The states are the same bits for any
+    /// `most`.
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    pub fn steps(&mut self, most: usize) -> Result<Vec<StepReport>, CollisionError> {
+        let mut reports = Vec::with_capacity(most);
+        loop {
+            // A step is made again alone, since room for the following ones is made after it.
+            let left = if self.again && !self.fresh { 1 } else { most.max(1) - reports.len() };
+            let control = self.submit(left.min(self.expected()), &mut reports)?;
+            if control.overflow == 0 {
+                return Ok(reports);
+            }
+        }
+    }
+
+    /// Finds the candidates at the start of a call, if no step has done so.
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    pub fn search(&mut self) -> Result<(), CollisionError> {
+        while self.fresh {
+            self.submit(0, &mut Vec::new())?;
+        }
+        Ok(())
+    }
+
+    /// Number of steps that a submission is likely to make.
+    fn expected(&self) -> usize {
+        self.expected_steps[usize::from(self.polishes)]
+    }
+
+    /// Submits steps, after a search if the call begins. Adds the reports of those that were made, and makes room if
+    /// one was not because a buffer was too small.
+    fn submit(&mut self, steps: usize, reports: &mut Vec<StepReport>) -> Result<Control, CollisionError> {
+        if self.fresh || !self.again {
+            self.buffers.make_room_for_step(&mut self.engine, &self.sizes)?;
+        }
+        self.placed = None;
+        let recording = self.record_submission(steps)?;
+        let read =
+            [(self.buffers.control, words::<Control>(1)), (self.buffers.reports, words::<Control>(steps))];
+        let all = self.engine.run(&recording, &read)?;
+        let control = bytemuck::cast_slice::<u32, Control>(&all[0])[0];
+        let made = control.steps as usize;
+        reports.extend(bytemuck::cast_slice::<u32, Control>(&all[1])[..made].iter().map(|r| self.report(r)));
+        if control.overflow == 0 {
+            self.expect(made, control.halted != 0);
+        }
+        if control.halted != Control::HALTED_BY_SEARCH {
+            (self.fresh, self.again) = (false, false);
+        }
+        if control.overflow != 0 {
+            self.grow(&control)?;
+        }
+        if let Some(last) = reports.last() {
+            self.polishes = self.settings.polishes_after(last);
+            self.row_count = last.contact_rows;
+        }
+        Ok(control)
+    }
+
+    /// Notes how many steps a submission made, and whether it was halted then. As many steps are expected as there were
+    /// before the last halt, and from there on as many as there have been.
+    fn expect(&mut self, made: usize, halted: bool) {
+        self.steps_in_a_row += made;
+        self.expected_steps[usize::from(self.polishes)] = self.steps_in_a_row.max(1);
+        if halted {
+            self.steps_in_a_row = 0;
+        }
+    }
+
+    /// The search of a call that begins, and steps. The device leaves out those after the end of the call or after a
+    /// buffer that is too small.
+    fn record_submission(&mut self, steps: usize) -> Result<Recording, GpuError> {
+        let mut recording = Recording::default();
+        let conditional = if self.fresh { steps } else { steps.saturating_sub(1) };
+        let again = self.again;
+        let mut following = Recording::default();
+        let mut dispatches = 0;
+        if conditional > 0 {
+            (self.fresh, self.again) = (false, false);
+            self.buffers.make_room_for_steps(&mut self.engine, steps, 0)?;
+            self.record_step(false, 0, &mut following);
+            // One dispatch of a step decides, and is not left out.
+            dispatches = conditional * (following.dispatch_count() - 1);
+            self.buffers.make_room_for_steps(&mut self.engine, steps, dispatches)?;
+            following = Recording::default();
+            self.record_step(false, dispatches, &mut following);
+            (self.fresh, self.again) = (conditional == steps, again);
+        }
+        if self.fresh {
+            self.record_first_search(dispatches, &mut recording);
+        } else {
+            self.record_step(true, dispatches, &mut recording);
+        }
+        let arguments = self.buffers.arguments;
+        let place =
+            (0..conditional).fold(0, |place, _| recording.append_conditional(&following, arguments, place));
+        debug_assert_eq!(place, dispatches);
+        recording.fill_arguments(arguments);
+        Ok(recording)
+    }
+
+    /// Makes room for what did not fit. The step is made again with the trust regions that it has found, so that it has
+    /// the same bits as if there had been room.
+    fn grow(&mut self, control: &Control) -> Result<(), GpuError> {
+        self.again = true;
+        self.buffers.grow(&mut self.engine, &self.sizes, control)
+    }
+
+    fn report(&self, control: &Control) -> StepReport {
+        let length = |bits: u32| f64::from(f32::from_bits(bits)) * self.grid.quantum();
+        StepReport {
+            candidates: control.candidates as usize,
+            searched: control.changed != 0,
+            frozen: control.frozen as usize,
+            remaining: length(control.remaining()),
+            free_remaining: length(control.free_remaining),
+            lag: length(control.lag),
+            unhindered: length(control.unhindered),
+            unhindered_lag: length(control.unhindered_lag),
+            largest_move: length(control.largest_move),
+            free_move: length(control.free_move),
+            contact_rows: control.rows as usize,
+            pressing: control.pressing as usize,
+            net_residual: length(control.net_residual),
+            mean_residual: length(control.mean_residual),
+            stretch_to_limit: f64::from(f32::from_bits(control.stretch_to_limit)),
+        }
+    }
+}
