@@ -69,6 +69,9 @@ pub struct RunOptions {
     pub up: Option<Up>,
     #[command(flatten)]
     pub machine: Machine,
+    /// Where the linear solves of the dynamics are done; the rest of the dynamics runs on the CPU
+    #[arg(long, value_enum, default_value_t = LinearBackend::Cpu)]
+    pub linear_backend: LinearBackend,
     #[command(flatten)]
     pub method: Method,
     /// Formats of the frames, separated by commas [default: that of the scene, else ply]
@@ -325,7 +328,7 @@ pub struct Machine {
     /// Number of threads [default: all cores]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = threads)]
     pub threads: Option<usize>,
-    /// Where to compute
+    /// Where collisions are resolved
     #[arg(long, value_enum, default_value_t = Backend::Auto)]
     pub backend: Backend,
     /// Which GPU: its number in `bowknot info --gpus` [default: the first that is usable]
@@ -383,10 +386,18 @@ impl Up {
 pub enum Backend {
     /// The CPU
     Cpu,
-    /// A GPU: `resolve` only, without coarse corrections (docs/GPU.md)
+    /// A GPU (docs/GPU.md says what it does not have)
     Gpu,
     /// The one that can do all that is asked, at present the CPU
     Auto,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LinearBackend {
+    /// The CPU
+    Cpu,
+    /// A GPU, in single precision, refined on the CPU
+    Gpu,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -1,6 +1,6 @@
 //! `bowknot resolve`: resolves one recorded collision problem.
 
-use crate::args::ResolveOptions;
+use crate::args::{LinearBackend, ResolveOptions};
 use crate::exit::{Exit, Failure};
 use crate::interrupt::Interrupt;
 use crate::{failure_dump, gpu, output, setup, sizes};
@@ -22,6 +22,8 @@ const MAX_LISTED: usize = 5;
 struct Summary {
     steps: usize,
     searches: usize,
+    /// What resolved it: "cpu", or "gpu: " and the device.
+    backend: String,
     /// Wall time of the call.
     seconds: f64,
     /// Processor time of all threads during the call.
@@ -88,6 +90,7 @@ fn attempt(
     interrupt: &Interrupt,
     given: &mut Option<(States, Params)>,
 ) -> Result<Ended, Failure> {
+    setup::refuse_idle_device(&options.machine, LinearBackend::Cpu)?;
     setup::machine(&options.machine)?;
     let mut params = bowknot::scene::twoway_params(&options.method.assignments()).map_err(Failure::input)?;
     if options.max_seconds.is_some() {
@@ -148,6 +151,7 @@ fn attempt(
     let waits = statistics.prescribed_lag_m > 0.0;
     let waiting = if waits { (0..x.len()).filter(is_waiting).count() } else { 0 };
     let mut summary = summarize(&statistics, bowknot::simulator::cpu_seconds() - cpu, waiting);
+    summary.backend = backend.name();
     summary.intersections = options.check.then_some(intersections);
     write_result(&options.out, states, &x)?;
 
@@ -188,6 +192,7 @@ fn summarize(statistics: &Statistics, cpu_seconds: f64, prescribed_waiting: usiz
     Summary {
         steps: statistics.steps,
         searches: statistics.searches,
+        backend: String::new(),
         seconds: statistics.seconds.total,
         cpu_seconds,
         distance_to_target_m: statistics.distance_to_target_m,

@@ -1,7 +1,7 @@
 //! Collisions on a GPU: scenes as the CPU knows them, solved by `bowknot-gpu`.
 //!
-//! The device takes the same two-way steps and stops by the same rule. Its sweeps make no coarse corrections, so that it may
-//! take other steps than the CPU. Positions lie on a grid, see [`bowknot_gpu::Grid`].
+//! The device takes the same two-way steps and stops by the same rule. It sweeps rows in another order than the CPU, so that
+//! it may take other steps. Positions lie on a grid, see [`bowknot_gpu::Grid`].
 //!
 //! [`Device`] is a [backend](crate::simulator::CollisionBackend) of simulations; [`resolve_on`] solves a single problem.
 //! [`ConjugateGradients`] does the linear solves of the dynamics, which stay on the CPU otherwise

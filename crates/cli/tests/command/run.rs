@@ -107,6 +107,29 @@ fn a_run_on_a_gpu_goes_on_from_its_checkpoint_there_and_on_the_cpu() {
 }
 
 #[test]
+fn linear_solves_run_on_a_gpu_if_asked_and_say_so() {
+    let place = Place::new();
+    let run = |frames: u32, options: &str| {
+        let start = "--set body.0.velocity=[0,0,-4] --check --threads 1";
+        place.run(&format!("run drape --scale 0.2 --frames {frames} {start} {options}")).ok()
+    };
+    let on_gpu = |name: &serde_json::Value| name.as_str().unwrap().starts_with("gpu: ");
+    let summary = run(8, "--linear-backend gpu --backend gpu --json --out whole").json();
+    assert!(on_gpu(&summary["backend"]) && on_gpu(&summary["linear_backend"]), "{summary}");
+    assert!(summary["mean"]["cg_iterations"].as_f64().unwrap() > 0.0, "{summary}");
+    assert_eq!((&summary["mean"]["converged"], &summary["intersections"]), (&1.0.into(), &0.into()));
+    let ended = run(5, "--linear-backend gpu --backend gpu --out parts");
+    assert!(
+        ended.stderr.contains("collisions on gpu: ") && ended.stderr.contains(", linear solves on gpu: ")
+    );
+    run(8, "--linear-backend gpu --backend gpu --resume --out parts");
+    let bytes = |run: &str| std::fs::read(place.path(&format!("{run}/frames/000008.ply"))).unwrap();
+    assert_eq!(bytes("whole"), bytes("parts"));
+    let summary = run(3, "--linear-backend gpu --device 0 --json --out solves").json();
+    assert!(summary["backend"] == "cpu" && on_gpu(&summary["linear_backend"]), "{summary}");
+}
+
+#[test]
 fn formats_of_frames() {
     let place = Place::new();
     place.run(&format!("{SMALL} --format obj,npz --out run")).ok();

@@ -21,6 +21,8 @@ pub struct DeviceEngine {
     pipelines: Pipelines,
     /// The parameters of the dispatches of a recording.
     params: wgpu::Buffer,
+    /// Size of the largest buffer [bytes].
+    largest_buffer: u64,
     /// Where the times of the stages go, if they are measured.
     profile: Option<Profile>,
     /// What the driver reported since the last look: it does so from other threads.
@@ -55,8 +57,10 @@ impl DeviceEngine {
             note(&shared, Failure::Lost(message));
         });
         let params = params_buffer(&device, 64);
+        let limits = device.limits();
         Ok(Self {
             name,
+            largest_buffer: limits.max_buffer_size.min(limits.max_storage_buffer_binding_size),
             device,
             queue,
             buffers: Vec::new(),
@@ -80,6 +84,11 @@ impl DeviceEngine {
     /// Name of the adapter.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Refuses buffers of more than this many bytes, as a device of lower limits does: for tests of what happens then.
+    pub fn limit_buffers(&mut self, bytes: u64) {
+        self.largest_buffer = self.largest_buffer.min(bytes);
     }
 
     /// Ends the device as a reset or a removal would: for tests of what happens then.
@@ -232,11 +241,9 @@ impl DeviceEngine {
 impl Engine for DeviceEngine {
     fn buffer(&mut self, label: &'static str, words: usize) -> Result<BufferId, GpuError> {
         let size = 4 * words.max(SMALLEST_BUFFER) as u64;
-        let limits = self.device.limits();
-        let largest = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
-        let out_of_memory = || GpuError::OutOfMemory { adapter: self.name.clone(), what: label, bytes: size };
-        if size > largest {
-            return Err(out_of_memory());
+        if size > self.largest_buffer {
+            let (adapter, most) = (self.name.clone(), self.largest_buffer);
+            return Err(GpuError::TooLarge { adapter, what: label, bytes: size, most });
         }
         let scope = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
@@ -244,7 +251,7 @@ impl Engine for DeviceEngine {
             wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
         let buffer = self.device.create_buffer(&descriptor);
         if wait(scope.pop()).is_some() {
-            return Err(out_of_memory());
+            return Err(GpuError::OutOfMemory { adapter: self.name.clone(), what: label, bytes: size });
         }
         self.buffers.push(Some(buffer));
         Ok(BufferId(self.buffers.len() as u32 - 1))

@@ -11,7 +11,7 @@ pub trait Engine {
     /// Makes a buffer of at least `words` zeros.
     ///
     /// # Errors
-    /// [`GpuError::OutOfMemory`].
+    /// [`GpuError::TooLarge`], [`GpuError::OutOfMemory`].
     fn buffer(&mut self, label: &'static str, words: usize) -> Result<BufferId, GpuError>;
 
     /// Frees a buffer, which must not be used any more.
