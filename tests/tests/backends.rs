@@ -366,7 +366,8 @@ fn a_run_whose_device_is_lost_goes_on_from_the_last_time_step() {
     };
     let mut go_on = |_: &Progress<'_>| ControlFlow::Continue(());
     run::run(&scene, &options("whole", false), &mut go_on).expect("a run");
-    let failing = Backends { collisions: Box::new(Failing { cpu: Cpu, calls_left: 9 }), linear: None };
+    let failing =
+        Backends { collisions: Box::new(Failing { cpu: Cpu, calls_left: 9 }), ..Backends::default() };
     let error =
         run::run_on(&scene, &options("parts", false), failing, &mut go_on).expect_err("the device is lost");
     assert!(matches!(error, SimulationError::Backend { step: 2.., .. }), "{error}");

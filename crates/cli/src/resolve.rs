@@ -1,6 +1,6 @@
 //! `bowknot resolve`: resolves one recorded collision problem.
 
-use crate::args::{LinearBackend, ResolveOptions};
+use crate::args::ResolveOptions;
 use crate::exit::{Exit, Failure};
 use crate::interrupt::Interrupt;
 use crate::{failure_dump, gpu, output, setup, sizes};
@@ -90,7 +90,7 @@ fn attempt(
     interrupt: &Interrupt,
     given: &mut Option<(States, Params)>,
 ) -> Result<Ended, Failure> {
-    setup::refuse_idle_device(&options.machine, LinearBackend::Cpu)?;
+    setup::refuse_idle_device(&options.machine, None)?;
     setup::machine(&options.machine)?;
     let mut params = bowknot::scene::twoway_params(&options.method.assignments()).map_err(Failure::input)?;
     if options.max_seconds.is_some() {
@@ -138,7 +138,7 @@ fn attempt(
         BackendError::Refused(error) => bad_input(error.to_string()),
         BackendError::Failed(error) => Failure::backend(error),
     };
-    let mut backend = gpu::backend(&options.machine)?;
+    let mut backend = gpu::of_problem(&options.machine)?;
     let statistics = backend
         .prepare(resolver.scene(), &x)
         .and_then(|()| backend.resolve(&mut resolver, &mut x, &states.y, &states.input(), &mut watch))

@@ -33,8 +33,8 @@ pub fn simulate(options: &RunOptions) -> Result<Exit, Failure> {
     }
     let scene = open(options)?;
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(scene.name()));
-    let backends = gpu::backends(options)?;
-    let [collisions, linear_solves] = backends.names();
+    let backends = gpu::of_run(options, &scene, &out)?;
+    let computed_by = backends.record();
     let interrupt = Interrupt::listen();
     let run_options = bowknot::run::RunOptions {
         out: out.clone(),
@@ -48,7 +48,10 @@ pub fn simulate(options: &RunOptions) -> Result<Exit, Failure> {
         let bar = bar.get_or_insert_with(|| {
             if !options.quiet && !options.json {
                 print_sizes(progress.world);
-                places(&collisions, &linear_solves).iter().for_each(|line| eprintln!("{line}"));
+                computed_by.why.iter().for_each(|why| eprintln!("--backend auto: {why}"));
+                places(&computed_by.collisions, &computed_by.linear)
+                    .iter()
+                    .for_each(|line| eprintln!("{line}"));
             }
             Bar::new(progress.frames, "frames", options.quiet)
         });

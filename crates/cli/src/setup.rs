@@ -49,10 +49,11 @@ pub fn no_display() {
 }
 
 /// Refuses a device that nothing is computed on.
-pub fn refuse_idle_device(machine: &Machine, linear_solves: LinearBackend) -> Result<(), Failure> {
-    let is_used = machine.backend == Backend::Gpu || linear_solves == LinearBackend::Gpu;
+pub fn refuse_idle_device(machine: &Machine, linear_solves: Option<LinearBackend>) -> Result<(), Failure> {
+    let is_used = matches!(machine.backend, Some(Backend::Gpu | Backend::Auto))
+        || linear_solves == Some(LinearBackend::Gpu);
     if machine.device.is_some() && !is_used {
-        return Err(Failure::input("--device needs --backend gpu, or --linear-backend gpu of `run`"));
+        return Err(Failure::input("--device needs --backend gpu or auto, or --linear-backend gpu of `run`"));
     }
     Ok(())
 }

@@ -3,10 +3,12 @@
 //! The device takes the same two-way steps and stops by the same rule. It sweeps rows in another order than the CPU, so that
 //! it may take other steps. Positions lie on a grid, see [`bowknot_gpu::Grid`].
 //!
+//! [`Choice`] says whether a device is faster than the CPU in a scene.
 //! [`Device`] is a [backend](crate::simulator::CollisionBackend) of simulations; [`resolve_on`] solves a single problem.
 //! [`ConjugateGradients`] does the linear solves of the dynamics, which stay on the CPU otherwise
 //! ([`Simulator::set_linear_backend`](crate::Simulator::set_linear_backend)).
 
+mod choice;
 mod device;
 mod error;
 mod setup;
@@ -15,5 +17,6 @@ pub use bowknot_gpu::{
     Adapter, ComparingEngine, ConjugateGradients, DeviceEngine, Engine, GpuError, Profile, StageTime,
     TwinEngine,
 };
+pub use choice::Choice;
 pub use device::{Device, resolve_on};
 pub use error::GpuResolveError;

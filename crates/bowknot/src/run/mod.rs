@@ -15,13 +15,13 @@ mod summary;
 mod watch;
 mod writer;
 
-pub use backends::Backends;
+pub use backends::{BackendRecord, Backends};
 pub use checker::Checker;
 pub use export::{ExportOptions, Exported, export};
 pub use progress::{Progress, WithinStep};
 pub use summary::{EnergyNumbers, SecondsNumbers, SkippedNumbers, SlowStep, StepNumbers, Summary};
 pub use watch::{FailureWatch, SmallestState};
-pub use writer::RunWriter;
+pub use writer::{RunWriter, refuse_run};
 
 use crate::simulator::{
     AcceptedStep, CollisionProblem, SimulationError, SimulationObserver, Simulator, WaitingElements,
@@ -84,7 +84,8 @@ pub fn run(
     run_on(scene, options, Backends::default(), progress)
 }
 
-/// As [`run`], with backends for the collisions and for the linear solves of the dynamics.
+/// As [`run`], with backends for the collisions and for the linear solves of the dynamics. [`BackendRecord::read`] tells
+/// which ones computed a folder so far: a resumption has the same bits with them only.
 ///
 /// # Errors
 /// As [`run`]; [`SimulationError::Backend`] if a backend does not have what the scene needs, or fails. The
@@ -115,7 +116,7 @@ fn run_steps(
     present: &Cell<usize>,
 ) -> Result<Outcome, SimulationError> {
     let mut simulator = Simulator::new(scene)?;
-    let [backend, linear_backend] = backends.names();
+    let record = backends.record();
     simulator.set_backend(backends.collisions)?;
     simulator.set_linear_backend(backends.linear);
     simulator.check_motions(scene.simulation.frames)?;
@@ -124,6 +125,7 @@ fn run_steps(
     } else {
         RunWriter::create(&options.out, scene, &simulator)?
     };
+    record.write(writer.folder())?;
     let info = simulator.world().info(scene.simulation.dt);
     let world = Arc::clone(simulator.world());
     let mut checker = options.check.then(|| Checker::new(&simulator));
@@ -189,8 +191,8 @@ fn run_steps(
         info,
         frames: totals.steps(),
         threads: rayon::current_num_threads(),
-        backend,
-        linear_backend,
+        backend: record.collisions,
+        linear_backend: record.linear,
         mean: totals.mean().map_err(unwritable)?,
         max: totals.max().map_err(unwritable)?,
         min_gap_m: totals.min_gap(),

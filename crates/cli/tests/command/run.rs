@@ -129,6 +129,46 @@ fn linear_solves_run_on_a_gpu_if_asked_and_say_so() {
     assert!(summary["backend"] == "cpu" && on_gpu(&summary["linear_backend"]), "{summary}");
 }
 
+/// Mesa's software driver is the only device where the tests run.
+#[test]
+fn the_backend_is_chosen_once_and_a_resumption_keeps_it() {
+    let place = Place::new();
+    let run = |frames: u32, options: &str| {
+        let start = "--set body.0.velocity=[0,0,-4] --threads 1";
+        place.run(&format!("run drape --scale 0.2 --frames {frames} {start} {options}"))
+    };
+    let record = |run: &str| -> serde_json::Value {
+        serde_json::from_str(&place.read(&format!("{run}/backends.json"))).unwrap()
+    };
+    let last =
+        |run: &str, frame: u32| std::fs::read(place.path(&format!("{run}/frames/{frame:06}.ply"))).unwrap();
+    let ended = run(9, "--backend auto --out auto").ok();
+    assert!(ended.stderr.contains("--backend auto: the CPU: "), "{ended:#?}");
+    assert_eq!(ended.stderr.lines().filter(|line| line.contains("--backend auto")).count(), 1, "{ended:#?}");
+    assert_eq!((&record("auto")["collisions"], &record("auto")["linear"]), (&"cpu".into(), &"cpu".into()));
+    assert!(record("auto")["why"].as_str().unwrap().starts_with("the CPU: "));
+    run(9, "--out plain").ok();
+    assert!(last("auto", 9) == last("plain", 9) && record("plain").get("why").is_none());
+    run(3, "--backend auto --out auto").refused(2, &["already holds a run"]);
+
+    // A resumption takes what computed the run before, whether `auto` is said again or not.
+    run(9, "--backend gpu --linear-backend gpu --out whole").ok();
+    run(6, "--backend gpu --linear-backend gpu --out parts").ok();
+    let device = record("parts");
+    assert!(device["collisions"].as_str().unwrap().starts_with("gpu: "), "{device}");
+    run(8, "--resume --out parts").ok();
+    run(9, "--resume --backend auto --out parts").ok();
+    assert_eq!(record("parts"), device);
+    assert!(last("whole", 9) == last("parts", 9));
+    let gone = device.to_string().replace("gpu: ", "gpu: Older ");
+    place.write("parts/backends.json", gone);
+    run(10, "--resume --out parts").refused(3, &["Older", "not here", "--backend cpu", "--device"]);
+    run(10, "--resume --backend cpu --linear-backend cpu --out parts").ok();
+    assert_eq!(record("parts")["collisions"], "cpu");
+    place.write("parts/backends.json", "{}");
+    run(11, "--resume --out parts").refused(2, &["backends.json", "collisions"]);
+}
+
 #[test]
 fn formats_of_frames() {
     let place = Place::new();
