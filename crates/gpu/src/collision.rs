@@ -13,7 +13,7 @@ mod trees;
 use crate::adjacency::Adjacency;
 use crate::cpu;
 use crate::edges::Edges;
-use crate::engine::Engine;
+use crate::engine::{Engine, PhaseSeconds};
 use crate::error::GpuError;
 use crate::grid::{Grid, GridError, GridPoint};
 use crate::layout::{Candidate, Control, NONE, Row, Vertex};
@@ -428,6 +428,11 @@ impl<E: Engine> Collision<E> {
             }
             self.grow(&control)?;
         }
+    }
+
+    /// Seconds of the phases of the steps since the last call, between time stamps of the device; None if it has none.
+    pub fn take_phase_seconds(&mut self) -> Option<PhaseSeconds> {
+        self.engine.take_phase_seconds()
     }
 
     /// What runs the stages.

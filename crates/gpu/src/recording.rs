@@ -7,6 +7,24 @@ use bytemuck::Pod;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BufferId(pub(crate) u32);
 
+/// What a part of a two-way step is for. Engines with time stamps measure the seconds of each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// Candidate pairs.
+    Search,
+    /// Contact geometry of the candidate pairs.
+    Evaluate,
+    /// Rows and their sweeps.
+    Backward,
+    /// Paths, step sizes and the move.
+    Forward,
+}
+
+impl Phase {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Search, Self::Evaluate, Self::Backward, Self::Forward];
+}
+
 /// A step of a recording.
 #[derive(Clone, Debug)]
 pub(crate) enum Command {
@@ -26,12 +44,15 @@ pub(crate) struct Dispatch {
     pub params: Vec<u32>,
     /// Number of threads that have work.
     pub threads: usize,
+    /// What it is for, if that is measured.
+    pub phase: Option<Phase>,
 }
 
 /// A list of commands, which run in order: each sees all that those before it have written.
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
     pub(crate) commands: Vec<Command>,
+    phase: Option<Phase>,
 }
 
 impl Recording {
@@ -57,8 +78,14 @@ impl Recording {
                 buffers: buffers.to_vec(),
                 params,
                 threads,
+                phase: self.phase,
             }));
         }
+    }
+
+    /// Says what the next dispatches are for.
+    pub(crate) fn begin_phase(&mut self, phase: Phase) {
+        self.phase = Some(phase);
     }
 
     /// Number of stages that run.

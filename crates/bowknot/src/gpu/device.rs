@@ -5,7 +5,7 @@ use super::setup;
 use crate::simulator::{BackendError, CollisionBackend};
 use bowknot_check::{Judge, StateOptions};
 use bowknot_geometry::{PairKind, Point};
-use bowknot_gpu::{Call, Collision, ContactRow, Engine, Grid, Kind, StepReport};
+use bowknot_gpu::{Call, Collision, ContactRow, Engine, Grid, Kind, Phase, PhaseSeconds, StepReport};
 use bowknot_twoway::{
     AcceptedState, CallEnd, CallInput, CollisionScene, Observer, PairMultipliers, Residuals, ResolveInput,
     Resolver, StallDetector, Statistics, StopTest, max_stretch,
@@ -19,7 +19,8 @@ const SLIDES: f64 = 1.0 - 1e-5;
 /// Moves `positions` from an intersection-free state toward `target` on an engine, as [`Resolver::resolve_with`] does on
 /// the CPU. The state of the resolver becomes that of the call.
 ///
-/// Statistics that the device does not compute are 0: colors, complementarity, stages.
+/// Statistics that the device does not compute are 0: colors, complementarity, and the seconds by stage if it has no time
+/// stamps.
 ///
 /// # Errors
 /// [`GpuResolveError`]; `positions` are then unchanged.
@@ -46,6 +47,8 @@ pub struct Device<E> {
     /// Positions that the scene begins with [m]: the grid and the trees are made from them, so that a run that is
     /// resumed has the same.
     home: Vec<Point>,
+    /// Seconds of the device in the last call, if it has time stamps.
+    device_seconds: Option<f64>,
 }
 
 /// A scene on the device.
@@ -68,7 +71,7 @@ struct CallConstraints {
 impl<E: Engine + Debug + Send> Device<E> {
     /// Resolves on that engine, whose name goes to `summary.json`.
     pub fn new(name: String, engine: E) -> Self {
-        Self { name, engine: Some(engine), prepared: None, home: Vec::new() }
+        Self { name, engine: Some(engine), prepared: None, home: Vec::new(), device_seconds: None }
     }
 
     /// What runs the stages; none before a scene is prepared.
@@ -135,6 +138,8 @@ impl<E: Engine + Debug + Send> Device<E> {
         let ends =
             farthest_ends(scene, positions, target, stop.max_steps() as f64 * Collision::<E>::LONGEST_TRAVEL);
         let collision = self.prepare_call(scene, &call, input, positions, &ends)?;
+        // Those of a call that failed.
+        collision.take_phase_seconds();
         let start = place(collision, positions, &judge)?;
         let speed = scene.lengths().separation_speed;
         let growth = input.time_step.map_or(f64::INFINITY, |dt| speed * dt);
@@ -167,6 +172,7 @@ impl<E: Engine + Debug + Send> Device<E> {
             });
         }
         let rows = collision.contact_rows()?;
+        let phases = collision.take_phase_seconds();
         let quantum = collision.grid().quantum();
         note_friction(&mut statistics, &rows);
         [statistics.max_step_stretch, statistics.max_stretch] =
@@ -180,6 +186,13 @@ impl<E: Engine + Debug + Send> Device<E> {
             statistics.prescribed_lag_m = 0.0;
         }
         positions.copy_from_slice(&end);
+        if let Some(phases) = phases {
+            statistics.seconds.search = phases.of(Phase::Search);
+            statistics.seconds.evaluate = phases.of(Phase::Evaluate);
+            statistics.seconds.backward = phases.of(Phase::Backward);
+            statistics.seconds.forward = phases.of(Phase::Forward);
+        }
+        self.device_seconds = phases.as_ref().map(PhaseSeconds::total);
         statistics.seconds.total = timer.elapsed().as_secs_f64();
         Ok(statistics)
     }
@@ -192,6 +205,10 @@ impl<E: Engine + Debug + Send> CollisionBackend for Device<E> {
 
     fn prepare(&mut self, scene: &CollisionScene, home: &[Point]) -> Result<(), BackendError> {
         Ok(self.set_home(scene, home)?)
+    }
+
+    fn device_seconds(&self) -> Option<f64> {
+        self.device_seconds
     }
 
     fn resolution(&self) -> f64 {

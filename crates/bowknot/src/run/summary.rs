@@ -114,6 +114,8 @@ pub struct EnergyNumbers {
 #[serde(default)]
 pub struct SecondsNumbers {
     pub backward: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub device: Option<f64>,
     pub dynamics: Option<f64>,
     pub evaluate: Option<f64>,
     pub forward: Option<f64>,

@@ -96,6 +96,16 @@ fn a_run_on_a_gpu_goes_on_from_its_checkpoint_there_and_on_the_cpu() {
     let backend = summary["backend"].as_str().unwrap();
     assert!(backend.starts_with("gpu: "), "{backend}");
     assert!(summary["max"]["contact_rows"].as_f64().unwrap() > 0.0, "{summary}");
+    for line in place.read("whole/stats.jsonl").lines() {
+        let line: serde_json::Value = serde_json::from_str(line).unwrap();
+        let seconds = |stage: &str| line["seconds"][stage].as_f64();
+        // Mesa's driver has time stamps.
+        let stages = ["search", "evaluate", "backward", "forward"].map(|stage| seconds(stage).unwrap());
+        assert!(stages.iter().all(|stage| *stage > 0.0), "{line}");
+        let device = seconds("device").unwrap();
+        assert!((stages.iter().sum::<f64>() - device).abs() < 1e-9 * device, "{line}");
+        assert!(device < seconds("total").unwrap() - seconds("dynamics").unwrap(), "{line}");
+    }
     run(7, "--backend gpu --out parts");
     let summary = run(12, "--backend gpu --out parts --resume");
     assert_eq!(summary["intersections"], 0);
@@ -103,6 +113,9 @@ fn a_run_on_a_gpu_goes_on_from_its_checkpoint_there_and_on_the_cpu() {
     let bytes = |run: &str| std::fs::read(place.path(&format!("{run}/{last}"))).unwrap();
     assert_eq!(bytes("whole"), bytes("parts"));
     let summary = run(14, "--backend cpu --out parts --resume");
+    let stats = place.read("parts/stats.jsonl");
+    let times: Vec<bool> = stats.lines().map(|line| line.contains("\"device\":")).collect();
+    assert_eq!(times, [[true; 12].as_slice(), &[false; 2]].concat());
     assert_eq!((&summary["backend"], &summary["intersections"]), (&"cpu".into(), &0.into()));
 }
 

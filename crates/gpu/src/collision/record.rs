@@ -4,7 +4,7 @@ use super::Collision;
 use crate::cpu;
 use crate::engine::Engine;
 use crate::layout::{Block, Control};
-use crate::recording::Recording;
+use crate::recording::{Phase, Recording};
 use crate::stages;
 
 /// Longest travel of a vertex in a step, and smallest radius of a trust region, in local edge lengths.
@@ -15,6 +15,7 @@ impl<E: Engine> Collision<E> {
     /// The dispatches of a step, in order.
     pub(super) fn record_step(&self, recording: &mut Recording) {
         self.record_start(recording);
+        recording.begin_phase(Phase::Backward);
         // If the step is made again, the aims are known.
         if !self.again {
             self.record_rows(recording);
@@ -39,6 +40,7 @@ impl<E: Engine> Collision<E> {
 
     /// How far each vertex wants to go, and which trust regions do not cover it.
     pub(super) fn record_paths(&self, recording: &mut Recording) {
+        recording.begin_phase(Phase::Forward);
         let (b, vertices) = (&self.buffers, self.sizes.vertices as u32);
         recording.dispatch(
             &stages::PLAN,
@@ -57,6 +59,7 @@ impl<E: Engine> Collision<E> {
 
     /// New trust regions where the paths need them.
     pub(super) fn record_cover(&self, recording: &mut Recording) {
+        recording.begin_phase(Phase::Search);
         let (b, vertices) = (&self.buffers, self.sizes.vertices as u32);
         recording.dispatch(
             &stages::COVER,
@@ -69,6 +72,7 @@ impl<E: Engine> Collision<E> {
     /// Contact geometry of all candidates at the present positions; after a search only if there was one, for nothing has
     /// moved since the geometry of the backward step.
     pub(super) fn record_geometry(&self, after_search: bool, recording: &mut Recording) {
+        recording.begin_phase(Phase::Evaluate);
         let (b, capacity) = (&self.buffers, self.buffers.capacity as u32);
         recording.dispatch(
             &stages::SEPARATE,
@@ -93,6 +97,7 @@ impl<E: Engine> Collision<E> {
 
     /// Step sizes, the move, and how far its end is from a solution.
     pub(super) fn record_forward(&self, recording: &mut Recording) {
+        recording.begin_phase(Phase::Forward);
         let (b, vertices, capacity) =
             (&self.buffers, self.sizes.vertices as u32, self.buffers.capacity as u32);
         recording.dispatch(

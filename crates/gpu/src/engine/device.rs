@@ -1,5 +1,6 @@
 //! Runs recordings on a device.
 
+use super::phases::{PhaseClock, PhaseSeconds};
 use super::pipelines::{PARAMS_STRIDE, Pipelines};
 use super::profile::Profile;
 use super::traits::{Engine, SMALLEST_BUFFER};
@@ -25,6 +26,8 @@ pub struct DeviceEngine {
     largest_buffer: u64,
     /// Where the times of the stages go, if they are measured.
     profile: Option<Profile>,
+    /// Measures phases; None if the device has no time stamps.
+    clock: Option<PhaseClock>,
     /// What the driver reported since the last look: it does so from other threads.
     failure: Arc<Mutex<Option<Failure>>>,
 }
@@ -58,6 +61,7 @@ impl DeviceEngine {
         });
         let params = params_buffer(&device, 64);
         let limits = device.limits();
+        let clock = PhaseClock::new(&device, &queue);
         Ok(Self {
             name,
             largest_buffer: limits.max_buffer_size.min(limits.max_storage_buffer_binding_size),
@@ -67,6 +71,7 @@ impl DeviceEngine {
             pipelines: Pipelines::default(),
             params,
             profile: None,
+            clock,
             failure,
         })
     }
@@ -134,9 +139,20 @@ impl DeviceEngine {
         pipelines.prepare(device, dispatch, params, |id| find(buffers, id));
     }
 
-    fn encode(&self, encoder: &mut wgpu::CommandEncoder, dispatches: &[(&Dispatch, u64)]) {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        self.encode_pass(&mut pass, dispatches);
+    /// Records the dispatches, with one pass per phase if phases are measured.
+    fn encode(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        dispatches: &[(&Dispatch, u64)],
+        clock: &mut Option<PhaseClock>,
+    ) {
+        let is_timed = clock.is_some();
+        for part in dispatches.chunk_by(|(a, _), (b, _)| !is_timed || a.phase == b.phase) {
+            let timestamp_writes = clock.as_mut().and_then(|clock| clock.stamps(part[0].0.phase));
+            let descriptor = wgpu::ComputePassDescriptor { label: None, timestamp_writes };
+            let mut pass = encoder.begin_compute_pass(&descriptor);
+            self.encode_pass(&mut pass, part);
+        }
     }
 
     /// Runs the dispatches, each in a pass of its own between two time stamps, and waits for them.
@@ -146,7 +162,7 @@ impl DeviceEngine {
                 if self.has_time_stamps() { self.time_stamps(part)? } else { vec![0; 2 * part.len()] };
             if !self.has_time_stamps() {
                 let mut encoder = self.encoder();
-                self.encode(&mut encoder, part);
+                self.encode(&mut encoder, part, &mut None);
                 self.queue.submit([encoder.finish()]);
             }
             let unit = 1e-9 * f64::from(self.queue.get_timestamp_period());
@@ -282,6 +298,26 @@ impl Engine for DeviceEngine {
                 self.prepare(dispatch);
             }
         }
+        let mut clock = self.clock.take();
+        clock.iter_mut().for_each(PhaseClock::begin);
+        let result = self.submit(recording, read, &mut clock);
+        self.clock = clock;
+        result
+    }
+
+    fn take_phase_seconds(&mut self) -> Option<PhaseSeconds> {
+        self.clock.as_mut().map(PhaseClock::take)
+    }
+}
+
+impl DeviceEngine {
+    /// Submits a recording whose stages are compiled, and reads.
+    fn submit(
+        &self,
+        recording: &Recording,
+        read: &[(BufferId, usize)],
+        clock: &mut Option<PhaseClock>,
+    ) -> Result<Vec<Vec<u32>>, GpuError> {
         // Writes take place before the next submit: what was recorded before them is submitted first.
         let mut encoder = self.encoder();
         let mut waiting: Vec<(&Dispatch, u64)> = Vec::new();
@@ -296,7 +332,7 @@ impl Engine for DeviceEngine {
                     if !waiting.is_empty() {
                         match &self.profile {
                             Some(profile) => self.run_measured(&waiting, profile)?,
-                            None => self.encode(&mut encoder, &waiting),
+                            None => self.encode(&mut encoder, &waiting, clock),
                         }
                         waiting.clear();
                         self.queue.submit([encoder.finish()]);
@@ -309,22 +345,26 @@ impl Engine for DeviceEngine {
         match &self.profile {
             Some(profile) => self.run_measured(&waiting, profile)?,
             None if waiting.is_empty() => {}
-            None => self.encode(&mut encoder, &waiting),
+            None => self.encode(&mut encoder, &waiting, clock),
         }
         let words: usize = read.iter().map(|(_, words)| words).sum();
         if words == 0 {
             self.queue.submit([encoder.finish()]);
             return self.check().map(|()| read.iter().map(|_| Vec::new()).collect());
         }
+        let stamps = clock.as_ref().map_or(0, PhaseClock::bytes);
         let staging = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("read"),
-            size: 4 * words as u64,
+            size: 4 * words as u64 + stamps,
             usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
         self.encode_reads(&mut encoder, read, &staging);
+        clock.iter().for_each(|clock| clock.encode_read(&mut encoder, &staging, 4 * words as u64));
         self.queue.submit([encoder.finish()]);
-        let mut all = self.map(&staging)?.into_iter();
+        let all = self.map(&staging)?;
+        clock.iter_mut().for_each(|clock| clock.add(&all[words..]));
+        let mut all = all.into_iter();
         Ok(read.iter().map(|&(_, words)| all.by_ref().take(words).collect()).collect())
     }
 }
