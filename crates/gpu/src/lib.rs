@@ -41,7 +41,7 @@ pub use grid::{Grid, GridError, GridPoint};
 pub use layout::{Candidate, Kind, NONE};
 pub use linear::ConjugateGradients;
 pub use model::{Constraints, Lengths};
-pub use recording::{BufferId, Phase, Recording};
+pub use recording::{BufferId, DispatchView, Phase, Recording};
 
 /// The README's example is tested with the documentation.
 #[cfg(doctest)]

@@ -1,6 +1,6 @@
 //! Work for an engine: recorded first, run later, by kernels or by their twins.
 
-use crate::stages::Stage;
+use crate::stages::{Access, Stage};
 use bytemuck::Pod;
 
 /// Names a buffer of an [engine](crate::Engine).
@@ -48,6 +48,23 @@ pub(crate) struct Dispatch {
     pub phase: Option<Phase>,
 }
 
+/// A run of a stage as other crates see it, to count what steps need.
+#[derive(Clone, Debug)]
+pub struct DispatchView<'a> {
+    /// Name of the stage.
+    pub stage: &'static str,
+    /// What it is for; None outside of two-way steps.
+    pub phase: Option<Phase>,
+    /// Threads that have work; 1 for a stage of which one workgroup does everything.
+    pub threads: usize,
+    /// Threads of a workgroup.
+    pub workgroup: usize,
+    /// Buffers in the order of the stage's bindings.
+    pub buffers: &'a [BufferId],
+    /// Whether it writes them.
+    pub writes: Vec<bool>,
+}
+
 /// A list of commands, which run in order: each sees all that those before it have written.
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
@@ -86,6 +103,28 @@ impl Recording {
     /// Says what the next dispatches are for.
     pub(crate) fn begin_phase(&mut self, phase: Phase) {
         self.phase = Some(phase);
+    }
+
+    /// The stages that run, in their order.
+    pub fn dispatches(&self) -> impl Iterator<Item = DispatchView<'_>> {
+        self.commands.iter().filter_map(|command| match command {
+            Command::Dispatch(dispatch) => Some(DispatchView {
+                stage: dispatch.stage.name,
+                phase: dispatch.phase,
+                threads: dispatch.threads,
+                workgroup: dispatch.stage.workgroup,
+                buffers: &dispatch.buffers,
+                writes: dispatch.stage.bindings.iter().map(|access| *access == Access::Write).collect(),
+            }),
+            Command::Write { .. } => None,
+        })
+    }
+
+    /// Words that the host writes.
+    pub fn words_written(&self) -> usize {
+        let words =
+            |command: &Command| if let Command::Write { words, .. } = command { words.len() } else { 0 };
+        self.commands.iter().map(words).sum()
     }
 
     /// Number of stages that run.

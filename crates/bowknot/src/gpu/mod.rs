@@ -14,8 +14,8 @@ mod error;
 mod setup;
 
 pub use bowknot_gpu::{
-    Adapter, ComparingEngine, ConjugateGradients, DeviceEngine, Engine, GpuError, Profile, StageTime,
-    TwinEngine,
+    Adapter, BufferId, ComparingEngine, ConjugateGradients, DeviceEngine, DispatchView, Engine, GpuError,
+    Phase, Profile, Recording, StageTime, TwinEngine,
 };
 pub use choice::Choice;
 pub use device::{Device, resolve_on};
