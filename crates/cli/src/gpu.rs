@@ -122,6 +122,10 @@ mod device {
 
     /// The faster one of the CPU and the device of that number in a scene, and why it was chosen.
     pub fn choose(scene: &Scene, number: Option<usize>) -> Result<(Place, String), Failure> {
+        if number.is_some() {
+            // A device that is asked for and is not there is a mistake, none at all is not.
+            Adapter::choose(number).map_err(Failure::backend)?;
+        }
         let Choice { device, why } = Choice::new(scene, number).map_err(Failure::input)?;
         Ok(match device {
             Some(adapter) => (Place::Number(number), format!("{}: {why}", adapter.name())),

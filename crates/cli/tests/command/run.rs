@@ -1,4 +1,4 @@
-use crate::{Place, SMALL, tetrahedron};
+use crate::{Ended, Place, SMALL, tetrahedron};
 
 #[test]
 fn a_run_writes_its_folder() {
@@ -163,6 +163,13 @@ fn the_backend_is_chosen_once_and_a_resumption_keeps_it() {
     run(9, "--out plain").ok();
     assert!(last("auto", 9) == last("plain", 9) && record("plain").get("why").is_none());
     run(3, "--backend auto --out auto").refused(2, &["already holds a run"]);
+    run(3, "--backend auto --device 99 --out none").refused(3, &["no device 99"]);
+    let mut command = place.command("run drape --scale 0.2 --frames 1 --backend auto --out bare");
+    for variable in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
+        command.env(variable, "/nonexistent/driver.json");
+    }
+    let ended = Ended::new("without a driver", command.output().unwrap()).ok();
+    assert!(ended.stderr.contains("--backend auto: the CPU: no usable GPU was found"), "{ended:#?}");
 
     // A resumption takes what computed the run before, whether `auto` is said again or not.
     run(9, "--backend gpu --linear-backend gpu --out whole").ok();
