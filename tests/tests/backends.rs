@@ -8,7 +8,7 @@
 
 use bowknot::check::StateOptions;
 use bowknot::gpu::{Device, TwinEngine};
-use bowknot::run::{self, Progress, RunOptions};
+use bowknot::run::{self, Backends, Progress, RunOptions};
 use bowknot::simulator::{BackendError, CollisionBackend, Cpu};
 use bowknot::{Scene, SimulationError, Simulator, StepStatistics};
 use bowknot_geometry::{Point, Vector};
@@ -366,9 +366,10 @@ fn a_run_whose_device_is_lost_goes_on_from_the_last_time_step() {
     };
     let mut go_on = |_: &Progress<'_>| ControlFlow::Continue(());
     run::run(&scene, &options("whole", false), &mut go_on).expect("a run");
-    let failing = Failing { cpu: Cpu, calls_left: 9 };
-    let error = run::run_on(&scene, &options("parts", false), Box::new(failing), &mut go_on)
-        .expect_err("the device is lost");
+    let failing =
+        Backends { collisions: Box::new(Failing { cpu: Cpu, calls_left: 9 }), ..Backends::default() };
+    let error =
+        run::run_on(&scene, &options("parts", false), failing, &mut go_on).expect_err("the device is lost");
     assert!(matches!(error, SimulationError::Backend { step: 2.., .. }), "{error}");
     assert!(error.to_string().contains("the device was lost"), "{error}");
     run::run(&scene, &options("parts", true), &mut go_on).expect("it goes on");

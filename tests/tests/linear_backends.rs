@@ -8,8 +8,10 @@
 use bowknot::dynamics::{LinearBackend, LinearBackendError, LinearSystem};
 use bowknot::geometry::{Point, Vector};
 use bowknot::gpu::{Adapter, ComparingEngine, ConjugateGradients, DeviceEngine, Engine, TwinEngine};
+use bowknot::run::{self, Backends, Progress, RunOptions};
 use bowknot::{Scene, SimulationError, Simulator};
 use std::fmt::Debug;
+use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex};
 
 /// A scene, its scale, assignments to its keys, and the number of time steps.
@@ -204,6 +206,32 @@ fn a_lost_device_ends_a_step_that_can_be_made_again() {
     lost.step().expect("a step on the CPU");
     whole.step().expect("a step on the CPU");
     assert!(lost.positions() == whole.positions());
+}
+
+#[test]
+fn a_matrix_that_is_too_large_for_a_device_ends_a_run_that_goes_on_on_the_cpu() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (name, scale, _, _) = SMALL[0];
+    let scene = Scene::builtin(name, scale).and_then(|scene| scene.with_sets(&["simulation.frames=3"]));
+    let scene = scene.expect("a scene");
+    let options = |resume| RunOptions { out: folder.path().to_owned(), resume, ..RunOptions::default() };
+    let mut go_on = |_: &Progress<'_>| ControlFlow::Continue(());
+    let adapter = Adapter::choose(None).expect("a device, of software if need be");
+    let mut engine = DeviceEngine::open(&adapter).expect("it opens");
+    engine.limit_buffers(30_000);
+    let linear = ConjugateGradients::new("limited".to_owned(), engine);
+    let backends = Backends { linear: Some(Box::new(linear)), ..Backends::default() };
+    let error = run::run_on(&scene, &options(false), backends, &mut go_on).expect_err("it is too large");
+    assert!(matches!(error, SimulationError::Backend { step: 1, .. }), "{error:?}");
+    let text = error.to_string();
+    assert!(
+        ["the matrix takes", "binds 30000 at most", "--linear-backend cpu"]
+            .iter()
+            .all(|part| text.contains(part)),
+        "{text}"
+    );
+    let outcome = run::run(&scene, &options(true), &mut go_on).expect("it goes on");
+    assert_eq!((outcome.summary.frames, outcome.summary.linear_backend.as_str()), (3, "cpu"));
 }
 
 #[test]

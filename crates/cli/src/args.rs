@@ -69,6 +69,10 @@ pub struct RunOptions {
     pub up: Option<Up>,
     #[command(flatten)]
     pub machine: Machine,
+    /// Where the linear solves of the dynamics are done; the rest of the dynamics runs on the CPU [default: cpu; with
+    /// --resume: as before]
+    #[arg(long, value_enum)]
+    pub linear_backend: Option<LinearBackend>,
     #[command(flatten)]
     pub method: Method,
     /// Formats of the frames, separated by commas [default: that of the scene, else ply]
@@ -325,9 +329,9 @@ pub struct Machine {
     /// Number of threads [default: all cores]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = threads)]
     pub threads: Option<usize>,
-    /// Where to compute
-    #[arg(long, value_enum, default_value_t = Backend::Auto)]
-    pub backend: Backend,
+    /// Where collisions are resolved [default: cpu; with --resume: as before]
+    #[arg(long, value_enum)]
+    pub backend: Option<Backend>,
     /// Which GPU: its number in `bowknot info --gpus` [default: the first that is usable]
     #[arg(long, value_name = "N")]
     pub device: Option<usize>,
@@ -383,10 +387,19 @@ impl Up {
 pub enum Backend {
     /// The CPU
     Cpu,
-    /// A GPU: `resolve` only, without coarse corrections (docs/GPU.md)
+    /// A GPU (docs/GPU.md says what it does not have)
     Gpu,
-    /// The one that can do all that is asked, at present the CPU
+    /// The faster of both: `run` measures them in the first time steps with contacts, on copies of the scene, and says
+    /// which it took and why; with --resume: as before. `resolve` takes the CPU
     Auto,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LinearBackend {
+    /// The CPU
+    Cpu,
+    /// A GPU, in single precision, refined on the CPU
+    Gpu,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -1,8 +1,11 @@
 //! What the command does on a GPU: the devices, and the backends of `run` and `resolve`.
 
-use crate::args::{Backend, Machine};
+use crate::args::{Backend, LinearBackend, Machine, RunOptions};
 use crate::exit::Failure;
+use bowknot::Scene;
+use bowknot::run::{BackendRecord, Backends};
 use bowknot::simulator::{CollisionBackend, Cpu};
+use std::path::Path;
 
 /// The devices, one per line, with what those that cannot be used lack.
 #[cfg(feature = "gpu")]
@@ -14,29 +17,164 @@ pub fn list() -> Result<String, Failure> {
         Adapter::choose(None).map_err(Failure::backend)?;
     }
     let line = |(number, adapter): (usize, &Adapter)| match adapter.lacks() {
-        None => format!("{number}: {adapter}\n"),
+        None => {
+            let most = adapter.largest_buffer() / (1 << 20);
+            format!("{number}: {adapter}, buffers of {most} MiB at most\n")
+        }
         Some(what) => format!("{number}: {adapter}: cannot be used, it has no {what}\n"),
     };
     Ok(adapters.iter().enumerate().map(line).collect())
 }
 
-/// What resolves collisions on the machine that the options name.
-pub fn backend(machine: &Machine) -> Result<Box<dyn CollisionBackend>, Failure> {
+/// What resolves a single collision problem. To open a device takes longer than most problems, so the CPU is taken unless
+/// a GPU is asked for.
+pub fn of_problem(machine: &Machine) -> Result<Box<dyn CollisionBackend>, Failure> {
     match machine.backend {
-        Backend::Gpu => device(machine),
-        Backend::Cpu | Backend::Auto => Ok(Box::new(Cpu)),
+        Some(Backend::Gpu) => device::collisions(&Place::Number(machine.device)),
+        Some(Backend::Cpu | Backend::Auto) | None => Ok(Box::new(Cpu)),
     }
 }
 
-#[cfg(feature = "gpu")]
-fn device(machine: &Machine) -> Result<Box<dyn CollisionBackend>, Failure> {
-    use bowknot::gpu::{Adapter, Device, DeviceEngine};
-    let adapter = Adapter::choose(machine.device).map_err(Failure::backend)?;
-    if adapter.is_software() {
-        eprintln!("warning: {adapter} computes on the CPU: slower than --backend cpu");
+/// What computes a run of the scene in that folder. A resumption goes on with what computed it before, unless the options
+/// say otherwise.
+pub fn of_run(options: &RunOptions, scene: &Scene, folder: &Path) -> Result<Backends, Failure> {
+    let machine = &options.machine;
+    let before = if options.resume { BackendRecord::read(folder).map_err(Failure::input)? } else { None };
+    let as_before = |name: &str| Place::of_name(name, machine.device, folder);
+    let mut why = None;
+    let collisions = match (machine.backend, &before) {
+        (Some(Backend::Cpu), _) | (None, None) => Place::Cpu,
+        (Some(Backend::Gpu), _) => Place::Number(machine.device),
+        (Some(Backend::Auto) | None, Some(before)) => {
+            why.clone_from(&before.why);
+            as_before(&before.collisions)?
+        }
+        (Some(Backend::Auto), None) => {
+            if !options.resume {
+                // Before anything is measured for it.
+                bowknot::run::refuse_run(folder).map_err(Failure::input)?;
+            }
+            let (place, reason) = device::choose(scene, machine.device)?;
+            why = Some(reason);
+            place
+        }
+    };
+    let linear = match (options.linear_backend, &before) {
+        (Some(LinearBackend::Cpu), _) | (None, None) => Place::Cpu,
+        (Some(LinearBackend::Gpu), _) => Place::Number(machine.device),
+        (None, Some(before)) => as_before(&before.linear)?,
+    };
+    Ok(Backends {
+        collisions: if collisions == Place::Cpu { Box::new(Cpu) } else { device::collisions(&collisions)? },
+        linear: (linear != Place::Cpu).then(|| device::linear_solves(&linear)).transpose()?,
+        why,
+    })
+}
+
+/// Where something is computed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Place {
+    Cpu,
+    /// The device of that number, or the first that is usable.
+    Number(Option<usize>),
+}
+
+impl Place {
+    /// The backend of that name, which computed the run of a folder before, or the device of that number in its place.
+    fn of_name(name: &str, number: Option<usize>, folder: &Path) -> Result<Self, Failure> {
+        match name.strip_prefix(GPU) {
+            _ if name == "cpu" => Ok(Self::Cpu),
+            Some(_) if number.is_some() => Ok(Self::Number(number)),
+            Some(device) => device::number_of(device, folder).map(|number| Self::Number(Some(number))),
+            None => Err(not_here(name, folder)),
+        }
     }
-    let engine = DeviceEngine::open(&adapter).map_err(Failure::backend)?;
-    Ok(Box::new(Device::new(format!("gpu: {adapter}"), engine)))
+}
+
+/// What the names of devices begin with.
+const GPU: &str = "gpu: ";
+
+/// The device of a run is not on this machine.
+fn not_here(name: &str, folder: &Path) -> Failure {
+    Failure::backend(format!(
+        "{}: {name} computed this run, and is not here. --backend cpu --linear-backend cpu, or --device N, goes on from its \
+         checkpoint; results then differ from what they would have been, within the tolerances",
+        folder.display()
+    ))
+}
+
+/// The backends on a device.
+#[cfg(feature = "gpu")]
+mod device {
+    use super::{CollisionBackend, Failure, GPU, Path, Place, Scene, not_here};
+    use bowknot::dynamics::LinearBackend;
+    use bowknot::gpu::{Adapter, Choice, ConjugateGradients, Device, DeviceEngine};
+
+    pub fn collisions(place: &Place) -> Result<Box<dyn CollisionBackend>, Failure> {
+        let (name, engine) = open(place, "--backend cpu")?;
+        Ok(Box::new(Device::new(name, engine)))
+    }
+
+    pub fn linear_solves(place: &Place) -> Result<Box<dyn LinearBackend>, Failure> {
+        let (name, engine) = open(place, "--linear-backend cpu")?;
+        Ok(Box::new(ConjugateGradients::new(name, engine)))
+    }
+
+    /// The faster one of the CPU and the device of that number in a scene, and why it was chosen.
+    pub fn choose(scene: &Scene, number: Option<usize>) -> Result<(Place, String), Failure> {
+        if number.is_some() {
+            // A device that is asked for and is not there is a mistake, none at all is not.
+            Adapter::choose(number).map_err(Failure::backend)?;
+        }
+        let Choice { device, why } = Choice::new(scene, number).map_err(Failure::input)?;
+        Ok(match device {
+            Some(adapter) => (Place::Number(number), format!("{}: {why}", adapter.name())),
+            None => (Place::Cpu, format!("the CPU: {why}")),
+        })
+    }
+
+    /// The number of the device that computed a run: of that description, or of that name with another driver.
+    pub fn number_of(description: &str, folder: &Path) -> Result<usize, Failure> {
+        let all = Adapter::all();
+        let same = all.iter().position(|adapter| adapter.to_string() == description);
+        let alike =
+            || all.iter().position(|adapter| description.starts_with(&format!("{} (", adapter.name())));
+        same.or_else(alike).ok_or_else(|| not_here(&format!("{GPU}{description}"), folder))
+    }
+
+    /// Opens a device for one backend: each has its own queue and buffers.
+    fn open(place: &Place, without: &str) -> Result<(String, DeviceEngine), Failure> {
+        let number = if let Place::Number(number) = place { *number } else { None };
+        let adapter = Adapter::choose(number).map_err(Failure::backend)?;
+        if adapter.is_software() {
+            eprintln!("warning: {adapter} computes on the CPU: slower than {without}");
+        }
+        let engine = DeviceEngine::open(&adapter).map_err(Failure::backend)?;
+        Ok((format!("{GPU}{adapter}"), engine))
+    }
+}
+
+/// What takes the place of the devices in a build without them.
+#[cfg(not(feature = "gpu"))]
+mod device {
+    use super::{CollisionBackend, Failure, GPU, Path, Place, Scene, not_built_in, not_here};
+    use bowknot::dynamics::LinearBackend;
+
+    pub fn collisions(_place: &Place) -> Result<Box<dyn CollisionBackend>, Failure> {
+        Err(not_built_in())
+    }
+
+    pub fn linear_solves(_place: &Place) -> Result<Box<dyn LinearBackend>, Failure> {
+        Err(not_built_in())
+    }
+
+    pub fn choose(_scene: &Scene, _number: Option<usize>) -> Result<(Place, String), Failure> {
+        Ok((Place::Cpu, "the CPU: this bowknot was built without the feature `gpu`".to_owned()))
+    }
+
+    pub fn number_of(description: &str, folder: &Path) -> Result<usize, Failure> {
+        Err(not_here(&format!("{GPU}{description}"), folder))
+    }
 }
 
 #[cfg(not(feature = "gpu"))]
@@ -45,13 +183,8 @@ pub fn list() -> Result<String, Failure> {
 }
 
 #[cfg(not(feature = "gpu"))]
-fn device(_machine: &Machine) -> Result<Box<dyn CollisionBackend>, Failure> {
-    Err(not_built_in())
-}
-
-#[cfg(not(feature = "gpu"))]
 fn not_built_in() -> Failure {
     Failure::backend(
-        "this bowknot was built without the feature `gpu`: build it with it, or use --backend cpu",
+        "this bowknot was built without the feature `gpu`: build it with it, or use --backend cpu and --linear-backend cpu",
     )
 }

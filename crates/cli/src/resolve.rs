@@ -22,6 +22,8 @@ const MAX_LISTED: usize = 5;
 struct Summary {
     steps: usize,
     searches: usize,
+    /// What resolved it: "cpu", or "gpu: " and the device.
+    backend: String,
     /// Wall time of the call.
     seconds: f64,
     /// Processor time of all threads during the call.
@@ -133,6 +135,7 @@ fn attempt(
     interrupt: &Interrupt,
     given: &mut Option<(States, Params)>,
 ) -> Result<Ended, Failure> {
+    setup::refuse_idle_device(&options.machine, None)?;
     setup::machine(&options.machine)?;
     let mut params = bowknot::scene::twoway_params(&options.method.assignments()).map_err(Failure::input)?;
     if options.max_seconds.is_some() {
@@ -162,7 +165,7 @@ fn attempt(
         BackendError::Refused(error) => bad_input(error.to_string()),
         BackendError::Failed(error) => Failure::backend(error),
     };
-    let mut backend = gpu::backend(&options.machine)?;
+    let mut backend = gpu::of_problem(&options.machine)?;
     let statistics = backend
         .prepare(resolver.scene(), &x)
         .and_then(|()| backend.resolve(&mut resolver, &mut x, &states.y, &states.input(), &mut watch))
@@ -176,6 +179,7 @@ fn attempt(
     let waits = statistics.prescribed_lag_m > 0.0;
     let waiting = if waits { (0..x.len()).filter(is_waiting).count() } else { 0 };
     let mut summary = summarize(&statistics, bowknot::simulator::cpu_seconds() - cpu, waiting);
+    summary.backend = backend.name();
     summary.intersections = options.check.then_some(intersections);
     write_result(&options.out, states, &x)?;
 
@@ -216,6 +220,7 @@ fn summarize(statistics: &Statistics, cpu_seconds: f64, prescribed_waiting: usiz
     Summary {
         steps: statistics.steps,
         searches: statistics.searches,
+        backend: String::new(),
         seconds: statistics.seconds.total,
         cpu_seconds,
         distance_to_target_m: statistics.distance_to_target_m,

@@ -18,6 +18,7 @@ use std::path::Path;
 const MAX_SIZES: usize = 10;
 
 pub fn run(options: &RunOptions) -> Result<Exit, Failure> {
+    setup::refuse_idle_device(&options.machine, options.linear_backend)?;
     setup::machine(&options.machine)?;
     simulate(options)
 }
@@ -32,7 +33,8 @@ pub fn simulate(options: &RunOptions) -> Result<Exit, Failure> {
     }
     let scene = open(options)?;
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(scene.name()));
-    let backend = gpu::backend(&options.machine)?;
+    let backends = gpu::of_run(options, &scene, &out)?;
+    let computed_by = backends.record();
     let interrupt = Interrupt::listen();
     let run_options = bowknot::run::RunOptions {
         out: out.clone(),
@@ -46,6 +48,10 @@ pub fn simulate(options: &RunOptions) -> Result<Exit, Failure> {
         let bar = bar.get_or_insert_with(|| {
             if !options.quiet && !options.json {
                 print_sizes(progress.world);
+                computed_by.why.iter().for_each(|why| eprintln!("--backend auto: {why}"));
+                places(&computed_by.collisions, &computed_by.linear)
+                    .iter()
+                    .for_each(|line| eprintln!("{line}"));
             }
             Bar::new(progress.frames, "frames", options.quiet)
         });
@@ -54,7 +60,7 @@ pub fn simulate(options: &RunOptions) -> Result<Exit, Failure> {
         fault::panic_if_asked(progress.step);
         ControlFlow::Continue(())
     };
-    let result = bowknot::run::run_on(&scene, &run_options, backend, &mut show);
+    let result = bowknot::run::run_on(&scene, &run_options, backends, &mut show);
     if let Some(bar) = bar {
         bar.finish();
     }
@@ -164,6 +170,12 @@ fn write_dump(scene: &Scene, path: &Path) -> Result<usize, Failure> {
     Ok(mesh.triangles.len())
 }
 
+/// What runs where, unless all of it runs on the CPU.
+fn places(collisions: &str, linear_solves: &str) -> Option<String> {
+    let is_elsewhere = [collisions, linear_solves].iter().any(|name| *name != "cpu");
+    is_elsewhere.then(|| format!("collisions on {collisions}, linear solves on {linear_solves}"))
+}
+
 /// Prints what is simulated and how large it is.
 fn print_sizes(world: &World) {
     let sizes = world.sizes();
@@ -227,6 +239,7 @@ fn to_text(outcome: &Outcome, out: &Path, frames: usize) -> String {
         line += &format!(", {seconds:.3} s per frame on {}", counted(summary.threads, "thread", "threads"));
     }
     lines.push(line);
+    lines.extend(places(&summary.backend, &summary.linear_backend));
     let number = |value: Option<f64>, digits: usize| {
         value.map_or_else(|| "-".to_owned(), |value| format!("{value:.digits$}"))
     };

@@ -1,6 +1,6 @@
 //! Logging, threads and the choice of a backend.
 
-use crate::args::{Backend, Machine};
+use crate::args::{Backend, LinearBackend, Machine};
 use crate::exit::Failure;
 use bowknot_errors::counted;
 use std::io::IsTerminal;
@@ -48,11 +48,18 @@ pub fn no_display() {
     }
 }
 
+/// Refuses a device that nothing is computed on.
+pub fn refuse_idle_device(machine: &Machine, linear_solves: Option<LinearBackend>) -> Result<(), Failure> {
+    let is_used = matches!(machine.backend, Some(Backend::Gpu | Backend::Auto))
+        || linear_solves == Some(LinearBackend::Gpu);
+    if machine.device.is_some() && !is_used {
+        return Err(Failure::input("--device needs --backend gpu or auto, or --linear-backend gpu of `run`"));
+    }
+    Ok(())
+}
+
 /// Starts the threads.
 pub fn machine(machine: &Machine) -> Result<(), Failure> {
-    if machine.device.is_some() && machine.backend != Backend::Gpu {
-        return Err(Failure::input("--device needs --backend gpu"));
-    }
     let threads = machine.threads.unwrap_or(0);
     rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().map_err(|error| {
         Failure::input(format!("cannot start {}: {error}; try fewer", counted(threads, "thread", "threads")))

@@ -66,6 +66,12 @@ impl Adapter {
         self.info.device_type == wgpu::DeviceType::Cpu
     }
 
+    /// Size of the largest buffer that a stage can bind [bytes].
+    pub fn largest_buffer(&self) -> u64 {
+        let limits = self.adapter.limits();
+        limits.max_buffer_size.min(limits.max_storage_buffer_binding_size)
+    }
+
     /// What it lacks for this crate, if anything.
     pub fn lacks(&self) -> Option<String> {
         let limits = self.adapter.limits();

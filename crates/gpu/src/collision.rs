@@ -16,7 +16,7 @@ mod trees;
 use crate::adjacency::Adjacency;
 use crate::cpu;
 use crate::edges::Edges;
-use crate::engine::Engine;
+use crate::engine::{Engine, PhaseSeconds};
 use crate::error::GpuError;
 use crate::grid::{Grid, GridError, GridPoint};
 use crate::layout::{Candidate, Control, NONE, Row, Vertex};
@@ -425,6 +425,11 @@ impl<E: Engine> Collision<E> {
         self.lengths.growth = self.grid.length(call.growth).min(f32::MAX);
         (self.fresh, self.again, self.steps_in_a_row) = (true, false, 0);
         Ok(())
+    }
+
+    /// Seconds of the phases of the steps since the last call, between time stamps of the device; None if it has none.
+    pub fn take_phase_seconds(&mut self) -> Option<PhaseSeconds> {
+        self.engine.take_phase_seconds()
     }
 
     /// What runs the stages.

@@ -2,6 +2,9 @@
 
 use std::fmt;
 
+/// How to do without the device, in words: an engine does not know what it computes.
+const ON_CPU: &str = "the CPU (--backend cpu for collisions, --linear-backend cpu for linear solves)";
+
 /// An error of the device or of the driver.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -30,10 +33,23 @@ pub enum GpuError {
         /// The driver's message.
         message: String,
     },
+    /// A buffer is larger than what the device binds.
+    #[error(
+        "{what} takes {bytes} bytes, but {adapter} binds {most} at most: use a smaller scene, another device or {ON_CPU}"
+    )]
+    TooLarge {
+        /// The name of the adapter.
+        adapter: String,
+        /// The buffer.
+        what: &'static str,
+        /// Its size.
+        bytes: u64,
+        /// Size of the largest buffer of the device [bytes].
+        most: u64,
+    },
     /// The device has too little memory.
     #[error(
-        "{adapter} has no memory for {what}, {bytes} bytes: use a smaller scene, a device with more memory or \
-         --backend cpu"
+        "{adapter} has no memory for {what}, {bytes} bytes: use a smaller scene, a device with more memory or {ON_CPU}"
     )]
     OutOfMemory {
         /// The name of the adapter.
@@ -45,8 +61,8 @@ pub enum GpuError {
     },
     /// The device was lost: it was reset or removed, or a watchdog ended its work.
     #[error(
-        "{adapter} was lost ({reason}). The last accepted state is whole: run again with --resume, on this device or \
-         with --backend cpu"
+        "{adapter} was lost ({reason}). The last accepted state is whole: run again with --resume, on this device or on \
+         {ON_CPU}"
     )]
     Lost {
         /// The name of the adapter.

@@ -33,13 +33,15 @@ pub use bowknot_geometry as geometry;
 
 pub use adapter::Adapter;
 pub use collision::{Call, Collision, CollisionError, ContactRow, End, Settings, StepReport, Stop};
-pub use engine::{ComparingEngine, DeviceEngine, Difference, Engine, Profile, StageTime, TwinEngine};
+pub use engine::{
+    ComparingEngine, DeviceEngine, Difference, Engine, PhaseSeconds, Profile, StageTime, TwinEngine,
+};
 pub use error::GpuError;
 pub use grid::{Grid, GridError, GridPoint};
 pub use layout::{Candidate, Kind, NONE};
 pub use linear::ConjugateGradients;
 pub use model::{Constraints, Lengths};
-pub use recording::{BufferId, Recording};
+pub use recording::{BufferId, DispatchView, Phase, Recording};
 
 /// The README's example is tested with the documentation.
 #[cfg(doctest)]

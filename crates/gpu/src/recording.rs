@@ -1,11 +1,29 @@
 //! Work for an engine: recorded first, run later, by kernels or by their twins.
 
-use crate::stages::Stage;
+use crate::stages::{Access, Stage};
 use bytemuck::Pod;
 
 /// Names a buffer of an [engine](crate::Engine).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BufferId(pub(crate) u32);
+
+/// What a part of a two-way step is for. Engines with time stamps measure the seconds of each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// Candidate pairs.
+    Search,
+    /// Contact geometry of the candidate pairs.
+    Evaluate,
+    /// Rows and their sweeps.
+    Backward,
+    /// Paths, step sizes and the move.
+    Forward,
+}
+
+impl Phase {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Search, Self::Evaluate, Self::Backward, Self::Forward];
+}
 
 /// A step of a recording.
 #[derive(Clone, Debug)]
@@ -32,6 +50,8 @@ pub(crate) struct Dispatch {
     /// Where its number of workgroups is if a stage may take it away: a buffer with three words per dispatch, and the
     /// place in it.
     pub arguments: Option<(BufferId, usize)>,
+    /// What it is for, if that is measured.
+    pub phase: Option<Phase>,
 }
 
 impl Dispatch {
@@ -41,10 +61,28 @@ impl Dispatch {
     }
 }
 
+/// A run of a stage as other crates see it, to count what steps need.
+#[derive(Clone, Debug)]
+pub struct DispatchView<'a> {
+    /// Name of the stage.
+    pub stage: &'static str,
+    /// What it is for; None outside of two-way steps.
+    pub phase: Option<Phase>,
+    /// Threads that have work; 1 for a stage of which one workgroup does everything.
+    pub threads: usize,
+    /// Threads of a workgroup.
+    pub workgroup: usize,
+    /// Buffers in the order of the stage's bindings.
+    pub buffers: &'a [BufferId],
+    /// Whether it writes them.
+    pub writes: Vec<bool>,
+}
+
 /// A list of commands, which run in order: each sees all that those before it have written.
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
     pub(crate) commands: Vec<Command>,
+    phase: Option<Phase>,
 }
 
 impl Recording {
@@ -71,6 +109,7 @@ impl Recording {
                 params,
                 threads,
                 arguments: None,
+                phase: self.phase,
             }));
         }
     }
@@ -105,6 +144,33 @@ impl Recording {
         if !words.is_empty() {
             self.commands.insert(0, Command::Write { buffer: arguments, words });
         }
+    }
+
+    /// Says what the next dispatches are for.
+    pub(crate) fn begin_phase(&mut self, phase: Phase) {
+        self.phase = Some(phase);
+    }
+
+    /// The stages that run, in their order.
+    pub fn dispatches(&self) -> impl Iterator<Item = DispatchView<'_>> {
+        self.commands.iter().filter_map(|command| match command {
+            Command::Dispatch(dispatch) => Some(DispatchView {
+                stage: dispatch.stage.name,
+                phase: dispatch.phase,
+                threads: dispatch.threads,
+                workgroup: dispatch.stage.workgroup,
+                buffers: &dispatch.buffers,
+                writes: dispatch.stage.bindings.iter().map(|access| *access == Access::Write).collect(),
+            }),
+            Command::Write { .. } => None,
+        })
+    }
+
+    /// Words that the host writes.
+    pub fn words_written(&self) -> usize {
+        let words =
+            |command: &Command| if let Command::Write { words, .. } = command { words.len() } else { 0 };
+        self.commands.iter().map(words).sum()
     }
 
     /// Number of stages that run.

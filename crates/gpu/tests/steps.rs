@@ -5,7 +5,7 @@ use bowknot_check::{Judge, PathOptions, StateOptions};
 use bowknot_geometry::{BodyFilter, CollisionModel, HalfSpace, PairKind, Point, Topology, Vector};
 use bowknot_gpu::{
     Adapter, Call, Candidate, Collision, CollisionError, ComparingEngine, Constraints, DeviceEngine, Engine,
-    Kind, Lengths, NONE, Settings, Stop, TwinEngine,
+    Kind, Lengths, NONE, Phase, PhaseSeconds, Settings, Stop, TwinEngine,
 };
 use bowknot_proximity::{PairList, ProximitySearch};
 
@@ -322,6 +322,31 @@ fn edges_stay_below_their_limits() {
     let hanging = f64::from(n - 1) * EDGE * STRETCH;
     assert!(worst < 1.02 * STRETCH, "{worst}");
     assert!(lowest < -0.99 * hanging && lowest > -1.02 * hanging, "{lowest} {hanging}");
+}
+
+#[test]
+fn phases_of_steps_are_measured_between_time_stamps() {
+    let scene = scene();
+    let mut random = fastrand::Rng::with_seed(5);
+    let target = target(&scene, &mut random);
+    let mut twins = collision(TwinEngine::new(), &scene, &Constraints::default());
+    assert_eq!(twins.take_phase_seconds(), None);
+    let mut collision = collision(device(), &scene, &Constraints::default());
+    collision.take_phase_seconds();
+    let timer = std::time::Instant::now();
+    collision.begin(&Call::toward(&target)).expect("a call");
+    for _ in 0..3 {
+        collision.step().expect("a step");
+    }
+    let most = timer.elapsed().as_secs_f64();
+    if !collision.engine().has_time_stamps() {
+        assert_eq!(collision.take_phase_seconds(), None);
+        return;
+    }
+    let seconds = collision.take_phase_seconds().expect("time stamps");
+    assert!(Phase::ALL.iter().all(|phase| seconds.of(*phase) > 0.0), "{seconds:?}");
+    assert!(seconds.total() <= most, "{seconds:?} in {most} s");
+    assert_eq!(collision.take_phase_seconds(), Some(PhaseSeconds::default()));
 }
 
 /// However many steps are submitted together. Some of them end their submission: a rule is met.

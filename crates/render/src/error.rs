@@ -34,6 +34,37 @@ pub enum RenderError {
         /// Largest side that the device can draw [pixels].
         largest: u32,
     },
+    /// The picture has more pixels than the device can hand over at once.
+    #[error(
+        "a picture of {width} x {height} pixels: {adapter} hands over {most} pixels at most; use a smaller --size, such as \
+         {}x{}",
+        .fits[0], .fits[1]
+    )]
+    TooManyPixels {
+        /// Width [pixels].
+        width: u32,
+        /// Height [pixels].
+        height: u32,
+        /// The device's name.
+        adapter: String,
+        /// Most pixels of a picture.
+        most: u64,
+        /// Sides of a picture of about the same shape that fits [pixels].
+        fits: [u32; 2],
+    },
+    /// The device has no memory for the picture.
+    #[error(
+        "a picture of {width} x {height} pixels: {adapter} has no memory for it; use a smaller --size, or a device with \
+         more memory"
+    )]
+    OutOfMemory {
+        /// Width [pixels].
+        width: u32,
+        /// Height [pixels].
+        height: u32,
+        /// The device's name.
+        adapter: String,
+    },
     /// A frame does not fit its model.
     #[error("{what} has {given} entries for {expected} vertices")]
     Length {

@@ -11,6 +11,7 @@ mod edge_limits;
 mod funnel;
 mod goals;
 mod gpu;
+mod gpu_prediction;
 mod impact_zones;
 mod joint;
 mod lengths;
@@ -58,5 +59,6 @@ pub const ALL: &[&dyn Figure] = &[
     &early_contact::EarlyContact,
     &goals::Goals,
     &gpu::Gpu,
+    &gpu_prediction::GpuPrediction,
     &stability::Stability,
 ];

@@ -5,7 +5,9 @@ use super::setup;
 use crate::simulator::{BackendError, CollisionBackend};
 use bowknot_check::{Judge, StateOptions};
 use bowknot_geometry::{PairKind, Point};
-use bowknot_gpu::{Call, Collision, ContactRow, End, Engine, Grid, Kind, StepReport, Stop};
+use bowknot_gpu::{
+    Call, Collision, ContactRow, End, Engine, Grid, Kind, Phase, PhaseSeconds, StepReport, Stop,
+};
 use bowknot_twoway::{
     AcceptedState, CallEnd, CallInput, CollisionScene, Observer, PairMultipliers, Residuals, ResolveInput,
     Resolver, StallDetector, Statistics, StopTest, max_stretch,
@@ -19,7 +21,8 @@ const SLIDES: f64 = 1.0 - 1e-5;
 /// Moves `positions` from an intersection-free state toward `target` on an engine, as [`Resolver::resolve_with`] does on
 /// the CPU. The state of the resolver becomes that of the call.
 ///
-/// Statistics that the device does not compute are 0: colors, complementarity, stages.
+/// Statistics that the device does not compute are 0: colors, complementarity, and the seconds by stage if it has no time
+/// stamps.
 ///
 /// # Errors
 /// [`GpuResolveError`]; `positions` are then unchanged.
@@ -48,6 +51,8 @@ pub struct Device<E> {
     home: Vec<Point>,
     /// Most steps that are submitted together.
     steps_per_submission: usize,
+    /// Seconds of the device in the last call, if it has time stamps.
+    device_seconds: Option<f64>,
 }
 
 /// Default of [`Device::set_steps_per_submission`].
@@ -79,6 +84,7 @@ impl<E: Engine + Debug + Send> Device<E> {
             prepared: None,
             home: Vec::new(),
             steps_per_submission: STEPS_PER_SUBMISSION,
+            device_seconds: None,
         }
     }
 
@@ -153,6 +159,8 @@ impl<E: Engine + Debug + Send> Device<E> {
         let ends =
             farthest_ends(scene, positions, target, stop.max_steps() as f64 * Collision::<E>::LONGEST_TRAVEL);
         let collision = self.prepare_call(scene, &call, input, positions, &ends)?;
+        // Those of a call that failed.
+        collision.take_phase_seconds();
         let start = place(collision, positions, &judge)?;
         let speed = scene.lengths().separation_speed;
         let growth = input.time_step.map_or(f64::INFINITY, |dt| speed * dt);
@@ -197,6 +205,7 @@ impl<E: Engine + Debug + Send> Device<E> {
                 first: Box::new(first),
             });
         }
+        let phases = collision.take_phase_seconds();
         let quantum = collision.grid().quantum();
         note_friction(&mut statistics, &rows);
         [statistics.max_step_stretch, statistics.max_stretch] =
@@ -210,6 +219,13 @@ impl<E: Engine + Debug + Send> Device<E> {
             statistics.prescribed_lag_m = 0.0;
         }
         positions.copy_from_slice(&end);
+        if let Some(phases) = phases {
+            statistics.seconds.search = phases.of(Phase::Search);
+            statistics.seconds.evaluate = phases.of(Phase::Evaluate);
+            statistics.seconds.backward = phases.of(Phase::Backward);
+            statistics.seconds.forward = phases.of(Phase::Forward);
+        }
+        self.device_seconds = phases.as_ref().map(PhaseSeconds::total);
         statistics.seconds.total = timer.elapsed().as_secs_f64();
         Ok(statistics)
     }
@@ -222,6 +238,10 @@ impl<E: Engine + Debug + Send> CollisionBackend for Device<E> {
 
     fn prepare(&mut self, scene: &CollisionScene, home: &[Point]) -> Result<(), BackendError> {
         Ok(self.set_home(scene, home)?)
+    }
+
+    fn device_seconds(&self) -> Option<f64> {
+        self.device_seconds
     }
 
     fn resolution(&self) -> f64 {

@@ -3,17 +3,20 @@
 //! The device takes the same two-way steps and stops by the same rule. Its sweeps go through rows and edges in another
 //! order, so that it may take other steps than the CPU. Positions lie on a grid, see [`bowknot_gpu::Grid`].
 //!
+//! [`Choice`] says whether a device is faster than the CPU in a scene.
 //! [`Device`] is a [backend](crate::simulator::CollisionBackend) of simulations; [`resolve_on`] solves a single problem.
 //! [`ConjugateGradients`] does the linear solves of the dynamics, which stay on the CPU otherwise
 //! ([`Simulator::set_linear_backend`](crate::Simulator::set_linear_backend)).
 
+mod choice;
 mod device;
 mod error;
 mod setup;
 
 pub use bowknot_gpu::{
-    Adapter, ComparingEngine, ConjugateGradients, DeviceEngine, Engine, GpuError, Profile, StageTime,
-    TwinEngine,
+    Adapter, BufferId, ComparingEngine, ConjugateGradients, DeviceEngine, DispatchView, Engine, GpuError,
+    Phase, Profile, Recording, StageTime, TwinEngine,
 };
+pub use choice::Choice;
 pub use device::{Device, resolve_on};
 pub use error::GpuResolveError;

@@ -1,5 +1,6 @@
 //! Whole runs: a scene in, a folder of frames and statistics out.
 
+mod backends;
 mod checker;
 mod checkpoint;
 mod differences;
@@ -14,16 +15,17 @@ mod summary;
 mod watch;
 mod writer;
 
+pub use backends::{BackendRecord, Backends};
 pub use checker::Checker;
 pub use export::{ExportOptions, Exported, export};
 pub use progress::{Progress, WithinStep};
 pub use summary::{EnergyNumbers, SecondsNumbers, SkippedNumbers, SlowStep, StepNumbers, Summary};
 pub use watch::{FailureWatch, SmallestState};
-pub use writer::RunWriter;
+pub use writer::{RunWriter, refuse_run};
 
 use crate::simulator::{
-    AcceptedStep, CollisionBackend, CollisionProblem, Cpu, SimulationError, SimulationObserver, Simulator,
-    WaitingElements, peak_memory_bytes,
+    AcceptedStep, CollisionProblem, SimulationError, SimulationObserver, Simulator, WaitingElements,
+    peak_memory_bytes,
 };
 use bowknot_io::{IoError, write_text};
 use bowknot_scene::Scene;
@@ -79,23 +81,24 @@ pub fn run(
     options: &RunOptions,
     progress: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Outcome, SimulationError> {
-    run_on(scene, options, Box::new(Cpu), progress)
+    run_on(scene, options, Backends::default(), progress)
 }
 
-/// As [`run`], with a backend for the collisions.
+/// As [`run`], with backends for the collisions and for the linear solves of the dynamics. [`BackendRecord::read`] tells
+/// which ones computed a folder so far: a resumption has the same bits with them only.
 ///
 /// # Errors
-/// As [`run`]; [`SimulationError::Backend`] if the backend does not have what the scene needs, or fails. The
+/// As [`run`]; [`SimulationError::Backend`] if a backend does not have what the scene needs, or fails. The
 /// checkpoint then holds the last state before it failed.
 pub fn run_on(
     scene: &Scene,
     options: &RunOptions,
-    backend: Box<dyn CollisionBackend>,
+    backends: Backends,
     progress: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Outcome, SimulationError> {
     let step = Cell::new(0);
     // What a panic leaves behind in memory is dropped, and files are written as a whole or not at all.
-    panic::catch_unwind(AssertUnwindSafe(|| run_steps(scene, options, backend, progress, &step)))
+    panic::catch_unwind(AssertUnwindSafe(|| run_steps(scene, options, backends, progress, &step)))
         .unwrap_or_else(|panic| {
             let message = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
             let message = message.or_else(|| panic.downcast_ref::<String>().cloned());
@@ -108,18 +111,21 @@ pub fn run_on(
 fn run_steps(
     scene: &Scene,
     options: &RunOptions,
-    backend: Box<dyn CollisionBackend>,
+    backends: Backends,
     progress: &mut dyn FnMut(&Progress<'_>) -> ControlFlow<()>,
     present: &Cell<usize>,
 ) -> Result<Outcome, SimulationError> {
     let mut simulator = Simulator::new(scene)?;
-    simulator.set_backend(backend)?;
+    let record = backends.record();
+    simulator.set_backend(backends.collisions)?;
+    simulator.set_linear_backend(backends.linear);
     simulator.check_motions(scene.simulation.frames)?;
     let mut writer = if options.resume {
         RunWriter::resume(&options.out, scene, &mut simulator)?
     } else {
         RunWriter::create(&options.out, scene, &simulator)?
     };
+    record.write(writer.folder())?;
     let info = simulator.world().info(scene.simulation.dt);
     let world = Arc::clone(simulator.world());
     let mut checker = options.check.then(|| Checker::new(&simulator));
@@ -185,7 +191,8 @@ fn run_steps(
         info,
         frames: totals.steps(),
         threads: rayon::current_num_threads(),
-        backend: simulator.backend().name(),
+        backend: record.collisions,
+        linear_backend: record.linear,
         mean: totals.mean().map_err(unwritable)?,
         max: totals.max().map_err(unwritable)?,
         min_gap_m: totals.min_gap(),

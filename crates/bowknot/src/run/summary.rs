@@ -1,5 +1,6 @@
 //! The summary of a run: `summary.json`.
 
+use super::backends::CPU;
 use crate::simulator::{StepStatistics, WaitingElements};
 use bowknot_scene::world::SceneInfo;
 use serde::{Deserialize, Serialize};
@@ -18,8 +19,11 @@ pub struct Summary {
     pub frames: usize,
     /// Threads at work.
     pub threads: usize,
-    /// "cpu".
+    /// What resolved the collisions: "cpu", or "gpu: " and the device.
     pub backend: String,
+    /// What did the linear solves of the dynamics, likewise.
+    #[serde(default = "cpu")]
+    pub linear_backend: String,
     /// Means over the time steps; none without a time step.
     pub mean: Option<StepNumbers>,
     /// Largest values over the time steps; none without a time step.
@@ -34,6 +38,11 @@ pub struct Summary {
     /// Intersections found in accepted states and on the paths between them; none if not checked.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub intersections: Option<usize>,
+}
+
+/// What did the linear solves of runs whose summary does not say it.
+fn cpu() -> String {
+    CPU.to_owned()
 }
 
 /// A slow time step.
@@ -105,6 +114,8 @@ pub struct EnergyNumbers {
 #[serde(default)]
 pub struct SecondsNumbers {
     pub backward: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub device: Option<f64>,
     pub dynamics: Option<f64>,
     pub evaluate: Option<f64>,
     pub forward: Option<f64>,

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! scene.toml                resolved scene
+//! backends.json             what computes the run, see `backends.rs`
 //! frames/000000.ply ..      one file per frame and format; other formats beside it, see `frames.rs`
 //! surface/000000.obj        what the meshes say about their faces, if they do
 //! stats.jsonl               one line per time step
@@ -35,8 +36,9 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// What tells that a folder holds a run.
-const PARTS: [&str; 10] = [
+const PARTS: [&str; 11] = [
     "scene.toml",
+    super::backends::FILE,
     "frames",
     "frames.npz",
     "frames.pvd",
@@ -288,7 +290,10 @@ impl RunWriter {
 }
 
 /// Refuses a folder that holds a run. Empty folders are what a run leaves that was killed at its very beginning.
-fn refuse_run(folder: &Path) -> Result<(), SimulationError> {
+///
+/// # Errors
+/// [`SimulationError::RunExists`].
+pub fn refuse_run(folder: &Path) -> Result<(), SimulationError> {
     let holds = |part: &&str| {
         let path = folder.join(part);
         match fs::read_dir(&path) {

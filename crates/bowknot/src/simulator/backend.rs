@@ -20,6 +20,12 @@ pub trait CollisionBackend: Debug + Send {
     /// How far positions may be off because the backend rounds them [m].
     fn resolution(&self) -> f64;
 
+    /// Seconds of the last call in which a device computed, by time stamps of its own: [`Statistics::seconds`] then has
+    /// them by stage. None for the CPU and where they are not measured.
+    fn device_seconds(&self) -> Option<f64> {
+        None
+    }
+
     /// As [`Resolver::resolve_with`]. It leaves the state of the resolver as such a call does.
     ///
     /// # Errors

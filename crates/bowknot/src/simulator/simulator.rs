@@ -387,6 +387,9 @@ impl Simulator {
                 return Err(SimulationError::Interrupted);
             }
             let resolved = resolved.map_err(|source| backend_error(world, step, source))?;
+            if let Some(seconds) = backend.device_seconds() {
+                *statistics.seconds.device.get_or_insert_default() += seconds;
+            }
             let cut = !last && !resolved.converged && resolved.steps >= MAX_INTERMEDIATE_STEPS;
             statistics.add_collision(&resolved, |body| world.name_of(body).to_owned());
             if !resolved.waits.is_empty() {

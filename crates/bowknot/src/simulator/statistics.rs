@@ -134,6 +134,10 @@ pub struct StepSeconds {
     pub backward: f64,
     /// Forward steps.
     pub forward: f64,
+    /// Those of `search`, `evaluate`, `backward` and `forward` in which a GPU computed, by its time stamps; none on the CPU
+    /// and on a GPU without time stamps, where all four are 0 and `other` has them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub device: Option<f64>,
     /// Everything else: observers such as `--check` and `--trace`, and the loop itself.
     pub other: f64,
 }

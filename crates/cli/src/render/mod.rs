@@ -29,7 +29,9 @@ const FITTED_FRAMES: usize = 24;
 impl From<RenderError> for Failure {
     fn from(error: RenderError) -> Self {
         match error {
-            RenderError::NoDriver { .. } | RenderError::Device { .. } => Self::backend(error),
+            RenderError::NoDriver { .. } | RenderError::Device { .. } | RenderError::OutOfMemory { .. } => {
+                Self::backend(error)
+            }
             _ => Self::input(error),
         }
     }

@@ -85,6 +85,18 @@ fn wrong_arguments_are_refused() {
     place.run("render run --out a.png").refused(2, &["frames/*.ply", "--format ply"]);
 }
 
+#[test]
+fn a_picture_that_is_too_large_says_which_would_fit() {
+    let place = Place::new();
+    place.run(&format!("{SMALL} --out run")).ok();
+    if !drawn(&place.run("render run --out small.png --size 64x48")) {
+        return;
+    }
+    let says = ["16384 x 16384 pixels", "pixels at most", "--size, such as 8192x8192"];
+    place.run("render run --out large.png --size 16384x16384").refused(2, &says);
+    assert!(!place.path("large.png").exists());
+}
+
 /// A layer of Mesa's drivers complains on stderr if it finds no Wayland display.
 #[cfg(target_os = "linux")]
 #[test]

@@ -1,4 +1,4 @@
-use crate::{Place, SMALL, tetrahedron};
+use crate::{Ended, Place, SMALL, tetrahedron};
 
 #[test]
 fn a_run_writes_its_folder() {
@@ -96,6 +96,16 @@ fn a_run_on_a_gpu_goes_on_from_its_checkpoint_there_and_on_the_cpu() {
     let backend = summary["backend"].as_str().unwrap();
     assert!(backend.starts_with("gpu: "), "{backend}");
     assert!(summary["max"]["contact_rows"].as_f64().unwrap() > 0.0, "{summary}");
+    for line in place.read("whole/stats.jsonl").lines() {
+        let line: serde_json::Value = serde_json::from_str(line).unwrap();
+        let seconds = |stage: &str| line["seconds"][stage].as_f64();
+        // Mesa's driver has time stamps.
+        let stages = ["search", "evaluate", "backward", "forward"].map(|stage| seconds(stage).unwrap());
+        assert!(stages.iter().all(|stage| *stage > 0.0), "{line}");
+        let device = seconds("device").unwrap();
+        assert!((stages.iter().sum::<f64>() - device).abs() < 1e-9 * device, "{line}");
+        assert!(device < seconds("total").unwrap() - seconds("dynamics").unwrap(), "{line}");
+    }
     run(7, "--backend gpu --out parts");
     let summary = run(12, "--backend gpu --out parts --resume");
     assert_eq!(summary["intersections"], 0);
@@ -103,7 +113,80 @@ fn a_run_on_a_gpu_goes_on_from_its_checkpoint_there_and_on_the_cpu() {
     let bytes = |run: &str| std::fs::read(place.path(&format!("{run}/{last}"))).unwrap();
     assert_eq!(bytes("whole"), bytes("parts"));
     let summary = run(14, "--backend cpu --out parts --resume");
+    let stats = place.read("parts/stats.jsonl");
+    let times: Vec<bool> = stats.lines().map(|line| line.contains("\"device\":")).collect();
+    assert_eq!(times, [[true; 12].as_slice(), &[false; 2]].concat());
     assert_eq!((&summary["backend"], &summary["intersections"]), (&"cpu".into(), &0.into()));
+}
+
+#[test]
+fn linear_solves_run_on_a_gpu_if_asked_and_say_so() {
+    let place = Place::new();
+    let run = |frames: u32, options: &str| {
+        let start = "--set body.0.velocity=[0,0,-4] --check --threads 1";
+        place.run(&format!("run drape --scale 0.2 --frames {frames} {start} {options}")).ok()
+    };
+    let on_gpu = |name: &serde_json::Value| name.as_str().unwrap().starts_with("gpu: ");
+    let summary = run(8, "--linear-backend gpu --backend gpu --json --out whole").json();
+    assert!(on_gpu(&summary["backend"]) && on_gpu(&summary["linear_backend"]), "{summary}");
+    assert!(summary["mean"]["cg_iterations"].as_f64().unwrap() > 0.0, "{summary}");
+    assert_eq!((&summary["mean"]["converged"], &summary["intersections"]), (&1.0.into(), &0.into()));
+    let ended = run(5, "--linear-backend gpu --backend gpu --out parts");
+    assert!(
+        ended.stderr.contains("collisions on gpu: ") && ended.stderr.contains(", linear solves on gpu: ")
+    );
+    run(8, "--linear-backend gpu --backend gpu --resume --out parts");
+    let bytes = |run: &str| std::fs::read(place.path(&format!("{run}/frames/000008.ply"))).unwrap();
+    assert_eq!(bytes("whole"), bytes("parts"));
+    let summary = run(3, "--linear-backend gpu --device 0 --json --out solves").json();
+    assert!(summary["backend"] == "cpu" && on_gpu(&summary["linear_backend"]), "{summary}");
+}
+
+/// Mesa's software driver is the only device where the tests run.
+#[test]
+fn the_backend_is_chosen_once_and_a_resumption_keeps_it() {
+    let place = Place::new();
+    let run = |frames: u32, options: &str| {
+        let start = "--set body.0.velocity=[0,0,-4] --threads 1";
+        place.run(&format!("run drape --scale 0.2 --frames {frames} {start} {options}"))
+    };
+    let record = |run: &str| -> serde_json::Value {
+        serde_json::from_str(&place.read(&format!("{run}/backends.json"))).unwrap()
+    };
+    let last =
+        |run: &str, frame: u32| std::fs::read(place.path(&format!("{run}/frames/{frame:06}.ply"))).unwrap();
+    let ended = run(9, "--backend auto --out auto").ok();
+    assert!(ended.stderr.contains("--backend auto: the CPU: "), "{ended:#?}");
+    assert_eq!(ended.stderr.lines().filter(|line| line.contains("--backend auto")).count(), 1, "{ended:#?}");
+    assert_eq!((&record("auto")["collisions"], &record("auto")["linear"]), (&"cpu".into(), &"cpu".into()));
+    assert!(record("auto")["why"].as_str().unwrap().starts_with("the CPU: "));
+    run(9, "--out plain").ok();
+    assert!(last("auto", 9) == last("plain", 9) && record("plain").get("why").is_none());
+    run(3, "--backend auto --out auto").refused(2, &["already holds a run"]);
+    run(3, "--backend auto --device 99 --out none").refused(3, &["no device 99"]);
+    let mut command = place.command("run drape --scale 0.2 --frames 1 --backend auto --out bare");
+    for variable in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
+        command.env(variable, "/nonexistent/driver.json");
+    }
+    let ended = Ended::new("without a driver", command.output().unwrap()).ok();
+    assert!(ended.stderr.contains("--backend auto: the CPU: no usable GPU was found"), "{ended:#?}");
+
+    // A resumption takes what computed the run before, whether `auto` is said again or not.
+    run(9, "--backend gpu --linear-backend gpu --out whole").ok();
+    run(6, "--backend gpu --linear-backend gpu --out parts").ok();
+    let device = record("parts");
+    assert!(device["collisions"].as_str().unwrap().starts_with("gpu: "), "{device}");
+    run(8, "--resume --out parts").ok();
+    run(9, "--resume --backend auto --out parts").ok();
+    assert_eq!(record("parts"), device);
+    assert!(last("whole", 9) == last("parts", 9));
+    let gone = device.to_string().replace("gpu: ", "gpu: Older ");
+    place.write("parts/backends.json", gone);
+    run(10, "--resume --out parts").refused(3, &["Older", "not here", "--backend cpu", "--device"]);
+    run(10, "--resume --backend cpu --linear-backend cpu --out parts").ok();
+    assert_eq!(record("parts")["collisions"], "cpu");
+    place.write("parts/backends.json", "{}");
+    run(11, "--resume --out parts").refused(2, &["backends.json", "collisions"]);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::Collision;
 use crate::cpu;
 use crate::engine::Engine;
 use crate::layout::Block;
-use crate::recording::Recording;
+use crate::recording::{Phase, Recording};
 use crate::stages;
 
 /// Longest travel of a vertex in a step, and smallest radius of a trust region, in local edge lengths.
@@ -16,6 +16,7 @@ impl<E: Engine> Collision<E> {
     /// can be left out.
     pub(super) fn record_step(&self, first: bool, dispatches: usize, recording: &mut Recording) {
         self.record_restart(first, recording);
+        recording.begin_phase(Phase::Backward);
         // If the step is made again, the aims are known.
         if !self.again {
             self.record_rows(recording);
@@ -71,6 +72,7 @@ impl<E: Engine> Collision<E> {
 
     /// How far each vertex wants to go, and which trust regions do not cover it.
     pub(super) fn record_paths(&self, recording: &mut Recording) {
+        recording.begin_phase(Phase::Forward);
         let (b, vertices) = (&self.buffers, self.sizes.vertices as u32);
         recording.dispatch(
             &stages::PLAN,
@@ -89,6 +91,7 @@ impl<E: Engine> Collision<E> {
 
     /// New trust regions where the paths need them.
     pub(super) fn record_cover(&self, recording: &mut Recording) {
+        recording.begin_phase(Phase::Search);
         let (b, vertices) = (&self.buffers, self.sizes.vertices as u32);
         recording.dispatch(
             &stages::COVER,
@@ -101,6 +104,7 @@ impl<E: Engine> Collision<E> {
     /// Contact geometry of all candidates at the present positions; after a search only if there was one, for nothing has
     /// moved since the geometry of the backward step.
     pub(super) fn record_geometry(&self, after_search: bool, recording: &mut Recording) {
+        recording.begin_phase(Phase::Evaluate);
         let (b, capacity) = (&self.buffers, self.buffers.capacity as u32);
         recording.dispatch(
             &stages::SEPARATE,
@@ -125,6 +129,7 @@ impl<E: Engine> Collision<E> {
 
     /// Step sizes, the move, and how far its end is from a solution.
     pub(super) fn record_forward(&self, recording: &mut Recording) {
+        recording.begin_phase(Phase::Forward);
         let (b, vertices, capacity) =
             (&self.buffers, self.sizes.vertices as u32, self.buffers.capacity as u32);
         recording.dispatch(

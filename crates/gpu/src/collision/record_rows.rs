@@ -4,7 +4,7 @@ use super::Collision;
 use crate::cpu;
 use crate::engine::Engine;
 use crate::layout::COLORS;
-use crate::recording::Recording;
+use crate::recording::{Phase, Recording};
 use crate::stages;
 
 /// Largest number of coarse corrections in a backward step, as on the CPU.
@@ -22,6 +22,7 @@ impl<E: Engine> Collision<E> {
             vertices,
         );
         self.record_geometry(false, recording);
+        recording.begin_phase(Phase::Backward);
         if self.settings.contacts_only {
             let [edges_first, triangles_first] = self.adjacency_starts;
             recording.dispatch(

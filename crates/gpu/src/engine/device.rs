@@ -1,5 +1,6 @@
 //! Runs recordings on a device.
 
+use super::phases::{PhaseClock, PhaseSeconds};
 use super::pipelines::{PARAMS_STRIDE, Pipelines};
 use super::profile::Profile;
 use super::traits::{Engine, SMALLEST_BUFFER};
@@ -18,8 +19,12 @@ pub struct DeviceEngine {
     pipelines: Pipelines,
     /// The parameters of the dispatches of a recording.
     params: wgpu::Buffer,
+    /// Size of the largest buffer [bytes].
+    largest_buffer: u64,
     /// Where the times of the stages go, if they are measured.
     profile: Option<Profile>,
+    /// Measures phases; None if the device has no time stamps.
+    clock: Option<PhaseClock>,
     /// What the driver reported since the last look: it does so from other threads.
     failure: Arc<Mutex<Option<Failure>>>,
 }
@@ -52,14 +57,18 @@ impl DeviceEngine {
             note(&shared, Failure::Lost(message));
         });
         let params = params_buffer(&device, 64);
+        let limits = device.limits();
+        let clock = PhaseClock::new(&device, &queue);
         Ok(Self {
             name,
+            largest_buffer: limits.max_buffer_size.min(limits.max_storage_buffer_binding_size),
             device,
             queue,
             buffers: Vec::new(),
             pipelines: Pipelines::default(),
             params,
             profile: None,
+            clock,
             failure,
         })
     }
@@ -77,6 +86,11 @@ impl DeviceEngine {
     /// Name of the adapter.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Refuses buffers of more than this many bytes, as a device of lower limits does: for tests of what happens then.
+    pub fn limit_buffers(&mut self, bytes: u64) {
+        self.largest_buffer = self.largest_buffer.min(bytes);
     }
 
     /// Ends the device as a reset or a removal would: for tests of what happens then.
@@ -122,9 +136,20 @@ impl DeviceEngine {
         pipelines.prepare(device, dispatch, params, |id| find(buffers, id));
     }
 
-    fn encode(&self, encoder: &mut wgpu::CommandEncoder, dispatches: &[(&Dispatch, u64)]) {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        self.encode_pass(&mut pass, dispatches);
+    /// Records the dispatches, with one pass per phase if phases are measured.
+    fn encode(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        dispatches: &[(&Dispatch, u64)],
+        clock: &mut Option<PhaseClock>,
+    ) {
+        let is_timed = clock.is_some();
+        for part in dispatches.chunk_by(|(a, _), (b, _)| !is_timed || a.phase == b.phase) {
+            let timestamp_writes = clock.as_mut().and_then(|clock| clock.stamps(part[0].0.phase));
+            let descriptor = wgpu::ComputePassDescriptor { label: None, timestamp_writes };
+            let mut pass = encoder.begin_compute_pass(&descriptor);
+            self.encode_pass(&mut pass, part);
+        }
     }
 
     /// Runs the dispatches, each in a pass of its own between two time stamps, and waits for them.
@@ -134,7 +159,7 @@ impl DeviceEngine {
                 if self.has_time_stamps() { self.time_stamps(part)? } else { vec![0; 2 * part.len()] };
             if !self.has_time_stamps() {
                 let mut encoder = self.encoder();
-                self.encode(&mut encoder, part);
+                self.encode(&mut encoder, part, &mut None);
                 self.queue.submit([encoder.finish()]);
             }
             let unit = 1e-9 * f64::from(self.queue.get_timestamp_period());
@@ -232,11 +257,9 @@ impl DeviceEngine {
 impl Engine for DeviceEngine {
     fn buffer(&mut self, label: &'static str, words: usize) -> Result<BufferId, GpuError> {
         let size = 4 * words.max(SMALLEST_BUFFER) as u64;
-        let limits = self.device.limits();
-        let largest = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
-        let out_of_memory = || GpuError::OutOfMemory { adapter: self.name.clone(), what: label, bytes: size };
-        if size > largest {
-            return Err(out_of_memory());
+        if size > self.largest_buffer {
+            let (adapter, most) = (self.name.clone(), self.largest_buffer);
+            return Err(GpuError::TooLarge { adapter, what: label, bytes: size, most });
         }
         let scope = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let usage = wgpu::BufferUsages::STORAGE
@@ -247,7 +270,7 @@ impl Engine for DeviceEngine {
             wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
         let buffer = self.device.create_buffer(&descriptor);
         if wait(scope.pop()).is_some() {
-            return Err(out_of_memory());
+            return Err(GpuError::OutOfMemory { adapter: self.name.clone(), what: label, bytes: size });
         }
         self.buffers.push(Some(buffer));
         Ok(BufferId(self.buffers.len() as u32 - 1))
@@ -278,6 +301,26 @@ impl Engine for DeviceEngine {
                 self.prepare(dispatch);
             }
         }
+        let mut clock = self.clock.take();
+        clock.iter_mut().for_each(PhaseClock::begin);
+        let result = self.submit(recording, read, &mut clock);
+        self.clock = clock;
+        result
+    }
+
+    fn take_phase_seconds(&mut self) -> Option<PhaseSeconds> {
+        self.clock.as_mut().map(PhaseClock::take)
+    }
+}
+
+impl DeviceEngine {
+    /// Submits a recording whose stages are compiled, and reads.
+    fn submit(
+        &self,
+        recording: &Recording,
+        read: &[(BufferId, usize)],
+        clock: &mut Option<PhaseClock>,
+    ) -> Result<Vec<Vec<u32>>, GpuError> {
         // Writes take place before the next submit: what was recorded before them is submitted first.
         let mut encoder = self.encoder();
         let mut waiting: Vec<(&Dispatch, u64)> = Vec::new();
@@ -292,7 +335,7 @@ impl Engine for DeviceEngine {
                     if !waiting.is_empty() {
                         match &self.profile {
                             Some(profile) => self.run_measured(&waiting, profile)?,
-                            None => self.encode(&mut encoder, &waiting),
+                            None => self.encode(&mut encoder, &waiting, clock),
                         }
                         waiting.clear();
                         self.queue.submit([encoder.finish()]);
@@ -305,22 +348,26 @@ impl Engine for DeviceEngine {
         match &self.profile {
             Some(profile) => self.run_measured(&waiting, profile)?,
             None if waiting.is_empty() => {}
-            None => self.encode(&mut encoder, &waiting),
+            None => self.encode(&mut encoder, &waiting, clock),
         }
         let words: usize = read.iter().map(|(_, words)| words).sum();
         if words == 0 {
             self.queue.submit([encoder.finish()]);
             return self.check().map(|()| read.iter().map(|_| Vec::new()).collect());
         }
+        let stamps = clock.as_ref().map_or(0, PhaseClock::bytes);
         let staging = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("read"),
-            size: 4 * words as u64,
+            size: 4 * words as u64 + stamps,
             usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
         self.encode_reads(&mut encoder, read, &staging);
+        clock.iter().for_each(|clock| clock.encode_read(&mut encoder, &staging, 4 * words as u64));
         self.queue.submit([encoder.finish()]);
-        let mut all = self.map(&staging)?.into_iter();
+        let all = self.map(&staging)?;
+        clock.iter_mut().for_each(|clock| clock.add(&all[words..]));
+        let mut all = all.into_iter();
         Ok(read.iter().map(|&(_, words)| all.by_ref().take(words).collect()).collect())
     }
 }

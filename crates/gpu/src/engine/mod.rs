@@ -2,6 +2,7 @@
 
 mod compare;
 mod device;
+mod phases;
 mod pipelines;
 mod profile;
 mod traits;
@@ -9,6 +10,7 @@ mod twin;
 
 pub use compare::{ComparingEngine, Difference};
 pub use device::DeviceEngine;
+pub use phases::PhaseSeconds;
 pub use profile::{Profile, StageTime};
 pub use traits::Engine;
 pub use twin::TwinEngine;

@@ -1,5 +1,6 @@
 //! What every engine does.
 
+use super::phases::PhaseSeconds;
 use crate::error::GpuError;
 use crate::recording::{BufferId, Recording};
 
@@ -11,7 +12,7 @@ pub trait Engine {
     /// Makes a buffer of at least `words` zeros.
     ///
     /// # Errors
-    /// [`GpuError::OutOfMemory`].
+    /// [`GpuError::TooLarge`], [`GpuError::OutOfMemory`].
     fn buffer(&mut self, label: &'static str, words: usize) -> Result<BufferId, GpuError>;
 
     /// Frees a buffer, which must not be used any more.
@@ -22,6 +23,11 @@ pub trait Engine {
 
     /// Number of words of a buffer.
     fn words(&self, buffer: BufferId) -> usize;
+
+    /// Seconds of the phases since the last call, between time stamps of a device; None if there are none.
+    fn take_phase_seconds(&mut self) -> Option<PhaseSeconds> {
+        None
+    }
 
     /// Runs a recording, then reads the first words of some buffers.
     ///

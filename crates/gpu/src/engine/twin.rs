@@ -3,6 +3,7 @@
 use super::traits::{Engine, SMALLEST_BUFFER};
 use crate::bound::Bound;
 use crate::error::GpuError;
+use crate::layout::NONE;
 use crate::recording::{BufferId, Command, Dispatch, Recording};
 use std::cell::{Ref, RefCell};
 
@@ -16,6 +17,13 @@ impl TwinEngine {
     /// Without buffers.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// Words of a buffer up to the last one that is neither zero nor [`NONE`]: what is in use of it, for counts of what
+    /// stages move.
+    pub fn words_in_use(&self, buffer: BufferId) -> usize {
+        let is_used = |word: &u32| ![0, NONE].contains(word);
+        self.content(buffer).iter().rposition(is_used).map_or(0, |last| last + 1)
     }
 
     pub(super) fn dispatch(&self, dispatch: &Dispatch) {

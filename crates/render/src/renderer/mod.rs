@@ -16,7 +16,7 @@ use crate::device::{Device, wait};
 use crate::model::Drawing;
 use crate::{Frame, Model, Picture, RenderError};
 use buffers::FrameBuffers;
-use targets::{ShadowMaps, Targets, depth_attachment};
+use targets::{ShadowMaps, Targets, depth_attachment, download_bytes};
 use uniforms::{Uniforms, VIEW_STRIDE, light_counts};
 
 /// Smallest side of a picture [pixels].
@@ -57,15 +57,34 @@ impl Renderer {
         if shot.size.iter().any(|side| !(MIN_SIZE..=largest).contains(side)) {
             return Err(RenderError::Size { width, height, largest });
         }
-        let factor = self.quality.supersampling.max(1).min(largest / width.max(height));
+        let most = self.device.device.limits().max_buffer_size;
+        let fits = |factor: u32| download_bytes([width, height].map(|side| side * factor)) <= most;
+        if !fits(1) {
+            let adapter = self.device.adapter_name.clone();
+            return Err(RenderError::TooManyPixels {
+                width,
+                height,
+                adapter,
+                most: most / 4,
+                fits: fitting(shot.size, most),
+            });
+        }
+        let finest = self.quality.supersampling.max(1).min(largest / width.max(height));
+        let factor = (1..=finest).rev().find(|&factor| fits(factor)).unwrap_or(1);
 
         // Without these scopes an error on the device would end the program.
         let device = self.device.device.clone();
         let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
         let drawn = self.draw(&drawing, shot, [width * factor, height * factor]);
-        let errors = [wait(validation.pop()), wait(memory.pop())];
-        if let Some(error) = errors.into_iter().flatten().next() {
+        let (invalid, no_memory) = (wait(validation.pop()), wait(memory.pop()));
+        if no_memory.is_some() {
+            // What has no memory behind it must not be used again.
+            (self.targets, self.shadows) = (None, None);
+            let adapter = self.device.adapter_name.clone();
+            return Err(RenderError::OutOfMemory { width, height, adapter });
+        }
+        if let Some(error) = invalid {
             return Err(self.device.error(error));
         }
         Ok(drawn?.shrink(factor))
@@ -93,6 +112,12 @@ impl Renderer {
         device.queue.submit([encoder.finish()]);
         targets.read(device)
     }
+}
+
+/// Sides of the shape of `size`, in whole 16 pixels, of which the device can hand over all pixels in `most` bytes.
+fn fitting(size: [u32; 2], most: u64) -> [u32; 2] {
+    let scale = (most as f64 / download_bytes(size) as f64).sqrt();
+    size.map(|side| ((f64::from(side) * scale) as u32 / 16 * 16).max(MIN_SIZE))
 }
 
 /// Records the pass that draws the shadow map of a light. `view` is the offset of its view in their buffer

@@ -62,7 +62,7 @@ impl Targets {
             resolved: texture(device, "picture", size, 1, 1, COLOR, copied),
             download: device.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("download"),
-                size: u64::from(row_bytes(size[0])) * u64::from(size[1]),
+                size: download_bytes(size),
                 usage: BufferUsages::MAP_READ | BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             }),
@@ -106,6 +106,11 @@ impl Targets {
         self.download.unmap();
         Ok(picture)
     }
+}
+
+/// Size of the buffer that brings a picture back [bytes].
+pub fn download_bytes([width, height]: [u32; 2]) -> u64 {
+    u64::from(row_bytes(width)) * u64::from(height)
 }
 
 /// Length of a row of pixels, rounded up to the alignment that copies demand [bytes].

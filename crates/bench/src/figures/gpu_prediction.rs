@@ -1,0 +1,278 @@
+//! What the two-way step would take on a large GPU, from the dispatches and the bytes of small scenes: a prediction.
+
+use super::table_2::{PaperScene, paper_scenes};
+use crate::bench::Bench;
+use crate::figure::{Figure, Part, Report};
+use crate::table::{Table, geometric_mean, short};
+use anyhow::{Context, Result};
+use bowknot::gpu::{BufferId, Device, Engine, GpuError, Recording, TwinEngine};
+use bowknot::{Scene, Simulator, World};
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+pub struct GpuPrediction;
+
+/// The device of the prediction: bytes per second of its memory, its multiprocessors, seconds from one dispatch to the
+/// next, seconds from a submission until the host has what it reads, bytes per second between host and device.
+const BANDWIDTH: f64 = 4.8e12;
+const MULTIPROCESSORS: f64 = 132.0;
+const DISPATCH: f64 = 3e-6;
+const SUBMISSION: f64 = 30e-6;
+const LINK: f64 = 50e9;
+
+/// Time steps that are counted.
+const FRAMES: usize = 3;
+
+impl Figure for GpuPrediction {
+    fn name(&self) -> &'static str {
+        "gpu-prediction"
+    }
+
+    fn title(&self) -> &'static str {
+        "Collisions on a GPU: a prediction"
+    }
+
+    fn question(&self) -> &'static str {
+        "A prediction, not a measurement. The CPU leads small scenes into contact; then the twins of the kernels make three \
+         time steps, and every dispatch is counted, with the bytes that are in use of the buffers that it binds. For a device of 4.8 TB/s and 132 \
+         multiprocessors, a dispatch takes 3 microseconds, plus its bytes at full speed, or at the share of the \
+         multiprocessors that it has workgroups for. Dispatches of one stage that follow each other with the same buffers \
+         (colors of a sweep, levels of a tree) share the bytes. A submission takes 30 microseconds, and what the host \
+         writes and reads goes at 50 GB/s. To the paper's size, bytes and threads grow with the number of vertices, and \
+         dispatches stay as many; stages of one workgroup keep one. Seconds per time step are those of as many two-way steps \
+         as the paper takes. Work of the host is left out, and so are cache misses, atomics and arithmetic."
+    }
+
+    fn run(&self, bench: &Bench) -> Result<Report> {
+        let mut table = Table::new([
+            "scene",
+            "vertices",
+            "counted_vertices",
+            "counted_rows",
+            "dispatches_per_step",
+            "of_one_workgroup",
+            "megabytes_per_step",
+            "least_ms_per_step",
+            "ms_per_step",
+            "paper_ms_per_step",
+            "paper_steps",
+            "predicted_s",
+            "paper_s",
+        ]);
+        let mut stages =
+            Table::new(["scene", "stage", "dispatches_per_step", "megabytes_per_step", "us_per_step"]);
+        let scenes = paper_scenes();
+        let count = bench.size.pick(scenes.len(), 3, 1);
+        let mut ratios = Vec::new();
+        for paper in &scenes[..count] {
+            if !bench.has_time() {
+                break;
+            }
+            let counts = Counts::of(paper, bench.size.pick(1.0, 0.7, 0.3))?;
+            let growth = counts.vertices as f64 / counts.counted_vertices as f64;
+            let steps = counts.steps as f64;
+            let step = counts.seconds(growth) / steps;
+            let least = counts.latency() / steps;
+            let [dispatches, single] = counts.dispatches().map(|count| count as f64 / steps);
+            let bytes: f64 = counts.groups.values().map(|group| group.bytes).sum();
+            println!("  {}: {:.3} ms per step", paper.scene, 1e3 * step);
+            ratios.push(step * paper.steps / paper.seconds);
+            table.row([
+                paper.scene.into(),
+                counts.vertices.into(),
+                counts.counted_vertices.into(),
+                counts.rows.into(),
+                dispatches.into(),
+                single.into(),
+                (1e-6 * growth * bytes / steps).into(),
+                (1e3 * least).into(),
+                (1e3 * step).into(),
+                (1e3 * paper.seconds / paper.steps).into(),
+                paper.steps.into(),
+                (step * paper.steps).into(),
+                paper.seconds.into(),
+            ]);
+            for (stage, [dispatches, bytes, seconds]) in counts.by_stage(growth) {
+                stages.row([
+                    paper.scene.into(),
+                    stage.into(),
+                    (dispatches / steps).into(),
+                    (1e-6 * bytes / steps).into(),
+                    (1e6 * seconds / steps).into(),
+                ]);
+            }
+        }
+        Ok(Report {
+            finding: format!(
+                "Predicted, not measured: {} times the paper's seconds, geometric mean over {} scenes, with as many steps as the \
+                 paper takes.",
+                short(geometric_mean(&ratios)),
+                ratios.len()
+            ),
+            parts: vec![
+                Part::table(self.name(), "predicted seconds of the collision stage on a large GPU", table),
+                Part::file("gpu-prediction-stages", "the same by stage of the two-way step", stages),
+            ],
+        })
+    }
+}
+
+/// Dispatches of one stage with the same number of workgroups.
+#[derive(Debug, Default)]
+struct Group {
+    dispatches: usize,
+    /// Bytes in use of the bound buffers.
+    bytes: f64,
+}
+
+/// What the calls of some time steps needed.
+#[derive(Debug, Default)]
+struct Counts {
+    /// By the stage and the mean number of workgroups of dispatches that share their bytes; 0 for stages of one workgroup.
+    groups: BTreeMap<(&'static str, usize), Group>,
+    /// Submissions that the host waits for.
+    submissions: usize,
+    /// Bytes between host and device.
+    link_bytes: f64,
+    steps: usize,
+    /// Most contact rows of a time step.
+    rows: usize,
+    counted_vertices: usize,
+    /// Vertices at the paper's size.
+    vertices: usize,
+}
+
+impl Counts {
+    /// Counts the first time steps of a scene at a share of its small scale.
+    fn of(paper: &PaperScene, share: f64) -> Result<Self> {
+        let counts = Arc::new(Mutex::new(Self::default()));
+        let scene = Scene::builtin(paper.scene, share * paper.scale)?;
+        let mut lead = Simulator::new(&scene)?;
+        for _ in 0..paper.frames {
+            lead.step()?;
+        }
+        let engine = CountingEngine { twin: TwinEngine::new(), counts: Arc::clone(&counts) };
+        let mut simulator = Simulator::new(&scene)?;
+        simulator.restore(&lead.checkpoint()).map_err(anyhow::Error::msg)?;
+        simulator.set_backend(Box::new(Device::new("twins".to_owned(), engine)))?;
+        let (mut steps, mut rows) = (0, 0);
+        for _ in 0..FRAMES {
+            let statistics = simulator.step()?;
+            steps += statistics.two_way_steps;
+            rows = rows.max(statistics.contact_rows);
+        }
+        let full = World::new(&Scene::builtin(paper.scene, 1.0)?)?;
+        let mut counts = std::mem::take(&mut *counts.lock().unwrap_or_else(PoisonError::into_inner));
+        (counts.steps, counts.rows) = (steps, rows);
+        counts.counted_vertices = simulator.world().collision_vertices();
+        counts.vertices = full.collision_vertices();
+        (steps > 0).then_some(counts).context("no two-way step was made")
+    }
+
+    fn add(&mut self, recording: &Recording, bytes_of: impl Fn(BufferId) -> f64, words_read: usize) {
+        let all: Vec<_> = recording.dispatches().collect();
+        for run in all.chunk_by(|a, b| a.stage == b.stage && a.buffers == b.buffers) {
+            let workgroups: usize = run.iter().map(|one| one.threads.div_ceil(one.workgroup)).sum();
+            let is_single = run.iter().all(|one| one.threads == 1);
+            let workgroups = if is_single { 0 } else { workgroups.div_ceil(run.len()) };
+            let group = self.groups.entry((run[0].stage, workgroups)).or_default();
+            group.dispatches += run.len();
+            group.bytes += run[0].buffers.iter().map(|&buffer| bytes_of(buffer)).sum::<f64>();
+        }
+        self.submissions += usize::from(words_read > 0);
+        self.link_bytes += 4.0 * (recording.words_written() + words_read) as f64;
+    }
+
+    /// Number of dispatches, and of those with one workgroup.
+    fn dispatches(&self) -> [usize; 2] {
+        let count = |only_single: bool| {
+            let groups = self.groups.iter().filter(|((_, workgroups), _)| !only_single || *workgroups == 0);
+            groups.map(|(_, group)| group.dispatches).sum()
+        };
+        [count(false), count(true)]
+    }
+
+    /// Seconds of dispatches and submissions alone.
+    fn latency(&self) -> f64 {
+        DISPATCH * self.dispatches()[0] as f64 + SUBMISSION * self.submissions as f64
+    }
+
+    /// Predicted seconds of a scene that is so many times as large.
+    fn seconds(&self, growth: f64) -> f64 {
+        let bytes: f64 =
+            self.groups.iter().map(|(key, group)| byte_seconds(key.1, group.bytes, growth)).sum();
+        self.latency() + bytes + growth * self.link_bytes / LINK
+    }
+
+    /// Dispatches, bytes and seconds of each stage.
+    fn by_stage(&self, growth: f64) -> BTreeMap<&'static str, [f64; 3]> {
+        let mut stages: BTreeMap<&'static str, [f64; 3]> = BTreeMap::new();
+        for ((stage, workgroups), group) in &self.groups {
+            let dispatches = group.dispatches as f64;
+            let seconds = DISPATCH * dispatches + byte_seconds(*workgroups, group.bytes, growth);
+            let sums = stages.entry(stage).or_default();
+            for (sum, more) in sums.iter_mut().zip([dispatches, growth * group.bytes, seconds]) {
+                *sum += more;
+            }
+        }
+        stages
+    }
+}
+
+/// Seconds in which a stage moves its bytes, at the share of the multiprocessors that its workgroups fill; 0 workgroups are
+/// one that stays one.
+fn byte_seconds(workgroups: usize, bytes: f64, growth: f64) -> f64 {
+    let filled = if workgroups == 0 { 1.0 } else { growth * workgroups as f64 };
+    growth * bytes / (BANDWIDTH * (filled / MULTIPROCESSORS).min(1.0))
+}
+
+/// The twins, and what they do.
+#[derive(Debug)]
+struct CountingEngine {
+    twin: TwinEngine,
+    counts: Arc<Mutex<Counts>>,
+}
+
+impl CountingEngine {
+    /// Zeros for the rows and their order, which a step makes anew: what an earlier step with more rows left there is not in
+    /// use.
+    fn without_old_rows(&self, recording: &Recording) -> Recording {
+        let mut zeros = Recording::default();
+        for dispatch in recording.dispatches() {
+            let made = match dispatch.stage {
+                "list" => dispatch.buffers[3],
+                "sort" => dispatch.buffers[2],
+                _ => continue,
+            };
+            zeros.write(made, &vec![0u32; self.twin.words_in_use(made)]);
+        }
+        zeros
+    }
+}
+
+impl Engine for CountingEngine {
+    fn buffer(&mut self, label: &'static str, words: usize) -> Result<BufferId, GpuError> {
+        self.twin.buffer(label, words)
+    }
+
+    fn free(&mut self, buffer: BufferId) {
+        self.twin.free(buffer);
+    }
+
+    fn clear(&mut self) {
+        self.twin.clear();
+    }
+
+    fn words(&self, buffer: BufferId) -> usize {
+        self.twin.words(buffer)
+    }
+
+    fn run(&mut self, recording: &Recording, read: &[(BufferId, usize)]) -> Result<Vec<Vec<u32>>, GpuError> {
+        self.twin.run(&self.without_old_rows(recording), &[])?;
+        let result = self.twin.run(recording, read)?;
+        let words_read = read.iter().map(|(_, words)| words).sum();
+        let mut counts = self.counts.lock().unwrap_or_else(PoisonError::into_inner);
+        counts.add(recording, |buffer| 4.0 * self.twin.words_in_use(buffer) as f64, words_read);
+        Ok(result)
+    }
+}
