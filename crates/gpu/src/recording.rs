@@ -61,6 +61,15 @@ impl Recording {
         }
     }
 
+    /// Number of words of 32 bits that are written to buffers.
+    pub fn words_written(&self) -> usize {
+        let words = |command: &Command| match command {
+            Command::Write { words, .. } => words.len(),
+            Command::Dispatch(_) => 0,
+        };
+        self.commands.iter().map(words).sum()
+    }
+
     /// Number of stages that run.
     pub fn dispatch_count(&self) -> usize {
         self.commands.iter().filter(|command| matches!(command, Command::Dispatch(_))).count()
