@@ -485,6 +485,31 @@ fn time_steps_are_as_accurate_as_with_matrices_in_double_precision() {
     }
 }
 
+/// Single precision and inexact solves do not move what nothing holds.
+#[test]
+fn linear_momentum_is_conserved_to_rounding() {
+    for case in cases() {
+        let mut params = DynamicsParams::default();
+        params.newton.cg_tolerance = 0.05;
+        let gravity = params.environment.gravity;
+        let model = DynamicsModel::new(case.rest.clone(), vec![case.body.clone()]).expect("a model");
+        let masses = model.masses().to_vec();
+        let mut dynamics = Dynamics::new(model, params).expect("parameters");
+        dynamics.set_linear_backend(Some(Box::new(Assembling::new(TwinEngine::new()))));
+        let random = &mut fastrand::Rng::with_seed(5);
+        let mut x = case.rest.clone();
+        let mut v: Vec<Vector> = x.iter().map(|_| random_vector(random)).collect();
+        let momentum = |v: &[Vector]| v.iter().zip(&masses).map(|(v, mass)| v * *mass).sum::<Vector>();
+        let free = vec![false; x.len()];
+        for _ in 0..3 {
+            let expected = momentum(&v) + gravity * (DT * masses.iter().sum::<f64>());
+            dynamics.solve_step(&mut x, &mut v, DT, &free, &case.rest, 2).expect("a step");
+            let apart = (momentum(&v) - expected).norm();
+            assert!(apart < 1e-11 * expected.norm(), "{}: {apart:e} of {:e}", case.name, expected.norm());
+        }
+    }
+}
+
 /// Damped solids are assembled by the CPU.
 #[test]
 fn elements_that_no_kernel_knows_are_left_to_the_cpu() {
