@@ -5,11 +5,15 @@
 //!
 //! `--ignored` counts iterations in larger scenes and prints a table; see `docs/GPU.md`.
 
-use bowknot::dynamics::{LinearBackend, LinearBackendError, LinearSystem};
+use bowknot::dynamics::{
+    Assembler, AssemblySprings, AssemblyState, ElementModel, LinearBackend, LinearBackendError, LinearSystem,
+    Matrix3,
+};
 use bowknot::geometry::{Point, Vector};
 use bowknot::gpu::{Adapter, ComparingEngine, ConjugateGradients, DeviceEngine, Engine, TwinEngine};
 use bowknot::run::{self, Backends, Progress, RunOptions};
 use bowknot::{Scene, SimulationError, Simulator};
+use bowknot_gpu::{BufferId, GpuError, Recording};
 use std::fmt::Debug;
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex};
@@ -48,6 +52,12 @@ struct Counts {
     rounds: usize,
     iterations: usize,
     differences: usize,
+    /// Matrices that the device has assembled.
+    assembled: usize,
+    /// Newton iterations: matrices that linear systems were solved for.
+    solved: usize,
+    words_written: usize,
+    words_read: usize,
 }
 
 /// An engine that says how many words of it differ from those of the twins.
@@ -55,9 +65,52 @@ trait Watched: Engine + Debug + Send {
     fn differences(&self) -> usize {
         0
     }
+
+    /// Words that were written to it and read from it.
+    fn words_moved(&self) -> (usize, usize) {
+        (0, 0)
+    }
 }
 
 impl Watched for TwinEngine {}
+
+/// The twins, and how much the host writes and reads.
+#[derive(Debug, Default)]
+struct Metered {
+    twins: TwinEngine,
+    written: usize,
+    read: usize,
+}
+
+impl Engine for Metered {
+    fn buffer(&mut self, label: &'static str, words: usize) -> Result<BufferId, GpuError> {
+        self.twins.buffer(label, words)
+    }
+
+    fn free(&mut self, buffer: BufferId) {
+        self.twins.free(buffer);
+    }
+
+    fn clear(&mut self) {
+        self.twins.clear();
+    }
+
+    fn words(&self, buffer: BufferId) -> usize {
+        self.twins.words(buffer)
+    }
+
+    fn run(&mut self, recording: &Recording, read: &[(BufferId, usize)]) -> Result<Vec<Vec<u32>>, GpuError> {
+        self.written += recording.words_written();
+        self.read += read.iter().map(|(_, words)| words).sum::<usize>();
+        self.twins.run(recording, read)
+    }
+}
+
+impl Watched for Metered {
+    fn words_moved(&self) -> (usize, usize) {
+        (self.written, self.read)
+    }
+}
 
 impl Watched for ComparingEngine {
     fn differences(&self) -> usize {
@@ -71,13 +124,22 @@ struct Counted<E> {
     inner: ConjugateGradients<E>,
     counts: Arc<Mutex<Counts>>,
     fails_at: Option<usize>,
+    /// Whether the device assembles the matrices.
+    assembles: bool,
 }
 
 impl<E: Watched> Counted<E> {
     fn new(engine: E, fails_at: Option<usize>) -> (Box<Self>, Arc<Mutex<Counts>>) {
         let counts: Arc<Mutex<Counts>> = Arc::default();
         let inner = ConjugateGradients::new("twins".to_owned(), engine);
-        (Box::new(Self { inner, counts: Arc::clone(&counts), fails_at }), counts)
+        (Box::new(Self { inner, counts: Arc::clone(&counts), fails_at, assembles: true }), counts)
+    }
+
+    /// Counts a matrix. Fails if it is time to.
+    fn count_system(&self) -> Result<(), LinearBackendError> {
+        let mut counts = self.counts.lock().expect("no panic");
+        counts.systems += 1;
+        if self.fails_at == Some(counts.systems) { Err("the device was lost".into()) } else { Ok(()) }
     }
 }
 
@@ -87,11 +149,8 @@ impl<E: Watched> LinearBackend for Counted<E> {
     }
 
     fn prepare(&mut self, system: &LinearSystem<'_>) -> Result<(), LinearBackendError> {
-        let mut counts = self.counts.lock().expect("no panic");
-        counts.systems += 1;
-        if self.fails_at == Some(counts.systems) {
-            return Err("the device was lost".into());
-        }
+        self.count_system()?;
+        self.counts.lock().expect("no panic").solved += 1;
         self.inner.prepare(system)
     }
 
@@ -111,7 +170,43 @@ impl<E: Watched> LinearBackend for Counted<E> {
         counts.rounds += 1;
         counts.iterations += iterations;
         counts.differences = self.inner.engine().differences();
+        (counts.words_written, counts.words_read) = self.inner.engine().words_moved();
         Ok(iterations)
+    }
+
+    fn assembler(&mut self) -> Option<&mut dyn Assembler> {
+        self.assembles.then_some(self)
+    }
+}
+
+impl<E: Watched> Assembler for Counted<E> {
+    fn set_model(&mut self, model: &ElementModel) -> Result<bool, LinearBackendError> {
+        self.inner.set_model(model)
+    }
+
+    fn assemble(&mut self, state: &AssemblyState<'_>) -> Result<(), LinearBackendError> {
+        self.count_system()?;
+        self.counts.lock().expect("no panic").assembled += 1;
+        self.inner.assemble(state)
+    }
+
+    fn diagonal(&mut self, blocks: &mut Vec<Matrix3<f64>>) -> Result<(), LinearBackendError> {
+        self.inner.diagonal(blocks)
+    }
+
+    fn precondition(&mut self, springs: &AssemblySprings<'_>) -> Result<(), LinearBackendError> {
+        self.counts.lock().expect("no panic").solved += 1;
+        self.inner.precondition(springs)
+    }
+
+    fn multiply(&mut self, x: &[Vector], y: &mut [Vector]) -> Result<(), LinearBackendError> {
+        self.inner.multiply(x, y)
+    }
+
+    fn apply_preconditioner(&mut self, r: &[Vector], z: &mut [Vector]) -> Result<(), LinearBackendError> {
+        // The residual of a time step, for which nothing is solved.
+        self.counts.lock().expect("no panic").solved -= 1;
+        self.inner.apply_preconditioner(r, z)
     }
 }
 
@@ -134,10 +229,21 @@ fn simulator((name, scale, sets, _): Case, more: &[&str]) -> Simulator {
     Simulator::new(&scene).expect("a simulator")
 }
 
-fn course(case: Case, more: &[&str], on_twins: bool) -> Course {
+/// What computes the dynamics.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Place {
+    Cpu,
+    /// Linear solves on the twins; the CPU assembles.
+    Solves,
+    /// The twins assemble, too.
+    Assembly,
+}
+
+fn course(case: Case, more: &[&str], place: Place) -> Course {
     let mut simulator = simulator(case, more);
-    let (backend, counts) = Counted::new(TwinEngine::new(), None);
-    if on_twins {
+    let (mut backend, counts) = Counted::new(Metered::default(), None);
+    backend.assembles = place == Place::Assembly;
+    if place != Place::Cpu {
         simulator.set_linear_backend(Some(backend));
     }
     let steps: Vec<_> = (0..case.3).map(|_| simulator.step().expect("a step")).collect();
@@ -161,26 +267,30 @@ fn apart(a: &Course, b: &Course, steps: usize) -> f64 {
 #[test]
 fn runs_with_solves_on_the_kernels_go_as_on_the_cpu() {
     for case in SMALL {
-        let cpu = course(case, &[], false);
-        let others = OTHERS.map(|set| course(case, &[set], false));
-        let twins = course(case, &[], true);
+        let cpu = course(case, &[], Place::Cpu);
+        let others = OTHERS.map(|set| course(case, &[set], Place::Cpu));
         let most = |steps: usize| others.iter().map(|other| apart(&cpu, other, steps)).fold(0.0, f64::max);
         // Two solutions of a time step may differ by the tolerance of the stopping rule each.
         let tolerance = 0.02 * cpu.edge;
         assert!(cpu.first_contact < case.3, "{}: the scene has not come to its contacts", case.0);
-        for steps in [cpu.first_contact, case.3] {
-            let (found, own) = (apart(&cpu, &twins, steps), most(steps));
-            assert!(
-                found < 1.5 * own + tolerance,
-                "{}, step {steps}: {found} m, the yardstick is {own} m",
-                case.0
-            );
+        for place in [Place::Solves, Place::Assembly] {
+            let twins = course(case, &[], place);
+            for steps in [cpu.first_contact, case.3] {
+                let (found, own) = (apart(&cpu, &twins, steps), most(steps));
+                assert!(
+                    found < 1.5 * own + tolerance,
+                    "{}, {place:?}, step {steps}: {found} m, the yardstick is {own} m",
+                    case.0
+                );
+            }
+            assert_eq!((cpu.converged, twins.converged), (case.3, case.3), "{}", case.0);
+            let ratio = twins.newton_iterations as f64 / cpu.newton_iterations as f64;
+            assert!((0.8..1.25).contains(&ratio), "{}: {ratio} times the Newton iterations", case.0);
+            let Counts { systems, rounds, assembled, .. } = twins.counts;
+            assert!(systems > 0 && rounds > 0, "{}: {:?}", case.0, twins.counts);
+            // Strands are assembled by the CPU.
+            assert_eq!(assembled > 0, place == Place::Assembly && case.0 != "hair", "{}", case.0);
         }
-        assert_eq!((cpu.converged, twins.converged), (case.3, case.3), "{}", case.0);
-        let ratio = twins.newton_iterations as f64 / cpu.newton_iterations as f64;
-        assert!((0.8..1.25).contains(&ratio), "{}: {ratio} times the Newton iterations", case.0);
-        let Counts { systems, rounds, .. } = twins.counts;
-        assert!(systems > 0 && rounds > 0, "{}: {:?}", case.0, twins.counts);
     }
 }
 
@@ -320,8 +430,8 @@ fn iterations_in_scenes() {
     );
     for case in LARGE {
         let jacobi = ["solver.newton.preconditioner=\"block-jacobi\""];
-        let [cpu, cpu_jacobi] = [course(case, &[], false), course(case, &jacobi, false)];
-        let [twins, twins_jacobi] = [course(case, &[], true), course(case, &jacobi, true)];
+        let [cpu, cpu_jacobi] = [course(case, &[], Place::Cpu), course(case, &jacobi, Place::Cpu)];
+        let [twins, twins_jacobi] = [&[][..], &jacobi[..]].map(|sets| course(case, sets, Place::Solves));
         println!(
             "| {} | {} | {} | {}, {} | {} | {} | {} | {} | {:.3}, {:.3}, {:.3} |",
             case.0,
@@ -337,5 +447,41 @@ fn iterations_in_scenes() {
             1e3 * apart(&cpu, &twins_jacobi, case.3),
             1e3 * apart(&cpu, &twins, case.3),
         );
+    }
+}
+
+/// The table of `docs/GPU.md` on assembly.
+#[test]
+#[ignore = "it takes minutes"]
+fn assembly_in_scenes() {
+    println!("Targets and linear iterations: CPU, CPU assembles, device assembles; the rest: the last two.");
+    println!("Bytes per node and Newton iteration.");
+    println!("| scene | preconditioner | targets | Newton | linear | written | read | mm |");
+    for case in LARGE.into_iter().filter(|case| case.0 != "hair" && case.1 < 1.0) {
+        for kind in ["two-level", "block-jacobi"] {
+            let set = format!("solver.newton.preconditioner=\"{kind}\"");
+            let runs = [Place::Cpu, Place::Solves, Place::Assembly].map(|place| course(case, &[&set], place));
+            let nodes = simulator(case, &[]).world().deformable_vertices;
+            let [cpu, solves, assembly] = &runs;
+            let per_node = |words: usize, run: &Course| 4 * words / (nodes * run.counts.solved.max(1));
+            println!(
+                "| {} | {kind} | {}, {}, {} | {}, {} | {}, {}, {} | {}, {} | {}, {} | {:.3}, {:.3} |",
+                case.0,
+                cpu.newton_iterations,
+                solves.newton_iterations,
+                assembly.newton_iterations,
+                solves.counts.solved,
+                assembly.counts.solved,
+                cpu.cg_iterations,
+                solves.cg_iterations,
+                assembly.cg_iterations,
+                per_node(solves.counts.words_written, solves),
+                per_node(assembly.counts.words_written, assembly),
+                per_node(solves.counts.words_read, solves),
+                per_node(assembly.counts.words_read, assembly),
+                1e3 * apart(cpu, solves, case.3),
+                1e3 * apart(cpu, assembly, case.3),
+            );
+        }
     }
 }

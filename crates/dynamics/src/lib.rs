@@ -52,7 +52,12 @@ pub use bowknot_errors::{Errors, ParamError, Parameters};
 pub use dynamics::{Dynamics, NewtonInfo, Residual, Touching};
 pub use error::{ModelError, StepError};
 pub use linear::accuracy::CgInfo;
-pub use linear::backend::{LinearBackend, LinearBackendError, LinearSystem, SparseRows};
+pub use linear::assembly::{
+    Assembler, AssemblySprings, AssemblyState, BendElement, ElementModel, MembraneElement, SolidKind,
+    TetrahedronElement,
+};
+pub use linear::backend::{LinearBackend, LinearSystem, SparseRows};
+pub use linear::failure::LinearBackendError;
 pub use linear::springs::LinearSpring;
 pub use material::{ClothMaterial, ParticleMaterial, RestShape, SolidMaterial, SolidModel, StrandMaterial};
 pub use model::DynamicsModel;

@@ -74,6 +74,11 @@ pub(crate) fn check_gradient<E: Element<N>, const N: usize>(
     let energy = element.energy(x, start);
     assert!((here.energy - energy).abs() <= 1e-13 * size, "{} {energy}", here.energy);
     let scale = dense(&here.hessian).abs().max();
+    // So do both that compute the gradient.
+    let largest = here.gradient.iter().map(Vector::amax).fold(1.0, f64::max);
+    for (one, other) in here.gradient.iter().zip(element.gradient(x, start)) {
+        assert!((one - other).amax() <= 1e-13 * largest.max(scale), "{one} {other}");
+    }
     for k in 0..3 * N {
         let (plus, minus) = (moved(x, k, h), moved(x, k, -h));
         let slope = (element.energy(&plus, start) - element.energy(&minus, start)) / (2.0 * h);

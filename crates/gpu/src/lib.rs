@@ -10,10 +10,11 @@
 //! | `adapter` | the devices of this machine |
 //! | `tree`, `model`, `edges`, `adjacency` | what the host prepares for a scene |
 //! | `collision` | steps toward a target that nothing passes through |
-//! | `linear` | linear solves of the dynamics |
+//! | `linear`, `assembly` | linear solves of the dynamics, and their matrices |
 
 mod adapter;
 mod adjacency;
+mod assembly;
 mod bound;
 mod collision;
 mod cpu;

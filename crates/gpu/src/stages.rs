@@ -5,11 +5,15 @@
 //! [`recording::MAX_WORKGROUPS`](crate::recording::MAX_WORKGROUPS) does all of the work; only `count` and `total`
 //! depend on the size of a workgroup, for they scan.
 
+mod assembly;
 mod linear;
 mod stage;
 
 use crate::cpu;
 
+pub(crate) use assembly::{
+    ASSEMBLE, BEND, COARSEN, COUPLE, DIAGONAL, DOMAIN, FRAME, INVERT, MEMBRANE, TETRAHEDRON,
+};
 pub(crate) use linear::{CLIMB, DESCEND, MULTIPLY, REACT, REDIRECT};
 pub(crate) use stage::{Access, Stage};
 
@@ -406,6 +410,16 @@ pub(crate) static ALL: &[&Stage] = &[
     &DESCEND,
     &CLIMB,
     &REDIRECT,
+    &MEMBRANE,
+    &BEND,
+    &TETRAHEDRON,
+    &ASSEMBLE,
+    &DIAGONAL,
+    &INVERT,
+    &FRAME,
+    &COUPLE,
+    &COARSEN,
+    &DOMAIN,
 ];
 
 #[cfg(test)]

@@ -74,6 +74,7 @@ impl Dynamics {
             guesses: [zero(), zero()],
             step: zero(),
             values: BlockValues::zeros(&model.pattern),
+            assembled: false,
             solver: match params.newton.preconditioner {
                 PreconditionerKind::BlockJacobi => LinearSolver::default(),
                 PreconditionerKind::TwoLevel => two_level(&model),
@@ -96,15 +97,18 @@ impl Dynamics {
         &self.params
     }
 
-    /// Lets a backend do the linear solves of Newton iterations in single precision from the next target on; None
-    /// for the CPU, as at first. The CPU refines them in double precision and solves alone where single precision
-    /// gains nothing. Residuals of time steps are measured on the CPU.
+    /// Lets a backend do the linear solves of Newton iterations in single precision from the next target on; None for
+    /// the CPU, as at first. The CPU refines them in double precision and solves alone where single precision gains
+    /// nothing. A backend that assembles matrices itself gets positions in place of matrices, and the residuals of
+    /// time steps are measured by its preconditioner.
     pub fn set_linear_backend(&mut self, backend: Option<Box<dyn LinearBackend>>) {
         let patches = match self.params.newton.preconditioner {
             PreconditionerKind::BlockJacobi => Vec::new(),
             PreconditionerKind::TwoLevel => self.model.leaves.clone(),
         };
-        self.work.solver.set_backend(backend, patches);
+        let model = &self.model;
+        self.work.solver.set_backend(backend, patches.clone(), || model.describe(patches));
+        self.work.cache.clear();
     }
 
     /// Takes away what does the linear solves in single precision: the CPU does them from now on.
@@ -177,7 +181,7 @@ impl Dynamics {
     /// vertices on which unknown forces act. All slices have one entry per vertex.
     ///
     /// # Errors
-    /// A length is wrong, an entry is not finite, or no step was begun.
+    /// A length is wrong, an entry is not finite, no step was begun, or the backend of linear solves has failed.
     pub fn residual(
         &mut self,
         x: &[Point],
@@ -196,7 +200,10 @@ impl Dynamics {
         let residual =
             rayon::scope(|_| Newton { model, params, repulsion, step: &mut step, work }.residual(&counted));
         self.step = Some(step);
-        Ok(residual)
+        match self.work.solver.take_failure() {
+            Some(message) => Err(StepError::LinearBackend { message }),
+            None => Ok(residual),
+        }
     }
 
     /// Starts a time step of `dt` [s] from positions `x0` [m] and velocities `v0` [m/s].
@@ -237,6 +244,7 @@ impl Dynamics {
             surfaces.fill(&self.params.environment, &step.start, &step.velocities, drag);
         }
         step.dt = dt;
+        step.row_sums.clear();
         step.last_target = None;
         self.work.min_scale = 0.0;
         self.work.solver.begin_step();

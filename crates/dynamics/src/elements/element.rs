@@ -1,6 +1,7 @@
 //! What an element is: a part of a body over a few nodes, with an energy and its derivatives.
 
 use super::filter::Filter;
+use crate::linear::assembly::ElementModel;
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
 
@@ -37,6 +38,12 @@ pub(crate) trait Element<const N: usize>: Send + Sync {
         start: Option<Start<'_, N>>,
         filter: Filter,
     ) -> Linearization<N>;
+
+    /// The gradient of [`Self::energy`] [N], up to rounding that of [`Self::linearize_in`].
+    fn gradient(&self, x: &[Vector; N], start: Option<Start<'_, N>>) -> [Vector; N];
+
+    /// Adds the element to a description of the model.
+    fn describe(&self, model: &mut ElementModel);
 
     /// [`Self::linearize_in`] with the frame at `x`.
     #[cfg(test)]

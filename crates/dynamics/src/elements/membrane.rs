@@ -106,6 +106,24 @@ pub(super) struct Curvatures {
     pub normal: Matrix2<f64>,
 }
 
+/// Gradient of a triangle from its `stress`, whose entry [i][j] is the component along u_i v_j^T.
+#[inline]
+pub(super) fn forces(
+    gradients: &[[f64; 2]; 3],
+    area: f64,
+    decomposition: &Decomposition,
+    stress: [[f64; 2]; 2],
+) -> [Vector; 3] {
+    let Decomposition { u: [u1, u2], v1: [cosine, sine], .. } = *decomposition;
+    let [[p11, p12], [p21, p22]] = stress;
+    let force = |[g0, g1]: [f64; 2]| {
+        let g = Vector2::new(cosine * g0 + sine * g1, cosine * g1 - sine * g0);
+        (u1 * (p11 * g.x + p12 * g.y) + u2 * (p21 * g.x + p22 * g.y)) * area
+    };
+    let [_, f1, f2] = gradients.map(force);
+    [-(f1 + f2), f1, f2]
+}
+
 /// Energy, gradient and Hessian of a triangle from an energy density, the `stress` (entry [i][j] is the
 /// component along u_i v_j^T) and the curvatures.
 #[inline]

@@ -8,6 +8,7 @@
 
 use super::element::{Element, Linearization, Start};
 use super::filter::Filter;
+use crate::linear::assembly::ElementModel;
 use crate::linear::block::BlockPattern;
 use crate::nodes::CHUNK;
 use bowknot_geometry::Vector;
@@ -55,6 +56,12 @@ pub(crate) trait AnyElementSet: Send + Sync {
     /// Adds gradient and Hessian of the elements that touch the chunk to its rows. Returns the energy [J] of
     /// the elements that the chunk owns.
     fn linearize(&self, chunk: usize, motion: Motion<'_>, filter: Filter, rows: &mut Rows<'_>) -> f64;
+
+    /// Adds the gradient of the elements that touch the chunk to that of its `nodes`.
+    fn add_gradient(&self, chunk: usize, motion: Motion<'_>, nodes: Range<usize>, gradient: &mut [Vector]);
+
+    /// Adds the elements to a description of the model.
+    fn describe(&self, model: &mut ElementModel);
 
     /// Number of elements.
     #[cfg(test)]
@@ -182,6 +189,26 @@ impl<E: Element<N>, const N: usize> AnyElementSet for ElementSet<E, N> {
             }
         }
         energy
+    }
+
+    fn add_gradient(&self, chunk: usize, motion: Motion<'_>, rows: Range<usize>, gradient: &mut [Vector]) {
+        for &index in self.chunk(chunk) {
+            let element = &self.elements[index as usize];
+            let nodes = element.nodes();
+            let x = nodes.map(|n| motion.x[n as usize]);
+            let x0 = nodes.map(|n| motion.start[n as usize]);
+            let start = Start { x: &x0, rate: motion.rate };
+            let part = element.gradient(&x, (motion.rate > 0.0).then_some(start));
+            for (node, force) in nodes.iter().zip(part) {
+                if rows.contains(&(*node as usize)) {
+                    gradient[*node as usize - rows.start] += force;
+                }
+            }
+        }
+    }
+
+    fn describe(&self, model: &mut ElementModel) {
+        self.elements.iter().for_each(|element| element.describe(model));
     }
 
     #[cfg(test)]

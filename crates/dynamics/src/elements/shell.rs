@@ -17,6 +17,7 @@ use super::bending::{Merged, for_each_stencil};
 use super::element::{Element, Linearization, Start};
 use super::filter::Filter;
 use super::membrane::{deformation, rest_gradients};
+use crate::linear::assembly::{BendElement, ElementModel};
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
 
@@ -83,6 +84,24 @@ impl<const N: usize> CurvedBend<N> {
         (residuals, [f1, f2, cross], scale)
     }
 
+    /// dr_e / dx_p from f1, f2, f1 x f2 and the factor between f1 x f2 and n.
+    #[inline]
+    fn derivatives(&self, [f1, f2, cross]: [Vector; 3], scale: f64) -> [[Matrix3<f64>; 3]; N] {
+        // With m = f1 x f2: dn = scale (I - m m^T / (m^2 + crushed^2)) (df1 x f2 + f1 x df2).
+        let along =
+            cross * cross.transpose() / (cross.norm_squared() + CRUSHED_AREA_RATIO * CRUSHED_AREA_RATIO);
+        let across = (Matrix3::identity() - along) * scale;
+        let (by_f1, by_f2) = (across * -f2.cross_matrix(), across * f1.cross_matrix());
+        std::array::from_fn(|p| {
+            let [g1, g2] = if p < 3 { self.gradients[p] } else { [0.0; 2] };
+            let turn = by_f1 * g1 + by_f2 * g2;
+            std::array::from_fn(|e| {
+                let [a, b, c] = self.rest[e];
+                Matrix3::from_diagonal_element(self.jumps[e][p] - a * g1 - b * g2) - turn * c
+            })
+        })
+    }
+
     /// The stresses G r of the residuals.
     #[inline]
     fn weighted<T: Copy + std::ops::Mul<f64, Output = T> + std::iter::Sum>(&self, r: &[T; 3]) -> [T; 3] {
@@ -111,22 +130,9 @@ impl<const N: usize> Element<N> for CurvedBend<N> {
         _start: Option<Start<'_, N>>,
         _filter: Filter,
     ) -> Linearization<N> {
-        let (r, [f1, f2, cross], scale) = self.residuals(x);
+        let (r, frame, scale) = self.residuals(x);
         let stress = self.weighted(&r);
-        // With m = f1 x f2: dn = scale (I - m m^T / (m^2 + crushed^2)) (df1 x f2 + f1 x df2).
-        let along =
-            cross * cross.transpose() / (cross.norm_squared() + CRUSHED_AREA_RATIO * CRUSHED_AREA_RATIO);
-        let across = (Matrix3::identity() - along) * scale;
-        let (by_f1, by_f2) = (across * -f2.cross_matrix(), across * f1.cross_matrix());
-        // dr_e / dx_p.
-        let derivative: [[Matrix3<f64>; 3]; N] = std::array::from_fn(|p| {
-            let [g1, g2] = if p < 3 { self.gradients[p] } else { [0.0; 2] };
-            let turn = by_f1 * g1 + by_f2 * g2;
-            std::array::from_fn(|e| {
-                let [a, b, c] = self.rest[e];
-                Matrix3::from_diagonal_element(self.jumps[e][p] - a * g1 - b * g2) - turn * c
-            })
-        });
+        let derivative = self.derivatives(frame, scale);
         let mut out = Linearization {
             energy: 0.5 * (0..3).map(|e| r[e].dot(&stress[e])).sum::<f64>(),
             gradient: [Vector::zeros(); N],
@@ -140,6 +146,25 @@ impl<const N: usize> Element<N> for CurvedBend<N> {
             }
         }
         out
+    }
+
+    fn gradient(&self, x: &[Vector; N], _start: Option<Start<'_, N>>) -> [Vector; N] {
+        let (r, frame, scale) = self.residuals(x);
+        let stress = self.weighted(&r);
+        let derivative = self.derivatives(frame, scale);
+        std::array::from_fn(|p| (0..3).map(|e| derivative[p][e].tr_mul(&stress[e])).sum())
+    }
+
+    fn describe(&self, model: &mut ElementModel) {
+        let [_, g1, g2] = self.gradients;
+        model.bends.push(BendElement {
+            nodes: std::array::from_fn(|p| self.nodes.get(p).copied().unwrap_or(u32::MAX)),
+            jumps: self.jumps.map(|jump| std::array::from_fn(|p| jump.get(p).copied().unwrap_or(0.0))),
+            gram: self.gram,
+            gradients: [g1, g2],
+            rest: self.rest,
+            crushed: CRUSHED_AREA_RATIO,
+        });
     }
 }
 

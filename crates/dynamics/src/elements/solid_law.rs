@@ -13,6 +13,7 @@
 //! For both laws below the quotients are polynomials, so that nothing is divided by a difference or a small
 //! number.
 
+use crate::linear::assembly::SolidKind;
 use crate::material::solid::SolidModel;
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
@@ -72,6 +73,32 @@ impl SolidLaw {
                 };
                 let half = 0.5 * trace;
                 0.375 * mu * first_order + 0.5 * mu * (half - libm::log1p(half)) + 0.5 * lambda * grow * grow
+            }
+        }
+    }
+
+    /// The law and its constants lambda and mu [Pa].
+    pub fn describe(&self) -> (SolidKind, [f64; 2]) {
+        match *self {
+            Self::Stvk { lambda, mu } => (SolidKind::Stvk, [lambda, mu]),
+            Self::StableNeoHookean { lambda, mu } => (SolidKind::StableNeoHookean, [lambda, mu]),
+        }
+    }
+
+    /// First Piola-Kirchhoff stress dW/dF [Pa]: F (2 mu E + lambda tr(E) I), or eq. 18 of Smith et al. 2018, mu (1 -
+    /// 1/(I + 1)) F + (lambda (J - 1) - 3/4 mu) dJ/dF.
+    #[inline]
+    pub fn stress(&self, f: &Matrix3<f64>) -> Matrix3<f64> {
+        let strain = green_strain(f);
+        match *self {
+            Self::Stvk { lambda, mu } => {
+                f * (strain * (2.0 * mu) + Matrix3::from_diagonal_element(lambda * strain.trace()))
+            }
+            Self::StableNeoHookean { lambda, mu } => {
+                let (a, b, c) = (f.column(0), f.column(1), f.column(2));
+                let cofactor = Matrix3::from_columns(&[b.cross(&c), c.cross(&a), a.cross(&b)]);
+                let invariant = f.norm_squared() + 1.0;
+                f * (mu * (1.0 - 1.0 / invariant)) + cofactor * (lambda * (f.determinant() - 1.0) - 0.75 * mu)
             }
         }
     }

@@ -21,6 +21,7 @@
 
 use super::element::{Element, Linearization, Start};
 use super::filter::Filter;
+use crate::linear::assembly::ElementModel;
 use crate::material::rest_shape::RestShape;
 use crate::material::strand::StrandMaterial;
 use bowknot_geometry::Vector;
@@ -109,6 +110,23 @@ impl Element<2> for StrandEdge {
         };
         out.hessian[0][1] = -block;
         out
+    }
+
+    fn gradient(&self, x: &[Vector; 2], start: Option<Start<'_, 2>>) -> [Vector; 2] {
+        let d = x[1] - x[0];
+        let stretch = d.norm() / self.length;
+        let along = if stretch > 0.0 { d / (stretch * self.length) } else { Vector::x() };
+        let mut force = stretch - 1.0;
+        if let Some(start) = start.filter(|_| self.damping > 0.0) {
+            let strain = self.strain_increment(&d, &(start.x[1] - start.x[0]));
+            force += self.damping * start.rate * strain * stretch;
+        }
+        let gradient = along * (self.stiffness * force);
+        [-gradient, gradient]
+    }
+
+    fn describe(&self, model: &mut ElementModel) {
+        model.strand_elements += 1;
     }
 }
 
@@ -208,6 +226,22 @@ impl Element<3> for StrandTurn {
             gradient: weights.map(|w| force * (w * self.stiffness)),
             hessian: weights.map(|wa| weights.map(|wb| block * (wa * wb))),
         }
+    }
+
+    fn gradient(&self, x: &[Vector; 3], start: Option<Start<'_, 3>>) -> [Vector; 3] {
+        let jump = self.jump(x);
+        let turning = jump.norm();
+        let along = if turning > 0.0 { jump / turning } else { Vector::zeros() };
+        let mut force = jump - along * self.rest;
+        if let Some(start) = start.filter(|_| self.damping > 0.0) {
+            force += (jump - self.jump(start.x)) * (self.damping * start.rate);
+        }
+        let [a, c] = self.inverse_lengths;
+        [a, -a - c, c].map(|w| force * (w * self.stiffness))
+    }
+
+    fn describe(&self, model: &mut ElementModel) {
+        model.strand_elements += 1;
     }
 }
 

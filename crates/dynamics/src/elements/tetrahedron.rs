@@ -13,6 +13,7 @@ use super::element::{Element, Linearization, Start};
 use super::filter::Filter;
 use super::solid_law::{Principal, SolidLaw};
 use super::svd::{Svd, signed_svds};
+use crate::linear::assembly::{ElementModel, TetrahedronElement};
 use crate::material::solid::SolidMaterial;
 use bowknot_geometry::Vector;
 use nalgebra::{Matrix3, SMatrix};
@@ -63,6 +64,13 @@ impl Tetrahedron {
         let (lambda, mu) = self.viscosity;
         let trace = strain.trace();
         rate * (mu * strain.norm_squared() + 0.5 * lambda * trace * trace)
+    }
+
+    /// Stress P = F S of damping for a strain increment over a step of length 1 / `rate`.
+    #[inline]
+    fn viscous_stress(&self, f: &Matrix3<f64>, strain: &Matrix3<f64>, rate: f64) -> Matrix3<f64> {
+        let (lambda, mu) = (self.viscosity.0 * rate, self.viscosity.1 * rate);
+        f * (strain * (2.0 * mu) + Matrix3::from_diagonal_element(lambda * strain.trace()))
     }
 
     /// Stress and filtered curvatures of elasticity and damping together. Index 3 i + j belongs to the
@@ -241,6 +249,30 @@ impl Element<4> for Tetrahedron {
             out.hessian[0][0] -= block;
         }
         out
+    }
+
+    fn gradient(&self, x: &[Vector; 4], start: Option<Start<'_, 4>>) -> [Vector; 4] {
+        let f = self.deformation(x);
+        let mut stress = self.law.stress(&f);
+        if let Some(start) = start.filter(|_| self.is_damped()) {
+            let strain = strain_increment(&f, &self.deformation(start.x));
+            stress += self.viscous_stress(&f, &strain, start.rate);
+        }
+        let forces = stress * self.gradients.transpose() * self.volume;
+        let force = |a: usize| forces.column(a).into_owned();
+        [-(force(0) + force(1) + force(2)), force(0), force(1), force(2)]
+    }
+
+    fn describe(&self, model: &mut ElementModel) {
+        let (kind, constants) = self.law.describe();
+        model.tetrahedra.push(TetrahedronElement {
+            nodes: self.nodes,
+            gradients: std::array::from_fn(|a| std::array::from_fn(|k| self.gradients[(a, k)])),
+            volume: self.volume,
+            kind,
+            constants,
+            viscosity: self.viscosity.1,
+        });
     }
 }
 

@@ -32,8 +32,9 @@ use super::element::{Element, Linearization, Start};
 use super::filter::Filter;
 use super::membrane::{
     Curvatures, Decomposition, MIN_SINGULAR_VALUE, assemble, decompose, deformation, filter_2, filter_4,
-    rest_gradients, strain_increment,
+    forces, rest_gradients, strain_increment,
 };
+use crate::linear::assembly::{ElementModel, MembraneElement};
 use bowknot_geometry::Vector;
 use nalgebra::{Matrix2, Matrix4};
 
@@ -110,6 +111,23 @@ impl Triangle {
         }
     }
 
+    /// Stress S = 2 mu dE + lambda tr(dE) I of damping, in the frame v1, v2.
+    #[inline]
+    fn viscous_stress(
+        &self,
+        decomposition: &Decomposition,
+        [e00, e11, shear]: [f64; 3],
+        factor: f64,
+    ) -> Matrix2<f64> {
+        let [c, s] = decomposition.v1;
+        let pressure = self.lambda * (e00 + e11);
+        let (s00, s11, s01) =
+            (2.0 * self.mu * e00 + pressure, 2.0 * self.mu * e11 + pressure, self.mu * shear);
+        let stress = Matrix2::new(s00, s01, s01, s11) * factor;
+        let turn = Matrix2::new(c, -s, s, c);
+        turn.transpose() * stress * turn
+    }
+
     /// Adds damping to the elastic part and filters the sum. Filtered separately, the two parts would not
     /// cancel each other where they should, and Newton's method would converge slowly.
     fn damped(
@@ -120,16 +138,9 @@ impl Triangle {
         factor: f64,
         filter: Filter,
     ) -> Matrix4<f64> {
-        let [e00, e11, shear] = strain;
-        let ([s1, s2], [c, s]) = (decomposition.s, decomposition.v1);
+        let [s1, s2] = decomposition.s;
         local.energy += factor * self.dissipation_density(strain);
-        // Stress S = 2 mu dE + lambda tr(dE) I, in the frame v1, v2.
-        let pressure = self.lambda * (e00 + e11);
-        let (s00, s11, s01) =
-            (2.0 * self.mu * e00 + pressure, 2.0 * self.mu * e11 + pressure, self.mu * shear);
-        let stress = Matrix2::new(s00, s01, s01, s11) * factor;
-        let turn = Matrix2::new(c, -s, s, c);
-        let stress = turn.transpose() * stress * turn;
+        let stress = self.viscous_stress(decomposition, strain, factor);
         // P = F S.
         local.stress[0][0] += s1 * stress[(0, 0)];
         local.stress[0][1] += s1 * stress[(0, 1)];
@@ -240,6 +251,37 @@ impl Element<3> for Triangle {
 
         let curvatures = Curvatures { plane, normal: local.normal };
         assemble(&self.gradients, self.area, &decomposition, local.energy, local.stress, &curvatures)
+    }
+
+    fn gradient(&self, x: &[Vector; 3], start: Option<Start<'_, 3>>) -> [Vector; 3] {
+        let f = self.deformation(x);
+        let decomposition = decompose(&f);
+        let [s1, s2] = decomposition.s;
+        let trace = self.lambda * (s1 + s2 - 2.0);
+        let elastic = |s: f64| 2.0 * self.mu * (s - 1.0) + trace;
+        let mut stress = [[elastic(s1), 0.0], [0.0, elastic(s2)]];
+        if let Some(start) = start.filter(|_| self.damping > 0.0) {
+            let strain = strain_increment(&f, &self.deformation(start.x));
+            let viscous = self.viscous_stress(&decomposition, strain, self.damping * start.rate);
+            // P = F S.
+            for (i, s) in [s1, s2].into_iter().enumerate() {
+                (0..2).for_each(|j| stress[i][j] += s * viscous[(i, j)]);
+            }
+        }
+        forces(&self.gradients, self.area, &decomposition, stress)
+    }
+
+    /// An isotropic law is that of a weave with these stiffnesses: mu |E|^2 + lambda/2 tr(E)^2.
+    fn describe(&self, model: &mut ElementModel) {
+        let [_, g1, g2] = self.gradients;
+        let axial = 2.0 * self.mu + self.lambda;
+        model.membranes.push(MembraneElement {
+            nodes: self.nodes,
+            gradients: [g1, g2],
+            area: self.area,
+            stiffness: [axial, self.lambda, axial, self.mu],
+            damping: self.damping,
+        });
     }
 }
 

@@ -23,8 +23,9 @@ use super::element::{Element, Linearization, Start};
 use super::filter::Filter;
 use super::membrane::{
     Curvatures, Decomposition, MIN_SINGULAR_VALUE, assemble, decompose, deformation, filter_2, filter_4,
-    rest_gradients, strain_increment,
+    forces, rest_gradients, strain_increment,
 };
+use crate::linear::assembly::{ElementModel, MembraneElement};
 use crate::material::cloth::ClothMaterial;
 use bowknot_geometry::Vector;
 use nalgebra::{Matrix2, Matrix3, Matrix3x4, Matrix4, RowVector4};
@@ -116,12 +117,33 @@ impl WovenTriangle {
         if sum > 0.0 { [(c11 + j) / sum - 1.0, (c22 + j) / sum - 1.0, c12 / sum] } else { [-1.0, -1.0, 0.0] }
     }
 
+    /// The same from the singular values and `frame` = V: U = V diag(s) V^T.
+    #[inline]
+    fn strain_in(frame: &Matrix2<f64>, [s1, s2]: [f64; 2]) -> [f64; 3] {
+        let strain = frame * Matrix2::new(s1 - 1.0, 0.0, 0.0, s2 - 1.0) * frame.transpose();
+        [strain[(0, 0)], strain[(1, 1)], strain[(0, 1)]]
+    }
+
     /// Increment of the Green strain (11, 22, 12).
     #[inline]
     fn increment(f: &[Vector; 2], f0: &[Vector; 2]) -> [f64; 3] {
         let [e11, e22, twice] = strain_increment(f, f0);
         [e11, e22, 0.5 * twice]
     }
+}
+
+/// The singular values over their sum.
+#[inline]
+fn shares([s1, s2]: [f64; 2]) -> [f64; 2] {
+    let sum = s1 + s2;
+    if sum > 0.0 { [s1 / sum, s2 / sum] } else { [0.5, 0.5] }
+}
+
+/// The stress along u_i v_j^T of the stress T in the frame v.
+#[inline]
+fn elastic_stress(t: &Matrix2<f64>, [r1, r2]: [f64; 2]) -> [[f64; 2]; 2] {
+    let (off1, off2) = (2.0 * t[(0, 1)] * r1, 2.0 * t[(0, 1)] * r2);
+    [[t[(0, 0)], off1], [off2, t[(1, 1)]]]
 }
 
 /// T : d2U over d11, d12, d21, d22 with the stress T in the frame v. The only divisor is s1 + s2.
@@ -185,15 +207,12 @@ impl Element<3> for WovenTriangle {
         let decomposition = decompose(&f);
         let Decomposition { s: [s1, s2], v1: [c, s], .. } = decomposition;
         let frame = Matrix2::new(c, -s, s, c);
-        // U = V diag(s) V^T.
-        let strain = frame * Matrix2::new(s1 - 1.0, 0.0, 0.0, s2 - 1.0) * frame.transpose();
-        let strain = [strain[(0, 0)], strain[(1, 1)], strain[(0, 1)]];
+        let strain = Self::strain_in(&frame, [s1, s2]);
         let mut energy = self.weave.density(strain);
         let t = frame.tr_mul(&self.weave.stress(strain)) * frame;
         let sum = s1 + s2;
-        let (r1, r2) = if sum > 0.0 { (s1 / sum, s2 / sum) } else { (0.5, 0.5) };
-        let (off1, off2) = (2.0 * t[(0, 1)] * r1, 2.0 * t[(0, 1)] * r2);
-        let mut stress = [[t[(0, 0)], off1], [off2, t[(1, 1)]]];
+        let [r1, r2] = shares([s1, s2]);
+        let mut stress = elastic_stress(&t, [r1, r2]);
 
         let turned = self.weave.turned([c, s]);
         let rows = |row: RowVector4<f64>, first: f64, last: f64| {
@@ -231,6 +250,36 @@ impl Element<3> for WovenTriangle {
         }
         let curvatures = Curvatures { plane: filter_4(plane, filter), normal: filter_2(normal, filter) };
         assemble(&self.gradients, self.area, &decomposition, energy, stress, &curvatures)
+    }
+
+    fn gradient(&self, x: &[Vector; 3], start: Option<Start<'_, 3>>) -> [Vector; 3] {
+        let f = deformation(&self.gradients, x);
+        let decomposition = decompose(&f);
+        let Decomposition { s, v1: [cosine, sine], .. } = decomposition;
+        let frame = Matrix2::new(cosine, -sine, sine, cosine);
+        let t = frame.tr_mul(&self.weave.stress(Self::strain_in(&frame, s))) * frame;
+        let mut stress = elastic_stress(&t, shares(s));
+        if let Some(start) = start.filter(|_| self.damping > 0.0) {
+            let increment = Self::increment(&f, &deformation(&self.gradients, start.x));
+            let viscous = frame.tr_mul(&self.weave.stress(increment)) * frame * (self.damping * start.rate);
+            // P = F S.
+            for (i, s) in s.into_iter().enumerate() {
+                (0..2).for_each(|j| stress[i][j] += s * viscous[(i, j)]);
+            }
+        }
+        forces(&self.gradients, self.area, &decomposition, stress)
+    }
+
+    fn describe(&self, model: &mut ElementModel) {
+        let [_, g1, g2] = self.gradients;
+        let Weave { c11, c12, c22, shear } = self.weave;
+        model.membranes.push(MembraneElement {
+            nodes: self.nodes,
+            gradients: [g1, g2],
+            area: self.area,
+            stiffness: [c11, c12, c22, shear],
+            damping: self.damping,
+        });
     }
 }
 

@@ -1,15 +1,13 @@
 //! Linear solves elsewhere than on the CPU: what a backend gets and does.
 
+use super::assembly::Assembler;
+use super::failure::LinearBackendError;
 use super::springs::LinearSpring;
 use super::system::System;
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
-use std::error::Error;
 use std::fmt::Debug;
 use std::ops::Range;
-
-/// Why a backend failed.
-pub type LinearBackendError = Box<dyn Error + Send + Sync>;
 
 /// Preconditioned conjugate gradients in single precision, for the linear systems of Newton iterations.
 ///
@@ -45,6 +43,11 @@ pub trait LinearBackend: Debug + Send {
         factor: f64,
         x: &mut [Vector],
     ) -> Result<usize, LinearBackendError>;
+
+    /// The backend as an assembler of matrices; None if it gets each matrix from the CPU by [`Self::prepare`].
+    fn assembler(&mut self) -> Option<&mut dyn Assembler> {
+        None
+    }
 }
 
 /// The matrix H of a Newton iteration over N nodes: symmetric, positive definite over the free nodes. Rows and

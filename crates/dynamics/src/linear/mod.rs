@@ -1,12 +1,14 @@
 //! The linear system of a Newton iteration: storage, products, preconditioners, conjugate gradients.
 
 pub(crate) mod accuracy;
+pub(crate) mod assembly;
 pub(crate) mod backend;
 pub(crate) mod block;
 pub(crate) mod cg;
 pub(crate) mod cholesky;
 pub(crate) mod coarse;
 pub(crate) mod direct;
+pub(crate) mod failure;
 pub(crate) mod lane;
 pub(crate) mod operator;
 pub(crate) mod ordering;

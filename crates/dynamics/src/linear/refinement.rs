@@ -1,10 +1,20 @@
 //! A linear solve by a backend in single precision, refined in double precision.
 
-use super::accuracy::{CgInfo, Limits, MARGIN, MIN_GAIN, subtract_product, unit_factor};
-use super::backend::{LinearBackend, LinearBackendError};
+use super::accuracy::{CgInfo, Limits, MARGIN, MIN_GAIN, unit_factor};
+use super::backend::LinearBackend;
+use super::failure::LinearBackendError;
 use super::system::System;
 use super::vectors::{add_scaled, dot};
 use bowknot_geometry::Vector;
+
+/// Where the matrix of a solve is.
+#[derive(Clone, Copy)]
+pub(super) enum Matrix<'a> {
+    /// On the CPU, in double precision; the backend was prepared for it.
+    Host(&'a System<'a>),
+    /// The backend has assembled it in single precision, for these free nodes.
+    Assembled(&'a [bool]),
+}
 
 /// The backend and the buffers of a refinement.
 #[derive(Debug)]
@@ -36,11 +46,11 @@ impl Refinement {
         Self { backend, guesses: Vec::new() }
     }
 
-    /// Solves H x = b, as [`super::solver::LinearSolver::solve`] does, for the system that the backend was
-    /// prepared for. `residual` becomes b - H x.
+    /// Solves H x = b, as [`super::solver::LinearSolver::solve`] does. `residual` becomes b - H x, in the precision
+    /// of the matrix.
     pub fn solve(
         &mut self,
-        system: &System<'_>,
+        matrix: Matrix<'_>,
         b: &[Vector],
         guesses: &[&[Vector]],
         limits: Limits,
@@ -59,10 +69,12 @@ impl Refinement {
         let goal = limits.tolerance * limits.tolerance * relative;
         let goal = goal.max(limits.own_tolerance * limits.own_tolerance * scale);
 
-        guesses.iter().enumerate().for_each(|(k, guess)| self.try_guess(k, system, guess, x, residual));
+        for (k, guess) in guesses.iter().enumerate() {
+            self.try_guess(k, matrix, guess, x, residual)?;
+        }
         let mut norm = scale;
         if !guesses.is_empty() {
-            subtract_product(system, x, b, residual);
+            self.subtract_product(matrix, x, b, residual)?;
             factor = unit_factor(residual);
             norm = self.backend.begin(residual, factor)? / (factor * factor);
         }
@@ -72,7 +84,7 @@ impl Refinement {
             let before = norm;
             let goal_here = MARGIN * MARGIN * goal * factor * factor;
             left -= self.backend.iterate(goal_here, left, 1.0 / factor, x)?.min(left);
-            subtract_product(system, x, b, residual);
+            self.subtract_product(matrix, x, b, residual)?;
             factor = unit_factor(residual);
             norm = self.backend.begin(residual, factor)? / (factor * factor);
             stalled = norm > goal && (norm > MIN_GAIN * MIN_GAIN * before || !norm.is_finite());
@@ -82,16 +94,28 @@ impl Refinement {
         Ok(Refined { info, scale, stalled })
     }
 
-    /// Moves x to the minimum of the energy along guess `k`, made conjugate to the guesses before, in double
-    /// precision.
+    /// Sets `residual` to b - H x.
+    fn subtract_product(
+        &mut self,
+        matrix: Matrix<'_>,
+        x: &[Vector],
+        b: &[Vector],
+        residual: &mut [Vector],
+    ) -> Result<(), LinearBackendError> {
+        multiply(&mut *self.backend, matrix, x, residual)?;
+        residual.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
+        Ok(())
+    }
+
+    /// Moves x to the minimum of the energy along guess `k`, made conjugate to the guesses before.
     fn try_guess(
         &mut self,
         k: usize,
-        system: &System<'_>,
+        matrix: Matrix<'_>,
         guess: &[Vector],
         x: &mut [Vector],
         residual: &mut [Vector],
-    ) {
+    ) -> Result<(), LinearBackendError> {
         if self.guesses.len() == k {
             self.guesses.push(Guess::default());
         }
@@ -100,7 +124,7 @@ impl Refinement {
         p.clear();
         p.extend_from_slice(guess);
         q.resize(p.len(), Vector::zeros());
-        *curvature = system.multiply(p, q);
+        *curvature = multiply(&mut *self.backend, matrix, p, q)?;
         for other in before.iter().filter(|other| is_positive(other.curvature)) {
             let share = -dot(p, &other.image) / other.curvature;
             add_scaled(p, share, &other.direction);
@@ -111,6 +135,26 @@ impl Refinement {
             let step = dot(p, residual) / *curvature;
             add_scaled(x, step, p);
             add_scaled(residual, -step, q);
+        }
+        Ok(())
+    }
+}
+
+/// Sets y = H x on free rows and 0 elsewhere; returns x . y.
+fn multiply(
+    backend: &mut dyn LinearBackend,
+    matrix: Matrix<'_>,
+    x: &[Vector],
+    y: &mut [Vector],
+) -> Result<f64, LinearBackendError> {
+    match matrix {
+        Matrix::Host(system) => Ok(system.multiply(x, y)),
+        Matrix::Assembled(free) => {
+            if let Some(assembler) = backend.assembler() {
+                assembler.multiply(x, y)?;
+            }
+            y.iter_mut().zip(free).filter(|(_, free)| !**free).for_each(|(y, _)| *y = Vector::zeros());
+            Ok(dot(x, y))
         }
     }
 }

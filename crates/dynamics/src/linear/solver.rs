@@ -7,14 +7,17 @@
 //! Algorithms", chapter 12). Where single precision gains nothing, the rest is done in double precision.
 
 use super::accuracy::{CgInfo, Limits, MARGIN, MIN_GAIN, subtract_product, unit_factor};
+use super::assembly::{Assembler, ElementModel};
 use super::backend::LinearBackend;
 use super::cg::Krylov;
 use super::coarse::Coarse;
 use super::direct::Direct;
+use super::failure::LinearBackendError;
 use super::preconditioner::Levels;
-use super::refinement::Refinement;
+use super::refinement::{Matrix, Refinement};
 use super::system::System;
 use bowknot_geometry::Vector;
+use nalgebra::Matrix3;
 use std::ops::Range;
 
 /// Solves systems and measures residuals.
@@ -28,6 +31,8 @@ pub(crate) struct LinearSolver {
     double: Krylov<f64>,
     /// Solves in place of `single`, with the patches of nodes for its preconditioner.
     backend: Option<(Refinement, Vec<Range<u32>>)>,
+    /// Whether the backend assembles the matrices of this model.
+    assembles: bool,
     /// Whether the backend is left out for the rest of the time step.
     on_cpu: bool,
     /// What the backend failed of.
@@ -50,10 +55,72 @@ impl LinearSolver {
         self.precise = self.levels.direct.is_some();
     }
 
-    /// Lets a backend solve in single precision; None for the CPU.
-    pub fn set_backend(&mut self, backend: Option<Box<dyn LinearBackend>>, patches: Vec<Range<u32>>) {
+    /// Lets a backend solve in single precision; None for the CPU. If it can, it assembles the matrices of the model,
+    /// too.
+    pub fn set_backend(
+        &mut self,
+        backend: Option<Box<dyn LinearBackend>>,
+        patches: Vec<Range<u32>>,
+        model: impl FnOnce() -> ElementModel,
+    ) {
         self.backend = backend.map(|backend| (Refinement::new(backend), patches));
         self.failure = None;
+        self.assembles = false;
+        let assembler = self.backend.as_mut().and_then(|(refinement, _)| refinement.backend.assembler());
+        let takes = assembler.map(|assembler| assembler.set_model(&model()));
+        match takes {
+            Some(Ok(takes)) => self.assembles = takes,
+            Some(Err(error)) => self.fail(&error),
+            None => {}
+        }
+    }
+
+    /// What assembles matrices, unless it is the CPU.
+    pub fn assembler(&mut self) -> Option<&mut dyn Assembler> {
+        let backend = self.backend.as_mut().filter(|_| self.assembles && !self.on_cpu);
+        backend.and_then(|(refinement, _)| refinement.backend.assembler())
+    }
+
+    /// Leaves the backend out for the rest of the time step, of which [`Self::take_failure`] tells.
+    pub fn fail(&mut self, error: &LinearBackendError) {
+        self.failure = Some(error.to_string());
+        self.on_cpu = true;
+    }
+
+    /// Solves as [`Self::solve`] does, with the matrix that the backend has assembled and preconditioned, in single
+    /// precision. Returns None if the CPU must solve: the backend has failed, or single precision gains nothing.
+    ///
+    /// `row_sums` are those of H without springs. [`Self::residual`] becomes b less the share of inertia and drag,
+    /// whose sum over a body that nothing holds is that of b - H x.
+    pub fn solve_assembled(
+        &mut self,
+        free: &[bool],
+        row_sums: &[Matrix3<f64>],
+        b: &[Vector],
+        guesses: &[&[Vector]],
+        limits: Limits,
+        x: &mut [Vector],
+    ) -> Option<CgInfo> {
+        let (refinement, _) = self.backend.as_mut().filter(|_| self.assembles && !self.on_cpu)?;
+        x.fill(Vector::zeros());
+        match refinement.solve(Matrix::Assembled(free), b, guesses, limits, x, &mut self.residual) {
+            Ok(refined) if !refined.stalled => {
+                self.scale = refined.scale;
+                for (((r, b), sum), x) in self.residual.iter_mut().zip(b).zip(row_sums).zip(&*x) {
+                    *r = b - sum * x;
+                }
+                Some(refined.info)
+            }
+            Ok(_) => {
+                tracing::debug!("single precision is not enough for the linear solves of a time step");
+                (self.on_cpu, self.precise) = (true, true);
+                None
+            }
+            Err(error) => {
+                self.fail(&error);
+                None
+            }
+        }
     }
 
     /// Takes the backend away, if there is one.
@@ -124,8 +191,9 @@ impl LinearSolver {
         if let Some((refinement, patches)) = self.backend.as_mut().filter(|_| !self.on_cpu) {
             x.fill(Vector::zeros());
             let prepared = refinement.backend.prepare(&system.for_backend(positions, patches));
-            let solved =
-                prepared.and_then(|()| refinement.solve(system, b, guesses, limits, x, &mut self.residual));
+            let solved = prepared.and_then(|()| {
+                refinement.solve(Matrix::Host(system), b, guesses, limits, x, &mut self.residual)
+            });
             match solved {
                 Ok(refined) if !refined.stalled => {
                     self.scale = refined.scale;
@@ -139,10 +207,7 @@ impl LinearSolver {
                     info.iterations += refined.info.iterations;
                     return info;
                 }
-                Err(error) => {
-                    self.failure = Some(error.to_string());
-                    self.on_cpu = true;
-                }
+                Err(error) => self.fail(&error),
             }
         }
         self.solve_on_cpu(system, positions, b, guesses, limits, x)

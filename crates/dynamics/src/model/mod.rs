@@ -8,6 +8,7 @@ pub(crate) mod measures;
 use crate::body::{Body, BodyShape};
 use crate::elements::set::{AnyElementSet, ElementKind};
 use crate::error::ModelError;
+use crate::linear::assembly::ElementModel;
 use crate::linear::block::BlockPattern;
 use crate::linear::ordering::order_nodes;
 use crate::linear::scalar::ScalarForm;
@@ -176,6 +177,24 @@ impl DynamicsModel {
     /// Whether each vertex belongs to an obstacle.
     pub fn obstacle(&self) -> &[bool] {
         &self.obstacle
+    }
+
+    /// The elements, for a backend that assembles matrices with these patches.
+    pub(crate) fn describe(&self, patches: Vec<Range<u32>>) -> ElementModel {
+        let split = self.bending.split(&self.pattern);
+        let (scalar_starts, scalar_columns, _) = split.off_rows();
+        let rest = self.node_vertex.iter().map(|&v| self.rest_positions[v as usize].coords);
+        let mut model = ElementModel {
+            rest: rest.collect(),
+            starts: self.pattern.starts.clone(),
+            columns: self.pattern.columns.clone(),
+            scalar_starts: scalar_starts.to_vec(),
+            scalar_columns: scalar_columns.to_vec(),
+            patches,
+            ..ElementModel::default()
+        };
+        self.element_sets.iter().for_each(|set| set.describe(&mut model));
+        model
     }
 
     /// The component that a node is in; for [`NO_NODE`] the number of components.

@@ -15,6 +15,10 @@ const UNORDERED: [(&str, usize); 3] = [("resume_colors", 3), ("color", 4), ("sor
 const RELATIVE: f32 = 1e-4;
 const ABSOLUTE: f32 = 4e-6;
 
+/// Stages that amplify rounding, and the relative difference of their numbers: inverses of matrices do by their
+/// condition number.
+const AMPLIFYING: [(&str, f32); 1] = [("domain", 0.05)];
+
 /// Integers above this can be coordinates, which may be rounded differently; the others are equal.
 const SMALLEST_COORDINATE: u32 = 1 << 16;
 
@@ -81,8 +85,11 @@ impl ComparingEngine {
             }
             corrections.write(*buffer, &twin);
             if !UNORDERED.contains(&(dispatch.stage.name, binding)) {
-                let differences = differing(&twin, device).map(|word| Difference {
-                    stage: dispatch.stage.name,
+                let name = dispatch.stage.name;
+                let amplifies = AMPLIFYING.iter().find(|(stage, _)| *stage == name);
+                let relative = amplifies.map_or(RELATIVE, |(_, relative)| *relative);
+                let differences = differing(&twin, device, relative).map(|word| Difference {
+                    stage: name,
                     dispatch: self.dispatches,
                     binding,
                     word,
@@ -138,24 +145,24 @@ impl Engine for ComparingEngine {
 }
 
 /// The words that differ by more than rounding.
-fn differing<'a>(twin: &'a [u32], device: &'a [u32]) -> impl Iterator<Item = usize> + 'a {
+fn differing<'a>(twin: &'a [u32], device: &'a [u32], relative: f32) -> impl Iterator<Item = usize> + 'a {
     let size = |word: &u32| {
         let number = f32::from_bits(*word).abs();
         // A bit pattern beyond all lengths is no length: a mark, or what is not a number.
         if number < 1e20 { number } else { 0.0 }
     };
     let largest = twin.iter().map(size).fold(0.0, f32::max);
-    (0..twin.len()).filter(move |&word| !agree(twin[word], device[word], largest))
+    (0..twin.len()).filter(move |&word| !agree(twin[word], device[word], largest, relative))
 }
 
-fn agree(a: u32, b: u32, largest: f32) -> bool {
+fn agree(a: u32, b: u32, largest: f32, relative: f32) -> bool {
     if a == b {
         return true;
     }
     let [x, y] = [a, b].map(f32::from_bits);
     // Small integers are tiny as floating-point numbers, and so are coordinates.
     if x.abs().max(y.abs()) > 1e-30 {
-        return (x - y).abs() <= RELATIVE * x.abs().max(y.abs()) + ABSOLUTE * largest;
+        return (x - y).abs() <= relative * x.abs().max(y.abs()) + relative / RELATIVE * ABSOLUTE * largest;
     }
     if x == y {
         // Zeros of both signs.
@@ -168,7 +175,11 @@ fn agree(a: u32, b: u32, largest: f32) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::agree;
+    use super::RELATIVE;
+
+    fn agree(a: u32, b: u32, largest: f32) -> bool {
+        super::agree(a, b, largest, RELATIVE)
+    }
 
     #[test]
     fn rounding_agrees_and_other_counts_do_not() {

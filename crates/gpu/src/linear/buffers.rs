@@ -1,7 +1,7 @@
 //! The buffers of a linear system on an engine.
 
 use super::galerkin::Multilevel;
-use super::layout::{Domain, MOST_LEVELS, Progress};
+use super::layout::{Domain, MOST_LEVELS, PATCH_SLOTS, PatchSlot, Progress};
 use super::matrix::PackedMatrix;
 use super::patches::Patches;
 use crate::cpu::sum::{MOST_WORKGROUPS, THREADS};
@@ -75,13 +75,13 @@ pub struct Pool {
 }
 
 impl Pool {
-    /// Writes the matrix and its preconditioner.
-    pub fn upload<E: Engine>(
+    /// Makes room for a matrix, and for a preconditioner of so many domains.
+    pub fn make<E: Engine>(
         &mut self,
         engine: &mut E,
         sizes: &Sizes,
         matrix: &PackedMatrix,
-        preconditioner: &Multilevel,
+        domains: usize,
     ) -> Result<Buffers, GpuError> {
         let before = self.buffers.take();
         let mut room = |label, of: fn(&Buffers) -> BufferId, words: usize| {
@@ -99,13 +99,13 @@ impl Pool {
             words: room("the matrix", |b| b.words, matrix.words.len())?,
             springs: room("springs", |b| b.springs, words(&matrix.springs))?,
             spring_words: room("springs of nodes", |b| b.spring_words, matrix.spring_words.len())?,
-            slots: room("slots of patches", |b| b.slots, words(&preconditioner.slots))?,
-            // A buffer that is bound holds one of its entries at least.
-            domains: room(
-                "domains",
-                |b| b.domains,
-                words(&preconditioner.domains).max(size_of::<Domain>() / 4),
+            slots: room(
+                "slots of patches",
+                |b| b.slots,
+                sizes.patches * PATCH_SLOTS * size_of::<PatchSlot>() / 4,
             )?,
+            // A buffer that is bound holds one of its entries at least.
+            domains: room("domains", |b| b.domains, domains.max(1) * size_of::<Domain>() / 4)?,
             reactions: room("reactions", |b| b.reactions, 4 * matrix.springs.len())?,
             direction: room("search direction", |b| b.direction, 4 * sizes.nodes)?,
             image: room("image", |b| b.image, 4 * sizes.nodes)?,
@@ -116,6 +116,18 @@ impl Pool {
             progress: room("progress", |b| b.progress, size_of::<Progress>() / 4)?,
         };
         self.buffers = Some(buffers);
+        Ok(buffers)
+    }
+
+    /// Writes a matrix and its preconditioner.
+    pub fn upload<E: Engine>(
+        &mut self,
+        engine: &mut E,
+        sizes: &Sizes,
+        matrix: &PackedMatrix,
+        preconditioner: &Multilevel,
+    ) -> Result<Buffers, GpuError> {
+        let buffers = self.make(engine, sizes, matrix, preconditioner.domains.len())?;
         let mut recording = Recording::default();
         recording.write(buffers.slices, &matrix.slices);
         recording.write(buffers.words, &matrix.words);

@@ -57,15 +57,28 @@ impl PackedMatrix {
             rest = others;
         }
         slices.into_par_iter().for_each(|(rows, slice, words)| fill_slice(system, rows, slice, words));
-        if !system.springs.is_empty() {
-            packed.springs = system.springs.iter().map(spring).collect();
-            let shift = nodes as u32 + 1;
-            packed.spring_words.extend(system.spring_starts.iter().map(|start| shift + 2 * start));
-            for &(spring, weight) in system.spring_entries {
-                packed.spring_words.extend([spring, (weight as f32).to_bits()]);
-            }
-        }
+        packed.set_springs(system.springs, system.spring_starts, system.spring_entries);
         packed
+    }
+
+    /// Packs springs in place of those before.
+    pub fn set_springs(&mut self, springs: &[LinearSpring], starts: &[u32], entries: &[(u32, f64)]) {
+        self.springs.clear();
+        self.spring_words.clear();
+        if springs.is_empty() {
+            return;
+        }
+        self.springs.extend(springs.iter().map(spring));
+        let shift = starts.len() as u32;
+        self.spring_words.extend(starts.iter().map(|start| shift + 2 * start));
+        for &(spring, weight) in entries {
+            self.spring_words.extend([spring, (weight as f32).to_bits()]);
+        }
+    }
+
+    /// The word of the column of block `k` of row `i`, which is in that slice.
+    pub fn block_at(&self, slice: [u32; 4], i: usize, k: u32) -> u32 {
+        slice[0] + BLOCK_WORDS as u32 * k * SLICE as u32 + (i % SLICE) as u32
     }
 }
 

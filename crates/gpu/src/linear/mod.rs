@@ -8,7 +8,10 @@
 //! | `buffers` | the buffers of a system |
 //! | `record` | the dispatches of an iteration |
 //! | `solver` | the backend of the dynamics |
+//! | `assembled`, `assembly` | the same with matrices that the device assembles |
 
+mod assembled;
+mod assembly;
 mod buffers;
 mod galerkin;
 mod inverse;
@@ -19,10 +22,12 @@ mod record;
 mod rigid;
 mod solver;
 
+pub(crate) use buffers::Buffers;
 pub(crate) use layout::{
     CHILDREN, DOMAIN_UNKNOWNS, Domain, MOST_LEVELS, PATCH_SLOTS, PatchSlot, Progress, Spring,
 };
-pub(crate) use matrix::{BLOCK_WORDS, SLICE};
+pub(crate) use matrix::{BLOCK_WORDS, PackedMatrix, SLICE};
+pub(crate) use patches::Patches;
 pub use solver::ConjugateGradients;
 
 #[cfg(test)]

@@ -4,7 +4,6 @@
 //! successive patches, eight times as many, and so on. Nodes alone in their patch, such as grains, get block-Jacobi only.
 
 use super::layout::{CHILDREN, PATCH_SLOTS};
-use bowknot_dynamics::LinearSystem;
 use bowknot_geometry::Vector;
 use std::ops::Range;
 
@@ -21,21 +20,18 @@ pub struct Patches {
 }
 
 impl Patches {
-    /// Divides the free nodes of a system.
-    pub fn new(system: &LinearSystem<'_>) -> Self {
+    /// Divides the `free` nodes at `positions`, range by range if `divided` is not empty.
+    pub fn new(free: &[bool], positions: &[Vector], divided: &[Range<u32>]) -> Self {
         let mut patches = Self::default();
         let mut alone: Vec<u32> = Vec::new();
-        let whole = 0..system.free.len() as u32;
-        let ranges: &[Range<u32>] =
-            if system.patches.is_empty() { std::slice::from_ref(&whole) } else { system.patches };
+        let whole = 0..free.len() as u32;
+        let ranges: &[Range<u32>] = if divided.is_empty() { std::slice::from_ref(&whole) } else { divided };
         for range in ranges {
-            let mut nodes: Vec<u32> = range.clone().filter(|&n| system.free[n as usize]).collect();
-            if system.patches.is_empty() || range.len() == 1 {
+            let mut nodes: Vec<u32> = range.clone().filter(|&n| free[n as usize]).collect();
+            if divided.is_empty() || range.len() == 1 {
                 alone.append(&mut nodes);
             } else {
-                bisect(&mut nodes, system.positions, PATCH_SLOTS, &mut |patch| {
-                    patches.add(patch, system.positions)
-                });
+                bisect(&mut nodes, positions, PATCH_SLOTS, &mut |patch| patches.add(patch, positions));
             }
         }
         patches.grouped = patches.slots.len() / PATCH_SLOTS;

@@ -23,8 +23,21 @@ impl Recorder {
         self.record_step(true, 1, 0.0, recording);
     }
 
+    /// H x, which goes where the image of the search direction lies.
+    pub fn record_product(&self, x: &[[f32; 4]], recording: &mut Recording) {
+        recording.write(self.buffers.direction, x);
+        recording.write(self.buffers.progress, &[Progress { moving: 1, iterations: 0 }]);
+        self.record_image(recording);
+    }
+
     /// Iteration `k` after the start: nothing is done if the squared norm is at most `goal` already.
     pub fn record_iteration(&self, k: usize, goal: f32, recording: &mut Recording) {
+        self.record_image(recording);
+        self.record_step(false, k % 2, goal, recording);
+    }
+
+    /// The image of the search direction.
+    fn record_image(&self, recording: &mut Recording) {
         let (b, s) = (&self.buffers, &self.sizes);
         recording.dispatch(
             &stages::REACT,
@@ -42,7 +55,6 @@ impl Recorder {
             },
             THREADS * s.multiplying(),
         );
-        self.record_step(false, k % 2, goal, recording);
     }
 
     /// Where the partial sums of squared norms are that the last of `iterations` wrote, in words, and their number.

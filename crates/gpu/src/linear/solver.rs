@@ -1,5 +1,6 @@
 //! Conjugate gradients on an engine, as a backend of the dynamics.
 
+use super::assembly::Assembly;
 use super::buffers::{Pool, Sizes};
 use super::galerkin::Multilevel;
 use super::layout::Progress;
@@ -9,7 +10,7 @@ use super::record::Recorder;
 use crate::engine::Engine;
 use crate::error::GpuError;
 use crate::recording::Recording;
-use bowknot_dynamics::{LinearBackend, LinearBackendError, LinearSystem};
+use bowknot_dynamics::{Assembler, LinearBackend, LinearBackendError, LinearSystem};
 use bowknot_geometry::Vector;
 use std::fmt::Debug;
 
@@ -25,17 +26,19 @@ const MAX_REDUCTION: f64 = 1e-10;
 #[derive(Debug)]
 pub struct ConjugateGradients<E> {
     name: String,
-    engine: E,
-    pool: Pool,
-    recorder: Option<Recorder>,
+    pub(super) engine: E,
+    pub(super) pool: Pool,
+    pub(super) recorder: Option<Recorder>,
     /// Squared norm at the start of the solve.
     norm: f64,
+    /// The elements of a model whose matrices are assembled here.
+    pub(super) assembly: Option<Assembly>,
 }
 
 impl<E: Engine> ConjugateGradients<E> {
     /// Solves on that engine, which nothing else may use.
     pub fn new(name: String, engine: E) -> Self {
-        Self { name, engine, pool: Pool::default(), recorder: None, norm: 0.0 }
+        Self { name, engine, pool: Pool::default(), recorder: None, norm: 0.0, assembly: None }
     }
 
     /// What runs the stages.
@@ -45,7 +48,10 @@ impl<E: Engine> ConjugateGradients<E> {
 
     fn upload(&mut self, system: &LinearSystem<'_>) -> Result<(), GpuError> {
         let matrix = PackedMatrix::new(system);
-        let patches = Patches::new(system);
+        let patches = Patches::new(system.free, system.positions, system.patches);
+        if let Some(assembly) = &mut self.assembly {
+            assembly.forget();
+        }
         let preconditioner = Multilevel::new(system, &patches);
         let sizes = Sizes::new(system.free.len(), &matrix, &patches);
         self.recorder = None;
@@ -93,6 +99,10 @@ impl<E: Engine + Debug + Send> LinearBackend for ConjugateGradients<E> {
 
     fn prepare(&mut self, system: &LinearSystem<'_>) -> Result<(), LinearBackendError> {
         Ok(self.upload(system)?)
+    }
+
+    fn assembler(&mut self) -> Option<&mut dyn Assembler> {
+        Some(self)
     }
 
     fn begin(&mut self, r: &[Vector], factor: f64) -> Result<f64, LinearBackendError> {

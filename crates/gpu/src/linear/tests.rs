@@ -83,6 +83,10 @@ fn random_systems_are_solved_as_by_dense_algebra() {
     }
 }
 
+fn patches_of(system: &LinearSystem<'_>) -> Patches {
+    Patches::new(system.free, system.positions, system.patches)
+}
+
 /// M r of the preconditioner: the columns of M are read from the squared norms of vectors, r . M r.
 fn preconditioner(system: &LinearSystem<'_>) -> DMatrix<f64> {
     let count = system.free.len();
@@ -151,7 +155,7 @@ fn the_preconditioner_is_the_sum_over_levels() {
     let shape = Shape { columns: 9, rows: 14, patch: 45, springs: 20, grains: 3, ..PLAIN };
     let owned = Owned::random(&shape, 11);
     let system = owned.system();
-    let patches = Patches::new(&system);
+    let patches = patches_of(&system);
     assert!(patches.grouped > 2 && patches.levels == [patches.grouped], "{patches:?}");
     let found = preconditioner(&system);
     let expected = preconditioner_by_definition(&system, &patches);
@@ -166,7 +170,7 @@ fn straight_strands_do_not_spin_about_themselves() {
     let shape = Shape { columns: 1, rows: 150, patch: 64, jitter: 1e-5, held: 0, ..PLAIN };
     let owned = Owned::random(&shape, 5);
     let system = owned.system();
-    let expected = preconditioner_by_definition(&system, &Patches::new(&system));
+    let expected = preconditioner_by_definition(&system, &patches_of(&system));
     let mut solver = solver(TwinEngine::new());
     solver.prepare(&system).expect("room");
     for seed in 0..5 {
@@ -183,7 +187,7 @@ fn patches_hold_each_free_node_once() {
     for (seed, shape) in SHAPES.iter().enumerate() {
         let owned = Owned::random(shape, seed as u64);
         let system = owned.system();
-        let patches = Patches::new(&system);
+        let patches = patches_of(&system);
         let mut seen: Vec<u32> = patches.slots.iter().flatten().copied().collect();
         seen.sort_unstable();
         let free: Vec<u32> = (0..system.free.len() as u32).filter(|n| system.free[*n as usize]).collect();

@@ -1,5 +1,5 @@
 use super::{ALL, Access};
-use crate::{cpu, layout, linear};
+use crate::{assembly, cpu, layout, linear};
 use naga::{AddressSpace, StorageAccess, TypeInner};
 
 /// Shaders are valid without a device, and their bindings, workgroups and structs are those of the table.
@@ -82,6 +82,20 @@ fn structs_of_linear_solves_lie_alike_on_both_sides() {
     // Parameters with an array, which a uniform buffer aligns to 16 bytes.
     let params = offsets!(cpu::redirect::Params: patches, grouped, start, workgroups, levels, norms, present, next, firsts);
     assert_structs(&module_of("redirect"), &[params]);
+}
+
+#[test]
+fn structs_of_assembly_lie_alike_on_both_sides() {
+    let structs = [
+        offsets!(assembly::Membrane: nodes, area, gradients, stiffness, damping, padding),
+        offsets!(assembly::Bend: nodes, jumps, gram, gradients, rest, crushed, padding),
+        offsets!(assembly::Tetrahedron: nodes, gradients, volume, lambda, mu, law, padding),
+        offsets!(assembly::ElementParams: elements, first_block, absolute, rate, quantum),
+    ];
+    assert_structs(&module_of("membrane"), &structs);
+    assert_structs(&module_of("frame"), &[offsets!(assembly::Frame: center, size, moment, held)]);
+    assert_structs(&module_of("coarsen"), &[offsets!(assembly::Part: block, a, b, both)]);
+    assert_structs(&module_of("assemble"), &[offsets!(assembly::Entry: at, first, count, bending)]);
 }
 
 /// Structs have the same size and the same places of fields here and in the shaders.

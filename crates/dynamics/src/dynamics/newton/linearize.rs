@@ -1,9 +1,11 @@
 //! Gradient and matrix of the incremental potential.
 
-use super::state::Newton;
+use super::state::{Newton, Step};
 use crate::elements::filter::Filter;
 use crate::elements::set::{Motion, Rows};
+use crate::model::DynamicsModel;
 use crate::nodes::CHUNK;
+use crate::params::DynamicsParams;
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
@@ -12,11 +14,19 @@ impl Newton<'_> {
     /// Computes the gradient and H at `work.x`. Springs that have not been prepared get their stiffness and
     /// the guess of the active set.
     pub fn linearize(&mut self) {
-        self.linearize_bodies();
-        let Self { model, repulsion, step, work, .. } = self;
-        if repulsion.is_empty() {
+        self.work.assembled = self.assemble();
+        if self.work.assembled {
+            self.differentiate_bodies();
+        } else {
+            self.linearize_bodies();
+        }
+        if self.repulsion.is_empty() {
             return;
         }
+        if self.step.unprepared && self.work.assembled && !self.read_diagonal() {
+            self.linearize_bodies();
+        }
+        let Self { model, repulsion, step, work, .. } = self;
         if std::mem::take(&mut step.unprepared) {
             let end = |n: usize, x: &Vector| if work.free[n] { *x } else { work.x[n] + work.imposed[n] };
             let placed = |x: &[Vector]| x.iter().enumerate().map(|(n, x)| end(n, x)).collect::<Vec<_>>();
@@ -26,8 +36,48 @@ impl Newton<'_> {
             repulsion.prepare(model, diagonal, 1.0 / step.dt, &work.free, &inertial, iterate.as_deref());
         }
         repulsion.linearize(&work.x);
-        let gradient = work.gradient.par_iter_mut().enumerate().with_min_len(CHUNK);
-        gradient.for_each(|(node, gradient)| *gradient += repulsion.linear().gradient(node));
+        self.add_springs();
+    }
+
+    /// Adds the linearized springs to the gradient.
+    fn add_springs(&mut self) {
+        let gradient = self.work.gradient.par_iter_mut().enumerate().with_min_len(CHUNK);
+        gradient.for_each(|(node, gradient)| *gradient += self.repulsion.linear().gradient(node));
+    }
+
+    /// Computes the matrix of the last linearization on the CPU, if it is on the backend.
+    pub fn linearize_on_cpu(&mut self) {
+        if std::mem::take(&mut self.work.assembled) {
+            self.linearize_bodies();
+            if !self.repulsion.is_empty() {
+                self.add_springs();
+            }
+        }
+    }
+
+    /// Computes the gradient at `work.x` without springs.
+    pub fn differentiate_bodies(&mut self) {
+        let Self { model, params, step, work, .. } = self;
+        let cache = &mut work.cache;
+        if cache.linearized_at == work.x {
+            work.gradient.copy_from_slice(&cache.gradient);
+            return;
+        }
+        let motion = Motion { x: &work.x, start: &step.start, rate: 1.0 / step.dt };
+        work.gradient.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, gradient)| {
+            let first = chunk * CHUNK;
+            for (row, gradient) in gradient.iter_mut().enumerate() {
+                *gradient = node_gradient(model, params, step, motion, first + row);
+            }
+            let nodes = first..first + gradient.len();
+            for set in &model.element_sets {
+                set.add_gradient(chunk, motion, nodes.clone(), gradient);
+            }
+        });
+        cache.linearized_at.clone_from(&work.x);
+        cache.filter = None;
+        cache.has_matrix = false;
+        cache.gradient.clone_from(&work.gradient);
     }
 
     /// Computes the gradient and H at `work.x` without springs.
@@ -36,7 +86,7 @@ impl Newton<'_> {
         let motion = Motion { x: &work.x, start: &step.start, rate: 1.0 / step.dt };
         let filter = Filter::new(params.newton.hessian_filter, step.last_target.is_none());
         let cache = &mut work.cache;
-        if cache.linearized_at == work.x && cache.filter == Some(filter) {
+        if cache.linearized_at == work.x && cache.filter == Some(filter) && cache.has_matrix {
             work.gradient.copy_from_slice(&cache.gradient);
             return;
         }
@@ -62,20 +112,12 @@ impl Newton<'_> {
             }
             for (row, node) in rows.nodes.clone().enumerate() {
                 let mass = model.node_masses[node];
-                let (x, start) = (motion.x[node], motion.start[node]);
                 rows.diagonal[row] =
                     Matrix3::from_diagonal_element(mass * (inertia + drag) + step.scalar.diagonal[node]);
-                rows.gradient[row] = (x - step.inertial[node]) * (mass * inertia)
-                    + (x - start) * (mass * drag)
-                    + model.bending.product(node, motion.x);
-                if let Some(damping) = &model.bending_damping {
-                    rows.gradient[row] +=
-                        (damping.product(node, motion.x) - damping.product(node, motion.start)) * motion.rate;
-                }
                 if let Some(drag) = &step.drag {
                     rows.diagonal[row] += drag.matrix[node] * motion.rate;
-                    rows.gradient[row] += drag.matrix[node] * (x - start) * motion.rate - drag.push[node];
                 }
+                rows.gradient[row] = node_gradient(model, params, step, motion, node);
             }
             for set in &model.element_sets {
                 set.linearize(chunk, motion, filter, &mut rows);
@@ -83,6 +125,32 @@ impl Newton<'_> {
         });
         cache.linearized_at.clone_from(&work.x);
         cache.filter = Some(filter);
+        cache.has_matrix = true;
         cache.gradient.clone_from(&work.gradient);
     }
+}
+
+/// The gradient of inertia, drag and flat bending by a node [N].
+#[inline]
+fn node_gradient(
+    model: &DynamicsModel,
+    params: &DynamicsParams,
+    step: &Step,
+    motion: Motion<'_>,
+    node: usize,
+) -> Vector {
+    let inertia = 1.0 / (step.dt * step.dt);
+    let drag = params.environment.air_drag / step.dt;
+    let mass = model.node_masses[node];
+    let (x, start) = (motion.x[node], motion.start[node]);
+    let mut gradient = (x - step.inertial[node]) * (mass * inertia)
+        + (x - start) * (mass * drag)
+        + model.bending.product(node, motion.x);
+    if let Some(damping) = &model.bending_damping {
+        gradient += (damping.product(node, motion.x) - damping.product(node, motion.start)) * motion.rate;
+    }
+    if let Some(drag) = &step.drag {
+        gradient += drag.matrix[node] * (x - start) * motion.rate - drag.push[node];
+    }
+    gradient
 }

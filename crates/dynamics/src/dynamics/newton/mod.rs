@@ -3,7 +3,7 @@
 //! | file | holds |
 //! |---|---|
 //! | [`state`] | what an iteration works on: [`state::Step`], [`state::Workspace`], [`state::Newton`] |
-//! | [`linearize`] | gradient and matrix |
+//! | [`linearize`], [`assemble`] | gradient and matrix, on the CPU or by a backend |
 //! | [`potential`] | the incremental potential |
 //! | [`line_search`] | backtracking along a Newton step |
 //! | [`momentum`] | exact linear momentum in spite of inexact linear solves |
@@ -12,6 +12,7 @@
 //! | [`solve`], [`contacts`] | the sequence of iterations to a target, without and with contacts |
 //! | [`residual`] | forces out of balance |
 
+mod assemble;
 mod contacts;
 mod corrections;
 mod iteration;

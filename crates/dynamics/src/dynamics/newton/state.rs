@@ -10,6 +10,7 @@ use crate::model::DynamicsModel;
 use crate::params::DynamicsParams;
 use crate::repulsion::springs::Repulsion;
 use bowknot_geometry::{Point, Vector};
+use nalgebra::Matrix3;
 
 /// The current time step.
 #[derive(Debug, Default)]
@@ -27,6 +28,8 @@ pub struct Step {
     pub last_target: Option<Vec<Vector>>,
     /// Bending plus its damping / dt, as a matrix.
     pub scalar: SplitForm,
+    /// Sums of the rows of H without springs: inertia and drag [N/m]. Empty until a backend assembles.
+    pub row_sums: Vec<Matrix3<f64>>,
     /// Potential without springs that no target may exceed by more than springs have stored: that at the
     /// first iterate of the step [J].
     pub max_potential: Option<f64>,
@@ -53,6 +56,8 @@ pub struct Workspace {
     /// The Newton step.
     pub step: Vec<Vector>,
     pub values: BlockValues,
+    /// Whether the matrix of the last linearization is on the backend, and not in `values`.
+    pub assembled: bool,
     pub solver: LinearSolver,
     /// See [`crate::linear::accuracy::Limits::min_scale`]: that of the first solve of the time step; 0 before.
     pub min_scale: f64,
@@ -69,6 +74,8 @@ pub struct EvaluationCache {
     pub linearized_at: Vec<Vector>,
     pub filter: Option<Filter>,
     pub gradient: Vec<Vector>,
+    /// Whether the matrix on the CPU was computed there, too.
+    pub has_matrix: bool,
 }
 
 impl EvaluationCache {
@@ -92,6 +99,13 @@ impl Workspace {
     pub fn start_from_trial(&mut self) {
         self.x.copy_from_slice(&self.trial);
         self.imposed.fill(Vector::zeros());
+    }
+}
+
+/// Makes the right-hand side b = -(g + H p) over free nodes of H p and the gradient g.
+pub fn negate_forces(b: &mut [Vector], gradient: &[Vector], free: &[bool]) {
+    for ((b, g), &free) in b.iter_mut().zip(gradient).zip(free) {
+        *b = if free { -(*b + g) } else { Vector::zeros() };
     }
 }
 

@@ -1,0 +1,170 @@
+//! Matrices that a backend assembles itself: what it gets of the model and of a state, and what it must do.
+
+use super::failure::LinearBackendError;
+use super::springs::LinearSpring;
+use bowknot_geometry::Vector;
+use nalgebra::Matrix3;
+use std::fmt::Debug;
+use std::ops::Range;
+
+/// Assembles the matrices of Newton iterations in single precision, in place of the CPU.
+///
+/// The CPU keeps the gradient and the energies in double precision. A step with an approximate matrix and the exact
+/// gradient is a quasi-Newton step: the solution is as accurate, only the way to it may differ.
+///
+/// For each matrix the caller asks first for [`Self::assemble`], then for [`Self::diagonal`] if it needs that, then for
+/// [`Self::precondition`]. Products and solves follow.
+pub trait Assembler: Debug + Send {
+    /// Takes over what is fixed during a run. Returns whether the backend can assemble matrices of this model; if
+    /// not, the CPU does.
+    ///
+    /// # Errors
+    /// What the backend fails of, such as a lack of memory.
+    fn set_model(&mut self, model: &ElementModel) -> Result<bool, LinearBackendError>;
+
+    /// Assembles the matrix of the bodies, without springs.
+    ///
+    /// # Errors
+    /// What the backend fails of.
+    fn assemble(&mut self, state: &AssemblyState<'_>) -> Result<(), LinearBackendError>;
+
+    /// Sets `blocks` to the diagonal blocks of the matrix without springs [N/m].
+    ///
+    /// # Errors
+    /// What the backend fails of.
+    fn diagonal(&mut self, blocks: &mut Vec<Matrix3<f64>>) -> Result<(), LinearBackendError>;
+
+    /// Adds springs to the matrix and makes the preconditioner.
+    ///
+    /// # Errors
+    /// What the backend fails of.
+    fn precondition(&mut self, springs: &AssemblySprings<'_>) -> Result<(), LinearBackendError>;
+
+    /// Sets `y` to H x; only rows of free nodes count [N].
+    ///
+    /// # Errors
+    /// What the backend fails of.
+    fn multiply(&mut self, x: &[Vector], y: &mut [Vector]) -> Result<(), LinearBackendError>;
+
+    /// Sets `z` to M r, with the preconditioner M; both are zero at nodes that are not free.
+    ///
+    /// # Errors
+    /// What the backend fails of.
+    fn apply_preconditioner(&mut self, r: &[Vector], z: &mut [Vector]) -> Result<(), LinearBackendError>;
+}
+
+/// What is fixed during a run: the elements of all bodies over nodes, and which pairs of nodes they join.
+#[derive(Clone, Debug, Default)]
+pub struct ElementModel {
+    /// Positions of the nodes at rest [m].
+    pub rest: Vec<Vector>,
+    /// Row i joins node i with the nodes `columns[starts[i]..starts[i + 1]]`, ascending.
+    pub starts: Vec<u32>,
+    /// See [`Self::starts`].
+    pub columns: Vec<u32>,
+    /// The same of pairs that flat bending alone joins.
+    pub scalar_starts: Vec<u32>,
+    /// See [`Self::scalar_starts`].
+    pub scalar_columns: Vec<u32>,
+    /// Ranges of nodes that are compact patches of one body each; empty if block-Jacobi was asked for.
+    pub patches: Vec<Range<u32>>,
+    /// Triangles of cloth.
+    pub membranes: Vec<MembraneElement>,
+    /// Bending of cloth that is curved at rest.
+    pub bends: Vec<BendElement>,
+    /// Tetrahedra of solids.
+    pub tetrahedra: Vec<TetrahedronElement>,
+    /// Number of elements of strands.
+    pub strand_elements: usize,
+}
+
+/// A triangle of constant strain E = U - I with F = R U; its energy per area is c11/2 E11^2 + c12 E11 E22 + c22/2
+/// E22^2 + 2 shear E12^2.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MembraneElement {
+    /// The nodes.
+    pub nodes: [u32; 3],
+    /// Gradients of the shape functions of nodes 1 and 2 in the rest plane [1/m].
+    pub gradients: [[f64; 2]; 2],
+    /// Rest area [m^2].
+    pub area: f64,
+    /// c11, c12, c22 and shear [N/m].
+    pub stiffness: [f64; 4],
+    /// Damping time [s]: the same energy of the increment of Green's strain, times this and 1 / dt.
+    pub damping: f64,
+}
+
+/// Bending around a triangle: energy 1/2 sum_ef g_ef r_e . r_f with r_e = sum_p k_ep x_p - a_e f1 - b_e f2 - c_e n.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BendElement {
+    /// The nodes, the corners of the triangle first; `u32::MAX` for places without a node.
+    pub nodes: [u32; 6],
+    /// The weights k by edge [1].
+    pub jumps: [[f64; 6]; 3],
+    /// The matrix g [N/m].
+    pub gram: [[f64; 3]; 3],
+    /// Gradients of the shape functions of nodes 1 and 2 in the rest plane [1/m].
+    pub gradients: [[f64; 2]; 2],
+    /// The components (a, b, c) of each edge [m].
+    pub rest: [[f64; 3]; 3],
+    /// Below about this share of the rest area the normal becomes shorter.
+    pub crushed: f64,
+}
+
+/// Which energy density a solid has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SolidKind {
+    /// St. Venant-Kirchhoff.
+    Stvk,
+    /// Stable neo-Hookean.
+    StableNeoHookean,
+}
+
+/// A tetrahedron of constant strain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TetrahedronElement {
+    /// The nodes.
+    pub nodes: [u32; 4],
+    /// Gradients of the shape functions of nodes 1, 2 and 3 at rest [1/m].
+    pub gradients: [[f64; 3]; 3],
+    /// Rest volume [m^3].
+    pub volume: f64,
+    /// The law.
+    pub kind: SolidKind,
+    /// The constants lambda and mu of the law [Pa].
+    pub constants: [f64; 2],
+    /// Damping time times mu [Pa s].
+    pub viscosity: f64,
+}
+
+/// The state at which a matrix is assembled.
+#[derive(Clone, Copy, Debug)]
+pub struct AssemblyState<'a> {
+    /// Which nodes are free [N].
+    pub free: &'a [bool],
+    /// Where the nodes are [N, m].
+    pub positions: &'a [Vector],
+    /// Where they were at the start of the time step [N, m].
+    pub start: &'a [Vector],
+    /// 1 / dt [1/s].
+    pub rate: f64,
+    /// Whether negative curvatures change their sign; otherwise they are set to zero.
+    pub absolute: bool,
+    /// Sums of the rows of H without springs: inertia and drag [N, N/m].
+    pub row_sums: &'a [Matrix3<f64>],
+    /// Flat bending by the pairs of [`ElementModel::columns`] [N/m].
+    pub bending: &'a [f64],
+    /// Flat bending by the pairs of [`ElementModel::scalar_columns`] [N/m].
+    pub scalars: &'a [f64],
+}
+
+/// Springs of a matrix.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct AssemblySprings<'a> {
+    /// The springs.
+    pub springs: &'a [LinearSpring],
+    /// Springs of each node with its weights: `entries[starts[i]..starts[i + 1]]`. Both are empty if there are none.
+    pub starts: &'a [u32],
+    /// See [`Self::starts`].
+    pub entries: &'a [(u32, f64)],
+}

@@ -1,0 +1,186 @@
+//! The buffers of a model on an engine, and the dispatches that assemble a matrix.
+
+use super::grid::StateGrid;
+use super::layout::ElementParams;
+use super::plan::Plan;
+use crate::cpu;
+use crate::engine::Engine;
+use crate::error::GpuError;
+use crate::linear::Buffers;
+use crate::recording::{BufferId, Recording};
+use crate::stages::{self, Stage};
+use bowknot_dynamics::AssemblyState;
+use bytemuck::Pod;
+
+/// The buffers, with copies of what was written last: what has not changed is not written again.
+#[derive(Debug)]
+pub struct AssemblyBuffers {
+    pub plan: Plan,
+    membranes: BufferId,
+    bends: BufferId,
+    tetrahedra: BufferId,
+    sources: BufferId,
+    blocks: BufferId,
+    positions: Written,
+    start: Written,
+    entries: Written,
+    row_sums: Written,
+    /// Diagonal blocks without springs, six numbers per node.
+    pub diagonal: BufferId,
+    /// Numbers of flat bending that the matrix was written with, and the buffer.
+    matrix: Option<(Vec<f64>, Vec<f64>, BufferId)>,
+    /// What else the matrix depends on: the quantum, 1 / dt and the filter.
+    last: Option<(f64, f64, bool)>,
+}
+
+/// A buffer and what it holds.
+#[derive(Debug)]
+struct Written {
+    buffer: BufferId,
+    words: Vec<u32>,
+}
+
+impl Written {
+    /// Writes the entries unless they stand there already; returns whether they were new.
+    fn write<T: Pod>(&mut self, entries: &[T], recording: &mut Recording) -> bool {
+        let words: &[u32] = bytemuck::cast_slice(entries);
+        if self.words == words {
+            return false;
+        }
+        self.words.clear();
+        self.words.extend_from_slice(words);
+        recording.write(self.buffer, words);
+        true
+    }
+}
+
+impl AssemblyBuffers {
+    /// Makes the buffers of a model and writes its elements.
+    pub fn new<E: Engine>(engine: &mut E, plan: Plan) -> Result<Self, GpuError> {
+        let mut recording = Recording::default();
+        let nodes = plan.nodes;
+        let mut make = |label, words: usize| engine.buffer(label, words);
+        let written = |buffer| Written { buffer, words: Vec::new() };
+        let buffers = Self {
+            membranes: make("triangles", size_of_val(plan.membranes.as_slice()) / 4)?,
+            bends: make("bends", (size_of_val(plan.bends.as_slice()) / 4).max(48))?,
+            tetrahedra: make("tetrahedra", size_of_val(plan.tetrahedra.as_slice()) / 4)?,
+            sources: make("sources of blocks", plan.sources.len())?,
+            blocks: make("blocks of elements", 9 * plan.blocks)?,
+            positions: written(make("positions of nodes", 4 * nodes)?),
+            start: written(make("positions at the start", 4 * nodes)?),
+            entries: written(make("entries of the matrix", 4 * plan.entries.len())?),
+            row_sums: written(make("sums of rows", 6 * nodes)?),
+            diagonal: make("diagonal of the matrix", 6 * nodes)?,
+            matrix: None,
+            last: None,
+            plan,
+        };
+        recording.write(buffers.membranes, &buffers.plan.membranes);
+        recording.write(buffers.bends, &buffers.plan.bends);
+        recording.write(buffers.tetrahedra, &buffers.plan.tetrahedra);
+        recording.write(buffers.sources, &buffers.plan.sources);
+        engine.run(&recording, &[])?;
+        Ok(buffers)
+    }
+
+    /// The unit of [`Self::positions`] [m].
+    pub fn quantum(&self) -> f64 {
+        self.last.map_or(1.0, |(quantum, ..)| quantum)
+    }
+
+    /// Positions of the nodes on a grid.
+    pub fn positions(&self) -> BufferId {
+        self.positions.buffer
+    }
+
+    /// Frees the buffers.
+    pub fn free<E: Engine>(self, engine: &mut E) {
+        let written = [self.positions, self.start, self.entries, self.row_sums].map(|written| written.buffer);
+        let others = [self.membranes, self.bends, self.tetrahedra, self.sources, self.blocks, self.diagonal];
+        written.into_iter().chain(others).for_each(|buffer| engine.free(buffer));
+    }
+
+    /// Forgets the matrix: something else was written in its place.
+    pub fn forget_matrix(&mut self) {
+        self.matrix = None;
+    }
+
+    /// Records what makes the matrix of a state in `linear`, unless it is there already.
+    pub fn record(&mut self, state: &AssemblyState<'_>, linear: &Buffers, recording: &mut Recording) {
+        let grid = StateGrid::around(state.positions.iter().chain(state.start));
+        let place = |x: &[bowknot_geometry::Vector]| x.iter().map(|x| grid.place(x)).collect::<Vec<_>>();
+        let sums = state.row_sums.iter().map(|sum| {
+            let half = |i: usize, j: usize| (0.5 * (sum[(i, j)] + sum[(j, i)])) as f32;
+            [half(0, 0), half(0, 1), half(0, 2), half(1, 1), half(1, 2), half(2, 2)]
+        });
+        let mut changed = self.positions.write(&place(state.positions), recording);
+        // Damping alone needs them.
+        if self.plan.membranes.iter().any(|membrane| membrane.damping > 0.0) {
+            changed |= self.start.write(&place(state.start), recording);
+        }
+        changed |= self.row_sums.write(&sums.collect::<Vec<_>>(), recording);
+        let has_bending = self.matrix.as_ref().is_some_and(|(bending, scalars, words)| {
+            bending == state.bending && scalars == state.scalars && *words == linear.words
+        });
+        if !has_bending {
+            let (entries, words) = self.plan.with_bending(state.bending, state.scalars);
+            self.entries.write(&entries, recording);
+            recording.write(linear.slices, &self.plan.structure.slices);
+            recording.write(linear.words, &words);
+            self.matrix = Some((state.bending.to_vec(), state.scalars.to_vec(), linear.words));
+            changed = true;
+        }
+        let last = Some((grid.quantum, state.rate, state.absolute));
+        if !changed && self.last == last {
+            return;
+        }
+        self.last = last;
+        self.record_elements(state, grid.quantum, recording);
+        let (nodes, entries) = (self.plan.nodes, self.plan.entries.len());
+        recording.dispatch(
+            &stages::ASSEMBLE,
+            &[
+                self.entries.buffer,
+                self.sources,
+                self.blocks,
+                linear.slices,
+                self.row_sums.buffer,
+                linear.words,
+            ],
+            cpu::assemble::Params { entries: entries as u32, nodes: nodes as u32 },
+            entries + nodes,
+        );
+        recording.dispatch(
+            &stages::DIAGONAL,
+            &[linear.slices, linear.words, self.diagonal],
+            cpu::diagonal::Params { nodes: nodes as u32 },
+            nodes,
+        );
+    }
+
+    fn record_elements(&self, state: &AssemblyState<'_>, quantum: f64, recording: &mut Recording) {
+        let plan = &self.plan;
+        let kinds: [(&'static Stage, BufferId, usize, usize); 3] = [
+            (&stages::MEMBRANE, self.membranes, plan.membranes.len(), 3),
+            (&stages::BEND, self.bends, plan.bends.len(), 15),
+            (&stages::TETRAHEDRON, self.tetrahedra, plan.tetrahedra.len(), 6),
+        ];
+        let mut first_block = 0;
+        for (stage, buffer, elements, blocks) in kinds {
+            recording.dispatch(
+                stage,
+                &[buffer, self.positions.buffer, self.start.buffer, self.blocks],
+                ElementParams {
+                    elements: elements as u32,
+                    first_block: first_block as u32,
+                    absolute: u32::from(state.absolute),
+                    rate: state.rate as f32,
+                    quantum: quantum as f32,
+                },
+                elements,
+            );
+            first_block += blocks * elements;
+        }
+    }
+}

@@ -1,0 +1,170 @@
+//! The buffers of the preconditioner's groups, and the dispatches that make their matrices.
+
+use super::hierarchy::Hierarchy;
+use super::layout::Frame;
+use crate::cpu;
+use crate::cpu::sum::THREADS;
+use crate::engine::Engine;
+use crate::error::GpuError;
+use crate::linear::{Buffers, CHILDREN, PATCH_SLOTS};
+use crate::recording::{BufferId, Recording};
+use crate::stages;
+use bowknot_dynamics::LinearSpring;
+
+/// The groups of a set of free nodes on an engine.
+#[derive(Debug)]
+pub struct GroupBuffers {
+    pub hierarchy: Hierarchy,
+    places: BufferId,
+    pairs: BufferId,
+    sums: BufferId,
+    parts: BufferId,
+    tables: BufferId,
+    frames: BufferId,
+    couplings: BufferId,
+    touching: BufferId,
+}
+
+impl GroupBuffers {
+    /// Makes the buffers and writes which groups there are.
+    pub fn new<E: Engine>(engine: &mut E, hierarchy: Hierarchy) -> Result<Self, GpuError> {
+        let mut make = |label, words: usize| engine.buffer(label, words);
+        let h = &hierarchy;
+        let buffers = Self {
+            places: make("places of nodes", h.places.len())?,
+            pairs: make("pairs of groups", 2 * h.pairs.len())?,
+            sums: make("sums of pairs", 4 * h.sums.len())?,
+            parts: make("parts of pairs", 4 * h.parts.len())?,
+            tables: make("pairs of domains", h.tables.len())?,
+            frames: make("frames of groups", size_of::<Frame>() / 4 * h.frames)?,
+            couplings: make("blocks of pairs of groups", 36 * h.sums.len())?,
+            touching: make("springs of domains", h.domains() + 1)?,
+            hierarchy,
+        };
+        let (h, mut recording) = (&buffers.hierarchy, Recording::default());
+        recording.write(buffers.places, &h.places);
+        recording.write(buffers.pairs, &h.pairs);
+        recording.write(buffers.sums, &h.sums);
+        recording.write(buffers.parts, &h.parts);
+        recording.write(buffers.tables, &h.tables);
+        engine.run(&recording, &[])?;
+        Ok(buffers)
+    }
+
+    /// Frees the buffers.
+    pub fn free<E: Engine>(self, engine: &mut E) {
+        let buffers = [self.places, self.pairs, self.sums, self.parts, self.tables, self.frames];
+        let others = [self.couplings, self.touching];
+        buffers.into_iter().chain(others).for_each(|buffer| engine.free(buffer));
+    }
+
+    /// Writes which springs touch each domain.
+    pub fn write_springs<E: Engine>(
+        &mut self,
+        engine: &mut E,
+        springs: &[LinearSpring],
+        recording: &mut Recording,
+    ) -> Result<(), GpuError> {
+        if springs.is_empty() || self.hierarchy.levels.is_empty() {
+            return Ok(());
+        }
+        let words = self.hierarchy.touching(springs);
+        if engine.words(self.touching) < words.len() {
+            engine.free(self.touching);
+            self.touching = engine.buffer("springs of domains", words.len() + words.len() / 2)?;
+        }
+        recording.write(self.touching, &words);
+        Ok(())
+    }
+
+    /// Records what makes the domains of a matrix.
+    pub fn record(
+        &self,
+        linear: &Buffers,
+        positions: BufferId,
+        springs: bool,
+        quantum: f32,
+        recording: &mut Recording,
+    ) {
+        let levels = &self.hierarchy.levels;
+        for index in 0..levels.len() + usize::from(!levels.is_empty()) {
+            // The last frame is that of the last domain.
+            let parts = index.checked_sub(1).map(|before| levels[before]);
+            let level = levels.get(index);
+            let (count, first) = level.map_or((1, self.hierarchy.frames - 1), |l| (l.groups, l.first_frame));
+            let width = if index < 2 { [CHILDREN, PATCH_SLOTS][index] } else { 0 };
+            recording.dispatch(
+                &stages::FRAME,
+                &[positions, linear.slots, self.frames],
+                cpu::frame::Params {
+                    count: count as u32,
+                    first: first as u32,
+                    first_part: parts.map_or(0, |level| level.first_frame as u32),
+                    parts: parts.map_or(0, |level| level.groups as u32),
+                    width: width as u32,
+                    quantum,
+                },
+                count,
+            );
+        }
+        for (index, level) in levels.iter().enumerate() {
+            let (pairs, first) = (level.pairs as u32, level.first_pair as u32);
+            if index < 2 {
+                recording.dispatch(
+                    &stages::COUPLE,
+                    &[
+                        self.pairs,
+                        linear.slices,
+                        linear.words,
+                        linear.slots,
+                        self.places,
+                        positions,
+                        self.frames,
+                        self.couplings,
+                    ],
+                    cpu::couple::Params {
+                        pairs,
+                        first,
+                        width: level.width as u32,
+                        first_frame: level.first_frame as u32,
+                        quantum,
+                    },
+                    level.pairs,
+                );
+            } else {
+                recording.dispatch(
+                    &stages::COARSEN,
+                    &[self.sums, self.parts, self.frames, self.couplings],
+                    cpu::coarsen::Params { pairs, first, quantum },
+                    level.pairs,
+                );
+            }
+        }
+        for level in levels {
+            recording.dispatch(
+                &stages::DOMAIN,
+                &[
+                    self.tables,
+                    self.couplings,
+                    linear.springs,
+                    self.touching,
+                    self.places,
+                    positions,
+                    self.frames,
+                    linear.domains,
+                ],
+                cpu::domain::Params {
+                    domains: level.domains as u32,
+                    first: level.first_domain as u32,
+                    first_part: level.first_frame as u32,
+                    first_frame: (level.first_frame + level.groups) as u32,
+                    parts: level.groups as u32,
+                    width: level.width as u32,
+                    springs: u32::from(springs),
+                    quantum,
+                },
+                THREADS * level.domains,
+            );
+        }
+    }
+}

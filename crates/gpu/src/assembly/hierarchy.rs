@@ -1,0 +1,173 @@
+//! Which groups of the preconditioner are coupled, on every level: what the host prepares for a set of free nodes.
+
+use super::layout::Part;
+use crate::layout::NONE;
+use crate::linear::{CHILDREN, PATCH_SLOTS, Patches};
+use bowknot_dynamics::{ElementModel, LinearSpring};
+use std::collections::BTreeMap;
+
+/// The groups, and their pairs that elements join. Level 0 has the groups of patches, level 1 the patches, and so on.
+#[derive(Debug, Default)]
+pub struct Hierarchy {
+    pub levels: Vec<Level>,
+    /// Slot of each node that is in a group; [`NONE`] for the others.
+    pub places: Vec<u32>,
+    /// Pairs (a, b) of groups of the levels 0 and 1 with a <= b, as indices within their level.
+    pub pairs: Vec<[u32; 2]>,
+    /// Of each pair of any level its first part, the number of parts, the frames of both groups.
+    pub sums: Vec<[u32; 4]>,
+    pub parts: Vec<Part>,
+    /// The pairs of each domain: 64 per domain.
+    pub tables: Vec<u32>,
+    /// Number of frames: the groups of all levels, and the last domain.
+    pub frames: usize,
+}
+
+/// A level.
+#[derive(Clone, Copy, Debug)]
+pub struct Level {
+    /// Slots of a group.
+    pub width: usize,
+    pub groups: usize,
+    pub first_frame: usize,
+    pub pairs: usize,
+    pub first_pair: usize,
+    pub domains: usize,
+    pub first_domain: usize,
+}
+
+impl Hierarchy {
+    pub fn new(model: &ElementModel, patches: &Patches) -> Self {
+        let mut hierarchy = Self { places: vec![NONE; model.rest.len()], ..Self::default() };
+        if patches.grouped == 0 {
+            return hierarchy;
+        }
+        for (slot, node) in patches.slots.iter().enumerate().take(PATCH_SLOTS * patches.grouped) {
+            if let Some(node) = node {
+                hierarchy.places[*node as usize] = slot as u32;
+            }
+        }
+        let mut counts = vec![CHILDREN * patches.grouped];
+        counts.extend(&patches.levels);
+        let mut before: BTreeMap<[u32; 2], u32> = BTreeMap::new();
+        for (index, &groups) in counts.iter().enumerate() {
+            let first_pair = hierarchy.sums.len();
+            let width = if index == 0 { CHILDREN } else { PATCH_SLOTS << (3 * (index - 1)) };
+            let level = Level {
+                width,
+                groups,
+                first_frame: hierarchy.frames,
+                pairs: 0,
+                first_pair,
+                domains: groups.div_ceil(CHILDREN),
+                first_domain: hierarchy.tables.len() / 64,
+            };
+            before = if index < 2 {
+                hierarchy.add_pairs_of_nodes(model, &level, index == 0)
+            } else {
+                hierarchy.add_pairs_of_groups(&level, &before)
+            };
+            hierarchy.frames += groups;
+            hierarchy.fill_tables(&level, &before);
+            hierarchy.levels.push(Level { pairs: before.len(), ..level });
+        }
+        hierarchy.frames += 1;
+        hierarchy
+    }
+
+    /// Adds the pairs of groups that elements join, those within a domain only if `within`. Returns their places.
+    fn add_pairs_of_nodes(
+        &mut self,
+        model: &ElementModel,
+        level: &Level,
+        within: bool,
+    ) -> BTreeMap<[u32; 2], u32> {
+        let mut pairs = BTreeMap::new();
+        for (i, place) in self.places.iter().enumerate().filter(|(_, place)| **place != NONE) {
+            let a = place / level.width as u32;
+            pairs.insert([a, a], 0);
+            let blocks = &model.columns[model.starts[i] as usize..model.starts[i + 1] as usize];
+            let scalars =
+                &model.scalar_columns[model.scalar_starts[i] as usize..model.scalar_starts[i + 1] as usize];
+            for &j in blocks.iter().chain(scalars) {
+                let other = self.places[j as usize];
+                let b = other / level.width as u32;
+                let is_near = !within || a as usize / CHILDREN == b as usize / CHILDREN;
+                if other != NONE && a < b && is_near {
+                    pairs.insert([a, b], 0);
+                }
+            }
+        }
+        for (pair, place) in &mut pairs {
+            *place = self.sums.len() as u32;
+            self.pairs.push(*pair);
+            self.sums.push([0; 4]);
+        }
+        pairs
+    }
+
+    /// Adds the pairs of groups of groups from those of the level before.
+    fn add_pairs_of_groups(
+        &mut self,
+        level: &Level,
+        before: &BTreeMap<[u32; 2], u32>,
+    ) -> BTreeMap<[u32; 2], u32> {
+        let children = self.levels[self.levels.len() - 1].first_frame as u32;
+        let mut sums: BTreeMap<[u32; 2], Vec<Part>> = BTreeMap::new();
+        for (&[a, b], &block) in before {
+            let parents = [a, b].map(|group| group / CHILDREN as u32);
+            let both = u32::from(a != b && parents[0] == parents[1]);
+            sums.entry(parents).or_default().push(Part { block, a: children + a, b: children + b, both });
+        }
+        let mut pairs = BTreeMap::new();
+        for (pair, parts) in sums {
+            pairs.insert(pair, self.sums.len() as u32);
+            let [a, b] = pair.map(|group| level.first_frame as u32 + group);
+            self.sums.push([self.parts.len() as u32, parts.len() as u32, a, b]);
+            self.parts.extend(parts);
+        }
+        pairs
+    }
+
+    fn fill_tables(&mut self, level: &Level, pairs: &BTreeMap<[u32; 2], u32>) {
+        self.tables.resize(64 * (level.first_domain + level.domains), NONE);
+        for (pair, place) in pairs {
+            let [a, b] = pair.map(|group| group as usize);
+            if a / CHILDREN == b / CHILDREN {
+                let table = 64 * (level.first_domain + a / CHILDREN);
+                self.tables[table + CHILDREN * (a % CHILDREN) + b % CHILDREN] = *place;
+            }
+        }
+    }
+
+    /// Number of domains of all levels.
+    pub fn domains(&self) -> usize {
+        self.tables.len() / 64
+    }
+
+    /// The springs of each domain: where those of each begin, then the springs.
+    pub fn touching(&self, springs: &[LinearSpring]) -> Vec<u32> {
+        let mut lists: Vec<Vec<u32>> = vec![Vec::new(); self.domains()];
+        for (index, spring) in (0..).zip(springs) {
+            for level in &self.levels {
+                for (&node, weight) in spring.nodes.iter().zip(spring.weights) {
+                    let place = if node == NONE || weight == 0.0 { NONE } else { self.places[node as usize] };
+                    if place != NONE {
+                        let domain = level.first_domain + place as usize / (level.width * CHILDREN);
+                        if lists[domain].last() != Some(&index) {
+                            lists[domain].push(index);
+                        }
+                    }
+                }
+            }
+        }
+        let mut words = vec![lists.len() as u32 + 1];
+        let ends = lists.iter().scan(lists.len() as u32 + 1, |end, list| {
+            *end += list.len() as u32;
+            Some(*end)
+        });
+        words.extend(ends);
+        words.extend(lists.concat());
+        words
+    }
+}

@@ -1,0 +1,23 @@
+//! Assembly of the matrices of the dynamics on the device, and of their preconditioner: each element writes its
+//! blocks, then each block of the matrix sums its share in a fixed order.
+//!
+//! | module | holds |
+//! |---|---|
+//! | `layout` | data that host, kernels and twins share |
+//! | `plan` | what the host prepares once for a model |
+//! | `grid` | positions as integers |
+//! | `buffers` | the buffers of a model and the dispatches of an assembly |
+//! | `hierarchy`, `groups` | the same of the preconditioner's groups |
+
+mod buffers;
+mod grid;
+mod groups;
+mod hierarchy;
+mod layout;
+mod plan;
+
+pub(crate) use buffers::AssemblyBuffers;
+pub(crate) use groups::GroupBuffers;
+pub(crate) use hierarchy::Hierarchy;
+pub(crate) use layout::{Bend, ElementParams, Entry, Frame, Membrane, Part, Tetrahedron};
+pub(crate) use plan::Plan;

@@ -1,0 +1,172 @@
+//! What the host prepares once for a model: elements, and which of their blocks each block of the matrix sums.
+
+use super::layout::{Bend, Entry, Membrane, Tetrahedron};
+use crate::layout::NONE;
+use crate::linear::{PackedMatrix, SLICE};
+use bowknot_dynamics::{ElementModel, LinearSystem, SolidKind, SparseRows};
+use nalgebra::Matrix3;
+
+/// The plan of a model.
+#[derive(Debug, Default)]
+pub struct Plan {
+    pub nodes: usize,
+    pub membranes: Vec<Membrane>,
+    pub bends: Vec<Bend>,
+    pub tetrahedra: Vec<Tetrahedron>,
+    /// Blocks that the elements write.
+    pub blocks: usize,
+    /// In the order in which they lie in the matrix. Flat bending is left out.
+    pub entries: Vec<Entry>,
+    /// Which of the pairs of [`ElementModel::columns`] each entry is.
+    pub pairs: Vec<u32>,
+    pub sources: Vec<u32>,
+    /// The matrix with its columns and without numbers.
+    pub structure: PackedMatrix,
+    /// The words of the scalar entries, in the order of [`ElementModel::scalar_columns`].
+    pub scalar_words: Vec<u32>,
+}
+
+impl Plan {
+    /// Whether the kernels know all elements: damped solids and strands they do not.
+    pub fn covers(model: &ElementModel) -> bool {
+        model.strand_elements == 0 && model.tetrahedra.iter().all(|tet| tet.viscosity == 0.0)
+    }
+
+    pub fn new(model: &ElementModel) -> Self {
+        let nodes = model.rest.len();
+        let structure = structure(model);
+        let mut plan = Self {
+            nodes,
+            membranes: model.membranes.iter().map(membrane).collect(),
+            bends: model.bends.iter().map(bend).collect(),
+            tetrahedra: model.tetrahedra.iter().map(tetrahedron).collect(),
+            ..Self::default()
+        };
+        // The blocks of an element couple its nodes a and b for a < b, in this order.
+        let mut sums: Vec<Vec<u32>> = vec![Vec::new(); model.columns.len()];
+        let mut next = 0;
+        let mut add = |element: &[u32]| {
+            for (k, &a) in element.iter().enumerate() {
+                for &b in &element[k + 1..] {
+                    if a != NONE && b != NONE {
+                        sums[pair(model, a, b)].push(2 * next);
+                        sums[pair(model, b, a)].push(2 * next + 1);
+                    }
+                    next += 1;
+                }
+            }
+        };
+        plan.membranes.iter().for_each(|element| add(&element.nodes));
+        plan.bends.iter().for_each(|element| add(&element.nodes));
+        plan.tetrahedra.iter().for_each(|element| add(&element.nodes));
+        plan.blocks = next as usize;
+
+        let mut places = vec![0; model.columns.len()];
+        for i in 0..nodes {
+            let slice = structure.slices[i / SLICE];
+            let at = |k: u32| structure.block_at(slice, i, k);
+            for (k, pair) in (model.starts[i]..model.starts[i + 1]).enumerate() {
+                places[pair as usize] = at(1 + k as u32);
+            }
+            let first = structure.block_at(slice, i, slice[1]);
+            let scalars = model.scalar_starts[i + 1] - model.scalar_starts[i];
+            plan.scalar_words.extend((0..scalars).map(|k| first + (2 * k + 1) * SLICE as u32));
+        }
+        plan.pairs = (0..places.len() as u32).collect();
+        plan.pairs.sort_unstable_by_key(|pair| places[*pair as usize]);
+        for &pair in &plan.pairs {
+            let sum = &sums[pair as usize];
+            plan.entries.push(Entry {
+                at: places[pair as usize],
+                first: plan.sources.len() as u32,
+                count: sum.len() as u32,
+                bending: 0.0,
+            });
+            plan.sources.extend(sum);
+        }
+        plan.structure = structure;
+        plan
+    }
+
+    /// The entries with flat bending, and the words of the matrix with its scalar entries, which `bending` and
+    /// `scalars` give pair by pair.
+    pub fn with_bending(&self, bending: &[f64], scalars: &[f64]) -> (Vec<Entry>, Vec<u32>) {
+        let with =
+            |(entry, pair): (&Entry, &u32)| Entry { bending: bending[*pair as usize] as f32, ..*entry };
+        let entries = self.entries.iter().zip(&self.pairs).map(with).collect();
+        let mut words = self.structure.words.clone();
+        for (&at, value) in self.scalar_words.iter().zip(scalars) {
+            words[at as usize] = (*value as f32).to_bits();
+        }
+        (entries, words)
+    }
+}
+
+/// The index of the block (a, b) in [`ElementModel::columns`], which has it.
+fn pair(model: &ElementModel, a: u32, b: u32) -> usize {
+    let row = model.starts[a as usize] as usize..model.starts[a as usize + 1] as usize;
+    row.start + model.columns[row].partition_point(|column| *column < b)
+}
+
+/// The packed matrix without numbers.
+fn structure(model: &ElementModel) -> PackedMatrix {
+    let nodes = model.rest.len();
+    let (diagonal, values) = (vec![Matrix3::zeros(); nodes], vec![Matrix3::zeros(); model.columns.len()]);
+    let scalars = vec![0.0; model.scalar_columns.len()];
+    PackedMatrix::new(&LinearSystem {
+        free: &vec![true; nodes],
+        positions: &model.rest,
+        diagonal: &diagonal,
+        blocks: SparseRows { starts: &model.starts, columns: &model.columns, values: &values },
+        scalars: SparseRows {
+            starts: &model.scalar_starts,
+            columns: &model.scalar_columns,
+            values: &scalars,
+        },
+        springs: &[],
+        spring_starts: &[],
+        spring_entries: &[],
+        patches: &[],
+    })
+}
+
+fn singles<const N: usize, const M: usize>(numbers: &[[f64; N]]) -> [f32; M] {
+    let mut singles = [0.0; M];
+    singles.iter_mut().zip(numbers.as_flattened()).for_each(|(single, number)| *single = *number as f32);
+    singles
+}
+
+fn membrane(element: &bowknot_dynamics::MembraneElement) -> Membrane {
+    Membrane {
+        nodes: element.nodes,
+        area: element.area as f32,
+        gradients: singles(&element.gradients),
+        stiffness: singles(&[element.stiffness]),
+        damping: element.damping as f32,
+        padding: [0; 3],
+    }
+}
+
+fn bend(element: &bowknot_dynamics::BendElement) -> Bend {
+    Bend {
+        nodes: element.nodes,
+        jumps: singles(&element.jumps),
+        gram: singles(&element.gram),
+        gradients: singles(&element.gradients),
+        rest: singles(&element.rest),
+        crushed: element.crushed as f32,
+        padding: 0,
+    }
+}
+
+fn tetrahedron(element: &bowknot_dynamics::TetrahedronElement) -> Tetrahedron {
+    Tetrahedron {
+        nodes: element.nodes,
+        gradients: singles(&element.gradients),
+        volume: element.volume as f32,
+        lambda: element.constants[0] as f32,
+        mu: element.constants[1] as f32,
+        law: u32::from(element.kind == SolidKind::StableNeoHookean),
+        padding: [0; 3],
+    }
+}

@@ -1,0 +1,179 @@
+//! Linear solves whose matrices the device assembles from positions.
+
+use super::assembly::Assembly;
+use super::buffers::Sizes;
+use super::layout::{PATCH_SLOTS, PatchSlot};
+use super::patches::Patches;
+use super::record::Recorder;
+use super::solver::ConjugateGradients;
+use crate::assembly::{AssemblyBuffers, GroupBuffers, Hierarchy, Plan};
+use crate::cpu;
+use crate::engine::Engine;
+use crate::error::GpuError;
+use crate::recording::Recording;
+use crate::stages;
+use bowknot_dynamics::{Assembler, AssemblySprings, AssemblyState, ElementModel, LinearBackendError};
+use bowknot_geometry::Vector;
+use nalgebra::Matrix3;
+use std::fmt::Debug;
+
+/// A power of two that makes the largest entry nearly 1; 1 if that is not possible.
+fn unit_factor(values: &[Vector]) -> f64 {
+    let largest = values.iter().map(Vector::amax).fold(0.0, f64::max);
+    let factor = 1.0 / f64::from_bits(largest.to_bits() & 0x7ff0_0000_0000_0000);
+    if factor.is_normal() { factor } else { 1.0 }
+}
+
+fn singles(values: &[Vector], factor: f64) -> Vec<[f32; 4]> {
+    values
+        .iter()
+        .map(|v| [(v.x * factor) as f32, (v.y * factor) as f32, (v.z * factor) as f32, 0.0])
+        .collect()
+}
+
+/// Sets `values` to the first three of each four words over the factor.
+fn doubles(words: &[u32], factor: f64, values: &mut [Vector]) {
+    for (value, four) in values.iter_mut().zip(words.chunks_exact(4)) {
+        *value = Vector::from_fn(|k, _| f64::from(f32::from_bits(four[k])) / factor);
+    }
+}
+
+impl<E: Engine + Debug + Send> ConjugateGradients<E> {
+    fn take_model(&mut self, model: &ElementModel) -> Result<bool, GpuError> {
+        if let Some(assembly) = self.assembly.take() {
+            assembly.buffers.free(&mut self.engine);
+            if let Some(groups) = assembly.groups {
+                groups.free(&mut self.engine);
+            }
+        }
+        if !Plan::covers(model) {
+            return Ok(false);
+        }
+        self.assembly = Some(Assembly {
+            buffers: AssemblyBuffers::new(&mut self.engine, Plan::new(model))?,
+            model: model.clone(),
+            free: Vec::new(),
+            patches: Patches::default(),
+            groups: None,
+            slots: None,
+        });
+        Ok(true)
+    }
+
+    fn make_matrix(&mut self, state: &AssemblyState<'_>) -> Result<(), GpuError> {
+        let Some(assembly) = &mut self.assembly else { return Ok(()) };
+        if assembly.free != state.free {
+            assembly.free = state.free.to_vec();
+            // Patches of the rest shape: nodes that lie together then, do so later on.
+            assembly.patches = Patches::new(state.free, &assembly.model.rest, &assembly.model.patches);
+            assembly.slots = None;
+            if let Some(groups) = assembly.groups.take() {
+                groups.free(&mut self.engine);
+            }
+            let hierarchy = Hierarchy::new(&assembly.model, &assembly.patches);
+            assembly.groups = Some(GroupBuffers::new(&mut self.engine, hierarchy)?);
+        }
+        let domains = assembly.domains();
+        let structure = &assembly.buffers.plan.structure;
+        let sizes = Sizes::new(state.free.len(), structure, &assembly.patches);
+        let buffers = self.pool.make(&mut self.engine, &sizes, structure, domains)?;
+        let mut recording = Recording::default();
+        assembly.buffers.record(state, &buffers, &mut recording);
+        self.recorder = Some(Recorder { buffers, sizes });
+        self.engine.run(&recording, &[])?;
+        Ok(())
+    }
+
+    fn read_diagonal(&mut self, blocks: &mut Vec<Matrix3<f64>>) -> Result<(), GpuError> {
+        let Some(assembly) = &self.assembly else { return Ok(()) };
+        let diagonal = (assembly.buffers.diagonal, 6 * assembly.model.rest.len());
+        let read = self.engine.run(&Recording::default(), &[diagonal])?;
+        blocks.clear();
+        blocks.extend(read[0].chunks_exact(6).map(|words| {
+            let [xx, xy, xz, yy, yz, zz] = [0, 1, 2, 3, 4, 5].map(|k| f64::from(f32::from_bits(words[k])));
+            Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
+        }));
+        Ok(())
+    }
+
+    fn make_preconditioner(&mut self, springs: &AssemblySprings<'_>) -> Result<(), GpuError> {
+        let Some(assembly) = &mut self.assembly else { return Ok(()) };
+        let (nodes, domains) = (assembly.model.rest.len(), assembly.domains());
+        let structure = &mut assembly.buffers.plan.structure;
+        structure.set_springs(springs.springs, springs.starts, springs.entries);
+        let sizes = Sizes::new(nodes, structure, &assembly.patches);
+        let buffers = self.pool.make(&mut self.engine, &sizes, structure, domains)?;
+        let mut recording = Recording::default();
+        recording.write(buffers.springs, &structure.springs);
+        recording.write(buffers.spring_words, &structure.spring_words);
+        if assembly.slots != Some(buffers.slots) {
+            let slot = |node: &Option<u32>| PatchSlot { node: node.unwrap_or(u32::MAX), ..PatchSlot::EMPTY };
+            recording.write(buffers.slots, &assembly.patches.slots.iter().map(slot).collect::<Vec<_>>());
+            // Nodes that are not free keep this: no patch has them.
+            recording.write(buffers.solution, &vec![0u32; 8 * nodes]);
+            assembly.slots = Some(buffers.slots);
+        }
+        let slots = PATCH_SLOTS * sizes.patches;
+        recording.dispatch(
+            &stages::INVERT,
+            &[assembly.buffers.diagonal, buffers.springs, buffers.spring_words, buffers.slots],
+            cpu::invert::Params { slots: slots as u32, springs: sizes.springs as u32 },
+            slots,
+        );
+        if let Some(groups) = &mut assembly.groups {
+            groups.write_springs(&mut self.engine, springs.springs, &mut recording)?;
+            let quantum = assembly.buffers.quantum() as f32;
+            let positions = assembly.buffers.positions();
+            groups.record(&buffers, positions, sizes.springs > 0, quantum, &mut recording);
+        }
+        self.recorder = Some(Recorder { buffers, sizes });
+        self.engine.run(&recording, &[])?;
+        Ok(())
+    }
+
+    fn image(&mut self, x: &[Vector], y: &mut [Vector]) -> Result<(), GpuError> {
+        let Some(recorder) = &self.recorder else { return Ok(()) };
+        let factor = unit_factor(x);
+        let mut recording = Recording::default();
+        recorder.record_product(&singles(x, factor), &mut recording);
+        let read = self.engine.run(&recording, &[(recorder.buffers.image, 4 * x.len())])?;
+        doubles(&read[0], factor, y);
+        Ok(())
+    }
+
+    fn preconditioned(&mut self, r: &[Vector], z: &mut [Vector]) -> Result<(), GpuError> {
+        let Some(recorder) = &self.recorder else { return Ok(()) };
+        let factor = unit_factor(r);
+        let mut recording = Recording::default();
+        recorder.record_start(&singles(r, factor), &mut recording);
+        let read = self.engine.run(&recording, &[(recorder.buffers.direction, 4 * r.len())])?;
+        doubles(&read[0], factor, z);
+        Ok(())
+    }
+}
+
+impl<E: Engine + Debug + Send> Assembler for ConjugateGradients<E> {
+    fn set_model(&mut self, model: &ElementModel) -> Result<bool, LinearBackendError> {
+        Ok(self.take_model(model)?)
+    }
+
+    fn assemble(&mut self, state: &AssemblyState<'_>) -> Result<(), LinearBackendError> {
+        Ok(self.make_matrix(state)?)
+    }
+
+    fn diagonal(&mut self, blocks: &mut Vec<Matrix3<f64>>) -> Result<(), LinearBackendError> {
+        Ok(self.read_diagonal(blocks)?)
+    }
+
+    fn precondition(&mut self, springs: &AssemblySprings<'_>) -> Result<(), LinearBackendError> {
+        Ok(self.make_preconditioner(springs)?)
+    }
+
+    fn multiply(&mut self, x: &[Vector], y: &mut [Vector]) -> Result<(), LinearBackendError> {
+        Ok(self.image(x, y)?)
+    }
+
+    fn apply_preconditioner(&mut self, r: &[Vector], z: &mut [Vector]) -> Result<(), LinearBackendError> {
+        Ok(self.preconditioned(r, z)?)
+    }
+}

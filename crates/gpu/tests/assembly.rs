@@ -1,0 +1,530 @@
+//! Matrices that the device assembles are those of the dynamics, and time steps with them go as on the CPU.
+
+use bowknot_gpu::dynamics::{
+    Assembler, AssemblySprings, AssemblyState, Body, ClothMaterial, Dynamics, DynamicsModel, DynamicsParams,
+    ElementModel, HessianFilter, LinearBackend, LinearBackendError, LinearSystem, Matrix3,
+    PreconditionerKind, RepulsionSpring, RestShape, SolidMaterial, SolidModel, StepError,
+};
+use bowknot_gpu::geometry::{Point, Vector};
+use bowknot_gpu::{Adapter, ComparingEngine, ConjugateGradients, DeviceEngine, Engine, TwinEngine};
+use nalgebra::DMatrix;
+use std::fmt::Debug;
+use std::sync::{Arc, Mutex};
+
+/// Largest difference of a matrix that is assembled in single precision, as a share of its largest entry.
+const SINGLE: f64 = 4e-6;
+
+const DT: f64 = 0.02;
+
+/// The matrices of linear solves, over the free nodes.
+type Matrices = Arc<Mutex<Vec<DMatrix<f64>>>>;
+
+/// Notes the matrices of the CPU and makes no progress, so that the CPU solves.
+#[derive(Debug, Default)]
+struct Noting(Matrices);
+
+fn dense(system: &LinearSystem<'_>) -> DMatrix<f64> {
+    let count = system.free.len();
+    let mut matrix = DMatrix::zeros(3 * count, 3 * count);
+    let mut add = |i: usize, j: usize, block: Matrix3<f64>| {
+        if system.free[i] && system.free[j] {
+            let mut view = matrix.view_mut((3 * i, 3 * j), (3, 3));
+            view += block;
+        }
+    };
+    for i in 0..count {
+        add(i, i, system.diagonal[i]);
+        system.blocks.row(i).for_each(|(j, block)| add(i, j, *block));
+        system.scalars.row(i).for_each(|(j, q)| add(i, j, Matrix3::from_diagonal_element(*q)));
+    }
+    for spring in system.springs {
+        for (&i, a) in spring.nodes.iter().zip(spring.weights).filter(|(i, _)| **i != u32::MAX) {
+            for (&j, b) in spring.nodes.iter().zip(spring.weights).filter(|(j, _)| **j != u32::MAX) {
+                add(i as usize, j as usize, spring.hessian * (a * b));
+            }
+        }
+    }
+    matrix
+}
+
+impl LinearBackend for Noting {
+    fn name(&self) -> String {
+        "noting".to_owned()
+    }
+
+    fn prepare(&mut self, system: &LinearSystem<'_>) -> Result<(), LinearBackendError> {
+        self.0.lock().expect("no panic").push(dense(system));
+        Ok(())
+    }
+
+    fn begin(&mut self, r: &[Vector], factor: f64) -> Result<f64, LinearBackendError> {
+        Ok(r.iter().map(Vector::norm_squared).sum::<f64>() * factor * factor)
+    }
+
+    fn iterate(
+        &mut self,
+        _goal: f64,
+        _max_iterations: usize,
+        _factor: f64,
+        _x: &mut [Vector],
+    ) -> Result<usize, LinearBackendError> {
+        Ok(0)
+    }
+}
+
+/// Solves by the kernels and notes the matrices that they have assembled.
+#[derive(Debug)]
+struct Assembling<E> {
+    inner: ConjugateGradients<E>,
+    free: Vec<bool>,
+    notes: Matrices,
+    /// Whether matrices are assembled here.
+    assembles: bool,
+    /// Squared norms of some vectors with the first preconditioner.
+    norms: Arc<Mutex<Vec<f64>>>,
+    /// Diagonals that were read.
+    diagonals: Arc<Mutex<Vec<Vec<Matrix3<f64>>>>>,
+}
+
+impl<E: Engine> Assembling<E> {
+    fn new(engine: E) -> Self {
+        let inner = ConjugateGradients::new("assembling".to_owned(), engine);
+        Self {
+            inner,
+            free: Vec::new(),
+            notes: Matrices::default(),
+            assembles: true,
+            norms: Arc::default(),
+            diagonals: Arc::default(),
+        }
+    }
+}
+
+impl<E: Engine + Debug + Send> Assembling<E> {
+    /// Notes the squared norms of some vectors, once.
+    fn note_norms(&mut self, free: &[bool]) -> Result<(), LinearBackendError> {
+        let mut norms = self.norms.lock().expect("no panic");
+        for seed in norms.len()..8 {
+            let random = &mut fastrand::Rng::with_seed(seed as u64);
+            let entry = |(i, free): (usize, &bool)| {
+                // Smooth and rough ones.
+                let vector = Vector::new(1.0, 0.3, -0.5) * (i % (1 << seed)) as f64 + random_vector(random);
+                if *free { vector / (1 << seed) as f64 } else { Vector::zeros() }
+            };
+            let r: Vec<Vector> = free.iter().enumerate().map(entry).collect();
+            norms.push(self.inner.begin(&r, 1.0)?);
+        }
+        Ok(())
+    }
+
+    /// Notes the matrix, once and if it is small.
+    fn note_matrix(&mut self) -> Result<(), LinearBackendError> {
+        let mut notes = self.notes.lock().expect("no panic");
+        let count = self.free.len();
+        if count > 100 || !notes.is_empty() {
+            return Ok(());
+        }
+        let mut matrix = DMatrix::zeros(3 * count, 3 * count);
+        for k in (0..3 * count).filter(|k| self.free[k / 3]) {
+            let mut x = vec![Vector::zeros(); count];
+            let mut y = x.clone();
+            x[k / 3][k % 3] = 0.01;
+            self.inner.multiply(&x, &mut y)?;
+            for (i, y) in y.iter().enumerate().filter(|(i, _)| self.free[*i]) {
+                (0..3).for_each(|c| matrix[(3 * i + c, k)] = 100.0 * y[c]);
+            }
+        }
+        notes.push(matrix);
+        Ok(())
+    }
+}
+
+impl<E: Engine + Debug + Send> LinearBackend for Assembling<E> {
+    fn name(&self) -> String {
+        self.inner.name()
+    }
+
+    fn prepare(&mut self, system: &LinearSystem<'_>) -> Result<(), LinearBackendError> {
+        assert!(!self.assembles, "the CPU has assembled a matrix of {} nodes", system.free.len());
+        self.inner.prepare(system)?;
+        self.note_norms(system.free)
+    }
+
+    fn begin(&mut self, r: &[Vector], factor: f64) -> Result<f64, LinearBackendError> {
+        self.inner.begin(r, factor)
+    }
+
+    fn iterate(
+        &mut self,
+        goal: f64,
+        max_iterations: usize,
+        factor: f64,
+        x: &mut [Vector],
+    ) -> Result<usize, LinearBackendError> {
+        self.inner.iterate(goal, max_iterations, factor, x)
+    }
+
+    fn assembler(&mut self) -> Option<&mut dyn Assembler> {
+        self.assembles.then_some(self)
+    }
+}
+
+impl<E: Engine + Debug + Send> Assembler for Assembling<E> {
+    fn set_model(&mut self, model: &ElementModel) -> Result<bool, LinearBackendError> {
+        self.inner.set_model(model)
+    }
+
+    fn assemble(&mut self, state: &AssemblyState<'_>) -> Result<(), LinearBackendError> {
+        self.free = state.free.to_vec();
+        self.inner.assemble(state)
+    }
+
+    fn diagonal(&mut self, blocks: &mut Vec<Matrix3<f64>>) -> Result<(), LinearBackendError> {
+        self.inner.diagonal(blocks)?;
+        self.diagonals.lock().expect("no panic").push(blocks.clone());
+        Ok(())
+    }
+
+    fn precondition(&mut self, springs: &AssemblySprings<'_>) -> Result<(), LinearBackendError> {
+        self.inner.precondition(springs)?;
+        self.note_matrix()?;
+        let free = self.free.clone();
+        self.note_norms(&free)
+    }
+
+    fn multiply(&mut self, x: &[Vector], y: &mut [Vector]) -> Result<(), LinearBackendError> {
+        self.inner.multiply(x, y)
+    }
+
+    fn apply_preconditioner(&mut self, r: &[Vector], z: &mut [Vector]) -> Result<(), LinearBackendError> {
+        self.inner.apply_preconditioner(r, z)
+    }
+}
+
+/// A body with the rest positions of its vertices.
+struct Case {
+    name: &'static str,
+    rest: Vec<Point>,
+    body: Body,
+    filter: HessianFilter,
+    /// Size of random displacements [m].
+    distortion: f64,
+}
+
+fn sheet(cells: usize, curvature: f64) -> (Vec<Point>, Vec<[u32; 3]>) {
+    let at = |k: usize| {
+        let (x, y) = (0.05 * (k % (cells + 1)) as f64, 0.04 * (k / (cells + 1)) as f64);
+        Point::new(x, y + 0.3 * x, curvature * (x * x - y * y + x * y))
+    };
+    let points = (0..(cells + 1) * (cells + 1)).map(at).collect();
+    let cell = |k: usize| {
+        let a = (k % cells + k / cells * (cells + 1)) as u32;
+        let [b, c, d] = [a + 1, a + 2 + cells as u32, a + 1 + cells as u32];
+        [[a, b, c], [a, c, d]]
+    };
+    (points, (0..cells * cells).flat_map(cell).collect())
+}
+
+/// Two cubes of six tetrahedra each.
+fn block() -> (Vec<Point>, Vec<[u32; 4]>) {
+    let points = (0..12)
+        .map(|k: usize| Point::new((k % 3) as f64, (k / 3 % 2) as f64, (k / 6) as f64).map(|x| 0.05 * x));
+    let tets = (0..2u32).flat_map(|cell| {
+        let steps = [[1, 3, 6], [1, 6, 3], [3, 1, 6], [3, 6, 1], [6, 1, 3], [6, 3, 1]];
+        steps.map(|[a, b, c]| {
+            let mut tet = [cell, cell + a, cell + a + b, cell + a + b + c];
+            // An odd order of the axes turns the tetrahedron inside out.
+            if [[1, 6, 3], [3, 1, 6], [6, 3, 1]].contains(&[a, b, c]) {
+                tet.swap(2, 3);
+            }
+            tet
+        })
+    });
+    (points.collect(), tets.collect())
+}
+
+fn cases() -> Vec<Case> {
+    let mut cases = Vec::new();
+    let isotropic = ClothMaterial::cotton();
+    let woven = ClothMaterial {
+        weft_stiffness: Some(0.4 * isotropic.stretch_stiffness),
+        shear_stiffness: Some(0.05 * isotropic.stretch_stiffness),
+        warp_direction: Vector::new(1.0, 0.7, 0.0),
+        ..ClothMaterial::cotton()
+    };
+    let damped = |material: &ClothMaterial| ClothMaterial {
+        stretch_damping: 0.02,
+        bend_damping: 0.05,
+        bend_stiffness: 1e-3,
+        ..*material
+    };
+    let curved = ClothMaterial {
+        rest_shape: RestShape::Initial,
+        bend_stiffness: 0.3 * isotropic.stretch_stiffness * 0.05 * 0.05,
+        ..ClothMaterial::cotton()
+    };
+    for (name, curvature, material) in [
+        ("isotropic", 0.0, isotropic),
+        ("woven", 0.0, woven),
+        ("isotropic, damped", 0.0, damped(&isotropic)),
+        ("woven, damped", 0.0, damped(&woven)),
+        ("curved", 2.0, curved),
+    ] {
+        for filter in [HessianFilter::Clamp, HessianFilter::Absolute] {
+            let (rest, triangles) = sheet(4, curvature);
+            cases.push(Case {
+                name,
+                rest,
+                body: Body::cloth("sheet", triangles, material),
+                filter,
+                distortion: 0.014,
+            });
+        }
+    }
+    for (name, model) in [("stvk", SolidModel::Stvk), ("neo-Hookean", SolidModel::StableNeoHookean)] {
+        for filter in [HessianFilter::Clamp, HessianFilter::Absolute] {
+            let (rest, tets) = block();
+            let material = SolidMaterial { model, poisson_ratio: 0.4, ..SolidMaterial::rubber() };
+            cases.push(Case {
+                name,
+                rest,
+                body: Body::solid("block", tets, material),
+                filter,
+                distortion: 0.014,
+            });
+        }
+    }
+    cases
+}
+
+fn random_vector(random: &mut fastrand::Rng) -> Vector {
+    Vector::from_fn(|_, _| 2.0 * random.f64() - 1.0)
+}
+
+/// A system of a strongly deformed body far from the origin, with wind, springs, and vertices that are held and moved.
+fn target<B: LinearBackend + 'static>(case: &Case, backend: B) -> Result<Dynamics, StepError> {
+    let mut params = DynamicsParams::default();
+    params.newton.preconditioner = PreconditionerKind::TwoLevel;
+    params.newton.hessian_filter = case.filter;
+    params.newton.correcting_iterations = 0;
+    params.environment.air_density = 1.2;
+    params.environment.wind = Vector::new(3.0, -1.0, 2.0);
+    let model = DynamicsModel::new(case.rest.clone(), vec![case.body.clone()]).expect("a model");
+    let mut dynamics = Dynamics::new(model, params).expect("parameters");
+    dynamics.set_linear_backend(Some(Box::new(backend)));
+    let random = &mut fastrand::Rng::with_seed(11);
+    let mut moved = |amount: f64| -> Vec<Point> {
+        case.rest
+            .iter()
+            .map(|x| x * 0.97 + random_vector(random) * amount + Vector::new(7.0, -3.0, 2.0))
+            .collect()
+    };
+    let (start, x) = (moved(0.3 * case.distortion), moved(case.distortion));
+    let v: Vec<Vector> = x.iter().zip(&start).map(|(x, start)| (x - start) / DT).collect();
+    dynamics.begin_step(&start, &v, DT)?;
+    let count = x.len() as u32;
+    let spring = |vertices: [u32; 4], weights| RepulsionSpring {
+        vertices,
+        weights,
+        normal: Vector::new(0.6, 0.0, 0.8),
+        offset: 0.0,
+        desired: 10.0,
+        stiffness: 3.0,
+        friction: 0.3,
+        force: Vector::new(0.06, 0.0, 0.08),
+    };
+    dynamics.set_repulsion(&[
+        spring([3, 5, 0, 0], [1.0, -1.0, 0.0, 0.0]),
+        spring([6, 7, 8, 2], [1.0, -0.25, -0.25, -0.5]),
+        spring([0, count - 1, 0, 0], [1.0, -1.0, 0.0, 0.0]),
+    ])?;
+    let held: Vec<bool> = (0..x.len()).map(|k| k == 1 || k == 9).collect();
+    let keyframes: Vec<Point> = x.iter().map(|x| x + Vector::new(0.001, 0.0, -0.002)).collect();
+    let mut y = x.clone();
+    dynamics.newton_target(&x, &held, &keyframes, &mut y)?;
+    Ok(dynamics)
+}
+
+#[test]
+fn assembled_matrices_are_those_of_the_cpu() {
+    for case in cases() {
+        let expected = Noting::default();
+        let notes = Arc::clone(&expected.0);
+        target(&case, expected).expect("a target");
+        let assembling = Assembling::new(TwinEngine::new());
+        let (found, diagonals) = (Arc::clone(&assembling.notes), Arc::clone(&assembling.diagonals));
+        target(&case, assembling).expect("a target");
+        let (expected, found) = (notes.lock().expect("no panic"), found.lock().expect("no panic"));
+        let (expected, found) = (&expected[0], &found[0]);
+        let (apart, size) = ((expected - found).abs().max(), expected.abs().max());
+        println!("{}, {:?}: {:.1e}", case.name, case.filter, apart / size);
+        assert!(apart <= SINGLE * size, "{}, {:?}: {apart:e} of {size:e}", case.name, case.filter);
+        assert!((found - found.transpose()).abs().max() <= 1e-6 * size, "{}", case.name);
+        assert!(found.clone().symmetric_eigenvalues().min() > -1e-6 * size, "{}", case.name);
+        // Nodes without springs have their diagonal blocks in the matrix.
+        let diagonals = diagonals.lock().expect("no panic");
+        let equal = |(i, block): (usize, &Matrix3<f64>)| {
+            (expected.fixed_view::<3, 3>(3 * i, 3 * i) - block).abs().max() <= SINGLE * size
+        };
+        let count = diagonals[0].iter().enumerate().filter(|entry| equal(*entry)).count();
+        assert!(count + 10 >= diagonals[0].len(), "{}: {count} of {}", case.name, diagonals[0].len());
+    }
+}
+
+/// One patch, and one coarse level or two: single precision and the shift of the diagonal make little difference.
+#[test]
+fn preconditioners_are_those_of_double_precision() {
+    for cells in [2, 4, 9, 26] {
+        let (rest, triangles) = sheet(cells, 0.0);
+        let body = Body::cloth("sheet", triangles, ClothMaterial::cotton());
+        let case = Case { name: "sheet", rest, body, filter: HessianFilter::Clamp, distortion: 0.0 };
+        let norms = [true, false].map(|assembles| {
+            let backend = Assembling { assembles, ..Assembling::new(TwinEngine::new()) };
+            let norms = Arc::clone(&backend.norms);
+            target(&case, backend).expect("a target");
+            let noted = norms.lock().expect("no panic");
+            noted.clone()
+        });
+        for (found, expected) in norms[0].iter().zip(&norms[1]) {
+            println!("{cells}: {:.1e}", found / expected - 1.0);
+            assert!((found / expected - 1.0).abs() < 0.01, "{cells}: {found} and {expected}");
+        }
+        assert_eq!(norms.map(|norms| norms.len()), [8, 8]);
+    }
+}
+
+#[test]
+fn kernels_assemble_as_their_twins() {
+    let adapter = Adapter::choose(None).unwrap_or_else(|error| panic!("{error}"));
+    for case in cases() {
+        let device = DeviceEngine::open(&adapter).unwrap_or_else(|error| panic!("{error}"));
+        let differences = Arc::new(Mutex::new((0, Vec::new())));
+        let engine = Watching { inner: ComparingEngine::new(device), differences: Arc::clone(&differences) };
+        target(&case, ConjugateGradients::new("comparing".to_owned(), engine)).expect("a target");
+        let (words, differences) = &*differences.lock().expect("no panic");
+        assert!(differences.is_empty(), "{}, {:?}: {:?}", case.name, case.filter, &differences[..1]);
+        assert!(*words > 1000, "{}: {words}", case.name);
+    }
+}
+
+/// Says what a [`ComparingEngine`] has found.
+#[derive(Debug)]
+struct Watching {
+    inner: ComparingEngine,
+    differences: Arc<Mutex<(usize, Vec<bowknot_gpu::Difference>)>>,
+}
+
+impl Engine for Watching {
+    fn buffer(
+        &mut self,
+        label: &'static str,
+        words: usize,
+    ) -> Result<bowknot_gpu::BufferId, bowknot_gpu::GpuError> {
+        self.inner.buffer(label, words)
+    }
+
+    fn free(&mut self, buffer: bowknot_gpu::BufferId) {
+        self.inner.free(buffer);
+    }
+
+    fn clear(&mut self) {
+        self.inner.clear();
+    }
+
+    fn words(&self, buffer: bowknot_gpu::BufferId) -> usize {
+        self.inner.words(buffer)
+    }
+
+    fn run(
+        &mut self,
+        recording: &bowknot_gpu::Recording,
+        read: &[(bowknot_gpu::BufferId, usize)],
+    ) -> Result<Vec<Vec<u32>>, bowknot_gpu::GpuError> {
+        let result = self.inner.run(recording, read);
+        let differences = self.inner.differences().to_vec();
+        *self.differences.lock().expect("no panic") = (self.inner.words_compared(), differences);
+        result
+    }
+}
+
+/// Steps of a body that falls from two vertices that are held, with all Newton iterations that it needs.
+fn fall(
+    case: &Case,
+    preconditioner: PreconditionerKind,
+    backend: Option<Box<dyn LinearBackend>>,
+) -> (Vec<Point>, usize) {
+    let mut params = DynamicsParams::default();
+    params.newton.preconditioner = preconditioner;
+    params.newton.cg_tolerance = 1e-5;
+    let model = DynamicsModel::new(case.rest.clone(), vec![case.body.clone()]).expect("a model");
+    let mut dynamics = Dynamics::new(model, params).expect("parameters");
+    dynamics.set_linear_backend(backend);
+    let (mut x, mut v) = (case.rest.clone(), vec![Vector::zeros(); case.rest.len()]);
+    let held: Vec<bool> = (0..x.len()).map(|k| k < 2).collect();
+    let mut iterations = 0;
+    for _ in 0..6 {
+        let infos = dynamics.solve_step(&mut x, &mut v, DT, &held, &case.rest, 6).expect("a step");
+        iterations += infos.iter().map(|info| info.iterations).sum::<usize>();
+    }
+    (x, iterations)
+}
+
+#[test]
+fn time_steps_are_as_accurate_as_with_matrices_in_double_precision() {
+    for (case, kind) in cases()
+        .into_iter()
+        .zip([PreconditionerKind::BlockJacobi, PreconditionerKind::TwoLevel].into_iter().cycle())
+    {
+        let (cpu, expected) = fall(&case, kind, None);
+        let (device, iterations) = fall(&case, kind, Some(Box::new(Assembling::new(TwinEngine::new()))));
+        let apart = cpu.iter().zip(&device).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        let fallen = cpu.iter().zip(&case.rest).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        println!("{}: {apart:.1e} m of {fallen:.3} m, {expected} and {iterations} iterations", case.name);
+        assert!(apart <= 5e-5 * fallen, "{}: {apart:e} m of {fallen} m", case.name);
+        assert!(iterations <= expected + expected / 4, "{}: {iterations} and {expected}", case.name);
+    }
+}
+
+/// Single precision and inexact solves do not move what nothing holds.
+#[test]
+fn linear_momentum_is_conserved_to_rounding() {
+    for case in cases() {
+        let mut params = DynamicsParams::default();
+        params.newton.cg_tolerance = 0.05;
+        let gravity = params.environment.gravity;
+        let model = DynamicsModel::new(case.rest.clone(), vec![case.body.clone()]).expect("a model");
+        let masses = model.masses().to_vec();
+        let mut dynamics = Dynamics::new(model, params).expect("parameters");
+        dynamics.set_linear_backend(Some(Box::new(Assembling::new(TwinEngine::new()))));
+        let random = &mut fastrand::Rng::with_seed(5);
+        let mut x = case.rest.clone();
+        let mut v: Vec<Vector> = x.iter().map(|_| random_vector(random)).collect();
+        let momentum = |v: &[Vector]| v.iter().zip(&masses).map(|(v, mass)| v * *mass).sum::<Vector>();
+        let free = vec![false; x.len()];
+        for _ in 0..3 {
+            let expected = momentum(&v) + gravity * (DT * masses.iter().sum::<f64>());
+            dynamics.solve_step(&mut x, &mut v, DT, &free, &case.rest, 2).expect("a step");
+            let apart = (momentum(&v) - expected).norm();
+            assert!(apart < 1e-11 * expected.norm(), "{}: {apart:e} of {:e}", case.name, expected.norm());
+        }
+    }
+}
+
+/// Damped solids are assembled by the CPU.
+#[test]
+fn elements_that_no_kernel_knows_are_left_to_the_cpu() {
+    let (rest, tets) = block();
+    let material = SolidMaterial { damping: 0.01, ..SolidMaterial::rubber() };
+    let case = Case {
+        name: "damped",
+        rest,
+        body: Body::solid("block", tets, material),
+        filter: HessianFilter::Mixed,
+        distortion: 0.0,
+    };
+    let (cpu, _) = fall(&case, PreconditionerKind::TwoLevel, None);
+    let backend = ConjugateGradients::new("twins".to_owned(), TwinEngine::new());
+    let (other, _) = fall(&case, PreconditionerKind::TwoLevel, Some(Box::new(backend)));
+    let apart = cpu.iter().zip(&other).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    assert!(apart < 1e-6, "{apart:e} m");
+}
