@@ -33,8 +33,8 @@ fn write(at: u32, columns: mat3x3<f32>) {
 }
 
 @compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    for (var t = id.x; t < params.entries + params.nodes; t += 64u * groups.x) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    for (var t = id.x; t < params.entries + params.nodes; t += 64u * MOST_WORKGROUPS) {
         if t >= params.entries {
             let i = t - params.entries;
             let a = 6u * i;

@@ -10,8 +10,8 @@ fn cross_matrix(a: vec3<f32>) -> mat3x3<f32> {
 }
 
 @compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    for (var e = id.x; e < params.elements; e += 64u * groups.x) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    for (var e = id.x; e < params.elements; e += 64u * MOST_WORKGROUPS) {
         var bend = bends[e];
         let e1 = way(bend.nodes[0], bend.nodes[1]);
         let e2 = way(bend.nodes[0], bend.nodes[2]);

@@ -31,8 +31,8 @@ fn link(group: u32, part: u32) -> vec4<f32> {
 }
 
 @compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    for (var t = id.x; t < params.pairs; t += 64u * groups.x) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    for (var t = id.x; t < params.pairs; t += 64u * MOST_WORKGROUPS) {
         let sum = sums[params.first + t];
         var total: array<f32, 36>;
         for (var p = sum.x; p < sum.x + sum.y; p += 1u) {

@@ -57,8 +57,8 @@ fn add(row: Row, pair: vec2<u32>, j: u32, h: mat3x3<f32>, arm: vec3<f32>, frame:
 }
 
 @compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    for (var t = id.x; t < params.pairs; t += 64u * groups.x) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    for (var t = id.x; t < params.pairs; t += 64u * MOST_WORKGROUPS) {
         let pair = pairs[params.first + t];
         let own = frames[params.first_frame + pair.x];
         let frame = frames[params.first_frame + pair.y];

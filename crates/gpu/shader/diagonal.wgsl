@@ -14,8 +14,8 @@ const SLICE: u32 = 32u;
 const BLOCK_WORDS: u32 = 10u;
 
 @compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    for (var i = id.x; i < params.nodes; i += 64u * groups.x) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    for (var i = id.x; i < params.nodes; i += 64u * MOST_WORKGROUPS) {
         let slice = slices[i / SLICE];
         var at = slice.x + i % SLICE;
         var sum: array<f32, 9>;

@@ -87,13 +87,12 @@ fn press(d: u32, a: u32, b: u32) {
 @compute @workgroup_size(64)
 fn main(
     @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_id) local: vec3<u32>,
 ) {
     let t = local.x;
     let a = t / 8u;
     let b = t % 8u;
-    for (var d = group.x; d < params.domains; d += groups.x) {
+    for (var d = group.x; d < params.domains; d += MOST_WORKGROUPS) {
         workgroupBarrier();
         // Blocks on and above the diagonal; the others are their transposes.
         if a <= b {

@@ -119,8 +119,8 @@ fn of_groups(g: u32) -> Frame {
 }
 
 @compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    for (var g = id.x; g < params.count; g += 64u * groups.x) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    for (var g = id.x; g < params.count; g += 64u * MOST_WORKGROUPS) {
         if params.width > 0u {
             frames[params.first + g] = of_nodes(g);
         } else {

@@ -12,8 +12,8 @@ struct Params {
 @group(0) @binding(4) var<storage, read_write> slots: array<PatchSlot>;
 
 @compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    for (var t = id.x; t < params.slots; t += 64u * groups.x) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    for (var t = id.x; t < params.slots; t += 64u * MOST_WORKGROUPS) {
         let i = slots[t].node;
         if i == NONE {
             continue;

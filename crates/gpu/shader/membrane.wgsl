@@ -52,8 +52,8 @@ fn filtered_2(m: vec3<f32>) -> vec3<f32> {
 }
 
 @compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    for (var e = id.x; e < params.elements; e += 64u * groups.x) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    for (var e = id.x; e < params.elements; e += 64u * MOST_WORKGROUPS) {
         let m = membranes[e];
         let g = m.gradients;
         let e1 = way(m.nodes[0], m.nodes[1]);

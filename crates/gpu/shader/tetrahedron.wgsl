@@ -63,8 +63,8 @@ fn decompose(f: array<vec3<f32>, 3>) -> Decomposition {
 }
 
 @compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    for (var e = id.x; e < params.elements; e += 64u * groups.x) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    for (var e = id.x; e < params.elements; e += 64u * MOST_WORKGROUPS) {
         var tet = tetrahedra[e];
         var f: array<vec3<f32>, 3>;
         for (var a = 0u; a < 3u; a += 1u) {

@@ -50,7 +50,10 @@ fn a_run_leaves_the_folder_that_other_tools_rely_on() {
     let scene = falling(6, &["output.checkpoint_every=4"]);
     let outcome = go(&scene, &RunOptions { check: true, ..options(&out) }).expect("a run");
     assert!(!outcome.interrupted && outcome.findings.is_empty());
-    assert_eq!(names(&out), ["checkpoint", "frames", "scene.toml", "stats.jsonl", "summary.json"]);
+    assert_eq!(
+        names(&out),
+        ["backends.json", "checkpoint", "frames", "scene.toml", "stats.jsonl", "summary.json"]
+    );
     let frames: Vec<String> = (0..7).map(|frame| format!("{frame:06}.ply")).collect();
     assert_eq!(names(&out.join("frames")), frames);
     assert_eq!(names(&out.join("checkpoint")), ["lock", "previous.npz", "state.npz"]);

@@ -2,9 +2,6 @@
 
 const NONE: u32 = 0xffffffffu;
 
-// Most workgroups of a dispatch, by which loops go on.
-const MOST_WORKGROUPS: u32 = 65535u;
-
 struct Progress {
     moving: atomic<u32>,
     iterations: atomic<u32>,

@@ -2,10 +2,6 @@
 
 const NONE: u32 = 0xffffffffu;
 
-// Most workgroups of a dispatch. Loops go on by as many, of which there may be fewer: an indirect dispatch does not
-// know its own number on every interface.
-const MOST_WORKGROUPS: u32 = 65535u;
-
 struct Vertex {
     edge: f32,
     margin: f32,

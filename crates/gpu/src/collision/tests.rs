@@ -330,7 +330,8 @@ fn two_calls(room: Room) -> TwoCalls {
         if reports.is_empty() {
             let read = [(collision.buffers.control, words::<Control>(1))];
             let control = collision.engine.run(&Recording::default(), &read).unwrap().swap_remove(0);
-            first = [2, 14].map(|word| control[word] as usize);
+            let control: Control = bytemuck::cast_slice(&control)[0];
+            first = [control.most_partners, control.candidates].map(|count| count as usize);
         }
         for _ in 0..8 {
             let before = Room::of(&collision);

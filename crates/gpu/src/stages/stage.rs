@@ -2,6 +2,8 @@
 
 use crate::bound::Bound;
 
+const DISPATCH: &str = include_str!("../../shader/shared/dispatch.wgsl");
+
 /// What a stage does with a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Access {
@@ -13,7 +15,7 @@ pub(crate) enum Access {
 /// A stage.
 pub(crate) struct Stage {
     pub name: &'static str,
-    /// Shared parts of the shader, then its own.
+    /// Shared parts of the shader and its own, after those that all have.
     pub parts: &'static [&'static str],
     /// Threads of a workgroup.
     pub workgroup: usize,
@@ -25,7 +27,7 @@ pub(crate) struct Stage {
 impl Stage {
     /// The whole shader.
     pub fn source(&self) -> String {
-        self.parts.concat()
+        DISPATCH.to_owned() + &self.parts.concat()
     }
 }
 
