@@ -62,8 +62,7 @@ struct Separation {
     min_separation: f32,
     wanted: f32,
     sine: f32,
-    padding_0: u32,
-    padding_1: u32,
+    heights: vec2<f32>,
 }
 
 struct PairState {
