@@ -1,11 +1,10 @@
-// Limits the step sizes of the vertices of each candidate: each side may close a share of the gap, and a vertex that is
-// farther from the other side than the nearest one of its own may move that much more. So each side stays in its own
-// half-space.
+// Limits the step sizes of the vertices of each candidate: each side may close a share of the gap, so that each stays in
+// its own half-space.
 //
 // Rounding. Let u = 2^-24 and P the sum of the coordinates of the longest path of the pair. A path is off by 3 u P, the
-// closing speed along n by 4 u P more, shares and step sizes round another five times: less than 17 u P for a side, and a
+// closing speed along n by 4 u P more, shares and step sizes round another four times: less than 16 u P for a side, and a
 // position is rounded to the grid, by less than 1 in each coordinate, sqrt(3) along n. Both sides together: less than
-// 4 + 34 u P; STEP and PATH_ROUNDING are larger.
+// 4 + 32 u P; STEP and PATH_ROUNDING are larger.
 
 struct Params {
     capacity: u32,
@@ -33,15 +32,6 @@ fn lower(v: u32, alpha: f32) {
         bits = 0u;
     }
     atomicMin(&alphas[v], bits);
-}
-
-// How much farther from the other side each vertex is than the nearest one of its own.
-fn heights_of(side_a: u32, relative: vec2<f32>) -> vec4<f32> {
-    if side_a == 2u {
-        return max(vec4<f32>(-relative.x, relative.x, -relative.y, relative.y), vec4<f32>(0.0));
-    }
-    let nearest = min(0.0, min(relative.x, relative.y));
-    return vec4<f32>(0.0, -nearest, relative.x - nearest, relative.y - nearest);
 }
 
 fn limit_pair(candidate: Candidate, separation: Separation) {
@@ -93,20 +83,10 @@ fn limit_pair(candidate: Candidate, separation: Separation) {
     if total <= allowed {
         return;
     }
-    let heights = heights_of(pair.side_a, separation.heights);
-    var needs = vec2<f32>(0.0);
     for (var k = 0u; k < pair.count; k += 1u) {
-        let side = u32(k >= pair.side_a);
-        needs[side] = max(needs[side], closing[k] - heights[k]);
-    }
-    let needed = needs.x + needs.y;
-    if needed <= allowed {
-        return;
-    }
-    for (var k = 0u; k < pair.count; k += 1u) {
-        let room = allowed * (needs[u32(k >= pair.side_a)] / needed) + heights[k];
-        if closing[k] > room {
-            lower(pair.vertices[k], min(room / closing[k], 1.0) * path[k].w);
+        if closing[k] > 0.0 {
+            let share = speeds[u32(k >= pair.side_a)] / total;
+            lower(pair.vertices[k], min(allowed * share / closing[k], 1.0) * path[k].w);
         }
     }
 }

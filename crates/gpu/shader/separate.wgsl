@@ -5,10 +5,6 @@
 // and rounded once as f32; a dot product of three terms adds 3 u: an error of 4.01 u sqrt(3) m. WGSL allows sqrt 5 ulp
 // and a quotient 2.5 ulp, so | |n| - 1 | <= 18 u, which moves the width by 18 u sqrt(3) m. Together that is less than
 // 41 u m; 64 u m are subtracted. Additions in another order, or fused, have smaller or equal bounds.
-//
-// Two vertices of a side differ by at most 2 m in each coordinate. How much farther from the other side one is comes from
-// two such products, 14 u m, and three subtractions of at most 2 sqrt(3) m, 11 u m; the length of n moves it by 63 u m.
-// 128 u m are subtracted.
 
 struct Params {
     // Candidates that the list holds.
@@ -52,24 +48,6 @@ fn width_along(n: vec3<f32>, differences: Differences) -> f32 {
     return width - differences.slack;
 }
 
-// See Separation. What is subtracted for the rounding makes no vertex farther than the nearest one of its side.
-fn heights_along(n: vec3<f32>, differences: Differences, two_edges: bool) -> vec2<f32> {
-    let slack = 2.0 * differences.slack;
-    let first = dot(n, differences.d[0]);
-    var heights = vec2<f32>(0.0);
-    if differences.count > 1u {
-        heights.x = dot(n, differences.d[1]) - first;
-    }
-    if differences.count > 2u {
-        heights.y = dot(n, differences.d[2]) - first;
-    }
-    if two_edges {
-        return heights.yx - clamp(heights.yx, vec2<f32>(-slack), vec2<f32>(slack));
-    }
-    let nearest = min(0.0, min(heights.x, heights.y)) + slack;
-    return max(heights - nearest, vec2<f32>(0.0)) - max(-nearest, 0.0);
-}
-
 // Edges whose ends lie on different points of the grid are at least 1 long.
 fn sine_between(a: vec3<f32>, b: vec3<f32>) -> f32 {
     let product = cross(a / max(sqrt(dot(a, a)), 1.0), b / max(sqrt(dot(b, b)), 1.0));
@@ -80,7 +58,7 @@ fn separate_plane(v: u32, p: u32) -> Separation {
     let plane = planes[p];
     let offset = vec3<f32>(positions[v].xyz - plane.point);
     let height = dot(plane.normal, offset);
-    return Separation(plane.normal, height - plane.rounding * size(offset) - POINT_ROUNDING, vec2<f32>(0.0), height, 0.0, 0.0, 0.0, vec2<f32>(0.0));
+    return Separation(plane.normal, height - plane.rounding * size(offset) - POINT_ROUNDING, vec2<f32>(0.0), height, 0.0, 0.0, 0.0, 0u, 0u);
 }
 
 fn separate_pair(candidate: Candidate) -> Separation {
@@ -138,7 +116,7 @@ fn separate_pair(candidate: Candidate) -> Separation {
     if pair.kind == EDGE_EDGE {
         weights = closest.weights.xz;
     }
-    var separation = Separation(vec3<f32>(0.0, 0.0, 1.0), -1.0, weights, distance, 0.0, 0.0, sine, vec2<f32>(0.0));
+    var separation = Separation(vec3<f32>(0.0, 0.0, 1.0), -1.0, weights, distance, 0.0, 0.0, sine, 0u, 0u);
     if distance > 0.0 {
         separation.normal = closest.offset / distance;
         separation.width = width_along(separation.normal, differences);
@@ -161,7 +139,6 @@ fn separate_pair(candidate: Candidate) -> Separation {
             }
         }
     }
-    separation.heights = heights_along(separation.normal, differences, pair.kind == EDGE_EDGE);
     return separation;
 }
 

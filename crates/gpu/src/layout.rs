@@ -153,9 +153,8 @@ pub struct Separation {
     pub wanted: f32,
     /// Sine of the angle between two edges; 0 for other pairs.
     pub sine: f32,
-    /// How much farther from the other side some vertices are than the first of their own: of two edges the last of each,
-    /// of other pairs the last two of side *b*. At most the true differences between any two of a side.
-    pub heights: [f32; 2],
+    pub padding_0: u32,
+    pub padding_1: u32,
 }
 
 /// What a candidate keeps from step to step.

@@ -8,12 +8,6 @@
 /// any unit vector. The closing speed n . d, from which a share is computed, is off by at most 4 u |d|, and
 /// its factor for the cap of the travel, the shares and the division that makes alpha of them round five
 /// times more: 9 u C/2 = 2.25 ulp(C) over the travel of a step. `step` = 4 ulp(C) covers both.
-///
-/// Two vertices differ by at most 2 C in each coordinate. The dot product of the stored normal with their difference is
-/// off by at most 4.01 u sqrt(3) 2 C < 14 u C, as in the module of [`bowknot_geometry::Separation`], and the normal is not
-/// quite of length 1: 5.01 u sqrt(3) 2 C < 17.5 u C. The height of a vertex over the nearest one of its side takes two such
-/// products and a subtraction, 7 u C, and is added to a share, u C/2. `height` = 32 ulp(C) = 64 u C covers 2 x 14 + 17.5 +
-/// 7.5 = 53 u C.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rounding {
     /// By how much, at most, one side closes a gap beyond its share in one step [m].
@@ -21,15 +15,13 @@ pub struct Rounding {
     /// Gap at or below which a pair's vertices must not move at all [m]. Above it, a step that is not meant
     /// to close the gap cannot close it by rounding.
     pub frozen: f64,
-    /// By how much, at most, the computed height of a vertex over another one is too large [m].
-    pub height: f64,
 }
 
 impl Rounding {
     /// Bounds for coordinates up to `largest_coordinate` [m] in absolute value.
     pub fn new(largest_coordinate: f64) -> Self {
         let ulp = f64::EPSILON * largest_coordinate;
-        Self { step: 4.0 * ulp, frozen: 9.0 * ulp, height: 32.0 * ulp }
+        Self { step: 4.0 * ulp, frozen: 9.0 * ulp }
     }
 
     /// Gap at or below which the isotropic bound, which halves it again and again, moves nothing: 64 ulp [m].

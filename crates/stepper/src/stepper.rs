@@ -1,8 +1,7 @@
 //! The forward step (paper, Eq. 3, 18-20), with separating planes in place of the isotropic bound.
 //!
 //! For a pair with unit normal n and certified slab width w, side *a* may close at most a share of G = gamma
-//! max(0, w - xi), where xi is the pair's minimum separation, and side *b* the rest. A vertex that is farther from
-//! the other side than the nearest one of its own side may move that much more. Each side then stays in
+//! max(0, w - xi), where xi is the pair's minimum separation, and side *b* the rest. Each side then stays in
 //! its own half-space. Half-spaces are convex, so no straight path of any vertex crosses, whatever the
 //! speeds, and a smaller alpha is always safe too. The isotropic bound is the paper's: no vertex moves by
 //! more than half of the smallest distance of its pairs.
@@ -12,7 +11,6 @@ use crate::trust_regions::TrustRegions;
 use bowknot_geometry::{PairKind, Point, Separation, Vector};
 use bowknot_proximity::{CollisionModel, PairList};
 use rayon::prelude::*;
-use std::ops::Range;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 /// Smallest number of elements in one parallel task.
@@ -52,8 +50,6 @@ pub struct StepReport {
 pub struct Stepper {
     /// d = y - x [m].
     displacements: Vec<Vector>,
-    /// x, where the step begins [m].
-    starts: Vec<Point>,
     /// Bits of alpha. Nonnegative floats are ordered as their bits are, so an atomic minimum of bits is a
     /// minimum of the numbers, and it gives the same result in any order.
     alphas: Vec<AtomicU64>,
@@ -96,8 +92,6 @@ impl Stepper {
     pub fn set_target(&mut self, positions: &[Point], target: &[Point]) -> usize {
         self.displacements.resize(positions.len(), Vector::zeros());
         self.caps.resize(positions.len(), 1.0);
-        self.starts.clear();
-        self.starts.extend_from_slice(positions);
         let vertices =
             (&mut self.displacements, &mut self.alphas, &mut self.caps, positions, target).into_par_iter();
         let set = |(d, alpha, cap, x, y): (&mut Vector, &mut AtomicU64, &mut f64, &Point, &Point)| {
@@ -174,11 +168,7 @@ impl Stepper {
 
     fn rounding(&self) -> Rounding {
         // Without a target nothing may move at all.
-        self.rounding.unwrap_or(Rounding {
-            step: f64::INFINITY,
-            frozen: f64::INFINITY,
-            height: f64::INFINITY,
-        })
+        self.rounding.unwrap_or(Rounding { step: f64::INFINITY, frozen: f64::INFINITY })
     }
 
     /// Limits the vertices of every pair by the pair's slab. Returns the number of frozen pairs: those for
@@ -332,7 +322,7 @@ impl Stepper {
         vertices: &[u32; 4],
         n: &Vector,
         allowed: f64,
-        limit: impl FnMut(usize, f64),
+        mut limit: impl FnMut(usize, f64),
     ) {
         let (count, side_a) = (kind.vertex_count(), kind.side_a());
         if let Some(&group) = self.groups.get(vertices[0] as usize)
@@ -354,43 +344,10 @@ impl Stepper {
         if total <= allowed {
             return;
         }
-        self.share_by_heights(vertices, [0..side_a, side_a..count], n, allowed, &closing, limit);
-    }
-
-    /// The same, for vertices that move by `closing` [m] toward the other side. Each may move by its height over the
-    /// nearest one of its side, and by the share of `allowed` that its side needs in comparison with the other.
-    fn share_by_heights(
-        &self,
-        vertices: &[u32; 4],
-        sides: [Range<usize>; 2],
-        n: &Vector,
-        allowed: f64,
-        closing: &[f64; 4],
-        mut limit: impl FnMut(usize, f64),
-    ) {
-        let mut heights = [0.0f64; 4];
-        let mut needs = [0.0f64; 2];
-        for (side, sign) in [(0, 1.0), (1, -1.0)] {
-            let places = sides[side].clone();
-            let start = |k: usize| self.starts[vertices[k] as usize];
-            places.clone().for_each(|k| heights[k] = sign * n.dot(&(start(k) - start(places.start))));
-            let nearest = places.clone().map(|k| heights[k]).fold(f64::INFINITY, f64::min);
-            for k in places {
-                heights[k] = (heights[k] - nearest - self.rounding().height).max(0.0);
-                needs[side] = needs[side].max(closing[k] - heights[k]);
-            }
-        }
-        let total = needs[0] + needs[1];
-        if total <= allowed {
-            return;
-        }
-        for (places, need) in sides.into_iter().zip(needs) {
-            for k in places {
-                let (v, room) = (vertices[k] as usize, allowed * (need / total) + heights[k]);
-                if closing[k] <= room {
-                    continue;
-                }
-                limit(v, room / closing[k] * self.caps[v]);
+        for k in 0..count {
+            if closing[k] > 0.0 {
+                let (v, share) = (vertices[k] as usize, speeds[usize::from(k >= side_a)] / total);
+                limit(v, (allowed * share / closing[k]).min(1.0) * self.caps[v]);
             }
         }
     }

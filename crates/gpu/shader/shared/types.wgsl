@@ -62,7 +62,8 @@ struct Separation {
     min_separation: f32,
     wanted: f32,
     sine: f32,
-    heights: vec2<f32>,
+    padding_0: u32,
+    padding_1: u32,
 }
 
 struct PairState {

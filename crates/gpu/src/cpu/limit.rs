@@ -109,88 +109,10 @@ fn limit_pair(
     if total <= allowed {
         return;
     }
-    let heights = heights_of(pair.side_a, separation.heights);
-    let mut needs = [0.0f32; 2];
     for k in 0..pair.count {
-        let side = usize::from(k >= pair.side_a);
-        needs[side] = needs[side].max(closing[k] - heights[k]);
-    }
-    let needed = needs[0] + needs[1];
-    if needed <= allowed {
-        return;
-    }
-    for k in 0..pair.count {
-        let room = allowed * (needs[usize::from(k >= pair.side_a)] / needed) + heights[k];
-        if closing[k] > room {
-            lower((room / closing[k]).min(1.0) * path[k][3], &mut alphas[at[k]]);
+        if closing[k] > 0.0 {
+            let share = speeds[usize::from(k >= pair.side_a)] / total;
+            lower((allowed * share / closing[k]).min(1.0) * path[k][3], &mut alphas[at[k]]);
         }
-    }
-}
-
-fn heights_of(side_a: usize, relative: [f32; 2]) -> [f32; 4] {
-    let [x, y] = relative;
-    if side_a == 2 {
-        return [-x, x, -y, y].map(|height| height.max(0.0));
-    }
-    let nearest = x.min(y).min(0.0);
-    [0.0, -nearest, x - nearest, y - nearest]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::cpu::separate;
-    use crate::layout::Kind;
-
-    /// On grids from a few quanta to the largest, also where one coordinate is much longer than the others.
-    #[test]
-    fn heights_are_never_overstated() {
-        let (edges, triangles) = ([[0, 1], [2, 3]], [[1, 2, 3, 0]]);
-        let mut random = fastrand::Rng::with_seed(9);
-        let mut raised = 0;
-        for _ in 0..20_000 {
-            let sizes = [0; 3].map(|_| 1 << random.i32(1..28));
-            let x: [[i32; 4]; 4] = std::array::from_fn(|_| {
-                std::array::from_fn(|k| if k < 3 { random.i32(0..sizes[k]) } else { 0 })
-            });
-            for candidate in [
-                Candidate::new(Kind::VertexEdge, 0, 1),
-                Candidate::new(Kind::VertexTriangle, 0, 0),
-                Candidate::new(Kind::EdgeEdge, 0, 1),
-            ] {
-                let mut separations = [Separation::default()];
-                let (params, control) = (
-                    separate::Params { capacity: 1, after_search: 0 },
-                    Control { candidates: 1, ..Control::default() },
-                );
-                separate::separate(
-                    params,
-                    &x,
-                    &edges,
-                    &triangles,
-                    &[],
-                    &[candidate],
-                    &mut separations,
-                    &control,
-                );
-                let pair = pair_of(candidate, &edges, &triangles);
-                let heights = heights_of(pair.side_a, separations[0].heights);
-                let normal = separations[0].normal.map(f64::from);
-                let along = |k: usize| -> f64 {
-                    let place = x[pair.vertices[k] as usize];
-                    let sign = if k < pair.side_a { 1.0 } else { -1.0 };
-                    sign * (0..3).map(|c| normal[c] * f64::from(place[c])).sum::<f64>()
-                };
-                for side in [0..pair.side_a, pair.side_a..pair.count] {
-                    let nearest = side.clone().map(along).fold(f64::INFINITY, f64::min);
-                    for k in side {
-                        let exact = along(k) - nearest;
-                        assert!(f64::from(heights[k]) <= exact, "{} {exact} {pair:?} {x:?}", heights[k]);
-                        raised += usize::from(f64::from(heights[k]) > 0.9 * exact && exact > 1.0);
-                    }
-                }
-            }
-        }
-        assert!(raised > 50_000, "{raised}");
     }
 }

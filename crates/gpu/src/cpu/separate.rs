@@ -39,20 +39,6 @@ fn width_along(n: [f32; 3], differences: &[[f32; 3]], slack: f32) -> f32 {
     width - slack
 }
 
-fn heights_along(n: [f32; 3], differences: &[[f32; 3]], slack: f32, two_edges: bool) -> [f32; 2] {
-    let slack = 2.0 * slack;
-    let first = dot(n, differences[0]);
-    let mut heights = [0.0; 2];
-    for (height, d) in heights.iter_mut().zip(&differences[1..]) {
-        *height = dot(n, *d) - first;
-    }
-    if two_edges {
-        return [heights[1], heights[0]].map(|height| height - height.clamp(-slack, slack));
-    }
-    let nearest = heights[0].min(heights[1]).min(0.0) + slack;
-    heights.map(|height| (height - nearest).max(0.0) - (-nearest).max(0.0))
-}
-
 fn separate_plane(position: [i32; 4], plane: &Plane) -> Separation {
     let offset = difference(position, [plane.point[0], plane.point[1], plane.point[2], 0]);
     let height = dot(plane.normal, offset);
@@ -168,7 +154,5 @@ fn separate_pair(
             }
         }
     }
-    let two_edges = pair.kind == Kind::EdgeEdge as u32;
-    separation.heights = heights_along(separation.normal, differences, slack, two_edges);
     separation
 }

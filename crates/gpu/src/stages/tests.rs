@@ -106,7 +106,7 @@ fn structs_lie_alike_on_both_sides() {
         offsets!(layout::Ball: center, radius),
         offsets!(layout::NodeBox: low, deformable, high, padding),
         offsets!(layout::Candidate: kind_and_a, b),
-        offsets!(layout::Separation: normal, width, weights, distance, min_separation, wanted, sine, heights),
+        offsets!(layout::Separation: normal, width, weights, distance, min_separation, wanted, sine, padding_0, padding_1),
         offsets!(layout::PairState: friction, multiplier, desired, min_separation, range, color),
         offsets!(layout::Row: vertices, weights, normal, value, inverse_diagonal, multiplier, candidate, color, slip, coefficient,
             friction, padding),
