@@ -9,6 +9,8 @@ mod paths;
 mod interior_points;
 // Degenerate contacts never intersect.
 mod degenerate;
+// Flights of a device do not either.
+mod flights;
 // The properties of the fuzz targets hold for seeded random bytes.
 mod fuzz_bodies;
 // Bodies in contact move as theory predicts, and none is crushed.

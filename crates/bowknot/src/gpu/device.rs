@@ -1,7 +1,7 @@
 //! The collision stage on a device.
 
 use super::error::GpuResolveError;
-use super::setup;
+use super::{flight, setup};
 use crate::simulator::{BackendError, CollisionBackend};
 use bowknot_check::{Judge, StateOptions};
 use bowknot_geometry::{PairKind, Point};
@@ -13,6 +13,7 @@ use bowknot_twoway::{
     Resolver, StallDetector, Statistics, StopTest, max_stretch,
 };
 use std::fmt::Debug;
+use std::ops::ControlFlow;
 use std::time::Instant;
 
 /// Share of the largest friction from which on a contact slides: single precision.
@@ -162,15 +163,26 @@ impl<E: Engine + Debug + Send> Device<E> {
         // Those of a call that failed.
         collision.take_phase_seconds();
         let start = place(collision, positions, &judge)?;
-        let speed = scene.lengths().separation_speed;
-        let growth = input.time_step.map_or(f64::INFINITY, |dt| speed * dt);
-        collision.begin(&Call { target, growth, slip_start: call.slip_start(), stop: rule(&stop) })?;
-
         let mut stall = StallDetector::new(edge, scene.arrival_distance());
         let mut statistics = Statistics::default();
         let sees_each_state = observer.sees_each_state();
         let mut previous = start.clone();
-        while stop.allows_step(statistics.steps) {
+        let flown = fly(collision, scene, &call, [&start, target]).filter(|_| stop.max_steps() > 1);
+        let flight_observed = if let Some(flown) = flown {
+            previous = collision.place(&flown)?;
+            debug_assert_eq!(previous, flown, "translations are multiples of the quantum");
+            statistics.steps = 1;
+            let accepted = AcceptedState { step: 0, previous: &start, positions: &flown, target };
+            if sees_each_state { observer.accepted(&accepted) } else { observer.advanced(1) }
+        } else {
+            ControlFlow::Continue(())
+        };
+        let speed = scene.lengths().separation_speed;
+        let growth = input.time_step.map_or(f64::INFINITY, |dt| speed * dt);
+        let slip_start = if call.slip_start().is_empty() { &start } else { call.slip_start() };
+        collision.begin(&Call { target, growth, slip_start, stop: rule(&stop) })?;
+
+        while flight_observed.is_continue() && stop.allows_step(statistics.steps) {
             let most = if sees_each_state { 1 } else { steps_per_submission };
             // A stall can then end the call after the last of them alone.
             let most = most.min(stall.steps_left()).min(stop.max_steps() - statistics.steps);
@@ -287,6 +299,18 @@ fn place<E: Engine>(
         }
     }
     Ok(start)
+}
+
+/// Where the vertices are after a [flight](flight::fly) on the grid of the call.
+fn fly<E: Engine>(
+    collision: &Collision<E>,
+    scene: &CollisionScene,
+    call: &CallInput,
+    course: [&[Point]; 2],
+) -> Option<Vec<Point>> {
+    let grid = collision.grid();
+    let flown = flight::fly(scene, call, course, grid.quantum(), Collision::<E>::LONGEST_TRAVEL);
+    flown.filter(|flown| grid.has_room(flown))
 }
 
 /// The rule as the device decides by it.

@@ -11,6 +11,7 @@
 mod choice;
 mod device;
 mod error;
+mod flight;
 mod setup;
 
 pub use bowknot_gpu::{

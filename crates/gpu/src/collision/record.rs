@@ -29,11 +29,11 @@ impl<E: Engine> Collision<E> {
         self.record_decision(false, dispatches, recording);
     }
 
-    /// The first search of a call, without a step. `dispatches` as for a step.
+    /// The first search of a call, without a step: along the ways to the targets, so that the rows of the first step know
+    /// what it meets. `dispatches` as for a step.
     pub(super) fn record_first_search(&self, dispatches: usize, recording: &mut Recording) {
-        recording.write(self.buffers.paths, &vec![[0.0f32; 4]; self.sizes.vertices]);
         self.record_restart(true, recording);
-        self.record_cover(recording);
+        self.record_paths(recording);
         self.record_search(recording);
         self.record_decision(true, dispatches, recording);
     }
