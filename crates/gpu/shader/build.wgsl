@@ -68,7 +68,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
             }
         }
         rows[r] = Row(
-            v, weights, separation.normal, separation.distance - separation.wanted, 0.0, state.multiplier, c, state.color,
+            v, weights, separation.normal, separation.distance - separation.wanted, 0.0, state.multiplier, c, 0u,
             vec3<f32>(0.0), 0.0, vec3<f32>(0.0), 0u
         );
     }

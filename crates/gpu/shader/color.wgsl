@@ -1,25 +1,38 @@
-// Colors the rows that have no color, in rounds, by one workgroup. In a round each such row claims its vertices that move,
-// and the smallest key holds a vertex. A row that holds all of its vertices takes the first color that none of them has in
-// use. So rows of one color share no vertex that moves, and the colors depend on the keys alone, not on the order of the
-// threads. In each round the smallest key of all is among those that settle.
+// Colors the rows of each bucket and sorts them by color. A workgroup takes a bucket at a time; the buckets of a dispatch
+// share no vertex that moves.
+//
+// In a round each row without a color claims its vertices that move, and the smallest key holds a vertex. A row that holds
+// all of its vertices takes the first color that none of them has in use. So rows of one color share no vertex that moves,
+// and the colors depend on the keys alone, not on the order of the threads. In each round the smallest key of all is among
+// those that settle.
 
 struct Params {
+    // Buckets of the dispatch.
+    first: u32,
+    end: u32,
     capacity: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> displacements: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read_write> rows: array<Row>;
-@group(0) @binding(3) var<storage, read_write> in_use: array<vec4<u32>>;
-@group(0) @binding(4) var<storage, read_write> claims: array<atomic<u32>>;
+@group(0) @binding(3) var<storage, read_write> buckets: array<Bucket>;
+// Colors in use at each vertex.
+@group(0) @binding(4) var<storage, read_write> in_use: array<vec4<u32>>;
+@group(0) @binding(5) var<storage, read_write> claims: array<atomic<u32>>;
 // The rows that wait, and room for those of the next round.
-@group(0) @binding(5) var<storage, read_write> waiting: array<u32>;
-@group(0) @binding(6) var<storage, read_write> control: Control;
+@group(0) @binding(6) var<storage, read_write> waiting: array<u32>;
+@group(0) @binding(7) var<storage, read_write> order: array<u32>;
+// Where each color of a bucket ends in the order, from the place where the bucket begins: it has no more colors than rows.
+@group(0) @binding(8) var<storage, read_write> color_ends: array<u32>;
 
 var<workgroup> left: atomic<u32>;
+var<workgroup> shared_first: u32;
 var<workgroup> shared_count: u32;
+// Number of rows of each color and of those without one; then where the next of them goes.
+var<workgroup> places: array<atomic<u32>, 129>;
 
-// Keys are unique, and they stay the same as long as the candidates do: a product with an odd number permutes them.
+// Keys are unique: a product with an odd number permutes them.
 fn key_of(candidate: u32) -> u32 {
     return candidate * 0x9e3779b1u;
 }
@@ -35,6 +48,25 @@ fn first_free(used: vec4<u32>) -> u32 {
 
 fn moves(v: u32) -> bool {
     return displacements[v].w > 0.0;
+}
+
+fn claim(r: u32) {
+    for (var k = 0u; k < 4u; k += 1u) {
+        let v = rows[r].vertices[k];
+        if moves(v) {
+            atomicMin(&claims[v], key_of(rows[r].candidate));
+        }
+    }
+}
+
+// No color is in use yet at the vertices that a row holds.
+fn clear(r: u32) {
+    for (var k = 0u; k < 4u; k += 1u) {
+        let v = rows[r].vertices[k];
+        if moves(v) && atomicLoad(&claims[v]) == key_of(rows[r].candidate) {
+            in_use[v] = vec4<u32>(0u);
+        }
+    }
 }
 
 fn holds_all(r: u32) -> bool {
@@ -72,50 +104,107 @@ fn settle(r: u32) {
 }
 
 @compute @workgroup_size(256)
-fn main(@builtin(local_invocation_id) local: vec3<u32>) {
-    if local.x == 0u {
-        shared_count = min(atomicLoad(&control.waiting), params.capacity);
-    }
-    var count = workgroupUniformLoad(&shared_count);
-    var here = 0u;
-    var next = params.capacity;
-    while count > 0u {
+fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
+    for (var bucket = params.first + group.x; bucket < params.end; bucket += MOST_WORKGROUPS) {
         if local.x == 0u {
-            atomicStore(&left, 0u);
+            shared_first = buckets[bucket].first;
+            shared_count = buckets[bucket].end - buckets[bucket].first;
         }
-        for (var place = local.x; place < count; place += 256u) {
-            let r = waiting[here + place];
-            for (var k = 0u; k < 4u; k += 1u) {
-                atomicStore(&claims[rows[r].vertices[k]], NONE);
+        let first = workgroupUniformLoad(&shared_first);
+        let all = workgroupUniformLoad(&shared_count);
+        for (var place = local.x; place < all; place += 256u) {
+            waiting[first + place] = order[first + place];
+        }
+        var here = first;
+        var next = params.capacity + first;
+        var count = all;
+        for (var round = 0u; count > 0u; round += 1u) {
+            if local.x == 0u {
+                atomicStore(&left, 0u);
             }
-        }
-        storageBarrier();
-        for (var place = local.x; place < count; place += 256u) {
-            let r = waiting[here + place];
-            for (var k = 0u; k < 4u; k += 1u) {
-                let v = rows[r].vertices[k];
-                if moves(v) {
-                    atomicMin(&claims[v], key_of(rows[r].candidate));
+            for (var place = local.x; place < count; place += 256u) {
+                let r = waiting[here + place];
+                for (var k = 0u; k < 4u; k += 1u) {
+                    atomicStore(&claims[rows[r].vertices[k]], NONE);
                 }
             }
-        }
-        storageBarrier();
-        for (var place = local.x; place < count; place += 256u) {
-            let r = waiting[here + place];
-            if holds_all(r) {
-                settle(r);
-            } else {
-                waiting[next + atomicAdd(&left, 1u)] = r;
+            storageBarrier();
+            for (var place = local.x; place < count; place += 256u) {
+                claim(waiting[here + place]);
             }
+            storageBarrier();
+            if round == 0u {
+                for (var place = local.x; place < count; place += 256u) {
+                    clear(waiting[here + place]);
+                }
+            }
+            storageBarrier();
+            for (var place = local.x; place < count; place += 256u) {
+                let r = waiting[here + place];
+                if holds_all(r) {
+                    settle(r);
+                } else {
+                    waiting[next + atomicAdd(&left, 1u)] = r;
+                }
+            }
+            storageBarrier();
+            workgroupBarrier();
+            if local.x == 0u {
+                shared_count = atomicLoad(&left);
+            }
+            count = workgroupUniformLoad(&shared_count);
+            let swapped = here;
+            here = next;
+            next = swapped;
         }
-        storageBarrier();
-        workgroupBarrier();
-        if local.x == 0u {
-            shared_count = atomicLoad(&left);
-        }
-        count = workgroupUniformLoad(&shared_count);
-        let swapped = here;
-        here = next;
-        next = swapped;
+        sort_by_color(bucket, first, all, local.x);
     }
+}
+
+// Their order within a color does not matter, for they share no vertex that moves; rows without a color, of which there are
+// few, come in the order of their candidates.
+fn sort_by_color(bucket: u32, first: u32, all: u32, thread: u32) {
+    for (var color = thread; color <= COLORS; color += 256u) {
+        atomicStore(&places[color], 0u);
+    }
+    workgroupBarrier();
+    for (var place = first + thread; place < first + all; place += 256u) {
+        let r = order[place];
+        waiting[place] = r;
+        atomicAdd(&places[rows[r].color], 1u);
+    }
+    storageBarrier();
+    workgroupBarrier();
+    if thread == 0u {
+        var sum = first;
+        var color = 0u;
+        // A color is used only where those before it are.
+        for (; color < COLORS; color += 1u) {
+            let rows_of_color = atomicLoad(&places[color]);
+            if rows_of_color == 0u {
+                break;
+            }
+            atomicStore(&places[color], sum);
+            sum += rows_of_color;
+            color_ends[first + color] = sum;
+        }
+        buckets[bucket].colors = color;
+        atomicStore(&places[COLORS], sum);
+    }
+    workgroupBarrier();
+    for (var place = first + thread; place < first + all; place += 256u) {
+        let r = waiting[place];
+        let color = rows[r].color;
+        if color < COLORS {
+            order[atomicAdd(&places[color], 1u)] = r;
+        } else {
+            var before = 0u;
+            for (var other = first; other < first + all; other += 1u) {
+                let row = waiting[other];
+                before += u32(rows[row].color == COLORS && rows[row].candidate < rows[r].candidate);
+            }
+            order[atomicLoad(&places[COLORS]) + before] = r;
+        }
+    }
+    workgroupBarrier();
 }

@@ -33,7 +33,7 @@ const HALTED_BY_SEARCH: u32 = 2u;
 
 // A copy of Control.
 struct Report {
-    words: array<u32, 21>,
+    words: array<u32, 20>,
 }
 
 var<workgroup> shared_halted: u32;
@@ -83,18 +83,17 @@ fn keep_report(step: u32) {
     reports[step].words[6] = atomicLoad(&control.lag);
     reports[step].words[7] = atomicLoad(&control.largest_move);
     reports[step].words[8] = atomicLoad(&control.free_move);
-    reports[step].words[9] = atomicLoad(&control.waiting);
-    reports[step].words[10] = atomicLoad(&control.unhindered);
-    reports[step].words[11] = atomicLoad(&control.net_residual);
-    reports[step].words[12] = atomicLoad(&control.mean_residual);
-    reports[step].words[13] = atomicLoad(&control.stretch_to_limit);
-    reports[step].words[14] = atomicLoad(&control.pressing);
-    reports[step].words[15] = atomicLoad(&control.candidates);
-    reports[step].words[16] = atomicLoad(&control.rows);
-    reports[step].words[17] = atomicLoad(&control.halted);
-    reports[step].words[18] = atomicLoad(&control.steps);
-    reports[step].words[19] = atomicLoad(&control.last_mean_residual);
-    reports[step].words[20] = atomicLoad(&control.finishing_steps);
+    reports[step].words[9] = atomicLoad(&control.unhindered);
+    reports[step].words[10] = atomicLoad(&control.net_residual);
+    reports[step].words[11] = atomicLoad(&control.mean_residual);
+    reports[step].words[12] = atomicLoad(&control.stretch_to_limit);
+    reports[step].words[13] = atomicLoad(&control.pressing);
+    reports[step].words[14] = atomicLoad(&control.candidates);
+    reports[step].words[15] = atomicLoad(&control.rows);
+    reports[step].words[16] = atomicLoad(&control.halted);
+    reports[step].words[17] = atomicLoad(&control.steps);
+    reports[step].words[18] = atomicLoad(&control.last_mean_residual);
+    reports[step].words[19] = atomicLoad(&control.finishing_steps);
 }
 
 fn decide() -> u32 {

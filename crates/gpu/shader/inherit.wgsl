@@ -29,7 +29,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         let old = old_rows[row];
         for (var k = 0u; k < count && first + k < params.capacity; k += 1u) {
             let element = partners[words + 2u + k];
-            var state = PairState(vec3<f32>(0.0), 0.0, -1.0, 0.0, 0.0, NONE);
+            var state = PairState(vec3<f32>(0.0), 0.0, -1.0, 0.0, 0.0, 0u);
             // Rows are short: 10 partners are many.
             for (var place = old.first; place < old.first + old.count; place += 1u) {
                 if old_elements[place] == element {

@@ -45,7 +45,6 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
                 flag = 1u;
             } else {
                 states[c].multiplier = 0.0;
-                states[c].color = NONE;
                 states[c].friction = vec3<f32>(0.0);
             }
         }

@@ -12,10 +12,8 @@ struct Params {
 @group(0) @binding(4) var<storage, read_write> proximal: array<u32>;
 // Displacement and inverse weight.
 @group(0) @binding(5) var<storage, read_write> displacements: array<vec4<f32>>;
-// Colors in use, which are reset.
-@group(0) @binding(6) var<storage, read_write> in_use: array<vec4<u32>>;
 // Last displacement, and the factor on the proximal weight.
-@group(0) @binding(7) var<storage, read> swings: array<vec4<f32>>;
+@group(0) @binding(6) var<storage, read> swings: array<vec4<f32>>;
 
 // Largest proximal weight, in the mass of the vertex.
 const MOST_PROXIMAL: f32 = 100.0;
@@ -33,6 +31,5 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
             displacements[v] = vec4<f32>(wanted * (weight * vertex.mass), weight);
         }
         proximal[v] = 0u;
-        in_use[v] = vec4<u32>(0u);
     }
 }

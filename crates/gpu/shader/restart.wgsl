@@ -31,7 +31,6 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     atomicStore(&control.lag, 0u);
     atomicStore(&control.largest_move, 0u);
     atomicStore(&control.free_move, 0u);
-    atomicStore(&control.waiting, 0u);
     atomicStore(&control.unhindered, 0u);
     atomicStore(&control.net_residual, 0u);
     atomicStore(&control.mean_residual, 0u);

@@ -84,7 +84,7 @@ fn first_state(candidate: Candidate, separation: Separation) -> PairState {
     if thickness >= 0.0 {
         least = min(min(thickness, delta / MIN_SEPARATION_MARGIN), max(separation.width, 0.0));
     }
-    return PairState(vec3<f32>(0.0), 0.0, desired, least, range, NONE);
+    return PairState(vec3<f32>(0.0), 0.0, desired, least, range, 0u);
 }
 
 @compute @workgroup_size(128)

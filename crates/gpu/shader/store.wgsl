@@ -1,4 +1,4 @@
-// Stores the multipliers and colors of the rows with their candidates.
+// Stores the multipliers of the rows with their candidates.
 
 struct Params {
     capacity: u32,
@@ -14,7 +14,6 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let count = min(atomicLoad(&control.rows), params.capacity);
     for (var r = id.x; r < count; r += 256u * MOST_WORKGROUPS) {
         states[rows[r].candidate].multiplier = rows[r].multiplier;
-        states[rows[r].candidate].color = rows[r].color;
         if rows[r].multiplier > 0.0 {
             atomicAdd(&control.pressing, 1u);
         }

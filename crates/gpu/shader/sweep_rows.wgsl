@@ -1,17 +1,22 @@
-// A sweep over all contact rows, color by color, by one workgroup: its threads take the rows of a color in turn and wait
-// for each other between colors. The rows without a color of their own come last, one after the other.
+// A sweep over the contact rows of some buckets, which share no vertex that moves (bricks.rs). A workgroup takes a bucket at
+// a time and waits between its colors: rows of one color share no vertex that moves. The rows without a color of their
+// own come last, one after the other. Vertices that do not move are read by many and written by none.
 
 struct Params {
+    // Buckets of the dispatch.
+    first: u32,
+    end: u32,
     // 1: multipliers are only applied, they do not change.
     only_apply: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> order: array<u32>;
-// Where each color ends in the order.
-@group(0) @binding(2) var<storage, read> ends: array<u32>;
-@group(0) @binding(3) var<storage, read_write> rows: array<Row>;
-@group(0) @binding(4) var<storage, read_write> displacements: array<vec4<f32>>;
+@group(0) @binding(2) var<storage, read> buckets: array<Bucket>;
+// Where each color of a bucket ends in the order, from the place where the bucket begins.
+@group(0) @binding(3) var<storage, read> color_ends: array<u32>;
+@group(0) @binding(4) var<storage, read_write> rows: array<Row>;
+@group(0) @binding(5) var<storage, read_write> displacements: array<vec4<f32>>;
 
 fn relax(r: u32) {
     let row = rows[r];
@@ -65,20 +70,22 @@ fn push(row: Row, change: vec3<f32>) {
 }
 
 @compute @workgroup_size(256)
-fn main(@builtin(local_invocation_id) local: vec3<u32>) {
-    for (var color = 0u; color < COLORS; color += 1u) {
-        var start = 0u;
-        if color > 0u {
-            start = ends[color - 1u];
+fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
+    for (var k = params.first + group.x; k < params.end; k += MOST_WORKGROUPS) {
+        let bucket = buckets[k];
+        var start = bucket.first;
+        for (var color = 0u; color < bucket.colors; color += 1u) {
+            let end = color_ends[bucket.first + color];
+            for (var place = start + local.x; place < end; place += 256u) {
+                relax(order[place]);
+            }
+            start = end;
+            storageBarrier();
         }
-        for (var place = start + local.x; place < ends[color]; place += 256u) {
-            relax(order[place]);
-        }
-        storageBarrier();
-    }
-    if local.x == 0u {
-        for (var place = ends[COLORS - 1u]; place < ends[COLORS]; place += 1u) {
-            relax(order[place]);
+        if local.x == 0u {
+            for (var place = start; place < bucket.end; place += 1u) {
+                relax(order[place]);
+            }
         }
     }
 }

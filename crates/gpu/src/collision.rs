@@ -14,6 +14,7 @@ mod stop;
 mod trees;
 
 use crate::adjacency::Adjacency;
+use crate::bricks::Bricks;
 use crate::cpu;
 use crate::edges::Edges;
 use crate::engine::{Engine, PhaseSeconds};
@@ -62,6 +63,9 @@ pub struct Settings {
     pub sweeps: usize,
     /// How often a sweep goes over each cluster of edges before the next one.
     pub cluster_sweeps: usize,
+    /// Vertices that move by bucket of contact rows, about. A workgroup sweeps a bucket; scenes of fewer than eight
+    /// buckets have one.
+    pub bucket_vertices: usize,
     /// Sweeps while the last step left less than `polish_distance` and stretched an edge beyond `polish_stretch`.
     pub polish_sweeps: usize,
     /// Remaining distance of a vertex [m].
@@ -91,6 +95,7 @@ impl Default for Settings {
         Self {
             sweeps: 8,
             cluster_sweeps: 2,
+            bucket_vertices: 128,
             polish_sweeps: 8,
             polish_distance: 0.0,
             polish_stretch: 1.01,
@@ -198,6 +203,7 @@ pub struct Collision<E> {
     buffers: Buffers,
     trees: Trees,
     edges: Edges,
+    bricks: Bricks,
     /// Where the edges and the triangles begin in the adjacency.
     adjacency_starts: [u32; 2],
     /// Whether any contact may have friction.
@@ -309,6 +315,7 @@ impl<E: Engine> Collision<E> {
         let trees = Trees::new(&mut engine, topology, &order)?;
         let adjacency = Adjacency::new(topology);
         let blocks = model::blocks(model);
+        let bricks = Bricks::new(&vertices[..count], settings.bucket_vertices);
         let sizes = Sizes {
             vertices: count,
             groups: groups.max().unwrap_or(0),
@@ -321,6 +328,7 @@ impl<E: Engine> Collision<E> {
             adjacency: adjacency.words.len(),
             blocks: blocks.len(),
             rows: trees.rows(planes.len()),
+            buckets: bricks.count(),
         };
         let frictional = constraints.frictions.iter().any(|friction| *friction > 0.0)
             || pair_frictions.iter().any(|pair| pair.coefficient > 0.0);
@@ -353,6 +361,7 @@ impl<E: Engine> Collision<E> {
             buffers,
             trees,
             edges,
+            bricks,
             adjacency_starts: [adjacency.edges_first, adjacency.triangles_first],
             frictional,
             placed: None,
@@ -536,5 +545,7 @@ fn snapped(grid: &Grid, positions: &[Point]) -> Result<Vec<GridPoint>, Collision
     positions.iter().enumerate().map(snap).collect()
 }
 
+#[cfg(test)]
+mod row_tests;
 #[cfg(test)]
 mod tests;

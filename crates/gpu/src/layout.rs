@@ -171,8 +171,7 @@ pub struct PairState {
     pub min_separation: f32,
     /// Distance within which the pair can have a row.
     pub range: f32,
-    /// Color of the contact row, [`NONE`] if it has none.
-    pub color: u32,
+    pub padding: u32,
 }
 
 impl PairState {
@@ -183,7 +182,7 @@ impl PairState {
         desired: -1.0,
         min_separation: 0.0,
         range: 0.0,
-        color: NONE,
+        padding: 0,
     };
 }
 
@@ -201,8 +200,9 @@ pub struct Row {
     /// 1 / sum of inverse weights times squared weights; 0 if nothing moves.
     pub inverse_diagonal: f32,
     pub multiplier: f32,
-    /// The candidate of the row, and its color; [`NONE`] before it has one, [`COLORS`] if there is none for it.
+    /// The candidate of the row.
     pub candidate: u32,
+    /// Its color in its bucket; [`COLORS`] if there is none for it.
     pub color: u32,
     /// How far the contact has slipped since the start of the time step, across the normal.
     pub slip: [f32; 3],
@@ -210,7 +210,19 @@ pub struct Row {
     pub coefficient: f32,
     /// Multiplier of friction, across the normal.
     pub friction: [f32; 3],
-    pub padding: u32,
+    /// Its bucket ([`crate::bricks`]).
+    pub bucket: u32,
+}
+
+/// Rows that one workgroup sweeps ([`crate::bricks`]).
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+pub struct Bucket {
+    /// Where they begin and end in the order of the rows.
+    pub first: u32,
+    pub end: u32,
+    /// How many colors they have.
+    pub colors: u32,
 }
 
 /// Successive edges that a workgroup sweeps in its own memory.
@@ -325,8 +337,6 @@ pub struct Control {
     pub lag: u32,
     pub largest_move: u32,
     pub free_move: u32,
-    /// Contact rows that have no color yet.
-    pub waiting: u32,
     /// Bits of the largest remaining distance of a vertex that no pair holds back, of the largest net residual of a body,
     /// of the largest mean residual, and of the largest ratio of an edge's length to its limit.
     pub unhindered: u32,
@@ -353,7 +363,7 @@ pub struct Control {
 
 impl Control {
     /// Words that a step begins with as zeros: all before the number of candidates.
-    pub const RESET_WORDS: usize = 15;
+    pub const RESET_WORDS: usize = 14;
 
     /// A buffer was too small for the search at the start of a call.
     pub const HALTED_BY_SEARCH: u32 = 2;

@@ -8,7 +8,7 @@
 //! | `bound` | what a twin sees of a dispatch |
 //! | `recording`, `engine` | lists of dispatches; a device or the twins run them |
 //! | `adapter` | the devices of this machine |
-//! | `tree`, `model`, `edges`, `adjacency` | what the host prepares for a scene |
+//! | `tree`, `model`, `edges`, `bricks`, `adjacency` | what the host prepares for a scene |
 //! | `collision` | steps toward a target that nothing passes through |
 //! | `linear`, `assembly` | linear solves of the dynamics, and their matrices |
 
@@ -16,6 +16,7 @@ mod adapter;
 mod adjacency;
 mod assembly;
 mod bound;
+mod bricks;
 mod collision;
 mod cpu;
 mod edges;

@@ -52,7 +52,7 @@ pub(crate) static RELEASE: Stage = Stage {
     name: "release",
     parts: &[TYPES, FIXED, include_str!("../shader/release.wgsl")],
     workgroup: 256,
-    bindings: &[Read, Read, Read, Write, Write, Write, Read],
+    bindings: &[Read, Read, Read, Write, Write, Read],
     twin: cpu::release::bound,
 };
 
@@ -144,51 +144,43 @@ pub(crate) static SLIP: Stage = Stage {
     twin: cpu::slip::bound,
 };
 
-pub(crate) static RESUME_COLORS: Stage = Stage {
-    name: "resume_colors",
-    parts: &[TYPES, include_str!("../shader/resume_colors.wgsl")],
+pub(crate) static DIVIDE: Stage = Stage {
+    name: "divide",
+    parts: &[TYPES, include_str!("../shader/divide.wgsl")],
     workgroup: 256,
     bindings: &[Read, Read, Write, Write, Write],
-    twin: cpu::resume_colors::bound,
+    twin: cpu::divide::bound,
 };
 
-pub(crate) static COLOR: Stage = Stage {
-    name: "color",
-    parts: &[TYPES, include_str!("../shader/color.wgsl")],
+pub(crate) static START_BUCKETS: Stage = Stage {
+    name: "start_buckets",
+    parts: &[TYPES, include_str!("../shader/start_buckets.wgsl")],
     workgroup: 256,
-    bindings: &[Read, Write, Write, Write, Write, Write],
-    twin: cpu::color::bound,
-};
-
-pub(crate) static TALLY: Stage = Stage {
-    name: "tally",
-    parts: &[TYPES, include_str!("../shader/tally.wgsl")],
-    workgroup: 256,
-    bindings: &[Read, Write, Write, Write],
-    twin: cpu::tally::bound,
-};
-
-pub(crate) static START_COLORS: Stage = Stage {
-    name: "start_colors",
-    parts: &[TYPES, include_str!("../shader/start_colors.wgsl")],
-    workgroup: 1,
-    bindings: &[Write, Write],
-    twin: cpu::start_colors::bound,
+    bindings: &[Read, Write],
+    twin: cpu::start_buckets::bound,
 };
 
 pub(crate) static SORT: Stage = Stage {
     name: "sort",
     parts: &[TYPES, include_str!("../shader/sort.wgsl")],
     workgroup: 256,
-    bindings: &[Read, Write, Write, Write],
+    bindings: &[Read, Read, Write, Write, Write],
     twin: cpu::sort::bound,
+};
+
+pub(crate) static COLOR: Stage = Stage {
+    name: "color",
+    parts: &[TYPES, include_str!("../shader/color.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Write, Write, Write, Write, Write, Write, Write],
+    twin: cpu::color::bound,
 };
 
 pub(crate) static SWEEP_ROWS: Stage = Stage {
     name: "sweep_rows",
     parts: &[TYPES, include_str!("../shader/sweep_rows.wgsl")],
     workgroup: 256,
-    bindings: &[Read, Read, Write, Write],
+    bindings: &[Read, Read, Read, Write, Write],
     twin: cpu::sweep_rows::bound,
 };
 
@@ -371,11 +363,10 @@ pub(crate) static ALL: &[&Stage] = &[
     &LIST,
     &BUILD,
     &SLIP,
-    &RESUME_COLORS,
-    &COLOR,
-    &TALLY,
-    &START_COLORS,
+    &DIVIDE,
+    &START_BUCKETS,
     &SORT,
+    &COLOR,
     &SWEEP_ROWS,
     &STORE,
     &CURVE_EDGES,

@@ -5,7 +5,7 @@ use crate::bench::Bench;
 use crate::figure::{Figure, Part, Report};
 use crate::table::{Table, geometric_mean, short};
 use anyhow::{Context, Result};
-use bowknot::gpu::{BufferId, Device, Engine, GpuError, Recording, TwinEngine};
+use bowknot::gpu::{BufferId, Device, DispatchView, Engine, GpuError, Recording, TwinEngine};
 use bowknot::{Scene, Simulator, World};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -13,12 +13,19 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub struct GpuPrediction;
 
 /// The device of the prediction: bytes per second of its memory, its multiprocessors, seconds from one dispatch to the
-/// next, seconds from a submission until the host has what it reads, bytes per second between host and device.
+/// next, seconds until the threads of a workgroup have waited for each other and have their next data, seconds from a
+/// submission until the host has what it reads, bytes per second between host and device.
 const BANDWIDTH: f64 = 4.8e12;
 const MULTIPROCESSORS: f64 = 132.0;
 const DISPATCH: f64 = 3e-6;
+const WAIT: f64 = 1e-6;
 const SUBMISSION: f64 = 30e-6;
 const LINK: f64 = 50e9;
+
+/// How often the threads of a workgroup wait per round of coloring, of which there are as many as colors, and sweeps over
+/// a cluster of edges.
+const WAITS_PER_COLORING: usize = 5;
+const CLUSTER_SWEEPS: usize = 2;
 
 /// Time steps that are counted.
 const FRAMES: usize = 3;
@@ -35,8 +42,9 @@ impl Figure for GpuPrediction {
     fn question(&self) -> &'static str {
         "A prediction, not a measurement. The CPU leads small scenes into contact; then the twins of the kernels make three \
          time steps, and every dispatch is counted, with the bytes that are in use of the buffers that it binds. For a device of 4.8 TB/s and 132 \
-         multiprocessors, a dispatch takes 3 microseconds, plus its bytes at full speed, or at the share of the \
-         multiprocessors that it has workgroups for. Dispatches of one stage that follow each other with the same buffers \
+         multiprocessors, a dispatch takes 3 microseconds, one more for each time that the threads of a workgroup wait for \
+         each other between colors, plus its bytes at full speed, or at the share of the multiprocessors that it has \
+         workgroups for. Dispatches of one stage that follow each other with the same buffers \
          (colors of a sweep, levels of a tree) share the bytes. A submission takes 30 microseconds, and what the host \
          writes and reads goes at 50 GB/s. To the paper's size, bytes and threads grow with the number of vertices, and \
          dispatches stay as many; stages of one workgroup keep one. Seconds per time step are those of as many two-way steps \
@@ -123,7 +131,12 @@ struct Group {
     dispatches: usize,
     /// Bytes in use of the bound buffers.
     bytes: f64,
+    /// How often the threads of a workgroup wait for each other between colors.
+    waits: usize,
 }
+
+/// What one workgroup does of a dispatch: whether it has work, and how often its threads wait for each other.
+type Workgroup = (bool, usize);
 
 /// What the calls of some time steps needed.
 #[derive(Debug, Default)]
@@ -154,7 +167,10 @@ impl Counts {
         let engine = CountingEngine { twin: TwinEngine::new(), counts: Arc::clone(&counts) };
         let mut simulator = Simulator::new(&scene)?;
         simulator.restore(&lead.checkpoint()).map_err(anyhow::Error::msg)?;
-        simulator.set_backend(Box::new(Device::new("twins".to_owned(), engine)))?;
+        let mut device = Device::new("twins".to_owned(), engine);
+        // Each dispatch that is recorded then runs.
+        device.set_steps_per_submission(1);
+        simulator.set_backend(Box::new(device))?;
         let (mut steps, mut rows) = (0, 0);
         for _ in 0..FRAMES {
             let statistics = simulator.step()?;
@@ -169,14 +185,39 @@ impl Counts {
         (steps > 0).then_some(counts).context("no two-way step was made")
     }
 
-    fn add(&mut self, recording: &Recording, bytes_of: impl Fn(BufferId) -> f64, words_read: usize) {
+    /// `workgroups_of` tells those of all dispatches that go through the colors of something, one dispatch after the other.
+    fn add(
+        &mut self,
+        recording: &Recording,
+        bytes_of: impl Fn(BufferId) -> f64,
+        workgroups_of: impl Fn(&DispatchView<'_>) -> Option<Vec<Workgroup>>,
+        words_read: usize,
+    ) {
         let all: Vec<_> = recording.dispatches().collect();
         for run in all.chunk_by(|a, b| a.stage == b.stage && a.buffers == b.buffers) {
-            let workgroups: usize = run.iter().map(|one| one.threads.div_ceil(one.workgroup)).sum();
+            let (mut workgroups, mut waits) = (0, 0);
+            let colored = workgroups_of(&run[0]);
+            let mut next = 0;
+            for one in run {
+                let count = one.threads.div_ceil(one.workgroup);
+                if let Some(all) = &colored {
+                    // The next sweep begins again.
+                    if next + count > all.len() {
+                        next = 0;
+                    }
+                    let here = &all[next..next + count];
+                    next += count;
+                    workgroups += here.iter().filter(|(works, _)| *works).count();
+                    waits += here.iter().map(|(_, waits)| *waits).max().unwrap_or(0);
+                } else {
+                    workgroups += count;
+                }
+            }
             let is_single = run.iter().all(|one| one.threads == 1);
-            let workgroups = if is_single { 0 } else { workgroups.div_ceil(run.len()) };
+            let workgroups = if is_single { 0 } else { workgroups.div_ceil(run.len()).max(1) };
             let group = self.groups.entry((run[0].stage, workgroups)).or_default();
             group.dispatches += run.len();
+            group.waits += waits;
             group.bytes += run[0].buffers.iter().map(|&buffer| bytes_of(buffer)).sum::<f64>();
         }
         self.submissions += usize::from(words_read > 0);
@@ -192,9 +233,10 @@ impl Counts {
         [count(false), count(true)]
     }
 
-    /// Seconds of dispatches and submissions alone.
+    /// Seconds of dispatches, waits and submissions alone.
     fn latency(&self) -> f64 {
-        DISPATCH * self.dispatches()[0] as f64 + SUBMISSION * self.submissions as f64
+        let waits: usize = self.groups.values().map(|group| group.waits).sum();
+        DISPATCH * self.dispatches()[0] as f64 + WAIT * waits as f64 + SUBMISSION * self.submissions as f64
     }
 
     /// Predicted seconds of a scene that is so many times as large.
@@ -209,7 +251,8 @@ impl Counts {
         let mut stages: BTreeMap<&'static str, [f64; 3]> = BTreeMap::new();
         for ((stage, workgroups), group) in &self.groups {
             let dispatches = group.dispatches as f64;
-            let seconds = DISPATCH * dispatches + byte_seconds(*workgroups, group.bytes, growth);
+            let latency = DISPATCH * dispatches + WAIT * group.waits as f64;
+            let seconds = latency + byte_seconds(*workgroups, group.bytes, growth);
             let sums = stages.entry(stage).or_default();
             for (sum, more) in sums.iter_mut().zip([dispatches, growth * group.bytes, seconds]) {
                 *sum += more;
@@ -234,14 +277,28 @@ struct CountingEngine {
 }
 
 impl CountingEngine {
+    /// The workgroups of all dispatches of a stage that goes through colors: buckets of rows (where they begin, where they
+    /// end, how many colors they have), and clusters of edges, of whose five words the last is the number of colors.
+    fn workgroups_of(&self, dispatch: &DispatchView<'_>) -> Option<Vec<Workgroup>> {
+        let (buffer, words, waits) = match dispatch.stage {
+            "color" => (dispatch.buffers[2], 3, WAITS_PER_COLORING),
+            "sweep_rows" => (dispatch.buffers[1], 3, 1),
+            "sweep_edges" => (dispatch.buffers[1], 5, CLUSTER_SWEEPS),
+            _ => return None,
+        };
+        let content = self.twin.words_of(buffer);
+        let workgroup = |part: &[u32]| (part[words - 1] > 0, waits * part[words - 1] as usize);
+        Some(content.chunks_exact(words).map(workgroup).collect())
+    }
+
     /// Zeros for the rows and their order, which a step makes anew: what an earlier step with more rows left there is not in
     /// use.
     fn without_old_rows(&self, recording: &Recording) -> Recording {
         let mut zeros = Recording::default();
         for dispatch in recording.dispatches() {
             let made = match dispatch.stage {
-                "list" => dispatch.buffers[3],
-                "sort" => dispatch.buffers[2],
+                "list" => dispatch.buffers[4],
+                "sort" => dispatch.buffers[3],
                 _ => continue,
             };
             zeros.write(made, &vec![0u32; self.twin.words_in_use(made)]);
@@ -272,7 +329,8 @@ impl Engine for CountingEngine {
         let result = self.twin.run(recording, read)?;
         let words_read = read.iter().map(|(_, words)| words).sum();
         let mut counts = self.counts.lock().unwrap_or_else(PoisonError::into_inner);
-        counts.add(recording, |buffer| 4.0 * self.twin.words_in_use(buffer) as f64, words_read);
+        let bytes_of = |buffer| 4.0 * self.twin.words_in_use(buffer) as f64;
+        counts.add(recording, bytes_of, |dispatch| self.workgroups_of(dispatch), words_read);
         Ok(result)
     }
 }

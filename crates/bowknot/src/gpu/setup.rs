@@ -58,9 +58,11 @@ pub fn collision<E: Engine>(
         pair_frictions: &pair_frictions,
     };
     let backward = &params.solver.backward;
+    let defaults = Settings::default();
     let settings = Settings {
         sweeps: backward.sweeps,
-        cluster_sweeps: Settings::default().cluster_sweeps,
+        cluster_sweeps: defaults.cluster_sweeps,
+        bucket_vertices: defaults.bucket_vertices,
         polish_sweeps: backward.polish_sweeps,
         polish_distance: backward.polish_distance * scene.lengths().edge,
         polish_stretch: 1.0 + 0.5 * params.solver.stop.stretch_tolerance,

@@ -72,7 +72,7 @@ struct PairState {
     desired: f32,
     min_separation: f32,
     range: f32,
-    color: u32,
+    padding: u32,
 }
 
 struct Row {
@@ -87,11 +87,17 @@ struct Row {
     slip: vec3<f32>,
     coefficient: f32,
     friction: vec3<f32>,
-    padding: u32,
+    bucket: u32,
 }
 
 // Colors of rows; rows that get none of them are swept one by one.
 const COLORS: u32 = 128u;
+
+struct Bucket {
+    first: u32,
+    end: u32,
+    colors: u32,
+}
 
 struct EdgeCluster {
     first_vertex: u32,
@@ -155,7 +161,6 @@ struct Control {
     lag: atomic<u32>,
     largest_move: atomic<u32>,
     free_move: atomic<u32>,
-    waiting: atomic<u32>,
     unhindered: atomic<u32>,
     net_residual: atomic<u32>,
     mean_residual: atomic<u32>,

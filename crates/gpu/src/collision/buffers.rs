@@ -5,7 +5,7 @@ use crate::cpu::slack::MOST_BLOCKS;
 use crate::engine::Engine;
 use crate::error::GpuError;
 use crate::layout::{
-    Ball, Block, BlockSum, COLORS, Candidate, Control, EdgeCluster, EdgeLimit, OldRow, PairFriction,
+    Ball, Block, BlockSum, Bucket, Candidate, Control, EdgeCluster, EdgeLimit, OldRow, PairFriction,
     PairState, Plane, Row, Separation, Vertex,
 };
 use crate::recording::BufferId;
@@ -37,6 +37,8 @@ pub struct Sizes {
     pub blocks: usize,
     /// Rows of partners.
     pub rows: usize,
+    /// Buckets of contact rows.
+    pub buckets: usize,
 }
 
 /// Buffers that all stages share.
@@ -106,15 +108,17 @@ pub struct RowBuffers {
     pub rows: BufferId,
     /// The pair of each row.
     pub pairs: BufferId,
-    /// Rows in the order of their colors.
+    /// Rows in the order of their buckets and colors.
     pub order: BufferId,
     /// Colors in use at each vertex, rows that wait for a color, and the keys of the rows that hold each vertex.
     pub colors_in_use: BufferId,
     pub waiting: BufferId,
     pub claims: BufferId,
-    /// Number of rows of each color, and where each ends in the order.
+    /// The buckets, and their numbers of rows before they are sorted.
+    pub buckets: BufferId,
     pub tally: BufferId,
-    pub ends: BufferId,
+    /// Where each color of a bucket ends in the order, from the place where the bucket begins.
+    pub color_ends: BufferId,
 }
 
 impl Buffers {
@@ -172,7 +176,7 @@ impl Buffers {
             aims: engine.buffer("aims", 4 * vertices)?,
             slack: engine.buffer("slack", 2 * MOST_BLOCKS)?,
             factor: engine.buffer("factor", 2)?,
-            rows: RowBuffers::new(engine, vertices, capacity)?,
+            rows: RowBuffers::new(engine, sizes, capacity)?,
         })
     }
 
@@ -238,7 +242,7 @@ impl Buffers {
         if self.row_capacity < self.capacity {
             self.rows.free(engine);
             self.row_capacity = self.capacity;
-            self.rows = RowBuffers::new(engine, sizes.vertices, self.capacity)?;
+            self.rows = RowBuffers::new(engine, sizes, self.capacity)?;
         }
         if self.old_capacity < self.capacity {
             engine.free(self.old_elements);
@@ -252,7 +256,7 @@ impl Buffers {
 }
 
 impl RowBuffers {
-    fn new(engine: &mut impl Engine, vertices: usize, capacity: usize) -> Result<Self, GpuError> {
+    fn new(engine: &mut impl Engine, sizes: &Sizes, capacity: usize) -> Result<Self, GpuError> {
         Ok(Self {
             picked: engine.buffer("picked candidates", capacity)?,
             starts: engine.buffer("starts of rows", capacity)?,
@@ -260,20 +264,20 @@ impl RowBuffers {
             rows: engine.buffer("contact rows", words::<Row>(capacity))?,
             pairs: engine.buffer("pairs of rows", words::<Candidate>(capacity))?,
             order: engine.buffer("order of rows", capacity)?,
-            colors_in_use: engine.buffer("colors in use", 4 * vertices)?,
+            colors_in_use: engine.buffer("colors in use", 4 * sizes.vertices)?,
             waiting: engine.buffer("rows without a color", 2 * capacity)?,
-            claims: engine.buffer("claims", vertices)?,
-            tally: engine.buffer("colors of rows", COLORS + 1)?,
-            ends: engine.buffer("ends of colors", COLORS + 1)?,
+            claims: engine.buffer("claims", sizes.vertices)?,
+            buckets: engine.buffer("buckets of rows", words::<Bucket>(sizes.buckets))?,
+            tally: engine.buffer("rows of buckets", sizes.buckets)?,
+            color_ends: engine.buffer("ends of colors", capacity)?,
         })
     }
 
     fn free(&self, engine: &mut impl Engine) {
-        let &Self { picked, starts, blocks, rows, pairs, order, colors_in_use, waiting, claims, tally, ends } =
-            self;
-        [picked, starts, blocks, rows, pairs, order, colors_in_use, waiting, claims, tally, ends]
-            .into_iter()
-            .for_each(|buffer| engine.free(buffer));
+        let &Self { picked, starts, blocks, rows, pairs, order, colors_in_use, waiting, claims, .. } = self;
+        let &Self { buckets, tally, color_ends, .. } = self;
+        let all = [picked, starts, blocks, rows, pairs, order, colors_in_use, waiting, claims];
+        all.into_iter().chain([buckets, tally, color_ends]).for_each(|buffer| engine.free(buffer));
     }
 }
 

@@ -1,9 +1,8 @@
-//! The stages of the backward step: contact rows, their colors, the sweeps.
+//! The stages of the backward step: contact rows, their buckets and colors, the sweeps.
 
 use super::Collision;
 use crate::cpu;
 use crate::engine::Engine;
-use crate::layout::COLORS;
 use crate::recording::{Phase, Recording};
 use crate::stages;
 
@@ -11,7 +10,7 @@ use crate::stages;
 const MAX_COARSE_CORRECTIONS: usize = 64;
 
 impl<E: Engine> Collision<E> {
-    /// The contact rows at the present positions: which candidates have one, and their colors.
+    /// The contact rows at the present positions: which candidates have one.
     pub(super) fn record_rows(&self, recording: &mut Recording) {
         let (b, r) = (&self.buffers, &self.buffers.rows);
         let (vertices, capacity) = (self.sizes.vertices, self.buffers.capacity as u32);
@@ -95,39 +94,80 @@ impl<E: Engine> Collision<E> {
         }
     }
 
-    /// Colors the rows: rows of one color share no vertex that moves.
-    pub(super) fn record_colors(&self, recording: &mut Recording) {
+    /// Divides the rows into buckets, and those of each into colors: rows of one color share no vertex that moves.
+    fn record_colors(&self, recording: &mut Recording) {
         let (b, r, capacity) = (&self.buffers, &self.buffers.rows, self.buffers.capacity as u32);
         recording.dispatch(
-            &stages::RESUME_COLORS,
-            &[r.rows, b.displacements, r.colors_in_use, r.waiting, b.control],
-            cpu::resume_colors::Params { capacity },
+            &stages::DIVIDE,
+            &[b.positions, b.displacements, r.rows, r.tally, b.control],
+            cpu::divide::Params { capacity, shift: self.bricks.shift, buckets: self.bricks.buckets },
             self.buffers.capacity,
         );
         recording.dispatch(
-            &stages::COLOR,
-            &[b.displacements, r.rows, r.colors_in_use, r.claims, r.waiting, b.control],
-            cpu::color::Params { capacity },
-            1,
-        );
-        recording.dispatch(
-            &stages::TALLY,
-            &[b.displacements, r.rows, r.tally, b.control],
-            cpu::tally::Params { capacity },
-            self.buffers.capacity,
-        );
-        recording.dispatch(
-            &stages::START_COLORS,
-            &[r.tally, r.ends],
-            cpu::start_colors::Params { colors: COLORS as u32 + 1 },
+            &stages::START_BUCKETS,
+            &[r.tally, r.buckets],
+            cpu::start_buckets::Params { buckets: self.bricks.count() as u32 },
             1,
         );
         recording.dispatch(
             &stages::SORT,
-            &[r.rows, r.ends, r.order, b.control],
+            &[r.rows, r.buckets, r.tally, r.order, b.control],
             cpu::sort::Params { capacity },
             self.buffers.capacity,
         );
+        // One round after the other, for buckets of two rounds may share vertices.
+        for round in self.bricks.rounds() {
+            recording.dispatch(
+                &stages::COLOR,
+                &[
+                    b.displacements,
+                    r.rows,
+                    r.buckets,
+                    r.colors_in_use,
+                    r.claims,
+                    r.waiting,
+                    r.order,
+                    r.color_ends,
+                ],
+                cpu::color::Params { first: round.start, end: round.end, capacity },
+                stages::COLOR.workgroup * round.len(),
+            );
+        }
+    }
+
+    /// A sweep over all contact rows. If it is to `only_apply`, multipliers stay.
+    fn record_row_sweep(&self, only_apply: bool, recording: &mut Recording) {
+        let (b, r) = (&self.buffers, &self.buffers.rows);
+        for round in self.bricks.rounds() {
+            recording.dispatch(
+                &stages::SWEEP_ROWS,
+                &[r.order, r.buckets, r.color_ends, r.rows, b.displacements],
+                cpu::sweep_rows::Params {
+                    first: round.start,
+                    end: round.end,
+                    only_apply: u32::from(only_apply),
+                },
+                stages::SWEEP_ROWS.workgroup * round.len(),
+            );
+        }
+    }
+
+    /// A sweep over all limited edges, as for rows.
+    fn record_edge_sweep(&self, only_apply: bool, recording: &mut Recording) {
+        let b = &self.buffers;
+        for round in self.edges.rounds() {
+            recording.dispatch(
+                &stages::SWEEP_EDGES,
+                &[b.positions, b.clusters, b.cluster_vertices, b.cluster_colors, b.limits, b.displacements],
+                cpu::sweep_edges::Params {
+                    first: round.start as u32,
+                    end: round.end as u32,
+                    only_apply: u32::from(only_apply),
+                    sweeps: if only_apply { 1 } else { self.settings.cluster_sweeps as u32 },
+                },
+                stages::SWEEP_EDGES.workgroup * round.len(),
+            );
+        }
     }
 
     /// Scales all multipliers, and the displacements with them.
@@ -172,7 +212,7 @@ impl<E: Engine> Collision<E> {
         );
         recording.dispatch(
             &stages::RELEASE,
-            &[b.positions, b.targets, b.vertices, b.proximal, b.displacements, r.colors_in_use, b.swings],
+            &[b.positions, b.targets, b.vertices, b.proximal, b.displacements, b.swings],
             cpu::release::Params { vertices },
             self.sizes.vertices,
         );
@@ -180,36 +220,11 @@ impl<E: Engine> Collision<E> {
         // First the multipliers of the last step are applied.
         let settings = &self.settings;
         for sweep in 0..=if self.polishes { settings.polish_sweeps } else { settings.sweeps } {
-            let only_apply = u32::from(sweep == 0);
             if (1..=MAX_COARSE_CORRECTIONS).contains(&sweep) && self.settings.coarse_correction {
                 self.record_coarse_correction(recording);
             }
-            recording.dispatch(
-                &stages::SWEEP_ROWS,
-                &[r.order, r.ends, r.rows, b.displacements],
-                cpu::sweep_rows::Params { only_apply },
-                1,
-            );
-            for round in self.edges.rounds() {
-                recording.dispatch(
-                    &stages::SWEEP_EDGES,
-                    &[
-                        b.positions,
-                        b.clusters,
-                        b.cluster_vertices,
-                        b.cluster_colors,
-                        b.limits,
-                        b.displacements,
-                    ],
-                    cpu::sweep_edges::Params {
-                        first: round.start as u32,
-                        end: round.end as u32,
-                        only_apply,
-                        sweeps: if sweep == 0 { 1 } else { self.settings.cluster_sweeps as u32 },
-                    },
-                    stages::SWEEP_EDGES.workgroup * round.len(),
-                );
-            }
+            self.record_row_sweep(sweep == 0, recording);
+            self.record_edge_sweep(sweep == 0, recording);
         }
         recording.dispatch(
             &stages::STORE,

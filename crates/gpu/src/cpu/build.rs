@@ -85,11 +85,11 @@ pub fn build(
             inverse_diagonal: 0.0,
             multiplier: state.multiplier,
             candidate: c,
-            color: state.color,
+            color: 0,
             slip: [0.0; 3],
             coefficient: 0.0,
             friction: [0.0; 3],
-            padding: 0,
+            bucket: 0,
         };
     }
 }

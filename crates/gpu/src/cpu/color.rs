@@ -1,12 +1,14 @@
 //! Twin of `shader/color.wgsl`.
 
 use crate::bound::Bound;
-use crate::layout::{COLORS, Control, NONE, Row};
+use crate::layout::{Bucket, COLORS, NONE, Row};
 use bytemuck::{Pod, Zeroable};
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Params {
+    pub first: u32,
+    pub end: u32,
     pub capacity: u32,
 }
 
@@ -18,7 +20,9 @@ pub fn bound(buffers: Bound<'_>) {
         &mut buffers.write(2),
         &mut buffers.write(3),
         &mut buffers.write(4),
-        &buffers.read::<Control>(5)[0],
+        &mut buffers.write(5),
+        &mut buffers.write(6),
+        &mut buffers.write(7),
     );
 }
 
@@ -35,41 +39,90 @@ pub fn color(
     params: Params,
     displacements: &[[f32; 4]],
     rows: &mut [Row],
+    buckets: &mut [Bucket],
     in_use: &mut [[u32; 4]],
     claims: &mut [u32],
     waiting: &mut [u32],
-    control: &Control,
+    order: &mut [u32],
+    color_ends: &mut [u32],
 ) {
     let moving = |row: &Row| {
         let vertices = row.vertices.map(|v| v as usize);
         vertices.into_iter().filter(|v| displacements[*v][3] > 0.0)
     };
-    let (mut count, mut here) = (control.waiting.min(params.capacity) as usize, 0);
-    let mut next = params.capacity as usize;
-    while count > 0 {
-        for place in here..here + count {
-            rows[waiting[place] as usize].vertices.iter().for_each(|v| claims[*v as usize] = NONE);
-        }
-        for place in here..here + count {
-            let row = &rows[waiting[place] as usize];
-            moving(row).for_each(|v| claims[v] = claims[v].min(key_of(row.candidate)));
-        }
-        let mut left = 0;
-        for place in here..here + count {
-            let row = &mut rows[waiting[place] as usize];
-            let key = key_of(row.candidate);
-            if moving(row).any(|v| claims[v] != key) {
-                waiting[next + left] = waiting[place];
-                left += 1;
-                continue;
+    for bucket in &mut buckets[params.first as usize..params.end as usize] {
+        let [first, end] = [bucket.first, bucket.end].map(|place| place as usize);
+        waiting[first..end].copy_from_slice(&order[first..end]);
+        let (mut count, mut here, mut next) = (end - first, first, params.capacity as usize + first);
+        let mut round = 0;
+        while count > 0 {
+            for place in here..here + count {
+                rows[waiting[place] as usize].vertices.iter().for_each(|v| claims[*v as usize] = NONE);
             }
-            let used = moving(row).fold([0; 4], |used, v| [0, 1, 2, 3].map(|k| used[k] | in_use[v][k]));
-            let color = first_free(used);
-            row.color = color as u32;
-            if color < COLORS {
-                moving(row).for_each(|v| in_use[v][color / 32] |= 1 << (color % 32));
+            for place in here..here + count {
+                let row = &rows[waiting[place] as usize];
+                moving(row).for_each(|v| claims[v] = claims[v].min(key_of(row.candidate)));
             }
+            if round == 0 {
+                for place in here..here + count {
+                    moving(&rows[waiting[place] as usize]).for_each(|v| in_use[v] = [0; 4]);
+                }
+            }
+            let mut left = 0;
+            for place in here..here + count {
+                let row = &mut rows[waiting[place] as usize];
+                let key = key_of(row.candidate);
+                if moving(row).any(|v| claims[v] != key) {
+                    waiting[next + left] = waiting[place];
+                    left += 1;
+                    continue;
+                }
+                let used = moving(row).fold([0; 4], |used, v| [0, 1, 2, 3].map(|k| used[k] | in_use[v][k]));
+                let color = first_free(used);
+                row.color = color as u32;
+                if color < COLORS {
+                    moving(row).for_each(|v| in_use[v][color / 32] |= 1 << (color % 32));
+                }
+            }
+            (here, next, count) = (next, here, left);
+            round += 1;
         }
-        (here, next, count) = (next, here, left);
+        sort_by_color(bucket, rows, waiting, order, color_ends);
+    }
+}
+
+fn sort_by_color(
+    bucket: &mut Bucket,
+    rows: &[Row],
+    waiting: &mut [u32],
+    order: &mut [u32],
+    color_ends: &mut [u32],
+) {
+    let [first, end] = [bucket.first, bucket.end].map(|place| place as usize);
+    let mut places = [0; COLORS + 1];
+    waiting[first..end].copy_from_slice(&order[first..end]);
+    waiting[first..end].iter().for_each(|r| places[rows[*r as usize].color as usize] += 1);
+    let (mut sum, mut color) = (first, 0);
+    while color < COLORS && places[color] > 0 {
+        let rows_of_color = std::mem::replace(&mut places[color], sum);
+        sum += rows_of_color;
+        color_ends[first + color] = sum as u32;
+        color += 1;
+    }
+    bucket.colors = color as u32;
+    places[COLORS] = sum;
+    for place in first..end {
+        let r = waiting[place];
+        let Row { color, candidate, .. } = rows[r as usize];
+        if (color as usize) < COLORS {
+            order[places[color as usize]] = r;
+            places[color as usize] += 1;
+        } else {
+            let is_before = |other: &&u32| {
+                let other = &rows[**other as usize];
+                other.color as usize == COLORS && other.candidate < candidate
+            };
+            order[places[COLORS] + waiting[first..end].iter().filter(is_before).count()] = r;
+        }
     }
 }

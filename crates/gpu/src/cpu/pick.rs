@@ -3,7 +3,7 @@
 use super::dot;
 use super::pair::{pair_of, signed_weights};
 use crate::bound::Bound;
-use crate::layout::{Candidate, Control, NONE, PairState, Separation};
+use crate::layout::{Candidate, Control, PairState, Separation};
 use bytemuck::{Pod, Zeroable};
 
 #[repr(C)]
@@ -62,7 +62,6 @@ pub fn pick(
                 picked[c] = 1;
             } else {
                 states[c].multiplier = 0.0;
-                states[c].color = NONE;
                 states[c].friction = [0.0; 3];
             }
         }

@@ -22,8 +22,7 @@ pub fn bound(buffers: Bound<'_>) {
         &buffers.read(2),
         &mut buffers.write(3),
         &mut buffers.write(4),
-        &mut buffers.write(5),
-        &buffers.read(6),
+        &buffers.read(5),
     );
 }
 
@@ -34,7 +33,6 @@ pub fn release(
     vertices: &[Vertex],
     proximal: &mut [u32],
     displacements: &mut [[f32; 4]],
-    in_use: &mut [[u32; 4]],
     swings: &[[f32; 4]],
 ) {
     for v in 0..params.vertices as usize {
@@ -49,6 +47,5 @@ pub fn release(
             displacements[v] = [x, y, z, weight];
         }
         proximal[v] = 0;
-        in_use[v] = [0; 4];
     }
 }

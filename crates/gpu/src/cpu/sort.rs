@@ -1,7 +1,7 @@
 //! Twin of `shader/sort.wgsl`.
 
 use crate::bound::Bound;
-use crate::layout::{COLORS, Control, Row};
+use crate::layout::{Bucket, Control, Row};
 use bytemuck::{Pod, Zeroable};
 
 #[repr(C)]
@@ -14,23 +14,24 @@ pub fn bound(buffers: Bound<'_>) {
     sort(
         buffers.params(),
         &buffers.read(0),
-        &mut buffers.write(1),
+        &buffers.read(1),
         &mut buffers.write(2),
-        &buffers.read::<Control>(3)[0],
+        &mut buffers.write(3),
+        &buffers.read::<Control>(4)[0],
     );
 }
 
-pub fn sort(params: Params, rows: &[Row], ends: &mut [u32], order: &mut [u32], control: &Control) {
-    let count = control.rows.min(params.capacity) as usize;
-    for (r, row) in rows[..count].iter().enumerate() {
-        if (row.color as usize) < COLORS {
-            let end = &mut ends[row.color as usize];
-            order[*end as usize] = r as u32;
-            *end += 1;
-        } else {
-            let after = rows[r + 1..count].iter().filter(|other| other.color as usize == COLORS).count();
-            order[count - 1 - after] = r as u32;
-            ends[COLORS] += 1;
-        }
+pub fn sort(
+    params: Params,
+    rows: &[Row],
+    buckets: &[Bucket],
+    tally: &mut [u32],
+    order: &mut [u32],
+    control: &Control,
+) {
+    for (r, row) in rows.iter().enumerate().take(control.rows.min(params.capacity) as usize) {
+        let bucket = row.bucket as usize;
+        tally[bucket] -= 1;
+        order[(buckets[bucket].first + tally[bucket]) as usize] = r as u32;
     }
 }

@@ -18,6 +18,6 @@ pub fn store(params: Params, rows: &[Row], states: &mut [PairState], control: &m
     for row in &rows[..control.rows.min(params.capacity) as usize] {
         control.pressing += u32::from(row.multiplier > 0.0);
         let state = &mut states[row.candidate as usize];
-        (state.multiplier, state.color, state.friction) = (row.multiplier, row.color, row.friction);
+        (state.multiplier, state.friction) = (row.multiplier, row.friction);
     }
 }

@@ -2,12 +2,14 @@
 
 use super::{added, dot, scaled, subtracted};
 use crate::bound::Bound;
-use crate::layout::{COLORS, Row};
+use crate::layout::{Bucket, Row};
 use bytemuck::{Pod, Zeroable};
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Params {
+    pub first: u32,
+    pub end: u32,
     pub only_apply: u32,
 }
 
@@ -16,20 +18,25 @@ pub fn bound(buffers: Bound<'_>) {
         buffers.params(),
         &buffers.read(0),
         &buffers.read(1),
-        &mut buffers.write(2),
+        &buffers.read(2),
         &mut buffers.write(3),
+        &mut buffers.write(4),
     );
 }
 
 pub fn sweep_rows(
     params: Params,
     order: &[u32],
-    ends: &[u32],
+    buckets: &[Bucket],
+    _color_ends: &[u32],
     rows: &mut [Row],
     displacements: &mut [[f32; 4]],
 ) {
-    for &r in &order[..ends[COLORS] as usize] {
-        relax(params, &mut rows[r as usize], displacements);
+    // Colors are sorted, and only threads wait between them.
+    for bucket in &buckets[params.first as usize..params.end as usize] {
+        for &r in &order[bucket.first as usize..bucket.end as usize] {
+            relax(params, &mut rows[r as usize], displacements);
+        }
     }
 }
 

@@ -26,6 +26,11 @@ impl TwinEngine {
         self.content(buffer).iter().rposition(is_used).map_or(0, |last| last + 1)
     }
 
+    /// The content of a buffer.
+    pub fn words_of(&self, buffer: BufferId) -> Vec<u32> {
+        self.content(buffer).clone()
+    }
+
     pub(super) fn dispatch(&self, dispatch: &Dispatch) {
         if dispatch.arguments.is_some_and(|(buffer, place)| self.content(buffer)[3 * place] == 0) {
             return;

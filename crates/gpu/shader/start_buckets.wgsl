@@ -1,0 +1,40 @@
+// Where the rows of each bucket begin and end in their order: sums of the numbers of rows. One workgroup.
+
+struct Params {
+    buckets: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read> tally: array<u32>;
+@group(0) @binding(2) var<storage, read_write> buckets: array<Bucket>;
+
+var<workgroup> sums: array<u32, 256>;
+
+@compute @workgroup_size(256)
+fn main(@builtin(local_invocation_id) local: vec3<u32>) {
+    var total = 0u;
+    for (var first = 0u; first < params.buckets; first += 256u) {
+        let bucket = first + local.x;
+        var count = 0u;
+        if bucket < params.buckets {
+            count = tally[bucket];
+        }
+        sums[local.x] = count;
+        workgroupBarrier();
+        for (var reach = 1u; reach < 256u; reach *= 2u) {
+            var before = 0u;
+            if local.x >= reach {
+                before = sums[local.x - reach];
+            }
+            workgroupBarrier();
+            sums[local.x] += before;
+            workgroupBarrier();
+        }
+        if bucket < params.buckets {
+            let end = total + sums[local.x];
+            buckets[bucket] = Bucket(end - count, end, 0u);
+        }
+        total += sums[255];
+        workgroupBarrier();
+    }
+}
