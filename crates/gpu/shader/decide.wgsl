@@ -1,6 +1,6 @@
 // Decides after a step whether the submission goes on: not if the call has ended by its rule, if the next step makes
-// another number of sweeps, or if a buffer was too small. The dispatches of the following steps are then left without
-// workgroups. It keeps what the step came to.
+// another number of sweeps, or if a buffer was too small, which is known after a search or within a step too. All
+// dispatches that follow are then left without workgroups. It keeps what the step came to.
 
 struct Params {
     // A distance below which vertices have arrived, those that no pair holds back, and the residuals below which a call
@@ -17,8 +17,8 @@ struct Params {
     polish_stretch: f32,
     // 1: the steps of this submission polish.
     polishes: u32,
-    // 1: a search alone has gone before, and no step.
-    after_search: u32,
+    // What has gone before: 0: a step; 1: the search at the start of a call; 2: the list of the rows of a step.
+    after: u32,
     // Dispatches that have arguments.
     dispatches: u32,
 }
@@ -28,8 +28,6 @@ struct Params {
 @group(0) @binding(2) var<storage, read_write> reports: array<Report>;
 // Three words per dispatch, the numbers of workgroups.
 @group(0) @binding(3) var<storage, read_write> arguments: array<u32>;
-
-const HALTED_BY_SEARCH: u32 = 2u;
 
 // A copy of Control.
 struct Report {
@@ -97,8 +95,8 @@ fn keep_report(step: u32) {
 }
 
 fn decide() -> u32 {
-    if params.after_search != 0u {
-        return HALTED_BY_SEARCH * atomicLoad(&control.overflow);
+    if params.after != 0u {
+        return (1u + params.after) * atomicLoad(&control.overflow);
     }
     if atomicLoad(&control.overflow) != 0u {
         return 1u;

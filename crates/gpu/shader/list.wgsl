@@ -2,7 +2,9 @@
 // the candidates, so rows keep their pairs as well.
 
 struct Params {
+    // Candidates and rows for which there is room.
     capacity: u32,
+    row_capacity: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -17,13 +19,13 @@ struct Params {
 @compute @workgroup_size(256)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let count = atomicLoad(&control.rows);
-    for (var c = id.x; c < params.capacity; c += 256u * MOST_WORKGROUPS) {
-        if picked[c] != 0u {
+    for (var c = id.x; c < max(params.capacity, params.row_capacity); c += 256u * MOST_WORKGROUPS) {
+        if c < params.capacity && picked[c] != 0u {
             let place = blocks[c / 256u] + starts[c];
             rows[place].candidate = c;
             pairs[place] = candidates[c];
         }
-        if c >= count {
+        if c >= count && c < params.row_capacity {
             rows[c].candidate = NONE;
         }
     }

@@ -350,7 +350,7 @@ pub struct Control {
     /// Number of contact rows.
     pub rows: u32,
     /// 1 if the steps that a submission still has are not made: the call may end, or a buffer was too small, or the
-    /// next step makes another number of sweeps; [`Control::HALTED_BY_SEARCH`].
+    /// next step makes another number of sweeps; [`Control::HALTED_BY_SEARCH`], [`Control::HALTED_BY_ROWS`].
     pub halted: u32,
     /// Steps made by a submission.
     pub steps: u32,
@@ -367,6 +367,9 @@ impl Control {
 
     /// A buffer was too small for the search at the start of a call.
     pub const HALTED_BY_SEARCH: u32 = 2;
+
+    /// There was no room for the contact rows of a step. Nothing of the step is done but its list of rows.
+    pub const HALTED_BY_ROWS: u32 = 3;
 
     /// At the start of a call, without candidates: nothing is inherited from the call before.
     pub fn of_new_call() -> Self {

@@ -15,6 +15,9 @@ use bytemuck::Pod;
 const FIRST_PARTNERS: usize = 24;
 const FIRST_CANDIDATES: usize = 16;
 
+/// Contact rows per vertex for which there is room at first.
+const FIRST_ROWS: usize = 4;
+
 /// Words of a row before its partners: their number, and the element.
 pub const ROW_HEADER: usize = 2;
 
@@ -47,8 +50,10 @@ pub struct Buffers {
     /// Partners of an element that fit into a row, and candidates that fit into their list.
     pub most_partners: usize,
     pub capacity: usize,
-    /// Candidates of the time before a search for which there is room, and rows.
+    /// Candidates of the time before a search for which there is room, and candidates that can be picked.
     pub old_capacity: usize,
+    pub pick_capacity: usize,
+    /// Contact rows for which there is room.
     pub row_capacity: usize,
     pub positions: BufferId,
     pub targets: BufferId,
@@ -95,16 +100,22 @@ pub struct Buffers {
     /// Sums of the coarse correction by block; its factor, and by how much the multipliers may still grow.
     pub slack: BufferId,
     pub factor: BufferId,
+    pub picks: PickBuffers,
     pub rows: RowBuffers,
 }
 
-/// Buffers of the contact rows, one entry per candidate.
+/// Which candidates have a row, one entry per candidate.
 #[derive(Clone, Copy, Debug)]
-pub struct RowBuffers {
+pub struct PickBuffers {
     /// Whether each candidate has a row, and the places of the rows by candidate.
     pub picked: BufferId,
     pub starts: BufferId,
     pub blocks: BufferId,
+}
+
+/// Buffers of the contact rows.
+#[derive(Clone, Copy, Debug)]
+pub struct RowBuffers {
     pub rows: BufferId,
     /// The pair of each row.
     pub pairs: BufferId,
@@ -131,11 +142,13 @@ impl Buffers {
             sizes;
         let [clusters, cluster_vertices, cluster_colors] = sizes.clusters;
         let (most_partners, capacity) = (FIRST_PARTNERS, (FIRST_CANDIDATES * vertices).max(64));
+        let row_capacity = (FIRST_ROWS * vertices).max(64);
         Ok(Self {
             most_partners,
             capacity,
             old_capacity: capacity,
-            row_capacity: capacity,
+            pick_capacity: capacity,
+            row_capacity,
             positions: engine.buffer("positions", 4 * vertices)?,
             rest: engine.buffer("rest positions", 4 * vertices)?,
             targets: engine.buffer("targets", 4 * vertices)?,
@@ -176,7 +189,8 @@ impl Buffers {
             aims: engine.buffer("aims", 4 * vertices)?,
             slack: engine.buffer("slack", 2 * MOST_BLOCKS)?,
             factor: engine.buffer("factor", 2)?,
-            rows: RowBuffers::new(engine, sizes, capacity)?,
+            picks: PickBuffers::new(engine, capacity)?,
+            rows: RowBuffers::new(engine, sizes, row_capacity)?,
         })
     }
 
@@ -233,16 +247,32 @@ impl Buffers {
         Ok(())
     }
 
-    /// Makes room for a step that is not made again: for rows of all present candidates, and to keep these. The rows of
-    /// the last step are lost if there was too little.
+    /// Makes room for so many contact rows and a quarter more. Those of the last step are lost.
     ///
     /// # Errors
     /// The device has no memory.
-    pub fn make_room_for_step(&mut self, engine: &mut impl Engine, sizes: &Sizes) -> Result<(), GpuError> {
-        if self.row_capacity < self.capacity {
-            self.rows.free(engine);
-            self.row_capacity = self.capacity;
-            self.rows = RowBuffers::new(engine, sizes, self.capacity)?;
+    pub fn grow_rows(
+        &mut self,
+        engine: &mut impl Engine,
+        sizes: &Sizes,
+        rows: usize,
+    ) -> Result<(), GpuError> {
+        self.rows.free(engine);
+        self.row_capacity = rows + rows / 4;
+        self.rows = RowBuffers::new(engine, sizes, self.row_capacity)?;
+        tracing::debug!(rows, "buffers of rows grew");
+        Ok(())
+    }
+
+    /// Makes room for a step that is not made again: to pick among all present candidates, and to keep these.
+    ///
+    /// # Errors
+    /// The device has no memory.
+    pub fn make_room_for_step(&mut self, engine: &mut impl Engine) -> Result<(), GpuError> {
+        if self.pick_capacity < self.capacity {
+            self.picks.free(engine);
+            self.pick_capacity = self.capacity;
+            self.picks = PickBuffers::new(engine, self.capacity)?;
         }
         if self.old_capacity < self.capacity {
             engine.free(self.old_elements);
@@ -255,12 +285,24 @@ impl Buffers {
     }
 }
 
-impl RowBuffers {
-    fn new(engine: &mut impl Engine, sizes: &Sizes, capacity: usize) -> Result<Self, GpuError> {
+impl PickBuffers {
+    fn new(engine: &mut impl Engine, capacity: usize) -> Result<Self, GpuError> {
         Ok(Self {
             picked: engine.buffer("picked candidates", capacity)?,
             starts: engine.buffer("starts of rows", capacity)?,
             blocks: engine.buffer("blocks of rows", capacity.div_ceil(BLOCK))?,
+        })
+    }
+
+    fn free(&self, engine: &mut impl Engine) {
+        let &Self { picked, starts, blocks } = self;
+        [picked, starts, blocks].into_iter().for_each(|buffer| engine.free(buffer));
+    }
+}
+
+impl RowBuffers {
+    fn new(engine: &mut impl Engine, sizes: &Sizes, capacity: usize) -> Result<Self, GpuError> {
+        Ok(Self {
             rows: engine.buffer("contact rows", words::<Row>(capacity))?,
             pairs: engine.buffer("pairs of rows", words::<Candidate>(capacity))?,
             order: engine.buffer("order of rows", capacity)?,
@@ -274,10 +316,10 @@ impl RowBuffers {
     }
 
     fn free(&self, engine: &mut impl Engine) {
-        let &Self { picked, starts, blocks, rows, pairs, order, colors_in_use, waiting, claims, .. } = self;
-        let &Self { buckets, tally, color_ends, .. } = self;
-        let all = [picked, starts, blocks, rows, pairs, order, colors_in_use, waiting, claims];
-        all.into_iter().chain([buckets, tally, color_ends]).for_each(|buffer| engine.free(buffer));
+        let &Self { rows, pairs, order, colors_in_use, waiting, claims, buckets, tally, color_ends } = self;
+        [rows, pairs, order, colors_in_use, waiting, claims, buckets, tally, color_ends]
+            .into_iter()
+            .for_each(|buffer| engine.free(buffer));
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::Collision;
 use crate::cpu;
+use crate::cpu::decide::{AFTER_SEARCH, AFTER_STEP};
 use crate::engine::Engine;
 use crate::layout::Block;
 use crate::recording::{Phase, Recording};
@@ -19,14 +20,14 @@ impl<E: Engine> Collision<E> {
         recording.begin_phase(Phase::Backward);
         // If the step is made again, the aims are known.
         if !self.again {
-            self.record_rows(recording);
+            self.record_rows(dispatches, recording);
             self.record_backward(recording);
         }
         self.record_paths(recording);
         self.record_search(recording);
         self.record_geometry(true, recording);
         self.record_forward(recording);
-        self.record_decision(false, dispatches, recording);
+        self.record_decision(AFTER_STEP, dispatches, recording);
     }
 
     /// The first search of a call, without a step: along the ways to the targets, so that the rows of the first step know
@@ -35,11 +36,11 @@ impl<E: Engine> Collision<E> {
         self.record_restart(true, recording);
         self.record_paths(recording);
         self.record_search(recording);
-        self.record_decision(true, dispatches, recording);
+        self.record_decision(AFTER_SEARCH, dispatches, recording);
     }
 
-    /// Whether the submission goes on.
-    fn record_decision(&self, after_search: bool, dispatches: usize, recording: &mut Recording) {
+    /// Whether the submission goes on. `after`: what has gone before.
+    pub(super) fn record_decision(&self, after: u32, dispatches: usize, recording: &mut Recording) {
         let (b, settings) = (&self.buffers, &self.settings);
         let polishing = (settings.polish_distance, settings.polish_stretch);
         recording.dispatch(
@@ -47,7 +48,7 @@ impl<E: Engine> Collision<E> {
             &[b.control, b.reports, b.arguments],
             cpu::decide::Params {
                 polishes: u32::from(self.polishes),
-                after_search: u32::from(after_search),
+                after,
                 dispatches: dispatches as u32,
                 ..self.stop.params(&self.grid, settings.has_polishing().then_some(polishing))
             },

@@ -2,6 +2,7 @@
 
 use super::Collision;
 use crate::cpu;
+use crate::cpu::decide::AFTER_ROWS;
 use crate::engine::Engine;
 use crate::recording::{Phase, Recording};
 use crate::stages;
@@ -10,10 +11,11 @@ use crate::stages;
 const MAX_COARSE_CORRECTIONS: usize = 64;
 
 impl<E: Engine> Collision<E> {
-    /// The contact rows at the present positions: which candidates have one.
-    pub(super) fn record_rows(&self, recording: &mut Recording) {
+    /// The contact rows at the present positions: which candidates have one. `dispatches` as for a step.
+    pub(super) fn record_rows(&self, dispatches: usize, recording: &mut Recording) {
         let (b, r) = (&self.buffers, &self.buffers.rows);
         let (vertices, capacity) = (self.sizes.vertices, self.buffers.capacity as u32);
+        let row_capacity = self.buffers.row_capacity as u32;
         recording.dispatch(
             &stages::RECALL,
             &[b.positions, b.aims, b.displacements],
@@ -49,7 +51,7 @@ impl<E: Engine> Collision<E> {
                 b.candidates,
                 b.separations,
                 b.states,
-                r.picked,
+                b.picks.picked,
                 b.control,
             ],
             cpu::pick::Params { capacity, threshold: self.settings.active as f32 },
@@ -57,51 +59,53 @@ impl<E: Engine> Collision<E> {
         );
         recording.dispatch(
             &stages::COUNT,
-            &[r.picked, r.starts, r.blocks, b.control],
+            &[b.picks.picked, b.picks.starts, b.picks.blocks, b.control],
             cpu::count::Params { rows: capacity, stride: 1, most: 1 },
             self.buffers.capacity,
         );
         let blocks = self.buffers.capacity.div_ceil(cpu::count::BLOCK) as u32;
         recording.dispatch(
             &stages::TOTAL,
-            &[r.blocks, b.control],
-            cpu::total::Params { blocks, capacity, list: 1 },
+            &[b.picks.blocks, b.control],
+            cpu::total::Params { blocks, capacity: row_capacity, list: 1 },
             1,
         );
+        // Without room for all rows the step ends here, and is made again.
+        self.record_decision(AFTER_ROWS, dispatches, recording);
         recording.dispatch(
             &stages::LIST,
-            &[r.picked, r.starts, r.blocks, b.candidates, r.rows, r.pairs, b.control],
-            cpu::list::Params { capacity },
-            self.buffers.capacity,
+            &[b.picks.picked, b.picks.starts, b.picks.blocks, b.candidates, r.rows, r.pairs, b.control],
+            cpu::list::Params { capacity, row_capacity },
+            self.buffers.capacity.max(self.buffers.row_capacity),
         );
         recording.dispatch(
             &stages::BUILD,
             &[b.edges, b.triangles, b.vertices, b.candidates, b.separations, b.states, r.rows, b.proximal],
-            cpu::build::Params { capacity, strength: self.settings.contact_proximal as f32 },
-            self.buffers.capacity,
+            cpu::build::Params { capacity: row_capacity, strength: self.settings.contact_proximal as f32 },
+            self.buffers.row_capacity,
         );
         if self.frictional {
             recording.dispatch(
                 &stages::SLIP,
                 &[b.positions, b.slip_start, b.vertices, b.pair_frictions, b.candidates, b.states, r.rows],
                 cpu::slip::Params {
-                    capacity,
+                    capacity: row_capacity,
                     pair_frictions: self.sizes.pair_frictions as u32,
                     first_half_space: vertices as u32,
                 },
-                self.buffers.capacity,
+                self.buffers.row_capacity,
             );
         }
     }
 
     /// Divides the rows into buckets, and those of each into colors: rows of one color share no vertex that moves.
     fn record_colors(&self, recording: &mut Recording) {
-        let (b, r, capacity) = (&self.buffers, &self.buffers.rows, self.buffers.capacity as u32);
+        let (b, r, capacity) = (&self.buffers, &self.buffers.rows, self.buffers.row_capacity as u32);
         recording.dispatch(
             &stages::DIVIDE,
             &[b.positions, b.displacements, r.rows, r.tally, b.control],
             cpu::divide::Params { capacity, shift: self.bricks.shift, buckets: self.bricks.buckets },
-            self.buffers.capacity,
+            self.buffers.row_capacity,
         );
         recording.dispatch(
             &stages::START_BUCKETS,
@@ -113,7 +117,7 @@ impl<E: Engine> Collision<E> {
             &stages::SORT,
             &[r.rows, r.buckets, r.tally, r.order, b.control],
             cpu::sort::Params { capacity },
-            self.buffers.capacity,
+            self.buffers.row_capacity,
         );
         // One round after the other, for buckets of two rounds may share vertices.
         for round in self.bricks.rounds() {
@@ -174,8 +178,8 @@ impl<E: Engine> Collision<E> {
     fn record_coarse_correction(&self, recording: &mut Recording) {
         let (b, r) = (&self.buffers, &self.buffers.rows);
         let [vertices, limits] = [self.sizes.vertices, self.edges.len()].map(|count| count as u32);
-        let capacity = self.buffers.capacity as u32;
-        let threads = self.buffers.capacity.max(self.sizes.vertices).max(self.edges.len());
+        let capacity = self.buffers.row_capacity as u32;
+        let threads = self.buffers.row_capacity.max(self.sizes.vertices).max(self.edges.len());
         let blocks = threads.div_ceil(cpu::slack::BLOCK).min(cpu::slack::MOST_BLOCKS);
         recording.dispatch(
             &stages::SLACK,
@@ -229,8 +233,8 @@ impl<E: Engine> Collision<E> {
         recording.dispatch(
             &stages::STORE,
             &[r.rows, b.states, b.control],
-            cpu::store::Params { capacity: self.buffers.capacity as u32 },
-            self.buffers.capacity,
+            cpu::store::Params { capacity: self.buffers.row_capacity as u32 },
+            self.buffers.row_capacity,
         );
         recording.dispatch(
             &stages::AIM,

@@ -67,7 +67,7 @@ impl<E: Engine> Collision<E> {
     /// one was not because a buffer was too small.
     fn submit(&mut self, steps: usize, reports: &mut Vec<StepReport>) -> Result<Control, CollisionError> {
         if self.fresh || !self.again {
-            self.buffers.make_room_for_step(&mut self.engine, &self.sizes)?;
+            self.buffers.make_room_for_step(&mut self.engine)?;
         }
         self.placed = None;
         let recording = self.record_submission(steps)?;
@@ -83,7 +83,9 @@ impl<E: Engine> Collision<E> {
         if control.halted != Control::HALTED_BY_SEARCH {
             (self.fresh, self.again) = (false, false);
         }
-        if control.overflow != 0 {
+        if control.halted == Control::HALTED_BY_ROWS {
+            self.buffers.grow_rows(&mut self.engine, &self.sizes, control.rows as usize)?;
+        } else if control.overflow != 0 {
             self.grow(&control)?;
         }
         if let Some(last) = reports.last() {
@@ -103,36 +105,40 @@ impl<E: Engine> Collision<E> {
         }
     }
 
-    /// The search of a call that begins, and steps. The device leaves out those after the end of the call or after a
+    /// The search of a call that begins, and steps. The device leaves out what comes after the end of the call or after a
     /// buffer that is too small.
     fn record_submission(&mut self, steps: usize) -> Result<Recording, GpuError> {
+        let arguments = self.buffers.arguments;
+        let dispatches = Recording::default().append_conditional(&self.recorded_step(0), arguments, 0);
+        let dispatches = steps * dispatches;
+        self.buffers.make_room_for_steps(&mut self.engine, steps, dispatches)?;
+        let arguments = self.buffers.arguments;
         let mut recording = Recording::default();
-        let conditional = if self.fresh { steps } else { steps.saturating_sub(1) };
-        let again = self.again;
-        let mut following = Recording::default();
-        let mut dispatches = 0;
-        if conditional > 0 {
-            (self.fresh, self.again) = (false, false);
-            self.buffers.make_room_for_steps(&mut self.engine, steps, 0)?;
-            self.record_step(false, 0, &mut following);
-            // One dispatch of a step decides, and is not left out.
-            dispatches = conditional * (following.dispatch_count() - 1);
-            self.buffers.make_room_for_steps(&mut self.engine, steps, dispatches)?;
-            following = Recording::default();
-            self.record_step(false, dispatches, &mut following);
-            (self.fresh, self.again) = (conditional == steps, again);
-        }
+        let mut place = 0;
         if self.fresh {
             self.record_first_search(dispatches, &mut recording);
-        } else {
-            self.record_step(true, dispatches, &mut recording);
+        } else if steps > 0 {
+            let mut first = Recording::default();
+            self.record_step(true, dispatches, &mut first);
+            place = recording.append_conditional(&first, arguments, place);
         }
-        let arguments = self.buffers.arguments;
-        let place =
-            (0..conditional).fold(0, |place, _| recording.append_conditional(&following, arguments, place));
-        debug_assert_eq!(place, dispatches);
+        let following = self.recorded_step(dispatches);
+        for _ in usize::from(!self.fresh)..steps {
+            place = recording.append_conditional(&following, arguments, place);
+        }
+        debug_assert!(place <= dispatches);
         recording.fill_arguments(arguments);
         Ok(recording)
+    }
+
+    /// A step that is made after others, or after a search.
+    fn recorded_step(&mut self, dispatches: usize) -> Recording {
+        let before = (self.fresh, self.again);
+        (self.fresh, self.again) = (false, false);
+        let mut recording = Recording::default();
+        self.record_step(false, dispatches, &mut recording);
+        (self.fresh, self.again) = before;
+        recording
     }
 
     /// Makes room for what did not fit. The step is made again with the trust regions that it has found, so that it has

@@ -49,7 +49,7 @@ impl Stop {
             polish_distance: below(distance),
             polish_stretch: rounded_down(stretch),
             polishes: 0,
-            after_search: 0,
+            after: 0,
             dispatches: 0,
         }
     }

@@ -210,22 +210,27 @@ fn steps_that_are_submitted_together_have_the_same_bits() {
         // It submits as many as it may.
         collision.expected_steps = [most; 2];
         collision.begin(&Call { stop, ..Call::toward(&target) }).unwrap();
-        let (mut reports, mut halted, mut overflows) = (Vec::new(), 0, 0);
+        let (mut reports, mut halted, mut overflows) = (Vec::new(), 0, [0; 2]);
         while reports.len() < 24 {
             // With room for one more step or so.
             collision.search().unwrap();
             let capacity = states(&mut collision).len() + 200;
             collision.buffers.capacity = capacity;
+            // And for a few rows more.
+            let rows = collision.buffers.row_capacity.min(collision.row_count + 4);
+            collision.buffers.row_capacity = rows;
             let wanted = most.min(24 - reports.len());
             let made = collision.steps(wanted).unwrap();
             let grew = collision.buffers.capacity > capacity;
-            halted += usize::from(!grew && made.len() < wanted);
-            overflows += usize::from(grew && made.len() > 1);
+            let more_rows = collision.buffers.row_capacity > rows;
+            halted += usize::from(!grew && !more_rows && made.len() < wanted);
+            overflows[0] += usize::from(grew && made.len() > 1);
+            overflows[1] += usize::from(more_rows && made.len() > 1);
             reports.extend(made);
         }
         let end = collision.end().unwrap();
         assert_eq!(end.positions, collision.positions().unwrap());
-        (reports, end, [halted, overflows])
+        (reports, end, [halted, overflows[0], overflows[1]])
     };
     let (reports, end, _) = run(1);
     for most in [3, 8] {
@@ -242,12 +247,13 @@ struct Room {
     partners: usize,
     candidates: usize,
     old: usize,
+    picks: usize,
     rows: usize,
 }
 
 impl Room {
     /// More than the sheets need.
-    const PLENTY: Self = Self { partners: 400, candidates: 40_000, old: 40_000, rows: 40_000 };
+    const PLENTY: Self = Self { partners: 400, candidates: 40_000, old: 40_000, picks: 40_000, rows: 40_000 };
 
     /// Makes buffers of that size, before anything is in them.
     fn give(self, collision: &mut Collision<TwinEngine>) {
@@ -257,16 +263,16 @@ impl Room {
             *buffer = engine.buffer("of that size", words).unwrap();
         };
         (b.most_partners, b.capacity) = (self.partners, self.candidates);
-        (b.old_capacity, b.row_capacity) = (self.old, self.rows);
+        (b.old_capacity, b.pick_capacity, b.row_capacity) = (self.old, self.picks, self.rows);
         replace(&mut b.partners, sizes.rows * (super::buffers::ROW_HEADER + self.partners));
         replace(&mut b.candidates, words::<Candidate>(self.candidates));
         replace(&mut b.separations, words::<crate::layout::Separation>(self.candidates));
         replace(&mut b.states, words::<PairState>(self.candidates));
         replace(&mut b.old_elements, self.old);
         replace(&mut b.old_states, words::<PairState>(self.old));
-        replace(&mut b.rows.picked, self.rows);
-        replace(&mut b.rows.starts, self.rows);
-        replace(&mut b.rows.blocks, self.rows.div_ceil(cpu::count::BLOCK));
+        replace(&mut b.picks.picked, self.picks);
+        replace(&mut b.picks.starts, self.picks);
+        replace(&mut b.picks.blocks, self.picks.div_ceil(cpu::count::BLOCK));
         replace(&mut b.rows.rows, words::<Row>(self.rows));
         replace(&mut b.rows.pairs, words::<Candidate>(self.rows));
         replace(&mut b.rows.order, self.rows);
@@ -274,9 +280,9 @@ impl Room {
         replace(&mut b.rows.color_ends, self.rows);
     }
 
-    fn of(collision: &Collision<TwinEngine>) -> [usize; 4] {
+    fn of(collision: &Collision<TwinEngine>) -> [usize; 5] {
         let b = &collision.buffers;
-        [b.most_partners, b.capacity, b.old_capacity, b.row_capacity]
+        [b.most_partners, b.capacity, b.old_capacity, b.pick_capacity, b.row_capacity]
     }
 }
 
@@ -285,7 +291,7 @@ struct Calls {
     reports: Vec<StepReport>,
     ends: [End; 3],
     /// Which buffers grew, and how many searches and steps after the first search were made again because of one.
-    grew: [bool; 4],
+    grew: [bool; 5],
     again: usize,
     /// Partners and candidates that the first search has found.
     first: [usize; 2],
@@ -317,33 +323,34 @@ fn calls(room: Room) -> Calls {
         }
         collision.end().unwrap()
     });
-    let given = [room.partners, room.candidates, room.old, room.rows];
+    let given = [room.partners, room.candidates, room.old, room.picks, room.rows];
     let now = Room::of(&collision);
-    Calls { reports, ends, grew: [0, 1, 2, 3].map(|k| now[k] > given[k]), again, first }
+    Calls { reports, ends, grew: [0, 1, 2, 3, 4].map(|k| now[k] > given[k]), again, first }
 }
 
 #[test]
 fn buffers_that_are_too_small_change_no_bits() {
     let plenty = Room::PLENTY;
     let with_room = calls(plenty);
-    assert!((with_room.grew, with_room.again) == ([false; 4], 0) && !with_room.ends[1].rows.is_empty());
+    assert!((with_room.grew, with_room.again) == ([false; 5], 0) && !with_room.ends[1].rows.is_empty());
     let agree = |room: Room| {
         let made = calls(room);
         assert!(made.reports == with_room.reports && made.ends == with_room.ends, "{room:?}");
         made
     };
     for (room, buffers) in [
-        (Room { partners: 1, ..plenty }, [true, false, false, false]),
-        (Room { candidates: 64, ..plenty }, [false, true, false, false]),
-        (Room { old: 64, ..plenty }, [false, false, true, false]),
-        (Room { rows: 64, ..plenty }, [false, false, false, true]),
-        (Room { partners: 1, candidates: 64, old: 64, rows: 64 }, [true; 4]),
+        (Room { partners: 1, ..plenty }, [true, false, false, false, false]),
+        (Room { candidates: 64, ..plenty }, [false, true, false, false, false]),
+        (Room { old: 64, ..plenty }, [false, false, true, false, false]),
+        (Room { picks: 64, ..plenty }, [false, false, false, true, false]),
+        (Room { rows: 2, ..plenty }, [false, false, false, false, true]),
+        (Room { partners: 1, candidates: 64, old: 64, picks: 64, rows: 2 }, [true; 5]),
     ] {
         assert_eq!(agree(room).grew, buffers, "{room:?}");
     }
     // Just room for the first search: later ones find more.
     let [partners, candidates] = with_room.first;
-    let few = agree(Room { candidates, old: candidates, rows: candidates, ..plenty });
+    let few = agree(Room { candidates, old: candidates, picks: candidates, ..plenty });
     let short = agree(Room { partners, ..plenty });
     assert!(few.again > 0 && short.again > 0, "{} {}", few.again, short.again);
 }

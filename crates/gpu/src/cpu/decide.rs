@@ -16,9 +16,14 @@ pub struct Params {
     pub polish_distance: f32,
     pub polish_stretch: f32,
     pub polishes: u32,
-    pub after_search: u32,
+    pub after: u32,
     pub dispatches: u32,
 }
+
+/// Values of [`Params::after`].
+pub const AFTER_STEP: u32 = 0;
+pub const AFTER_SEARCH: u32 = 1;
+pub const AFTER_ROWS: u32 = 2;
 
 pub fn bound(buffers: Bound<'_>) {
     decide(
@@ -31,8 +36,8 @@ pub fn bound(buffers: Bound<'_>) {
 
 pub fn decide(params: Params, control: &mut Control, reports: &mut [Control], arguments: &mut [u32]) {
     if control.halted == 0 {
-        control.halted = if params.after_search != 0 {
-            Control::HALTED_BY_SEARCH * control.overflow
+        control.halted = if params.after != AFTER_STEP {
+            (1 + params.after) * control.overflow
         } else {
             u32::from(halts(&params, control, reports))
         };

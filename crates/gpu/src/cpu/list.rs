@@ -9,6 +9,7 @@ use bytemuck::{Pod, Zeroable};
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Params {
     pub capacity: u32,
+    pub row_capacity: u32,
 }
 
 pub fn bound(buffers: Bound<'_>) {
@@ -34,13 +35,14 @@ pub fn list(
     pairs: &mut [Candidate],
     control: &Control,
 ) {
-    for c in 0..params.capacity as usize {
-        if picked[c] != 0 {
+    let [capacity, row_capacity] = [params.capacity, params.row_capacity].map(|count| count as usize);
+    for c in 0..capacity.max(row_capacity) {
+        if c < capacity && picked[c] != 0 {
             let place = (blocks[c / BLOCK] + starts[c]) as usize;
             rows[place].candidate = c as u32;
             pairs[place] = candidates[c];
         }
-        if c >= control.rows as usize {
+        if c >= control.rows as usize && c < row_capacity {
             rows[c].candidate = NONE;
         }
     }
