@@ -1,18 +1,19 @@
-// First part of the list of candidates: where those of each row begin within a block of 256 rows.
+// First part of the places in a list, of candidates or of contact rows: where those of each row of the search, or of each
+// candidate, begin within a block of 256. Counts become sums in place.
 
 struct Params {
     rows: u32,
-    stride: u32,
-    most: u32,
+    // 0: the list of candidates, which is as it was unless a search changes it; 1: that of contact rows.
+    list: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read> partners: array<u32>;
-@group(0) @binding(2) var<storage, read_write> starts: array<u32>;
-@group(0) @binding(3) var<storage, read_write> blocks: array<u32>;
-@group(0) @binding(4) var<storage, read_write> control: Control;
+@group(0) @binding(1) var<storage, read_write> starts: array<u32>;
+@group(0) @binding(2) var<storage, read_write> blocks: array<u32>;
+@group(0) @binding(3) var<storage, read_write> control: Control;
 
 var<workgroup> sums: array<u32, 256>;
+var<workgroup> shared_skips: u32;
 
 @compute @workgroup_size(256)
 fn main(
@@ -21,16 +22,15 @@ fn main(
     @builtin(workgroup_id) block: vec3<u32>,
 ) {
     let row = id.x;
+    if local.x == 0u {
+        shared_skips = u32(params.list == 0u && atomicLoad(&control.changed) == 0u);
+    }
+    if workgroupUniformLoad(&shared_skips) != 0u {
+        return;
+    }
     var count = 0u;
     if row < params.rows {
-        let found = partners[row * params.stride];
-        count = min(found, params.most);
-        if atomicLoad(&control.changed) != 0u {
-            atomicMax(&control.most_partners, found);
-            if found > params.most {
-                atomicStore(&control.overflow, 1u);
-            }
-        }
+        count = starts[row];
     }
     sums[local.x] = count;
     workgroupBarrier();

@@ -31,7 +31,7 @@ struct Params {
 
 // A copy of Control.
 struct Report {
-    words: array<u32, 20>,
+    words: array<u32, 19>,
 }
 
 var<workgroup> shared_halted: u32;
@@ -74,24 +74,23 @@ fn polishes_next() -> bool {
 fn keep_report(step: u32) {
     reports[step].words[0] = atomicLoad(&control.changed);
     reports[step].words[1] = atomicLoad(&control.overflow);
-    reports[step].words[2] = atomicLoad(&control.most_partners);
-    reports[step].words[3] = atomicLoad(&control.frozen);
-    reports[step].words[4] = atomicLoad(&control.free_remaining);
-    reports[step].words[5] = atomicLoad(&control.unhindered_lag);
-    reports[step].words[6] = atomicLoad(&control.lag);
-    reports[step].words[7] = atomicLoad(&control.largest_move);
-    reports[step].words[8] = atomicLoad(&control.free_move);
-    reports[step].words[9] = atomicLoad(&control.unhindered);
-    reports[step].words[10] = atomicLoad(&control.net_residual);
-    reports[step].words[11] = atomicLoad(&control.mean_residual);
-    reports[step].words[12] = atomicLoad(&control.stretch_to_limit);
-    reports[step].words[13] = atomicLoad(&control.pressing);
-    reports[step].words[14] = atomicLoad(&control.candidates);
-    reports[step].words[15] = atomicLoad(&control.rows);
-    reports[step].words[16] = atomicLoad(&control.halted);
-    reports[step].words[17] = atomicLoad(&control.steps);
-    reports[step].words[18] = atomicLoad(&control.last_mean_residual);
-    reports[step].words[19] = atomicLoad(&control.finishing_steps);
+    reports[step].words[2] = atomicLoad(&control.frozen);
+    reports[step].words[3] = atomicLoad(&control.free_remaining);
+    reports[step].words[4] = atomicLoad(&control.unhindered_lag);
+    reports[step].words[5] = atomicLoad(&control.lag);
+    reports[step].words[6] = atomicLoad(&control.largest_move);
+    reports[step].words[7] = atomicLoad(&control.free_move);
+    reports[step].words[8] = atomicLoad(&control.unhindered);
+    reports[step].words[9] = atomicLoad(&control.net_residual);
+    reports[step].words[10] = atomicLoad(&control.mean_residual);
+    reports[step].words[11] = atomicLoad(&control.stretch_to_limit);
+    reports[step].words[12] = atomicLoad(&control.pressing);
+    reports[step].words[13] = atomicLoad(&control.candidates);
+    reports[step].words[14] = atomicLoad(&control.rows);
+    reports[step].words[15] = atomicLoad(&control.halted);
+    reports[step].words[16] = atomicLoad(&control.steps);
+    reports[step].words[17] = atomicLoad(&control.last_mean_residual);
+    reports[step].words[18] = atomicLoad(&control.finishing_steps);
 }
 
 fn decide() -> u32 {

@@ -8,20 +8,19 @@ struct Params {
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read> picked: array<u32>;
-@group(0) @binding(2) var<storage, read> starts: array<u32>;
-@group(0) @binding(3) var<storage, read> blocks: array<u32>;
-@group(0) @binding(4) var<storage, read> candidates: array<Candidate>;
-@group(0) @binding(5) var<storage, read_write> rows: array<Row>;
-@group(0) @binding(6) var<storage, read_write> pairs: array<Candidate>;
-@group(0) @binding(7) var<storage, read_write> control: Control;
+// Where the row of each candidate is, if it has one: then that of the next comes after it.
+@group(0) @binding(1) var<storage, read> starts: array<u32>;
+@group(0) @binding(2) var<storage, read> candidates: array<Candidate>;
+@group(0) @binding(3) var<storage, read_write> rows: array<Row>;
+@group(0) @binding(4) var<storage, read_write> pairs: array<Candidate>;
+@group(0) @binding(5) var<storage, read_write> control: Control;
 
 @compute @workgroup_size(256)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let count = atomicLoad(&control.rows);
     for (var c = id.x; c < max(params.capacity, params.row_capacity); c += 256u * MOST_WORKGROUPS) {
-        if c < params.capacity && picked[c] != 0u {
-            let place = blocks[c / 256u] + starts[c];
+        if c < params.capacity && starts[c + 1u] > starts[c] {
+            let place = starts[c];
             rows[place].candidate = c;
             pairs[place] = candidates[c];
         }

@@ -1,11 +1,11 @@
-// Finds the half-spaces near each vertex; rows of words as in traverse.wgsl.
+// Finds the half-spaces near each vertex, in two runs as traverse.wgsl.
 
 struct Params {
     queries: u32,
     planes: u32,
     first_row: u32,
-    stride: u32,
-    most: u32,
+    lists: u32,
+    capacity: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -13,8 +13,9 @@ struct Params {
 @group(0) @binding(2) var<storage, read> planes: array<Plane>;
 @group(0) @binding(3) var<storage, read> balls: array<Ball>;
 @group(0) @binding(4) var<storage, read> vertices: array<Vertex>;
-@group(0) @binding(5) var<storage, read_write> partners: array<u32>;
-@group(0) @binding(6) var<storage, read_write> control: Control;
+@group(0) @binding(5) var<storage, read_write> starts: array<u32>;
+@group(0) @binding(6) var<storage, read_write> candidates: array<Candidate>;
+@group(0) @binding(7) var<storage, read_write> control: Control;
 
 @compute @workgroup_size(256)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -22,8 +23,12 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     for (var q = id.x; q < params.queries; q += 256u * MOST_WORKGROUPS) {
-        let row = (params.first_row + q) * params.stride;
+        let row = params.first_row + q;
         let query = queries[q];
+        var first = 0u;
+        if params.lists != 0u {
+            first = starts[row];
+        }
         var found = 0u;
         if query.element != NONE && (vertices[query.v0].flags & OBSTACLE) == 0u {
             let ball = balls[query.v0];
@@ -34,14 +39,15 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
                 let height = dot(plane.normal, offset);
                 let size = max(max(abs(offset.x), abs(offset.y)), abs(offset.z));
                 if height - plane.rounding * size <= reach * 1.001 {
-                    if found < params.most {
-                        partners[row + 2u + found] = p;
+                    if params.lists != 0u && first + found < params.capacity {
+                        candidates[first + found] = Candidate((VERTEX_HALF_SPACE << ELEMENT_BITS) | query.element, p);
                     }
                     found += 1u;
                 }
             }
         }
-        partners[row] = found;
-        partners[row + 1u] = (VERTEX_HALF_SPACE << ELEMENT_BITS) | query.element;
+        if params.lists == 0u {
+            starts[row] = found;
+        }
     }
 }

@@ -14,7 +14,8 @@ struct Params {
 @group(0) @binding(4) var<storage, read> candidates: array<Candidate>;
 @group(0) @binding(5) var<storage, read> separations: array<Separation>;
 @group(0) @binding(6) var<storage, read_write> states: array<PairState>;
-@group(0) @binding(7) var<storage, read_write> picked: array<u32>;
+// 1 for a candidate that gets a row.
+@group(0) @binding(7) var<storage, read_write> starts: array<u32>;
 @group(0) @binding(8) var<storage, read_write> control: Control;
 
 fn is_picked(c: u32) -> bool {
@@ -48,6 +49,6 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
                 states[c].friction = vec3<f32>(0.0);
             }
         }
-        picked[c] = flag;
+        starts[c] = flag;
     }
 }

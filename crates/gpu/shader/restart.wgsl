@@ -24,7 +24,6 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     atomicStore(&control.overflow, 0u);
-    atomicStore(&control.most_partners, 0u);
     atomicStore(&control.frozen, 0u);
     atomicStore(&control.free_remaining, 0u);
     atomicStore(&control.unhindered_lag, 0u);

@@ -1,10 +1,10 @@
-// Second part of a list, of candidates or of rows: where those of each block begin, and how many there are. One workgroup.
+// Second part of the places in a list: where those of each block begin, and how many there are. One workgroup.
 
 struct Params {
     blocks: u32,
     // Entries that the list holds.
     capacity: u32,
-    // 0: the list of candidates; 1: that of rows.
+    // As in count.wgsl.
     list: u32,
 }
 
@@ -13,9 +13,16 @@ struct Params {
 @group(0) @binding(2) var<storage, read_write> control: Control;
 
 var<workgroup> sums: array<u32, 256>;
+var<workgroup> shared_skips: u32;
 
 @compute @workgroup_size(256)
 fn main(@builtin(local_invocation_id) local: vec3<u32>) {
+    if local.x == 0u {
+        shared_skips = u32(params.list == 0u && atomicLoad(&control.changed) == 0u);
+    }
+    if workgroupUniformLoad(&shared_skips) != 0u {
+        return;
+    }
     var total = 0u;
     for (var first = 0u; first < params.blocks; first += 256u) {
         let block = first + local.x;

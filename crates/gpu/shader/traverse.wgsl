@@ -1,7 +1,7 @@
 // Finds the partners of elements: the elements of a tree whose boxes overlap theirs.
 //
-// Each query has a row of words: the number of its partners, its kind and element, then as many partners as fit. The
-// order of the partners depends on the tree alone.
+// It runs twice, since nobody knows before how many there are: first it counts those of each query, then, with the sums of
+// these counts, each goes to its place in the list of candidates. Their order depends on the tree alone.
 
 struct Params {
     queries: u32,
@@ -10,10 +10,12 @@ struct Params {
     kind: u32,
     // 1: both sides come from one list, and each pair is found from the smaller element.
     symmetric: u32,
-    // First row of these queries, words of a row, and partners that fit into one.
+    // First row of these queries.
     first_row: u32,
-    stride: u32,
-    most: u32,
+    // 0: partners are counted; 1: they are listed.
+    lists: u32,
+    // Candidates that the list holds.
+    capacity: u32,
     // Levels of the tree, and the first node of each in its boxes.
     levels: u32,
     level_first: array<vec4<u32>, 3>,
@@ -25,8 +27,10 @@ struct Params {
 @group(0) @binding(3) var<storage, read> boxes: array<NodeBox>;
 @group(0) @binding(4) var<storage, read> balls: array<Ball>;
 @group(0) @binding(5) var<storage, read> vertices: array<Vertex>;
-@group(0) @binding(6) var<storage, read_write> partners: array<u32>;
-@group(0) @binding(7) var<storage, read_write> control: Control;
+// By row: how many partners it has, then where they begin.
+@group(0) @binding(6) var<storage, read_write> starts: array<u32>;
+@group(0) @binding(7) var<storage, read_write> candidates: array<Candidate>;
+@group(0) @binding(8) var<storage, read_write> control: Control;
 
 // A group of eight siblings: its level and its index there.
 const LEVEL_SHIFT: u32 = 27u;
@@ -43,11 +47,17 @@ fn first_of(level: u32) -> u32 {
 }
 
 fn find(q: u32) {
-    let row = (params.first_row + q) * params.stride;
+    let row = params.first_row + q;
     let query = queries[q];
     if query.element == NONE {
-        partners[row] = 0u;
+        if params.lists == 0u {
+            starts[row] = 0u;
+        }
         return;
+    }
+    var first = 0u;
+    if params.lists != 0u {
+        first = starts[row];
     }
     var low = vec3<i32>(0x7fffffff);
     var high = vec3<i32>(-0x7fffffff);
@@ -87,14 +97,15 @@ fn find(q: u32) {
             if shares_vertex(query, other) || !may_collide(own, vertices[other.v0]) {
                 continue;
             }
-            if found < params.most {
-                partners[row + 2u + found] = other.element;
+            if params.lists != 0u && first + found < params.capacity {
+                candidates[first + found] = Candidate((params.kind << ELEMENT_BITS) | query.element, other.element);
             }
             found += 1u;
         }
     }
-    partners[row] = found;
-    partners[row + 1u] = (params.kind << ELEMENT_BITS) | query.element;
+    if params.lists == 0u {
+        starts[row] = found;
+    }
 }
 
 @compute @workgroup_size(64)

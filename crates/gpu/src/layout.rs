@@ -325,8 +325,6 @@ pub struct Control {
     pub changed: u32,
     /// 1 if a buffer was too small: nothing moves then.
     pub overflow: u32,
-    /// Largest number of partners of an element: what a row should hold.
-    pub most_partners: u32,
     /// Pairs that nothing certifies, and whose vertices wanted to move.
     pub frozen: u32,
     /// Bits of the largest remaining distance of a vertex that is not prescribed, of a prescribed one that no pair
@@ -363,7 +361,7 @@ pub struct Control {
 
 impl Control {
     /// Words that a step begins with as zeros: all before the number of candidates.
-    pub const RESET_WORDS: usize = 14;
+    pub const RESET_WORDS: usize = 13;
 
     /// A buffer was too small for the search at the start of a call.
     pub const HALTED_BY_SEARCH: u32 = 2;

@@ -124,7 +124,7 @@ pub(crate) static LIST: Stage = Stage {
     name: "list",
     parts: &[TYPES, include_str!("../shader/list.wgsl")],
     workgroup: 256,
-    bindings: &[Read, Read, Read, Read, Write, Write, Write],
+    bindings: &[Read, Read, Write, Write, Write],
     twin: cpu::list::bound,
 };
 
@@ -236,7 +236,7 @@ pub(crate) static TRAVERSE: Stage = Stage {
     name: "traverse",
     parts: &[TYPES, include_str!("../shader/traverse.wgsl")],
     workgroup: 64,
-    bindings: &[Read, Read, Read, Read, Read, Write, Write],
+    bindings: &[Read, Read, Read, Read, Read, Write, Write, Write],
     twin: cpu::traverse::bound,
 };
 
@@ -244,7 +244,7 @@ pub(crate) static NEAR_PLANES: Stage = Stage {
     name: "near_planes",
     parts: &[TYPES, include_str!("../shader/near_planes.wgsl")],
     workgroup: 256,
-    bindings: &[Read, Read, Read, Read, Write, Write],
+    bindings: &[Read, Read, Read, Read, Write, Write, Write],
     twin: cpu::near_planes::bound,
 };
 
@@ -252,7 +252,7 @@ pub(crate) static COUNT: Stage = Stage {
     name: "count",
     parts: &[TYPES, include_str!("../shader/count.wgsl")],
     workgroup: cpu::count::BLOCK,
-    bindings: &[Read, Write, Write, Write],
+    bindings: &[Write, Write, Write],
     twin: cpu::count::bound,
 };
 
@@ -264,12 +264,12 @@ pub(crate) static TOTAL: Stage = Stage {
     twin: cpu::total::bound,
 };
 
-pub(crate) static GATHER: Stage = Stage {
-    name: "gather",
-    parts: &[TYPES, include_str!("../shader/gather.wgsl")],
+pub(crate) static PLACE: Stage = Stage {
+    name: "place",
+    parts: &[TYPES, include_str!("../shader/place.wgsl")],
     workgroup: 256,
-    bindings: &[Read, Read, Read, Write, Write],
-    twin: cpu::gather::bound,
+    bindings: &[Read, Write, Write],
+    twin: cpu::place::bound,
 };
 
 pub(crate) static SEPARATE: Stage = Stage {
@@ -284,7 +284,7 @@ pub(crate) static KEEP: Stage = Stage {
     name: "keep",
     parts: &[TYPES, include_str!("../shader/keep.wgsl")],
     workgroup: 256,
-    bindings: &[Read, Read, Read, Read, Write, Write, Write, Write],
+    bindings: &[Read, Read, Read, Write, Write, Write, Write],
     twin: cpu::keep::bound,
 };
 
@@ -292,7 +292,7 @@ pub(crate) static INHERIT: Stage = Stage {
     name: "inherit",
     parts: &[TYPES, include_str!("../shader/inherit.wgsl")],
     workgroup: 256,
-    bindings: &[Read, Read, Read, Read, Read, Read, Write, Write],
+    bindings: &[Read, Read, Read, Read, Read, Write, Write],
     twin: cpu::inherit::bound,
 };
 
@@ -385,7 +385,7 @@ pub(crate) static ALL: &[&Stage] = &[
     &NEAR_PLANES,
     &COUNT,
     &TOTAL,
-    &GATHER,
+    &PLACE,
     &KEEP,
     &INHERIT,
     &SEPARATE,

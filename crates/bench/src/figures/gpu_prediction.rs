@@ -297,7 +297,7 @@ impl CountingEngine {
         let mut zeros = Recording::default();
         for dispatch in recording.dispatches() {
             let made = match dispatch.stage {
-                "list" => dispatch.buffers[4],
+                "list" => dispatch.buffers[2],
                 "sort" => dispatch.buffers[3],
                 _ => continue,
             };

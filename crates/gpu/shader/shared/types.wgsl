@@ -154,7 +154,6 @@ struct BlockSum {
 struct Control {
     changed: atomic<u32>,
     overflow: atomic<u32>,
-    most_partners: atomic<u32>,
     frozen: atomic<u32>,
     free_remaining: atomic<u32>,
     unhindered_lag: atomic<u32>,

@@ -11,15 +11,11 @@ use crate::layout::{
 use crate::recording::BufferId;
 use bytemuck::Pod;
 
-/// Partners of an element for which there is room at first, and candidates per vertex.
-const FIRST_PARTNERS: usize = 24;
+/// Candidates per vertex for which there is room at first.
 const FIRST_CANDIDATES: usize = 16;
 
 /// Contact rows per vertex for which there is room at first.
 const FIRST_ROWS: usize = 4;
-
-/// Words of a row before its partners: their number, and the element.
-pub const ROW_HEADER: usize = 2;
 
 /// Numbers of what the buffers hold.
 #[derive(Clone, Copy, Debug)]
@@ -38,7 +34,7 @@ pub struct Sizes {
     pub adjacency: usize,
     /// Blocks of vertices.
     pub blocks: usize,
-    /// Rows of partners.
+    /// Rows of the search: query elements of all kinds.
     pub rows: usize,
     /// Buckets of contact rows.
     pub buckets: usize,
@@ -47,8 +43,7 @@ pub struct Sizes {
 /// Buffers that all stages share.
 #[derive(Clone, Copy, Debug)]
 pub struct Buffers {
-    /// Partners of an element that fit into a row, and candidates that fit into their list.
-    pub most_partners: usize,
+    /// Candidates that fit into their list.
     pub capacity: usize,
     /// Candidates of the time before a search for which there is room, and candidates that can be picked.
     pub old_capacity: usize,
@@ -73,7 +68,7 @@ pub struct Buffers {
     /// What each step of a submission came to, and the workgroups of the dispatches of all but its first step.
     pub reports: BufferId,
     pub arguments: BufferId,
-    pub partners: BufferId,
+    /// Where the candidates of each row of the search begin, and where the last ones end; sums by block.
     pub starts: BufferId,
     pub blocks: BufferId,
     pub candidates: BufferId,
@@ -107,8 +102,8 @@ pub struct Buffers {
 /// Which candidates have a row, one entry per candidate.
 #[derive(Clone, Copy, Debug)]
 pub struct PickBuffers {
-    /// Whether each candidate has a row, and the places of the rows by candidate.
-    pub picked: BufferId,
+    /// Whether each candidate has a row, then the places of the rows by candidate, and where the last one ends; sums by
+    /// block.
     pub starts: BufferId,
     pub blocks: BufferId,
 }
@@ -141,10 +136,9 @@ impl Buffers {
         let &Sizes { vertices, groups, edges, triangles, planes, limits, adjacency, blocks, rows, .. } =
             sizes;
         let [clusters, cluster_vertices, cluster_colors] = sizes.clusters;
-        let (most_partners, capacity) = (FIRST_PARTNERS, (FIRST_CANDIDATES * vertices).max(64));
+        let capacity = (FIRST_CANDIDATES * vertices).max(64);
         let row_capacity = (FIRST_ROWS * vertices).max(64);
         Ok(Self {
-            most_partners,
             capacity,
             old_capacity: capacity,
             pick_capacity: capacity,
@@ -167,8 +161,7 @@ impl Buffers {
             control: engine.buffer("control", words::<Control>(1))?,
             reports: engine.buffer("reports", words::<Control>(1))?,
             arguments: engine.buffer("arguments", 0)?,
-            partners: engine.buffer("partners", rows * (ROW_HEADER + most_partners))?,
-            starts: engine.buffer("starts", rows)?,
+            starts: engine.buffer("starts", rows + 1)?,
             blocks: engine.buffer("blocks", rows.div_ceil(BLOCK))?,
             candidates: engine.buffer("candidates", words::<Candidate>(capacity))?,
             separations: engine.buffer("separations", words::<Separation>(capacity))?,
@@ -194,34 +187,21 @@ impl Buffers {
         })
     }
 
-    /// Makes room for as many partners and candidates as `control` tells, what was there is lost. The rows of the step
-    /// stay, and what was kept from before the search.
+    /// Makes room for so many candidates and a quarter more; what was there is lost. The rows of the step stay, and what
+    /// was kept from before the search.
     ///
     /// # Errors
     /// The device has no memory.
-    pub fn grow(
-        &mut self,
-        engine: &mut impl Engine,
-        sizes: &Sizes,
-        control: &Control,
-    ) -> Result<(), GpuError> {
-        let (partners, candidates) = (control.most_partners as usize, control.candidates as usize);
-        if partners > self.most_partners {
-            self.most_partners = partners + partners / 4;
-            engine.free(self.partners);
-            self.partners = engine.buffer("partners", sizes.rows * (ROW_HEADER + self.most_partners))?;
+    pub fn grow(&mut self, engine: &mut impl Engine, candidates: usize) -> Result<(), GpuError> {
+        for old in [self.candidates, self.separations, self.states] {
+            engine.free(old);
         }
-        if candidates > self.capacity {
-            let capacity = candidates + candidates / 4;
-            for old in [self.candidates, self.separations, self.states] {
-                engine.free(old);
-            }
-            self.capacity = capacity;
-            self.candidates = engine.buffer("candidates", words::<Candidate>(capacity))?;
-            self.separations = engine.buffer("separations", words::<Separation>(capacity))?;
-            self.states = engine.buffer("states of pairs", words::<PairState>(capacity))?;
-        }
-        tracing::debug!(partners, candidates, "buffers grew");
+        let capacity = candidates + candidates / 4;
+        self.capacity = capacity;
+        self.candidates = engine.buffer("candidates", words::<Candidate>(capacity))?;
+        self.separations = engine.buffer("separations", words::<Separation>(capacity))?;
+        self.states = engine.buffer("states of pairs", words::<PairState>(capacity))?;
+        tracing::debug!(candidates, "buffers grew");
         Ok(())
     }
 
@@ -288,15 +268,14 @@ impl Buffers {
 impl PickBuffers {
     fn new(engine: &mut impl Engine, capacity: usize) -> Result<Self, GpuError> {
         Ok(Self {
-            picked: engine.buffer("picked candidates", capacity)?,
-            starts: engine.buffer("starts of rows", capacity)?,
+            starts: engine.buffer("starts of rows", capacity + 1)?,
             blocks: engine.buffer("blocks of rows", capacity.div_ceil(BLOCK))?,
         })
     }
 
     fn free(&self, engine: &mut impl Engine) {
-        let &Self { picked, starts, blocks } = self;
-        [picked, starts, blocks].into_iter().for_each(|buffer| engine.free(buffer));
+        let &Self { starts, blocks } = self;
+        [starts, blocks].into_iter().for_each(|buffer| engine.free(buffer));
     }
 }
 

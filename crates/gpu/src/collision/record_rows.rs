@@ -1,7 +1,9 @@
 //! The stages of the backward step: contact rows, their buckets and colors, the sweeps.
 
 use super::Collision;
+use super::record_search::ListPlaces;
 use crate::cpu;
+use crate::cpu::count::CONTACT_ROWS;
 use crate::cpu::decide::AFTER_ROWS;
 use crate::engine::Engine;
 use crate::recording::{Phase, Recording};
@@ -51,30 +53,25 @@ impl<E: Engine> Collision<E> {
                 b.candidates,
                 b.separations,
                 b.states,
-                b.picks.picked,
+                b.picks.starts,
                 b.control,
             ],
             cpu::pick::Params { capacity, threshold: self.settings.active as f32 },
             self.buffers.capacity,
         );
-        recording.dispatch(
-            &stages::COUNT,
-            &[b.picks.picked, b.picks.starts, b.picks.blocks, b.control],
-            cpu::count::Params { rows: capacity, stride: 1, most: 1 },
-            self.buffers.capacity,
-        );
-        let blocks = self.buffers.capacity.div_ceil(cpu::count::BLOCK) as u32;
-        recording.dispatch(
-            &stages::TOTAL,
-            &[b.picks.blocks, b.control],
-            cpu::total::Params { blocks, capacity: row_capacity, list: 1 },
-            1,
-        );
+        let places = ListPlaces {
+            starts: b.picks.starts,
+            blocks: b.picks.blocks,
+            rows: capacity,
+            capacity: row_capacity,
+            list: CONTACT_ROWS,
+        };
+        self.record_places(&places, recording);
         // Without room for all rows the step ends here, and is made again.
         self.record_decision(AFTER_ROWS, dispatches, recording);
         recording.dispatch(
             &stages::LIST,
-            &[b.picks.picked, b.picks.starts, b.picks.blocks, b.candidates, r.rows, r.pairs, b.control],
+            &[b.picks.starts, b.candidates, r.rows, r.pairs, b.control],
             cpu::list::Params { capacity, row_capacity },
             self.buffers.capacity.max(self.buffers.row_capacity),
         );

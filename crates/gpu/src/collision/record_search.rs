@@ -1,13 +1,23 @@
 //! The stages that search for candidates.
 
 use super::Collision;
-use super::buffers::ROW_HEADER;
 use super::trees::DeviceTree;
 use crate::cpu;
+use crate::cpu::count::CANDIDATES;
 use crate::engine::Engine;
 use crate::layout::Kind;
-use crate::recording::Recording;
+use crate::recording::{BufferId, Recording};
 use crate::stages;
+
+/// A list whose entries get their places: counts by row, which become where each row begins, and sums by block.
+pub(super) struct ListPlaces {
+    pub starts: BufferId,
+    pub blocks: BufferId,
+    pub rows: u32,
+    /// Entries that the list holds.
+    pub capacity: u32,
+    pub list: u32,
+}
 
 impl<E: Engine> Collision<E> {
     /// The candidates, if trust regions have changed.
@@ -17,9 +27,38 @@ impl<E: Engine> Collision<E> {
         for tree in self.trees.targets() {
             tree.record_fit(b, recording);
         }
+        self.record_finds(false, recording);
+        let (rows, capacity) = (self.sizes.rows as u32, self.buffers.capacity as u32);
+        let places = ListPlaces { starts: b.starts, blocks: b.blocks, rows, capacity, list: CANDIDATES };
+        self.record_places(&places, recording);
+        self.record_finds(true, recording);
+        recording.dispatch(
+            &stages::INHERIT,
+            &[b.starts, b.candidates, b.old_rows, b.old_elements, b.old_states, b.states, b.control],
+            cpu::inherit::Params { rows, capacity },
+            self.sizes.rows,
+        );
+    }
+
+    /// Turns counts into places in a list: first how many entries come before each in its block, then in all.
+    pub(super) fn record_places(&self, places: &ListPlaces, recording: &mut Recording) {
+        let &ListPlaces { starts, blocks, rows, capacity, list } = places;
+        let control = self.buffers.control;
+        let params = cpu::count::Params { rows, list };
+        recording.dispatch(&stages::COUNT, &[starts, blocks, control], params, rows as usize);
+        let block_count = rows.div_ceil(cpu::count::BLOCK as u32);
+        let params = cpu::total::Params { blocks: block_count, capacity, list };
+        recording.dispatch(&stages::TOTAL, &[blocks, control], params, 1);
+        let params = cpu::place::Params { rows, list };
+        recording.dispatch(&stages::PLACE, &[blocks, starts, control], params, rows as usize);
+    }
+
+    /// Counts the partners of all elements, or lists them.
+    fn record_finds(&self, lists: bool, recording: &mut Recording) {
+        let b = &self.buffers;
         let mut row = 0;
         for (kind, queries, targets) in self.trees.searches() {
-            self.record_traverse(kind, queries, targets, row, recording);
+            self.record_traverse(kind, queries, targets, row, lists, recording);
             row += queries.tree.slots.len();
         }
         if self.sizes.planes > 0 {
@@ -28,40 +67,12 @@ impl<E: Engine> Collision<E> {
                 queries: queries.tree.slots.len() as u32,
                 planes: self.sizes.planes as u32,
                 first_row: row as u32,
-                stride: self.stride(),
-                most: self.buffers.most_partners as u32,
+                lists: u32::from(lists),
+                capacity: b.capacity as u32,
             };
-            let buffers = [queries.slots, b.planes, b.balls, b.vertices, b.partners, b.control];
+            let buffers = [queries.slots, b.planes, b.balls, b.vertices, b.starts, b.candidates, b.control];
             recording.dispatch(&stages::NEAR_PLANES, &buffers, params, queries.tree.slots.len());
-            row += queries.tree.slots.len();
         }
-        let (rows, most, capacity) =
-            (row as u32, self.buffers.most_partners as u32, self.buffers.capacity as u32);
-        let stride = self.stride();
-        recording.dispatch(
-            &stages::COUNT,
-            &[b.partners, b.starts, b.blocks, b.control],
-            cpu::count::Params { rows, stride, most },
-            row,
-        );
-        recording.dispatch(
-            &stages::TOTAL,
-            &[b.blocks, b.control],
-            cpu::total::Params { blocks: rows.div_ceil(cpu::count::BLOCK as u32), capacity, list: 0 },
-            1,
-        );
-        recording.dispatch(
-            &stages::GATHER,
-            &[b.partners, b.starts, b.blocks, b.candidates, b.control],
-            cpu::gather::Params { rows, stride, most, capacity },
-            row,
-        );
-        recording.dispatch(
-            &stages::INHERIT,
-            &[b.partners, b.starts, b.blocks, b.old_rows, b.old_elements, b.old_states, b.states, b.control],
-            cpu::inherit::Params { rows, stride, most, capacity },
-            row,
-        );
     }
 
     /// Keeps the present candidates with their states. If the step is made again they have been kept already, and the
@@ -73,13 +84,8 @@ impl<E: Engine> Collision<E> {
         let (b, rows) = (&self.buffers, self.sizes.rows);
         recording.dispatch(
             &stages::KEEP,
-            &[b.partners, b.starts, b.blocks, b.states, b.old_rows, b.old_elements, b.old_states, b.control],
-            cpu::keep::Params {
-                rows: rows as u32,
-                stride: self.stride(),
-                most: self.buffers.most_partners as u32,
-                capacity: self.buffers.capacity as u32,
-            },
+            &[b.starts, b.candidates, b.states, b.old_rows, b.old_elements, b.old_states, b.control],
+            cpu::keep::Params { rows: rows as u32, capacity: self.buffers.capacity as u32 },
             rows,
         );
     }
@@ -90,6 +96,7 @@ impl<E: Engine> Collision<E> {
         queries: &DeviceTree,
         targets: &DeviceTree,
         row: usize,
+        lists: bool,
         recording: &mut Recording,
     ) {
         let b = &self.buffers;
@@ -103,18 +110,21 @@ impl<E: Engine> Collision<E> {
             kind: kind as u32,
             symmetric: u32::from(queries.slots == targets.slots),
             first_row: row as u32,
-            stride: self.stride(),
-            most: self.buffers.most_partners as u32,
+            lists: u32::from(lists),
+            capacity: b.capacity as u32,
             levels: targets.tree.levels.len() as u32,
             level_first,
         };
-        let buffers =
-            [queries.slots, targets.slots, targets.boxes, b.balls, b.vertices, b.partners, b.control];
+        let buffers = [
+            queries.slots,
+            targets.slots,
+            targets.boxes,
+            b.balls,
+            b.vertices,
+            b.starts,
+            b.candidates,
+            b.control,
+        ];
         recording.dispatch(&stages::TRAVERSE, &buffers, params, queries.tree.slots.len());
-    }
-
-    /// Words of a row of partners.
-    pub(super) fn stride(&self) -> u32 {
-        (ROW_HEADER + self.buffers.most_partners) as u32
     }
 }

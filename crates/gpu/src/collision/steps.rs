@@ -145,7 +145,7 @@ impl<E: Engine> Collision<E> {
     /// the same bits as if there had been room.
     fn grow(&mut self, control: &Control) -> Result<(), GpuError> {
         self.again = true;
-        self.buffers.grow(&mut self.engine, &self.sizes, control)
+        self.buffers.grow(&mut self.engine, control.candidates as usize)
     }
 
     fn report(&self, control: &Control) -> StepReport {

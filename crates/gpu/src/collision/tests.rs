@@ -244,7 +244,6 @@ fn steps_that_are_submitted_together_have_the_same_bits() {
 /// Room in buffers that grow, the same as is told to the kernels: they find no room beyond it.
 #[derive(Clone, Copy, Debug)]
 struct Room {
-    partners: usize,
     candidates: usize,
     old: usize,
     picks: usize,
@@ -253,25 +252,23 @@ struct Room {
 
 impl Room {
     /// More than the sheets need.
-    const PLENTY: Self = Self { partners: 400, candidates: 40_000, old: 40_000, picks: 40_000, rows: 40_000 };
+    const PLENTY: Self = Self { candidates: 40_000, old: 40_000, picks: 40_000, rows: 40_000 };
 
     /// Makes buffers of that size, before anything is in them.
     fn give(self, collision: &mut Collision<TwinEngine>) {
-        let Collision { engine, buffers: b, sizes, .. } = collision;
+        let Collision { engine, buffers: b, .. } = collision;
         let mut replace = |buffer: &mut BufferId, words: usize| {
             engine.free(*buffer);
             *buffer = engine.buffer("of that size", words).unwrap();
         };
-        (b.most_partners, b.capacity) = (self.partners, self.candidates);
+        b.capacity = self.candidates;
         (b.old_capacity, b.pick_capacity, b.row_capacity) = (self.old, self.picks, self.rows);
-        replace(&mut b.partners, sizes.rows * (super::buffers::ROW_HEADER + self.partners));
         replace(&mut b.candidates, words::<Candidate>(self.candidates));
         replace(&mut b.separations, words::<crate::layout::Separation>(self.candidates));
         replace(&mut b.states, words::<PairState>(self.candidates));
         replace(&mut b.old_elements, self.old);
         replace(&mut b.old_states, words::<PairState>(self.old));
-        replace(&mut b.picks.picked, self.picks);
-        replace(&mut b.picks.starts, self.picks);
+        replace(&mut b.picks.starts, self.picks + 1);
         replace(&mut b.picks.blocks, self.picks.div_ceil(cpu::count::BLOCK));
         replace(&mut b.rows.rows, words::<Row>(self.rows));
         replace(&mut b.rows.pairs, words::<Candidate>(self.rows));
@@ -280,9 +277,9 @@ impl Room {
         replace(&mut b.rows.color_ends, self.rows);
     }
 
-    fn of(collision: &Collision<TwinEngine>) -> [usize; 5] {
+    fn of(collision: &Collision<TwinEngine>) -> [usize; 4] {
         let b = &collision.buffers;
-        [b.most_partners, b.capacity, b.old_capacity, b.pick_capacity, b.row_capacity]
+        [b.capacity, b.old_capacity, b.pick_capacity, b.row_capacity]
     }
 }
 
@@ -291,10 +288,10 @@ struct Calls {
     reports: Vec<StepReport>,
     ends: [End; 3],
     /// Which buffers grew, and how many searches and steps after the first search were made again because of one.
-    grew: [bool; 5],
+    grew: [bool; 4],
     again: usize,
-    /// Partners and candidates that the first search has found.
-    first: [usize; 2],
+    /// Candidates that the first search has found.
+    first: usize,
 }
 
 fn calls(room: Room) -> Calls {
@@ -303,56 +300,53 @@ fn calls(room: Room) -> Calls {
     let up: Vec<Point> = x.iter().map(|x| x + Vector::new(0.1, 0.02, -0.03) * (1.0 + x.y)).collect();
     let mut collision = collision(&model, &x, &x, None);
     room.give(&mut collision);
-    let (mut reports, mut again, mut first) = (Vec::new(), 0, [0; 2]);
+    let (mut reports, mut again, mut first) = (Vec::new(), 0, 0);
     let ends = [x, down, up].map(|target| {
         collision.begin(&Call::toward(&target)).unwrap();
         let before = Room::of(&collision);
         collision.search().unwrap();
         if !reports.is_empty() {
-            again += usize::from(Room::of(&collision)[..2] != before[..2]);
+            again += usize::from(Room::of(&collision)[0] != before[0]);
         } else {
             let read = [(collision.buffers.control, words::<Control>(1))];
             let control = collision.engine.run(&Recording::default(), &read).unwrap().swap_remove(0);
             let control: Control = bytemuck::cast_slice(&control)[0];
-            first = [control.most_partners, control.candidates].map(|count| count as usize);
+            first = control.candidates as usize;
         }
         for _ in 0..8 {
             let before = Room::of(&collision);
             reports.extend(collision.steps(1).unwrap());
-            again += usize::from(Room::of(&collision)[..2] != before[..2]);
+            again += usize::from(Room::of(&collision)[0] != before[0]);
         }
         collision.end().unwrap()
     });
-    let given = [room.partners, room.candidates, room.old, room.picks, room.rows];
+    let given = [room.candidates, room.old, room.picks, room.rows];
     let now = Room::of(&collision);
-    Calls { reports, ends, grew: [0, 1, 2, 3, 4].map(|k| now[k] > given[k]), again, first }
+    Calls { reports, ends, grew: [0, 1, 2, 3].map(|k| now[k] > given[k]), again, first }
 }
 
 #[test]
 fn buffers_that_are_too_small_change_no_bits() {
     let plenty = Room::PLENTY;
     let with_room = calls(plenty);
-    assert!((with_room.grew, with_room.again) == ([false; 5], 0) && !with_room.ends[1].rows.is_empty());
+    assert!((with_room.grew, with_room.again) == ([false; 4], 0) && !with_room.ends[1].rows.is_empty());
     let agree = |room: Room| {
         let made = calls(room);
         assert!(made.reports == with_room.reports && made.ends == with_room.ends, "{room:?}");
         made
     };
     for (room, buffers) in [
-        (Room { partners: 1, ..plenty }, [true, false, false, false, false]),
-        (Room { candidates: 64, ..plenty }, [false, true, false, false, false]),
-        (Room { old: 64, ..plenty }, [false, false, true, false, false]),
-        (Room { picks: 64, ..plenty }, [false, false, false, true, false]),
-        (Room { rows: 2, ..plenty }, [false, false, false, false, true]),
-        (Room { partners: 1, candidates: 64, old: 64, picks: 64, rows: 2 }, [true; 5]),
+        (Room { candidates: 64, ..plenty }, [true, false, false, false]),
+        (Room { old: 64, ..plenty }, [false, true, false, false]),
+        (Room { picks: 64, ..plenty }, [false, false, true, false]),
+        (Room { rows: 2, ..plenty }, [false, false, false, true]),
+        (Room { candidates: 64, old: 64, picks: 64, rows: 2 }, [true; 4]),
     ] {
         assert_eq!(agree(room).grew, buffers, "{room:?}");
     }
     // Just room for the first search: later ones find more.
-    let [partners, candidates] = with_room.first;
-    let few = agree(Room { candidates, old: candidates, picks: candidates, ..plenty });
-    let short = agree(Room { partners, ..plenty });
-    assert!(few.again > 0 && short.again > 0, "{} {}", few.again, short.again);
+    let candidates = with_room.first;
+    assert!(agree(Room { candidates, old: candidates, picks: candidates, ..plenty }).again > 0);
 }
 
 #[test]

@@ -78,7 +78,7 @@ impl Trees {
         .filter(|(_, queries, targets)| !queries.tree.is_empty() && !targets.tree.is_empty())
     }
 
-    /// Rows of partners of all queries.
+    /// Rows of the search: query elements of all kinds.
     pub fn rows(&self, planes: usize) -> usize {
         let slots = |tree: &DeviceTree| tree.tree.slots.len();
         let searched: usize = self.searches().map(|(_, queries, _)| slots(queries)).sum();

@@ -8,42 +8,34 @@ use bytemuck::{Pod, Zeroable};
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Params {
     pub rows: u32,
-    pub stride: u32,
-    pub most: u32,
+    pub list: u32,
 }
+
+/// Values of [`Params::list`], and of those of `total` and `place`.
+pub const CANDIDATES: u32 = 0;
+pub const CONTACT_ROWS: u32 = 1;
 
 /// Rows of a block: the threads of a workgroup.
 pub const BLOCK: usize = 256;
 
 pub fn bound(buffers: Bound<'_>) {
-    count(
-        buffers.params(),
-        &buffers.read(0),
-        &mut buffers.write(1),
-        &mut buffers.write(2),
-        &mut buffers.write::<Control>(3)[0],
-    );
+    count(buffers.params(), &mut buffers.write(0), &mut buffers.write(1), &buffers.read::<Control>(2)[0]);
 }
 
-pub fn count(
-    params: Params,
-    partners: &[u32],
-    starts: &mut [u32],
-    blocks: &mut [u32],
-    control: &mut Control,
-) {
-    for block in 0..(params.rows as usize).div_ceil(BLOCK) {
+/// Whether a list stays as it is.
+pub fn is_unchanged(list: u32, control: &Control) -> bool {
+    list == CANDIDATES && control.changed == 0
+}
+
+pub fn count(params: Params, starts: &mut [u32], blocks: &mut [u32], control: &Control) {
+    if is_unchanged(params.list, control) {
+        return;
+    }
+    for (block, starts) in starts[..params.rows as usize].chunks_mut(BLOCK).enumerate() {
         let mut sum = 0;
-        for row in block * BLOCK..((block + 1) * BLOCK).min(params.rows as usize) {
-            let found = partners[row * params.stride as usize];
-            if control.changed != 0 {
-                control.most_partners = control.most_partners.max(found);
-                if found > params.most {
-                    control.overflow = 1;
-                }
-            }
-            starts[row] = sum;
-            sum += found.min(params.most);
+        for start in starts {
+            let count = std::mem::replace(start, sum);
+            sum += count;
         }
         blocks[block] = sum;
     }

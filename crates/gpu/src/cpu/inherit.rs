@@ -1,16 +1,13 @@
 //! Twin of `shader/inherit.wgsl`.
 
-use super::count::BLOCK;
 use crate::bound::Bound;
-use crate::layout::{Control, OldRow, PairState};
+use crate::layout::{Candidate, Control, OldRow, PairState};
 use bytemuck::{Pod, Zeroable};
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Params {
     pub rows: u32,
-    pub stride: u32,
-    pub most: u32,
     pub capacity: u32,
 }
 
@@ -22,17 +19,15 @@ pub fn bound(buffers: Bound<'_>) {
         &buffers.read(2),
         &buffers.read(3),
         &buffers.read(4),
-        &buffers.read(5),
-        &mut buffers.write(6),
-        &buffers.read::<Control>(7)[0],
+        &mut buffers.write(5),
+        &buffers.read::<Control>(6)[0],
     );
 }
 
 pub fn inherit(
     params: Params,
-    partners: &[u32],
     starts: &[u32],
-    blocks: &[u32],
+    candidates: &[Candidate],
     old_rows: &[OldRow],
     old_elements: &[u32],
     old_states: &[PairState],
@@ -43,16 +38,12 @@ pub fn inherit(
         return;
     }
     for row in 0..params.rows as usize {
-        let words = row * params.stride as usize;
-        let count = partners[words].min(params.most) as usize;
-        let first = (blocks[row / BLOCK] + starts[row]) as usize;
-        let room = (params.capacity as usize).saturating_sub(first);
         let old = old_rows[row];
         let old = old.first as usize..(old.first + old.count) as usize;
-        for k in 0..count.min(room) {
-            let element = partners[words + 2 + k];
+        for c in starts[row].min(params.capacity)..starts[row + 1].min(params.capacity) {
+            let element = candidates[c as usize].b;
             let found = old.clone().find(|&place| old_elements[place] == element);
-            states[first + k] = found.map_or(PairState::NEW, |place| old_states[place]);
+            states[c as usize] = found.map_or(PairState::NEW, |place| old_states[place]);
         }
     }
 }

@@ -1,16 +1,13 @@
 //! Twin of `shader/keep.wgsl`.
 
-use super::count::BLOCK;
 use crate::bound::Bound;
-use crate::layout::{Control, OldRow, PairState};
+use crate::layout::{Candidate, Control, OldRow, PairState};
 use bytemuck::{Pod, Zeroable};
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Params {
     pub rows: u32,
-    pub stride: u32,
-    pub most: u32,
     pub capacity: u32,
 }
 
@@ -20,19 +17,17 @@ pub fn bound(buffers: Bound<'_>) {
         &buffers.read(0),
         &buffers.read(1),
         &buffers.read(2),
-        &buffers.read(3),
+        &mut buffers.write(3),
         &mut buffers.write(4),
         &mut buffers.write(5),
-        &mut buffers.write(6),
-        &buffers.read::<Control>(7)[0],
+        &buffers.read::<Control>(6)[0],
     );
 }
 
 pub fn keep(
     params: Params,
-    partners: &[u32],
     starts: &[u32],
-    blocks: &[u32],
+    candidates: &[Candidate],
     states: &[PairState],
     old_rows: &mut [OldRow],
     old_elements: &mut [u32],
@@ -44,13 +39,12 @@ pub fn keep(
     }
     let total = control.candidates.min(params.capacity);
     for row in 0..params.rows as usize {
-        let words = row * params.stride as usize;
-        let first = (blocks[row / BLOCK] + starts[row]).min(total);
-        let count = partners[words].min(params.most).min(total - first);
+        let first = starts[row].min(total);
+        let count = starts[row + 1].min(total) - first;
         old_rows[row] = OldRow { first, count };
         for k in 0..count as usize {
             let place = first as usize + k;
-            old_elements[place] = partners[words + 2 + k];
+            old_elements[place] = candidates[place].b;
             old_states[place] = states[place];
         }
     }

@@ -1,6 +1,5 @@
 //! Twin of `shader/list.wgsl`.
 
-use super::count::BLOCK;
 use crate::bound::Bound;
 use crate::layout::{Candidate, Control, NONE, Row};
 use bytemuck::{Pod, Zeroable};
@@ -17,19 +16,15 @@ pub fn bound(buffers: Bound<'_>) {
         buffers.params(),
         &buffers.read(0),
         &buffers.read(1),
-        &buffers.read(2),
-        &buffers.read(3),
-        &mut buffers.write(4),
-        &mut buffers.write(5),
-        &buffers.read::<Control>(6)[0],
+        &mut buffers.write(2),
+        &mut buffers.write(3),
+        &buffers.read::<Control>(4)[0],
     );
 }
 
 pub fn list(
     params: Params,
-    picked: &[u32],
     starts: &[u32],
-    blocks: &[u32],
     candidates: &[Candidate],
     rows: &mut [Row],
     pairs: &mut [Candidate],
@@ -37,8 +32,8 @@ pub fn list(
 ) {
     let [capacity, row_capacity] = [params.capacity, params.row_capacity].map(|count| count as usize);
     for c in 0..capacity.max(row_capacity) {
-        if c < capacity && picked[c] != 0 {
-            let place = (blocks[c / BLOCK] + starts[c]) as usize;
+        if c < capacity && starts[c + 1] > starts[c] {
+            let place = starts[c] as usize;
             rows[place].candidate = c as u32;
             pairs[place] = candidates[c];
         }

@@ -11,8 +11,8 @@ pub struct Params {
     pub queries: u32,
     pub planes: u32,
     pub first_row: u32,
-    pub stride: u32,
-    pub most: u32,
+    pub lists: u32,
+    pub capacity: u32,
 }
 
 pub fn bound(buffers: Bound<'_>) {
@@ -23,7 +23,8 @@ pub fn bound(buffers: Bound<'_>) {
         &buffers.read(2),
         &buffers.read(3),
         &mut buffers.write(4),
-        &buffers.read::<Control>(5)[0],
+        &mut buffers.write(5),
+        &buffers.read::<Control>(6)[0],
     );
 }
 
@@ -33,15 +34,17 @@ pub fn near_planes(
     planes: &[Plane],
     balls: &[Ball],
     vertices: &[Vertex],
-    partners: &mut [u32],
+    starts: &mut [u32],
+    candidates: &mut [Candidate],
     control: &Control,
 ) {
     if control.changed == 0 {
         return;
     }
     for q in 0..params.queries as usize {
-        let row = (params.first_row as usize + q) * params.stride as usize;
+        let row = params.first_row as usize + q;
         let query = queries[q];
+        let first = if params.lists != 0 { starts[row] } else { 0 };
         let v = query.vertices[0] as usize;
         let mut found = 0;
         if query.element != NONE && vertices[v].flags & Vertex::OBSTACLE == 0 {
@@ -51,14 +54,16 @@ pub fn near_planes(
                 let offset = to_f32([0, 1, 2].map(|k| ball.center[k].wrapping_sub(plane.point[k])));
                 let height = dot(plane.normal, offset);
                 if height - plane.rounding * largest(offset) <= reach * 1.001 {
-                    if found < params.most as usize {
-                        partners[row + 2 + found] = p as u32;
+                    if params.lists != 0 && first + found < params.capacity {
+                        candidates[(first + found) as usize] =
+                            Candidate::new(Kind::VertexHalfSpace, query.element, p as u32);
                     }
                     found += 1;
                 }
             }
         }
-        partners[row] = found as u32;
-        partners[row + 1] = (Kind::VertexHalfSpace as u32) << Candidate::ELEMENT_BITS | query.element;
+        if params.lists == 0 {
+            starts[row] = found;
+        }
     }
 }

@@ -35,7 +35,7 @@ pub fn pick(
     candidates: &[Candidate],
     separations: &[Separation],
     states: &mut [PairState],
-    picked: &mut [u32],
+    starts: &mut [u32],
     control: &Control,
 ) {
     let count = control.candidates.min(params.capacity) as usize;
@@ -56,10 +56,10 @@ pub fn pick(
         gap < params.threshold * separation.wanted
     };
     for c in 0..params.capacity as usize {
-        picked[c] = 0;
+        starts[c] = 0;
         if c < count {
             if is_picked(&states[c], candidates[c], &separations[c]) {
-                picked[c] = 1;
+                starts[c] = 1;
             } else {
                 states[c].multiplier = 0.0;
                 states[c].friction = [0.0; 3];

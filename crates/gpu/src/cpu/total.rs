@@ -1,5 +1,6 @@
 //! Twin of `shader/total.wgsl`.
 
+use super::count::{CANDIDATES, is_unchanged};
 use crate::bound::Bound;
 use crate::layout::Control;
 use bytemuck::{Pod, Zeroable};
@@ -17,13 +18,16 @@ pub fn bound(buffers: Bound<'_>) {
 }
 
 pub fn total(params: Params, blocks: &mut [u32], control: &mut Control) {
+    if is_unchanged(params.list, control) {
+        return;
+    }
     let mut total = 0;
     for block in &mut blocks[..params.blocks as usize] {
         let count = *block;
         *block = total;
         total += count;
     }
-    if params.list == 0 {
+    if params.list == CANDIDATES {
         control.candidates = total;
     } else {
         control.rows = total;

@@ -13,8 +13,8 @@ pub struct Params {
     pub kind: u32,
     pub symmetric: u32,
     pub first_row: u32,
-    pub stride: u32,
-    pub most: u32,
+    pub lists: u32,
+    pub capacity: u32,
     pub levels: u32,
     pub level_first: [[u32; 4]; 3],
 }
@@ -28,7 +28,8 @@ pub fn bound(buffers: Bound<'_>) {
         &buffers.read(3),
         &buffers.read(4),
         &mut buffers.write(5),
-        &buffers.read::<Control>(6)[0],
+        &mut buffers.write(6),
+        &buffers.read::<Control>(7)[0],
     );
 }
 
@@ -43,7 +44,8 @@ pub fn traverse(
     boxes: &[NodeBox],
     balls: &[Ball],
     vertices: &[Vertex],
-    partners: &mut [u32],
+    starts: &mut [u32],
+    candidates: &mut [Candidate],
     control: &Control,
 ) {
     if control.changed == 0 {
@@ -52,12 +54,15 @@ pub fn traverse(
     let first_of = |level: usize| params.level_first[level / 4][level % 4] as usize;
     let mut stack = Vec::new();
     for q in 0..params.queries as usize {
-        let row = (params.first_row as usize + q) * params.stride as usize;
+        let row = params.first_row as usize + q;
         let query = queries[q];
         if query.element == NONE {
-            partners[row] = 0;
+            if params.lists == 0 {
+                starts[row] = 0;
+            }
             continue;
         }
+        let first = if params.lists != 0 { starts[row] } else { 0 };
         let (mut low, mut high) = ([i32::MAX; 3], [-i32::MAX; 3]);
         let own = vertices[query.vertices[0] as usize];
         for v in query.vertices.into_iter().take(params.count as usize) {
@@ -90,13 +95,15 @@ pub fn traverse(
                 {
                     continue;
                 }
-                if found < params.most as usize {
-                    partners[row + 2 + found] = other.element;
+                if params.lists != 0 && first + found < params.capacity {
+                    let kind_and_a = params.kind << Candidate::ELEMENT_BITS | query.element;
+                    candidates[(first + found) as usize] = Candidate { kind_and_a, b: other.element };
                 }
                 found += 1;
             }
         }
-        partners[row] = found as u32;
-        partners[row + 1] = params.kind << Candidate::ELEMENT_BITS | query.element;
+        if params.lists == 0 {
+            starts[row] = found;
+        }
     }
 }
