@@ -8,7 +8,6 @@ struct Params {
 @group(0) @binding(1) var<storage, read> tally: array<u32>;
 @group(0) @binding(2) var<storage, read_write> buckets: array<Bucket>;
 
-var<workgroup> sums: array<u32, 256>;
 
 @compute @workgroup_size(256)
 fn main(@builtin(local_invocation_id) local: vec3<u32>) {
@@ -19,19 +18,9 @@ fn main(@builtin(local_invocation_id) local: vec3<u32>) {
         if bucket < params.buckets {
             count = tally[bucket];
         }
-        sums[local.x] = count;
-        workgroupBarrier();
-        for (var reach = 1u; reach < 256u; reach *= 2u) {
-            var before = 0u;
-            if local.x >= reach {
-                before = sums[local.x - reach];
-            }
-            workgroupBarrier();
-            sums[local.x] += before;
-            workgroupBarrier();
-        }
+        let up_to = sum_up_to(local.x, count);
         if bucket < params.buckets {
-            let end = total + sums[local.x];
+            let end = total + up_to;
             buckets[bucket] = Bucket(end - count, end, 0u);
         }
         total += sums[255];

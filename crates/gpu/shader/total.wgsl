@@ -12,7 +12,6 @@ struct Params {
 @group(0) @binding(1) var<storage, read_write> blocks: array<u32>;
 @group(0) @binding(2) var<storage, read_write> control: Control;
 
-var<workgroup> sums: array<u32, 256>;
 var<workgroup> shared_skips: u32;
 
 @compute @workgroup_size(256)
@@ -30,19 +29,9 @@ fn main(@builtin(local_invocation_id) local: vec3<u32>) {
         if block < params.blocks {
             count = blocks[block];
         }
-        sums[local.x] = count;
-        workgroupBarrier();
-        for (var reach = 1u; reach < 256u; reach *= 2u) {
-            var before = 0u;
-            if local.x >= reach {
-                before = sums[local.x - reach];
-            }
-            workgroupBarrier();
-            sums[local.x] += before;
-            workgroupBarrier();
-        }
+        let up_to = sum_up_to(local.x, count);
         if block < params.blocks {
-            blocks[block] = total + sums[local.x] - count;
+            blocks[block] = total + up_to - count;
         }
         total += sums[255];
         workgroupBarrier();

@@ -217,6 +217,9 @@ pub struct Collision<E> {
     polishes: bool,
     /// Number of steps that a submission is likely to make, of those that do not polish and of those that do.
     expected_steps: [usize; 2],
+    /// Dispatches of a step that can be left out, of one that does not polish and of one that does; None before they are
+    /// counted.
+    step_dispatches: [Option<usize>; 2],
     /// Steps since the call began or the device last halted a submission.
     steps_in_a_row: usize,
     /// Whether a call has begun whose candidates were not yet searched for: all trust regions are new.
@@ -369,6 +372,7 @@ impl<E: Engine> Collision<E> {
             row_count: 0,
             polishes: false,
             expected_steps: [1; 2],
+            step_dispatches: [None; 2],
             steps_in_a_row: 0,
             fresh: false,
             again: false,

@@ -2,8 +2,8 @@
 //! order.
 //!
 //! Binding 0 holds the parameters of a dispatch. Threads go on with strides, so that any number of workgroups up to
-//! [`recording::MAX_WORKGROUPS`](crate::recording::MAX_WORKGROUPS) does all of the work; only `count` and `total`
-//! depend on the size of a workgroup, for they scan.
+//! [`recording::MAX_WORKGROUPS`](crate::recording::MAX_WORKGROUPS) does all of the work; only those that scan
+//! depend on the size of a workgroup.
 
 mod assembly;
 mod linear;
@@ -19,6 +19,7 @@ pub(crate) use stage::{Access, Stage};
 
 const TYPES: &str = include_str!("../shader/shared/types.wgsl");
 const CLOSEST: &str = include_str!("../shader/shared/closest.wgsl");
+const SCAN: &str = include_str!("../shader/shared/scan.wgsl");
 const PAIR: &str = include_str!("../shader/shared/pair.wgsl");
 const FIXED: &str = include_str!("../shader/shared/fixed.wgsl");
 
@@ -154,7 +155,7 @@ pub(crate) static DIVIDE: Stage = Stage {
 
 pub(crate) static START_BUCKETS: Stage = Stage {
     name: "start_buckets",
-    parts: &[TYPES, include_str!("../shader/start_buckets.wgsl")],
+    parts: &[TYPES, SCAN, include_str!("../shader/start_buckets.wgsl")],
     workgroup: 256,
     bindings: &[Read, Write],
     twin: cpu::start_buckets::bound,
@@ -250,7 +251,7 @@ pub(crate) static NEAR_PLANES: Stage = Stage {
 
 pub(crate) static COUNT: Stage = Stage {
     name: "count",
-    parts: &[TYPES, include_str!("../shader/count.wgsl")],
+    parts: &[TYPES, SCAN, include_str!("../shader/count.wgsl")],
     workgroup: cpu::count::BLOCK,
     bindings: &[Write, Write, Write],
     twin: cpu::count::bound,
@@ -258,7 +259,7 @@ pub(crate) static COUNT: Stage = Stage {
 
 pub(crate) static TOTAL: Stage = Stage {
     name: "total",
-    parts: &[TYPES, include_str!("../shader/total.wgsl")],
+    parts: &[TYPES, SCAN, include_str!("../shader/total.wgsl")],
     workgroup: 256,
     bindings: &[Write, Write],
     twin: cpu::total::bound,

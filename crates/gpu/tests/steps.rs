@@ -295,14 +295,24 @@ fn scenes_of_one_kind_of_body_run_on_a_device() {
     assert_eq!(pressed, [true; 4]);
 }
 
+/// Triangles of a sheet of n x n vertices, the first of which has that number.
+fn sheet_triangles(n: u32, first: u32) -> impl Iterator<Item = [u32; 3]> {
+    let corners = (0..n * (n - 1)).filter(move |k| k % n != n - 1).map(move |k| first + k);
+    corners.flat_map(move |k| [[k, k + 1, k + n + 1], [k, k + n + 1, k + n]])
+}
+
+/// Root mean square of the distances of points.
+fn distance(x: &[Point], y: &[Point]) -> f64 {
+    let squares: f64 = x.iter().zip(y).map(|(x, y)| (x - y).norm_squared()).sum();
+    (squares / x.len() as f64).sqrt()
+}
+
 /// A sheet of n x n vertices that hangs from a row of vertices that do not move; which these are, and targets so far
 /// below.
 fn hanging_sheet(n: u32, depth: f64) -> (Scene, Vec<bool>, Vec<Point>) {
     let x: Vec<Point> =
         (0..n * n).map(|k| Point::new(EDGE * f64::from(k % n), 0.0, -EDGE * f64::from(k / n))).collect();
-    let triangles = (0..n * (n - 1)).filter(|k| k % n != n - 1);
-    let triangles = triangles.flat_map(|k| [[k, k + 1, k + n + 1], [k, k + n + 1, k + n]]);
-    let topology = Topology::builder(x.len()).triangles(triangles).build().unwrap();
+    let topology = Topology::builder(x.len()).triangles(sheet_triangles(n, 0)).build().unwrap();
     let pinned: Vec<bool> = (0..n * n).map(|k| k < n).collect();
     let below = |(x, pinned): (&Point, &bool)| if *pinned { *x } else { x - depth * Vector::z() };
     let target = x.iter().zip(&pinned).map(below).collect();
@@ -423,8 +433,7 @@ fn errors_by_number_of_sweeps() {
         {
             let errors = [1, 2, 4, 8, 16, 32, 64].map(|sweeps| {
                 let aims = aims(sweeps, cluster_sweeps, coarse_correction);
-                let squares = aims.iter().zip(&solved).map(|(a, b)| (a - b).norm_squared()).sum::<f64>();
-                format!("{:.3}", (squares / aims.len() as f64).sqrt() / EDGE)
+                format!("{:.3}", distance(&aims, &solved) / EDGE)
             });
             println!("| {name} | {cluster_sweeps} | {coarse_correction} | {} |", errors.join(" | "));
         }
@@ -450,8 +459,7 @@ fn errors_by_buckets_of_contact_rows() {
         for (buckets, bucket_vertices) in [("one", usize::MAX), ("many", 16)] {
             let errors = [2, 4, 8, 16, 32].map(|sweeps| {
                 let (aims, _) = aims(sweeps, bucket_vertices);
-                let squares = aims.iter().zip(&solved).map(|(a, b)| (a - b).norm_squared()).sum::<f64>();
-                format!("{:.5}", (squares / aims.len() as f64).sqrt() / DELTA)
+                format!("{:.5}", distance(&aims, &solved) / DELTA)
             });
             println!("| {name} | {} | {rows} | {buckets} | {} |", scene.x.len(), errors.join(" | "));
         }
@@ -469,9 +477,7 @@ fn pressed_sheets(n: u32) -> (Scene, Vec<Point>) {
             let [x, y] = [k % n, k / n].map(|k| corner + EDGE * f64::from(k));
             Point::new(x, y, 0.9 * DELTA * f64::from(sheet))
         }));
-        for k in (0..n * (n - 1)).filter(|k| k % n != n - 1).map(|k| first + k) {
-            triangles.extend([[k, k + 1, k + n + 1], [k, k + n + 1, k + n]]);
-        }
+        triangles.extend(sheet_triangles(n, first));
     }
     let topology = Topology::builder(x.len()).triangles(triangles).build().unwrap();
     let bodies = (0..2 * n * n).map(|v| v / (n * n)).collect();

@@ -108,27 +108,39 @@ impl<E: Engine> Collision<E> {
     /// The search of a call that begins, and steps. The device leaves out what comes after the end of the call or after a
     /// buffer that is too small.
     fn record_submission(&mut self, steps: usize) -> Result<Recording, GpuError> {
-        let arguments = self.buffers.arguments;
-        let dispatches = Recording::default().append_conditional(&self.recorded_step(0), arguments, 0);
-        let dispatches = steps * dispatches;
+        let dispatches = steps * self.dispatches_per_step();
         self.buffers.make_room_for_steps(&mut self.engine, steps, dispatches)?;
         let arguments = self.buffers.arguments;
-        let mut recording = Recording::default();
-        let mut place = 0;
+        let (mut recording, mut place, mut left) = (Recording::default(), 0, steps);
         if self.fresh {
             self.record_first_search(dispatches, &mut recording);
         } else if steps > 0 {
             let mut first = Recording::default();
             self.record_step(true, dispatches, &mut first);
             place = recording.append_conditional(&first, arguments, place);
+            left -= 1;
         }
-        let following = self.recorded_step(dispatches);
-        for _ in usize::from(!self.fresh)..steps {
-            place = recording.append_conditional(&following, arguments, place);
+        if left > 0 {
+            let following = self.recorded_step(dispatches);
+            for _ in 0..left {
+                place = recording.append_conditional(&following, arguments, place);
+            }
         }
         debug_assert!(place <= dispatches);
         recording.fill_arguments(arguments);
         Ok(recording)
+    }
+
+    /// Dispatches of a step that can be left out; a step that is made again has fewer.
+    fn dispatches_per_step(&mut self) -> usize {
+        let polishes = usize::from(self.polishes);
+        if let Some(known) = self.step_dispatches[polishes] {
+            return known;
+        }
+        let arguments = self.buffers.arguments;
+        let count = Recording::default().append_conditional(&self.recorded_step(0), arguments, 0);
+        self.step_dispatches[polishes] = Some(count);
+        count
     }
 
     /// A step that is made after others, or after a search.
