@@ -49,7 +49,10 @@ pub use nalgebra::Matrix3;
 
 pub use body::{Body, BodyShape};
 pub use bowknot_errors::{Errors, ParamError, Parameters};
-pub use dynamics::{Dynamics, NewtonInfo, Residual, Touching};
+pub use dynamics::{
+    Dynamics, NewtonBackend, NewtonInfo, NewtonSolve, NewtonStep, NewtonTarget, OutOfBalance, Residual,
+    SolveLimits, Touching, Trial, Watched,
+};
 pub use error::{ModelError, StepError};
 pub use linear::accuracy::CgInfo;
 pub use linear::assembly::{

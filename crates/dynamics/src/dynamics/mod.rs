@@ -23,6 +23,9 @@ mod two_level;
 
 pub use conservation::Touching;
 pub use info::{NewtonInfo, Residual};
+pub use newton::backend::{
+    NewtonBackend, NewtonSolve, NewtonStep, NewtonTarget, OutOfBalance, SolveLimits, Trial, Watched,
+};
 
 use crate::drag::DragSurfaces;
 use crate::error::StepError;

@@ -68,6 +68,8 @@ pub struct ElementModel {
     pub scalar_columns: Vec<u32>,
     /// Ranges of nodes that are compact patches of one body each; empty if block-Jacobi was asked for.
     pub patches: Vec<Range<u32>>,
+    /// Ranges of nodes that elements join, directly or through other nodes; each node is in one.
+    pub components: Vec<Range<u32>>,
     /// Triangles of cloth.
     pub membranes: Vec<MembraneElement>,
     /// Bending of cloth that is curved at rest.

@@ -191,6 +191,7 @@ impl DynamicsModel {
             scalar_starts: scalar_starts.to_vec(),
             scalar_columns: scalar_columns.to_vec(),
             patches,
+            components: self.components.clone(),
             ..ElementModel::default()
         };
         self.element_sets.iter().for_each(|set| set.describe(&mut model));

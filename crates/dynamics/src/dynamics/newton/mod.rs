@@ -3,6 +3,7 @@
 //! | file | holds |
 //! |---|---|
 //! | [`state`] | what an iteration works on: [`state::Step`], [`state::Workspace`], [`state::Newton`] |
+//! | [`backend`] | what a device does |
 //! | [`linearize`], [`assemble`] | gradient and matrix, on the CPU or by a backend |
 //! | [`potential`] | the incremental potential |
 //! | [`line_search`] | backtracking along a Newton step |
@@ -13,6 +14,7 @@
 //! | [`residual`] | forces out of balance |
 
 mod assemble;
+pub mod backend;
 mod contacts;
 mod corrections;
 mod iteration;
