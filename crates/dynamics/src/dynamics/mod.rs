@@ -40,7 +40,10 @@ use crate::repulsion::springs::Repulsion;
 use bowknot_errors::{Errors, ParamError, Parameters};
 use bowknot_geometry::{Point, Vector};
 use conservation::EndOfStep;
-use newton::state::{EvaluationCache, Newton, Step, Workspace};
+use newton::bodies::{Answer, Bodies, BodyEnergies, Lost};
+use newton::cpu::CpuBodies;
+use newton::device::{Beginning, on_device};
+use newton::state::{Course, EvaluationCache, Newton, Step, Workspace};
 use two_level::two_level;
 
 /// Model, parameters and workspace. External forces, wind and springs are kept until they are set again.
@@ -55,6 +58,7 @@ pub struct Dynamics {
     surfaces: Option<DragSurfaces>,
     repulsion: Repulsion,
     step: Option<Step>,
+    course: Course,
     work: Workspace,
 }
 
@@ -77,17 +81,16 @@ impl Dynamics {
             guesses: [zero(), zero()],
             step: zero(),
             values: BlockValues::zeros(&model.pattern),
-            assembled: false,
             solver: match params.newton.preconditioner {
                 PreconditionerKind::BlockJacobi => LinearSolver::default(),
                 PreconditionerKind::TwoLevel => two_level(&model),
             },
-            min_scale: 0.0,
             cache: EvaluationCache::default(),
         };
         let surfaces = (params.environment.air_density > 0.0).then(|| DragSurfaces::new(&model));
         let repulsion = Repulsion::default();
-        Ok(Self { external_forces: zero(), surfaces, repulsion, model, params, step: None, work })
+        let course = Course::default();
+        Ok(Self { external_forces: zero(), surfaces, repulsion, model, params, step: None, course, work })
     }
 
     /// The model.
@@ -102,8 +105,8 @@ impl Dynamics {
 
     /// Lets a backend do the linear solves of Newton iterations in single precision from the next target on; None for
     /// the CPU, as at first. The CPU refines them in double precision and solves alone where single precision gains
-    /// nothing. A backend that assembles matrices itself gets positions in place of matrices, and the residuals of
-    /// time steps are measured by its preconditioner.
+    /// nothing. A backend that computes the whole of Newton iterations does so if it can compute the model
+    /// ([`NewtonBackend`]), and the residuals of time steps are measured by its preconditioner.
     pub fn set_linear_backend(&mut self, backend: Option<Box<dyn LinearBackend>>) {
         let patches = match self.params.newton.preconditioner {
             PreconditionerKind::BlockJacobi => Vec::new(),
@@ -155,8 +158,8 @@ impl Dynamics {
     pub fn set_repulsion(&mut self, springs: &[RepulsionSpring]) -> Result<(), StepError> {
         self.repulsion =
             if springs.is_empty() { Repulsion::default() } else { Repulsion::new(&self.model, springs)? };
-        if let Some(step) = &mut self.step {
-            step.unprepared = true;
+        if let Some(step) = &self.step {
+            self.course.unprepared = true;
             self.repulsion.anchor(&step.positions);
         }
         Ok(())
@@ -165,7 +168,8 @@ impl Dynamics {
     /// Forces of the springs at the last target on the side that the normal points to [N], one entry per
     /// spring.
     pub fn contact_forces(&self) -> Vec<Vector> {
-        self.repulsion.forces(&self.work.trial)
+        let trial = self.repulsion.watched().iter().map(|&node| self.work.trial[node as usize]);
+        self.repulsion.forces(&trial.collect::<Vec<_>>())
     }
 
     /// Positions where inertia alone leads from the start of the step [m], one entry per vertex. Obstacles
@@ -196,16 +200,57 @@ impl Dynamics {
         }
         self.check_finite("x", |vertex| x[vertex].coords)?;
         let counted: Vec<bool> = self.model.node_vertex.iter().map(|&v| counted[v as usize]).collect();
-        let Some(mut step) = self.step.take() else { return Err(StepError::NotBegun) };
+        let Some(step) = self.step.take() else { return Err(StepError::NotBegun) };
         self.start_from(x, prescribed);
-        let work = &mut self.work;
-        let (model, params, repulsion) = (&self.model, &self.params, &mut self.repulsion);
-        let residual =
-            rayon::scope(|_| Newton { model, params, repulsion, step: &mut step, work }.residual(&counted));
+        self.work.imposed.fill(Vector::zeros());
+        let residual = self.with_bodies(&step, false, |newton| newton.residual(&counted));
         self.step = Some(step);
-        match self.work.solver.take_failure() {
-            Some(message) => Err(StepError::LinearBackend { message }),
-            None => Ok(residual),
+        residual
+    }
+
+    /// Lets Newton's method work from the iterate in the workspace, on a device if there is one for the model. What a device
+    /// cannot finish in single precision begins again on the CPU, as does the rest of the time step. With `sets_trial`
+    /// the trial in the workspace is the result.
+    fn with_bodies<T: Send>(
+        &mut self,
+        step: &Step,
+        sets_trial: bool,
+        run: impl Fn(&mut Newton<'_>) -> Answer<T> + Sync,
+    ) -> Result<T, StepError> {
+        let Self { model, params, repulsion, course, work, .. } = self;
+        let (dt, is_first) = (step.dt, step.last_target.is_none());
+        let (watched, free) = (repulsion.watched().to_vec(), work.free.clone());
+        let mut over = |bodies: &mut dyn Bodies, course: &mut Course| {
+            let energies = BodyEnergies::default();
+            let mut newton =
+                Newton { model, params, bodies, repulsion, free: &free, dt, is_first, course, energies };
+            // Thousands of parallel loops follow. From inside of the thread pool each is a push on a local queue;
+            // from outside each would put this thread to sleep and wake it again (20 times the CPU time on a busy
+            // machine, at 1,700 nodes).
+            rayon::scope(|_| run(&mut newton))
+        };
+        let Workspace { x, imposed, trial, solver, .. } = &mut *work;
+        if let Some(backend) = solver.newton() {
+            let beginning = Beginning { iterate: x, free: &free, imposed, watched: &watched };
+            let trial = sets_trial.then_some(trial.as_mut_slice());
+            match on_device(model, params, step, course, backend, beginning, trial, &mut over) {
+                Ok(done) => return Ok(done),
+                Err(Lost::Failed(error)) => {
+                    solver.leave_backend_out();
+                    return Err(StepError::LinearBackend { message: error.to_string() });
+                }
+                Err(Lost::Stalled) => {
+                    tracing::debug!("single precision is not enough for the rest of a time step");
+                    solver.leave_backend_out();
+                    course.unprepared = true;
+                }
+            }
+        }
+        let done = over(&mut CpuBodies::new(model, params, step, work, &watched), course);
+        match (done, work.solver.take_failure()) {
+            (Ok(done), None) => Ok(done),
+            (_, Some(message)) => Err(StepError::LinearBackend { message }),
+            (Err(lost), None) => Err(StepError::LinearBackend { message: format!("{lost:?}") }),
         }
     }
 
@@ -247,13 +292,10 @@ impl Dynamics {
             surfaces.fill(&self.params.environment, &step.start, &step.velocities, drag);
         }
         step.dt = dt;
-        step.row_sums.clear();
         step.last_target = None;
-        self.work.min_scale = 0.0;
+        self.course = Course { unprepared: true, ..Course::default() };
         self.work.solver.begin_step();
         self.work.cache.clear();
-        step.max_potential = None;
-        step.unprepared = true;
         step.positions.clear();
         step.positions.extend_from_slice(x0);
         self.repulsion.anchor(x0);
@@ -300,17 +342,15 @@ impl Dynamics {
                 if prescribed[vertex] { keyframes[vertex] - x[vertex] } else { Vector::zeros() };
         }
         self.repulsion.place_obstacles(keyframes);
-        // Thousands of parallel loops follow. From inside of the thread pool each is a push on a local queue;
-        // from outside each would put this thread to sleep and wake it again (20 times the CPU time on a busy
-        // machine, at 1,700 nodes).
-        let repulsion = &mut self.repulsion;
-        let mut info = rayon::scope(|_| {
-            Newton { model: &self.model, params: &self.params, repulsion, step: &mut step, work }.solve()
-        });
-        if let Some(message) = work.solver.take_failure() {
-            self.step = Some(step);
-            return Err(StepError::LinearBackend { message });
-        }
+        let solved = self.with_bodies(&step, true, |newton| newton.solve());
+        let mut info = match solved {
+            Ok(info) => info,
+            Err(error) => {
+                self.step = Some(step);
+                return Err(error);
+            }
+        };
+        let work = &self.work;
         info.max_displacement = displacement(&self.model, &work.trial, &work.free, x);
         // `trial` is the target by node.
         for (vertex, y) in y.iter_mut().enumerate() {

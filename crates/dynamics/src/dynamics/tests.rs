@@ -34,18 +34,42 @@ fn crumpled() -> (Dynamics, Vec<Point>, Vec<Vector>, Vec<bool>) {
     (Dynamics::new(model, params).expect("valid"), x, v, prescribed)
 }
 
-fn newton<'a>(dynamics: &'a mut Dynamics, step: &'a mut Step) -> Newton<'a> {
-    let Dynamics { model, params, repulsion, work, .. } = dynamics;
-    Newton { model, params, repulsion, step, work }
+/// Lets Newton's method work on the CPU.
+fn with_newton<T>(dynamics: &mut Dynamics, step: &Step, run: impl FnOnce(&mut Newton<'_>) -> T) -> T {
+    let Dynamics { model, params, repulsion, course, work, .. } = dynamics;
+    let (watched, free) = (repulsion.watched().to_vec(), work.free.clone());
+    let mut bodies = CpuBodies::new(model, params, step, work, &watched);
+    run(&mut Newton {
+        model,
+        params,
+        bodies: &mut bodies,
+        repulsion,
+        free: &free,
+        dt: step.dt,
+        is_first: step.last_target.is_none(),
+        course,
+        energies: BodyEnergies::default(),
+    })
 }
 
-/// The time step, linearized at `x`.
+/// The time step, linearized at `x`, with the gradient of springs.
 fn linearized(dynamics: &mut Dynamics, x: &[Vector]) -> Step {
-    let mut step = dynamics.step.take().expect("begun");
+    let step = dynamics.step.take().expect("begun");
     dynamics.work.x.copy_from_slice(x);
     dynamics.work.imposed.fill(Vector::zeros());
-    newton(dynamics, &mut step).linearize();
+    with_newton(dynamics, &step, |newton| newton.linearize()).expect("on the CPU");
+    let Dynamics { repulsion, work, .. } = dynamics;
+    if repulsion.is_empty() {
+        return step;
+    }
+    work.gradient.iter_mut().enumerate().for_each(|(n, g)| *g += repulsion.linear().gradient(n));
     step
+}
+
+/// The incremental potential at `x`.
+fn potential(dynamics: &mut Dynamics, step: &Step, x: &[Vector]) -> f64 {
+    dynamics.work.x.copy_from_slice(x);
+    with_newton(dynamics, step, |newton| newton.place(0.0)).expect("on the CPU").0
 }
 
 fn dense(dynamics: &Dynamics, step: &Step) -> DMatrix<f64> {
@@ -77,7 +101,7 @@ fn the_gradient_matches_differences_of_the_incremental_potential() {
     let nodes = dynamics.model.node_vertex.clone();
     // At a distance from the start, so that damping has an effect.
     let mut x: Vec<Vector> = nodes.iter().map(|&v| x0[v as usize].coords + v0[v as usize] * 0.01).collect();
-    let mut step = linearized(&mut dynamics, &x);
+    let step = linearized(&mut dynamics, &x);
     let gradient = dynamics.work.gradient.clone();
     let h = 1e-6;
     let scale = gradient.iter().map(|g| g.norm()).fold(0.0, f64::max);
@@ -86,7 +110,7 @@ fn the_gradient_matches_differences_of_the_incremental_potential() {
             let here = x[node][axis];
             let mut energy = |value: f64| {
                 x[node][axis] = value;
-                newton(&mut dynamics, &mut step).potential(&x).0
+                potential(&mut dynamics, &step, &x)
             };
             let slope = (energy(here + h) - energy(here - h)) / (2.0 * h);
             x[node][axis] = here;
@@ -104,13 +128,13 @@ fn a_step_that_only_raises_the_potential_is_not_taken() {
     dynamics.begin_step(&x0, &v0, 0.02).expect("begins");
     let nodes = dynamics.model.node_vertex.clone();
     let x: Vec<Vector> = nodes.iter().map(|&v| x0[v as usize].coords).collect();
-    let mut step = linearized(&mut dynamics, &x);
+    let step = linearized(&mut dynamics, &x);
     let work = &mut dynamics.work;
     work.right_side = work.gradient.iter().map(|g| -g).collect();
     work.step = work.gradient.iter().map(|g| g * 1e6).collect();
     work.trial.clone_from(&x);
     let mut info = NewtonInfo::default();
-    newton(&mut dynamics, &mut step).search_line(&mut info);
+    with_newton(&mut dynamics, &step, |newton| newton.search_line(&mut info)).expect("on the CPU");
     assert_eq!((info.step_length, info.energy_after), (0.0, info.energy_before));
     assert_eq!(dynamics.work.trial, x);
 }
@@ -289,7 +313,8 @@ fn wind_and_repulsion_have_exact_gradients_and_matrices() {
         nodes.iter().map(|&v| x0[v as usize].coords * 1.6 + v0[v as usize] * 0.002).collect();
     // The active set and the bounds of friction are those at these positions.
     let step = linearized(&mut dynamics, &stretched);
-    dynamics.repulsion.update_active_set(&stretched);
+    let watched: Vec<Vector> = dynamics.repulsion.watched().iter().map(|&n| stretched[n as usize]).collect();
+    dynamics.repulsion.update_active_set(&watched);
     let step = linearized_at(&mut dynamics, step, &stretched);
     let gradient = dynamics.work.gradient.clone();
     let reactions = dynamics.repulsion.linear().reactions(&stretched);
@@ -303,10 +328,10 @@ fn wind_and_repulsion_have_exact_gradients_and_matrices() {
     for node in 0..moved.len() {
         for axis in 0..3 {
             let here = moved[node][axis];
-            let mut step = dynamics.step.take().expect("begun");
+            let step = dynamics.step.take().expect("begun");
             let mut energy = |offset: f64| {
                 moved[node][axis] = here + offset;
-                newton(&mut dynamics, &mut step).potential(&moved).0
+                potential(&mut dynamics, &step, &moved)
             };
             let slope = (energy(1e-6) - energy(-1e-6)) / 2e-6;
             moved[node][axis] = here;

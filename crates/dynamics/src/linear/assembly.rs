@@ -1,57 +1,9 @@
-//! Matrices that a backend assembles itself: what it gets of the model and of a state, and what it must do.
+//! What a backend that computes Newton iterations gets: the elements of a model, and springs.
 
-use super::failure::LinearBackendError;
 use super::springs::LinearSpring;
 use bowknot_geometry::Vector;
-use nalgebra::Matrix3;
 use std::fmt::Debug;
 use std::ops::Range;
-
-/// Assembles the matrices of Newton iterations in single precision, in place of the CPU.
-///
-/// The CPU keeps the gradient and the energies in double precision. A step with an approximate matrix and the exact
-/// gradient is a quasi-Newton step: the solution is as accurate, only the way to it may differ.
-///
-/// For each matrix the caller asks first for [`Self::assemble`], then for [`Self::diagonal`] if it needs that, then for
-/// [`Self::precondition`]. Products and solves follow.
-pub trait Assembler: Debug + Send {
-    /// Takes over what is fixed during a run. Returns whether the backend can assemble matrices of this model; if
-    /// not, the CPU does.
-    ///
-    /// # Errors
-    /// What the backend fails of, such as a lack of memory.
-    fn set_model(&mut self, model: &ElementModel) -> Result<bool, LinearBackendError>;
-
-    /// Assembles the matrix of the bodies, without springs.
-    ///
-    /// # Errors
-    /// What the backend fails of.
-    fn assemble(&mut self, state: &AssemblyState<'_>) -> Result<(), LinearBackendError>;
-
-    /// Sets `blocks` to the diagonal blocks of the matrix without springs [N/m].
-    ///
-    /// # Errors
-    /// What the backend fails of.
-    fn diagonal(&mut self, blocks: &mut Vec<Matrix3<f64>>) -> Result<(), LinearBackendError>;
-
-    /// Adds springs to the matrix and makes the preconditioner.
-    ///
-    /// # Errors
-    /// What the backend fails of.
-    fn precondition(&mut self, springs: &AssemblySprings<'_>) -> Result<(), LinearBackendError>;
-
-    /// Sets `y` to H x; only rows of free nodes count [N].
-    ///
-    /// # Errors
-    /// What the backend fails of.
-    fn multiply(&mut self, x: &[Vector], y: &mut [Vector]) -> Result<(), LinearBackendError>;
-
-    /// Sets `z` to M r, with the preconditioner M; both are zero at nodes that are not free.
-    ///
-    /// # Errors
-    /// What the backend fails of.
-    fn apply_preconditioner(&mut self, r: &[Vector], z: &mut [Vector]) -> Result<(), LinearBackendError>;
-}
 
 /// What is fixed during a run: the elements of all bodies over nodes, and which pairs of nodes they join.
 #[derive(Clone, Debug, Default)]
@@ -137,27 +89,6 @@ pub struct TetrahedronElement {
     pub constants: [f64; 2],
     /// Damping time times mu [Pa s].
     pub viscosity: f64,
-}
-
-/// The state at which a matrix is assembled.
-#[derive(Clone, Copy, Debug)]
-pub struct AssemblyState<'a> {
-    /// Which nodes are free [N].
-    pub free: &'a [bool],
-    /// Where the nodes are [N, m].
-    pub positions: &'a [Vector],
-    /// Where they were at the start of the time step [N, m].
-    pub start: &'a [Vector],
-    /// 1 / dt [1/s].
-    pub rate: f64,
-    /// Whether negative curvatures change their sign; otherwise they are set to zero.
-    pub absolute: bool,
-    /// Sums of the rows of H without springs: inertia and drag [N, N/m].
-    pub row_sums: &'a [Matrix3<f64>],
-    /// Flat bending by the pairs of [`ElementModel::columns`] [N/m].
-    pub bending: &'a [f64],
-    /// Flat bending by the pairs of [`ElementModel::scalar_columns`] [N/m].
-    pub scalars: &'a [f64],
 }
 
 /// Springs of a matrix.

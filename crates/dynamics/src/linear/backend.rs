@@ -1,9 +1,9 @@
 //! Linear solves elsewhere than on the CPU: what a backend gets and does.
 
-use super::assembly::Assembler;
 use super::failure::LinearBackendError;
 use super::springs::LinearSpring;
 use super::system::System;
+use crate::dynamics::NewtonBackend;
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
 use std::fmt::Debug;
@@ -44,8 +44,9 @@ pub trait LinearBackend: Debug + Send {
         x: &mut [Vector],
     ) -> Result<usize, LinearBackendError>;
 
-    /// The backend as an assembler of matrices; None if it gets each matrix from the CPU by [`Self::prepare`].
-    fn assembler(&mut self) -> Option<&mut dyn Assembler> {
+    /// The backend as one that does the whole of Newton iterations; None if it gets each matrix from the CPU by
+    /// [`Self::prepare`].
+    fn newton(&mut self) -> Option<&mut dyn NewtonBackend> {
         None
     }
 }

@@ -7,15 +7,6 @@ use super::system::System;
 use super::vectors::{add_scaled, dot};
 use bowknot_geometry::Vector;
 
-/// Where the matrix of a solve is.
-#[derive(Clone, Copy)]
-pub(super) enum Matrix<'a> {
-    /// On the CPU, in double precision; the backend was prepared for it.
-    Host(&'a System<'a>),
-    /// The backend has assembled it in single precision, for these free nodes.
-    Assembled(&'a [bool]),
-}
-
 /// The backend and the buffers of a refinement.
 #[derive(Debug)]
 pub(super) struct Refinement {
@@ -50,7 +41,7 @@ impl Refinement {
     /// of the matrix.
     pub fn solve(
         &mut self,
-        matrix: Matrix<'_>,
+        system: &System<'_>,
         b: &[Vector],
         guesses: &[&[Vector]],
         limits: Limits,
@@ -70,11 +61,11 @@ impl Refinement {
         let goal = goal.max(limits.own_tolerance * limits.own_tolerance * scale);
 
         for (k, guess) in guesses.iter().enumerate() {
-            self.try_guess(k, matrix, guess, x, residual)?;
+            self.try_guess(k, system, guess, x, residual)?;
         }
         let mut norm = scale;
         if !guesses.is_empty() {
-            self.subtract_product(matrix, x, b, residual)?;
+            self.subtract_product(system, x, b, residual)?;
             factor = unit_factor(residual);
             norm = self.backend.begin(residual, factor)? / (factor * factor);
         }
@@ -84,7 +75,7 @@ impl Refinement {
             let before = norm;
             let goal_here = MARGIN * MARGIN * goal * factor * factor;
             left -= self.backend.iterate(goal_here, left, 1.0 / factor, x)?.min(left);
-            self.subtract_product(matrix, x, b, residual)?;
+            self.subtract_product(system, x, b, residual)?;
             factor = unit_factor(residual);
             norm = self.backend.begin(residual, factor)? / (factor * factor);
             stalled = norm > goal && (norm > MIN_GAIN * MIN_GAIN * before || !norm.is_finite());
@@ -97,12 +88,12 @@ impl Refinement {
     /// Sets `residual` to b - H x.
     fn subtract_product(
         &mut self,
-        matrix: Matrix<'_>,
+        system: &System<'_>,
         x: &[Vector],
         b: &[Vector],
         residual: &mut [Vector],
     ) -> Result<(), LinearBackendError> {
-        multiply(&mut *self.backend, matrix, x, residual)?;
+        system.multiply(x, residual);
         residual.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
         Ok(())
     }
@@ -111,7 +102,7 @@ impl Refinement {
     fn try_guess(
         &mut self,
         k: usize,
-        matrix: Matrix<'_>,
+        system: &System<'_>,
         guess: &[Vector],
         x: &mut [Vector],
         residual: &mut [Vector],
@@ -124,7 +115,7 @@ impl Refinement {
         p.clear();
         p.extend_from_slice(guess);
         q.resize(p.len(), Vector::zeros());
-        *curvature = multiply(&mut *self.backend, matrix, p, q)?;
+        *curvature = system.multiply(p, q);
         for other in before.iter().filter(|other| is_positive(other.curvature)) {
             let share = -dot(p, &other.image) / other.curvature;
             add_scaled(p, share, &other.direction);
@@ -137,25 +128,6 @@ impl Refinement {
             add_scaled(residual, -step, q);
         }
         Ok(())
-    }
-}
-
-/// Sets y = H x on free rows and 0 elsewhere; returns x . y.
-fn multiply(
-    backend: &mut dyn LinearBackend,
-    matrix: Matrix<'_>,
-    x: &[Vector],
-    y: &mut [Vector],
-) -> Result<f64, LinearBackendError> {
-    match matrix {
-        Matrix::Host(system) => Ok(system.multiply(x, y)),
-        Matrix::Assembled(free) => {
-            if let Some(assembler) = backend.assembler() {
-                assembler.multiply(x, y)?;
-            }
-            y.iter_mut().zip(free).filter(|(_, free)| !**free).for_each(|(y, _)| *y = Vector::zeros());
-            Ok(dot(x, y))
-        }
     }
 }
 

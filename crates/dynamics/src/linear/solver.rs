@@ -7,17 +7,17 @@
 //! Algorithms", chapter 12). Where single precision gains nothing, the rest is done in double precision.
 
 use super::accuracy::{CgInfo, Limits, MARGIN, MIN_GAIN, subtract_product, unit_factor};
-use super::assembly::{Assembler, ElementModel};
+use super::assembly::ElementModel;
 use super::backend::LinearBackend;
 use super::cg::Krylov;
 use super::coarse::Coarse;
 use super::direct::Direct;
 use super::failure::LinearBackendError;
 use super::preconditioner::Levels;
-use super::refinement::{Matrix, Refinement};
+use super::refinement::Refinement;
 use super::system::System;
+use crate::dynamics::NewtonBackend;
 use bowknot_geometry::Vector;
-use nalgebra::Matrix3;
 use std::ops::Range;
 
 /// Solves systems and measures residuals.
@@ -31,8 +31,8 @@ pub(crate) struct LinearSolver {
     double: Krylov<f64>,
     /// Solves in place of `single`, with the patches of nodes for its preconditioner.
     backend: Option<(Refinement, Vec<Range<u32>>)>,
-    /// Whether the backend assembles the matrices of this model.
-    assembles: bool,
+    /// Whether the backend does the whole of Newton iterations for this model.
+    computes_model: bool,
     /// Whether the backend is left out for the rest of the time step.
     on_cpu: bool,
     /// What the backend failed of.
@@ -55,8 +55,7 @@ impl LinearSolver {
         self.precise = self.levels.direct.is_some();
     }
 
-    /// Lets a backend solve in single precision; None for the CPU. If it can, it assembles the matrices of the model,
-    /// too.
+    /// Lets a backend solve in single precision; None for the CPU. If it can, it does the whole of Newton iterations.
     pub fn set_backend(
         &mut self,
         backend: Option<Box<dyn LinearBackend>>,
@@ -65,62 +64,29 @@ impl LinearSolver {
     ) {
         self.backend = backend.map(|backend| (Refinement::new(backend), patches));
         self.failure = None;
-        self.assembles = false;
-        let assembler = self.backend.as_mut().and_then(|(refinement, _)| refinement.backend.assembler());
-        let takes = assembler.map(|assembler| assembler.set_model(&model()));
-        match takes {
-            Some(Ok(takes)) => self.assembles = takes,
+        self.computes_model = false;
+        let newton = self.backend.as_mut().and_then(|(refinement, _)| refinement.backend.newton());
+        match newton.map(|newton| newton.set_model(&model())) {
+            Some(Ok(computes)) => self.computes_model = computes,
             Some(Err(error)) => self.fail(&error),
             None => {}
         }
     }
 
-    /// What assembles matrices, unless it is the CPU.
-    pub fn assembler(&mut self) -> Option<&mut dyn Assembler> {
-        let backend = self.backend.as_mut().filter(|_| self.assembles && !self.on_cpu);
-        backend.and_then(|(refinement, _)| refinement.backend.assembler())
+    /// What does Newton iterations, unless it is the CPU.
+    pub fn newton(&mut self) -> Option<&mut dyn NewtonBackend> {
+        let backend = self.backend.as_mut().filter(|_| self.computes_model && !self.on_cpu);
+        backend.and_then(|(refinement, _)| refinement.backend.newton())
     }
 
-    /// Leaves the backend out for the rest of the time step, of which [`Self::take_failure`] tells.
-    pub fn fail(&mut self, error: &LinearBackendError) {
+    /// Leaves the backend out for the rest of the time step, and computes in double precision.
+    pub fn leave_backend_out(&mut self) {
+        (self.on_cpu, self.precise) = (true, true);
+    }
+
+    fn fail(&mut self, error: &LinearBackendError) {
         self.failure = Some(error.to_string());
         self.on_cpu = true;
-    }
-
-    /// Solves as [`Self::solve`] does, with the matrix that the backend has assembled and preconditioned, in single
-    /// precision. Returns None if the CPU must solve: the backend has failed, or single precision gains nothing.
-    ///
-    /// `row_sums` are those of H without springs. [`Self::residual`] becomes b less the share of inertia and drag,
-    /// whose sum over a body that nothing holds is that of b - H x.
-    pub fn solve_assembled(
-        &mut self,
-        free: &[bool],
-        row_sums: &[Matrix3<f64>],
-        b: &[Vector],
-        guesses: &[&[Vector]],
-        limits: Limits,
-        x: &mut [Vector],
-    ) -> Option<CgInfo> {
-        let (refinement, _) = self.backend.as_mut().filter(|_| self.assembles && !self.on_cpu)?;
-        x.fill(Vector::zeros());
-        match refinement.solve(Matrix::Assembled(free), b, guesses, limits, x, &mut self.residual) {
-            Ok(refined) if !refined.stalled => {
-                self.scale = refined.scale;
-                for (((r, b), sum), x) in self.residual.iter_mut().zip(b).zip(row_sums).zip(&*x) {
-                    *r = b - sum * x;
-                }
-                Some(refined.info)
-            }
-            Ok(_) => {
-                tracing::debug!("single precision is not enough for the linear solves of a time step");
-                (self.on_cpu, self.precise) = (true, true);
-                None
-            }
-            Err(error) => {
-                self.fail(&error);
-                None
-            }
-        }
     }
 
     /// Takes the backend away, if there is one.
@@ -191,9 +157,8 @@ impl LinearSolver {
         if let Some((refinement, patches)) = self.backend.as_mut().filter(|_| !self.on_cpu) {
             x.fill(Vector::zeros());
             let prepared = refinement.backend.prepare(&system.for_backend(positions, patches));
-            let solved = prepared.and_then(|()| {
-                refinement.solve(Matrix::Host(system), b, guesses, limits, x, &mut self.residual)
-            });
+            let solved =
+                prepared.and_then(|()| refinement.solve(system, b, guesses, limits, x, &mut self.residual));
             match solved {
                 Ok(refined) if !refined.stalled => {
                     self.scale = refined.scale;
@@ -202,7 +167,7 @@ impl LinearSolver {
                 Ok(refined) => {
                     tracing::debug!("single precision is not enough for the linear solves of a time step");
                     let start = x.to_vec();
-                    (self.on_cpu, self.precise) = (true, true);
+                    self.leave_backend_out();
                     let mut info = self.solve_on_cpu(system, positions, b, &[&start], limits, x);
                     info.iterations += refined.info.iterations;
                     return info;

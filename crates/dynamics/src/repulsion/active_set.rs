@@ -8,7 +8,7 @@ use bowknot_geometry::Vector;
 const FRICTION_CHANGE_TOLERANCE: f64 = 0.1;
 
 impl Repulsion {
-    /// Updates the active set and the multipliers with nodes at `x`: springs that pull become inactive,
+    /// Updates the active set and the multipliers with watched nodes at `x`: springs that pull become inactive,
     /// springs with too small a gap become active, friction is bounded by mu times the normal force. Returns
     /// the sum of the forces that were wrong as a share of the sum of the correct normal forces.
     pub fn update_active_set(&mut self, x: &[Vector]) -> f64 {
@@ -60,7 +60,7 @@ impl Repulsion {
     }
 
     /// Sets all multipliers to zero until springs are set again. Springs then store energy only by depth, and
-    /// friction resists slip only. The active springs are those with a positive depth at `x`.
+    /// friction resists slip only. The active springs are those with a positive depth with watched nodes at `x`.
     pub fn clear_multipliers(&mut self, x: &[Vector]) {
         for state in &mut self.states {
             *state = SpringState { stiffness: state.stiffness, ..SpringState::INACTIVE };
@@ -68,7 +68,7 @@ impl Repulsion {
         self.update_active_set_without_multipliers(x);
     }
 
-    /// Updates the active set with nodes at `x` and multipliers of zero. Returns whether a spring became
+    /// Updates the active set with watched nodes at `x` and multipliers of zero. Returns whether a spring became
     /// active or inactive, or a bound of friction changed by much.
     pub fn update_active_set_without_multipliers(&mut self, x: &[Vector]) -> bool {
         self.guessed = false;

@@ -7,7 +7,7 @@ use bowknot_geometry::Vector;
 use rayon::prelude::*;
 
 impl Repulsion {
-    /// Energy at positions `x` of nodes [J], up to a constant.
+    /// Energy at positions `x` of the watched nodes [J], up to a constant.
     pub fn energy(&self, x: &[Vector]) -> f64 {
         let partial: Vec<f64> = (0..self.springs.len().div_ceil(CHUNK))
             .into_par_iter()
@@ -19,7 +19,7 @@ impl Repulsion {
         partial.iter().sum()
     }
 
-    /// Energy at positions `x` of nodes [J] that pressed springs could release; friction is left out.
+    /// Energy at positions `x` of the watched nodes [J] that pressed springs could release; friction is left out.
     pub fn stored_energy(&self, x: &[Vector]) -> f64 {
         let energy = |spring: usize| {
             let state = &self.states[spring];

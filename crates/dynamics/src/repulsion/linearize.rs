@@ -8,7 +8,7 @@ use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 impl Repulsion {
-    /// Linearizes the active springs at `x`.
+    /// Linearizes the active springs with watched nodes at `x`.
     pub fn linearize(&mut self, x: &[Vector]) {
         let active: Vec<u32> =
             (0..self.springs.len() as u32).filter(|&s| self.states[s as usize].active).collect();

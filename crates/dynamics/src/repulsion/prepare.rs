@@ -28,7 +28,7 @@ impl Repulsion {
     /// Sets the stiffness of the springs and guesses the active set. In the first iteration of a time step
     /// the guess is the active set at the positions `inertial`, where inertia leads; in later iterations it
     /// is the active set at the `iterate`. `diagonal` has the diagonal blocks of the Newton system without
-    /// springs; `rate` is 1 / dt [1/s].
+    /// springs; `rate` is 1 / dt [1/s]. Blocks and positions have one entry per watched node, `free` one per node.
     pub fn prepare(
         &mut self,
         model: &DynamicsModel,
@@ -45,11 +45,12 @@ impl Repulsion {
         states.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(|(spring, state)| {
             let s = &self.springs[spring];
             let mut compliance = 0.0;
-            for (&node, weight) in self.nodes[spring].iter().zip(s.weights) {
+            let places = self.nodes[spring].iter().zip(&self.places[spring]);
+            for ((&node, &place), weight) in places.zip(s.weights) {
                 if node != NO_NODE && free[node as usize] {
-                    let node = node as usize;
-                    let along = || s.normal.dot(&(diagonal[node] * s.normal));
-                    let local = if model.strands[node] { softest[node] } else { along() };
+                    let (node, place) = (node as usize, place as usize);
+                    let along = || s.normal.dot(&(diagonal[place] * s.normal));
+                    let local = if model.strands[node] { softest[place] } else { along() };
                     let rigid = model.component_masses[node] * rate * rate;
                     compliance += weight * weight * (1.0 / local + RIGID_COMPLIANCE / rigid);
                 }
@@ -122,16 +123,13 @@ impl Repulsion {
         }
     }
 
-    /// Stiffness of each node in its softest direction if it has springs and belongs to strands, 0 otherwise
-    /// [N/m]. A bent strand resists along both of its edges, but only as long as the neighbors do not move.
+    /// Stiffness of each watched node in its softest direction if it belongs to strands, 0 otherwise [N/m]. A bent strand resists along both of its edges, but only as long as the neighbors do not move.
     /// Springs as stiff as that are too stiff for it, and the updates of the active set diverge where strands
     /// cross.
     fn softest_stiffness(&self, model: &DynamicsModel, diagonal: &[Matrix3<f64>]) -> Vec<f64> {
-        let mut touched = vec![false; diagonal.len()];
-        self.nodes.iter().flatten().filter(|n| **n != NO_NODE).for_each(|n| touched[*n as usize] = true);
-        let of_node = |(node, block): (usize, &Matrix3<f64>)| {
-            if touched[node] && model.strands[node] { block.symmetric_eigenvalues().min() } else { 0.0 }
+        let of_node = |(&node, block): (&u32, &Matrix3<f64>)| {
+            if model.strands[node as usize] { block.symmetric_eigenvalues().min() } else { 0.0 }
         };
-        diagonal.par_iter().enumerate().with_min_len(CHUNK).map(of_node).collect()
+        self.watched().par_iter().zip(diagonal).with_min_len(CHUNK).map(of_node).collect()
     }
 }

@@ -15,6 +15,10 @@ pub(crate) struct Repulsion {
     pub(super) springs: Vec<RepulsionSpring>,
     /// Nodes of each spring; [`NO_NODE`] for obstacles and weights of 0.
     pub(super) nodes: Vec<[u32; 4]>,
+    /// The nodes that springs act on, ascending. Positions have one entry for each of them.
+    watched: Vec<u32>,
+    /// Places of [`Self::nodes`] among the watched ones.
+    pub(super) places: Vec<[u32; 4]>,
     /// The share of obstacles in s [m].
     fixed: Vec<Vector>,
     /// The part of the desired gap that prescribed nodes lack, see [`Self::note_lacking`] [m].
@@ -49,10 +53,20 @@ impl Repulsion {
         let node = |v: u32, w: f64| if w == 0.0 { NO_NODE } else { model.vertex_node[v as usize] };
         let nodes: Vec<[u32; 4]> =
             springs.iter().map(|s| std::array::from_fn(|k| node(s.vertices[k], s.weights[k]))).collect();
+        let mut watched: Vec<u32> = nodes.iter().flatten().copied().filter(|node| *node != NO_NODE).collect();
+        watched.sort_unstable();
+        watched.dedup();
+        let place = |node: u32| match watched.binary_search(&node) {
+            Ok(place) => place as u32,
+            Err(_) => NO_NODE,
+        };
+        let places = nodes.iter().map(|nodes| nodes.map(place)).collect();
         let count = springs.len();
         Ok(Self {
             springs: springs.to_vec(),
             nodes,
+            watched,
+            places,
             fixed: vec![Vector::zeros(); count],
             lacking: vec![0.0; count],
             anchors: vec![Vector::zeros(); count],
@@ -65,6 +79,11 @@ impl Repulsion {
     /// Whether there are no springs.
     pub fn is_empty(&self) -> bool {
         self.springs.is_empty()
+    }
+
+    /// The nodes that springs act on, ascending: positions of nodes are given for these.
+    pub fn watched(&self) -> &[u32] {
+        &self.watched
     }
 
     /// The active springs at the last linearization.
@@ -90,15 +109,15 @@ impl Repulsion {
         }
     }
 
-    /// Notes the part of each desired gap that springs do not ask for, with nodes at `x`, those that are not `free` at
-    /// their ends.
+    /// Notes the part of each desired gap that springs do not ask for, with watched nodes at `x`, those that are not
+    /// `free` at their ends; `free` has one entry per node.
     ///
     /// Where prescribed nodes come nearer than desired, the free nodes of their side would have to make up for it. With
     /// a closest point near a prescribed node they have a short lever, and would have to go far. So springs ask free
     /// nodes for no more than the gap in their own places.
     pub(super) fn note_lacking(&mut self, free: &[bool], x: &[Vector]) {
         for (spring, lacking) in self.lacking.iter_mut().enumerate() {
-            let (s, nodes) = (&self.springs[spring], &self.nodes[spring]);
+            let (s, nodes, places) = (&self.springs[spring], &self.nodes[spring], &self.places[spring]);
             *lacking = 0.0;
             for sign in [1.0, -1.0] {
                 let on_side = |k: &usize| nodes[*k] != NO_NODE && sign * s.weights[*k] > 0.0;
@@ -109,23 +128,23 @@ impl Repulsion {
                 }
                 // The other side's closest point, with the sign of its weights; obstacles are one side of a pair.
                 let others = (0..4).filter(|&k| nodes[k] != NO_NODE && sign * s.weights[k] < 0.0);
-                let opposite: Vector = others.map(|k| x[nodes[k] as usize] * s.weights[k]).sum();
+                let opposite: Vector = others.map(|k| x[places[k] as usize] * s.weights[k]).sum();
                 let opposite = opposite + self.fixed[spring];
-                let gap = |k: usize| s.normal.dot(&(x[nodes[k] as usize] * sign + opposite)) - s.offset;
+                let gap = |k: usize| s.normal.dot(&(x[places[k] as usize] * sign + opposite)) - s.offset;
                 *lacking +=
                     prescribed.map(|k| s.weights[k].abs() * (s.desired - gap(k)).max(0.0)).sum::<f64>();
             }
         }
     }
 
-    /// Depth below the desired gap [m] and slip [m] with nodes at `x`.
+    /// Depth below the desired gap [m] and slip [m] with watched nodes at `x`.
     #[inline]
     pub(super) fn depth_and_slip(&self, spring: usize, x: &[Vector]) -> (f64, Vector) {
         let s = &self.springs[spring];
         let mut sides = self.fixed[spring];
-        for (&node, weight) in self.nodes[spring].iter().zip(s.weights) {
-            if node != NO_NODE {
-                sides += x[node as usize] * weight;
+        for (&place, weight) in self.places[spring].iter().zip(s.weights) {
+            if place != NO_NODE {
+                sides += x[place as usize] * weight;
             }
         }
         let moved = sides - self.anchors[spring];
@@ -133,7 +152,7 @@ impl Repulsion {
         (desired + s.offset - s.normal.dot(&sides), moved - s.normal * s.normal.dot(&moved))
     }
 
-    /// Forces of the springs with nodes at `x` [N], by spring: the multipliers that the next solve starts
+    /// Forces of the springs with watched nodes at `x` [N], by spring: the multipliers that the next solve starts
     /// from.
     pub fn forces(&self, x: &[Vector]) -> Vec<Vector> {
         let force = |spring: usize| {
@@ -158,6 +177,19 @@ impl Repulsion {
                 }
             }
         }
+    }
+
+    /// The known forces of the springs on the watched nodes [N].
+    pub fn known_forces(&self) -> Vec<Vector> {
+        let mut forces = vec![Vector::zeros(); self.watched.len()];
+        for (spring, places) in self.springs.iter().zip(&self.places) {
+            for (&place, weight) in places.iter().zip(spring.weights) {
+                if place != NO_NODE {
+                    forces[place as usize] += spring.force * weight;
+                }
+            }
+        }
+        forces
     }
 
     /// Calls `visit` with the nodes of every spring, active or not, see [`visit_nodes`].

@@ -1,10 +1,10 @@
 //! The sequence of Newton iterations with contacts: an active-set method around [`super::iteration`].
 
+use super::bodies::Answer;
 use super::corrections::MIN_REDUCTION_RATIO;
 use super::iteration::Accuracy;
 use super::state::Newton;
 use crate::dynamics::info::NewtonInfo;
-use crate::linear::vectors::add_scaled;
 
 /// Share of the contact forces that may be wrong: those of springs that pull or are missing, and errors of
 /// friction.
@@ -40,16 +40,14 @@ impl Newton<'_> {
     /// stored (a target of implicit Euler keeps elastic and kinetic energy below those before). If it does,
     /// the active set is updated further, which nearly always suffices after one iteration. Otherwise the
     /// target is computed again with springs that can only push.
-    pub(super) fn solve_with_contacts(&mut self) -> NewtonInfo {
-        let (start, imposed) = (self.work.x.clone(), self.work.imposed.clone());
-        let mut placed = start.clone();
-        add_scaled(&mut placed, 1.0, &imposed);
-        let [kinetic, internal] = self.energies_at(&placed);
-        let tolerance = ENERGY_GAIN_TOLERANCE * (kinetic.abs() + internal.abs());
-        let max_potential = *self.step.max_potential.get_or_insert(kinetic + internal + tolerance);
+    pub(super) fn solve_with_contacts(&mut self) -> Answer<NewtonInfo> {
+        self.place(0.0)?;
+        let placed = self.bodies.trial();
+        let tolerance = ENERGY_GAIN_TOLERANCE * (self.energies.kinetic.abs() + self.energies.internal.abs());
+        let max_potential = *self.course.max_potential.get_or_insert(self.energies.total() + tolerance);
 
-        let accuracy = if self.step.last_target.is_none() { Accuracy::Full } else { Accuracy::Inexact };
-        let first = self.iterate(accuracy);
+        let accuracy = if self.is_first { Accuracy::Full } else { Accuracy::Inexact };
+        let first = self.iterate(accuracy)?;
         let (mut info, mut last) = (first, first);
         for iteration in 0..MAX_LOOSE_ACTIVE_SET_UPDATES {
             let tolerated = if iteration < MAX_ACTIVE_SET_UPDATES {
@@ -57,50 +55,49 @@ impl Newton<'_> {
             } else {
                 LOOSE_ACTIVE_SET_TOLERANCE
             };
-            if self.repulsion.update_active_set(&self.work.trial) <= tolerated {
+            if self.repulsion.update_active_set(&self.bodies.trial()) <= tolerated {
                 break;
             }
-            self.work.start_from_trial();
-            last = self.iterate(Accuracy::Inexact);
+            self.bodies.start_from_trial()?;
+            last = self.iterate(Accuracy::Inexact)?;
             info.add(&last);
         }
         if self.model.has_strands() || last.reduction_ratio < MIN_REDUCTION_RATIO {
-            self.correct(&start, first.decrease(), &mut info);
+            self.correct(first.decrease(), &mut info)?;
         }
-        self.refine(&mut info);
+        self.refine(&mut info)?;
 
         let max_potential = max_potential + self.repulsion.stored_energy(&placed);
-        let gains =
-            |newton: &mut Self| newton.at_trial(Self::energies_at).iter().sum::<f64>() > max_potential;
+        let gains = |newton: &Self| newton.energies.total() > max_potential;
         for _ in 0..MAX_ENERGY_UPDATES {
             if !gains(self) {
-                return info;
+                return Ok(info);
             }
-            self.repulsion.update_active_set(&self.work.trial);
-            self.work.start_from_trial();
-            info.add(&self.iterate(Accuracy::Full));
+            self.repulsion.update_active_set(&self.bodies.trial());
+            self.bodies.start_from_trial()?;
+            info.add(&self.iterate(Accuracy::Full)?);
         }
         if gains(self) {
-            self.work.x.copy_from_slice(&start);
-            self.work.imposed.copy_from_slice(&imposed);
+            self.bodies.begin_again()?;
             tracing::debug!("contacts add energy: the target is computed with contacts that only push");
-            self.solve_one_sided(&mut info);
+            self.solve_one_sided(&mut info)?;
         }
-        info
+        Ok(info)
     }
 
     /// Computes the target with springs without multipliers: they only push, and friction resists slip from
     /// the start of the time step. The line search includes their energy, so that no energy is gained but the
     /// one that was stored.
-    fn solve_one_sided(&mut self, info: &mut NewtonInfo) {
-        self.repulsion.clear_multipliers(&self.work.x);
+    fn solve_one_sided(&mut self, info: &mut NewtonInfo) -> Answer<()> {
+        self.repulsion.clear_multipliers(&self.bodies.iterate());
         for _ in 0..MAX_ONE_SIDED_ITERATIONS {
-            let next = self.iterate(Accuracy::Full);
+            let next = self.iterate(Accuracy::Full)?;
             info.add(&next);
-            if !self.repulsion.update_active_set_without_multipliers(&self.work.trial) {
+            if !self.repulsion.update_active_set_without_multipliers(&self.bodies.trial()) {
                 break;
             }
-            self.work.start_from_trial();
+            self.bodies.start_from_trial()?;
         }
+        Ok(())
     }
 }

@@ -1,9 +1,9 @@
 //! Newton iterations that correct an inaccurate step.
 
-use super::iteration::{Accuracy, largest_distance};
+use super::bodies::Answer;
+use super::iteration::Accuracy;
 use super::state::Newton;
 use crate::dynamics::info::NewtonInfo;
-use bowknot_geometry::Vector;
 
 /// Reduction ratio at which a Newton step counts as accurate: the actual decrease of the potential over the
 /// predicted one. At this ratio the error of the quadratic model is about a tenth of the decrease, and after
@@ -21,8 +21,8 @@ const MAX_MODEL_ERROR: f64 = 0.01;
 const MAX_LAST_DISPLACEMENT: f64 = 0.2;
 
 impl Newton<'_> {
-    /// Makes Newton iterations until the quadratic model is accurate. `info` describes the iterations so far:
-    /// they began at `start`, and the first of them lowered the potential by `gained` [J].
+    /// Makes Newton iterations until the quadratic model is accurate. `info` describes the iterations so far,
+    /// of which the first lowered the potential by `gained` [J].
     ///
     /// Where the quadratic model is inaccurate, its minimum is far from that of the potential: without
     /// corrections stiff bodies that rotate lose most of their motion. An accurate step after an inaccurate
@@ -34,26 +34,24 @@ impl Newton<'_> {
     /// watchdog technique (Chamberlain, Powell, Lemarechal and Pedersen 1982). A stiff rod that rotates is
     /// stretched along its straight step. A line search would stop it there for good, while the next step
     /// restores its length.
-    pub(super) fn correct(&mut self, start: &[Vector], mut gained: f64, info: &mut NewtonInfo) {
+    pub(super) fn correct(&mut self, mut gained: f64, info: &mut NewtonInfo) -> Answer<()> {
         let strands = self.model.has_strands();
         let mut finished = false;
         while !finished && info.iterations <= self.params.newton.correcting_iterations {
-            let shortened = (info.step_length < 1.0).then(|| (self.work.trial.clone(), *info));
-            if shortened.is_some() {
-                self.work.place(1.0);
+            let before = (info.step_length < 1.0).then_some(info.energy_after);
+            if before.is_some() {
+                self.bodies.keep_trial()?;
+                self.place(1.0)?;
             }
-            self.work.start_from_trial();
-            let mut next = self.iterate(Accuracy::Inexact);
-            if let Some((trial, before)) = shortened
-                && next.energy_after >= before.energy_after
-            {
-                self.work.trial.copy_from_slice(&trial);
-                self.work.start_from_trial();
+            self.bodies.start_from_trial()?;
+            let mut next = self.iterate(Accuracy::Inexact)?;
+            if before.is_some_and(|before| next.energy_after >= before) {
+                self.bodies.start_from_kept_trial()?;
                 info.add(&next);
-                next = self.iterate(Accuracy::Inexact);
+                next = self.iterate(Accuracy::Inexact)?;
             }
             info.add(&next);
-            let moved = largest_distance(&self.work.trial, start, &self.work.free);
+            let moved = self.bodies.from_start();
             let small = next.max_displacement <= MAX_LAST_DISPLACEMENT * moved;
             gained += next.decrease();
             let missed = (1.0 - next.reduction_ratio) * next.decrease();
@@ -62,14 +60,16 @@ impl Newton<'_> {
             let stalled = next.decrease() <= MIN_RELATIVE_DECREASE * next.energy_before.abs();
             finished = small && accurate || stalled;
         }
+        Ok(())
     }
 
     /// Makes one more iteration with an accurate solve if the last solve was inexact.
-    pub(super) fn refine(&mut self, info: &mut NewtonInfo) {
+    pub(super) fn refine(&mut self, info: &mut NewtonInfo) -> Answer<()> {
         if info.cg.residual > self.params.newton.cg_tolerance {
-            self.repulsion.update_active_set(&self.work.trial);
-            self.work.start_from_trial();
-            info.add(&self.iterate(Accuracy::Full));
+            self.repulsion.update_active_set(&self.bodies.trial());
+            self.bodies.start_from_trial()?;
+            info.add(&self.iterate(Accuracy::Full)?);
         }
+        Ok(())
     }
 }

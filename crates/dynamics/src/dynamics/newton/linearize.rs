@@ -1,6 +1,7 @@
-//! Gradient and matrix of the incremental potential.
+//! Gradient and matrix of the incremental potential, on the CPU.
 
-use super::state::{Newton, Step};
+use super::cpu::CpuBodies;
+use super::state::Step;
 use crate::elements::filter::Filter;
 use crate::elements::set::{Motion, Rows};
 use crate::model::DynamicsModel;
@@ -10,83 +11,13 @@ use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
-impl Newton<'_> {
-    /// Computes the gradient and H at `work.x`. Springs that have not been prepared get their stiffness and
-    /// the guess of the active set.
-    pub fn linearize(&mut self) {
-        self.work.assembled = self.assemble();
-        if self.work.assembled {
-            self.differentiate_bodies();
-        } else {
-            self.linearize_bodies();
-        }
-        if self.repulsion.is_empty() {
-            return;
-        }
-        if self.step.unprepared && self.work.assembled && !self.read_diagonal() {
-            self.linearize_bodies();
-        }
-        let Self { model, repulsion, step, work, .. } = self;
-        if std::mem::take(&mut step.unprepared) {
-            let end = |n: usize, x: &Vector| if work.free[n] { *x } else { work.x[n] + work.imposed[n] };
-            let placed = |x: &[Vector]| x.iter().enumerate().map(|(n, x)| end(n, x)).collect::<Vec<_>>();
-            let iterate = step.last_target.is_some().then(|| placed(&work.x));
-            let inertial = placed(&step.inertial);
-            let diagonal = &work.values.diagonal;
-            repulsion.prepare(model, diagonal, 1.0 / step.dt, &work.free, &inertial, iterate.as_deref());
-        }
-        repulsion.linearize(&work.x);
-        self.add_springs();
-    }
-
-    /// Adds the linearized springs to the gradient.
-    fn add_springs(&mut self) {
-        let gradient = self.work.gradient.par_iter_mut().enumerate().with_min_len(CHUNK);
-        gradient.for_each(|(node, gradient)| *gradient += self.repulsion.linear().gradient(node));
-    }
-
-    /// Computes the matrix of the last linearization on the CPU, if it is on the backend.
-    pub fn linearize_on_cpu(&mut self) {
-        if std::mem::take(&mut self.work.assembled) {
-            self.linearize_bodies();
-            if !self.repulsion.is_empty() {
-                self.add_springs();
-            }
-        }
-    }
-
-    /// Computes the gradient at `work.x` without springs.
-    pub fn differentiate_bodies(&mut self) {
-        let Self { model, params, step, work, .. } = self;
-        let cache = &mut work.cache;
-        if cache.linearized_at == work.x {
-            work.gradient.copy_from_slice(&cache.gradient);
-            return;
-        }
-        let motion = Motion { x: &work.x, start: &step.start, rate: 1.0 / step.dt };
-        work.gradient.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, gradient)| {
-            let first = chunk * CHUNK;
-            for (row, gradient) in gradient.iter_mut().enumerate() {
-                *gradient = node_gradient(model, params, step, motion, first + row);
-            }
-            let nodes = first..first + gradient.len();
-            for set in &model.element_sets {
-                set.add_gradient(chunk, motion, nodes.clone(), gradient);
-            }
-        });
-        cache.linearized_at.clone_from(&work.x);
-        cache.filter = None;
-        cache.has_matrix = false;
-        cache.gradient.clone_from(&work.gradient);
-    }
-
+impl CpuBodies<'_> {
     /// Computes the gradient and H at `work.x` without springs.
-    pub fn linearize_bodies(&mut self) {
+    pub fn linearize_bodies(&mut self, filter: Filter) {
         let Self { model, params, step, work, .. } = self;
         let motion = Motion { x: &work.x, start: &step.start, rate: 1.0 / step.dt };
-        let filter = Filter::new(params.newton.hessian_filter, step.last_target.is_none());
         let cache = &mut work.cache;
-        if cache.linearized_at == work.x && cache.filter == Some(filter) && cache.has_matrix {
+        if cache.linearized_at == work.x && cache.filter == Some(filter) {
             work.gradient.copy_from_slice(&cache.gradient);
             return;
         }
@@ -125,7 +56,6 @@ impl Newton<'_> {
         });
         cache.linearized_at.clone_from(&work.x);
         cache.filter = Some(filter);
-        cache.has_matrix = true;
         cache.gradient.clone_from(&work.gradient);
     }
 }

@@ -1,12 +1,13 @@
 //! Linear momentum is conserved to rounding at any tolerance of the linear solve.
 
+use super::state::Step;
 use crate::drag::Drag;
 use crate::groups::Groups;
 use crate::model::DynamicsModel;
+use crate::params::DynamicsParams;
 use crate::repulsion::springs::Repulsion;
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
-use std::ops::Range;
 
 /// H over a translation: the forces that are not inner forces.
 pub(crate) struct Inertia<'a> {
@@ -17,57 +18,70 @@ pub(crate) struct Inertia<'a> {
     pub rate: f64,
 }
 
-/// Translates every group of freely flying components so that the `residual` of the linear solve sums to zero
-/// over it. Inner forces then cancel, and the linear momentum of the group is conserved to rounding at any
-/// tolerance. In a translation H sums to inertia and drag alone, so the translation is the sum of residuals
-/// divided by these. Components that springs join form one group.
-pub(crate) fn restore_momentum(
-    model: &DynamicsModel,
-    repulsion: &Repulsion,
-    inertia: &Inertia<'_>,
-    free: &[bool],
-    residual: &[Vector],
-    step: &mut [Vector],
-) {
-    if repulsion.is_empty() {
-        for component in &model.components {
-            shift(model, std::slice::from_ref(component), inertia, free, residual, step);
+impl<'a> Inertia<'a> {
+    /// That of a time step.
+    pub fn new(params: &DynamicsParams, step: &'a Step) -> Self {
+        Self {
+            per_mass: 1.0 / (step.dt * step.dt) + params.environment.air_drag / step.dt,
+            drag: step.drag.as_ref(),
+            rate: 1.0 / step.dt,
         }
-        return;
     }
-    let mut groups = Groups::new(model.components.len());
-    repulsion.linear().for_each_spring(|nodes, held| {
-        groups.join_all(nodes.iter().map(|&node| model.component(node)), held);
-    });
-    for group in groups.free() {
-        let group: Vec<Range<u32>> = group.into_iter().map(|c| model.components[c].clone()).collect();
-        shift(model, &group, inertia, free, residual, step);
+
+    /// The sum of H over nodes that move alike [N/m].
+    pub fn of_nodes(
+        &self,
+        model: &DynamicsModel,
+        nodes: impl Iterator<Item = usize> + Clone,
+    ) -> Matrix3<f64> {
+        let mass: f64 = nodes.clone().map(|n| model.node_masses[n]).sum();
+        let inertia = Matrix3::from_diagonal_element(mass * self.per_mass);
+        self.drag.map_or(inertia, |drag| {
+            let drag: Matrix3<f64> = nodes.map(|n| drag.matrix[n]).sum();
+            inertia + drag * self.rate
+        })
     }
 }
 
-/// Translates the components of a group, unless a node is not free.
-fn shift(
+/// The groups of freely flying components, each by its components: those of which no node is held by a keyframe or by a
+/// spring. Components that springs join form one group.
+pub(crate) fn flying_groups(model: &DynamicsModel, repulsion: &Repulsion, free: &[bool]) -> Vec<Vec<usize>> {
+    let mut flying = if repulsion.is_empty() {
+        (0..model.components.len()).map(|component| vec![component]).collect()
+    } else {
+        let mut groups = Groups::new(model.components.len());
+        repulsion.linear().for_each_spring(|nodes, held| {
+            groups.join_all(nodes.iter().map(|&node| model.component(node)), held);
+        });
+        groups.free()
+    };
+    flying.retain(|group| nodes_of(model, group).all(|n| free[n]));
+    flying
+}
+
+/// Translates a group of freely flying components so that the `residual` of the linear solve sums to zero
+/// over it. Inner forces then cancel, and the linear momentum of the group is conserved to rounding at any
+/// tolerance. In a translation H sums to inertia and drag alone, so the translation is the sum of residuals
+/// divided by these.
+pub(crate) fn shift_group(
     model: &DynamicsModel,
-    group: &[Range<u32>],
+    group: &[usize],
     inertia: &Inertia<'_>,
-    free: &[bool],
     residual: &[Vector],
     step: &mut [Vector],
 ) {
-    let nodes = || group.iter().flat_map(|range| range.start as usize..range.end as usize);
-    if !nodes().all(|n| free[n]) {
-        return;
-    }
+    let nodes = || nodes_of(model, group);
     let sum: Vector = nodes().map(|n| residual[n]).sum();
-    let mass: f64 = nodes().map(|n| model.node_masses[n]).sum();
     let shift = match inertia.drag {
-        None => sum / (mass * inertia.per_mass),
-        Some(drag) => {
-            let drag: Matrix3<f64> = nodes().map(|n| drag.matrix[n]).sum();
-            let total = Matrix3::from_diagonal_element(mass * inertia.per_mass) + drag * inertia.rate;
-            // The matrix is positive definite unless the state is not finite, which the caller reports.
-            total.try_inverse().map_or_else(Vector::zeros, |inverse| inverse * sum)
+        None => sum / (nodes().map(|n| model.node_masses[n]).sum::<f64>() * inertia.per_mass),
+        // The matrix is positive definite unless the state is not finite, which the caller reports.
+        Some(_) => {
+            inertia.of_nodes(model, nodes()).try_inverse().map_or_else(Vector::zeros, |inverse| inverse * sum)
         }
     };
     nodes().for_each(|n| step[n] += shift);
+}
+
+fn nodes_of(model: &DynamicsModel, group: &[usize]) -> impl Iterator<Item = usize> + Clone {
+    group.iter().flat_map(|&c| model.components[c].start as usize..model.components[c].end as usize)
 }

@@ -1,12 +1,13 @@
-//! The incremental potential.
+//! The incremental potential, on the CPU.
 
-use super::state::Newton;
+use super::bodies::BodyEnergies;
+use super::cpu::CpuBodies;
 use crate::elements::set::Motion;
 use crate::nodes::CHUNK;
 use bowknot_geometry::Vector;
 use rayon::prelude::*;
 
-impl Newton<'_> {
+impl CpuBodies<'_> {
     /// The incremental potential at `x` without springs [J]: the part of inertia and air, and the part of
     /// elements.
     fn energies(&self, x: &[Vector]) -> [f64; 2] {
@@ -48,29 +49,15 @@ impl Newton<'_> {
         [kinetic, internal]
     }
 
-    /// [`Self::energies`], from the cache if they were last computed at `x`.
-    pub(super) fn energies_at(&mut self, x: &[Vector]) -> [f64; 2] {
-        if self.work.cache.energies_at != x {
-            self.work.cache.energies = self.energies(x);
-            self.work.cache.energies_at.clear();
-            self.work.cache.energies_at.extend_from_slice(x);
-        }
-        self.work.cache.energies
-    }
-
-    /// The incremental potential at `x` and the sum of the sizes of its parts, to which rounding is relative
-    /// [J].
-    pub fn potential(&mut self, x: &[Vector]) -> (f64, f64) {
-        let [kinetic, mut internal] = self.energies_at(x);
-        internal += self.repulsion.energy(x);
-        (kinetic + internal, kinetic.abs() + internal.abs())
-    }
-
-    /// Calls `evaluate` with the trial.
-    pub(super) fn at_trial<T>(&mut self, evaluate: impl FnOnce(&mut Self, &[Vector]) -> T) -> T {
+    /// The incremental potential of the bodies at the trial, from the cache if it was last computed there.
+    pub(super) fn energies_of_trial(&mut self) -> BodyEnergies {
         let trial = std::mem::take(&mut self.work.trial);
-        let value = evaluate(self, &trial);
+        if self.work.cache.energies_at != trial {
+            self.work.cache.energies = self.energies(&trial);
+            self.work.cache.energies_at.clone_from(&trial);
+        }
         self.work.trial = trial;
-        value
+        let [kinetic, internal] = self.work.cache.energies;
+        BodyEnergies { kinetic, internal, rounding: 0.0 }
     }
 }

@@ -4,6 +4,7 @@
 //! a target without contacts. The solves between are inexact, as another linearization follows: an inexact
 //! Newton method (Dembo, Eisenstat and Steihaug 1982).
 
+use super::bodies::Answer;
 use super::corrections::MIN_REDUCTION_RATIO;
 use super::iteration::Accuracy;
 use super::state::Newton;
@@ -11,18 +12,17 @@ use crate::dynamics::info::NewtonInfo;
 
 impl Newton<'_> {
     /// Computes the target.
-    pub fn solve(&mut self) -> NewtonInfo {
+    pub fn solve(&mut self) -> Answer<NewtonInfo> {
         if self.repulsion.is_empty() { self.solve_without_contacts() } else { self.solve_with_contacts() }
     }
 
     /// Makes a Newton iteration and, if it was inaccurate or there are strands, corrections.
-    fn solve_without_contacts(&mut self) -> NewtonInfo {
-        let mut info = self.iterate(Accuracy::Full);
+    fn solve_without_contacts(&mut self) -> Answer<NewtonInfo> {
+        let mut info = self.iterate(Accuracy::Full)?;
         if info.reduction_ratio < MIN_REDUCTION_RATIO || self.model.has_strands() {
-            let start = self.work.x.clone();
-            self.correct(&start, info.decrease(), &mut info);
-            self.refine(&mut info);
+            self.correct(info.decrease(), &mut info)?;
+            self.refine(&mut info)?;
         }
-        info
+        Ok(info)
     }
 }

@@ -1,5 +1,7 @@
 //! What a Newton iteration works on, by node.
 
+use super::bodies::{Bodies, BodyEnergies};
+use super::device::DeviceStep;
 use crate::drag::Drag;
 use crate::elements::filter::Filter;
 use crate::linear::block::BlockValues;
@@ -10,7 +12,6 @@ use crate::model::DynamicsModel;
 use crate::params::DynamicsParams;
 use crate::repulsion::springs::Repulsion;
 use bowknot_geometry::{Point, Vector};
-use nalgebra::Matrix3;
 
 /// The current time step.
 #[derive(Debug, Default)]
@@ -28,16 +29,23 @@ pub struct Step {
     pub last_target: Option<Vec<Vector>>,
     /// Bending plus its damping / dt, as a matrix.
     pub scalar: SplitForm,
-    /// Sums of the rows of H without springs: inertia and drag [N/m]. Empty until a backend assembles.
-    pub row_sums: Vec<Matrix3<f64>>,
+    /// None in a vacuum.
+    pub drag: Option<Drag>,
+}
+
+/// What the iterations of a time step have found out.
+#[derive(Debug, Default)]
+pub struct Course {
     /// Potential without springs that no target may exceed by more than springs have stored: that at the
     /// first iterate of the step [J].
     pub max_potential: Option<f64>,
-    /// None in a vacuum.
-    pub drag: Option<Drag>,
     /// Whether springs must be prepared: they have been set since the last Newton iteration, or the step has
     /// just begun.
     pub unprepared: bool,
+    /// See [`crate::linear::accuracy::Limits::min_scale`]: that of the first solve of the time step; 0 before.
+    pub min_scale: f64,
+    /// The time step on the device, once it has begun there.
+    pub on_device: Option<DeviceStep>,
 }
 
 /// Buffers; they may be dropped at any time.
@@ -56,11 +64,7 @@ pub struct Workspace {
     /// The Newton step.
     pub step: Vec<Vector>,
     pub values: BlockValues,
-    /// Whether the matrix of the last linearization is on the backend, and not in `values`.
-    pub assembled: bool,
     pub solver: LinearSolver,
-    /// See [`crate::linear::accuracy::Limits::min_scale`]: that of the first solve of the time step; 0 before.
-    pub min_scale: f64,
     pub cache: EvaluationCache,
 }
 
@@ -74,8 +78,6 @@ pub struct EvaluationCache {
     pub linearized_at: Vec<Vector>,
     pub filter: Option<Filter>,
     pub gradient: Vec<Vector>,
-    /// Whether the matrix on the CPU was computed there, too.
-    pub has_matrix: bool,
 }
 
 impl EvaluationCache {
@@ -92,7 +94,9 @@ impl Workspace {
     pub fn place(&mut self, length: f64) {
         self.trial.copy_from_slice(&self.x);
         add_scaled(&mut self.trial, 1.0, &self.imposed);
-        add_scaled(&mut self.trial, length, &self.step);
+        if length != 0.0 {
+            add_scaled(&mut self.trial, length, &self.step);
+        }
     }
 
     /// Makes the trial the next iterate. Prescribed nodes are at their keyframes there.
@@ -109,11 +113,18 @@ pub fn negate_forces(b: &mut [Vector], gradient: &[Vector], free: &[bool]) {
     }
 }
 
-/// Newton's method from `work.x` to `work.trial`.
+/// Newton's method over bodies, to a trial that is the target in the end.
 pub struct Newton<'a> {
     pub model: &'a DynamicsModel,
     pub params: &'a DynamicsParams,
+    pub bodies: &'a mut dyn Bodies,
     pub repulsion: &'a mut Repulsion,
-    pub step: &'a mut Step,
-    pub work: &'a mut Workspace,
+    /// Which nodes are free.
+    pub free: &'a [bool],
+    pub dt: f64,
+    /// Whether this is the first target of the time step.
+    pub is_first: bool,
+    pub course: &'a mut Course,
+    /// The potential of the bodies at the last trial.
+    pub energies: BodyEnergies,
 }

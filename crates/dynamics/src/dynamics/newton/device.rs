@@ -1,0 +1,284 @@
+//! The bodies on a device: a backend with what the host knows of the time step.
+
+use super::backend::{NewtonBackend, NewtonStep, NewtonTarget, SolveLimits, Trial};
+use super::bodies::{Answer, Bodies, BodyEnergies, Imbalance, LinearSolve, Lost, Promise};
+use super::cpu::NEGLIGIBLE_STEP;
+use super::momentum::Inertia;
+use super::state::{Course, Step};
+use crate::elements::filter::Filter;
+use crate::elements::set::Motion;
+use crate::linear::accuracy::Limits;
+use crate::linear::assembly::AssemblySprings;
+use crate::linear::springs::LinearSprings;
+use crate::model::DynamicsModel;
+use crate::nodes::CHUNK;
+use crate::params::DynamicsParams;
+use crate::repulsion::springs::Repulsion;
+use bowknot_geometry::Vector;
+use nalgebra::Matrix3;
+
+/// What the host keeps of a time step on a device.
+#[derive(Debug, Default)]
+pub struct DeviceStep {
+    /// Inertia and drag of each component: the sum of the rows of H without springs [N/m].
+    component_sums: Vec<Matrix3<f64>>,
+    /// Potential of inertia and flat bending at the start [J].
+    potential_at_start: f64,
+}
+
+impl DeviceStep {
+    /// Begins the time step on the backend.
+    pub fn begin(
+        model: &DynamicsModel,
+        params: &DynamicsParams,
+        step: &Step,
+        backend: &mut dyn NewtonBackend,
+    ) -> Answer<Self> {
+        let inertia = Inertia::new(params, step);
+        let nodes = step.start.len();
+        let row_sums: Vec<Matrix3<f64>> = (0..nodes).map(|n| inertia.of_nodes(model, n..n + 1)).collect();
+        let component_sums = model
+            .components
+            .iter()
+            .map(|component| row_sums[component.start as usize..component.end as usize].iter().sum());
+        // Damping is zero at the start, and so is the drag of moving.
+        let motion = Motion { x: &step.start, start: &step.start, rate: inertia.rate };
+        let rate_squared = inertia.rate * inertia.rate;
+        let gradient = |n: usize| {
+            let push = step.drag.as_ref().map_or_else(Vector::zeros, |drag| drag.push[n]);
+            (step.start[n] - step.inertial[n]) * (model.node_masses[n] * rate_squared)
+                + model.bending.product(n, motion.x)
+                - push
+        };
+        let gradient: Vec<Vector> = (0..nodes).map(gradient).collect();
+        let (_, _, scalars) = step.scalar.off_rows();
+        backend.begin_step(&NewtonStep {
+            start: &step.start,
+            inertial: &step.inertial,
+            rate: inertia.rate,
+            row_sums: &row_sums,
+            gradient: &gradient,
+            bending: &step.scalar.in_pattern,
+            scalars,
+        })?;
+        let kinetic = |n: usize| {
+            0.5 * model.node_masses[n] * rate_squared * (step.start[n] - step.inertial[n]).norm_squared()
+        };
+        let bending = |chunk: usize| model.bending.chunk_energy(chunk, motion.x);
+        let potential_at_start =
+            (0..nodes).map(kinetic).sum::<f64>() + (0..nodes.div_ceil(CHUNK)).map(bending).sum::<f64>();
+        Ok(Self { component_sums: component_sums.collect(), potential_at_start })
+    }
+}
+
+/// Where a target begins, by node, and the nodes that springs act on.
+#[derive(Clone, Copy)]
+pub struct Beginning<'a> {
+    pub iterate: &'a [Vector],
+    pub free: &'a [bool],
+    pub imposed: &'a [Vector],
+    pub watched: &'a [u32],
+}
+
+/// The bodies of a target on a device.
+pub struct DeviceBodies<'a> {
+    model: &'a DynamicsModel,
+    step: &'a Step,
+    on_device: &'a DeviceStep,
+    backend: &'a mut dyn NewtonBackend,
+    beginning: Beginning<'a>,
+    /// Watched nodes at the iterate, and there with those that are not free at their ends.
+    iterate: [Vec<Vector>; 2],
+    /// The last trial, and watched nodes of the kept one.
+    trial: Trial,
+    kept: Vec<Vector>,
+    /// Largest coordinate of the iterate that the target began with [m].
+    largest: f64,
+}
+
+impl<'a> DeviceBodies<'a> {
+    /// Begins a target.
+    pub fn new(
+        model: &'a DynamicsModel,
+        step: &'a Step,
+        on_device: &'a DeviceStep,
+        backend: &'a mut dyn NewtonBackend,
+        beginning: Beginning<'a>,
+    ) -> Answer<Self> {
+        backend.begin_target(&NewtonTarget {
+            iterate: beginning.iterate,
+            free: beginning.free,
+            imposed: beginning.imposed,
+            watched: beginning.watched,
+        })?;
+        let largest = beginning.iterate.iter().map(Vector::amax).fold(0.0, f64::max);
+        let (trial, kept) = (Trial::default(), Vec::new());
+        let iterate = beginning.positions();
+        Ok(Self { model, step, on_device, backend, beginning, iterate, trial, kept, largest })
+    }
+}
+
+impl Beginning<'_> {
+    /// Watched nodes at the iterate, and there with those that are not free at their ends.
+    fn positions(&self) -> [Vec<Vector>; 2] {
+        let gather = |position: &dyn Fn(usize) -> Vector| -> Vec<Vector> {
+            self.watched.iter().map(|&node| position(node as usize)).collect()
+        };
+        [gather(&|n| self.iterate[n]), gather(&|n| self.iterate[n] + self.imposed[n])]
+    }
+}
+
+impl Bodies for DeviceBodies<'_> {
+    fn begin_again(&mut self) -> Answer<()> {
+        self.backend.begin_again()?;
+        self.iterate = self.beginning.positions();
+        Ok(())
+    }
+
+    fn linearize(&mut self, filter: Filter) -> Answer<()> {
+        Ok(self.backend.linearize(filter == Filter::Absolute)?)
+    }
+
+    fn diagonal(&mut self) -> Answer<Vec<Matrix3<f64>>> {
+        let mut blocks = Vec::new();
+        self.backend.diagonal(&mut blocks)?;
+        Ok(blocks)
+    }
+
+    fn iterate(&self) -> Vec<Vector> {
+        self.iterate[0].clone()
+    }
+
+    fn iterate_at_ends(&self) -> Vec<Vector> {
+        self.iterate[1].clone()
+    }
+
+    fn inertial_at_ends(&self) -> Vec<Vector> {
+        let position = |(&node, end): (&u32, &Vector)| {
+            let node = node as usize;
+            if self.beginning.free[node] { self.step.inertial[node] } else { *end }
+        };
+        self.beginning.watched.iter().zip(&self.iterate[1]).map(position).collect()
+    }
+
+    fn solve(&mut self, springs: &LinearSprings, limits: Limits) -> Answer<LinearSolve> {
+        let springs = if springs.is_empty() {
+            AssemblySprings::default()
+        } else {
+            AssemblySprings {
+                springs: springs.all(),
+                starts: springs.starts(),
+                entries: springs.all_entries(),
+            }
+        };
+        let limits = SolveLimits {
+            tolerance: limits.tolerance,
+            own_tolerance: limits.own_tolerance,
+            min_scale: limits.min_scale,
+            max_iterations: limits.max_iterations,
+        };
+        let solved = self.backend.solve(&springs, &limits)?;
+        if solved.stalled {
+            return Err(Lost::Stalled);
+        }
+        Ok(LinearSolve { info: solved.info, scale: solved.scale })
+    }
+
+    fn restore_momentum(&mut self, groups: &[Vec<usize>]) -> Answer<()> {
+        if groups.is_empty() {
+            return Ok(());
+        }
+        let mut residuals = Vec::new();
+        self.backend.component_residuals(&mut residuals)?;
+        let mut translations = vec![Vector::zeros(); self.model.components.len()];
+        for group in groups {
+            let residual: Vector = group.iter().map(|&c| residuals[c]).sum();
+            let total: Matrix3<f64> = group.iter().map(|&c| self.on_device.component_sums[c]).sum();
+            // The matrix is positive definite unless the state is not finite, which the caller reports.
+            let shift = total.try_inverse().map_or_else(Vector::zeros, |inverse| inverse * residual);
+            group.iter().for_each(|&c| translations[c] = shift);
+        }
+        Ok(self.backend.translate(&translations)?)
+    }
+
+    fn place(&mut self, length: f64) -> Answer<BodyEnergies> {
+        self.trial = self.backend.place(length)?;
+        Ok(BodyEnergies {
+            kinetic: self.on_device.potential_at_start,
+            internal: self.trial.reference + self.trial.change,
+            rounding: self.trial.rounding,
+        })
+    }
+
+    fn promise(&mut self) -> Promise {
+        Promise {
+            predicted: self.trial.predicted,
+            is_negligible: self.trial.largest_step <= NEGLIGIBLE_STEP * self.largest,
+        }
+    }
+
+    fn trial(&self) -> Vec<Vector> {
+        self.trial.watched.clone()
+    }
+
+    fn from_iterate(&self) -> f64 {
+        self.trial.from_iterate
+    }
+
+    fn from_start(&self) -> f64 {
+        self.trial.from_start
+    }
+
+    fn start_from_trial(&mut self) -> Answer<()> {
+        self.backend.start_from_trial()?;
+        self.iterate = [self.trial.watched.clone(), self.trial.watched.clone()];
+        Ok(())
+    }
+
+    fn keep_trial(&mut self) -> Answer<()> {
+        self.kept.clone_from(&self.trial.watched);
+        Ok(self.backend.keep_trial()?)
+    }
+
+    fn start_from_kept_trial(&mut self) -> Answer<()> {
+        self.backend.start_from_kept_trial()?;
+        self.iterate = [self.kept.clone(), self.kept.clone()];
+        Ok(())
+    }
+
+    fn out_of_balance(
+        &mut self,
+        repulsion: &Repulsion,
+        counted: &[bool],
+        filter: Filter,
+    ) -> Answer<Imbalance> {
+        let known = repulsion.known_forces();
+        let found = self.backend.out_of_balance(&known, counted, filter == Filter::Absolute)?;
+        Ok(Imbalance { squared_force: found.squared_force, products: found.products })
+    }
+}
+
+/// Lets `run` work on the bodies on a device, from a beginning. If there is a `trial`, it becomes the last one, by node,
+/// which then is the last target.
+pub fn on_device<T>(
+    model: &DynamicsModel,
+    params: &DynamicsParams,
+    step: &Step,
+    course: &mut Course,
+    backend: &mut dyn NewtonBackend,
+    beginning: Beginning<'_>,
+    trial: Option<&mut [Vector]>,
+    run: &mut dyn FnMut(&mut dyn Bodies, &mut Course) -> Answer<T>,
+) -> Answer<T> {
+    let on_device = match course.on_device.take() {
+        Some(on_device) => on_device,
+        None => DeviceStep::begin(model, params, step, backend)?,
+    };
+    let mut bodies = DeviceBodies::new(model, step, &on_device, backend, beginning)?;
+    let done = run(&mut bodies, course)?;
+    if let Some(trial) = trial {
+        bodies.backend.target(trial)?;
+    }
+    course.on_device = Some(on_device);
+    Ok(done)
+}
