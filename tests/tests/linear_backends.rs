@@ -1,4 +1,4 @@
-//! Whole simulations with the linear solves of the dynamics on the twins of the kernels: they go as on the CPU.
+//! Whole simulations with the dynamics on the twins of the kernels: they go as on the CPU.
 //!
 //! Where bodies crumple, differences of the size of a tolerance grow. The yardstick for them are runs on the CPU with more
 //! accurate linear solves and with another preconditioner, which should make no difference either.
@@ -244,7 +244,7 @@ fn course(case: Case, more: &[&str], place: Place) -> Course {
     let (mut backend, counts) = Counted::new(Metered::default(), None);
     backend.assembles = place == Place::Assembly;
     if place != Place::Cpu {
-        simulator.set_linear_backend(Some(backend));
+        simulator.set_dynamics_backend(Some(backend));
     }
     let steps: Vec<_> = (0..case.3).map(|_| simulator.step().expect("a step")).collect();
     let counts = *counts.lock().expect("no panic");
@@ -298,7 +298,7 @@ fn runs_with_solves_on_the_kernels_go_as_on_the_cpu() {
 fn a_lost_device_ends_a_step_that_can_be_made_again() {
     let case = SMALL[0];
     let [mut lost, mut whole] = [(); 2].map(|()| simulator(case, &[]));
-    lost.set_linear_backend(Some(Counted::new(TwinEngine::new(), Some(4)).0));
+    lost.set_dynamics_backend(Some(Counted::new(TwinEngine::new(), Some(4)).0));
     let mut error = None;
     for _ in 0..case.3 {
         let before = lost.positions().to_vec();
@@ -312,7 +312,7 @@ fn a_lost_device_ends_a_step_that_can_be_made_again() {
     let error = error.expect("the device was lost");
     assert!(matches!(error, SimulationError::Backend { .. }), "{error:?}");
     assert!(error.to_string().contains("the device was lost"), "{error}");
-    lost.set_linear_backend(None);
+    lost.set_dynamics_backend(None);
     lost.step().expect("a step on the CPU");
     whole.step().expect("a step on the CPU");
     assert!(lost.positions() == whole.positions());
@@ -330,18 +330,18 @@ fn a_matrix_that_is_too_large_for_a_device_ends_a_run_that_goes_on_on_the_cpu() 
     let mut engine = DeviceEngine::open(&adapter).expect("it opens");
     engine.limit_buffers(30_000);
     let linear = ConjugateGradients::new("limited".to_owned(), engine);
-    let backends = Backends { linear: Some(Box::new(linear)), ..Backends::default() };
+    let backends = Backends { dynamics: Some(Box::new(linear)), ..Backends::default() };
     let error = run::run_on(&scene, &options(false), backends, &mut go_on).expect_err("it is too large");
     assert!(matches!(error, SimulationError::Backend { step: 1, .. }), "{error:?}");
     let text = error.to_string();
     assert!(
-        ["the matrix takes", "binds 30000 at most", "--linear-backend cpu"]
+        ["the matrix takes", "binds 30000 at most", "--dynamics-backend cpu"]
             .iter()
             .all(|part| text.contains(part)),
         "{text}"
     );
     let outcome = run::run(&scene, &options(true), &mut go_on).expect("it goes on");
-    assert_eq!((outcome.summary.frames, outcome.summary.linear_backend.as_str()), (3, "cpu"));
+    assert_eq!((outcome.summary.frames, outcome.summary.dynamics_backend.as_str()), (3, "cpu"));
 }
 
 #[test]
@@ -351,7 +351,7 @@ fn kernels_solve_the_systems_of_scenes_as_their_twins() {
         let adapter = Adapter::choose(None).expect("a device, of software if need be");
         let engine = ComparingEngine::new(DeviceEngine::open(&adapter).expect("it opens"));
         let (backend, counts) = Counted::new(engine, None);
-        simulator.set_linear_backend(Some(backend));
+        simulator.set_dynamics_backend(Some(backend));
         for _ in 0..3 {
             simulator.step().expect("a step");
         }
@@ -365,7 +365,7 @@ fn a_resumed_run_has_the_same_bits() {
     let case = SMALL[0];
     let [mut whole, mut resumed] = [(); 2].map(|()| simulator(case, &[]));
     for simulator in [&mut whole, &mut resumed] {
-        simulator.set_linear_backend(Some(Counted::new(TwinEngine::new(), None).0));
+        simulator.set_dynamics_backend(Some(Counted::new(TwinEngine::new(), None).0));
     }
     for step in 0..10 {
         whole.step().expect("a step");
@@ -404,7 +404,7 @@ fn solves_stay_on_the_device_while_bodies_sleep_and_after() {
     let scene = Scene::from_toml(SLEEPER, std::path::Path::new(".")).expect("a scene");
     let mut simulator = Simulator::new(&scene).expect("a simulator");
     let (backend, counts) = Counted::new(TwinEngine::new(), None);
-    simulator.set_linear_backend(Some(backend));
+    simulator.set_dynamics_backend(Some(backend));
     let systems = || counts.lock().expect("no panic").systems;
     let step = |simulator: &mut Simulator| {
         let before = systems();
@@ -414,7 +414,7 @@ fn solves_stay_on_the_device_while_bodies_sleep_and_after() {
     };
     let slept = (0..200).any(|_| step(&mut simulator));
     assert!(slept && step(&mut simulator), "the block does not sleep");
-    assert_eq!(simulator.linear_backend().map(LinearBackend::name).as_deref(), Some("twins"));
+    assert_eq!(simulator.dynamics_backend().map(LinearBackend::name).as_deref(), Some("twins"));
     let force = vec![Vector::z() * 0.2; simulator.positions().len()];
     simulator.set_external_forces(&force).expect("finite");
     assert!((0..5).any(|_| !step(&mut simulator)), "the block does not wake");

@@ -69,10 +69,9 @@ pub struct RunOptions {
     pub up: Option<Up>,
     #[command(flatten)]
     pub machine: Machine,
-    /// Where the linear solves of the dynamics are done; the rest of the dynamics runs on the CPU [default: cpu; with
-    /// --resume: as before]
+    /// Where the dynamics are computed [default: as --backend says; with --resume: as before]
     #[arg(long, value_enum)]
-    pub linear_backend: Option<LinearBackend>,
+    pub dynamics_backend: Option<DynamicsBackend>,
     #[command(flatten)]
     pub method: Method,
     /// Formats of the frames, separated by commas [default: that of the scene, else ply]
@@ -329,7 +328,7 @@ pub struct Machine {
     /// Number of threads [default: all cores]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = threads)]
     pub threads: Option<usize>,
-    /// Where collisions are resolved [default: cpu; with --resume: as before]
+    /// Where a simulation is computed, and collisions are resolved [default: cpu; with --resume: as before]
     #[arg(long, value_enum)]
     pub backend: Option<Backend>,
     /// Which GPU: its number in `bowknot info --gpus` [default: the first that is usable]
@@ -395,10 +394,10 @@ pub enum Backend {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum LinearBackend {
+pub enum DynamicsBackend {
     /// The CPU
     Cpu,
-    /// A GPU, in single precision, refined on the CPU
+    /// A GPU, in single precision; strands are assembled by the CPU
     Gpu,
 }
 

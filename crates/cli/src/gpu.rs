@@ -1,6 +1,6 @@
 //! What the command does on a GPU: the devices, and the backends of `run` and `resolve`.
 
-use crate::args::{Backend, LinearBackend, Machine, RunOptions};
+use crate::args::{Backend, DynamicsBackend, Machine, RunOptions};
 use crate::exit::Failure;
 use bowknot::Scene;
 use bowknot::run::{BackendRecord, Backends};
@@ -54,19 +54,24 @@ pub fn of_run(options: &RunOptions, scene: &Scene, folder: &Path) -> Result<Back
                 // Before anything is measured for it.
                 bowknot::run::refuse_run(folder).map_err(Failure::input)?;
             }
-            let (place, reason) = device::choose(scene, machine.device)?;
+            let (place, reason) = device::choose(
+                scene,
+                machine.device,
+                options.dynamics_backend != Some(DynamicsBackend::Cpu),
+            )?;
             why = Some(reason);
             place
         }
     };
-    let linear = match (options.linear_backend, &before) {
-        (Some(LinearBackend::Cpu), _) | (None, None) => Place::Cpu,
-        (Some(LinearBackend::Gpu), _) => Place::Number(machine.device),
-        (None, Some(before)) => as_before(&before.linear)?,
+    let dynamics = match (options.dynamics_backend, machine.backend, &before) {
+        (Some(DynamicsBackend::Cpu), ..) => Place::Cpu,
+        (Some(DynamicsBackend::Gpu), ..) => Place::Number(machine.device),
+        (None, Some(Backend::Auto) | None, Some(before)) => as_before(&before.dynamics)?,
+        (None, ..) => collisions.clone(),
     };
     Ok(Backends {
         collisions: if collisions == Place::Cpu { Box::new(Cpu) } else { device::collisions(&collisions)? },
-        linear: (linear != Place::Cpu).then(|| device::linear_solves(&linear)).transpose()?,
+        dynamics: (dynamics != Place::Cpu).then(|| device::dynamics(&dynamics)).transpose()?,
         why,
     })
 }
@@ -97,7 +102,7 @@ const GPU: &str = "gpu: ";
 /// The device of a run is not on this machine.
 fn not_here(name: &str, folder: &Path) -> Failure {
     Failure::backend(format!(
-        "{}: {name} computed this run, and is not here. --backend cpu --linear-backend cpu, or --device N, goes on from its \
+        "{}: {name} computed this run, and is not here. --backend cpu, or --device N, goes on from its \
          checkpoint; results then differ from what they would have been, within the tolerances",
         folder.display()
     ))
@@ -115,18 +120,23 @@ mod device {
         Ok(Box::new(Device::new(name, engine)))
     }
 
-    pub fn linear_solves(place: &Place) -> Result<Box<dyn LinearBackend>, Failure> {
-        let (name, engine) = open(place, "--linear-backend cpu")?;
+    pub fn dynamics(place: &Place) -> Result<Box<dyn LinearBackend>, Failure> {
+        let (name, engine) = open(place, "--dynamics-backend cpu")?;
         Ok(Box::new(ConjugateGradients::new(name, engine)))
     }
 
-    /// The faster one of the CPU and the device of that number in a scene, and why it was chosen.
-    pub fn choose(scene: &Scene, number: Option<usize>) -> Result<(Place, String), Failure> {
+    /// The faster one of the CPU and the device of that number in a scene, with or without its dynamics, and why it was
+    /// chosen.
+    pub fn choose(
+        scene: &Scene,
+        number: Option<usize>,
+        with_dynamics: bool,
+    ) -> Result<(Place, String), Failure> {
         if number.is_some() {
             // A device that is asked for and is not there is a mistake, none at all is not.
             Adapter::choose(number).map_err(Failure::backend)?;
         }
-        let Choice { device, why } = Choice::new(scene, number).map_err(Failure::input)?;
+        let Choice { device, why } = Choice::new(scene, number, with_dynamics).map_err(Failure::input)?;
         Ok(match device {
             Some(adapter) => (Place::Number(number), format!("{}: {why}", adapter.name())),
             None => (Place::Cpu, format!("the CPU: {why}")),
@@ -164,11 +174,15 @@ mod device {
         Err(not_built_in())
     }
 
-    pub fn linear_solves(_place: &Place) -> Result<Box<dyn LinearBackend>, Failure> {
+    pub fn dynamics(_place: &Place) -> Result<Box<dyn LinearBackend>, Failure> {
         Err(not_built_in())
     }
 
-    pub fn choose(_scene: &Scene, _number: Option<usize>) -> Result<(Place, String), Failure> {
+    pub fn choose(
+        _scene: &Scene,
+        _number: Option<usize>,
+        _with_dynamics: bool,
+    ) -> Result<(Place, String), Failure> {
         Ok((Place::Cpu, "the CPU: this bowknot was built without the feature `gpu`".to_owned()))
     }
 
@@ -185,6 +199,6 @@ pub fn list() -> Result<String, Failure> {
 #[cfg(not(feature = "gpu"))]
 fn not_built_in() -> Failure {
     Failure::backend(
-        "this bowknot was built without the feature `gpu`: build it with it, or use --backend cpu and --linear-backend cpu",
+        "this bowknot was built without the feature `gpu`: build it with it, or use --backend cpu",
     )
 }

@@ -18,7 +18,7 @@ use std::path::Path;
 const MAX_SIZES: usize = 10;
 
 pub fn run(options: &RunOptions) -> Result<Exit, Failure> {
-    setup::refuse_idle_device(&options.machine, options.linear_backend)?;
+    setup::refuse_idle_device(&options.machine, options.dynamics_backend)?;
     setup::machine(&options.machine)?;
     simulate(options)
 }
@@ -49,7 +49,7 @@ pub fn simulate(options: &RunOptions) -> Result<Exit, Failure> {
             if !options.quiet && !options.json {
                 print_sizes(progress.world);
                 computed_by.why.iter().for_each(|why| eprintln!("--backend auto: {why}"));
-                places(&computed_by.collisions, &computed_by.linear)
+                places(&computed_by.collisions, &computed_by.dynamics)
                     .iter()
                     .for_each(|line| eprintln!("{line}"));
             }
@@ -171,9 +171,9 @@ fn write_dump(scene: &Scene, path: &Path) -> Result<usize, Failure> {
 }
 
 /// What runs where, unless all of it runs on the CPU.
-fn places(collisions: &str, linear_solves: &str) -> Option<String> {
-    let is_elsewhere = [collisions, linear_solves].iter().any(|name| *name != "cpu");
-    is_elsewhere.then(|| format!("collisions on {collisions}, linear solves on {linear_solves}"))
+fn places(collisions: &str, dynamics: &str) -> Option<String> {
+    let is_elsewhere = [collisions, dynamics].iter().any(|name| *name != "cpu");
+    is_elsewhere.then(|| format!("collisions on {collisions}, dynamics on {dynamics}"))
 }
 
 /// Prints what is simulated and how large it is.
@@ -239,7 +239,7 @@ fn to_text(outcome: &Outcome, out: &Path, frames: usize) -> String {
         line += &format!(", {seconds:.3} s per frame on {}", counted(summary.threads, "thread", "threads"));
     }
     lines.push(line);
-    lines.extend(places(&summary.backend, &summary.linear_backend));
+    lines.extend(places(&summary.backend, &summary.dynamics_backend));
     let number = |value: Option<f64>, digits: usize| {
         value.map_or_else(|| "-".to_owned(), |value| format!("{value:.digits$}"))
     };

@@ -1,6 +1,6 @@
 //! Logging, threads and the choice of a backend.
 
-use crate::args::{Backend, LinearBackend, Machine};
+use crate::args::{Backend, DynamicsBackend, Machine};
 use crate::exit::Failure;
 use bowknot_errors::counted;
 use std::io::IsTerminal;
@@ -49,11 +49,13 @@ pub fn no_display() {
 }
 
 /// Refuses a device that nothing is computed on.
-pub fn refuse_idle_device(machine: &Machine, linear_solves: Option<LinearBackend>) -> Result<(), Failure> {
+pub fn refuse_idle_device(machine: &Machine, dynamics: Option<DynamicsBackend>) -> Result<(), Failure> {
     let is_used = matches!(machine.backend, Some(Backend::Gpu | Backend::Auto))
-        || linear_solves == Some(LinearBackend::Gpu);
+        || dynamics == Some(DynamicsBackend::Gpu);
     if machine.device.is_some() && !is_used {
-        return Err(Failure::input("--device needs --backend gpu or auto, or --linear-backend gpu of `run`"));
+        return Err(Failure::input(
+            "--device needs --backend gpu or auto, or --dynamics-backend gpu of `run`",
+        ));
     }
     Ok(())
 }

@@ -176,7 +176,7 @@ pub enum StepError {
         /// The reason.
         problem: &'static str,
     },
-    /// What solves the linear systems has failed, see [`crate::Dynamics::set_linear_backend`].
+    /// What solves the linear systems has failed, see [`crate::Dynamics::set_backend`].
     #[error("{message}")]
     LinearBackend {
         /// What it says.

@@ -311,7 +311,7 @@ fn target<B: LinearBackend + 'static>(case: &Case, backend: B) -> Result<Dynamic
     params.environment.wind = Vector::new(3.0, -1.0, 2.0);
     let model = DynamicsModel::new(case.rest.clone(), vec![case.body.clone()]).expect("a model");
     let mut dynamics = Dynamics::new(model, params).expect("parameters");
-    dynamics.set_linear_backend(Some(Box::new(backend)));
+    dynamics.set_backend(Some(Box::new(backend)));
     let random = &mut fastrand::Rng::with_seed(11);
     let mut moved = |amount: f64| -> Vec<Point> {
         case.rest
@@ -458,7 +458,7 @@ fn fall(
     params.newton.cg_tolerance = 1e-5;
     let model = DynamicsModel::new(case.rest.clone(), vec![case.body.clone()]).expect("a model");
     let mut dynamics = Dynamics::new(model, params).expect("parameters");
-    dynamics.set_linear_backend(backend);
+    dynamics.set_backend(backend);
     let (mut x, mut v) = (case.rest.clone(), vec![Vector::zeros(); case.rest.len()]);
     let held: Vec<bool> = (0..x.len()).map(|k| k < 2).collect();
     let mut iterations = 0;
@@ -495,7 +495,7 @@ fn linear_momentum_is_conserved_to_rounding() {
         let model = DynamicsModel::new(case.rest.clone(), vec![case.body.clone()]).expect("a model");
         let masses = model.masses().to_vec();
         let mut dynamics = Dynamics::new(model, params).expect("parameters");
-        dynamics.set_linear_backend(Some(Box::new(Assembling::new(TwinEngine::new()))));
+        dynamics.set_backend(Some(Box::new(Assembling::new(TwinEngine::new()))));
         let random = &mut fastrand::Rng::with_seed(5);
         let mut x = case.rest.clone();
         let mut v: Vec<Vector> = x.iter().map(|_| random_vector(random)).collect();

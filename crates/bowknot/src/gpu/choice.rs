@@ -1,13 +1,11 @@
-//! Which backend resolves the collisions of a scene faster: the CPU or a device.
+//! Where a scene is simulated faster: on the CPU or on a device.
 
 use super::device::Device;
-use crate::simulator::{BackendError, Checkpoint, CollisionBackend, Cpu, SimulationError, Simulator};
+use crate::simulator::{Checkpoint, CollisionBackend, Cpu, SimulationError, Simulator};
+use bowknot_dynamics::LinearBackend;
 use bowknot_errors::counted;
-use bowknot_geometry::Point;
-use bowknot_gpu::{Adapter, DeviceEngine};
+use bowknot_gpu::{Adapter, ConjugateGradients, DeviceEngine};
 use bowknot_scene::Scene;
-use bowknot_twoway::{CollisionScene, Observer, ResolveInput, Resolver, Statistics};
-use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 /// How many times as long the CPU must take for the device to be chosen: where both take as long, chance must not decide.
@@ -23,7 +21,7 @@ const MOST_SECONDS: f64 = 10.0;
 const LEAD_SHARE: usize = 4;
 const MOST_LEAD_STEPS: usize = 64;
 
-/// What resolves the collisions of a scene, and why.
+/// What computes a scene, and why.
 #[derive(Debug)]
 pub struct Choice {
     /// The device; None for the CPU.
@@ -33,15 +31,16 @@ pub struct Choice {
 }
 
 impl Choice {
-    /// The device `number`, or the first that is usable, if it resolves the collisions of the scene faster than the CPU. The
-    /// first time steps with contacts are made on either, on copies of the scene.
+    /// The device `number`, or the first that is usable, if it simulates the scene faster than the CPU: its collisions and,
+    /// if `with_dynamics` is true, its dynamics. The first time steps with contacts are made on either, on copies of the
+    /// scene.
     ///
     /// The clock decides, so the answer may differ from machine to machine and, where both are about as fast, from call to
     /// call.
     ///
     /// # Errors
     /// A scene that cannot be simulated, on the CPU either.
-    pub fn new(scene: &Scene, number: Option<usize>) -> Result<Self, SimulationError> {
+    pub fn new(scene: &Scene, number: Option<usize>, with_dynamics: bool) -> Result<Self, SimulationError> {
         let on_cpu = |why: String| Ok(Self { device: None, why });
         let adapter = match Adapter::choose(number) {
             Ok(adapter) => adapter,
@@ -50,12 +49,18 @@ impl Choice {
         if adapter.is_software() {
             return on_cpu(format!("{adapter} computes on the CPU"));
         }
-        let engine = match DeviceEngine::open(&adapter) {
-            Ok(engine) => engine,
+        let device = DeviceEngine::open(&adapter).and_then(|engine| {
+            let dynamics = with_dynamics.then(|| DeviceEngine::open(&adapter)).transpose()?;
+            let name = adapter.to_string();
+            let dynamics = dynamics.map(|engine| ConjugateGradients::new(name.clone(), engine));
+            let dynamics = dynamics.map(|dynamics| Box::new(dynamics) as Box<dyn LinearBackend>);
+            Ok((Box::new(Device::new(name, engine)) as Box<dyn CollisionBackend>, dynamics))
+        });
+        let device = match device {
+            Ok(device) => device,
             Err(error) => return on_cpu(error.to_string()),
         };
-        let device = Device::new(adapter.to_string(), engine);
-        let verdict = compare(scene, Box::new(Cpu), Box::new(device))?;
+        let verdict = compare(scene, Box::new(Cpu), device)?;
         Ok(Self { device: verdict.device_is_faster.then_some(adapter), why: verdict.why })
     }
 }
@@ -71,7 +76,7 @@ struct Verdict {
 fn compare(
     scene: &Scene,
     cpu: Box<dyn CollisionBackend>,
-    device: Box<dyn CollisionBackend>,
+    (device, dynamics): (Box<dyn CollisionBackend>, Option<Box<dyn LinearBackend>>),
 ) -> Result<Verdict, SimulationError> {
     let to_cpu = |why: String| Ok(Verdict { device_is_faster: false, why });
     let frames = scene.simulation.frames;
@@ -80,12 +85,13 @@ fn compare(
         let frames = counted(frames, "time step is", "time steps are");
         return to_cpu(format!("{frames} too few to measure"));
     }
-    let mut on_device = Timed::simulator(scene)?;
-    if let Err(error) = on_device.set(device) {
+    let mut on_device = simulator(scene)?;
+    if let Err(error) = on_device.set_backend(device) {
         return to_cpu(words(&error));
     }
-    let mut on_cpu = Timed::simulator(scene)?;
-    on_cpu.set(cpu)?;
+    on_device.set_dynamics_backend(dynamics);
+    let mut on_cpu = simulator(scene)?;
+    on_cpu.set_backend(cpu)?;
     // Where a time step fails, the run will say so, after the frames before it.
     let (touches, [seconds_on_cpu, seconds_on_device]) = match seconds(&mut on_cpu, &mut on_device, lead) {
         Ok(measured) => measured,
@@ -95,34 +101,33 @@ fn compare(
     Ok(Verdict {
         device_is_faster: MARGIN * seconds_on_device < seconds_on_cpu,
         why: format!(
-            "the collisions of a time step take {seconds_on_device:.4} s on the device and {seconds_on_cpu:.4} s on the CPU, \
-             {place}"
+            "a time step takes {seconds_on_device:.4} s on the device and {seconds_on_cpu:.4} s on the CPU, {place}"
         ),
     })
 }
 
-/// Whether anything touches after at most `lead` time steps, and the seconds of the collisions per time step from then on,
-/// on the CPU and on the device.
+/// Whether anything touches after at most `lead` time steps, and the seconds per time step from then on, on the CPU and on
+/// the device.
 fn seconds(
-    on_cpu: &mut Timed,
-    on_device: &mut Timed,
+    on_cpu: &mut Simulator,
+    on_device: &mut Simulator,
     lead: usize,
 ) -> Result<(bool, [f64; 2]), SimulationError> {
     let timer = Instant::now();
     let mut touches = false;
     for _ in 0..lead {
-        touches = on_cpu.simulator.step()?.contact_rows > 0;
+        touches = on_cpu.step()?.contact_rows > 0;
         if touches || timer.elapsed().as_secs_f64() > MOST_SECONDS {
             break;
         }
     }
-    let start = on_cpu.simulator.checkpoint();
-    let cpu = on_cpu.measure()?;
-    on_device.restore(&start)?;
+    let start = on_cpu.checkpoint();
+    let cpu = measure(on_cpu)?;
+    restore(on_device, &start)?;
     // The device compiles its kernels in a time step that does not count.
-    on_device.simulator.step()?;
-    on_device.restore(&start)?;
-    Ok((touches, [cpu, on_device.measure()?]))
+    on_device.step()?;
+    restore(on_device, &start)?;
+    Ok((touches, [cpu, measure(on_device)?]))
 }
 
 /// What a backend failed of, or why a time step cannot be made.
@@ -133,80 +138,35 @@ fn words(error: &SimulationError) -> String {
     }
 }
 
-/// A simulation and the seconds of its collision backend.
-struct Timed {
-    simulator: Simulator,
-    seconds: Arc<Mutex<f64>>,
+/// Seconds per time step, over the next ones.
+fn measure(simulator: &mut Simulator) -> Result<f64, SimulationError> {
+    let timer = Instant::now();
+    let mut steps = 0;
+    while steps == 0 || steps < MEASURED_STEPS && timer.elapsed().as_secs_f64() < MOST_SECONDS {
+        simulator.step()?;
+        steps += 1;
+    }
+    Ok(timer.elapsed().as_secs_f64() / steps as f64)
 }
 
-impl Timed {
-    fn simulator(scene: &Scene) -> Result<Self, SimulationError> {
-        let mut simulator = Simulator::new(scene)?;
-        simulator.set_measured(false);
-        Ok(Self { simulator, seconds: Arc::default() })
-    }
-
-    fn set(&mut self, backend: Box<dyn CollisionBackend>) -> Result<(), SimulationError> {
-        self.simulator.set_backend(Box::new(Clocked { backend, seconds: Arc::clone(&self.seconds) }))
-    }
-
-    fn restore(&mut self, start: &Checkpoint) -> Result<(), SimulationError> {
-        let restored = self.simulator.restore(start);
-        restored.map_err(|message| SimulationError::Internal { step: start.step, message })
-    }
-
-    /// Seconds of the collisions per time step, over the next ones.
-    fn measure(&mut self) -> Result<f64, SimulationError> {
-        let timer = Instant::now();
-        *self.seconds.lock().unwrap_or_else(PoisonError::into_inner) = 0.0;
-        let mut steps = 0;
-        while steps == 0 || steps < MEASURED_STEPS && timer.elapsed().as_secs_f64() < MOST_SECONDS {
-            self.simulator.step()?;
-            steps += 1;
-        }
-        Ok(*self.seconds.lock().unwrap_or_else(PoisonError::into_inner) / steps as f64)
-    }
+fn simulator(scene: &Scene) -> Result<Simulator, SimulationError> {
+    let mut simulator = Simulator::new(scene)?;
+    simulator.set_measured(false);
+    Ok(simulator)
 }
 
-/// A backend that adds up the seconds of its calls.
-#[derive(Debug)]
-struct Clocked {
-    backend: Box<dyn CollisionBackend>,
-    seconds: Arc<Mutex<f64>>,
-}
-
-impl CollisionBackend for Clocked {
-    fn name(&self) -> String {
-        self.backend.name()
-    }
-
-    fn prepare(&mut self, scene: &CollisionScene, home: &[Point]) -> Result<(), BackendError> {
-        self.backend.prepare(scene, home)
-    }
-
-    fn resolution(&self) -> f64 {
-        self.backend.resolution()
-    }
-
-    fn resolve(
-        &mut self,
-        resolver: &mut Resolver,
-        positions: &mut [Point],
-        target: &[Point],
-        input: &ResolveInput<'_>,
-        observer: &mut dyn Observer,
-    ) -> Result<Statistics, BackendError> {
-        let timer = Instant::now();
-        let result = self.backend.resolve(resolver, positions, target, input, observer);
-        *self.seconds.lock().unwrap_or_else(PoisonError::into_inner) += timer.elapsed().as_secs_f64();
-        result
-    }
+fn restore(simulator: &mut Simulator, start: &Checkpoint) -> Result<(), SimulationError> {
+    let restored = simulator.restore(start);
+    restored.map_err(|message| SimulationError::Internal { step: start.step, message })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::simulator::BackendError;
+    use bowknot_geometry::Point;
     use bowknot_gpu::TwinEngine;
+    use bowknot_twoway::{CollisionScene, Observer, ResolveInput, Resolver, Statistics};
 
     fn scene(sets: &[&str]) -> Scene {
         let sets = [&["body.0.velocity=[0,0,-4]"], sets].concat();
@@ -256,16 +216,16 @@ mod tests {
     #[test]
     fn the_faster_backend_is_taken_and_both_are_measured_in_contact() {
         let slow = || Box::new(Odd { cpu: Cpu, fails: false });
-        let verdict = compare(&scene(&[]), slow(), Box::new(Cpu)).expect("a verdict");
+        let verdict = compare(&scene(&[]), slow(), (Box::new(Cpu), None)).expect("a verdict");
         assert!(verdict.device_is_faster && verdict.why.contains("from the first contact on"), "{verdict:?}");
-        let verdict = compare(&scene(&[]), Box::new(Cpu), slow()).expect("a verdict");
+        let verdict = compare(&scene(&[]), Box::new(Cpu), (slow(), None)).expect("a verdict");
         assert!(!verdict.device_is_faster && verdict.why.contains(" s on the device and "), "{verdict:?}");
     }
 
     #[test]
     fn the_cpu_is_taken_where_the_device_cannot_or_as_fast() {
         let verdict = |sets: &[&str], device: Box<dyn CollisionBackend>| {
-            let verdict = compare(&scene(sets), Box::new(Cpu), device).expect("a verdict");
+            let verdict = compare(&scene(sets), Box::new(Cpu), (device, None)).expect("a verdict");
             assert!(!verdict.device_is_faster, "{verdict:?}");
             verdict.why
         };

@@ -5,8 +5,8 @@
 //!
 //! [`Choice`] says whether a device is faster than the CPU in a scene.
 //! [`Device`] is a [backend](crate::simulator::CollisionBackend) of simulations; [`resolve_on`] solves a single problem.
-//! [`ConjugateGradients`] does the linear solves of the dynamics, which stay on the CPU otherwise
-//! ([`Simulator::set_linear_backend`](crate::Simulator::set_linear_backend)).
+//! [`ConjugateGradients`] does the dynamics, which stay on the CPU otherwise
+//! ([`Simulator::set_dynamics_backend`](crate::Simulator::set_dynamics_backend)).
 
 mod choice;
 mod device;

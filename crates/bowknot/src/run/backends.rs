@@ -18,15 +18,15 @@ pub(super) const FILE: &str = "backends.json";
 pub struct Backends {
     /// Resolves the collisions.
     pub collisions: Box<dyn CollisionBackend>,
-    /// Does the linear solves of the dynamics; None for the CPU.
-    pub linear: Option<Box<dyn LinearBackend>>,
+    /// Computes the dynamics; None for the CPU.
+    pub dynamics: Option<Box<dyn LinearBackend>>,
     /// Why they were chosen, if the program chose.
     pub why: Option<String>,
 }
 
 impl Default for Backends {
     fn default() -> Self {
-        Self { collisions: Box::new(Cpu), linear: None, why: None }
+        Self { collisions: Box::new(Cpu), dynamics: None, why: None }
     }
 }
 
@@ -35,7 +35,7 @@ impl Backends {
     pub fn record(&self) -> BackendRecord {
         BackendRecord {
             collisions: self.collisions.name(),
-            linear: self.linear.as_ref().map_or_else(|| CPU.to_owned(), |linear| linear.name()),
+            dynamics: self.dynamics.as_ref().map_or_else(|| CPU.to_owned(), |dynamics| dynamics.name()),
             why: self.why.clone(),
         }
     }
@@ -46,8 +46,9 @@ impl Backends {
 pub struct BackendRecord {
     /// What resolves the collisions: "cpu", or "gpu: " and the device.
     pub collisions: String,
-    /// What does the linear solves of the dynamics, likewise.
-    pub linear: String,
+    /// What computes the dynamics, likewise.
+    #[serde(alias = "linear")]
+    pub dynamics: String,
     /// Why they were chosen, if the program chose.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub why: Option<String>,

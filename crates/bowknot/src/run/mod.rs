@@ -84,7 +84,7 @@ pub fn run(
     run_on(scene, options, Backends::default(), progress)
 }
 
-/// As [`run`], with backends for the collisions and for the linear solves of the dynamics. [`BackendRecord::read`] tells
+/// As [`run`], with backends for the collisions and for the dynamics. [`BackendRecord::read`] tells
 /// which ones computed a folder so far: a resumption has the same bits with them only.
 ///
 /// # Errors
@@ -118,7 +118,7 @@ fn run_steps(
     let mut simulator = Simulator::new(scene)?;
     let record = backends.record();
     simulator.set_backend(backends.collisions)?;
-    simulator.set_linear_backend(backends.linear);
+    simulator.set_dynamics_backend(backends.dynamics);
     simulator.check_motions(scene.simulation.frames)?;
     let mut writer = if options.resume {
         RunWriter::resume(&options.out, scene, &mut simulator)?
@@ -192,7 +192,7 @@ fn run_steps(
         frames: totals.steps(),
         threads: rayon::current_num_threads(),
         backend: record.collisions,
-        linear_backend: record.linear,
+        dynamics_backend: record.dynamics,
         mean: totals.mean().map_err(unwritable)?,
         max: totals.max().map_err(unwritable)?,
         min_gap_m: totals.min_gap(),

@@ -21,9 +21,9 @@ pub struct Summary {
     pub threads: usize,
     /// What resolved the collisions: "cpu", or "gpu: " and the device.
     pub backend: String,
-    /// What did the linear solves of the dynamics, likewise.
+    /// What computed the dynamics, likewise.
     #[serde(default = "cpu")]
-    pub linear_backend: String,
+    pub dynamics_backend: String,
     /// Means over the time steps; none without a time step.
     pub mean: Option<StepNumbers>,
     /// Largest values over the time steps; none without a time step.
@@ -40,7 +40,7 @@ pub struct Summary {
     pub intersections: Option<usize>,
 }
 
-/// What did the linear solves of runs whose summary does not say it.
+/// What computed the dynamics of runs whose summary does not say it.
 fn cpu() -> String {
     CPU.to_owned()
 }

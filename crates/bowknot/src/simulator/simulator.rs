@@ -178,15 +178,14 @@ impl Simulator {
         &*self.backend
     }
 
-    /// Lets a backend do the linear solves of the dynamics from the next time step on, in place of the CPU; None for the
-    /// CPU.
-    pub fn set_linear_backend(&mut self, backend: Option<Box<dyn LinearBackend>>) {
-        self.active_dynamics().set_linear_backend(backend);
+    /// Lets a backend compute the dynamics from the next time step on, in place of the CPU; None for the CPU.
+    pub fn set_dynamics_backend(&mut self, backend: Option<Box<dyn LinearBackend>>) {
+        self.active_dynamics().set_backend(backend);
     }
 
-    /// What does the linear solves of the dynamics; None if it is the CPU.
-    pub fn linear_backend(&mut self) -> Option<&dyn LinearBackend> {
-        self.active_dynamics().linear_backend()
+    /// What computes the dynamics; None if it is the CPU.
+    pub fn dynamics_backend(&mut self) -> Option<&dyn LinearBackend> {
+        self.active_dynamics().backend()
     }
 
     /// The dynamics of all bodies that are awake.

@@ -154,18 +154,18 @@ impl Simulator {
             let obstacles: Vec<bool> = world.bodies.iter().zip(&asleep).map(is_obstacle).collect();
             resolver.set_obstacles(&obstacles).map_err(|source| resolve_error(world, *step, source))?;
             contacts.leave_out(world, resolver, &asleep);
-            // The linear solves of the bodies that are awake are done where they were done before.
+            // The dynamics of the bodies that are awake are computed where they were before.
             let mut before = rest.awake.take();
             let active = before.as_mut().map_or(&mut *dynamics, |awake| &mut awake.dynamics);
-            let linear_backend = active.take_linear_backend();
-            dynamics.set_linear_backend(linear_backend);
+            let backend = active.take_backend();
+            dynamics.set_backend(backend);
             if asleep.contains(&true) {
                 let mut awake = Awake::new(world, &asleep, dynamics, positions)?;
                 if !self.external_forces.is_empty() {
                     let forced = awake.dynamics.set_external_forces(&self.external_forces);
                     forced.map_err(|source| SimulationError::Target { step: *step, source })?;
                 }
-                awake.dynamics.set_linear_backend(dynamics.take_linear_backend());
+                awake.dynamics.set_backend(dynamics.take_backend());
                 rest.awake = Some(awake);
             }
             rest.asleep = asleep;

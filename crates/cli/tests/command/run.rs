@@ -120,26 +120,26 @@ fn a_run_on_a_gpu_goes_on_from_its_checkpoint_there_and_on_the_cpu() {
 }
 
 #[test]
-fn linear_solves_run_on_a_gpu_if_asked_and_say_so() {
+fn the_dynamics_run_on_a_gpu_if_asked_and_say_so() {
     let place = Place::new();
     let run = |frames: u32, options: &str| {
         let start = "--set body.0.velocity=[0,0,-4] --check --threads 1";
         place.run(&format!("run drape --scale 0.2 --frames {frames} {start} {options}")).ok()
     };
     let on_gpu = |name: &serde_json::Value| name.as_str().unwrap().starts_with("gpu: ");
-    let summary = run(8, "--linear-backend gpu --backend gpu --json --out whole").json();
-    assert!(on_gpu(&summary["backend"]) && on_gpu(&summary["linear_backend"]), "{summary}");
+    let summary = run(8, "--backend gpu --json --out whole").json();
+    assert!(on_gpu(&summary["backend"]) && on_gpu(&summary["dynamics_backend"]), "{summary}");
     assert!(summary["mean"]["cg_iterations"].as_f64().unwrap() > 0.0, "{summary}");
     assert_eq!((&summary["mean"]["converged"], &summary["intersections"]), (&1.0.into(), &0.into()));
-    let ended = run(5, "--linear-backend gpu --backend gpu --out parts");
-    assert!(
-        ended.stderr.contains("collisions on gpu: ") && ended.stderr.contains(", linear solves on gpu: ")
-    );
-    run(8, "--linear-backend gpu --backend gpu --resume --out parts");
+    let ended = run(5, "--backend gpu --out parts");
+    assert!(ended.stderr.contains("collisions on gpu: ") && ended.stderr.contains(", dynamics on gpu: "));
+    run(8, "--backend gpu --resume --out parts");
     let bytes = |run: &str| std::fs::read(place.path(&format!("{run}/frames/000008.ply"))).unwrap();
     assert_eq!(bytes("whole"), bytes("parts"));
-    let summary = run(3, "--linear-backend gpu --device 0 --json --out solves").json();
-    assert!(summary["backend"] == "cpu" && on_gpu(&summary["linear_backend"]), "{summary}");
+    let summary = run(3, "--dynamics-backend gpu --device 0 --json --out dynamics").json();
+    assert!(summary["backend"] == "cpu" && on_gpu(&summary["dynamics_backend"]), "{summary}");
+    let summary = run(3, "--backend gpu --dynamics-backend cpu --json --out collisions").json();
+    assert!(on_gpu(&summary["backend"]) && summary["dynamics_backend"] == "cpu", "{summary}");
 }
 
 /// Mesa's software driver is the only device where the tests run.
@@ -158,7 +158,7 @@ fn the_backend_is_chosen_once_and_a_resumption_keeps_it() {
     let ended = run(9, "--backend auto --out auto").ok();
     assert!(ended.stderr.contains("--backend auto: the CPU: "), "{ended:#?}");
     assert_eq!(ended.stderr.lines().filter(|line| line.contains("--backend auto")).count(), 1, "{ended:#?}");
-    assert_eq!((&record("auto")["collisions"], &record("auto")["linear"]), (&"cpu".into(), &"cpu".into()));
+    assert_eq!((&record("auto")["collisions"], &record("auto")["dynamics"]), (&"cpu".into(), &"cpu".into()));
     assert!(record("auto")["why"].as_str().unwrap().starts_with("the CPU: "));
     run(9, "--out plain").ok();
     assert!(last("auto", 9) == last("plain", 9) && record("plain").get("why").is_none());
@@ -172,8 +172,8 @@ fn the_backend_is_chosen_once_and_a_resumption_keeps_it() {
     assert!(ended.stderr.contains("--backend auto: the CPU: no usable GPU was found"), "{ended:#?}");
 
     // A resumption takes what computed the run before, whether `auto` is said again or not.
-    run(9, "--backend gpu --linear-backend gpu --out whole").ok();
-    run(6, "--backend gpu --linear-backend gpu --out parts").ok();
+    run(9, "--backend gpu --out whole").ok();
+    run(6, "--backend gpu --out parts").ok();
     let device = record("parts");
     assert!(device["collisions"].as_str().unwrap().starts_with("gpu: "), "{device}");
     run(8, "--resume --out parts").ok();
@@ -183,7 +183,7 @@ fn the_backend_is_chosen_once_and_a_resumption_keeps_it() {
     let gone = device.to_string().replace("gpu: ", "gpu: Older ");
     place.write("parts/backends.json", gone);
     run(10, "--resume --out parts").refused(3, &["Older", "not here", "--backend cpu", "--device"]);
-    run(10, "--resume --backend cpu --linear-backend cpu --out parts").ok();
+    run(10, "--resume --backend cpu --out parts").ok();
     assert_eq!(record("parts")["collisions"], "cpu");
     place.write("parts/backends.json", "{}");
     run(11, "--resume --out parts").refused(2, &["backends.json", "collisions"]);

@@ -107,7 +107,7 @@ impl Dynamics {
     /// the CPU, as at first. The CPU refines them in double precision and solves alone where single precision gains
     /// nothing. A backend that computes the whole of Newton iterations does so if it can compute the model
     /// ([`NewtonBackend`]), and the residuals of time steps are measured by its preconditioner.
-    pub fn set_linear_backend(&mut self, backend: Option<Box<dyn LinearBackend>>) {
+    pub fn set_backend(&mut self, backend: Option<Box<dyn LinearBackend>>) {
         let patches = match self.params.newton.preconditioner {
             PreconditionerKind::BlockJacobi => Vec::new(),
             PreconditionerKind::TwoLevel => self.model.leaves.clone(),
@@ -118,12 +118,12 @@ impl Dynamics {
     }
 
     /// Takes away what does the linear solves in single precision: the CPU does them from now on.
-    pub fn take_linear_backend(&mut self) -> Option<Box<dyn LinearBackend>> {
+    pub fn take_backend(&mut self) -> Option<Box<dyn LinearBackend>> {
         self.work.solver.take_backend()
     }
 
     /// What does the linear solves in single precision; None if it is the CPU.
-    pub fn linear_backend(&self) -> Option<&dyn LinearBackend> {
+    pub fn backend(&self) -> Option<&dyn LinearBackend> {
         self.work.solver.backend()
     }
 

@@ -175,7 +175,7 @@ fn apart(a: &[Point], b: &[Point]) -> f64 {
 fn targets_are_those_of_the_cpu() {
     let (mut cpu, rest, held) = hanging_sheet(1e-9);
     let (mut other, ..) = hanging_sheet(1e-9);
-    other.set_linear_backend(Some(Box::new(Plain::default())));
+    other.set_backend(Some(Box::new(Plain::default())));
     assert_eq!(other.linear_backend().map(LinearBackend::name).as_deref(), Some("plain"));
     let [a, b] = [&mut cpu, &mut other].map(|dynamics| fall(dynamics, &rest, &held, 8));
     let (apart, fallen) = (apart(&a, &b), apart(&a, &rest));
@@ -186,7 +186,7 @@ fn targets_are_those_of_the_cpu() {
 fn where_single_precision_gains_nothing_the_cpu_solves() {
     let (mut cpu, rest, held) = hanging_sheet(1e-9);
     let (mut other, ..) = hanging_sheet(1e-9);
-    other.set_linear_backend(Some(Box::new(Plain { fault: Fault::Idle, ..Plain::default() })));
+    other.set_backend(Some(Box::new(Plain { fault: Fault::Idle, ..Plain::default() })));
     let [a, b] = [&mut cpu, &mut other].map(|dynamics| fall(dynamics, &rest, &held, 8));
     let (apart, fallen) = (apart(&a, &b), apart(&a, &rest));
     assert!(apart < AGREEMENT * fallen, "{apart:e} m");
@@ -195,12 +195,12 @@ fn where_single_precision_gains_nothing_the_cpu_solves() {
 #[test]
 fn a_backend_that_fails_is_an_error_and_may_be_replaced() {
     let (mut dynamics, rest, held) = hanging_sheet(1e-6);
-    dynamics.set_linear_backend(Some(Box::new(Plain { fault: Fault::Lost, ..Plain::default() })));
+    dynamics.set_backend(Some(Box::new(Plain { fault: Fault::Lost, ..Plain::default() })));
     let (mut x, mut v) = (rest.clone(), vec![Vector::zeros(); rest.len()]);
     let error = dynamics.solve_step(&mut x, &mut v, DT, &held, &rest, 1).expect_err("it is lost");
     assert_eq!(error, StepError::LinearBackend { message: "the device was lost".to_owned() });
     assert_eq!(x, rest);
-    dynamics.set_linear_backend(None);
+    dynamics.set_backend(None);
     let resumed = fall(&mut dynamics, &rest, &held, 3);
     let (mut fresh, ..) = hanging_sheet(1e-6);
     assert_eq!(resumed, fall(&mut fresh, &rest, &held, 3));

@@ -129,7 +129,7 @@ function fillSummary(panel) {
             ["preset", meta.preset], ["contact distance δ", meta.delta && show(meta.delta, "m")],
         ]),
         ...rows("Machine", [
-            ["machine", summary?.machine], ["collisions on", summary?.backend], ["linear solves on", summary?.linear_backend], ["threads", summary?.threads && show(summary.threads)],
+            ["machine", summary?.machine], ["collisions on", summary?.backend], ["dynamics on", summary?.dynamics_backend], ["threads", summary?.threads && show(summary.threads)],
             ["processor time", present(columns.cpu_seconds).length > 0 ? show(sum(columns.cpu_seconds), "s") : null],
         ]),
         ...rows("Check", [["every accepted state and path", verdicts().map(([words]) => words).join("; ")]]),
