@@ -6,8 +6,8 @@
 //! `--ignored` counts iterations in larger scenes and prints a table; see `docs/GPU.md`.
 
 use bowknot::dynamics::{
-    Assembler, AssemblySprings, AssemblyState, ElementModel, LinearBackend, LinearBackendError, LinearSystem,
-    Matrix3,
+    AssemblySprings, ElementModel, LinearBackend, LinearBackendError, LinearSystem, Matrix3, NewtonBackend,
+    NewtonSolve, NewtonStep, NewtonTarget, OutOfBalance, SolveLimits, Trial,
 };
 use bowknot::geometry::{Point, Vector};
 use bowknot::gpu::{Adapter, ComparingEngine, ConjugateGradients, DeviceEngine, Engine, TwinEngine};
@@ -124,15 +124,15 @@ struct Counted<E> {
     inner: ConjugateGradients<E>,
     counts: Arc<Mutex<Counts>>,
     fails_at: Option<usize>,
-    /// Whether the device assembles the matrices.
-    assembles: bool,
+    /// Whether the device does the whole of Newton iterations.
+    is_whole: bool,
 }
 
 impl<E: Watched> Counted<E> {
     fn new(engine: E, fails_at: Option<usize>) -> (Box<Self>, Arc<Mutex<Counts>>) {
         let counts: Arc<Mutex<Counts>> = Arc::default();
         let inner = ConjugateGradients::new("twins".to_owned(), engine);
-        (Box::new(Self { inner, counts: Arc::clone(&counts), fails_at, assembles: true }), counts)
+        (Box::new(Self { inner, counts: Arc::clone(&counts), fails_at, is_whole: true }), counts)
     }
 
     /// Counts a matrix. Fails if it is time to.
@@ -166,47 +166,107 @@ impl<E: Watched> LinearBackend for Counted<E> {
         x: &mut [Vector],
     ) -> Result<usize, LinearBackendError> {
         let iterations = self.inner.iterate(goal, max_iterations, factor, x)?;
-        let mut counts = self.counts.lock().expect("no panic");
-        counts.rounds += 1;
-        counts.iterations += iterations;
-        counts.differences = self.inner.engine().differences();
-        (counts.words_written, counts.words_read) = self.inner.engine().words_moved();
+        {
+            let mut counts = self.counts.lock().expect("no panic");
+            counts.rounds += 1;
+            counts.iterations += iterations;
+        }
+        self.note_words();
         Ok(iterations)
     }
 
-    fn assembler(&mut self) -> Option<&mut dyn Assembler> {
-        self.assembles.then_some(self)
+    fn newton(&mut self) -> Option<&mut dyn NewtonBackend> {
+        self.is_whole.then_some(self)
     }
 }
 
-impl<E: Watched> Assembler for Counted<E> {
+impl<E: Watched> Counted<E> {
+    /// Notes what the engine has moved so far.
+    fn note_words(&self) {
+        let mut counts = self.counts.lock().expect("no panic");
+        counts.differences = self.inner.engine().differences();
+        (counts.words_written, counts.words_read) = self.inner.engine().words_moved();
+    }
+}
+
+impl<E: Watched> NewtonBackend for Counted<E> {
     fn set_model(&mut self, model: &ElementModel) -> Result<bool, LinearBackendError> {
         self.inner.set_model(model)
     }
 
-    fn assemble(&mut self, state: &AssemblyState<'_>) -> Result<(), LinearBackendError> {
+    fn begin_step(&mut self, step: &NewtonStep<'_>) -> Result<(), LinearBackendError> {
+        self.inner.begin_step(step)
+    }
+
+    fn begin_target(&mut self, target: &NewtonTarget<'_>) -> Result<(), LinearBackendError> {
+        self.inner.begin_target(target)
+    }
+
+    fn begin_again(&mut self) -> Result<(), LinearBackendError> {
+        self.inner.begin_again()
+    }
+
+    fn linearize(&mut self, absolute: bool) -> Result<(), LinearBackendError> {
         self.count_system()?;
         self.counts.lock().expect("no panic").assembled += 1;
-        self.inner.assemble(state)
+        self.inner.linearize(absolute)
     }
 
     fn diagonal(&mut self, blocks: &mut Vec<Matrix3<f64>>) -> Result<(), LinearBackendError> {
         self.inner.diagonal(blocks)
     }
 
-    fn precondition(&mut self, springs: &AssemblySprings<'_>) -> Result<(), LinearBackendError> {
-        self.counts.lock().expect("no panic").solved += 1;
-        self.inner.precondition(springs)
+    fn solve(
+        &mut self,
+        springs: &AssemblySprings<'_>,
+        limits: &SolveLimits,
+    ) -> Result<NewtonSolve, LinearBackendError> {
+        let solved = self.inner.solve(springs, limits)?;
+        let mut counts = self.counts.lock().expect("no panic");
+        counts.solved += 1;
+        counts.rounds += 1;
+        counts.iterations += solved.info.iterations;
+        Ok(solved)
     }
 
-    fn multiply(&mut self, x: &[Vector], y: &mut [Vector]) -> Result<(), LinearBackendError> {
-        self.inner.multiply(x, y)
+    fn component_residuals(&mut self, sums: &mut Vec<Vector>) -> Result<(), LinearBackendError> {
+        self.inner.component_residuals(sums)
     }
 
-    fn apply_preconditioner(&mut self, r: &[Vector], z: &mut [Vector]) -> Result<(), LinearBackendError> {
-        // The residual of a time step, for which nothing is solved.
-        self.counts.lock().expect("no panic").solved -= 1;
-        self.inner.apply_preconditioner(r, z)
+    fn translate(&mut self, translations: &[Vector]) -> Result<(), LinearBackendError> {
+        self.inner.translate(translations)
+    }
+
+    fn place(&mut self, length: f64) -> Result<Trial, LinearBackendError> {
+        self.inner.place(length)
+    }
+
+    fn start_from_trial(&mut self) -> Result<(), LinearBackendError> {
+        self.inner.start_from_trial()
+    }
+
+    fn keep_trial(&mut self) -> Result<(), LinearBackendError> {
+        self.inner.keep_trial()
+    }
+
+    fn start_from_kept_trial(&mut self) -> Result<(), LinearBackendError> {
+        self.inner.start_from_kept_trial()
+    }
+
+    fn target(&mut self, y: &mut [Vector]) -> Result<(), LinearBackendError> {
+        self.inner.target(y)?;
+        self.note_words();
+        Ok(())
+    }
+
+    fn out_of_balance(
+        &mut self,
+        known: &[Vector],
+        counted: &[bool],
+        absolute: bool,
+    ) -> Result<OutOfBalance, LinearBackendError> {
+        self.count_system()?;
+        self.inner.out_of_balance(known, counted, absolute)
     }
 }
 
@@ -233,16 +293,16 @@ fn simulator((name, scale, sets, _): Case, more: &[&str]) -> Simulator {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Place {
     Cpu,
-    /// Linear solves on the twins; the CPU assembles.
+    /// Linear solves on the twins; the CPU does the rest.
     Solves,
-    /// The twins assemble, too.
-    Assembly,
+    /// Newton iterations on the twins.
+    Newton,
 }
 
 fn course(case: Case, more: &[&str], place: Place) -> Course {
     let mut simulator = simulator(case, more);
     let (mut backend, counts) = Counted::new(Metered::default(), None);
-    backend.assembles = place == Place::Assembly;
+    backend.is_whole = place == Place::Newton;
     if place != Place::Cpu {
         simulator.set_dynamics_backend(Some(backend));
     }
@@ -273,7 +333,7 @@ fn runs_with_solves_on_the_kernels_go_as_on_the_cpu() {
         // Two solutions of a time step may differ by the tolerance of the stopping rule each.
         let tolerance = 0.02 * cpu.edge;
         assert!(cpu.first_contact < case.3, "{}: the scene has not come to its contacts", case.0);
-        for place in [Place::Solves, Place::Assembly] {
+        for place in [Place::Solves, Place::Newton] {
             let twins = course(case, &[], place);
             for steps in [cpu.first_contact, case.3] {
                 let (found, own) = (apart(&cpu, &twins, steps), most(steps));
@@ -288,8 +348,8 @@ fn runs_with_solves_on_the_kernels_go_as_on_the_cpu() {
             assert!((0.8..1.25).contains(&ratio), "{}: {ratio} times the Newton iterations", case.0);
             let Counts { systems, rounds, assembled, .. } = twins.counts;
             assert!(systems > 0 && rounds > 0, "{}: {:?}", case.0, twins.counts);
-            // Strands are assembled by the CPU.
-            assert_eq!(assembled > 0, place == Place::Assembly && case.0 != "hair", "{}", case.0);
+            // Newton iterations with strands stay on the CPU.
+            assert_eq!(assembled > 0, place == Place::Newton && case.0 != "hair", "{}", case.0);
         }
     }
 }
@@ -460,7 +520,7 @@ fn assembly_in_scenes() {
     for case in LARGE.into_iter().filter(|case| case.0 != "hair" && case.1 < 1.0) {
         for kind in ["two-level", "block-jacobi"] {
             let set = format!("solver.newton.preconditioner=\"{kind}\"");
-            let runs = [Place::Cpu, Place::Solves, Place::Assembly].map(|place| course(case, &[&set], place));
+            let runs = [Place::Cpu, Place::Solves, Place::Newton].map(|place| course(case, &[&set], place));
             let nodes = simulator(case, &[]).world().deformable_vertices;
             let [cpu, solves, assembly] = &runs;
             let per_node = |words: usize, run: &Course| 4 * words / (nodes * run.counts.solved.max(1));

@@ -1,5 +1,5 @@
 //! Draws the buffers and the dispatches of a two-way step, from what the step records, as an SVG on stdout:
-//! `cargo run --release -p bowknot-gpu --example step_picture > docs/gpu-step.svg`
+//! `cargo run --release -p bowknot-gpu --example step_picture > docs/gpu/step.svg`
 #![allow(clippy::print_stdout, reason = "an example")]
 
 use bowknot_geometry::{BodyFilter, CollisionModel, HalfSpace, Point, Topology, Vector};

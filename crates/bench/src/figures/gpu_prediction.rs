@@ -1,11 +1,13 @@
-//! What the two-way step would take on a large GPU, from the dispatches and the bytes of small scenes: a prediction.
+//! What time steps would take on a large GPU, from the dispatches and the bytes of small scenes: a prediction.
 
 use super::table_2::{PaperScene, paper_scenes};
 use crate::bench::Bench;
 use crate::figure::{Figure, Part, Report};
 use crate::table::{Table, geometric_mean, short};
 use anyhow::{Context, Result};
-use bowknot::gpu::{BufferId, Device, DispatchView, Engine, GpuError, Recording, TwinEngine};
+use bowknot::gpu::{
+    BufferId, ConjugateGradients, Device, DispatchView, Engine, GpuError, Recording, TwinEngine,
+};
 use bowknot::{Scene, Simulator, World};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -36,7 +38,7 @@ impl Figure for GpuPrediction {
     }
 
     fn title(&self) -> &'static str {
-        "Collisions on a GPU: a prediction"
+        "Time steps on a GPU: a prediction"
     }
 
     fn question(&self) -> &'static str {
@@ -47,8 +49,9 @@ impl Figure for GpuPrediction {
          workgroups for. Dispatches of one stage that follow each other with the same buffers \
          (colors of a sweep, levels of a tree) share the bytes. A submission takes 30 microseconds, and what the host \
          writes and reads goes at 50 GB/s. To the paper's size, bytes and threads grow with the number of vertices, and \
-         dispatches stay as many; stages of one workgroup keep one. Seconds per time step are those of as many two-way steps \
-         as the paper takes. Work of the host is left out, and so are cache misses, atomics and arithmetic."
+         dispatches stay as many; stages of one workgroup keep one. Seconds of collisions per time step are those of as many two-way \
+         steps as the paper takes; those of the dynamics are of the time steps that were counted, whose linear iterations \
+         grow with the size. Work of the host is left out, and so are cache misses, atomics and arithmetic."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {
@@ -69,6 +72,20 @@ impl Figure for GpuPrediction {
         ]);
         let mut stages =
             Table::new(["scene", "stage", "dispatches_per_step", "megabytes_per_step", "us_per_step"]);
+        let mut dynamics = Table::new([
+            "scene",
+            "nodes",
+            "counted_nodes",
+            "newton_iterations",
+            "cg_iterations",
+            "dispatches_per_time_step",
+            "submissions_per_time_step",
+            "megabytes_per_time_step",
+            "host_megabytes_per_time_step",
+            "least_ms",
+            "predicted_ms",
+            "with_collisions_ms",
+        ]);
         let scenes = paper_scenes();
         let count = bench.size.pick(scenes.len(), 3, 1);
         let mut ratios = Vec::new();
@@ -76,20 +93,21 @@ impl Figure for GpuPrediction {
             if !bench.has_time() {
                 break;
             }
-            let counts = Counts::of(paper, bench.size.pick(1.0, 0.7, 0.3))?;
-            let growth = counts.vertices as f64 / counts.counted_vertices as f64;
-            let steps = counts.steps as f64;
+            let scene = Counted::of(paper, bench.size.pick(1.0, 0.7, 0.3))?;
+            let counts = &scene.collisions;
+            let growth = scene.vertices as f64 / scene.counted_vertices as f64;
+            let steps = scene.steps as f64;
             let step = counts.seconds(growth) / steps;
             let least = counts.latency() / steps;
             let [dispatches, single] = counts.dispatches().map(|count| count as f64 / steps);
-            let bytes: f64 = counts.groups.values().map(|group| group.bytes).sum();
+            let bytes = counts.bytes();
             println!("  {}: {:.3} ms per step", paper.scene, 1e3 * step);
             ratios.push(step * paper.steps / paper.seconds);
             table.row([
                 paper.scene.into(),
-                counts.vertices.into(),
-                counts.counted_vertices.into(),
-                counts.rows.into(),
+                scene.vertices.into(),
+                scene.counted_vertices.into(),
+                scene.rows.into(),
                 dispatches.into(),
                 single.into(),
                 (1e-6 * growth * bytes / steps).into(),
@@ -99,6 +117,23 @@ impl Figure for GpuPrediction {
                 paper.steps.into(),
                 (step * paper.steps).into(),
                 paper.seconds.into(),
+            ]);
+            let frames = FRAMES as f64;
+            let (of_dynamics, growth_of_nodes) = (&scene.dynamics, scene.nodes[1] as f64 / scene.nodes[0] as f64);
+            let seconds = of_dynamics.seconds(growth_of_nodes) / frames;
+            dynamics.row([
+                paper.scene.into(),
+                scene.nodes[1].into(),
+                scene.nodes[0].into(),
+                (scene.newton_iterations as f64 / frames).into(),
+                (scene.cg_iterations as f64 / frames).into(),
+                (of_dynamics.dispatches()[0] as f64 / frames).into(),
+                (of_dynamics.submissions as f64 / frames).into(),
+                (1e-6 * growth_of_nodes * of_dynamics.bytes() / frames).into(),
+                (1e-6 * growth_of_nodes * of_dynamics.link_bytes / frames).into(),
+                (1e3 * of_dynamics.latency() / frames).into(),
+                (1e3 * seconds).into(),
+                (1e3 * (seconds + step * paper.steps)).into(),
             ]);
             for (stage, [dispatches, bytes, seconds]) in counts.by_stage(growth) {
                 stages.row([
@@ -120,6 +155,11 @@ impl Figure for GpuPrediction {
             parts: vec![
                 Part::table(self.name(), "predicted seconds of the collision stage on a large GPU", table),
                 Part::file("gpu-prediction-stages", "the same by stage of the two-way step", stages),
+                Part::table(
+                    "gpu-prediction-dynamics",
+                    "predicted milliseconds of the dynamics per time step on a large GPU",
+                    dynamics,
+                ),
             ],
         })
     }
@@ -138,7 +178,73 @@ struct Group {
 /// What one workgroup does of a dispatch: whether it has work, and how often its threads wait for each other.
 type Workgroup = (bool, usize);
 
-/// What the calls of some time steps needed.
+/// What some time steps of a scene needed.
+#[derive(Debug)]
+struct Counted {
+    collisions: Counts,
+    dynamics: Counts,
+    /// Two-way steps, and most contact rows of a time step.
+    steps: usize,
+    rows: usize,
+    newton_iterations: usize,
+    cg_iterations: usize,
+    counted_vertices: usize,
+    /// Vertices at the paper's size.
+    vertices: usize,
+    /// Nodes of the dynamics, counted and at the paper's size.
+    nodes: [usize; 2],
+}
+
+impl Counted {
+    /// Counts some time steps of a scene at a share of its small scale.
+    fn of(paper: &PaperScene, share: f64) -> Result<Self> {
+        let scene = Scene::builtin(paper.scene, share * paper.scale)?;
+        let mut lead = Simulator::new(&scene)?;
+        for _ in 0..paper.frames {
+            lead.step()?;
+        }
+        let mut simulator = Simulator::new(&scene)?;
+        simulator.restore(&lead.checkpoint()).map_err(anyhow::Error::msg)?;
+        let (engine, collisions) = CountingEngine::new();
+        let mut device = Device::new("twins".to_owned(), engine);
+        // Each dispatch that is recorded then runs.
+        device.set_steps_per_submission(1);
+        simulator.set_backend(Box::new(device))?;
+        let (engine, dynamics) = CountingEngine::new();
+        simulator
+            .set_dynamics_backend(Some(Box::new(ConjugateGradients::new("twins".to_owned(), engine))));
+        let taken = |counts: &Mutex<Counts>| {
+            std::mem::take(&mut *counts.lock().unwrap_or_else(PoisonError::into_inner))
+        };
+        // Writing what stays for a run is no part of a time step.
+        taken(&dynamics);
+        let full = World::new(&Scene::builtin(paper.scene, 1.0)?)?;
+        let nodes = |world: &World| world.deformable_vertices + world.positions.len() - world.collision_vertices();
+        let mut counted = Self {
+            collisions: Counts::default(),
+            dynamics: Counts::default(),
+            steps: 0,
+            rows: 0,
+            newton_iterations: 0,
+            cg_iterations: 0,
+            counted_vertices: simulator.world().collision_vertices(),
+            vertices: full.collision_vertices(),
+            nodes: [nodes(simulator.world()), nodes(&full)],
+        };
+        for _ in 0..FRAMES {
+            let statistics = simulator.step()?;
+            counted.steps += statistics.two_way_steps;
+            counted.rows = counted.rows.max(statistics.contact_rows);
+            counted.newton_iterations += statistics.newton_iterations;
+            counted.cg_iterations += statistics.cg_iterations;
+        }
+        counted.collisions = taken(&collisions);
+        counted.dynamics = taken(&dynamics);
+        (counted.steps > 0).then_some(counted).context("no two-way step was made")
+    }
+}
+
+/// What the submissions to a device needed.
 #[derive(Debug, Default)]
 struct Counts {
     /// By the stage and the mean number of workgroups of dispatches that share their bytes; 0 for stages of one workgroup.
@@ -147,44 +253,9 @@ struct Counts {
     submissions: usize,
     /// Bytes between host and device.
     link_bytes: f64,
-    steps: usize,
-    /// Most contact rows of a time step.
-    rows: usize,
-    counted_vertices: usize,
-    /// Vertices at the paper's size.
-    vertices: usize,
 }
 
 impl Counts {
-    /// Counts the first time steps of a scene at a share of its small scale.
-    fn of(paper: &PaperScene, share: f64) -> Result<Self> {
-        let counts = Arc::new(Mutex::new(Self::default()));
-        let scene = Scene::builtin(paper.scene, share * paper.scale)?;
-        let mut lead = Simulator::new(&scene)?;
-        for _ in 0..paper.frames {
-            lead.step()?;
-        }
-        let engine = CountingEngine { twin: TwinEngine::new(), counts: Arc::clone(&counts) };
-        let mut simulator = Simulator::new(&scene)?;
-        simulator.restore(&lead.checkpoint()).map_err(anyhow::Error::msg)?;
-        let mut device = Device::new("twins".to_owned(), engine);
-        // Each dispatch that is recorded then runs.
-        device.set_steps_per_submission(1);
-        simulator.set_backend(Box::new(device))?;
-        let (mut steps, mut rows) = (0, 0);
-        for _ in 0..FRAMES {
-            let statistics = simulator.step()?;
-            steps += statistics.two_way_steps;
-            rows = rows.max(statistics.contact_rows);
-        }
-        let full = World::new(&Scene::builtin(paper.scene, 1.0)?)?;
-        let mut counts = std::mem::take(&mut *counts.lock().unwrap_or_else(PoisonError::into_inner));
-        (counts.steps, counts.rows) = (steps, rows);
-        counts.counted_vertices = simulator.world().collision_vertices();
-        counts.vertices = full.collision_vertices();
-        (steps > 0).then_some(counts).context("no two-way step was made")
-    }
-
     /// `workgroups_of` tells those of all dispatches that go through the colors of something, one dispatch after the other.
     fn add(
         &mut self,
@@ -222,6 +293,11 @@ impl Counts {
         }
         self.submissions += usize::from(words_read > 0);
         self.link_bytes += 4.0 * (recording.words_written() + words_read) as f64;
+    }
+
+    /// Bytes in use of the bound buffers.
+    fn bytes(&self) -> f64 {
+        self.groups.values().map(|group| group.bytes).sum()
     }
 
     /// Number of dispatches, and of those with one workgroup.
@@ -277,6 +353,11 @@ struct CountingEngine {
 }
 
 impl CountingEngine {
+    fn new() -> (Self, Arc<Mutex<Counts>>) {
+        let counts: Arc<Mutex<Counts>> = Arc::default();
+        (Self { twin: TwinEngine::new(), counts: Arc::clone(&counts) }, counts)
+    }
+
     /// The workgroups of all dispatches of a stage that goes through colors: buckets of rows (where they begin, where they
     /// end, how many colors they have), and clusters of edges, of whose five words the last is the number of colors.
     fn workgroups_of(&self, dispatch: &DispatchView<'_>) -> Option<Vec<Workgroup>> {

@@ -42,7 +42,8 @@ use bowknot_geometry::{Point, Vector};
 use conservation::EndOfStep;
 use newton::bodies::{Answer, Bodies, BodyEnergies, Lost};
 use newton::cpu::CpuBodies;
-use newton::device::{Beginning, on_device};
+use newton::device::{Beginning, conserve_momentum, on_device};
+use newton::momentum::flying_groups;
 use newton::state::{Course, EvaluationCache, Newton, Step, Workspace};
 use two_level::two_level;
 
@@ -232,9 +233,15 @@ impl Dynamics {
         let Workspace { x, imposed, trial, solver, .. } = &mut *work;
         if let Some(backend) = solver.newton() {
             let beginning = Beginning { iterate: x, free: &free, imposed, watched: &watched };
-            let trial = sets_trial.then_some(trial.as_mut_slice());
-            match on_device(model, params, step, course, backend, beginning, trial, &mut over) {
-                Ok(done) => return Ok(done),
+            let target = sets_trial.then_some(trial.as_mut_slice());
+            match on_device(model, params, step, course, backend, beginning, target, &mut over) {
+                Ok(done) => {
+                    if sets_trial {
+                        let groups = flying_groups(model, repulsion, &free);
+                        conserve_momentum(model, params, step, &groups, trial);
+                    }
+                    return Ok(done);
+                }
                 Err(Lost::Failed(error)) => {
                     solver.leave_backend_out();
                     return Err(StepError::LinearBackend { message: error.to_string() });

@@ -176,7 +176,7 @@ fn targets_are_those_of_the_cpu() {
     let (mut cpu, rest, held) = hanging_sheet(1e-9);
     let (mut other, ..) = hanging_sheet(1e-9);
     other.set_backend(Some(Box::new(Plain::default())));
-    assert_eq!(other.linear_backend().map(LinearBackend::name).as_deref(), Some("plain"));
+    assert_eq!(other.backend().map(LinearBackend::name).as_deref(), Some("plain"));
     let [a, b] = [&mut cpu, &mut other].map(|dynamics| fall(dynamics, &rest, &held, 8));
     let (apart, fallen) = (apart(&a, &b), apart(&a, &rest));
     assert!(fallen > 0.1 && apart < AGREEMENT * fallen && apart > 0.0, "{apart:e} m of {fallen} m");

@@ -3,7 +3,7 @@
 use super::backend::{NewtonBackend, NewtonStep, NewtonTarget, SolveLimits, Trial};
 use super::bodies::{Answer, Bodies, BodyEnergies, Imbalance, LinearSolve, Lost, Promise};
 use super::cpu::NEGLIGIBLE_STEP;
-use super::momentum::Inertia;
+use super::momentum::{Inertia, nodes_of};
 use super::state::{Course, Step};
 use crate::elements::filter::Filter;
 use crate::elements::set::Motion;
@@ -45,10 +45,7 @@ impl DeviceStep {
         let motion = Motion { x: &step.start, start: &step.start, rate: inertia.rate };
         let rate_squared = inertia.rate * inertia.rate;
         let gradient = |n: usize| {
-            let push = step.drag.as_ref().map_or_else(Vector::zeros, |drag| drag.push[n]);
-            (step.start[n] - step.inertial[n]) * (model.node_masses[n] * rate_squared)
-                + model.bending.product(n, motion.x)
-                - push
+            external_gradient(model, &inertia, step, n, &step.start[n]) + model.bending.product(n, motion.x)
         };
         let gradient: Vec<Vector> = (0..nodes).map(gradient).collect();
         let (_, _, scalars) = step.scalar.off_rows();
@@ -256,6 +253,47 @@ impl Bodies for DeviceBodies<'_> {
         let found = self.backend.out_of_balance(&known, counted, filter == Filter::Absolute)?;
         Ok(Imbalance { squared_force: found.squared_force, products: found.products })
     }
+}
+
+/// Translates each of the `groups` of flying components at the trial so that its linear momentum at the end of the time step
+/// is that of the forces on it, in double precision: inertia and the forces of air balance where the translation minimizes
+/// them, and forces within a group have no sum. On the device positions and sums are rounded to single precision.
+pub fn conserve_momentum(
+    model: &DynamicsModel,
+    params: &DynamicsParams,
+    step: &Step,
+    groups: &[Vec<usize>],
+    trial: &mut [Vector],
+) {
+    let inertia = Inertia::new(params, step);
+    for group in groups {
+        let nodes = || nodes_of(model, group);
+        let force = |n: usize| external_gradient(model, &inertia, step, n, &trial[n]);
+        let sum: Vector = nodes().map(force).sum();
+        let total = inertia.of_nodes(model, nodes());
+        if let Some(inverse) = total.try_inverse() {
+            let shift = inverse * sum;
+            nodes().for_each(|n| trial[n] -= shift);
+        }
+    }
+}
+
+/// The gradient of inertia and air by a node at `x` [N].
+fn external_gradient(
+    model: &DynamicsModel,
+    inertia: &Inertia<'_>,
+    step: &Step,
+    node: usize,
+    x: &Vector,
+) -> Vector {
+    let moved = x - step.start[node];
+    let (mass, rate) = (model.node_masses[node], inertia.rate);
+    let mut gradient =
+        (step.start[node] - step.inertial[node]) * (mass * rate * rate) + moved * (mass * inertia.per_mass);
+    if let Some(drag) = inertia.drag {
+        gradient += drag.matrix[node] * moved * rate - drag.push[node];
+    }
+    gradient
 }
 
 /// Lets `run` work on the bodies on a device, from a beginning. If there is a `trial`, it becomes the last one, by node,

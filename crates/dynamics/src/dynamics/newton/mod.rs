@@ -22,7 +22,7 @@ pub(super) mod device;
 mod iteration;
 mod line_search;
 mod linearize;
-mod momentum;
+pub(super) mod momentum;
 mod potential;
 mod residual;
 mod solve;

@@ -82,6 +82,7 @@ pub(crate) fn shift_group(
     nodes().for_each(|n| step[n] += shift);
 }
 
-fn nodes_of(model: &DynamicsModel, group: &[usize]) -> impl Iterator<Item = usize> + Clone {
+/// The nodes of a group of components.
+pub(crate) fn nodes_of(model: &DynamicsModel, group: &[usize]) -> impl Iterator<Item = usize> + Clone {
     group.iter().flat_map(|&c| model.components[c].start as usize..model.components[c].end as usize)
 }
