@@ -50,8 +50,8 @@ pub use nalgebra::Matrix3;
 pub use body::{Body, BodyShape};
 pub use bowknot_errors::{Errors, ParamError, Parameters};
 pub use dynamics::{
-    Dynamics, NewtonBackend, NewtonInfo, NewtonSolve, NewtonStep, NewtonTarget, OutOfBalance, Residual,
-    SolveLimits, Touching, Trial, Watched,
+    BodiesPotential, Dynamics, NewtonBackend, NewtonInfo, NewtonSolve, NewtonStep, NewtonTarget,
+    OutOfBalance, Residual, SolveLimits, StepTerms, Touching, Trial, Watched,
 };
 pub use error::{ModelError, StepError};
 pub use linear::accuracy::CgInfo;

@@ -17,9 +17,10 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         let e2 = way(bend.nodes[0], bend.nodes[2]);
         let f1 = e1 * bend.gradients[0] + e2 * bend.gradients[2];
         let f2 = e1 * bend.gradients[1] + e2 * bend.gradients[3];
-        let m = cross(f1, f2);
-        let squared = dot(m, m) + bend.crushed * bend.crushed;
-        let scale = sqrt((1.0 + bend.crushed * bend.crushed) / squared);
+        let normal = normal_of(cross(f1, f2), bend.crushed);
+        let m = normal.m;
+        let squared = normal.squared;
+        let scale = normal.scale;
         // dn/dm = scale (I - m m^T / (m^2 + crushed^2)).
         var across: mat3x3<f32>;
         for (var k = 0u; k < 3u; k += 1u) {
@@ -33,17 +34,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         turns[1] = by_f1 * bend.gradients[0] + by_f2 * bend.gradients[1];
         turns[2] = by_f1 * bend.gradients[2] + by_f2 * bend.gradients[3];
         turns[0] = (turns[1] + turns[2]) * -1.0;
-        // The factors a_ep.
-        var factors = bend.jumps;
-        for (var edge = 0u; edge < 3u; edge += 1u) {
-            let along = bend.rest[3u * edge];
-            let beside = bend.rest[3u * edge + 1u];
-            let first = along * bend.gradients[0] + beside * bend.gradients[1];
-            let second = along * bend.gradients[2] + beside * bend.gradients[3];
-            factors[6u * edge] += first + second;
-            factors[6u * edge + 1u] -= first;
-            factors[6u * edge + 2u] -= second;
-        }
+        var factors = factors_of(bend);
         var block = 15u * e;
         for (var p = 0u; p < 6u; p += 1u) {
             for (var q = p + 1u; q < 6u; q += 1u) {

@@ -25,18 +25,6 @@ fn turned(stiffness: array<f32, 4>, c: f32, s: f32) -> mat3x3<f32> {
     return sum;
 }
 
-// The stress of a strain (11, 22, 12), turned into the frame v: components 11, 22, 12.
-fn stress_in(stiffness: array<f32, 4>, strain: vec3<f32>, c: f32, s: f32) -> vec3<f32> {
-    let s11 = stiffness[0] * strain.x + stiffness[1] * strain.y;
-    let s22 = stiffness[1] * strain.x + stiffness[2] * strain.y;
-    let s12 = 2.0 * stiffness[3] * strain.z;
-    return vec3<f32>(
-        c * c * s11 + 2.0 * c * s * s12 + s * s * s22,
-        s * s * s11 - 2.0 * c * s * s12 + c * c * s22,
-        c * s * (s22 - s11) + (c * c - s * s) * s12,
-    );
-}
-
 // A symmetric matrix (11, 22, 12) with its eigenvalues filtered.
 fn filtered_2(m: vec3<f32>) -> vec3<f32> {
     let axis = first_axis(m.x, m.y, m.z);
@@ -60,55 +48,31 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         let e2 = way(m.nodes[0], m.nodes[2]);
         let f0 = e1 * g[0] + e2 * g[2];
         let f1 = e1 * g[1] + e2 * g[3];
-        let axis = first_axis(dot(f0, f0), dot(f1, f1), dot(f0, f1));
-        let c = axis.x;
-        let s = axis.y;
-        let w1 = f0 * c + f1 * s;
-        let s1 = length(w1);
-        var u1 = vec3<f32>(1.0, 0.0, 0.0);
-        if s1 > TINY {
-            u1 = w1 / s1;
-        }
-        var w2 = f1 * c - f0 * s;
-        w2 -= u1 * dot(u1, w2);
-        let s2 = length(w2);
-        var u2 = any_normal(u1);
-        if s2 > 1e-6 * s1 && s2 > TINY {
-            u2 = w2 / s2;
-        }
+        let x = stretch_of(f0, f1);
+        let c = x.c;
+        let s = x.s;
+        let s1 = x.s1;
+        let s2 = x.s2;
+        let u1 = x.u1;
+        let u2 = x.u2;
         let n = cross(u1, u2);
 
-        // Strain U - I with U = V diag(s) V^T, and its stress T.
-        let d1 = s1 - 1.0;
-        let d2 = s2 - 1.0;
-        let strain = vec3<f32>(c * c * d1 + s * s * d2, s * s * d1 + c * c * d2, c * s * (d1 - d2));
-        let t = stress_in(m.stiffness, strain, c, s);
+        // The stress of the strain U - I.
+        let t = stress_in(m.stiffness, strain_of(x), c, s);
+        let r = shares_of(x);
         let sum = s1 + s2;
-        var r1 = 0.5;
-        var r2 = 0.5;
-        if sum > TINY {
-            r1 = s1 / sum;
-            r2 = s2 / sum;
-        }
         let divisor = max(sum, MIN_RATIO);
         var stiffness = turned(m.stiffness, c, s);
         // dU : C : dU over d11, d12, d21, d22.
-        var weights = vec4<f32>(1.0, r1, r2, 1.0);
+        var weights = vec4<f32>(1.0, r.x, r.y, 1.0);
         var rates = vec4<f32>(0.0);
         var viscous = vec3<f32>(0.0);
         if m.damping > 0.0 && params.rate > 0.0 {
             let factor = m.damping * params.rate;
-            let b1 = way_at_start(m.nodes[0], m.nodes[1]);
-            let b2 = way_at_start(m.nodes[0], m.nodes[2]);
-            let h0 = b1 * g[0] + b2 * g[2];
-            let h1 = b1 * g[1] + b2 * g[3];
-            // Increment of Green's strain, without cancellation.
-            let increment = vec3<f32>(
-                0.5 * dot(f0 - h0, f0 + h0),
-                0.5 * dot(f1 - h1, f1 + h1),
-                0.5 * (dot(f0 - h0, f1) + dot(h0, f1 - h1)),
-            );
-            viscous = stress_in(m.stiffness, increment, c, s) * factor;
+            let b1 = moved(m.nodes[0], m.nodes[1]);
+            let b2 = moved(m.nodes[0], m.nodes[2]);
+            let strain = increment(f0, f1, b1 * g[0] + b2 * g[2], b1 * g[1] + b2 * g[3]);
+            viscous = stress_in(m.stiffness, strain, c, s) * factor;
             rates = vec4<f32>(s1, 0.5 * s1, 0.5 * s2, s2) * sqrt(factor);
         }
         var plane: array<f32, 16>;

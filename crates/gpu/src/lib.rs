@@ -11,6 +11,7 @@
 //! | `tree`, `model`, `edges`, `bricks`, `adjacency` | what the host prepares for a scene |
 //! | `collision` | steps toward a target that nothing passes through |
 //! | `linear`, `assembly` | linear solves of the dynamics, and their matrices |
+//! | `potential` | the potential of the bodies and its gradient |
 
 mod adapter;
 mod adjacency;
@@ -26,6 +27,8 @@ mod grid;
 mod layout;
 mod linear;
 mod model;
+#[cfg_attr(not(test), expect(dead_code, reason = "Newton's method on a device will use it"))]
+mod potential;
 mod recording;
 mod stages;
 mod tree;

@@ -7,14 +7,20 @@
 
 mod assembly;
 mod linear;
+mod potential;
 mod stage;
 
 use crate::cpu;
 
 pub(crate) use assembly::{
-    ASSEMBLE, BEND, COARSEN, COUPLE, DIAGONAL, DOMAIN, FRAME, INVERT, MEMBRANE, TETRAHEDRON,
+    ASSEMBLE, BEND, COARSEN, COUPLE, DAMPED_TETRAHEDRON, DIAGONAL, DOMAIN, FRAME, INVERT, MEMBRANE,
+    TETRAHEDRON,
 };
 pub(crate) use linear::{CLIMB, DESCEND, MULTIPLY, REACT, REDIRECT};
+pub(crate) use potential::{
+    BEND_ENERGY, BEND_GRADIENT, GATHER_GRADIENT, MEMBRANE_ENERGY, MEMBRANE_GRADIENT, NODE_ENERGY, SUM_ENERGY,
+    TETRAHEDRON_ENERGY, TETRAHEDRON_GRADIENT,
+};
 pub(crate) use stage::{Access, Stage};
 
 const TYPES: &str = include_str!("../shader/shared/types.wgsl");
@@ -405,6 +411,7 @@ pub(crate) static ALL: &[&Stage] = &[
     &MEMBRANE,
     &BEND,
     &TETRAHEDRON,
+    &DAMPED_TETRAHEDRON,
     &ASSEMBLE,
     &DIAGONAL,
     &INVERT,
@@ -412,6 +419,15 @@ pub(crate) static ALL: &[&Stage] = &[
     &COUPLE,
     &COARSEN,
     &DOMAIN,
+    &MEMBRANE_GRADIENT,
+    &BEND_GRADIENT,
+    &TETRAHEDRON_GRADIENT,
+    &GATHER_GRADIENT,
+    &MEMBRANE_ENERGY,
+    &BEND_ENERGY,
+    &TETRAHEDRON_ENERGY,
+    &NODE_ENERGY,
+    &SUM_ENERGY,
 ];
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use bowknot_gpu::dynamics::{
     Assembler, AssemblySprings, AssemblyState, Body, ClothMaterial, Dynamics, DynamicsModel, DynamicsParams,
     ElementModel, HessianFilter, LinearBackend, LinearBackendError, LinearSystem, Matrix3,
-    PreconditionerKind, RepulsionSpring, RestShape, SolidMaterial, SolidModel, StepError,
+    PreconditionerKind, RepulsionSpring, RestShape, SolidMaterial, SolidModel, StepError, StrandMaterial,
 };
 use bowknot_gpu::geometry::{Point, Vector};
 use bowknot_gpu::{Adapter, ComparingEngine, ConjugateGradients, DeviceEngine, Engine, TwinEngine};
@@ -281,10 +281,15 @@ fn cases() -> Vec<Case> {
             });
         }
     }
-    for (name, model) in [("stvk", SolidModel::Stvk), ("neo-Hookean", SolidModel::StableNeoHookean)] {
+    for (name, model, damping) in [
+        ("stvk", SolidModel::Stvk, 0.0),
+        ("neo-Hookean", SolidModel::StableNeoHookean, 0.0),
+        ("stvk, damped", SolidModel::Stvk, 0.01),
+        ("neo-Hookean, damped", SolidModel::StableNeoHookean, 0.01),
+    ] {
         for filter in [HessianFilter::Clamp, HessianFilter::Absolute] {
             let (rest, tets) = block();
-            let material = SolidMaterial { model, poisson_ratio: 0.4, ..SolidMaterial::rubber() };
+            let material = SolidMaterial { model, damping, poisson_ratio: 0.4, ..SolidMaterial::rubber() };
             cases.push(Case {
                 name,
                 rest,
@@ -510,15 +515,16 @@ fn linear_momentum_is_conserved_to_rounding() {
     }
 }
 
-/// Damped solids are assembled by the CPU.
+/// Strands are assembled by the CPU.
 #[test]
 fn elements_that_no_kernel_knows_are_left_to_the_cpu() {
-    let (rest, tets) = block();
-    let material = SolidMaterial { damping: 0.01, ..SolidMaterial::rubber() };
+    let rest: Vec<Point> =
+        (0..8).map(|k| Point::new(0.02 * f64::from(k), 0.001 * f64::from(k * k), 0.0)).collect();
+    let edges = (0..7).map(|k| [k, k + 1]).collect();
     let case = Case {
-        name: "damped",
+        name: "strand",
         rest,
-        body: Body::solid("block", tets, material),
+        body: Body::strands("strand", edges, StrandMaterial::rope()),
         filter: HessianFilter::Mixed,
         distortion: 0.0,
     };

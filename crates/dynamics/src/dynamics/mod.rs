@@ -16,11 +16,13 @@
 //! | solve H p = b by CG | guesses: inertia, last target | p |
 //! | search along p | E | y = x + t p, prescribed vertices at their keyframes |
 
+mod bodies_potential;
 mod conservation;
 mod info;
 mod newton;
 mod two_level;
 
+pub use bodies_potential::{BodiesPotential, StepTerms};
 pub use conservation::Touching;
 pub use info::{NewtonInfo, Residual};
 pub use newton::backend::{

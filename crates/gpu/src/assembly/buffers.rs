@@ -35,14 +35,27 @@ pub struct AssemblyBuffers {
 
 /// A buffer and what it holds.
 #[derive(Debug)]
-struct Written {
-    buffer: BufferId,
+pub struct Written {
+    pub buffer: BufferId,
     words: Vec<u32>,
 }
 
+/// The elements of a model on an engine.
+#[derive(Clone, Copy, Debug)]
+pub struct ElementBuffers {
+    pub membranes: BufferId,
+    pub bends: BufferId,
+    pub tetrahedra: BufferId,
+}
+
 impl Written {
+    /// A buffer to which nothing was written.
+    pub fn new(buffer: BufferId) -> Self {
+        Self { buffer, words: Vec::new() }
+    }
+
     /// Writes the entries unless they stand there already; returns whether they were new.
-    fn write<T: Pod>(&mut self, entries: &[T], recording: &mut Recording) -> bool {
+    pub fn write<T: Pod>(&mut self, entries: &[T], recording: &mut Recording) -> bool {
         let words: &[u32] = bytemuck::cast_slice(entries);
         if self.words == words {
             return false;
@@ -60,7 +73,7 @@ impl AssemblyBuffers {
         let mut recording = Recording::default();
         let nodes = plan.nodes;
         let mut make = |label, words: usize| engine.buffer(label, words);
-        let written = |buffer| Written { buffer, words: Vec::new() };
+        let written = Written::new;
         let buffers = Self {
             membranes: make("triangles", size_of_val(plan.membranes.as_slice()) / 4)?,
             bends: make("bends", (size_of_val(plan.bends.as_slice()) / 4).max(48))?,
@@ -94,6 +107,12 @@ impl AssemblyBuffers {
         self.positions.buffer
     }
 
+    /// The elements.
+    #[cfg_attr(not(test), expect(dead_code, reason = "Newton's method on a device will use it"))]
+    pub fn elements(&self) -> ElementBuffers {
+        ElementBuffers { membranes: self.membranes, bends: self.bends, tetrahedra: self.tetrahedra }
+    }
+
     /// Frees the buffers.
     pub fn free<E: Engine>(self, engine: &mut E) {
         let written = [self.positions, self.start, self.entries, self.row_sums].map(|written| written.buffer);
@@ -116,7 +135,7 @@ impl AssemblyBuffers {
         });
         let mut changed = self.positions.write(&place(state.positions), recording);
         // Damping alone needs them.
-        if self.plan.membranes.iter().any(|membrane| membrane.damping > 0.0) {
+        if self.plan.is_damped() {
             changed |= self.start.write(&place(state.start), recording);
         }
         changed |= self.row_sums.write(&sums.collect::<Vec<_>>(), recording);
@@ -161,13 +180,16 @@ impl AssemblyBuffers {
 
     fn record_elements(&self, state: &AssemblyState<'_>, quantum: f64, recording: &mut Recording) {
         let plan = &self.plan;
-        let kinds: [(&'static Stage, BufferId, usize, usize); 3] = [
-            (&stages::MEMBRANE, self.membranes, plan.membranes.len(), 3),
-            (&stages::BEND, self.bends, plan.bends.len(), 15),
-            (&stages::TETRAHEDRON, self.tetrahedra, plan.tetrahedra.len(), 6),
+        let (bends, tetrahedra) =
+            (3 * plan.membranes.len(), 3 * plan.membranes.len() + 15 * plan.bends.len());
+        let damped = if plan.has_damped_tetrahedra() { plan.tetrahedra.len() } else { 0 };
+        let kinds: [(&'static Stage, BufferId, usize, usize); 4] = [
+            (&stages::MEMBRANE, self.membranes, plan.membranes.len(), 0),
+            (&stages::BEND, self.bends, plan.bends.len(), bends),
+            (&stages::TETRAHEDRON, self.tetrahedra, plan.tetrahedra.len(), tetrahedra),
+            (&stages::DAMPED_TETRAHEDRON, self.tetrahedra, damped, tetrahedra),
         ];
-        let mut first_block = 0;
-        for (stage, buffer, elements, blocks) in kinds {
+        for (stage, buffer, elements, first_block) in kinds {
             recording.dispatch(
                 stage,
                 &[buffer, self.positions.buffer, self.start.buffer, self.blocks],
@@ -180,7 +202,6 @@ impl AssemblyBuffers {
                 },
                 elements,
             );
-            first_block += blocks * elements;
         }
     }
 }

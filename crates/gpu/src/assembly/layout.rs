@@ -49,7 +49,10 @@ pub struct Tetrahedron {
     pub mu: f32,
     /// 0: St. Venant-Kirchhoff, 1: stable neo-Hookean.
     pub law: u32,
-    pub padding: [u32; 3],
+    /// Lame parameters of small strain times the damping time; 0 without damping.
+    pub viscous_lambda: f32,
+    pub viscous_mu: f32,
+    pub padding: u32,
 }
 
 /// A block of the matrix beside its diagonal: where it stands and what is summed to it.

@@ -16,7 +16,9 @@ mod hierarchy;
 mod layout;
 mod plan;
 
-pub(crate) use buffers::AssemblyBuffers;
+pub(crate) use buffers::{AssemblyBuffers, ElementBuffers, Written};
+#[cfg_attr(not(test), expect(unused_imports, reason = "Newton's method on a device will use it"))]
+pub(crate) use grid::StateGrid;
 pub(crate) use groups::GroupBuffers;
 pub(crate) use hierarchy::Hierarchy;
 pub(crate) use layout::{Bend, ElementParams, Entry, Frame, Membrane, Part, Tetrahedron};

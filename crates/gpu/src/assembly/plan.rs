@@ -27,9 +27,19 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Whether the kernels know all elements: damped solids and strands they do not.
+    /// Whether the kernels know all elements: those of strands they do not.
     pub fn covers(model: &ElementModel) -> bool {
-        model.strand_elements == 0 && model.tetrahedra.iter().all(|tet| tet.viscosity == 0.0)
+        model.strand_elements == 0
+    }
+
+    /// Whether some element is damped, and so depends on the start of the time step.
+    pub fn is_damped(&self) -> bool {
+        self.membranes.iter().any(|membrane| membrane.damping > 0.0) || self.has_damped_tetrahedra()
+    }
+
+    /// Whether some tetrahedron is damped.
+    pub fn has_damped_tetrahedra(&self) -> bool {
+        self.tetrahedra.iter().any(|tet| tet.viscous_mu > 0.0)
     }
 
     pub fn new(model: &ElementModel) -> Self {
@@ -160,13 +170,23 @@ fn bend(element: &bowknot_dynamics::BendElement) -> Bend {
 }
 
 fn tetrahedron(element: &bowknot_dynamics::TetrahedronElement) -> Tetrahedron {
+    let [lambda, mu] = element.constants;
+    // The Lame parameters of small strain: see solid_law.rs of the crate bowknot-dynamics.
+    let lame = match element.kind {
+        SolidKind::Stvk => [lambda, mu],
+        SolidKind::StableNeoHookean => [lambda - 0.625 * mu, 0.75 * mu],
+    };
+    let is_damped = element.viscosity > 0.0 && lame[1] > 0.0;
+    let time = if is_damped { element.viscosity / lame[1] } else { 0.0 };
     Tetrahedron {
         nodes: element.nodes,
         gradients: singles(&element.gradients),
         volume: element.volume as f32,
-        lambda: element.constants[0] as f32,
-        mu: element.constants[1] as f32,
+        lambda: lambda as f32,
+        mu: mu as f32,
         law: u32::from(element.kind == SolidKind::StableNeoHookean),
-        padding: [0; 3],
+        viscous_lambda: (time * lame[0]) as f32,
+        viscous_mu: (time * lame[1]) as f32,
+        padding: 0,
     }
 }

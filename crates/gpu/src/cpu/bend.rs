@@ -1,7 +1,8 @@
 //! Twin of `shader/bend.wgsl`.
 
 use super::elements::Elements;
-use super::{added, crossed, dot, scaled};
+use super::normal::{Normal, factors_of, normal_of};
+use super::{added, crossed, scaled};
 use crate::assembly::Bend;
 use crate::bound::Bound;
 
@@ -51,9 +52,7 @@ pub fn bend(bends: &[Bend], mut elements: Elements<'_>) {
         let e2 = elements.way(bend.nodes[0], bend.nodes[2]);
         let f1 = added(scaled(e1, g[0]), scaled(e2, g[2]));
         let f2 = added(scaled(e1, g[1]), scaled(e2, g[3]));
-        let m = crossed(f1, f2);
-        let squared = dot(m, m) + bend.crushed * bend.crushed;
-        let scale = ((1.0 + bend.crushed * bend.crushed) / squared).sqrt();
+        let Normal { m, squared, scale } = normal_of(crossed(f1, f2), bend.crushed);
         let across: M3 = [0, 1, 2].map(|k| {
             let mut column = scaled(m, -m[k] / squared);
             column[k] += 1.0;
@@ -64,15 +63,7 @@ pub fn bend(bends: &[Bend], mut elements: Elements<'_>) {
         let first = sum(times(&by_f1, g[0]), times(&by_f2, g[1]));
         let second = sum(times(&by_f1, g[2]), times(&by_f2, g[3]));
         let turns = [times(&sum(first, second), -1.0), first, second];
-        let mut factors = bend.jumps;
-        for edge in 0..3 {
-            let (along, beside) = (bend.rest[3 * edge], bend.rest[3 * edge + 1]);
-            let first = along * g[0] + beside * g[1];
-            let second = along * g[2] + beside * g[3];
-            factors[6 * edge] += first + second;
-            factors[6 * edge + 1] -= first;
-            factors[6 * edge + 2] -= second;
-        }
+        let factors = factors_of(bend);
         let mut block = 15 * e;
         for p in 0..6 {
             for q in p + 1..6 {

@@ -1,6 +1,6 @@
-//! What the kernels of elements share: twin of `shader/shared/elements.wgsl`.
+//! What the kernels of elements share: twin of `shader/shared/elements.wgsl` and `shader/shared/blocks.wgsl`.
 
-use super::{difference, scaled};
+use super::{scaled, to_f32};
 use crate::assembly::ElementParams;
 
 type V3 = [f32; 3];
@@ -21,11 +21,13 @@ pub struct Elements<'a> {
 
 impl Elements<'_> {
     pub fn way(&self, a: u32, b: u32) -> V3 {
-        scaled(difference(self.positions[b as usize], self.positions[a as usize]), self.params.quantum)
+        scaled(to_f32(way(self.positions, a, b)), self.params.quantum)
     }
 
-    pub fn way_at_start(&self, a: u32, b: u32) -> V3 {
-        scaled(difference(self.start[b as usize], self.start[a as usize]), self.params.quantum)
+    /// How much the way from node a to node b has changed since the start of the time step.
+    pub fn moved(&self, a: u32, b: u32) -> V3 {
+        let [x, x0] = [self.positions, self.start].map(|at| way(at, a, b));
+        scaled(to_f32([0, 1, 2].map(|k| x[k].wrapping_sub(x0[k]))), self.params.quantum)
     }
 
     pub fn filtered(&self, curvature: f32) -> f32 {
@@ -45,6 +47,12 @@ impl Elements<'_> {
     ) -> [[f32; ORDER]; ORDER] {
         super::eigen::filtered_matrix(matrix, |curvature| self.filtered(curvature))
     }
+}
+
+/// The way from node a to node b in quanta.
+pub fn way(at: &[[i32; 4]], a: u32, b: u32) -> [i32; 3] {
+    let (from, to) = (at[a as usize], at[b as usize]);
+    [0, 1, 2].map(|k| to[k].wrapping_sub(from[k]))
 }
 
 /// The unit eigenvector (c, s) of the larger eigenvalue of [[a, b], [b, d]]: a Jacobi rotation.

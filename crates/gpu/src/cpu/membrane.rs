@@ -1,7 +1,8 @@
 //! Twin of `shader/membrane.wgsl`.
 
-use super::elements::{Elements, MIN_RATIO, TINY, any_normal, first_axis, length};
-use super::{added, crossed, divided, dot, scaled, subtracted};
+use super::elements::{Elements, MIN_RATIO, first_axis};
+use super::triangle::{Stretch, columns, increment, stress_in, stretch_of};
+use super::{added, crossed, dot, scaled};
 use crate::assembly::Membrane;
 use crate::bound::Bound;
 
@@ -32,18 +33,6 @@ fn turned(stiffness: [f32; 4], c: f32, s: f32) -> [V3; 3] {
     })
 }
 
-/// The stress of a strain (11, 22, 12), turned into the frame v: components 11, 22, 12.
-fn stress_in(stiffness: [f32; 4], strain: V3, c: f32, s: f32) -> V3 {
-    let s11 = stiffness[0] * strain[0] + stiffness[1] * strain[1];
-    let s22 = stiffness[1] * strain[0] + stiffness[2] * strain[1];
-    let s12 = 2.0 * stiffness[3] * strain[2];
-    [
-        c * c * s11 + 2.0 * c * s * s12 + s * s * s22,
-        s * s * s11 - 2.0 * c * s * s12 + c * c * s22,
-        c * s * (s22 - s11) + (c * c - s * s) * s12,
-    ]
-}
-
 /// A symmetric matrix (11, 22, 12) with its eigenvalues filtered.
 fn filtered_2(elements: &Elements<'_>, m: V3) -> V3 {
     let [c, s] = first_axis(m[0], m[1], m[2]);
@@ -56,41 +45,23 @@ pub fn membrane(membranes: &[Membrane], mut elements: Elements<'_>) {
     let params = elements.params;
     for (e, m) in membranes.iter().enumerate().take(params.elements as usize) {
         let g = m.gradients;
-        let columns = |e1: V3, e2: V3| {
-            (added(scaled(e1, g[0]), scaled(e2, g[2])), added(scaled(e1, g[1]), scaled(e2, g[3])))
-        };
-        let (f0, f1) = columns(elements.way(m.nodes[0], m.nodes[1]), elements.way(m.nodes[0], m.nodes[2]));
-        let [c, s] = first_axis(dot(f0, f0), dot(f1, f1), dot(f0, f1));
-        let w1 = added(scaled(f0, c), scaled(f1, s));
-        let s1 = length(w1);
-        let u1 = if s1 > TINY { divided(w1, s1) } else { [1.0, 0.0, 0.0] };
-        let mut w2 = subtracted(scaled(f1, c), scaled(f0, s));
-        w2 = subtracted(w2, scaled(u1, dot(u1, w2)));
-        let s2 = length(w2);
-        let u2 = if s2 > 1e-6 * s1 && s2 > TINY { divided(w2, s2) } else { any_normal(u1) };
+        let f = columns(g, elements.way(m.nodes[0], m.nodes[1]), elements.way(m.nodes[0], m.nodes[2]));
+        let x = stretch_of(f);
+        let Stretch { u1, u2, c, s, s1, s2 } = x;
         let n = crossed(u1, u2);
 
-        let (d1, d2) = (s1 - 1.0, s2 - 1.0);
-        let strain = [c * c * d1 + s * s * d2, s * s * d1 + c * c * d2, c * s * (d1 - d2)];
-        let t = stress_in(m.stiffness, strain, c, s);
+        let t = stress_in(m.stiffness, x.strain(), c, s);
+        let [r1, r2] = x.shares();
         let sum = s1 + s2;
-        let (r1, r2) = if sum > TINY { (s1 / sum, s2 / sum) } else { (0.5, 0.5) };
         let divisor = sum.max(MIN_RATIO);
         let stiffness = turned(m.stiffness, c, s);
         let weights = [1.0, r1, r2, 1.0];
         let (mut rates, mut viscous) = ([0.0; 4], [0.0; 3]);
         if m.damping > 0.0 && params.rate > 0.0 {
             let factor = m.damping * params.rate;
-            let (h0, h1) = columns(
-                elements.way_at_start(m.nodes[0], m.nodes[1]),
-                elements.way_at_start(m.nodes[0], m.nodes[2]),
-            );
-            let increment = [
-                0.5 * dot(subtracted(f0, h0), added(f0, h0)),
-                0.5 * dot(subtracted(f1, h1), added(f1, h1)),
-                0.5 * (dot(subtracted(f0, h0), f1) + dot(h0, subtracted(f1, h1))),
-            ];
-            viscous = scaled(stress_in(m.stiffness, increment, c, s), factor);
+            let moved = [1, 2].map(|k| elements.moved(m.nodes[0], m.nodes[k]));
+            let strain = increment(f, columns(g, moved[0], moved[1]));
+            viscous = scaled(stress_in(m.stiffness, strain, c, s), factor);
             rates = [s1, 0.5 * s1, 0.5 * s2, s2].map(|rate| rate * factor.sqrt());
         }
         let mut plane: [[f32; 4]; 4] = std::array::from_fn(|i| {

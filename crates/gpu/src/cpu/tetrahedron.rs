@@ -1,16 +1,10 @@
 //! Twin of `shader/tetrahedron.wgsl`.
 
-use super::elements::{Elements, TINY, any_normal, length};
-use super::{added, crossed, divided, dot, negated, scaled, subtracted};
+use super::elements::Elements;
+use super::solid::{Singular, columns, curvatures_of, shape_of, singular_of};
+use super::{added, scaled};
 use crate::assembly::Tetrahedron;
 use crate::bound::Bound;
-
-type V3 = [f32; 3];
-
-/// Columns whose angle has a smaller cosine count as orthogonal.
-const ORTHOGONAL: f32 = 3e-7;
-
-const SVD_SWEEPS: usize = 8;
 
 pub fn bound(buffers: Bound<'_>) {
     let elements = Elements {
@@ -22,89 +16,13 @@ pub fn bound(buffers: Bound<'_>) {
     tetrahedron(&buffers.read(0), elements);
 }
 
-/// The columns of F V, made orthogonal by rotations, and V; sorted by length.
-fn decompose(f: [V3; 3]) -> ([V3; 3], [V3; 3]) {
-    let mut b = f;
-    let mut v = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    for _ in 0..SVD_SWEEPS {
-        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
-            let (pp, qq, pq) = (dot(b[p], b[p]), dot(b[q], b[q]), dot(b[p], b[q]));
-            if pq * pq > ORTHOGONAL * ORTHOGONAL * pp * qq {
-                let tau = (qq - pp) / (2.0 * pq);
-                let size = 1.0 / (tau.abs() + (1.0 + tau * tau).sqrt());
-                let t = if tau >= 0.0 { size } else { -size };
-                let c = 1.0 / (1.0 + t * t).sqrt();
-                let s = t * c;
-                for columns in [&mut b, &mut v] {
-                    let (x, y) = (columns[p], columns[q]);
-                    columns[p] = subtracted(scaled(x, c), scaled(y, s));
-                    columns[q] = added(scaled(x, s), scaled(y, c));
-                }
-            }
-        }
-    }
-    for p in [0, 1, 0] {
-        let q = p + 1;
-        if dot(b[p], b[p]) < dot(b[q], b[q]) {
-            (b[p], b[q]) = (b[q], negated(b[p]));
-            (v[p], v[q]) = (v[q], negated(v[p]));
-        }
-    }
-    (b, v)
-}
-
-/// Principal curvatures: of scaling, flip and twist.
-fn principal(tet: &Tetrahedron, s: V3) -> ([[f32; 3]; 3], V3, V3) {
-    let mut scaling = [[0.0; 3]; 3];
-    let (mut flip, mut twist) = ([0.0; 3], [0.0; 3]);
-    if tet.law == 0 {
-        let strain = s.map(|s| 0.5 * (s - 1.0) * (s + 1.0));
-        let pressure = tet.lambda * (strain[0] + strain[1] + strain[2]);
-        for i in 0..3 {
-            for j in 0..3 {
-                scaling[i][j] = tet.lambda * s[i] * s[j];
-            }
-            scaling[i][i] += tet.mu * (3.0 * s[i] * s[i] - 1.0) + pressure;
-            let (a, b) = (s[(i + 1) % 3], s[(i + 2) % 3]);
-            flip[i] = tet.mu * (a * a + a * b + b * b - 1.0) + pressure;
-            twist[i] = tet.mu * (a * a - a * b + b * b - 1.0) + pressure;
-        }
-    } else {
-        let invariant = dot(s, s) + 1.0;
-        let shear = tet.mu * (1.0 - 1.0 / invariant);
-        let cofactor = [s[1] * s[2], s[2] * s[0], s[0] * s[1]];
-        let pressure = tet.lambda * (s[0] * s[1] * s[2] - 1.0) - 0.75 * tet.mu;
-        for i in 0..3 {
-            for j in 0..3 {
-                let value = 2.0 * tet.mu / (invariant * invariant) * s[i] * s[j]
-                    + tet.lambda * cofactor[i] * cofactor[j];
-                scaling[i][j] = value + if i == j { shear } else { pressure * s[3 - i - j] };
-            }
-            flip[i] = shear - pressure * s[i];
-            twist[i] = shear + pressure * s[i];
-        }
-    }
-    (scaling, flip, twist)
-}
-
 pub fn tetrahedron(tetrahedra: &[Tetrahedron], mut elements: Elements<'_>) {
     for (e, tet) in tetrahedra.iter().enumerate().take(elements.params.elements as usize) {
-        let mut f = [[0.0; 3]; 3];
-        for a in 0..3 {
-            let edge = elements.way(tet.nodes[0], tet.nodes[a + 1]);
-            for (k, column) in f.iter_mut().enumerate() {
-                *column = added(*column, scaled(edge, tet.gradients[3 * a + k]));
-            }
+        if tet.viscous_mu > 0.0 && elements.params.rate > 0.0 {
+            continue;
         }
-        let (b, v) = decompose(f);
-        let s1 = length(b[0]);
-        let u1 = if s1 > TINY { divided(b[0], s1) } else { [1.0, 0.0, 0.0] };
-        let rest = subtracted(b[1], scaled(u1, dot(u1, b[1])));
-        let s2 = length(rest);
-        let u2 = if s2 > 1e-6 * s1 && s2 > TINY { divided(rest, s2) } else { any_normal(u1) };
-        let u3 = crossed(u1, u2);
-        let u = [u1, u2, u3];
-        let (scaling, flip, twist) = principal(tet, [s1, dot(u2, b[1]), dot(u3, b[2])]);
+        let Singular { u, s, v } = singular_of(columns(tet, |a, b| elements.way(a, b)));
+        let (scaling, flip, twist) = curvatures_of(tet, s);
         let scaling = elements.filtered_matrix(scaling);
         let (mut even, mut odd) = ([0.0; 3], [0.0; 3]);
         for k in 0..3 {
@@ -112,12 +30,7 @@ pub fn tetrahedron(tetrahedra: &[Tetrahedron], mut elements: Elements<'_>) {
             (even[k], odd[k]) = (0.5 * (a + b), 0.5 * (a - b));
         }
 
-        let mut shape = [[0.0; 3]; 4];
-        for a in 0..3 {
-            let g = [tet.gradients[3 * a], tet.gradients[3 * a + 1], tet.gradients[3 * a + 2]];
-            shape[a + 1] = v.map(|axis| dot(g, axis));
-        }
-        shape[0] = negated(added(added(shape[1], shape[2]), shape[3]));
+        let shape = shape_of(tet, v);
         let mut block = 6 * e;
         for a in 0..4 {
             for b in a + 1..4 {

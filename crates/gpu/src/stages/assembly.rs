@@ -4,14 +4,19 @@ use super::stage::Access::{Read, Write};
 use super::stage::Stage;
 use crate::cpu;
 
-const ELEMENTS: &str = include_str!("../../shader/shared/elements.wgsl");
+pub(super) const ELEMENTS: &str = include_str!("../../shader/shared/elements.wgsl");
+const BLOCKS: &str = include_str!("../../shader/shared/blocks.wgsl");
+pub(super) const TRIANGLE: &str = include_str!("../../shader/shared/triangle.wgsl");
+pub(super) const NORMAL: &str = include_str!("../../shader/shared/normal.wgsl");
+pub(super) const STRAIN: &str = include_str!("../../shader/shared/strain.wgsl");
+const SOLID: &str = include_str!("../../shader/shared/solid.wgsl");
 const EIGEN: &str = include_str!("../../shader/shared/eigen.wgsl");
 const GROUPS: &str = include_str!("../../shader/shared/groups.wgsl");
 const LINEAR: &str = include_str!("../../shader/shared/linear.wgsl");
 
 pub(crate) static MEMBRANE: Stage = Stage {
     name: "membrane",
-    parts: &[ELEMENTS, include_str!("../../shader/membrane.wgsl"), EIGEN],
+    parts: &[ELEMENTS, BLOCKS, TRIANGLE, include_str!("../../shader/membrane.wgsl"), EIGEN],
     workgroup: 64,
     bindings: &[Read, Read, Read, Write],
     twin: cpu::membrane::bound,
@@ -19,7 +24,7 @@ pub(crate) static MEMBRANE: Stage = Stage {
 
 pub(crate) static BEND: Stage = Stage {
     name: "bend",
-    parts: &[ELEMENTS, include_str!("../../shader/bend.wgsl")],
+    parts: &[ELEMENTS, BLOCKS, NORMAL, include_str!("../../shader/bend.wgsl")],
     workgroup: 64,
     bindings: &[Read, Read, Read, Write],
     twin: cpu::bend::bound,
@@ -27,10 +32,18 @@ pub(crate) static BEND: Stage = Stage {
 
 pub(crate) static TETRAHEDRON: Stage = Stage {
     name: "tetrahedron",
-    parts: &[ELEMENTS, include_str!("../../shader/tetrahedron.wgsl"), EIGEN],
+    parts: &[ELEMENTS, BLOCKS, STRAIN, SOLID, include_str!("../../shader/tetrahedron.wgsl"), EIGEN],
     workgroup: 64,
     bindings: &[Read, Read, Read, Write],
     twin: cpu::tetrahedron::bound,
+};
+
+pub(crate) static DAMPED_TETRAHEDRON: Stage = Stage {
+    name: "damped_tetrahedron",
+    parts: &[ELEMENTS, BLOCKS, STRAIN, SOLID, include_str!("../../shader/damped_tetrahedron.wgsl"), EIGEN],
+    workgroup: 64,
+    bindings: &[Read, Read, Read, Write],
+    twin: cpu::damped_tetrahedron::bound,
 };
 
 pub(crate) static ASSEMBLE: Stage = Stage {

@@ -1,5 +1,5 @@
 use super::{ALL, Access};
-use crate::{assembly, cpu, layout, linear};
+use crate::{assembly, cpu, layout, linear, potential};
 use naga::{AddressSpace, StorageAccess, TypeInner};
 
 /// Shaders are valid without a device, and their bindings, workgroups and structs are those of the table.
@@ -89,13 +89,27 @@ fn structs_of_assembly_lie_alike_on_both_sides() {
     let structs = [
         offsets!(assembly::Membrane: nodes, area, gradients, stiffness, damping, padding),
         offsets!(assembly::Bend: nodes, jumps, gram, gradients, rest, crushed, padding),
-        offsets!(assembly::Tetrahedron: nodes, gradients, volume, lambda, mu, law, padding),
+        offsets!(assembly::Tetrahedron: nodes, gradients, volume, lambda, mu, law, viscous_lambda, viscous_mu, padding),
         offsets!(assembly::ElementParams: elements, first_block, absolute, rate, quantum),
     ];
     assert_structs(&module_of("membrane"), &structs);
     assert_structs(&module_of("frame"), &[offsets!(assembly::Frame: center, size, moment, held)]);
     assert_structs(&module_of("coarsen"), &[offsets!(assembly::Part: block, a, b, both)]);
     assert_structs(&module_of("assemble"), &[offsets!(assembly::Entry: at, first, count, bending)]);
+}
+
+#[test]
+fn structs_of_the_potential_lie_alike_on_both_sides() {
+    let terms = offsets!(potential::Terms: row_sum, linear);
+    let pair = offsets!(potential::Pair: node, value);
+    let energy_params = offsets!(potential::EnergyParams: count, first, workgroups, rate, quantum);
+    assert_structs(
+        &module_of("gather_gradient"),
+        &[terms, pair, offsets!(potential::NodeParams: nodes, quantum)],
+    );
+    assert_structs(&module_of("node_energy"), &[energy_params]);
+    let gradient_params = offsets!(potential::GradientParams: elements, first, rate, quantum);
+    assert_structs(&module_of("bend_gradient"), &[gradient_params]);
 }
 
 /// Structs have the same size and the same places of fields here and in the shaders.

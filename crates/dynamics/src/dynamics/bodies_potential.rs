@@ -1,0 +1,120 @@
+//! The potential of the bodies in double precision, beside which backends are checked.
+
+use super::Dynamics;
+use super::newton::backend::NewtonStep;
+use crate::elements::set::Motion;
+use crate::error::StepError;
+use crate::linear::assembly::ElementModel;
+use crate::linear::scalar::SplitForm;
+use crate::nodes::CHUNK;
+use bowknot_geometry::Vector;
+use nalgebra::Matrix3;
+
+/// The terms of the potential that are fixed in a time step, see [`NewtonStep`].
+#[derive(Clone, Debug)]
+pub struct StepTerms {
+    start: Vec<Vector>,
+    inertial: Vec<Vector>,
+    rate: f64,
+    row_sums: Vec<Matrix3<f64>>,
+    gradient: Vec<Vector>,
+    bending: SplitForm,
+}
+
+impl StepTerms {
+    /// What a backend gets of them.
+    pub fn as_step(&self) -> NewtonStep<'_> {
+        NewtonStep {
+            start: &self.start,
+            inertial: &self.inertial,
+            rate: self.rate,
+            row_sums: &self.row_sums,
+            gradient: &self.gradient,
+            bending: &self.bending.in_pattern,
+            scalars: self.bending.off_values(),
+        }
+    }
+}
+
+/// The potential of the bodies at a state, see [`NewtonStep`].
+#[derive(Clone, Debug, Default)]
+pub struct BodiesPotential {
+    /// Energy of the quadratic terms, relative to the start of the time step [J].
+    pub quadratic: f64,
+    /// Energy of the elements [J].
+    pub elements: f64,
+    /// The gradient of the sum [N, N].
+    pub gradient: Vec<Vector>,
+}
+
+impl Dynamics {
+    /// The elements as backends get them, without patches.
+    pub fn element_model(&self) -> ElementModel {
+        self.model.describe(Vec::new())
+    }
+
+    /// The terms of the potential in the time step that was begun.
+    ///
+    /// # Errors
+    /// No step was begun.
+    pub fn step_terms(&self) -> Result<StepTerms, StepError> {
+        let Some(step) = &self.step else { return Err(StepError::NotBegun) };
+        let rate = 1.0 / step.dt;
+        let per_mass = rate * rate + self.params.environment.air_drag * rate;
+        let nodes = self.model.node_masses.iter().enumerate();
+        let (row_sums, gradient) = nodes
+            .map(|(node, mass)| {
+                let mut sum = Matrix3::from_diagonal_element(mass * per_mass);
+                let mut gradient = (step.start[node] - step.inertial[node]) * (mass * rate * rate)
+                    + self.model.bending.product(node, &step.start);
+                if let Some(drag) = &step.drag {
+                    sum += drag.matrix[node] * rate;
+                    gradient -= drag.push[node];
+                }
+                (sum, gradient)
+            })
+            .unzip();
+        Ok(StepTerms {
+            start: step.start.clone(),
+            inertial: step.inertial.clone(),
+            rate,
+            row_sums,
+            gradient,
+            bending: step.scalar.clone(),
+        })
+    }
+
+    /// The potential of the bodies at positions `x` of nodes [m] in the time step that was begun. One thread computes it.
+    ///
+    /// # Errors
+    /// No step was begun, or the length is wrong.
+    pub fn bodies_potential(&self, x: &[Vector]) -> Result<BodiesPotential, StepError> {
+        let Some(step) = &self.step else { return Err(StepError::NotBegun) };
+        if x.len() != step.start.len() {
+            return Err(StepError::Length { array: "x", given: x.len(), vertices: step.start.len() });
+        }
+        let terms = self.step_terms()?;
+        let moved: Vec<Vector> = x.iter().zip(&step.start).map(|(x, start)| x - start).collect();
+        let mut potential = BodiesPotential::default();
+        for (node, d) in moved.iter().enumerate() {
+            let row = self.model.pattern.row(node);
+            let columns = &self.model.pattern.columns[row.clone()];
+            let in_pattern = columns.iter().zip(&terms.bending.in_pattern[row]);
+            let (columns, values) = terms.bending.off_pattern(node);
+            let pairs = in_pattern.chain(columns.iter().zip(values));
+            let bent: Vector = pairs.map(|(&j, &value)| (moved[j as usize] - d) * value).sum();
+            let force = terms.row_sums[node] * d + bent;
+            potential.quadratic += d.dot(&(force * 0.5 + terms.gradient[node]));
+            potential.gradient.push(force + terms.gradient[node]);
+        }
+        let motion = Motion { x, start: &step.start, rate: terms.rate };
+        for (chunk, gradient) in potential.gradient.chunks_mut(CHUNK).enumerate() {
+            let nodes = chunk * CHUNK..chunk * CHUNK + gradient.len();
+            for set in &self.model.element_sets {
+                potential.elements += set.energy(chunk, motion);
+                set.add_gradient(chunk, motion, nodes.clone(), gradient);
+            }
+        }
+        Ok(potential)
+    }
+}

@@ -1,0 +1,31 @@
+//! Partial sums of energies: twin of `shader/shared/parts.wgsl`.
+
+use super::sum::THREADS;
+use crate::potential::EnergyParams;
+
+/// The energy at the reference, its change, and its size.
+pub type Part = [f32; 4];
+
+fn plus(a: Part, b: Part) -> Part {
+    [0, 1, 2, 3].map(|k| a[k] + b[k])
+}
+
+/// Sums the energies of all elements or nodes, workgroup by workgroup.
+pub fn put_parts(params: EnergyParams, parts: &mut [Part], energy: impl Fn(usize) -> Part) {
+    let workgroups = params.workgroups as usize;
+    for group in 0..workgroups {
+        let mut values = [[0.0; 4]; THREADS];
+        for (t, value) in values.iter_mut().enumerate() {
+            let mine = (THREADS * group + t..params.count as usize).step_by(THREADS * workgroups);
+            *value = mine.fold([0.0; 4], |sum, k| plus(sum, energy(k)));
+        }
+        let mut reach = THREADS / 2;
+        while reach > 0 {
+            for t in 0..reach {
+                values[t] = plus(values[t], values[t + reach]);
+            }
+            reach /= 2;
+        }
+        parts[params.first as usize + group] = values[0];
+    }
+}

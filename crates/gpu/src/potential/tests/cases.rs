@@ -1,0 +1,204 @@
+//! Bodies in states that a device distinguishes, with all positions on a grid: those in double precision are the same.
+
+use crate::assembly::StateGrid;
+use crate::potential::Places;
+use bowknot_dynamics::{
+    Body, ClothMaterial, Dynamics, DynamicsModel, DynamicsParams, ElementModel, RestShape, SolidMaterial,
+    SolidModel, StepTerms,
+};
+use bowknot_geometry::{Point, Vector};
+
+/// The time step [s].
+pub const DT: f64 = 0.02;
+
+/// A body with the rest positions of its vertices.
+pub struct Case {
+    pub name: &'static str,
+    rest: Vec<Point>,
+    body: Body,
+}
+
+fn sheet(cells: usize, curvature: f64) -> (Vec<Point>, Vec<[u32; 3]>) {
+    let at = |k: usize| {
+        let (x, y) = (0.05 * (k % (cells + 1)) as f64, 0.04 * (k / (cells + 1)) as f64);
+        Point::new(x, y + 0.3 * x, curvature * (x * x - y * y + x * y))
+    };
+    let points = (0..(cells + 1) * (cells + 1)).map(at).collect();
+    let cell = |k: usize| {
+        let a = (k % cells + k / cells * (cells + 1)) as u32;
+        let [b, c, d] = [a + 1, a + 2 + cells as u32, a + 1 + cells as u32];
+        [[a, b, c], [a, c, d]]
+    };
+    (points, (0..cells * cells).flat_map(cell).collect())
+}
+
+/// Cubes of six tetrahedra each, in a row.
+fn block(cubes: usize) -> (Vec<Point>, Vec<[u32; 4]>) {
+    let (row, layer) = (cubes + 1, 2 * (cubes + 1));
+    let at =
+        |k: usize| Point::new((k % row) as f64, (k / row % 2) as f64, (k / layer) as f64).map(|x| 0.05 * x);
+    let (y, z) = (row as u32, layer as u32);
+    let tets = (0..cubes as u32).flat_map(|cell| {
+        // An odd order of the axes turns the tetrahedron inside out.
+        [(1, y, false), (1, z, true), (y, 1, true), (y, z, false), (z, 1, false), (z, y, true)].map(
+            |(a, b, is_odd)| {
+                let mut tet = [cell, cell + a, cell + a + b, cell + 1 + y + z];
+                if is_odd {
+                    tet.swap(2, 3);
+                }
+                tet
+            },
+        )
+    });
+    ((0..2 * layer).map(at).collect(), tets.collect())
+}
+
+/// Cloth that is isotropic, woven, damped, curved; solids of both laws, with and without damping.
+pub fn cases() -> Vec<Case> {
+    let isotropic = ClothMaterial::cotton();
+    let woven = ClothMaterial {
+        weft_stiffness: Some(0.4 * isotropic.stretch_stiffness),
+        shear_stiffness: Some(0.05 * isotropic.stretch_stiffness),
+        warp_direction: Vector::new(1.0, 0.7, 0.0),
+        ..ClothMaterial::cotton()
+    };
+    let damped = |material: &ClothMaterial| ClothMaterial {
+        stretch_damping: 0.02,
+        bend_damping: 0.05,
+        bend_stiffness: 1e-3,
+        ..*material
+    };
+    let curved = ClothMaterial {
+        rest_shape: RestShape::Initial,
+        bend_stiffness: 0.3 * isotropic.stretch_stiffness * 0.05 * 0.05,
+        ..ClothMaterial::cotton()
+    };
+    let cloth = [
+        ("isotropic", 0.0, isotropic),
+        ("woven", 0.0, woven),
+        ("isotropic, damped", 0.0, damped(&isotropic)),
+        ("woven, damped", 0.0, damped(&woven)),
+        ("curved", 2.0, curved),
+    ];
+    let solids = [
+        ("stvk", SolidModel::Stvk, 0.0),
+        ("neo-Hookean", SolidModel::StableNeoHookean, 0.0),
+        ("stvk, damped", SolidModel::Stvk, 0.01),
+        ("neo-Hookean, damped", SolidModel::StableNeoHookean, 0.01),
+    ];
+    let cloth = cloth.into_iter().map(|(name, curvature, material)| {
+        let (rest, triangles) = sheet(9, curvature);
+        Case { name, rest, body: Body::cloth("sheet", triangles, material) }
+    });
+    let solids = solids.into_iter().map(|(name, model, damping)| {
+        let (rest, tets) = block(12);
+        let material = SolidMaterial { model, damping, poisson_ratio: 0.4, ..SolidMaterial::rubber() };
+        Case { name, rest, body: Body::solid("block", tets, material) }
+    });
+    cloth.chain(solids).collect()
+}
+
+/// Positions of nodes on a grid.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// In quanta.
+    pub integers: Vec<[i32; 4]>,
+    /// In m.
+    pub positions: Vec<Vector>,
+}
+
+/// How far states are from the rest shape.
+#[derive(Clone, Copy)]
+pub struct Amounts {
+    /// Size of random displacements at the start, relative to the size of elements.
+    pub start: f64,
+    /// From there to the reference.
+    pub reference: f64,
+    /// From there to the trial.
+    pub trial: f64,
+    /// Displacement of everything from the start to the reference, and as much to the trial [m].
+    pub fall: f64,
+}
+
+/// A time step that was begun, and states in it.
+pub struct Problem {
+    pub name: &'static str,
+    pub dynamics: Dynamics,
+    pub model: ElementModel,
+    pub terms: StepTerms,
+    pub quantum: f64,
+    pub start: State,
+    pub reference: State,
+    pub trial: State,
+}
+
+impl Problem {
+    pub fn new(case: &Case, amounts: Amounts, seed: u64) -> Self {
+        let mut params = DynamicsParams::default();
+        params.environment.air_density = 1.2;
+        params.environment.wind = Vector::new(3.0, -1.0, 2.0);
+        let model = DynamicsModel::new(case.rest.clone(), vec![case.body.clone()]).expect("a model");
+        let mut dynamics = Dynamics::new(model, params).expect("parameters");
+        let model = dynamics.element_model();
+
+        let random = &mut fastrand::Rng::with_seed(seed);
+        let mut displaced = |from: &[Vector], amount: f64, fall: f64| -> Vec<Vector> {
+            let mut random_vector = || Vector::from_fn(|_, _| 2.0 * random.f64() - 1.0);
+            let fall = Vector::new(0.2, 0.1, -1.0) * fall;
+            from.iter().map(|x| x + random_vector() * (0.05 * amount) + fall).collect()
+        };
+        let turn = nalgebra::Rotation3::from_euler_angles(0.3, -0.8, 1.1);
+        let turned: Vec<Vector> = model.rest.iter().map(|x| turn * x).collect();
+        let start = displaced(&turned, amounts.start, 0.0);
+        let reference = displaced(&start, amounts.reference, amounts.fall);
+        let trial = displaced(&reference, amounts.trial, amounts.fall);
+        let grid = StateGrid::around(start.iter().chain(&reference).chain(&trial));
+        let [start, reference, trial] = [start, reference, trial].map(|x| {
+            let integers: Vec<[i32; 4]> = x.iter().map(|x| grid.place(x)).collect();
+            let position = |x: &[i32; 4]| Vector::new(x[0].into(), x[1].into(), x[2].into()) * grid.quantum;
+            State { positions: integers.iter().map(position).collect(), integers }
+        });
+        let node = |vertex: &Point| {
+            model.rest.iter().position(|rest| *rest == vertex.coords).expect("each vertex is a node")
+        };
+        let by_vertex: Vec<Point> =
+            case.rest.iter().map(|vertex| Point::from(start.positions[node(vertex)])).collect();
+        let velocities: Vec<Vector> = by_vertex.iter().map(|x| Vector::new(0.3, x.x, -2.0)).collect();
+        dynamics.begin_step(&by_vertex, &velocities, DT).expect("a step");
+        let terms = dynamics.step_terms().expect("a step");
+        let (name, quantum) = (case.name, grid.quantum);
+        Self { name, dynamics, model, terms, quantum, start, reference, trial }
+    }
+
+    pub fn places(&self, [positions, start]: [crate::recording::BufferId; 2]) -> Places {
+        Places { positions, start, quantum: self.quantum as f32 }
+    }
+
+    /// The sum over its elements of stiffness times length by each node [N], as a body has it whose lengths are up to
+    /// `stretch` times those at rest: the forces to which rounding of the elements' gradients is relative.
+    pub fn force_scales(&self, stretch: f64) -> Vec<f64> {
+        let mut scales = vec![0.0; self.model.rest.len()];
+        let steepest = |gradients: &[f64]| gradients.iter().fold(0.0f64, |most, g| most.max(g.abs()));
+        // Damping adds a multiple of the stiffness, and of the square of the stretch.
+        for m in &self.model.membranes {
+            let stiffness = steepest(&m.stiffness) * (1.0 + m.damping / DT * stretch * stretch);
+            let scale = stiffness * m.area * steepest(m.gradients.as_flattened()) * stretch;
+            m.nodes.iter().for_each(|node| scales[*node as usize] += scale);
+        }
+        for bend in &self.model.bends {
+            let weight = steepest(bend.jumps.as_flattened());
+            let gram: f64 = bend.gram.as_flattened().iter().map(|g| g.abs()).sum();
+            let scale = gram * weight * weight * 0.05 * stretch;
+            let nodes = bend.nodes.iter().filter(|node| **node != u32::MAX);
+            nodes.for_each(|node| scales[*node as usize] += scale);
+        }
+        for tet in &self.model.tetrahedra {
+            let [lambda, mu] = tet.constants;
+            let viscosity = tet.viscosity / DT * (1.0 + lambda / mu);
+            let stiffness = (2.0 * mu + lambda + 2.0 * viscosity) * stretch * stretch;
+            let scale = stiffness * tet.volume * steepest(tet.gradients.as_flattened()) * stretch;
+            tet.nodes.iter().for_each(|node| scales[*node as usize] += scale);
+        }
+        scales
+    }
+}
