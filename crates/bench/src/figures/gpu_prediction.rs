@@ -119,7 +119,8 @@ impl Figure for GpuPrediction {
                 paper.seconds.into(),
             ]);
             let frames = FRAMES as f64;
-            let (of_dynamics, growth_of_nodes) = (&scene.dynamics, scene.nodes[1] as f64 / scene.nodes[0] as f64);
+            let (of_dynamics, growth_of_nodes) =
+                (&scene.dynamics, scene.nodes[1] as f64 / scene.nodes[0] as f64);
             let seconds = of_dynamics.seconds(growth_of_nodes) / frames;
             dynamics.row([
                 paper.scene.into(),
@@ -211,15 +212,15 @@ impl Counted {
         device.set_steps_per_submission(1);
         simulator.set_backend(Box::new(device))?;
         let (engine, dynamics) = CountingEngine::new();
-        simulator
-            .set_dynamics_backend(Some(Box::new(ConjugateGradients::new("twins".to_owned(), engine))));
+        simulator.set_dynamics_backend(Some(Box::new(ConjugateGradients::new("twins".to_owned(), engine))));
         let taken = |counts: &Mutex<Counts>| {
             std::mem::take(&mut *counts.lock().unwrap_or_else(PoisonError::into_inner))
         };
         // Writing what stays for a run is no part of a time step.
         taken(&dynamics);
         let full = World::new(&Scene::builtin(paper.scene, 1.0)?)?;
-        let nodes = |world: &World| world.deformable_vertices + world.positions.len() - world.collision_vertices();
+        let nodes =
+            |world: &World| world.deformable_vertices + world.positions.len() - world.collision_vertices();
         let mut counted = Self {
             collisions: Counts::default(),
             dynamics: Counts::default(),

@@ -2,11 +2,15 @@
 
 use super::Dynamics;
 use super::newton::backend::NewtonStep;
+use super::newton::momentum::Inertia;
+use super::newton::state::Step;
 use crate::elements::set::Motion;
 use crate::error::StepError;
 use crate::linear::assembly::ElementModel;
 use crate::linear::scalar::SplitForm;
+use crate::model::DynamicsModel;
 use crate::nodes::CHUNK;
+use crate::params::DynamicsParams;
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
 
@@ -22,6 +26,23 @@ pub struct StepTerms {
 }
 
 impl StepTerms {
+    /// Those of a time step.
+    pub(super) fn new(model: &DynamicsModel, params: &DynamicsParams, step: &Step) -> Self {
+        let inertia = Inertia::new(params, step);
+        let gradient = |node: usize| {
+            inertia.gradient(model, step, node, &step.start[node]) + model.bending.product(node, &step.start)
+        };
+        let nodes = 0..step.start.len();
+        Self {
+            start: step.start.clone(),
+            inertial: step.inertial.clone(),
+            rate: inertia.rate,
+            row_sums: nodes.clone().map(|node| inertia.of_nodes(model, node..node + 1)).collect(),
+            gradient: nodes.map(gradient).collect(),
+            bending: step.scalar.clone(),
+        }
+    }
+
     /// What a backend gets of them.
     pub fn as_step(&self) -> NewtonStep<'_> {
         NewtonStep {
@@ -59,29 +80,7 @@ impl Dynamics {
     /// No step was begun.
     pub fn step_terms(&self) -> Result<StepTerms, StepError> {
         let Some(step) = &self.step else { return Err(StepError::NotBegun) };
-        let rate = 1.0 / step.dt;
-        let per_mass = rate * rate + self.params.environment.air_drag * rate;
-        let nodes = self.model.node_masses.iter().enumerate();
-        let (row_sums, gradient) = nodes
-            .map(|(node, mass)| {
-                let mut sum = Matrix3::from_diagonal_element(mass * per_mass);
-                let mut gradient = (step.start[node] - step.inertial[node]) * (mass * rate * rate)
-                    + self.model.bending.product(node, &step.start);
-                if let Some(drag) = &step.drag {
-                    sum += drag.matrix[node] * rate;
-                    gradient -= drag.push[node];
-                }
-                (sum, gradient)
-            })
-            .unzip();
-        Ok(StepTerms {
-            start: step.start.clone(),
-            inertial: step.inertial.clone(),
-            rate,
-            row_sums,
-            gradient,
-            bending: step.scalar.clone(),
-        })
+        Ok(StepTerms::new(&self.model, &self.params, step))
     }
 
     /// The potential of the bodies at positions `x` of nodes [m] in the time step that was begun. One thread computes it.

@@ -1,12 +1,12 @@
 //! The bodies on a device: a backend with what the host knows of the time step.
 
-use super::backend::{NewtonBackend, NewtonStep, NewtonTarget, SolveLimits, Trial};
+use super::backend::{NewtonBackend, NewtonTarget, SolveLimits, Trial};
 use super::bodies::{Answer, Bodies, BodyEnergies, Imbalance, LinearSolve, Lost, Promise};
 use super::cpu::NEGLIGIBLE_STEP;
 use super::momentum::{Inertia, nodes_of};
 use super::state::{Course, Step};
+use crate::dynamics::bodies_potential::StepTerms;
 use crate::elements::filter::Filter;
-use crate::elements::set::Motion;
 use crate::linear::accuracy::Limits;
 use crate::linear::assembly::AssemblySprings;
 use crate::linear::springs::LinearSprings;
@@ -34,34 +34,19 @@ impl DeviceStep {
         step: &Step,
         backend: &mut dyn NewtonBackend,
     ) -> Answer<Self> {
-        let inertia = Inertia::new(params, step);
-        let nodes = step.start.len();
-        let row_sums: Vec<Matrix3<f64>> = (0..nodes).map(|n| inertia.of_nodes(model, n..n + 1)).collect();
+        let terms = StepTerms::new(model, params, step);
+        let as_step = terms.as_step();
         let component_sums = model
             .components
             .iter()
-            .map(|component| row_sums[component.start as usize..component.end as usize].iter().sum());
-        // Damping is zero at the start, and so is the drag of moving.
-        let motion = Motion { x: &step.start, start: &step.start, rate: inertia.rate };
-        let rate_squared = inertia.rate * inertia.rate;
-        let gradient = |n: usize| {
-            external_gradient(model, &inertia, step, n, &step.start[n]) + model.bending.product(n, motion.x)
-        };
-        let gradient: Vec<Vector> = (0..nodes).map(gradient).collect();
-        let (_, _, scalars) = step.scalar.off_rows();
-        backend.begin_step(&NewtonStep {
-            start: &step.start,
-            inertial: &step.inertial,
-            rate: inertia.rate,
-            row_sums: &row_sums,
-            gradient: &gradient,
-            bending: &step.scalar.in_pattern,
-            scalars,
-        })?;
+            .map(|component| as_step.row_sums[component.start as usize..component.end as usize].iter().sum());
+        backend.begin_step(&as_step)?;
         let kinetic = |n: usize| {
-            0.5 * model.node_masses[n] * rate_squared * (step.start[n] - step.inertial[n]).norm_squared()
+            let inertia = 0.5 * model.node_masses[n] * as_step.rate * as_step.rate;
+            inertia * (step.start[n] - step.inertial[n]).norm_squared()
         };
-        let bending = |chunk: usize| model.bending.chunk_energy(chunk, motion.x);
+        let nodes = step.start.len();
+        let bending = |chunk: usize| model.bending.chunk_energy(chunk, &step.start);
         let potential_at_start =
             (0..nodes).map(kinetic).sum::<f64>() + (0..nodes.div_ceil(CHUNK)).map(bending).sum::<f64>();
         Ok(Self { component_sums: component_sums.collect(), potential_at_start })
@@ -268,7 +253,7 @@ pub fn conserve_momentum(
     let inertia = Inertia::new(params, step);
     for group in groups {
         let nodes = || nodes_of(model, group);
-        let force = |n: usize| external_gradient(model, &inertia, step, n, &trial[n]);
+        let force = |n: usize| inertia.gradient(model, step, n, &trial[n]);
         let sum: Vector = nodes().map(force).sum();
         let total = inertia.of_nodes(model, nodes());
         if let Some(inverse) = total.try_inverse() {
@@ -276,24 +261,6 @@ pub fn conserve_momentum(
             nodes().for_each(|n| trial[n] -= shift);
         }
     }
-}
-
-/// The gradient of inertia and air by a node at `x` [N].
-fn external_gradient(
-    model: &DynamicsModel,
-    inertia: &Inertia<'_>,
-    step: &Step,
-    node: usize,
-    x: &Vector,
-) -> Vector {
-    let moved = x - step.start[node];
-    let (mass, rate) = (model.node_masses[node], inertia.rate);
-    let mut gradient =
-        (step.start[node] - step.inertial[node]) * (mass * rate * rate) + moved * (mass * inertia.per_mass);
-    if let Some(drag) = inertia.drag {
-        gradient += drag.matrix[node] * moved * rate - drag.push[node];
-    }
-    gradient
 }
 
 /// Lets `run` work on the bodies on a device, from a beginning. If there is a `trial`, it becomes the last one, by node,

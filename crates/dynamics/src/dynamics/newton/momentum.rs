@@ -43,6 +43,20 @@ impl<'a> Inertia<'a> {
     }
 }
 
+impl Inertia<'_> {
+    /// The gradient of inertia and air by a node at `x` [N].
+    pub fn gradient(&self, model: &DynamicsModel, step: &Step, node: usize, x: &Vector) -> Vector {
+        let moved = x - step.start[node];
+        let mass = model.node_masses[node];
+        let mut gradient = (step.start[node] - step.inertial[node]) * (mass * self.rate * self.rate)
+            + moved * (mass * self.per_mass);
+        if let Some(drag) = self.drag {
+            gradient += drag.matrix[node] * moved * self.rate - drag.push[node];
+        }
+        gradient
+    }
+}
+
 /// The groups of freely flying components, each by its components: those of which no node is held by a keyframe or by a
 /// spring. Components that springs join form one group.
 pub(crate) fn flying_groups(model: &DynamicsModel, repulsion: &Repulsion, free: &[bool]) -> Vec<Vec<usize>> {
