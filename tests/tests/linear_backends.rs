@@ -7,7 +7,7 @@
 
 use bowknot::dynamics::{
     AssemblySprings, ElementModel, LinearBackend, LinearBackendError, LinearSystem, Matrix3, NewtonBackend,
-    NewtonSolve, NewtonStep, NewtonTarget, OutOfBalance, SolveLimits, Trial,
+    NewtonSolve, NewtonStep, NewtonTarget, OutOfBalance, SolveLimits, Trial, Watched,
 };
 use bowknot::geometry::{Point, Vector};
 use bowknot::gpu::{Adapter, ComparingEngine, ConjugateGradients, DeviceEngine, Engine, TwinEngine};
@@ -61,7 +61,7 @@ struct Counts {
 }
 
 /// An engine that says how many words of it differ from those of the twins.
-trait Watched: Engine + Debug + Send {
+trait Metering: Engine + Debug + Send {
     fn differences(&self) -> usize {
         0
     }
@@ -72,7 +72,7 @@ trait Watched: Engine + Debug + Send {
     }
 }
 
-impl Watched for TwinEngine {}
+impl Metering for TwinEngine {}
 
 /// The twins, and how much the host writes and reads.
 #[derive(Debug, Default)]
@@ -106,13 +106,13 @@ impl Engine for Metered {
     }
 }
 
-impl Watched for Metered {
+impl Metering for Metered {
     fn words_moved(&self) -> (usize, usize) {
         (self.written, self.read)
     }
 }
 
-impl Watched for ComparingEngine {
+impl Metering for ComparingEngine {
     fn differences(&self) -> usize {
         self.differences().len()
     }
@@ -128,7 +128,7 @@ struct Counted<E> {
     is_whole: bool,
 }
 
-impl<E: Watched> Counted<E> {
+impl<E: Metering> Counted<E> {
     fn new(engine: E, fails_at: Option<usize>) -> (Box<Self>, Arc<Mutex<Counts>>) {
         let counts: Arc<Mutex<Counts>> = Arc::default();
         let inner = ConjugateGradients::new("twins".to_owned(), engine);
@@ -143,7 +143,7 @@ impl<E: Watched> Counted<E> {
     }
 }
 
-impl<E: Watched> LinearBackend for Counted<E> {
+impl<E: Metering> LinearBackend for Counted<E> {
     fn name(&self) -> String {
         self.inner.name()
     }
@@ -180,7 +180,7 @@ impl<E: Watched> LinearBackend for Counted<E> {
     }
 }
 
-impl<E: Watched> Counted<E> {
+impl<E: Metering> Counted<E> {
     /// Notes what the engine has moved so far.
     fn note_words(&self) {
         let mut counts = self.counts.lock().expect("no panic");
@@ -189,7 +189,7 @@ impl<E: Watched> Counted<E> {
     }
 }
 
-impl<E: Watched> NewtonBackend for Counted<E> {
+impl<E: Metering> NewtonBackend for Counted<E> {
     fn set_model(&mut self, model: &ElementModel) -> Result<bool, LinearBackendError> {
         self.inner.set_model(model)
     }
@@ -198,11 +198,11 @@ impl<E: Watched> NewtonBackend for Counted<E> {
         self.inner.begin_step(step)
     }
 
-    fn begin_target(&mut self, target: &NewtonTarget<'_>) -> Result<(), LinearBackendError> {
+    fn begin_target(&mut self, target: &NewtonTarget<'_>) -> Result<Watched, LinearBackendError> {
         self.inner.begin_target(target)
     }
 
-    fn begin_again(&mut self) -> Result<(), LinearBackendError> {
+    fn begin_again(&mut self) -> Result<Watched, LinearBackendError> {
         self.inner.begin_again()
     }
 

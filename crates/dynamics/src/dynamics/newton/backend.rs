@@ -45,13 +45,13 @@ pub trait NewtonBackend: Debug + Send {
     fn begin_step(&mut self, step: &NewtonStep<'_>) -> Result<(), LinearBackendError>;
 
     /// Begins a target: sets the iterate, the free nodes, the nodes to [watch](Watched), and how far the others are from
-    /// where they must end. The trial is then the iterate with these at their ends.
+    /// where they must end. Returns where the watched nodes are at the iterate, as the backend rounds positions.
     ///
     /// # Errors
     /// What the backend fails of.
     fn begin_target(&mut self, target: &NewtonTarget<'_>) -> Result<Watched, LinearBackendError>;
 
-    /// Returns to the iterate that [`Self::begin_target`] has set.
+    /// Returns to the iterate that [`Self::begin_target`] has set, and as it does.
     ///
     /// # Errors
     /// What the backend fails of.

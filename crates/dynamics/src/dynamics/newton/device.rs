@@ -87,7 +87,7 @@ impl<'a> DeviceBodies<'a> {
         backend: &'a mut dyn NewtonBackend,
         beginning: Beginning<'a>,
     ) -> Answer<Self> {
-        backend.begin_target(&NewtonTarget {
+        let watched = backend.begin_target(&NewtonTarget {
             iterate: beginning.iterate,
             free: beginning.free,
             imposed: beginning.imposed,
@@ -95,25 +95,24 @@ impl<'a> DeviceBodies<'a> {
         })?;
         let largest = beginning.iterate.iter().map(Vector::amax).fold(0.0, f64::max);
         let (trial, kept) = (Trial::default(), Vec::new());
-        let iterate = beginning.positions();
+        let iterate = beginning.with_ends(watched);
         Ok(Self { model, step, on_device, backend, beginning, iterate, trial, kept, largest })
     }
 }
 
 impl Beginning<'_> {
     /// Watched nodes at the iterate, and there with those that are not free at their ends.
-    fn positions(&self) -> [Vec<Vector>; 2] {
-        let gather = |position: &dyn Fn(usize) -> Vector| -> Vec<Vector> {
-            self.watched.iter().map(|&node| position(node as usize)).collect()
-        };
-        [gather(&|n| self.iterate[n]), gather(&|n| self.iterate[n] + self.imposed[n])]
+    fn with_ends(&self, iterate: Vec<Vector>) -> [Vec<Vector>; 2] {
+        let ends =
+            self.watched.iter().zip(&iterate).map(|(&node, x)| x + self.imposed[node as usize]).collect();
+        [iterate, ends]
     }
 }
 
 impl Bodies for DeviceBodies<'_> {
     fn begin_again(&mut self) -> Answer<()> {
-        self.backend.begin_again()?;
-        self.iterate = self.beginning.positions();
+        let watched = self.backend.begin_again()?;
+        self.iterate = self.beginning.with_ends(watched);
         Ok(())
     }
 
