@@ -3,7 +3,7 @@
 // Manifests keep to the layers, no files import each other in a circle, and named paths exist.
 mod imports;
 mod layers;
-mod linear_backends;
+mod dynamics_backends;
 mod paths;
 // No step of the interior point baselines intersects.
 mod interior_points;

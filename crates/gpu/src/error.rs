@@ -3,7 +3,7 @@
 use std::fmt;
 
 /// How to do without the device, in words: an engine does not know what it computes.
-const ON_CPU: &str = "the CPU (--backend cpu for collisions, --linear-backend cpu for linear solves)";
+const ON_CPU: &str = "the CPU (--backend cpu, or --dynamics-backend cpu for the dynamics alone)";
 
 /// An error of the device or of the driver.
 #[derive(Debug, thiserror::Error)]
