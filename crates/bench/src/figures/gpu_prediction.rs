@@ -15,19 +15,27 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub struct GpuPrediction;
 
 /// The device of the prediction: bytes per second of its memory, its multiprocessors, seconds from one dispatch to the
-/// next, seconds until the threads of a workgroup have waited for each other and have their next data, seconds from a
-/// submission until the host has what it reads, bytes per second between host and device.
+/// next; seconds until the threads of a workgroup have waited for each other and have their next data, from the memory of
+/// the device, or from their own with the arithmetic of a row; seconds from a submission until the host has what it reads,
+/// bytes per second between host and device.
 const BANDWIDTH: f64 = 4.8e12;
 const MULTIPROCESSORS: f64 = 132.0;
 const DISPATCH: f64 = 3e-6;
 const WAIT: f64 = 1e-6;
+const SHORT_WAIT: f64 = 0.3e-6;
 const SUBMISSION: f64 = 30e-6;
 const LINK: f64 = 50e9;
 
-/// How often the threads of a workgroup wait per round of coloring, of which there are as many as colors, and sweeps over
-/// a cluster of edges.
-const WAITS_PER_COLORING: usize = 5;
-const CLUSTER_SWEEPS: usize = 2;
+/// How often the threads of a workgroup wait per round of coloring, of which there are as many as colors, and for a bucket or
+/// a cluster that they keep in their own memory: what it has, rows or edges, displacements, and to write them back.
+const WAITS_PER_COLORING: f64 = 5.0;
+const WAITS_PER_VISIT: f64 = 4.0;
+
+/// Sweeps over a cluster of edges; most rows of a bucket and most colors of a cluster that a workgroup keeps
+/// (`sweep_rows.wgsl`, `sweep_edges.wgsl`).
+const CLUSTER_SWEEPS: f64 = 2.0;
+const KEPT_ROWS: u32 = 256;
+const KEPT_COLORS: u32 = 12;
 
 /// Time steps that are counted.
 const FRAMES: usize = 3;
@@ -45,7 +53,7 @@ impl Figure for GpuPrediction {
         "A prediction, not a measurement. The CPU leads small scenes into contact; then the twins of the kernels make three \
          time steps, and every dispatch is counted, with the bytes that are in use of the buffers that it binds. For a device of 4.8 TB/s and 132 \
          multiprocessors, a dispatch takes 3 microseconds, one more for each time that the threads of a workgroup wait for \
-         each other between colors, plus its bytes at full speed, or at the share of the multiprocessors that it has \
+         each other and for memory, 0.3 for a color whose rows or edges they keep, plus its bytes at full speed, or at the share of the multiprocessors that it has \
          workgroups for. Dispatches of one stage that follow each other with the same buffers \
          (colors of a sweep, levels of a tree) share the bytes. A submission takes 30 microseconds, and what the host \
          writes and reads goes at 50 GB/s. To the paper's size, bytes and threads grow with the number of vertices, and \
@@ -172,12 +180,12 @@ struct Group {
     dispatches: usize,
     /// Bytes in use of the bound buffers.
     bytes: f64,
-    /// How often the threads of a workgroup wait for each other between colors.
-    waits: usize,
+    /// Seconds in which the threads of a workgroup wait for each other.
+    waits: f64,
 }
 
-/// What one workgroup does of a dispatch: whether it has work, and how often its threads wait for each other.
-type Workgroup = (bool, usize);
+/// What one workgroup does of a dispatch: whether it has work, and the seconds that its threads wait for each other.
+type Workgroup = (bool, f64);
 
 /// What some time steps of a scene needed.
 #[derive(Debug)]
@@ -267,7 +275,7 @@ impl Counts {
     ) {
         let all: Vec<_> = recording.dispatches().collect();
         for run in all.chunk_by(|a, b| a.stage == b.stage && a.buffers == b.buffers) {
-            let (mut workgroups, mut waits) = (0, 0);
+            let (mut workgroups, mut waits) = (0, 0.0);
             let colored = workgroups_of(&run[0]);
             let mut next = 0;
             for one in run {
@@ -280,7 +288,7 @@ impl Counts {
                     let here = &all[next..next + count];
                     next += count;
                     workgroups += here.iter().filter(|(works, _)| *works).count();
-                    waits += here.iter().map(|(_, waits)| *waits).max().unwrap_or(0);
+                    waits += here.iter().map(|(_, waits)| *waits).fold(0.0, f64::max);
                 } else {
                     workgroups += count;
                 }
@@ -312,8 +320,8 @@ impl Counts {
 
     /// Seconds of dispatches, waits and submissions alone.
     fn latency(&self) -> f64 {
-        let waits: usize = self.groups.values().map(|group| group.waits).sum();
-        DISPATCH * self.dispatches()[0] as f64 + WAIT * waits as f64 + SUBMISSION * self.submissions as f64
+        let waits: f64 = self.groups.values().map(|group| group.waits).sum();
+        DISPATCH * self.dispatches()[0] as f64 + waits + SUBMISSION * self.submissions as f64
     }
 
     /// Predicted seconds of a scene that is so many times as large.
@@ -328,7 +336,7 @@ impl Counts {
         let mut stages: BTreeMap<&'static str, [f64; 3]> = BTreeMap::new();
         for ((stage, workgroups), group) in &self.groups {
             let dispatches = group.dispatches as f64;
-            let latency = DISPATCH * dispatches + WAIT * group.waits as f64;
+            let latency = DISPATCH * dispatches + group.waits;
             let seconds = latency + byte_seconds(*workgroups, group.bytes, growth);
             let sums = stages.entry(stage).or_default();
             for (sum, more) in sums.iter_mut().zip([dispatches, growth * group.bytes, seconds]) {
@@ -362,14 +370,27 @@ impl CountingEngine {
     /// The workgroups of all dispatches of a stage that goes through colors: buckets of rows (where they begin, where they
     /// end, how many colors they have), and clusters of edges, of whose five words the last is the number of colors.
     fn workgroups_of(&self, dispatch: &DispatchView<'_>) -> Option<Vec<Workgroup>> {
-        let (buffer, words, waits) = match dispatch.stage {
-            "color" => (dispatch.buffers[2], 3, WAITS_PER_COLORING),
-            "sweep_rows" => (dispatch.buffers[1], 3, 1),
-            "sweep_edges" => (dispatch.buffers[1], 5, CLUSTER_SWEEPS),
+        let visit = |colors: f64| WAITS_PER_VISIT * WAIT + colors * SHORT_WAIT;
+        let coloring = |bucket: &[u32]| WAITS_PER_COLORING * WAIT * f64::from(bucket[2]);
+        let rows = |bucket: &[u32]| {
+            let colors = f64::from(bucket[2]);
+            if bucket[1] - bucket[0] <= KEPT_ROWS { visit(colors) } else { colors * WAIT }
+        };
+        let edges = |cluster: &[u32]| {
+            let colors = CLUSTER_SWEEPS * f64::from(cluster[4]);
+            if cluster[4] <= KEPT_COLORS { visit(colors) } else { colors * WAIT }
+        };
+        let (buffer, words, seconds): (_, _, &dyn Fn(&[u32]) -> f64) = match dispatch.stage {
+            "color" => (dispatch.buffers[2], 3, &coloring),
+            "sweep_rows" => (dispatch.buffers[1], 3, &rows),
+            "sweep_edges" => (dispatch.buffers[1], 5, &edges),
             _ => return None,
         };
         let content = self.twin.words_of(buffer);
-        let workgroup = |part: &[u32]| (part[words - 1] > 0, waits * part[words - 1] as usize);
+        let workgroup = |part: &[u32]| {
+            let works = part[words - 1] > 0;
+            (works, if works { seconds(part) } else { 0.0 })
+        };
         Some(content.chunks_exact(words).map(workgroup).collect())
     }
 
