@@ -2,6 +2,9 @@
 // time, with the displacements of its vertices in its own memory, and waits between the colors of its edges: edges of
 // one color share no vertex that moves. The ball |x_a - x_b + u_a - u_b| <= L is convex, so nothing is linearized: each
 // edge is projected onto its own ball, with the multiplier that it had taken back first (Boyle and Dykstra 1986).
+//
+// Where a cluster has few colors with few edges each, as clusters of meshes do, a thread keeps its edges of all colors, so
+// that the memory of the device is read before the first sweep and written after the last one.
 
 struct Params {
     // Clusters of the round.
@@ -22,37 +25,73 @@ struct Params {
 @group(0) @binding(5) var<storage, read_write> limits: array<EdgeLimit>;
 @group(0) @binding(6) var<storage, read_write> displacements: array<vec4<f32>>;
 
-var<workgroup> moved: array<vec4<f32>, 256>;
+const THREADS: u32 = 256u;
+// Colors of which a thread keeps its edges.
+const KEPT: u32 = 12u;
 
-fn displacement(place: u32, v: u32) -> vec4<f32> {
-    if place == FIXED {
-        return displacements[v];
-    }
-    return moved[place];
+// An edge with what its projection reads.
+struct Edge {
+    // x_a - x_b.
+    between: vec3<f32>,
+    limit: f32,
+    multiplier: vec3<f32>,
+    // EdgeLimit.places; all bits for no edge.
+    places: u32,
 }
 
-fn relax(e: u32) {
+const NO_EDGE: u32 = 0xffffffffu;
+
+var<workgroup> moved: array<vec4<f32>, 256>;
+
+var<private> kept: array<Edge, 12>;
+// Of the edge that is projected, displacements of ends that have no place in the cluster.
+var<private> outside: array<vec4<f32>, 2>;
+
+fn read_edge(e: u32) -> Edge {
     let edge = limits[e];
+    let between = vec3<f32>(positions[edge.a].xyz - positions[edge.b].xyz);
+    return Edge(between, edge.limit, edge.multiplier, edge.places);
+}
+
+// Displacements of ends outside of the cluster, which do not move in the round.
+fn read_outside(e: u32) {
+    let edge = limits[e];
+    if (edge.places & 0xffffu) == FIXED {
+        outside[0] = displacements[edge.a];
+    }
+    if (edge.places >> 16u) == FIXED {
+        outside[1] = displacements[edge.b];
+    }
+}
+
+// Projects an edge; returns its multiplier.
+fn relax(edge: Edge) -> vec3<f32> {
     let old = edge.multiplier;
     var change = old;
     let a_place = edge.places & 0xffffu;
     let b_place = edge.places >> 16u;
-    let a = displacement(a_place, edge.a);
-    let b = displacement(b_place, edge.b);
+    var a = outside[0];
+    if a_place != FIXED {
+        a = moved[a_place];
+    }
+    var b = outside[1];
+    if b_place != FIXED {
+        b = moved[b_place];
+    }
     let total = a.w + b.w;
     if total <= 0.0 {
-        return;
+        return old;
     }
+    var multiplier = old;
     if params.only_apply == 0u {
-        let along = vec3<f32>(positions[edge.a].xyz - positions[edge.b].xyz) + a.xyz - b.xyz;
+        let along = edge.between + a.xyz - b.xyz;
         let released = along + total * old;
         let length = sqrt(dot(released, released));
-        var multiplier = vec3<f32>(0.0);
+        multiplier = vec3<f32>(0.0);
         if length > edge.limit {
             multiplier = released * ((length - edge.limit) / (length * total));
         }
         change = multiplier - old;
-        limits[e].multiplier = multiplier;
     }
     if a_place != FIXED {
         moved[a_place] = vec4<f32>(a.xyz - a.w * change, a.w);
@@ -60,6 +99,12 @@ fn relax(e: u32) {
     if b_place != FIXED {
         moved[b_place] = vec4<f32>(b.xyz + b.w * change, b.w);
     }
+    return multiplier;
+}
+
+// The edge of a thread in a color that begins and ends there.
+fn edge_of(first: u32, end: u32, thread: u32) -> u32 {
+    return select(NO_EDGE, first + thread, first + thread < end);
 }
 
 @compute @workgroup_size(256)
@@ -70,16 +115,55 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
         if local.x < cluster.vertices {
             moved[local.x] = displacements[cluster_vertices[v]];
         }
+        let keeps = cluster.colors <= KEPT;
+        if keeps {
+            var first = cluster.first_edge;
+            for (var color = 0u; color < cluster.colors; color += 1u) {
+                let end = color_ends[cluster.first_color + color];
+                let e = edge_of(first, end, local.x);
+                kept[color].places = NO_EDGE;
+                if e != NO_EDGE {
+                    kept[color] = read_edge(e);
+                }
+                first = end;
+            }
+        }
         workgroupBarrier();
         for (var sweep = 0u; sweep < params.sweeps; sweep += 1u) {
             var first = cluster.first_edge;
             for (var color = 0u; color < cluster.colors; color += 1u) {
                 let end = color_ends[cluster.first_color + color];
-                for (var e = first + local.x; e < end; e += 256u) {
-                    relax(e);
+                var e = edge_of(first, end, local.x);
+                if keeps && e != NO_EDGE {
+                    let places = kept[color].places;
+                    if (places & 0xffffu) == FIXED || (places >> 16u) == FIXED {
+                        read_outside(e);
+                    }
+                    kept[color].multiplier = relax(kept[color]);
+                    // A color has at most half as many edges as the cluster has vertices that move, unless they end outside.
+                    e += THREADS;
+                }
+                while e < end {
+                    read_outside(e);
+                    let multiplier = relax(read_edge(e));
+                    if params.only_apply == 0u {
+                        limits[e].multiplier = multiplier;
+                    }
+                    e += THREADS;
                 }
                 first = end;
                 workgroupBarrier();
+            }
+        }
+        if keeps && params.only_apply == 0u {
+            var first = cluster.first_edge;
+            for (var color = 0u; color < cluster.colors; color += 1u) {
+                let end = color_ends[cluster.first_color + color];
+                let e = edge_of(first, end, local.x);
+                if e != NO_EDGE {
+                    limits[e].multiplier = kept[color].multiplier;
+                }
+                first = end;
             }
         }
         if local.x < cluster.vertices {

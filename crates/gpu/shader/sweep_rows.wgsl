@@ -1,6 +1,10 @@
 // A sweep over the contact rows of some buckets, which share no vertex that moves (bricks.rs). A workgroup takes a bucket at
 // a time and waits between its colors: rows of one color share no vertex that moves. The rows without a color of their
 // own come last, one after the other. Vertices that do not move are read by many and written by none.
+//
+// Most buckets have no more rows than a workgroup has threads. Each thread then keeps a row, and the workgroup the
+// displacements of all vertices in its own memory, in the slots of a hash table: between colors nothing is read from the
+// memory of the device, which takes ten times as long as waiting. Other buckets are swept there. The arithmetic is the same.
 
 struct Params {
     // Buckets of the dispatch.
@@ -18,24 +22,71 @@ struct Params {
 @group(0) @binding(4) var<storage, read_write> rows: array<Row>;
 @group(0) @binding(5) var<storage, read_write> displacements: array<vec4<f32>>;
 
-fn relax(r: u32) {
-    let row = rows[r];
+const THREADS: u32 = 256u;
+const SLOTS: u32 = 512u;
+const EMPTY: u32 = 0xffffffffu;
+
+// The vertex of each slot, and its displacement.
+var<workgroup> keys: array<atomic<u32>, 512>;
+var<workgroup> moved: array<vec4<f32>, 512>;
+// Whether the bucket needs more slots than there are, counted and as all threads read it.
+var<workgroup> overflow: atomic<u32>;
+var<workgroup> is_full: u32;
+
+// The row that is relaxed. In place of vertices it has slots if `is_kept` is true.
+var<private> row: Row;
+var<private> is_kept: bool;
+
+fn displacement(v: u32) -> vec4<f32> {
+    if is_kept {
+        return moved[v];
+    }
+    return displacements[v];
+}
+
+// Displacement of side a less that of side b, at the closest points.
+fn relative_displacement() -> vec3<f32> {
+    var sum = vec3<f32>(0.0);
+    for (var k = 0u; k < 4u; k += 1u) {
+        sum += row.weights[k] * displacement(row.vertices[k]).xyz;
+    }
+    return sum;
+}
+
+// Moves the vertices of the row by a change of its multipliers.
+fn push(change: vec3<f32>) {
+    for (var k = 0u; k < 4u; k += 1u) {
+        let v = row.vertices[k];
+        let old = displacement(v);
+        let step = old.w * row.weights[k];
+        if step != 0.0 {
+            let pushed = vec4<f32>(old.xyz + change * step, old.w);
+            if is_kept {
+                moved[v] = pushed;
+            } else {
+                displacements[v] = pushed;
+            }
+        }
+    }
+}
+
+fn relax() {
     if row.inverse_diagonal == 0.0 {
         return;
     }
     if params.only_apply != 0u {
-        push(row, row.normal * row.multiplier + row.friction);
+        push(row.normal * row.multiplier + row.friction);
         return;
     }
-    let value = row.value + dot(row.normal, relative_displacement(row));
+    let value = row.value + dot(row.normal, relative_displacement());
     let multiplier = max(row.multiplier - value * row.inverse_diagonal, 0.0);
-    push(row, row.normal * (multiplier - row.multiplier));
-    rows[r].multiplier = multiplier;
+    push(row.normal * (multiplier - row.multiplier));
+    row.multiplier = multiplier;
     let has_friction = row.coefficient > 0.0 && (multiplier > 0.0 || any(row.friction != vec3<f32>(0.0)));
     if has_friction {
         // The motion along the normal is taken away once more, because the multiplier must stay across it.
-        let moved = row.slip + relative_displacement(row);
-        let slip = moved - row.normal * dot(row.normal, moved);
+        let slipped = row.slip + relative_displacement();
+        let slip = slipped - row.normal * dot(row.normal, slipped);
         let wanted = row.friction - slip * row.inverse_diagonal;
         let size = sqrt(dot(wanted, wanted));
         let largest = row.coefficient * multiplier;
@@ -43,49 +94,120 @@ fn relax(r: u32) {
         if size > largest {
             friction = wanted * (largest / size);
         }
-        push(row, friction - row.friction);
-        rows[r].friction = friction;
+        push(friction - row.friction);
+        row.friction = friction;
     }
 }
 
-// Displacement of side a less that of side b, at the closest points.
-fn relative_displacement(row: Row) -> vec3<f32> {
-    var sum = vec3<f32>(0.0);
-    for (var k = 0u; k < 4u; k += 1u) {
-        sum += row.weights[k] * displacements[row.vertices[k]].xyz;
+fn store(r: u32) {
+    if params.only_apply == 0u {
+        rows[r].multiplier = row.multiplier;
+        rows[r].friction = row.friction;
     }
-    return sum;
 }
 
-// Moves the vertices of a row by a change of its multipliers.
-fn push(row: Row, change: vec3<f32>) {
-    for (var k = 0u; k < 4u; k += 1u) {
-        let v = row.vertices[k];
-        let displacement = displacements[v];
-        let step = displacement.w * row.weights[k];
-        if step != 0.0 {
-            displacements[v] = vec4<f32>(displacement.xyz + change * step, displacement.w);
+// Relaxes a row in the memory of the device.
+fn relax_there(r: u32) {
+    row = rows[r];
+    relax();
+    store(r);
+}
+
+// The slot of a vertex, which takes the first free one from its hash on; SLOTS if all are taken.
+fn slot_of(v: u32) -> u32 {
+    var slot = (v * 0x9e3779b1u) >> 23u;
+    var tries = 0u;
+    while tries < SLOTS {
+        let found = atomicCompareExchangeWeak(&keys[slot], EMPTY, v);
+        if found.exchanged || found.old_value == v {
+            return slot;
+        }
+        // A weak exchange may fail at an empty slot.
+        if found.old_value != EMPTY {
+            slot = (slot + 1u) % SLOTS;
+            tries += 1u;
         }
     }
+    return SLOTS;
 }
 
 @compute @workgroup_size(256)
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
     for (var k = params.first + group.x; k < params.end; k += MOST_WORKGROUPS) {
         let bucket = buckets[k];
+        let place = bucket.first + local.x;
+        let has_row = place < bucket.end;
+        var colored_end = bucket.first;
+        if bucket.colors > 0u {
+            colored_end = color_ends[bucket.first + bucket.colors - 1u];
+        }
+        is_kept = bucket.end - bucket.first <= THREADS && colored_end == bucket.end;
+        for (var s = local.x; s < SLOTS; s += THREADS) {
+            atomicStore(&keys[s], EMPTY);
+        }
+        if local.x == 0u {
+            atomicStore(&overflow, 0u);
+        }
+        workgroupBarrier();
+        var r = 0u;
+        if is_kept && has_row {
+            r = order[place];
+            row = rows[r];
+            for (var c = 0u; c < 4u; c += 1u) {
+                let slot = slot_of(row.vertices[c]);
+                if slot == SLOTS {
+                    atomicStore(&overflow, 1u);
+                }
+                row.vertices[c] = slot;
+            }
+        }
+        workgroupBarrier();
+        if local.x == 0u {
+            is_full = atomicLoad(&overflow);
+        }
+        if workgroupUniformLoad(&is_full) != 0u {
+            is_kept = false;
+        }
+        if is_kept {
+            for (var s = local.x; s < SLOTS; s += THREADS) {
+                let v = atomicLoad(&keys[s]);
+                if v != EMPTY {
+                    moved[s] = displacements[v];
+                }
+            }
+        }
+        workgroupBarrier();
         var start = bucket.first;
         for (var color = 0u; color < bucket.colors; color += 1u) {
             let end = color_ends[bucket.first + color];
-            for (var place = start + local.x; place < end; place += 256u) {
-                relax(order[place]);
+            if is_kept {
+                if place >= start && place < end {
+                    relax();
+                }
+            } else {
+                for (var there = start + local.x; there < end; there += THREADS) {
+                    relax_there(order[there]);
+                }
             }
             start = end;
             storageBarrier();
+            workgroupBarrier();
         }
-        if local.x == 0u {
-            for (var place = start; place < bucket.end; place += 1u) {
-                relax(order[place]);
+        if is_kept {
+            for (var s = local.x; s < SLOTS; s += THREADS) {
+                let v = atomicLoad(&keys[s]);
+                if v != EMPTY && moved[s].w > 0.0 {
+                    displacements[v] = moved[s];
+                }
+            }
+            if has_row {
+                store(r);
+            }
+        } else if local.x == 0u {
+            for (var there = start; there < bucket.end; there += 1u) {
+                relax_there(order[there]);
             }
         }
+        workgroupBarrier();
     }
 }

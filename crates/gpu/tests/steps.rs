@@ -239,6 +239,53 @@ fn every_kernel_computes_what_its_twin_does() {
     }
 }
 
+/// Triangles that lie apart, with a particle under each.
+fn scattered(count: usize) -> Scene {
+    let (mut x, mut triangles) = (Vec::new(), Vec::new());
+    for k in 0..count {
+        let corner = Vector::new(2.0 * (k % 20) as f64, 2.0 * (k / 20) as f64, 0.0) * EDGE;
+        let at = |x: f64, y: f64| Point::from(corner + Vector::new(x, y, 0.0) * EDGE);
+        let first = x.len() as u32;
+        x.extend([at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0)]);
+        triangles.push([first, first + 1, first + 2]);
+    }
+    let first = x.len() as u32;
+    let under = |k: usize| x[3 * k] + Vector::new(0.3 * EDGE, 0.3 * EDGE, -1.2 * DELTA);
+    let particles: Vec<Point> = (0..count).map(under).collect();
+    x.extend(particles);
+    let topology = Topology::builder(x.len())
+        .triangles(triangles)
+        .particles((first..x.len() as u32).collect::<Vec<_>>())
+        .build()
+        .unwrap();
+    Scene { model: CollisionModel::single_body(topology), x, edge: EDGE }
+}
+
+/// A workgroup keeps the rows of a bucket if they are no more than its threads and have no more vertices than its table has
+/// slots (sweep_rows.wgsl): buckets on both sides of both limits.
+#[test]
+fn sweeps_of_rows_that_a_workgroup_keeps_and_of_others_are_those_of_the_twin() {
+    for count in [100, 128, 150, 256, 300] {
+        let scene = scattered(count);
+        let engine = ComparingEngine::new(device());
+        let settings = Settings { bucket_vertices: 10_000, ..Settings::default() };
+        let mut collision = with_settings(engine, &scene, &Constraints::default(), &settings).unwrap();
+        let particles = 3 * count;
+        let up = |(v, x): (usize, &Point)| x + Vector::z() * if v < particles { -0.3 } else { 0.5 } * EDGE;
+        let target: Vec<Point> = scene.x.iter().enumerate().map(up).collect();
+        collision.begin(&Call::toward(&target)).unwrap();
+        for step in 0..3 {
+            let report = collision.steps(1).unwrap()[0];
+            // In the first step nothing presses yet.
+            assert!(step == 0 || report.pressing == count, "{count}, step {step}: {report:?}");
+        }
+        let differences = collision.engine().differences();
+        assert!(differences.is_empty(), "{count}: {:?}", &differences[..differences.len().min(3)]);
+        let x = collision.positions().unwrap();
+        assert_no_intersections(&scene, &x, "the end");
+    }
+}
+
 #[test]
 fn a_device_agrees_with_the_twins_as_long_as_rounding_decides_nothing() {
     let scene = scene();
