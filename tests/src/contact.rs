@@ -5,6 +5,7 @@
 //! origin, at the contact distance above the ground, so that it neither falls nor is lifted.
 
 use crate::Random;
+use bowknot::dynamics::LinearBackend;
 use bowknot::geometry::{Point, Vector};
 use bowknot::io::{MeshView, write_obj};
 use bowknot::simulator::{CollisionBackend, Cpu};
@@ -260,15 +261,21 @@ impl Slope {
 
     /// Follows the slider for `steps` time steps.
     pub fn run(&self, steps: usize) -> Track {
-        self.run_on(Box::new(Cpu), steps)
+        self.run_on(Box::new(Cpu), None, steps)
     }
 
-    /// The same with a backend for the collisions.
-    pub fn run_on(&self, backend: Box<dyn CollisionBackend>, steps: usize) -> Track {
+    /// The same with a backend for the collisions, and one for the dynamics or none.
+    pub fn run_on(
+        &self,
+        collisions: Box<dyn CollisionBackend>,
+        dynamics: Option<Box<dyn LinearBackend>>,
+        steps: usize,
+    ) -> Track {
         let folder = tempfile::tempdir().expect("a folder");
         let mut simulator =
             Simulator::new(&self.scene(folder.path())).unwrap_or_else(|error| panic!("{error}"));
-        simulator.set_backend(backend).unwrap_or_else(|error| panic!("{error}"));
+        simulator.set_backend(collisions).unwrap_or_else(|error| panic!("{error}"));
+        simulator.set_dynamics_backend(dynamics);
         let heading = self.heading.to_radians();
         let along = Vector::new(heading.cos(), heading.sin(), 0.0);
         let mut track = Track {

@@ -1,4 +1,4 @@
-//! Whole simulations with the collisions on the twins of the kernels: nothing intersects, the first contacts are those
+//! Whole simulations, collisions and dynamics, on the twins of the kernels: nothing intersects, the first contacts are those
 //! of the CPU, and so are the statistics of the runs.
 //!
 //! Where bodies crumple, differences of the size of a tolerance grow. The yardstick for them is a run on the CPU with
@@ -7,7 +7,7 @@
 //! `--ignored` runs every scene of the paper and prints a table; without it there are some small ones.
 
 use bowknot::check::StateOptions;
-use bowknot::gpu::{Device, TwinEngine};
+use bowknot::gpu::{ConjugateGradients, Device, TwinEngine};
 use bowknot::run::{self, Backends, Progress, RunOptions};
 use bowknot::simulator::{BackendError, CollisionBackend, Cpu};
 use bowknot::{Scene, SimulationError, Simulator, StepStatistics};
@@ -63,13 +63,17 @@ struct Course {
     end: Vec<Point>,
 }
 
-/// Where the collisions are resolved.
+/// What computes a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum On {
     Cpu,
     /// With one sweep more.
     CpuOnceMore,
     Twins,
+}
+
+fn dynamics() -> Box<ConjugateGradients<TwinEngine>> {
+    Box::new(ConjugateGradients::new("twins".to_owned(), TwinEngine::new()))
 }
 
 fn twins() -> Device<TwinEngine> {
@@ -85,6 +89,7 @@ fn course((name, scale, sets, steps): Case<'_>, on: On) -> Course {
     let mut simulator = Simulator::new(&scene).expect("a simulator");
     if on == On::Twins {
         simulator.set_backend(Box::new(twins())).expect("settings that the kernels have");
+        simulator.set_dynamics_backend(Some(dynamics()));
     }
     let judge = simulator.judge();
     let count = simulator.world().collision_vertices();
@@ -160,7 +165,7 @@ fn bodies_slide_and_stick_on_the_kernels_as_theory_has_it() {
     ] {
         let speed = |friction: f64| {
             let slope = Slope::new(slider, Ground::Irregular, friction);
-            let track = slope.run_on(Box::new(twins()), 25);
+            let track = slope.run_on(Box::new(twins()), Some(dynamics()), 25);
             (track.speed(23..26), slope.acceleration() * 0.24)
         };
         let (found, expected) = speed(0.3);
