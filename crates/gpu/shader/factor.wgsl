@@ -1,5 +1,5 @@
 // The factor of the coarse correction: the maximizer of the dual along the ray of all multipliers, within bounds. The sums
-// of the blocks are added in their order. Bounds and their reasons: `CoarseCorrection` (crates/twoway/src/coarse.rs).
+// of the blocks, one per thread, are added by halves. Bounds and their reasons: `CoarseCorrection` (crates/twoway/src/coarse.rs).
 
 struct Params {
     blocks: u32,
@@ -15,12 +15,25 @@ const MOST: f32 = 2.0;
 // Quotients beyond this are out of bounds, whatever their divisor.
 const LARGE: f32 = 1e6;
 
-@compute @workgroup_size(1)
-fn main() {
-    var sum = vec2<f32>(0.0);
-    for (var block = 0u; block < params.blocks; block += 1u) {
-        sum += sums[block];
+var<workgroup> shared_sums: array<vec2<f32>, 256>;
+
+@compute @workgroup_size(256)
+fn main(@builtin(local_invocation_id) local: vec3<u32>) {
+    var own = vec2<f32>(0.0);
+    if local.x < params.blocks {
+        own = sums[local.x];
     }
+    shared_sums[local.x] = own;
+    for (var reach = 128u; reach > 0u; reach /= 2u) {
+        workgroupBarrier();
+        if local.x < reach {
+            shared_sums[local.x] += shared_sums[local.x + reach];
+        }
+    }
+    if local.x != 0u {
+        return;
+    }
+    let sum = shared_sums[0];
     var best = 1.0;
     if sum.y > 0.0 {
         // No multiplier acts where nothing has moved.

@@ -82,7 +82,7 @@ pub(crate) static SLACK: Stage = Stage {
 pub(crate) static FACTOR: Stage = Stage {
     name: "factor",
     parts: &[TYPES, include_str!("../shader/factor.wgsl")],
-    workgroup: 1,
+    workgroup: 256,
     bindings: &[Read, Write],
     twin: cpu::factor::bound,
 };

@@ -168,7 +168,7 @@ impl<E: Engine> Collision<E> {
             &stages::BALANCE,
             &[b.vertex_blocks, b.block_sums, b.control],
             cpu::balance::Params { blocks },
-            self.sizes.blocks,
+            stages::BALANCE.workgroup * self.sizes.blocks,
         );
     }
 }

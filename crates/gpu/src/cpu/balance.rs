@@ -15,6 +15,9 @@ pub fn bound(buffers: Bound<'_>) {
     balance(buffers.params(), &buffers.read(0), &buffers.read(1), &mut buffers.write::<Control>(2)[0]);
 }
 
+/// Threads that share the blocks of a body.
+const THREADS: usize = 64;
+
 pub fn balance(params: Params, blocks: &[Block], sums: &[BlockSum], control: &mut Control) {
     let blocks = &blocks[..params.blocks as usize];
     for first in 0..blocks.len() {
@@ -22,16 +25,29 @@ pub fn balance(params: Params, blocks: &[Block], sums: &[BlockSum], control: &mu
         if first > 0 && blocks[first - 1].body == body {
             continue;
         }
-        let mut sum = sums[first];
-        for k in (first + 1..blocks.len()).take_while(|k| blocks[*k].body == body) {
-            sum.residual = added(sum.residual, sums[k].residual);
-            sum.mass += sums[k].mass;
-            sum.lengths += sums[k].lengths;
+        let mut parts = [BlockSum::default(); THREADS];
+        for (k, _) in blocks[first..].iter().enumerate().take_while(|(_, block)| block.body == body) {
+            parts[k % THREADS] = joined(parts[k % THREADS], sums[first + k]);
         }
+        let mut reach = THREADS / 2;
+        while reach > 0 {
+            (0..reach).for_each(|k| parts[k] = joined(parts[k], parts[k + reach]));
+            reach /= 2;
+        }
+        let sum = parts[0];
         if sum.mass > 0.0 {
             let net = dot(sum.residual, sum.residual).sqrt() / sum.mass;
             control.net_residual = control.net_residual.max(net.to_bits());
             control.mean_residual = control.mean_residual.max((sum.lengths / sum.mass).to_bits());
         }
+    }
+}
+
+fn joined(a: BlockSum, b: BlockSum) -> BlockSum {
+    BlockSum {
+        residual: added(a.residual, b.residual),
+        mass: a.mass + b.mass,
+        lengths: a.lengths + b.lengths,
+        ..a
     }
 }

@@ -1,5 +1,6 @@
 //! Twin of `shader/factor.wgsl`.
 
+use super::slack::MOST_BLOCKS;
 use crate::bound::Bound;
 use bytemuck::{Pod, Zeroable};
 
@@ -21,11 +22,17 @@ pub fn bound(buffers: Bound<'_>) {
 }
 
 pub fn factor(params: Params, sums: &[[f32; 2]], factor: &mut [f32]) {
-    let mut sum = [0.0f32; 2];
-    for [slack, energy] in &sums[..params.blocks as usize] {
-        sum = [sum[0] + slack, sum[1] + energy];
+    let mut halves = [[0.0f32; 2]; MOST_BLOCKS];
+    halves[..params.blocks as usize].copy_from_slice(&sums[..params.blocks as usize]);
+    let mut reach = MOST_BLOCKS / 2;
+    while reach > 0 {
+        for k in 0..reach {
+            let [slack, energy] = halves[k + reach];
+            halves[k] = [halves[k][0] + slack, halves[k][1] + energy];
+        }
+        reach /= 2;
     }
-    let [slack, energy] = sum;
+    let [slack, energy] = halves[0];
     let mut best = 1.0;
     if energy > 0.0 {
         if slack.abs() < LARGE * energy {
