@@ -7,6 +7,7 @@ use bowknot_dynamics::{
     SolidModel, StepTerms,
 };
 use bowknot_geometry::{Point, Vector};
+use std::collections::BTreeMap;
 
 /// The time step [s].
 pub const DT: f64 = 0.02;
@@ -18,7 +19,7 @@ pub struct Case {
     body: Body,
 }
 
-fn sheet(cells: usize, curvature: f64) -> (Vec<Point>, Vec<[u32; 3]>) {
+fn sheet(cells: usize, curvature: f64) -> Sheet {
     let at = |k: usize| {
         let (x, y) = (0.05 * (k % (cells + 1)) as f64, 0.04 * (k / (cells + 1)) as f64);
         Point::new(x, y + 0.3 * x, curvature * (x * x - y * y + x * y))
@@ -33,7 +34,7 @@ fn sheet(cells: usize, curvature: f64) -> (Vec<Point>, Vec<[u32; 3]>) {
 }
 
 /// Cubes of six tetrahedra each, in a row.
-fn block(cubes: usize) -> (Vec<Point>, Vec<[u32; 4]>) {
+fn block(cubes: usize) -> Block {
     let (row, layer) = (cubes + 1, 2 * (cubes + 1));
     let at =
         |k: usize| Point::new((k % row) as f64, (k / row % 2) as f64, (k / layer) as f64).map(|x| 0.05 * x);
@@ -55,6 +56,32 @@ fn block(cubes: usize) -> (Vec<Point>, Vec<[u32; 4]>) {
 
 /// Cloth that is isotropic, woven, damped, curved; solids of both laws, with and without damping.
 pub fn cases() -> Vec<Case> {
+    bodies(&|curvature| sheet(9, curvature), &|| block(12))
+}
+
+/// The same, each of one element; bending around a triangle needs a neighbor.
+pub fn single_elements() -> Vec<Case> {
+    let triangle = |curvature: f64| {
+        let (points, triangles) = sheet(1, curvature);
+        if curvature == 0.0 { (points[..3].to_vec(), vec![[0, 1, 2]]) } else { (points, triangles) }
+    };
+    let tetrahedron = || {
+        let corners = [[0.0, 0.0, 0.0], [0.05, 0.01, 0.0], [0.01, 0.04, 0.02], [0.0, -0.01, 0.05]];
+        (corners.map(Point::from).to_vec(), vec![[0, 1, 2, 3]])
+    };
+    bodies(&triangle, &tetrahedron)
+}
+
+/// A solid of many cubes in a row.
+pub fn long_block(cubes: usize) -> Case {
+    let (rest, tets) = block(cubes);
+    Case { name: "long block", rest, body: Body::solid("block", tets, SolidMaterial::rubber()) }
+}
+
+type Sheet = (Vec<Point>, Vec<[u32; 3]>);
+type Block = (Vec<Point>, Vec<[u32; 4]>);
+
+fn bodies(sheet: &dyn Fn(f64) -> Sheet, block: &dyn Fn() -> Block) -> Vec<Case> {
     let isotropic = ClothMaterial::cotton();
     let woven = ClothMaterial {
         weft_stiffness: Some(0.4 * isotropic.stretch_stiffness),
@@ -87,11 +114,11 @@ pub fn cases() -> Vec<Case> {
         ("neo-Hookean, damped", SolidModel::StableNeoHookean, 0.01),
     ];
     let cloth = cloth.into_iter().map(|(name, curvature, material)| {
-        let (rest, triangles) = sheet(9, curvature);
+        let (rest, triangles) = sheet(curvature);
         Case { name, rest, body: Body::cloth("sheet", triangles, material) }
     });
     let solids = solids.into_iter().map(|(name, model, damping)| {
-        let (rest, tets) = block(12);
+        let (rest, tets) = block();
         let material = SolidMaterial { model, damping, poisson_ratio: 0.4, ..SolidMaterial::rubber() };
         Case { name, rest, body: Body::solid("block", tets, material) }
     });
@@ -158,16 +185,22 @@ impl Problem {
             let position = |x: &[i32; 4]| Vector::new(x[0].into(), x[1].into(), x[2].into()) * grid.quantum;
             State { positions: integers.iter().map(position).collect(), integers }
         });
-        let node = |vertex: &Point| {
-            model.rest.iter().position(|rest| *rest == vertex.coords).expect("each vertex is a node")
-        };
-        let by_vertex: Vec<Point> =
-            case.rest.iter().map(|vertex| Point::from(start.positions[node(vertex)])).collect();
+        let key = |x: &Vector| [x.x, x.y, x.z].map(f64::to_bits);
+        let nodes: BTreeMap<[u64; 3], usize> = model.rest.iter().map(key).zip(0..).collect();
+        let place = |vertex: &Point| Point::from(start.positions[nodes[&key(&vertex.coords)]]);
+        let by_vertex: Vec<Point> = case.rest.iter().map(place).collect();
         let velocities: Vec<Vector> = by_vertex.iter().map(|x| Vector::new(0.3, x.x, -2.0)).collect();
         dynamics.begin_step(&by_vertex, &velocities, DT).expect("a step");
         let terms = dynamics.step_terms().expect("a step");
         let (name, quantum) = (case.name, grid.quantum);
         Self { name, dynamics, model, terms, quantum, start, reference, trial }
+    }
+
+    /// Tetrahedra that are inside out.
+    pub fn inverted(&self, at: &State) -> usize {
+        let edge = |a: u32, b: u32| at.positions[b as usize] - at.positions[a as usize];
+        let is_inverted = |[a, b, c, d]: [u32; 4]| edge(a, b).cross(&edge(a, c)).dot(&edge(a, d)) < 0.0;
+        self.model.tetrahedra.iter().filter(|tet| is_inverted(tet.nodes)).count()
     }
 
     pub fn places(&self, [positions, start]: [crate::recording::BufferId; 2]) -> Places {
