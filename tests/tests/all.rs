@@ -1,9 +1,9 @@
 //! Integration tests that span several crates, in one binary.
 
 // Manifests keep to the layers, no files import each other in a circle, and named paths exist.
+mod dynamics_backends;
 mod imports;
 mod layers;
-mod dynamics_backends;
 mod paths;
 // No step of the interior point baselines intersects.
 mod interior_points;

@@ -130,9 +130,8 @@ impl<E: Engine + Debug + Send> Assembling<E> {
         let mut matrix = DMatrix::zeros(3 * count, 3 * count);
         for k in (0..3 * count).filter(|k| self.free[k / 3]) {
             let mut x = vec![Vector::zeros(); count];
-            let mut y = x.clone();
             x[k / 3][k % 3] = 0.01;
-            self.inner.multiply(&x, &mut y)?;
+            let y = self.inner.multiply(&x)?;
             for (i, y) in y.iter().enumerate().filter(|(i, _)| self.free[*i]) {
                 (0..3).for_each(|c| matrix[(3 * i + c, k)] = 100.0 * y[c]);
             }
