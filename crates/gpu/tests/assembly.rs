@@ -588,6 +588,13 @@ fn elements_that_no_kernel_knows_are_left_to_the_cpu() {
         filter: HessianFilter::Mixed,
         distortion: 0.0,
     };
+    let knows = |case: &Case| {
+        let model = DynamicsModel::new(case.rest.clone(), vec![case.body.clone()]).expect("a model");
+        let model = Dynamics::new(model, DynamicsParams::default()).expect("parameters").element_model();
+        let mut backend = ConjugateGradients::new("twins".to_owned(), TwinEngine::new());
+        Assembler::set_model(&mut backend, &model).expect("room")
+    };
+    assert!(!knows(&case) && cases().iter().all(knows));
     let (cpu, _) = fall(&case, PreconditionerKind::TwoLevel, None);
     let backend = ConjugateGradients::new("twins".to_owned(), TwinEngine::new());
     let (other, _) = fall(&case, PreconditionerKind::TwoLevel, Some(Box::new(backend)));

@@ -20,7 +20,7 @@ pub const ROUNDING_UNITS: f64 = 8.0;
 /// Where the nodes are.
 #[derive(Clone, Copy, Debug)]
 pub struct Places {
-    /// Positions, and those at the start of the time step: vec4<i32> per node, coordinates below 2^29 [N].
+    /// Positions, and those at the start of the time step: `vec4<i32>` per node, coordinates below 2^29 [N].
     pub positions: BufferId,
     /// See [`Self::positions`].
     pub start: BufferId,
@@ -146,7 +146,7 @@ impl Potential {
         Ok(())
     }
 
-    /// Records the gradient (R + K) d + c + sum of e' at some positions: vec4<f32> per node [N, N].
+    /// Records the gradient (R + K) d + c + sum of e' at some positions: `vec4<f32>` per node [N, N].
     pub fn record_gradient(&self, at: Places, gradient: BufferId, recording: &mut Recording) {
         let ElementBuffers { membranes, bends, tetrahedra } = self.elements;
         let kinds: [(&'static Stage, BufferId); 3] = [
