@@ -66,7 +66,7 @@ fn energy(element: Bend) -> vec4<f32> {
             );
         }
     }
-    return vec4<f32>(out, 0.0);
+    return part(out);
 }
 
 @compute @workgroup_size(64)

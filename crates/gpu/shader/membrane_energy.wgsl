@@ -88,7 +88,7 @@ fn energy(m: Membrane) -> vec4<f32> {
             0.5 * work(stress_size(m.stiffness, before_size + 0.25 * dc_size), dc_size),
         );
     }
-    return vec4<f32>(out * m.area, 0.0);
+    return part(out * m.area);
 }
 
 @compute @workgroup_size(64)

@@ -41,12 +41,11 @@ fn energy(i: u32) -> vec4<f32> {
     }
     let c = linear_term(i);
     let middle = d + 0.5 * u;
-    return vec4<f32>(
+    return part(vec3<f32>(
         dot(d, 0.5 * (row_sum_times(i, d) + before) + c),
         dot(u, row_sum_times(i, middle) + between + c),
         dot(abs(u), row_sum_size(i, abs(d) + abs(u)) + size + abs(c)),
-        0.0,
-    );
+    ));
 }
 
 @compute @workgroup_size(64)

@@ -76,7 +76,7 @@ fn energy(tet: Tetrahedron) -> vec4<f32> {
             (2.0 * mu + 3.0 * lambda) * (way_since * (large + way_since) + turn_size) * turn_size,
         );
     }
-    return vec4<f32>(out * tet.volume, 0.0);
+    return part(out * tet.volume);
 }
 
 @compute @workgroup_size(64)

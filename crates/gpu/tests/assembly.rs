@@ -541,7 +541,8 @@ fn time_steps_are_as_accurate_as_with_matrices_in_double_precision() {
         .zip([PreconditionerKind::BlockJacobi, PreconditionerKind::TwoLevel].into_iter().cycle())
     {
         let (cpu, expected) = fall(&case, kind, None);
-        let (device, iterations) = fall(&case, kind, Some(Box::new(Assembling::new(TwinEngine::new()))));
+        let backend = ConjugateGradients::new("twins".to_owned(), TwinEngine::new());
+        let (device, iterations) = fall(&case, kind, Some(Box::new(backend)));
         let apart = cpu.iter().zip(&device).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
         let fallen = cpu.iter().zip(&case.rest).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
         println!("{}: {apart:.1e} m of {fallen:.3} m, {expected} and {iterations} iterations", case.name);
@@ -592,7 +593,7 @@ fn elements_that_no_kernel_knows_are_left_to_the_cpu() {
         let model = DynamicsModel::new(case.rest.clone(), vec![case.body.clone()]).expect("a model");
         let model = Dynamics::new(model, DynamicsParams::default()).expect("parameters").element_model();
         let mut backend = ConjugateGradients::new("twins".to_owned(), TwinEngine::new());
-        Assembler::set_model(&mut backend, &model).expect("room")
+        NewtonBackend::set_model(&mut backend, &model).expect("room")
     };
     assert!(!knows(&case) && cases().iter().all(knows));
     let (cpu, _) = fall(&case, PreconditionerKind::TwoLevel, None);

@@ -3,7 +3,7 @@
 use super::elements::length;
 use super::energies::{States, write};
 use super::normal::{factors_of, normal_of};
-use super::parts::Part;
+use super::parts::{Part, part};
 use super::triangle::columns;
 use super::{added, crossed, dot, scaled, subtracted};
 use crate::assembly::Bend;
@@ -53,7 +53,7 @@ fn energy(bend: &Bend, states: &States<'_>) -> Part {
         sizes[i] = r_size + 0.5 * dr_size;
         turn_sizes[i] = dr_size;
     }
-    let mut out = [0.0; 4];
+    let mut out = [0.0; 3];
     for i in 0..3 {
         for k in 0..3 {
             let value = bend.gram[3 * i + k];
@@ -62,5 +62,5 @@ fn energy(bend: &Bend, states: &States<'_>) -> Part {
             out[2] += value.abs() * turn_sizes[i] * sizes[k];
         }
     }
-    out
+    part(out)
 }

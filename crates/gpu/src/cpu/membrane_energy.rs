@@ -2,7 +2,7 @@
 
 use super::elements::{TINY, length};
 use super::energies::{States, write};
-use super::parts::Part;
+use super::parts::{Part, part};
 use super::triangle::{columns, increment, stress_of};
 use super::{added, crossed, divided, dot, scaled, subtracted};
 use crate::assembly::Membrane;
@@ -87,5 +87,5 @@ fn energy(m: &Membrane, states: &States<'_>) -> Part {
         out = added(out, scaled(viscous, factor));
     }
     let [reference, change, size] = scaled(out, m.area);
-    [reference, change, size, 0.0]
+    part([reference, change, size])
 }

@@ -1,6 +1,6 @@
 //! Twin of `shader/node_energy.wgsl`.
 
-use super::parts::{Part, put_parts};
+use super::parts::{Part, part, put_parts};
 use super::terms::{between, less};
 use super::{added, dot, scaled, to_f32};
 use crate::bound::Bound;
@@ -56,11 +56,10 @@ impl Nodes<'_> {
         let sizes = Terms { row_sum: terms.row_sum.map(f32::abs), linear: absolute(terms.linear) };
         let middle = added(d, scaled(u, 0.5));
         let whole = added(absolute(d), absolute(u));
-        [
+        part([
             dot(d, added(scaled(added(terms.row_sum_times(d), before), 0.5), terms.linear)),
             dot(u, added(added(terms.row_sum_times(middle), middle_sum), terms.linear)),
             dot(absolute(u), added(added(sizes.row_sum_times(whole), size), sizes.linear)),
-            0.0,
-        ]
+        ])
     }
 }

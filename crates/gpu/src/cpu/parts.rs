@@ -3,8 +3,13 @@
 use super::sum::THREADS;
 use crate::potential::EnergyParams;
 
-/// The energy at the reference, its change, and its size.
+/// The energy at the reference, its change, its size, and the square of that.
 pub type Part = [f32; 4];
+
+/// The part of one element or node.
+pub fn part([reference, change, size]: [f32; 3]) -> Part {
+    [reference, change, size, size * size]
+}
 
 fn plus(a: Part, b: Part) -> Part {
     [0, 1, 2, 3].map(|k| a[k] + b[k])

@@ -2,7 +2,7 @@
 
 use super::energies::{States, write};
 use super::logarithm::log_1p;
-use super::parts::Part;
+use super::parts::{Part, part};
 use super::solid::{columns, green_increment, green_strain, law_stress};
 use super::{added, crossed, dot, scaled};
 use crate::assembly::Tetrahedron;
@@ -77,5 +77,5 @@ fn energy(tet: &Tetrahedron, states: &States<'_>) -> Part {
         out = added(out, viscous);
     }
     let [reference, change, size] = scaled(out, tet.volume);
-    [reference, change, size, 0.0]
+    part([reference, change, size])
 }

@@ -13,8 +13,9 @@ use bowknot_dynamics::{ElementModel, NewtonStep};
 /// The error of a change is at most so many units of 2^-24, the rounding of a number, of the sum of the sizes of what it
 /// is made of. The kernels take these sizes before anything cancels: the stress of a strain counts with all of the
 /// deformation, and not with the strain alone. Of single elements and nodes in random states the error is at most half of
-/// this (a test measures it); the additions of up to 16 terms by a thread, and those of twelve levels of sums, have errors
-/// of as many units of the terms, which are much smaller than their sizes.
+/// this (a test measures it). Errors of many elements have either sign: they add up like the root of the sum of squares. The
+/// additions of up to 16 terms by a thread, and those of twelve levels of sums, have errors of some units of what the sums
+/// come to.
 pub const ROUNDING_UNITS: f64 = 8.0;
 
 /// Where the nodes are.
@@ -35,7 +36,7 @@ pub struct PotentialChange {
     pub reference: f64,
     /// Change from the reference to the trial [J].
     pub change: f64,
-    /// Error that rounding may make in the change [J].
+    /// Error that rounding is likely to stay below in the change [J].
     pub rounding: f64,
 }
 
@@ -234,13 +235,17 @@ impl Potential {
 
     /// The change of the potential from its words.
     pub fn energies(&self, words: &[u32]) -> PotentialChange {
-        let mut sums = [0.0; 3];
+        let (mut reference, mut change, mut sizes, mut squares) = (0.0, 0.0, 0.0, 0.0);
         for part in words.chunks_exact(4) {
-            sums.iter_mut().zip(part).for_each(|(sum, word)| *sum += f64::from(f32::from_bits(*word)));
+            let number = |k: usize| f64::from(f32::from_bits(part[k]));
+            reference += number(0);
+            change += number(1);
+            // Of sums the rounding is relative to what they have come to.
+            sizes += number(1).abs();
+            squares += number(3);
         }
-        let [reference, change, size] = sums;
         let unit = f64::from(f32::EPSILON) / 2.0;
-        PotentialChange { reference, change, rounding: ROUNDING_UNITS * unit * size }
+        PotentialChange { reference, change, rounding: ROUNDING_UNITS * unit * (sizes + squares.sqrt()) }
     }
 }
 

@@ -8,6 +8,10 @@ use crate::dynamics::info::NewtonInfo;
 /// over 10^5 nodes, with a margin.
 const ENERGY_ROUNDING: f64 = 1e-12;
 
+/// Share of the bound of rounding that differences of energies are likely to be off on a device: a decrease above it tells
+/// how accurate the quadratic model is.
+const LIKELY_ROUNDING: f64 = 1.0 / 16.0;
+
 impl Newton<'_> {
     /// Shortens the full Newton step until the potential decreases enough; the result is the trial. Steps that are
     /// rounding errors are accepted, as energies would differ by rounding only.
@@ -31,7 +35,9 @@ impl Newton<'_> {
             if energy < best.0 {
                 best = (energy, length);
             }
-            let slack = ENERGY_ROUNDING * scale.max(terms) + self.energies.rounding;
+            let rounding = self.energies.rounding;
+            let noise = ENERGY_ROUNDING * scale.max(terms) + LIKELY_ROUNDING * rounding;
+            let slack = noise.max(rounding);
             let passes =
                 energy <= before - self.params.newton.line_search_decrease * length * predicted + slack;
             if passes || accept {
@@ -39,7 +45,7 @@ impl Newton<'_> {
                 let model = predicted * length * (1.0 - 0.5 * length);
                 let kept = (before - energy) / model;
                 info.reduction_ratio =
-                    if accept || model <= slack { 1.0 } else { length.min(kept).min(1.0 / kept) };
+                    if accept || model <= noise { 1.0 } else { length.min(kept).min(1.0 / kept) };
                 return Ok(());
             }
             if halving < halvings {
