@@ -512,10 +512,11 @@ impl Engine for Watching {
     }
 }
 
-/// Steps of a body that falls from two vertices that are held, with all Newton iterations that it needs.
+/// Steps of a body that falls from two vertices that are held, with so many targets each.
 fn fall(
     case: &Case,
     preconditioner: PreconditionerKind,
+    targets: usize,
     backend: Option<Box<dyn LinearBackend>>,
 ) -> (Vec<Point>, usize) {
     let mut params = DynamicsParams::default();
@@ -528,25 +529,29 @@ fn fall(
     let held: Vec<bool> = (0..x.len()).map(|k| k < 2).collect();
     let mut iterations = 0;
     for _ in 0..6 {
-        let infos = dynamics.solve_step(&mut x, &mut v, DT, &held, &case.rest, 6).expect("a step");
+        let infos = dynamics.solve_step(&mut x, &mut v, DT, &held, &case.rest, targets).expect("a step");
         iterations += infos.iter().map(|info| info.iterations).sum::<usize>();
     }
     (x, iterations)
 }
 
+/// Forces have a noise of 1e-7 of stiffness times length, which moves what only inertia holds: a sheet out of its plane.
 #[test]
-fn time_steps_are_as_accurate_as_with_matrices_in_double_precision() {
+fn time_steps_are_those_of_the_cpu_up_to_single_precision() {
+    let twins = || -> Option<Box<dyn LinearBackend>> {
+        Some(Box::new(ConjugateGradients::new("twins".to_owned(), TwinEngine::new())))
+    };
     for (case, kind) in cases()
         .into_iter()
         .zip([PreconditionerKind::BlockJacobi, PreconditionerKind::TwoLevel].into_iter().cycle())
     {
-        let (cpu, expected) = fall(&case, kind, None);
-        let backend = ConjugateGradients::new("twins".to_owned(), TwinEngine::new());
-        let (device, iterations) = fall(&case, kind, Some(Box::new(backend)));
+        // So many targets that time steps are solved.
+        let [cpu, device] = [None, twins()].map(|backend| fall(&case, kind, 30, backend).0);
         let apart = cpu.iter().zip(&device).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
         let fallen = cpu.iter().zip(&case.rest).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        let [expected, iterations] = [None, twins()].map(|backend| fall(&case, kind, 6, backend).1);
         println!("{}: {apart:.1e} m of {fallen:.3} m, {expected} and {iterations} iterations", case.name);
-        assert!(apart <= 5e-5 * fallen, "{}: {apart:e} m of {fallen} m", case.name);
+        assert!(apart <= 5e-4 * fallen, "{}: {apart:e} m of {fallen} m", case.name);
         assert!(iterations <= expected + expected / 4, "{}: {iterations} and {expected}", case.name);
     }
 }
@@ -596,9 +601,9 @@ fn elements_that_no_kernel_knows_are_left_to_the_cpu() {
         NewtonBackend::set_model(&mut backend, &model).expect("room")
     };
     assert!(!knows(&case) && cases().iter().all(knows));
-    let (cpu, _) = fall(&case, PreconditionerKind::TwoLevel, None);
+    let (cpu, _) = fall(&case, PreconditionerKind::TwoLevel, 6, None);
     let backend = ConjugateGradients::new("twins".to_owned(), TwinEngine::new());
-    let (other, _) = fall(&case, PreconditionerKind::TwoLevel, Some(Box::new(backend)));
+    let (other, _) = fall(&case, PreconditionerKind::TwoLevel, 6, Some(Box::new(backend)));
     let apart = cpu.iter().zip(&other).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
     assert!(apart < 1e-6, "{apart:e} m");
 }
