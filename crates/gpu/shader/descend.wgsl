@@ -10,7 +10,7 @@ struct Params {
     patches: u32,
     // Patches with groups come first.
     grouped: u32,
-    // 1 at the start: p is the residual then, and nothing is stepped.
+    // 1 at the start: p is the residual then, and nothing is stepped. Nothing is done unless it is moving.
     start: u32,
     workgroups: u32,
     curvatures: u32,
@@ -18,7 +18,6 @@ struct Params {
     norms: u32,
     present: u32,
     next: u32,
-    goal: f32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -55,20 +54,25 @@ fn times_inverse(slot: PatchSlot, r: vec3<f32>) -> vec3<f32> {
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
     let t = local.x;
     var step = 0.0;
+    var norm = 0.0;
+    var curvature = 1.0;
     if params.start == 0u {
-        let norm = sum_of_parts(t, params.present, params.norms);
-        let curvature = sum_of_parts(t, 0u, params.curvatures);
+        norm = sum_of_parts(t, params.present, params.norms);
+        curvature = sum_of_parts(t, 0u, params.curvatures);
+    }
+    if t == 0u {
+        let goes_on = norm > progress.goal && is_positive(norm) && is_positive(curvature);
+        let is_moving = atomicLoad(&progress.moving) == 1u;
+        decision = select(0u, 1u, is_moving && (goes_on || params.start == 1u));
+    }
+    if workgroupUniformLoad(&decision) == 0u {
         if t == 0u {
-            let goes_on = norm > params.goal && is_positive(norm) && is_positive(curvature);
-            decision = select(0u, 1u, goes_on && atomicLoad(&progress.moving) == 1u);
+            sums[params.next + group.x] = sums[params.present + group.x];
+            atomicStore(&progress.moving, 0u);
         }
-        if workgroupUniformLoad(&decision) == 0u {
-            if t == 0u {
-                sums[params.next + group.x] = sums[params.present + group.x];
-                atomicStore(&progress.moving, 0u);
-            }
-            return;
-        }
+        return;
+    }
+    if params.start == 0u {
         step = norm / curvature;
     }
     var squares = 0.0;

@@ -11,6 +11,7 @@
 //! | `tree`, `model`, `edges`, `bricks`, `adjacency` | what the host prepares for a scene |
 //! | `collision` | steps toward a target that nothing passes through |
 //! | `linear`, `assembly` | linear solves of the dynamics, and their matrices |
+//! | `newton` | Newton's method of the dynamics with its vectors on a device |
 //! | `potential` | the potential of the bodies and its gradient |
 
 mod adapter;
@@ -27,7 +28,7 @@ mod grid;
 mod layout;
 mod linear;
 mod model;
-#[cfg_attr(not(test), expect(dead_code, reason = "Newton's method on a device will use it"))]
+mod newton;
 mod potential;
 mod recording;
 mod stages;

@@ -7,6 +7,7 @@
 
 mod assembly;
 mod linear;
+mod newton;
 mod potential;
 mod stage;
 
@@ -17,6 +18,10 @@ pub(crate) use assembly::{
     TETRAHEDRON,
 };
 pub(crate) use linear::{CLIMB, DESCEND, MULTIPLY, REACT, REDIRECT};
+pub(crate) use newton::{
+    ACCUMULATE, ATTEMPT, COMBINE, COPY, CORRELATE, GATHER, GUESS, IMPOSE, MOMENTA, NEGATE, PRODUCTS, REGRID,
+    RELIEVE, RESIDUE, SETTLE, SUMMARIZE, TRANSLATE,
+};
 pub(crate) use potential::{
     BEND_ENERGY, BEND_GRADIENT, GATHER_GRADIENT, MEMBRANE_ENERGY, MEMBRANE_GRADIENT, NODE_ENERGY, SUM_ENERGY,
     TETRAHEDRON_ENERGY, TETRAHEDRON_GRADIENT,
@@ -419,6 +424,23 @@ pub(crate) static ALL: &[&Stage] = &[
     &COUPLE,
     &COARSEN,
     &DOMAIN,
+    &ACCUMULATE,
+    &ATTEMPT,
+    &COMBINE,
+    &COPY,
+    &CORRELATE,
+    &GATHER,
+    &GUESS,
+    &IMPOSE,
+    &MOMENTA,
+    &NEGATE,
+    &PRODUCTS,
+    &REGRID,
+    &RELIEVE,
+    &RESIDUE,
+    &SETTLE,
+    &SUMMARIZE,
+    &TRANSLATE,
     &MEMBRANE_GRADIENT,
     &BEND_GRADIENT,
     &TETRAHEDRON_GRADIENT,

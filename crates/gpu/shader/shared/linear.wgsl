@@ -5,6 +5,7 @@ const NONE: u32 = 0xffffffffu;
 struct Progress {
     moving: atomic<u32>,
     iterations: atomic<u32>,
+    goal: f32,
 }
 
 struct PatchSlot {
@@ -22,5 +23,6 @@ struct Domain {
 struct Spring {
     nodes: vec4<u32>,
     weights: vec4<f32>,
+    // By columns; the fourth numbers are the components of the force.
     hessian: array<vec4<f32>, 3>,
 }

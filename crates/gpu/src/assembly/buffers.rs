@@ -11,6 +11,7 @@ use crate::recording::{BufferId, Recording};
 use crate::stages::{self, Stage};
 use bowknot_dynamics::AssemblyState;
 use bytemuck::Pod;
+use nalgebra::Matrix3;
 
 /// The buffers, with copies of what was written last: what has not changed is not written again.
 #[derive(Debug)]
@@ -27,10 +28,26 @@ pub struct AssemblyBuffers {
     row_sums: Written,
     /// Diagonal blocks without springs, six numbers per node.
     pub diagonal: BufferId,
-    /// Numbers of flat bending that the matrix was written with, and the buffer.
-    matrix: Option<(Vec<f64>, Vec<f64>, BufferId)>,
+    /// Numbers of flat bending, of the pairs that elements join and of the others.
+    bending: (Vec<f64>, Vec<f64>),
+    /// The buffer that the structure of the matrix was written to, with them.
+    written_to: Option<BufferId>,
     /// What else the matrix depends on: the quantum, 1 / dt and the filter.
     last: Option<(f64, f64, bool)>,
+}
+
+/// Where nodes are for an assembly, and what else it depends on.
+#[derive(Clone, Copy, Debug)]
+pub struct AssemblyPlace {
+    /// Positions and those at the start of the time step, on a grid.
+    pub positions: BufferId,
+    pub start: BufferId,
+    /// [m].
+    pub quantum: f64,
+    /// 1 / dt [1/s].
+    pub rate: f64,
+    /// Whether negative curvatures change their sign.
+    pub absolute: bool,
 }
 
 /// A buffer and what it holds.
@@ -85,7 +102,8 @@ impl AssemblyBuffers {
             entries: written(make("entries of the matrix", 4 * plan.entries.len())?),
             row_sums: written(make("sums of rows", 6 * nodes)?),
             diagonal: make("diagonal of the matrix", 6 * nodes)?,
-            matrix: None,
+            bending: (Vec::new(), Vec::new()),
+            written_to: None,
             last: None,
             plan,
         };
@@ -108,7 +126,6 @@ impl AssemblyBuffers {
     }
 
     /// The elements.
-    #[cfg_attr(not(test), expect(dead_code, reason = "Newton's method on a device will use it"))]
     pub fn elements(&self) -> ElementBuffers {
         ElementBuffers { membranes: self.membranes, bends: self.bends, tetrahedra: self.tetrahedra }
     }
@@ -120,42 +137,72 @@ impl AssemblyBuffers {
         written.into_iter().chain(others).for_each(|buffer| engine.free(buffer));
     }
 
+    /// The sums of rows, six numbers per node.
+    pub fn row_sums(&self) -> BufferId {
+        self.row_sums.buffer
+    }
+
     /// Forgets the matrix: something else was written in its place.
     pub fn forget_matrix(&mut self) {
-        self.matrix = None;
+        self.written_to = None;
+        self.last = None;
+    }
+
+    /// Writes the sums of rows; returns whether they are new.
+    pub fn write_row_sums(&mut self, sums: &[Matrix3<f64>], recording: &mut Recording) -> bool {
+        let sums = sums.iter().map(|sum| {
+            let half = |i: usize, j: usize| (0.5 * (sum[(i, j)] + sum[(j, i)])) as f32;
+            [half(0, 0), half(0, 1), half(0, 2), half(1, 1), half(1, 2), half(2, 2)]
+        });
+        self.row_sums.write(&sums.collect::<Vec<_>>(), recording)
+    }
+
+    /// Sets flat bending, by the pairs of [`bowknot_dynamics::ElementModel`]; returns whether it is new.
+    pub fn set_bending(&mut self, bending: &[f64], scalars: &[f64]) -> bool {
+        let is_new = self.bending.0 != bending || self.bending.1 != scalars;
+        if is_new {
+            self.bending = (bending.to_vec(), scalars.to_vec());
+            self.written_to = None;
+        }
+        is_new
     }
 
     /// Records what makes the matrix of a state in `linear`, unless it is there already.
     pub fn record(&mut self, state: &AssemblyState<'_>, linear: &Buffers, recording: &mut Recording) {
         let grid = StateGrid::around(state.positions.iter().chain(state.start));
         let place = |x: &[bowknot_geometry::Vector]| x.iter().map(|x| grid.place(x)).collect::<Vec<_>>();
-        let sums = state.row_sums.iter().map(|sum| {
-            let half = |i: usize, j: usize| (0.5 * (sum[(i, j)] + sum[(j, i)])) as f32;
-            [half(0, 0), half(0, 1), half(0, 2), half(1, 1), half(1, 2), half(2, 2)]
-        });
         let mut changed = self.positions.write(&place(state.positions), recording);
         // Damping alone needs them.
         if self.plan.is_damped() {
             changed |= self.start.write(&place(state.start), recording);
         }
-        changed |= self.row_sums.write(&sums.collect::<Vec<_>>(), recording);
-        let has_bending = self.matrix.as_ref().is_some_and(|(bending, scalars, words)| {
-            bending == state.bending && scalars == state.scalars && *words == linear.words
-        });
-        if !has_bending {
-            let (entries, words) = self.plan.with_bending(state.bending, state.scalars);
-            self.entries.write(&entries, recording);
-            recording.write(linear.slices, &self.plan.structure.slices);
-            recording.write(linear.words, &words);
-            self.matrix = Some((state.bending.to_vec(), state.scalars.to_vec(), linear.words));
-            changed = true;
-        }
+        changed |= self.write_row_sums(state.row_sums, recording);
+        changed |= self.set_bending(state.bending, state.scalars);
         let last = Some((grid.quantum, state.rate, state.absolute));
-        if !changed && self.last == last {
+        if !changed && self.last == last && self.written_to == Some(linear.words) {
             return;
         }
         self.last = last;
-        self.record_elements(state, grid.quantum, recording);
+        let place = AssemblyPlace {
+            positions: self.positions.buffer,
+            start: self.start.buffer,
+            quantum: grid.quantum,
+            rate: state.rate,
+            absolute: state.absolute,
+        };
+        self.record_matrix(&place, linear, recording);
+    }
+
+    /// Records what makes the matrix in `linear`, with the sums of rows and the bending that were set last.
+    pub fn record_matrix(&mut self, place: &AssemblyPlace, linear: &Buffers, recording: &mut Recording) {
+        if self.written_to != Some(linear.words) {
+            let (entries, words) = self.plan.with_bending(&self.bending.0, &self.bending.1);
+            self.entries.write(&entries, recording);
+            recording.write(linear.slices, &self.plan.structure.slices);
+            recording.write(linear.words, &words);
+            self.written_to = Some(linear.words);
+        }
+        self.record_elements(place, recording);
         let (nodes, entries) = (self.plan.nodes, self.plan.entries.len());
         recording.dispatch(
             &stages::ASSEMBLE,
@@ -178,7 +225,7 @@ impl AssemblyBuffers {
         );
     }
 
-    fn record_elements(&self, state: &AssemblyState<'_>, quantum: f64, recording: &mut Recording) {
+    fn record_elements(&self, place: &AssemblyPlace, recording: &mut Recording) {
         let plan = &self.plan;
         let (bends, tetrahedra) =
             (3 * plan.membranes.len(), 3 * plan.membranes.len() + 15 * plan.bends.len());
@@ -192,13 +239,13 @@ impl AssemblyBuffers {
         for (stage, buffer, elements, first_block) in kinds {
             recording.dispatch(
                 stage,
-                &[buffer, self.positions.buffer, self.start.buffer, self.blocks],
+                &[buffer, place.positions, place.start, self.blocks],
                 ElementParams {
                     elements: elements as u32,
                     first_block: first_block as u32,
-                    absolute: u32::from(state.absolute),
-                    rate: state.rate as f32,
-                    quantum: quantum as f32,
+                    absolute: u32::from(place.absolute),
+                    rate: place.rate as f32,
+                    quantum: place.quantum as f32,
                 },
                 elements,
             );

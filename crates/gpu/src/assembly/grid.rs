@@ -2,7 +2,8 @@
 
 use bowknot_geometry::Vector;
 
-/// Largest coordinate. Differences of two stay below 2^30.
+/// Largest coordinate of what moves on a grid; that of the state that the grid is made for is half of it. Differences of two fit into 32 bits,
+/// and so do differences of these.
 const REACH: f64 = (1u32 << 29) as f64;
 
 /// A grid about the nodes of a state.
@@ -32,6 +33,25 @@ impl StateGrid {
             quantum *= 0.5;
         }
         Self { center, quantum }
+    }
+
+    /// The same, so coarse that a box of this side fits as well [m].
+    pub fn with_room<'a>(positions: impl Iterator<Item = &'a Vector> + Clone, side: f64) -> Self {
+        let mut grid = Self::around(positions);
+        while grid.quantum * REACH < side {
+            grid.quantum *= 2.0;
+        }
+        grid
+    }
+
+    /// How far a position is from the center, over what the grid reaches at most: positions up to 1 are on the grid.
+    pub fn reach(&self, x: &Vector) -> f64 {
+        (x - self.center).amax() / (self.quantum * (REACH - 1.0))
+    }
+
+    /// The position of a point of the grid [m], exact.
+    pub fn position(&self, point: [i32; 4]) -> Vector {
+        Vector::from_fn(|k, _| self.center[k] + f64::from(point[k]) * self.quantum)
     }
 
     pub fn place(&self, x: &Vector) -> [i32; 4] {

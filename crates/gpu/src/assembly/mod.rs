@@ -16,8 +16,7 @@ mod hierarchy;
 mod layout;
 mod plan;
 
-pub(crate) use buffers::{AssemblyBuffers, ElementBuffers, Written};
-#[cfg_attr(not(test), expect(unused_imports, reason = "Newton's method on a device will use it"))]
+pub(crate) use buffers::{AssemblyBuffers, AssemblyPlace, ElementBuffers, Written};
 pub(crate) use grid::StateGrid;
 pub(crate) use groups::GroupBuffers;
 pub(crate) use hierarchy::Hierarchy;

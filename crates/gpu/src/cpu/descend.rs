@@ -20,7 +20,6 @@ pub struct Params {
     pub norms: u32,
     pub present: u32,
     pub next: u32,
-    pub goal: f32,
 }
 
 pub fn bound(buffers: Bound<'_>) {
@@ -72,16 +71,17 @@ pub fn descend(
     let (nodes, workgroups) = (params.nodes as usize, params.workgroups as usize);
     let (present, next) = (params.present as usize, params.next as usize);
     let mut step = 0.0;
+    let mut goes_on = progress.moving == 1;
     if params.start == 0 {
         let norm = sum_of_parts(&sums[present..present + params.norms as usize]);
         let curvature = sum_of_parts(&sums[..params.curvatures as usize]);
-        let goes_on = norm > params.goal && is_positive(norm) && is_positive(curvature);
-        if !goes_on || progress.moving == 0 {
-            sums.copy_within(present..present + workgroups, next);
-            progress.moving = 0;
-            return;
-        }
+        goes_on &= norm > progress.goal && is_positive(norm) && is_positive(curvature);
         step = norm / curvature;
+    }
+    if !goes_on {
+        sums.copy_within(present..present + workgroups, next);
+        progress.moving = 0;
+        return;
     }
     for group in 0..workgroups {
         let mut squares = [0.0f32; THREADS];

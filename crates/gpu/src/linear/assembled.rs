@@ -1,7 +1,7 @@
 //! Linear solves whose matrices the device assembles from positions.
 
 use super::assembly::Assembly;
-use super::buffers::Sizes;
+use super::buffers::{Buffers, Sizes};
 use super::layout::{PATCH_SLOTS, PatchSlot};
 use super::patches::Patches;
 use super::record::Recorder;
@@ -10,7 +10,7 @@ use crate::assembly::{AssemblyBuffers, GroupBuffers, Hierarchy, Plan};
 use crate::cpu;
 use crate::engine::Engine;
 use crate::error::GpuError;
-use crate::recording::Recording;
+use crate::recording::{BufferId, Recording};
 use crate::stages;
 use bowknot_dynamics::{Assembler, AssemblySprings, AssemblyState, ElementModel, LinearBackendError};
 use bowknot_geometry::Vector;
@@ -38,8 +38,19 @@ fn doubles(words: &[u32], factor: f64, values: &mut [Vector]) {
     }
 }
 
+/// Symmetric matrices from six numbers each.
+pub fn symmetric_blocks(words: &[u32]) -> impl Iterator<Item = Matrix3<f64>> {
+    words.chunks_exact(6).map(|words| {
+        let [xx, xy, xz, yy, yz, zz] = [0, 1, 2, 3, 4, 5].map(|k| f64::from(f32::from_bits(words[k])));
+        Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
+    })
+}
+
 impl<E: Engine + Debug + Send> ConjugateGradients<E> {
-    fn take_model(&mut self, model: &ElementModel) -> Result<bool, GpuError> {
+    pub(crate) fn take_model(&mut self, model: &ElementModel) -> Result<bool, GpuError> {
+        if let Some(newton) = self.newton.take() {
+            newton.free(&mut self.engine);
+        }
         if let Some(assembly) = self.assembly.take() {
             assembly.buffers.free(&mut self.engine);
             if let Some(groups) = assembly.groups {
@@ -60,26 +71,40 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
         Ok(true)
     }
 
-    fn make_matrix(&mut self, state: &AssemblyState<'_>) -> Result<(), GpuError> {
+    /// Divides the free nodes into patches, unless these are the free ones already.
+    pub(crate) fn set_free(&mut self, free: &[bool]) -> Result<(), GpuError> {
         let Some(assembly) = &mut self.assembly else { return Ok(()) };
-        if assembly.free != state.free {
-            assembly.free = state.free.to_vec();
-            // Patches of the rest shape: nodes that lie together then, do so later on.
-            assembly.patches = Patches::new(state.free, &assembly.model.rest, &assembly.model.patches);
-            assembly.slots = None;
-            if let Some(groups) = assembly.groups.take() {
-                groups.free(&mut self.engine);
-            }
-            let hierarchy = Hierarchy::new(&assembly.model, &assembly.patches);
-            assembly.groups = Some(GroupBuffers::new(&mut self.engine, hierarchy)?);
+        if assembly.free == free && assembly.groups.is_some() {
+            return Ok(());
         }
-        let domains = assembly.domains();
+        assembly.free = free.to_vec();
+        // Patches of the rest shape: nodes that lie together then, do so later on.
+        assembly.patches = Patches::new(free, &assembly.model.rest, &assembly.model.patches);
+        assembly.slots = None;
+        if let Some(groups) = assembly.groups.take() {
+            groups.free(&mut self.engine);
+        }
+        let hierarchy = Hierarchy::new(&assembly.model, &assembly.patches);
+        assembly.groups = Some(GroupBuffers::new(&mut self.engine, hierarchy)?);
+        Ok(())
+    }
+
+    /// Makes room for the matrix of the model and its preconditioner.
+    pub(crate) fn make_room(&mut self) -> Result<Option<Buffers>, GpuError> {
+        let Some(assembly) = &self.assembly else { return Ok(None) };
         let structure = &assembly.buffers.plan.structure;
-        let sizes = Sizes::new(state.free.len(), structure, &assembly.patches);
-        let buffers = self.pool.make(&mut self.engine, &sizes, structure, domains)?;
+        let sizes = Sizes::new(assembly.model.rest.len(), structure, &assembly.patches);
+        let buffers = self.pool.make(&mut self.engine, &sizes, structure, assembly.domains())?;
+        self.recorder = Some(Recorder { buffers, sizes });
+        Ok(Some(buffers))
+    }
+
+    fn make_matrix(&mut self, state: &AssemblyState<'_>) -> Result<(), GpuError> {
+        self.set_free(state.free)?;
+        let Some(buffers) = self.make_room()? else { return Ok(()) };
+        let Some(assembly) = &mut self.assembly else { return Ok(()) };
         let mut recording = Recording::default();
         assembly.buffers.record(state, &buffers, &mut recording);
-        self.recorder = Some(Recorder { buffers, sizes });
         self.engine.run(&recording, &[])?;
         Ok(())
     }
@@ -89,45 +114,59 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
         let diagonal = (assembly.buffers.diagonal, 6 * assembly.model.rest.len());
         let read = self.engine.run(&Recording::default(), &[diagonal])?;
         blocks.clear();
-        blocks.extend(read[0].chunks_exact(6).map(|words| {
-            let [xx, xy, xz, yy, yz, zz] = [0, 1, 2, 3, 4, 5].map(|k| f64::from(f32::from_bits(words[k])));
-            Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
-        }));
+        blocks.extend(symmetric_blocks(&read[0]));
         Ok(())
     }
 
     fn make_preconditioner(&mut self, springs: &AssemblySprings<'_>) -> Result<(), GpuError> {
-        let Some(assembly) = &mut self.assembly else { return Ok(()) };
-        let (nodes, domains) = (assembly.model.rest.len(), assembly.domains());
-        let structure = &mut assembly.buffers.plan.structure;
-        structure.set_springs(springs.springs, springs.starts, springs.entries);
-        let sizes = Sizes::new(nodes, structure, &assembly.patches);
-        let buffers = self.pool.make(&mut self.engine, &sizes, structure, domains)?;
+        let Some(assembly) = &self.assembly else { return Ok(()) };
+        let (positions, quantum) = (assembly.buffers.positions(), assembly.buffers.quantum());
         let mut recording = Recording::default();
+        self.record_preconditioner(springs, positions, quantum, &mut recording)?;
+        self.engine.run(&recording, &[])?;
+        Ok(())
+    }
+
+    /// Makes room for springs and records what adds them to the matrix and makes the preconditioner, with nodes at
+    /// `positions` on a grid. Nothing that is recorded before may bind buffers of the system.
+    pub(crate) fn record_preconditioner(
+        &mut self,
+        springs: &AssemblySprings<'_>,
+        positions: BufferId,
+        quantum: f64,
+        recording: &mut Recording,
+    ) -> Result<(), GpuError> {
+        if let Some(assembly) = &mut self.assembly {
+            let structure = &mut assembly.buffers.plan.structure;
+            structure.set_springs(springs.springs, springs.starts, springs.entries);
+        }
+        self.make_room()?;
+        let (Some(assembly), Some(Recorder { buffers, sizes })) = (&mut self.assembly, &self.recorder) else {
+            return Ok(());
+        };
+        let structure = &assembly.buffers.plan.structure;
         recording.write(buffers.springs, &structure.springs);
         recording.write(buffers.spring_words, &structure.spring_words);
         if assembly.slots != Some(buffers.slots) {
             let slot = |node: &Option<u32>| PatchSlot { node: node.unwrap_or(u32::MAX), ..PatchSlot::EMPTY };
             recording.write(buffers.slots, &assembly.patches.slots.iter().map(slot).collect::<Vec<_>>());
             // Nodes that are not free keep this: no patch has them.
-            recording.write(buffers.solution, &vec![0u32; 8 * nodes]);
+            recording.write(buffers.solution, &vec![0u32; 8 * sizes.nodes]);
             assembly.slots = Some(buffers.slots);
         }
         let slots = PATCH_SLOTS * sizes.patches;
+        if let Some(groups) = &mut assembly.groups {
+            groups.write_springs(&mut self.engine, springs.springs, recording)?;
+        }
         recording.dispatch(
             &stages::INVERT,
             &[assembly.buffers.diagonal, buffers.springs, buffers.spring_words, buffers.slots],
             cpu::invert::Params { slots: slots as u32, springs: sizes.springs as u32 },
             slots,
         );
-        if let Some(groups) = &mut assembly.groups {
-            groups.write_springs(&mut self.engine, springs.springs, &mut recording)?;
-            let quantum = assembly.buffers.quantum() as f32;
-            let positions = assembly.buffers.positions();
-            groups.record(&buffers, positions, sizes.springs > 0, quantum, &mut recording);
+        if let Some(groups) = &assembly.groups {
+            groups.record(buffers, positions, sizes.springs > 0, quantum as f32, recording);
         }
-        self.recorder = Some(Recorder { buffers, sizes });
-        self.engine.run(&recording, &[])?;
         Ok(())
     }
 

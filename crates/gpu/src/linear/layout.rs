@@ -49,15 +49,17 @@ pub struct Spring {
     pub nodes: [u32; 4],
     /// 0 for places without a node.
     pub weights: [f32; 4],
-    /// By columns.
+    /// By columns; the fourth numbers are the components of the force.
     pub hessian: [[f32; 4]; 3],
 }
 
 /// How far the iterations are.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Progress {
     /// 1 until the residual is small enough or numbers are no longer positive.
     pub moving: u32,
     pub iterations: u32,
+    /// Squared norm of a residual that is small enough.
+    pub goal: f32,
 }

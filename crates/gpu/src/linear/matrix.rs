@@ -125,7 +125,7 @@ fn spring(spring: &LinearSpring) -> Spring {
     let places = [0, 1, 2, 3].map(place);
     let hessian = [0, 1, 2].map(|c| {
         let column = spring.hessian.column(c);
-        [column[0] as f32, column[1] as f32, column[2] as f32, 0.0]
+        [column[0] as f32, column[1] as f32, column[2] as f32, spring.force[c] as f32]
     });
     Spring { nodes: places.map(|(node, _)| node), weights: places.map(|(_, weight)| weight), hessian }
 }

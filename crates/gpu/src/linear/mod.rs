@@ -22,12 +22,15 @@ mod record;
 mod rigid;
 mod solver;
 
+pub(crate) use assembled::symmetric_blocks;
 pub(crate) use buffers::Buffers;
 pub(crate) use layout::{
     CHILDREN, DOMAIN_UNKNOWNS, Domain, MOST_LEVELS, PATCH_SLOTS, PatchSlot, Progress, Spring,
 };
 pub(crate) use matrix::{BLOCK_WORDS, PackedMatrix, SLICE};
 pub(crate) use patches::Patches;
+pub(crate) use record::Recorder;
+pub(crate) use solver::BATCH;
 pub use solver::ConjugateGradients;
 
 #[cfg(test)]

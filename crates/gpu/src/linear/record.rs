@@ -7,8 +7,8 @@ use crate::cpu::sum::{MOST_WORKGROUPS, THREADS};
 use crate::recording::Recording;
 use crate::stages;
 
-/// The dispatches of a system.
-#[derive(Debug)]
+/// The dispatches of a system. With other buffers in place of those of the system they work on other vectors.
+#[derive(Clone, Debug)]
 pub struct Recorder {
     pub buffers: Buffers,
     pub sizes: Sizes,
@@ -18,26 +18,36 @@ impl Recorder {
     /// Starts from x = 0 with the residual `r` [N].
     pub fn record_start(&self, r: &[[f32; 4]], recording: &mut Recording) {
         recording.write(self.buffers.direction, r);
-        recording.write(self.buffers.progress, &[Progress { moving: 1, iterations: 0 }]);
-        // The partial sums of the first iteration are its "next" ones.
-        self.record_step(true, 1, 0.0, recording);
+        self.record_goal(0.0, recording);
+        self.record_residual(0, recording);
+    }
+
+    /// Lets the iterations end at that squared norm.
+    pub fn record_goal(&self, goal: f32, recording: &mut Recording) {
+        recording.write(self.buffers.progress, &[Progress { moving: 1, iterations: 0, goal }]);
+    }
+
+    /// Starts from x = 0 with the residual that lies where the search direction goes, as step `k` in the order of all
+    /// steps: its partial sums are in [`Self::norms`] of `k`.
+    pub fn record_residual(&self, k: usize, recording: &mut Recording) {
+        self.record_step(true, 1 - k % 2, recording);
     }
 
     /// H x, which goes where the image of the search direction lies.
     pub fn record_product(&self, x: &[[f32; 4]], recording: &mut Recording) {
         recording.write(self.buffers.direction, x);
-        recording.write(self.buffers.progress, &[Progress { moving: 1, iterations: 0 }]);
+        self.record_goal(0.0, recording);
         self.record_image(recording);
     }
 
-    /// Iteration `k` after the start: nothing is done if the squared norm is at most `goal` already.
-    pub fn record_iteration(&self, k: usize, goal: f32, recording: &mut Recording) {
+    /// Iteration `k` after the start: nothing is done if the squared norm is small enough already.
+    pub fn record_iteration(&self, k: usize, recording: &mut Recording) {
         self.record_image(recording);
-        self.record_step(false, k % 2, goal, recording);
+        self.record_step(false, k % 2, recording);
     }
 
     /// The image of the search direction.
-    fn record_image(&self, recording: &mut Recording) {
+    pub fn record_image(&self, recording: &mut Recording) {
         let (b, s) = (&self.buffers, &self.sizes);
         recording.dispatch(
             &stages::REACT,
@@ -57,7 +67,7 @@ impl Recorder {
         );
     }
 
-    /// Where the partial sums of squared norms are that the last of `iterations` wrote, in words, and their number.
+    /// Where the partial sums of squared norms are that the last of `iterations` since the start wrote, in words, and their number.
     pub fn norms(&self, iterations: usize) -> std::ops::Range<usize> {
         let first = norms_at(iterations % 2);
         first..first + self.norm_count()
@@ -69,7 +79,7 @@ impl Recorder {
     }
 
     /// The step, the preconditioner and the next direction. The present partial sums are those in half `present`.
-    fn record_step(&self, is_start: bool, present: usize, goal: f32, recording: &mut Recording) {
+    fn record_step(&self, is_start: bool, present: usize, recording: &mut Recording) {
         let (b, s) = (&self.buffers, &self.sizes);
         let start = u32::from(is_start);
         let (mut present, mut next) = (norms_at(present) as u32, norms_at(1 - present) as u32);
@@ -89,7 +99,6 @@ impl Recorder {
                 norms,
                 present,
                 next,
-                goal,
             },
             THREADS * s.stepping(),
         );

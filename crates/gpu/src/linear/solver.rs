@@ -3,12 +3,12 @@
 use super::assembly::Assembly;
 use super::buffers::{Pool, Sizes};
 use super::galerkin::Multilevel;
-use super::layout::Progress;
 use super::matrix::PackedMatrix;
 use super::patches::Patches;
 use super::record::Recorder;
 use crate::engine::Engine;
 use crate::error::GpuError;
+use crate::newton::Newton;
 use crate::recording::Recording;
 use bowknot_dynamics::{Assembler, LinearBackend, LinearBackendError, LinearSystem};
 use bowknot_geometry::Vector;
@@ -16,7 +16,7 @@ use std::fmt::Debug;
 
 /// Iterations that are submitted at once; then the host looks whether the residual is small enough. Those that are too many
 /// change nothing and take little time.
-const BATCH: usize = 16;
+pub(crate) const BATCH: usize = 16;
 
 /// Largest reduction of a squared residual by one solve: rounding errors of single precision come near then.
 const MAX_REDUCTION: f64 = 1e-10;
@@ -26,19 +26,21 @@ const MAX_REDUCTION: f64 = 1e-10;
 #[derive(Debug)]
 pub struct ConjugateGradients<E> {
     name: String,
-    pub(super) engine: E,
-    pub(super) pool: Pool,
-    pub(super) recorder: Option<Recorder>,
+    pub(crate) engine: E,
+    pub(crate) pool: Pool,
+    pub(crate) recorder: Option<Recorder>,
     /// Squared norm at the start of the solve.
     norm: f64,
     /// The elements of a model whose matrices are assembled here.
-    pub(super) assembly: Option<Assembly>,
+    pub(crate) assembly: Option<Assembly>,
+    /// The vectors of Newton's method over that model.
+    pub(crate) newton: Option<Newton>,
 }
 
 impl<E: Engine> ConjugateGradients<E> {
     /// Solves on that engine, which nothing else may use.
     pub fn new(name: String, engine: E) -> Self {
-        Self { name, engine, pool: Pool::default(), recorder: None, norm: 0.0, assembly: None }
+        Self { name, engine, pool: Pool::default(), recorder: None, norm: 0.0, assembly: None, newton: None }
     }
 
     /// What runs the stages.
@@ -46,12 +48,20 @@ impl<E: Engine> ConjugateGradients<E> {
         &self.engine
     }
 
-    fn upload(&mut self, system: &LinearSystem<'_>) -> Result<(), GpuError> {
-        let matrix = PackedMatrix::new(system);
-        let patches = Patches::new(system.free, system.positions, system.patches);
+    /// Forgets what lies in the buffers of the system: something else is written there.
+    fn forget(&mut self) {
         if let Some(assembly) = &mut self.assembly {
             assembly.forget();
         }
+        if let Some(newton) = &mut self.newton {
+            newton.forget_matrix();
+        }
+    }
+
+    fn upload(&mut self, system: &LinearSystem<'_>) -> Result<(), GpuError> {
+        let matrix = PackedMatrix::new(system);
+        let patches = Patches::new(system.free, system.positions, system.patches);
+        self.forget();
         let preconditioner = Multilevel::new(system, &patches);
         let sizes = Sizes::new(system.free.len(), &matrix, &patches);
         self.recorder = None;
@@ -79,12 +89,13 @@ impl<E: Engine> ConjugateGradients<E> {
         while is_moving && made < max_iterations {
             let mut recording = Recording::default();
             let end = max_iterations.min(made + BATCH);
-            (made..end).for_each(|k| recorder.record_iteration(k, goal, &mut recording));
-            let words = size_of::<Progress>() / 4;
-            let read = self.engine.run(&recording, &[(recorder.buffers.progress, words)])?;
-            let progress: Progress = bytemuck::pod_read_unaligned(bytemuck::cast_slice(&read[0]));
-            is_moving = progress.moving == 1;
-            made = progress.iterations as usize;
+            if made == 0 {
+                recorder.record_goal(goal, &mut recording);
+            }
+            (made..end).for_each(|k| recorder.record_iteration(k, &mut recording));
+            let read = self.engine.run(&recording, &[(recorder.buffers.progress, 2)])?;
+            is_moving = read[0][0] == 1;
+            made = read[0][1] as usize;
         }
         let words = 4 * recorder.sizes.nodes;
         let read = self.engine.run(&Recording::default(), &[(recorder.buffers.solution, words)])?;

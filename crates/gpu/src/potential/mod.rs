@@ -21,8 +21,9 @@ mod lists;
 mod record;
 
 pub(crate) use layout::{EnergyParams, GradientParams, NodeParams, Pair, Terms};
-#[cfg_attr(not(test), expect(unused_imports, reason = "Newton's method on a device will use it"))]
-pub(crate) use record::{Places, Potential, PotentialChange};
+#[cfg(test)]
+pub(crate) use record::PotentialChange;
+pub(crate) use record::{Places, Potential};
 
 #[cfg(test)]
 mod tests;

@@ -1,5 +1,5 @@
 use super::{ALL, Access};
-use crate::{assembly, cpu, layout, linear, potential};
+use crate::{assembly, cpu, layout, linear, newton, potential};
 use naga::{AddressSpace, StorageAccess, TypeInner};
 
 /// Shaders are valid without a device, and their bindings, workgroups and structs are those of the table.
@@ -75,13 +75,20 @@ fn structs_of_linear_solves_lie_alike_on_both_sides() {
         offsets!(linear::PatchSlot: node, inverse, arm, padding),
         offsets!(linear::Domain: inverse, links),
         offsets!(linear::Spring: nodes, weights, hessian),
-        offsets!(linear::Progress: moving, iterations),
+        offsets!(linear::Progress: moving, iterations, goal),
     ];
     assert_structs(&module_of("react"), &structs[2..3]);
     assert_structs(&module_of("descend"), &structs);
     // Parameters with an array, which a uniform buffer aligns to 16 bytes.
     let params = offsets!(cpu::redirect::Params: patches, grouped, start, workgroups, levels, norms, present, next, firsts);
     assert_structs(&module_of("redirect"), &[params]);
+}
+
+#[test]
+fn structs_of_newtons_method_lie_alike_on_both_sides() {
+    let solve = offsets!(newton::Solve: factor, inverse, scale, before, norm, goal, iterations, ended);
+    let progress = offsets!(linear::Progress: moving, iterations, goal);
+    assert_structs(&module_of("settle"), &[solve, progress]);
 }
 
 #[test]

@@ -108,6 +108,18 @@ pub trait NewtonBackend: Debug + Send {
     /// What the backend fails of.
     fn start_from_trial(&mut self) -> Result<(), LinearBackendError>;
 
+    /// Keeps a copy of the trial.
+    ///
+    /// # Errors
+    /// What the backend fails of.
+    fn keep_trial(&mut self) -> Result<(), LinearBackendError>;
+
+    /// Makes the kept trial the trial and the iterate, as [`Self::start_from_trial`] does.
+    ///
+    /// # Errors
+    /// What the backend fails of.
+    fn start_from_kept_trial(&mut self) -> Result<(), LinearBackendError>;
+
     /// Sets `y` to the trial [m] and makes it the last target.
     ///
     /// # Errors

@@ -1,0 +1,68 @@
+// What a linear solve knows of itself: its unit, its norms, and the norm at which it ends. One workgroup.
+
+struct Params {
+    // 0: the factor from the largest numbers of b; 1: the norm of b; 2: the norm at the start; 3: that after a round.
+    mode: u32,
+    // Where partial sums begin, and their number.
+    first: u32,
+    count: u32,
+    // Squared, relative to b and the smallest scale, and to b alone.
+    tolerance: f32,
+    own_tolerance: f32,
+    min_scale: f32,
+}
+
+// Share of the goal at which iterations end, squared: the residual that is computed afterwards shall be below it as well.
+const MARGIN: f32 = 0.9025;
+
+// Largest reduction of a squared norm by a round: rounding comes near then.
+const MAX_REDUCTION: f32 = 1e-10;
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read> sums: array<f32>;
+@group(0) @binding(2) var<storage, read_write> solve: Solve;
+@group(0) @binding(3) var<storage, read_write> progress: Progress;
+@group(0) @binding(4) var<storage, read_write> ended: Progress;
+
+@compute @workgroup_size(64)
+fn main(@builtin(local_invocation_id) local: vec3<u32>) {
+    let t = local.x;
+    if params.mode == 0u {
+        let largest = largest_of_parts(t, params.first, params.count, 1u);
+        if t == 0u {
+            let bits = bitcast<u32>(largest) & 0x7f800000u;
+            // Of exponents that are neither the smallest nor the two largest ones the inverse is a number, too.
+            let is_usual = bits > 0u && bits < 0x7f000000u;
+            solve.factor = bitcast<f32>(select(0x3f800000u, 0x7f000000u - bits, is_usual));
+            solve.inverse = bitcast<f32>(select(0x3f800000u, bits, is_usual));
+        }
+        return;
+    }
+    let norm = sum_of_parts(t, params.first, params.count);
+    if t != 0u {
+        return;
+    }
+    if params.mode == 1u {
+        solve.scale = norm;
+        return;
+    }
+    if params.mode == 2u {
+        let relative = max(solve.scale, params.min_scale * solve.factor * solve.factor);
+        solve.goal = max(params.tolerance * relative, params.own_tolerance * solve.scale);
+        solve.norm = norm;
+        solve.iterations = 0u;
+        solve.ended = 0u;
+        progress.goal = max(MARGIN * solve.goal, MAX_REDUCTION * norm);
+        atomicStore(&progress.moving, 1u);
+        atomicStore(&progress.iterations, 0u);
+        atomicStore(&ended.moving, 0u);
+        return;
+    }
+    solve.iterations = atomicLoad(&progress.iterations);
+    if solve.ended == 1u {
+        solve.before = solve.norm;
+        solve.norm = norm;
+        progress.goal = max(MARGIN * solve.goal, MAX_REDUCTION * norm);
+        atomicStore(&progress.moving, 1u);
+    }
+}

@@ -1,0 +1,201 @@
+//! The interface of the dynamics.
+
+use super::places::Newton;
+use crate::assembly::AssemblyPlace;
+use crate::engine::Engine;
+use crate::error::GpuError;
+use crate::linear::ConjugateGradients;
+use crate::potential::{Places, Potential};
+use crate::recording::Recording;
+use bowknot_dynamics::{
+    AssemblySprings, ElementModel, LinearBackendError, Matrix3, NewtonBackend, NewtonSolve, NewtonStep,
+    NewtonTarget, OutOfBalance, SolveLimits, Trial, Watched,
+};
+use bowknot_geometry::Vector;
+use std::fmt::Debug;
+
+/// A call before [`NewtonBackend::set_model`].
+#[derive(Debug, thiserror::Error)]
+#[error("there is no model on the device")]
+struct NoModel;
+
+impl<E: Engine + Debug + Send> ConjugateGradients<E> {
+    fn newton(&mut self) -> Result<(&mut Newton, &mut E), LinearBackendError> {
+        match &mut self.newton {
+            Some(newton) => Ok((newton, &mut self.engine)),
+            None => Err(NoModel.into()),
+        }
+    }
+
+    /// Takes over a model for Newton's method; returns whether the kernels know it.
+    fn take_newton_model(&mut self, model: &ElementModel) -> Result<bool, GpuError> {
+        if !self.take_model(model)? {
+            return Ok(false);
+        }
+        if let Some(assembly) = &self.assembly {
+            let potential = Potential::new(&mut self.engine, model, assembly.buffers.elements())?;
+            self.newton = Some(Newton::new(&mut self.engine, model, potential)?);
+        }
+        Ok(true)
+    }
+
+    fn begin_newton_step(&mut self, step: &NewtonStep<'_>) -> Result<(), GpuError> {
+        let (Some(newton), Some(assembly)) = (&mut self.newton, &mut self.assembly) else { return Ok(()) };
+        let mut recording = Recording::default();
+        newton.potential.write_step(&mut self.engine, &assembly.model, step, &mut recording)?;
+        newton.begin_step(step, &mut recording);
+        assembly.buffers.write_row_sums(step.row_sums, &mut recording);
+        assembly.buffers.set_bending(step.bending, step.scalars);
+        self.engine.run(&recording, &[])?;
+        Ok(())
+    }
+
+    fn begin_newton_target(&mut self, target: &NewtonTarget<'_>) -> Result<Watched, GpuError> {
+        self.set_free(target.free)?;
+        let Some(newton) = &mut self.newton else { return Ok(Watched::new()) };
+        newton.vectors.watch(&mut self.engine, target.watched.len())?;
+        let mut recording = Recording::default();
+        let watched = newton.begin_target(target, &mut recording);
+        self.engine.run(&recording, &[])?;
+        Ok(watched)
+    }
+
+    /// Makes gradient and matrix of the iterate, unless they are there.
+    fn linearize_newton(&mut self, absolute: bool) -> Result<(), GpuError> {
+        let Some(buffers) = self.make_room()? else { return Ok(()) };
+        let (Some(newton), Some(assembly)) = (&mut self.newton, &mut self.assembly) else { return Ok(()) };
+        let (v, quantum) = (&newton.vectors, newton.grid.quantum);
+        let mut recording = Recording::default();
+        let wanted = Some((newton.iterate, absolute));
+        if newton.matrix_of != wanted {
+            let place =
+                AssemblyPlace { positions: v.iterate, start: v.start, quantum, rate: newton.rate, absolute };
+            assembly.buffers.record_matrix(&place, &buffers, &mut recording);
+        }
+        if newton.gradient_of != Some(newton.iterate) {
+            let places = Places { positions: v.iterate, start: v.start, quantum: quantum as f32 };
+            newton.potential.record_gradient(places, v.gradient, &mut recording);
+        }
+        self.engine.run(&recording, &[])?;
+        (newton.matrix_of, newton.gradient_of) = (wanted, Some(newton.iterate));
+        Ok(())
+    }
+
+    fn read_watched_diagonal(&mut self, blocks: &mut Vec<Matrix3<f64>>) -> Result<(), GpuError> {
+        let (Some(newton), Some(assembly)) = (&self.newton, &self.assembly) else { return Ok(()) };
+        let mut recording = Recording::default();
+        let watched = newton.record_watched(assembly.buffers.diagonal, 6, &mut recording);
+        let read = self.engine.run(&recording, &[watched])?;
+        blocks.clear();
+        blocks.extend(crate::linear::symmetric_blocks(&read[0]));
+        Ok(())
+    }
+}
+
+impl<E: Engine + Debug + Send> NewtonBackend for ConjugateGradients<E> {
+    fn set_model(&mut self, model: &ElementModel) -> Result<bool, LinearBackendError> {
+        Ok(self.take_newton_model(model)?)
+    }
+
+    fn begin_step(&mut self, step: &NewtonStep<'_>) -> Result<(), LinearBackendError> {
+        self.newton()?;
+        Ok(self.begin_newton_step(step)?)
+    }
+
+    fn begin_target(&mut self, target: &NewtonTarget<'_>) -> Result<Watched, LinearBackendError> {
+        self.newton()?;
+        Ok(self.begin_newton_target(target)?)
+    }
+
+    fn begin_again(&mut self) -> Result<Watched, LinearBackendError> {
+        let (newton, engine) = self.newton()?;
+        let mut recording = Recording::default();
+        let watched = newton.begin_again(&mut recording);
+        engine.run(&recording, &[])?;
+        Ok(watched)
+    }
+
+    fn linearize(&mut self, absolute: bool) -> Result<(), LinearBackendError> {
+        self.newton()?;
+        Ok(self.linearize_newton(absolute)?)
+    }
+
+    fn diagonal(&mut self, blocks: &mut Vec<Matrix3<f64>>) -> Result<(), LinearBackendError> {
+        self.newton()?;
+        Ok(self.read_watched_diagonal(blocks)?)
+    }
+
+    fn solve(
+        &mut self,
+        springs: &AssemblySprings<'_>,
+        limits: &SolveLimits,
+    ) -> Result<NewtonSolve, LinearBackendError> {
+        self.newton()?;
+        Ok(self.solve_newton(springs, limits)?)
+    }
+
+    fn component_residuals(&mut self, sums: &mut Vec<Vector>) -> Result<(), LinearBackendError> {
+        let row_sums = self.assembly.as_ref().map(|assembly| assembly.buffers.row_sums());
+        let (newton, engine) = self.newton()?;
+        let row_sums = row_sums.ok_or(NoModel)?;
+        Ok(newton.component_residuals(engine, row_sums, sums)?)
+    }
+
+    fn translate(&mut self, translations: &[Vector]) -> Result<(), LinearBackendError> {
+        let (newton, engine) = self.newton()?;
+        let mut recording = Recording::default();
+        newton.record_translations(translations, &mut recording);
+        engine.run(&recording, &[])?;
+        Ok(())
+    }
+
+    fn place(&mut self, length: f64) -> Result<Trial, LinearBackendError> {
+        let (newton, engine) = self.newton()?;
+        Ok(newton.make_trial(engine, length)?)
+    }
+
+    fn start_from_trial(&mut self) -> Result<(), LinearBackendError> {
+        let (newton, engine) = self.newton()?;
+        let mut recording = Recording::default();
+        newton.start_from_trial(&mut recording);
+        engine.run(&recording, &[])?;
+        Ok(())
+    }
+
+    fn keep_trial(&mut self) -> Result<(), LinearBackendError> {
+        let (newton, engine) = self.newton()?;
+        let mut recording = Recording::default();
+        newton.record_copy(newton.vectors.trial, newton.vectors.kept, &mut recording);
+        engine.run(&recording, &[])?;
+        Ok(())
+    }
+
+    fn start_from_kept_trial(&mut self) -> Result<(), LinearBackendError> {
+        let (newton, engine) = self.newton()?;
+        let mut recording = Recording::default();
+        newton.start_from_kept_trial(&mut recording);
+        engine.run(&recording, &[])?;
+        Ok(())
+    }
+
+    fn target(&mut self, y: &mut [Vector]) -> Result<(), LinearBackendError> {
+        let (newton, engine) = self.newton()?;
+        let mut recording = Recording::default();
+        newton.record_copy(newton.vectors.trial, newton.vectors.last, &mut recording);
+        let read = engine.run(&recording, &[(newton.vectors.trial, 4 * newton.nodes)])?;
+        newton.has_last = true;
+        y.iter_mut().zip(newton.positions(&read[0])).for_each(|(y, x)| *y = x);
+        Ok(())
+    }
+
+    fn out_of_balance(
+        &mut self,
+        known: &[Vector],
+        counted: &[bool],
+        absolute: bool,
+    ) -> Result<OutOfBalance, LinearBackendError> {
+        self.newton()?;
+        self.linearize_newton(absolute)?;
+        Ok(self.balance(known, counted)?)
+    }
+}

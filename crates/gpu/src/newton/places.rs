@@ -1,0 +1,290 @@
+//! Time steps and targets: where the nodes are, and which of them are free.
+
+use super::blocks::Blocks;
+use super::vectors::Vectors;
+use crate::assembly::StateGrid;
+use crate::cpu;
+use crate::engine::Engine;
+use crate::error::GpuError;
+use crate::potential::Potential;
+use crate::recording::{BufferId, Recording};
+use crate::stages;
+use bowknot_dynamics::{ElementModel, NewtonStep, NewtonTarget, Watched};
+use bowknot_geometry::Vector;
+
+/// Side of the smallest box that a grid reaches over, as a share of the size of the model at rest, and that of a model
+/// without a size [m].
+const MIN_SIDE: f64 = 0.25;
+const SIDE_OF_A_POINT: f64 = 1e-3;
+
+/// Most bits by which a stage coarsens a grid.
+const MOST_BITS: u32 = 20;
+
+/// What Newton's method has on an engine.
+#[derive(Debug)]
+pub struct Newton {
+    pub vectors: Vectors,
+    pub potential: Potential,
+    pub blocks: Blocks,
+    pub nodes: usize,
+    /// Of all positions.
+    pub grid: StateGrid,
+    /// Side of the smallest box that the grid reaches over [m].
+    side: f64,
+    /// 1 / dt [1/s].
+    pub rate: f64,
+    /// Sums of [`NewtonStep::gradient`] over components, and those of the forces of springs in the last solve [N].
+    pub gradient_sums: Vec<Vector>,
+    pub spring_sums: Vec<Vector>,
+    /// What the last solve has read of R (d + p) by block, until something of it changes.
+    pub momenta: Option<Vec<u32>>,
+    /// What the target began with: its positions and whether nodes that are not free move.
+    start: Vec<[i32; 4]>,
+    start_imposes: bool,
+    /// Whether nodes that are not free are not at their ends yet.
+    pub imposes: bool,
+    /// The watched nodes.
+    pub watched: Vec<u32>,
+    /// Bits of the free nodes.
+    free: Vec<u32>,
+    pub has_last: bool,
+    /// Whether the step and the right-hand side are those of a solve.
+    pub is_solved: bool,
+    /// Numbers of the iterate and of that at the start of the target; equal numbers are equal iterates.
+    pub iterate: u64,
+    target: u64,
+    next: u64,
+    /// Of which iterates the gradient is, and the matrix with its filter.
+    pub gradient_of: Option<u64>,
+    pub matrix_of: Option<(u64, bool)>,
+}
+
+impl Newton {
+    /// Makes the vectors of a model.
+    pub fn new<E: Engine>(
+        engine: &mut E,
+        model: &ElementModel,
+        potential: Potential,
+    ) -> Result<Self, GpuError> {
+        let nodes = model.rest.len();
+        let blocks = Blocks::new(&model.components, nodes);
+        let vectors = Vectors::new(engine, nodes, blocks.count(), 0)?;
+        let mut recording = Recording::default();
+        recording.write(vectors.blocks, &blocks.of_nodes);
+        engine.run(&recording, &[])?;
+        let low = model.rest.iter().fold(Vector::repeat(f64::INFINITY), |low, x| low.inf(x));
+        let high = model.rest.iter().fold(Vector::repeat(f64::NEG_INFINITY), |high, x| high.sup(x));
+        let size = (high - low).amax();
+        let side = if size > 0.0 && size.is_finite() { MIN_SIDE * size } else { SIDE_OF_A_POINT };
+        Ok(Self {
+            vectors,
+            potential,
+            blocks,
+            nodes,
+            grid: StateGrid::around([].iter()),
+            side,
+            rate: 0.0,
+            gradient_sums: Vec::new(),
+            spring_sums: Vec::new(),
+            momenta: None,
+            start: Vec::new(),
+            start_imposes: false,
+            imposes: false,
+            watched: Vec::new(),
+            free: Vec::new(),
+            has_last: false,
+            is_solved: false,
+            iterate: 0,
+            target: 0,
+            next: 1,
+            gradient_of: None,
+            matrix_of: None,
+        })
+    }
+
+    /// Frees the buffers.
+    pub fn free<E: Engine>(self, engine: &mut E) {
+        self.potential.free(engine);
+        self.vectors.free(engine);
+    }
+
+    /// Forgets the matrix: something else was written in its place.
+    pub fn forget_matrix(&mut self) {
+        self.matrix_of = None;
+    }
+
+    /// Says that the iterate has changed.
+    pub fn change_iterate(&mut self) {
+        self.iterate = self.next;
+        self.next += 1;
+        self.momenta = None;
+    }
+
+    /// Chooses the grid of a time step and records its positions; the potential has its terms already.
+    pub fn begin_step(&mut self, step: &NewtonStep<'_>, recording: &mut Recording) {
+        self.grid = StateGrid::with_room(step.start.iter().chain(step.inertial), self.side);
+        self.rate = step.rate;
+        self.gradient_sums = self.blocks.sums_of(step.gradient);
+        self.has_last = false;
+        self.is_solved = false;
+        self.imposes = false;
+        self.start.clear();
+        (self.gradient_of, self.matrix_of) = (None, None);
+        recording.write(self.vectors.start, &self.points(step.start));
+        recording.write(self.vectors.inertial, &self.points(step.inertial));
+    }
+
+    fn points(&self, positions: &[Vector]) -> Vec<[i32; 4]> {
+        positions.iter().map(|x| self.grid.place(x)).collect()
+    }
+
+    /// Records the start of a target. The buffers have room for its watched nodes.
+    pub fn begin_target(&mut self, target: &NewtonTarget<'_>, recording: &mut Recording) -> Watched {
+        let ends = || target.iterate.iter().zip(target.imposed).map(|(x, q)| x + q);
+        let reach = target.iterate.iter().copied().chain(ends()).map(|x| self.grid.reach(&x));
+        let reach = reach.fold(0.0, f64::max);
+        if reach > 1.0 && reach.is_finite() {
+            self.coarsen(bits(reach), recording);
+        }
+        let iterate = self.points(target.iterate);
+        let mut imposed = vec![[0; 4]; self.nodes];
+        for (node, end) in ends().enumerate().filter(|(node, _)| !target.free[*node]) {
+            let (from, to) = (iterate[node], self.grid.place(&end));
+            imposed[node] = std::array::from_fn(|k| to[k] - from[k]);
+        }
+        self.start_imposes = imposed.iter().any(|way| *way != [0; 4]);
+        if self.start_imposes {
+            recording.write(self.vectors.imposed, &imposed);
+        }
+        if self.start == iterate {
+            self.return_to_start(recording);
+        } else {
+            recording.write(self.vectors.target_start, &iterate);
+            recording.write(self.vectors.iterate, &iterate);
+            self.start = iterate;
+            self.change_iterate();
+            self.target = self.iterate;
+        }
+        let free = bits_of(target.free.iter().copied());
+        if self.free != free {
+            recording.write(self.vectors.free, &free);
+            self.free = free;
+        }
+        if self.watched != target.watched {
+            self.watched = target.watched.to_vec();
+        }
+        recording.write(self.vectors.watched, &self.watched);
+        self.record_beginning(recording)
+    }
+
+    /// Records the return to the start of the target.
+    pub fn begin_again(&mut self, recording: &mut Recording) -> Watched {
+        self.return_to_start(recording);
+        self.record_beginning(recording)
+    }
+
+    fn return_to_start(&mut self, recording: &mut Recording) {
+        if self.iterate != self.target {
+            self.record_copy(self.vectors.target_start, self.vectors.iterate, recording);
+            self.iterate = self.target;
+        }
+    }
+
+    /// Records the trial at the iterate, with nodes that are not free at their ends. Returns the watched positions.
+    fn record_beginning(&mut self, recording: &mut Recording) -> Watched {
+        self.imposes = self.start_imposes;
+        self.is_solved = false;
+        self.momenta = None;
+        self.record_attempt(0.0, recording);
+        self.watched.iter().map(|&node| self.grid.position(self.start[node as usize])).collect()
+    }
+
+    /// Records that the trial becomes the iterate.
+    pub fn start_from_trial(&mut self, recording: &mut Recording) {
+        self.record_copy(self.vectors.trial, self.vectors.iterate, recording);
+        self.imposes = false;
+        self.change_iterate();
+    }
+
+    /// Records that the kept trial becomes the trial and the iterate.
+    pub fn start_from_kept_trial(&mut self, recording: &mut Recording) {
+        self.record_copy(self.vectors.kept, self.vectors.trial, recording);
+        self.start_from_trial(recording);
+    }
+
+    /// Records a copy of positions.
+    pub fn record_copy(&self, from: BufferId, to: BufferId, recording: &mut Recording) {
+        let words = 4 * self.nodes;
+        recording.dispatch(&stages::COPY, &[from, to], cpu::copy::Params { words: words as u32 }, words);
+    }
+
+    /// Records that entries of the watched nodes go where they are read; returns from where, and how many words.
+    pub fn record_watched(
+        &self,
+        from: BufferId,
+        width: usize,
+        recording: &mut Recording,
+    ) -> (BufferId, usize) {
+        let nodes = self.watched.len();
+        recording.dispatch(
+            &stages::GATHER,
+            &[self.vectors.watched, from, self.vectors.seen],
+            cpu::gather::Params { nodes: nodes as u32, width: width as u32 },
+            nodes,
+        );
+        (self.vectors.seen, width * nodes)
+    }
+
+    /// Records that all positions go to a grid that is coarser by so many bits: they change by half a quantum at most.
+    pub fn coarsen(&mut self, bits: u32, recording: &mut Recording) {
+        let mut left = bits;
+        while left > 0 {
+            let shift = left.min(MOST_BITS);
+            let params = cpu::regrid::Params { nodes: self.nodes as u32, shift };
+            for positions in self.vectors.positions() {
+                recording.dispatch(&stages::REGRID, &[positions], params, self.nodes);
+            }
+            cpu::regrid::regrid(
+                cpu::regrid::Params { nodes: self.start.len() as u32, shift },
+                &mut self.start,
+            );
+            self.grid.quantum *= f64::from(1u32 << shift);
+            left -= shift;
+        }
+        let is_at_start = self.iterate == self.target;
+        self.change_iterate();
+        if is_at_start {
+            self.target = self.iterate;
+        } else {
+            self.target = self.next;
+            self.next += 1;
+        }
+    }
+
+    /// Positions of entries of four words [m].
+    pub fn positions(&self, words: &[u32]) -> impl Iterator<Item = Vector> {
+        words.chunks_exact(4).map(|x| self.grid.position(std::array::from_fn(|k| x[k] as i32)))
+    }
+}
+
+/// Bits by which a grid must get coarser so that coordinates of that share of its reach, a finite one, are on it.
+pub fn bits(reach: f64) -> u32 {
+    let (mut bits, mut left) = (0, if reach.is_finite() { reach } else { 0.0 });
+    while left > 1.0 {
+        left *= 0.5;
+        bits += 1;
+    }
+    bits
+}
+
+/// A bit for each.
+pub fn bits_of(are: impl Iterator<Item = bool>) -> Vec<u32> {
+    let mut words = Vec::new();
+    for (k, is) in are.enumerate() {
+        if k % 32 == 0 {
+            words.push(0);
+        }
+        words[k / 32] |= u32::from(is) << (k % 32);
+    }
+    words
+}

@@ -1,0 +1,152 @@
+//! When linear solves end: iterative refinement, see `linear/refinement.rs` of the dynamics.
+//!
+//! A round are iterations of conjugate gradients. After it the residual b - H p is computed; while it is above the tolerance,
+//! a further round corrects p from there.
+
+use super::layout::Solve;
+use super::places::Newton;
+use super::solve::Opposed;
+use crate::cpu::settle;
+use crate::engine::Engine;
+use crate::error::GpuError;
+use crate::linear::{BATCH, ConjugateGradients, Recorder};
+use crate::recording::{BufferId, Recording};
+use bowknot_dynamics::{AssemblySprings, CgInfo, NewtonSolve, SolveLimits};
+use std::fmt::Debug;
+
+/// Share of the residual that a round must take away at least.
+const MIN_GAIN: f64 = 0.5;
+
+/// The solve without a model.
+const NOTHING: NewtonSolve = NewtonSolve {
+    info: CgInfo { iterations: 0, residual: 0.0, converged: true },
+    scale: 0.0,
+    stalled: false,
+};
+
+/// Most blocks whose momenta are read with each batch of iterations; those of more are read once, after the solve.
+const MOST_BLOCKS: usize = 128;
+
+/// A solve that goes on.
+struct Rounds<'a, E> {
+    engine: &'a mut E,
+    newton: &'a Newton,
+    recorder: &'a Recorder,
+    limits: &'a SolveLimits,
+    /// Sums of rows of the matrix.
+    row_sums: BufferId,
+    /// R (d + p) by block after the last batch, if it was read.
+    momenta: Option<Vec<u32>>,
+    /// Iterations that are left.
+    left: usize,
+    /// Steps of conjugate gradients that were recorded, starts of rounds after the first included.
+    recorded: usize,
+}
+
+impl<E: Engine> Rounds<'_, E> {
+    /// Makes a batch of iterations after what was recorded before; they end the round if no more are left.
+    fn run(&mut self, mut recording: Recording) -> Result<Solve, GpuError> {
+        let batch = self.left.min(BATCH);
+        for _ in 0..batch {
+            self.recorder.record_iteration(self.recorded, &mut recording);
+            self.recorded += 1;
+        }
+        // Without a patch no stage runs that could end the iterations.
+        let is_last = batch == self.left || self.recorder.sizes.patches == 0;
+        self.newton.record_end(self.recorder, self.recorded, is_last, self.limits, &mut recording);
+        self.recorded += 1;
+        let mut wanted = vec![(self.newton.vectors.solve, Solve::WORDS)];
+        if self.newton.blocks.count() <= MOST_BLOCKS {
+            wanted.push(self.newton.record_momenta(self.row_sums, &mut recording));
+        }
+        let mut read = self.engine.run(&recording, &wanted)?;
+        let solve = Solve::from_words(&read[0]);
+        self.momenta = (wanted.len() > 1).then(|| read.swap_remove(1));
+        self.left = self.limits.max_iterations.saturating_sub(solve.iterations as usize);
+        Ok(solve)
+    }
+
+    /// Makes rounds until the residual is small enough or they gain too little.
+    fn solve(&mut self, recording: Recording) -> Result<NewtonSolve, GpuError> {
+        let mut solve = self.run(recording)?;
+        let factor = f64::from(solve.factor);
+        let squared = |norm: f32| f64::from(norm) / (factor * factor);
+        let scale = squared(solve.scale);
+        if scale <= 0.0 || !scale.is_finite() {
+            let info = CgInfo { iterations: 0, residual: 0.0, converged: scale == 0.0 };
+            return Ok(NewtonSolve { info, scale, stalled: false });
+        }
+        let Self { limits, .. } = *self;
+        let relative = scale.max(limits.min_scale);
+        let goal = limits.tolerance * limits.tolerance * relative;
+        let goal = goal.max(limits.own_tolerance * limits.own_tolerance * scale);
+        loop {
+            let (before, norm) = (squared(solve.before), squared(solve.norm));
+            if solve.ended == 1 {
+                // A start that was small enough by its own sums may be above the goal by the product with H.
+                let gains =
+                    norm <= MIN_GAIN * MIN_GAIN * before || before <= goal || limits.max_iterations == 0;
+                let stalled = norm > goal && !gains || !norm.is_finite();
+                if norm <= goal || stalled || self.left == 0 {
+                    let residual = (norm / relative).sqrt();
+                    let iterations = solve.iterations as usize;
+                    let info = CgInfo { iterations, residual, converged: norm <= goal };
+                    return Ok(NewtonSolve { info, scale, stalled });
+                }
+            }
+            solve = self.run(Recording::default())?;
+        }
+    }
+}
+
+impl<E: Engine + Debug + Send> ConjugateGradients<E> {
+    /// See [`bowknot_dynamics::NewtonBackend::solve`].
+    pub(super) fn solve_newton(
+        &mut self,
+        springs: &AssemblySprings<'_>,
+        limits: &SolveLimits,
+    ) -> Result<NewtonSolve, GpuError> {
+        let Some(newton) = &mut self.newton else { return Ok(NOTHING) };
+        newton.is_solved = true;
+        newton.momenta = None;
+        newton.spring_sums = newton.blocks.spring_forces(springs.springs);
+        let (iterate, quantum) = (newton.vectors.iterate, newton.grid.quantum);
+        let mut recording = Recording::default();
+        newton.record_before(&mut recording);
+        self.record_preconditioner(springs, iterate, quantum, &mut recording)?;
+        let (Some(newton), Some(recorder), Some(assembly)) =
+            (&mut self.newton, &self.recorder, &self.assembly)
+        else {
+            return Ok(NOTHING);
+        };
+        let (v, b) = (&newton.vectors, &recorder.buffers);
+        if newton.imposes {
+            newton.record_imposed(recorder, &mut recording);
+        }
+        let opposed = Opposed {
+            gradient: v.gradient,
+            counted: v.free,
+            springs: springs.springs.len(),
+            imposes: newton.imposes,
+        };
+        newton.record_right_side(b, &opposed, &mut recording);
+        newton.outside(recorder).record_residual(0, &mut recording);
+        newton.record_norm(recorder, settle::SCALE, 0, limits, &mut recording);
+        newton.record_guesses(recorder, &mut recording);
+        newton.outside(recorder).record_residual(0, &mut recording);
+        newton.record_norm(recorder, settle::START, 0, limits, &mut recording);
+        let mut rounds = Rounds {
+            engine: &mut self.engine,
+            newton,
+            recorder,
+            limits,
+            row_sums: assembly.buffers.row_sums(),
+            momenta: None,
+            left: limits.max_iterations,
+            recorded: 0,
+        };
+        let solved = rounds.solve(recording)?;
+        newton.momenta = rounds.momenta;
+        Ok(solved)
+    }
+}
