@@ -1,0 +1,121 @@
+//! Right-hand sides, starts and solutions beside dense algebra.
+
+use super::fixture::{LIMITS, dense_solve, fixtures, flat, masked, matrix, read, solver};
+use super::{UNIT, largest};
+use crate::engine::TwinEngine;
+use bowknot_dynamics::{AssemblySprings, NewtonBackend, NewtonStep, SolveLimits};
+use bowknot_geometry::Vector;
+use nalgebra::{DMatrix, DVector, Matrix3};
+
+#[test]
+fn right_sides_and_solutions_are_those_of_dense_algebra() {
+    for fixture in fixtures() {
+        let mut solver = solver(TwinEngine::new(), &fixture);
+        let x = fixture.begin(&mut solver);
+        // Positions are on a grid that is finer than 2^-27 of the state and of the way that it moves.
+        assert!(x.iter().zip(&fixture.iterate).all(|(a, b)| (a - b).amax() < 1e-8), "{}", fixture.name);
+        solver.linearize(false).expect("runs");
+        // The second solve has a last target as well.
+        for round in 0..2 {
+            let solved = solver.solve(&fixture.springs(), &LIMITS).expect("runs");
+            assert!(solved.info.converged && !solved.stalled, "{}: {solved:?}", fixture.name);
+            let vectors = solver.newton.as_ref().expect("one").vectors;
+            let (b, p) =
+                (flat(&read(&mut solver, vectors.right_side)), flat(&read(&mut solver, vectors.step)));
+            let h = matrix(&mut solver);
+            let opposed = flat(&fixture.gradient(&x)) + &h * flat(&fixture.imposed);
+            let expected_b = masked(&-opposed, &fixture.free);
+            let unit = UNIT * fixture.force_scale(&x);
+            let error = largest(&(&b - &expected_b)) / unit;
+            println!("{}: b off by {error:.1} units, of {:.1e}", fixture.name, largest(&b) / unit);
+            assert!(error < 40.0, "{}: {error}", fixture.name);
+            let expected = dense_solve(&h, &b, &fixture.free);
+            // In the norm of H: the residual is as small in that of the preconditioner, which approximates the inverse.
+            let norm = |p: &DVector<f64>| p.dot(&(&h * p)).sqrt();
+            let error = norm(&(&p - &expected)) / norm(&expected);
+            println!("{}: p off by {error:.1e}, {} iterations", fixture.name, solved.info.iterations);
+            assert!(error < 1e-4, "{}: {error:e}", fixture.name);
+            if round == 0 {
+                assert!(largest(&expected) > 1e-5, "{}: something moves", fixture.name);
+                solver.place(1.0).expect("runs");
+                let mut y = vec![Vector::zeros(); x.len()];
+                solver.target(&mut y).expect("runs");
+                assert!(fixture.begin_target(&mut solver, &fixture.iterate) == x);
+            }
+        }
+    }
+}
+
+/// Without iterations the step is the combination of guesses with the least energy.
+#[test]
+fn solves_start_from_the_best_combination_of_guesses() {
+    for fixture in fixtures() {
+        let mut solver = solver(TwinEngine::new(), &fixture);
+        let x = fixture.begin(&mut solver);
+        solver.linearize(false).expect("runs");
+        let limits = SolveLimits { max_iterations: 0, ..LIMITS };
+        let inertial = fixture.terms.as_step().inertial;
+        let mut guesses = vec![inertial.to_vec()];
+        for _ in 0..2 {
+            let solved = solver.solve(&fixture.springs(), &limits).expect("runs");
+            assert!(solved.info.iterations == 0 && !solved.stalled);
+            let vectors = solver.newton.as_ref().expect("one").vectors;
+            let (b, p) =
+                (flat(&read(&mut solver, vectors.right_side)), flat(&read(&mut solver, vectors.step)));
+            let h = matrix(&mut solver);
+            let way = |end: &Vec<Vector>| masked(&(flat(end) - flat(&x)), &fixture.free);
+            let ways = DMatrix::from_columns(&guesses.iter().map(way).collect::<Vec<_>>());
+            let small = ways.transpose() * &h * &ways;
+            let expected = &ways * small.try_inverse().expect("independent") * ways.transpose() * &b;
+            let energy = |p: &DVector<f64>| 0.5 * p.dot(&(&h * p)) - p.dot(&b);
+            let missed = (energy(&p) - energy(&expected)) / energy(&expected).abs();
+            println!("{}: {missed:.1e} of the decrease", fixture.name);
+            assert!(missed.abs() < 1e-4, "{}: {missed:e}", fixture.name);
+            // The residual that the solve reports is that of b - H p, in the norm of the preconditioner.
+            assert!(solved.info.residual > 0.0, "{}", fixture.name);
+            // A last target elsewhere, with a deformation of its own.
+            let last: Vec<Vector> = x
+                .iter()
+                .zip(inertial)
+                .enumerate()
+                .map(|(k, (x, y))| x + (y - x) * 0.6 + Vector::new((k as f64).sin(), 0.3, 0.1) * 1e-4)
+                .collect();
+            let last = fixture.begin_target(&mut solver, &last);
+            solver.target(&mut vec![Vector::zeros(); last.len()]).expect("runs");
+            fixture.begin_target(&mut solver, &fixture.iterate);
+            guesses.push(last);
+        }
+    }
+}
+
+/// Forces of 1e-12 and of 1e12 times the usual ones: powers of two change no digit.
+#[test]
+fn units_of_force_make_no_difference() {
+    let fixture = fixtures().pop().expect("grains");
+    let p = |exponent: i32| {
+        let factor = 2f64.powi(exponent);
+        let mut solver = solver(TwinEngine::new(), &fixture);
+        let step = fixture.terms.as_step();
+        let row_sums: Vec<Matrix3<f64>> = step.row_sums.iter().map(|sum| sum * factor).collect();
+        let gradient: Vec<Vector> = step.gradient.iter().map(|c| c * factor).collect();
+        let step = NewtonStep { row_sums: &row_sums, gradient: &gradient, ..step };
+        solver.begin_step(&step).expect("runs");
+        fixture.begin_target(&mut solver, &fixture.iterate);
+        solver.linearize(false).expect("runs");
+        let mut springs = fixture.springs.clone();
+        for spring in &mut springs {
+            (spring.hessian, spring.force) = (spring.hessian * factor, spring.force * factor);
+        }
+        let springs = AssemblySprings { springs: &springs, ..fixture.springs() };
+        let limits = SolveLimits { own_tolerance: 1e-5, min_scale: 1e-12 * factor, ..LIMITS };
+        let solved = solver.solve(&springs, &limits).expect("runs");
+        assert!(solved.info.converged, "{exponent}: {solved:?}");
+        let vectors = solver.newton.as_ref().expect("one").vectors;
+        (read(&mut solver, vectors.step), solved.info.iterations, (solved.scale / factor).to_bits())
+    };
+    let one = p(0);
+    assert!(one.1 > 1, "{}", one.1);
+    for exponent in [-40, 40] {
+        assert!(p(exponent) == one, "{exponent}");
+    }
+}
