@@ -119,3 +119,35 @@ fn units_of_force_make_no_difference() {
         assert!(p(exponent) == one, "{exponent}");
     }
 }
+
+/// Rounds correct each other until single precision gains too little; limits of iterations are kept on the way.
+#[test]
+fn rounds_follow_until_they_gain_too_little() {
+    let fixture = &fixtures()[0];
+    let mut solver = solver(TwinEngine::new(), fixture);
+    fixture.begin(&mut solver);
+    solver.linearize(false).expect("runs");
+    let mut solve = |tolerance: f64, max_iterations: usize| {
+        let limits = SolveLimits { tolerance, max_iterations, ..LIMITS };
+        solver.solve(&fixture.springs(), &limits).expect("runs")
+    };
+    let loose = solve(1e-3, 2000);
+    let tight = solve(3e-6, 2000);
+    assert!(loose.info.converged && tight.info.converged && loose.info.residual <= 1e-3);
+    assert!(tight.info.iterations > loose.info.iterations && tight.info.residual <= 3e-6, "{tight:?}");
+    let impossible = solve(1e-12, 2000);
+    assert!(impossible.stalled && !impossible.info.converged, "{impossible:?}");
+    assert!(impossible.info.residual < 3e-6 && impossible.info.iterations < 1000, "{impossible:?}");
+    for limit in [1, 16, 17, 40] {
+        let ended = solve(1e-5, limit);
+        assert!(ended.info.iterations == limit && !ended.info.converged, "{ended:?}");
+    }
+    // What may end relative to something larger ends at once, and what is small enough needs no iteration.
+    let limits = SolveLimits { min_scale: 1e12 * loose.scale, ..LIMITS };
+    let corrected = solver.solve(&fixture.springs(), &limits).expect("runs");
+    assert!(corrected.info.converged && corrected.info.iterations == 0, "{corrected:?}");
+    let limits = SolveLimits { tolerance: 1e-9, own_tolerance: 0.03, ..LIMITS };
+    let inexact = solver.solve(&fixture.springs(), &limits).expect("runs");
+    assert!(inexact.info.converged && inexact.info.residual <= 0.03, "{inexact:?}");
+    assert!(inexact.info.iterations < loose.info.iterations, "{inexact:?}");
+}

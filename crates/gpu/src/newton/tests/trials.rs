@@ -145,3 +145,49 @@ fn grids_change_within_a_step() {
         }
     }
 }
+
+/// Newton iterations end where the gradient in double precision vanishes, but for what single precision leaves of large
+/// forces that cancel.
+#[test]
+fn newtons_method_ends_at_the_minimum_of_double_precision() {
+    for mut fixture in fixtures() {
+        fixture.springs.clear();
+        let mut solver = solver(TwinEngine::new(), &fixture);
+        let mut x = fixture.begin(&mut solver);
+        let force = |x: &[Vector]| {
+            let gradient = fixture.dynamics.bodies_potential(x).expect("a step").gradient;
+            gradient
+                .iter()
+                .zip(&fixture.free)
+                .filter(|(_, free)| **free)
+                .map(|(g, _)| g.norm())
+                .fold(0.0, f64::max)
+        };
+        let first = force(&x);
+        for iteration in 0..20 {
+            solver.linearize(false).expect("runs");
+            solver.solve(&fixture.springs(), &LIMITS).expect("runs");
+            solver.place(0.0).expect("runs");
+            let mut length = 1.0;
+            let mut trial = solver.place(length).expect("runs");
+            while trial.change > trial.rounding && length > 1e-3 {
+                length *= 0.5;
+                trial = solver.place(length).expect("runs");
+            }
+            solver.start_from_trial().expect("runs");
+            x = trial.watched;
+            let left = force(&x) / (UNIT * fixture.force_scale(&x));
+            println!(
+                "{} {iteration}: {:.1e} of the first force, {left:.1} units",
+                fixture.name,
+                force(&x) / first
+            );
+            if left < 40.0 {
+                break;
+            }
+        }
+        let left = force(&x);
+        assert!(left < 40.0 * UNIT * fixture.force_scale(&x), "{}: {left:e} N of {first:e} N", fixture.name);
+        assert!(left < 1e-3 * first, "{}: {left:e} N of {first:e} N", fixture.name);
+    }
+}
