@@ -47,7 +47,11 @@ fn main(@builtin(local_invocation_id) local: vec3<u32>) {
         return;
     }
     if params.mode == 2u {
-        let relative = max(solve.scale, params.min_scale * solve.factor * solve.factor);
+        // Zero times a square that is too large would be no number.
+        var relative = solve.scale;
+        if params.min_scale > 0.0 {
+            relative = max(relative, params.min_scale * solve.factor * solve.factor);
+        }
         solve.goal = max(params.tolerance * relative, params.own_tolerance * solve.scale);
         solve.norm = norm;
         solve.iterations = 0u;

@@ -2,8 +2,8 @@
 
 use bowknot_geometry::Vector;
 
-/// Largest coordinate of what moves on a grid; that of the state that the grid is made for is half of it. Differences of two fit into 32 bits,
-/// and so do differences of these.
+/// Largest coordinate of what moves on a grid; that of the state that the grid is made for is half of it. Differences
+/// of two fit into 32 bits, and so do differences of these.
 const REACH: f64 = (1u32 << 29) as f64;
 
 /// A grid about the nodes of a state.

@@ -56,7 +56,10 @@ pub fn settle(
     match params.mode {
         SCALE => solve.scale = norm,
         START => {
-            let relative = solve.scale.max(params.min_scale * solve.factor * solve.factor);
+            let mut relative = solve.scale;
+            if params.min_scale > 0.0 {
+                relative = relative.max(params.min_scale * solve.factor * solve.factor);
+            }
             solve.goal = (params.tolerance * relative).max(params.own_tolerance * solve.scale);
             solve.norm = norm;
             solve.iterations = 0;

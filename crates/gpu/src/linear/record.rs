@@ -67,7 +67,8 @@ impl Recorder {
         );
     }
 
-    /// Where the partial sums of squared norms are that the last of `iterations` since the start wrote, in words, and their number.
+    /// Where the partial sums of squared norms are that the last of `iterations` since the start wrote, in words, and
+    /// their number.
     pub fn norms(&self, iterations: usize) -> std::ops::Range<usize> {
         let first = norms_at(iterations % 2);
         first..first + self.norm_count()

@@ -26,8 +26,8 @@ impl Newton {
         (v.totals, 4 * self.blocks.count())
     }
 
-    /// Sets `sums` to the forces on components that are not inner forces: those of springs, less c and R (d + p). That is the
-    /// sum of b - R p without elements and K, where all nodes are free.
+    /// Sets `sums` to the forces on components that are not inner forces: those of springs, less c and R (d + p). That
+    /// is the sum of b - R p without elements and K, where all nodes are free.
     pub fn component_residuals<E: Engine>(
         &mut self,
         engine: &mut E,

@@ -53,6 +53,6 @@ pub const SUMS: usize = 8;
 /// Where the sums of guesses begin, after a number per workgroup.
 pub const FIRST_SUM: usize = MOST_WORKGROUPS;
 
-/// What `summarize` writes: p . b, then what is largest of the components of p, of the squared distances from the iterate and
-/// from the start of the target, and of the coordinates.
+/// What `summarize` writes: p . b, then what is largest of the components of p, of the squared distances from the
+/// iterate and from the start of the target, and of the coordinates.
 pub const SUMMARY: usize = 5;

@@ -13,8 +13,8 @@ use bowknot_dynamics::Trial;
 /// Largest coordinate of the grid, as a number: see `attempt.wgsl`.
 const REACH: f64 = ((1u32 << 29) - 1) as f64;
 
-/// Bits by which the grid may get coarser for a trial. A trial that would need more is 16 times as far as the state is large:
-/// it ends at the border of the grid, where the line search refuses it, and shorter ones keep their digits.
+/// Bits by which the grid may get coarser for a trial. A trial that would need more is 16 times as far as the state is
+/// large: it ends at the border of the grid, where the line search refuses it, and shorter ones keep their digits.
 const MOST_BITS: u32 = 4;
 
 impl Newton {

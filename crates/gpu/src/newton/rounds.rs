@@ -1,7 +1,7 @@
 //! When linear solves end: iterative refinement, see `linear/refinement.rs` of the dynamics.
 //!
-//! A round are iterations of conjugate gradients. After it the residual b - H p is computed; while it is above the tolerance,
-//! a further round corrects p from there.
+//! A round are iterations of conjugate gradients. After it the residual b - H p is computed; while it is above the
+//! tolerance, a further round corrects p from there.
 
 use super::layout::Solve;
 use super::places::Newton;
