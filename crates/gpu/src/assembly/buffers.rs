@@ -28,8 +28,6 @@ pub struct AssemblyBuffers {
     bending: (Vec<f64>, Vec<f64>),
     /// The buffer that the structure of the matrix was written to, with them.
     written_to: Option<BufferId>,
-    /// What else the matrix depends on: the quantum, 1 / dt and the filter.
-    last: Option<(f64, f64, bool)>,
 }
 
 /// Where nodes are for an assembly, and what else it depends on.
@@ -98,7 +96,6 @@ impl AssemblyBuffers {
             diagonal: make("diagonal of the matrix", 6 * nodes)?,
             bending: (Vec::new(), Vec::new()),
             written_to: None,
-            last: None,
             plan,
         };
         recording.write(buffers.membranes, &buffers.plan.membranes);
@@ -129,52 +126,23 @@ impl AssemblyBuffers {
     /// Forgets the matrix: something else was written in its place.
     pub fn forget_matrix(&mut self) {
         self.written_to = None;
-        self.last = None;
     }
 
-    /// Writes the sums of rows; returns whether they are new.
-    pub fn write_row_sums(&mut self, sums: &[Matrix3<f64>], recording: &mut Recording) -> bool {
+    /// Writes the sums of rows.
+    pub fn write_row_sums(&mut self, sums: &[Matrix3<f64>], recording: &mut Recording) {
         let sums = sums.iter().map(|sum| {
             let half = |i: usize, j: usize| (0.5 * (sum[(i, j)] + sum[(j, i)])) as f32;
             [half(0, 0), half(0, 1), half(0, 2), half(1, 1), half(1, 2), half(2, 2)]
         });
-        self.row_sums.write(&sums.collect::<Vec<_>>(), recording)
+        self.row_sums.write(&sums.collect::<Vec<_>>(), recording);
     }
 
-    /// Sets flat bending, by the pairs of [`bowknot_dynamics::ElementModel`]; returns whether it is new.
-    pub fn set_bending(&mut self, bending: &[f64], scalars: &[f64]) -> bool {
-        let is_new = self.bending.0 != bending || self.bending.1 != scalars;
-        if is_new {
+    /// Sets flat bending, by the pairs of [`bowknot_dynamics::ElementModel`].
+    pub fn set_bending(&mut self, bending: &[f64], scalars: &[f64]) {
+        if self.bending.0 != bending || self.bending.1 != scalars {
             self.bending = (bending.to_vec(), scalars.to_vec());
             self.written_to = None;
         }
-        is_new
-    }
-
-    /// Records what makes the matrix of a state in `linear`, unless it is there already.
-    pub fn record(&mut self, state: &AssemblyState<'_>, linear: &Buffers, recording: &mut Recording) {
-        let grid = StateGrid::around(state.positions.iter().chain(state.start));
-        let place = |x: &[bowknot_geometry::Vector]| x.iter().map(|x| grid.place(x)).collect::<Vec<_>>();
-        let mut changed = self.positions.write(&place(state.positions), recording);
-        // Damping alone needs them.
-        if self.plan.is_damped() {
-            changed |= self.start.write(&place(state.start), recording);
-        }
-        changed |= self.write_row_sums(state.row_sums, recording);
-        changed |= self.set_bending(state.bending, state.scalars);
-        let last = Some((grid.quantum, state.rate, state.absolute));
-        if !changed && self.last == last && self.written_to == Some(linear.words) {
-            return;
-        }
-        self.last = last;
-        let place = AssemblyPlace {
-            positions: self.positions.buffer,
-            start: self.start.buffer,
-            quantum: grid.quantum,
-            rate: state.rate,
-            absolute: state.absolute,
-        };
-        self.record_matrix(&place, linear, recording);
     }
 
     /// Records what makes the matrix in `linear`, with the sums of rows and the bending that were set last.

@@ -32,11 +32,6 @@ impl Plan {
         model.strand_elements == 0
     }
 
-    /// Whether some element is damped, and so depends on the start of the time step.
-    pub fn is_damped(&self) -> bool {
-        self.membranes.iter().any(|membrane| membrane.damping > 0.0) || self.has_damped_tetrahedra()
-    }
-
     /// Whether some tetrahedron is damped.
     pub fn has_damped_tetrahedra(&self) -> bool {
         self.tetrahedra.iter().any(|tet| tet.viscous_mu > 0.0)

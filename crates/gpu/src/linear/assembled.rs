@@ -39,14 +39,6 @@ pub fn symmetric_blocks(words: &[u32]) -> impl Iterator<Item = Matrix3<f64>> {
     })
 }
 
-/// Symmetric matrices from six numbers each.
-pub fn symmetric_blocks(words: &[u32]) -> impl Iterator<Item = Matrix3<f64>> {
-    words.chunks_exact(6).map(|words| {
-        let [xx, xy, xz, yy, yz, zz] = [0, 1, 2, 3, 4, 5].map(|k| f64::from(f32::from_bits(words[k])));
-        Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
-    })
-}
-
 impl<E: Engine + Debug + Send> ConjugateGradients<E> {
     pub(crate) fn take_model(&mut self, model: &ElementModel) -> Result<bool, GpuError> {
         if let Some(newton) = self.newton.take() {
@@ -98,34 +90,6 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
         let buffers = self.pool.make(&mut self.engine, &sizes, structure, assembly.domains())?;
         self.recorder = Some(Recorder { buffers, sizes });
         Ok(Some(buffers))
-    }
-
-    fn make_matrix(&mut self, state: &AssemblyState<'_>) -> Result<(), GpuError> {
-        self.set_free(state.free)?;
-        let Some(buffers) = self.make_room()? else { return Ok(()) };
-        let Some(assembly) = &mut self.assembly else { return Ok(()) };
-        let mut recording = Recording::default();
-        assembly.buffers.record(state, &buffers, &mut recording);
-        self.engine.run(&recording, &[])?;
-        Ok(())
-    }
-
-    fn read_diagonal(&mut self, blocks: &mut Vec<Matrix3<f64>>) -> Result<(), GpuError> {
-        let Some(assembly) = &self.assembly else { return Ok(()) };
-        let diagonal = (assembly.buffers.diagonal, 6 * assembly.model.rest.len());
-        let read = self.engine.run(&Recording::default(), &[diagonal])?;
-        blocks.clear();
-        blocks.extend(symmetric_blocks(&read[0]));
-        Ok(())
-    }
-
-    fn make_preconditioner(&mut self, springs: &AssemblySprings<'_>) -> Result<(), GpuError> {
-        let Some(assembly) = &self.assembly else { return Ok(()) };
-        let (positions, quantum) = (assembly.buffers.positions(), assembly.buffers.quantum());
-        let mut recording = Recording::default();
-        self.record_preconditioner(springs, positions, quantum, &mut recording)?;
-        self.engine.run(&recording, &[])?;
-        Ok(())
     }
 
     /// Makes room for springs and records what adds them to the matrix and makes the preconditioner, with nodes at
