@@ -121,6 +121,22 @@ pub(crate) static FACING: Stage = Stage {
     twin: cpu::facing::bound,
 };
 
+pub(crate) static NEAR: Stage = Stage {
+    name: "near",
+    parts: &[TYPES, PAIR, include_str!("../shader/near.wgsl")],
+    workgroup: 128,
+    bindings: &[Read, Read, Read, Read, Read, Write, Write],
+    twin: cpu::near::bound,
+};
+
+pub(crate) static GATHER: Stage = Stage {
+    name: "gather",
+    parts: &[TYPES, include_str!("../shader/gather.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Read, Write],
+    twin: cpu::gather::bound,
+};
+
 pub(crate) static LIST: Stage = Stage {
     name: "list",
     parts: &[TYPES, include_str!("../shader/list.wgsl")],
@@ -361,6 +377,8 @@ pub(crate) static ALL: &[&Stage] = &[
     &RECALL,
     &FACING,
     &PICK,
+    &NEAR,
+    &GATHER,
     &LIST,
     &BUILD,
     &SLIP,

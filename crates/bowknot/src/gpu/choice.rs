@@ -201,6 +201,13 @@ impl CollisionBackend for Clocked {
         *self.seconds.lock().unwrap_or_else(PoisonError::into_inner) += timer.elapsed().as_secs_f64();
         result
     }
+
+    fn judge(&mut self, scene: &CollisionScene, positions: &[Point]) -> Result<(), BackendError> {
+        let timer = Instant::now();
+        let result = self.backend.judge(scene, positions);
+        *self.seconds.lock().unwrap_or_else(PoisonError::into_inner) += timer.elapsed().as_secs_f64();
+        result
+    }
 }
 
 #[cfg(test)]
@@ -250,6 +257,10 @@ mod tests {
             }
             std::thread::sleep(std::time::Duration::from_millis(100));
             self.cpu.resolve(resolver, positions, target, input, observer)
+        }
+
+        fn judge(&mut self, scene: &CollisionScene, positions: &[Point]) -> Result<(), BackendError> {
+            self.cpu.judge(scene, positions)
         }
     }
 
