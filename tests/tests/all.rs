@@ -21,3 +21,6 @@ mod heaps;
 mod momentum;
 mod slopes;
 mod submissions;
+// What the host does at the end of a call of a device, and how long it takes.
+mod ends;
+mod host;

@@ -381,6 +381,10 @@ impl CollisionBackend for Failing {
         self.calls_left -= 1;
         self.cpu.resolve(resolver, positions, target, input, observer)
     }
+
+    fn judge(&mut self, scene: &CollisionScene, positions: &[Point]) -> Result<(), BackendError> {
+        self.cpu.judge(scene, positions)
+    }
 }
 
 #[test]

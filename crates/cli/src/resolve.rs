@@ -169,7 +169,8 @@ fn attempt(
     let statistics = backend
         .prepare(resolver.scene(), &x)
         .and_then(|()| backend.resolve(&mut resolver, &mut x, &states.y, &states.input(), &mut watch))
-        .map_err(failure)?;
+        .map_err(&failure)?;
+    backend.judge(resolver.scene(), &x).map_err(&failure)?;
     let Watch { intersections, unjudged, .. } = watch;
     if let Some(error) = unjudged {
         return Err(bad_input(error.to_string()));

@@ -17,6 +17,9 @@ struct Params {
 @group(0) @binding(6) var<storage, read_write> candidates: array<Candidate>;
 @group(0) @binding(7) var<storage, read_write> control: Control;
 
+// The point of a plane is rounded to the grid, by less than this.
+const POINT_ROUNDING: f32 = 1.0;
+
 @compute @workgroup_size(256)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if atomicLoad(&control.changed) == 0u {
@@ -38,7 +41,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
                 let offset = vec3<f32>(ball.center - plane.point);
                 let height = dot(plane.normal, offset);
                 let size = max(max(abs(offset.x), abs(offset.y)), abs(offset.z));
-                if height - plane.rounding * size <= reach * 1.001 {
+                if height - plane.rounding * size <= reach * 1.001 + POINT_ROUNDING {
                     if params.lists != 0u && first + found < params.capacity {
                         candidates[first + found] = Candidate((VERTEX_HALF_SPACE << ELEMENT_BITS) | query.element, p);
                     }

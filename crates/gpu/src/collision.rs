@@ -6,6 +6,7 @@
 //! are not made, and it is made again.
 
 mod buffers;
+mod end;
 mod record;
 mod record_rows;
 mod record_search;
@@ -20,11 +21,13 @@ use crate::edges::Edges;
 use crate::engine::{Engine, PhaseSeconds};
 use crate::error::GpuError;
 use crate::grid::{Grid, GridError, GridPoint};
-use crate::layout::{Candidate, Control, NONE, Row, Vertex};
+use crate::layout::{Candidate, Control, NONE, Vertex};
 use crate::model::{self, Constraints, Lengths};
 use crate::recording::{BufferId, Recording};
 use bowknot_geometry::{CollisionModel, Point, Vector};
 use buffers::{Buffers, Sizes, words};
+use end::NearList;
+use rayon::prelude::*;
 pub use stop::Stop;
 use trees::Trees;
 
@@ -190,6 +193,9 @@ pub struct End {
     pub aims: Vec<Point>,
     /// The contact rows of the last step.
     pub rows: Vec<ContactRow>,
+    /// Pairs among which are all that are within their contact range, the sum of their margins, at the positions; sorted.
+    /// None if no step and no search of the call has looked for them.
+    pub near: Option<Vec<Candidate>>,
 }
 
 /// The collision stage of a scene on an engine.
@@ -201,6 +207,7 @@ pub struct Collision<E> {
     lengths: StepLengths,
     sizes: Sizes,
     buffers: Buffers,
+    near: NearList,
     trees: Trees,
     edges: Edges,
     bricks: Bricks,
@@ -226,6 +233,9 @@ pub struct Collision<E> {
     fresh: bool,
     /// Whether the step is made again, because a buffer was too small.
     again: bool,
+    /// Whether the candidates are those of the present positions: all pairs that could meet within the trust regions, in
+    /// which the vertices are.
+    listed: bool,
 }
 
 /// Lengths in quanta that all steps share.
@@ -336,6 +346,7 @@ impl<E: Engine> Collision<E> {
         let frictional = constraints.frictions.iter().any(|friction| *friction > 0.0)
             || pair_frictions.iter().any(|pair| pair.coefficient > 0.0);
         let buffers = Buffers::new(&mut engine, &sizes)?;
+        let near = NearList::new(&mut engine)?;
         let mut setup = Recording::default();
         setup.write(buffers.rest, &padded(&rest_on_grid));
         setup.write(buffers.vertices, &vertices);
@@ -362,6 +373,7 @@ impl<E: Engine> Collision<E> {
             lengths,
             sizes,
             buffers,
+            near,
             trees,
             edges,
             bricks,
@@ -376,6 +388,7 @@ impl<E: Engine> Collision<E> {
             steps_in_a_row: 0,
             fresh: false,
             again: false,
+            listed: false,
         })
     }
 
@@ -390,8 +403,10 @@ impl<E: Engine> Collision<E> {
         let on_grid = snapped(&self.grid, positions)?;
         let mut recording = Recording::default();
         recording.write(self.buffers.positions, &padded(&on_grid));
+        self.listed = false;
         self.engine.run(&recording, &[])?;
-        let placed: Vec<Point> = on_grid.into_iter().map(|x| self.grid.position(x)).collect();
+        let grid = self.grid;
+        let placed = collected(&on_grid, |&x| grid.position(x));
         self.placed = Some(placed.clone());
         Ok(placed)
     }
@@ -413,16 +428,15 @@ impl<E: Engine> Collision<E> {
     /// A wrong length; the device failed.
     pub fn begin(&mut self, call: &Call<'_>) -> Result<(), CollisionError> {
         check_length("target", call.target.len(), self.sizes.vertices)?;
-        let inside = |points: &[Point]| -> Vec<GridPoint> {
-            points.iter().map(|y| self.grid.nearest_inside(y)).collect()
-        };
+        let grid = self.grid;
+        let inside = |points: &[Point]| -> Vec<GridPoint> { collected(points, |y| grid.nearest_inside(y)) };
         let (target, mut slip_start) = (inside(call.target), inside(call.slip_start));
         let start = match self.placed.take() {
             Some(placed) => placed,
             None => self.positions()?,
         };
         if slip_start.is_empty() {
-            slip_start = start.iter().map(|x| self.grid.nearest_inside(x)).collect();
+            slip_start = inside(&start);
         }
         check_length("slip_start", slip_start.len(), self.sizes.vertices)?;
         let mut recording = Recording::default();
@@ -436,7 +450,7 @@ impl<E: Engine> Collision<E> {
         self.engine.run(&recording, &[])?;
         (self.stop, self.row_count, self.polishes) = (call.stop, 0, false);
         self.lengths.growth = self.grid.length(call.growth).min(f32::MAX);
-        (self.fresh, self.again, self.steps_in_a_row) = (true, false, 0);
+        (self.fresh, self.again, self.listed, self.steps_in_a_row) = (true, false, false, 0);
         Ok(())
     }
 
@@ -467,8 +481,8 @@ impl<E: Engine> Collision<E> {
     }
 
     fn points_of(&self, words: &[u32]) -> Vec<Point> {
-        let position = |&[x, y, z, _]: &[i32; 4]| self.grid.position([x, y, z]);
-        bytemuck::cast_slice(words).iter().map(position).collect()
+        let grid = self.grid;
+        collected(bytemuck::cast_slice(words), |&[x, y, z, _]: &[i32; 4]| grid.position([x, y, z]))
     }
 
     /// The positions, and where the last step wanted to go [m].
@@ -478,34 +492,6 @@ impl<E: Engine> Collision<E> {
     pub fn positions_and_aims(&mut self) -> Result<(Vec<Point>, Vec<Point>), CollisionError> {
         let [positions, aims] = self.points([self.buffers.positions, self.buffers.aims])?;
         Ok((positions, aims))
-    }
-
-    /// How the call ends after the steps so far.
-    ///
-    /// # Errors
-    /// The device failed.
-    pub fn end(&mut self) -> Result<End, CollisionError> {
-        let vertices = 4 * self.sizes.vertices;
-        let read = [
-            (self.buffers.positions, vertices),
-            (self.buffers.aims, vertices),
-            (self.buffers.rows.rows, words::<Row>(self.row_count)),
-            (self.buffers.rows.pairs, words::<Candidate>(self.row_count)),
-        ];
-        let all = self.engine.run(&Recording::default(), &read)?;
-        let [positions, aims] = [0, 1].map(|k| self.points_of(&all[k]));
-        let (rows, pairs): (&[Row], &[Candidate]) =
-            (bytemuck::cast_slice(&all[2]), bytemuck::cast_slice(&all[3]));
-        let quantum = self.grid.quantum();
-        let vector = |v: [f32; 3]| Vector::from(v.map(f64::from)) * quantum;
-        let row = |(row, pair): (&Row, &Candidate)| ContactRow {
-            candidate: *pair,
-            multiplier: f64::from(row.multiplier) * quantum,
-            friction: vector(row.friction),
-            slip: vector(row.slip),
-            coefficient: f64::from(row.coefficient),
-        };
-        Ok(End { positions, aims, rows: rows.iter().zip(pairs).map(row).collect() })
     }
 
     /// The candidates of the last step or of [`Self::search`], sorted.
@@ -528,7 +514,18 @@ impl<E: Engine> Collision<E> {
 
 /// With a fourth coordinate, as the device stores positions.
 fn padded(points: &[GridPoint]) -> Vec<[i32; 4]> {
-    points.iter().map(|&[x, y, z]| [x, y, z, 0]).collect()
+    collected(points, |&[x, y, z]| [x, y, z, 0])
+}
+
+/// Entries that one task computes.
+const CHUNK: usize = 4096;
+
+/// What `of` makes of each entry, in parallel if there are many: a parallel loop pays for the way to its threads.
+fn collected<T: Sync, R: Send>(entries: &[T], of: impl Fn(&T) -> R + Send + Sync) -> Vec<R> {
+    match entries.len() {
+        ..=CHUNK => entries.iter().map(of).collect(),
+        _ => entries.par_iter().with_min_len(CHUNK).map(of).collect(),
+    }
 }
 
 fn check_length(what: &'static str, given: usize, vertices: usize) -> Result<(), CollisionError> {
@@ -545,8 +542,11 @@ fn extent(positions: &[Point]) -> f64 {
 }
 
 fn snapped(grid: &Grid, positions: &[Point]) -> Result<Vec<GridPoint>, CollisionError> {
-    let snap = |(vertex, x): (usize, &Point)| grid.nearest(x).ok_or(CollisionError::OutsideGrid { vertex });
-    positions.iter().enumerate().map(snap).collect()
+    let snapped = collected(positions, |x| grid.nearest(x));
+    match snapped.iter().position(Option::is_none) {
+        Some(vertex) => Err(CollisionError::OutsideGrid { vertex }),
+        None => Ok(snapped.into_iter().flatten().collect()),
+    }
 }
 
 #[cfg(test)]

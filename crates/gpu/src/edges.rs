@@ -7,7 +7,11 @@
 use crate::grid::Grid;
 use crate::layout::{EdgeCluster, EdgeLimit};
 use bowknot_geometry::Point;
+use rayon::prelude::*;
 use std::ops::Range;
+
+/// Edges that one task computes.
+const CHUNK: usize = 4096;
 
 /// Vertices of a cluster that move, at most: as many as the shader has room for.
 pub(crate) const MOST_VERTICES: usize = 256;
@@ -121,7 +125,11 @@ impl Edges {
                 ..EdgeLimit::default()
             }
         };
-        self.edges.iter().zip(&self.places).map(limit).collect()
+        match self.edges.len() {
+            // A parallel loop would pay for the way to its threads.
+            ..=CHUNK => self.edges.iter().zip(&self.places).map(limit).collect(),
+            _ => self.edges.par_iter().zip(&self.places).with_min_len(CHUNK).map(limit).collect(),
+        }
     }
 }
 

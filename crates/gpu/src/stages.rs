@@ -132,6 +132,22 @@ pub(crate) static FACING: Stage = Stage {
     twin: cpu::facing::bound,
 };
 
+pub(crate) static NEAR: Stage = Stage {
+    name: "near",
+    parts: &[TYPES, PAIR, include_str!("../shader/near.wgsl")],
+    workgroup: 128,
+    bindings: &[Read, Read, Read, Read, Read, Write, Write],
+    twin: cpu::near::bound,
+};
+
+pub(crate) static LIST_NEAR: Stage = Stage {
+    name: "list_near",
+    parts: &[TYPES, include_str!("../shader/list_near.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Read, Write],
+    twin: cpu::list_near::bound,
+};
+
 pub(crate) static LIST: Stage = Stage {
     name: "list",
     parts: &[TYPES, include_str!("../shader/list.wgsl")],
@@ -372,6 +388,8 @@ pub(crate) static ALL: &[&Stage] = &[
     &RECALL,
     &FACING,
     &PICK,
+    &NEAR,
+    &LIST_NEAR,
     &LIST,
     &BUILD,
     &SLIP,

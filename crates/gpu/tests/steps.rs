@@ -193,8 +193,11 @@ fn every_pair_within_range_before_and_after_a_step_is_a_candidate() {
     let mut target = target(&scene, &mut fastrand::Rng::with_seed(3));
     // Down to the ground.
     target.iter_mut().for_each(|y| y.z -= 0.1);
+    // Nothing has been searched for.
+    assert_eq!(collision.end().unwrap().near, None);
     collision.begin(&Call::toward(&target)).unwrap();
-    let (mut x, mut kinds) = (scene.x.clone(), [0; 5]);
+    assert_eq!(collision.end().unwrap().near, None);
+    let (mut x, mut kinds, mut most_near) = (scene.x.clone(), [0; 5], 0);
     for _ in 0..20 {
         let report = collision.step().unwrap();
         let candidates = collision.candidates().unwrap();
@@ -205,9 +208,37 @@ fn every_pair_within_range_before_and_after_a_step_is_a_candidate() {
             let found = assert_complete(&scene, x, &candidates);
             (0..5).for_each(|k| kinds[k] += found[k]);
         }
+        // Of the candidates, these are listed at the end of a call, and few others.
+        let near = collision.end().unwrap().near.unwrap();
+        assert!(near.iter().all(|pair| candidates.binary_search(pair).is_ok()), "a candidate each");
+        let in_range: usize = assert_complete(&scene, &after, &near).iter().sum();
+        assert!(near.len() <= in_range + in_range / 8 + 4, "{} of {in_range}", near.len());
+        most_near = most_near.max(near.len());
         x = after;
     }
-    assert!(kinds.iter().all(|count| *count > 0), "{kinds:?}");
+    assert!(kinds.iter().all(|count| *count > 0) && most_near > 400, "{kinds:?}, {most_near}");
+    collision.place(&x).unwrap();
+    assert_eq!(collision.end().unwrap().near, None);
+}
+
+/// However often the host looks at the end of a call, later steps have the same bits.
+#[test]
+fn steps_after_an_end_are_those_without_it() {
+    let run = |looks: bool| {
+        let scene = scene();
+        let mut collision = collision(TwinEngine::new(), &scene, &Constraints::default());
+        collision.begin(&Call::toward(&target(&scene, &mut fastrand::Rng::with_seed(9)))).unwrap();
+        let step = |_| {
+            let report = collision.step().unwrap();
+            if looks {
+                collision.end().unwrap();
+            }
+            report
+        };
+        let reports: Vec<_> = (0..8).map(step).collect();
+        (reports, collision.end().unwrap())
+    };
+    assert!(run(false) == run(true));
 }
 
 /// With all contact rows in one bucket, and in many.
@@ -223,7 +254,7 @@ fn every_kernel_computes_what_its_twin_does() {
             collision.begin(&Call::toward(&target(&scene, &mut random))).unwrap();
             for step in 0..3 {
                 collision.steps(1 + step % 2 * 2).unwrap();
-                scene.x = collision.positions().unwrap();
+                scene.x = collision.end().unwrap().positions;
                 assert_no_intersections(&scene, &scene.x, &format!("step {step}"));
             }
         }

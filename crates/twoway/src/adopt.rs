@@ -1,11 +1,12 @@
 //! Takes over the end of a call that something else has made, such as a device.
 
+use crate::call::CallInput;
 use crate::error::ResolveError;
-use crate::input::ResolveInput;
 use crate::resolver::{Resolver, check_pairs};
 use crate::stages::{BackwardStep, ForwardStep, Search};
 use crate::statistics::Statistics;
 use bowknot_geometry::{PairKind, Point, Vector};
+use bowknot_proximity::PairList;
 
 /// The end of a call.
 #[derive(Clone, Copy, Debug)]
@@ -20,6 +21,8 @@ pub struct CallEnd<'a> {
     pub aims: &'a [Point],
     /// What the contacts carry, in any order. Pairs without an entry carry nothing.
     pub contacts: &'a [PairMultipliers],
+    /// Pairs among which are all that are in contact range at `positions`. None: they are searched for.
+    pub near: Option<&'a PairList>,
 }
 
 /// What a contact carries at the end of a call.
@@ -36,23 +39,28 @@ pub struct PairMultipliers {
 }
 
 impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
-    /// Makes [`Self::state`] that of a call which something else has made: pairs in range at its end, their
+    /// Makes [`Self::state`] that of a `call` which something else has made: pairs in range at its end, their
     /// contact geometry, and what they carry. Adds to `statistics` what [`Self::resolve_with`] adds at the end
     /// of a call, but for residuals and counts of the stages. Entries of pairs that are out of range are
     /// dropped: nothing presses there.
     ///
     /// # Errors
-    /// As [`Self::resolve`].
+    /// More pairs than can be numbered.
+    ///
+    /// # Panics
+    /// If a slice or `call` has another length than the scene has vertices.
     pub fn adopt(
         &mut self,
         end: &CallEnd<'_>,
-        input: &ResolveInput<'_>,
+        call: CallInput,
         statistics: &mut Statistics,
     ) -> Result<(), ResolveError> {
-        let input = ResolveInput { start: Some(input.start.unwrap_or(end.start)), ..*input };
-        self.begin(end.positions, end.target, &input)?;
+        self.begin_search(end.positions, end.target, call);
         let Self { scene, state, search, .. } = self;
-        search.update(scene, state, &mut Statistics::default());
+        match end.near {
+            Some(near) => search.update_among(scene, state, near, &mut Statistics::default()),
+            None => search.update(scene, state, &mut Statistics::default()),
+        }
         check_pairs(scene, state)?;
         state.start.copy_from_slice(end.start);
         state.y.copy_from_slice(end.aims);

@@ -271,13 +271,19 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
         target: &[Point],
         input: &ResolveInput<'_>,
     ) -> Result<(), ResolveError> {
-        let Self { scene, state, search, backward, forward } = self;
-        let call = CallInput::new(scene, positions, target, input)?;
-        state.begin(positions, target, call);
-        search.begin(scene, state, !forward.visits_ahead());
+        let call = CallInput::new(&self.scene, positions, target, input)?;
+        self.begin_search(positions, target, call);
+        let Self { scene, state, backward, forward, .. } = self;
         backward.begin(scene, state);
         forward.begin(scene, state);
         Ok(())
+    }
+
+    /// The part of it that a call without steps needs.
+    pub(crate) fn begin_search(&mut self, positions: &[Point], target: &[Point], call: CallInput) {
+        let Self { scene, state, search, forward, .. } = self;
+        state.begin(positions, target, call);
+        search.begin(scene, state, !forward.visits_ahead());
     }
 
     /// Adds what is known only at the end of a call to the statistics.

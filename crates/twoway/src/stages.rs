@@ -6,6 +6,7 @@ use crate::statistics::Statistics;
 use crate::stop::Residuals;
 use crate::waits::Wait;
 use bowknot_geometry::{PairKind, Separation, Vector};
+use bowknot_proximity::PairList;
 use bowknot_stepper::{StepReport, TrustRegions};
 
 /// Finds the candidate pairs that the other stages work on.
@@ -18,6 +19,18 @@ pub trait Search: Send {
     /// Makes `state.contacts` valid for `state.x`: it then has every pair within contact range, or every pair
     /// that could meet, with its contact geometry.
     fn update(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics);
+
+    /// As [`Self::update`], for a caller who knows the pairs: all that are within contact range at `state.x` are among
+    /// `near`. It need not search then.
+    fn update_among(
+        &mut self,
+        scene: &CollisionScene,
+        state: &mut ResolveState,
+        _near: &PairList,
+        statistics: &mut Statistics,
+    ) {
+        self.update(scene, state, statistics);
+    }
 
     /// Makes trust regions hold the moves along `displacements` [m] from `state.x`, each at most
     /// `solver.forward.trust_region_max` long, and the candidate pairs valid for them. Stages whose trust

@@ -216,6 +216,13 @@ impl CollisionBackend for Timed {
         *self.seconds.lock().unwrap_or_else(PoisonError::into_inner) += timer.elapsed().as_secs_f64();
         result
     }
+
+    fn judge(&mut self, scene: &CollisionScene, positions: &[Point]) -> Result<(), BackendError> {
+        let timer = Instant::now();
+        let result = self.backend.judge(scene, positions);
+        *self.seconds.lock().unwrap_or_else(PoisonError::into_inner) += timer.elapsed().as_secs_f64();
+        result
+    }
 }
 
 /// What the stages of the device take in one scene.

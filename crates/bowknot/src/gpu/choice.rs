@@ -211,6 +211,10 @@ mod tests {
             std::thread::sleep(std::time::Duration::from_millis(100));
             self.cpu.resolve(resolver, positions, target, input, observer)
         }
+
+        fn judge(&mut self, scene: &CollisionScene, positions: &[Point]) -> Result<(), BackendError> {
+            self.cpu.judge(scene, positions)
+        }
     }
 
     #[test]

@@ -1,13 +1,11 @@
 //! The collision stage on a device.
 
 use super::error::GpuResolveError;
-use super::{flight, setup};
+use super::judge::SceneJudge;
+use super::{flight, pairs, setup};
 use crate::simulator::{BackendError, CollisionBackend};
-use bowknot_check::{Judge, StateOptions};
-use bowknot_geometry::{PairKind, Point};
-use bowknot_gpu::{
-    Call, Collision, ContactRow, End, Engine, Grid, Kind, Phase, PhaseSeconds, StepReport, Stop,
-};
+use bowknot_geometry::Point;
+use bowknot_gpu::{Call, Collision, ContactRow, End, Engine, Grid, Phase, PhaseSeconds, StepReport, Stop};
 use bowknot_twoway::{
     AcceptedState, CallEnd, CallInput, CollisionScene, Observer, PairMultipliers, Residuals, ResolveInput,
     Resolver, StallDetector, Statistics, StopTest, max_stretch,
@@ -37,7 +35,11 @@ pub fn resolve_on<E: Engine + Debug + Send>(
 ) -> Result<Statistics, GpuResolveError> {
     let mut device = Device::new(String::new(), engine);
     device.set_home(resolver.scene(), positions)?;
-    device.solve(resolver, positions, target, input, observer)
+    let mut end = positions.to_vec();
+    let statistics = device.solve(resolver, &mut end, target, input, observer)?;
+    device.judge.refuse_intersections(resolver.scene(), &end)?;
+    positions.copy_from_slice(&end);
+    Ok(statistics)
 }
 
 /// Resolves collisions on an engine.
@@ -47,6 +49,7 @@ pub struct Device<E> {
     /// None while a scene has it.
     engine: Option<E>,
     prepared: Option<Prepared<E>>,
+    judge: SceneJudge,
     /// Positions that the scene begins with [m]: the grid and the trees are made from them, so that a run that is
     /// resumed has the same.
     home: Vec<Point>,
@@ -69,11 +72,31 @@ struct Prepared<E> {
 }
 
 /// What a call may change of a scene.
-#[derive(Debug, PartialEq)]
+#[derive(Debug)]
 struct CallConstraints {
     prescribed: Vec<bool>,
     groups: Vec<u32>,
     obstacles: Vec<bool>,
+}
+
+impl CallConstraints {
+    fn new(scene: &CollisionScene, call: &CallInput, input: &ResolveInput<'_>) -> Self {
+        Self {
+            prescribed: call.prescribed().to_vec(),
+            groups: input.groups.to_vec(),
+            obstacles: obstacles(scene).collect(),
+        }
+    }
+
+    fn are_those_of(&self, scene: &CollisionScene, call: &CallInput, input: &ResolveInput<'_>) -> bool {
+        self.prescribed == call.prescribed()
+            && self.groups == input.groups
+            && self.obstacles.iter().copied().eq(obstacles(scene))
+    }
+}
+
+fn obstacles(scene: &CollisionScene) -> impl Iterator<Item = bool> {
+    scene.model().bodies().iter().map(|body| body.obstacle)
 }
 
 impl<E: Engine + Debug + Send> Device<E> {
@@ -83,6 +106,7 @@ impl<E: Engine + Debug + Send> Device<E> {
             name,
             engine: Some(engine),
             prepared: None,
+            judge: SceneJudge::default(),
             home: Vec::new(),
             steps_per_submission: STEPS_PER_SUBMISSION,
             device_seconds: None,
@@ -103,6 +127,7 @@ impl<E: Engine + Debug + Send> Device<E> {
     fn set_home(&mut self, scene: &CollisionScene, home: &[Point]) -> Result<(), GpuResolveError> {
         setup::refuse_unsupported(scene)?;
         self.home = home.to_vec();
+        self.judge = SceneJudge::default();
         self.release();
         Ok(())
     }
@@ -114,7 +139,7 @@ impl<E: Engine + Debug + Send> Device<E> {
         }
     }
 
-    /// The scene with the constraints of a call, and room from `positions` to `ends` [m].
+    /// Prepares the scene with the constraints of a call, and room from `positions` to `ends` [m].
     fn prepare_call(
         &mut self,
         scene: &CollisionScene,
@@ -122,24 +147,21 @@ impl<E: Engine + Debug + Send> Device<E> {
         input: &ResolveInput<'_>,
         positions: &[Point],
         ends: &[Point],
-    ) -> Result<&mut Collision<E>, GpuResolveError> {
-        let constraints = CallConstraints {
-            prescribed: call.prescribed().to_vec(),
-            groups: input.groups.to_vec(),
-            obstacles: scene.model().bodies().iter().map(|body| body.obstacle).collect(),
-        };
+    ) -> Result<(), GpuResolveError> {
         let fits = |prepared: &Prepared<E>| {
-            let grid = prepared.home_grid.for_motion(positions, ends, scene.lengths().min_separation);
-            prepared.constraints == constraints && grid.as_ref() == Some(prepared.collision.grid())
+            let grid = || prepared.home_grid.for_motion(positions, ends, scene.lengths().min_separation);
+            prepared.constraints.are_those_of(scene, call, input)
+                && grid().as_ref() == Some(prepared.collision.grid())
         };
         if !self.prepared.as_ref().is_some_and(fits) {
             self.release();
             let engine = self.engine.take().ok_or(GpuResolveError::NoEngine)?;
             let (collision, home_grid) =
                 setup::collision(engine, scene, [&self.home, positions, ends], call, input)?;
+            let constraints = CallConstraints::new(scene, call, input);
             self.prepared = Some(Prepared { collision, constraints, home_grid });
         }
-        self.prepared.as_mut().map(|prepared| &mut prepared.collision).ok_or(GpuResolveError::NoEngine)
+        Ok(())
     }
 
     fn solve(
@@ -154,15 +176,16 @@ impl<E: Engine + Debug + Send> Device<E> {
         let steps_per_submission = self.steps_per_submission;
         let scene = resolver.scene();
         let call = CallInput::new(scene, positions, target, input)?;
-        let judge = Judge::from_model(scene.model());
         let edge = scene.lengths().edge;
         let mut stop = StopTest::new(&scene.params().solver.stop, edge, input.time_step, input.max_steps);
         let ends =
             farthest_ends(scene, positions, target, stop.max_steps() as f64 * Collision::<E>::LONGEST_TRAVEL);
-        let collision = self.prepare_call(scene, &call, input, positions, &ends)?;
+        self.prepare_call(scene, &call, input, positions, &ends)?;
+        let Self { prepared, judge, .. } = self;
+        let collision = &mut prepared.as_mut().ok_or(GpuResolveError::NoEngine)?.collision;
         // Those of a call that failed.
         collision.take_phase_seconds();
-        let start = place(collision, positions, &judge)?;
+        let start = place(collision, scene, positions, judge)?;
         let mut stall = StallDetector::new(edge, scene.arrival_distance());
         let mut statistics = Statistics::default();
         let sees_each_state = observer.sees_each_state();
@@ -209,23 +232,24 @@ impl<E: Engine + Debug + Send> Device<E> {
                 break;
             }
         }
-        let End { positions: end, aims, rows } = collision.end()?;
-        let mut state = judge.check_state(&end, &StateOptions { limit: 1, distance: false })?;
-        if let Some(first) = state.intersections.pop() {
-            return Err(GpuResolveError::Intersects {
-                count: state.intersection_count,
-                first: Box::new(first),
-            });
-        }
+        let End { positions: end, aims, rows, near } = collision.end()?;
         let phases = collision.take_phase_seconds();
         let quantum = collision.grid().quantum();
         note_friction(&mut statistics, &rows);
         [statistics.max_step_stretch, statistics.max_stretch] =
             max_stretch(scene, [&start, scene.rest()], &end);
-        let contacts: Vec<PairMultipliers> =
-            rows.iter().filter(|row| row.multiplier > 0.0).map(multipliers).collect();
-        let call_end = CallEnd { start: &start, positions: &end, target, aims: &aims, contacts: &contacts };
-        resolver.adopt(&call_end, input, &mut statistics)?;
+        let pressing = rows.iter().filter(|row| row.multiplier > 0.0);
+        let contacts: Vec<PairMultipliers> = pressing.filter_map(pairs::multipliers).collect();
+        let near = near.and_then(|near| pairs::list(scene, &near));
+        let call_end = CallEnd {
+            start: &start,
+            positions: &end,
+            target,
+            aims: &aims,
+            contacts: &contacts,
+            near: near.as_ref(),
+        };
+        resolver.adopt(&call_end, call, &mut statistics)?;
         if statistics.prescribed_lag_m <= quantum {
             // On the nearest point of the grid.
             statistics.prescribed_lag_m = 0.0;
@@ -270,6 +294,10 @@ impl<E: Engine + Debug + Send> CollisionBackend for Device<E> {
     ) -> Result<Statistics, BackendError> {
         Ok(self.solve(resolver, positions, target, input, observer)?)
     }
+
+    fn judge(&mut self, scene: &CollisionScene, positions: &[Point]) -> Result<(), BackendError> {
+        Ok(self.judge.refuse_intersections(scene, positions)?)
+    }
 }
 
 /// How far toward the target vertices can come [m] if they travel by `most` local edge lengths.
@@ -286,15 +314,14 @@ fn farthest_ends(scene: &CollisionScene, positions: &[Point], target: &[Point], 
 /// moves by less than 0.87 quanta, so that gaps of two quanta stay open.
 fn place<E: Engine>(
     collision: &mut Collision<E>,
+    scene: &CollisionScene,
     positions: &[Point],
-    judge: &Judge,
+    judge: &mut SceneJudge,
 ) -> Result<Vec<Point>, GpuResolveError> {
     let start = collision.place(positions)?;
     if start != positions {
         let quantum = collision.grid().quantum();
-        let state = judge.check_state(positions, &StateOptions { limit: 0, distance: true })?;
-        let is_open = state.nearest.is_none_or(|nearest| nearest.distance > 2.0 * quantum);
-        if !(state.intersection_count == 0 && is_open) {
+        if !judge.is_open(scene, positions, 2.0 * quantum)? {
             return Err(GpuResolveError::TooTight { quantum });
         }
     }
@@ -365,13 +392,4 @@ fn note_friction(statistics: &mut Statistics, rows: &[ContactRow]) {
             statistics.sticking_slip_m = statistics.sticking_slip_m.max(row.slip.norm());
         }
     }
-}
-
-/// What a contact carries, with the elements in the order of the CPU.
-fn multipliers(row: &ContactRow) -> PairMultipliers {
-    let kind = PairKind::ALL[row.candidate.kind() as usize];
-    let (a, b) = (row.candidate.a(), row.candidate.b);
-    let is_symmetric = [Kind::VertexVertex, Kind::EdgeEdge].map(|k| k as u32).contains(&row.candidate.kind());
-    let (elements, sign) = if is_symmetric && b < a { ([b, a], -1.0) } else { ([a, b], 1.0) };
-    PairMultipliers { kind, elements, normal: row.multiplier, friction: row.friction * sign }
 }

@@ -12,6 +12,8 @@ mod choice;
 mod device;
 mod error;
 mod flight;
+mod judge;
+mod pairs;
 mod setup;
 
 pub use bowknot_gpu::{

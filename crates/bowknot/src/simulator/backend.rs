@@ -26,7 +26,8 @@ pub trait CollisionBackend: Debug + Send {
         None
     }
 
-    /// As [`Resolver::resolve_with`]. It leaves the state of the resolver as such a call does.
+    /// As [`Resolver::resolve_with`]. It leaves the state of the resolver as such a call does. Nobody may rely on the state
+    /// before it has been [judged](Self::judge).
     ///
     /// # Errors
     /// As [`Resolver::resolve_with`], or what the backend fails of; `positions` are then unchanged.
@@ -38,6 +39,14 @@ pub trait CollisionBackend: Debug + Send {
         input: &ResolveInput<'_>,
         observer: &mut dyn Observer,
     ) -> Result<Statistics, BackendError>;
+
+    /// Judges the positions [m] that calls of [`Self::resolve`] have led to, before they are accepted: at the end of each
+    /// time step. A backend whose arithmetic is not that of this program, such as a device with its driver, looks for
+    /// intersections then. Others have nothing to do.
+    ///
+    /// # Errors
+    /// The positions intersect, or cannot be judged. The time step is then taken back.
+    fn judge(&mut self, scene: &CollisionScene, positions: &[Point]) -> Result<(), BackendError>;
 }
 
 /// Why a backend did not resolve a collision problem.
@@ -75,5 +84,9 @@ impl CollisionBackend for Cpu {
         observer: &mut dyn Observer,
     ) -> Result<Statistics, BackendError> {
         resolver.resolve_with(positions, target, input, observer).map_err(BackendError::Refused)
+    }
+
+    fn judge(&mut self, _: &CollisionScene, _: &[Point]) -> Result<(), BackendError> {
+        Ok(())
     }
 }

@@ -422,6 +422,8 @@ impl Simulator {
                 break;
             }
         }
+        let judged = backend.judge(resolver.scene(), &x[..count]);
+        judged.map_err(|source| backend_error(world, step, source))?;
         positions.clone_from(x);
         Ok(())
     }

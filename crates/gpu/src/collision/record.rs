@@ -105,14 +105,8 @@ impl<E: Engine> Collision<E> {
     /// Contact geometry of all candidates at the present positions; after a search only if there was one, for nothing has
     /// moved since the geometry of the backward step.
     pub(super) fn record_geometry(&self, after_search: bool, recording: &mut Recording) {
-        recording.begin_phase(Phase::Evaluate);
+        self.record_separations(after_search, recording);
         let (b, capacity) = (&self.buffers, self.buffers.capacity as u32);
-        recording.dispatch(
-            &stages::SEPARATE,
-            &[b.positions, b.edges, b.triangles, b.planes, b.candidates, b.separations, b.control],
-            cpu::separate::Params { capacity, after_search: u32::from(after_search) },
-            self.buffers.capacity,
-        );
         recording.dispatch(
             &stages::SPACE,
             &[b.rest, b.edges, b.triangles, b.vertices, b.candidates, b.separations, b.states, b.control],
@@ -124,6 +118,18 @@ impl<E: Engine> Collision<E> {
                 range: self.settings.range as f32,
                 first_half_space: self.sizes.vertices as u32,
             },
+            self.buffers.capacity,
+        );
+    }
+
+    /// The part of it that the positions alone decide.
+    pub(super) fn record_separations(&self, after_search: bool, recording: &mut Recording) {
+        recording.begin_phase(Phase::Evaluate);
+        let (b, capacity) = (&self.buffers, self.buffers.capacity as u32);
+        recording.dispatch(
+            &stages::SEPARATE,
+            &[b.positions, b.edges, b.triangles, b.planes, b.candidates, b.separations, b.control],
+            cpu::separate::Params { capacity, after_search: u32::from(after_search) },
             self.buffers.capacity,
         );
     }

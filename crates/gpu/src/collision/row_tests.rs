@@ -4,7 +4,7 @@
 use super::*;
 use crate::TwinEngine;
 use crate::bricks::LATTICES;
-use crate::layout::{Bucket, COLORS};
+use crate::layout::{Bucket, COLORS, Row};
 use bowknot_geometry::{BodyFilter, Topology};
 use std::collections::{HashMap, HashSet};
 

@@ -69,7 +69,7 @@ impl<E: Engine> Collision<E> {
         if self.fresh || !self.again {
             self.buffers.make_room_for_step(&mut self.engine)?;
         }
-        self.placed = None;
+        (self.placed, self.listed) = (None, false);
         let recording = self.record_submission(steps)?;
         let read =
             [(self.buffers.control, words::<Control>(1)), (self.buffers.reports, words::<Control>(steps))];
@@ -79,6 +79,7 @@ impl<E: Engine> Collision<E> {
         reports.extend(bytemuck::cast_slice::<u32, Control>(&all[1])[..made].iter().map(|r| self.report(r)));
         if control.overflow == 0 {
             self.expect(made, control.halted != 0);
+            self.listed = true;
         }
         if control.halted != Control::HALTED_BY_SEARCH {
             (self.fresh, self.again) = (false, false);

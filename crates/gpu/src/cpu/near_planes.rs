@@ -15,6 +15,8 @@ pub struct Params {
     pub capacity: u32,
 }
 
+const POINT_ROUNDING: f32 = 1.0;
+
 pub fn bound(buffers: Bound<'_>) {
     near_planes(
         buffers.params(),
@@ -53,7 +55,7 @@ pub fn near_planes(
             for (p, plane) in planes.iter().enumerate().take(params.planes as usize) {
                 let offset = to_f32([0, 1, 2].map(|k| ball.center[k].wrapping_sub(plane.point[k])));
                 let height = dot(plane.normal, offset);
-                if height - plane.rounding * largest(offset) <= reach * 1.001 {
+                if height - plane.rounding * largest(offset) <= reach * 1.001 + POINT_ROUNDING {
                     if params.lists != 0 && first + found < params.capacity {
                         candidates[(first + found) as usize] =
                             Candidate::new(Kind::VertexHalfSpace, query.element, p as u32);

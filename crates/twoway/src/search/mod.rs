@@ -16,7 +16,7 @@ use crate::statistics::Statistics;
 use ahead::AheadPairs;
 use bowknot_constraints::FrictionModel;
 use bowknot_geometry::{PairKind, Vector};
-use bowknot_proximity::{CandidateList, ProximitySearch};
+use bowknot_proximity::{CandidateList, PairList, ProximitySearch};
 use bowknot_stepper::{Bound, TrustRegionRule};
 use flight::Flight;
 use near::NearPairs;
@@ -167,6 +167,22 @@ impl Search for TrustRegionSearch {
         }
         statistics.seconds.search += timer.elapsed().as_secs_f64();
         self.select(scene, state, statistics);
+    }
+
+    fn update_among(
+        &mut self,
+        scene: &CollisionScene,
+        state: &mut ResolveState,
+        near: &PairList,
+        statistics: &mut Statistics,
+    ) {
+        if self.complete {
+            return self.update(scene, state, statistics);
+        }
+        // Candidates and trust regions stay as they are: the next update renews those that vertices have left.
+        let timer = Instant::now();
+        self.near.select_among(scene, state, near, statistics);
+        statistics.seconds.evaluate += timer.elapsed().as_secs_f64();
     }
 
     fn cover(

@@ -12,7 +12,7 @@ use crate::state::{ContactSet, ResolveState};
 use crate::statistics::Statistics;
 use bowknot_constraints::{DesiredDistance, FrictionModel};
 use bowknot_geometry::{PairKind, Point, Separation, Vector};
-use bowknot_proximity::{CandidateList, Pair, near_half_spaces, separate_all};
+use bowknot_proximity::{CandidateList, Pair, PairList, near_half_spaces, separate_all};
 use rayon::prelude::*;
 
 /// Pairs whose data one task carries over, and vertices that one task looks at.
@@ -115,6 +115,28 @@ impl NearPairs {
 
         let found = self.found.iter().flatten();
         statistics.skipped.evaluations += found.map(|found| found.reused).sum::<usize>();
+        self.gather(&mut state.contacts);
+        self.inherit(scene, state, statistics);
+    }
+
+    /// The same for a caller who knows the pairs: all that are within contact range at x are among `near`.
+    pub fn select_among(
+        &mut self,
+        scene: &CollisionScene,
+        state: &mut ResolveState,
+        near: &PairList,
+        statistics: &mut Statistics,
+    ) {
+        self.moved.clear();
+        self.moved.resize(state.x.len(), true);
+        self.keep(&mut state.contacts);
+        let selection = Selection { scene, x: &state.x, moved: &self.moved, old: &self.old, complete: false };
+        for kind in PairKind::ALL {
+            let (pairs, found) = (&near.pairs()[near.range(kind)], &mut self.found[kind as usize]);
+            found.resize_with(pairs.len().div_ceil(CHUNK), Found::default);
+            let lists = found.par_iter_mut().zip(pairs.par_chunks(CHUNK));
+            lists.for_each(|(found, pairs)| found.take(&selection, kind, pairs.iter().copied()));
+        }
         self.gather(&mut state.contacts);
         self.inherit(scene, state, statistics);
     }

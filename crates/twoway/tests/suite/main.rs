@@ -1,5 +1,7 @@
 //! Tests of the whole two-way loop: bodies, friction, obstacles, calls.
 
+/// The end of a call that something else has made.
+mod adopt;
 mod backward;
 mod bodies;
 mod common;

@@ -1,0 +1,48 @@
+//! Pairs of a device as the CPU names them.
+
+use bowknot_geometry::{PairKind, Topology};
+use bowknot_gpu::{Candidate, ContactRow};
+use bowknot_proximity::{Pair, PairList};
+use bowknot_twoway::{CollisionScene, PairMultipliers};
+
+/// The pairs of a list. None if one of them is no pair of the scene, which a device that works does not list.
+pub fn list(scene: &CollisionScene, candidates: &[Candidate]) -> Option<PairList> {
+    let (topology, half_spaces) = (scene.model().topology(), scene.model().half_spaces().len());
+    let mut kinds: [Vec<Pair>; 5] = Default::default();
+    for candidate in candidates {
+        let kind = *PairKind::ALL.get(candidate.kind() as usize)?;
+        let (elements, _) = elements(kind, candidate);
+        let counts = element_counts(topology, half_spaces, kind);
+        if (0..2).any(|side| elements[side] as usize >= counts[side]) {
+            return None;
+        }
+        kinds[kind as usize].push(Pair::of_elements(topology, kind, elements));
+    }
+    Some(PairList::from_kinds(kinds))
+}
+
+/// What the contact of a row carries. None if it is no pair.
+pub fn multipliers(row: &ContactRow) -> Option<PairMultipliers> {
+    let kind = *PairKind::ALL.get(row.candidate.kind() as usize)?;
+    let (elements, sign) = elements(kind, &row.candidate);
+    Some(PairMultipliers { kind, elements, normal: row.multiplier, friction: row.friction * sign })
+}
+
+/// The elements in the order of the CPU, and -1 if that changes sides.
+fn elements(kind: PairKind, candidate: &Candidate) -> ([u32; 2], f64) {
+    let (a, b) = (candidate.a(), candidate.b);
+    let is_symmetric = matches!(kind, PairKind::VertexVertex | PairKind::EdgeEdge);
+    if is_symmetric && b < a { ([b, a], -1.0) } else { ([a, b], 1.0) }
+}
+
+/// How many elements each side of a kind of pair can be.
+fn element_counts(topology: &Topology, half_spaces: usize, kind: PairKind) -> [usize; 2] {
+    let (vertices, edges) = (topology.vertex_count, topology.edges.len());
+    match kind {
+        PairKind::VertexVertex => [vertices; 2],
+        PairKind::VertexEdge => [vertices, edges],
+        PairKind::VertexTriangle => [vertices, topology.triangles.len()],
+        PairKind::EdgeEdge => [edges; 2],
+        PairKind::VertexHalfSpace => [vertices, half_spaces],
+    }
+}

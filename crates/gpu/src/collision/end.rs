@@ -1,0 +1,136 @@
+//! The end of a call: what the host reads, and the pairs that are within contact range there.
+//!
+//! **No pair within range is missing.** The boxes of the last search hold the trust regions of the vertices and, around
+//! them, their margins; a pair that it did not list has boxes apart along an axis. All vertices are still in their
+//! regions: a step moves none out of its region, or searches first ([`cover`](crate::cpu::cover)); safety rests on the
+//! same. Both elements lie within the boxes of their regions, so their distance exceeds both margins, which is the largest
+//! range of any of their pairs. So all pairs within range are candidates, also after the last move. Of the candidates,
+//! `near` drops those alone that a certified slab holds farther apart than both margins: a lower bound of the distance,
+//! rounding included. The host computes the distances of the others in double precision and drops what is out of range.
+
+use super::buffers::words;
+use super::record_search::ListPlaces;
+use super::{Collision, CollisionError, ContactRow, End};
+use crate::cpu;
+use crate::cpu::count::CONTACT_ROWS;
+use crate::engine::Engine;
+use crate::error::GpuError;
+use crate::layout::{Candidate, Control, Row};
+use crate::recording::{BufferId, Recording};
+use crate::stages;
+use bowknot_geometry::Vector;
+
+/// Pairs for which there is room at first.
+const FIRST_PAIRS: usize = 256;
+
+/// The list of the pairs that may be within contact range.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct NearList {
+    buffer: BufferId,
+    capacity: usize,
+}
+
+impl NearList {
+    pub fn new(engine: &mut impl Engine) -> Result<Self, GpuError> {
+        Self::with_room(engine, FIRST_PAIRS)
+    }
+
+    fn with_room(engine: &mut impl Engine, capacity: usize) -> Result<Self, GpuError> {
+        Ok(Self { buffer: engine.buffer("pairs in range", words::<Candidate>(capacity))?, capacity })
+    }
+}
+
+impl<E: Engine> Collision<E> {
+    /// How the call ends after the steps so far.
+    ///
+    /// # Errors
+    /// The device failed.
+    pub fn end(&mut self) -> Result<End, CollisionError> {
+        let vertices = 4 * self.sizes.vertices;
+        let recording = self.record_end()?;
+        let read = [
+            (self.buffers.positions, vertices),
+            (self.buffers.aims, vertices),
+            (self.buffers.rows.rows, words::<Row>(self.row_count)),
+            (self.buffers.rows.pairs, words::<Candidate>(self.row_count)),
+            (self.buffers.control, words::<Control>(1)),
+            (self.near.buffer, words::<Candidate>(self.near.capacity)),
+        ];
+        let mut all = self.engine.run(&recording, &read)?;
+        let near = self.listed.then(|| self.near_pairs([4, 5].map(|k| std::mem::take(&mut all[k]))));
+        let [positions, aims] = [0, 1].map(|k| self.points_of(&all[k]));
+        let (rows, pairs): (&[Row], &[Candidate]) =
+            (bytemuck::cast_slice(&all[2]), bytemuck::cast_slice(&all[3]));
+        let quantum = self.grid.quantum();
+        let vector = |v: [f32; 3]| Vector::from(v.map(f64::from)) * quantum;
+        let row = |(row, pair): (&Row, &Candidate)| ContactRow {
+            candidate: *pair,
+            multiplier: f64::from(row.multiplier) * quantum,
+            friction: vector(row.friction),
+            slip: vector(row.slip),
+            coefficient: f64::from(row.coefficient),
+        };
+        let rows = rows.iter().zip(pairs).map(row).collect();
+        Ok(End { positions, aims, rows, near: near.transpose()? })
+    }
+
+    /// Lists the pairs that may be within range at the present positions, if there are candidates for them.
+    fn record_end(&mut self) -> Result<Recording, GpuError> {
+        let mut recording = Recording::default();
+        if !self.listed {
+            return Ok(recording);
+        }
+        // The candidates may have grown in the last step.
+        self.buffers.make_room_for_step(&mut self.engine)?;
+        self.record_separations(false, &mut recording);
+        let (b, capacity) = (&self.buffers, self.buffers.capacity as u32);
+        recording.dispatch(
+            &stages::NEAR,
+            &[b.edges, b.triangles, b.vertices, b.candidates, b.separations, b.picks.starts, b.control],
+            cpu::near::Params { capacity },
+            self.buffers.capacity,
+        );
+        // Their number takes the place of that of the contact rows: the next step counts its rows anew.
+        let places = ListPlaces {
+            starts: b.picks.starts,
+            blocks: b.picks.blocks,
+            rows: capacity,
+            capacity: self.near.capacity as u32,
+            list: CONTACT_ROWS,
+        };
+        self.record_places(&places, &mut recording);
+        self.record_gather(&mut recording);
+        Ok(recording)
+    }
+
+    fn record_gather(&self, recording: &mut Recording) {
+        let b = &self.buffers;
+        recording.dispatch(
+            &stages::LIST_NEAR,
+            &[b.picks.starts, b.candidates, self.near.buffer],
+            cpu::list_near::Params {
+                capacity: self.buffers.capacity as u32,
+                near_capacity: self.near.capacity as u32,
+            },
+            self.buffers.capacity,
+        );
+    }
+
+    /// The pairs of a list that was read with [`Control`], sorted. If there was no room for all of them, they are gathered
+    /// once more.
+    fn near_pairs(&mut self, [control, list]: [Vec<u32>; 2]) -> Result<Vec<Candidate>, GpuError> {
+        let count = bytemuck::cast_slice::<u32, Control>(&control)[0].rows as usize;
+        let list = if count <= self.near.capacity {
+            list
+        } else {
+            self.engine.free(self.near.buffer);
+            self.near = NearList::with_room(&mut self.engine, count + count / 4)?;
+            let mut recording = Recording::default();
+            self.record_gather(&mut recording);
+            self.engine.run(&recording, &[(self.near.buffer, words::<Candidate>(count))])?.swap_remove(0)
+        };
+        let mut near = bytemuck::cast_slice::<u32, Candidate>(&list)[..count].to_vec();
+        near.sort_unstable();
+        Ok(near)
+    }
+}
