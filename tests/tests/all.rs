@@ -9,7 +9,8 @@ mod paths;
 mod interior_points;
 // Degenerate contacts never intersect.
 mod degenerate;
-// Flights of a device do not either.
+// Flights of a device do not either, nor where it binds little or pins are led into an obstacle.
+mod bindings;
 mod flights;
 // The properties of the fuzz targets hold for seeded random bytes.
 mod fuzz_bodies;

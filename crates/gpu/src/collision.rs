@@ -4,6 +4,12 @@
 //! [`Collision::record_step`] writes; the host submits several of them at once, reads [`Control`] and a report per step
 //! alone, and grows buffers that were too small. A step with a buffer that is too small moves nothing, those after it
 //! are not made, and it is made again.
+//!
+//! A device binds so many candidates and no more. Where a search finds more, the rest of the call goes on with trust
+//! regions of half the size and paths of half the length, as often as it takes. Safety does not depend on their size: a
+//! path stays within the trust region of its vertex, and all pairs whose trust regions, enlarged by their contact ranges,
+//! overlap are candidates. Smaller ones leave fewer pairs and are left sooner, so there are more steps and searches. Pairs
+//! within contact range are candidates in any case. If these alone are too many, the call ends with an error.
 
 mod buffers;
 mod record;
@@ -206,7 +212,7 @@ pub struct Collision<E> {
     bricks: Bricks,
     /// Where the edges and the triangles begin in the adjacency.
     adjacency_starts: [u32; 2],
-    /// Whether any contact may have friction.
+    /// Whether any contact may have friction, and whether vertices of bodies that are no obstacles are prescribed.
     frictional: bool,
     /// The positions [m] where [`Self::place`] has put them; none after a step.
     placed: Option<Vec<Point>>,
@@ -223,6 +229,11 @@ pub struct Collision<E> {
     /// Steps since the call began or the device last halted a submission.
     steps_in_a_row: usize,
     /// Whether a call has begun whose candidates were not yet searched for: all trust regions are new.
+    /// Factor on the longest travel of a step and on the sizes of trust regions, which halves where the device does not
+    /// bind all candidates. Each call begins with 1, so that it depends on its start alone.
+    travel: f32,
+    /// Whether the factor has changed, and trust regions have not: all of them are new.
+    shrunk: bool,
     fresh: bool,
     /// Whether the step is made again, because a buffer was too small.
     again: bool,
@@ -378,6 +389,8 @@ impl<E: Engine> Collision<E> {
             again: false,
         })
     }
+            travel: 1.0,
+            shrunk: false,
 
     /// Puts the vertices at other positions [m], where no two elements intersect. Each goes to the nearest point of the
     /// grid; returns these points [m]. They may be far from where the scene was prepared, but steps then take longer: trees keep the order of the
@@ -442,6 +455,7 @@ impl<E: Engine> Collision<E> {
 
     /// Seconds of the phases of the steps since the last call, between time stamps of the device; None if it has none.
     pub fn take_phase_seconds(&mut self) -> Option<PhaseSeconds> {
+        (self.travel, self.shrunk) = (1.0, false);
         self.engine.take_phase_seconds()
     }
 
