@@ -26,7 +26,7 @@ use crate::edges::Edges;
 use crate::engine::{Engine, PhaseSeconds};
 use crate::error::GpuError;
 use crate::grid::{Grid, GridError, GridPoint};
-use crate::layout::{Candidate, Control, NONE, Row, Vertex};
+use crate::layout::{Candidate, Control, Late, NONE, Row, Vertex};
 use crate::model::{self, Constraints, Lengths};
 use crate::recording::{BufferId, Recording};
 use bowknot_geometry::{CollisionModel, Point, Vector};
@@ -214,6 +214,7 @@ pub struct Collision<E> {
     adjacency_starts: [u32; 2],
     /// Whether any contact may have friction, and whether vertices of bodies that are no obstacles are prescribed.
     frictional: bool,
+    has_pins: bool,
     /// The positions [m] where [`Self::place`] has put them; none after a step.
     placed: Option<Vec<Point>>,
     /// The rule of the call, and the contact rows of its last step.
@@ -228,12 +229,12 @@ pub struct Collision<E> {
     step_dispatches: [Option<usize>; 2],
     /// Steps since the call began or the device last halted a submission.
     steps_in_a_row: usize,
-    /// Whether a call has begun whose candidates were not yet searched for: all trust regions are new.
     /// Factor on the longest travel of a step and on the sizes of trust regions, which halves where the device does not
     /// bind all candidates. Each call begins with 1, so that it depends on its start alone.
     travel: f32,
     /// Whether the factor has changed, and trust regions have not: all of them are new.
     shrunk: bool,
+    /// Whether a call has begun whose candidates were not yet searched for: all trust regions are new.
     fresh: bool,
     /// Whether the step is made again, because a buffer was too small.
     again: bool,
@@ -346,6 +347,8 @@ impl<E: Engine> Collision<E> {
         };
         let frictional = constraints.frictions.iter().any(|friction| *friction > 0.0)
             || pair_frictions.iter().any(|pair| pair.coefficient > 0.0);
+        let has_pins =
+            vertices.iter().any(|v| v.flags & (Vertex::PRESCRIBED | Vertex::OBSTACLE) == Vertex::PRESCRIBED);
         let buffers = Buffers::new(&mut engine, &sizes)?;
         let mut setup = Recording::default();
         setup.write(buffers.rest, &padded(&rest_on_grid));
@@ -378,6 +381,7 @@ impl<E: Engine> Collision<E> {
             bricks,
             adjacency_starts: [adjacency.edges_first, adjacency.triangles_first],
             frictional,
+            has_pins,
             placed: None,
             stop: Stop::NEVER,
             row_count: 0,
@@ -385,12 +389,12 @@ impl<E: Engine> Collision<E> {
             expected_steps: [1; 2],
             step_dispatches: [None; 2],
             steps_in_a_row: 0,
+            travel: 1.0,
+            shrunk: false,
             fresh: false,
             again: false,
         })
     }
-            travel: 1.0,
-            shrunk: false,
 
     /// Puts the vertices at other positions [m], where no two elements intersect. Each goes to the nearest point of the
     /// grid; returns these points [m]. They may be far from where the scene was prepared, but steps then take longer: trees keep the order of the
@@ -443,6 +447,7 @@ impl<E: Engine> Collision<E> {
         recording.write(self.buffers.aims, &padded(&target));
         recording.write(self.buffers.slip_start, &padded(&slip_start));
         recording.write(self.buffers.swings, &vec![[0.0f32, 0.0, 0.0, 1.0]; start.len()]);
+        recording.write(self.buffers.late, &vec![Late::NEW; start.len()]);
         recording.write(self.buffers.factor, &[1.0, cpu::factor::MOST_GROWTH]);
         recording.write(self.buffers.limits, &self.edges.limits(&start, &self.grid));
         recording.write(self.buffers.control, &[Control::of_new_call()]);
@@ -450,12 +455,12 @@ impl<E: Engine> Collision<E> {
         (self.stop, self.row_count, self.polishes) = (call.stop, 0, false);
         self.lengths.growth = self.grid.length(call.growth).min(f32::MAX);
         (self.fresh, self.again, self.steps_in_a_row) = (true, false, 0);
+        (self.travel, self.shrunk) = (1.0, false);
         Ok(())
     }
 
     /// Seconds of the phases of the steps since the last call, between time stamps of the device; None if it has none.
     pub fn take_phase_seconds(&mut self) -> Option<PhaseSeconds> {
-        (self.travel, self.shrunk) = (1.0, false);
         self.engine.take_phase_seconds()
     }
 

@@ -53,8 +53,16 @@ pub(crate) static RELEASE: Stage = Stage {
     name: "release",
     parts: &[TYPES, FIXED, include_str!("../shader/release.wgsl")],
     workgroup: 256,
-    bindings: &[Read, Read, Read, Write, Write, Read],
+    bindings: &[Read, Read, Read, Write, Write, Read, Read],
     twin: cpu::release::bound,
+};
+
+pub(crate) static RELIEVE: Stage = Stage {
+    name: "relieve",
+    parts: &[TYPES, include_str!("../shader/relieve.wgsl")],
+    workgroup: 128,
+    bindings: &[Read, Read, Read, Read, Write],
+    twin: cpu::relieve::bound,
 };
 
 pub(crate) static SWEEP_EDGES: Stage = Stage {
@@ -325,7 +333,7 @@ pub(crate) static ADVANCE: Stage = Stage {
     name: "advance",
     parts: &[TYPES, include_str!("../shader/advance.wgsl")],
     workgroup: 256,
-    bindings: &[Read, Read, Read, Read, Read, Write, Write],
+    bindings: &[Read, Read, Read, Read, Read, Write, Write, Write],
     twin: cpu::advance::bound,
 };
 
@@ -372,6 +380,7 @@ pub(crate) static ALL: &[&Stage] = &[
     &STORE,
     &CURVE_EDGES,
     &RELEASE,
+    &RELIEVE,
     &SWEEP_EDGES,
     &SLACK,
     &FACTOR,

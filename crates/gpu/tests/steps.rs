@@ -636,3 +636,26 @@ fn a_lost_device_is_an_error_and_no_panic() {
     let error = collision.expect_err("the device is lost").to_string();
     assert!(error.contains(&name), "{error}");
 }
+
+/// Pins among free vertices, all over two sheets that are folded through everything: every kernel does what its twin does,
+/// also while some of the pins do not get on.
+#[test]
+fn kernels_and_twins_agree_on_rows_with_pins() {
+    let scene = scene();
+    let body = scene.model.vertex_body();
+    let prescribed: Vec<bool> = (0..scene.x.len()).map(|v| body[v] < 2 && v % 5 == 0).collect();
+    let constraints = Constraints { prescribed: &prescribed, ..Constraints::default() };
+    let mut collision = collision(ComparingEngine::new(device()), &scene, &constraints);
+    collision.begin(&Call::toward(&target(&scene, &mut fastrand::Rng::with_seed(6)))).unwrap();
+    let mut pressing = 0;
+    for step in 0..12 {
+        pressing = collision.step().unwrap().pressing.max(pressing);
+        assert_no_intersections(&scene, &collision.positions().unwrap(), &format!("step {step}"));
+    }
+    let differences = collision.engine().differences();
+    assert!(
+        pressing > 20 && differences.len() < 50,
+        "{pressing} {:?}",
+        &differences[..differences.len().min(5)]
+    );
+}

@@ -6,7 +6,7 @@ use crate::cpu::slack::MOST_BLOCKS;
 use crate::engine::Engine;
 use crate::error::GpuError;
 use crate::layout::{
-    Ball, Block, BlockSum, Bucket, Candidate, Control, EdgeCluster, EdgeLimit, OldRow, PairFriction,
+    Ball, Block, BlockSum, Bucket, Candidate, Control, EdgeCluster, EdgeLimit, Late, OldRow, PairFriction,
     PairState, Plane, Row, Separation, Vertex,
 };
 use crate::recording::BufferId;
@@ -91,6 +91,8 @@ pub struct Buffers {
     pub displacements: BufferId,
     /// Displacement of the last step, and the factor on the proximal weight.
     pub swings: BufferId,
+    /// How the prescribed vertices get on.
+    pub late: BufferId,
     /// Where the vertices go in this step.
     pub aims: BufferId,
     /// Sums of the coarse correction by block; its factor, and by how much the multipliers may still grow.
@@ -180,6 +182,7 @@ impl Buffers {
             proximal: engine.buffer("proximal weights", vertices)?,
             swings: engine.buffer("swings", 4 * vertices)?,
             displacements: engine.buffer("displacements", 4 * vertices)?,
+            late: engine.buffer("progress", words::<Late>(vertices))?,
             aims: engine.buffer("aims", 4 * vertices)?,
             slack: engine.buffer("slack", 2 * MOST_BLOCKS)?,
             factor: engine.buffer("factor", 2)?,
@@ -194,12 +197,12 @@ impl Buffers {
     /// # Errors
     /// The device has no memory, or does not bind as much.
     pub fn grow(&mut self, engine: &mut impl Engine, candidates: usize) -> Result<(), GpuError> {
-        for old in [self.candidates, self.separations, self.states] {
-            engine.free(old);
-        }
         if candidates > most_candidates(engine) {
             // The largest buffer is refused before the others are gone.
             engine.buffer("separations", words::<Separation>(candidates))?;
+        }
+        for old in [self.candidates, self.separations, self.states] {
+            engine.free(old);
         }
         let capacity = with_reserve(candidates, most_candidates(engine));
         self.capacity = capacity;
@@ -307,9 +310,6 @@ impl RowBuffers {
     }
 }
 
-/// Words of 32 bits of so many entries.
-pub fn words<T: Pod>(count: usize) -> usize {
-    count * size_of::<T>() / 4
 /// Most candidates for which an engine has room: the largest of the buffers with an entry per candidate decides.
 pub fn most_candidates(engine: &impl Engine) -> usize {
     engine.most_words() / words::<Separation>(1)
@@ -325,4 +325,7 @@ fn with_reserve(needed: usize, most: usize) -> usize {
     needed.max(most.min(needed + needed / 4))
 }
 
+/// Words of 32 bits of so many entries.
+pub fn words<T: Pod>(count: usize) -> usize {
+    count * size_of::<T>() / 4
 }

@@ -154,7 +154,7 @@ impl<E: Engine> Collision<E> {
         );
         recording.dispatch(
             &stages::ADVANCE,
-            &[b.aims, b.vertices, b.paths, b.alphas, b.group_alphas, b.positions, b.control],
+            &[b.aims, b.vertices, b.paths, b.alphas, b.group_alphas, b.positions, b.control, b.late],
             cpu::advance::Params { vertices },
             self.sizes.vertices,
         );

@@ -48,6 +48,7 @@ pub mod recall;
 pub mod redirect;
 pub mod refit;
 pub mod release;
+pub mod relieve;
 pub mod rescale;
 pub mod residuals;
 pub mod restart;
