@@ -9,8 +9,10 @@ mod paths;
 mod interior_points;
 // Degenerate contacts never intersect.
 mod degenerate;
-// Flights of a device do not either.
+// Flights of a device do not either, nor where it binds little or pins are led into an obstacle.
+mod bindings;
 mod flights;
+mod pins;
 // The properties of the fuzz targets hold for seeded random bytes.
 mod fuzz_bodies;
 // Bodies in contact move as theory predicts, and none is crushed.

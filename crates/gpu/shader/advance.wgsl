@@ -1,4 +1,4 @@
-// Moves the vertices, and reports what is left of their ways. Nothing moves if a buffer was too small for all pairs.
+// Moves the vertices, and reports what is left of their ways and which prescribed vertices get on. Nothing moves if a buffer was too small for all pairs.
 
 struct Params {
     vertices: u32,
@@ -12,6 +12,19 @@ struct Params {
 @group(0) @binding(5) var<storage, read> group_alphas: array<u32>;
 @group(0) @binding(6) var<storage, read_write> positions: array<vec4<i32>>;
 @group(0) @binding(7) var<storage, read_write> control: Control;
+@group(0) @binding(8) var<storage, read_write> late: array<Late>;
+
+// Smallest decrease of the distance to the target that counts as progress, in local edge lengths.
+const LEAST_PROGRESS: f32 = 1e-3;
+
+fn note_progress(v: u32, left: f32, edge: f32) {
+    var idle_steps = late[v].idle_steps + 1u;
+    if left < late[v].smallest - LEAST_PROGRESS * edge {
+        late[v].smallest = left;
+        idle_steps = 0u;
+    }
+    late[v].idle_steps = select(idle_steps, 0u, left == 0.0);
+}
 
 @compute @workgroup_size(256)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -30,6 +43,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         let left = (1.0 - alpha) * length;
         if (vertex.flags & PRESCRIBED) != 0u {
             atomicMax(&control.lag, bitcast<u32>(left));
+            note_progress(v, left, vertex.edge);
         } else {
             atomicMax(&control.free_remaining, bitcast<u32>(left));
             atomicMax(&control.free_move, bitcast<u32>(alpha * length));

@@ -4,7 +4,9 @@ struct Params {
     vertices: u32,
     // 1: all trust regions are new.
     all: u32,
-    // Smallest radius, in local edge lengths.
+    // By how much a ball is larger than half of the path, and its smallest radius, in local edge lengths. Any numbers
+    // of at least 0 are safe.
+    slack: f32,
     smallest: f32,
 }
 
@@ -17,8 +19,6 @@ struct Params {
 
 // Share of a ball within which paths stay. The rest covers the rounding of this test and of the step.
 const COVERED: f32 = 0.998;
-// By how much a ball is larger than half of the path, in local edge lengths.
-const SLACK: f32 = 0.05;
 // Added to the radius: a ball that is not at rest is so large that a fraction 0.002 of it exceeds all rounding.
 const ROOM: f32 = 4096.0;
 
@@ -38,7 +38,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         let length = sqrt(dot(path, path));
         var radius = 0.0;
         if length > 0.0 || (vertex.flags & PRESCRIBED) == 0u {
-            radius = max(0.5 * length / (COVERED * COVERED) + SLACK * vertex.edge, params.smallest * vertex.edge);
+            radius = max(0.5 * length / (COVERED * COVERED) + params.slack * vertex.edge, params.smallest * vertex.edge);
             radius = radius + ROOM;
         }
         balls[v] = Ball(position + vec3<i32>(path * 0.5), i32(radius));

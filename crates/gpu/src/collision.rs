@@ -4,6 +4,12 @@
 //! [`Collision::record_step`] writes; the host submits several of them at once, reads [`Control`] and a report per step
 //! alone, and grows buffers that were too small. A step with a buffer that is too small moves nothing, those after it
 //! are not made, and it is made again.
+//!
+//! A device binds so many candidates and no more. Where a search finds more, the rest of the call goes on with trust
+//! regions of half the size and paths of half the length, as often as it takes. Safety does not depend on their size: a
+//! path stays within the trust region of its vertex, and all pairs whose trust regions, enlarged by their contact ranges,
+//! overlap are candidates. Smaller ones leave fewer pairs and are left sooner, so there are more steps and searches. Pairs
+//! within contact range are candidates in any case. If these alone are too many, the call ends with an error.
 
 mod buffers;
 mod end;
@@ -21,7 +27,7 @@ use crate::edges::Edges;
 use crate::engine::{Engine, PhaseSeconds};
 use crate::error::GpuError;
 use crate::grid::{Grid, GridError, GridPoint};
-use crate::layout::{Candidate, Control, NONE, Vertex};
+use crate::layout::{Candidate, Control, Late, NONE, Vertex};
 use crate::model::{self, Constraints, Lengths};
 use crate::recording::{BufferId, Recording};
 use bowknot_geometry::{CollisionModel, Point, Vector};
@@ -213,8 +219,9 @@ pub struct Collision<E> {
     bricks: Bricks,
     /// Where the edges and the triangles begin in the adjacency.
     adjacency_starts: [u32; 2],
-    /// Whether any contact may have friction.
+    /// Whether any contact may have friction, and whether vertices of bodies that are no obstacles are prescribed.
     frictional: bool,
+    has_pins: bool,
     /// The positions [m] where [`Self::place`] has put them; none after a step.
     placed: Option<Vec<Point>>,
     /// The rule of the call, and the contact rows of its last step.
@@ -229,6 +236,11 @@ pub struct Collision<E> {
     step_dispatches: [Option<usize>; 2],
     /// Steps since the call began or the device last halted a submission.
     steps_in_a_row: usize,
+    /// Factor on the longest travel of a step and on the sizes of trust regions, which halves where the device does not
+    /// bind all candidates. Each call begins with 1, so that it depends on its start alone.
+    travel: f32,
+    /// Whether the factor has changed, and trust regions have not: all of them are new.
+    shrunk: bool,
     /// Whether a call has begun whose candidates were not yet searched for: all trust regions are new.
     fresh: bool,
     /// Whether the step is made again, because a buffer was too small.
@@ -345,6 +357,8 @@ impl<E: Engine> Collision<E> {
         };
         let frictional = constraints.frictions.iter().any(|friction| *friction > 0.0)
             || pair_frictions.iter().any(|pair| pair.coefficient > 0.0);
+        let has_pins =
+            vertices.iter().any(|v| v.flags & (Vertex::PRESCRIBED | Vertex::OBSTACLE) == Vertex::PRESCRIBED);
         let buffers = Buffers::new(&mut engine, &sizes)?;
         let near = NearList::new(&mut engine)?;
         let mut setup = Recording::default();
@@ -379,6 +393,7 @@ impl<E: Engine> Collision<E> {
             bricks,
             adjacency_starts: [adjacency.edges_first, adjacency.triangles_first],
             frictional,
+            has_pins,
             placed: None,
             stop: Stop::NEVER,
             row_count: 0,
@@ -386,6 +401,8 @@ impl<E: Engine> Collision<E> {
             expected_steps: [1; 2],
             step_dispatches: [None; 2],
             steps_in_a_row: 0,
+            travel: 1.0,
+            shrunk: false,
             fresh: false,
             again: false,
             listed: false,
@@ -444,6 +461,7 @@ impl<E: Engine> Collision<E> {
         recording.write(self.buffers.aims, &padded(&target));
         recording.write(self.buffers.slip_start, &padded(&slip_start));
         recording.write(self.buffers.swings, &vec![[0.0f32, 0.0, 0.0, 1.0]; start.len()]);
+        recording.write(self.buffers.late, &vec![Late::NEW; start.len()]);
         recording.write(self.buffers.factor, &[1.0, cpu::factor::MOST_GROWTH]);
         recording.write(self.buffers.limits, &self.edges.limits(&start, &self.grid));
         recording.write(self.buffers.control, &[Control::of_new_call()]);
@@ -451,6 +469,7 @@ impl<E: Engine> Collision<E> {
         (self.stop, self.row_count, self.polishes) = (call.stop, 0, false);
         self.lengths.growth = self.grid.length(call.growth).min(f32::MAX);
         (self.fresh, self.again, self.listed, self.steps_in_a_row) = (true, false, false, 0);
+        (self.travel, self.shrunk) = (1.0, false);
         Ok(())
     }
 

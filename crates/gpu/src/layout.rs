@@ -63,6 +63,21 @@ pub struct Ball {
     pub radius: i32,
 }
 
+/// How a prescribed vertex gets on in a call.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct Late {
+    /// Smallest distance to its target so far.
+    pub smallest: f32,
+    /// Steps without progress.
+    pub idle_steps: u32,
+}
+
+impl Late {
+    /// Before the first step of a call.
+    pub const NEW: Self = Self { smallest: f32::MAX, idle_steps: 0 };
+}
+
 /// The place of an element in a tree.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]

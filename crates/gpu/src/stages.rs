@@ -20,7 +20,7 @@ pub(crate) use assembly::{
 pub(crate) use linear::{CLIMB, DESCEND, MULTIPLY, REACT, REDIRECT};
 pub(crate) use newton::{
     ACCUMULATE, ATTEMPT, COMBINE, COPY, CORRELATE, GATHER, GUESS, IMPOSE, MOMENTA, NEGATE, PRODUCTS, REGRID,
-    RELIEVE, RESIDUE, SETTLE, SUMMARIZE, TRANSLATE,
+    RESIDUE, SETTLE, SUBTRACT_KNOWN, SUMMARIZE, TRANSLATE,
 };
 pub(crate) use potential::{
     BEND_ENERGY, BEND_GRADIENT, GATHER_GRADIENT, MEMBRANE_ENERGY, MEMBRANE_GRADIENT, NODE_ENERGY, SUM_ENERGY,
@@ -64,8 +64,16 @@ pub(crate) static RELEASE: Stage = Stage {
     name: "release",
     parts: &[TYPES, FIXED, include_str!("../shader/release.wgsl")],
     workgroup: 256,
-    bindings: &[Read, Read, Read, Write, Write, Read],
+    bindings: &[Read, Read, Read, Write, Write, Read, Read],
     twin: cpu::release::bound,
+};
+
+pub(crate) static RELIEVE: Stage = Stage {
+    name: "relieve",
+    parts: &[TYPES, include_str!("../shader/relieve.wgsl")],
+    workgroup: 128,
+    bindings: &[Read, Read, Read, Read, Write],
+    twin: cpu::relieve::bound,
 };
 
 pub(crate) static SWEEP_EDGES: Stage = Stage {
@@ -352,7 +360,7 @@ pub(crate) static ADVANCE: Stage = Stage {
     name: "advance",
     parts: &[TYPES, include_str!("../shader/advance.wgsl")],
     workgroup: 256,
-    bindings: &[Read, Read, Read, Read, Read, Write, Write],
+    bindings: &[Read, Read, Read, Read, Read, Write, Write, Write],
     twin: cpu::advance::bound,
 };
 
@@ -401,6 +409,7 @@ pub(crate) static ALL: &[&Stage] = &[
     &STORE,
     &CURVE_EDGES,
     &RELEASE,
+    &RELIEVE,
     &SWEEP_EDGES,
     &SLACK,
     &FACTOR,
@@ -454,7 +463,7 @@ pub(crate) static ALL: &[&Stage] = &[
     &NEGATE,
     &PRODUCTS,
     &REGRID,
-    &RELIEVE,
+    &SUBTRACT_KNOWN,
     &RESIDUE,
     &SETTLE,
     &SUMMARIZE,

@@ -26,6 +26,11 @@ struct Ball {
     radius: i32,
 }
 
+struct Late {
+    smallest: f32,
+    idle_steps: u32,
+}
+
 struct Slot {
     v0: u32,
     v1: u32,

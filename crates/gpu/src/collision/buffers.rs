@@ -1,11 +1,12 @@
-//! The buffers of a scene on an engine, and how they grow.
+//! The buffers of a scene on an engine, and how they grow: by a quarter more than is needed, but not beyond what the
+//! device binds.
 
 use crate::cpu::count::BLOCK;
 use crate::cpu::slack::MOST_BLOCKS;
 use crate::engine::Engine;
 use crate::error::GpuError;
 use crate::layout::{
-    Ball, Block, BlockSum, Bucket, Candidate, Control, EdgeCluster, EdgeLimit, OldRow, PairFriction,
+    Ball, Block, BlockSum, Bucket, Candidate, Control, EdgeCluster, EdgeLimit, Late, OldRow, PairFriction,
     PairState, Plane, Row, Separation, Vertex,
 };
 use crate::recording::BufferId;
@@ -90,6 +91,8 @@ pub struct Buffers {
     pub displacements: BufferId,
     /// Displacement of the last step, and the factor on the proximal weight.
     pub swings: BufferId,
+    /// How the prescribed vertices get on.
+    pub late: BufferId,
     /// Where the vertices go in this step.
     pub aims: BufferId,
     /// Sums of the coarse correction by block; its factor, and by how much the multipliers may still grow.
@@ -136,8 +139,8 @@ impl Buffers {
         let &Sizes { vertices, groups, edges, triangles, planes, limits, adjacency, blocks, rows, .. } =
             sizes;
         let [clusters, cluster_vertices, cluster_colors] = sizes.clusters;
-        let capacity = (FIRST_CANDIDATES * vertices).max(64);
-        let row_capacity = (FIRST_ROWS * vertices).max(64);
+        let capacity = most_candidates(engine).min((FIRST_CANDIDATES * vertices).max(64));
+        let row_capacity = most_rows(engine).min((FIRST_ROWS * vertices).max(64));
         Ok(Self {
             capacity,
             old_capacity: capacity,
@@ -179,6 +182,7 @@ impl Buffers {
             proximal: engine.buffer("proximal weights", vertices)?,
             swings: engine.buffer("swings", 4 * vertices)?,
             displacements: engine.buffer("displacements", 4 * vertices)?,
+            late: engine.buffer("progress", words::<Late>(vertices))?,
             aims: engine.buffer("aims", 4 * vertices)?,
             slack: engine.buffer("slack", 2 * MOST_BLOCKS)?,
             factor: engine.buffer("factor", 2)?,
@@ -191,12 +195,16 @@ impl Buffers {
     /// was kept from before the search.
     ///
     /// # Errors
-    /// The device has no memory.
+    /// The device has no memory, or does not bind as much.
     pub fn grow(&mut self, engine: &mut impl Engine, candidates: usize) -> Result<(), GpuError> {
+        if candidates > most_candidates(engine) {
+            // The largest buffer is refused before the others are gone.
+            engine.buffer("separations", words::<Separation>(candidates))?;
+        }
         for old in [self.candidates, self.separations, self.states] {
             engine.free(old);
         }
-        let capacity = candidates + candidates / 4;
+        let capacity = with_reserve(candidates, most_candidates(engine));
         self.capacity = capacity;
         self.candidates = engine.buffer("candidates", words::<Candidate>(capacity))?;
         self.separations = engine.buffer("separations", words::<Separation>(capacity))?;
@@ -230,7 +238,7 @@ impl Buffers {
     /// Makes room for so many contact rows and a quarter more. Those of the last step are lost.
     ///
     /// # Errors
-    /// The device has no memory.
+    /// The device has no memory, or does not bind as much.
     pub fn grow_rows(
         &mut self,
         engine: &mut impl Engine,
@@ -238,7 +246,7 @@ impl Buffers {
         rows: usize,
     ) -> Result<(), GpuError> {
         self.rows.free(engine);
-        self.row_capacity = rows + rows / 4;
+        self.row_capacity = with_reserve(rows, most_rows(engine));
         self.rows = RowBuffers::new(engine, sizes, self.row_capacity)?;
         tracing::debug!(rows, "buffers of rows grew");
         Ok(())
@@ -300,6 +308,21 @@ impl RowBuffers {
             .into_iter()
             .for_each(|buffer| engine.free(buffer));
     }
+}
+
+/// Most candidates for which an engine has room: the largest of the buffers with an entry per candidate decides.
+pub fn most_candidates(engine: &impl Engine) -> usize {
+    engine.most_words() / words::<Separation>(1)
+}
+
+/// Most contact rows for which it has room.
+fn most_rows(engine: &impl Engine) -> usize {
+    engine.most_words() / words::<Row>(1)
+}
+
+/// A quarter more entries than are needed, if `most` allows them.
+fn with_reserve(needed: usize, most: usize) -> usize {
+    needed.max(most.min(needed + needed / 4))
 }
 
 /// Words of 32 bits of so many entries.

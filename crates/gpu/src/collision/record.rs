@@ -8,8 +8,10 @@ use crate::layout::Block;
 use crate::recording::{Phase, Recording};
 use crate::stages;
 
-/// Longest travel of a vertex in a step, and smallest radius of a trust region, in local edge lengths.
+/// Longest travel of a vertex in a step, by how much a trust region is larger than half of the path, and its smallest
+/// radius, in local edge lengths; times the [factor](Collision) of the call.
 pub(super) const LONGEST_TRAVEL: f32 = 0.35;
+const SLACK: f32 = 0.05;
 const SMALLEST_RADIUS: f32 = 0.1;
 
 impl<E: Engine> Collision<E> {
@@ -78,7 +80,7 @@ impl<E: Engine> Collision<E> {
         recording.dispatch(
             &stages::PLAN,
             &[b.positions, b.aims, b.vertices, b.paths, b.group_caps],
-            cpu::plan::Params { vertices, longest: LONGEST_TRAVEL },
+            cpu::plan::Params { vertices, longest: self.travel * LONGEST_TRAVEL },
             self.sizes.vertices,
         );
         recording.dispatch(
@@ -97,7 +99,12 @@ impl<E: Engine> Collision<E> {
         recording.dispatch(
             &stages::COVER,
             &[b.positions, b.paths, b.vertices, b.balls, b.control],
-            cpu::cover::Params { vertices, all: u32::from(self.fresh), smallest: SMALLEST_RADIUS },
+            cpu::cover::Params {
+                vertices,
+                all: u32::from(self.fresh || self.shrunk),
+                slack: self.travel * SLACK,
+                smallest: self.travel * SMALLEST_RADIUS,
+            },
             self.sizes.vertices,
         );
     }
@@ -153,7 +160,7 @@ impl<E: Engine> Collision<E> {
         );
         recording.dispatch(
             &stages::ADVANCE,
-            &[b.aims, b.vertices, b.paths, b.alphas, b.group_alphas, b.positions, b.control],
+            &[b.aims, b.vertices, b.paths, b.alphas, b.group_alphas, b.positions, b.control, b.late],
             cpu::advance::Params { vertices },
             self.sizes.vertices,
         );

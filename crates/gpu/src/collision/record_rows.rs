@@ -213,10 +213,19 @@ impl<E: Engine> Collision<E> {
         );
         recording.dispatch(
             &stages::RELEASE,
-            &[b.positions, b.targets, b.vertices, b.proximal, b.displacements, b.swings],
+            &[b.positions, b.targets, b.vertices, b.proximal, b.displacements, b.swings, b.late],
             cpu::release::Params { vertices },
             self.sizes.vertices,
         );
+        if self.has_pins {
+            let capacity = self.buffers.row_capacity as u32;
+            recording.dispatch(
+                &stages::RELIEVE,
+                &[b.positions, b.displacements, b.candidates, b.separations, r.rows],
+                cpu::relieve::Params { capacity },
+                self.buffers.row_capacity,
+            );
+        }
         self.record_colors(recording);
         // First the multipliers of the last step are applied.
         let settings = &self.settings;

@@ -1,11 +1,15 @@
 //! Submissions of steps, and what they came to.
 
-use super::buffers::words;
+use super::buffers::{most_candidates, words};
 use super::{Collision, CollisionError, Settings, StepReport};
 use crate::engine::Engine;
 use crate::error::GpuError;
 use crate::layout::Control;
 use crate::recording::Recording;
+
+/// Smallest factor on travel and trust regions. Candidates are then little more than the pairs within contact range, and
+/// steps are still longer than the moves that count as progress when a call may have stalled.
+const SMALLEST_TRAVEL: f32 = 1.0 / 64.0;
 
 impl Settings {
     /// Whether steps can polish.
@@ -24,7 +28,7 @@ impl<E: Engine> Collision<E> {
     /// Moves the vertices toward their target as far as all candidate pairs allow.
     ///
     /// # Errors
-    /// The device failed, or has no memory for all candidates.
+    /// The device failed, or has no memory for all candidates, or does not bind those within contact range.
     pub fn step(&mut self) -> Result<StepReport, CollisionError> {
         Ok(self.steps(1)?[0])
     }
@@ -82,12 +86,12 @@ impl<E: Engine> Collision<E> {
             self.listed = true;
         }
         if control.halted != Control::HALTED_BY_SEARCH {
-            (self.fresh, self.again) = (false, false);
+            (self.fresh, self.again, self.shrunk) = (false, false, false);
         }
         if control.halted == Control::HALTED_BY_ROWS {
             self.buffers.grow_rows(&mut self.engine, &self.sizes, control.rows as usize)?;
         } else if control.overflow != 0 {
-            self.grow(&control)?;
+            self.make_room(&control)?;
         }
         if let Some(last) = reports.last() {
             self.polishes = self.settings.polishes_after(last);
@@ -146,19 +150,25 @@ impl<E: Engine> Collision<E> {
 
     /// A step that is made after others, or after a search.
     fn recorded_step(&mut self, dispatches: usize) -> Recording {
-        let before = (self.fresh, self.again);
-        (self.fresh, self.again) = (false, false);
+        let before = (self.fresh, self.again, self.shrunk);
+        (self.fresh, self.again, self.shrunk) = (false, false, false);
         let mut recording = Recording::default();
         self.record_step(false, dispatches, &mut recording);
-        (self.fresh, self.again) = before;
+        (self.fresh, self.again, self.shrunk) = before;
         recording
     }
 
     /// Makes room for what did not fit. The step is made again with the trust regions that it has found, so that it has
-    /// the same bits as if there had been room.
-    fn grow(&mut self, control: &Control) -> Result<(), GpuError> {
+    /// the same bits as if there had been room. Where the device does not bind as much, it is made with smaller ones.
+    fn make_room(&mut self, control: &Control) -> Result<(), GpuError> {
+        let candidates = control.candidates as usize;
         self.again = true;
-        self.buffers.grow(&mut self.engine, control.candidates as usize)
+        if candidates > most_candidates(&self.engine) && self.travel > SMALLEST_TRAVEL {
+            (self.travel, self.shrunk) = (0.5 * self.travel, true);
+            tracing::debug!(candidates, travel = self.travel, "trust regions shrank");
+            return Ok(());
+        }
+        self.buffers.grow(&mut self.engine, candidates)
     }
 
     fn report(&self, control: &Control) -> StepReport {

@@ -2,7 +2,7 @@
 
 use super::{difference, dot, scaled, truncated};
 use crate::bound::Bound;
-use crate::layout::{Control, NONE, Vertex};
+use crate::layout::{Control, Late, NONE, Vertex};
 use bytemuck::{Pod, Zeroable};
 
 #[repr(C)]
@@ -10,6 +10,8 @@ use bytemuck::{Pod, Zeroable};
 pub struct Params {
     pub vertices: u32,
 }
+
+const LEAST_PROGRESS: f32 = 1e-3;
 
 pub fn bound(buffers: Bound<'_>) {
     advance(
@@ -21,7 +23,18 @@ pub fn bound(buffers: Bound<'_>) {
         &buffers.read(4),
         &mut buffers.write(5),
         &mut buffers.write::<Control>(6)[0],
+        &mut buffers.write(7),
     );
+}
+
+fn note_progress(late: &mut Late, left: f32, edge: f32) {
+    late.idle_steps += 1;
+    if left < late.smallest - LEAST_PROGRESS * edge {
+        *late = Late { smallest: left, idle_steps: 0 };
+    }
+    if left == 0.0 {
+        late.idle_steps = 0;
+    }
 }
 
 pub fn advance(
@@ -33,6 +46,7 @@ pub fn advance(
     group_alphas: &[u32],
     positions: &mut [[i32; 4]],
     control: &mut Control,
+    late: &mut [Late],
 ) {
     if control.overflow != 0 {
         return;
@@ -49,6 +63,7 @@ pub fn advance(
         let left = (1.0 - alpha) * length;
         if vertex.flags & Vertex::PRESCRIBED != 0 {
             control.lag = control.lag.max(left.to_bits());
+            note_progress(&mut late[v], left, vertex.edge);
         } else {
             control.free_remaining = control.free_remaining.max(left.to_bits());
             control.free_move = control.free_move.max((alpha * length).to_bits());

@@ -10,11 +10,11 @@ use bytemuck::{Pod, Zeroable};
 pub struct Params {
     pub vertices: u32,
     pub all: u32,
+    pub slack: f32,
     pub smallest: f32,
 }
 
 const COVERED: f32 = 0.998;
-const SLACK: f32 = 0.05;
 const ROOM: f32 = 4096.0;
 
 pub fn bound(buffers: Bound<'_>) {
@@ -50,8 +50,8 @@ pub fn cover(
         let length = dot(path, path).sqrt();
         let mut radius = 0.0;
         if length > 0.0 || vertex.flags & Vertex::PRESCRIBED == 0 {
-            radius =
-                (0.5 * length / (COVERED * COVERED) + SLACK * vertex.edge).max(params.smallest * vertex.edge);
+            radius = (0.5 * length / (COVERED * COVERED) + params.slack * vertex.edge)
+                .max(params.smallest * vertex.edge);
             radius += ROOM;
         }
         let half = truncated(scaled(path, 0.5));

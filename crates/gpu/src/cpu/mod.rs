@@ -91,6 +91,7 @@ pub mod space;
 pub mod start_buckets;
 pub mod store;
 pub mod stretch;
+pub mod subtract_known;
 pub mod sum;
 pub mod sum_energy;
 pub mod summarize;

@@ -3,7 +3,7 @@
 use super::curve_edges::WEIGHT_UNITS;
 use super::{difference, scaled};
 use crate::bound::Bound;
-use crate::layout::Vertex;
+use crate::layout::{Late, Vertex};
 use bytemuck::{Pod, Zeroable};
 
 #[repr(C)]
@@ -13,6 +13,7 @@ pub struct Params {
 }
 
 const MOST_PROXIMAL: f32 = 100.0;
+const MOST_IDLE_STEPS: u32 = 6;
 
 pub fn bound(buffers: Bound<'_>) {
     release(
@@ -23,6 +24,7 @@ pub fn bound(buffers: Bound<'_>) {
         &mut buffers.write(3),
         &mut buffers.write(4),
         &buffers.read(5),
+        &buffers.read(6),
     );
 }
 
@@ -34,12 +36,14 @@ pub fn release(
     proximal: &mut [u32],
     displacements: &mut [[f32; 4]],
     swings: &[[f32; 4]],
+    late: &[Late],
 ) {
     for v in 0..params.vertices as usize {
         let vertex = vertices[v];
         let wanted = difference(targets[v], positions[v]);
         if vertex.flags & Vertex::PRESCRIBED != 0 {
-            displacements[v] = [wanted[0], wanted[1], wanted[2], 0.0];
+            let [x, y, z] = if late[v].idle_steps >= MOST_IDLE_STEPS { [0.0; 3] } else { wanted };
+            displacements[v] = [x, y, z, 0.0];
         } else {
             let damping = (proximal[v] as f32 / WEIGHT_UNITS * swings[v][3]).min(MOST_PROXIMAL * vertex.mass);
             let weight = 1.0 / (vertex.mass + damping);

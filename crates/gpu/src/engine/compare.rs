@@ -127,6 +127,10 @@ impl Engine for ComparingEngine {
         self.twin.words(buffer)
     }
 
+    fn most_words(&self) -> usize {
+        self.device.most_words()
+    }
+
     fn run(&mut self, recording: &Recording, read: &[(BufferId, usize)]) -> Result<Vec<Vec<u32>>, GpuError> {
         for command in &recording.commands {
             match command {

@@ -290,6 +290,10 @@ impl Engine for DeviceEngine {
         self.buffer_of(buffer).size() as usize / 4
     }
 
+    fn most_words(&self) -> usize {
+        usize::try_from(self.largest_buffer / 4).unwrap_or(usize::MAX)
+    }
+
     fn run(&mut self, recording: &Recording, read: &[(BufferId, usize)]) -> Result<Vec<Vec<u32>>, GpuError> {
         self.check()?;
         let dispatches = recording.dispatch_count();

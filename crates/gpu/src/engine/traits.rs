@@ -24,6 +24,11 @@ pub trait Engine {
     /// Number of words of a buffer.
     fn words(&self, buffer: BufferId) -> usize;
 
+    /// Most words of a buffer: [`Self::buffer`] refuses larger ones.
+    fn most_words(&self) -> usize {
+        usize::MAX
+    }
+
     /// Seconds of the phases since the last call, between time stamps of a device; None if there are none.
     fn take_phase_seconds(&mut self) -> Option<PhaseSeconds> {
         None

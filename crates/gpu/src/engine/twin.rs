@@ -11,12 +11,19 @@ use std::cell::{Ref, RefCell};
 #[derive(Debug, Default)]
 pub struct TwinEngine {
     buffers: Vec<RefCell<Vec<u32>>>,
+    /// Size of the largest buffer [bytes], if there is a limit.
+    largest_buffer: Option<u64>,
 }
 
 impl TwinEngine {
     /// Without buffers.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// Refuses buffers of more than this many bytes, as a device does.
+    pub fn limit_buffers(&mut self, bytes: u64) {
+        self.largest_buffer = Some(self.largest_buffer.map_or(bytes, |most| most.min(bytes)));
     }
 
     /// Words of a buffer up to the last one that is neither zero nor [`NONE`]: what is in use of it, for counts of what
@@ -50,7 +57,11 @@ impl TwinEngine {
 }
 
 impl Engine for TwinEngine {
-    fn buffer(&mut self, _label: &'static str, words: usize) -> Result<BufferId, GpuError> {
+    fn buffer(&mut self, label: &'static str, words: usize) -> Result<BufferId, GpuError> {
+        let bytes = 4 * words.max(SMALLEST_BUFFER) as u64;
+        if let Some(most) = self.largest_buffer.filter(|most| bytes > *most) {
+            return Err(GpuError::TooLarge { adapter: "the CPU".to_owned(), what: label, bytes, most });
+        }
         self.buffers.push(RefCell::new(vec![0; words.max(SMALLEST_BUFFER)]));
         Ok(BufferId(self.buffers.len() as u32 - 1))
     }
@@ -65,6 +76,10 @@ impl Engine for TwinEngine {
 
     fn words(&self, buffer: BufferId) -> usize {
         self.content(buffer).len()
+    }
+
+    fn most_words(&self) -> usize {
+        self.largest_buffer.map_or(usize::MAX, |bytes| (bytes / 4) as usize)
     }
 
     fn run(&mut self, recording: &Recording, read: &[(BufferId, usize)]) -> Result<Vec<Vec<u32>>, GpuError> {

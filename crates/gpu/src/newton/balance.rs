@@ -90,9 +90,9 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
         // The gradient without known forces lies where the search direction goes.
         newton.record_copy(v.gradient, b.direction, &mut recording);
         recording.dispatch(
-            &stages::RELIEVE,
+            &stages::SUBTRACT_KNOWN,
             &[v.watched, v.forces, b.direction],
-            cpu::relieve::Params { count: forces as u32 },
+            cpu::subtract_known::Params { count: forces as u32 },
             forces,
         );
         let opposed = Opposed { gradient: b.direction, counted: v.counted, springs: 0, imposes: false };

@@ -139,10 +139,10 @@ pub(crate) static REGRID: Stage = Stage {
     twin: cpu::regrid::bound,
 };
 
-pub(crate) static RELIEVE: Stage = Stage {
-    name: "relieve",
-    parts: &[include_str!("../../shader/relieve.wgsl")],
+pub(crate) static SUBTRACT_KNOWN: Stage = Stage {
+    name: "subtract_known",
+    parts: &[include_str!("../../shader/subtract_known.wgsl")],
     workgroup: 64,
     bindings: &[Read, Read, Write],
-    twin: cpu::relieve::bound,
+    twin: cpu::subtract_known::bound,
 };

@@ -125,6 +125,7 @@ fn structs_lie_alike_on_both_sides() {
     let structs = [
         offsets!(layout::Vertex: edge, margin, body, flags, groups, mask, group, delta, half_space_delta, thickness, mass, root_of_friction),
         offsets!(layout::Ball: center, radius),
+        offsets!(layout::Late: smallest, idle_steps),
         offsets!(layout::NodeBox: low, deformable, high, padding),
         offsets!(layout::Candidate: kind_and_a, b),
         offsets!(layout::Separation: normal, width, weights, distance, min_separation, wanted, sine, padding_0, padding_1),
