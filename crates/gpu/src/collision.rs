@@ -13,6 +13,7 @@
 
 mod buffers;
 mod end;
+mod near_list;
 mod record;
 mod record_rows;
 mod record_search;
@@ -32,7 +33,7 @@ use crate::model::{self, Constraints, Lengths};
 use crate::recording::{BufferId, Recording};
 use bowknot_geometry::{CollisionModel, Point, Vector};
 use buffers::{Buffers, Sizes, words};
-use end::NearList;
+use near_list::NearList;
 use rayon::prelude::*;
 pub use stop::Stop;
 use trees::Trees;

@@ -4,9 +4,11 @@
 //! them, their margins; a pair that it did not list has boxes apart along an axis. All vertices are still in their
 //! regions: a step moves none out of its region, or searches first ([`cover`](crate::cpu::cover)); safety rests on the
 //! same. Both elements lie within the boxes of their regions, so their distance exceeds both margins, which is the largest
-//! range of any of their pairs. So all pairs within range are candidates, also after the last move. Of the candidates,
-//! `near` drops those alone that a certified slab holds farther apart than both margins: a lower bound of the distance,
-//! rounding included. The host computes the distances of the others in double precision and drops what is out of range.
+//! range of any of their pairs. In the same way a half-space that was not listed is farther from the whole region of a
+//! vertex than twice its margin, the rounding of the plane included. So all pairs within range are candidates, also after
+//! the last move. Of the candidates, `near` drops those alone that a certified slab holds farther apart than both margins:
+//! a lower bound of the distance, rounding included. The host computes the distances of the others in double precision and
+//! drops what is out of range.
 
 use super::buffers::words;
 use super::record_search::ListPlaces;
@@ -16,29 +18,9 @@ use crate::cpu::count::CONTACT_ROWS;
 use crate::engine::Engine;
 use crate::error::GpuError;
 use crate::layout::{Candidate, Control, Row};
-use crate::recording::{BufferId, Recording};
+use crate::recording::Recording;
 use crate::stages;
 use bowknot_geometry::Vector;
-
-/// Pairs for which there is room at first.
-const FIRST_PAIRS: usize = 256;
-
-/// The list of the pairs that may be within contact range.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct NearList {
-    buffer: BufferId,
-    capacity: usize,
-}
-
-impl NearList {
-    pub fn new(engine: &mut impl Engine) -> Result<Self, GpuError> {
-        Self::with_room(engine, FIRST_PAIRS)
-    }
-
-    fn with_room(engine: &mut impl Engine, capacity: usize) -> Result<Self, GpuError> {
-        Ok(Self { buffer: engine.buffer("pairs in range", words::<Candidate>(capacity))?, capacity })
-    }
-}
 
 impl<E: Engine> Collision<E> {
     /// How the call ends after the steps so far.
@@ -123,8 +105,7 @@ impl<E: Engine> Collision<E> {
         let list = if count <= self.near.capacity {
             list
         } else {
-            self.engine.free(self.near.buffer);
-            self.near = NearList::with_room(&mut self.engine, count + count / 4)?;
+            self.near.grow(&mut self.engine, count)?;
             let mut recording = Recording::default();
             self.record_gather(&mut recording);
             self.engine.run(&recording, &[(self.near.buffer, words::<Candidate>(count))])?.swap_remove(0)
