@@ -408,6 +408,10 @@ fn a_matrix_that_is_too_large_for_a_device_ends_a_run_that_goes_on_on_the_cpu() 
 fn kernels_solve_the_systems_of_scenes_as_their_twins() {
     for case in SMALL {
         let mut simulator = simulator(case, &[]);
+        // In contact: stress of what is at rest would be rounding, which differs.
+        for _ in 0..case.3 {
+            simulator.step().expect("a step");
+        }
         let adapter = Adapter::choose(None).expect("a device, of software if need be");
         let engine = ComparingEngine::new(DeviceEngine::open(&adapter).expect("it opens"));
         let (backend, counts) = Counted::new(engine, None);
