@@ -175,7 +175,7 @@ fn bodies_slide_and_stick_on_the_kernels_as_theory_has_it() {
     }
 }
 
-/// The table of `docs/GPU.md`.
+/// The table of `docs/gpu/results.md`.
 #[test]
 #[ignore = "it takes minutes"]
 fn nothing_intersects_in_any_scene_of_the_paper() {
@@ -207,7 +207,7 @@ fn nothing_intersects_in_any_scene_of_the_paper() {
     }
 }
 
-/// The table of `docs/GPU.md` of how low sand lies after it has poured, which depends on how well its rows are solved: mean
+/// The table of `docs/gpu/results.md` of how low sand lies after it has poured, which depends on how well its rows are solved: mean
 /// and standard deviation of runs with slightly different gravity.
 #[test]
 #[ignore = "it takes minutes"]

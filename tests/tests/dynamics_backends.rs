@@ -3,7 +3,7 @@
 //! Where bodies crumple, differences of the size of a tolerance grow. The yardstick for them are runs on the CPU with more
 //! accurate linear solves and with another preconditioner, which should make no difference either.
 //!
-//! `--ignored` counts iterations in larger scenes and prints a table; see `docs/GPU.md`.
+//! `--ignored` counts iterations in larger scenes and prints a table; see `docs/gpu/dynamics.md`.
 
 use bowknot::dynamics::{
     AssemblySprings, ElementModel, LinearBackend, LinearBackendError, LinearSystem, Matrix3, NewtonBackend,
@@ -485,7 +485,7 @@ fn solves_stay_on_the_device_while_bodies_sleep_and_after() {
     step(&mut simulator);
 }
 
-/// The table of `docs/GPU.md`.
+/// The table of `docs/gpu/dynamics.md` on preconditioners.
 #[test]
 #[ignore = "it takes minutes"]
 fn iterations_in_scenes() {
@@ -514,11 +514,13 @@ fn iterations_in_scenes() {
     }
 }
 
-/// The table of `docs/GPU.md` on assembly.
+/// The table of `docs/gpu/dynamics.md` on whole runs.
 #[test]
 #[ignore = "it takes minutes"]
-fn assembly_in_scenes() {
-    println!("Targets and linear iterations: CPU, CPU assembles, device assembles; the rest: the last two.");
+fn newton_in_scenes() {
+    println!(
+        "Targets and linear iterations: CPU, CPU but for linear solves, device; the rest: the last two."
+    );
     println!("Bytes per node and Newton iteration.");
     println!("| scene | preconditioner | targets | Newton | linear | written | read | mm |");
     for case in LARGE.into_iter().filter(|case| case.0 != "hair" && case.1 < 1.0) {
@@ -549,3 +551,64 @@ fn assembly_in_scenes() {
         }
     }
 }
+
+/// Forces in single precision have a noise, which must neither drive what rests nor slow down what swings.
+#[test]
+fn a_sheet_swings_and_a_block_rests_as_on_the_cpu() {
+    let energies = |text: &str, steps: usize, on_twins: bool| -> Vec<(f64, f64)> {
+        let scene = Scene::from_toml(text, std::path::Path::new(".")).expect("a scene");
+        let mut simulator = Simulator::new(&scene).expect("a simulator");
+        if on_twins {
+            simulator.set_dynamics_backend(Some(Counted::new(TwinEngine::new(), None).0));
+        }
+        let mut step = || simulator.step().expect("a step");
+        (0..steps).map(|_| step()).map(|s| (s.energy.kinetic, s.max_speed)).collect()
+    };
+    let [cpu, twins] = [false, true].map(|on_twins| energies(SWINGING_SHEET, 75, on_twins));
+    let largest = cpu.iter().map(|(kinetic, _)| *kinetic).fold(0.0, f64::max);
+    for (step, (expected, found)) in cpu.iter().zip(&twins).enumerate() {
+        let apart = (found.0 - expected.0).abs();
+        assert!(apart < 0.01 * largest, "step {step}: {apart:e} J of {largest:e}");
+    }
+    // A quantum of the grid per time step is 1e-7 m/s.
+    let speed = energies(RESTING_BLOCK, 60, true)[59].1;
+    assert!(speed < 5e-6, "{speed:e} m/s");
+}
+
+/// A sheet on the ground, and one that swings from two pins.
+const SWINGING_SHEET: &str = r#"
+[solver.sleep]
+enabled = false
+[[body]]
+name = "sheet"
+friction = 0.4
+shape = { type = "sheet", size = [0.4, 0.4], edge = 0.02 }
+translate = [0, 0, 0.01]
+[[body]]
+name = "hung"
+shape = { type = "sheet", size = [0.3, 0.3], edge = 0.02 }
+translate = [2, 0, 1]
+[[pin]]
+body = "hung"
+box = { min = [1.8, -0.16, 0.9], max = [2.2, -0.14, 1.1] }
+[[obstacle]]
+name = "ground"
+shape = { type = "half-space" }
+friction = 0.4
+"#;
+
+/// A block on the ground.
+const RESTING_BLOCK: &str = r#"
+[solver.sleep]
+enabled = false
+[[body]]
+name = "block"
+kind = "solid"
+friction = 0.5
+shape = { type = "block", size = [0.1, 0.1, 0.1], edge = 0.025 }
+translate = [0, 0, 0.052]
+[[obstacle]]
+name = "ground"
+shape = { type = "half-space" }
+friction = 0.5
+"#;

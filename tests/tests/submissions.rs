@@ -91,7 +91,7 @@ fn steps_that_are_submitted_together_have_the_same_bits_and_fewer_waits() {
     }
 }
 
-/// The table of `docs/GPU.md`.
+/// The table of `docs/gpu/collisions.md`.
 #[test]
 #[ignore = "it takes minutes"]
 fn submissions_and_readbacks_by_scene() {

@@ -478,7 +478,7 @@ fn two_runs_on_one_device_have_the_same_bits() {
     assert!(halted > 0);
 }
 
-/// The table of `docs/GPU.md`: how far the aim of a first step is from that after many sweeps.
+/// The table of `docs/gpu/collisions.md`: how far the aim of a first step is from that after many sweeps.
 #[test]
 #[ignore = "it prints a table"]
 fn errors_by_number_of_sweeps() {
@@ -518,7 +518,7 @@ fn errors_by_number_of_sweeps() {
     }
 }
 
-/// The table of `docs/GPU.md`: how far the aim of a first step is from that after many sweeps, with contact rows in one
+/// The table of `docs/gpu/collisions.md`: how far the aim of a first step is from that after many sweeps, with contact rows in one
 /// bucket and in many.
 #[test]
 #[ignore = "it prints a table"]

@@ -22,7 +22,7 @@ pub(crate) const BATCH: usize = 16;
 const MAX_REDUCTION: f64 = 1e-10;
 
 /// Solves linear systems of the dynamics on an engine, with block-Jacobi, or with rigid motions on several levels of groups
-/// of nodes (`docs/GPU.md`).
+/// of nodes (`docs/gpu/dynamics.md`).
 #[derive(Debug)]
 pub struct ConjugateGradients<E> {
     name: String,

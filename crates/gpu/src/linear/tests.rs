@@ -278,7 +278,7 @@ impl Engine for Counting {
     }
 }
 
-/// Dispatches of an iteration, and what the host reads for 16 of them beside the solution: the figures of `docs/GPU.md`.
+/// Dispatches of an iteration, and what the host reads for 16 of them beside the solution: the figures of `docs/gpu/dynamics.md`.
 #[test]
 fn an_iteration_takes_few_dispatches() {
     let springs = 10;
