@@ -354,6 +354,19 @@ fn byte_seconds(workgroups: usize, bytes: f64, growth: f64) -> f64 {
     growth * bytes / (BANDWIDTH * (filled / MULTIPROCESSORS).min(1.0))
 }
 
+/// Seconds that the threads of a workgroup wait for a bucket of rows or a cluster of edges, by its words.
+fn waiting(stage: &str, part: &[u32]) -> f64 {
+    let colors = f64::from(part[part.len() - 1]);
+    let visit = |colors: f64| WAITS_PER_VISIT * WAIT + colors * SHORT_WAIT;
+    match stage {
+        "color" => WAITS_PER_COLORING * WAIT * colors,
+        "sweep_rows" if part[1] - part[0] <= KEPT_ROWS => visit(colors),
+        "sweep_rows" => WAIT * colors,
+        _ if part[4] <= KEPT_COLORS => visit(CLUSTER_SWEEPS * colors),
+        _ => CLUSTER_SWEEPS * WAIT * colors,
+    }
+}
+
 /// The twins, and what they do.
 #[derive(Debug)]
 struct CountingEngine {
@@ -370,26 +383,16 @@ impl CountingEngine {
     /// The workgroups of all dispatches of a stage that goes through colors: buckets of rows (where they begin, where they
     /// end, how many colors they have), and clusters of edges, of whose five words the last is the number of colors.
     fn workgroups_of(&self, dispatch: &DispatchView<'_>) -> Option<Vec<Workgroup>> {
-        let visit = |colors: f64| WAITS_PER_VISIT * WAIT + colors * SHORT_WAIT;
-        let coloring = |bucket: &[u32]| WAITS_PER_COLORING * WAIT * f64::from(bucket[2]);
-        let rows = |bucket: &[u32]| {
-            let colors = f64::from(bucket[2]);
-            if bucket[1] - bucket[0] <= KEPT_ROWS { visit(colors) } else { colors * WAIT }
-        };
-        let edges = |cluster: &[u32]| {
-            let colors = CLUSTER_SWEEPS * f64::from(cluster[4]);
-            if cluster[4] <= KEPT_COLORS { visit(colors) } else { colors * WAIT }
-        };
-        let (buffer, words, seconds): (_, _, &dyn Fn(&[u32]) -> f64) = match dispatch.stage {
-            "color" => (dispatch.buffers[2], 3, &coloring),
-            "sweep_rows" => (dispatch.buffers[1], 3, &rows),
-            "sweep_edges" => (dispatch.buffers[1], 5, &edges),
+        let (buffer, words) = match dispatch.stage {
+            "color" => (dispatch.buffers[2], 3),
+            "sweep_rows" => (dispatch.buffers[1], 3),
+            "sweep_edges" => (dispatch.buffers[1], 5),
             _ => return None,
         };
         let content = self.twin.words_of(buffer);
         let workgroup = |part: &[u32]| {
             let works = part[words - 1] > 0;
-            (works, if works { seconds(part) } else { 0.0 })
+            (works, if works { waiting(dispatch.stage, part) } else { 0.0 })
         };
         Some(content.chunks_exact(words).map(workgroup).collect())
     }

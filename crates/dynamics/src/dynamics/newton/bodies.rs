@@ -67,10 +67,10 @@ pub trait Bodies: Send {
     fn trial(&self) -> Vec<Vector>;
 
     /// Largest distance of a free node at the trial from the iterate [m].
-    fn from_iterate(&self) -> f64;
+    fn distance_from_iterate(&self) -> f64;
 
     /// The same from where the target began [m].
-    fn from_start(&self) -> f64;
+    fn distance_from_start(&self) -> f64;
 
     /// Makes the trial the iterate.
     fn start_from_trial(&mut self) -> Answer<()>;

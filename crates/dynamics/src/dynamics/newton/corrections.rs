@@ -51,7 +51,7 @@ impl Newton<'_> {
                 next = self.iterate(Accuracy::Inexact)?;
             }
             info.add(&next);
-            let moved = self.bodies.from_start();
+            let moved = self.bodies.distance_from_start();
             let small = next.max_displacement <= MAX_LAST_DISPLACEMENT * moved;
             gained += next.decrease();
             let missed = (1.0 - next.reduction_ratio) * next.decrease();

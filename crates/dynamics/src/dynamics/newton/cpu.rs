@@ -145,11 +145,11 @@ impl Bodies for CpuBodies<'_> {
         self.gather(|n| self.work.trial[n])
     }
 
-    fn from_iterate(&self) -> f64 {
+    fn distance_from_iterate(&self) -> f64 {
         largest_distance(&self.work.trial, &self.work.x, &self.work.free)
     }
 
-    fn from_start(&self) -> f64 {
+    fn distance_from_start(&self) -> f64 {
         largest_distance(&self.work.trial, &self.began[0], &self.work.free)
     }
 

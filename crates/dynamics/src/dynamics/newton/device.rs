@@ -202,11 +202,11 @@ impl Bodies for DeviceBodies<'_> {
         self.trial.watched.clone()
     }
 
-    fn from_iterate(&self) -> f64 {
+    fn distance_from_iterate(&self) -> f64 {
         self.trial.from_iterate
     }
 
-    fn from_start(&self) -> f64 {
+    fn distance_from_start(&self) -> f64 {
         self.trial.from_start
     }
 

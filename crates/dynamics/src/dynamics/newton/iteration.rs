@@ -39,7 +39,7 @@ impl Newton<'_> {
         self.bodies.restore_momentum(&flying_groups(self.model, self.repulsion, self.free))?;
         let mut info = NewtonInfo { iterations: 1, cg: solved.info, ..NewtonInfo::default() };
         self.search_line(&mut info)?;
-        info.max_displacement = self.bodies.from_iterate();
+        info.max_displacement = self.bodies.distance_from_iterate();
         Ok(info)
     }
 
