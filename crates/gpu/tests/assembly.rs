@@ -17,6 +17,9 @@ const SINGLE: f64 = 4e-6;
 
 const DT: f64 = 0.02;
 
+/// Diagonal blocks of some nodes.
+type Diagonal = Vec<(u32, Matrix3<f64>)>;
+
 /// The matrices of linear solves, over the free nodes.
 type Matrices = Arc<Mutex<Vec<DMatrix<f64>>>>;
 
@@ -85,7 +88,7 @@ struct Assembling<E> {
     norms: Arc<Mutex<Vec<f64>>>,
     /// Nodes that springs act on, and their diagonal blocks as they were read.
     watched: Vec<u32>,
-    diagonals: Arc<Mutex<Vec<Vec<(u32, Matrix3<f64>)>>>>,
+    diagonals: Arc<Mutex<Vec<Diagonal>>>,
 }
 
 impl<E: Engine> Assembling<E> {
