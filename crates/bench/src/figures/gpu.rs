@@ -1,12 +1,13 @@
-//! Collisions on a GPU beside the CPU's: the scenes of Table 2, the stages of a step, the growth with the size.
+//! Time steps on a GPU beside the CPU's: the scenes of Table 2, the stages of a step, the growth with the size.
 
 use super::goals::TABLE_2;
 use crate::bench::{Bench, Size};
 use crate::figure::{Figure, Part, Report};
 use crate::table::{Entry, Table, geometric_mean, largest, mean, short};
 use anyhow::{Context, Result};
+use bowknot::dynamics::LinearBackend;
 use bowknot::geometry::Point;
-use bowknot::gpu::{Adapter, Device, DeviceEngine, Profile, StageTime};
+use bowknot::gpu::{Adapter, ConjugateGradients, Device, DeviceEngine, Profile, StageTime};
 use bowknot::simulator::{BackendError, CollisionBackend, Cpu};
 use bowknot::twoway::{CollisionScene, Observer, ResolveInput, Resolver, Statistics};
 use bowknot::{Scene, Simulator};
@@ -28,13 +29,13 @@ impl Figure for Gpu {
     }
 
     fn title(&self) -> &'static str {
-        "Collisions on a GPU"
+        "Time steps on a GPU"
     }
 
     fn question(&self) -> &'static str {
-        "First time steps of the scenes of Table 2 at the paper's size, with the collisions first on the CPU, on as many threads \
-         as `--threads` says, then on the first GPU; the dynamics are on the CPU in both. Seconds of the collision stage per \
-         time step, reading of contacts included. A time step before them does not count, since the device compiles its \
+        "First time steps of the scenes of Table 2 at the paper's size, first on the CPU, on as many threads \
+         as `--threads` says, then on the first GPU, with their dynamics. Seconds of the collision stage per \
+         time step, reading of contacts included, and of whole time steps. A time step before them does not count, since the device compiles its \
          kernels in it. `gpu-stages.csv`: what the stages of the device take, between time stamps of its own, and the bytes of \
          the buffers that they bind. `gpu-sizes.csv`: growth with the number of triangles. On a software driver everything \
          runs small, and times mean nothing."
@@ -82,7 +83,7 @@ impl Figure for Gpu {
             parts: vec![
                 Part::table(
                     self.name(),
-                    "seconds of the collision stage on a GPU and on the CPU, beside the paper's",
+                    "seconds of the collision stage and of whole time steps on a GPU and on the CPU, beside the paper's",
                     scenes,
                 ),
                 Part::table("gpu-stages", "what the stages of the two-way step take on a GPU", stages),
@@ -109,6 +110,8 @@ fn table(first: [&str; 2]) -> Table {
         "cpu_steps",
         "gpu_steps",
         "gpu_ms_per_step",
+        "cpu_whole_s",
+        "gpu_whole_s",
     ])
 }
 
@@ -120,9 +123,10 @@ struct Pair {
     triangles: usize,
 }
 
-/// Seconds and two-way steps of the collision stage by time step.
+/// Seconds and two-way steps of the collision stage by time step, and seconds of all of it.
 struct Measured {
     seconds: Vec<f64>,
+    whole: Vec<f64>,
     steps: Vec<f64>,
 }
 
@@ -135,9 +139,11 @@ impl Measured {
 impl Pair {
     fn measure(adapter: &Adapter, name: &str, scale: f64, frames: usize) -> Result<Self> {
         let scene = Scene::builtin(name, scale)?;
-        let engine = DeviceEngine::open(adapter)?;
-        let (cpu, world) = simulate(&scene, Box::new(Cpu), frames)?;
-        let (gpu, _) = simulate(&scene, Box::new(Device::new(adapter.to_string(), engine)), frames)?;
+        let (cpu, world) = simulate(&scene, Box::new(Cpu), None, frames)?;
+        let name = adapter.to_string();
+        let device = Device::new(name.clone(), DeviceEngine::open(adapter)?);
+        let dynamics = ConjugateGradients::new(name, DeviceEngine::open(adapter)?);
+        let (gpu, _) = simulate(&scene, Box::new(device), Some(Box::new(dynamics)), frames)?;
         let triangles = world.collision.topology().triangles.len();
         Ok(Self { cpu, gpu, vertices: world.collision_vertices(), triangles })
     }
@@ -155,6 +161,8 @@ impl Pair {
             mean(&self.cpu.steps).into(),
             mean(&self.gpu.steps).into(),
             (1e3 * self.gpu.seconds.iter().sum::<f64>() / steps).into(),
+            mean(&self.cpu.whole).into(),
+            mean(&self.gpu.whole).into(),
         ]);
         table.row(row);
     }
@@ -164,20 +172,25 @@ impl Pair {
 fn simulate(
     scene: &Scene,
     backend: Box<dyn CollisionBackend>,
+    dynamics: Option<Box<dyn LinearBackend>>,
     frames: usize,
 ) -> Result<(Measured, Arc<bowknot::World>)> {
     let mut simulator = Simulator::new(scene)?;
     let seconds = Arc::new(Mutex::new(0.0));
     simulator.set_backend(Box::new(Timed { backend, seconds: Arc::clone(&seconds) }))?;
-    let mut measured = Measured { seconds: Vec::new(), steps: Vec::new() };
+    simulator.set_dynamics_backend(dynamics);
+    let mut measured = Measured { seconds: Vec::new(), whole: Vec::new(), steps: Vec::new() };
     for frame in 0..=frames {
+        let timer = Instant::now();
         let statistics = simulator.step()?;
+        let whole = timer.elapsed().as_secs_f64();
         let spent = std::mem::take(&mut *seconds.lock().unwrap_or_else(PoisonError::into_inner));
         // The device compiles its kernels in the first one.
         if frame == 0 {
             continue;
         }
         measured.seconds.push(spent);
+        measured.whole.push(whole);
         measured.steps.push(statistics.two_way_steps as f64);
     }
     Ok((measured, Arc::clone(simulator.world())))
@@ -243,7 +256,7 @@ fn stages(adapter: &Adapter, bench: &Bench) -> Result<Table> {
     let profile = Profile::default();
     engine.measure(profile.clone());
     let scene = Scene::builtin(name, scale)?;
-    let (measured, _) = simulate(&scene, Box::new(Device::new(adapter.to_string(), engine)), frames)?;
+    let (measured, _) = simulate(&scene, Box::new(Device::new(adapter.to_string(), engine)), None, frames)?;
     let steps: f64 = measured.steps.iter().sum();
     let mut stages: Vec<(&str, StageTime)> = profile.stages();
     stages.sort_by(|a, b| b.1.seconds.total_cmp(&a.1.seconds));

@@ -1,4 +1,4 @@
-//! Collisions on a GPU: scenes as the CPU knows them, solved by `bowknot-gpu`.
+//! Simulation on a GPU: scenes as the CPU knows them, solved by `bowknot-gpu`.
 //!
 //! The device takes the same two-way steps and stops by the same rule. Its sweeps go through rows and edges in another
 //! order, so that it may take other steps than the CPU. Positions lie on a grid, see [`bowknot_gpu::Grid`].
