@@ -240,7 +240,13 @@ impl<E: Engine + Debug + Send> Device<E> {
             max_stretch(scene, [&start, scene.rest()], &end);
         let pressing = rows.iter().filter(|row| row.multiplier > 0.0);
         let contacts: Vec<PairMultipliers> = pressing.filter_map(pairs::multipliers).collect();
-        let near = near.and_then(|near| pairs::list(scene, &near));
+        let near = near.and_then(|near| {
+            let list = pairs::list(scene, &near);
+            if list.is_none() {
+                tracing::warn!("the device lists pairs that do not exist: the CPU searches in its place");
+            }
+            list
+        });
         let call_end = CallEnd {
             start: &start,
             positions: &end,
@@ -292,7 +298,12 @@ impl<E: Engine + Debug + Send> CollisionBackend for Device<E> {
         input: &ResolveInput<'_>,
         observer: &mut dyn Observer,
     ) -> Result<Statistics, BackendError> {
-        Ok(self.solve(resolver, positions, target, input, observer)?)
+        let resolved = self.solve(resolver, positions, target, input, observer);
+        if resolved.is_err() {
+            // Some buffers may be gone, of which a larger one could not be had.
+            self.release();
+        }
+        Ok(resolved?)
     }
 
     fn judge(&mut self, scene: &CollisionScene, positions: &[Point]) -> Result<(), BackendError> {

@@ -191,7 +191,7 @@ impl Dynamics {
     /// vertices on which unknown forces act. All slices have one entry per vertex.
     ///
     /// # Errors
-    /// A length is wrong, an entry is not finite, no step was begun, or the backend of linear solves has failed.
+    /// A length is wrong, an entry is not finite, no step was begun, or the backend has failed.
     pub fn residual(
         &mut self,
         x: &[Point],
@@ -325,7 +325,7 @@ impl Dynamics {
     /// then solves the time step, inertia included, with the surface held.
     ///
     /// # Errors
-    /// A length is wrong, an entry is not finite, no step was begun, or the backend of linear solves has failed.
+    /// A length is wrong, an entry is not finite, no step was begun, or the backend has failed.
     pub fn newton_target(
         &mut self,
         x: &[Point],
