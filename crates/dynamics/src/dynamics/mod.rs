@@ -31,6 +31,7 @@ pub use newton::backend::{
 
 use crate::drag::DragSurfaces;
 use crate::error::StepError;
+use crate::linear::assembly::ElementModel;
 use crate::linear::backend::LinearBackend;
 use crate::linear::block::BlockValues;
 use crate::linear::solver::LinearSolver;
@@ -428,6 +429,33 @@ impl Dynamics {
                 work.cache.clear();
             }
         }
+    }
+
+    /// The elements as backends get them, without patches.
+    pub fn element_model(&self) -> ElementModel {
+        self.model.describe(Vec::new())
+    }
+
+    /// The terms of the potential in the time step that was begun.
+    ///
+    /// # Errors
+    /// No step was begun.
+    pub fn step_terms(&self) -> Result<StepTerms, StepError> {
+        let Some(step) = &self.step else { return Err(StepError::NotBegun) };
+        Ok(StepTerms::new(&self.model, &self.params, step))
+    }
+
+    /// The potential of the bodies at positions `x` of nodes [m] in the time step that was begun. One thread computes it.
+    ///
+    /// # Errors
+    /// No step was begun, or the length is wrong.
+    pub fn bodies_potential(&self, x: &[Vector]) -> Result<BodiesPotential, StepError> {
+        let terms = self.step_terms()?;
+        let nodes = self.model.node_vertex.len();
+        if x.len() != nodes {
+            return Err(StepError::Length { array: "x", given: x.len(), vertices: nodes });
+        }
+        Ok(BodiesPotential::at(&self.model, &terms, x))
     }
 
     fn gather<T>(

@@ -387,3 +387,46 @@ fn newton_converges_with_wind_and_repulsion() {
     }
     assert!(displacement < 1e-9, "still moves by {displacement:e}");
 }
+
+/// Newton's method ends where the gradient of the potential is zero, and the potential falls on the way there.
+#[test]
+fn time_steps_end_where_the_gradient_is_zero() {
+    let rest: Vec<Point> =
+        (0..20).map(|k| Point::new(0.1 * f64::from(k % 5), 0.1 * f64::from(k / 5), 0.0)).collect();
+    let material = ClothMaterial {
+        bend_stiffness: 1e-3,
+        stretch_damping: 0.01,
+        bend_damping: 0.02,
+        ..ClothMaterial::cotton()
+    };
+    let body = Body::cloth("sheet", grid_triangles(4, 3, false), material);
+    let model = DynamicsModel::new(rest.clone(), vec![body]).expect("valid");
+    let mut params = DynamicsParams::default();
+    params.newton.cg_tolerance = 1e-12;
+    params.environment.air_drag = 0.5;
+    params.environment.air_density = 1.2;
+    params.environment.wind = Vector::new(2.0, -1.0, 0.5);
+    let mut dynamics = Dynamics::new(model, params).expect("valid");
+    let wave = |k: usize| Vector::new((k as f64 * 1.7).sin(), (k as f64 * 0.9).cos(), (k as f64).sin());
+    let start: Vec<Point> = rest.iter().enumerate().map(|(k, x)| x + wave(k) * 0.02).collect();
+    let velocities: Vec<Vector> = (0..20).map(|k| wave(k + 5)).collect();
+    dynamics.begin_step(&start, &velocities, 0.01).expect("valid");
+    let by_node = |dynamics: &Dynamics, x: &[Point]| -> Vec<Vector> {
+        dynamics.model.node_vertex.iter().map(|v| x[*v as usize].coords).collect()
+    };
+    let at = |dynamics: &Dynamics, x: &[Point]| {
+        let potential = dynamics.bodies_potential(&by_node(dynamics, x)).expect("begun");
+        let largest = potential.gradient.iter().map(Vector::amax).fold(0.0, f64::max);
+        (potential.quadratic + potential.elements, largest)
+    };
+    let (energy, largest) = at(&dynamics, &start);
+    let mut x = start.clone();
+    for _ in 0..20 {
+        let mut y = x.clone();
+        dynamics.newton_target(&x, &[false; 20], &rest, &mut y).expect("a target");
+        x = y;
+    }
+    let (end, rest) = at(&dynamics, &x);
+    assert!(rest < 1e-8 * largest && end < energy, "{rest:e} of {largest:e}, {end:e} of {energy:e}");
+    assert!(dynamics.bodies_potential(&[]).is_err());
+}

@@ -4,7 +4,7 @@ use super::backend::{NewtonBackend, NewtonTarget, SolveLimits, Trial};
 use super::bodies::{Answer, Bodies, BodyEnergies, Imbalance, LinearSolve, Lost, Promise};
 use super::cpu::NEGLIGIBLE_STEP;
 use super::momentum::{Inertia, nodes_of};
-use super::state::{Course, Step};
+use super::state::{Course, DeviceStep, Step};
 use crate::dynamics::bodies_potential::StepTerms;
 use crate::elements::filter::Filter;
 use crate::linear::accuracy::Limits;
@@ -17,40 +17,29 @@ use crate::repulsion::springs::Repulsion;
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
 
-/// What the host keeps of a time step on a device.
-#[derive(Debug, Default)]
-pub struct DeviceStep {
-    /// Inertia and drag of each component: the sum of the rows of H without springs [N/m].
-    component_sums: Vec<Matrix3<f64>>,
-    /// Potential of inertia and flat bending at the start [J].
-    potential_at_start: f64,
-}
-
-impl DeviceStep {
-    /// Begins the time step on the backend.
-    pub fn begin(
-        model: &DynamicsModel,
-        params: &DynamicsParams,
-        step: &Step,
-        backend: &mut dyn NewtonBackend,
-    ) -> Answer<Self> {
-        let terms = StepTerms::new(model, params, step);
-        let as_step = terms.as_step();
-        let component_sums = model
-            .components
-            .iter()
-            .map(|component| as_step.row_sums[component.start as usize..component.end as usize].iter().sum());
-        backend.begin_step(&as_step)?;
-        let kinetic = |n: usize| {
-            let inertia = 0.5 * model.node_masses[n] * as_step.rate * as_step.rate;
-            inertia * (step.start[n] - step.inertial[n]).norm_squared()
-        };
-        let nodes = step.start.len();
-        let bending = |chunk: usize| model.bending.chunk_energy(chunk, &step.start);
-        let potential_at_start =
-            (0..nodes).map(kinetic).sum::<f64>() + (0..nodes.div_ceil(CHUNK)).map(bending).sum::<f64>();
-        Ok(Self { component_sums: component_sums.collect(), potential_at_start })
-    }
+/// Begins the time step on the backend.
+fn begin_step(
+    model: &DynamicsModel,
+    params: &DynamicsParams,
+    step: &Step,
+    backend: &mut dyn NewtonBackend,
+) -> Answer<DeviceStep> {
+    let terms = StepTerms::new(model, params, step);
+    let as_step = terms.as_step();
+    let component_sums = model
+        .components
+        .iter()
+        .map(|component| as_step.row_sums[component.start as usize..component.end as usize].iter().sum());
+    backend.begin_step(&as_step)?;
+    let kinetic = |n: usize| {
+        let inertia = 0.5 * model.node_masses[n] * as_step.rate * as_step.rate;
+        inertia * (step.start[n] - step.inertial[n]).norm_squared()
+    };
+    let nodes = step.start.len();
+    let bending = |chunk: usize| model.bending.chunk_energy(chunk, &step.start);
+    let potential_at_start =
+        (0..nodes).map(kinetic).sum::<f64>() + (0..nodes.div_ceil(CHUNK)).map(bending).sum::<f64>();
+    Ok(DeviceStep { component_sums: component_sums.collect(), potential_at_start })
 }
 
 /// Where a target begins, by node, and the nodes that springs act on.
@@ -276,7 +265,7 @@ pub fn on_device<T>(
 ) -> Answer<T> {
     let on_device = match course.on_device.take() {
         Some(on_device) => on_device,
-        None => DeviceStep::begin(model, params, step, backend)?,
+        None => begin_step(model, params, step, backend)?,
     };
     let mut bodies = DeviceBodies::new(model, step, &on_device, backend, beginning)?;
     let done = run(&mut bodies, course)?;

@@ -1,7 +1,6 @@
 //! What a Newton iteration works on, by node.
 
 use super::bodies::{Bodies, BodyEnergies};
-use super::device::DeviceStep;
 use crate::drag::Drag;
 use crate::elements::filter::Filter;
 use crate::linear::block::BlockValues;
@@ -12,6 +11,7 @@ use crate::model::DynamicsModel;
 use crate::params::DynamicsParams;
 use crate::repulsion::springs::Repulsion;
 use bowknot_geometry::{Point, Vector};
+use nalgebra::Matrix3;
 
 /// The current time step.
 #[derive(Debug, Default)]
@@ -31,6 +31,15 @@ pub struct Step {
     pub scalar: SplitForm,
     /// None in a vacuum.
     pub drag: Option<Drag>,
+}
+
+/// What the host keeps of a time step on a device.
+#[derive(Debug, Default)]
+pub struct DeviceStep {
+    /// Inertia and drag of each component: the sum of the rows of H without springs [N/m].
+    pub component_sums: Vec<Matrix3<f64>>,
+    /// Potential of inertia and flat bending at the start [J].
+    pub potential_at_start: f64,
 }
 
 /// What the iterations of a time step have found out.
