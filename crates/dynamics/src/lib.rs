@@ -56,7 +56,7 @@ pub use dynamics::{
 pub use error::{ModelError, StepError};
 pub use linear::accuracy::CgInfo;
 pub use linear::assembly::{
-    AssemblySprings, BendElement, ElementModel, MembraneElement, SolidKind, TetrahedronElement,
+    AssemblySprings, BendElement, ElementModel, MembraneElement, SolidKind, StrandElement, TetrahedronElement,
 };
 pub use linear::backend::{LinearBackend, LinearSystem, SparseRows};
 pub use linear::failure::LinearBackendError;

@@ -41,13 +41,12 @@ fn is_positive(number: f32) -> bool {
     return number > 0.0 && (bitcast<u32>(number) & 0x7f800000u) != 0x7f800000u;
 }
 
-fn times_inverse(slot: PatchSlot, r: vec3<f32>) -> vec3<f32> {
-    let m = slot.inverse;
-    return vec3<f32>(
-        m[0] * r.x + m[1] * r.y + m[2] * r.z,
-        m[1] * r.x + m[3] * r.y + m[4] * r.z,
-        m[2] * r.x + m[4] * r.y + m[5] * r.z,
-    );
+fn solve(slot: PatchSlot, r: vec3<f32>) -> vec3<f32> {
+    let f = slot.factors;
+    let y = r.y - f[0] * r.x;
+    let z = f[5] * (r.z - f[1] * r.x - f[2] * y);
+    let y_solved = f[4] * y - f[2] * z;
+    return vec3<f32>(f[3] * r.x - f[0] * y_solved - f[1] * z, y_solved, z);
 }
 
 @compute @workgroup_size(64)
@@ -91,7 +90,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
             }
             solution[params.nodes + i] = vec4<f32>(r, 0.0);
         }
-        var z = times_inverse(slot, r);
+        var z = solve(slot, r);
         squares += dot(r, z);
         if k < params.grouped {
             let arm = vec3<f32>(slot.arm[0], slot.arm[1], slot.arm[2]);

@@ -1,4 +1,5 @@
-// Block-Jacobi: the inverses of the diagonal blocks, springs included.
+// Block-Jacobi: the diagonal blocks, springs included, as products L D L^T. An inverse would be as large as that of the
+// softest direction, and so would be its rounding in the stiffest one, of strands 10^7 times as stiff.
 
 struct Params {
     slots: u32,
@@ -10,6 +11,9 @@ struct Params {
 @group(0) @binding(2) var<storage, read> springs: array<Spring>;
 @group(0) @binding(3) var<storage, read> spring_words: array<u32>;
 @group(0) @binding(4) var<storage, read_write> slots: array<PatchSlot>;
+
+// Smallest pivot as a share of the trace: rounding of the block.
+const MIN_PIVOT: f32 = 2e-7;
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -42,21 +46,14 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         for (var k = 0u; k < 6u; k += 1u) {
             m[k] *= unit;
         }
-        let a = m[3] * m[5] - m[4] * m[4];
-        let b = m[2] * m[4] - m[1] * m[5];
-        let c = m[1] * m[4] - m[2] * m[3];
-        let determinant = m[0] * a + m[1] * b + m[2] * c;
-        // The block is at least the inertia of the node: it is singular only by rounding or if numbers are not finite.
-        var inverse = array<f32, 6>(unit, 0.0, 0.0, unit, 0.0, unit);
-        if determinant > 1e-12 {
-            let factor = unit / determinant;
-            inverse[0] = factor * a;
-            inverse[1] = factor * b;
-            inverse[2] = factor * c;
-            inverse[3] = factor * (m[0] * m[5] - m[2] * m[2]);
-            inverse[4] = factor * (m[1] * m[2] - m[0] * m[4]);
-            inverse[5] = factor * (m[0] * m[3] - m[1] * m[1]);
-        }
-        slots[t].inverse = inverse;
+        // The block is at least the inertia of the node: a pivot is smaller by rounding alone.
+        let first = max(m[0], MIN_PIVOT);
+        let xy = m[1] / first;
+        let xz = m[2] / first;
+        let second = max(m[3] - xy * m[1], MIN_PIVOT);
+        let rest = m[4] - xy * m[2];
+        let yz = rest / second;
+        let third = max(m[5] - xz * m[2] - yz * rest, MIN_PIVOT);
+        slots[t].factors = array<f32, 6>(xy, xz, yz, unit / first, unit / second, unit / third);
     }
 }

@@ -36,7 +36,13 @@ fn row(i: u32) -> vec3<f32> {
     let own = direction[i].xyz;
     var sum = vec3<f32>(0.0);
     var at = slice.x + i % SLICE;
-    for (var k = 0u; k < slice.y; k += 1u) {
+    var blocks = slice.y;
+    if (slice.w >> (i % SLICE) & 1u) == 1u {
+        // Of strands the product is there already; blocks are for the preconditioner.
+        sum = image[i].xyz;
+        blocks = 1u;
+    }
+    for (var k = 0u; k < blocks; k += 1u) {
         // The first block is the sum of the row.
         var x = own;
         if k > 0u {
@@ -47,6 +53,7 @@ fn row(i: u32) -> vec3<f32> {
         sum += column_of_block(at + 7u * SLICE) * x.z;
         at += BLOCK_WORDS * SLICE;
     }
+    at = slice.x + i % SLICE + BLOCK_WORDS * SLICE * slice.y;
     for (var k = 0u; k < slice.z; k += 1u) {
         sum += number(at + SLICE) * (direction[words[at]].xyz - own);
         at += 2u * SLICE;

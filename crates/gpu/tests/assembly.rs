@@ -1,10 +1,13 @@
 //! Matrices that the device assembles are those of the dynamics, and time steps with them go as on the CPU.
 
+mod bodies;
+
+use bodies::sheet;
 use bowknot_gpu::dynamics::{
     AssemblySprings, Body, ClothMaterial, Dynamics, DynamicsModel, DynamicsParams, ElementModel,
     HessianFilter, LinearBackend, LinearBackendError, LinearSystem, Matrix3, NewtonBackend, NewtonSolve,
-    NewtonStep, NewtonTarget, OutOfBalance, PreconditionerKind, RepulsionSpring, RestShape, SolidMaterial,
-    SolidModel, SolveLimits, StepError, StrandMaterial, Trial, Watched,
+    NewtonStep, NewtonTarget, OutOfBalance, PreconditionerKind, RepulsionSpring, SolveLimits, StepError,
+    Trial, Watched,
 };
 use bowknot_gpu::geometry::{Point, Vector};
 use bowknot_gpu::{Adapter, ComparingEngine, ConjugateGradients, DeviceEngine, Engine, TwinEngine};
@@ -89,6 +92,8 @@ struct Assembling<E> {
     /// Nodes that springs act on, and their diagonal blocks as they were read.
     watched: Vec<u32>,
     diagonals: Arc<Mutex<Vec<Diagonal>>>,
+    /// How often gradient and matrix were made.
+    linearized: Arc<Mutex<usize>>,
 }
 
 impl<E: Engine> Assembling<E> {
@@ -102,6 +107,7 @@ impl<E: Engine> Assembling<E> {
             norms: Arc::default(),
             watched: Vec::new(),
             diagonals: Arc::default(),
+            linearized: Arc::default(),
         }
     }
 }
@@ -194,6 +200,7 @@ impl<E: Engine + Debug + Send> NewtonBackend for Assembling<E> {
     }
 
     fn linearize(&mut self, absolute: bool) -> Result<(), LinearBackendError> {
+        *self.linearized.lock().expect("no panic") += 1;
         self.inner.linearize(absolute)
     }
 
@@ -265,95 +272,18 @@ struct Case {
     distortion: f64,
 }
 
-fn sheet(cells: usize, curvature: f64) -> (Vec<Point>, Vec<[u32; 3]>) {
-    let at = |k: usize| {
-        let (x, y) = (0.05 * (k % (cells + 1)) as f64, 0.04 * (k / (cells + 1)) as f64);
-        Point::new(x, y + 0.3 * x, curvature * (x * x - y * y + x * y))
-    };
-    let points = (0..(cells + 1) * (cells + 1)).map(at).collect();
-    let cell = |k: usize| {
-        let a = (k % cells + k / cells * (cells + 1)) as u32;
-        let [b, c, d] = [a + 1, a + 2 + cells as u32, a + 1 + cells as u32];
-        [[a, b, c], [a, c, d]]
-    };
-    (points, (0..cells * cells).flat_map(cell).collect())
-}
-
-/// Two cubes of six tetrahedra each.
-fn block() -> (Vec<Point>, Vec<[u32; 4]>) {
-    let points = (0..12)
-        .map(|k: usize| Point::new((k % 3) as f64, (k / 3 % 2) as f64, (k / 6) as f64).map(|x| 0.05 * x));
-    let tets = (0..2u32).flat_map(|cell| {
-        let steps = [[1, 3, 6], [1, 6, 3], [3, 1, 6], [3, 6, 1], [6, 1, 3], [6, 3, 1]];
-        steps.map(|[a, b, c]| {
-            let mut tet = [cell, cell + a, cell + a + b, cell + a + b + c];
-            // An odd order of the axes turns the tetrahedron inside out.
-            if [[1, 6, 3], [3, 1, 6], [6, 3, 1]].contains(&[a, b, c]) {
-                tet.swap(2, 3);
-            }
-            tet
-        })
-    });
-    (points.collect(), tets.collect())
-}
-
+/// Every kind of element with both filters.
 fn cases() -> Vec<Case> {
-    let mut cases = Vec::new();
-    let isotropic = ClothMaterial::cotton();
-    let woven = ClothMaterial {
-        weft_stiffness: Some(0.4 * isotropic.stretch_stiffness),
-        shear_stiffness: Some(0.05 * isotropic.stretch_stiffness),
-        warp_direction: Vector::new(1.0, 0.7, 0.0),
-        ..ClothMaterial::cotton()
+    let with = |bodies::Case { name, rest, body }| {
+        [HessianFilter::Clamp, HessianFilter::Absolute].map(|filter| Case {
+            name,
+            rest: rest.clone(),
+            body: body.clone(),
+            filter,
+            distortion: 0.014,
+        })
     };
-    let damped = |material: &ClothMaterial| ClothMaterial {
-        stretch_damping: 0.02,
-        bend_damping: 0.05,
-        bend_stiffness: 1e-3,
-        ..*material
-    };
-    let curved = ClothMaterial {
-        rest_shape: RestShape::Initial,
-        bend_stiffness: 0.3 * isotropic.stretch_stiffness * 0.05 * 0.05,
-        ..ClothMaterial::cotton()
-    };
-    for (name, curvature, material) in [
-        ("isotropic", 0.0, isotropic),
-        ("woven", 0.0, woven),
-        ("isotropic, damped", 0.0, damped(&isotropic)),
-        ("woven, damped", 0.0, damped(&woven)),
-        ("curved", 2.0, curved),
-    ] {
-        for filter in [HessianFilter::Clamp, HessianFilter::Absolute] {
-            let (rest, triangles) = sheet(4, curvature);
-            cases.push(Case {
-                name,
-                rest,
-                body: Body::cloth("sheet", triangles, material),
-                filter,
-                distortion: 0.014,
-            });
-        }
-    }
-    for (name, model, damping) in [
-        ("stvk", SolidModel::Stvk, 0.0),
-        ("neo-Hookean", SolidModel::StableNeoHookean, 0.0),
-        ("stvk, damped", SolidModel::Stvk, 0.01),
-        ("neo-Hookean, damped", SolidModel::StableNeoHookean, 0.01),
-    ] {
-        for filter in [HessianFilter::Clamp, HessianFilter::Absolute] {
-            let (rest, tets) = block();
-            let material = SolidMaterial { model, damping, poisson_ratio: 0.4, ..SolidMaterial::rubber() };
-            cases.push(Case {
-                name,
-                rest,
-                body: Body::solid("block", tets, material),
-                filter,
-                distortion: 0.014,
-            });
-        }
-    }
-    cases
+    bodies::small_cases().into_iter().flat_map(with).collect()
 }
 
 fn random_vector(random: &mut fastrand::Rng) -> Vector {
@@ -519,12 +449,13 @@ impl Engine for Watching {
 fn fall(
     case: &Case,
     preconditioner: PreconditionerKind,
+    cg_tolerance: f64,
     targets: usize,
     backend: Option<Box<dyn LinearBackend>>,
 ) -> (Vec<Point>, usize) {
     let mut params = DynamicsParams::default();
     params.newton.preconditioner = preconditioner;
-    params.newton.cg_tolerance = 1e-5;
+    params.newton.cg_tolerance = cg_tolerance;
     let model = DynamicsModel::new(case.rest.clone(), vec![case.body.clone()]).expect("a model");
     let mut dynamics = Dynamics::new(model, params).expect("parameters");
     dynamics.set_backend(backend);
@@ -539,23 +470,34 @@ fn fall(
 }
 
 /// Forces have a noise of 1e-7 of stiffness times length, which moves what only inertia holds: a sheet out of its plane.
+/// Linear solves end at 1e-4, as by default, or at 1e-5 where that is above their rounding.
 #[test]
 fn time_steps_are_those_of_the_cpu_up_to_single_precision() {
-    let twins = || -> Option<Box<dyn LinearBackend>> {
-        Some(Box::new(ConjugateGradients::new("twins".to_owned(), TwinEngine::new())))
-    };
-    for (case, kind) in cases()
-        .into_iter()
-        .zip([PreconditionerKind::BlockJacobi, PreconditionerKind::TwoLevel].into_iter().cycle())
-    {
+    for (k, case) in cases().into_iter().enumerate() {
+        // Of curled strands, the norm of block-Jacobi sees residuals that are rounding: they are far stiffer than soft.
+        let has_groups = k % 2 == 1 || case.name.starts_with("curled");
+        let kind = if has_groups { PreconditionerKind::TwoLevel } else { PreconditionerKind::BlockJacobi };
+        let (tolerance, most) = match case.name {
+            "isotropic" | "woven" => (1e-5, 5e-4),
+            _ => (1e-4, 1e-3),
+        };
+        // Near the solution, a straight strand is as far from it as positions are rounded: its decrease is not that of the model.
+        let more = if case.name.contains("strands") { 2 } else { 4 };
+        let on_twins = |targets: usize| {
+            let backend = Assembling::new(TwinEngine::new());
+            let linearized = Arc::clone(&backend.linearized);
+            let (x, iterations) = fall(&case, kind, tolerance, targets, Some(Box::new(backend)));
+            assert!(*linearized.lock().expect("no panic") >= iterations, "{}: the CPU took over", case.name);
+            (x, iterations)
+        };
         // So many targets that time steps are solved.
-        let [cpu, device] = [None, twins()].map(|backend| fall(&case, kind, 30, backend).0);
+        let [cpu, device] = [fall(&case, kind, tolerance, 30, None), on_twins(30)].map(|run| run.0);
         let apart = cpu.iter().zip(&device).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
         let fallen = cpu.iter().zip(&case.rest).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
-        let [expected, iterations] = [None, twins()].map(|backend| fall(&case, kind, 6, backend).1);
+        let [expected, iterations] = [fall(&case, kind, tolerance, 6, None), on_twins(6)].map(|run| run.1);
         println!("{}: {apart:.1e} m of {fallen:.3} m, {expected} and {iterations} iterations", case.name);
-        assert!(apart <= 5e-4 * fallen, "{}: {apart:e} m of {fallen} m", case.name);
-        assert!(iterations <= expected + expected / 4, "{}: {iterations} and {expected}", case.name);
+        assert!(apart <= most * fallen, "{}: {apart:e} m of {fallen} m", case.name);
+        assert!(iterations <= expected + expected / more, "{}: {iterations} and {expected}", case.name);
     }
 }
 
@@ -582,31 +524,4 @@ fn linear_momentum_is_conserved_to_rounding() {
             assert!(apart < 1e-11 * expected.norm(), "{}: {apart:e} of {:e}", case.name, expected.norm());
         }
     }
-}
-
-/// Strands are assembled by the CPU.
-#[test]
-fn elements_that_no_kernel_knows_are_left_to_the_cpu() {
-    let rest: Vec<Point> =
-        (0..8).map(|k| Point::new(0.02 * f64::from(k), 0.001 * f64::from(k * k), 0.0)).collect();
-    let edges = (0..7).map(|k| [k, k + 1]).collect();
-    let case = Case {
-        name: "strand",
-        rest,
-        body: Body::strands("strand", edges, StrandMaterial::rope()),
-        filter: HessianFilter::Mixed,
-        distortion: 0.0,
-    };
-    let knows = |case: &Case| {
-        let model = DynamicsModel::new(case.rest.clone(), vec![case.body.clone()]).expect("a model");
-        let model = Dynamics::new(model, DynamicsParams::default()).expect("parameters").element_model();
-        let mut backend = ConjugateGradients::new("twins".to_owned(), TwinEngine::new());
-        NewtonBackend::set_model(&mut backend, &model).expect("room")
-    };
-    assert!(!knows(&case) && cases().iter().all(knows));
-    let (cpu, _) = fall(&case, PreconditionerKind::TwoLevel, 6, None);
-    let backend = ConjugateGradients::new("twins".to_owned(), TwinEngine::new());
-    let (other, _) = fall(&case, PreconditionerKind::TwoLevel, 6, Some(Box::new(backend)));
-    let apart = cpu.iter().zip(&other).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
-    assert!(apart < 1e-6, "{apart:e} m");
 }

@@ -21,7 +21,7 @@
 
 use super::element::{Element, Linearization, Start};
 use super::filter::Filter;
-use crate::linear::assembly::ElementModel;
+use crate::linear::assembly::{ElementModel, StrandElement};
 use crate::material::rest_shape::RestShape;
 use crate::material::strand::StrandMaterial;
 use bowknot_geometry::Vector;
@@ -126,7 +126,14 @@ impl Element<2> for StrandEdge {
     }
 
     fn describe(&self, model: &mut ElementModel) {
-        model.strand_elements += 1;
+        let [a, b] = self.nodes;
+        model.strands.push(StrandElement {
+            nodes: [u32::MAX, a, b],
+            inverse_lengths: [0.0, 1.0 / self.length],
+            stiffness: self.stiffness * self.length,
+            rest: 1.0,
+            damping: self.damping,
+        });
     }
 }
 
@@ -241,7 +248,13 @@ impl Element<3> for StrandTurn {
     }
 
     fn describe(&self, model: &mut ElementModel) {
-        model.strand_elements += 1;
+        model.strands.push(StrandElement {
+            nodes: self.nodes,
+            inverse_lengths: self.inverse_lengths,
+            stiffness: self.stiffness,
+            rest: self.rest,
+            damping: self.damping,
+        });
     }
 }
 

@@ -28,8 +28,8 @@ pub struct ElementModel {
     pub bends: Vec<BendElement>,
     /// Tetrahedra of solids.
     pub tetrahedra: Vec<TetrahedronElement>,
-    /// Number of elements of strands.
-    pub strand_elements: usize,
+    /// Edges and turns of strands.
+    pub strands: Vec<StrandElement>,
 }
 
 /// A triangle of constant strain E = U - I with F = R U; its energy per area is c11/2 E11^2 + c12 E11 E22 + c22/2
@@ -89,6 +89,28 @@ pub struct TetrahedronElement {
     pub constants: [f64; 2],
     /// Damping time times mu [Pa s].
     pub viscosity: f64,
+}
+
+/// An edge of a strand, or a turn between two edges: energy k/2 (|w| - w0)^2 with w = c (x2 - x1) - a (x1 - x0).
+///
+/// | element | w | k | w0 | damping, times the damping time and 1 / dt |
+/// |---|---|---|---|---|
+/// | edge | x2 - x1 over the rest length, a = 0 | EA times the rest length | 1 | k/2 ((w^2 - ws^2)/2)^2 |
+/// | turn | jump of the tangent | EI / M | that at rest | k/2 (w - ws)^2 |
+///
+/// with ws at the start of the time step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StrandElement {
+    /// The nodes 0, 1 and 2; the first is `u32::MAX` for an edge.
+    pub nodes: [u32; 3],
+    /// a and c: the inverse rest lengths [1/m].
+    pub inverse_lengths: [f64; 2],
+    /// k [N m].
+    pub stiffness: f64,
+    /// w0 [1].
+    pub rest: f64,
+    /// Damping time [s].
+    pub damping: f64,
 }
 
 /// Springs of a matrix.

@@ -10,7 +10,7 @@ struct Progress {
 
 struct PatchSlot {
     node: u32,
-    inverse: array<f32, 6>,
+    factors: array<f32, 6>,
     arm: array<f32, 3>,
     padding: array<u32, 2>,
 }

@@ -1,11 +1,11 @@
 //! The buffers of a model on an engine, and the dispatches that assemble a matrix.
 
-use super::layout::ElementParams;
+use super::layout::{Curvature, ElementParams};
 use super::plan::Plan;
 use crate::cpu;
 use crate::engine::Engine;
 use crate::error::GpuError;
-use crate::linear::Buffers;
+use crate::linear::{Buffers, StrandHessian};
 use crate::recording::{BufferId, Recording};
 use crate::stages::{self, Stage};
 use bytemuck::Pod;
@@ -18,6 +18,9 @@ pub struct AssemblyBuffers {
     membranes: BufferId,
     bends: BufferId,
     tetrahedra: BufferId,
+    strands: BufferId,
+    curvatures: BufferId,
+    strand_rows: BufferId,
     sources: BufferId,
     blocks: BufferId,
     entries: Written,
@@ -57,6 +60,7 @@ pub struct ElementBuffers {
     pub membranes: BufferId,
     pub bends: BufferId,
     pub tetrahedra: BufferId,
+    pub strands: BufferId,
 }
 
 impl Written {
@@ -89,6 +93,9 @@ impl AssemblyBuffers {
             membranes: make("triangles", size_of_val(plan.membranes.as_slice()) / 4)?,
             bends: make("bends", (size_of_val(plan.bends.as_slice()) / 4).max(48))?,
             tetrahedra: make("tetrahedra", size_of_val(plan.tetrahedra.as_slice()) / 4)?,
+            strands: make("strands", size_of_val(plan.strands.as_slice()) / 4)?,
+            curvatures: make("curvatures of strands", size_of::<Curvature>() / 4 * plan.strands.len())?,
+            strand_rows: make("strands of nodes", plan.strand_rows.len())?,
             sources: make("sources of blocks", plan.sources.len())?,
             blocks: make("blocks of elements", 9 * plan.blocks)?,
             entries: written(make("entries of the matrix", 4 * plan.entries.len())?),
@@ -101,6 +108,8 @@ impl AssemblyBuffers {
         recording.write(buffers.membranes, &buffers.plan.membranes);
         recording.write(buffers.bends, &buffers.plan.bends);
         recording.write(buffers.tetrahedra, &buffers.plan.tetrahedra);
+        recording.write(buffers.strands, &buffers.plan.strands);
+        recording.write(buffers.strand_rows, &buffers.plan.strand_rows);
         recording.write(buffers.sources, &buffers.plan.sources);
         engine.run(&recording, &[])?;
         Ok(buffers)
@@ -108,14 +117,27 @@ impl AssemblyBuffers {
 
     /// The elements.
     pub fn elements(&self) -> ElementBuffers {
-        ElementBuffers { membranes: self.membranes, bends: self.bends, tetrahedra: self.tetrahedra }
+        let Self { membranes, bends, tetrahedra, strands, .. } = *self;
+        ElementBuffers { membranes, bends, tetrahedra, strands }
+    }
+
+    /// The Hessian of strands that the last matrix was made with; None if there are no strands.
+    pub fn strands(&self) -> Option<StrandHessian> {
+        let rows = self.plan.strand_nodes;
+        (rows > 0).then_some(StrandHessian {
+            strands: self.strands,
+            curvatures: self.curvatures,
+            rows: self.strand_rows,
+            count: rows,
+        })
     }
 
     /// Frees the buffers.
     pub fn free<E: Engine>(self, engine: &mut E) {
         let written = [self.entries, self.row_sums].map(|written| written.buffer);
         let others = [self.membranes, self.bends, self.tetrahedra, self.sources, self.blocks, self.diagonal];
-        written.into_iter().chain(others).for_each(|buffer| engine.free(buffer));
+        let strands = [self.strands, self.curvatures, self.strand_rows];
+        written.into_iter().chain(others).chain(strands).for_each(|buffer| engine.free(buffer));
     }
 
     /// The sums of rows, six numbers per node.
@@ -182,16 +204,19 @@ impl AssemblyBuffers {
         let (bends, tetrahedra) =
             (3 * plan.membranes.len(), 3 * plan.membranes.len() + 15 * plan.bends.len());
         let damped = if plan.has_damped_tetrahedra() { plan.tetrahedra.len() } else { 0 };
-        let kinds: [(&'static Stage, BufferId, usize, usize); 4] = [
+        let strands = tetrahedra + 6 * plan.tetrahedra.len();
+        let kinds: [(&'static Stage, BufferId, usize, usize); 5] = [
             (&stages::MEMBRANE, self.membranes, plan.membranes.len(), 0),
             (&stages::BEND, self.bends, plan.bends.len(), bends),
             (&stages::TETRAHEDRON, self.tetrahedra, plan.tetrahedra.len(), tetrahedra),
             (&stages::DAMPED_TETRAHEDRON, self.tetrahedra, damped, tetrahedra),
+            (&stages::STRAND, self.strands, plan.strands.len(), strands),
         ];
         for (stage, buffer, elements, first_block) in kinds {
+            let bound = [buffer, place.positions, place.start, self.blocks, self.curvatures];
             recording.dispatch(
                 stage,
-                &[buffer, place.positions, place.start, self.blocks],
+                &bound[..stage.bindings.len()],
                 ElementParams {
                     elements: elements as u32,
                     first_block: first_block as u32,

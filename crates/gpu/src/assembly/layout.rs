@@ -55,6 +55,27 @@ pub struct Tetrahedron {
     pub padding: u32,
 }
 
+/// An edge or a turn of a strand, see [`bowknot_dynamics::StrandElement`].
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct Strand {
+    /// The first two are the same for an edge.
+    pub nodes: [u32; 3],
+    pub rest: f32,
+    pub inverse_lengths: [f32; 2],
+    pub stiffness: f32,
+    pub damping: f32,
+}
+
+/// The second derivative of a [`Strand`] by w: across I + axial along along^T.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct Curvature {
+    pub along: [f32; 3],
+    pub axial: f32,
+    pub across: f32,
+}
+
 /// A block of the matrix beside its diagonal: where it stands and what is summed to it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]

@@ -20,5 +20,5 @@ pub(crate) use buffers::{AssemblyBuffers, AssemblyPlace, ElementBuffers, Written
 pub(crate) use grid::StateGrid;
 pub(crate) use groups::GroupBuffers;
 pub(crate) use hierarchy::Hierarchy;
-pub(crate) use layout::{Bend, ElementParams, Entry, Frame, Membrane, Part, Tetrahedron};
+pub(crate) use layout::{Bend, Curvature, ElementParams, Entry, Frame, Membrane, Part, Strand, Tetrahedron};
 pub(crate) use plan::Plan;

@@ -1,10 +1,11 @@
 //! What the host prepares once for a model: elements, and which of their blocks each block of the matrix sums.
 
-use super::layout::{Bend, Entry, Membrane, Tetrahedron};
+use super::layout::{Bend, Entry, Membrane, Strand, Tetrahedron};
 use crate::layout::NONE;
 use crate::linear::{PackedMatrix, SLICE};
 use bowknot_dynamics::{ElementModel, LinearSystem, SolidKind, SparseRows};
 use nalgebra::Matrix3;
+use std::collections::BTreeMap;
 
 /// The plan of a model.
 #[derive(Debug, Default)]
@@ -13,6 +14,12 @@ pub struct Plan {
     pub membranes: Vec<Membrane>,
     pub bends: Vec<Bend>,
     pub tetrahedra: Vec<Tetrahedron>,
+    pub strands: Vec<Strand>,
+    /// Of each node with strands the node, where its entries in this vector begin and end; then the entries: three times a
+    /// strand plus the place of the node in it.
+    pub strand_rows: Vec<u32>,
+    /// Nodes with strands.
+    pub strand_nodes: usize,
     /// Blocks that the elements write.
     pub blocks: usize,
     /// In the order in which they lie in the matrix. Flat bending is left out.
@@ -27,11 +34,6 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Whether the kernels know all elements: those of strands they do not.
-    pub fn covers(model: &ElementModel) -> bool {
-        model.strand_elements == 0
-    }
-
     /// Whether some tetrahedron is damped.
     pub fn has_damped_tetrahedra(&self) -> bool {
         self.tetrahedra.iter().any(|tet| tet.viscous_mu > 0.0)
@@ -39,12 +41,13 @@ impl Plan {
 
     pub fn new(model: &ElementModel) -> Self {
         let nodes = model.rest.len();
-        let structure = structure(model);
+        let mut structure = structure(model);
         let mut plan = Self {
             nodes,
             membranes: model.membranes.iter().map(membrane).collect(),
             bends: model.bends.iter().map(bend).collect(),
             tetrahedra: model.tetrahedra.iter().map(tetrahedron).collect(),
+            strands: model.strands.iter().map(strand).collect(),
             ..Self::default()
         };
         // The blocks of an element couple its nodes a and b for a < b, in this order.
@@ -64,6 +67,7 @@ impl Plan {
         plan.membranes.iter().for_each(|element| add(&element.nodes));
         plan.bends.iter().for_each(|element| add(&element.nodes));
         plan.tetrahedra.iter().for_each(|element| add(&element.nodes));
+        model.strands.iter().for_each(|element| add(&element.nodes));
         plan.blocks = next as usize;
 
         let mut places = vec![0; model.columns.len()];
@@ -89,8 +93,27 @@ impl Plan {
             });
             plan.sources.extend(sum);
         }
+        plan.add_strand_rows(model, &mut structure);
         plan.structure = structure;
         plan
+    }
+
+    /// Lists the strands of each node, whose rows the matrix leaves to them.
+    fn add_strand_rows(&mut self, model: &ElementModel, structure: &mut PackedMatrix) {
+        let mut rows: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+        for (e, strand) in (0..).zip(&model.strands) {
+            for (place, &node) in (0..).zip(&strand.nodes).filter(|(_, node)| **node != NONE) {
+                rows.entry(node).or_default().push(3 * e + place);
+            }
+        }
+        self.strand_nodes = rows.len();
+        let mut end = 3 * rows.len() as u32;
+        for (&node, row) in &rows {
+            structure.slices[node as usize / SLICE][3] |= 1 << (node as usize % SLICE);
+            self.strand_rows.extend([node, end, end + row.len() as u32]);
+            end += row.len() as u32;
+        }
+        self.strand_rows.extend(rows.values().flatten());
     }
 
     /// The entries with flat bending, and the words of the matrix with its scalar entries, which `bending` and
@@ -183,5 +206,16 @@ fn tetrahedron(element: &bowknot_dynamics::TetrahedronElement) -> Tetrahedron {
         viscous_lambda: (time * lame[0]) as f32,
         viscous_mu: (time * lame[1]) as f32,
         padding: 0,
+    }
+}
+
+fn strand(element: &bowknot_dynamics::StrandElement) -> Strand {
+    let [a, b, c] = element.nodes;
+    Strand {
+        nodes: [if a == NONE { b } else { a }, b, c],
+        rest: element.rest as f32,
+        inverse_lengths: singles(&[element.inverse_lengths]),
+        stiffness: element.stiffness as f32,
+        damping: element.damping as f32,
     }
 }

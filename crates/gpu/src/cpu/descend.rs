@@ -40,12 +40,11 @@ fn is_positive(number: f32) -> bool {
     number > 0.0 && number.is_finite()
 }
 
-fn times_inverse(m: [f32; 6], r: [f32; 3]) -> [f32; 3] {
-    [
-        m[0] * r[0] + m[1] * r[1] + m[2] * r[2],
-        m[1] * r[0] + m[3] * r[1] + m[4] * r[2],
-        m[2] * r[0] + m[4] * r[1] + m[5] * r[2],
-    ]
+fn solve(f: [f32; 6], r: [f32; 3]) -> [f32; 3] {
+    let y = r[1] - f[0] * r[0];
+    let z = f[5] * (r[2] - f[1] * r[0] - f[2] * y);
+    let y_solved = f[4] * y - f[2] * z;
+    [f[3] * r[0] - f[0] * y_solved - f[1] * z, y_solved, z]
 }
 
 fn first_three([x, y, z, _]: [f32; 4]) -> [f32; 3] {
@@ -102,7 +101,7 @@ pub fn descend(
                     }
                     solution[nodes + i] = padded(r[t]);
                 }
-                z[t] = times_inverse(slot.inverse, r[t]);
+                z[t] = solve(slot.factors, r[t]);
                 squares[t] += dot(r[t], z[t]);
             }
             if k < params.grouped as usize {

@@ -5,6 +5,9 @@ use crate::layout::NONE;
 use crate::linear::{PatchSlot, Spring};
 use bytemuck::{Pod, Zeroable};
 
+/// Smallest pivot as a share of the trace.
+const MIN_PIVOT: f32 = 2e-7;
+
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct Params {
@@ -41,21 +44,12 @@ pub fn invert(
         let trace = m[0] + m[3] + m[5];
         let unit = 1.0 / trace;
         let m = m.map(|number| number * unit);
-        let a = m[3] * m[5] - m[4] * m[4];
-        let b = m[2] * m[4] - m[1] * m[5];
-        let c = m[1] * m[4] - m[2] * m[3];
-        let determinant = m[0] * a + m[1] * b + m[2] * c;
-        slot.inverse = [unit, 0.0, 0.0, unit, 0.0, unit];
-        if determinant > 1e-12 {
-            let factor = unit / determinant;
-            slot.inverse = [
-                factor * a,
-                factor * b,
-                factor * c,
-                factor * (m[0] * m[5] - m[2] * m[2]),
-                factor * (m[1] * m[2] - m[0] * m[4]),
-                factor * (m[0] * m[3] - m[1] * m[1]),
-            ];
-        }
+        let first = m[0].max(MIN_PIVOT);
+        let (xy, xz) = (m[1] / first, m[2] / first);
+        let second = (m[3] - xy * m[1]).max(MIN_PIVOT);
+        let rest = m[4] - xy * m[2];
+        let yz = rest / second;
+        let third = (m[5] - xz * m[2] - yz * rest).max(MIN_PIVOT);
+        slot.factors = [xy, xz, yz, unit / first, unit / second, unit / third];
     }
 }

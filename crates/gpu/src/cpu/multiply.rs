@@ -44,22 +44,29 @@ impl Matrix<'_> {
         [0, 1, 2].map(|k| f32::from_bits(self.words[at + k * SLICE]))
     }
 
-    fn row(&self, has_springs: bool, i: usize, direction: &[[f32; 4]]) -> [f32; 3] {
+    /// Row `i` times the direction, where `image` is the product of strands.
+    fn row(&self, has_springs: bool, i: usize, direction: &[[f32; 4]], image: &[[f32; 4]]) -> [f32; 3] {
         let at_node = |j: u32| {
             let [x, y, z, _] = direction[j as usize];
             [x, y, z]
         };
-        let [start, blocks, scalars, _] = self.slices[i / SLICE];
+        let [start, blocks, scalars, strands] = self.slices[i / SLICE];
         let own = at_node(i as u32);
+        let has_strands = strands >> (i % SLICE) & 1 == 1;
         let mut sum = [0.0; 3];
+        if has_strands {
+            let [x, y, z, _] = image[i];
+            sum = [x, y, z];
+        }
         let mut at = start as usize + i % SLICE;
-        for k in 0..blocks {
+        for k in 0..if has_strands { 1 } else { blocks } {
             let x = if k > 0 { subtracted(at_node(self.words[at]), own) } else { own };
             sum = added(sum, scaled(self.column_of_block(at + SLICE), x[0]));
             sum = added(sum, scaled(self.column_of_block(at + 4 * SLICE), x[1]));
             sum = added(sum, scaled(self.column_of_block(at + 7 * SLICE), x[2]));
             at += BLOCK_WORDS * SLICE;
         }
+        at = start as usize + i % SLICE + BLOCK_WORDS * SLICE * blocks as usize;
         for _ in 0..scalars {
             let value = f32::from_bits(self.words[at + SLICE]);
             sum = added(sum, scaled(subtracted(at_node(self.words[at]), own), value));
@@ -92,7 +99,7 @@ pub fn multiply(
         *sum = sum_of_threads(std::array::from_fn(|t| {
             let mut curvature = 0.0;
             for i in (THREADS * group + t..params.nodes as usize).step_by(THREADS * workgroups) {
-                let product = matrix.row(params.springs > 0, i, direction);
+                let product = matrix.row(params.springs > 0, i, direction, image);
                 let [x, y, z] = product;
                 image[i] = [x, y, z, 0.0];
                 let [px, py, pz, _] = direction[i];

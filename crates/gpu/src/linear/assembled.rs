@@ -50,9 +50,6 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
                 groups.free(&mut self.engine);
             }
         }
-        if !Plan::covers(model) {
-            return Ok(false);
-        }
         self.assembly = Some(Assembly {
             buffers: AssemblyBuffers::new(&mut self.engine, Plan::new(model))?,
             model: model.clone(),
@@ -88,7 +85,8 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
         let structure = &assembly.buffers.plan.structure;
         let sizes = Sizes::new(assembly.model.rest.len(), structure, &assembly.patches);
         let buffers = self.pool.make(&mut self.engine, &sizes, structure, assembly.domains())?;
-        self.recorder = Some(Recorder { buffers, sizes });
+        let strands = assembly.buffers.strands();
+        self.recorder = Some(Recorder { buffers, sizes, strands });
         Ok(Some(buffers))
     }
 
@@ -106,7 +104,8 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
             structure.set_springs(springs.springs, springs.starts, springs.entries);
         }
         self.make_room()?;
-        let (Some(assembly), Some(Recorder { buffers, sizes })) = (&mut self.assembly, &self.recorder) else {
+        let (Some(assembly), Some(Recorder { buffers, sizes, .. })) = (&mut self.assembly, &self.recorder)
+        else {
             return Ok(());
         };
         let structure = &assembly.buffers.plan.structure;

@@ -142,19 +142,22 @@ fn frames_of(system: &LinearSystem<'_>, slots: &[Option<u32>]) -> ([Frame; CHILD
 
 fn slot_of(system: &LinearSystem<'_>, places: &[Option<Place>], node: Option<u32>) -> PatchSlot {
     let Some(node) = node else { return PatchSlot::EMPTY };
-    let inverse = inverse_of_block(system, node as usize);
+    let factors = factors_of_block(system, node as usize);
     let arm = places[node as usize].map_or([0.0; 3], |place| <[f64; 3]>::from(place.arm).map(|x| x as f32));
-    PatchSlot { node, inverse, arm, padding: [0; 2] }
+    PatchSlot { node, factors, arm, padding: [0; 2] }
 }
 
-/// Inverse of the diagonal block of a node: xx, xy, xz, yy, yz, zz.
-fn inverse_of_block(system: &LinearSystem<'_>, node: usize) -> [f32; 6] {
+/// The diagonal block of a node as a product L D L^T, see [`PatchSlot::factors`].
+fn factors_of_block(system: &LinearSystem<'_>, node: usize) -> [f32; 6] {
     // The smallest eigenvalue is at least the inertia of the node: the block is singular only if the input is not finite.
     // Conjugate gradients detect that.
-    let block = system.diagonal_with_springs(node);
-    let m = block.try_inverse().unwrap_or_else(Matrix3::identity);
-    let half = |i: usize, j: usize| (0.5 * (m[(i, j)] + m[(j, i)])) as f32;
-    [half(0, 0), half(0, 1), half(0, 2), half(1, 1), half(1, 2), half(2, 2)]
+    let m = system.diagonal_with_springs(node);
+    let (xy, xz) = (m[(1, 0)] / m[(0, 0)], m[(2, 0)] / m[(0, 0)]);
+    let second = m[(1, 1)] - xy * m[(1, 0)];
+    let rest = m[(2, 1)] - xy * m[(2, 0)];
+    let yz = rest / second;
+    let third = m[(2, 2)] - xz * m[(2, 0)] - yz * rest;
+    [xy, xz, yz, 1.0 / m[(0, 0)], 1.0 / second, 1.0 / third].map(|number| number as f32)
 }
 
 /// Calls `visit` with every entry of row `i` of H.

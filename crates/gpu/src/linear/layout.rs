@@ -21,15 +21,15 @@ pub const MOST_LEVELS: usize = 8;
 pub struct PatchSlot {
     /// [`crate::NONE`] for an empty slot.
     pub node: u32,
-    /// Inverse of the diagonal block: xx, xy, xz, yy, yz, zz.
-    pub inverse: [f32; 6],
+    /// The diagonal block as a product L D L^T: L_21, L_31, L_32, then the inverses of D.
+    pub factors: [f32; 6],
     /// From the center of the group to the node, over the size of the group.
     pub arm: [f32; 3],
     pub padding: [u32; 2],
 }
 
 impl PatchSlot {
-    pub const EMPTY: Self = Self { node: u32::MAX, inverse: [0.0; 6], arm: [0.0; 3], padding: [0; 2] };
+    pub const EMPTY: Self = Self { node: u32::MAX, factors: [0.0; 6], arm: [0.0; 3], padding: [0; 2] };
 }
 
 /// Eight groups that move as rigid bodies.

@@ -23,7 +23,8 @@ pub const BLOCK_WORDS: usize = 10;
 /// The matrix, packed.
 #[derive(Debug, Default)]
 pub struct PackedMatrix {
-    /// Of each slice: where its words begin, blocks per row, scalar entries per row, 0.
+    /// Of each slice: where its words begin, blocks per row, scalar entries per row, and a bit for each row that is the
+    /// sum of a row plus the product of strands, with blocks for the preconditioner alone.
     pub slices: Vec<[u32; 4]>,
     pub words: Vec<u32>,
     pub springs: Vec<Spring>,

@@ -4,7 +4,7 @@ use super::buffers::{Buffers, MOST_COARSE_WORKGROUPS, MOST_NORMS, Sizes};
 use super::layout::{CHILDREN, MOST_LEVELS, Progress};
 use crate::cpu;
 use crate::cpu::sum::{MOST_WORKGROUPS, THREADS};
-use crate::recording::Recording;
+use crate::recording::{BufferId, Recording};
 use crate::stages;
 
 /// The dispatches of a system. With other buffers in place of those of the system they work on other vectors.
@@ -12,6 +12,18 @@ use crate::stages;
 pub struct Recorder {
     pub buffers: Buffers,
     pub sizes: Sizes,
+    /// None where the blocks of the matrix are all there is.
+    pub strands: Option<StrandHessian>,
+}
+
+/// The Hessian of strands, element by element, see `strand_product.wgsl`.
+#[derive(Clone, Copy, Debug)]
+pub struct StrandHessian {
+    pub strands: BufferId,
+    pub curvatures: BufferId,
+    pub rows: BufferId,
+    /// Nodes with strands.
+    pub count: usize,
 }
 
 impl Recorder {
@@ -55,6 +67,14 @@ impl Recorder {
             cpu::react::Params { springs: s.springs as u32 },
             s.springs,
         );
+        if let Some(strands) = self.strands {
+            recording.dispatch(
+                &stages::STRAND_PRODUCT,
+                &[strands.strands, strands.curvatures, strands.rows, b.direction, b.image, b.progress],
+                cpu::strand_product::Params { rows: strands.count as u32 },
+                strands.count,
+            );
+        }
         recording.dispatch(
             &stages::MULTIPLY,
             &[b.slices, b.words, b.spring_words, b.reactions, b.direction, b.image, b.sums, b.progress],

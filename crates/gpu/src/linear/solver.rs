@@ -66,7 +66,7 @@ impl<E: Engine> ConjugateGradients<E> {
         let sizes = Sizes::new(system.free.len(), &matrix, &patches);
         self.recorder = None;
         let buffers = self.pool.upload(&mut self.engine, &sizes, &matrix, &preconditioner)?;
-        self.recorder = Some(Recorder { buffers, sizes });
+        self.recorder = Some(Recorder { buffers, sizes, strands: None });
         Ok(())
     }
 

@@ -17,6 +17,10 @@ use std::fmt::Debug;
 /// Share of the residual that a round must take away at least.
 const MIN_GAIN: f64 = 0.5;
 
+/// A residual up to so many times the tolerance is taken where rounding allows no smaller one: to begin again on the CPU would
+/// cost more than it gains.
+const MAX_EXCESS: f64 = 2.0;
+
 /// The solve without a model.
 const NOTHING: NewtonSolve = NewtonSolve {
     info: CgInfo { iterations: 0, residual: 0.0, converged: true },
@@ -86,8 +90,9 @@ impl<E: Engine> Rounds<'_, E> {
                 // A start that was small enough by its own sums may be above the goal by the product with H.
                 let gains =
                     norm <= MIN_GAIN * MIN_GAIN * before || before <= goal || limits.max_iterations == 0;
-                let stalled = norm > goal && !gains || !norm.is_finite();
-                if norm <= goal || stalled || self.left == 0 {
+                let is_at_end = norm > goal && !gains || !norm.is_finite();
+                let stalled = is_at_end && !(norm <= MAX_EXCESS * MAX_EXCESS * goal);
+                if norm <= goal || is_at_end || self.left == 0 {
                     let residual = (norm / relative).sqrt();
                     let iterations = solve.iterations as usize;
                     let info = CgInfo { iterations, residual, converged: norm <= goal };

@@ -4,8 +4,8 @@ use super::layout::Pair;
 use crate::layout::NONE;
 use bowknot_dynamics::ElementModel;
 
-/// Nodes of an element of each kind, in the order in which their gradients lie: membranes, bends, tetrahedra.
-pub const NODES: [usize; 3] = [3, 6, 4];
+/// Nodes of an element of each kind, in the order in which their gradients lie: membranes, bends, tetrahedra, strands.
+pub const NODES: [usize; 4] = [3, 6, 4, 3];
 
 /// The lists of a model.
 #[derive(Debug, Default)]
@@ -31,6 +31,7 @@ impl Lists {
         model.membranes.iter().for_each(|element| add(&element.nodes));
         model.bends.iter().for_each(|element| add(&element.nodes));
         model.tetrahedra.iter().for_each(|element| add(&element.nodes));
+        model.strands.iter().for_each(|element| add(&element.nodes));
         let mut end = 0;
         let source_ranges = sums.iter().map(|sum| {
             let first = end;

@@ -45,8 +45,8 @@ pub struct PotentialChange {
 pub struct Potential {
     nodes: usize,
     elements: ElementBuffers,
-    /// Numbers of membranes, bends and tetrahedra.
-    counts: [usize; 3],
+    /// Numbers of membranes, bends, tetrahedra and strands.
+    counts: [usize; 4],
     /// Of each node: its first source and their end.
     source_ranges: Vec<[u32; 2]>,
     /// Numbers of K that were written last.
@@ -75,7 +75,7 @@ impl Potential {
         elements: ElementBuffers,
     ) -> Result<Self, GpuError> {
         let nodes = model.rest.len();
-        let counts = [model.membranes.len(), model.bends.len(), model.tetrahedra.len()];
+        let counts = [model.membranes.len(), model.bends.len(), model.tetrahedra.len(), model.strands.len()];
         let lists = Lists::new(model);
         let gradients: usize = counts.iter().zip(NODES).map(|(count, nodes)| count * nodes).sum();
         let parts = part_count(counts, nodes);
@@ -149,11 +149,12 @@ impl Potential {
 
     /// Records the gradient (R + K) d + c + sum of e' at some positions: `vec4<f32>` per node [N, N].
     pub fn record_gradient(&self, at: Places, gradient: BufferId, recording: &mut Recording) {
-        let ElementBuffers { membranes, bends, tetrahedra } = self.elements;
-        let kinds: [(&'static Stage, BufferId); 3] = [
+        let ElementBuffers { membranes, bends, tetrahedra, strands } = self.elements;
+        let kinds: [(&'static Stage, BufferId); 4] = [
             (&stages::MEMBRANE_GRADIENT, membranes),
             (&stages::BEND_GRADIENT, bends),
             (&stages::TETRAHEDRON_GRADIENT, tetrahedra),
+            (&stages::STRAND_GRADIENT, strands),
         ];
         let mut first = 0;
         for (((stage, buffer), elements), nodes) in kinds.into_iter().zip(self.counts).zip(NODES) {
@@ -196,13 +197,14 @@ impl Potential {
         quantum: f32,
         recording: &mut Recording,
     ) {
-        let ElementBuffers { membranes, bends, tetrahedra } = self.elements;
+        let ElementBuffers { membranes, bends, tetrahedra, strands } = self.elements;
         let states = [reference, trial, start, self.parts];
         let with = |first: &[BufferId]| [first, &states].concat();
-        let kinds: [(&'static Stage, Vec<BufferId>); 4] = [
+        let kinds: [(&'static Stage, Vec<BufferId>); 5] = [
             (&stages::MEMBRANE_ENERGY, with(&[membranes])),
             (&stages::BEND_ENERGY, with(&[bends])),
             (&stages::TETRAHEDRON_ENERGY, with(&[tetrahedra])),
+            (&stages::STRAND_ENERGY, with(&[strands])),
             (&stages::NODE_ENERGY, with(&[self.ranges, self.pairs, self.terms.buffer])),
         ];
         let mut first = 0;
@@ -257,8 +259,8 @@ impl Potential {
     }
 }
 
-/// Parts of the energies of elements of three kinds and of nodes.
-fn part_count(counts: [usize; 3], nodes: usize) -> usize {
+/// Parts of the energies of elements by kind and of nodes.
+fn part_count(counts: [usize; 4], nodes: usize) -> usize {
     counts.map(workgroups).iter().sum::<usize>() + workgroups(nodes)
 }
 

@@ -9,6 +9,7 @@ const BLOCKS: &str = include_str!("../../shader/shared/blocks.wgsl");
 pub(super) const TRIANGLE: &str = include_str!("../../shader/shared/triangle.wgsl");
 pub(super) const NORMAL: &str = include_str!("../../shader/shared/normal.wgsl");
 pub(super) const STRAIN: &str = include_str!("../../shader/shared/strain.wgsl");
+pub(super) const STRANDS: &str = include_str!("../../shader/shared/strand.wgsl");
 const SOLID: &str = include_str!("../../shader/shared/solid.wgsl");
 const EIGEN: &str = include_str!("../../shader/shared/eigen.wgsl");
 const GROUPS: &str = include_str!("../../shader/shared/groups.wgsl");
@@ -44,6 +45,14 @@ pub(crate) static DAMPED_TETRAHEDRON: Stage = Stage {
     workgroup: 64,
     bindings: &[Read, Read, Read, Write],
     twin: cpu::damped_tetrahedron::bound,
+};
+
+pub(crate) static STRAND: Stage = Stage {
+    name: "strand",
+    parts: &[ELEMENTS, BLOCKS, STRANDS, include_str!("../../shader/strand.wgsl")],
+    workgroup: 64,
+    bindings: &[Read, Read, Read, Write, Write],
+    twin: cpu::strand::bound,
 };
 
 pub(crate) static ASSEMBLE: Stage = Stage {

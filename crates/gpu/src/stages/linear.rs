@@ -1,5 +1,6 @@
 //! The stages of linear solves.
 
+use super::assembly::STRANDS;
 use super::stage::Access::{Read, Write};
 use super::stage::Stage;
 use crate::cpu;
@@ -14,6 +15,14 @@ pub(crate) static REACT: Stage = Stage {
     workgroup: 64,
     bindings: &[Read, Read, Write],
     twin: cpu::react::bound,
+};
+
+pub(crate) static STRAND_PRODUCT: Stage = Stage {
+    name: "strand_product",
+    parts: &[LINEAR, STRANDS, include_str!("../../shader/strand_product.wgsl")],
+    workgroup: 64,
+    bindings: &[Read, Read, Read, Read, Write, Write],
+    twin: cpu::strand_product::bound,
 };
 
 pub(crate) static MULTIPLY: Stage = Stage {

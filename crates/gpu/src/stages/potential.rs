@@ -1,6 +1,6 @@
 //! The stages that compute the potential of the bodies and its gradient.
 
-use super::assembly::{ELEMENTS, NORMAL, STRAIN, TRIANGLE};
+use super::assembly::{ELEMENTS, NORMAL, STRAIN, STRANDS, TRIANGLE};
 use super::stage::Access::{Read, Write};
 use super::stage::Stage;
 use crate::cpu;
@@ -33,6 +33,14 @@ pub(crate) static TETRAHEDRON_GRADIENT: Stage = Stage {
     workgroup: 64,
     bindings: &[Read, Read, Read, Write],
     twin: cpu::tetrahedron_gradient::bound,
+};
+
+pub(crate) static STRAND_GRADIENT: Stage = Stage {
+    name: "strand_gradient",
+    parts: &[ELEMENTS, GRADIENTS, STRANDS, include_str!("../../shader/strand_gradient.wgsl")],
+    workgroup: 64,
+    bindings: &[Read, Read, Read, Write],
+    twin: cpu::strand_gradient::bound,
 };
 
 pub(crate) static GATHER_GRADIENT: Stage = Stage {
@@ -72,6 +80,14 @@ pub(crate) static TETRAHEDRON_ENERGY: Stage = Stage {
     workgroup: 64,
     bindings: &[Read, Read, Read, Read, Write],
     twin: cpu::tetrahedron_energy::bound,
+};
+
+pub(crate) static STRAND_ENERGY: Stage = Stage {
+    name: "strand_energy",
+    parts: &[ELEMENTS, PARTS, ENERGIES, STRANDS, include_str!("../../shader/strand_energy.wgsl")],
+    workgroup: 64,
+    bindings: &[Read, Read, Read, Read, Write],
+    twin: cpu::strand_energy::bound,
 };
 
 pub(crate) static NODE_ENERGY: Stage = Stage {

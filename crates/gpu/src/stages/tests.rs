@@ -72,7 +72,7 @@ fn assert_structs(module: &naga::Module, structs: &[Struct]) {
 #[test]
 fn structs_of_linear_solves_lie_alike_on_both_sides() {
     let structs = [
-        offsets!(linear::PatchSlot: node, inverse, arm, padding),
+        offsets!(linear::PatchSlot: node, factors, arm, padding),
         offsets!(linear::Domain: inverse, links),
         offsets!(linear::Spring: nodes, weights, hessian),
         offsets!(linear::Progress: moving, iterations, goal),
@@ -100,6 +100,9 @@ fn structs_of_assembly_lie_alike_on_both_sides() {
         offsets!(assembly::ElementParams: elements, first_block, absolute, rate, quantum),
     ];
     assert_structs(&module_of("membrane"), &structs);
+    let strand = offsets!(assembly::Strand: nodes, rest, inverse_lengths, stiffness, damping);
+    let curvature = offsets!(assembly::Curvature: along, axial, across);
+    assert_structs(&module_of("strand"), &[strand, curvature]);
     assert_structs(&module_of("frame"), &[offsets!(assembly::Frame: center, size, moment, held)]);
     assert_structs(&module_of("coarsen"), &[offsets!(assembly::Part: block, a, b, both)]);
     assert_structs(&module_of("assemble"), &[offsets!(assembly::Entry: at, first, count, bending)]);

@@ -2,128 +2,16 @@
 
 use crate::assembly::StateGrid;
 use crate::potential::Places;
-use bowknot_dynamics::{
-    Body, ClothMaterial, Dynamics, DynamicsModel, DynamicsParams, ElementModel, RestShape, SolidMaterial,
-    SolidModel, StepTerms,
-};
+use bodies::Case;
+use bowknot_dynamics::{Dynamics, DynamicsModel, DynamicsParams, ElementModel, StepTerms};
 use bowknot_geometry::{Point, Vector};
 use std::collections::BTreeMap;
 
+#[path = "../../../tests/bodies/mod.rs"]
+pub mod bodies;
+
 /// The time step [s].
 pub const DT: f64 = 0.02;
-
-/// A body with the rest positions of its vertices.
-pub struct Case {
-    pub name: &'static str,
-    rest: Vec<Point>,
-    body: Body,
-}
-
-fn sheet(cells: usize, curvature: f64) -> Sheet {
-    let at = |k: usize| {
-        let (x, y) = (0.05 * (k % (cells + 1)) as f64, 0.04 * (k / (cells + 1)) as f64);
-        Point::new(x, y + 0.3 * x, curvature * (x * x - y * y + x * y))
-    };
-    let points = (0..(cells + 1) * (cells + 1)).map(at).collect();
-    let cell = |k: usize| {
-        let a = (k % cells + k / cells * (cells + 1)) as u32;
-        let [b, c, d] = [a + 1, a + 2 + cells as u32, a + 1 + cells as u32];
-        [[a, b, c], [a, c, d]]
-    };
-    (points, (0..cells * cells).flat_map(cell).collect())
-}
-
-/// Cubes of six tetrahedra each, in a row.
-fn block(cubes: usize) -> Block {
-    let (row, layer) = (cubes + 1, 2 * (cubes + 1));
-    let at =
-        |k: usize| Point::new((k % row) as f64, (k / row % 2) as f64, (k / layer) as f64).map(|x| 0.05 * x);
-    let (y, z) = (row as u32, layer as u32);
-    let tets = (0..cubes as u32).flat_map(|cell| {
-        // An odd order of the axes turns the tetrahedron inside out.
-        [(1, y, false), (1, z, true), (y, 1, true), (y, z, false), (z, 1, false), (z, y, true)].map(
-            |(a, b, is_odd)| {
-                let mut tet = [cell, cell + a, cell + a + b, cell + 1 + y + z];
-                if is_odd {
-                    tet.swap(2, 3);
-                }
-                tet
-            },
-        )
-    });
-    ((0..2 * layer).map(at).collect(), tets.collect())
-}
-
-/// Cloth that is isotropic, woven, damped, curved; solids of both laws, with and without damping.
-pub fn cases() -> Vec<Case> {
-    bodies(&|curvature| sheet(9, curvature), &|| block(12))
-}
-
-/// The same, each of one element; bending around a triangle needs a neighbor.
-pub fn single_elements() -> Vec<Case> {
-    let triangle = |curvature: f64| {
-        let (points, triangles) = sheet(1, curvature);
-        if curvature == 0.0 { (points[..3].to_vec(), vec![[0, 1, 2]]) } else { (points, triangles) }
-    };
-    let tetrahedron = || {
-        let corners = [[0.0, 0.0, 0.0], [0.05, 0.01, 0.0], [0.01, 0.04, 0.02], [0.0, -0.01, 0.05]];
-        (corners.map(Point::from).to_vec(), vec![[0, 1, 2, 3]])
-    };
-    bodies(&triangle, &tetrahedron)
-}
-
-/// A solid of many cubes in a row.
-pub fn long_block(cubes: usize) -> Case {
-    let (rest, tets) = block(cubes);
-    Case { name: "long block", rest, body: Body::solid("block", tets, SolidMaterial::rubber()) }
-}
-
-type Sheet = (Vec<Point>, Vec<[u32; 3]>);
-type Block = (Vec<Point>, Vec<[u32; 4]>);
-
-fn bodies(sheet: &dyn Fn(f64) -> Sheet, block: &dyn Fn() -> Block) -> Vec<Case> {
-    let isotropic = ClothMaterial::cotton();
-    let woven = ClothMaterial {
-        weft_stiffness: Some(0.4 * isotropic.stretch_stiffness),
-        shear_stiffness: Some(0.05 * isotropic.stretch_stiffness),
-        warp_direction: Vector::new(1.0, 0.7, 0.0),
-        ..ClothMaterial::cotton()
-    };
-    let damped = |material: &ClothMaterial| ClothMaterial {
-        stretch_damping: 0.02,
-        bend_damping: 0.05,
-        bend_stiffness: 1e-3,
-        ..*material
-    };
-    let curved = ClothMaterial {
-        rest_shape: RestShape::Initial,
-        bend_stiffness: 0.3 * isotropic.stretch_stiffness * 0.05 * 0.05,
-        ..ClothMaterial::cotton()
-    };
-    let cloth = [
-        ("isotropic", 0.0, isotropic),
-        ("woven", 0.0, woven),
-        ("isotropic, damped", 0.0, damped(&isotropic)),
-        ("woven, damped", 0.0, damped(&woven)),
-        ("curved", 2.0, curved),
-    ];
-    let solids = [
-        ("stvk", SolidModel::Stvk, 0.0),
-        ("neo-Hookean", SolidModel::StableNeoHookean, 0.0),
-        ("stvk, damped", SolidModel::Stvk, 0.01),
-        ("neo-Hookean, damped", SolidModel::StableNeoHookean, 0.01),
-    ];
-    let cloth = cloth.into_iter().map(|(name, curvature, material)| {
-        let (rest, triangles) = sheet(curvature);
-        Case { name, rest, body: Body::cloth("sheet", triangles, material) }
-    });
-    let solids = solids.into_iter().map(|(name, model, damping)| {
-        let (rest, tets) = block();
-        let material = SolidMaterial { model, damping, poisson_ratio: 0.4, ..SolidMaterial::rubber() };
-        Case { name, rest, body: Body::solid("block", tets, material) }
-    });
-    cloth.chain(solids).collect()
-}
 
 /// Positions of nodes on a grid.
 #[derive(Clone, Debug)]
@@ -231,6 +119,14 @@ impl Problem {
             let stiffness = (2.0 * mu + lambda + 2.0 * viscosity) * stretch * stretch;
             let scale = stiffness * tet.volume * steepest(tet.gradients.as_flattened()) * stretch;
             tet.nodes.iter().for_each(|node| scales[*node as usize] += scale);
+        }
+        for strand in &self.model.strands {
+            let damping = 1.0 + strand.damping / DT * stretch * stretch;
+            // Of a turn, w is a difference of two tangents.
+            let weight = 2.0 * steepest(&strand.inverse_lengths);
+            let scale = strand.stiffness * damping * weight * 2.0 * stretch;
+            let nodes = strand.nodes.iter().filter(|node| **node != u32::MAX);
+            nodes.for_each(|node| scales[*node as usize] += scale);
         }
         scales
     }
