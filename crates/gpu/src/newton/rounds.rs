@@ -91,7 +91,7 @@ impl<E: Engine> Rounds<'_, E> {
                 let gains =
                     norm <= MIN_GAIN * MIN_GAIN * before || before <= goal || limits.max_iterations == 0;
                 let is_at_end = norm > goal && !gains || !norm.is_finite();
-                let stalled = is_at_end && !(norm <= MAX_EXCESS * MAX_EXCESS * goal);
+                let stalled = is_at_end && (norm > MAX_EXCESS * MAX_EXCESS * goal || !norm.is_finite());
                 if norm <= goal || is_at_end || self.left == 0 {
                     let residual = (norm / relative).sqrt();
                     let iterations = solve.iterations as usize;
