@@ -22,7 +22,8 @@ struct Params {
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> slots: array<PatchSlot>;
-@group(0) @binding(2) var<storage, read> domains: array<Domain>;
+// Inverses of the domains of patches.
+@group(0) @binding(2) var<storage, read> domains: array<f32>;
 @group(0) @binding(3) var<storage, read> direction: array<vec4<f32>>;
 @group(0) @binding(4) var<storage, read_write> image: array<vec4<f32>>;
 // Of each node x, then of each node r.
@@ -95,6 +96,10 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
         if k < params.grouped {
             let arm = vec3<f32>(slot.arm[0], slot.arm[1], slot.arm[2]);
             let moment = cross(arm, r);
+            if t % 8u < 2u {
+                child_links[4u * (t / 8u) + 2u * (t % 8u)] = slot.link[0];
+                child_links[4u * (t / 8u) + 2u * (t % 8u) + 1u] = slot.link[1];
+            }
             for (var c = 0u; c < 3u; c += 1u) {
                 slot_forces[6u * t + c] = r[c];
                 slot_forces[6u * t + 3u + c] = moment[c];
@@ -111,14 +116,14 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
             if t < 48u {
                 var motion = 0.0;
                 for (var m = 0u; m < 48u; m += 1u) {
-                    motion += domains[k].inverse[48u * m + t] * group_forces[m];
+                    motion += domains[DOMAIN_WORDS * k + 48u * m + t] * group_forces[m];
                 }
                 motions[t] = motion;
                 squares += motion * group_forces[t];
             }
             // The force on the rigid motion of the patch.
             if t < 6u {
-                forces[6u * k + t] = force_on_parent(k, t);
+                forces[6u * k + t] = force_on_parent(t);
             }
             workgroupBarrier();
             let g = 6u * (t / 8u);

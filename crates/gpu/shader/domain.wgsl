@@ -3,10 +3,11 @@
 
 struct Params {
     domains: u32,
-    // The first domain; the frames of its first group and of itself; the number of groups of this level.
+    // The first domain of this level, and where its inverse goes, in domains; the frame of its first group; the number of
+    // groups of this level.
     first: u32,
+    first_inverse: u32,
     first_part: u32,
-    first_frame: u32,
     parts: u32,
     // The number of slots of a group.
     width: u32,
@@ -25,7 +26,7 @@ struct Params {
 @group(0) @binding(5) var<storage, read> places: array<u32>;
 @group(0) @binding(6) var<storage, read> positions: array<vec4<i32>>;
 @group(0) @binding(7) var<storage, read> frames: array<Frame>;
-@group(0) @binding(8) var<storage, read_write> domains: array<Domain>;
+@group(0) @binding(8) var<storage, read_write> inverses: array<f32>;
 
 // Added to the diagonal, relative to it: larger than the rounding of the entries, so that the inverse is positive.
 const SHIFT: f32 = 4e-6;
@@ -173,20 +174,9 @@ fn main(
         workgroupBarrier();
         if t < 48u {
             for (var j = 0u; j < 48u; j += 1u) {
-                domains[params.first + d].inverse[48u * t + j] =
+                inverses[DOMAIN_WORDS * (params.first_inverse + d) + 48u * t + j] =
                     0.5 * (matrix[48u * t + j] + matrix[48u * j + t]);
             }
-        }
-        if t < 8u {
-            var link = vec4<f32>(0.0);
-            if 8u * d + t < params.parts {
-                let child = frames[params.first_part + 8u * d + t];
-                let parent = frames[params.first_frame + d];
-                if child.size > 0.0 {
-                    link = vec4<f32>(between(parent.center, child.center, params.quantum), child.size) / parent.size;
-                }
-            }
-            domains[params.first + d].links[t] = link;
         }
     }
 }

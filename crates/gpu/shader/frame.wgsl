@@ -1,4 +1,5 @@
-// Centers and sizes of groups of nodes, or of groups of eight groups; arms of nodes from the center of their group.
+// Centers and sizes of groups of nodes, or of groups of eight groups; arms of nodes from the center of their group, and
+// links from a group to the one that it is part of.
 
 const ORDER: u32 = 3u;
 
@@ -12,6 +13,8 @@ struct Params {
     first_part: u32,
     parts: u32,
     width: u32,
+    // The first domain among those of coarse levels.
+    first_domain: u32,
     quantum: f32,
 }
 
@@ -19,6 +22,7 @@ struct Params {
 @group(0) @binding(1) var<storage, read> positions: array<vec4<i32>>;
 @group(0) @binding(2) var<storage, read_write> slots: array<PatchSlot>;
 @group(0) @binding(3) var<storage, read_write> frames: array<Frame>;
+@group(0) @binding(4) var<storage, read_write> links: array<vec4<f32>>;
 
 // For eigen.wgsl: 1 for eigenvalues that are not positive.
 fn filtered(value: f32) -> f32 {
@@ -118,13 +122,35 @@ fn of_groups(g: u32) -> Frame {
     return frame;
 }
 
+// The link of part m of group g, whose frame is `whole`; zero for one that is empty or missing.
+fn link_of(g: u32, m: u32, whole: Frame) -> vec4<f32> {
+    if 8u * g + m < params.parts {
+        let part = frames[params.first_part + 8u * g + m];
+        if part.size > 0.0 {
+            return vec4<f32>(between(whole.center, part.center, params.quantum), part.size) / whole.size;
+        }
+    }
+    return vec4<f32>(0.0);
+}
+
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     for (var g = id.x; g < params.count; g += 64u * MOST_WORKGROUPS) {
+        var frame: Frame;
         if params.width > 0u {
-            frames[params.first + g] = of_nodes(g);
+            frame = of_nodes(g);
         } else {
-            frames[params.first + g] = of_groups(g);
+            frame = of_groups(g);
+        }
+        frames[params.first + g] = frame;
+        for (var m = 0u; m < 8u && params.parts > 0u; m += 1u) {
+            let link = link_of(g, m, frame);
+            if params.width > 0u {
+                slots[64u * g + 8u * m].link = array<f32, 2>(link.x, link.y);
+                slots[64u * g + 8u * m + 1u].link = array<f32, 2>(link.z, link.w);
+            } else {
+                links[8u * (params.first_domain + g) + m] = link;
+            }
         }
     }
 }

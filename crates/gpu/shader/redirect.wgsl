@@ -16,7 +16,8 @@ struct Params {
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> slots: array<PatchSlot>;
-@group(0) @binding(2) var<storage, read> domains: array<Domain>;
+// Of the children of domains of coarse levels.
+@group(0) @binding(2) var<storage, read> links: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> group_motions: array<f32>;
 @group(0) @binding(4) var<storage, read> image: array<vec4<f32>>;
 @group(0) @binding(5) var<storage, read_write> direction: array<vec4<f32>>;
@@ -38,8 +39,8 @@ fn find_motion(k: u32, g: u32) {
     for (var level = params.levels; level > 0u; level -= 1u) {
         let index = k >> (3u * (level - 1u));
         if level < params.levels {
-            let parent = first_of(level) + (index >> 3u);
-            let link = domains[parent].links[index & 7u];
+            let parent = first_of(level) - first_of(1u) + (index >> 3u);
+            let link = links[8u * parent + (index & 7u)];
             shift += cross(spin, link.xyz);
             spin *= link.w;
         }
@@ -47,9 +48,10 @@ fn find_motion(k: u32, g: u32) {
         shift += vec3<f32>(group_motions[at], group_motions[at + 1u], group_motions[at + 2u]);
         spin += vec3<f32>(group_motions[at + 3u], group_motions[at + 4u], group_motions[at + 5u]);
     }
-    let link = domains[k].links[g];
-    shifts[g] = shift + cross(spin, link.xyz);
-    spins[g] = spin * link.w;
+    let first = slots[64u * k + 8u * g].link;
+    let second = slots[64u * k + 8u * g + 1u].link;
+    shifts[g] = shift + cross(spin, vec3<f32>(first[0], first[1], second[0]));
+    spins[g] = spin * second[1];
 }
 
 @compute @workgroup_size(64)

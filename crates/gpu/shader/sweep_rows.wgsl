@@ -12,6 +12,8 @@ struct Params {
     end: u32,
     // 1: multipliers are only applied, they do not change.
     only_apply: u32,
+    // Sweeps over each bucket.
+    sweeps: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -177,21 +179,32 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
             }
         }
         workgroupBarrier();
-        var start = bucket.first;
-        for (var color = 0u; color < bucket.colors; color += 1u) {
-            let end = color_ends[bucket.first + color];
-            if is_kept {
-                if place >= start && place < end {
-                    relax();
+        for (var sweep = 0u; sweep < params.sweeps; sweep += 1u) {
+            var start = bucket.first;
+            for (var color = 0u; color < bucket.colors; color += 1u) {
+                let end = color_ends[bucket.first + color];
+                if is_kept {
+                    if place >= start && place < end {
+                        relax();
+                    }
+                } else {
+                    for (var there = start + local.x; there < end; there += THREADS) {
+                        relax_there(order[there]);
+                    }
                 }
-            } else {
-                for (var there = start + local.x; there < end; there += THREADS) {
-                    relax_there(order[there]);
-                }
+                start = end;
+                storageBarrier();
+                workgroupBarrier();
             }
-            start = end;
-            storageBarrier();
-            workgroupBarrier();
+            if !is_kept {
+                if local.x == 0u {
+                    for (var there = start; there < bucket.end; there += 1u) {
+                        relax_there(order[there]);
+                    }
+                }
+                storageBarrier();
+                workgroupBarrier();
+            }
         }
         if is_kept {
             for (var s = local.x; s < SLOTS; s += THREADS) {
@@ -202,10 +215,6 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
             }
             if has_row {
                 store(r);
-            }
-        } else if local.x == 0u {
-            for (var there = start; there < bucket.end; there += 1u) {
-                relax_there(order[there]);
             }
         }
         workgroupBarrier();

@@ -73,6 +73,8 @@ pub struct Settings {
     pub sweeps: usize,
     /// How often a sweep goes over each cluster of edges before the next one.
     pub cluster_sweeps: usize,
+    /// How often a sweep goes over each bucket of contact rows before the next one.
+    pub bucket_sweeps: usize,
     /// Vertices that move by bucket of contact rows, about. A workgroup sweeps a bucket; scenes of fewer than eight
     /// buckets have one.
     pub bucket_vertices: usize,
@@ -103,10 +105,11 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            sweeps: 8,
-            cluster_sweeps: 2,
+            sweeps: 5,
+            cluster_sweeps: 3,
+            bucket_sweeps: 2,
             bucket_vertices: 128,
-            polish_sweeps: 8,
+            polish_sweeps: 5,
             polish_distance: 0.0,
             polish_stretch: 1.01,
             edge_proximal: 0.1,

@@ -1,5 +1,6 @@
 //! Matrices that the device assembles are those of the dynamics, and time steps with them go as on the CPU.
 
+#[allow(dead_code)]
 mod bodies;
 
 use bodies::sheet;

@@ -525,21 +525,40 @@ fn errors_by_number_of_sweeps() {
 fn errors_by_buckets_of_contact_rows() {
     const MANY: usize = 3000;
     for (name, (scene, target)) in [("two sheets", pressed_sheets(64)), ("grains", pressed_grains(16))] {
-        let aims = |sweeps: usize, bucket_vertices: usize| {
-            let settings = Settings { bucket_vertices, sweeps, polish_sweeps: sweeps, ..Settings::default() };
+        let aims = |sweeps: usize, bucket_vertices: usize, bucket_sweeps: usize| {
+            let settings = Settings {
+                bucket_vertices,
+                bucket_sweeps,
+                sweeps,
+                polish_sweeps: sweeps,
+                ..Settings::default()
+            };
             let mut collision =
                 with_settings(TwinEngine::new(), &scene, &Constraints::default(), &settings).unwrap();
             collision.begin(&Call::toward(&target)).unwrap();
             let report = collision.step().unwrap();
             (collision.end().unwrap().aims, report.contact_rows)
         };
-        let (solved, rows) = aims(MANY, usize::MAX);
-        for (buckets, bucket_vertices) in [("one", usize::MAX), ("many", 16)] {
+        let (solved, rows) = aims(MANY, usize::MAX, 1);
+        for (buckets, bucket_vertices, bucket_sweeps) in [
+            ("one", usize::MAX, 1),
+            ("many", 16, 1),
+            ("many", 16, 2),
+            ("many", 16, 4),
+            ("128", 128, 1),
+            ("128", 128, 2),
+            ("128", 128, 3),
+            ("128", 128, 4),
+        ] {
             let errors = [2, 4, 8, 16, 32].map(|sweeps| {
-                let (aims, _) = aims(sweeps, bucket_vertices);
+                let (aims, _) = aims(sweeps, bucket_vertices, bucket_sweeps);
                 format!("{:.5}", distance(&aims, &solved) / DELTA)
             });
-            println!("| {name} | {} | {rows} | {buckets} | {} |", scene.x.len(), errors.join(" | "));
+            println!(
+                "| {name} | {} | {rows} | {buckets} | {bucket_sweeps} | {} |",
+                scene.x.len(),
+                errors.join(" | ")
+            );
         }
     }
 }

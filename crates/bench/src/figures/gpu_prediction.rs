@@ -80,6 +80,13 @@ impl Figure for GpuPrediction {
         ]);
         let mut stages =
             Table::new(["scene", "stage", "dispatches_per_step", "megabytes_per_step", "us_per_step"]);
+        let mut stages_of_dynamics = Table::new([
+            "scene",
+            "stage",
+            "dispatches_per_time_step",
+            "megabytes_per_time_step",
+            "us_per_time_step",
+        ]);
         let mut dynamics = Table::new([
             "scene",
             "nodes",
@@ -144,14 +151,20 @@ impl Figure for GpuPrediction {
                 (1e3 * seconds).into(),
                 (1e3 * (seconds + step * paper.steps)).into(),
             ]);
-            for (stage, [dispatches, bytes, seconds]) in counts.by_stage(growth) {
-                stages.row([
-                    paper.scene.into(),
-                    stage.into(),
-                    (dispatches / steps).into(),
-                    (1e-6 * bytes / steps).into(),
-                    (1e6 * seconds / steps).into(),
-                ]);
+            let by_stage = [
+                (counts, growth, steps, &mut stages),
+                (of_dynamics, growth_of_nodes, frames, &mut stages_of_dynamics),
+            ];
+            for (counts, growth, over, table) in by_stage {
+                for (stage, [dispatches, bytes, seconds]) in counts.by_stage(growth) {
+                    table.row([
+                        paper.scene.into(),
+                        stage.into(),
+                        (dispatches / over).into(),
+                        (1e-6 * bytes / over).into(),
+                        (1e6 * seconds / over).into(),
+                    ]);
+                }
             }
         }
         Ok(Report {
@@ -164,6 +177,11 @@ impl Figure for GpuPrediction {
             parts: vec![
                 Part::table(self.name(), "predicted seconds of the collision stage on a large GPU", table),
                 Part::file("gpu-prediction-stages", "the same by stage of the two-way step", stages),
+                Part::file(
+                    "gpu-prediction-stages-of-dynamics",
+                    "the same by stage of the dynamics, per time step",
+                    stages_of_dynamics,
+                ),
                 Part::table(
                     "gpu-prediction-dynamics",
                     "predicted milliseconds of the dynamics per time step on a large GPU",

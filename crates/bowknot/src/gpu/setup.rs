@@ -7,6 +7,12 @@ use bowknot_gpu::{Collision, CollisionError, Constraints, Engine, Grid, Lengths,
 use bowknot_stepper::{Bound, TrustRegionRule};
 use bowknot_twoway::{CallInput, CollisionScene, ContactSide, ResolveInput, StopRule};
 
+/// Sweeps of a device in place of so many on the CPU: five for eight. Each goes over buckets of rows and clusters of edges more
+/// than once, and a backward step solves its rows as well (`docs/gpu/collisions.md`).
+fn sweeps_on_device(sweeps: usize) -> usize {
+    (5 * sweeps).div_ceil(8)
+}
+
 /// The scene on the engine, on a grid with room from `positions` to `ends` [m], and the grid around the positions `home`
 /// that it begins with.
 pub fn collision<E: Engine>(
@@ -60,10 +66,11 @@ pub fn collision<E: Engine>(
     let backward = &params.solver.backward;
     let defaults = Settings::default();
     let settings = Settings {
-        sweeps: backward.sweeps,
+        sweeps: sweeps_on_device(backward.sweeps),
         cluster_sweeps: defaults.cluster_sweeps,
+        bucket_sweeps: defaults.bucket_sweeps,
         bucket_vertices: defaults.bucket_vertices,
-        polish_sweeps: backward.polish_sweeps,
+        polish_sweeps: sweeps_on_device(backward.polish_sweeps),
         polish_distance: backward.polish_distance * scene.lengths().edge,
         polish_stretch: 1.0 + 0.5 * params.solver.stop.stretch_tolerance,
         edge_proximal: backward.edge_proximal,

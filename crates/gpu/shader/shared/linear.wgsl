@@ -12,13 +12,11 @@ struct PatchSlot {
     node: u32,
     factors: array<f32, 6>,
     arm: array<f32, 3>,
-    padding: array<u32, 2>,
+    link: array<f32, 2>,
 }
 
-struct Domain {
-    inverse: array<f32, 2304>,
-    links: array<vec4<f32>, 8>,
-}
+// Numbers of the inverse of a domain.
+const DOMAIN_WORDS: u32 = 2304u;
 
 struct Spring {
     nodes: vec4<u32>,

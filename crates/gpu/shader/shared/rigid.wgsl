@@ -2,18 +2,19 @@
 // parent's center over the parent's size, and the ratio s of sizes, child shift = shift + spin x l, child spin = s spin.
 // A link is (l, s).
 
-// Component c of the force on the motion of the parent of domain d, from the `group_forces` on the children.
-fn force_on_parent(d: u32, c: u32) -> f32 {
+var<workgroup> child_links: array<f32, 32>;
+
+// Component c of the force on the motion of the parent, from the `group_forces` on the children.
+fn force_on_parent(c: u32) -> f32 {
     var sum = 0.0;
     for (var m = 0u; m < 8u; m += 1u) {
-        let link = domains[d].links[m];
         if c < 3u {
             sum += group_forces[6u * m + c];
         } else {
             let a = (c - 2u) % 3u;
             let b = (c - 1u) % 3u;
-            sum += link.w * group_forces[6u * m + c] + link[a] * group_forces[6u * m + b]
-                - link[b] * group_forces[6u * m + a];
+            sum += child_links[4u * m + 3u] * group_forces[6u * m + c] + child_links[4u * m + a] * group_forces[6u * m + b]
+                - child_links[4u * m + b] * group_forces[6u * m + a];
         }
     }
     return sum;

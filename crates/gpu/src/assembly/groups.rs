@@ -87,6 +87,9 @@ impl GroupBuffers {
         recording: &mut Recording,
     ) {
         let levels = &self.hierarchy.levels;
+        // The place of a domain among those of coarse levels.
+        let coarse =
+            |domain: usize| domain.saturating_sub(levels.get(1).map_or(0, |level| level.first_domain));
         for index in 0..levels.len() + usize::from(!levels.is_empty()) {
             // The last frame is that of the last domain.
             let parts = index.checked_sub(1).map(|before| levels[before]);
@@ -95,13 +98,14 @@ impl GroupBuffers {
             let width = if index < 2 { [CHILDREN, PATCH_SLOTS][index] } else { 0 };
             recording.dispatch(
                 &stages::FRAME,
-                &[positions, linear.slots, self.frames],
+                &[positions, linear.slots, self.frames, linear.links],
                 cpu::frame::Params {
                     count: count as u32,
                     first: first as u32,
                     first_part: parts.map_or(0, |level| level.first_frame as u32),
                     parts: parts.map_or(0, |level| level.groups as u32),
                     width: width as u32,
+                    first_domain: parts.map_or(0, |level| coarse(level.first_domain)) as u32,
                     quantum,
                 },
                 count,
@@ -140,7 +144,9 @@ impl GroupBuffers {
                 );
             }
         }
-        for level in levels {
+        for (index, level) in levels.iter().enumerate() {
+            let (inverses, first_inverse) =
+                if index == 0 { (linear.domains, 0) } else { (linear.coarse, coarse(level.first_domain)) };
             recording.dispatch(
                 &stages::DOMAIN,
                 &[
@@ -151,13 +157,13 @@ impl GroupBuffers {
                     self.places,
                     positions,
                     self.frames,
-                    linear.domains,
+                    inverses,
                 ],
                 cpu::domain::Params {
                     domains: level.domains as u32,
                     first: level.first_domain as u32,
+                    first_inverse: first_inverse as u32,
                     first_part: level.first_frame as u32,
-                    first_frame: (level.first_frame + level.groups) as u32,
                     parts: level.groups as u32,
                     width: level.width as u32,
                     springs: u32::from(springs),

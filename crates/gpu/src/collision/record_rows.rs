@@ -147,6 +147,7 @@ impl<E: Engine> Collision<E> {
                     first: round.start,
                     end: round.end,
                     only_apply: u32::from(only_apply),
+                    sweeps: if only_apply { 1 } else { self.settings.bucket_sweeps as u32 },
                 },
                 stages::SWEEP_ROWS.workgroup * round.len(),
             );

@@ -3,7 +3,7 @@
 use super::rigid::{force_on_parent, motions};
 use super::sum::{THREADS, sum_of_threads};
 use crate::bound::Bound;
-use crate::linear::{CHILDREN, Domain, Progress};
+use crate::linear::{CHILDREN, DOMAIN_WORDS, Progress};
 use bytemuck::{Pod, Zeroable};
 
 #[repr(C)]
@@ -12,6 +12,7 @@ pub struct Params {
     pub groups: u32,
     pub first: u32,
     pub first_parent: u32,
+    pub first_domain: u32,
     pub domains: u32,
     pub workgroups: u32,
     pub present: u32,
@@ -22,16 +23,18 @@ pub fn bound(buffers: Bound<'_>) {
     climb(
         buffers.params(),
         &buffers.read(0),
-        &mut buffers.write(1),
+        &buffers.read(1),
         &mut buffers.write(2),
         &mut buffers.write(3),
-        &buffers.write::<Progress>(4)[0],
+        &mut buffers.write(4),
+        &buffers.write::<Progress>(5)[0],
     );
 }
 
 pub fn climb(
     params: Params,
-    domains: &[Domain],
+    coarse: &[f32],
+    links: &[[[f32; 4]; CHILDREN]],
     forces: &mut [f32],
     group_motions: &mut [f32],
     sums: &mut [f32],
@@ -50,13 +53,13 @@ pub fn climb(
             let place = 6 * (params.first as usize + CHILDREN * k);
             let used = 6 * CHILDREN.min(params.groups as usize - CHILDREN * k);
             let on_groups = std::array::from_fn(|t| if t < used { forces[place + t] } else { 0.0 });
-            let moved = motions(&domains[parent], &on_groups);
+            let domain = params.first_domain as usize + k;
+            let moved = motions(&coarse[DOMAIN_WORDS * domain..], &on_groups);
             group_motions[place..place + used].copy_from_slice(&moved[..used]);
             for t in 0..used {
                 squares[t] += moved[t] * on_groups[t];
             }
-            forces[6 * parent..6 * parent + 6]
-                .copy_from_slice(&force_on_parent(&domains[parent], &on_groups));
+            forces[6 * parent..6 * parent + 6].copy_from_slice(&force_on_parent(&links[domain], &on_groups));
         }
         sums[next + group] = sum_of_threads(squares);
     }

@@ -5,7 +5,7 @@ use super::sum::{THREADS, sum_of_parts, sum_of_threads};
 use super::{added, crossed, dot, scaled, subtracted};
 use crate::bound::Bound;
 use crate::layout::NONE;
-use crate::linear::{CHILDREN, DOMAIN_UNKNOWNS, Domain, PATCH_SLOTS, PatchSlot, Progress};
+use crate::linear::{CHILDREN, DOMAIN_UNKNOWNS, DOMAIN_WORDS, PATCH_SLOTS, PatchSlot, Progress};
 use bytemuck::{Pod, Zeroable};
 
 #[repr(C)]
@@ -59,7 +59,7 @@ fn padded([x, y, z]: [f32; 3]) -> [f32; 4] {
 pub fn descend(
     params: Params,
     slots: &[PatchSlot],
-    domains: &[Domain],
+    domains: &[f32],
     direction: &[[f32; 4]],
     image: &mut [[f32; 4]],
     solution: &mut [[f32; 4]],
@@ -105,13 +105,12 @@ pub fn descend(
                 squares[t] += dot(r[t], z[t]);
             }
             if k < params.grouped as usize {
-                let domain = &domains[k];
                 let on_groups = forces_on_groups(patch, &r);
-                let moved = motions(domain, &on_groups);
+                let moved = motions(&domains[DOMAIN_WORDS * k..], &on_groups);
                 for t in 0..DOMAIN_UNKNOWNS {
                     squares[t] += moved[t] * on_groups[t];
                 }
-                forces[6 * k..6 * k + 6].copy_from_slice(&force_on_parent(domain, &on_groups));
+                forces[6 * k..6 * k + 6].copy_from_slice(&force_on_parent(&links_of(patch), &on_groups));
                 for (t, slot) in patch.iter().enumerate() {
                     let (shift, spin) = child(&moved, t / CHILDREN);
                     z[t] = added(z[t], added(shift, crossed(spin, slot.arm)));
@@ -123,6 +122,14 @@ pub fn descend(
         }
         sums[next + group] = sum_of_threads(squares);
     }
+}
+
+/// The links of the groups of a patch.
+pub fn links_of(patch: &[PatchSlot]) -> [[f32; 4]; CHILDREN] {
+    std::array::from_fn(|g| {
+        let ([x, y], [z, ratio]) = (patch[CHILDREN * g].link, patch[CHILDREN * g + 1].link);
+        [x, y, z, ratio]
+    })
 }
 
 /// Forces on the rigid motions of the groups of a patch.

@@ -5,7 +5,7 @@ use super::{divided, scaled};
 use crate::assembly::Frame;
 use crate::bound::Bound;
 use crate::layout::NONE;
-use crate::linear::{CHILDREN, DOMAIN_UNKNOWNS, Domain, Spring};
+use crate::linear::{CHILDREN, DOMAIN_UNKNOWNS, DOMAIN_WORDS, Spring};
 use bytemuck::{Pod, Zeroable};
 
 /// Added to the diagonal, relative to it.
@@ -21,8 +21,8 @@ type Matrix = [[f32; DOMAIN_UNKNOWNS]; DOMAIN_UNKNOWNS];
 pub struct Params {
     pub domains: u32,
     pub first: u32,
+    pub first_inverse: u32,
     pub first_part: u32,
-    pub first_frame: u32,
     pub parts: u32,
     pub width: u32,
     pub springs: u32,
@@ -163,27 +163,15 @@ fn invert(matrix: &mut Matrix) {
     }
 }
 
-pub fn domain(level: &Level<'_>, domains: &mut [Domain]) {
+pub fn domain(level: &Level<'_>, inverses: &mut [f32]) {
     let params = &level.params;
     for d in 0..params.domains as usize {
         let mut matrix = level.matrix(d);
         invert(&mut matrix);
-        let out = &mut domains[params.first as usize + d];
+        let out = &mut inverses[DOMAIN_WORDS * (params.first_inverse as usize + d)..];
         for t in 0..DOMAIN_UNKNOWNS {
             for j in 0..DOMAIN_UNKNOWNS {
-                out.inverse[DOMAIN_UNKNOWNS * t + j] = 0.5 * (matrix[t][j] + matrix[j][t]);
-            }
-        }
-        for (t, link) in out.links.iter_mut().enumerate() {
-            *link = [0.0; 4];
-            if CHILDREN * d + t < params.parts as usize {
-                let child = &level.frames[params.first_part as usize + CHILDREN * d + t];
-                let parent = &level.frames[params.first_frame as usize + d];
-                if child.size > 0.0 {
-                    let [x, y, z] =
-                        divided(between(parent.center, child.center, params.quantum), parent.size);
-                    *link = [x, y, z, child.size / parent.size];
-                }
+                out[DOMAIN_UNKNOWNS * t + j] = 0.5 * (matrix[t][j] + matrix[j][t]);
             }
         }
     }

@@ -7,7 +7,7 @@ use super::{added, divided};
 use crate::assembly::Frame;
 use crate::bound::Bound;
 use crate::layout::NONE;
-use crate::linear::PatchSlot;
+use crate::linear::{CHILDREN, PATCH_SLOTS, PatchSlot};
 use bytemuck::{Pod, Zeroable};
 
 /// Spins about axes with at most about this share of the largest moment of inertia are held.
@@ -21,11 +21,18 @@ pub struct Params {
     pub first_part: u32,
     pub parts: u32,
     pub width: u32,
+    pub first_domain: u32,
     pub quantum: f32,
 }
 
 pub fn bound(buffers: Bound<'_>) {
-    frame(buffers.params(), &buffers.read(0), &mut buffers.write(1), &mut buffers.write(2));
+    frame(
+        buffers.params(),
+        &buffers.read(0),
+        &mut buffers.write(1),
+        &mut buffers.write(2),
+        &mut buffers.write(3),
+    );
 }
 
 fn moment_of([x, y, z]: V3) -> [f32; 6] {
@@ -92,14 +99,40 @@ fn of_groups(params: &Params, parts: &[Frame]) -> Frame {
     Frame { center, size, moment, held: held_by(moment) }
 }
 
-pub fn frame(params: Params, positions: &[[i32; 4]], slots: &mut [PatchSlot], frames: &mut [Frame]) {
+/// The link of a part of a group; zero for one that is empty or missing.
+fn link_of(params: &Params, part: Option<&Frame>, whole: &Frame) -> [f32; 4] {
+    part.filter(|part| part.size > 0.0).map_or([0.0; 4], |part| {
+        let [x, y, z] = divided(between(whole.center, part.center, params.quantum), whole.size);
+        [x, y, z, part.size / whole.size]
+    })
+}
+
+pub fn frame(
+    params: Params,
+    positions: &[[i32; 4]],
+    slots: &mut [PatchSlot],
+    frames: &mut [Frame],
+    links: &mut [[[f32; 4]; CHILDREN]],
+) {
     let (first, width) = (params.first as usize, params.width as usize);
     for g in 0..params.count as usize {
-        frames[first + g] = if width > 0 {
+        let parts = CHILDREN * g..(CHILDREN * (g + 1)).min(params.parts as usize);
+        let frame = if width > 0 {
             of_nodes(&params, positions, &mut slots[width * g..width * (g + 1)])
         } else {
-            let parts = 8 * g..(8 * g + 8).min(params.parts as usize);
-            of_groups(&params, &frames[params.first_part as usize..][parts])
+            of_groups(&params, &frames[params.first_part as usize..][parts.clone()])
         };
+        frames[first + g] = frame;
+        if params.parts > 0 {
+            let parts = &frames[params.first_part as usize..][parts];
+            let of_parts = std::array::from_fn(|m| link_of(&params, parts.get(m), &frame));
+            if width > 0 {
+                for (group, [x, y, z, ratio]) in slots[PATCH_SLOTS * g..].chunks_mut(CHILDREN).zip(of_parts) {
+                    (group[0].link, group[1].link) = ([x, y], [z, ratio]);
+                }
+            } else {
+                links[params.first_domain as usize + g] = of_parts;
+            }
+        }
     }
 }

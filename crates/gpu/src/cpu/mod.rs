@@ -69,7 +69,6 @@ pub mod pick;
 pub mod place;
 pub mod plan;
 pub mod products;
-pub mod react;
 pub mod recall;
 pub mod redirect;
 pub mod refit;

@@ -1,9 +1,10 @@
 //! Twin of `shader/multiply.wgsl`.
 
+use super::newton::xyz;
 use super::sum::{THREADS, sum_of_threads};
 use super::{added, dot, scaled, subtracted};
 use crate::bound::Bound;
-use crate::linear::{BLOCK_WORDS, Progress, SLICE};
+use crate::linear::{BLOCK_WORDS, Progress, SLICE, Spring};
 use bytemuck::{Pod, Zeroable};
 
 #[repr(C)]
@@ -19,7 +20,7 @@ pub fn bound(buffers: Bound<'_>) {
         slices: &buffers.read(0),
         words: &buffers.read(1),
         spring_words: &buffers.read(2),
-        reactions: &buffers.read(3),
+        springs: &buffers.read(3),
     };
     multiply(
         buffers.params(),
@@ -36,7 +37,7 @@ pub struct Matrix<'a> {
     pub slices: &'a [[u32; 4]],
     pub words: &'a [u32],
     pub spring_words: &'a [u32],
-    pub reactions: &'a [[f32; 4]],
+    pub springs: &'a [Spring],
 }
 
 impl Matrix<'_> {
@@ -75,12 +76,22 @@ impl Matrix<'_> {
         if has_springs {
             let entries = self.spring_words[i] as usize..self.spring_words[i + 1] as usize;
             for entry in self.spring_words[entries].chunks_exact(2) {
-                let [x, y, z, _] = self.reactions[entry[0] as usize];
-                sum = added(sum, scaled([x, y, z], f32::from_bits(entry[1])));
+                let reaction = reaction(&self.springs[entry[0] as usize], direction);
+                sum = added(sum, scaled(reaction, f32::from_bits(entry[1])));
             }
         }
         sum
     }
+}
+
+/// The reaction of a spring to the direction.
+fn reaction(spring: &Spring, direction: &[[f32; 4]]) -> [f32; 3] {
+    let mut sum = [0.0; 3];
+    for (node, weight) in spring.nodes.into_iter().zip(spring.weights) {
+        sum = added(sum, scaled(xyz(direction[node as usize]), weight));
+    }
+    let column = |k: usize| scaled(xyz(spring.hessian[k]), sum[k]);
+    added(added(column(0), column(1)), column(2))
 }
 
 pub fn multiply(

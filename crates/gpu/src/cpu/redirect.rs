@@ -1,11 +1,12 @@
 //! Twin of `shader/redirect.wgsl`.
 
+use super::descend::links_of;
 use super::rigid::child;
 use super::sum::sum_of_parts;
 use super::{added, crossed, scaled};
 use crate::bound::Bound;
 use crate::layout::NONE;
-use crate::linear::{CHILDREN, Domain, MOST_LEVELS, PATCH_SLOTS, PatchSlot, Progress};
+use crate::linear::{CHILDREN, MOST_LEVELS, PATCH_SLOTS, PatchSlot, Progress};
 use bytemuck::{Pod, Zeroable};
 
 #[repr(C)]
@@ -39,7 +40,8 @@ pub fn bound(buffers: Bound<'_>) {
 /// Motion of group `g` of patch `k` with all groups above it.
 fn find_motion(
     params: &Params,
-    domains: &[Domain],
+    links: &[[[f32; 4]; CHILDREN]],
+    patch: &[PatchSlot],
     group_motions: &[f32],
     k: usize,
     g: usize,
@@ -48,13 +50,13 @@ fn find_motion(
     for level in (1..=params.levels as usize).rev() {
         let index = k >> (3 * (level - 1));
         if level < params.levels as usize {
-            let parent = params.firsts[level] as usize + (index >> 3);
-            (shift, spin) = linked(domains[parent].links[index & 7], shift, spin);
+            let parent = (params.firsts[level] - params.firsts[1]) as usize + (index >> 3);
+            (shift, spin) = linked(links[parent][index & 7], shift, spin);
         }
         let (more, turn) = child(group_motions, params.firsts[level - 1] as usize + index);
         (shift, spin) = (added(shift, more), added(spin, turn));
     }
-    linked(domains[k].links[g], shift, spin)
+    linked(links_of(patch)[g], shift, spin)
 }
 
 /// The motion of a child that moves with its parent.
@@ -66,7 +68,7 @@ fn linked([x, y, z, ratio]: [f32; 4], shift: [f32; 3], spin: [f32; 3]) -> ([f32;
 pub fn redirect(
     params: Params,
     slots: &[PatchSlot],
-    domains: &[Domain],
+    links: &[[[f32; 4]; CHILDREN]],
     group_motions: &[f32],
     image: &[[f32; 4]],
     direction: &mut [[f32; 4]],
@@ -88,7 +90,7 @@ pub fn redirect(
             let [x, y, z, _] = image[slot.node as usize];
             let mut z = [x, y, z];
             if k < params.grouped as usize && params.levels > 0 {
-                let (shift, spin) = find_motion(&params, domains, group_motions, k, t / CHILDREN);
+                let (shift, spin) = find_motion(&params, links, patch, group_motions, k, t / CHILDREN);
                 z = added(z, added(shift, crossed(spin, slot.arm)));
             }
             let p = &mut direction[slot.node as usize];

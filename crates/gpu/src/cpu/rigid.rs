@@ -1,12 +1,12 @@
 //! From the rigid motions of children to that of their parent: twin of `shader/shared/rigid.wgsl`.
 
-use crate::linear::{CHILDREN, DOMAIN_UNKNOWNS, Domain};
+use crate::linear::{CHILDREN, DOMAIN_UNKNOWNS};
 
 /// The force on the motion of the parent, from the forces on the children.
-pub fn force_on_parent(domain: &Domain, forces: &[f32; DOMAIN_UNKNOWNS]) -> [f32; 6] {
+pub fn force_on_parent(links: &[[f32; 4]; CHILDREN], forces: &[f32; DOMAIN_UNKNOWNS]) -> [f32; 6] {
     std::array::from_fn(|c| {
         let mut sum = 0.0;
-        for (m, link) in domain.links.iter().enumerate() {
+        for (m, link) in links.iter().enumerate() {
             if c < 3 {
                 sum += forces[6 * m + c];
             } else {
@@ -19,10 +19,10 @@ pub fn force_on_parent(domain: &Domain, forces: &[f32; DOMAIN_UNKNOWNS]) -> [f32
     })
 }
 
-/// The motions of the children under the forces on them.
-pub fn motions(domain: &Domain, forces: &[f32; DOMAIN_UNKNOWNS]) -> [f32; DOMAIN_UNKNOWNS] {
+/// The motions of the children under the forces on them, from the inverse of the domain.
+pub fn motions(inverse: &[f32], forces: &[f32; DOMAIN_UNKNOWNS]) -> [f32; DOMAIN_UNKNOWNS] {
     std::array::from_fn(|t| {
-        (0..DOMAIN_UNKNOWNS).fold(0.0, |sum, m| sum + domain.inverse[DOMAIN_UNKNOWNS * m + t] * forces[m])
+        (0..DOMAIN_UNKNOWNS).fold(0.0, |sum, m| sum + inverse[DOMAIN_UNKNOWNS * m + t] * forces[m])
     })
 }
 

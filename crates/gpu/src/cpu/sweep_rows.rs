@@ -11,6 +11,7 @@ pub struct Params {
     pub first: u32,
     pub end: u32,
     pub only_apply: u32,
+    pub sweeps: u32,
 }
 
 pub fn bound(buffers: Bound<'_>) {
@@ -34,8 +35,10 @@ pub fn sweep_rows(
 ) {
     // Colors are sorted, and only threads wait between them.
     for bucket in &buckets[params.first as usize..params.end as usize] {
-        for &r in &order[bucket.first as usize..bucket.end as usize] {
-            relax(params, &mut rows[r as usize], displacements);
+        for _ in 0..params.sweeps {
+            for &r in &order[bucket.first as usize..bucket.end as usize] {
+                relax(params, &mut rows[r as usize], displacements);
+            }
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The buffers of a linear system on an engine.
 
-use super::galerkin::Multilevel;
-use super::layout::{Domain, MOST_LEVELS, PATCH_SLOTS, PatchSlot, Progress};
+use super::galerkin::{Domain, Multilevel};
+use super::layout::{CHILDREN, DOMAIN_WORDS, MOST_LEVELS, PATCH_SLOTS, PatchSlot, Progress};
 use super::matrix::PackedMatrix;
 use super::patches::Patches;
 use crate::cpu::sum::{MOST_WORKGROUPS, THREADS};
@@ -24,8 +24,10 @@ pub struct Buffers {
     pub springs: BufferId,
     pub spring_words: BufferId,
     pub slots: BufferId,
+    /// Inverses of the domains of patches, and of those of coarse levels with the links of their children.
     pub domains: BufferId,
-    pub reactions: BufferId,
+    pub coarse: BufferId,
+    pub links: BufferId,
     /// Search direction p; the residual before the start.
     pub direction: BufferId,
     /// q = H p, then z.
@@ -93,6 +95,7 @@ impl Pool {
             }
             engine.buffer(label, words)
         };
+        let coarse = domains.saturating_sub(sizes.grouped);
         let groups = sizes.levels.iter().sum::<usize>().max(sizes.grouped) + 1;
         let buffers = Buffers {
             slices: room("slices of the matrix", |b| b.slices, 4 * matrix.slices.len())?,
@@ -104,9 +107,9 @@ impl Pool {
                 |b| b.slots,
                 sizes.patches * PATCH_SLOTS * size_of::<PatchSlot>() / 4,
             )?,
-            // A buffer that is bound holds one of its entries at least.
-            domains: room("domains", |b| b.domains, domains.max(1) * size_of::<Domain>() / 4)?,
-            reactions: room("reactions", |b| b.reactions, 4 * matrix.springs.len())?,
+            domains: room("domains of patches", |b| b.domains, DOMAIN_WORDS * sizes.grouped)?,
+            coarse: room("coarse domains", |b| b.coarse, DOMAIN_WORDS * coarse)?,
+            links: room("links of coarse domains", |b| b.links, 4 * CHILDREN * coarse)?,
             direction: room("search direction", |b| b.direction, 4 * sizes.nodes)?,
             image: room("image", |b| b.image, 4 * sizes.nodes)?,
             solution: room("solution", |b| b.solution, 8 * sizes.nodes)?,
@@ -134,7 +137,12 @@ impl Pool {
         recording.write(buffers.springs, &matrix.springs);
         recording.write(buffers.spring_words, &matrix.spring_words);
         recording.write(buffers.slots, &preconditioner.slots);
-        recording.write(buffers.domains, &preconditioner.domains);
+        let (patches, coarse) = preconditioner.domains.split_at(sizes.grouped);
+        let inverses =
+            |domains: &[Domain]| domains.iter().flat_map(|d| d.inverse.clone()).collect::<Vec<f32>>();
+        recording.write(buffers.domains, &inverses(patches));
+        recording.write(buffers.coarse, &inverses(coarse));
+        recording.write(buffers.links, &coarse.iter().map(|domain| domain.links).collect::<Vec<_>>());
         // Nodes that are not free keep this: no patch has them.
         recording.write(buffers.solution, &vec![0u32; 8 * sizes.nodes]);
         engine.run(&recording, &[])?;

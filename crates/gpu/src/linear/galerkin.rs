@@ -7,13 +7,22 @@
 //! double precision and rounded at the end.
 
 use super::inverse::inverse;
-use super::layout::{CHILDREN, DOMAIN_UNKNOWNS, Domain, PatchSlot};
+use super::layout::{CHILDREN, DOMAIN_UNKNOWNS, PATCH_SLOTS, PatchSlot};
 use super::patches::Patches;
 use super::rigid::{Link, Mode, Rigid};
 use bowknot_dynamics::LinearSystem;
 use bowknot_geometry::Vector;
 use nalgebra::{Matrix3, Matrix6};
 use rayon::prelude::*;
+
+/// Eight groups that move as rigid bodies.
+#[derive(Clone, Debug)]
+pub struct Domain {
+    /// Inverse of the matrix of their motions, three shifts and three spins each; zero for motions that move nothing.
+    pub inverse: Vec<f32>,
+    /// From the center of all eight to that of each, over the size of all; the ratio of the sizes.
+    pub links: [[f32; 4]; CHILDREN],
+}
 
 /// What the device reads.
 #[derive(Debug, Default)]
@@ -104,7 +113,8 @@ impl Multilevel {
                 });
             }
         }
-        let slots = patches.slots.par_iter().map(|node| slot_of(system, &places, *node)).collect();
+        let mut slots: Vec<PatchSlot> =
+            patches.slots.par_iter().map(|node| slot_of(system, &places, *node)).collect();
 
         let parts: Vec<(Vec<f64>, Row)> =
             (0..patches.grouped).into_par_iter().map(|k| patch_matrix(system, patches, &places, k)).collect();
@@ -113,6 +123,11 @@ impl Multilevel {
             domain(matrix, groups, parent)
         };
         let mut domains: Vec<Domain> = matrices.into_par_iter().zip(&frames).map(invert).collect();
+        for (patch, domain) in slots.chunks_mut(PATCH_SLOTS).zip(&domains) {
+            for (group, [x, y, z, ratio]) in patch.chunks_mut(CHILDREN).zip(domain.links) {
+                (group[0].link, group[1].link) = ([x, y], [z, ratio]);
+            }
+        }
 
         let mut level: Vec<Frame> = frames.iter().map(|(_, patch)| *patch).collect();
         for _ in &patches.levels {
@@ -144,7 +159,7 @@ fn slot_of(system: &LinearSystem<'_>, places: &[Option<Place>], node: Option<u32
     let Some(node) = node else { return PatchSlot::EMPTY };
     let factors = factors_of_block(system, node as usize);
     let arm = places[node as usize].map_or([0.0; 3], |place| <[f64; 3]>::from(place.arm).map(|x| x as f32));
-    PatchSlot { node, factors, arm, padding: [0; 2] }
+    PatchSlot { node, factors, arm, link: [0.0; 2] }
 }
 
 /// The diagonal block of a node as a product L D L^T, see [`PatchSlot::factors`].
@@ -265,5 +280,5 @@ fn domain(mut matrix: Vec<f64>, groups: &[Frame], parent: &Frame) -> Domain {
         let Link { way, ratio } = parent.link(group);
         *link = [way.x as f32, way.y as f32, way.z as f32, ratio as f32];
     }
-    Domain { inverse: std::array::from_fn(|k| inverse[k] as f32), links }
+    Domain { inverse: inverse.iter().map(|number| *number as f32).collect(), links }
 }

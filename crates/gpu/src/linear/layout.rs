@@ -12,6 +12,10 @@ pub const CHILDREN: usize = 8;
 /// Unknowns of a domain: the six rigid motions of eight children.
 pub const DOMAIN_UNKNOWNS: usize = 6 * CHILDREN;
 
+/// Numbers of the inverse of the matrix of their motions, three shifts and three spins each; zero for motions that move
+/// nothing.
+pub const DOMAIN_WORDS: usize = DOMAIN_UNKNOWNS * DOMAIN_UNKNOWNS;
+
 /// Most coarse levels: 8^8 patches are more than a buffer holds.
 pub const MOST_LEVELS: usize = 8;
 
@@ -25,21 +29,13 @@ pub struct PatchSlot {
     pub factors: [f32; 6],
     /// From the center of the group to the node, over the size of the group.
     pub arm: [f32; 3],
-    pub padding: [u32; 2],
+    /// Half of the link of the group to the patch, of the first two slots of a group: the way from the center of the patch to
+    /// that of the group, over the size of the patch, and the ratio of the sizes.
+    pub link: [f32; 2],
 }
 
 impl PatchSlot {
-    pub const EMPTY: Self = Self { node: u32::MAX, factors: [0.0; 6], arm: [0.0; 3], padding: [0; 2] };
-}
-
-/// Eight groups that move as rigid bodies.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub struct Domain {
-    /// Inverse of the matrix of their motions, three shifts and three spins each; zero for motions that move nothing.
-    pub inverse: [f32; DOMAIN_UNKNOWNS * DOMAIN_UNKNOWNS],
-    /// From the center of all eight to that of each, over the size of all; the ratio of the sizes.
-    pub links: [[f32; 4]; CHILDREN],
+    pub const EMPTY: Self = Self { node: u32::MAX, factors: [0.0; 6], arm: [0.0; 3], link: [0.0; 2] };
 }
 
 /// A spring over the weighted sum of four nodes.

@@ -25,7 +25,7 @@ mod solver;
 pub(crate) use assembled::symmetric_blocks;
 pub(crate) use buffers::Buffers;
 pub(crate) use layout::{
-    CHILDREN, DOMAIN_UNKNOWNS, Domain, MOST_LEVELS, PATCH_SLOTS, PatchSlot, Progress, Spring,
+    CHILDREN, DOMAIN_UNKNOWNS, DOMAIN_WORDS, MOST_LEVELS, PATCH_SLOTS, PatchSlot, Progress, Spring,
 };
 pub(crate) use matrix::{BLOCK_WORDS, PackedMatrix, SLICE};
 pub(crate) use patches::Patches;

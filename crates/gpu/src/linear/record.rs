@@ -61,12 +61,6 @@ impl Recorder {
     /// The image of the search direction.
     pub fn record_image(&self, recording: &mut Recording) {
         let (b, s) = (&self.buffers, &self.sizes);
-        recording.dispatch(
-            &stages::REACT,
-            &[b.springs, b.direction, b.reactions],
-            cpu::react::Params { springs: s.springs as u32 },
-            s.springs,
-        );
         if let Some(strands) = self.strands {
             recording.dispatch(
                 &stages::STRAND_PRODUCT,
@@ -77,7 +71,7 @@ impl Recorder {
         }
         recording.dispatch(
             &stages::MULTIPLY,
-            &[b.slices, b.words, b.spring_words, b.reactions, b.direction, b.image, b.sums, b.progress],
+            &[b.slices, b.words, b.spring_words, b.springs, b.direction, b.image, b.sums, b.progress],
             cpu::multiply::Params {
                 nodes: s.nodes as u32,
                 springs: s.springs as u32,
@@ -130,11 +124,12 @@ impl Recorder {
             let workgroups = coarse_workgroups(groups);
             recording.dispatch(
                 &stages::CLIMB,
-                &[b.domains, b.forces, b.motions, b.sums, b.progress],
+                &[b.coarse, b.links, b.forces, b.motions, b.sums, b.progress],
                 cpu::climb::Params {
                     groups: groups as u32,
                     first: firsts[level],
                     first_parent: firsts[level + 1],
+                    first_domain: firsts[level + 1] - grouped,
                     domains: groups.div_ceil(CHILDREN) as u32,
                     workgroups: workgroups as u32,
                     present,
@@ -146,7 +141,7 @@ impl Recorder {
         }
         recording.dispatch(
             &stages::REDIRECT,
-            &[b.slots, b.domains, b.motions, b.image, b.direction, b.sums, b.progress],
+            &[b.slots, b.links, b.motions, b.image, b.direction, b.sums, b.progress],
             cpu::redirect::Params {
                 patches,
                 grouped,

@@ -83,7 +83,7 @@ pub(crate) static FRAME: Stage = Stage {
     name: "frame",
     parts: &[LINEAR, GROUPS, include_str!("../../shader/frame.wgsl"), EIGEN],
     workgroup: 64,
-    bindings: &[Read, Write, Write],
+    bindings: &[Read, Write, Write, Write],
     twin: cpu::frame::bound,
 };
 

@@ -9,14 +9,6 @@ const LINEAR: &str = include_str!("../../shader/shared/linear.wgsl");
 const SUM: &str = include_str!("../../shader/shared/sum.wgsl");
 const RIGID: &str = include_str!("../../shader/shared/rigid.wgsl");
 
-pub(crate) static REACT: Stage = Stage {
-    name: "react",
-    parts: &[LINEAR, include_str!("../../shader/react.wgsl")],
-    workgroup: 64,
-    bindings: &[Read, Read, Write],
-    twin: cpu::react::bound,
-};
-
 pub(crate) static STRAND_PRODUCT: Stage = Stage {
     name: "strand_product",
     parts: &[LINEAR, STRANDS, include_str!("../../shader/strand_product.wgsl")],
@@ -45,7 +37,7 @@ pub(crate) static CLIMB: Stage = Stage {
     name: "climb",
     parts: &[LINEAR, SUM, RIGID, include_str!("../../shader/climb.wgsl")],
     workgroup: 64,
-    bindings: &[Read, Write, Write, Write, Write],
+    bindings: &[Read, Read, Write, Write, Write, Write],
     twin: cpu::climb::bound,
 };
 

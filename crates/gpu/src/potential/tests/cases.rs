@@ -8,6 +8,7 @@ use bowknot_geometry::{Point, Vector};
 use std::collections::BTreeMap;
 
 #[path = "../../../tests/bodies/mod.rs"]
+#[allow(dead_code)]
 pub mod bodies;
 
 /// The time step [s].
