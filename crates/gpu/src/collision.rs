@@ -107,7 +107,7 @@ impl Default for Settings {
         Self {
             sweeps: 5,
             cluster_sweeps: 3,
-            bucket_sweeps: 2,
+            bucket_sweeps: 3,
             bucket_vertices: 128,
             polish_sweeps: 5,
             polish_distance: 0.0,

@@ -509,7 +509,7 @@ fn errors_by_number_of_sweeps() {
         for (cluster_sweeps, coarse_correction) in
             [1, 2, 3, 4].into_iter().flat_map(|s| [(s, false), (s, true)])
         {
-            let errors = [1, 2, 4, 8, 16, 32, 64].map(|sweeps| {
+            let errors = [2, 4, 5, 8, 16, 32].map(|sweeps| {
                 let aims = aims(sweeps, cluster_sweeps, coarse_correction);
                 format!("{:.3}", distance(&aims, &solved) / EDGE)
             });
@@ -540,17 +540,10 @@ fn errors_by_buckets_of_contact_rows() {
             (collision.end().unwrap().aims, report.contact_rows)
         };
         let (solved, rows) = aims(MANY, usize::MAX, 1);
-        for (buckets, bucket_vertices, bucket_sweeps) in [
-            ("one", usize::MAX, 1),
-            ("many", 16, 1),
-            ("many", 16, 2),
-            ("many", 16, 4),
-            ("128", 128, 1),
-            ("128", 128, 2),
-            ("128", 128, 3),
-            ("128", 128, 4),
-        ] {
-            let errors = [2, 4, 8, 16, 32].map(|sweeps| {
+        for (buckets, bucket_vertices, bucket_sweeps) in
+            [("one", usize::MAX, 1), ("many", 16, 1), ("many", 16, 2), ("many", 16, 3)]
+        {
+            let errors = [2, 4, 5, 8, 16, 32].map(|sweeps| {
                 let (aims, _) = aims(sweeps, bucket_vertices, bucket_sweeps);
                 format!("{:.5}", distance(&aims, &solved) / DELTA)
             });

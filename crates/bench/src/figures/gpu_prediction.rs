@@ -57,7 +57,8 @@ impl Figure for GpuPrediction {
          workgroups for. Dispatches of one stage that follow each other with the same buffers \
          (colors of a sweep, levels of a tree) share the bytes. A submission takes 30 microseconds, and what the host \
          writes and reads goes at 50 GB/s. To the paper's size, bytes and threads grow with the number of vertices, and \
-         dispatches stay as many; stages of one workgroup keep one. Seconds of collisions per time step are those of as many two-way \
+         dispatches stay as many; stages of one workgroup keep one. Iterations of conjugate gradients that are submitted after the last one that is needed take their dispatches, \
+         and no bytes. Seconds of collisions per time step are those of as many two-way \
          steps as the paper takes; those of the dynamics are of the time steps that were counted, whose linear iterations \
          grow with the size. Work of the host is left out, and so are cache misses, atomics and arithmetic."
     }
@@ -283,11 +284,13 @@ struct Counts {
 }
 
 impl Counts {
-    /// `workgroups_of` tells those of all dispatches that go through the colors of something, one dispatch after the other.
+    /// `workgroups_of` tells those of all dispatches that go through the colors of something, one dispatch after the other,
+    /// `share_of` which share of the dispatches like this one moves its bytes.
     fn add(
         &mut self,
         recording: &Recording,
         bytes_of: impl Fn(BufferId) -> f64,
+        share_of: impl Fn(&DispatchView<'_>) -> f64,
         workgroups_of: impl Fn(&DispatchView<'_>) -> Option<Vec<Workgroup>>,
         words_read: usize,
     ) {
@@ -316,7 +319,8 @@ impl Counts {
             let group = self.groups.entry((run[0].stage, workgroups)).or_default();
             group.dispatches += run.len();
             group.waits += waits;
-            group.bytes += run[0].buffers.iter().map(|&buffer| bytes_of(buffer)).sum::<f64>();
+            let bytes: f64 = run[0].buffers.iter().map(|&buffer| bytes_of(buffer)).sum();
+            group.bytes += share_of(&run[0]) * bytes;
         }
         self.submissions += usize::from(words_read > 0);
         self.link_bytes += 4.0 * (recording.words_written() + words_read) as f64;
@@ -372,6 +376,12 @@ fn byte_seconds(workgroups: usize, bytes: f64, growth: f64) -> f64 {
     growth * bytes / (BANDWIDTH * (filled / MULTIPROCESSORS).min(1.0))
 }
 
+/// Whether a stage is one of an iteration of the conjugate gradients that count in that buffer.
+fn is_of_iterations(dispatch: &DispatchView<'_>, progress: BufferId) -> bool {
+    let stages = ["strand_product", "multiply", "descend", "climb", "redirect"];
+    stages.contains(&dispatch.stage) && dispatch.buffers.last() == Some(&progress)
+}
+
 /// Seconds that the threads of a workgroup wait for a bucket of rows or a cluster of edges, by its words.
 fn waiting(stage: &str, part: &[u32]) -> f64 {
     let colors = f64::from(part[part.len() - 1]);
@@ -415,6 +425,27 @@ impl CountingEngine {
         Some(content.chunks_exact(words).map(workgroup).collect())
     }
 
+    /// Where conjugate gradients count their iterations in a recording that ends a round, and how many they have counted.
+    fn iterations(&self, recording: &Recording) -> Option<(BufferId, u32)> {
+        let end = recording.dispatches().find(|one| one.stage == "accumulate")?;
+        let progress = end.buffers[1];
+        Some((progress, self.twin.words_of(progress)[1]))
+    }
+
+    /// The share of the iterations in a recording that were made: the others find that the residual is small enough.
+    fn share_of_iterations(
+        &self,
+        recording: &Recording,
+        before: Option<(BufferId, u32)>,
+    ) -> Option<(BufferId, f64)> {
+        let (progress, before) = before?;
+        let starts = recording.dispatches().any(|one| one.stage == "guess");
+        let made = self.twin.words_of(progress)[1].saturating_sub(if starts { 0 } else { before });
+        let is_one = |one: &DispatchView<'_>| one.stage == "redirect" && is_of_iterations(one, progress);
+        let recorded = recording.dispatches().filter(is_one).count();
+        (recorded > 0).then(|| (progress, f64::from(made) / recorded as f64))
+    }
+
     /// Zeros for the rows and their order, which a step makes anew: what an earlier step with more rows left there is not in
     /// use.
     fn without_old_rows(&self, recording: &Recording) -> Recording {
@@ -450,11 +481,17 @@ impl Engine for CountingEngine {
 
     fn run(&mut self, recording: &Recording, read: &[(BufferId, usize)]) -> Result<Vec<Vec<u32>>, GpuError> {
         self.twin.run(&self.without_old_rows(recording), &[])?;
+        let before = self.iterations(recording);
         let result = self.twin.run(recording, read)?;
+        let share = self.share_of_iterations(recording, before);
         let words_read = read.iter().map(|(_, words)| words).sum();
         let mut counts = self.counts.lock().unwrap_or_else(PoisonError::into_inner);
         let bytes_of = |buffer| 4.0 * self.twin.words_in_use(buffer) as f64;
-        counts.add(recording, bytes_of, |dispatch| self.workgroups_of(dispatch), words_read);
+        let share_of = |dispatch: &DispatchView<'_>| match &share {
+            Some((progress, share)) if is_of_iterations(dispatch, *progress) => *share,
+            _ => 1.0,
+        };
+        counts.add(recording, bytes_of, share_of, |dispatch| self.workgroups_of(dispatch), words_read);
         Ok(result)
     }
 }
