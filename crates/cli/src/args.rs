@@ -397,7 +397,7 @@ pub enum Backend {
 pub enum DynamicsBackend {
     /// The CPU
     Cpu,
-    /// A GPU, in single precision; strands are assembled by the CPU
+    /// A GPU, in single precision
     Gpu,
 }
 

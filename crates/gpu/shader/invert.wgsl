@@ -1,5 +1,5 @@
-// Block-Jacobi: the diagonal blocks, springs included, as products L D L^T. An inverse would be as large as that of the
-// softest direction, and so would be its rounding in the stiffest one, of strands 10^7 times as stiff.
+// Block-Jacobi: the diagonal blocks, springs included, as products L D L^T. The rounding of an inverse is relative to its
+// largest entry, that of the softest direction; in stiff directions it would be larger than the entry itself.
 
 struct Params {
     slots: u32,
@@ -12,7 +12,7 @@ struct Params {
 @group(0) @binding(3) var<storage, read> spring_words: array<u32>;
 @group(0) @binding(4) var<storage, read_write> slots: array<PatchSlot>;
 
-// Smallest pivot as a share of the trace: rounding of the block.
+// Smallest pivot as a share of the trace. Smaller ones are mostly rounding; a larger one keeps the block positive.
 const MIN_PIVOT: f32 = 2e-7;
 
 @compute @workgroup_size(64)
@@ -46,7 +46,6 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         for (var k = 0u; k < 6u; k += 1u) {
             m[k] *= unit;
         }
-        // The block is at least the inertia of the node: a pivot is smaller by rounding alone.
         let first = max(m[0], MIN_PIVOT);
         let xy = m[1] / first;
         let xz = m[2] / first;

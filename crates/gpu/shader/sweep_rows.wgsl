@@ -1,5 +1,5 @@
-// A sweep over the contact rows of some buckets, which share no vertex that moves (bricks.rs). A workgroup takes a bucket at
-// a time and waits between its colors: rows of one color share no vertex that moves. The rows without a color of their
+// Sweeps over the contact rows of some buckets, which share no vertex that moves (bricks.rs). A workgroup takes a bucket at
+// a time, goes over it as often as it is told, and waits between its colors: rows of one color share no vertex that moves. The rows without a color of their
 // own come last, one after the other. Vertices that do not move are read by many and written by none.
 //
 // Most buckets have no more rows than a workgroup has threads. Each thread then keeps a row, and the workgroup the
@@ -196,15 +196,13 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
                 storageBarrier();
                 workgroupBarrier();
             }
-            if !is_kept {
-                if local.x == 0u {
-                    for (var there = start; there < bucket.end; there += 1u) {
-                        relax_there(order[there]);
-                    }
+            if !is_kept && local.x == 0u {
+                for (var there = start; there < bucket.end; there += 1u) {
+                    relax_there(order[there]);
                 }
-                storageBarrier();
-                workgroupBarrier();
             }
+            storageBarrier();
+            workgroupBarrier();
         }
         if is_kept {
             for (var s = local.x; s < SLOTS; s += THREADS) {

@@ -263,11 +263,11 @@ impl<E: Engine + Debug + Send> NewtonBackend for Assembling<E> {
     }
 }
 
-/// A body with the rest positions of its vertices.
+/// Bodies with the rest positions of their vertices.
 struct Case {
     name: &'static str,
     rest: Vec<Point>,
-    body: Body,
+    bodies: Vec<Body>,
     filter: HessianFilter,
     /// Size of random displacements [m].
     distortion: f64,
@@ -275,11 +275,11 @@ struct Case {
 
 /// Every kind of element with both filters.
 fn cases() -> Vec<Case> {
-    let with = |bodies::Case { name, rest, body }| {
+    let with = |bodies::Case { name, rest, bodies }| {
         [HessianFilter::Clamp, HessianFilter::Absolute].map(|filter| Case {
             name,
             rest: rest.clone(),
-            body: body.clone(),
+            bodies: bodies.clone(),
             filter,
             distortion: 0.014,
         })
@@ -303,7 +303,7 @@ fn target<B: LinearBackend + 'static>(
     params.newton.correcting_iterations = 0;
     params.environment.air_density = 1.2;
     params.environment.wind = Vector::new(3.0, -1.0, 2.0);
-    let model = DynamicsModel::new(case.rest.clone(), vec![case.body.clone()]).expect("a model");
+    let model = DynamicsModel::new(case.rest.clone(), case.bodies.clone()).expect("a model");
     let mut dynamics = Dynamics::new(model, params).expect("parameters");
     dynamics.set_backend(Some(Box::new(backend)));
     let random = &mut fastrand::Rng::with_seed(11);
@@ -376,7 +376,8 @@ fn preconditioners_are_those_of_double_precision() {
     for cells in [2, 4, 9, 26] {
         let (rest, triangles) = sheet(cells, 0.0);
         let body = Body::cloth("sheet", triangles, ClothMaterial::cotton());
-        let case = Case { name: "sheet", rest, body, filter: HessianFilter::Clamp, distortion: 0.0 };
+        let case =
+            Case { name: "sheet", rest, bodies: vec![body], filter: HessianFilter::Clamp, distortion: 0.0 };
         let norms = [true, false].map(|assembles| {
             let backend = Assembling { assembles, ..Assembling::new(TwinEngine::new()) };
             let norms = Arc::clone(&backend.norms);
@@ -457,7 +458,7 @@ fn fall(
     let mut params = DynamicsParams::default();
     params.newton.preconditioner = preconditioner;
     params.newton.cg_tolerance = cg_tolerance;
-    let model = DynamicsModel::new(case.rest.clone(), vec![case.body.clone()]).expect("a model");
+    let model = DynamicsModel::new(case.rest.clone(), case.bodies.clone()).expect("a model");
     let mut dynamics = Dynamics::new(model, params).expect("parameters");
     dynamics.set_backend(backend);
     let (mut x, mut v) = (case.rest.clone(), vec![Vector::zeros(); case.rest.len()]);
@@ -476,10 +477,12 @@ fn fall(
 fn time_steps_are_those_of_the_cpu_up_to_single_precision() {
     for (k, case) in cases().into_iter().enumerate() {
         // Of curled strands, the norm of block-Jacobi sees residuals that are rounding: they are far stiffer than soft.
-        let has_groups = k % 2 == 1 || case.name.starts_with("curled");
+        // The sewn sheet buckles one way or the other: with two preconditioners on the CPU it ends 5 mm apart.
+        let has_groups = (k % 2 == 1 || case.name.starts_with("curled")) && case.name != "sewn";
         let kind = if has_groups { PreconditionerKind::TwoLevel } else { PreconditionerKind::BlockJacobi };
         let (tolerance, most) = match case.name {
             "isotropic" | "woven" => (1e-5, 5e-4),
+            "sewn" => (1e-5, 2e-3),
             _ => (1e-4, 1e-3),
         };
         // Near the solution, a straight strand is as far from it as positions are rounded: its decrease is not that of the model.
@@ -509,7 +512,7 @@ fn linear_momentum_is_conserved_to_rounding() {
         let mut params = DynamicsParams::default();
         params.newton.cg_tolerance = 0.05;
         let gravity = params.environment.gravity;
-        let model = DynamicsModel::new(case.rest.clone(), vec![case.body.clone()]).expect("a model");
+        let model = DynamicsModel::new(case.rest.clone(), case.bodies.clone()).expect("a model");
         let masses = model.masses().to_vec();
         let mut dynamics = Dynamics::new(model, params).expect("parameters");
         dynamics.set_backend(Some(Box::new(Assembling::new(TwinEngine::new()))));

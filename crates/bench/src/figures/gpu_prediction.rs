@@ -31,9 +31,10 @@ const LINK: f64 = 50e9;
 const WAITS_PER_COLORING: f64 = 5.0;
 const WAITS_PER_VISIT: f64 = 4.0;
 
-/// Sweeps over a cluster of edges; most rows of a bucket and most colors of a cluster that a workgroup keeps
-/// (`sweep_rows.wgsl`, `sweep_edges.wgsl`).
-const CLUSTER_SWEEPS: f64 = 2.0;
+/// Sweeps over a bucket of rows and over a cluster of edges, as `bowknot_gpu::Settings::default` has them; most rows of a bucket
+/// and most colors of a cluster that a workgroup keeps (`sweep_rows.wgsl`, `sweep_edges.wgsl`).
+const BUCKET_SWEEPS: f64 = 3.0;
+const CLUSTER_SWEEPS: f64 = 3.0;
 const KEPT_ROWS: u32 = 256;
 const KEPT_COLORS: u32 = 12;
 
@@ -57,9 +58,9 @@ impl Figure for GpuPrediction {
          workgroups for. Dispatches of one stage that follow each other with the same buffers \
          (colors of a sweep, levels of a tree) share the bytes. A submission takes 30 microseconds, and what the host \
          writes and reads goes at 50 GB/s. To the paper's size, bytes and threads grow with the number of vertices, and \
-         dispatches stay as many; stages of one workgroup keep one. Iterations of conjugate gradients that are submitted after the last one that is needed take their dispatches, \
-         and no bytes. Seconds of collisions per time step are those of as many two-way \
-         steps as the paper takes; those of the dynamics are of the time steps that were counted, whose linear iterations \
+         dispatches stay as many; stages of one workgroup keep one. Iterations of conjugate gradients that \
+         are submitted after the last one that is needed take their dispatches, and no bytes. Seconds of collisions per time \
+         step are those of as many two-way steps as the paper takes; those of the dynamics are of the time steps that were counted, whose linear iterations \
          grow with the size. Work of the host is left out, and so are cache misses, atomics and arithmetic."
     }
 
@@ -388,8 +389,8 @@ fn waiting(stage: &str, part: &[u32]) -> f64 {
     let visit = |colors: f64| WAITS_PER_VISIT * WAIT + colors * SHORT_WAIT;
     match stage {
         "color" => WAITS_PER_COLORING * WAIT * colors,
-        "sweep_rows" if part[1] - part[0] <= KEPT_ROWS => visit(colors),
-        "sweep_rows" => WAIT * colors,
+        "sweep_rows" if part[1] - part[0] <= KEPT_ROWS => visit(BUCKET_SWEEPS * colors),
+        "sweep_rows" => BUCKET_SWEEPS * WAIT * colors,
         _ if part[4] <= KEPT_COLORS => visit(CLUSTER_SWEEPS * colors),
         _ => CLUSTER_SWEEPS * WAIT * colors,
     }
@@ -432,18 +433,18 @@ impl CountingEngine {
         Some((progress, self.twin.words_of(progress)[1]))
     }
 
-    /// The share of the iterations in a recording that were made: the others find that the residual is small enough.
-    fn share_of_iterations(
+    /// How many of the iterations in a recording were made, and their number: the others find that the residual is small enough.
+    fn iterations_made(
         &self,
         recording: &Recording,
         before: Option<(BufferId, u32)>,
-    ) -> Option<(BufferId, f64)> {
+    ) -> Option<(BufferId, [u32; 2])> {
         let (progress, before) = before?;
         let starts = recording.dispatches().any(|one| one.stage == "guess");
         let made = self.twin.words_of(progress)[1].saturating_sub(if starts { 0 } else { before });
         let is_one = |one: &DispatchView<'_>| one.stage == "redirect" && is_of_iterations(one, progress);
-        let recorded = recording.dispatches().filter(is_one).count();
-        (recorded > 0).then(|| (progress, f64::from(made) / recorded as f64))
+        let recorded = recording.dispatches().filter(is_one).count() as u32;
+        (recorded > 0).then_some((progress, [made, recorded]))
     }
 
     /// Zeros for the rows and their order, which a step makes anew: what an earlier step with more rows left there is not in
@@ -483,12 +484,16 @@ impl Engine for CountingEngine {
         self.twin.run(&self.without_old_rows(recording), &[])?;
         let before = self.iterations(recording);
         let result = self.twin.run(recording, read)?;
-        let share = self.share_of_iterations(recording, before);
+        let made = self.iterations_made(recording, before);
         let words_read = read.iter().map(|(_, words)| words).sum();
         let mut counts = self.counts.lock().unwrap_or_else(PoisonError::into_inner);
         let bytes_of = |buffer| 4.0 * self.twin.words_in_use(buffer) as f64;
-        let share_of = |dispatch: &DispatchView<'_>| match &share {
-            Some((progress, share)) if is_of_iterations(dispatch, *progress) => *share,
+        let share_of = |dispatch: &DispatchView<'_>| match made {
+            Some((progress, [made, recorded])) if is_of_iterations(dispatch, progress) => {
+                // That the residual is small enough is found after one product more.
+                let product = matches!(dispatch.stage, "strand_product" | "multiply");
+                f64::from((made + u32::from(product)).min(recorded)) / f64::from(recorded)
+            }
             _ => 1.0,
         };
         counts.add(recording, bytes_of, share_of, |dispatch| self.workgroups_of(dispatch), words_read);

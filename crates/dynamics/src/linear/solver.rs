@@ -197,6 +197,7 @@ impl LinearSolver {
         let norm = if *precise { double.begin(levels, b, factor) } else { single.begin(levels, b, factor) };
         let mut norm = norm / (factor * factor);
         if norm <= 0.0 || !norm.is_finite() {
+            *scale = 0.0;
             return CgInfo { iterations: 0, residual: 0.0, converged: norm == 0.0 };
         }
         *scale = norm;

@@ -15,10 +15,10 @@ pub struct Plan {
     pub bends: Vec<Bend>,
     pub tetrahedra: Vec<Tetrahedron>,
     pub strands: Vec<Strand>,
-    /// Of each node with strands the node, where its entries in this vector begin and end; then the entries: three times a
+    /// Of each node that only strands act on the node, where its entries in this vector begin and end; then the entries: three times a
     /// strand plus the place of the node in it.
     pub strand_rows: Vec<u32>,
-    /// Nodes with strands.
+    /// Nodes that only strands act on.
     pub strand_nodes: usize,
     /// Blocks that the elements write.
     pub blocks: usize,
@@ -98,12 +98,23 @@ impl Plan {
         plan
     }
 
-    /// Lists the strands of each node, whose rows the matrix leaves to them.
+    /// Lists the strands of each node that only strands act on: the matrix leaves its row to them. Rows of other nodes, such as
+    /// those where a strand is sewn to cloth, have all of their blocks.
     fn add_strand_rows(&mut self, model: &ElementModel, structure: &mut PackedMatrix) {
+        let mut others = vec![false; model.rest.len()];
+        let mut mark = |nodes: &[u32]| {
+            nodes.iter().filter(|node| **node != NONE).for_each(|node| others[*node as usize] = true);
+        };
+        self.membranes.iter().for_each(|element| mark(&element.nodes));
+        self.bends.iter().for_each(|element| mark(&element.nodes));
+        self.tetrahedra.iter().for_each(|element| mark(&element.nodes));
+        mark(&model.scalar_columns);
         let mut rows: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
         for (e, strand) in (0..).zip(&model.strands) {
-            for (place, &node) in (0..).zip(&strand.nodes).filter(|(_, node)| **node != NONE) {
-                rows.entry(node).or_default().push(3 * e + place);
+            for (place, &node) in (0..).zip(&strand.nodes) {
+                if node != NONE && !others[node as usize] {
+                    rows.entry(node).or_default().push(3 * e + place);
+                }
             }
         }
         self.strand_nodes = rows.len();

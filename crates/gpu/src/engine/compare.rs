@@ -17,7 +17,7 @@ const ABSOLUTE: f32 = 4e-6;
 
 /// Stages that amplify rounding, and the relative difference of their numbers: inverses of matrices do by their
 /// condition number.
-const AMPLIFYING: [(&str, f32); 1] = [("domain", 0.05)];
+const AMPLIFYING: [(&str, f32); 2] = [("domain", 0.05), ("invert", 0.05)];
 
 /// Integers above this can be coordinates, which may be rounded differently; the others are equal.
 const SMALLEST_COORDINATE: u32 = 1 << 16;

@@ -40,7 +40,7 @@ pub fn symmetric_blocks(words: &[u32]) -> impl Iterator<Item = Matrix3<f64>> {
 }
 
 impl<E: Engine + Debug + Send> ConjugateGradients<E> {
-    pub(crate) fn take_model(&mut self, model: &ElementModel) -> Result<bool, GpuError> {
+    pub(crate) fn take_model(&mut self, model: &ElementModel) -> Result<(), GpuError> {
         if let Some(newton) = self.newton.take() {
             newton.free(&mut self.engine);
         }
@@ -58,7 +58,7 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
             groups: None,
             slots: None,
         });
-        Ok(true)
+        Ok(())
     }
 
     /// Divides the free nodes into patches, unless these are the free ones already.

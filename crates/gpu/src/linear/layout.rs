@@ -12,8 +12,7 @@ pub const CHILDREN: usize = 8;
 /// Unknowns of a domain: the six rigid motions of eight children.
 pub const DOMAIN_UNKNOWNS: usize = 6 * CHILDREN;
 
-/// Numbers of the inverse of the matrix of their motions, three shifts and three spins each; zero for motions that move
-/// nothing.
+/// Numbers of the inverse of a domain's matrix; zero for motions that move nothing.
 pub const DOMAIN_WORDS: usize = DOMAIN_UNKNOWNS * DOMAIN_UNKNOWNS;
 
 /// Most coarse levels: 8^8 patches are more than a buffer holds.

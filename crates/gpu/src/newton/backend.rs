@@ -27,16 +27,14 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
         }
     }
 
-    /// Takes over a model for Newton's method; returns whether the kernels know it.
-    fn take_newton_model(&mut self, model: &ElementModel) -> Result<bool, GpuError> {
-        if !self.take_model(model)? {
-            return Ok(false);
-        }
+    /// Takes over a model for Newton's method.
+    fn take_newton_model(&mut self, model: &ElementModel) -> Result<(), GpuError> {
+        self.take_model(model)?;
         if let Some(assembly) = &self.assembly {
             let potential = Potential::new(&mut self.engine, model, assembly.buffers.elements())?;
             self.newton = Some(Newton::new(&mut self.engine, model, potential)?);
         }
-        Ok(true)
+        Ok(())
     }
 
     fn begin_newton_step(&mut self, step: &NewtonStep<'_>) -> Result<(), GpuError> {
@@ -94,7 +92,8 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
 
 impl<E: Engine + Debug + Send> NewtonBackend for ConjugateGradients<E> {
     fn set_model(&mut self, model: &ElementModel) -> Result<bool, LinearBackendError> {
-        Ok(self.take_newton_model(model)?)
+        self.take_newton_model(model)?;
+        Ok(true)
     }
 
     fn begin_step(&mut self, step: &NewtonStep<'_>) -> Result<(), LinearBackendError> {

@@ -38,6 +38,8 @@ pub struct Newton {
     pub spring_sums: Vec<Vector>,
     /// What the last solve has read of R (d + p) by block, until something of it changes.
     pub momenta: Option<Vec<u32>>,
+    /// Positions at the start of the time step, as the device has them.
+    step_start: Vec<[i32; 4]>,
     /// What the target began with: its positions and whether nodes that are not free move.
     start: Vec<[i32; 4]>,
     start_imposes: bool,
@@ -87,6 +89,7 @@ impl Newton {
             gradient_sums: Vec::new(),
             spring_sums: Vec::new(),
             momenta: None,
+            step_start: Vec::new(),
             start: Vec::new(),
             start_imposes: false,
             imposes: false,
@@ -130,7 +133,8 @@ impl Newton {
         self.imposes = false;
         self.start.clear();
         (self.gradient_of, self.matrix_of) = (None, None);
-        recording.write(self.vectors.start, &self.points(step.start));
+        self.step_start = self.points(step.start);
+        recording.write(self.vectors.start, &self.step_start);
         recording.write(self.vectors.inertial, &self.points(step.inertial));
     }
 
@@ -159,8 +163,12 @@ impl Newton {
         if self.start == iterate {
             self.return_to_start(recording);
         } else {
-            recording.write(self.vectors.target_start, &iterate);
-            recording.write(self.vectors.iterate, &iterate);
+            if self.step_start == iterate {
+                self.record_copy(self.vectors.start, self.vectors.target_start, recording);
+            } else {
+                recording.write(self.vectors.target_start, &iterate);
+            }
+            self.record_copy(self.vectors.target_start, self.vectors.iterate, recording);
             self.start = iterate;
             self.change_iterate();
             self.target = self.iterate;
@@ -244,10 +252,10 @@ impl Newton {
             for positions in self.vectors.positions() {
                 recording.dispatch(&stages::REGRID, &[positions], params, self.nodes);
             }
-            cpu::regrid::regrid(
-                cpu::regrid::Params { nodes: self.start.len() as u32, shift },
-                &mut self.start,
-            );
+            for positions in [&mut self.start, &mut self.step_start] {
+                let nodes = positions.len() as u32;
+                cpu::regrid::regrid(cpu::regrid::Params { nodes, shift }, positions);
+            }
             self.grid.quantum *= f64::from(1u32 << shift);
             left -= shift;
         }

@@ -90,9 +90,10 @@ impl<E: Engine> Rounds<'_, E> {
                 // A start that was small enough by its own sums may be above the goal by the product with H.
                 let gains =
                     norm <= MIN_GAIN * MIN_GAIN * before || before <= goal || limits.max_iterations == 0;
-                let is_at_end = norm > goal && !gains || !norm.is_finite();
-                let stalled = is_at_end && (norm > MAX_EXCESS * MAX_EXCESS * goal || !norm.is_finite());
-                if norm <= goal || is_at_end || self.left == 0 {
+                let gains_too_little = norm > goal && !gains || !norm.is_finite();
+                let stalled =
+                    gains_too_little && (norm > MAX_EXCESS * MAX_EXCESS * goal || !norm.is_finite());
+                if norm <= goal || gains_too_little || self.left == 0 {
                     let residual = (norm / relative).sqrt();
                     let iterations = solve.iterations as usize;
                     let info = CgInfo { iterations, residual, converged: norm <= goal };

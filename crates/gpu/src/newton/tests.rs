@@ -218,6 +218,30 @@ fn an_iteration_moves_no_vector() {
     assert!(engine.written < 400 && engine.read < 2000, "{} and {}", engine.written, engine.read);
 }
 
+/// A target writes its iterate once, and not at all where the time step begins.
+#[test]
+fn an_iterate_is_written_once_at_most() {
+    for fixture in fixtures() {
+        let nodes = fixture.free.len();
+        let start = fixture.terms.as_step().start.to_vec();
+        let written_for = |iterate: &[Vector]| {
+            let mut solver = solver(Counting::default(), &fixture);
+            solver.begin_step(&fixture.terms.as_step()).expect("runs");
+            let before = solver.engine().written;
+            let watched = fixture.begin_target(&mut solver, iterate);
+            let vectors = solver.newton.as_ref().expect("one").vectors;
+            let written = solver.engine().written - before;
+            for buffer in [vectors.iterate, vectors.target_start] {
+                let words = &solver.engine().twins.words_of(buffer)[..4 * nodes];
+                let positions: Vec<Vector> = solver.newton.as_ref().expect("one").positions(words).collect();
+                assert_eq!(positions, watched, "{}", fixture.name);
+            }
+            written
+        };
+        assert_eq!(written_for(&fixture.iterate) - written_for(&start), 16 * nodes, "{}", fixture.name);
+    }
+}
+
 /// Calls on so many grains that threads and workgroups have several.
 fn many_grains<E: Engine + Debug + Send>(engine: E) -> (ConjugateGradients<E>, String) {
     let count = 70_000u32;

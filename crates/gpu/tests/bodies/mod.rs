@@ -3,11 +3,11 @@
 use bowknot_dynamics::{Body, ClothMaterial, RestShape, SolidMaterial, SolidModel, StrandMaterial};
 use bowknot_geometry::{Point, Vector};
 
-/// A body with the rest positions of its vertices.
+/// Bodies with the rest positions of their vertices.
 pub struct Case {
     pub name: &'static str,
     pub rest: Vec<Point>,
-    pub body: Body,
+    pub bodies: Vec<Body>,
 }
 
 /// A sheet of so many cells along each side, which is curved.
@@ -93,7 +93,7 @@ pub fn single_elements() -> Vec<Case> {
 /// A solid of many cubes in a row.
 pub fn long_block(cubes: usize) -> Case {
     let (rest, tets) = block(cubes);
-    Case { name: "long block", rest, body: Body::solid("block", tets, SolidMaterial::rubber()) }
+    Case { name: "long block", rest, bodies: vec![Body::solid("block", tets, SolidMaterial::rubber())] }
 }
 
 /// Points and triangles.
@@ -141,12 +141,12 @@ fn bodies(
     ];
     let cloth = cloth.into_iter().map(|(name, curvature, material)| {
         let (rest, triangles) = sheet(curvature);
-        Case { name, rest, body: Body::cloth("sheet", triangles, material) }
+        Case { name, rest, bodies: vec![Body::cloth("sheet", triangles, material)] }
     });
     let solids = solids.into_iter().map(|(name, model, damping)| {
         let (rest, tets) = block();
         let material = SolidMaterial { model, damping, poisson_ratio: 0.4, ..SolidMaterial::rubber() };
-        Case { name, rest, body: Body::solid("block", tets, material) }
+        Case { name, rest, bodies: vec![Body::solid("block", tets, material)] }
     });
     let strands = [
         ("strands", 0.0, RestShape::Flat, 0.0),
@@ -164,7 +164,18 @@ fn bodies(
             bend_damping: damping,
             ..StrandMaterial::hair()
         };
-        Case { name, rest, body: Body::strands("locks", edges, material) }
+        Case { name, rest, bodies: vec![Body::strands("locks", edges, material)] }
     });
-    cloth.chain(solids).chain(strands).collect()
+    // A strand that is sewn to an edge of cloth and goes on from there.
+    let (mut rest, triangles) = sheet(0.0);
+    let first = rest.len() as u32;
+    rest.extend((1..4).map(|k| Point::new(-0.04 * f64::from(k), 0.01 * f64::from(k * k), 0.02)));
+    let edges = vec![[1, 0], [0, first], [first, first + 1], [first + 1, first + 2]];
+    let strand = StrandMaterial { bend_stiffness: 1e-4, ..StrandMaterial::yarn() };
+    let bodies = vec![
+        Body::cloth("sheet", triangles, ClothMaterial::cotton()),
+        Body::strands("thread", edges, strand),
+    ];
+    let sewn = Case { name: "sewn", rest, bodies };
+    cloth.chain(solids).chain(strands).chain([sewn]).collect()
 }

@@ -194,7 +194,8 @@ pub struct NewtonSolve {
     pub info: CgInfo,
     /// Squared norm of b.
     pub scale: f64,
-    /// Whether single precision gained too little: the residual is above the limit.
+    /// Whether single precision gained too little, and the CPU had better solve. A residual slightly above the limit is no
+    /// reason to: then `info` says that the solve has not converged.
     pub stalled: bool,
 }
 

@@ -53,7 +53,7 @@ impl Problem {
         let mut params = DynamicsParams::default();
         params.environment.air_density = 1.2;
         params.environment.wind = Vector::new(3.0, -1.0, 2.0);
-        let model = DynamicsModel::new(case.rest.clone(), vec![case.body.clone()]).expect("a model");
+        let model = DynamicsModel::new(case.rest.clone(), case.bodies.clone()).expect("a model");
         let mut dynamics = Dynamics::new(model, params).expect("parameters");
         let model = dynamics.element_model();
 
