@@ -42,7 +42,7 @@ fn blade(room: Option<u64>, time_steps: usize) -> Course {
 
 #[test]
 fn a_scene_goes_on_where_its_candidates_are_more_than_a_device_binds() {
-    const TIME_STEPS: usize = 10;
+    const TIME_STEPS: usize = 8;
     let [plenty, few] = [None, Some(30_000)].map(|room| blade(room, TIME_STEPS));
     assert!(few.steps > plenty.steps, "{} two-way steps, {} with room", few.steps, plenty.steps);
     assert_eq!(few.converged, TIME_STEPS);

@@ -24,7 +24,13 @@ fn energy(strand: Strand) -> vec4<f32> {
     let moves = c * length(second_change) + a * length(first_change);
     let reach = c * length(second) + a * length(first) + moves;
     let strain = size - strand.rest;
-    var out = vec3<f32>(0.5 * strain * strain, dq * (strain + 0.5 * dq), moves * (reach + strand.rest));
+    // An edge that turns hardly changes its length: its rounding is that of the change, and of the strain where it changes.
+    var changed = moves;
+    if is_edge(strand) {
+        changed = abs(dq);
+    }
+    let error = changed * (reach + strand.rest) + moves * (abs(strain) + abs(dq));
+    var out = vec3<f32>(0.5 * strain * strain, dq * (strain + 0.5 * dq), error);
     if strand.damping > 0.0 && params.rate > 0.0 {
         let factor = strand.damping * params.rate;
         let turned = jump_of(strand, moved(n[0], n[1]), moved(n[1], n[2]));

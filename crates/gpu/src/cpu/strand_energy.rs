@@ -29,7 +29,9 @@ fn energy(strand: &Strand, states: &States<'_>) -> Part {
     let moves = sizes(strand, |a, b| states.change(a, b));
     let reach = sizes(strand, |a, b| states.way(a, b)) + moves;
     let strain = size - strand.rest;
-    let mut out = [0.5 * strain * strain, dq * (strain + 0.5 * dq), moves * (reach + strand.rest)];
+    let changed = if strand.is_edge() { dq.abs() } else { moves };
+    let error = changed * (reach + strand.rest) + moves * (strain.abs() + dq.abs());
+    let mut out = [0.5 * strain * strain, dq * (strain + 0.5 * dq), error];
     let params = states.params;
     if strand.damping > 0.0 && params.rate > 0.0 {
         let turned = strand.jump(|a, b| states.moved(a, b));
