@@ -1,13 +1,14 @@
-// A coarse level of the preconditioner: the motions of eight groups of a domain under the forces on them, and the force on
-// the group that they form. One workgroup per domain, which go on with strides.
+// Up to three coarse levels of the preconditioner at once: the motions of the eight groups of each domain under the forces on
+// them, and the force on the group that they form. The force on a group is the sum of those on its parts of the first of these
+// levels, eight threads per group, so no level waits for the one below. One workgroup per domain, which go on with strides.
 
 struct Params {
-    // Groups of the level, and the places of the first of them and of the first of their parents.
-    groups: u32,
-    first: u32,
-    first_parent: u32,
-    // The first domain among those of coarse levels.
-    first_domain: u32,
+    // Groups of each of these levels; 0 beyond the last one.
+    groups: vec4<u32>,
+    // Places of the first groups of these levels, and of the first of the parents of the last one.
+    firsts: vec4<u32>,
+    // The first domains of these levels among those of all coarse levels; beyond the last one all bits.
+    first_domains: vec4<u32>,
     domains: u32,
     workgroups: u32,
     // Where the partial sums of the squared norm begin: the present ones and the next ones.
@@ -25,7 +26,33 @@ struct Params {
 @group(0) @binding(6) var<storage, read_write> progress: Progress;
 
 var<workgroup> is_moving: u32;
+// What each thread has summed: the force and the torque on its group.
+var<workgroup> lane_forces: array<array<f32, 6>, 64>;
 var<workgroup> group_forces: array<f32, 48>;
+
+// Level of a domain above the first one.
+fn rise_of(domain: u32) -> u32 {
+    return select(0u, 1u, domain >= params.first_domains.y) + select(0u, 1u, domain >= params.first_domains.z);
+}
+
+// The share of thread `lane` in the force on a group `rise` levels above the first one.
+fn sum_of_lane(group: u32, rise: u32, lane: u32) -> array<f32, 6> {
+    var force = vec3<f32>(0.0);
+    var torque = vec3<f32>(0.0);
+    let end = min((group + 1u) << (3u * rise), params.groups.x);
+    for (var part = (group << (3u * rise)) + lane; part < end; part += 8u) {
+        let at = 6u * (params.firsts.x + part);
+        let own = vec3<f32>(forces[at], forces[at + 1u], forces[at + 2u]);
+        var turn = vec3<f32>(forces[at + 3u], forces[at + 4u], forces[at + 5u]);
+        for (var level = 0u; level < rise; level += 1u) {
+            let link = links[8u * params.first_domains[level] + (part >> (3u * level))];
+            turn = link.w * turn + cross(link.xyz, own);
+        }
+        force += own;
+        torque += turn;
+    }
+    return array<f32, 6>(force.x, force.y, force.z, torque.x, torque.y, torque.z);
+}
 
 @compute @workgroup_size(64)
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
@@ -41,17 +68,11 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
     }
     var squares = 0.0;
     for (var k = group.x; k < params.domains; k += params.workgroups) {
-        let child = 8u * k + t / 6u;
-        let place = 6u * (params.first + child) + t % 6u;
-        let parent = params.first_parent + k;
-        let domain = params.first_domain + k;
+        let domain = params.first_domains.x + k;
+        let rise = rise_of(domain);
+        let parent = domain - params.first_domains[rise];
         workgroupBarrier();
-        if t < 48u {
-            group_forces[t] = 0.0;
-            if child < params.groups {
-                group_forces[t] = forces[place];
-            }
-        }
+        lane_forces[t] = sum_of_lane(8u * parent + t / 8u, rise, t % 8u);
         if t < 8u {
             let link = links[8u * domain + t];
             for (var c = 0u; c < 4u; c += 1u) {
@@ -59,16 +80,25 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
             }
         }
         workgroupBarrier();
-        if t < 48u && child < params.groups {
+        if t < 48u {
+            var sum = 0.0;
+            for (var lane = 0u; lane < 8u; lane += 1u) {
+                sum += lane_forces[8u * (t / 6u) + lane][t % 6u];
+            }
+            group_forces[t] = sum;
+        }
+        workgroupBarrier();
+        let child = 8u * parent + t / 6u;
+        if t < 48u && child < params.groups[rise] {
             var motion = 0.0;
             for (var m = 0u; m < 48u; m += 1u) {
                 motion += coarse[DOMAIN_WORDS * domain + 48u * m + t] * group_forces[m];
             }
-            group_motions[place] = motion;
+            group_motions[6u * (params.firsts[rise] + child) + t % 6u] = motion;
             squares += motion * group_forces[t];
         }
         if t < 6u {
-            forces[6u * parent + t] = force_on_parent(t);
+            forces[6u * (params.firsts[rise + 1u] + parent) + t] = force_on_parent(t);
         }
     }
     let sum = sum_of_threads(t, squares);

@@ -54,6 +54,7 @@ fn main(@builtin(local_invocation_id) local: vec3<u32>) {
         }
         solve.goal = max(params.tolerance * relative, params.own_tolerance * solve.scale);
         solve.norm = norm;
+        solve.reached = norm;
         solve.iterations = 0u;
         solve.ended = 0u;
         progress.goal = max(MARGIN * solve.goal, MAX_REDUCTION * norm);
@@ -63,6 +64,8 @@ fn main(@builtin(local_invocation_id) local: vec3<u32>) {
         return;
     }
     solve.iterations = atomicLoad(&progress.iterations);
+    // Of a round that goes on, the partial sums are those of the last iteration.
+    solve.reached = norm;
     if solve.ended == 1u {
         solve.before = solve.norm;
         solve.norm = norm;

@@ -4,7 +4,9 @@
 // edge is projected onto its own ball, with the multiplier that it had taken back first (Boyle and Dykstra 1986).
 //
 // Where a cluster has few colors with few edges each, as clusters of meshes do, a thread keeps its edges of all colors, so
-// that the memory of the device is read before the first sweep and written after the last one.
+// that the memory of the device is read before the first sweep and written after the last one. First all threads look whether
+// any edge would change: where none is too long or pulls, as in most clusters of most bodies, a sweep changes nothing and is
+// left out.
 
 struct Params {
     // Clusters of the round.
@@ -47,6 +49,10 @@ var<private> kept: array<Edge, 12>;
 // Of the edge that is projected, displacements of ends that have no place in the cluster.
 var<private> outside: array<vec4<f32>, 2>;
 
+// Whether an edge of the cluster pulls, as threads find and as all read it.
+var<workgroup> pulling: atomic<u32>;
+var<workgroup> is_pulling: u32;
+
 fn read_edge(e: u32) -> Edge {
     let edge = limits[e];
     let between = vec3<f32>(positions[edge.a].xyz - positions[edge.b].xyz);
@@ -64,34 +70,51 @@ fn read_outside(e: u32) {
     }
 }
 
+// Displacement of the end at a place, the end `k` of the edge.
+fn displacement(place: u32, k: u32) -> vec4<f32> {
+    if place != FIXED {
+        return moved[place];
+    }
+    return outside[k];
+}
+
+// The multiplier of an edge once it is projected, by the displacements of its ends.
+fn projected(edge: Edge, a: vec4<f32>, b: vec4<f32>) -> vec3<f32> {
+    let total = a.w + b.w;
+    let along = edge.between + a.xyz - b.xyz;
+    let released = along + total * edge.multiplier;
+    let length = sqrt(dot(released, released));
+    if length > edge.limit {
+        return released * ((length - edge.limit) / (length * total));
+    }
+    return vec3<f32>(0.0);
+}
+
+// Whether an edge pulls, or would if it were projected.
+fn pulls(edge: Edge) -> bool {
+    let a = displacement(edge.places & 0xffffu, 0u);
+    let b = displacement(edge.places >> 16u, 1u);
+    if a.w + b.w <= 0.0 {
+        return false;
+    }
+    let pulled = any(edge.multiplier != vec3<f32>(0.0));
+    return pulled || (params.only_apply == 0u && any(projected(edge, a, b) != vec3<f32>(0.0)));
+}
+
 // Projects an edge; returns its multiplier.
 fn relax(edge: Edge) -> vec3<f32> {
-    let old = edge.multiplier;
-    var change = old;
     let a_place = edge.places & 0xffffu;
     let b_place = edge.places >> 16u;
-    var a = outside[0];
-    if a_place != FIXED {
-        a = moved[a_place];
+    let a = displacement(a_place, 0u);
+    let b = displacement(b_place, 1u);
+    if a.w + b.w <= 0.0 {
+        return edge.multiplier;
     }
-    var b = outside[1];
-    if b_place != FIXED {
-        b = moved[b_place];
-    }
-    let total = a.w + b.w;
-    if total <= 0.0 {
-        return old;
-    }
-    var multiplier = old;
+    var multiplier = edge.multiplier;
+    var change = multiplier;
     if params.only_apply == 0u {
-        let along = edge.between + a.xyz - b.xyz;
-        let released = along + total * old;
-        let length = sqrt(dot(released, released));
-        multiplier = vec3<f32>(0.0);
-        if length > edge.limit {
-            multiplier = released * ((length - edge.limit) / (length * total));
-        }
-        change = multiplier - old;
+        multiplier = projected(edge, a, b);
+        change = multiplier - edge.multiplier;
     }
     if a_place != FIXED {
         moved[a_place] = vec4<f32>(a.xyz - a.w * change, a.w);
@@ -115,6 +138,9 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
         if local.x < cluster.vertices {
             moved[local.x] = displacements[cluster_vertices[v]];
         }
+        if local.x == 0u {
+            atomicStore(&pulling, 0u);
+        }
         let keeps = cluster.colors <= KEPT;
         if keeps {
             var first = cluster.first_edge;
@@ -129,6 +155,33 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
             }
         }
         workgroupBarrier();
+        var first_edge = cluster.first_edge;
+        for (var color = 0u; color < cluster.colors; color += 1u) {
+            let end = color_ends[cluster.first_color + color];
+            var e = edge_of(first_edge, end, local.x);
+            while e < end {
+                // Edges beyond those that threads keep are few, and read again.
+                var edge = kept[min(color, KEPT - 1u)];
+                if !keeps || e >= first_edge + THREADS {
+                    edge = read_edge(e);
+                }
+                if (edge.places & 0xffffu) == FIXED || (edge.places >> 16u) == FIXED {
+                    read_outside(e);
+                }
+                if pulls(edge) {
+                    atomicStore(&pulling, 1u);
+                }
+                e += THREADS;
+            }
+            first_edge = end;
+        }
+        workgroupBarrier();
+        if local.x == 0u {
+            is_pulling = atomicLoad(&pulling);
+        }
+        if workgroupUniformLoad(&is_pulling) == 0u {
+            continue;
+        }
         for (var sweep = 0u; sweep < params.sweeps; sweep += 1u) {
             var first = cluster.first_edge;
             for (var color = 0u; color < cluster.colors; color += 1u) {

@@ -31,12 +31,18 @@ const LINK: f64 = 50e9;
 const WAITS_PER_COLORING: f64 = 5.0;
 const WAITS_PER_VISIT: f64 = 4.0;
 
+/// The same for a cluster of which no edge pulls, where nothing is swept or written.
+const WAITS_OF_IDLE: f64 = 3.0;
+
 /// Sweeps over a bucket of rows and over a cluster of edges, as `bowknot_gpu::Settings::default` has them; most rows of a bucket
 /// and most colors of a cluster that a workgroup keeps (`sweep_rows.wgsl`, `sweep_edges.wgsl`).
 const BUCKET_SWEEPS: f64 = 3.0;
 const CLUSTER_SWEEPS: f64 = 3.0;
 const KEPT_ROWS: u32 = 256;
 const KEPT_COLORS: u32 = 12;
+
+/// Nodes of a patch of the preconditioner, on average.
+const NODES_OF_PATCH: usize = 50;
 
 /// Time steps that are counted.
 const FRAMES: usize = 3;
@@ -58,7 +64,7 @@ impl Figure for GpuPrediction {
          workgroups for. Dispatches of one stage that follow each other with the same buffers \
          (colors of a sweep, levels of a tree) share the bytes. A submission takes 30 microseconds, and what the host \
          writes and reads goes at 50 GB/s. To the paper's size, bytes and threads grow with the number of vertices, and \
-         dispatches stay as many; stages of one workgroup keep one. Iterations of conjugate gradients that \
+         dispatches stay as many, but for coarse levels of the preconditioner; stages of one workgroup keep one. Iterations of conjugate gradients that \
          are submitted after the last one that is needed take their dispatches, and no bytes. Seconds of collisions per time \
          step are those of as many two-way steps as the paper takes; those of the dynamics are of the time steps that were counted, whose linear iterations \
          grow with the size. Work of the host is left out, and so are cache misses, atomics and arithmetic."
@@ -269,6 +275,7 @@ impl Counted {
         }
         counted.collisions = taken(&collisions);
         counted.dynamics = taken(&dynamics);
+        counted.dynamics.more_climbs = climbs(counted.nodes[1]) / climbs(counted.nodes[0]) - 1.0;
         (counted.steps > 0).then_some(counted).context("no two-way step was made")
     }
 }
@@ -282,6 +289,8 @@ struct Counts {
     submissions: usize,
     /// Bytes between host and device.
     link_bytes: f64,
+    /// Dispatches of `climb` that the paper's size has more, for each one that was counted.
+    more_climbs: f64,
 }
 
 impl Counts {
@@ -344,7 +353,13 @@ impl Counts {
     /// Seconds of dispatches, waits and submissions alone.
     fn latency(&self) -> f64 {
         let waits: f64 = self.groups.values().map(|group| group.waits).sum();
-        DISPATCH * self.dispatches()[0] as f64 + waits + SUBMISSION * self.submissions as f64
+        let dispatches: f64 = self.groups.iter().map(|(key, group)| self.full_dispatches(key.0, group)).sum();
+        DISPATCH * dispatches + waits + SUBMISSION * self.submissions as f64
+    }
+
+    /// Dispatches of a stage at the paper's size.
+    fn full_dispatches(&self, stage: &str, group: &Group) -> f64 {
+        group.dispatches as f64 * if stage == "climb" { 1.0 + self.more_climbs } else { 1.0 }
     }
 
     /// Predicted seconds of a scene that is so many times as large.
@@ -358,7 +373,7 @@ impl Counts {
     fn by_stage(&self, growth: f64) -> BTreeMap<&'static str, [f64; 3]> {
         let mut stages: BTreeMap<&'static str, [f64; 3]> = BTreeMap::new();
         for ((stage, workgroups), group) in &self.groups {
-            let dispatches = group.dispatches as f64;
+            let dispatches = self.full_dispatches(stage, group);
             let latency = DISPATCH * dispatches + group.waits;
             let seconds = latency + byte_seconds(*workgroups, group.bytes, growth);
             let sums = stages.entry(stage).or_default();
@@ -396,6 +411,25 @@ fn waiting(stage: &str, part: &[u32]) -> f64 {
     }
 }
 
+/// Whether an edge of a cluster pulls after a step, by the words of the ends of colors and of the edges.
+fn pulls([color_ends, limits]: &[Vec<u32>; 2], cluster: &[u32]) -> bool {
+    let last = color_ends[(cluster[3] + cluster[4] - 1) as usize];
+    let edges = limits.chunks_exact(8).take(last as usize).skip(cluster[2] as usize);
+    // The words of a multiplier are 0 or those of -0 where there is no force.
+    edges.flat_map(|edge| &edge[4..7]).any(|word| word & 0x7fff_ffff != 0)
+}
+
+/// Dispatches of `climb` per iteration for so many nodes: one per three coarse levels, of which each has an eighth of the
+/// groups of the one before.
+fn climbs(nodes: usize) -> f64 {
+    let (mut groups, mut levels) = (nodes.div_ceil(NODES_OF_PATCH), 0usize);
+    while groups > 1 {
+        levels += 1;
+        groups = if groups <= 8 { 1 } else { groups.div_ceil(8) };
+    }
+    levels.div_ceil(3).max(1) as f64
+}
+
 /// The twins, and what they do.
 #[derive(Debug)]
 struct CountingEngine {
@@ -419,9 +453,17 @@ impl CountingEngine {
             _ => return None,
         };
         let content = self.twin.words_of(buffer);
+        let edges = (dispatch.stage == "sweep_edges")
+            .then(|| [3, 4].map(|binding| self.twin.words_of(dispatch.buffers[binding])));
         let workgroup = |part: &[u32]| {
             let works = part[words - 1] > 0;
-            (works, if works { waiting(dispatch.stage, part) } else { 0.0 })
+            let is_idle = works && edges.as_ref().is_some_and(|edges| !pulls(edges, part));
+            let seconds = match () {
+                () if is_idle => WAITS_OF_IDLE * WAIT,
+                () if works => waiting(dispatch.stage, part),
+                () => 0.0,
+            };
+            (works, seconds)
         };
         Some(content.chunks_exact(words).map(workgroup).collect())
     }

@@ -10,6 +10,8 @@ struct Solve {
     before: f32,
     norm: f32,
     goal: f32,
+    // Where the last batch of iterations ended.
+    reached: f32,
     iterations: u32,
     // 1 after the last iteration of a round, and before the first one.
     ended: u32,

@@ -62,6 +62,7 @@ pub fn settle(
             }
             solve.goal = (params.tolerance * relative).max(params.own_tolerance * solve.scale);
             solve.norm = norm;
+            solve.reached = norm;
             solve.iterations = 0;
             solve.ended = 0;
             *progress = Progress { moving: 1, iterations: 0, goal: goal(solve.goal) };
@@ -69,6 +70,7 @@ pub fn settle(
         }
         _ => {
             solve.iterations = progress.iterations;
+            solve.reached = norm;
             if solve.ended == 1 {
                 solve.before = solve.norm;
                 solve.norm = norm;

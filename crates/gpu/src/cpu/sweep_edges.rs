@@ -42,6 +42,14 @@ pub fn sweep_edges(
         for (place, &v) in moved.iter_mut().zip(vertices) {
             *place = displacements[v as usize];
         }
+        let last = cluster
+            .colors
+            .checked_sub(1)
+            .map_or(cluster.first_edge, |color| color_ends[(cluster.first_color + color) as usize]);
+        let edges = cluster.first_edge as usize..last as usize;
+        if !limits[edges].iter().any(|edge| pulls(&params, positions, edge, displacements, &moved)) {
+            continue;
+        }
         for _ in 0..params.sweeps {
             let mut first = cluster.first_edge as usize;
             for &end in &color_ends[cluster.first_color as usize..][..cluster.colors as usize] {
@@ -57,6 +65,45 @@ pub fn sweep_edges(
     }
 }
 
+/// Displacements of both ends of an edge, the fourth number their weight.
+fn displacements_of(edge: &EdgeLimit, displacements: &[[f32; 4]], moved: &[[f32; 4]]) -> [[f32; 4]; 2] {
+    [(edge.places & 0xffff, edge.a), (edge.places >> 16, edge.b)].map(|(place, v)| {
+        if place == EdgeLimit::FIXED { displacements[v as usize] } else { moved[place as usize] }
+    })
+}
+
+/// The multiplier of an edge once it is projected.
+fn projected(
+    positions: &[[i32; 4]],
+    edge: &EdgeLimit,
+    [[ax, ay, az, a_weight], [bx, by, bz, b_weight]]: [[f32; 4]; 2],
+) -> [f32; 3] {
+    let total = a_weight + b_weight;
+    let between = difference(positions[edge.a as usize], positions[edge.b as usize]);
+    let along = subtracted(added(between, [ax, ay, az]), [bx, by, bz]);
+    let released = added(along, scaled(edge.multiplier, total));
+    let length = dot(released, released).sqrt();
+    if length > edge.limit {
+        return scaled(released, (length - edge.limit) / (length * total));
+    }
+    [0.0; 3]
+}
+
+/// Whether an edge pulls, or would if it were projected.
+fn pulls(
+    params: &Params,
+    positions: &[[i32; 4]],
+    edge: &EdgeLimit,
+    displacements: &[[f32; 4]],
+    moved: &[[f32; 4]],
+) -> bool {
+    let ends = displacements_of(edge, displacements, moved);
+    if ends[0][3] + ends[1][3] <= 0.0 {
+        return false;
+    }
+    edge.multiplier != [0.0; 3] || params.only_apply == 0 && projected(positions, edge, ends) != [0.0; 3]
+}
+
 fn relax(
     params: &Params,
     positions: &[[i32; 4]],
@@ -64,37 +111,24 @@ fn relax(
     displacements: &[[f32; 4]],
     moved: &mut [[f32; 4]],
 ) {
-    let old = edge.multiplier;
-    let mut change = old;
-    let [a_place, b_place] = [edge.places & 0xffff, edge.places >> 16];
-    let displacement = |place: u32, v: u32| {
-        if place == EdgeLimit::FIXED { displacements[v as usize] } else { moved[place as usize] }
-    };
-    let [ax, ay, az, a_weight] = displacement(a_place, edge.a);
-    let [bx, by, bz, b_weight] = displacement(b_place, edge.b);
-    let (a, b) = ([ax, ay, az], [bx, by, bz]);
-    let total = a_weight + b_weight;
-    if total <= 0.0 {
+    let ends = displacements_of(edge, displacements, moved);
+    let [[ax, ay, az, a_weight], [bx, by, bz, b_weight]] = ends;
+    if a_weight + b_weight <= 0.0 {
         return;
     }
+    let mut change = edge.multiplier;
     if params.only_apply == 0 {
-        let between = difference(positions[edge.a as usize], positions[edge.b as usize]);
-        let along = subtracted(added(between, a), b);
-        let released = added(along, scaled(old, total));
-        let length = dot(released, released).sqrt();
-        let mut multiplier = [0.0; 3];
-        if length > edge.limit {
-            multiplier = scaled(released, (length - edge.limit) / (length * total));
-        }
-        change = subtracted(multiplier, old);
+        let multiplier = projected(positions, edge, ends);
+        change = subtracted(multiplier, edge.multiplier);
         edge.multiplier = multiplier;
     }
+    let [a_place, b_place] = [edge.places & 0xffff, edge.places >> 16];
     if a_place != EdgeLimit::FIXED {
-        let [x, y, z] = subtracted(a, scaled(change, a_weight));
+        let [x, y, z] = subtracted([ax, ay, az], scaled(change, a_weight));
         moved[a_place as usize] = [x, y, z, a_weight];
     }
     if b_place != EdgeLimit::FIXED {
-        let [x, y, z] = added(b, scaled(change, b_weight));
+        let [x, y, z] = added([bx, by, bz], scaled(change, b_weight));
         moved[b_place as usize] = [x, y, z, b_weight];
     }
 }

@@ -10,8 +10,8 @@ use crate::error::GpuError;
 use crate::recording::{BufferId, Recording};
 use bytemuck::Pod;
 
-/// Most workgroups of a coarse level, which has few domains.
-pub const MOST_COARSE_WORKGROUPS: usize = 128;
+/// Most workgroups of coarse levels, which have few domains.
+pub const MOST_COARSE_WORKGROUPS: usize = 512;
 
 /// Most partial sums of a squared norm.
 pub const MOST_NORMS: usize = MOST_WORKGROUPS + MOST_LEVELS * MOST_COARSE_WORKGROUPS;
@@ -67,6 +67,15 @@ impl Sizes {
 
     pub fn stepping(&self) -> usize {
         self.patches.min(MOST_WORKGROUPS)
+    }
+
+    /// Place of the first group of each coarse level, then of the group of all.
+    pub fn first_groups(&self) -> [u32; MOST_LEVELS + 4] {
+        let mut firsts = [0; MOST_LEVELS + 4];
+        for (level, groups) in self.levels.iter().enumerate() {
+            firsts[level + 1] = firsts[level] + *groups as u32;
+        }
+        firsts
     }
 }
 

@@ -1,11 +1,14 @@
 //! The dispatches of linear solves.
 
 use super::buffers::{Buffers, MOST_COARSE_WORKGROUPS, MOST_NORMS, Sizes};
-use super::layout::{CHILDREN, MOST_LEVELS, Progress};
+use super::layout::{CHILDREN, Progress};
 use crate::cpu;
 use crate::cpu::sum::{MOST_WORKGROUPS, THREADS};
 use crate::recording::{BufferId, Recording};
 use crate::stages;
+
+/// Coarse levels of a dispatch: a group is the sum of at most 64 parts then.
+const CLIMBED: usize = 3;
 
 /// The dispatches of a system. With other buffers in place of those of the system they work on other vectors.
 #[derive(Clone, Debug)]
@@ -89,8 +92,7 @@ impl Recorder {
     }
 
     fn norm_count(&self) -> usize {
-        self.sizes.stepping()
-            + self.sizes.levels.iter().map(|groups| coarse_workgroups(*groups)).sum::<usize>()
+        self.sizes.stepping() + self.sizes.levels.chunks(CLIMBED).map(climbing).sum::<usize>()
     }
 
     /// The step, the preconditioner and the next direction. The present partial sums are those in half `present`.
@@ -118,26 +120,29 @@ impl Recorder {
             THREADS * s.stepping(),
         );
         (present, next) = (present + workgroups, next + workgroups);
-        let mut firsts = [0u32; MOST_LEVELS + 4];
-        for (level, &groups) in s.levels.iter().enumerate() {
-            firsts[level + 1] = firsts[level] + groups as u32;
-            let workgroups = coarse_workgroups(groups);
+        let firsts = s.first_groups();
+        for (first_level, levels) in (0..).step_by(CLIMBED).zip(s.levels.chunks(CLIMBED)) {
+            let mut params = cpu::climb::Params {
+                groups: [0; 4],
+                firsts: [0; 4],
+                first_domains: [u32::MAX; 4],
+                domains: domains_of(levels) as u32,
+                workgroups: climbing(levels) as u32,
+                present,
+                next,
+            };
+            params.firsts.copy_from_slice(&firsts[first_level..first_level + 4]);
+            for (rise, &groups) in levels.iter().enumerate() {
+                params.groups[rise] = groups as u32;
+                params.first_domains[rise] = firsts[first_level + rise + 1] - grouped;
+            }
             recording.dispatch(
                 &stages::CLIMB,
                 &[b.coarse, b.links, b.forces, b.motions, b.sums, b.progress],
-                cpu::climb::Params {
-                    groups: groups as u32,
-                    first: firsts[level],
-                    first_parent: firsts[level + 1],
-                    first_domain: firsts[level + 1] - grouped,
-                    domains: groups.div_ceil(CHILDREN) as u32,
-                    workgroups: workgroups as u32,
-                    present,
-                    next,
-                },
-                THREADS * workgroups,
+                params,
+                THREADS * params.workgroups as usize,
             );
-            (present, next) = (present + workgroups as u32, next + workgroups as u32);
+            (present, next) = (present + params.workgroups, next + params.workgroups);
         }
         recording.dispatch(
             &stages::REDIRECT,
@@ -163,6 +168,12 @@ fn norms_at(half: usize) -> usize {
     MOST_WORKGROUPS + half * MOST_NORMS
 }
 
-fn coarse_workgroups(groups: usize) -> usize {
-    groups.div_ceil(CHILDREN).min(MOST_COARSE_WORKGROUPS)
+/// Domains of some coarse levels.
+fn domains_of(levels: &[usize]) -> usize {
+    levels.iter().map(|groups| groups.div_ceil(CHILDREN)).sum()
+}
+
+/// Workgroups that climb over some levels.
+fn climbing(levels: &[usize]) -> usize {
+    domains_of(levels).min(MOST_COARSE_WORKGROUPS)
 }

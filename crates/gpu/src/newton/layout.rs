@@ -19,6 +19,8 @@ pub struct Solve {
     pub norm: f32,
     /// Where the solve may end.
     pub goal: f32,
+    /// Where the last batch of iterations ended, by the sums of the preconditioner, as all norms.
+    pub reached: f32,
     /// Iterations so far.
     pub iterations: u32,
     /// 1 after the last iteration of a round, and before the first one.
@@ -34,6 +36,7 @@ impl Solve {
         before: 0.0,
         norm: 0.0,
         goal: 0.0,
+        reached: 0.0,
         iterations: 0,
         ended: 1,
     };

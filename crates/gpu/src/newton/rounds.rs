@@ -28,6 +28,12 @@ const NOTHING: NewtonSolve = NewtonSolve {
     stalled: false,
 };
 
+/// Fewest and most iterations of a batch after the first one, and most nodes times iterations: a submission must not take
+/// so long that a driver takes the device for lost.
+const MIN_BATCH: usize = 4;
+const MAX_BATCH: usize = 48;
+const MOST_WORK: usize = 1 << 23;
+
 /// Most blocks whose momenta are read with each batch of iterations; those of more are read once, after the solve.
 const MOST_BLOCKS: usize = 128;
 
@@ -45,12 +51,22 @@ struct Rounds<'a, E> {
     left: usize,
     /// Steps of conjugate gradients that were recorded, starts of rounds after the first included.
     recorded: usize,
+    /// Iterations of the next batch.
+    batch: usize,
+}
+
+/// Iterations that are likely to be left in a round, from the decrease by those of the last batch: `before` and `after`
+/// are the squared norms around it, `goal` the one to reach. None where it decreased nothing.
+fn iterations_left(made: usize, [before, after, goal]: [f64; 3]) -> Option<usize> {
+    let decrease = (before / after).ln() / made as f64;
+    let left = (after / goal).ln() / decrease;
+    (decrease > 0.0 && left.is_finite()).then(|| left.max(0.0).ceil() as usize)
 }
 
 impl<E: Engine> Rounds<'_, E> {
     /// Makes a batch of iterations after what was recorded before; they end the round if no more are left.
     fn run(&mut self, mut recording: Recording) -> Result<Solve, GpuError> {
-        let batch = self.left.min(BATCH);
+        let batch = self.left.min(self.batch);
         for _ in 0..batch {
             self.recorder.record_iteration(self.recorded, &mut recording);
             self.recorded += 1;
@@ -84,6 +100,7 @@ impl<E: Engine> Rounds<'_, E> {
         let relative = scale.max(limits.min_scale);
         let goal = limits.tolerance * limits.tolerance * relative;
         let goal = goal.max(limits.own_tolerance * limits.own_tolerance * scale);
+        let mut reached = solve.norm;
         loop {
             let (before, norm) = (squared(solve.before), squared(solve.norm));
             if solve.ended == 1 {
@@ -100,6 +117,13 @@ impl<E: Engine> Rounds<'_, E> {
                     return Ok(NewtonSolve { info, scale, stalled });
                 }
             }
+            // A round that begins has no decrease yet.
+            let left = (solve.ended == 0)
+                .then(|| iterations_left(self.batch, [reached, solve.reached, solve.goal].map(f64::from)))
+                .flatten();
+            let most = (MOST_WORK / self.newton.nodes.max(1)).clamp(BATCH, MAX_BATCH);
+            self.batch = left.map_or(BATCH, |left| (left + 1).clamp(MIN_BATCH, most));
+            reached = solve.reached;
             solve = self.run(Recording::default())?;
         }
     }
@@ -150,9 +174,26 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
             momenta: None,
             left: limits.max_iterations,
             recorded: 0,
+            batch: BATCH,
         };
         let solved = rounds.solve(recording)?;
         newton.momenta = rounds.momenta;
         Ok(solved)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::iterations_left;
+
+    #[test]
+    fn iterations_are_extrapolated_from_a_steady_decrease() {
+        // A squared norm that falls by a tenth part per iteration: from 1 to 1e-4 in four, to 1e-10 in six more.
+        assert_eq!(iterations_left(4, [1.0, 1e-4, 1.001e-10]), Some(6));
+        assert_eq!(iterations_left(4, [1.0, 1e-4, 1e-3]), Some(0));
+        for [before, after] in [[1.0, 1.0], [1.0, 2.0], [f64::NAN, 1.0], [1.0, f64::INFINITY]] {
+            assert_eq!(iterations_left(4, [before, after, 1e-10]), None);
+        }
+        assert_eq!(iterations_left(4, [1.0, 1e-4, 0.0]), None);
     }
 }

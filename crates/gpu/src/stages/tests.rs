@@ -77,6 +77,9 @@ fn structs_of_linear_solves_lie_alike_on_both_sides() {
         offsets!(linear::Progress: moving, iterations, goal),
     ];
     assert_structs(&module_of("descend"), &structs);
+    let params =
+        offsets!(cpu::climb::Params: groups, firsts, first_domains, domains, workgroups, present, next);
+    assert_structs(&module_of("climb"), &[params]);
     // Parameters with an array, which a uniform buffer aligns to 16 bytes.
     let params = offsets!(cpu::redirect::Params: patches, grouped, start, workgroups, levels, norms, present, next, firsts);
     assert_structs(&module_of("redirect"), &[params]);
@@ -84,7 +87,8 @@ fn structs_of_linear_solves_lie_alike_on_both_sides() {
 
 #[test]
 fn structs_of_newtons_method_lie_alike_on_both_sides() {
-    let solve = offsets!(newton::Solve: factor, inverse, scale, before, norm, goal, iterations, ended);
+    let solve =
+        offsets!(newton::Solve: factor, inverse, scale, before, norm, goal, reached, iterations, ended);
     let progress = offsets!(linear::Progress: moving, iterations, goal);
     assert_structs(&module_of("settle"), &[solve, progress]);
 }
