@@ -28,9 +28,10 @@ use crate::edges::Edges;
 use crate::engine::{Engine, PhaseSeconds};
 use crate::error::GpuError;
 use crate::grid::{Grid, GridError, GridPoint};
-use crate::layout::{Candidate, Control, Late, NONE, Vertex};
+use crate::layout::{Candidate, Control, NONE, Vertex};
 use crate::model::{self, Constraints, Lengths};
 use crate::recording::{BufferId, Recording};
+use crate::stages;
 use bowknot_geometry::{CollisionModel, Point, Vector};
 use buffers::{Buffers, Sizes, words};
 use near_list::NearList;
@@ -226,8 +227,6 @@ pub struct Collision<E> {
     /// Whether any contact may have friction, and whether vertices of bodies that are no obstacles are prescribed.
     frictional: bool,
     has_pins: bool,
-    /// The positions [m] where [`Self::place`] has put them; none after a step.
-    placed: Option<Vec<Point>>,
     /// The rule of the call, and the contact rows of its last step.
     stop: Stop,
     row_count: usize,
@@ -374,6 +373,7 @@ impl<E: Engine> Collision<E> {
         setup.write(buffers.pair_frictions, &pair_frictions);
         setup.write(buffers.adjacency, &adjacency.words);
         setup.write(buffers.vertex_blocks, &blocks);
+        setup.write(buffers.limits, &edges.limits(grid));
         setup.write(buffers.clusters, &edges.clusters);
         setup.write(buffers.cluster_vertices, &edges.vertices);
         setup.write(buffers.cluster_colors, &edges.color_ends);
@@ -398,7 +398,6 @@ impl<E: Engine> Collision<E> {
             adjacency_starts: [adjacency.edges_first, adjacency.triangles_first],
             frictional,
             has_pins,
-            placed: None,
             stop: Stop::NEVER,
             row_count: 0,
             polishes: false,
@@ -427,9 +426,7 @@ impl<E: Engine> Collision<E> {
         self.listed = false;
         self.engine.run(&recording, &[])?;
         let grid = self.grid;
-        let placed = collected(&on_grid, |&x| grid.position(x));
-        self.placed = Some(placed.clone());
-        Ok(placed)
+        Ok(collected(&on_grid, |&x| grid.position(x)))
     }
 
     /// Frees the buffers and gives the engine back.
@@ -451,24 +448,27 @@ impl<E: Engine> Collision<E> {
         check_length("target", call.target.len(), self.sizes.vertices)?;
         let grid = self.grid;
         let inside = |points: &[Point]| -> Vec<GridPoint> { collected(points, |y| grid.nearest_inside(y)) };
-        let (target, mut slip_start) = (inside(call.target), inside(call.slip_start));
-        let start = match self.placed.take() {
-            Some(placed) => placed,
-            None => self.positions()?,
-        };
-        if slip_start.is_empty() {
-            slip_start = inside(&start);
-        }
-        check_length("slip_start", slip_start.len(), self.sizes.vertices)?;
+        let (target, slip_start) = (inside(call.target), inside(call.slip_start));
+        let slips_from_here = slip_start.is_empty();
+        let b = &self.buffers;
         let mut recording = Recording::default();
-        recording.write(self.buffers.targets, &padded(&target));
-        recording.write(self.buffers.aims, &padded(&target));
-        recording.write(self.buffers.slip_start, &padded(&slip_start));
-        recording.write(self.buffers.swings, &vec![[0.0f32, 0.0, 0.0, 1.0]; start.len()]);
-        recording.write(self.buffers.late, &vec![Late::NEW; start.len()]);
-        recording.write(self.buffers.factor, &[1.0, cpu::factor::MOST_GROWTH]);
-        recording.write(self.buffers.limits, &self.edges.limits(&start, &self.grid));
-        recording.write(self.buffers.control, &[Control::of_new_call()]);
+        recording.write(b.targets, &padded(&target));
+        if !slips_from_here {
+            check_length("slip_start", slip_start.len(), self.sizes.vertices)?;
+            recording.write(b.slip_start, &padded(&slip_start));
+        }
+        recording.write(b.factor, &[1.0, cpu::factor::MOST_GROWTH]);
+        recording.write(b.control, &[Control::of_new_call()]);
+        recording.dispatch(
+            &stages::BEGIN,
+            &[b.positions, b.targets, b.limits, b.aims, b.slip_start, b.swings, b.late],
+            cpu::begin::Params {
+                vertices: self.sizes.vertices as u32,
+                limits: self.edges.len() as u32,
+                slips_from_here: u32::from(slips_from_here),
+            },
+            self.sizes.vertices.max(self.edges.len()),
+        );
         self.engine.run(&recording, &[])?;
         (self.stop, self.row_count, self.polishes) = (call.stop, 0, false);
         self.lengths.growth = self.grid.length(call.growth).min(f32::MAX);

@@ -7,18 +7,10 @@
 use crate::grid::Grid;
 use crate::layout::{EdgeCluster, EdgeLimit};
 use bowknot_geometry::Point;
-use rayon::prelude::*;
 use std::ops::Range;
-
-/// Edges that one task computes.
-const CHUNK: usize = 4096;
 
 /// Vertices of a cluster that move, at most: as many as the shader has room for.
 pub(crate) const MOST_VERTICES: usize = 256;
-
-/// Smallest ratio of an edge's limit to its length at the start of a call: an edge that starts too long is shortened a
-/// little in each call.
-const START_SHARE: f64 = 0.97;
 
 /// Shares of the vertices on one side of a cut, of which the one that cuts the fewest edges is taken. Cuts of later
 /// rounds must lie elsewhere than those of the rounds before, which are in the middle.
@@ -113,23 +105,20 @@ impl Edges {
         self.rounds.iter().cloned()
     }
 
-    /// The limits of a call that starts at `positions` [m], without multipliers.
-    pub fn limits(&self, positions: &[Point], grid: &Grid) -> Vec<EdgeLimit> {
+    /// The limits of the scene, without multipliers.
+    pub fn limits(&self, grid: &Grid) -> Vec<EdgeLimit> {
         let limit = |(&([a, b], limit), &[place_a, place_b]): (&Limited, &[u32; 2])| {
-            let start = (positions[a as usize] - positions[b as usize]).norm();
+            let longest = grid.length(limit);
             EdgeLimit {
                 a,
                 b,
-                limit: grid.length(limit.max(START_SHARE * start)),
+                limit: longest,
+                longest,
                 places: place_a | place_b << 16,
                 ..EdgeLimit::default()
             }
         };
-        match self.edges.len() {
-            // A parallel loop would pay for the way to its threads.
-            ..=CHUNK => self.edges.iter().zip(&self.places).map(limit).collect(),
-            _ => self.edges.par_iter().zip(&self.places).with_min_len(CHUNK).map(limit).collect(),
-        }
+        self.edges.iter().zip(&self.places).map(limit).collect()
     }
 }
 

@@ -259,13 +259,15 @@ pub struct EdgeCluster {
 pub struct EdgeLimit {
     pub a: u32,
     pub b: u32,
+    /// In the present call [quanta].
     pub limit: f32,
     /// Places of a (lower half) and b in the list of vertices of the cluster; [`EdgeLimit::FIXED`] for a vertex that
     /// does not move.
     pub places: u32,
     /// Multiplier: the force that pulls a toward b, times -1 on a.
     pub multiplier: [f32; 3],
-    pub padding_1: u32,
+    /// By the scene [quanta].
+    pub longest: f32,
 }
 
 impl EdgeLimit {

@@ -116,6 +116,14 @@ pub(crate) static AIM: Stage = Stage {
     twin: cpu::aim::bound,
 };
 
+pub(crate) static BEGIN: Stage = Stage {
+    name: "begin",
+    parts: &[TYPES, include_str!("../shader/begin.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Read, Write, Write, Write, Write, Write],
+    twin: cpu::begin::bound,
+};
+
 pub(crate) static RECALL: Stage = Stage {
     name: "recall",
     parts: &[TYPES, include_str!("../shader/recall.wgsl")],
@@ -391,6 +399,7 @@ pub(crate) static STRETCH: Stage = Stage {
 /// All of them.
 #[cfg(test)]
 pub(crate) static ALL: &[&Stage] = &[
+    &BEGIN,
     &RESTART,
     &DECIDE,
     &RECALL,

@@ -120,7 +120,7 @@ struct EdgeLimit {
     limit: f32,
     places: u32,
     multiplier: vec3<f32>,
-    padding_1: u32,
+    longest: f32,
 }
 
 struct OldRow {

@@ -73,7 +73,7 @@ impl<E: Engine> Collision<E> {
         if self.fresh || !self.again {
             self.buffers.make_room_for_step(&mut self.engine)?;
         }
-        (self.placed, self.listed) = (None, false);
+        self.listed = false;
         let recording = self.record_submission(steps)?;
         let read =
             [(self.buffers.control, words::<Control>(1)), (self.buffers.reports, words::<Control>(steps))];

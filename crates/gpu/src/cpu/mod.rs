@@ -9,6 +9,7 @@ pub mod aim;
 pub mod assemble;
 pub mod attempt;
 pub mod balance;
+pub mod begin;
 pub mod bend;
 pub mod bend_energy;
 pub mod bend_gradient;

@@ -30,7 +30,6 @@ pub(crate) use layout::{
 pub(crate) use matrix::{BLOCK_WORDS, PackedMatrix, SLICE};
 pub(crate) use patches::Patches;
 pub(crate) use record::{Recorder, StrandHessian};
-pub(crate) use solver::BATCH;
 pub use solver::ConjugateGradients;
 
 #[cfg(test)]

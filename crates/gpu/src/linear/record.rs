@@ -1,9 +1,9 @@
 //! The dispatches of linear solves.
 
-use super::buffers::{Buffers, MOST_COARSE_WORKGROUPS, MOST_NORMS, Sizes};
+use super::buffers::{Buffers, MOST_COARSE_WORKGROUPS, Sizes};
 use super::layout::{CHILDREN, Progress};
 use crate::cpu;
-use crate::cpu::sum::{MOST_WORKGROUPS, THREADS};
+use crate::cpu::sum::THREADS;
 use crate::recording::{BufferId, Recording};
 use crate::stages;
 
@@ -87,8 +87,13 @@ impl Recorder {
     /// Where the partial sums of squared norms are that the last of `iterations` since the start wrote, in words, and
     /// their number.
     pub fn norms(&self, iterations: usize) -> std::ops::Range<usize> {
-        let first = norms_at(iterations % 2);
+        let first = self.norms_at(iterations % 2);
         first..first + self.norm_count()
+    }
+
+    /// Where the partial sums of squared norms of a half begin: after those of p . q.
+    fn norms_at(&self, half: usize) -> usize {
+        self.sizes.multiplying() + half * self.norm_count()
     }
 
     fn norm_count(&self) -> usize {
@@ -99,7 +104,7 @@ impl Recorder {
     fn record_step(&self, is_start: bool, present: usize, recording: &mut Recording) {
         let (b, s) = (&self.buffers, &self.sizes);
         let start = u32::from(is_start);
-        let (mut present, mut next) = (norms_at(present) as u32, norms_at(1 - present) as u32);
+        let (mut present, mut next) = (self.norms_at(present) as u32, self.norms_at(1 - present) as u32);
         let (patches, grouped) = (s.patches as u32, s.grouped as u32);
         let (workgroups, norms) = (s.stepping() as u32, self.norm_count() as u32);
         let (all_present, all_next) = (present, next);
@@ -161,11 +166,6 @@ impl Recorder {
             THREADS * s.stepping(),
         );
     }
-}
-
-/// Where the partial sums of squared norms of a half begin.
-fn norms_at(half: usize) -> usize {
-    MOST_WORKGROUPS + half * MOST_NORMS
 }
 
 /// Domains of some coarse levels.

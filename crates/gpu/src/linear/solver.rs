@@ -16,7 +16,7 @@ use std::fmt::Debug;
 
 /// Iterations that are submitted at once; then the host looks whether the residual is small enough. Those that are too many
 /// change nothing and take little time.
-pub(crate) const BATCH: usize = 16;
+const BATCH: usize = 16;
 
 /// Largest reduction of a squared residual by one solve: rounding errors of single precision come near then.
 const MAX_REDUCTION: f64 = 1e-10;

@@ -32,6 +32,9 @@ const SHAPES: [Shape; 6] = [
     Shape { columns: 20, rows: 20, patch: 150, springs: 10, grains: 0, ..PLAIN },
 ];
 
+/// Many small patches, which make four coarse levels.
+const FOUR_LEVELS: Shape = Shape { columns: 30, rows: 35, patch: 2, springs: 20, held: 0, ..PLAIN };
+
 fn solver<E: Engine>(engine: E) -> ConjugateGradients<E> {
     ConjugateGradients::new("test".to_owned(), engine)
 }
@@ -235,8 +238,7 @@ fn straight_strands_do_not_spin_about_themselves() {
 /// Three coarse levels are made by one dispatch, in which no level waits for another, and the fourth by the next one.
 #[test]
 fn the_preconditioner_has_four_coarse_levels() {
-    let shape = Shape { columns: 30, rows: 35, patch: 2, springs: 20, held: 0, ..PLAIN };
-    let owned = Owned::random(&shape, 6);
+    let owned = Owned::random(&FOUR_LEVELS, 6);
     let patches = patches_of(&owned.system());
     assert_eq!(patches.levels, [525, 66, 9, 2]);
     assert_norms(&owned, &patches, 2e-5);
@@ -267,7 +269,7 @@ fn patches_hold_each_free_node_once() {
 
 #[test]
 fn every_kernel_computes_what_its_twin_computes() {
-    for (seed, shape) in SHAPES.iter().enumerate() {
+    for (seed, shape) in SHAPES.iter().chain([&FOUR_LEVELS]).enumerate() {
         let owned = Owned::random(shape, seed as u64);
         let system = owned.system();
         let mut solver = solver(ComparingEngine::new(device()));

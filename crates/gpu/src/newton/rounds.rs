@@ -9,7 +9,7 @@ use super::solve::Opposed;
 use crate::cpu::settle;
 use crate::engine::Engine;
 use crate::error::GpuError;
-use crate::linear::{BATCH, ConjugateGradients, Recorder};
+use crate::linear::{ConjugateGradients, Recorder};
 use crate::recording::{BufferId, Recording};
 use bowknot_dynamics::{AssemblySprings, CgInfo, NewtonSolve, SolveLimits};
 use std::fmt::Debug;
@@ -28,11 +28,17 @@ const NOTHING: NewtonSolve = NewtonSolve {
     stalled: false,
 };
 
-/// Fewest and most iterations of a batch after the first one, and most nodes times iterations: a submission must not take
-/// so long that a driver takes the device for lost.
+/// Iterations of the first batch of a round, fewest and most of the next ones, and most nodes times iterations: a submission must
+/// not take so long that a driver takes the device for lost.
+pub(super) const FIRST_BATCH: usize = 12;
 const MIN_BATCH: usize = 4;
 const MAX_BATCH: usize = 48;
 const MOST_WORK: usize = 1 << 23;
+
+/// A batch has so many times the iterations that are likely to be left, and so many more: one too few costs a submission, one
+/// too many a few dispatches that do nothing.
+const CAUTION: f64 = 1.25;
+const SPARE: usize = 2;
 
 /// Most blocks whose momenta are read with each batch of iterations; those of more are read once, after the solve.
 const MOST_BLOCKS: usize = 128;
@@ -51,16 +57,18 @@ struct Rounds<'a, E> {
     left: usize,
     /// Steps of conjugate gradients that were recorded, starts of rounds after the first included.
     recorded: usize,
+    /// Iterations before the round.
+    made: usize,
     /// Iterations of the next batch.
     batch: usize,
 }
 
-/// Iterations that are likely to be left in a round, from the decrease by those of the last batch: `before` and `after`
-/// are the squared norms around it, `goal` the one to reach. None where it decreased nothing.
-fn iterations_left(made: usize, [before, after, goal]: [f64; 3]) -> Option<usize> {
-    let decrease = (before / after).ln() / made as f64;
-    let left = (after / goal).ln() / decrease;
-    (decrease > 0.0 && left.is_finite()).then(|| left.max(0.0).ceil() as usize)
+/// Iterations that are likely to be left in a round of which so many are made, from the squared norms at its start and
+/// `now`, and the `goal`. None where nothing has decreased.
+fn iterations_left(made: usize, [start, now, goal]: [f64; 3]) -> Option<f64> {
+    let decrease = (start / now).ln() / made as f64;
+    let left = (now / goal).ln() / decrease;
+    (decrease > 0.0 && left.is_finite()).then(|| left.max(0.0))
 }
 
 impl<E: Engine> Rounds<'_, E> {
@@ -100,7 +108,6 @@ impl<E: Engine> Rounds<'_, E> {
         let relative = scale.max(limits.min_scale);
         let goal = limits.tolerance * limits.tolerance * relative;
         let goal = goal.max(limits.own_tolerance * limits.own_tolerance * scale);
-        let mut reached = solve.norm;
         loop {
             let (before, norm) = (squared(solve.before), squared(solve.norm));
             if solve.ended == 1 {
@@ -117,13 +124,16 @@ impl<E: Engine> Rounds<'_, E> {
                     return Ok(NewtonSolve { info, scale, stalled });
                 }
             }
-            // A round that begins has no decrease yet.
-            let left = (solve.ended == 0)
-                .then(|| iterations_left(self.batch, [reached, solve.reached, solve.goal].map(f64::from)))
-                .flatten();
-            let most = (MOST_WORK / self.newton.nodes.max(1)).clamp(BATCH, MAX_BATCH);
-            self.batch = left.map_or(BATCH, |left| (left + 1).clamp(MIN_BATCH, most));
-            reached = solve.reached;
+            if solve.ended == 1 {
+                (self.made, self.batch) = (solve.iterations as usize, FIRST_BATCH);
+            } else {
+                let made = solve.iterations as usize - self.made;
+                let norms = [solve.norm, solve.reached, solve.goal].map(f64::from);
+                let most = (MOST_WORK / self.newton.nodes.max(1)).clamp(FIRST_BATCH, MAX_BATCH);
+                let wanted = |left: f64| ((CAUTION * left).ceil() as usize).saturating_add(SPARE);
+                self.batch = iterations_left(made, norms)
+                    .map_or(FIRST_BATCH, |left| wanted(left).clamp(MIN_BATCH, most));
+            }
             solve = self.run(Recording::default())?;
         }
     }
@@ -174,7 +184,8 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
             momenta: None,
             left: limits.max_iterations,
             recorded: 0,
-            batch: BATCH,
+            made: 0,
+            batch: FIRST_BATCH,
         };
         let solved = rounds.solve(recording)?;
         newton.momenta = rounds.momenta;
@@ -188,12 +199,13 @@ mod tests {
 
     #[test]
     fn iterations_are_extrapolated_from_a_steady_decrease() {
-        // A squared norm that falls by a tenth part per iteration: from 1 to 1e-4 in four, to 1e-10 in six more.
-        assert_eq!(iterations_left(4, [1.0, 1e-4, 1.001e-10]), Some(6));
-        assert_eq!(iterations_left(4, [1.0, 1e-4, 1e-3]), Some(0));
-        for [before, after] in [[1.0, 1.0], [1.0, 2.0], [f64::NAN, 1.0], [1.0, f64::INFINITY]] {
-            assert_eq!(iterations_left(4, [before, after, 1e-10]), None);
+        // A squared norm that falls to a tenth per iteration: from 1 to 1e-4 in four, to 1e-10 in six more.
+        assert!((iterations_left(4, [1.0, 1e-4, 1e-10]).expect("steady") - 6.0).abs() < 1e-9);
+        assert_eq!(iterations_left(4, [1.0, 1e-4, 1e-3]), Some(0.0));
+        for [start, now] in [[1.0, 1.0], [1.0, 2.0], [f64::NAN, 1.0], [1.0, f64::INFINITY]] {
+            assert_eq!(iterations_left(4, [start, now, 1e-10]), None);
         }
         assert_eq!(iterations_left(4, [1.0, 1e-4, 0.0]), None);
+        assert_eq!(iterations_left(0, [1.0, 1.0, 1e-4]), None);
     }
 }
