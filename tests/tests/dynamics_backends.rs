@@ -242,6 +242,10 @@ impl<E: Metering> NewtonBackend for Counted<E> {
         self.inner.place(length)
     }
 
+    fn begin_search(&mut self) -> Result<(Watched, Trial), LinearBackendError> {
+        self.inner.begin_search()
+    }
+
     fn start_from_trial(&mut self) -> Result<(), LinearBackendError> {
         self.inner.start_from_trial()
     }

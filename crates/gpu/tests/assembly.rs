@@ -237,6 +237,10 @@ impl<E: Engine + Debug + Send> NewtonBackend for Assembling<E> {
         self.inner.place(length)
     }
 
+    fn begin_search(&mut self) -> Result<(Watched, Trial), LinearBackendError> {
+        self.inner.begin_search()
+    }
+
     fn start_from_trial(&mut self) -> Result<(), LinearBackendError> {
         self.inner.start_from_trial()
     }

@@ -82,7 +82,8 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
     fn read_watched_diagonal(&mut self, blocks: &mut Vec<Matrix3<f64>>) -> Result<(), GpuError> {
         let (Some(newton), Some(assembly)) = (&self.newton, &self.assembly) else { return Ok(()) };
         let mut recording = Recording::default();
-        let watched = newton.record_watched(assembly.buffers.diagonal, 6, &mut recording);
+        let watched =
+            newton.record_watched(assembly.buffers.diagonal, 6, newton.vectors.seen, &mut recording);
         let read = self.engine.run(&recording, &[watched])?;
         blocks.clear();
         blocks.extend(crate::linear::symmetric_blocks(&read[0]));
@@ -151,6 +152,11 @@ impl<E: Engine + Debug + Send> NewtonBackend for ConjugateGradients<E> {
     fn place(&mut self, length: f64) -> Result<Trial, LinearBackendError> {
         let (newton, engine) = self.newton()?;
         Ok(newton.make_trial(engine, length)?)
+    }
+
+    fn begin_search(&mut self) -> Result<(Watched, Trial), LinearBackendError> {
+        let (newton, engine) = self.newton()?;
+        Ok(newton.begin_search(engine)?)
     }
 
     fn start_from_trial(&mut self) -> Result<(), LinearBackendError> {

@@ -6,9 +6,9 @@ use crate::cpu;
 use crate::cpu::sum::{MOST_WORKGROUPS, THREADS};
 use crate::engine::Engine;
 use crate::error::GpuError;
-use crate::recording::Recording;
+use crate::recording::{BufferId, Recording};
 use crate::stages;
-use bowknot_dynamics::Trial;
+use bowknot_dynamics::{Trial, Watched};
 
 /// Largest coordinate of the grid, as a number: see `attempt.wgsl`.
 const REACH: f64 = ((1u32 << 29) - 1) as f64;
@@ -23,12 +23,12 @@ impl Newton {
         self.nodes.div_ceil(THREADS).clamp(1, MOST_WORKGROUPS)
     }
 
-    /// Records a trial at that length of the step.
-    pub fn record_attempt(&self, length: f64, recording: &mut Recording) {
+    /// Records the iterate plus that length of the step, which goes to `trial`.
+    pub fn record_attempt(&self, length: f64, trial: BufferId, recording: &mut Recording) {
         let (v, workgroups) = (&self.vectors, self.workgroups());
         recording.dispatch(
             &stages::ATTEMPT,
-            &[v.iterate, v.imposed, v.free, v.step, v.right_side, v.target_start, v.trial, v.sums],
+            &[v.iterate, v.imposed, v.free, v.step, v.right_side, v.target_start, trial, v.sums],
             cpu::attempt::Params {
                 nodes: self.nodes as u32,
                 workgroups: workgroups as u32,
@@ -39,6 +39,41 @@ impl Newton {
         );
     }
 
+    /// Makes the reference, and the trial at full length with its energies, in one submission. Returns the watched nodes at the
+    /// reference too.
+    pub fn begin_search<E: Engine>(&mut self, engine: &mut E) -> Result<(Watched, Trial), GpuError> {
+        if self.is_solved {
+            let mut recording = Recording::default();
+            let v = &self.vectors;
+            self.record_attempt(0.0, v.reference, &mut recording);
+            let seen = self.record_watched(v.reference, 4, v.seen_at_reference, &mut recording);
+            let mut read = self.record_trial(1.0, &mut recording).to_vec();
+            read.push(seen);
+            let read = engine.run(&recording, &read)?;
+            let summary = Summary::new(&read[0]);
+            if summary.missing_bits() == 0 {
+                return Ok((self.positions(&read[3]).collect(), self.trial(&summary, &read[1], &read[2])));
+            }
+        }
+        let reference = self.make_trial(engine, 0.0)?;
+        Ok((reference.watched, self.make_trial(engine, 1.0)?))
+    }
+
+    /// Records a trial with its energies. Returns what to read: a [`Summary`], energies, watched nodes.
+    fn record_trial(&self, length: f64, recording: &mut Recording) -> [(BufferId, usize); 3] {
+        let v = &self.vectors;
+        self.record_attempt(length, v.trial, recording);
+        let count = self.workgroups() as u32;
+        recording.dispatch(&stages::SUMMARIZE, &[v.sums, v.summary], cpu::summarize::Params { count }, 1);
+        if length == 0.0 {
+            self.record_copy(v.trial, v.reference, recording);
+        }
+        let quantum = self.grid.quantum as f32;
+        self.potential.record_energies(v.reference, v.trial, v.start, quantum, recording);
+        let watched = self.record_watched(v.trial, 4, v.seen, recording);
+        [(v.summary, SUMS), self.potential.energy_words(), watched]
+    }
+
     /// Makes a trial with its energies.
     pub fn make_trial<E: Engine>(&mut self, engine: &mut E, length: f64) -> Result<Trial, GpuError> {
         // There is no step before a solve.
@@ -46,40 +81,57 @@ impl Newton {
         let mut recording = Recording::default();
         let mut is_coarsened = false;
         loop {
-            self.record_attempt(length, &mut recording);
-            let v = &self.vectors;
-            let count = self.workgroups() as u32;
-            recording.dispatch(&stages::SUMMARIZE, &[v.sums, v.summary], cpu::summarize::Params { count }, 1);
-            if length == 0.0 {
-                self.record_copy(v.trial, v.reference, &mut recording);
-            }
-            let quantum = self.grid.quantum;
-            self.potential.record_energies(v.reference, v.trial, v.start, quantum as f32, &mut recording);
-            let watched = self.record_watched(v.trial, 4, &mut recording);
-            let read =
-                engine.run(&recording, &[(v.summary, SUMS), self.potential.energy_words(), watched])?;
-            let mut summary = [0.0; SUMMARY];
-            summary.iter_mut().zip(&read[0]).for_each(|(s, bits)| *s = f64::from(f32::from_bits(*bits)));
-            let [product, largest, from_iterate, from_start, coordinate] = summary;
-            // A coordinate that is not finite is farther than any state.
-            let needed = bits(coordinate / REACH);
+            let wanted = self.record_trial(length, &mut recording);
+            let read = engine.run(&recording, &wanted)?;
+            let summary = Summary::new(&read[0]);
+            let needed = summary.missing_bits();
             if needed > 0 && needed <= MOST_BITS && !is_coarsened {
                 recording = Recording::default();
                 self.coarsen(needed, &mut recording);
                 is_coarsened = true;
                 continue;
             }
-            let energies = self.potential.energies(&read[1]);
-            return Ok(Trial {
-                reference: energies.reference,
-                change: energies.change,
-                rounding: energies.rounding,
-                predicted: if self.is_solved { product } else { 0.0 },
-                largest_step: if self.is_solved { largest } else { 0.0 },
-                from_iterate: from_iterate.sqrt() * quantum,
-                from_start: from_start.sqrt() * quantum,
-                watched: self.positions(&read[2]).collect(),
-            });
+            return Ok(self.trial(&summary, &read[1], &read[2]));
         }
+    }
+
+    /// A trial from what was read of it.
+    fn trial(&self, summary: &Summary, energies: &[u32], watched: &[u32]) -> Trial {
+        let energies = self.potential.energies(energies);
+        let quantum = self.grid.quantum;
+        Trial {
+            reference: energies.reference,
+            change: energies.change,
+            rounding: energies.rounding,
+            predicted: if self.is_solved { summary.product } else { 0.0 },
+            largest_step: if self.is_solved { summary.largest } else { 0.0 },
+            from_iterate: summary.from_iterate.sqrt() * quantum,
+            from_start: summary.from_start.sqrt() * quantum,
+            watched: self.positions(watched).collect(),
+        }
+    }
+}
+
+/// What `summarize` finds: p . b, and what is largest of the components of p [m], of the squared distances from the iterate and
+/// from the start of the target [quanta^2], and of the coordinates.
+struct Summary {
+    product: f64,
+    largest: f64,
+    from_iterate: f64,
+    from_start: f64,
+    coordinate: f64,
+}
+
+impl Summary {
+    fn new(words: &[u32]) -> Self {
+        let mut numbers = [0.0; SUMMARY];
+        numbers.iter_mut().zip(words).for_each(|(s, bits)| *s = f64::from(f32::from_bits(*bits)));
+        let [product, largest, from_iterate, from_start, coordinate] = numbers;
+        Self { product, largest, from_iterate, from_start, coordinate }
+    }
+
+    /// By how many bits the grid is too small. A coordinate that is not finite is farther than any state.
+    fn missing_bits(&self) -> u32 {
+        bits(self.coordinate / REACH)
     }
 }

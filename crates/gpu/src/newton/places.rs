@@ -203,7 +203,7 @@ impl Newton {
         self.imposes = self.start_imposes;
         self.is_solved = false;
         self.momenta = None;
-        self.record_attempt(0.0, recording);
+        self.record_attempt(0.0, self.vectors.trial, recording);
         self.watched.iter().map(|&node| self.grid.position(self.start[node as usize])).collect()
     }
 
@@ -231,16 +231,17 @@ impl Newton {
         &self,
         from: BufferId,
         width: usize,
+        seen: BufferId,
         recording: &mut Recording,
     ) -> (BufferId, usize) {
         let nodes = self.watched.len();
         recording.dispatch(
             &stages::GATHER,
-            &[self.vectors.watched, from, self.vectors.seen],
+            &[self.vectors.watched, from, seen],
             cpu::gather::Params { nodes: nodes as u32, width: width as u32 },
             nodes,
         );
-        (self.vectors.seen, width * nodes)
+        (seen, width * nodes)
     }
 
     /// Records that all positions go to a grid that is coarser by so many bits: they change by half a quantum at most.

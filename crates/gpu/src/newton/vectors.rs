@@ -45,6 +45,7 @@ pub struct Vectors {
     /// The watched nodes, what is read of them, and forces on them.
     pub watched: BufferId,
     pub seen: BufferId,
+    pub seen_at_reference: BufferId,
     pub forces: BufferId,
 }
 
@@ -83,6 +84,7 @@ impl Vectors {
             ended: make("end of a round", size_of::<Progress>() / 4)?,
             watched: make("watched nodes", watched)?,
             seen: make("seen of watched nodes", 6 * watched)?,
+            seen_at_reference: make("watched nodes at the reference", 4 * watched)?,
             forces: make("known forces", 4 * watched)?,
         })
     }
@@ -92,10 +94,12 @@ impl Vectors {
         if engine.words(self.seen) >= 6 * watched {
             return Ok(());
         }
-        [self.watched, self.seen, self.forces].into_iter().for_each(|buffer| engine.free(buffer));
+        let before = [self.watched, self.seen, self.seen_at_reference, self.forces];
+        before.into_iter().for_each(|buffer| engine.free(buffer));
         let room = watched + watched / 2;
         self.watched = engine.buffer("watched nodes", room)?;
         self.seen = engine.buffer("seen of watched nodes", 6 * room)?;
+        self.seen_at_reference = engine.buffer("watched nodes at the reference", 4 * room)?;
         self.forces = engine.buffer("known forces", 4 * room)?;
         Ok(())
     }
@@ -119,8 +123,9 @@ impl Vectors {
     pub fn free<E: Engine>(self, engine: &mut E) {
         let vectors = [self.step, self.right_side, self.gradient, self.second, self.second_image];
         let sums = [self.blocks, self.totals, self.translations, self.sums, self.summary, self.solve];
-        let others = [self.free, self.counted, self.ended, self.watched, self.seen, self.forces];
-        let all = self.positions().into_iter().chain(vectors).chain(sums).chain(others);
+        let bits = [self.free, self.counted, self.ended];
+        let watched = [self.watched, self.seen, self.seen_at_reference, self.forces];
+        let all = self.positions().into_iter().chain(vectors).chain(sums).chain(bits).chain(watched);
         all.for_each(|buffer| engine.free(buffer));
     }
 }

@@ -102,6 +102,13 @@ pub trait NewtonBackend: Debug + Send {
     /// What the backend fails of.
     fn place(&mut self, length: f64) -> Result<Trial, LinearBackendError>;
 
+    /// Begins a search along the step p: the reference as by [`Self::place`] with a length of 0, then the trial at full length.
+    /// Returns the watched nodes at the reference, and the trial.
+    ///
+    /// # Errors
+    /// What the backend fails of.
+    fn begin_search(&mut self) -> Result<(Watched, Trial), LinearBackendError>;
+
     /// Makes the trial the iterate. Nodes that are not free are at their ends there.
     ///
     /// # Errors

@@ -56,8 +56,13 @@ pub trait Bodies: Send {
     /// momentum is conserved whatever the error of the solve.
     fn restore_momentum(&mut self, groups: &[Vec<usize>]) -> Answer<()>;
 
-    /// Sets the trial to the iterate plus `length` times the step, with nodes that are not free at their ends. A search
-    /// along a line begins with a length of 0.
+    /// Begins a search along the step: places the trial at a length of 0, from which changes of energy count. The next trial is
+    /// that at full length.
+    fn begin_search(&mut self) -> Answer<BodyEnergies> {
+        self.place(0.0)
+    }
+
+    /// Sets the trial to the iterate plus `length` times the step, with nodes that are not free at their ends.
     fn place(&mut self, length: f64) -> Answer<BodyEnergies>;
 
     /// What the step promises; after a [`Self::place`].

@@ -63,6 +63,8 @@ pub struct DeviceBodies<'a> {
     /// The last trial, and watched nodes of the kept one.
     trial: Trial,
     kept: Vec<Vector>,
+    /// The trial at full length, where a search has begun and not asked for it yet.
+    full: Option<Trial>,
     /// Largest coordinate of the iterate that the target began with [m].
     largest: f64,
 }
@@ -85,7 +87,7 @@ impl<'a> DeviceBodies<'a> {
         let largest = beginning.iterate.iter().map(Vector::amax).fold(0.0, f64::max);
         let (trial, kept) = (Trial::default(), Vec::new());
         let iterate = beginning.with_ends(watched);
-        Ok(Self { model, step, on_device, backend, beginning, iterate, trial, kept, largest })
+        Ok(Self { model, step, on_device, backend, beginning, iterate, trial, kept, full: None, largest })
     }
 }
 
@@ -95,6 +97,16 @@ impl Beginning<'_> {
         let ends =
             self.watched.iter().zip(&iterate).map(|(&node, x)| x + self.imposed[node as usize]).collect();
         [iterate, ends]
+    }
+}
+
+impl DeviceBodies<'_> {
+    fn energies(&self) -> BodyEnergies {
+        BodyEnergies {
+            kinetic: self.on_device.potential_at_start,
+            internal: self.trial.reference + self.trial.change,
+            rounding: self.trial.rounding,
+        }
     }
 }
 
@@ -171,13 +183,19 @@ impl Bodies for DeviceBodies<'_> {
         Ok(self.backend.translate(&translations)?)
     }
 
+    fn begin_search(&mut self) -> Answer<BodyEnergies> {
+        let (watched, full) = self.backend.begin_search()?;
+        self.trial = Trial { change: 0.0, rounding: 0.0, watched, ..full.clone() };
+        self.full = Some(full);
+        Ok(self.energies())
+    }
+
     fn place(&mut self, length: f64) -> Answer<BodyEnergies> {
-        self.trial = self.backend.place(length)?;
-        Ok(BodyEnergies {
-            kinetic: self.on_device.potential_at_start,
-            internal: self.trial.reference + self.trial.change,
-            rounding: self.trial.rounding,
-        })
+        self.trial = match self.full.take() {
+            Some(full) if length == 1.0 => full,
+            _ => self.backend.place(length)?,
+        };
+        Ok(self.energies())
     }
 
     fn promise(&mut self) -> Promise {

@@ -1,6 +1,6 @@
 //! Backtracking along a Newton step.
 
-use super::bodies::{Answer, Promise};
+use super::bodies::{Answer, BodyEnergies, Promise};
 use super::state::Newton;
 use crate::dynamics::info::NewtonInfo;
 
@@ -23,7 +23,8 @@ impl Newton<'_> {
     /// times too long, even the shortest trial would raise the potential by orders of magnitude, and that of
     /// the next iteration still more, until numbers overflow.
     pub fn search_line(&mut self, info: &mut NewtonInfo) -> Answer<()> {
-        let (before, scale) = self.place(0.0)?;
+        let energies = self.bodies.begin_search()?;
+        let (before, scale) = self.potential(energies);
         info.energy_before = before;
         let Promise { predicted, is_negligible } = self.bodies.promise();
         let halvings = self.params.newton.line_search_halvings;
@@ -61,9 +62,15 @@ impl Newton<'_> {
     /// Places the trial. Returns the potential there with springs, and the sum of the sizes of its parts, to which rounding
     /// is relative [J].
     pub fn place(&mut self, length: f64) -> Answer<(f64, f64)> {
-        self.energies = self.bodies.place(length)?;
+        let energies = self.bodies.place(length)?;
+        Ok(self.potential(energies))
+    }
+
+    /// The potential at the trial and the sum of the sizes of its parts, from that of the bodies.
+    fn potential(&mut self, energies: BodyEnergies) -> (f64, f64) {
+        self.energies = energies;
         let internal = self.energies.internal + self.repulsion.energy(&self.bodies.trial());
         let kinetic = self.energies.kinetic;
-        Ok((kinetic + internal, kinetic.abs() + internal.abs()))
+        (kinetic + internal, kinetic.abs() + internal.abs())
     }
 }
