@@ -41,7 +41,7 @@ const CLUSTER_SWEEPS: f64 = 3.0;
 const KEPT_ROWS: u32 = 256;
 const KEPT_COLORS: u32 = 12;
 
-/// Nodes of a patch of the preconditioner, on average.
+/// Nodes of a patch of the preconditioner. A full one has 64: there are at most so many coarse levels.
 const NODES_OF_PATCH: usize = 50;
 
 /// Time steps that are counted.
@@ -460,10 +460,12 @@ impl CountingEngine {
         let workgroup = |part: &[u32]| {
             let works = part[words - 1] > 0;
             let is_idle = works && edges.as_ref().is_some_and(|edges| !pulls(edges, part));
-            let seconds = match () {
-                () if is_idle => WAITS_OF_IDLE * WAIT,
-                () if works => waiting(dispatch.stage, part),
-                () => 0.0,
+            let seconds = if is_idle {
+                WAITS_OF_IDLE * WAIT
+            } else if works {
+                waiting(dispatch.stage, part)
+            } else {
+                0.0
             };
             (works, seconds)
         };

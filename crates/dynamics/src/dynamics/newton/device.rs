@@ -185,7 +185,13 @@ impl Bodies for DeviceBodies<'_> {
 
     fn begin_search(&mut self) -> Answer<BodyEnergies> {
         let (watched, full) = self.backend.begin_search()?;
-        self.trial = Trial { change: 0.0, rounding: 0.0, watched, ..full.clone() };
+        self.trial = Trial {
+            reference: full.reference,
+            predicted: full.predicted,
+            largest_step: full.largest_step,
+            watched,
+            ..Trial::default()
+        };
         self.full = Some(full);
         Ok(self.energies())
     }

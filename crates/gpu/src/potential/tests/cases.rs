@@ -8,7 +8,7 @@ use bowknot_geometry::{Point, Vector};
 use std::collections::BTreeMap;
 
 #[path = "../../../tests/bodies/mod.rs"]
-#[allow(dead_code)]
+#[allow(dead_code, reason = "two test targets share the module, and each needs a part of it")]
 pub mod bodies;
 
 /// The time step [s].
