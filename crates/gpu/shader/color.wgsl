@@ -112,6 +112,12 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
         }
         let first = workgroupUniformLoad(&shared_first);
         let all = workgroupUniformLoad(&shared_count);
+        if all == 0u {
+            if local.x == 0u {
+                buckets[bucket].colors = 0u;
+            }
+            continue;
+        }
         for (var place = local.x; place < all; place += 256u) {
             waiting[first + place] = order[first + place];
         }

@@ -3,10 +3,13 @@
 // one color share no vertex that moves. The ball |x_a - x_b + u_a - u_b| <= L is convex, so nothing is linearized: each
 // edge is projected onto its own ball, with the multiplier that it had taken back first (Boyle and Dykstra 1986).
 //
-// Where a cluster has few colors with few edges each, as clusters of meshes do, a thread keeps its edges of all colors, so
-// that the memory of the device is read before the first sweep and written after the last one. First all threads look whether
-// any edge would change: where none is too long or pulls, as in most clusters of most bodies, a sweep changes nothing and is
-// left out.
+// Where a cluster has up to four edges per thread, as clusters of cloth do, each thread keeps its edges and their colors, so
+// that the memory of the device is read before the first sweep and written after the last one. A thread has at most one
+// edge of a color: no color has more edges than the cluster has vertices that move, and these are no more than threads.
+// Each edge has a variable of its own, since an array that is indexed by a variable lies in the memory of the device.
+//
+// First all threads look whether any edge would change: where none is too long or pulls, as in most clusters of most
+// bodies, a sweep changes nothing and is left out.
 
 struct Params {
     // Clusters of the round.
@@ -28,8 +31,8 @@ struct Params {
 @group(0) @binding(6) var<storage, read_write> displacements: array<vec4<f32>>;
 
 const THREADS: u32 = 256u;
-// Colors of which a thread keeps its edges.
-const KEPT: u32 = 12u;
+// Edges that a thread keeps.
+const KEPT: u32 = 4u;
 
 // An edge with what its projection reads.
 struct Edge {
@@ -37,15 +40,15 @@ struct Edge {
     between: vec3<f32>,
     limit: f32,
     multiplier: vec3<f32>,
-    // EdgeLimit.places; all bits for no edge.
+    // EdgeLimit.places.
     places: u32,
 }
 
-const NO_EDGE: u32 = 0xffffffffu;
+// The color of no edge.
+const NO_COLOR: u32 = 0xffffffffu;
 
 var<workgroup> moved: array<vec4<f32>, 256>;
 
-var<private> kept: array<Edge, 12>;
 // Of the edge that is projected, displacements of ends that have no place in the cluster.
 var<private> outside: array<vec4<f32>, 2>;
 
@@ -60,13 +63,12 @@ fn read_edge(e: u32) -> Edge {
 }
 
 // Displacements of ends outside of the cluster, which do not move in the round.
-fn read_outside(e: u32) {
-    let edge = limits[e];
-    if (edge.places & 0xffffu) == FIXED {
-        outside[0] = displacements[edge.a];
+fn read_outside(e: u32, places: u32) {
+    if (places & 0xffffu) == FIXED {
+        outside[0] = displacements[limits[e].a];
     }
-    if (edge.places >> 16u) == FIXED {
-        outside[1] = displacements[edge.b];
+    if (places >> 16u) == FIXED {
+        outside[1] = displacements[limits[e].b];
     }
 }
 
@@ -91,7 +93,8 @@ fn projected(edge: Edge, a: vec4<f32>, b: vec4<f32>) -> vec3<f32> {
 }
 
 // Whether an edge pulls, or would if it were projected.
-fn pulls(edge: Edge) -> bool {
+fn pulls(e: u32, edge: Edge) -> bool {
+    read_outside(e, edge.places);
     let a = displacement(edge.places & 0xffffu, 0u);
     let b = displacement(edge.places >> 16u, 1u);
     if a.w + b.w <= 0.0 {
@@ -102,7 +105,8 @@ fn pulls(edge: Edge) -> bool {
 }
 
 // Projects an edge; returns its multiplier.
-fn relax(edge: Edge) -> vec3<f32> {
+fn relax(e: u32, edge: Edge) -> vec3<f32> {
+    read_outside(e, edge.places);
     let a_place = edge.places & 0xffffu;
     let b_place = edge.places >> 16u;
     let a = displacement(a_place, 0u);
@@ -125,11 +129,6 @@ fn relax(edge: Edge) -> vec3<f32> {
     return multiplier;
 }
 
-// The edge of a thread in a color that begins and ends there.
-fn edge_of(first: u32, end: u32, thread: u32) -> u32 {
-    return select(NO_EDGE, first + thread, first + thread < end);
-}
-
 @compute @workgroup_size(256)
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
     for (var k = params.first + group.x; k < params.end; k += MOST_WORKGROUPS) {
@@ -141,39 +140,46 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
         if local.x == 0u {
             atomicStore(&pulling, 0u);
         }
-        let keeps = cluster.colors <= KEPT;
-        if keeps {
-            var first = cluster.first_edge;
-            for (var color = 0u; color < cluster.colors; color += 1u) {
-                let end = color_ends[cluster.first_color + color];
-                let e = edge_of(first, end, local.x);
-                kept[color].places = NO_EDGE;
-                if e != NO_EDGE {
-                    kept[color] = read_edge(e);
-                }
-                first = end;
-            }
-        }
-        workgroupBarrier();
-        var first_edge = cluster.first_edge;
+        // The edges of the thread, and their colors.
+        let own = vec4<u32>(cluster.first_edge + local.x) + vec4<u32>(0u, 1u, 2u, 3u) * THREADS;
+        var colors = vec4<u32>(NO_COLOR);
+        var last = cluster.first_edge;
         for (var color = 0u; color < cluster.colors; color += 1u) {
             let end = color_ends[cluster.first_color + color];
-            var e = edge_of(first_edge, end, local.x);
-            while e < end {
-                // Edges beyond those that threads keep are few, and read again.
-                var edge = kept[min(color, KEPT - 1u)];
-                if !keeps || e >= first_edge + THREADS {
-                    edge = read_edge(e);
-                }
-                if (edge.places & 0xffffu) == FIXED || (edge.places >> 16u) == FIXED {
-                    read_outside(e);
-                }
-                if pulls(edge) {
-                    atomicStore(&pulling, 1u);
-                }
-                e += THREADS;
+            colors = select(colors, vec4<u32>(color), (own >= vec4<u32>(last)) & (own < vec4<u32>(end)));
+            last = end;
+        }
+        let keeps = last - cluster.first_edge <= KEPT * THREADS;
+        var first: Edge;
+        var second: Edge;
+        var third: Edge;
+        var fourth: Edge;
+        if keeps && own.x < last {
+            first = read_edge(own.x);
+        }
+        if keeps && own.y < last {
+            second = read_edge(own.y);
+        }
+        if keeps && own.z < last {
+            third = read_edge(own.z);
+        }
+        if keeps && own.w < last {
+            fourth = read_edge(own.w);
+        }
+        workgroupBarrier();
+        var any_pulls = false;
+        if keeps {
+            any_pulls = own.x < last && pulls(own.x, first);
+            any_pulls = any_pulls || (own.y < last && pulls(own.y, second));
+            any_pulls = any_pulls || (own.z < last && pulls(own.z, third));
+            any_pulls = any_pulls || (own.w < last && pulls(own.w, fourth));
+        } else {
+            for (var e = own.x; e < last && !any_pulls; e += THREADS) {
+                any_pulls = pulls(e, read_edge(e));
             }
-            first_edge = end;
+        }
+        if any_pulls {
+            atomicStore(&pulling, 1u);
         }
         workgroupBarrier();
         if local.x == 0u {
@@ -183,40 +189,56 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
             continue;
         }
         for (var sweep = 0u; sweep < params.sweeps; sweep += 1u) {
-            var first = cluster.first_edge;
+            var start = cluster.first_edge;
             for (var color = 0u; color < cluster.colors; color += 1u) {
-                let end = color_ends[cluster.first_color + color];
-                var e = edge_of(first, end, local.x);
-                if keeps && e != NO_EDGE {
-                    let places = kept[color].places;
-                    if (places & 0xffffu) == FIXED || (places >> 16u) == FIXED {
-                        read_outside(e);
+                if keeps {
+                    let is_of = colors == vec4<u32>(color);
+                    if any(is_of) {
+                        var e = own.x;
+                        var edge = first;
+                        if is_of.y {
+                            e = own.y;
+                            edge = second;
+                        }
+                        if is_of.z {
+                            e = own.z;
+                            edge = third;
+                        }
+                        if is_of.w {
+                            e = own.w;
+                            edge = fourth;
+                        }
+                        let multiplier = relax(e, edge);
+                        first.multiplier = select(first.multiplier, multiplier, is_of.x);
+                        second.multiplier = select(second.multiplier, multiplier, is_of.y);
+                        third.multiplier = select(third.multiplier, multiplier, is_of.z);
+                        fourth.multiplier = select(fourth.multiplier, multiplier, is_of.w);
                     }
-                    kept[color].multiplier = relax(kept[color]);
-                    // A color has at most half as many edges as the cluster has vertices that move, unless they end outside.
-                    e += THREADS;
-                }
-                while e < end {
-                    read_outside(e);
-                    let multiplier = relax(read_edge(e));
-                    if params.only_apply == 0u {
-                        limits[e].multiplier = multiplier;
+                } else {
+                    let end = color_ends[cluster.first_color + color];
+                    for (var e = start + local.x; e < end; e += THREADS) {
+                        let multiplier = relax(e, read_edge(e));
+                        if params.only_apply == 0u {
+                            limits[e].multiplier = multiplier;
+                        }
                     }
-                    e += THREADS;
+                    start = end;
                 }
-                first = end;
                 workgroupBarrier();
             }
         }
         if keeps && params.only_apply == 0u {
-            var first = cluster.first_edge;
-            for (var color = 0u; color < cluster.colors; color += 1u) {
-                let end = color_ends[cluster.first_color + color];
-                let e = edge_of(first, end, local.x);
-                if e != NO_EDGE {
-                    limits[e].multiplier = kept[color].multiplier;
-                }
-                first = end;
+            if own.x < last {
+                limits[own.x].multiplier = first.multiplier;
+            }
+            if own.y < last {
+                limits[own.y].multiplier = second.multiplier;
+            }
+            if own.z < last {
+                limits[own.z].multiplier = third.multiplier;
+            }
+            if own.w < last {
+                limits[own.w].multiplier = fourth.multiplier;
             }
         }
         if local.x < cluster.vertices {

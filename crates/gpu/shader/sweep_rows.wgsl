@@ -137,6 +137,9 @@ fn slot_of(v: u32) -> u32 {
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
     for (var k = params.first + group.x; k < params.end; k += MOST_WORKGROUPS) {
         let bucket = buckets[k];
+        if bucket.first == bucket.end {
+            continue;
+        }
         let place = bucket.first + local.x;
         let has_row = place < bucket.end;
         var colored_end = bucket.first;
@@ -182,17 +185,17 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
         for (var sweep = 0u; sweep < params.sweeps; sweep += 1u) {
             var start = bucket.first;
             for (var color = 0u; color < bucket.colors; color += 1u) {
-                let end = color_ends[bucket.first + color];
                 if is_kept {
-                    if place >= start && place < end {
+                    if has_row && row.color == color {
                         relax();
                     }
                 } else {
+                    let end = color_ends[bucket.first + color];
                     for (var there = start + local.x; there < end; there += THREADS) {
                         relax_there(order[there]);
                     }
+                    start = end;
                 }
-                start = end;
                 storageBarrier();
                 workgroupBarrier();
             }

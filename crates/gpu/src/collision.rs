@@ -573,6 +573,8 @@ fn snapped(grid: &Grid, positions: &[Point]) -> Result<Vec<GridPoint>, Collision
 }
 
 #[cfg(test)]
+mod edge_tests;
+#[cfg(test)]
 mod row_tests;
 #[cfg(test)]
 mod tests;
