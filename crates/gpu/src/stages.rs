@@ -32,6 +32,7 @@ const TYPES: &str = include_str!("../shader/shared/types.wgsl");
 const CLOSEST: &str = include_str!("../shader/shared/closest.wgsl");
 const SCAN: &str = include_str!("../shader/shared/scan.wgsl");
 const PAIR: &str = include_str!("../shader/shared/pair.wgsl");
+const CONTACT: &str = include_str!("../shader/shared/contact.wgsl");
 const FIXED: &str = include_str!("../shader/shared/fixed.wgsl");
 
 use Access::{Read, Write};
@@ -128,7 +129,7 @@ pub(crate) static RECALL: Stage = Stage {
     name: "recall",
     parts: &[TYPES, include_str!("../shader/recall.wgsl")],
     workgroup: 256,
-    bindings: &[Read, Read, Write],
+    bindings: &[Read, Read, Write, Write],
     twin: cpu::recall::bound,
 };
 
@@ -138,6 +139,22 @@ pub(crate) static PICK: Stage = Stage {
     workgroup: 128,
     bindings: &[Read, Read, Read, Read, Read, Write, Write, Write],
     twin: cpu::pick::bound,
+};
+
+pub(crate) static ENLIST: Stage = Stage {
+    name: "enlist",
+    parts: &[TYPES, PAIR, CONTACT, include_str!("../shader/enlist.wgsl")],
+    workgroup: 128,
+    bindings: &[Read, Read, Read, Read, Read, Read, Write],
+    twin: cpu::enlist::bound,
+};
+
+pub(crate) static MERGE: Stage = Stage {
+    name: "merge",
+    parts: &[TYPES, PAIR, CONTACT, include_str!("../shader/merge.wgsl")],
+    workgroup: 128,
+    bindings: &[Read, Read, Read, Read, Read, Write, Write],
+    twin: cpu::merge::bound,
 };
 
 pub(crate) static FACING: Stage = Stage {
@@ -405,6 +422,8 @@ pub(crate) static ALL: &[&Stage] = &[
     &RECALL,
     &FACING,
     &PICK,
+    &ENLIST,
+    &MERGE,
     &NEAR,
     &LIST_NEAR,
     &LIST,

@@ -18,6 +18,9 @@ const FIRST_CANDIDATES: usize = 16;
 /// Contact rows per vertex for which there is room at first.
 const FIRST_ROWS: usize = 4;
 
+/// Places per vertex of the table of contacts.
+const CONTACT_PLACES: usize = 4;
+
 /// Numbers of what the buffers hold.
 #[derive(Clone, Copy, Debug)]
 pub struct Sizes {
@@ -98,6 +101,9 @@ pub struct Buffers {
     /// Sums of the coarse correction by block; its factor, and by how much the multipliers may still grow.
     pub slack: BufferId,
     pub factor: BufferId,
+    /// Who has the row of a contact. Its size, a power of two, does not depend on what there is room for.
+    pub contacts: BufferId,
+    pub contact_places: usize,
     pub picks: PickBuffers,
     pub rows: RowBuffers,
 }
@@ -141,6 +147,7 @@ impl Buffers {
         let [clusters, cluster_vertices, cluster_colors] = sizes.clusters;
         let capacity = most_candidates(engine).min((FIRST_CANDIDATES * vertices).max(64));
         let row_capacity = most_rows(engine).min((FIRST_ROWS * vertices).max(64));
+        let contact_places = (CONTACT_PLACES * vertices).next_power_of_two();
         Ok(Self {
             capacity,
             old_capacity: capacity,
@@ -186,6 +193,8 @@ impl Buffers {
             aims: engine.buffer("aims", 4 * vertices)?,
             slack: engine.buffer("slack", 2 * MOST_BLOCKS)?,
             factor: engine.buffer("factor", 2)?,
+            contacts: engine.buffer("contacts", contact_places)?,
+            contact_places,
             picks: PickBuffers::new(engine, capacity)?,
             rows: RowBuffers::new(engine, sizes, row_capacity)?,
         })

@@ -26,7 +26,7 @@ fn sweep(edges: &[[u32; 2]], vertices: u32) {
         .iter()
         .map(|&[a, b]| (points[a as usize] - points[b as usize]).norm() * (0.7 + 0.5 * random.f64()))
         .collect();
-    let moves = |v: u32| v % 7 != 0;
+    let moves = |v: u32| !v.is_multiple_of(7);
     let divided = Edges::new(edges, &lengths, &points, moves);
     let grid = Grid::around(&points, 20.0, 1e-3).expect("a grid");
     let limits = divided.limits(&grid);

@@ -20,9 +20,9 @@ impl<E: Engine> Collision<E> {
         let row_capacity = self.buffers.row_capacity as u32;
         recording.dispatch(
             &stages::RECALL,
-            &[b.positions, b.aims, b.displacements],
-            cpu::recall::Params { vertices: vertices as u32 },
-            vertices,
+            &[b.positions, b.aims, b.displacements, b.contacts],
+            cpu::recall::Params { vertices: vertices as u32, table: b.contact_places as u32 },
+            vertices.max(b.contact_places),
         );
         self.record_geometry(false, recording);
         recording.begin_phase(Phase::Backward);
@@ -59,6 +59,7 @@ impl<E: Engine> Collision<E> {
             cpu::pick::Params { capacity, threshold: self.settings.active as f32 },
             self.buffers.capacity,
         );
+        self.record_merging(recording);
         let places = ListPlaces {
             starts: b.picks.starts,
             blocks: b.picks.blocks,
@@ -93,6 +94,28 @@ impl<E: Engine> Collision<E> {
                 self.buffers.row_capacity,
             );
         }
+    }
+
+    /// Leaves one row to all picked candidates with the same closest points.
+    fn record_merging(&self, recording: &mut Recording) {
+        // Grains alone have no closest points in common.
+        if self.sizes.edges + self.sizes.triangles == 0 {
+            return;
+        }
+        let (b, capacity) = (&self.buffers, self.buffers.capacity as u32);
+        let mask = b.contact_places as u32 - 1;
+        recording.dispatch(
+            &stages::ENLIST,
+            &[b.edges, b.triangles, b.candidates, b.separations, b.states, b.picks.starts, b.contacts],
+            cpu::enlist::Params { capacity, mask },
+            self.buffers.capacity,
+        );
+        recording.dispatch(
+            &stages::MERGE,
+            &[b.edges, b.triangles, b.candidates, b.separations, b.contacts, b.states, b.picks.starts],
+            cpu::merge::Params { capacity, mask },
+            self.buffers.capacity,
+        );
     }
 
     /// Divides the rows into buckets, and those of each into colors: rows of one color share no vertex that moves.
