@@ -5,6 +5,9 @@
 // Most buckets have no more rows than a workgroup has threads. Each thread then keeps a row, and the workgroup the
 // displacements of all vertices in its own memory, in the slots of a hash table: between colors nothing is read from the
 // memory of the device, which takes ten times as long as waiting. Other buckets are swept there. The arithmetic is the same.
+//
+// First all threads look whether any row would change. Where none presses or would, as in most buckets of bodies that are
+// near each other, a sweep changes nothing and is left out.
 
 struct Params {
     // Buckets of the dispatch.
@@ -34,6 +37,9 @@ var<workgroup> moved: array<vec4<f32>, 512>;
 // Whether the bucket needs more slots than there are, counted and as all threads read it.
 var<workgroup> overflow: atomic<u32>;
 var<workgroup> is_full: u32;
+// Whether a row of the bucket changes, likewise.
+var<workgroup> changes: atomic<u32>;
+var<workgroup> is_changing: u32;
 
 // The row that is relaxed. In place of vertices it has slots if `is_kept` is true.
 var<private> row: Row;
@@ -70,6 +76,17 @@ fn push(change: vec3<f32>) {
             }
         }
     }
+}
+
+// Whether the row would change if it were relaxed, or moves something if its multipliers are applied.
+fn would_change() -> bool {
+    if row.inverse_diagonal == 0.0 {
+        return false;
+    }
+    if row.multiplier != 0.0 || any(row.friction != vec3<f32>(0.0)) {
+        return true;
+    }
+    return params.only_apply == 0u && row.value + dot(row.normal, relative_displacement()) < 0.0;
 }
 
 fn relax() {
@@ -152,6 +169,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
         }
         if local.x == 0u {
             atomicStore(&overflow, 0u);
+            atomicStore(&changes, 0u);
         }
         workgroupBarrier();
         var r = 0u;
@@ -182,6 +200,25 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
             }
         }
         workgroupBarrier();
+        var any_changes = false;
+        if is_kept {
+            any_changes = has_row && would_change();
+        } else {
+            for (var there = place; there < bucket.end && !any_changes; there += THREADS) {
+                row = rows[order[there]];
+                any_changes = would_change();
+            }
+        }
+        if any_changes {
+            atomicStore(&changes, 1u);
+        }
+        workgroupBarrier();
+        if local.x == 0u {
+            is_changing = atomicLoad(&changes);
+        }
+        if workgroupUniformLoad(&is_changing) == 0u {
+            continue;
+        }
         for (var sweep = 0u; sweep < params.sweeps; sweep += 1u) {
             var start = bucket.first;
             for (var color = 0u; color < bucket.colors; color += 1u) {

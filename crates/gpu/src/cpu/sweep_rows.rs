@@ -35,12 +35,28 @@ pub fn sweep_rows(
 ) {
     // Colors are sorted, and only threads wait between them.
     for bucket in &buckets[params.first as usize..params.end as usize] {
+        let own = &order[bucket.first as usize..bucket.end as usize];
+        if !own.iter().any(|r| would_change(params, &rows[*r as usize], displacements)) {
+            continue;
+        }
         for _ in 0..params.sweeps {
-            for &r in &order[bucket.first as usize..bucket.end as usize] {
+            for &r in own {
                 relax(params, &mut rows[r as usize], displacements);
             }
         }
     }
+}
+
+/// Whether the row would change if it were relaxed, or moves something if its multipliers are applied.
+fn would_change(params: Params, row: &Row, displacements: &[[f32; 4]]) -> bool {
+    if row.inverse_diagonal == 0.0 {
+        return false;
+    }
+    if row.multiplier != 0.0 || row.friction != [0.0; 3] {
+        return true;
+    }
+    let value = || row.value + dot(row.normal, relative_displacement(row, displacements));
+    params.only_apply == 0 && value() < 0.0
 }
 
 fn relax(params: Params, row: &mut Row, displacements: &mut [[f32; 4]]) {
