@@ -8,8 +8,8 @@
 // edge of a color: no color has more edges than the cluster has vertices that move, and these are no more than threads.
 // Each edge has a variable of its own, since an array that is indexed by a variable lies in the memory of the device.
 //
-// First all threads look whether any edge would change: where none is too long or pulls, as in most clusters of most
-// bodies, a sweep changes nothing and is left out.
+// First all threads look whether any edge would change. Where none is too long or pulls, as in most clusters of most bodies,
+// or where sweeps have come to their end in single precision, a sweep changes nothing and is left out.
 
 struct Params {
     // Clusters of the round.
@@ -52,9 +52,9 @@ var<workgroup> moved: array<vec4<f32>, 256>;
 // Of the edge that is projected, displacements of ends that have no place in the cluster.
 var<private> outside: array<vec4<f32>, 2>;
 
-// Whether an edge of the cluster pulls, as threads find and as all read it.
-var<workgroup> pulling: atomic<u32>;
-var<workgroup> is_pulling: u32;
+// Whether an edge of the cluster would change, as threads find and as all read it.
+var<workgroup> changes: atomic<u32>;
+var<workgroup> is_changing: u32;
 
 fn read_edge(e: u32) -> Edge {
     let edge = limits[e];
@@ -92,16 +92,18 @@ fn projected(edge: Edge, a: vec4<f32>, b: vec4<f32>) -> vec3<f32> {
     return vec3<f32>(0.0);
 }
 
-// Whether an edge pulls, or would if it were projected.
-fn pulls(e: u32, edge: Edge) -> bool {
+// Whether an edge would change if it were projected, or moves something if its multiplier is applied.
+fn would_change(e: u32, edge: Edge) -> bool {
     read_outside(e, edge.places);
     let a = displacement(edge.places & 0xffffu, 0u);
     let b = displacement(edge.places >> 16u, 1u);
     if a.w + b.w <= 0.0 {
         return false;
     }
-    let pulled = any(edge.multiplier != vec3<f32>(0.0));
-    return pulled || (params.only_apply == 0u && any(projected(edge, a, b) != vec3<f32>(0.0)));
+    if params.only_apply != 0u {
+        return any(edge.multiplier != vec3<f32>(0.0));
+    }
+    return any(projected(edge, a, b) != edge.multiplier);
 }
 
 // Projects an edge; returns its multiplier.
@@ -138,7 +140,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
             moved[local.x] = displacements[cluster_vertices[v]];
         }
         if local.x == 0u {
-            atomicStore(&pulling, 0u);
+            atomicStore(&changes, 0u);
         }
         // The edges of the thread, and their colors.
         let own = vec4<u32>(cluster.first_edge + local.x) + vec4<u32>(0u, 1u, 2u, 3u) * THREADS;
@@ -167,25 +169,25 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
             fourth = read_edge(own.w);
         }
         workgroupBarrier();
-        var any_pulls = false;
+        var any_changes = false;
         if keeps {
-            any_pulls = own.x < last && pulls(own.x, first);
-            any_pulls = any_pulls || (own.y < last && pulls(own.y, second));
-            any_pulls = any_pulls || (own.z < last && pulls(own.z, third));
-            any_pulls = any_pulls || (own.w < last && pulls(own.w, fourth));
+            any_changes = own.x < last && would_change(own.x, first);
+            any_changes = any_changes || (own.y < last && would_change(own.y, second));
+            any_changes = any_changes || (own.z < last && would_change(own.z, third));
+            any_changes = any_changes || (own.w < last && would_change(own.w, fourth));
         } else {
-            for (var e = own.x; e < last && !any_pulls; e += THREADS) {
-                any_pulls = pulls(e, read_edge(e));
+            for (var e = own.x; e < last && !any_changes; e += THREADS) {
+                any_changes = would_change(e, read_edge(e));
             }
         }
-        if any_pulls {
-            atomicStore(&pulling, 1u);
+        if any_changes {
+            atomicStore(&changes, 1u);
         }
         workgroupBarrier();
         if local.x == 0u {
-            is_pulling = atomicLoad(&pulling);
+            is_changing = atomicLoad(&changes);
         }
-        if workgroupUniformLoad(&is_pulling) == 0u {
+        if workgroupUniformLoad(&is_changing) == 0u {
             continue;
         }
         for (var sweep = 0u; sweep < params.sweeps; sweep += 1u) {

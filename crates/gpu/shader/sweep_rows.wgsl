@@ -6,8 +6,8 @@
 // displacements of all vertices in its own memory, in the slots of a hash table: between colors nothing is read from the
 // memory of the device, which takes ten times as long as waiting. Other buckets are swept there. The arithmetic is the same.
 //
-// First all threads look whether any row would change. Where none presses or would, as in most buckets of bodies that are
-// near each other, a sweep changes nothing and is left out.
+// First all threads look whether any row would change. Where none would, because nothing presses or because sweeps have come
+// to their end in single precision, as in most buckets, a sweep changes nothing and is left out.
 
 struct Params {
     // Buckets of the dispatch.
@@ -78,15 +78,39 @@ fn push(change: vec3<f32>) {
     }
 }
 
+// The multiplier of the row once it is relaxed.
+fn pressed() -> f32 {
+    let value = row.value + dot(row.normal, relative_displacement());
+    return max(row.multiplier - value * row.inverse_diagonal, 0.0);
+}
+
+// The multiplier of its friction then, where the multiplier of the row is that.
+fn rubbed(multiplier: f32) -> vec3<f32> {
+    if row.coefficient <= 0.0 || (multiplier <= 0.0 && all(row.friction == vec3<f32>(0.0))) {
+        return row.friction;
+    }
+    // The motion along the normal is taken away once more, because the multiplier must stay across it.
+    let slipped = row.slip + relative_displacement();
+    let slip = slipped - row.normal * dot(row.normal, slipped);
+    let wanted = row.friction - slip * row.inverse_diagonal;
+    let size = sqrt(dot(wanted, wanted));
+    let largest = row.coefficient * multiplier;
+    if size > largest {
+        return wanted * (largest / size);
+    }
+    return wanted;
+}
+
 // Whether the row would change if it were relaxed, or moves something if its multipliers are applied.
 fn would_change() -> bool {
     if row.inverse_diagonal == 0.0 {
         return false;
     }
-    if row.multiplier != 0.0 || any(row.friction != vec3<f32>(0.0)) {
-        return true;
+    if params.only_apply != 0u {
+        return row.multiplier != 0.0 || any(row.friction != vec3<f32>(0.0));
     }
-    return params.only_apply == 0u && row.value + dot(row.normal, relative_displacement()) < 0.0;
+    let multiplier = pressed();
+    return multiplier != row.multiplier || any(rubbed(multiplier) != row.friction);
 }
 
 fn relax() {
@@ -97,22 +121,11 @@ fn relax() {
         push(row.normal * row.multiplier + row.friction);
         return;
     }
-    let value = row.value + dot(row.normal, relative_displacement());
-    let multiplier = max(row.multiplier - value * row.inverse_diagonal, 0.0);
+    let multiplier = pressed();
     push(row.normal * (multiplier - row.multiplier));
     row.multiplier = multiplier;
-    let has_friction = row.coefficient > 0.0 && (multiplier > 0.0 || any(row.friction != vec3<f32>(0.0)));
-    if has_friction {
-        // The motion along the normal is taken away once more, because the multiplier must stay across it.
-        let slipped = row.slip + relative_displacement();
-        let slip = slipped - row.normal * dot(row.normal, slipped);
-        let wanted = row.friction - slip * row.inverse_diagonal;
-        let size = sqrt(dot(wanted, wanted));
-        let largest = row.coefficient * multiplier;
-        var friction = wanted;
-        if size > largest {
-            friction = wanted * (largest / size);
-        }
+    let friction = rubbed(multiplier);
+    if any(friction != row.friction) {
         push(friction - row.friction);
         row.friction = friction;
     }

@@ -31,7 +31,7 @@ const LINK: f64 = 50e9;
 const WAITS_PER_COLORING: f64 = 5.0;
 const WAITS_PER_VISIT: f64 = 4.0;
 
-/// The same for a cluster of which no edge pulls, where nothing is swept or written.
+/// The same for a bucket of which no row presses, and for a cluster of which no edge pulls, where nothing is swept or written.
 const WAITS_OF_IDLE: f64 = 3.0;
 
 /// Sweeps over a bucket of rows and over a cluster of edges, as `bowknot_gpu::Settings::default` has them; most rows of a bucket
@@ -413,12 +413,25 @@ fn waiting(stage: &str, part: &[u32]) -> f64 {
     }
 }
 
+/// Whether words of a multiplier are those of a force: not 0 or -0.
+fn is_force(words: &[u32]) -> bool {
+    words.iter().any(|word| word & 0x7fff_ffff != 0)
+}
+
 /// Whether an edge of a cluster pulls after a step, by the words of the ends of colors and of the edges.
 fn pulls([color_ends, limits]: &[Vec<u32>; 2], cluster: &[u32]) -> bool {
     let last = color_ends[(cluster[3] + cluster[4] - 1) as usize];
-    let edges = limits.chunks_exact(8).take(last as usize).skip(cluster[2] as usize);
-    // The words of a multiplier are 0 or those of -0 where there is no force.
-    edges.flat_map(|edge| &edge[4..7]).any(|word| word & 0x7fff_ffff != 0)
+    let mut edges = limits.chunks_exact(8).take(last as usize).skip(cluster[2] as usize);
+    edges.any(|edge| is_force(&edge[4..7]))
+}
+
+/// Whether a row of a bucket presses after a step, by the words of the order of the rows and of the rows.
+fn presses([order, rows]: &[Vec<u32>; 2], bucket: &[u32]) -> bool {
+    let row = |r: &u32| &rows[24 * *r as usize..][..24];
+    order[bucket[0] as usize..bucket[1] as usize]
+        .iter()
+        .map(row)
+        .any(|row| is_force(&row[13..14]) || is_force(&row[20..23]))
 }
 
 /// Dispatches of `climb` per iteration for so many nodes: one per three coarse levels, of which each has an eighth of the
@@ -455,11 +468,15 @@ impl CountingEngine {
             _ => return None,
         };
         let content = self.twin.words_of(buffer);
-        let edges = (dispatch.stage == "sweep_edges")
-            .then(|| [3, 4].map(|binding| self.twin.words_of(dispatch.buffers[binding])));
+        let bound =
+            |bindings: [usize; 2]| bindings.map(|binding| self.twin.words_of(dispatch.buffers[binding]));
+        let edges = (dispatch.stage == "sweep_edges").then(|| bound([3, 4]));
+        let rows = (dispatch.stage == "sweep_rows").then(|| bound([0, 3]));
         let workgroup = |part: &[u32]| {
             let works = part[words - 1] > 0;
-            let is_idle = works && edges.as_ref().is_some_and(|edges| !pulls(edges, part));
+            let is_idle = works
+                && (edges.as_ref().is_some_and(|edges| !pulls(edges, part))
+                    || rows.as_ref().is_some_and(|rows| !presses(rows, part)));
             let seconds = if is_idle {
                 WAITS_OF_IDLE * WAIT
             } else if works {

@@ -47,7 +47,7 @@ pub fn sweep_edges(
             .checked_sub(1)
             .map_or(cluster.first_edge, |color| color_ends[(cluster.first_color + color) as usize]);
         let edges = cluster.first_edge as usize..last as usize;
-        if !limits[edges].iter().any(|edge| pulls(&params, positions, edge, displacements, &moved)) {
+        if !limits[edges].iter().any(|edge| would_change(&params, positions, edge, displacements, &moved)) {
             continue;
         }
         for _ in 0..params.sweeps {
@@ -89,8 +89,8 @@ fn projected(
     [0.0; 3]
 }
 
-/// Whether an edge pulls, or would if it were projected.
-fn pulls(
+/// Whether an edge would change if it were projected, or moves something if its multiplier is applied.
+fn would_change(
     params: &Params,
     positions: &[[i32; 4]],
     edge: &EdgeLimit,
@@ -101,7 +101,10 @@ fn pulls(
     if ends[0][3] + ends[1][3] <= 0.0 {
         return false;
     }
-    edge.multiplier != [0.0; 3] || params.only_apply == 0 && projected(positions, edge, ends) != [0.0; 3]
+    if params.only_apply != 0 {
+        return edge.multiplier != [0.0; 3];
+    }
+    projected(positions, edge, ends) != edge.multiplier
 }
 
 fn relax(

@@ -47,16 +47,34 @@ pub fn sweep_rows(
     }
 }
 
+/// The multiplier of the row once it is relaxed.
+fn pressed(row: &Row, displacements: &[[f32; 4]]) -> f32 {
+    let value = row.value + dot(row.normal, relative_displacement(row, displacements));
+    (row.multiplier - value * row.inverse_diagonal).max(0.0)
+}
+
+/// The multiplier of its friction then, where the multiplier of the row is that.
+fn rubbed(row: &Row, multiplier: f32, displacements: &[[f32; 4]]) -> [f32; 3] {
+    if row.coefficient <= 0.0 || (multiplier <= 0.0 && row.friction == [0.0; 3]) {
+        return row.friction;
+    }
+    let slipped = added(row.slip, relative_displacement(row, displacements));
+    let slip = subtracted(slipped, scaled(row.normal, dot(row.normal, slipped)));
+    let wanted = subtracted(row.friction, scaled(slip, row.inverse_diagonal));
+    let (size, largest) = (dot(wanted, wanted).sqrt(), row.coefficient * multiplier);
+    if size > largest { scaled(wanted, largest / size) } else { wanted }
+}
+
 /// Whether the row would change if it were relaxed, or moves something if its multipliers are applied.
 fn would_change(params: Params, row: &Row, displacements: &[[f32; 4]]) -> bool {
     if row.inverse_diagonal == 0.0 {
         return false;
     }
-    if row.multiplier != 0.0 || row.friction != [0.0; 3] {
-        return true;
+    if params.only_apply != 0 {
+        return row.multiplier != 0.0 || row.friction != [0.0; 3];
     }
-    let value = || row.value + dot(row.normal, relative_displacement(row, displacements));
-    params.only_apply == 0 && value() < 0.0
+    let multiplier = pressed(row, displacements);
+    multiplier != row.multiplier || rubbed(row, multiplier, displacements) != row.friction
 }
 
 fn relax(params: Params, row: &mut Row, displacements: &mut [[f32; 4]]) {
@@ -67,16 +85,11 @@ fn relax(params: Params, row: &mut Row, displacements: &mut [[f32; 4]]) {
         push(row, added(scaled(row.normal, row.multiplier), row.friction), displacements);
         return;
     }
-    let value = row.value + dot(row.normal, relative_displacement(row, displacements));
-    let multiplier = (row.multiplier - value * row.inverse_diagonal).max(0.0);
+    let multiplier = pressed(row, displacements);
     push(row, scaled(row.normal, multiplier - row.multiplier), displacements);
     row.multiplier = multiplier;
-    if row.coefficient > 0.0 && (multiplier > 0.0 || row.friction != [0.0; 3]) {
-        let moved = added(row.slip, relative_displacement(row, displacements));
-        let slip = subtracted(moved, scaled(row.normal, dot(row.normal, moved)));
-        let wanted = subtracted(row.friction, scaled(slip, row.inverse_diagonal));
-        let (size, largest) = (dot(wanted, wanted).sqrt(), row.coefficient * multiplier);
-        let friction = if size > largest { scaled(wanted, largest / size) } else { wanted };
+    let friction = rubbed(row, multiplier, displacements);
+    if friction != row.friction {
         push(row, subtracted(friction, row.friction), displacements);
         row.friction = friction;
     }
