@@ -166,6 +166,11 @@ impl Recording {
         })
     }
 
+    /// Each command alone, in their order: to look at buffers in between.
+    pub fn parts(&self) -> impl Iterator<Item = Self> {
+        self.commands.iter().map(|command| Self { commands: vec![command.clone()], phase: None })
+    }
+
     /// Words that the host writes.
     pub fn words_written(&self) -> usize {
         let words =

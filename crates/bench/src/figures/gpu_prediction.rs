@@ -31,7 +31,7 @@ const LINK: f64 = 50e9;
 const WAITS_PER_COLORING: f64 = 5.0;
 const WAITS_PER_VISIT: f64 = 4.0;
 
-/// The same for a bucket of which no row presses, and for a cluster of which no edge pulls, where nothing is swept or written.
+/// The same for a bucket or cluster that a sweep would not change, where nothing is swept or written.
 const WAITS_OF_IDLE: f64 = 3.0;
 
 /// Sweeps over a bucket of rows and over a cluster of edges, as `bowknot_gpu::Settings::default` has them; most rows of a bucket
@@ -296,24 +296,23 @@ struct Counts {
 }
 
 impl Counts {
-    /// `workgroups_of` tells those of all dispatches that go through the colors of something, one dispatch after the other,
-    /// `share_of` which share of the dispatches like this one moves its bytes.
+    /// `colored` tells, by dispatch, the workgroups of all dispatches of a stage that goes through the colors of something,
+    /// one dispatch after the other, `share_of` which share of the dispatches like this one moves its bytes.
     fn add(
         &mut self,
         recording: &Recording,
         bytes_of: impl Fn(BufferId) -> f64,
         share_of: impl Fn(&DispatchView<'_>) -> f64,
-        workgroups_of: impl Fn(&DispatchView<'_>) -> Option<Vec<Workgroup>>,
+        colored: &[Option<Vec<Workgroup>>],
         words_read: usize,
     ) {
-        let all: Vec<_> = recording.dispatches().collect();
-        for run in all.chunk_by(|a, b| a.stage == b.stage && a.buffers == b.buffers) {
+        let all: Vec<_> = recording.dispatches().zip(colored).collect();
+        for run in all.chunk_by(|(a, _), (b, _)| a.stage == b.stage && a.buffers == b.buffers) {
             let (mut workgroups, mut waits) = (0, 0.0);
-            let colored = workgroups_of(&run[0]);
             let mut next = 0;
-            for one in run {
+            for (one, colored) in run {
                 let count = one.threads.div_ceil(one.workgroup);
-                if let Some(all) = &colored {
+                if let Some(all) = colored {
                     // The next sweep begins again.
                     if next + count > all.len() {
                         next = 0;
@@ -326,13 +325,14 @@ impl Counts {
                     workgroups += count;
                 }
             }
-            let is_single = run.iter().all(|one| one.threads == 1);
+            let is_single = run.iter().all(|(one, _)| one.threads == 1);
             let workgroups = if is_single { 0 } else { workgroups.div_ceil(run.len()).max(1) };
-            let group = self.groups.entry((run[0].stage, workgroups)).or_default();
+            let first = &run[0].0;
+            let group = self.groups.entry((first.stage, workgroups)).or_default();
             group.dispatches += run.len();
             group.waits += waits;
-            let bytes: f64 = run[0].buffers.iter().map(|&buffer| bytes_of(buffer)).sum();
-            group.bytes += share_of(&run[0]) * bytes;
+            let bytes: f64 = first.buffers.iter().map(|&buffer| bytes_of(buffer)).sum();
+            group.bytes += share_of(first) * bytes;
         }
         self.submissions += usize::from(words_read > 0);
         self.link_bytes += 4.0 * (recording.words_written() + words_read) as f64;
@@ -413,25 +413,82 @@ fn waiting(stage: &str, part: &[u32]) -> f64 {
     }
 }
 
-/// Whether words of a multiplier are those of a force: not 0 or -0.
-fn is_force(words: &[u32]) -> bool {
-    words.iter().any(|word| word & 0x7fff_ffff != 0)
+/// A dispatch that goes through the colors of buckets of rows or of clusters of edges: which words it reads, before it runs or
+/// after.
+#[derive(Debug)]
+struct Colored {
+    stage: &'static str,
+    /// Buckets (where they begin, where they end, how many colors they have), or clusters, of whose five words the last is
+    /// the number of colors.
+    parts: Vec<u32>,
+    /// The order of the rows, or where colors end.
+    order: Vec<u32>,
+    /// Rows or edges, and the displacements.
+    items: Vec<u32>,
+    displacements: Vec<u32>,
 }
 
-/// Whether an edge of a cluster pulls after a step, by the words of the ends of colors and of the edges.
-fn pulls([color_ends, limits]: &[Vec<u32>; 2], cluster: &[u32]) -> bool {
-    let last = color_ends[(cluster[3] + cluster[4] - 1) as usize];
-    let mut edges = limits.chunks_exact(8).take(last as usize).skip(cluster[2] as usize);
-    edges.any(|edge| is_force(&edge[4..7]))
-}
+impl Colored {
+    fn of(twin: &TwinEngine, dispatch: &DispatchView<'_>) -> Option<Self> {
+        let bindings = match dispatch.stage {
+            "color" => [2, 6, 1, 0],
+            "sweep_rows" => [1, 0, 3, 4],
+            "sweep_edges" => [1, 3, 4, 5],
+            _ => return None,
+        };
+        let [parts, order, items, displacements] =
+            bindings.map(|binding| twin.words_of(dispatch.buffers[binding]));
+        Some(Self { stage: dispatch.stage, parts, order, items, displacements })
+    }
 
-/// Whether a row of a bucket presses after a step, by the words of the order of the rows and of the rows.
-fn presses([order, rows]: &[Vec<u32>; 2], bucket: &[u32]) -> bool {
-    let row = |r: &u32| &rows[24 * *r as usize..][..24];
-    order[bucket[0] as usize..bucket[1] as usize]
-        .iter()
-        .map(row)
-        .any(|row| is_force(&row[13..14]) || is_force(&row[20..23]))
+    /// The rows or edges of a bucket or cluster.
+    fn items_of<'a>(&'a self, part: &'a [u32]) -> impl Iterator<Item = &'a [u32]> {
+        let (rows, edges) = if self.stage == "sweep_edges" {
+            let last = self.order[(part[3] + part[4] - 1) as usize];
+            (&self.order[..0], part[2]..last)
+        } else {
+            (&self.order[part[0] as usize..part[1] as usize], 0..0)
+        };
+        let words = if self.stage == "sweep_edges" { 8 } else { 24 };
+        rows.iter().copied().chain(edges).map(move |item| &self.items[words * item as usize..][..words])
+    }
+
+    /// The words of the multipliers of a row or of an edge, friction included.
+    fn multipliers(&self, item: &[u32]) -> [u32; 4] {
+        if self.stage == "sweep_edges" {
+            [item[4], item[5], item[6], 0]
+        } else {
+            [item[13], item[20], item[21], item[22]]
+        }
+    }
+
+    /// What each workgroup does if the dispatch leaves `after`: no sweep where nothing changes.
+    fn workgroups(&self, after: &Self) -> Vec<Workgroup> {
+        let words = if self.stage == "sweep_edges" { 5 } else { 3 };
+        // Multipliers that are only applied move something and stay.
+        let only_applies = self.items == after.items && self.displacements != after.displacements;
+        let is_swept = |part: &[u32]| {
+            let mut pairs = self.items_of(part).zip(after.items_of(part));
+            pairs.any(|(before, after)| {
+                let multipliers = self.multipliers(before);
+                // The words of a multiplier are 0 or those of -0 where there is no force.
+                let presses = multipliers.iter().any(|word| word & 0x7fff_ffff != 0);
+                if only_applies { presses } else { multipliers != self.multipliers(after) }
+            })
+        };
+        let workgroup = |part: &[u32]| {
+            if part[words - 1] == 0 {
+                (false, 0.0)
+            } else if self.stage == "color" || is_swept(part) {
+                (true, waiting(self.stage, part))
+            } else {
+                (true, WAITS_OF_IDLE * WAIT)
+            }
+        };
+        // Buckets have their colors once they are colored.
+        let parts = if self.stage == "color" { &after.parts } else { &self.parts };
+        parts.chunks_exact(words).map(workgroup).collect()
+    }
 }
 
 /// Dispatches of `climb` per iteration for so many nodes: one per three coarse levels, of which each has an eighth of the
@@ -458,35 +515,17 @@ impl CountingEngine {
         (Self { twin: TwinEngine::new(), counts: Arc::clone(&counts) }, counts)
     }
 
-    /// The workgroups of all dispatches of a stage that goes through colors: buckets of rows (where they begin, where they
-    /// end, how many colors they have), and clusters of edges, of whose five words the last is the number of colors.
-    fn workgroups_of(&self, dispatch: &DispatchView<'_>) -> Option<Vec<Workgroup>> {
-        let (buffer, words) = match dispatch.stage {
-            "color" => (dispatch.buffers[2], 3),
-            "sweep_rows" => (dispatch.buffers[1], 3),
-            "sweep_edges" => (dispatch.buffers[1], 5),
-            _ => return None,
-        };
-        let content = self.twin.words_of(buffer);
-        let bound =
-            |bindings: [usize; 2]| bindings.map(|binding| self.twin.words_of(dispatch.buffers[binding]));
-        let edges = (dispatch.stage == "sweep_edges").then(|| bound([3, 4]));
-        let rows = (dispatch.stage == "sweep_rows").then(|| bound([0, 3]));
-        let workgroup = |part: &[u32]| {
-            let works = part[words - 1] > 0;
-            let is_idle = works
-                && (edges.as_ref().is_some_and(|edges| !pulls(edges, part))
-                    || rows.as_ref().is_some_and(|rows| !presses(rows, part)));
-            let seconds = if is_idle {
-                WAITS_OF_IDLE * WAIT
-            } else if works {
-                waiting(dispatch.stage, part)
-            } else {
-                0.0
-            };
-            (works, seconds)
-        };
-        Some(content.chunks_exact(words).map(workgroup).collect())
+    /// Runs a recording. Tells, by dispatch, the workgroups of those that go through colors.
+    fn run_apart(&mut self, recording: &Recording) -> Result<Vec<Option<Vec<Workgroup>>>, GpuError> {
+        let mut workgroups = Vec::new();
+        for part in recording.parts() {
+            let before = part.dispatches().next().map(|dispatch| Colored::of(&self.twin, &dispatch));
+            self.twin.run(&part, &[])?;
+            let Some(before) = before else { continue };
+            let after = part.dispatches().next().and_then(|dispatch| Colored::of(&self.twin, &dispatch));
+            workgroups.push(before.zip(after).map(|(before, after)| before.workgroups(&after)));
+        }
+        Ok(workgroups)
     }
 
     /// Where conjugate gradients count their iterations in a recording that ends a round, and how many they have counted.
@@ -546,7 +585,8 @@ impl Engine for CountingEngine {
     fn run(&mut self, recording: &Recording, read: &[(BufferId, usize)]) -> Result<Vec<Vec<u32>>, GpuError> {
         self.twin.run(&self.without_old_rows(recording), &[])?;
         let before = self.iterations(recording);
-        let result = self.twin.run(recording, read)?;
+        let colored = self.run_apart(recording)?;
+        let result = self.twin.run(&Recording::default(), read)?;
         let made = self.iterations_made(recording, before);
         let words_read = read.iter().map(|(_, words)| words).sum();
         let mut counts = self.counts.lock().unwrap_or_else(PoisonError::into_inner);
@@ -559,7 +599,7 @@ impl Engine for CountingEngine {
             }
             _ => 1.0,
         };
-        counts.add(recording, bytes_of, share_of, |dispatch| self.workgroups_of(dispatch), words_read);
+        counts.add(recording, bytes_of, share_of, &colored, words_read);
         Ok(result)
     }
 }
