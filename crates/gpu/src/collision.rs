@@ -79,7 +79,8 @@ pub struct Settings {
     /// Vertices that move by bucket of contact rows, about. A workgroup sweeps a bucket; scenes of fewer than eight
     /// buckets have one.
     pub bucket_vertices: usize,
-    /// Sweeps while the last step left less than `polish_distance` and stretched an edge beyond `polish_stretch`.
+    /// Most sweeps while the last step left less than `polish_distance` and stretched an edge beyond `polish_stretch`. The
+    /// first such step of a call makes `sweeps`, each of the next ones twice as many.
     pub polish_sweeps: usize,
     /// Remaining distance of a vertex [m].
     pub polish_distance: f64,
@@ -232,6 +233,8 @@ pub struct Collision<E> {
     row_count: usize,
     /// Whether the next step polishes.
     polishes: bool,
+    /// Steps of the call that polished.
+    polished: usize,
     /// Number of steps that a submission is likely to make, of those that do not polish and of those that do.
     expected_steps: [usize; 2],
     /// Dispatches of a step that can be left out, of one that does not polish and of one that does; None before they are
@@ -401,6 +404,7 @@ impl<E: Engine> Collision<E> {
             stop: Stop::NEVER,
             row_count: 0,
             polishes: false,
+            polished: 0,
             expected_steps: [1; 2],
             step_dispatches: [None; 2],
             steps_in_a_row: 0,
@@ -470,7 +474,7 @@ impl<E: Engine> Collision<E> {
             self.sizes.vertices.max(self.edges.len()),
         );
         self.engine.run(&recording, &[])?;
-        (self.stop, self.row_count, self.polishes) = (call.stop, 0, false);
+        (self.stop, self.row_count, self.polishes, self.polished) = (call.stop, 0, false, 0);
         self.lengths.growth = self.grid.length(call.growth).min(f32::MAX);
         (self.fresh, self.again, self.listed, self.steps_in_a_row) = (true, false, false, 0);
         (self.travel, self.shrunk) = (1.0, false);

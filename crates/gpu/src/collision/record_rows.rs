@@ -252,8 +252,9 @@ impl<E: Engine> Collision<E> {
         }
         self.record_colors(recording);
         // First the multipliers of the last step are applied.
-        let settings = &self.settings;
-        for sweep in 0..=if self.polishes { settings.polish_sweeps } else { settings.sweeps } {
+        let sweeps =
+            if self.polishes { self.settings.sweeps_to_polish(self.polished) } else { self.settings.sweeps };
+        for sweep in 0..=sweeps {
             if (1..=MAX_COARSE_CORRECTIONS).contains(&sweep) && self.settings.coarse_correction {
                 self.record_coarse_correction(recording);
             }

@@ -17,6 +17,13 @@ impl Settings {
         self.polish_sweeps > self.sweeps
     }
 
+    /// Sweeps of a step that polishes after so many of the call that did. Most edges need few; in large bodies that hang
+    /// on a few vertices no number of sweeps within clusters takes the place of many over all.
+    pub(super) fn sweeps_to_polish(&self, polished: usize) -> usize {
+        let doubled = 1usize.checked_shl(polished as u32).and_then(|factor| self.sweeps.checked_mul(factor));
+        doubled.map_or(self.polish_sweeps, |sweeps| sweeps.min(self.polish_sweeps))
+    }
+
     /// Whether the step after this one polishes.
     pub(super) fn polishes_after(&self, report: &StepReport) -> bool {
         let is_near = report.remaining < self.polish_distance;
@@ -80,6 +87,9 @@ impl<E: Engine> Collision<E> {
         let all = self.engine.run(&recording, &read)?;
         let control = bytemuck::cast_slice::<u32, Control>(&all[0])[0];
         let made = control.steps as usize;
+        if self.polishes {
+            self.polished += made;
+        }
         reports.extend(bytemuck::cast_slice::<u32, Control>(&all[1])[..made].iter().map(|r| self.report(r)));
         if control.overflow == 0 {
             self.expect(made, control.halted != 0);
@@ -125,25 +135,34 @@ impl<E: Engine> Collision<E> {
             place = recording.append_conditional(&first, arguments, place);
             left -= 1;
         }
-        if left > 0 {
-            let following = self.recorded_step(dispatches);
-            for _ in 0..left {
-                place = recording.append_conditional(&following, arguments, place);
+        // Steps that polish have more sweeps from one to the next.
+        let polished = self.polished;
+        let mut following = None;
+        for made in steps - left..steps {
+            if following.is_none() || self.polishes {
+                self.polished = polished + made;
+                following = Some(self.recorded_step(dispatches));
+            }
+            if let Some(step) = &following {
+                place = recording.append_conditional(step, arguments, place);
             }
         }
+        self.polished = polished;
         debug_assert!(place <= dispatches);
         recording.fill_arguments(arguments);
         Ok(recording)
     }
 
-    /// Dispatches of a step that can be left out; a step that is made again has fewer.
+    /// Most dispatches of a step that can be left out; a step that is made again has fewer.
     fn dispatches_per_step(&mut self) -> usize {
         let polishes = usize::from(self.polishes);
         if let Some(known) = self.step_dispatches[polishes] {
             return known;
         }
         let arguments = self.buffers.arguments;
+        let polished = std::mem::replace(&mut self.polished, usize::MAX);
         let count = Recording::default().append_conditional(&self.recorded_step(0), arguments, 0);
+        self.polished = polished;
         self.step_dispatches[polishes] = Some(count);
         count
     }

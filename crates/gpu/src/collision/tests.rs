@@ -467,6 +467,8 @@ fn targets_are_polished_near_the_end_while_edges_are_too_long() {
     assert!(settings.polishes_after(&report(0.5 * EDGE, 1.02)));
     assert!(!settings.polishes_after(&report(0.5 * EDGE, 1.0)));
     assert!(!settings.polishes_after(&report(2.0 * EDGE, 1.02)));
+    let sweeps = [0, 1, 2, 3, 4, 70, usize::MAX].map(|polished| settings.sweeps_to_polish(polished));
+    assert_eq!(sweeps, [5, 10, 20, 40, 64, 64, 64]);
     let settings = Settings { polish_sweeps: settings.sweeps, ..settings };
     assert!(!settings.polishes_after(&report(0.5 * EDGE, 1.02)));
 }
