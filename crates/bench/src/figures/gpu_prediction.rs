@@ -79,6 +79,8 @@ impl Figure for GpuPrediction {
             "dispatches_per_step",
             "of_one_workgroup",
             "megabytes_per_step",
+            "bucket_visits_left_out",
+            "cluster_visits_left_out",
             "least_ms_per_step",
             "ms_per_step",
             "paper_ms_per_step",
@@ -134,6 +136,8 @@ impl Figure for GpuPrediction {
                 dispatches.into(),
                 single.into(),
                 (1e-6 * growth * bytes / steps).into(),
+                counts.share_left_out("sweep_rows").map_or("".into(), Into::into),
+                counts.share_left_out("sweep_edges").map_or("".into(), Into::into),
                 (1e3 * least).into(),
                 (1e3 * step).into(),
                 (1e3 * paper.seconds / paper.steps).into(),
@@ -210,8 +214,16 @@ struct Group {
     waits: f64,
 }
 
-/// What one workgroup does of a dispatch: whether it has work, and the seconds that its threads wait for each other.
-type Workgroup = (bool, f64);
+/// What one workgroup does of a dispatch that goes through colors.
+#[derive(Clone, Copy, Debug)]
+struct Workgroup {
+    /// Whether its bucket or cluster has rows or edges.
+    works: bool,
+    /// Whether a sweep would change one of them.
+    sweeps: bool,
+    /// Seconds that its threads wait for each other.
+    waits: f64,
+}
 
 /// What some time steps of a scene needed.
 #[derive(Debug)]
@@ -287,6 +299,8 @@ impl Counted {
 struct Counts {
     /// By the stage and the mean number of workgroups of dispatches that share their bytes; 0 for stages of one workgroup.
     groups: BTreeMap<(&'static str, usize), Group>,
+    /// Visits of buckets or clusters by stage, and those of which something changed.
+    visits: BTreeMap<&'static str, [usize; 2]>,
     /// Submissions that the host waits for.
     submissions: usize,
     /// Bytes between host and device.
@@ -319,8 +333,12 @@ impl Counts {
                     }
                     let here = &all[next..next + count];
                     next += count;
-                    workgroups += here.iter().filter(|(works, _)| *works).count();
-                    waits += here.iter().map(|(_, waits)| *waits).fold(0.0, f64::max);
+                    let visited = here.iter().filter(|one| one.works).count();
+                    let visits = self.visits.entry(one.stage).or_default();
+                    visits[0] += visited;
+                    visits[1] += here.iter().filter(|one| one.sweeps).count();
+                    workgroups += visited;
+                    waits += here.iter().map(|one| one.waits).fold(0.0, f64::max);
                 } else {
                     workgroups += count;
                 }
@@ -350,6 +368,12 @@ impl Counts {
             groups.map(|(_, group)| group.dispatches).sum()
         };
         [count(false), count(true)]
+    }
+
+    /// The share of the visits of buckets or clusters by a stage in which nothing was to be swept; nothing without visits.
+    fn share_left_out(&self, stage: &str) -> Option<f64> {
+        let [visits, swept] = *self.visits.get(stage)?;
+        (visits > 0).then(|| 1.0 - swept as f64 / visits as f64)
     }
 
     /// Seconds of dispatches, waits and submissions alone.
@@ -477,13 +501,14 @@ impl Colored {
             })
         };
         let workgroup = |part: &[u32]| {
-            if part[words - 1] == 0 {
-                (false, 0.0)
-            } else if self.stage == "color" || is_swept(part) {
-                (true, waiting(self.stage, part))
-            } else {
-                (true, WAITS_OF_IDLE * WAIT)
-            }
+            let works = part[words - 1] > 0;
+            let sweeps = works && (self.stage == "color" || is_swept(part));
+            let waits = match [works, sweeps] {
+                [false, _] => 0.0,
+                [true, false] => WAITS_OF_IDLE * WAIT,
+                [true, true] => waiting(self.stage, part),
+            };
+            Workgroup { works, sweeps, waits }
         };
         // Buckets have their colors once they are colored.
         let parts = if self.stage == "color" { &after.parts } else { &self.parts };
