@@ -23,11 +23,24 @@ impl Judge {
     /// # Errors
     /// A wrong number of points, or coordinates that are not finite.
     pub fn check_state(&self, x: &[Point], options: &StateOptions) -> Result<StateReport, CheckError> {
+        self.check_state_with(&mut Scene::new(self), true, x, options)
+    }
+
+    /// [`Self::check_state`] with trees that are arranged anew, or kept in the order that they have.
+    pub(super) fn check_state_with(
+        &self,
+        scene: &mut Scene<1>,
+        arrange: bool,
+        x: &[Point],
+        options: &StateOptions,
+    ) -> Result<StateReport, CheckError> {
         self.check_positions("state", x)?;
-        let mut scene = Scene::new(self);
-        scene.arrange([x]);
-        scene.fit([x], false);
-        let Scene { edges, particles, strands, triangles, .. } = &scene;
+        // Distances alone look at vertices of triangles.
+        if arrange {
+            scene.arrange([x], options.distance);
+        }
+        scene.fit([x], options.distance, false);
+        let Scene { edges, particles, strands, triangles, .. } = &*scene;
         let mut found = pairs(
             self,
             PairClass::EdgeTriangle,
@@ -74,7 +87,7 @@ impl Judge {
         found.par_sort_unstable();
 
         let intersections = found.iter().take(options.limit).map(|found| self.describe(x, found)).collect();
-        let nearest = if options.distance { self.nearest(x, &scene) } else { None };
+        let nearest = if options.distance { self.nearest(x, scene) } else { None };
         Ok(StateReport { intersections, intersection_count: found.len(), edge_triangle_count, nearest })
     }
 

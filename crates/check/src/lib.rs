@@ -10,7 +10,7 @@
 //! Judge::from_model(&CollisionModel) -> Judge                           a scene
 //! judge.check_state(&x, &StateOptions)  -> Result<StateReport, CheckError>
 //! judge.check_path(&x0, &x1, &PathOptions) -> Result<PathReport, CheckError>
-//! MotionJudge::new(judge)                                               many paths, one after another
+//! MotionJudge::new(judge)                                               many states and paths, one after another
 //! judge.offending_mesh(&x, &[Intersection]) -> OffendingMesh            for a dump
 //! ```
 //!

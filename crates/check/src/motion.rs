@@ -1,38 +1,64 @@
-//! Judging many paths of the same elements, one after the other.
+//! Judging many states and paths of the same elements, one after the other.
 
 use crate::error::CheckError;
 use crate::judge::Judge;
 use crate::primitives::Scene;
-use crate::report::{PathOptions, PathReport};
+use crate::report::{PathOptions, PathReport, StateOptions, StateReport};
 use bowknot_geometry::Point;
 
-/// Paths after which the trees' order is found anew. Finding it costs about as much as judging a path;
+/// States or paths after which the trees' order is found anew. Finding it costs about as much as judging one;
 /// in so few steps nothing that moves slowly loses its order, and what does costs time, not truth.
 const RENEW_AFTER: usize = 16;
 
-/// A judge that keeps its trees, and their memory, from one path to the next.
+/// A judge that keeps its trees, and their memory, from one state or path to the next.
 ///
-/// Only the order of the primitives in the trees is kept. Every box is computed from the positions of
-/// the path that is judged, so the pairs looked at, and with them the verdict, are those of
+/// Only the order of the primitives in the trees is kept. Every box is computed from the positions that are
+/// judged, so the pairs looked at, and with them the verdict, are those of [`Judge::check_state`] and
 /// [`Judge::check_path`], whatever was judged before.
 #[derive(Debug)]
 pub struct MotionJudge {
     judge: Judge,
-    scene: Scene<2>,
-    /// Paths judged with the present order; none: there is none yet.
-    paths: Option<usize>,
+    states: Trees<1>,
+    paths: Trees<2>,
+}
+
+/// Trees that are kept, once there are some.
+#[derive(Debug, Default)]
+struct Trees<const K: usize> {
+    scene: Option<Scene<K>>,
+    /// How often the present order was used.
+    uses: usize,
+}
+
+impl<const K: usize> Trees<K> {
+    /// The trees, and whether they must be arranged anew.
+    fn next(&mut self, judge: &Judge) -> (&mut Scene<K>, bool) {
+        if self.scene.is_none() || self.uses == RENEW_AFTER {
+            self.uses = 0;
+        }
+        self.uses += 1;
+        (self.scene.get_or_insert_with(|| Scene::new(judge)), self.uses == 1)
+    }
 }
 
 impl MotionJudge {
-    /// A judge of paths of the same elements.
+    /// A judge of states and paths of the same elements.
     pub fn new(judge: Judge) -> Self {
-        let scene = Scene::new(&judge);
-        Self { judge, scene, paths: None }
+        Self { judge, states: Trees::default(), paths: Trees::default() }
     }
 
     /// The judge of single states and paths.
     pub fn judge(&self) -> &Judge {
         &self.judge
+    }
+
+    /// The verdict of [`Judge::check_state`], in less time.
+    ///
+    /// # Errors
+    /// As [`Judge::check_state`].
+    pub fn check_state(&mut self, x: &[Point], options: &StateOptions) -> Result<StateReport, CheckError> {
+        let (scene, arrange) = self.states.next(&self.judge);
+        self.judge.check_state_with(scene, arrange, x, options)
     }
 
     /// The verdict of [`Judge::check_path`], in less time.
@@ -45,9 +71,7 @@ impl MotionJudge {
         x1: &[Point],
         options: &PathOptions,
     ) -> Result<PathReport, CheckError> {
-        let paths = self.paths.filter(|&paths| paths < RENEW_AFTER);
-        let report = self.judge.check_path_with(&mut self.scene, paths.is_none(), x0, x1, options)?;
-        self.paths = Some(paths.unwrap_or(0) + 1);
-        Ok(report)
+        let (scene, arrange) = self.paths.next(&self.judge);
+        self.judge.check_path_with(scene, arrange, x0, x1, options)
     }
 }

@@ -3,7 +3,7 @@
 use crate::judge::Judge;
 use crate::primitives::{Scene, closest_points, gather};
 use crate::report::{Nearest, PairClass};
-use crate::tree::MovingBox;
+use crate::tree::{LeafBoxes, MovingBox};
 use crate::walk::Keep;
 use bowknot_geometry::Point;
 use rayon::prelude::*;
@@ -26,6 +26,10 @@ impl Keep<1> for AsNear {
     #[inline]
     fn keep(&self, a: &MovingBox<1>, b: &MovingBox<1>) -> bool {
         a.distance_squared(b).sqrt() * SLACK <= f64::from_bits(self.0.load(Ordering::Relaxed))
+    }
+
+    fn kept(&self, _: &MovingBox<1>, _: &LeafBoxes<1>) -> u32 {
+        u32::MAX
     }
 }
 

@@ -59,9 +59,9 @@ impl Judge {
         self.check_positions("start of the path", x0)?;
         self.check_positions("end of the path", x1)?;
         if arrange {
-            scene.arrange([x0, x1]);
+            scene.arrange([x0, x1], true);
         }
-        scene.fit([x0, x1], options.skip_unmoved);
+        scene.fit([x0, x1], true, options.skip_unmoved);
         let looks = scene.all_pairs(self, &Meeting, |class, elements, sides, looks: &mut Looks| {
             let (start, end) = (gather(x0, sides), gather(x1, sides));
             looks.count += 1;

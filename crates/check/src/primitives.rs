@@ -90,19 +90,24 @@ impl<const K: usize> Scene<K> {
         }
     }
 
-    /// Orders the primitives by where they are. What walks find does not depend on it, how long they
-    /// take does; other positions may follow, as long as they are not all too different.
-    pub fn arrange(&mut self, instants: [&[Point]; K]) {
-        self.vertices.arrange(instants);
+    /// Orders the primitives by where they are, `vertices` included or not. What walks find does not depend
+    /// on it, how long they take does; other positions may follow, as long as they are not all too different.
+    pub fn arrange(&mut self, instants: [&[Point]; K], vertices: bool) {
+        if vertices {
+            self.vertices.arrange(instants);
+        }
         self.edges.arrange(instants);
         self.triangles.arrange(instants);
         self.particles.arrange(instants);
         self.strands.arrange(instants);
     }
 
-    /// Fits all boxes to these positions; primitives that do not move are flagged if `skip_unmoved`.
-    pub fn fit(&mut self, instants: [&[Point]; K], skip_unmoved: bool) {
-        self.vertices.fit(instants, skip_unmoved);
+    /// Fits all boxes to these positions, those of the `vertices` included or not; primitives that do not move
+    /// are flagged if `skip_unmoved`.
+    pub fn fit(&mut self, instants: [&[Point]; K], vertices: bool, skip_unmoved: bool) {
+        if vertices {
+            self.vertices.fit(instants, skip_unmoved);
+        }
         self.edges.fit(instants, skip_unmoved);
         self.triangles.fit(instants, skip_unmoved);
         self.particles.fit(instants, skip_unmoved);

@@ -108,6 +108,50 @@ impl<const K: usize> MovingBox<K> {
     }
 }
 
+/// The boxes of a leaf, coordinate by coordinate: a box is compared with all of them at once, in the lanes of a register.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LeafBoxes<const K: usize> {
+    min: [[[f32; LEAF_SIZE]; 3]; K],
+    max: [[[f32; LEAF_SIZE]; 3]; K],
+}
+
+impl<const K: usize> LeafBoxes<K> {
+    /// Nothing meets an empty place.
+    const EMPTY: Self = {
+        let (low, high) = (-(LARGEST as f32), LARGEST as f32);
+        Self { min: [[[high; LEAF_SIZE]; 3]; K], max: [[[low; LEAF_SIZE]; 3]; K] }
+    };
+
+    fn set(&mut self, place: usize, one: &MovingBox<K>) {
+        for k in 0..K {
+            for c in 0..3 {
+                self.min[k][c][place] = one.min[k][c];
+                self.max[k][c][place] = one.max[k][c];
+            }
+        }
+    }
+
+    /// Which of the boxes [meet](MovingBox::meets) another one, a bit each.
+    #[inline]
+    pub fn meeting(&self, other: &MovingBox<K>) -> u32 {
+        let mut least = [f32::MAX; LEAF_SIZE];
+        for c in 0..3 {
+            let mut below = [f32::MIN; LEAF_SIZE];
+            let mut above = [f32::MIN; LEAF_SIZE];
+            for k in 0..K {
+                for i in 0..LEAF_SIZE {
+                    below[i] = larger(below[i], self.max[k][c][i] - other.min[k][c]);
+                    above[i] = larger(above[i], other.max[k][c] - self.min[k][c][i]);
+                }
+            }
+            for i in 0..LEAF_SIZE {
+                least[i] = smaller(least[i], smaller(below[i], above[i]));
+            }
+        }
+        (0..LEAF_SIZE).fold(0, |mask, i| mask | (u32::from(least[i] >= 0.0) << i))
+    }
+}
+
 /// Minimum and maximum of numbers: one instruction each, where `f32::min` cares for NaN as well.
 #[inline]
 fn smaller(a: f32, b: f32) -> f32 {
@@ -128,8 +172,9 @@ pub(super) struct Tree<const K: usize> {
     pub node_flags: Vec<u8>,
     /// Number of levels above the leaves.
     depth: u32,
-    /// Boxes of the primitives, in their order.
+    /// Boxes of the primitives, in their order, and again by leaf.
     pub boxes: Vec<MovingBox<K>>,
+    leaves: Vec<LeafBoxes<K>>,
     /// Their flags.
     pub flags: Vec<u8>,
 }
@@ -144,22 +189,24 @@ impl<const K: usize> Tree<K> {
             node_flags: vec![0; nodes],
             depth,
             boxes: vec![MovingBox::EMPTY; count],
+            leaves: vec![LeafBoxes::EMPTY; 1 << depth],
             flags: vec![0; count],
         }
     }
 
     /// Fits the boxes: `primitive(slot)` says box and flags of the primitive at each place of the order.
     pub fn fit(&mut self, primitive: impl Fn(usize) -> (MovingBox<K>, u8) + Sync) {
-        let Self { nodes, node_flags, depth, boxes, flags } = self;
+        let Self { nodes, node_flags, depth, boxes, leaves, flags } = self;
         let slots = boxes.par_iter_mut().zip(flags.par_iter_mut()).with_min_len(PARALLEL_FIT);
         slots.enumerate().for_each(|(slot, (place, flag))| (*place, *flag) = primitive(slot));
 
         let first_leaf = (1usize << *depth) - 1;
-        let leaves = nodes[first_leaf..].par_iter_mut().zip(&mut node_flags[first_leaf..]);
-        leaves.with_min_len(PARALLEL_FIT).enumerate().for_each(|(leaf, (node, flag))| {
+        let leaf_nodes = nodes[first_leaf..].par_iter_mut().zip(&mut node_flags[first_leaf..]).zip(leaves);
+        leaf_nodes.with_min_len(PARALLEL_FIT).enumerate().for_each(|(leaf, ((node, flag), own))| {
             (*node, *flag) = (MovingBox::EMPTY, u8::MAX);
-            for slot in leaf_slots(boxes.len(), leaf, *depth) {
+            for (place, slot) in leaf_slots(boxes.len(), leaf, *depth).enumerate() {
                 node.join(&boxes[slot]);
+                own.set(place, &boxes[slot]);
                 *flag &= flags[slot];
             }
         });
@@ -181,7 +228,17 @@ impl<const K: usize> Tree<K> {
     }
 
     pub fn slots(&self, node: u32) -> std::ops::Range<usize> {
-        leaf_slots(self.boxes.len(), node as usize - ((1 << self.depth) - 1), self.depth)
+        leaf_slots(self.boxes.len(), self.leaf(node), self.depth)
+    }
+
+    /// The boxes of a leaf, in the order of its [slots](Self::slots).
+    pub fn leaf_boxes(&self, node: u32) -> &LeafBoxes<K> {
+        &self.leaves[self.leaf(node)]
+    }
+
+    /// Number of a node that is a leaf.
+    fn leaf(&self, node: u32) -> usize {
+        node as usize - ((1 << self.depth) - 1)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Walks over the pairs of two trees, or of a tree and itself.
 
-use crate::tree::{MovingBox, Tree};
+use crate::tree::{LeafBoxes, MovingBox, Tree};
 use rayon::prelude::*;
 
 /// Pairs of nodes that a walk is cut into, so that threads have enough to share out. Fixed, so that
@@ -15,6 +15,10 @@ pub(super) trait Keep<const K: usize>: Sync {
 
     /// Whether two boxes may hold a pair of interest.
     fn keep(&self, a: &MovingBox<K>, b: &MovingBox<K>) -> bool;
+
+    /// Which boxes of a leaf [`Self::keep`] keeps with another box, a bit each; if [`Self::NARROWS`], it is asked again for
+    /// each of them.
+    fn kept(&self, a: &MovingBox<K>, leaf: &LeafBoxes<K>) -> u32;
 }
 
 /// Boxes that may share a point at some time.
@@ -27,6 +31,11 @@ impl<const K: usize> Keep<K> for Meeting {
     #[inline]
     fn keep(&self, a: &MovingBox<K>, b: &MovingBox<K>) -> bool {
         a.meets(b)
+    }
+
+    #[inline]
+    fn kept(&self, a: &MovingBox<K>, leaf: &LeafBoxes<K>) -> u32 {
+        leaf.meeting(a)
     }
 }
 
@@ -115,17 +124,22 @@ impl<const K: usize, F: Keep<K>> Walk<'_, K, F> {
     #[inline]
     fn leaves(&self, i: u32, j: u32, visit: &mut impl FnMut(usize, usize)) {
         let (a, b) = (self.a, self.b);
+        let (others, leaf) = (b.slots(j), b.leaf_boxes(j));
+        let all = (1 << others.len()) - 1;
         for s in a.slots(i) {
             let (place, flags) = (&a.boxes[s], a.flags[s]);
             if flags & b.node_flags[j as usize] != 0 || !self.filter.keep(place, &b.nodes[j as usize]) {
                 continue;
             }
-            let mut others = b.slots(j);
+            let mut kept = self.filter.kept(place, leaf) & all;
             if self.same && i == j {
-                others.start = s + 1;
+                // Those after it.
+                kept &= !1 << (s - others.start);
             }
-            for t in others {
-                if flags & b.flags[t] == 0 && self.filter.keep(place, &b.boxes[t]) {
+            while kept != 0 {
+                let t = others.start + kept.trailing_zeros() as usize;
+                kept &= kept - 1;
+                if flags & b.flags[t] == 0 && (!F::NARROWS || self.filter.keep(place, &b.boxes[t])) {
                     visit(s, t);
                 }
             }

@@ -1,7 +1,7 @@
 //! Judges what a device computes, on the CPU: a driver that computes something else than it should is told, not trusted.
 
 use super::error::GpuResolveError;
-use bowknot_check::{Judge, StateOptions};
+use bowknot_check::{Judge, MotionJudge, StateOptions};
 use bowknot_geometry::{BodyFilter, Point};
 use bowknot_twoway::CollisionScene;
 
@@ -9,7 +9,7 @@ use bowknot_twoway::CollisionScene;
 #[derive(Debug, Default)]
 pub struct SceneJudge {
     /// The judge, and the bodies that it was made with: which of them are obstacles may change.
-    made: Option<(Vec<BodyFilter>, Judge)>,
+    made: Option<(Vec<BodyFilter>, MotionJudge)>,
 }
 
 impl SceneJudge {
@@ -40,10 +40,11 @@ impl SceneJudge {
         Ok(state.intersection_count == 0 && is_wide)
     }
 
-    fn of(&mut self, scene: &CollisionScene) -> &Judge {
+    fn of(&mut self, scene: &CollisionScene) -> &mut MotionJudge {
         let bodies = scene.model().bodies();
         let known = self.made.take().filter(|(known, _)| known == bodies);
-        let made = known.unwrap_or_else(|| (bodies.to_vec(), Judge::from_model(scene.model())));
-        &self.made.insert(made).1
+        let made =
+            known.unwrap_or_else(|| (bodies.to_vec(), MotionJudge::new(Judge::from_model(scene.model()))));
+        &mut self.made.insert(made).1
     }
 }

@@ -89,7 +89,7 @@ impl Checker {
 
     fn judge_state(&mut self, x: &[Point], place: &str, world: &World) -> Result<(), CheckError> {
         let options = StateOptions { limit: KEPT, distance: false };
-        let report = self.judge.judge().check_state(x, &options)?;
+        let report = self.judge.check_state(x, &options)?;
         for line in describe_intersections(world, &report.intersections) {
             self.find(format!("{place}: {line} intersect"));
         }

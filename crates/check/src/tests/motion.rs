@@ -1,4 +1,4 @@
-//! Paths judged one after the other.
+//! States and paths judged one after the other.
 
 use super::*;
 use crate::MotionJudge;
@@ -35,6 +35,7 @@ fn an_order_that_is_kept_changes_no_verdict() {
     let (judge, mut x) = crowd(&mut random);
     let mut motion = MotionJudge::new(judge.clone());
     let (mut clear, mut struck) = (0, 0);
+    let mut states = [0, 0];
     for round in 0..48 {
         let size = [1e-5, 3e-3, 3e-2][round % 3];
         let drift = random.vector(0.1);
@@ -55,11 +56,18 @@ fn an_order_that_is_kept_changes_no_verdict() {
         } else {
             struck += 1
         }
+        // Distances look at the vertices of triangles as well, whose order is found when it is wanted first.
+        let options = StateOptions { limit: 1000, distance: round % 4 == 3 };
+        let alone = judge.check_state(&y, &options).expect("valid points");
+        let kept = motion.check_state(&y, &options).expect("valid points");
+        assert_eq!(kept, alone, "round {round}");
+        states[usize::from(alone.is_clear())] += 1;
         if round % 3 == 2 {
             x = y;
         }
     }
     assert!(clear >= 10 && struck >= 10, "{clear} clear, {struck} struck");
+    assert!(states[0] >= 10, "{states:?}");
 }
 
 /// Every pair whose moving boxes meet is looked at, each once: counted without a tree.
