@@ -4,13 +4,14 @@
 
 use crate::body::BodyShape;
 use crate::dynamics::Dynamics;
-use crate::elements::set::{ElementKind, Motion};
+use crate::elements::set::{Displaced, ElementKind, Motion};
 use crate::model::DynamicsModel;
 use crate::model::measures::volume;
 use crate::nodes::CHUNK;
 use bowknot_geometry::{Point, Vector};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// Elastic energy of all deformable bodies [J] by the kind of element that stores it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -107,13 +108,38 @@ impl DynamicsModel {
         energies
     }
 
+    /// Change of the elastic energy [J] from the positions `from` to `x`, of vertices that have `moved`.
+    fn elastic_energy_change(&self, from: &[Point], x: &[Point], moved: impl Fn(usize) -> bool) -> f64 {
+        let vertices = || self.node_vertex.iter().map(|&vertex| vertex as usize);
+        let moved: Vec<bool> = vertices().map(moved).collect();
+        if !moved.contains(&true) {
+            return 0.0;
+        }
+        let from: Vec<Vector> = vertices().map(|vertex| from[vertex].coords).collect();
+        let position = |(vertex, (from, moved)): (usize, (&Vector, &bool))| {
+            if *moved { x[vertex].coords } else { *from }
+        };
+        let x: Vec<Vector> = vertices().zip(from.iter().zip(&moved)).map(position).collect();
+        let change = Displaced { from: &from, x: &x, moved: &moved };
+        let chunks = (0..moved.len().div_ceil(CHUNK)).into_par_iter();
+        let of_chunk = |chunk: usize| {
+            let of_sets = self.element_sets.iter().map(|set| set.energy_change(chunk, &change));
+            self.bending.energy_change(chunk, &change) + of_sets.sum::<f64>()
+        };
+        let changes: Vec<f64> = chunks.map(of_chunk).collect();
+        changes.iter().sum()
+    }
+
     /// Elastic energy [J] of each component at positions `x` of nodes.
     pub(crate) fn elastic_by_component(&self, x: &[Vector]) -> Vec<f64> {
-        let mut energies: Vec<f64> = self
-            .components
-            .iter()
-            .map(|c| self.bending.rows_energy(c.start as usize..c.end as usize, x))
-            .collect();
+        let bending = |component: &Range<u32>| {
+            let rows = component.start as usize..component.end as usize;
+            let starts = rows.clone().into_par_iter().step_by(CHUNK);
+            let of_rows = |start: usize| self.bending.rows_energy(start..rows.end.min(start + CHUNK), x);
+            // Partial sums in order: the same bits for any number of threads.
+            starts.map(of_rows).collect::<Vec<f64>>().iter().sum()
+        };
+        let mut energies: Vec<f64> = self.components.par_iter().map(bending).collect();
         for set in &self.element_sets {
             set.for_each_energy(x, &mut |node, energy| {
                 energies[self.component(node)] += energy;
@@ -160,6 +186,31 @@ impl Dynamics {
                 .map(|(vertex, (&m, x))| m * model.gravity(vertex, gravity).dot(&x.coords))
                 .sum::<f64>(),
         }
+    }
+
+    /// Change of the sum of the [energies](Self::energies) [J] where a time step of `dt` [s] from `start` ends at `x` in
+    /// place of `from` [m], velocities being those of the way from its start. Vertices that differ by at most `resolution`
+    /// along each axis [m] count as if they did not: the time that this takes goes with the number of the others.
+    pub fn energy_change(
+        &self,
+        start: &[Point],
+        from: &[Point],
+        x: &[Point],
+        dt: f64,
+        resolution: f64,
+    ) -> f64 {
+        let model = self.model();
+        let gravity = self.params().environment.gravity;
+        let moved = |vertex: usize| (x[vertex] - from[vertex]).amax() > resolution;
+        let of_vertex = |vertex: usize| {
+            let way = x[vertex] - from[vertex];
+            // 1/2 m (|v|^2 - |u|^2) with the velocities v and u of both ways.
+            let sum = (x[vertex] - start[vertex]) + (from[vertex] - start[vertex]);
+            let kinetic = 0.5 * way.dot(&sum) / (dt * dt);
+            model.masses()[vertex] * (kinetic - model.gravity(vertex, gravity).dot(&way))
+        };
+        let of_vertices: f64 = (0..x.len()).filter(|&vertex| moved(vertex)).map(of_vertex).sum();
+        of_vertices + model.elastic_energy_change(from, x, moved)
     }
 
     /// [`DynamicsModel::momentum`].

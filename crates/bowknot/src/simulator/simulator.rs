@@ -405,7 +405,8 @@ impl Simulator {
                 statistics.interior_solves +=
                     interior.follow(dynamics, prescribed, y, x).map_err(target_error)?;
                 if *measured {
-                    statistics.collision_energy_j += added_energy(dynamics, start, y, x, *dt);
+                    let change = dynamics.energy_change(start, y, x, *dt, backend.resolution());
+                    statistics.collision_energy_j += change.max(0.0);
                 }
             }
             contacts.apply(dynamics).map_err(target_error)?;
@@ -537,14 +538,6 @@ impl Simulator {
 fn differ(x: &[Point], y: &[Point], resolution: f64) -> bool {
     // Positions that are not numbers differ.
     !x.iter().zip(y).all(|(x, y)| (x - y).amax() <= resolution)
-}
-
-fn added_energy(dynamics: &Dynamics, start: &[Point], y: &[Point], x: &[Point], dt: f64) -> f64 {
-    let energy = |end: &[Point]| {
-        let velocities: Vec<Vector> = end.iter().zip(start).map(|(x, x0)| (x - x0) / dt).collect();
-        dynamics.energies(end, &velocities).total()
-    };
-    (energy(x) - energy(y)).max(0.0)
 }
 
 pub(super) fn resolve_error(world: &World, step: usize, source: ResolveError) -> SimulationError {

@@ -10,6 +10,7 @@ use crate::nodes::CHUNK;
 use crate::params::DynamicsParams;
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
+use rayon::prelude::*;
 
 /// The terms of the potential that are fixed in a time step, see [`NewtonStep`].
 #[derive(Clone, Debug)]
@@ -29,7 +30,7 @@ impl StepTerms {
         let gradient = |node: usize| {
             inertia.gradient(model, step, node, &step.start[node]) + model.bending.product(node, &step.start)
         };
-        let nodes = 0..step.start.len();
+        let nodes = (0..step.start.len()).into_par_iter().with_min_len(CHUNK);
         Self {
             start: step.start.clone(),
             inertial: step.inertial.clone(),

@@ -25,6 +25,15 @@ pub(crate) struct Motion<'a> {
     pub rate: f64,
 }
 
+/// Positions of which some have changed, one entry per node.
+#[derive(Clone, Copy)]
+pub(crate) struct Displaced<'a> {
+    pub from: &'a [Vector],
+    pub x: &'a [Vector],
+    /// Which nodes differ. At the others both have the same positions.
+    pub moved: &'a [bool],
+}
+
 /// The rows of one chunk, to which elements add.
 pub(crate) struct Rows<'a> {
     pub nodes: Range<usize>,
@@ -49,6 +58,9 @@ pub(crate) trait AnyElementSet: Send + Sync {
 
     /// Energy [J] of the elements that the chunk owns.
     fn energy(&self, chunk: usize, motion: Motion<'_>) -> f64;
+
+    /// Change of the elastic energy [J] of the elements that the chunk owns.
+    fn energy_change(&self, chunk: usize, change: &Displaced<'_>) -> f64;
 
     /// Calls `visit` with the first node of each element and its elastic energy [J] at `x`.
     fn for_each_energy(&self, x: &[Vector], visit: &mut dyn FnMut(u32, f64));
@@ -161,6 +173,19 @@ impl<E: Element<N>, const N: usize> AnyElementSet for ElementSet<E, N> {
             }
         }
         energy
+    }
+
+    fn energy_change(&self, chunk: usize, change: &Displaced<'_>) -> f64 {
+        let mut sum = 0.0;
+        for &index in self.chunk(chunk) {
+            let element = &self.elements[index as usize];
+            let nodes = element.nodes();
+            if Self::owner(&nodes) == chunk && nodes.iter().any(|&n| change.moved[n as usize]) {
+                let energy = |x: &[Vector]| element.energy(&nodes.map(|n| x[n as usize]), None);
+                sum += energy(change.x) - energy(change.from);
+            }
+        }
+        sum
     }
 
     fn for_each_energy(&self, x: &[Vector], visit: &mut dyn FnMut(u32, f64)) {

@@ -5,6 +5,7 @@
 //! they are exactly invariant under translation, however far the origin is.
 
 use super::block::BlockPattern;
+use crate::elements::set::Displaced;
 use crate::nodes::CHUNK;
 use bowknot_geometry::Vector;
 use rayon::prelude::*;
@@ -113,6 +114,24 @@ impl ScalarForm {
     /// Energy of the rows of one chunk.
     pub fn chunk_energy(&self, chunk: usize, x: &[Vector]) -> f64 {
         self.rows_energy(chunk * CHUNK..((chunk + 1) * CHUNK).min(x.len()), x)
+    }
+
+    /// Change of the energy of the rows of one chunk.
+    pub fn energy_change(&self, chunk: usize, change: &Displaced<'_>) -> f64 {
+        let Displaced { from, x, moved } = change;
+        let mut sum = 0.0;
+        for row in chunk * CHUNK..((chunk + 1) * CHUNK).min(x.len()) {
+            let (columns, values) = self.row(row);
+            for (&column, &value) in columns.iter().zip(values) {
+                let column = column as usize;
+                if moved[row] || moved[column] {
+                    let (before, after) = (from[column] - from[row], x[column] - x[row]);
+                    // |after|^2 - |before|^2.
+                    sum -= value * (after - before).dot(&(after + before));
+                }
+            }
+        }
+        0.25 * sum
     }
 
     /// Energy of a range of rows.

@@ -202,6 +202,41 @@ fn mixed(params: DynamicsParams) -> (Dynamics, Vec<Point>, Vec<Vector>) {
 }
 
 #[test]
+fn the_change_of_energy_is_that_of_the_sums_before_and_after() {
+    let (dynamics, start, _) = mixed(DynamicsParams::default());
+    let (dt, resolution) = (0.01, 1e-7);
+    let moved_by = |every: usize, size: f64| -> Vec<Point> {
+        let turn =
+            |v: usize| Vector::new((7 * v % 5) as f64 - 2.0, (3 * v % 7) as f64 - 3.0, (v % 3) as f64 - 1.0);
+        let displaced =
+            |(v, x): (usize, &Point)| if v.is_multiple_of(every) { x + turn(v) * size } else { *x };
+        start.iter().enumerate().map(displaced).collect()
+    };
+    let total = |x: &[Point]| {
+        let v: Vec<Vector> = x.iter().zip(&start).map(|(x, start)| (x - start) / dt).collect();
+        dynamics.energies(x, &v).total()
+    };
+    let from = moved_by(1, 1e-4);
+    for (every, size) in [(1, 3e-4), (2, 1e-3), (97, 1e-3)] {
+        let x: Vec<Point> =
+            from.iter().zip(moved_by(every, size)).zip(&start).map(|((a, b), c)| a + (b - c)).collect();
+        let (before, after) = (total(&from), total(&x));
+        let change = dynamics.energy_change(&start, &from, &x, dt, resolution);
+        let error = (change - (after - before)).abs();
+        assert!(error < 1e-11 * (before.abs() + after.abs()) && change != 0.0, "{every}: {change} {error:e}");
+        // Displacements below the resolution, beside others, do not count.
+        let noise = 0.3 * resolution;
+        let noisy: Vec<Point> = x
+            .iter()
+            .zip(&from)
+            .map(|(x, from)| if x == from { x + Vector::new(noise, noise, -noise) } else { *x })
+            .collect();
+        assert_eq!(dynamics.energy_change(&start, &from, &noisy, dt, resolution), change);
+        assert_eq!(dynamics.energy_change(&start, &from, &noisy, dt, 1.0), 0.0);
+    }
+}
+
+#[test]
 fn mixed_scenes_converge_and_every_body_falls_as_it_must() {
     let (mut dynamics, mut x, mut v) = mixed(DynamicsParams::default());
     let none = vec![false; x.len()];

@@ -16,6 +16,7 @@ use crate::params::DynamicsParams;
 use crate::repulsion::springs::Repulsion;
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
+use rayon::prelude::*;
 
 /// Begins the time step on the backend.
 fn begin_step(
@@ -36,10 +37,14 @@ fn begin_step(
         inertia * (step.start[n] - step.inertial[n]).norm_squared()
     };
     let nodes = step.start.len();
-    let bending = |chunk: usize| model.bending.chunk_energy(chunk, &step.start);
-    let potential_at_start =
-        (0..nodes).map(kinetic).sum::<f64>() + (0..nodes.div_ceil(CHUNK)).map(bending).sum::<f64>();
-    Ok(DeviceStep { component_sums: component_sums.collect(), potential_at_start })
+    let chunks = (0..nodes.div_ceil(CHUNK)).into_par_iter();
+    let of_chunk = |chunk: usize| {
+        let nodes = chunk * CHUNK..((chunk + 1) * CHUNK).min(nodes);
+        nodes.map(kinetic).sum::<f64>() + model.bending.chunk_energy(chunk, &step.start)
+    };
+    // Partial sums in order: the same bits for any number of threads.
+    let potential: Vec<f64> = chunks.map(of_chunk).collect();
+    Ok(DeviceStep { component_sums: component_sums.collect(), potential_at_start: potential.iter().sum() })
 }
 
 /// Where a target begins, by node, and the nodes that springs act on.
