@@ -15,6 +15,7 @@ use bowknot_geometry::{PairKind, Point, Vector};
 use bowknot_scene::RepulsionParams;
 use bowknot_scene::world::World;
 use bowknot_twoway::{CollisionScene, Resolver};
+use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// The contacts in force.
@@ -98,17 +99,17 @@ impl Contacts {
     /// Adds the pairs in contact range to [`Self::touching`].
     pub fn note_touching(&mut self, resolver: &Resolver) {
         let (scene, contacts) = (resolver.scene(), &resolver.state().contacts);
+        let pairs = contacts.pairs.pairs();
         for kind in PairKind::ALL {
-            for p in contacts.pairs.range(kind) {
-                let pair = &contacts.pairs.pairs()[p];
-                if contacts.separations[p].distance >= scene.contact_range(kind, pair) {
-                    continue;
-                }
-                let used = &pair.vertices[..kind.vertex_count()];
-                if kind == PairKind::VertexHalfSpace {
-                    self.touching.held.push(used[0]);
-                }
-                self.touching.pairs.extend(used[1..].iter().map(|&v| [used[0], v]));
+            let places = contacts.pairs.range(kind).into_par_iter().with_min_len(MIN_PAIRS);
+            let in_range = places
+                .filter(|&p| contacts.separations[p].distance < scene.contact_range(kind, &pairs[p]))
+                .map(|p| &pairs[p].vertices[..kind.vertex_count()]);
+            if kind == PairKind::VertexHalfSpace {
+                self.touching.held.par_extend(in_range.map(|used| used[0]));
+            } else {
+                let joined = in_range.flat_map_iter(|used| used[1..].iter().map(|&v| [used[0], v]));
+                self.touching.pairs.par_extend(joined);
             }
         }
     }
@@ -199,63 +200,97 @@ impl Contacts {
     }
 
     /// Adds the pairs in range that are contacts within a tolerance, by features and normal, and not in the
-    /// `index` yet.
+    /// `index` yet: of those with the same features the first one.
     fn add(
         &mut self,
         resolver: &Resolver,
         start: &[Point],
         dt: f64,
         index: &mut Index,
-        tolerance: impl Fn(&[Feature; 2], &Vector) -> Option<f64>,
+        tolerance: impl Fn(&[Feature; 2], &Vector) -> Option<f64> + Sync,
     ) {
+        let mut found = self.near_contacts(resolver, &tolerance);
+        found.retain(|contact| {
+            let new = !index.contains_key(&contact.features);
+            if new {
+                index.insert(contact.features, self.features.len());
+                self.features.push(contact.features);
+            }
+            new
+        });
+        let spring = |contact: &NearContact| self.spring(resolver, contact, start, dt);
+        let springs: Vec<RepulsionSpring> = found.par_iter().with_min_len(MIN_PAIRS).map(spring).collect();
+        self.springs.extend(springs);
+    }
+
+    /// The pairs in contact range that are contacts within a tolerance, by features and normal, and deform
+    /// something.
+    fn near_contacts(
+        &self,
+        resolver: &Resolver,
+        tolerance: &(impl Fn(&[Feature; 2], &Vector) -> Option<f64> + Sync),
+    ) -> Vec<NearContact> {
         let (scene, state) = (resolver.scene(), resolver.state());
         let contacts = &state.contacts;
-        let growth = scene.lengths().separation_speed * dt;
-        for kind in PairKind::ALL {
-            for p in contacts.pairs.range(kind) {
-                let (separation, pair) = (&contacts.separations[p], &contacts.pairs.pairs()[p]);
-                let used = &pair.vertices[..kind.vertex_count()];
+        let of_kind = |kind: PairKind| {
+            let contact = move |place: usize| {
+                let (separation, pair) = (&contacts.separations[place], &contacts.pairs.pairs()[place]);
                 // A pair whose distance is not a number gets no spring.
                 let near = separation.distance < scene.contact_range(kind, pair);
-                if !near || !self.is_elastic(used) {
-                    continue;
+                if !near || !self.is_elastic(&pair.vertices[..kind.vertex_count()]) {
+                    return None;
                 }
                 let (features, sign) = oriented(scene.features(kind, pair, separation));
-                let mut normal = separation.normal * sign;
-                let Some(tolerance) = tolerance(&features, &normal) else { continue };
-                if index.contains_key(&features) || !scene.is_contact(features, &normal, &state.x, tolerance)
-                {
-                    continue;
-                }
-                // A normal outside of the cones is turned to their border: a tilted one would push sliding
-                // bodies aside.
-                if tolerance > CONE_TOLERANCE {
-                    normal = scene.turned(features, &normal, &state.x);
-                }
-                index.insert(features, self.springs.len());
-                let plane = (kind == PairKind::VertexHalfSpace)
-                    .then(|| scene.model().half_spaces()[pair.elements[1] as usize]);
-                let offset = plane.map_or(0.0, |plane| plane.offset);
-                let weights = separation.signed_weights(kind).map(|weight| weight * sign);
-                let mut vertices = pair.vertices;
-                (0..4).filter(|&k| weights[k] == 0.0).for_each(|k| vertices[k] = pair.vertices[0]);
-                let sides: Vector = (0..4).map(|k| start[vertices[k] as usize].coords * weights[k]).sum();
-                let (desired, distance) = (scene.desired_distance(kind, pair), separation.distance);
-                // For contacts that are new or have turned, the gap between the same points at the start may
-                // be smaller than the one that the collision stage has reached.
-                let first = (normal.dot(&sides) - offset).max(distance.min(desired));
-                self.features.push(features);
-                self.springs.push(RepulsionSpring {
-                    vertices,
-                    weights,
-                    normal,
-                    offset,
-                    desired: desired_gap(desired, first, growth, dt),
-                    stiffness: self.stiffness,
-                    friction: contacts.frictions.get(p).copied().unwrap_or(0.0),
-                    force: Vector::zeros(),
-                });
-            }
+                let normal = separation.normal * sign;
+                let tolerance = tolerance(&features, &normal)?;
+                let is_contact = scene.is_contact(features, &normal, &state.x, tolerance);
+                is_contact.then_some(NearContact { features, sign, tolerance, kind, place })
+            };
+            contacts.pairs.range(kind).into_par_iter().with_min_len(MIN_PAIRS).filter_map(contact)
+        };
+        let mut found = Vec::new();
+        PairKind::ALL.into_iter().for_each(|kind| found.par_extend(of_kind(kind)));
+        found
+    }
+
+    /// The spring of a contact, without a force.
+    fn spring(
+        &self,
+        resolver: &Resolver,
+        &NearContact { features, sign, tolerance, kind, place }: &NearContact,
+        start: &[Point],
+        dt: f64,
+    ) -> RepulsionSpring {
+        let (scene, state) = (resolver.scene(), resolver.state());
+        let contacts = &state.contacts;
+        let (separation, pair) = (&contacts.separations[place], &contacts.pairs.pairs()[place]);
+        let mut normal = separation.normal * sign;
+        // A normal outside of the cones is turned to their border: a tilted one would push sliding
+        // bodies aside.
+        if tolerance > CONE_TOLERANCE {
+            normal = scene.turned(features, &normal, &state.x);
+        }
+        let plane = (kind == PairKind::VertexHalfSpace)
+            .then(|| scene.model().half_spaces()[pair.elements[1] as usize]);
+        let offset = plane.map_or(0.0, |plane| plane.offset);
+        let weights = separation.signed_weights(kind).map(|weight| weight * sign);
+        let mut vertices = pair.vertices;
+        (0..4).filter(|&k| weights[k] == 0.0).for_each(|k| vertices[k] = pair.vertices[0]);
+        let sides: Vector = (0..4).map(|k| start[vertices[k] as usize].coords * weights[k]).sum();
+        let (desired, distance) = (scene.desired_distance(kind, pair), separation.distance);
+        // For contacts that are new or have turned, the gap between the same points at the start may
+        // be smaller than the one that the collision stage has reached.
+        let first = (normal.dot(&sides) - offset).max(distance.min(desired));
+        let growth = scene.lengths().separation_speed * dt;
+        RepulsionSpring {
+            vertices,
+            weights,
+            normal,
+            offset,
+            desired: desired_gap(desired, first, growth, dt),
+            stiffness: self.stiffness,
+            friction: contacts.frictions.get(place).copied().unwrap_or(0.0),
+            force: Vector::zeros(),
         }
     }
 
@@ -426,6 +461,22 @@ const NEAREST: f64 = 0.999;
 
 /// Share of the desired distance that a vertex must keep from a feature to count as passing it.
 const PASSING: f64 = 0.5;
+
+/// Pairs that one thread looks at, at least.
+const MIN_PAIRS: usize = 1024;
+
+/// A pair that is a contact.
+#[derive(Clone, Copy, Debug)]
+struct NearContact {
+    /// Features of its sides, [`oriented`], and the sign that goes with it.
+    features: [Feature; 2],
+    sign: f64,
+    /// Sine of the angle by which its normal may leave the cones.
+    tolerance: f64,
+    kind: PairKind,
+    /// Its place in the list of pairs.
+    place: usize,
+}
 
 /// Indices of springs by their features.
 type Index = FxHashMap<[Feature; 2], usize>;
