@@ -30,12 +30,12 @@ use crate::error::GpuError;
 use crate::grid::{Grid, GridError, GridPoint};
 use crate::layout::{Candidate, Control, NONE, Vertex};
 use crate::model::{self, Constraints, Lengths};
+use crate::parallel::collected;
 use crate::recording::{BufferId, Recording};
 use crate::stages;
 use bowknot_geometry::{CollisionModel, Point, Vector};
 use buffers::{Buffers, Sizes, words};
 use near_list::NearList;
-use rayon::prelude::*;
 pub use stop::Stop;
 use trees::Trees;
 
@@ -542,17 +542,6 @@ impl<E: Engine> Collision<E> {
 /// With a fourth coordinate, as the device stores positions.
 fn padded(points: &[GridPoint]) -> Vec<[i32; 4]> {
     collected(points, |&[x, y, z]| [x, y, z, 0])
-}
-
-/// Entries that one task computes.
-const CHUNK: usize = 4096;
-
-/// What `of` makes of each entry, in parallel if there are many: a parallel loop pays for the way to its threads.
-fn collected<T: Sync, R: Send>(entries: &[T], of: impl Fn(&T) -> R + Send + Sync) -> Vec<R> {
-    match entries.len() {
-        ..=CHUNK => entries.iter().map(of).collect(),
-        _ => entries.par_iter().with_min_len(CHUNK).map(of).collect(),
-    }
 }
 
 fn check_length(what: &'static str, given: usize, vertices: usize) -> Result<(), CollisionError> {

@@ -9,6 +9,7 @@
 //! origin; here it is 2^-30 of the size of the scene, and a difference of near positions, converted to `f32`, keeps
 //! 24 bits of its own.
 
+use crate::parallel::{all, folded};
 use bowknot_geometry::{Point, Vector};
 
 /// A position in quanta.
@@ -71,7 +72,7 @@ impl Grid {
         if let Some(vertex) = positions.iter().position(|x| !x.iter().all(|c| c.is_finite())) {
             return Err(GridError::NotFinite { vertex });
         }
-        let (size, middle) = bounds(positions.iter());
+        let (size, middle) = bounds([positions]);
         let half = 0.5 * size.amax() + room;
         // The finest grid that has the room, and the coarsest with the wanted resolution.
         let exponent = |length: f64| length.log2().floor().clamp(-1e9, 1e9) as i32;
@@ -90,20 +91,18 @@ impl Grid {
 
     /// A grid with the same quantum around other positions [m]; None if they need more room than there is.
     pub fn around_others(&self, positions: &[Point]) -> Option<Self> {
-        let (_, middle) = bounds(positions.iter());
+        let (_, middle) = bounds([positions]);
         let origin = Point::from(middle.map(|c| (c / self.quantum).round() * self.quantum));
         let other = Self { origin, ..*self };
-        positions.iter().all(|x| other.nearest(x).is_some()).then_some(other)
+        all(positions, |x| other.nearest(x).is_some()).then_some(other)
     }
 
     /// The grid for a call in which vertices move from `positions` to `ends` [m] at the farthest: this one if it has
     /// room, else one that is shifted to there, else a coarser one of both kinds that still resolves `smallest` [m].
     /// Shifts are multiples of an eighth of the width, so that the same grid serves for a while. None if none has room.
     pub fn for_motion(&self, positions: &[Point], ends: &[Point], smallest: f64) -> Option<Self> {
-        let both = || positions.iter().chain(ends);
-        let (_, middle) = bounds(both());
-        let has_room =
-            |grid: &Self| grid.has_room(positions) && ends.iter().all(|x| grid.nearest(x).is_some());
+        let (_, middle) = bounds([positions, ends]);
+        let has_room = |grid: &Self| grid.has_room(positions) && all(ends, |x| grid.nearest(x).is_some());
         let mut quantum = self.quantum;
         while Self::RESOLUTION * quantum <= smallest {
             let home = self.origin.coords.map(|c| (c / quantum).round() * quantum);
@@ -137,7 +136,7 @@ impl Grid {
     pub fn has_room(&self, positions: &[Point]) -> bool {
         let scaled = |x: &Point| ((x - self.origin) / self.quantum).amax();
         // What is not a number has no room.
-        positions.iter().all(|x| scaled(x) < 0.5 * MAX_COORDINATE)
+        all(positions, |x| scaled(x) < 0.5 * MAX_COORDINATE)
     }
 
     /// The position of the grid that is nearest; outside of the grid each coordinate is moved to its border. The origin
@@ -161,9 +160,13 @@ impl Grid {
 }
 
 /// Size and middle of the box around the positions [m]; zeros if there are none.
-fn bounds<'a>(mut positions: impl Iterator<Item = &'a Point>) -> (Vector, Vector) {
-    let first = positions.next().map_or_else(Vector::zeros, |x| x.coords);
-    let (low, high) = positions.fold((first, first), |(l, h), x| (l.inf(&x.coords), h.sup(&x.coords)));
+fn bounds<const N: usize>(parts: [&[Point]; N]) -> (Vector, Vector) {
+    let Some(first) = parts.iter().find_map(|part| part.first()) else {
+        return (Vector::zeros(), Vector::zeros());
+    };
+    let join = |[l, h]: [Vector; 2], [low, high]: [Vector; 2]| [l.inf(&low), h.sup(&high)];
+    let boxes = parts.map(|part| folded(part, [first.coords; 2], |x| [x.coords; 2], join));
+    let [low, high] = boxes.into_iter().fold([first.coords; 2], join);
     (high - low, (low + high) * 0.5)
 }
 

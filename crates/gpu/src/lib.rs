@@ -29,6 +29,7 @@ mod layout;
 mod linear;
 mod model;
 mod newton;
+mod parallel;
 mod potential;
 mod recording;
 mod stages;

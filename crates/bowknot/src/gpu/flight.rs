@@ -14,6 +14,10 @@
 
 use bowknot_geometry::{Aabb, HalfSpace, Point, Vector};
 use bowknot_twoway::{CallInput, CollisionScene};
+use rayon::prelude::*;
+
+/// Vertices that one thread looks at, at least.
+const MIN_VERTICES: usize = 4096;
 
 /// Where the vertices are after a flight from `start` [m], on a grid with a quantum [m] on which `start` lies. None if it
 /// would not save steps, of which each moves a vertex by `longest` local edge lengths at most.
@@ -25,12 +29,13 @@ pub fn fly(
     longest: f64,
 ) -> Option<Vec<Point>> {
     let body = scene.model().vertex_body();
-    let steps_after = |translation: &dyn Fn(usize) -> Vector| {
+    let steps_after = |translation: &(dyn Fn(usize) -> Vector + Sync)| {
         let of_vertex = |(v, (x, y)): (usize, (&Point, &Point))| {
             let left = (y - x - translation(v)).norm();
             (left / (longest * scene.local_edge(v))).ceil()
         };
-        start.iter().zip(target).enumerate().map(of_vertex).fold(0.0, f64::max)
+        let vertices = start.par_iter().zip(target).enumerate().with_min_len(MIN_VERTICES);
+        vertices.map(of_vertex).reduce(|| 0.0, f64::max)
     };
     let without = steps_after(&|_| Vector::zeros());
     // The flight itself is a step, and so is at least one after it.

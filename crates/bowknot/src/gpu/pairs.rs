@@ -4,22 +4,31 @@ use bowknot_geometry::{PairKind, Topology};
 use bowknot_gpu::{Candidate, ContactRow};
 use bowknot_proximity::{Pair, PairList};
 use bowknot_twoway::{CollisionScene, PairMultipliers};
+use rayon::prelude::*;
 
 /// The pairs of a list. None if one of them is no pair of the scene, which a device that works does not list.
 pub fn list(scene: &CollisionScene, candidates: &[Candidate]) -> Option<PairList> {
     let (topology, half_spaces) = (scene.model().topology(), scene.model().half_spaces().len());
-    let mut kinds: [Vec<Pair>; 5] = Default::default();
-    for candidate in candidates {
-        let kind = *PairKind::ALL.get(candidate.kind() as usize)?;
-        let (elements, _) = elements(kind, candidate);
+    let of_kind = |kind: PairKind| -> Option<Vec<Pair>> {
         let counts = element_counts(topology, half_spaces, kind);
-        if (0..2).any(|side| elements[side] as usize >= counts[side]) {
-            return None;
-        }
-        kinds[kind as usize].push(Pair::of_elements(topology, kind, elements));
+        let pair = |candidate: &Candidate| {
+            let (elements, _) = elements(kind, candidate);
+            let exists = (0..2).all(|side| (elements[side] as usize) < counts[side]);
+            exists.then(|| Pair::of_elements(topology, kind, elements))
+        };
+        let own = |candidate: &&Candidate| candidate.kind() == kind as u32;
+        candidates.par_iter().with_min_len(MIN_PAIRS).filter(own).map(pair).collect()
+    };
+    let mut kinds: [Vec<Pair>; 5] = Default::default();
+    for kind in PairKind::ALL {
+        kinds[kind as usize] = of_kind(kind)?;
     }
-    Some(PairList::from_kinds(kinds))
+    let all = kinds.iter().map(Vec::len).sum::<usize>() == candidates.len();
+    all.then(|| PairList::from_kinds(kinds))
 }
+
+/// Pairs that one thread looks at, at least.
+const MIN_PAIRS: usize = 4096;
 
 /// What the contact of a row carries. None if it is no pair.
 pub fn multipliers(row: &ContactRow) -> Option<PairMultipliers> {

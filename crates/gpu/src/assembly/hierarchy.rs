@@ -4,6 +4,7 @@ use super::layout::Part;
 use crate::layout::NONE;
 use crate::linear::{CHILDREN, PATCH_SLOTS, Patches};
 use bowknot_dynamics::{ElementModel, LinearSpring};
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// The groups, and their pairs that elements join. Level 0 has the groups of patches, level 1 the patches, and so on.
@@ -147,27 +148,55 @@ impl Hierarchy {
 
     /// The springs of each domain: where those of each begin, then the springs.
     pub fn touching(&self, springs: &[LinearSpring]) -> Vec<u32> {
-        let mut lists: Vec<Vec<u32>> = vec![Vec::new(); self.domains()];
-        for (index, spring) in (0..).zip(springs) {
-            for level in &self.levels {
-                for (&node, weight) in spring.nodes.iter().zip(spring.weights) {
-                    let place = if node == NONE || weight == 0.0 { NONE } else { self.places[node as usize] };
-                    if place != NONE {
-                        let domain = level.first_domain + place as usize / (level.width * CHILDREN);
-                        if lists[domain].last() != Some(&index) {
-                            lists[domain].push(index);
-                        }
-                    }
-                }
-            }
+        let place = |node: u32, weight: f64| {
+            if node == NONE || weight == 0.0 { NONE } else { self.places[node as usize] }
+        };
+        let places: Vec<[u32; 4]> = springs
+            .iter()
+            .map(|spring| std::array::from_fn(|k| place(spring.nodes[k], spring.weights[k])))
+            .collect();
+        let lists: Vec<[Vec<u32>; 2]> =
+            self.levels.par_iter().map(|level| touching_level(level, &places)).collect();
+        let mut words = vec![self.domains() as u32 + 1];
+        for [ends, _] in &lists {
+            let before = words[words.len() - 1];
+            words.extend(ends.iter().map(|end| before + end));
         }
-        let mut words = vec![lists.len() as u32 + 1];
-        let ends = lists.iter().scan(lists.len() as u32 + 1, |end, list| {
-            *end += list.len() as u32;
-            Some(*end)
-        });
-        words.extend(ends);
-        words.extend(lists.concat());
+        lists.iter().for_each(|[_, springs]| words.extend(springs));
         words
     }
+}
+
+/// Where the lists of springs of the domains of a level end, and the lists: ascending springs, each once per domain. `places`
+/// are the slots of the nodes of each spring.
+fn touching_level(level: &Level, places: &[[u32; 4]]) -> [Vec<u32>; 2] {
+    // Domains have a power of two of slots.
+    let bits = (level.width * CHILDREN).trailing_zeros();
+    let mut pairs: Vec<[u32; 2]> = Vec::with_capacity(2 * places.len());
+    let mut ends = vec![0u32; level.domains];
+    for (spring, places) in (0..).zip(places) {
+        let first = pairs.len();
+        for &place in places.iter().filter(|place| **place != NONE) {
+            let domain = (u64::from(place) >> bits) as u32;
+            if !pairs[first..].iter().any(|pair| pair[0] == domain) {
+                pairs.push([domain, spring]);
+                ends[domain as usize] += 1;
+            }
+        }
+    }
+    // A counting sort.
+    let mut sum = 0;
+    let mut next: Vec<u32> = Vec::with_capacity(level.domains);
+    for end in &mut ends {
+        next.push(sum);
+        sum += *end;
+        *end = sum;
+    }
+    let mut springs = vec![0; pairs.len()];
+    for [domain, spring] in pairs {
+        let place = &mut next[domain as usize];
+        springs[*place as usize] = spring;
+        *place += 1;
+    }
+    [ends, springs]
 }

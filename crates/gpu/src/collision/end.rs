@@ -21,6 +21,7 @@ use crate::layout::{Candidate, Control, Row};
 use crate::recording::Recording;
 use crate::stages;
 use bowknot_geometry::Vector;
+use rayon::prelude::*;
 
 impl<E: Engine> Collision<E> {
     /// How the call ends after the steps so far.
@@ -111,7 +112,7 @@ impl<E: Engine> Collision<E> {
             self.engine.run(&recording, &[(self.near.buffer, words::<Candidate>(count))])?.swap_remove(0)
         };
         let mut near = bytemuck::cast_slice::<u32, Candidate>(&list)[..count].to_vec();
-        near.sort_unstable();
+        near.par_sort_unstable();
         Ok(near)
     }
 }

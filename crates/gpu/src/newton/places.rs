@@ -6,6 +6,7 @@ use crate::assembly::StateGrid;
 use crate::cpu;
 use crate::engine::Engine;
 use crate::error::GpuError;
+use crate::parallel::{collected, largest};
 use crate::potential::Potential;
 use crate::recording::{BufferId, Recording};
 use crate::stages;
@@ -139,14 +140,17 @@ impl Newton {
     }
 
     fn points(&self, positions: &[Vector]) -> Vec<[i32; 4]> {
-        positions.iter().map(|x| self.grid.place(x)).collect()
+        let grid = self.grid;
+        collected(positions, |x| grid.place(x))
     }
 
     /// Records the start of a target. The buffers have room for its watched nodes.
     pub fn begin_target(&mut self, target: &NewtonTarget<'_>, recording: &mut Recording) -> Watched {
         let ends = || target.iterate.iter().zip(target.imposed).map(|(x, q)| x + q);
-        let reach = target.iterate.iter().copied().chain(ends()).map(|x| self.grid.reach(&x));
-        let reach = reach.fold(0.0, f64::max);
+        let grid = self.grid;
+        let moves = target.imposed.iter().any(|q| *q != Vector::zeros());
+        let of_ends = if moves { ends().map(|x| grid.reach(&x)).fold(0.0, f64::max) } else { 0.0 };
+        let reach = largest(target.iterate, |x| grid.reach(x)).max(of_ends);
         if reach > 1.0 && reach.is_finite() {
             self.coarsen(bits(reach), recording);
         }
