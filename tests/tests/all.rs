@@ -23,6 +23,5 @@ mod heaps;
 mod momentum;
 mod slopes;
 mod submissions;
-// What the host does at the end of a call of a device, and how long it takes.
+// What the host does at the end of a call of a device.
 mod ends;
-mod host;

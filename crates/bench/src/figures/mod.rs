@@ -11,6 +11,7 @@ mod edge_limits;
 mod funnel;
 mod goals;
 mod gpu;
+mod gpu_host;
 mod gpu_prediction;
 mod impact_zones;
 mod joint;
@@ -59,6 +60,7 @@ pub const ALL: &[&dyn Figure] = &[
     &early_contact::EarlyContact,
     &goals::Goals,
     &gpu::Gpu,
+    &gpu_host::GpuHost,
     &gpu_prediction::GpuPrediction,
     &stability::Stability,
 ];
