@@ -15,9 +15,10 @@
 use bowknot_geometry::{Aabb, HalfSpace, Point, Vector};
 use bowknot_twoway::{CallInput, CollisionScene};
 use rayon::prelude::*;
+use std::ops::Range;
 
-/// Vertices that one thread looks at, at least.
-const MIN_VERTICES: usize = 4096;
+/// Vertices that one task looks at.
+const CHUNK: usize = 4096;
 
 /// Where the vertices are after a flight from `start` [m], on a grid with a quantum [m] on which `start` lies. None if it
 /// would not save steps, of which each moves a vertex by `longest` local edge lengths at most.
@@ -30,12 +31,20 @@ pub fn fly(
 ) -> Option<Vec<Point>> {
     let body = scene.model().vertex_body();
     let steps_after = |translation: &(dyn Fn(usize) -> Vector + Sync)| {
-        let of_vertex = |(v, (x, y)): (usize, (&Point, &Point))| {
-            let left = (y - x - translation(v)).norm();
+        let of_vertex = |v: usize| {
+            let left = (target[v] - start[v] - translation(v)).norm();
             (left / (longest * scene.local_edge(v))).ceil()
         };
-        let vertices = start.par_iter().zip(target).enumerate().with_min_len(MIN_VERTICES);
-        vertices.map(of_vertex).reduce(|| 0.0, f64::max)
+        let most = |vertices: Range<usize>| vertices.map(of_vertex).fold(0.0, f64::max);
+        let count = start.len();
+        match count {
+            // A parallel loop would pay for the way to its threads.
+            ..=CHUNK => most(0..count),
+            _ => (0..count.div_ceil(CHUNK))
+                .into_par_iter()
+                .map(|chunk| most(chunk * CHUNK..count.min((chunk + 1) * CHUNK)))
+                .reduce(|| 0.0, f64::max),
+        }
     };
     let without = steps_after(&|_| Vector::zeros());
     // The flight itself is a step, and so is at least one after it.

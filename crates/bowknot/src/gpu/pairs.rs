@@ -17,7 +17,11 @@ pub fn list(scene: &CollisionScene, candidates: &[Candidate]) -> Option<PairList
             exists.then(|| Pair::of_elements(topology, kind, elements))
         };
         let own = |candidate: &&Candidate| candidate.kind() == kind as u32;
-        candidates.par_iter().with_min_len(MIN_PAIRS).filter(own).map(pair).collect()
+        match candidates.len() {
+            // A parallel loop would pay for the way to its threads.
+            ..=CHUNK => candidates.iter().filter(own).map(pair).collect(),
+            _ => candidates.par_iter().with_min_len(CHUNK).filter(own).map(pair).collect(),
+        }
     };
     let mut kinds: [Vec<Pair>; 5] = Default::default();
     for kind in PairKind::ALL {
@@ -27,8 +31,8 @@ pub fn list(scene: &CollisionScene, candidates: &[Candidate]) -> Option<PairList
     all.then(|| PairList::from_kinds(kinds))
 }
 
-/// Pairs that one thread looks at, at least.
-const MIN_PAIRS: usize = 4096;
+/// Pairs that one task looks at.
+const CHUNK: usize = 4096;
 
 /// What the contact of a row carries. None if it is no pair.
 pub fn multipliers(row: &ContactRow) -> Option<PairMultipliers> {

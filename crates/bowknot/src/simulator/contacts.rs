@@ -99,19 +99,21 @@ impl Contacts {
     /// Adds the pairs in contact range to [`Self::touching`].
     pub fn note_touching(&mut self, resolver: &Resolver) {
         let (scene, contacts) = (resolver.scene(), &resolver.state().contacts);
-        let pairs = contacts.pairs.pairs();
-        for kind in PairKind::ALL {
+        let (pairs, touching) = (contacts.pairs.pairs(), &mut self.touching);
+        let note = |kind: PairKind| {
             let places = contacts.pairs.range(kind).into_par_iter().with_min_len(MIN_PAIRS);
             let in_range = places
                 .filter(|&p| contacts.separations[p].distance < scene.contact_range(kind, &pairs[p]))
                 .map(|p| &pairs[p].vertices[..kind.vertex_count()]);
             if kind == PairKind::VertexHalfSpace {
-                self.touching.held.par_extend(in_range.map(|used| used[0]));
+                touching.held.par_extend(in_range.map(|used| used[0]));
             } else {
                 let joined = in_range.flat_map_iter(|used| used[1..].iter().map(|&v| [used[0], v]));
-                self.touching.pairs.par_extend(joined);
+                touching.pairs.par_extend(joined);
             }
-        }
+        };
+        // One way to the threads for all loops.
+        rayon::scope(|_| PairKind::ALL.into_iter().for_each(note));
     }
 
     /// The forces that the contacts carry.
@@ -249,7 +251,8 @@ impl Contacts {
             contacts.pairs.range(kind).into_par_iter().with_min_len(MIN_PAIRS).filter_map(contact)
         };
         let mut found = Vec::new();
-        PairKind::ALL.into_iter().for_each(|kind| found.par_extend(of_kind(kind)));
+        // One way to the threads for all loops.
+        rayon::scope(|_| PairKind::ALL.into_iter().for_each(|kind| found.par_extend(of_kind(kind))));
         found
     }
 

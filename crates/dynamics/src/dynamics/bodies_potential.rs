@@ -11,6 +11,7 @@ use crate::params::DynamicsParams;
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// The terms of the potential that are fixed in a time step, see [`NewtonStep`].
 #[derive(Clone, Debug)]
@@ -20,7 +21,7 @@ pub struct StepTerms {
     rate: f64,
     row_sums: Vec<Matrix3<f64>>,
     gradient: Vec<Vector>,
-    bending: SplitForm,
+    bending: Arc<SplitForm>,
 }
 
 impl StepTerms {
@@ -37,7 +38,7 @@ impl StepTerms {
             rate: inertia.rate,
             row_sums: nodes.clone().map(|node| inertia.of_nodes(model, node..node + 1)).collect(),
             gradient: nodes.map(gradient).collect(),
-            bending: step.scalar.clone(),
+            bending: Arc::clone(&step.scalar),
         }
     }
 

@@ -48,6 +48,7 @@ use newton::cpu::CpuBodies;
 use newton::device::{Beginning, conserve_momentum, on_device};
 use newton::momentum::flying_groups;
 use newton::state::{Course, EvaluationCache, Newton, Step, Workspace};
+use std::sync::Arc;
 use two_level::two_level;
 
 /// Model, parameters and workspace. External forces, wind and springs are kept until they are set again.
@@ -237,7 +238,10 @@ impl Dynamics {
         if let Some(backend) = solver.newton() {
             let beginning = Beginning { iterate: x, free: &free, imposed, watched: &watched };
             let target = sets_trial.then_some(trial.as_mut_slice());
-            match on_device(model, params, step, course, backend, beginning, target, &mut over) {
+            let on_device = rayon::scope(|_| {
+                on_device(model, params, step, course, backend, beginning, target, &mut over)
+            });
+            match on_device {
                 Ok(done) => {
                     if sets_trial {
                         let groups = flying_groups(model, repulsion, &free);
@@ -292,10 +296,11 @@ impl Dynamics {
             x0[v as usize].coords + v0[v as usize] * dt + acceleration * (dt * dt)
         }));
         if step.dt != dt {
-            step.scalar = model.bending.split(&model.pattern);
+            let mut scalar = model.bending.split(&model.pattern);
             if let Some(damping) = &model.bending_damping {
-                step.scalar.add_scaled(1.0 / dt, &damping.split(&model.pattern));
+                scalar.add_scaled(1.0 / dt, &damping.split(&model.pattern));
             }
+            step.scalar = Arc::new(scalar);
         }
         if let Some(surfaces) = &self.surfaces {
             let drag = step.drag.get_or_insert_default();

@@ -12,6 +12,7 @@ use crate::params::DynamicsParams;
 use crate::repulsion::springs::Repulsion;
 use bowknot_geometry::{Point, Vector};
 use nalgebra::Matrix3;
+use std::sync::Arc;
 
 /// The current time step.
 #[derive(Debug, Default)]
@@ -28,7 +29,7 @@ pub struct Step {
     /// The last target, if there is one: the next solve starts from it.
     pub last_target: Option<Vec<Vector>>,
     /// Bending plus its damping / dt, as a matrix.
-    pub scalar: SplitForm,
+    pub scalar: Arc<SplitForm>,
     /// None in a vacuum.
     pub drag: Option<Drag>,
 }
