@@ -9,30 +9,28 @@ use rayon::prelude::*;
 /// The pairs of a list. None if one of them is no pair of the scene, which a device that works does not list.
 pub fn list(scene: &CollisionScene, candidates: &[Candidate]) -> Option<PairList> {
     let (topology, half_spaces) = (scene.model().topology(), scene.model().half_spaces().len());
-    let of_kind = |kind: PairKind| -> Option<Vec<Pair>> {
+    let mut kinds: [Vec<Pair>; 5] = Default::default();
+    // A sorted list is sorted by kind.
+    for alike in candidates.chunk_by(|a, b| a.kind() == b.kind()) {
+        let kind = *PairKind::ALL.get(alike[0].kind() as usize)?;
         let counts = element_counts(topology, half_spaces, kind);
         let pair = |candidate: &Candidate| {
             let (elements, _) = elements(kind, candidate);
             let exists = (0..2).all(|side| (elements[side] as usize) < counts[side]);
             exists.then(|| Pair::of_elements(topology, kind, elements))
         };
-        let own = |candidate: &&Candidate| candidate.kind() == kind as u32;
-        match candidates.len() {
+        let pairs: Option<Vec<Pair>> = match alike.len() {
             // A parallel loop would pay for the way to its threads.
-            ..=CHUNK => candidates.iter().filter(own).map(pair).collect(),
-            _ => candidates.par_iter().with_min_len(CHUNK).filter(own).map(pair).collect(),
-        }
-    };
-    let mut kinds: [Vec<Pair>; 5] = Default::default();
-    for kind in PairKind::ALL {
-        kinds[kind as usize] = of_kind(kind)?;
+            ..=CHUNK => alike.iter().map(pair).collect(),
+            _ => alike.par_iter().with_min_len(CHUNK).map(pair).collect(),
+        };
+        kinds[kind as usize].extend(pairs?);
     }
-    let all = kinds.iter().map(Vec::len).sum::<usize>() == candidates.len();
-    all.then(|| PairList::from_kinds(kinds))
+    Some(PairList::from_kinds(kinds))
 }
 
 /// Pairs that one task looks at.
-const CHUNK: usize = 4096;
+const CHUNK: usize = 16384;
 
 /// What the contact of a row carries. None if it is no pair.
 pub fn multipliers(row: &ContactRow) -> Option<PairMultipliers> {

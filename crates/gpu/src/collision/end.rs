@@ -23,6 +23,9 @@ use crate::stages;
 use bowknot_geometry::Vector;
 use rayon::prelude::*;
 
+/// Pairs that one thread sorts.
+const SORTED_ALONE: usize = 1 << 16;
+
 impl<E: Engine> Collision<E> {
     /// How the call ends after the steps so far.
     ///
@@ -112,7 +115,11 @@ impl<E: Engine> Collision<E> {
             self.engine.run(&recording, &[(self.near.buffer, words::<Candidate>(count))])?.swap_remove(0)
         };
         let mut near = bytemuck::cast_slice::<u32, Candidate>(&list)[..count].to_vec();
-        near.par_sort_unstable();
+        match near.len() {
+            // Sorting in parallel would pay for the way to its threads.
+            ..=SORTED_ALONE => near.sort_unstable(),
+            _ => near.par_sort_unstable(),
+        }
         Ok(near)
     }
 }
