@@ -67,7 +67,7 @@ impl Figure for GpuPrediction {
          dispatches stay as many, but for coarse levels of the preconditioner; stages of one workgroup keep one. Iterations of conjugate gradients that \
          are submitted after the last one that is needed take their dispatches, and no bytes. Seconds of collisions per time \
          step are those of as many two-way steps as the paper takes; those of the dynamics are of the time steps that were counted, whose linear iterations \
-         grow with the size. Work of the host is left out, and so are cache misses, atomics and arithmetic."
+         grow with the size. Work of the host is left out (`gpu-host` has it), and so are cache misses, atomics and arithmetic."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {
