@@ -11,8 +11,7 @@ use crate::engine::{ComparingEngine, DeviceEngine, Engine, TwinEngine};
 use crate::recording::{BufferId, Recording};
 use bowknot_dynamics::{BodiesPotential, NewtonStep};
 use bowknot_geometry::Vector;
-use cases::bodies::{cases, long_block, single_elements};
-use cases::{Amounts, Problem, State};
+use cases::{Amounts, Problem, State, cases, long_block, single_elements};
 
 /// The rounding of a number in single precision.
 const UNIT: f64 = 0.5 * f32::EPSILON as f64;

@@ -26,7 +26,7 @@ pub fn sheet(cells: usize, curvature: f64) -> Sheet {
 }
 
 /// Cubes of six tetrahedra each, in a row.
-fn block(cubes: usize) -> Block {
+pub fn block(cubes: usize) -> Block {
     let (row, layer) = (cubes + 1, 2 * (cubes + 1));
     let at =
         |k: usize| Point::new((k % row) as f64, (k / row % 2) as f64, (k / layer) as f64).map(|x| 0.05 * x);
@@ -47,7 +47,7 @@ fn block(cubes: usize) -> Block {
 }
 
 /// Three strands that are straight, or with curls of that radius [m] and a branch.
-fn locks(nodes: usize, radius: f64) -> Locks {
+pub fn locks(nodes: usize, radius: f64) -> Locks {
     let at = |k: usize| {
         let (strand, along) = (k / nodes, k % nodes);
         let angle = 0.7 * along as f64;
@@ -63,46 +63,17 @@ fn locks(nodes: usize, radius: f64) -> Locks {
     (points, edges)
 }
 
-/// Cloth that is isotropic, woven, damped, curved; solids of both laws and strands, with and without damping.
-pub fn cases() -> Vec<Case> {
-    bodies(&|curvature| sheet(9, curvature), &|| block(12), &|radius| locks(30, radius), 0.1)
-}
-
-/// The same, small enough for dense matrices.
-pub fn small_cases() -> Vec<Case> {
-    bodies(&|curvature| sheet(4, curvature), &|| block(2), &|radius| locks(6, radius), 0.003)
-}
-
-/// The same, each of one element; bending around a triangle needs a neighbor.
-pub fn single_elements() -> Vec<Case> {
-    let triangle = |curvature: f64| {
-        let (points, triangles) = sheet(1, curvature);
-        if curvature == 0.0 { (points[..3].to_vec(), vec![[0, 1, 2]]) } else { (points, triangles) }
-    };
-    let tetrahedron = || {
-        let corners = [[0.0, 0.0, 0.0], [0.05, 0.01, 0.0], [0.01, 0.04, 0.02], [0.0, -0.01, 0.05]];
-        (corners.map(Point::from).to_vec(), vec![[0, 1, 2, 3]])
-    };
-    let turn = |_: f64| {
-        let points = [[0.0, 0.0, 0.0], [0.05, 0.0, 0.01], [0.08, 0.03, 0.0]];
-        (points.map(Point::from).to_vec(), vec![[0, 1], [1, 2]])
-    };
-    bodies(&triangle, &tetrahedron, &turn, 0.1)
-}
-
-/// A solid of many cubes in a row.
-pub fn long_block(cubes: usize) -> Case {
-    let (rest, tets) = block(cubes);
-    Case { name: "long block", rest, bodies: vec![Body::solid("block", tets, SolidMaterial::rubber())] }
-}
-
 /// Points and triangles.
 pub type Sheet = (Vec<Point>, Vec<[u32; 3]>);
-type Block = (Vec<Point>, Vec<[u32; 4]>);
-type Locks = (Vec<Point>, Vec<[u32; 2]>);
+/// Points and tetrahedra.
+pub type Block = (Vec<Point>, Vec<[u32; 4]>);
+/// Points and edges.
+pub type Locks = (Vec<Point>, Vec<[u32; 2]>);
 
-/// Strands resist turns by `turning` times their stretch stiffness and the square of an edge.
-fn bodies(
+/// Cloth that is isotropic, woven, damped, curved, of a `sheet` with a curvature; solids of both laws, of a `block`, and
+/// strands, `locks` with a radius of curls [m], with and without damping. Strands resist turns by `turning` times their
+/// stretch stiffness and the square of an edge.
+pub fn of_every_kind(
     sheet: &dyn Fn(f64) -> Sheet,
     block: &dyn Fn() -> Block,
     locks: &dyn Fn(f64) -> Locks,

@@ -2,17 +2,46 @@
 
 use crate::assembly::StateGrid;
 use crate::potential::Places;
-use bodies::Case;
-use bowknot_dynamics::{Dynamics, DynamicsModel, DynamicsParams, ElementModel, StepTerms};
+use bodies::{Case, block, locks, of_every_kind, sheet};
+use bowknot_dynamics::{
+    Body, Dynamics, DynamicsModel, DynamicsParams, ElementModel, SolidMaterial, StepTerms,
+};
 use bowknot_geometry::{Point, Vector};
 use std::collections::BTreeMap;
 
 #[path = "../../../tests/bodies/mod.rs"]
-#[allow(dead_code, reason = "two test targets share the module, and each needs a part of it")]
-pub mod bodies;
+mod bodies;
 
 /// The time step [s].
 pub const DT: f64 = 0.02;
+
+/// Bodies of every kind.
+pub fn cases() -> Vec<Case> {
+    of_every_kind(&|curvature| sheet(9, curvature), &|| block(12), &|radius| locks(30, radius), 0.1)
+}
+
+/// The same, each of one element; bending around a triangle needs a neighbor.
+pub fn single_elements() -> Vec<Case> {
+    let triangle = |curvature: f64| {
+        let (points, triangles) = sheet(1, curvature);
+        if curvature == 0.0 { (points[..3].to_vec(), vec![[0, 1, 2]]) } else { (points, triangles) }
+    };
+    let tetrahedron = || {
+        let corners = [[0.0, 0.0, 0.0], [0.05, 0.01, 0.0], [0.01, 0.04, 0.02], [0.0, -0.01, 0.05]];
+        (corners.map(Point::from).to_vec(), vec![[0, 1, 2, 3]])
+    };
+    let turn = |_: f64| {
+        let points = [[0.0, 0.0, 0.0], [0.05, 0.0, 0.01], [0.08, 0.03, 0.0]];
+        (points.map(Point::from).to_vec(), vec![[0, 1], [1, 2]])
+    };
+    of_every_kind(&triangle, &tetrahedron, &turn, 0.1)
+}
+
+/// A solid of many cubes in a row.
+pub fn long_block(cubes: usize) -> Case {
+    let (rest, tets) = block(cubes);
+    Case { name: "long block", rest, bodies: vec![Body::solid("block", tets, SolidMaterial::rubber())] }
+}
 
 /// Positions of nodes on a grid.
 #[derive(Clone, Debug)]
