@@ -17,6 +17,7 @@ use bowknot_scene::world::World;
 use bowknot_twoway::{CollisionScene, Resolver};
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
+use std::collections::hash_map::Entry;
 
 /// The contacts in force.
 #[derive(Clone, Debug, Default)]
@@ -213,12 +214,10 @@ impl Contacts {
     ) {
         let mut found = self.near_contacts(resolver, &tolerance);
         found.retain(|contact| {
-            let new = !index.contains_key(&contact.features);
-            if new {
-                index.insert(contact.features, self.features.len());
-                self.features.push(contact.features);
-            }
-            new
+            let Entry::Vacant(entry) = index.entry(contact.features) else { return false };
+            entry.insert(self.features.len());
+            self.features.push(contact.features);
+            true
         });
         let spring = |contact: &NearContact| self.spring(resolver, contact, start, dt);
         let springs: Vec<RepulsionSpring> = found.par_iter().with_min_len(MIN_PAIRS).map(spring).collect();

@@ -222,6 +222,18 @@ impl Dynamics {
         sets_trial: bool,
         run: impl Fn(&mut Newton<'_>) -> Answer<T> + Sync,
     ) -> Result<T, StepError> {
+        // Thousands of parallel loops follow. From inside of the thread pool each is a push on a local queue;
+        // from outside each would put this thread to sleep and wake it again (20 times the CPU time on a busy
+        // machine, at 1,700 nodes).
+        rayon::scope(|_| self.with_bodies_in_pool(step, sets_trial, &run))
+    }
+
+    fn with_bodies_in_pool<T>(
+        &mut self,
+        step: &Step,
+        sets_trial: bool,
+        run: &impl Fn(&mut Newton<'_>) -> Answer<T>,
+    ) -> Result<T, StepError> {
         let Self { model, params, repulsion, course, work, .. } = self;
         let (dt, is_first) = (step.dt, step.last_target.is_none());
         let (watched, free) = (repulsion.watched().to_vec(), work.free.clone());
@@ -229,19 +241,13 @@ impl Dynamics {
             let energies = BodyEnergies::default();
             let mut newton =
                 Newton { model, params, bodies, repulsion, free: &free, dt, is_first, course, energies };
-            // Thousands of parallel loops follow. From inside of the thread pool each is a push on a local queue;
-            // from outside each would put this thread to sleep and wake it again (20 times the CPU time on a busy
-            // machine, at 1,700 nodes).
-            rayon::scope(|_| run(&mut newton))
+            run(&mut newton)
         };
         let Workspace { x, imposed, trial, solver, .. } = &mut *work;
         if let Some(backend) = solver.newton() {
             let beginning = Beginning { iterate: x, free: &free, imposed, watched: &watched };
             let target = sets_trial.then_some(trial.as_mut_slice());
-            let on_device = rayon::scope(|_| {
-                on_device(model, params, step, course, backend, beginning, target, &mut over)
-            });
-            match on_device {
+            match on_device(model, params, step, course, backend, beginning, target, &mut over) {
                 Ok(done) => {
                     if sets_trial {
                         let groups = flying_groups(model, repulsion, &free);
