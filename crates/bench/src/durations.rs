@@ -33,7 +33,7 @@ const QUICK: &[(&str, u32)] = &[
     ("early-contact", 3),
     ("goals", 13),
     ("gpu", 60),
-    ("gpu-host", 400),
+    ("gpu-host", 3),
     ("gpu-prediction", 60),
     ("stability", 60),
     ("record", 150),

@@ -4,15 +4,14 @@ use super::goals::TABLE_2;
 use crate::bench::{Bench, Size};
 use crate::figure::{Figure, Part, Report};
 use crate::table::{Entry, Table, geometric_mean, largest, mean, short};
+use crate::timed::{TimedBackend, taken};
 use anyhow::{Context, Result};
 use bowknot::dynamics::LinearBackend;
-use bowknot::geometry::Point;
 use bowknot::gpu::{Adapter, ConjugateGradients, Device, DeviceEngine, Profile, StageTime};
-use bowknot::simulator::{BackendError, CollisionBackend, Cpu};
-use bowknot::twoway::{CollisionScene, Observer, ResolveInput, Resolver, Statistics};
+use bowknot::simulator::{CollisionBackend, Cpu};
 use bowknot::{Scene, Simulator};
 use bowknot_errors::counted;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 use std::time::Instant;
 
 pub struct Gpu;
@@ -176,15 +175,17 @@ fn simulate(
     frames: usize,
 ) -> Result<(Measured, Arc<bowknot::World>)> {
     let mut simulator = Simulator::new(scene)?;
-    let seconds = Arc::new(Mutex::new(0.0));
-    simulator.set_backend(Box::new(Timed { backend, seconds: Arc::clone(&seconds) }))?;
+    let seconds = Arc::default();
+    // The judge is a part of the collision stage.
+    let timed = TimedBackend { backend, resolve: Arc::clone(&seconds), judge: Arc::clone(&seconds) };
+    simulator.set_backend(Box::new(timed))?;
     simulator.set_dynamics_backend(dynamics);
     let mut measured = Measured { seconds: Vec::new(), whole: Vec::new(), steps: Vec::new() };
     for frame in 0..=frames {
         let timer = Instant::now();
         let statistics = simulator.step()?;
         let whole = timer.elapsed().as_secs_f64();
-        let spent = std::mem::take(&mut *seconds.lock().unwrap_or_else(PoisonError::into_inner));
+        let spent = taken(&seconds).wall;
         // The device compiles its kernels in the first one.
         if frame == 0 {
             continue;
@@ -194,48 +195,6 @@ fn simulate(
         measured.steps.push(statistics.two_way_steps as f64);
     }
     Ok((measured, Arc::clone(simulator.world())))
-}
-
-/// A backend with the seconds of its calls.
-#[derive(Debug)]
-struct Timed {
-    backend: Box<dyn CollisionBackend>,
-    seconds: Arc<Mutex<f64>>,
-}
-
-impl CollisionBackend for Timed {
-    fn name(&self) -> String {
-        self.backend.name()
-    }
-
-    fn prepare(&mut self, scene: &CollisionScene, home: &[Point]) -> Result<(), BackendError> {
-        self.backend.prepare(scene, home)
-    }
-
-    fn resolution(&self) -> f64 {
-        self.backend.resolution()
-    }
-
-    fn resolve(
-        &mut self,
-        resolver: &mut Resolver,
-        positions: &mut [Point],
-        target: &[Point],
-        input: &ResolveInput<'_>,
-        observer: &mut dyn Observer,
-    ) -> Result<Statistics, BackendError> {
-        let timer = Instant::now();
-        let result = self.backend.resolve(resolver, positions, target, input, observer);
-        *self.seconds.lock().unwrap_or_else(PoisonError::into_inner) += timer.elapsed().as_secs_f64();
-        result
-    }
-
-    fn judge(&mut self, scene: &CollisionScene, positions: &[Point]) -> Result<(), BackendError> {
-        let timer = Instant::now();
-        let result = self.backend.judge(scene, positions);
-        *self.seconds.lock().unwrap_or_else(PoisonError::into_inner) += timer.elapsed().as_secs_f64();
-        result
-    }
 }
 
 /// What the stages of the device take in one scene.

@@ -3,14 +3,11 @@
 use crate::bench::Bench;
 use crate::figure::{Figure, Part, Report};
 use crate::table::{Table, short};
+use crate::timed::{Seconds, TimedBackend, taken, timed};
 use anyhow::Result;
-use bowknot::geometry::Point;
 use bowknot::gpu::{BufferId, ConjugateGradients, Device, Engine, GpuError, Recording, TwinEngine};
-use bowknot::simulator::{BackendError, CollisionBackend, cpu_seconds};
-use bowknot::twoway::{CollisionScene, Observer, ResolveInput, Resolver, Statistics};
 use bowknot::{Scene, Simulator};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Instant;
+use std::sync::{Arc, Mutex};
 
 pub struct GpuHost;
 
@@ -36,8 +33,8 @@ impl Figure for GpuHost {
     fn question(&self) -> &'static str {
         "Milliseconds of the host per time step if collisions and dynamics are computed on a device. Twins of the kernels take its \
          place, and the time in which they compute, or copy what the host writes and reads, is left out. `resolve_ms`: calls of the collision stage, contacts at their ends included. `judge_ms`: \
-         the judge that looks for intersections at the end of a time step. `dynamics_ms`: Newton's method and contacts as \
-         springs. `other_ms`: pins, statistics, and the rest. `cpu_ms`: of all threads."
+         the judge that looks for intersections at the end of a time step. `dynamics_ms`: Newton's method, contacts as \
+         springs, and the energy that collisions put in. `other_ms`: pins, statistics, and the rest. `cpu_ms`: of all threads."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {
@@ -94,27 +91,6 @@ impl Figure for GpuHost {
     }
 }
 
-/// Seconds by the clock, and of the CPU.
-#[derive(Clone, Copy, Debug, Default)]
-struct Seconds {
-    wall: f64,
-    cpu: f64,
-}
-
-/// Runs something and adds its seconds.
-fn timed<R>(seconds: &Mutex<Seconds>, run: impl FnOnce() -> R) -> R {
-    let (timer, cpu_start) = (Instant::now(), cpu_seconds());
-    let result = run();
-    let mut seconds = seconds.lock().unwrap_or_else(PoisonError::into_inner);
-    seconds.wall += timer.elapsed().as_secs_f64();
-    seconds.cpu += cpu_seconds() - cpu_start;
-    result
-}
-
-fn taken(seconds: &Mutex<Seconds>) -> Seconds {
-    std::mem::take(&mut *seconds.lock().unwrap_or_else(PoisonError::into_inner))
-}
-
 /// What some time steps of a scene took, twins included [s].
 #[derive(Debug)]
 struct Host {
@@ -143,7 +119,7 @@ impl Host {
             seconds: Arc::clone(seconds),
         };
         simulator.set_backend(Box::new(TimedBackend {
-            backend: Device::new("twins".to_owned(), engine(&collisions)),
+            backend: Box::new(Device::new("twins".to_owned(), engine(&collisions))),
             resolve: Arc::clone(&resolve),
             judge: Arc::clone(&judge),
         }))?;
@@ -214,42 +190,5 @@ impl Engine for TimedEngine {
 
     fn run(&mut self, recording: &Recording, read: &[(BufferId, usize)]) -> Result<Vec<Vec<u32>>, GpuError> {
         timed(&self.seconds, || self.twin.run(recording, read))
-    }
-}
-
-/// A backend with the seconds of its calls.
-#[derive(Debug)]
-struct TimedBackend {
-    backend: Device<TimedEngine>,
-    resolve: Arc<Mutex<Seconds>>,
-    judge: Arc<Mutex<Seconds>>,
-}
-
-impl CollisionBackend for TimedBackend {
-    fn name(&self) -> String {
-        self.backend.name()
-    }
-
-    fn prepare(&mut self, scene: &CollisionScene, home: &[Point]) -> Result<(), BackendError> {
-        self.backend.prepare(scene, home)
-    }
-
-    fn resolution(&self) -> f64 {
-        self.backend.resolution()
-    }
-
-    fn resolve(
-        &mut self,
-        resolver: &mut Resolver,
-        positions: &mut [Point],
-        target: &[Point],
-        input: &ResolveInput<'_>,
-        observer: &mut dyn Observer,
-    ) -> Result<Statistics, BackendError> {
-        timed(&self.resolve, || self.backend.resolve(resolver, positions, target, input, observer))
-    }
-
-    fn judge(&mut self, scene: &CollisionScene, positions: &[Point]) -> Result<(), BackendError> {
-        timed(&self.judge, || self.backend.judge(scene, positions))
     }
 }
