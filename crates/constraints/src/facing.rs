@@ -111,7 +111,7 @@ impl Facing {
     }
 
     /// Whether a pair is a contact: its normal lies in the normal cones of both `features` at `positions`, or
-    /// leaves them by an angle with a sine of at most `tolerance`. The tolerance is needed because cones
+    /// leaves them by an angle with a sine of at most `tolerance`, which is at least 0. The tolerance is needed because cones
     /// above flat surfaces are single directions. The cones of strands have all directions. Two edges within
     /// flat surfaces are no contact: vertices and faces represent it completely. A vertex above the interior
     /// of a face always is a contact.
@@ -153,11 +153,12 @@ impl Facing {
         for _ in 0..MAX_TURNS {
             let before = turned;
             for (feature, sign) in [(features[0], -1.0), (features[1], 1.0)] {
-                self.for_each_neighbor(topology, feature, positions, |to| {
+                self.all_neighbors(topology, feature, positions, |to| {
                     let (rise, squared) = (sign * turned.dot(&to), to.norm_squared());
                     if rise > 0.0 && squared > 0.0 {
                         turned -= to * (sign * rise / squared);
                     }
+                    true
                 });
             }
             if turned == before {
@@ -167,30 +168,31 @@ impl Facing {
         turned.try_normalize(MIN_TURNED_LENGTH).unwrap_or(*normal)
     }
 
-    /// Visits the directions in which the surface continues from a feature; they have any length.
-    fn for_each_neighbor(
+    /// Whether all directions in which the surface continues from a feature pass a test; they have any length. It ends
+    /// with the first that does not.
+    #[inline]
+    fn all_neighbors(
         &self,
         topology: &Topology,
         feature: Feature,
         positions: &[Point],
-        mut visit: impl FnMut(Vector),
-    ) {
+        mut test: impl FnMut(Vector) -> bool,
+    ) -> bool {
         match feature {
-            Feature::Triangle(_) | Feature::HalfSpace(_) => {}
+            Feature::Triangle(_) | Feature::HalfSpace(_) => true,
             Feature::Vertex(v) => {
                 let range = self.starts[v as usize] as usize..self.starts[v as usize + 1] as usize;
-                self.neighbors[range]
-                    .iter()
-                    .for_each(|&u| visit(positions[u as usize] - positions[v as usize]));
+                let from = positions[v as usize];
+                self.neighbors[range].iter().all(|&u| test(positions[u as usize] - from))
             }
             Feature::Edge(e) => {
                 let [a, b] = topology.edges[e as usize].map(|v| positions[v as usize]);
                 let edge = b - a;
                 let squared = edge.norm_squared().max(f64::MIN_POSITIVE);
-                for (_, w) in self.triangles.of(e) {
+                self.triangles.of(e).all(|(_, w)| {
                     let to = positions[w as usize] - a;
-                    visit(to - edge * (edge.dot(&to) / squared));
-                }
+                    test(to - edge * (edge.dot(&to) / squared))
+                })
             }
         }
     }
@@ -206,12 +208,13 @@ impl Facing {
         if matches!(feature, Feature::Triangle(_) | Feature::HalfSpace(_)) {
             return Place::Inside;
         }
-        let (mut within, mut flat, mut count) = (true, matches!(feature, Feature::Edge(_)), 0);
-        self.for_each_neighbor(topology, feature, positions, |to| {
-            let (rise, slack) = (outward.dot(&to), tolerance * to.norm());
-            within &= rise <= slack;
-            flat &= rise >= -FLAT * to.norm();
+        let (mut flat, mut count) = (matches!(feature, Feature::Edge(_)), 0);
+        // Lengths, each a square root, are computed where a sign does not decide.
+        let within = self.all_neighbors(topology, feature, positions, |to| {
+            let rise = outward.dot(&to);
+            flat = flat && (rise >= 0.0 || rise >= -FLAT * to.norm());
             count += 1;
+            rise <= 0.0 || rise <= tolerance * to.norm()
         });
         match (within, flat && count > 1) {
             (false, _) => Place::Outside,

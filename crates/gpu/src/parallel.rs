@@ -13,6 +13,14 @@ pub fn collected<T: Sync, R: Send>(entries: &[T], of: impl Fn(&T) -> R + Send + 
     }
 }
 
+/// What `of` makes of each number below `count`, in parallel if there are many.
+pub fn collected_numbers<R: Send>(count: usize, of: impl Fn(usize) -> R + Send + Sync) -> Vec<R> {
+    match count {
+        ..=CHUNK => (0..count).map(of).collect(),
+        _ => (0..count).into_par_iter().with_min_len(CHUNK).map(of).collect(),
+    }
+}
+
 /// What `join` makes of all that `of` makes of the entries, and of `start`, in any order and `start` any number of times.
 pub fn folded<T: Sync, R: Copy + Send + Sync>(
     entries: &[T],

@@ -4,7 +4,7 @@ use crate::error::ResolveError;
 use crate::groups::Groups;
 use crate::input::ResolveInput;
 use crate::scene::CollisionScene;
-use crate::validation::{check_finite, check_length};
+use crate::validation::{check_finite, check_length, largest_coordinate};
 use bowknot_constraints::FrictionModel;
 use bowknot_geometry::Point;
 use bowknot_stepper::Rounding;
@@ -106,15 +106,15 @@ pub(crate) fn check_min_separation(
     let of_scene = scene.lengths().min_separation;
     let smallest = thicknesses.fold(if of_scene > 0.0 { of_scene } else { f64::INFINITY }, f64::min);
     let min_separation = if smallest.is_finite() { smallest } else { 0.0 };
-    let largest = |p: &Point| p.coords.amax();
-    let of = |what: &'static str, x: &[Point]| {
-        let coordinates = x.iter().enumerate().map(|(v, p)| (what, v, largest(p)));
-        coordinates.fold((what, 0, 0.0), |best, next| if next.2 > best.2 { next } else { best })
+    let [of_start, of_target] = [positions, target].map(largest_coordinate);
+    let (what, x, coordinate) = if of_target > of_start {
+        ("the target", target, of_target)
+    } else {
+        ("the position", positions, of_start)
     };
-    let (of_start, of_target) = (of("the position", positions), of("the target", target));
-    let (what, vertex, coordinate) = if of_target.2 > of_start.2 { of_target } else { of_start };
     let needed = Rounding::smallest_min_separation(coordinate);
     if min_separation > 0.0 && min_separation < needed {
+        let vertex = x.iter().position(|p| p.coords.amax() == coordinate).unwrap_or(0);
         return Err(ResolveError::MinSeparationBelowRounding {
             min_separation,
             what,

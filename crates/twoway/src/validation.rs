@@ -3,6 +3,10 @@
 use crate::error::ResolveError;
 use bowknot_geometry::Point;
 use bowknot_proximity::CollisionModel;
+use rayon::prelude::*;
+
+/// Points that one thread looks at, at least.
+const MIN_POINTS: usize = 4096;
 
 /// Refuses a slice without exactly one entry per vertex.
 pub(crate) fn check_length(what: &'static str, given: usize, vertices: usize) -> Result<(), ResolveError> {
@@ -15,10 +19,17 @@ pub(crate) fn check_finite(
     model: &CollisionModel,
     positions: &[Point],
 ) -> Result<(), ResolveError> {
-    match positions.iter().position(|p| !p.iter().all(|c| c.is_finite())) {
+    let points = positions.par_iter().with_min_len(MIN_POINTS);
+    match points.position_first(|p| !p.iter().all(|c| c.is_finite())) {
         Some(vertex) => Err(ResolveError::NonFinite { what, vertex, body: model.vertex_body()[vertex] }),
         None => Ok(()),
     }
+}
+
+/// Largest absolute coordinate [m]; coordinates that are not numbers are left out.
+pub(crate) fn largest_coordinate(positions: &[Point]) -> f64 {
+    let points = positions.par_iter().with_min_len(MIN_POINTS);
+    points.map(|p| p.coords.amax()).reduce(|| 0.0, f64::max)
 }
 
 /// Largest number of contact and edge rows. Solvers list up to four vertices per row by indices of 32 bits.

@@ -10,6 +10,7 @@ use bowknot_twoway::{
     AcceptedState, CallEnd, CallInput, CollisionScene, Observer, PairMultipliers, Residuals, ResolveInput,
     Resolver, StallDetector, Statistics, StopTest, max_stretch,
 };
+use rayon::prelude::*;
 use std::fmt::Debug;
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -311,14 +312,17 @@ impl<E: Engine + Debug + Send> CollisionBackend for Device<E> {
     }
 }
 
+/// Vertices that one thread takes at least.
+const MIN_VERTICES: usize = 4096;
+
 /// How far toward the target vertices can come [m] if they travel by `most` local edge lengths.
 fn farthest_ends(scene: &CollisionScene, positions: &[Point], target: &[Point], most: f64) -> Vec<Point> {
-    let end = |(v, (x, y)): (usize, (&Point, &Point))| {
+    let end = |(v, (x, y)): (usize, (&Point, &Point))| -> Point {
         let (way, reach) = (y - x, most * scene.local_edge(v));
         let length = way.norm();
         if length > reach { x + way * (reach / length) } else { *y }
     };
-    positions.iter().zip(target).enumerate().map(end).collect()
+    positions.par_iter().zip(target).enumerate().with_min_len(MIN_VERTICES).map(end).collect()
 }
 
 /// Puts the vertices on the grid and returns where they are [m]. Nothing may pass through on the way there: each vertex

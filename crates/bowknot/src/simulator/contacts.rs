@@ -10,13 +10,13 @@ use super::relaxation::relax_force;
 use super::solved::solved_vertices;
 use super::taut::LimitedEdges;
 use bowknot_constraints::{Feature, FrictionModel};
-use bowknot_dynamics::{Dynamics, RepulsionSpring, StepError, Touching};
+use bowknot_dynamics::{Dynamics, DynamicsModel, RepulsionSpring, StepError, Touching};
 use bowknot_geometry::{PairKind, Point, Vector};
 use bowknot_scene::RepulsionParams;
 use bowknot_scene::world::World;
 use bowknot_twoway::{CollisionScene, Resolver};
 use rayon::prelude::*;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 use std::collections::hash_map::Entry;
 
 /// The contacts in force.
@@ -34,8 +34,11 @@ pub(super) struct Contacts {
     solved: Vec<bool>,
     /// Of these, the vertices whose forces the residual of a time step counts.
     counted: Vec<bool>,
-    /// Pairs that were in contact range at the start of the time step or after one of its collision stages.
+    /// Pairs that were in contact range at the start of the time step or after one of its collision stages, without those
+    /// within a component.
     touching: Touching,
+    /// The component of each vertex, see [`DynamicsModel::components_of_vertices`]. A component is part of one body.
+    components: Vec<u32>,
 }
 
 /// The force that a contact carries.
@@ -50,11 +53,12 @@ pub struct ContactForce {
 }
 
 impl Contacts {
-    pub fn new(params: &RepulsionParams, world: &World, resolver: &Resolver) -> Self {
+    pub fn new(params: &RepulsionParams, world: &World, model: &DynamicsModel, resolver: &Resolver) -> Self {
         // The velocity filter computes friction from the depth of the target, which springs would remove.
         let filtered = resolver.scene().friction_model() == FrictionModel::Filter;
         let stiffness = if filtered { 0.0 } else { params.stiffness };
-        let mut contacts = Self { stiffness, ..Self::default() };
+        let components = model.components_of_vertices();
+        let mut contacts = Self { stiffness, components, ..Self::default() };
         contacts.leave_out(world, resolver, &[]);
         contacts
     }
@@ -97,15 +101,24 @@ impl Contacts {
         self.find(resolver, &carried, start, dt);
     }
 
-    /// Adds the pairs in contact range to [`Self::touching`].
+    /// Adds the pairs in contact range to [`Self::touching`], which joins components and holds them: a pair within a
+    /// component does neither.
     pub fn note_touching(&mut self, resolver: &Resolver) {
         let (scene, contacts) = (resolver.scene(), &resolver.state().contacts);
-        let (pairs, touching) = (contacts.pairs.pairs(), &mut self.touching);
+        let (pairs, touching, components) = (contacts.pairs.pairs(), &mut self.touching, &self.components);
+        let within_component = |used: &[u32]| {
+            let first = components[used[0] as usize];
+            used.len() > 1 && used[1..].iter().all(|&v| components[v as usize] == first)
+        };
         let note = |kind: PairKind| {
             let places = contacts.pairs.range(kind).into_par_iter().with_min_len(MIN_PAIRS);
             let in_range = places
-                .filter(|&p| contacts.separations[p].distance < scene.contact_range(kind, &pairs[p]))
-                .map(|p| &pairs[p].vertices[..kind.vertex_count()]);
+                .map(|p| (p, &pairs[p].vertices[..kind.vertex_count()]))
+                .filter(|(p, used)| {
+                    !within_component(used)
+                        && contacts.separations[*p].distance < scene.contact_range(kind, &pairs[*p])
+                })
+                .map(|(_, used)| used);
             if kind == PairKind::VertexHalfSpace {
                 touching.held.par_extend(in_range.map(|used| used[0]));
             } else {
@@ -181,8 +194,9 @@ impl Contacts {
         }
         let scene = resolver.scene();
         let with_force = carried.iter().filter(|c| c.force != Vector::zeros());
-        let loaded: FxHashSet<[Feature; 2]> = with_force.map(|c| c.features).collect();
-        let mut index = FxHashMap::default();
+        let mut loaded = FxHashSet::with_capacity_and_hasher(carried.len(), FxBuildHasher);
+        loaded.extend(with_force.map(|c| c.features));
+        let mut index = Index::default();
         self.add(resolver, start, dt, &mut index, |features, _| {
             Some(if loaded.contains(features) { LOADED_TOLERANCE } else { CONE_TOLERANCE })
         });
@@ -213,6 +227,7 @@ impl Contacts {
         tolerance: impl Fn(&[Feature; 2], &Vector) -> Option<f64> + Sync,
     ) {
         let mut found = self.near_contacts(resolver, &tolerance);
+        index.reserve(found.len());
         found.retain(|contact| {
             let Entry::Vacant(entry) = index.entry(contact.features) else { return false };
             entry.insert(self.features.len());

@@ -28,6 +28,7 @@ use bowknot_geometry::{Point, Vector};
 use bowknot_scene::world::{Attachment, World};
 use bowknot_scene::{CollisionEvery, Scene};
 use bowknot_twoway::{ResolveError, ResolveInput, Resolver};
+use rayon::prelude::*;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -38,6 +39,9 @@ const NAMED_PAIRS: usize = 5;
 /// a target that is far from the solution folds lock each other, while the target of the next iteration knows
 /// the contacts that were found on the way.
 const MAX_INTERMEDIATE_STEPS: usize = 24;
+
+/// Vertices that one thread takes at least, in loops that do little for each.
+const MIN_VERTICES: usize = 4096;
 
 /// A running simulation.
 #[derive(Debug)]
@@ -126,7 +130,7 @@ impl Simulator {
             .and_then(|resolver| resolver.with_half_spaces(contact.half_spaces))
             .and_then(|resolver| resolver.with_pair_friction(&contact.pairs))
             .map_err(|source| resolve_error(&world, 0, source))?;
-        let contacts = Contacts::new(&scene.solver.repulsion, &world, &resolver);
+        let contacts = Contacts::new(&scene.solver.repulsion, &world, &model, &resolver);
         let dynamics = Dynamics::new(model, scene.dynamics()).map_err(SimulationError::Dynamics)?;
         let anchors = vec![Vec::new(); world.pins.len()];
         let rest = Rest::new(&scene.solver.sleep, &world, &resolver, scene.simulation.dt);
@@ -324,7 +328,8 @@ impl Simulator {
         if !contacts.springs().is_empty() {
             let inertial = dynamics.inertial_positions();
             let end = |v: usize| if prescribed[v] { keyframes[v] } else { inertial[v] };
-            let mut motion: Vec<Vector> = (0..start.len()).map(|v| end(v) - start[v]).collect();
+            let vertices = (0..start.len()).into_par_iter().with_min_len(MIN_VERTICES);
+            let mut motion: Vec<Vector> = vertices.map(|v| end(v) - start[v]).collect();
             contacts.anticipate(&mut motion);
         }
         contacts.apply(dynamics).map_err(target_error)?;
@@ -537,7 +542,8 @@ impl Simulator {
 /// Whether any of the positions differ by more than the `resolution` [m].
 fn differ(x: &[Point], y: &[Point], resolution: f64) -> bool {
     // Positions that are not numbers differ.
-    !x.iter().zip(y).all(|(x, y)| (x - y).amax() <= resolution)
+    let vertices = x.par_iter().zip(y).with_min_len(MIN_VERTICES);
+    !vertices.all(|(x, y)| (x - y).amax() <= resolution)
 }
 
 pub(super) fn resolve_error(world: &World, step: usize, source: ResolveError) -> SimulationError {

@@ -12,10 +12,14 @@ use bowknot_geometry::{Point, Vector};
 use bowknot_scene::BodyKind;
 use bowknot_scene::world::World;
 use bowknot_twoway::CollisionScene;
+use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
 /// Share of its limit above which an edge counts as taut.
 const TAUT: f64 = 0.99;
+
+/// Edges that one thread looks at, at least.
+const MIN_EDGES: usize = 4096;
 
 /// The edges that have a stretch limit.
 #[derive(Clone, Debug, Default)]
@@ -56,20 +60,20 @@ impl LimitedEdges {
 
     /// The edges that are taut at `x` or carry a force: each as a spring of the given `stiffness`, and the
     /// edge twice as its features. `start` are positions at the start of the time step.
-    pub fn taut<'a>(
-        &'a self,
-        x: &'a [Point],
-        start: &'a [Point],
+    pub fn taut(
+        &self,
+        x: &[Point],
+        start: &[Point],
         stiffness: f64,
         loaded: &FxHashSet<[Feature; 2]>,
-    ) -> impl Iterator<Item = ([Feature; 2], RepulsionSpring)> + 'a {
+    ) -> Vec<([Feature; 2], RepulsionSpring)> {
         let of_edge = |features: &[Feature; 2]| match features {
             [Feature::Edge(a), Feature::Edge(b)] if a == b => Some(*a),
             _ => None,
         };
         let loaded: FxHashSet<u32> = loaded.iter().filter_map(of_edge).collect();
         let length = |x: &[Point], [a, b]: [u32; 2]| x[a as usize] - x[b as usize];
-        self.edges.iter().filter_map(move |edge| {
+        let taut = |edge: &LimitedEdge| {
             let now = length(x, edge.vertices);
             let slack = now.norm_squared() < (TAUT * edge.limit).powi(2);
             if slack && (loaded.is_empty() || !loaded.contains(&edge.index)) {
@@ -88,6 +92,7 @@ impl LimitedEdges {
                 force: Vector::zeros(),
             };
             Some(([Feature::Edge(edge.index); 2], spring))
-        })
+        };
+        self.edges.par_iter().with_min_len(MIN_EDGES).filter_map(taut).collect()
     }
 }

@@ -36,7 +36,7 @@ use crate::linear::backend::LinearBackend;
 use crate::linear::block::BlockValues;
 use crate::linear::solver::LinearSolver;
 use crate::model::DynamicsModel;
-use crate::nodes::NO_NODE;
+use crate::nodes::{MIN_NODES, NO_NODE};
 use crate::params::{DynamicsParams, Environment, PreconditionerKind};
 use crate::repulsion::spring::RepulsionSpring;
 use crate::repulsion::springs::Repulsion;
@@ -48,6 +48,7 @@ use newton::cpu::CpuBodies;
 use newton::device::{Beginning, conserve_momentum, on_device};
 use newton::momentum::flying_groups;
 use newton::state::{Course, EvaluationCache, Newton, Step, Workspace};
+use rayon::prelude::*;
 use std::sync::Arc;
 use two_level::two_level;
 
@@ -181,11 +182,12 @@ impl Dynamics {
     /// stay where they are; without a step that was begun the list is empty.
     pub fn inertial_positions(&self) -> Vec<Point> {
         let Some(step) = &self.step else { return Vec::new() };
-        let mut positions = step.positions.clone();
-        for (node, &vertex) in self.model.node_vertex.iter().enumerate() {
-            positions[vertex as usize] = Point::from(step.inertial[node]);
-        }
-        positions
+        let positions = step.positions.par_iter().zip(&self.model.vertex_node).with_min_len(MIN_NODES);
+        let inertial = |(x, &node): (&Point, &u32)| match node {
+            NO_NODE => *x,
+            _ => Point::from(step.inertial[node as usize]),
+        };
+        positions.map(inertial).collect()
     }
 
     /// The residual of the time step at `x` [m]. Contact forces are the known forces of the springs, see
@@ -291,16 +293,15 @@ impl Dynamics {
         self.check_finite("v0", |vertex| v0[vertex])?;
         let mut step = self.step.take().unwrap_or_default();
         let model = &self.model;
-        step.start.clear();
-        step.start.extend(model.node_vertex.iter().map(|&v| x0[v as usize].coords));
-        step.velocities.clear();
-        step.velocities.extend(model.node_vertex.iter().map(|&v| v0[v as usize]));
-        step.inertial.clear();
-        step.inertial.extend(model.node_vertex.iter().enumerate().map(|(node, &v)| {
+        let nodes = || model.node_vertex.par_iter().with_min_len(MIN_NODES);
+        nodes().map(|&v| x0[v as usize].coords).collect_into_vec(&mut step.start);
+        nodes().map(|&v| v0[v as usize]).collect_into_vec(&mut step.velocities);
+        let inertial = nodes().enumerate().map(|(node, &v)| {
             let gravity = model.gravity(v as usize, self.params.environment.gravity);
             let acceleration = gravity + self.external_forces[node] / model.node_masses[node];
             x0[v as usize].coords + v0[v as usize] * dt + acceleration * (dt * dt)
-        }));
+        });
+        inertial.collect_into_vec(&mut step.inertial);
         if step.dt != dt {
             let mut scalar = model.bending.split(&model.pattern);
             if let Some(damping) = &model.bending_damping {
@@ -356,12 +357,11 @@ impl Dynamics {
         let Some(mut step) = self.step.take() else { return Err(StepError::NotBegun) };
 
         self.start_from(x, prescribed);
-        let work = &mut self.work;
-        for (node, &vertex) in self.model.node_vertex.iter().enumerate() {
+        let imposed = self.work.imposed.par_iter_mut().zip(&self.model.node_vertex).with_min_len(MIN_NODES);
+        imposed.for_each(|(imposed, &vertex)| {
             let vertex = vertex as usize;
-            work.imposed[node] =
-                if prescribed[vertex] { keyframes[vertex] - x[vertex] } else { Vector::zeros() };
-        }
+            *imposed = if prescribed[vertex] { keyframes[vertex] - x[vertex] } else { Vector::zeros() };
+        });
         self.repulsion.place_obstacles(keyframes);
         let solved = self.with_bodies(&step, true, |newton| newton.solve());
         let mut info = match solved {
@@ -371,15 +371,15 @@ impl Dynamics {
                 return Err(error);
             }
         };
-        let work = &self.work;
-        info.max_displacement = displacement(&self.model, &work.trial, &work.free, x);
         // `trial` is the target by node.
-        for (vertex, y) in y.iter_mut().enumerate() {
-            let node = self.model.vertex_node[vertex];
-            let free = node != NO_NODE && work.free[node as usize];
-            *y = if free { Point::from(work.trial[node as usize]) } else { keyframes[vertex] };
-        }
-        step.last_target = Some(work.trial.clone());
+        let (Workspace { trial, free, .. }, vertex_node) = (&self.work, &self.model.vertex_node);
+        info.max_displacement = displacement(&self.model, trial, free, x);
+        let vertices = y.par_iter_mut().zip(vertex_node).zip(keyframes).with_min_len(MIN_NODES);
+        vertices.for_each(|((y, &node), keyframe)| {
+            let is_free = node != NO_NODE && free[node as usize];
+            *y = if is_free { Point::from(trial[node as usize]) } else { *keyframe };
+        });
+        step.last_target.get_or_insert_default().clone_from(trial);
         self.step = Some(step);
         self.check_finite("target", |vertex| y[vertex].coords)?;
         tracing::debug!(
@@ -432,13 +432,15 @@ impl Dynamics {
 
     /// Copies the iterate, by node.
     fn start_from(&mut self, x: &[Point], prescribed: &[bool]) {
-        let work = &mut self.work;
-        for (node, &vertex) in self.model.node_vertex.iter().enumerate() {
-            work.x[node] = x[vertex as usize].coords;
-            let free = !prescribed[vertex as usize];
-            if std::mem::replace(&mut work.free[node], free) != free {
-                work.cache.clear();
-            }
+        let Workspace { x: iterate, free, cache, .. } = &mut self.work;
+        let nodes = iterate.par_iter_mut().zip(&mut *free).zip(&self.model.node_vertex);
+        let place = |((iterate, free), &vertex): ((&mut Vector, &mut bool), &u32)| {
+            *iterate = x[vertex as usize].coords;
+            let is_free = !prescribed[vertex as usize];
+            std::mem::replace(free, is_free) != is_free
+        };
+        if nodes.with_min_len(MIN_NODES).map(place).reduce(|| false, |a, b| a | b) {
+            cache.clear();
         }
     }
 
@@ -484,9 +486,13 @@ impl Dynamics {
         if given == vertices { Ok(()) } else { Err(StepError::Length { array, given, vertices }) }
     }
 
-    fn check_finite(&self, array: &'static str, entry: impl Fn(usize) -> Vector) -> Result<(), StepError> {
-        let wrong = (0..self.model.vertex_count()).find(|&v| !entry(v).iter().all(|c| c.is_finite()));
-        match wrong {
+    fn check_finite(
+        &self,
+        array: &'static str,
+        entry: impl Fn(usize) -> Vector + Sync,
+    ) -> Result<(), StepError> {
+        let vertices = (0..self.model.vertex_count()).into_par_iter().with_min_len(MIN_NODES);
+        match vertices.find_first(|&v| !entry(v).iter().all(|c| c.is_finite())) {
             None => Ok(()),
             Some(vertex) => {
                 Err(StepError::NonFinite { array, vertex, body: self.model.body_name(vertex).to_owned() })
@@ -498,7 +504,8 @@ impl Dynamics {
 /// Largest |y - x| over free nodes [m]; `x` has one entry per vertex.
 fn displacement(model: &DynamicsModel, y: &[Vector], free: &[bool], x: &[Point]) -> f64 {
     let distance = |node: usize| (y[node] - x[model.node_vertex[node] as usize].coords).norm();
-    (0..y.len()).filter(|&node| free[node]).map(distance).fold(0.0, f64::max)
+    let nodes = (0..y.len()).into_par_iter().with_min_len(MIN_NODES);
+    nodes.filter(|&node| free[node]).map(distance).reduce(|| 0.0, f64::max)
 }
 
 #[cfg(test)]

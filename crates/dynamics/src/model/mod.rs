@@ -203,6 +203,18 @@ impl DynamicsModel {
         self.components.partition_point(|c| c.end <= node)
     }
 
+    /// The component that each vertex is in: vertices that elements connect have the same number, those of obstacles
+    /// `u32::MAX`.
+    pub fn components_of_vertices(&self) -> Vec<u32> {
+        let mut components = vec![u32::MAX; self.vertex_count()];
+        for (component, nodes) in (0..).zip(&self.components) {
+            for node in nodes.clone() {
+                components[self.node_vertex[node as usize] as usize] = component;
+            }
+        }
+        components
+    }
+
     /// Whether some body is made of strands.
     pub(crate) fn has_strands(&self) -> bool {
         self.bodies.iter().any(|body| matches!(body.shape, BodyShape::Strands { .. }))

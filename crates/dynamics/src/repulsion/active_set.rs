@@ -2,10 +2,21 @@
 
 use super::springs::Repulsion;
 use super::state::{Friction, SpringState};
+use crate::nodes::CHUNK;
 use bowknot_geometry::Vector;
+use rayon::prelude::*;
 
 /// Largest relative change of a bound of friction that does not count as a change of the active set.
 const FRICTION_CHANGE_TOLERANCE: f64 = 0.1;
+
+/// What an update finds at a spring [N].
+#[derive(Clone, Copy, Debug, Default)]
+struct Change {
+    /// The correct normal force.
+    right: f64,
+    /// Forces that were wrong: of a spring that became active or inactive, and of friction.
+    wrong: [f64; 2],
+}
 
 impl Repulsion {
     /// Updates the active set and the multipliers with watched nodes at `x`: springs that pull become inactive,
@@ -13,50 +24,59 @@ impl Repulsion {
     /// the sum of the forces that were wrong as a share of the sum of the correct normal forces.
     pub fn update_active_set(&mut self, x: &[Vector]) -> f64 {
         let guessed = std::mem::replace(&mut self.guessed, false);
-        let (mut wrong, mut right) = (0.0, 0.0);
-        for spring in 0..self.springs.len() {
-            let before = self.states[spring];
-            if before.stiffness == 0.0 {
-                continue;
-            }
-            let (depth, slip) = self.depth_and_slip(spring, x);
-            let trial = before.lambda + before.stiffness * depth;
-            let state = &mut self.states[spring];
-            state.active = trial > 0.0;
-            if !(state.active || before.active) {
-                continue;
-            }
-            let push = trial.max(0.0);
-            right += push;
-            state.friction_bound = self.springs[spring].friction * push;
-            if state.active != before.active {
-                wrong += trial.abs();
-            }
-            let friction = before.coulomb(before.tau(), &slip, state.friction_bound);
-            state.friction = match (friction, before.friction) {
-                (Friction::Stick(_), _) => Friction::Stick(before.tau()),
-                // A contact whose slip reversed its direction must have stopped in between.
-                (Friction::Slide(d, ..), Friction::Slide(old, ..)) if d.dot(&old) < 0.0 => {
-                    Friction::Stick(Vector::zeros())
-                }
-                _ => friction,
-            };
-            let correct = SpringState { friction, ..before }.tau();
-            let acted = match before.friction {
-                _ if !before.active => Vector::zeros(),
-                Friction::None => Vector::zeros(),
-                Friction::Stick(tau) if guessed => tau - slip * before.stiffness,
-                Friction::Slide(direction, bound, curvature) if guessed => {
-                    -direction * bound - (slip - direction * direction.dot(&slip)) * curvature
-                }
-                _ => {
-                    let trial = before.tau() - slip * before.stiffness;
-                    trial * (before.friction_bound / trial.norm()).min(1.0)
-                }
-            };
-            wrong += (correct - acted).norm();
-        }
+        let mut states = std::mem::take(&mut self.states);
+        let of_springs = states.par_iter_mut().enumerate().with_min_len(CHUNK);
+        let changes: Vec<Change> =
+            of_springs.map(|(spring, state)| self.update_spring(spring, state, guessed, x)).collect();
+        self.states = states;
+        // In order: the same bits for any number of threads.
+        let right: f64 = changes.iter().map(|change| change.right).sum();
+        let wrong: f64 = changes.iter().flat_map(|change| change.wrong).sum();
         if wrong > 0.0 { wrong / right.max(f64::MIN_POSITIVE) } else { 0.0 }
+    }
+
+    /// Updates the state of a spring; the active set that the last solve had may be a guess.
+    fn update_spring(&self, spring: usize, state: &mut SpringState, guessed: bool, x: &[Vector]) -> Change {
+        let before = *state;
+        let mut change = Change::default();
+        if before.stiffness == 0.0 {
+            return change;
+        }
+        let (depth, slip) = self.depth_and_slip(spring, x);
+        let trial = before.lambda + before.stiffness * depth;
+        state.active = trial > 0.0;
+        if !(state.active || before.active) {
+            return change;
+        }
+        change.right = trial.max(0.0);
+        state.friction_bound = self.springs[spring].friction * change.right;
+        if state.active != before.active {
+            change.wrong[0] = trial.abs();
+        }
+        let friction = before.coulomb(before.tau(), &slip, state.friction_bound);
+        state.friction = match (friction, before.friction) {
+            (Friction::Stick(_), _) => Friction::Stick(before.tau()),
+            // A contact whose slip reversed its direction must have stopped in between.
+            (Friction::Slide(d, ..), Friction::Slide(old, ..)) if d.dot(&old) < 0.0 => {
+                Friction::Stick(Vector::zeros())
+            }
+            _ => friction,
+        };
+        let correct = SpringState { friction, ..before }.tau();
+        let acted = match before.friction {
+            _ if !before.active => Vector::zeros(),
+            Friction::None => Vector::zeros(),
+            Friction::Stick(tau) if guessed => tau - slip * before.stiffness,
+            Friction::Slide(direction, bound, curvature) if guessed => {
+                -direction * bound - (slip - direction * direction.dot(&slip)) * curvature
+            }
+            _ => {
+                let trial = before.tau() - slip * before.stiffness;
+                trial * (before.friction_bound / trial.norm()).min(1.0)
+            }
+        };
+        change.wrong[1] = (correct - acted).norm();
+        change
     }
 
     /// Sets all multipliers to zero until springs are set again. Springs then store energy only by depth, and

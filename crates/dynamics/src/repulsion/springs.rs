@@ -51,16 +51,18 @@ impl Repulsion {
             }
         }
         let node = |v: u32, w: f64| if w == 0.0 { NO_NODE } else { model.vertex_node[v as usize] };
-        let nodes: Vec<[u32; 4]> =
-            springs.iter().map(|s| std::array::from_fn(|k| node(s.vertices[k], s.weights[k]))).collect();
-        let mut watched: Vec<u32> = nodes.iter().flatten().copied().filter(|node| *node != NO_NODE).collect();
-        watched.sort_unstable();
-        watched.dedup();
-        let place = |node: u32| match watched.binary_search(&node) {
-            Ok(place) => place as u32,
-            Err(_) => NO_NODE,
-        };
-        let places = nodes.iter().map(|nodes| nodes.map(place)).collect();
+        let nodes_of = |s: &RepulsionSpring| std::array::from_fn(|k| node(s.vertices[k], s.weights[k]));
+        let nodes: Vec<[u32; 4]> = springs.par_iter().with_min_len(CHUNK).map(nodes_of).collect();
+        // Which nodes are watched, then the place of each among them.
+        let mut place = vec![NO_NODE; model.node_vertex.len()];
+        nodes.iter().flatten().filter(|node| **node != NO_NODE).for_each(|&node| place[node as usize] = 0);
+        let mut watched = Vec::new();
+        for (node, place) in (0..).zip(&mut place).filter(|(_, place)| **place != NO_NODE) {
+            *place = watched.len() as u32;
+            watched.push(node);
+        }
+        let place = |node: u32| if node == NO_NODE { NO_NODE } else { place[node as usize] };
+        let places = nodes.par_iter().with_min_len(CHUNK).map(|nodes| nodes.map(place)).collect();
         let count = springs.len();
         Ok(Self {
             springs: springs.to_vec(),
@@ -94,19 +96,21 @@ impl Repulsion {
     /// Sets the positions `x` of all vertices from which slip is measured: those at the start of the time
     /// step.
     pub fn anchor(&mut self, x: &[Point]) {
-        for (anchor, s) in self.anchors.iter_mut().zip(&self.springs) {
+        let springs = self.anchors.par_iter_mut().zip(&self.springs).with_min_len(CHUNK);
+        springs.for_each(|(anchor, s)| {
             let used = (0..4).filter(|&k| s.weights[k] != 0.0);
             *anchor = used.map(|k| x[s.vertices[k] as usize].coords * s.weights[k]).sum();
-        }
+        });
     }
 
     /// Places obstacles at their keyframes, which have one entry per vertex.
     pub fn place_obstacles(&mut self, keyframes: &[Point]) {
-        for ((fixed, spring), nodes) in self.fixed.iter_mut().zip(&self.springs).zip(&self.nodes) {
+        let springs = self.fixed.par_iter_mut().zip(&self.springs).zip(&self.nodes).with_min_len(CHUNK);
+        springs.for_each(|((fixed, spring), nodes)| {
             let obstacles = (0..4).filter(|&k| nodes[k] == NO_NODE && spring.weights[k] != 0.0);
             *fixed =
                 obstacles.map(|k| keyframes[spring.vertices[k] as usize].coords * spring.weights[k]).sum();
-        }
+        });
     }
 
     /// Notes the part of each desired gap that springs do not ask for, with watched nodes at `x`, those that are not

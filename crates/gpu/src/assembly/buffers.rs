@@ -6,6 +6,7 @@ use crate::cpu;
 use crate::engine::Engine;
 use crate::error::GpuError;
 use crate::linear::{Buffers, StrandHessian};
+use crate::parallel::collected;
 use crate::recording::{BufferId, Recording};
 use crate::stages::{self, Stage};
 use bytemuck::Pod;
@@ -152,11 +153,11 @@ impl AssemblyBuffers {
 
     /// Writes the sums of rows.
     pub fn write_row_sums(&mut self, sums: &[Matrix3<f64>], recording: &mut Recording) {
-        let sums = sums.iter().map(|sum| {
+        let sums = collected(sums, |sum| {
             let half = |i: usize, j: usize| (0.5 * (sum[(i, j)] + sum[(j, i)])) as f32;
             [half(0, 0), half(0, 1), half(0, 2), half(1, 1), half(1, 2), half(2, 2)]
         });
-        self.row_sums.write(&sums.collect::<Vec<_>>(), recording);
+        self.row_sums.write(&sums, recording);
     }
 
     /// Sets flat bending, by the pairs of [`bowknot_dynamics::ElementModel`].

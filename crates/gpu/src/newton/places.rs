@@ -6,7 +6,7 @@ use crate::assembly::StateGrid;
 use crate::cpu;
 use crate::engine::Engine;
 use crate::error::GpuError;
-use crate::parallel::{collected, largest};
+use crate::parallel::{all, collected, collected_numbers, largest};
 use crate::potential::Potential;
 use crate::recording::{BufferId, Recording};
 use crate::stages;
@@ -48,8 +48,8 @@ pub struct Newton {
     pub imposes: bool,
     /// The watched nodes.
     pub watched: Vec<u32>,
-    /// Bits of the free nodes.
-    free: Vec<u32>,
+    /// Which nodes are free.
+    free: Vec<bool>,
     pub has_last: bool,
     /// Whether the step and the right-hand side are those of a solve.
     pub is_solved: bool,
@@ -146,21 +146,27 @@ impl Newton {
 
     /// Records the start of a target. The buffers have room for its watched nodes.
     pub fn begin_target(&mut self, target: &NewtonTarget<'_>, recording: &mut Recording) -> Watched {
-        let ends = || target.iterate.iter().zip(target.imposed).map(|(x, q)| x + q);
         let grid = self.grid;
-        let moves = target.imposed.iter().any(|q| *q != Vector::zeros());
-        let of_ends = if moves { ends().map(|x| grid.reach(&x)).fold(0.0, f64::max) } else { 0.0 };
-        let reach = largest(target.iterate, |x| grid.reach(x)).max(of_ends);
+        let moves = !all(target.imposed, |q| *q == Vector::zeros());
+        let end = |node: usize| target.iterate[node] + target.imposed[node];
+        let mut reach = largest(target.iterate, |x| grid.reach(x));
+        if moves {
+            let of_end = |node: usize| if target.free[node] { 0.0 } else { grid.reach(&end(node)) };
+            reach = collected_numbers(self.nodes, of_end).into_iter().fold(reach, f64::max);
+        }
         if reach > 1.0 && reach.is_finite() {
             self.coarsen(bits(reach), recording);
         }
         let iterate = self.points(target.iterate);
-        let mut imposed = vec![[0; 4]; self.nodes];
-        for (node, end) in ends().enumerate().filter(|(node, _)| !target.free[*node]) {
-            let (from, to) = (iterate[node], self.grid.place(&end));
-            imposed[node] = std::array::from_fn(|k| to[k] - from[k]);
-        }
-        self.start_imposes = imposed.iter().any(|way| *way != [0; 4]);
+        let grid = self.grid;
+        let imposed = collected_numbers(self.nodes, |node| {
+            if target.free[node] {
+                return [0; 4];
+            }
+            let (from, to) = (iterate[node], grid.place(&end(node)));
+            std::array::from_fn(|k| to[k] - from[k])
+        });
+        self.start_imposes = !all(&imposed, |way| *way == [0; 4]);
         if self.start_imposes {
             recording.write(self.vectors.imposed, &imposed);
         }
@@ -177,10 +183,9 @@ impl Newton {
             self.change_iterate();
             self.target = self.iterate;
         }
-        let free = bits_of(target.free.iter().copied());
-        if self.free != free {
-            recording.write(self.vectors.free, &free);
-            self.free = free;
+        if self.free != target.free {
+            self.free = target.free.to_vec();
+            recording.write(self.vectors.free, &bits_of(self.free.iter().copied()));
         }
         if self.watched != target.watched {
             self.watched = target.watched.to_vec();
