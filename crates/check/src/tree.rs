@@ -15,6 +15,7 @@
 
 use bowknot_geometry::Point;
 use rayon::prelude::*;
+use wide::{f32x4, f32x8};
 
 /// Flag of primitives that belong to an obstacle; two flagged primitives form no pair.
 pub(super) const OBSTACLE: u8 = 1;
@@ -71,24 +72,16 @@ impl<const K: usize> MovingBox<K> {
     }
 
     /// Whether the boxes may share a point at some time. Touching boxes do.
-    #[inline]
+    #[inline(always)]
     pub fn meets(&self, other: &Self) -> bool {
-        // By lanes: how far self reaches into other from below and from above, at the instant at which
-        // it does so most. Negative: apart on that side all the way. A difference of floats has the sign
-        // of what it rounds.
-        let mut below = [f32::MIN; 4];
-        let mut above = [f32::MIN; 4];
+        // By coordinates, at some instant: whether self reaches up to other, and other up to self. Not: apart on that side
+        // all the way.
+        let (mut up, mut down) = (f32x4::ZERO, f32x4::ZERO);
         for k in 0..K {
-            for c in 0..4 {
-                below[c] = larger(below[c], self.max[k][c] - other.min[k][c]);
-                above[c] = larger(above[c], other.max[k][c] - self.min[k][c]);
-            }
+            up |= f32x4::from(self.max[k]).simd_ge(f32x4::from(other.min[k]));
+            down |= f32x4::from(other.max[k]).simd_ge(f32x4::from(self.min[k]));
         }
-        let mut least = [0.0; 4];
-        for c in 0..4 {
-            least[c] = smaller(below[c], above[c]);
-        }
-        smaller(smaller(least[0], least[1]), smaller(least[2], least[3])) >= 0.0
+        (up & down).all()
     }
 
     /// A lower bound of the squared distance, at the first instant, of what the boxes hold.
@@ -132,33 +125,28 @@ impl<const K: usize> LeafBoxes<K> {
     }
 
     /// Which of the boxes [meet](MovingBox::meets) another one, a bit each.
-    #[inline]
+    #[inline(always)]
     pub fn meeting(&self, other: &MovingBox<K>) -> u32 {
-        let mut least = [f32::MAX; LEAF_SIZE];
+        let mut meets = f32x8::splat(f32::from_bits(u32::MAX));
         for c in 0..3 {
-            let mut below = [f32::MIN; LEAF_SIZE];
-            let mut above = [f32::MIN; LEAF_SIZE];
+            let (mut up, mut down) = (f32x8::ZERO, f32x8::ZERO);
             for k in 0..K {
-                for i in 0..LEAF_SIZE {
-                    below[i] = larger(below[i], self.max[k][c][i] - other.min[k][c]);
-                    above[i] = larger(above[i], other.max[k][c] - self.min[k][c][i]);
-                }
+                up |= f32x8::from(self.max[k][c]).simd_ge(f32x8::splat(other.min[k][c]));
+                down |= f32x8::splat(other.max[k][c]).simd_ge(f32x8::from(self.min[k][c]));
             }
-            for i in 0..LEAF_SIZE {
-                least[i] = smaller(least[i], smaller(below[i], above[i]));
-            }
+            meets &= up & down;
         }
-        (0..LEAF_SIZE).fold(0, |mask, i| mask | (u32::from(least[i] >= 0.0) << i))
+        meets.to_bitmask()
     }
 }
 
 /// Minimum and maximum of numbers: one instruction each, where `f32::min` cares for NaN as well.
-#[inline]
+#[inline(always)]
 fn smaller(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-#[inline]
+#[inline(always)]
 fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }

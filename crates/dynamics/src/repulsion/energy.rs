@@ -35,7 +35,7 @@ impl Repulsion {
     fn spring_energy(&self, spring: usize, x: &[Vector]) -> f64 {
         let state = &self.states[spring];
         let k = state.stiffness;
-        if k == 0.0 {
+        if k == 0.0 || (self.guessed && !state.active) {
             return 0.0;
         }
         let (depth, slip) = self.depth_and_slip(spring, x);
@@ -49,7 +49,7 @@ impl Repulsion {
                     bound * along + 0.5 * curvature * (slip.norm_squared() - along * along)
                 }
             };
-            return if state.active { 0.5 * k * pressed * pressed + friction } else { 0.0 };
+            return 0.5 * k * pressed * pressed + friction;
         }
         let pushed = 0.5 * k * pressed.max(0.0).powi(2);
         let trial = (state.tau() - slip * k).norm();
