@@ -20,7 +20,9 @@ const MAX_SIZES: usize = 10;
 pub fn run(options: &RunOptions) -> Result<Exit, Failure> {
     setup::refuse_idle_device(&options.machine, options.dynamics_backend)?;
     setup::machine(&options.machine)?;
-    simulate(options)
+    // From inside of the thread pool a parallel loop is a push on a local queue; from outside it would put this thread
+    // to sleep and wake it again, thousands of times.
+    rayon::scope(|_| simulate(options))
 }
 
 /// Simulates with the threads that there are.

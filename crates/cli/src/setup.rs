@@ -60,10 +60,14 @@ pub fn refuse_idle_device(machine: &Machine, dynamics: Option<DynamicsBackend>) 
     Ok(())
 }
 
+/// Stack of each thread [bytes]: that of a main thread.
+const STACK: usize = 8 << 20;
+
 /// Starts the threads.
 pub fn machine(machine: &Machine) -> Result<(), Failure> {
     let threads = machine.threads.unwrap_or(0);
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().map_err(|error| {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK);
+    pool.build_global().map_err(|error| {
         Failure::input(format!("cannot start {}: {error}; try fewer", counted(threads, "thread", "threads")))
     })
 }
