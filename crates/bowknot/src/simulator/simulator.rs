@@ -218,7 +218,7 @@ impl Simulator {
         rayon::scope(|_| self.step_observed(&mut ()))
     }
 
-    /// Makes one time step with an observer, on this thread. Scenes of few thousand vertices take less time from inside
+    /// Makes one time step with an observer, on this thread. Scenes of a few thousand vertices take less time from inside
     /// of the thread pool, as by `rayon::scope(|_| ...)`.
     ///
     /// # Errors

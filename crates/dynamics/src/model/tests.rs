@@ -42,6 +42,28 @@ fn obstacles_have_no_mass_and_no_nodes() {
 }
 
 #[test]
+fn vertices_that_elements_connect_are_of_one_component() {
+    let mut positions = vec![Point::new(0.0, 0.0, -1.0)];
+    for height in [0.0, 1.0, 2.0] {
+        positions.extend(square().0.iter().map(|x| x + Vector::z() * height));
+    }
+    let moved = |by: u32| square().1.into_iter().map(move |triangle| triangle.map(|v| v + by));
+    // One body of two sheets, and another one.
+    let bodies = vec![
+        Body::obstacle("pin", vec![0]),
+        cotton(moved(1).chain(moved(9)).collect()),
+        cotton(moved(5).collect()),
+    ];
+    let components = DynamicsModel::new(positions, bodies).expect("valid").components_of_vertices();
+    assert_eq!(components[0], u32::MAX);
+    let sheets: Vec<&[u32]> = components[1..].chunks(4).collect();
+    assert!(sheets.iter().all(|sheet| sheet.iter().all(|component| *component == sheet[0])), "{sheets:?}");
+    let mut numbers: Vec<u32> = sheets.iter().map(|sheet| sheet[0]).collect();
+    numbers.sort_unstable();
+    assert_eq!(numbers, [0, 1, 2]);
+}
+
+#[test]
 fn refusals_name_body_element_and_reason() {
     let (positions, triangles) = square();
     let refuse = |positions: Vec<Point>, bodies: Vec<Body>| -> Vec<String> {

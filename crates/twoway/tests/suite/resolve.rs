@@ -389,9 +389,16 @@ fn invalid_input_is_refused_with_its_name_and_leaves_the_state_unchanged() {
     let error = good.resolve(&mut x, &y).unwrap_err();
     assert!(matches!(error, ResolveError::NonFinite { what: "the target", vertex: 2, .. }), "{error}");
     assert_eq!(x, scene.x);
-    let far: Vec<Point> = scene.x.iter().map(|p| p + 1e13 * Vector::x()).collect();
+    let mut far: Vec<Point> = scene.x.iter().map(|p| p + 1e13 * Vector::x()).collect();
+    far[2].z = -2e13;
     let error = good.resolve(&mut x, &far).unwrap_err();
-    assert!(matches!(error, ResolveError::MinSeparationBelowRounding { .. }), "{error}");
+    assert!(
+        matches!(
+            error,
+            ResolveError::MinSeparationBelowRounding { what: "the target", vertex: 2, coordinate: 2e13, .. }
+        ),
+        "{error}"
+    );
     assert_eq!(x, scene.x);
 }
 
