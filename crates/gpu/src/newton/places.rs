@@ -158,17 +158,20 @@ impl Newton {
             self.coarsen(bits(reach), recording);
         }
         let iterate = self.points(target.iterate);
-        let grid = self.grid;
-        let imposed = collected_numbers(self.nodes, |node| {
-            if target.free[node] {
-                return [0; 4];
+        self.start_imposes = false;
+        if moves {
+            let grid = self.grid;
+            let imposed = collected_numbers(self.nodes, |node| {
+                if target.free[node] {
+                    return [0; 4];
+                }
+                let (from, to) = (iterate[node], grid.place(&end(node)));
+                std::array::from_fn(|k| to[k] - from[k])
+            });
+            self.start_imposes = !all(&imposed, |way| *way == [0; 4]);
+            if self.start_imposes {
+                recording.write(self.vectors.imposed, &imposed);
             }
-            let (from, to) = (iterate[node], grid.place(&end(node)));
-            std::array::from_fn(|k| to[k] - from[k])
-        });
-        self.start_imposes = !all(&imposed, |way| *way == [0; 4]);
-        if self.start_imposes {
-            recording.write(self.vectors.imposed, &imposed);
         }
         if self.start == iterate {
             self.return_to_start(recording);
