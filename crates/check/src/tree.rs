@@ -141,12 +141,12 @@ impl<const K: usize> LeafBoxes<K> {
 }
 
 /// Minimum and maximum of numbers: one instruction each, where `f32::min` cares for NaN as well.
-#[inline(always)]
+#[inline]
 fn smaller(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-#[inline(always)]
+#[inline]
 fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }

@@ -20,8 +20,8 @@ const MAX_SIZES: usize = 10;
 pub fn run(options: &RunOptions) -> Result<Exit, Failure> {
     setup::refuse_idle_device(&options.machine, options.dynamics_backend)?;
     setup::machine(&options.machine)?;
-    // From inside of the thread pool a parallel loop is a push on a local queue; from outside it would put this thread
-    // to sleep and wake it again, thousands of times.
+    // From inside of the thread pool a parallel loop is a push on a local queue; from outside each would put this
+    // thread to sleep and wake it again.
     rayon::scope(|_| simulate(options))
 }
 

@@ -3,7 +3,7 @@
 use super::error::GpuResolveError;
 use super::judge::SceneJudge;
 use super::{flight, pairs, setup};
-use crate::simulator::{BackendError, CollisionBackend};
+use crate::simulator::{BackendError, CollisionBackend, MIN_VERTICES};
 use bowknot_geometry::Point;
 use bowknot_gpu::{Call, Collision, ContactRow, End, Engine, Grid, Phase, PhaseSeconds, StepReport, Stop};
 use bowknot_twoway::{
@@ -311,9 +311,6 @@ impl<E: Engine + Debug + Send> CollisionBackend for Device<E> {
         Ok(self.judge.refuse_intersections(scene, positions)?)
     }
 }
-
-/// Vertices that one thread takes at least.
-const MIN_VERTICES: usize = 4096;
 
 /// How far toward the target vertices can come [m] if they travel by `most` local edge lengths.
 fn farthest_ends(scene: &CollisionScene, positions: &[Point], target: &[Point], most: f64) -> Vec<Point> {

@@ -31,6 +31,8 @@ pub use contacts::ContactForce;
 pub use error::{SimulationError, describe_intersections};
 pub use observer::{AcceptedStep, CollisionProblem, Iterated, SimulationObserver};
 pub use process::{cpu_seconds, peak_memory_bytes};
+#[cfg(feature = "gpu")]
+pub(crate) use simulator::MIN_VERTICES;
 pub use simulator::Simulator;
 pub use sleep::SleepState;
 pub use statistics::{Energy, StepSeconds, StepStatistics};

@@ -41,7 +41,7 @@ const NAMED_PAIRS: usize = 5;
 const MAX_INTERMEDIATE_STEPS: usize = 24;
 
 /// Vertices that one thread takes at least, in loops that do little for each.
-const MIN_VERTICES: usize = 4096;
+pub(crate) const MIN_VERTICES: usize = 4096;
 
 /// A running simulation.
 #[derive(Debug)]
