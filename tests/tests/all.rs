@@ -21,6 +21,7 @@ mod folds;
 mod friction;
 mod heaps;
 mod momentum;
+mod pressed;
 mod slopes;
 mod submissions;
 // What the host does at the end of a call of a device.

@@ -108,7 +108,7 @@ fn course((name, scale, sets, steps): Case<'_>, on: On) -> Course {
         largest_stretch: all.iter().map(|s| s.max_stretch).fold(0.0, f64::max),
         most_pairs: all.iter().map(|s| s.pairs).max().unwrap_or(0),
         contact_rows: rows as f64 / steps as f64,
-        first_contact: all.iter().position(|s| s.contact_rows > 0).unwrap_or(steps),
+        first_contact: all.iter().position(|s| s.contact_rows + s.pressing_contacts > 0).unwrap_or(steps),
         converged: all.iter().filter(|s| s.converged).count(),
         centers: all.iter().map(|s| Point::from(s.center_of_mass)).collect(),
         end: simulator.positions().to_vec(),

@@ -319,7 +319,7 @@ fn course(case: Case, more: &[&str], place: Place) -> Course {
         newton_iterations: steps.iter().map(|s| s.newton_iterations).sum(),
         cg_iterations: steps.iter().map(|s| s.cg_iterations).sum(),
         converged: steps.iter().filter(|s| s.converged).count(),
-        first_contact: steps.iter().position(|s| s.contact_rows > 0).unwrap_or(case.3),
+        first_contact: steps.iter().position(|s| s.contact_rows + s.pressing_contacts > 0).unwrap_or(case.3),
         counts,
     }
 }

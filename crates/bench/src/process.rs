@@ -33,7 +33,7 @@ pub struct ProcessRun {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct TimeStep {
     pub two_way_steps: usize,
-    pub contact_rows: usize,
+    pub contacts: usize,
     pub cg_iterations: usize,
     pub seconds: StepSeconds,
 }
@@ -94,7 +94,7 @@ pub fn print_run(scene: &str, scale: f64, frames: usize) -> Result<()> {
         let s = simulator.step()?;
         steps.push(TimeStep {
             two_way_steps: s.two_way_steps,
-            contact_rows: s.contact_rows,
+            contacts: s.contact_rows + s.pressing_contacts,
             cg_iterations: s.cg_iterations,
             seconds: s.seconds,
         });

@@ -212,7 +212,7 @@ fn in_contact(scene: &Scene, frames: usize, count: usize) -> Result<Vec<Kept>> {
     let (mut seen, mut stride) = (0, 1);
     for step in 1..=frames {
         let statistics = simulator.step_observed(&mut last)?;
-        if statistics.contact_rows == 0 {
+        if statistics.contact_rows + statistics.pressing_contacts == 0 {
             continue;
         }
         if seen % stride == 0

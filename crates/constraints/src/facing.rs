@@ -16,6 +16,13 @@ const ON_BOUNDARY: f64 = 1e-9;
 /// Largest sine of the angle between the faces of an edge that count as one flat surface.
 const FLAT: f64 = 2e-3;
 
+/// Sine of the angle between normal and cone up to which a pair is a contact in full, and from which on it is none.
+const NARROWEST: f64 = 0.01;
+const WIDEST: f64 = 0.1;
+
+/// Sine of the angle between the faces of an edge from which on it counts as bent.
+const BENT: f64 = 0.05;
+
 /// Largest number of passes over the neighbors of a pair's features that turn its normal into their cones.
 const MAX_TURNS: usize = 4;
 
@@ -135,6 +142,39 @@ impl Facing {
             Place::Inside => true,
             Place::Flat => !matches!((first, features), (Place::Flat, [Feature::Edge(_), Feature::Edge(_)])),
         }
+    }
+
+    /// How much of a contact a pair is [1]: 1 if its normal lies in the normal cones of both `features`, less the farther it
+    /// leaves them, 0 from an angle with a sine of a tenth on. Continuous in positions and normal, where [`Self::is_contact`] jumps. Two
+    /// edges within flat surfaces are no contact, those of bent ones the more the more they are bent.
+    pub fn contact_share(
+        &self,
+        topology: &Topology,
+        features: [Feature; 2],
+        normal: &Vector,
+        positions: &[Point],
+    ) -> f64 {
+        if above_a_face(&features) {
+            return 1.0;
+        }
+        let (mut share, mut bend) = (1.0, 0.0f64);
+        for (feature, outward) in [(features[0], -normal), (features[1], *normal)] {
+            let (mut rise, mut fall, mut count) = (0.0f64, 0.0f64, 0);
+            if matches!(feature, Feature::Triangle(_) | Feature::HalfSpace(_)) {
+                continue;
+            }
+            self.all_neighbors(topology, feature, positions, |to| {
+                let sine = outward.dot(&to) / to.norm().max(f64::MIN_POSITIVE);
+                (rise, fall, count) = (rise.max(sine), fall.max(-sine), count + 1);
+                rise < WIDEST
+            });
+            share *= ((WIDEST - rise) / (WIDEST - NARROWEST)).clamp(0.0, 1.0);
+            bend = bend.max(if count > 1 { ((fall - FLAT) / (BENT - FLAT)).clamp(0.0, 1.0) } else { 1.0 });
+            if share == 0.0 {
+                return 0.0;
+            }
+        }
+        if matches!(features, [Feature::Edge(_), Feature::Edge(_)]) { share * bend } else { share }
     }
 
     /// The direction in the normal cones of both `features` at `positions` that is closest to `normal`,

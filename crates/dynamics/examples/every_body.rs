@@ -16,7 +16,7 @@ mod strands;
 
 use bowknot_dynamics::{
     Body, ClothMaterial, Dynamics, DynamicsModel, DynamicsParams, Environment, ParticleMaterial,
-    RepulsionSpring, SolidMaterial, StrandMaterial,
+    RepulsionSpring, SolidMaterial, SpringKind, StrandMaterial,
 };
 use bowknot_geometry::{Point, Vector};
 use std::error::Error;
@@ -58,25 +58,27 @@ fn main() -> Result<(), Box<dyn Error>> {
         })
         .collect();
     // Grains stay above the plane z = 0: springs push below a gap of 1 mm.
-    let springs: Vec<RepulsionSpring> = (grains..grains + 100)
-        .map(|v| RepulsionSpring {
-            vertices: [v, 0, 0, 0],
-            weights: [1.0, 0.0, 0.0, 0.0],
-            normal: Vector::z(),
-            offset: 0.0,
-            desired: 1e-3,
-            stiffness: 10.0,
-            friction: 0.3,
-            force: Vector::zeros(),
-        })
-        .collect();
-    dynamics.set_repulsion(&springs)?;
+    let on_plane = |v: u32, x: &[Point]| RepulsionSpring {
+        kind: SpringKind::Contact,
+        vertices: [v, 0, 0, 0],
+        weights: [1.0, 0.0, 0.0, 0.0],
+        normal: Vector::z(),
+        offset: 0.0,
+        reach: 1e-3,
+        floor: 0.0,
+        start_gap: x[v as usize].z,
+        stiffness: 10.0,
+        friction: 0.3,
+        friction_ratio: Vector::zeros(),
+    };
 
     let (mut x, mut v) = (rest.clone(), vec![Vector::zeros(); rest.len()]);
     println!(
         "time s, membrane, bending, solid, strand stretching, strand bending [mJ], volume [l], iterations"
     );
     for step in 1..=100 {
+        let springs: Vec<RepulsionSpring> = (grains..grains + 100).map(|v| on_plane(v, &x)).collect();
+        dynamics.set_repulsion(&springs)?;
         let infos = dynamics.solve_step(&mut x, &mut v, 0.01, &held, &rest, 2)?;
         if step % 20 == 0 {
             let e = dynamics.model().elastic_energies(&x);

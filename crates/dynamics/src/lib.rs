@@ -65,7 +65,7 @@ pub use material::{ClothMaterial, ParticleMaterial, RestShape, SolidMaterial, So
 pub use model::DynamicsModel;
 pub use observe::{ElasticEnergies, Energies};
 pub use params::{DynamicsParams, Environment, HessianFilter, NewtonParams, PreconditionerKind};
-pub use repulsion::RepulsionSpring;
+pub use repulsion::{RepulsionSpring, SpringKind};
 
 /// The README's example is tested with the documentation.
 #[cfg(doctest)]

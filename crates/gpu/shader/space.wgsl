@@ -2,7 +2,8 @@
 // step.
 //
 // The desired distance of two elements of one body is at most half of their rest distance: otherwise it would tear a fine
-// mesh apart. A pair that starts closer opens by at most `growth` in a call.
+// mesh apart. A pair that starts closer opens by at most `growth` in a call. Where the target knows the contacts of a
+// vertex, pairs that are near guard only a part of their gap: the target decides about the rest.
 
 struct Params {
     capacity: u32,
@@ -15,6 +16,11 @@ struct Params {
     range: f32,
     // The half-spaces lie behind the vertices.
     first_half_space: u32,
+    // Distance in the desired one below which the target knows a contact, share of its gap that is then guarded, and
+    // the smallest distance asked for, in the way from the minimum separation to the desired distance.
+    known: f32,
+    guarded: f32,
+    guarded_floor: f32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -50,6 +56,12 @@ fn rest_distance(pair: Pair) -> f32 {
     return sqrt(dot(offset, offset));
 }
 
+// Flags of any vertex of a pair.
+fn flags_of(pair: Pair) -> u32 {
+    let v = pair.vertices;
+    return vertices[v[0]].flags | vertices[v[1]].flags | vertices[v[2]].flags | vertices[v[3]].flags;
+}
+
 fn first_state(candidate: Candidate, separation: Separation) -> PairState {
     let pair = pair_of(candidate);
     let a = vertices[pair.vertices[0]];
@@ -79,10 +91,16 @@ fn first_state(candidate: Candidate, separation: Separation) -> PairState {
             delta = min(delta, 0.5 * rest_distance(pair));
         }
     }
-    let desired = min(delta, max(separation.distance, 0.0) + params.growth);
+    let distance = max(separation.distance, 0.0);
+    var desired = min(delta, distance + params.growth);
     var least = min(params.min_separation, MIN_SEPARATION_SHARE * desired);
     if thickness >= 0.0 {
         least = min(min(thickness, delta / MIN_SEPARATION_MARGIN), max(separation.width, 0.0));
+    }
+    let known = flags_of(pair) & KNOWN;
+    if known != 0u && distance < params.known * delta {
+        let lowest = least + params.guarded_floor * (delta - least);
+        desired = min(desired, max(params.guarded * distance, lowest));
     }
     return PairState(vec3<f32>(0.0), 0.0, desired, least, range, 0u);
 }

@@ -98,6 +98,12 @@ pub struct Settings {
     pub active: f64,
     /// Whether only contacts get rows, and pairs that are merely close guard a part of their gap.
     pub contacts_only: bool,
+    /// Distance in the desired one below which the target knows a contact of the vertices that a [`Call`] says.
+    pub known: f64,
+    /// Share of its gap that the row of such a contact guards.
+    pub guarded: f64,
+    /// Smallest distance that such a row asks for, in the way from the minimum separation to the desired distance.
+    pub guarded_floor: f64,
     /// Whether all multipliers are scaled by one factor before each sweep.
     pub coarse_correction: bool,
     /// Share of a gap that a step may use up.
@@ -120,6 +126,9 @@ impl Default for Settings {
             range: 2.0,
             active: 1.1,
             contacts_only: true,
+            known: 1.3,
+            guarded: 0.7,
+            guarded_floor: 0.35,
             coarse_correction: true,
             damping: 0.9,
         }
@@ -135,14 +144,18 @@ pub struct Call<'a> {
     pub growth: f64,
     /// Where the vertices were at the start of the time step, from where slip counts [m]. Empty: the present positions.
     pub slip_start: &'a [Point],
+    /// Vertices whose contacts the target knows: pairs with one of them that are near when they become candidates guard
+    /// only a part of their gap. Empty: none.
+    pub known: &'a [bool],
     /// When the call ends.
     pub stop: Stop,
 }
 
 impl<'a> Call<'a> {
-    /// Toward a target. Pairs may open at once, slip counts from here, and the host alone ends the call.
+    /// Toward a target that knows no contacts. Pairs may open at once, slip counts from here, and the host alone ends
+    /// the call.
     pub fn toward(target: &'a [Point]) -> Self {
-        Self { target, growth: f64::INFINITY, slip_start: &[], stop: Stop::NEVER }
+        Self { target, growth: f64::INFINITY, slip_start: &[], known: &[], stop: Stop::NEVER }
     }
 }
 
@@ -219,6 +232,8 @@ pub struct Collision<E> {
     lengths: StepLengths,
     sizes: Sizes,
     buffers: Buffers,
+    /// As they are on the device.
+    vertices: Vec<Vertex>,
     near: NearList,
     trees: Trees,
     edges: Edges,
@@ -394,6 +409,7 @@ impl<E: Engine> Collision<E> {
             lengths,
             sizes,
             buffers,
+            vertices,
             near,
             trees,
             edges,
@@ -454,8 +470,12 @@ impl<E: Engine> Collision<E> {
         let inside = |points: &[Point]| -> Vec<GridPoint> { collected(points, |y| grid.nearest_inside(y)) };
         let (target, slip_start) = (inside(call.target), inside(call.slip_start));
         let slips_from_here = slip_start.is_empty();
+        let changes = self.set_known(call.known)?;
         let b = &self.buffers;
         let mut recording = Recording::default();
+        if changes {
+            recording.write(b.vertices, &self.vertices);
+        }
         recording.write(b.targets, &padded(&target));
         if !slips_from_here {
             check_length("slip_start", slip_start.len(), self.sizes.vertices)?;
@@ -479,6 +499,21 @@ impl<E: Engine> Collision<E> {
         (self.fresh, self.again, self.listed, self.steps_in_a_row) = (true, false, false, 0);
         (self.travel, self.shrunk) = (1.0, false);
         Ok(())
+    }
+
+    /// Notes the vertices whose contacts the target knows; whether they are others than before.
+    fn set_known(&mut self, known: &[bool]) -> Result<bool, CollisionError> {
+        if !known.is_empty() {
+            check_length("known", known.len(), self.sizes.vertices)?;
+        }
+        let mut changes = false;
+        for (v, vertex) in self.vertices.iter_mut().enumerate() {
+            let is_known = known.get(v).copied().unwrap_or(false);
+            let flags = if is_known { vertex.flags | Vertex::KNOWN } else { vertex.flags & !Vertex::KNOWN };
+            changes |= flags != vertex.flags;
+            vertex.flags = flags;
+        }
+        Ok(changes)
     }
 
     /// Seconds of the phases of the steps since the last call, between time stamps of the device; None if it has none.

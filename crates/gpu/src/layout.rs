@@ -27,7 +27,7 @@ pub struct Vertex {
     pub margin: f32,
     /// Body of the vertex.
     pub body: u32,
-    /// [`Vertex::OBSTACLE`], [`Vertex::PRESCRIBED`], [`Vertex::SELF_COLLIDES`].
+    /// [`Vertex::OBSTACLE`], [`Vertex::PRESCRIBED`], [`Vertex::SELF_COLLIDES`], [`Vertex::KNOWN`].
     pub flags: u32,
     /// Collision groups of the body, and those that it collides with.
     pub groups: u32,
@@ -53,6 +53,8 @@ impl Vertex {
     pub const PRESCRIBED: u32 = 2;
     /// The body collides with itself.
     pub const SELF_COLLIDES: u32 = 4;
+    /// The target of the call knows the contacts of the vertex.
+    pub const KNOWN: u32 = 8;
 }
 
 /// A trust region: no pair that is searched for outside of it is found.

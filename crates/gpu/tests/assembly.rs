@@ -6,8 +6,8 @@ use bodies::sheet;
 use bowknot_gpu::dynamics::{
     AssemblySprings, Body, ClothMaterial, Dynamics, DynamicsModel, DynamicsParams, ElementModel,
     HessianFilter, LinearBackend, LinearBackendError, LinearSystem, Matrix3, NewtonBackend, NewtonSolve,
-    NewtonStep, NewtonTarget, OutOfBalance, PreconditionerKind, RepulsionSpring, SolveLimits, StepError,
-    Trial, Watched,
+    NewtonStep, NewtonTarget, OutOfBalance, PreconditionerKind, RepulsionSpring, SolveLimits, SpringKind,
+    StepError, Trial, Watched,
 };
 use bowknot_gpu::geometry::{Point, Vector};
 use bowknot_gpu::{Adapter, ComparingEngine, ConjugateGradients, DeviceEngine, Engine, TwinEngine};
@@ -201,7 +201,11 @@ impl<E: Engine + Debug + Send> NewtonBackend for Assembling<E> {
 
     fn linearize(&mut self, absolute: bool) -> Result<(), LinearBackendError> {
         *self.linearized.lock().expect("no panic") += 1;
-        self.inner.linearize(absolute)
+        self.inner.linearize(absolute)?;
+        if !self.watched.is_empty() && self.diagonals.lock().expect("no panic").is_empty() {
+            self.diagonal(&mut Vec::new())?;
+        }
+        Ok(())
     }
 
     fn diagonal(&mut self, blocks: &mut Vec<Matrix3<f64>>) -> Result<(), LinearBackendError> {
@@ -328,14 +332,18 @@ fn target<B: LinearBackend + 'static>(
     dynamics.begin_step(&start, &v, DT)?;
     let count = x.len() as u32;
     let spring = |vertices: [u32; 4], weights| RepulsionSpring {
+        kind: SpringKind::Contact,
         vertices,
         weights,
         normal: Vector::new(0.6, 0.0, 0.8),
         offset: 0.0,
-        desired: 10.0,
+        reach: 10.0,
+        // Far away: as good as linear.
+        floor: -1000.0,
+        start_gap: 10.0,
         stiffness: 3.0,
         friction: 0.3,
-        force: Vector::new(0.06, 0.0, 0.08),
+        friction_ratio: Vector::zeros(),
     };
     let springs = [
         spring([3, 5, 0, 0], [1.0, -1.0, 0.0, 0.0]),

@@ -95,7 +95,7 @@ pub struct SceneSolverParams {
 }
 
 /// Contact forces of the dynamics, `[solver.repulsion]` (paper, section 6.2): springs between surfaces that
-/// are near, in the linear system of the dynamics, by which it knows of contacts and their friction. Without
+/// are near, in Newton's method, whose force follows from the gap, with friction. Without
 /// them the collision stage alone holds bodies apart, and what rests on something is deformed within each
 /// time step. The guarantee does not rest on them. Grains have none where they touch grains or obstacles.
 /// With `contact.friction_model = "filter"`, and so with the preset `paper`, there are no springs whatever

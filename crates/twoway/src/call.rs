@@ -16,6 +16,7 @@ pub struct CallInput {
     groups: Groups,
     time_step: Option<f64>,
     slip_start: Vec<Point>,
+    known: Vec<bool>,
 }
 
 impl CallInput {
@@ -33,7 +34,11 @@ impl CallInput {
         let (model, vertices) = (scene.model(), scene.vertex_count());
         check_length("positions", positions.len(), vertices)?;
         check_length("target", target.len(), vertices)?;
-        for (what, given) in [("prescribed", input.prescribed.len()), ("groups", input.groups.len())] {
+        for (what, given) in [
+            ("prescribed", input.prescribed.len()),
+            ("groups", input.groups.len()),
+            ("known", input.known.len()),
+        ] {
             if given != 0 {
                 check_length(what, given, vertices)?;
             }
@@ -59,6 +64,7 @@ impl CallInput {
             prescribed,
             time_step: input.time_step,
             slip_start,
+            known: input.known.to_vec(),
         })
     }
 
@@ -82,6 +88,17 @@ impl CallInput {
     /// Groups of pinned vertices that move together.
     pub fn groups(&self) -> &Groups {
         &self.groups
+    }
+
+    /// Vertices whose contacts the target knows, one entry per vertex; empty: none.
+    pub fn known(&self) -> &[bool] {
+        &self.known
+    }
+
+    /// Whether the target knows the contacts of a vertex.
+    #[inline]
+    pub fn is_known(&self, vertex: usize) -> bool {
+        self.known.get(vertex).copied().unwrap_or(false)
     }
 
     /// Time step that the call stands for [s].

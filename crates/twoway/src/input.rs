@@ -18,6 +18,9 @@ pub struct ResolveInput<'a> {
     /// together, by the same fraction of their displacements. Every obstacle is a group of its own anyway.
     /// Empty: no groups.
     pub groups: &'a [u32],
+    /// Vertices whose contacts the target knows, one entry per vertex; empty: none. Pairs with one of them that are near
+    /// at the start of the call only get rows that guard part of their gap: the target is to decide about the rest.
+    pub known: &'a [bool],
     /// Largest number of two-way steps, if smaller than that of the parameters, for a caller that continues
     /// from any state.
     pub max_steps: Option<usize>,

@@ -75,7 +75,7 @@ pub use params::{BackwardParams, Params, SolverParams};
 pub use resolver::Resolver;
 pub use row_solver::{ColoredSweeps, RowSolver, RowSystem};
 pub use scene::{CollisionScene, Lengths};
-pub use search::TrustRegionSearch;
+pub use search::{GUARDED, GUARDED_FLOOR, KNOWN, TrustRegionSearch};
 pub use spacing::{MIN_SEPARATION_MARGIN, PairSpacing, Spacing};
 pub use stages::{AheadVisitor, BackwardStep, Coverage, ForwardStep, Search};
 pub use stall::StallDetector;

@@ -3,7 +3,7 @@
 use crate::bodies::{BodyContact, ContactTable, HalfSpaceContact, PairFriction};
 use crate::error::ResolveError;
 use crate::params::Params;
-use crate::spacing::Spacing;
+use crate::spacing::{MIN_SEPARATION_MARGIN, Spacing};
 use crate::validation::{check_finite, check_length, check_rows};
 use bowknot_constraints::{DesiredDistance, Facing, Feature, FrictionModel, STRETCH_LIMIT};
 use bowknot_errors::{Checks, Parameters};
@@ -171,6 +171,11 @@ impl CollisionScene {
         self.facing.is_contact(self.model.topology(), features, normal, positions, tolerance)
     }
 
+    /// How much of a contact two features are, see [`Facing::contact_share`](bowknot_constraints::Facing::contact_share).
+    pub fn contact_share(&self, features: [Feature; 2], normal: &Vector, positions: &[Point]) -> f64 {
+        self.facing.contact_share(self.model.topology(), features, normal, positions)
+    }
+
     /// The direction in the normal cones of both `features` that is closest to `normal`, see
     /// [`Facing::turned`](bowknot_constraints::Facing::turned).
     pub fn turned(&self, features: [Feature; 2], normal: &Vector, positions: &[Point]) -> Vector {
@@ -188,6 +193,15 @@ impl CollisionScene {
         let delta = self.spacing.of(&self.model, kind, pair).delta;
         let rule = DesiredDistance { delta, growth: f64::INFINITY };
         rule.without_growth_limit(&self.model, kind, pair, &self.rest).0
+    }
+
+    /// The minimum separation of a pair in the end, however close it starts [m].
+    pub fn min_separation(&self, kind: PairKind, pair: &Pair) -> f64 {
+        let desired = self.desired_distance(kind, pair);
+        match self.spacing.of(&self.model, kind, pair).min_separation {
+            None => self.lengths.min_separation.min(0.1 * desired),
+            Some(guaranteed) => guaranteed.min(desired / MIN_SEPARATION_MARGIN),
+        }
     }
 
     /// Distance within which a pair is a candidate, whatever moves [m].

@@ -215,7 +215,7 @@ fn table_2(runs: &Runs<'_>, table: &mut Table) -> Result<Vec<Goal>> {
         table.row([
             scene.into(),
             now.steps.len().into(),
-            now.steps.iter().filter(|step| step.contact_rows > 0).count().into(),
+            now.steps.iter().filter(|step| step.contacts > 0).count().into(),
             now.vertices.into(),
             seconds.into(),
             seconds_before.into(),
@@ -339,7 +339,7 @@ fn sphere(runs: &Runs<'_>) -> Case {
 
 fn two_threads(runs: &Runs<'_>) -> Result<Option<Measured>> {
     let Some([one, two]) = on_two_threads(runs, &sphere(runs))? else { return Ok(None) };
-    let contact: Vec<usize> = (1..one.steps.len()).filter(|&k| one.steps[k].contact_rows > 0).collect();
+    let contact: Vec<usize> = (1..one.steps.len()).filter(|&k| one.steps[k].contacts > 0).collect();
     let sum = |run: &ProcessRun, stage: Stage| -> f64 {
         contact.iter().map(|&k| stage(&run.steps[k].seconds)).sum()
     };
@@ -352,7 +352,7 @@ fn two_threads(runs: &Runs<'_>) -> Result<Option<Measured>> {
 
 fn flight(runs: &Runs<'_>) -> Result<Option<Goal>> {
     let Some(run) = runs.now(&sphere(runs))? else { return Ok(None) };
-    let flight = run.steps.iter().skip(1).filter(|step| step.contact_rows == 0);
+    let flight = run.steps.iter().skip(1).filter(|step| step.contacts == 0);
     let shares: Vec<f64> = flight.map(|step| collision(&step.seconds) / step.seconds.total).collect();
     Ok(Some(Goal {
         what: "sphere, in flight: share of the collision stage".to_owned(),
@@ -382,7 +382,7 @@ fn growth(runs: &Runs<'_>) -> Result<Option<Measured>> {
     }
     let exponent = |stage: Stage| {
         let points = measured.iter().map(|run| {
-            let contact = run.steps.iter().filter(|s| s.contact_rows > 0);
+            let contact = run.steps.iter().filter(|s| s.contacts > 0);
             let seconds: Vec<f64> = contact.map(|s| stage(&s.seconds)).collect();
             ((run.vertices as f64).ln(), mean(&seconds).ln())
         });

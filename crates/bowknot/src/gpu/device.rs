@@ -204,7 +204,7 @@ impl<E: Engine + Debug + Send> Device<E> {
         let speed = scene.lengths().separation_speed;
         let growth = input.time_step.map_or(f64::INFINITY, |dt| speed * dt);
         let slip_start = if call.slip_start().is_empty() { &start } else { call.slip_start() };
-        collision.begin(&Call { target, growth, slip_start, stop: rule(&stop) })?;
+        collision.begin(&Call { target, growth, slip_start, known: call.known(), stop: rule(&stop) })?;
 
         while flight_observed.is_continue() && stop.allows_step(statistics.steps) {
             let most = if sees_each_state { 1 } else { steps_per_submission };

@@ -79,6 +79,9 @@ pub fn collision<E: Engine>(
         range: params.contact.range,
         active: params.contact.active,
         contacts_only: params.contact.contacts_only,
+        known: bowknot_twoway::KNOWN,
+        guarded: bowknot_twoway::GUARDED,
+        guarded_floor: bowknot_twoway::GUARDED_FLOOR,
         coarse_correction: backward.coarse_correction,
         damping: params.solver.forward.damping,
     };

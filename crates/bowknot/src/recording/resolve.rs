@@ -62,6 +62,7 @@ impl States {
             time_step: self.time_step,
             start: (!self.start.is_empty()).then_some(&self.start),
             groups: &self.groups,
+            known: &[],
             max_steps: None,
         }
     }

@@ -85,6 +85,7 @@ pub struct StepNumbers {
     pub newton_iterations: Option<f64>,
     pub pairs: Option<f64>,
     pub prescribed_lag_m: Option<f64>,
+    pub pressing_contacts: Option<f64>,
     pub remaining_m: Option<f64>,
     pub remaining_r: Option<f64>,
     pub repulsion_springs: Option<f64>,

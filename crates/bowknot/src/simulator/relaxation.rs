@@ -1,7 +1,7 @@
 //! Relaxation of time steps whose iterations oscillate.
 
 use super::solved::solved_vertices;
-use bowknot_geometry::{Point, Vector};
+use bowknot_geometry::Point;
 use bowknot_scene::world::World;
 
 /// Share of the way to a target that is taken where the iterations oscillate. Contacts have the normals of
@@ -14,9 +14,4 @@ pub(super) fn relax_target(world: &World, x: &[Point], y: &mut [Point], prescrib
     for v in solved_vertices(world, &[]).filter(|&v| !prescribed[v]) {
         y[v] = x[v] + (y[v] - x[v]) * RELAXATION;
     }
-}
-
-/// Moves a contact force [N] back towards the one that was carried.
-pub(super) fn relax_force(force: &mut Vector, carried: &Vector) {
-    *force = carried + (*force - carried) * RELAXATION;
 }

@@ -326,14 +326,7 @@ impl Simulator {
 
         let timer = Instant::now();
         dynamics.begin_step(start, velocities, *dt).map_err(target_error)?;
-        contacts.begin_step(resolver, start, *dt);
-        if !contacts.springs().is_empty() {
-            let inertial = dynamics.inertial_positions();
-            let end = |v: usize| if prescribed[v] { keyframes[v] } else { inertial[v] };
-            let vertices = (0..start.len()).into_par_iter().with_min_len(MIN_VERTICES);
-            let mut motion: Vec<Vector> = vertices.map(|v| end(v) - start[v]).collect();
-            contacts.anticipate(&mut motion);
-        }
+        contacts.begin_step(resolver, start);
         contacts.apply(dynamics).map_err(target_error)?;
         statistics.repulsion_springs = contacts.springs().len();
         statistics.seconds.dynamics += timer.elapsed().as_secs_f64();
@@ -353,10 +346,8 @@ impl Simulator {
                     "the linear solve did not converge"
                 );
             }
-            let mut forces = dynamics.contact_forces();
             if progress.oscillates() && !contacts.springs().is_empty() {
                 relax_target(world, x, y, prescribed);
-                contacts.relax(&mut forces);
             }
             match self.collision_every {
                 CollisionEvery::Step if !last => {
@@ -386,6 +377,7 @@ impl Simulator {
                 time_step: Some(*dt),
                 start: Some(&start[..count]),
                 groups,
+                known: contacts.known(count),
                 max_steps: (!last).then_some(MAX_INTERMEDIATE_STEPS),
             };
             let resolved = backend.resolve(resolver, &mut x[..count], &y[..count], &input, &mut relay);
@@ -405,8 +397,8 @@ impl Simulator {
 
             let timer = Instant::now();
             contacts.note_touching(resolver);
-            let carried = contacts.carried_after(&forces, resolver, *dt);
-            contacts.find(resolver, &carried, start, *dt);
+            contacts.note_rows(resolver);
+            contacts.find(resolver, start);
             x[count..].copy_from_slice(&y[count..]);
             if differ(&x[..count], &y[..count], backend.resolution()) {
                 statistics.interior_solves +=
@@ -417,10 +409,6 @@ impl Simulator {
                 }
             }
             contacts.apply(dynamics).map_err(target_error)?;
-            if last && !*measured {
-                statistics.seconds.dynamics += timer.elapsed().as_secs_f64();
-                break;
-            }
             let residual = dynamics.residual(x, prescribed, contacts.counted()).map_err(target_error)?;
             statistics.seconds.dynamics += timer.elapsed().as_secs_f64();
             (statistics.residual_n, statistics.residual_m) = (residual.force, residual.distance);
@@ -430,6 +418,8 @@ impl Simulator {
                 break;
             }
         }
+        contacts.end_step(&dynamics.contact_forces());
+        statistics.pressing_contacts = contacts.pressing();
         let judged = backend.judge(resolver.scene(), &x[..count]);
         judged.map_err(|source| backend_error(world, step, source))?;
         positions.clone_from(x);

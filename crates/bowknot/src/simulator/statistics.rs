@@ -90,6 +90,9 @@ pub struct StepStatistics {
     /// Contacts in the first Newton system.
     #[serde(default)]
     pub repulsion_springs: usize,
+    /// Contacts of the dynamics that carry a force at the end.
+    #[serde(default)]
+    pub pressing_contacts: usize,
     /// Net forces at the end, the root of their sum of squares [N]: inertia, elasticity, bending, damping,
     /// drag, contact and friction.
     #[serde(default)]

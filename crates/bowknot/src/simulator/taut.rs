@@ -6,17 +6,22 @@
 //! limit, and its force passes to the next iteration. Forces that rows of the collision stage add are not
 //! passed on.
 
-use bowknot_constraints::{EdgeLimits, EdgeReference, Feature};
-use bowknot_dynamics::RepulsionSpring;
+use bowknot_constraints::EdgeReference;
+use bowknot_dynamics::{RepulsionSpring, SpringKind};
 use bowknot_geometry::{Point, Vector};
 use bowknot_scene::BodyKind;
 use bowknot_scene::world::World;
 use bowknot_twoway::CollisionScene;
 use rayon::prelude::*;
-use rustc_hash::FxHashSet;
 
 /// Share of its limit above which an edge counts as taut.
-const TAUT: f64 = 0.99;
+const TAUT: f64 = 0.98;
+
+/// Share of its limit up to which nothing pulls.
+const SLACK: f64 = 0.996;
+
+/// Ratio of the limit to the length at the start.
+const OVER_LIMIT: f64 = 1.003;
 
 /// Edges that one thread looks at, at least.
 const MIN_EDGES: usize = 4096;
@@ -29,8 +34,6 @@ pub(super) struct LimitedEdges {
 
 #[derive(Clone, Copy, Debug)]
 struct LimitedEdge {
-    /// Index in the topology.
-    index: u32,
     vertices: [u32; 2],
     /// Largest length [m].
     limit: f64,
@@ -44,7 +47,7 @@ impl LimitedEdges {
         if !constraints.edges || constraints.edge_reference != EdgeReference::Rest {
             return Self::default();
         }
-        let limited = |(index, &vertices): (usize, &[u32; 2])| {
+        let limited = |&vertices: &[u32; 2]| {
             let [a, b] = vertices.map(|v| scene.rest()[v as usize]);
             let body = scene.model().vertex_body()[vertices[0] as usize];
             let limit = scene.stretch_limit(body) * (a - b).norm();
@@ -53,45 +56,36 @@ impl LimitedEdges {
             let limits = matches!(kind, Some(BodyKind::Cloth | BodyKind::Strands))
                 && limit.is_finite()
                 && !scene.model().is_obstacle(vertices[0]);
-            limits.then_some(LimitedEdge { index: index as u32, vertices, limit })
+            limits.then_some(LimitedEdge { vertices, limit })
         };
-        Self { edges: scene.model().topology().edges.iter().enumerate().filter_map(limited).collect() }
+        Self { edges: scene.model().topology().edges.iter().filter_map(limited).collect() }
     }
 
-    /// The edges that are taut at `x` or carry a force: each as a spring of the given `stiffness`, and the
-    /// edge twice as its features. `start` are positions at the start of the time step.
-    pub fn taut(
-        &self,
-        x: &[Point],
-        start: &[Point],
-        stiffness: f64,
-        loaded: &FxHashSet<[Feature; 2]>,
-    ) -> Vec<([Feature; 2], RepulsionSpring)> {
-        let of_edge = |features: &[Feature; 2]| match features {
-            [Feature::Edge(a), Feature::Edge(b)] if a == b => Some(*a),
-            _ => None,
-        };
-        let loaded: FxHashSet<u32> = loaded.iter().filter_map(of_edge).collect();
+    /// The edges that are nearly taut at `x`: each as a spring of the given `stiffness`. `start` are
+    /// positions at the start of the time step.
+    pub fn taut(&self, x: &[Point], start: &[Point], stiffness: f64) -> Vec<RepulsionSpring> {
         let length = |x: &[Point], [a, b]: [u32; 2]| x[a as usize] - x[b as usize];
         let taut = |edge: &LimitedEdge| {
             let now = length(x, edge.vertices);
-            let slack = now.norm_squared() < (TAUT * edge.limit).powi(2);
-            if slack && (loaded.is_empty() || !loaded.contains(&edge.index)) {
+            if now.norm_squared() < (TAUT * edge.limit).powi(2) {
                 return None;
             }
             let [a, b] = edge.vertices;
-            let spring = RepulsionSpring {
+            let first = length(start, edge.vertices).norm();
+            let limit = edge.limit.max(first * OVER_LIMIT);
+            Some(RepulsionSpring {
+                kind: SpringKind::Limit,
                 vertices: [a, b, a, a],
                 weights: [-1.0, 1.0, 0.0, 0.0],
                 normal: now.try_normalize(0.0)?,
-                offset: 0.0,
-                // The gap is minus the length, which must stay above minus the limit.
-                desired: -EdgeLimits::of_rest(edge.limit, length(start, edge.vertices).norm()),
+                offset: -limit,
+                reach: limit - SLACK * edge.limit,
+                floor: 0.0,
+                start_gap: limit - first,
                 stiffness,
                 friction: 0.0,
-                force: Vector::zeros(),
-            };
-            Some(([Feature::Edge(edge.index); 2], spring))
+                friction_ratio: Vector::zeros(),
+            })
         };
         self.edges.par_iter().with_min_len(MIN_EDGES).filter_map(taut).collect()
     }

@@ -37,7 +37,7 @@ fn a_body_far_from_others_is_in_no_pair_of_theirs() {
     let far = both.world().bodies[1].vertices.clone();
     let mut most = 0;
     for _ in 0..30 {
-        most = most.max(both.step().expect("a step").contact_rows);
+        most = most.max(both.step().expect("a step").pressing_contacts);
         let pairs = &both.resolver().state().contacts.pairs;
         for pair in pairs.pairs() {
             assert!(pair.vertices.iter().all(|v| !far.contains(v)), "{pair:?}");

@@ -88,6 +88,7 @@ fn a_run_leaves_the_folder_that_other_tools_rely_on() {
         "skipped",
         "slowest_body",
         "prescribed_lag_m",
+        "pressing_contacts",
         "waiting",
         "injected_energy_j",
         "collision_energy_j",
@@ -110,7 +111,7 @@ fn a_run_leaves_the_folder_that_other_tools_rely_on() {
         let sum: f64 = parts.iter().filter(|p| p.0 != "total").filter_map(|p| p.1.as_f64()).sum();
         assert!((sum - total).abs() <= 1e-3 * total + 1e-6, "{sum} of {total}");
     }
-    assert!(lines.iter().any(|line| line["contact_rows"].as_u64() > Some(0)));
+    assert!(lines.iter().any(|line| line["pressing_contacts"].as_u64() > Some(0)));
 
     let summary: Value =
         serde_json::from_str(&fs::read_to_string(out.join("summary.json")).expect("summary")).expect("JSON");

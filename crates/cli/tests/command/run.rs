@@ -95,7 +95,7 @@ fn a_run_on_a_gpu_goes_on_from_its_checkpoint_there_and_on_the_cpu() {
     let summary = run(12, "--backend gpu --out whole");
     let backend = summary["backend"].as_str().unwrap();
     assert!(backend.starts_with("gpu: "), "{backend}");
-    assert!(summary["max"]["contact_rows"].as_f64().unwrap() > 0.0, "{summary}");
+    assert!(summary["max"]["pressing_contacts"].as_f64().unwrap() > 0.0, "{summary}");
     for line in place.read("whole/stats.jsonl").lines() {
         let line: serde_json::Value = serde_json::from_str(line).unwrap();
         let seconds = |stage: &str| line["seconds"][stage].as_f64();

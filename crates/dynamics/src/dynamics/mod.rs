@@ -171,10 +171,10 @@ impl Dynamics {
         Ok(())
     }
 
-    /// Forces of the springs at the last target on the side that the normal points to [N], one entry per
-    /// spring.
+    /// Forces of the springs on the side that their normal points to, where the last [`Self::residual`] was measured
+    /// [N]; one entry per spring.
     pub fn contact_forces(&self) -> Vec<Vector> {
-        let trial = self.repulsion.watched().iter().map(|&node| self.work.trial[node as usize]);
+        let trial = self.repulsion.watched().iter().map(|&node| self.work.x[node as usize]);
         self.repulsion.forces(&trial.collect::<Vec<_>>())
     }
 
@@ -190,9 +190,9 @@ impl Dynamics {
         positions.map(inertial).collect()
     }
 
-    /// The residual of the time step at `x` [m]. Contact forces are the known forces of the springs, see
-    /// [`RepulsionSpring::force`]. Only forces on vertices that are free and `counted` enter; leave out
-    /// vertices on which unknown forces act. All slices have one entry per vertex.
+    /// The residual of the time step at `x` [m]. Contact forces are those of the springs at `x`. Only forces on
+    /// vertices that are free and `counted` enter; leave out vertices on which unknown forces act. All slices have one
+    /// entry per vertex. If there are springs, the next target begins as if they had just been set.
     ///
     /// # Errors
     /// A length is wrong, an entry is not finite, no step was begun, or the backend has failed.
@@ -210,14 +210,15 @@ impl Dynamics {
         let Some(step) = self.step.take() else { return Err(StepError::NotBegun) };
         self.start_from(x, prescribed);
         self.work.imposed.fill(Vector::zeros());
+        self.repulsion.place_obstacles(x);
         let residual = self.with_bodies(&step, false, |newton| newton.residual(&counted));
         self.step = Some(step);
         residual
     }
 
-    /// Lets Newton's method work from the iterate in the workspace, on a device if there is one for the model. What a device
-    /// cannot finish in single precision begins again on the CPU, as does the rest of the time step. With `sets_trial`
-    /// the trial in the workspace is the result.
+    /// Lets Newton's method work from the iterate in the workspace, on a device if there is one for the model. What a
+    /// device cannot finish in single precision begins again on the CPU, as does the rest of the time step. With
+    /// `sets_trial` the trial in the workspace is the result.
     fn with_bodies<T: Send>(
         &mut self,
         step: &Step,
@@ -458,7 +459,8 @@ impl Dynamics {
         Ok(StepTerms::new(&self.model, &self.params, step))
     }
 
-    /// The potential of the bodies at positions `x` of nodes [m] in the time step that was begun. One thread computes it.
+    /// The potential of the bodies at positions `x` of nodes [m] in the time step that was begun. One thread computes
+    /// it.
     ///
     /// # Errors
     /// No step was begun, or the length is wrong.

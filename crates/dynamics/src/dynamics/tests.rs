@@ -3,6 +3,7 @@ use crate::body::Body;
 use crate::linear::system::System;
 use crate::material::ClothMaterial;
 use crate::params::{HessianFilter, NewtonParams};
+use crate::repulsion::SpringKind;
 use crate::test_support::grid_triangles;
 use nalgebra::{DMatrix, DVector, Matrix3};
 
@@ -283,24 +284,43 @@ fn newton_converges_quadratically_under_tension() {
     assert!(quadratic && moves[7] < 1e-11, "{moves:?}");
 }
 
-/// [`crumpled`] in the wind, with springs of two to four vertices, most of which are active.
+/// [`crumpled`] in the wind, with springs of two to four vertices and limits of distances, most of which push.
 fn crumpled_with_everything() -> (Dynamics, Vec<Point>, Vec<Vector>, Vec<bool>) {
     let (dynamics, x, v, prescribed) = crumpled();
     let Dynamics { model, params, .. } = dynamics;
     let wind = Vector::new(2.0, -1.0, 3.0);
     let environment = Environment { air_density: 1.2, wind, ..params.environment };
     let mut dynamics = Dynamics::new(model, DynamicsParams { environment, ..params }).expect("valid");
-    let spring = |k: u32| RepulsionSpring {
+    let contact = |k: u32| RepulsionSpring {
+        kind: SpringKind::Contact,
         vertices: [k, (k + 7) % 20, (k + 12) % 20, (k + 3) % 20],
         weights: if k.is_multiple_of(3) { [1.0, -1.0, 0.0, 0.0] } else { [1.0, -0.5, -0.2, -0.3] },
         normal: Vector::new(f64::from(k).sin(), f64::from(k).cos(), 0.5).normalize(),
         offset: 0.0,
-        desired: 0.1,
-        stiffness: 3.0 + f64::from(k),
+        reach: 0.1,
+        floor: -0.6,
+        // Some with drag, some without.
+        start_gap: if k.is_multiple_of(2) { 0.2 } else { 0.0 },
+        stiffness: 0.3 + 0.1 * f64::from(k),
         friction: 0.1 * f64::from(k % 4),
-        force: Vector::zeros(),
+        friction_ratio: Vector::new(0.1, -0.05, 0.02) * f64::from(k % 3),
     };
-    dynamics.set_repulsion(&(0..20).map(spring).collect::<Vec<_>>()).expect("valid");
+    // Edges of 0.1 m at rest.
+    let limit = |k: u32| RepulsionSpring {
+        kind: SpringKind::Limit,
+        vertices: [k, k + 5, k, k],
+        weights: [-1.0, 1.0, 0.0, 0.0],
+        normal: Vector::y(),
+        offset: -0.3,
+        reach: 0.2,
+        floor: -0.2,
+        start_gap: 0.1,
+        stiffness: 0.5,
+        friction: 0.0,
+        friction_ratio: Vector::zeros(),
+    };
+    let springs: Vec<RepulsionSpring> = (0..20).map(contact).chain((0..15).map(limit)).collect();
+    dynamics.set_repulsion(&springs).expect("valid");
     (dynamics, x, v, prescribed)
 }
 
@@ -311,15 +331,18 @@ fn wind_and_repulsion_have_exact_gradients_and_matrices() {
     let nodes = dynamics.model.node_vertex.clone();
     let stretched: Vec<Vector> =
         nodes.iter().map(|&v| x0[v as usize].coords * 1.6 + v0[v as usize] * 0.002).collect();
-    // The active set and the bounds of friction are those at these positions.
+    // The bounds of friction are those at these positions; nothing is predicted any more.
     let step = linearized(&mut dynamics, &stretched);
     let watched: Vec<Vector> = dynamics.repulsion.watched().iter().map(|&n| stretched[n as usize]).collect();
-    dynamics.repulsion.update_active_set(&watched);
+    dynamics.repulsion.update(&watched);
     let step = linearized_at(&mut dynamics, step, &stretched);
     let gradient = dynamics.work.gradient.clone();
     let reactions = dynamics.repulsion.linear().reactions(&stretched);
     let pushed = |n: &usize| dynamics.repulsion.linear().row_product(*n, &reactions) != Vector::zeros();
     assert!((0..stretched.len()).filter(pushed).count() > 10);
+    let pushing = dynamics.repulsion.linear().all();
+    let turning = pushing.iter().filter(|s| s.weights[0] < 0.0).count();
+    assert!(turning > 5 && pushing.len() - turning > 10, "{turning} of {}", pushing.len());
     let scale = gradient.iter().map(|g| g.norm()).fold(0.0, f64::max);
     let largest = dynamics.work.values.diagonal.iter().map(|d| d.abs().max()).fold(0.0, f64::max);
     let mut image = vec![Vector::zeros(); stretched.len()];
@@ -379,7 +402,7 @@ fn newton_converges_with_wind_and_repulsion() {
     dynamics.params.newton.hessian_filter = HessianFilter::Clamp;
     dynamics.begin_step(&x0, &v0, 0.02).expect("begins");
     let (mut x, mut y) = (x0.clone(), x0.clone());
-    // The potential changes with the active set; the displacement to the next target must vanish.
+    // The potential changes with the bounds of friction; the displacement to the next target must vanish.
     let mut displacement = f64::INFINITY;
     for _ in 0..120 {
         displacement = dynamics.newton_target(&x, &prescribed, &x0, &mut y).expect("solves").max_displacement;

@@ -4,6 +4,7 @@ mod assembly;
 mod check;
 mod masses;
 pub(crate) mod measures;
+mod stiffness;
 
 use crate::body::{Body, BodyShape};
 use crate::elements::set::{AnyElementSet, ElementKind};
@@ -45,6 +46,8 @@ pub struct DynamicsModel {
     pub(crate) node_masses: Vec<f64>,
     /// Mass of the component that each node is in [kg].
     pub(crate) component_masses: Vec<f64>,
+    /// Stiffness of each node at rest in its softest and its stiffest direction [N/m].
+    pub(crate) node_stiffness: Vec<[f64; 2]>,
     /// Whether each node belongs to strands only.
     pub(crate) strands: Vec<bool>,
     pub(crate) element_sets: Vec<Box<dyn AnyElementSet>>,
@@ -129,10 +132,12 @@ impl DynamicsModel {
             std::iter::repeat_n(mass, component.len())
         });
         let is_strand = |kind| matches!(kind, ElementKind::StrandStretching | ElementKind::StrandBending);
+        let node_stiffness = stiffness::softest(&rest, &element_sets, &pattern, &bending);
         let mut strands = joined(&element_sets, rest.len(), is_strand);
         let others = joined(&element_sets, rest.len(), |kind| !is_strand(kind));
         strands.iter_mut().zip(&others).for_each(|(strand, other)| *strand &= !other);
         Ok(Self {
+            node_stiffness,
             strands,
             bodies,
             vertex_body,

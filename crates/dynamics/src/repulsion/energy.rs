@@ -1,13 +1,14 @@
 //! Energies of springs.
 
 use super::springs::Repulsion;
-use super::state::Friction;
 use crate::nodes::CHUNK;
 use bowknot_geometry::Vector;
+use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 impl Repulsion {
-    /// Energy at positions `x` of the watched nodes [J], up to a constant.
+    /// Energy at positions `x` of the watched nodes [J], up to a constant. Its negative gradient is the force that
+    /// [`Self::linearize`] finds there, as long as no [`Self::update`] is between.
     pub fn energy(&self, x: &[Vector]) -> f64 {
         let partial: Vec<f64> = (0..self.springs.len().div_ceil(CHUNK))
             .into_par_iter()
@@ -19,45 +20,22 @@ impl Repulsion {
         partial.iter().sum()
     }
 
-    /// Energy at positions `x` of the watched nodes [J] that pressed springs could release; friction is left out.
-    pub fn stored_energy(&self, x: &[Vector]) -> f64 {
-        let energy = |spring: usize| {
-            let state = &self.states[spring];
-            if state.stiffness == 0.0 {
-                return 0.0;
-            }
-            let pressed = self.depth_and_slip(spring, x).0 + state.lambda / state.stiffness;
-            0.5 * state.stiffness * pressed.max(0.0).powi(2)
-        };
-        (0..self.springs.len()).map(energy).sum()
-    }
-
     fn spring_energy(&self, spring: usize, x: &[Vector]) -> f64 {
         let state = &self.states[spring];
-        let k = state.stiffness;
-        if k == 0.0 || (self.guessed && !state.active) {
+        if !state.acts {
             return 0.0;
         }
-        let (depth, slip) = self.depth_and_slip(spring, x);
-        let pressed = depth + state.lambda / k;
-        if self.guessed {
-            let friction = match state.friction {
-                Friction::None => 0.0,
-                Friction::Stick(tau) => 0.5 * k * (slip - tau / k).norm_squared(),
-                Friction::Slide(direction, bound, curvature) => {
-                    let along = direction.dot(&slip);
-                    bound * along + 0.5 * curvature * (slip.norm_squared() - along * along)
-                }
-            };
-            return 0.5 * k * pressed * pressed + friction;
-        }
-        let pushed = 0.5 * k * pressed.max(0.0).powi(2);
-        let trial = (state.tau() - slip * k).norm();
-        pushed
-            + match state.friction {
-                Friction::None => 0.0,
-                _ if trial <= state.friction_bound => 0.5 * trial * trial / k,
-                _ => state.friction_bound * (trial - 0.5 * state.friction_bound) / k,
+        let (gap, slip) = self.gap_and_slip(spring, x);
+        let friction = match state.slip_ahead {
+            // The quadratic model where inertia leads.
+            Some(ahead) if state.bound > 0.0 => {
+                let n = self.springs[spring].normal;
+                let rub = state.linear_rub(ahead, &(Matrix3::identity() - n * n.transpose()), false);
+                let way = slip - ahead;
+                0.5 * way.dot(&(rub.matrix * way)) - rub.force.dot(&way)
             }
+            _ => state.rub(&slip, state.bound).energy,
+        };
+        state.push(gap).energy + friction
     }
 }

@@ -1,51 +1,53 @@
-//! Force and Hessian of each active spring.
+//! Force and Hessian of each spring that acts.
 
+use super::spring::SpringKind;
 use super::springs::Repulsion;
-use super::state::Friction;
 use crate::linear::springs::LinearSpring;
+use crate::nodes::CHUNK;
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 impl Repulsion {
-    /// Linearizes the active springs with watched nodes at `x`.
-    pub fn linearize(&mut self, x: &[Vector]) {
-        let active: Vec<u32> =
-            (0..self.springs.len() as u32).filter(|&s| self.states[s as usize].active).collect();
+    /// Linearizes the springs that push, with watched nodes at `x`.
+    pub fn linearize(&mut self, x: &[Vector], with_friction: bool) {
+        let mut states = std::mem::take(&mut self.states);
+        states.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(|(spring, state)| {
+            state.model = [0.0; 3];
+            if state.acts {
+                let (gap, _) = self.gap_and_slip(spring, x);
+                let push = state.push(gap);
+                state.model = [gap, push.force, push.stiffness];
+            }
+        });
+        self.states = states;
+        let pushes = |s: &u32| self.states[*s as usize].model[2] > 0.0;
+        let pushing: Vec<u32> = (0..self.springs.len() as u32).filter(pushes).collect();
         let mut linear = std::mem::take(&mut self.linear);
         linear.set(|springs| {
-            active.par_iter().map(|&s| self.linearized(s as usize, x)).collect_into_vec(springs);
+            let linearized = |&s: &u32| self.linearized(s as usize, x, with_friction);
+            pushing.par_iter().map(linearized).collect_into_vec(springs);
         });
         self.linear = linear;
     }
 
-    fn linearized(&self, spring: usize, x: &[Vector]) -> LinearSpring {
-        let (state, n) = (&self.states[spring], self.springs[spring].normal);
-        let k = state.stiffness;
-        let (depth, slip) = self.depth_and_slip(spring, x);
+    fn linearized(&self, spring: usize, x: &[Vector], with_friction: bool) -> LinearSpring {
+        let (state, n) = (&self.states[spring], self.normal(spring, x));
+        let [gap, push, k] = state.model;
+        let (_, slip) = self.gap_and_slip(spring, x);
         let along_normal = n * n.transpose();
-        let across = || Matrix3::identity() - along_normal;
-        let (mut hessian, mut force) = (along_normal * k, n * (state.lambda + k * depth));
-        match state.friction {
-            Friction::None => {}
-            Friction::Slide(direction, bound, curvature) if self.guessed => {
-                let beside = across() - direction * direction.transpose();
-                hessian += beside * curvature;
-                force -= direction * bound + beside * slip * curvature;
-            }
-            _ => {
-                let trial = state.tau() - slip * k;
-                let size = trial.norm();
-                if self.guessed || size <= state.friction_bound {
-                    hessian += across() * k;
-                    force += trial;
-                } else {
-                    let direction = trial / size;
-                    hessian +=
-                        (across() - direction * direction.transpose()) * (k * state.friction_bound / size);
-                    force += direction * state.friction_bound;
-                }
-            }
+        let across = Matrix3::identity() - along_normal;
+        let (mut hessian, mut force) = (along_normal * k, n * push);
+        if self.springs[spring].kind == SpringKind::Limit {
+            // The normal turns with the ends, so a tension holds them sideways too. A pull of a predicted spring would
+            // do the opposite, and is left out.
+            let length = -self.springs[spring].offset - gap;
+            hessian += across * (push.max(0.0) / length.max(f64::MIN_POSITIVE));
+        }
+        if with_friction && state.bound > 0.0 && state.grip > 0.0 {
+            let rub = state.linear_rub(state.slip_ahead.unwrap_or(slip), &across, self.majorizes_friction);
+            force += rub.force + rub.matrix * (rub.at - slip);
+            hessian += rub.matrix;
         }
         LinearSpring { nodes: self.nodes[spring], weights: self.springs[spring].weights, hessian, force }
     }

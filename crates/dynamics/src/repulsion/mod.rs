@@ -1,41 +1,53 @@
-//! Contacts in Newton's method: springs with multipliers, an augmented Lagrangian.
+//! Contacts in Newton's method: a force that follows from the gap, and Coulomb's friction.
 //!
 //! Without them a target is computed as if there were no contacts. A stiff body that rests on something then
 //! keeps falling, and the collision stage, which knows no elasticity, pushes back only the vertices in
-//! contact. Callers that know which primitives are in contact therefore pass springs. With s = sum_i beta_i
-//! x_i, depth = desired + offset - n . s and slip = (1 - n n^T)(s - s0), s0 being s at the start of the time
-//! step, an active contact has the energy
+//! contact. Callers that know which primitives are in contact therefore pass springs.
+//!
+//! With s = sum beta_i x_i the gap is g = n . s - offset. With the room r = reach - floor and the share
+//! w = (g - floor) / r of it, a contact has the normal force along n
 //!
 //! ```text
-//! normal    k/2 (depth + lambda/k)^2                     force  lambda + k depth along n
-//! sticking  k/2 |slip - tau/k|^2                         force  tau - k slip
-//! sliding   (m |tau - k slip| - m^2/2) / k               force  m in the direction of tau - k slip
+//! static    k r (1 - w) / w^2                 energy  k r^2 (1 / w - 1 + ln w)
+//! drag      d (g0 - g)                        energy  d/2 (g0 - g)^2
 //! ```
 //!
-//! lambda and tau are its multipliers [N]. A contact whose multipliers are already the correct forces is not
-//! displaced: at the solution depth and slip vanish, however soft the spring is (Hestenes 1969 and Powell
-//! 1969; for friction Simo and Laursen 1992, "An augmented Lagrangian treatment of contact problems involving
-//! friction"). Multipliers are updated after a solve: lambda <- max(0, lambda + k depth), tau <- tau - k
-//! slip, limited to mu lambda. Callers pass them in as [`RepulsionSpring::force`] and read them with
-//! [`crate::Dynamics::contact_forces`]: thus they pass from one Newton iteration to the next and from one
-//! time step to the next, although the springs change.
+//! as long as the sum pushes; g0 is the gap at the start of the time step. The static force is zero at the reach,
+//! where its slope is -k, and infinite at the floor. It is a barrier as in Incremental Potential Contact (Li et al.
+//! 2020). As in "A cubic barrier with elasticity-inclusive dynamic stiffness" (Ando 2024), its stiffness follows from
+//! inertia and from the bodies' own stiffness. Below a small gap the force goes on linearly, so that an iterate may
+//! be anywhere; the collision stage keeps distances. The drag lets contacts open without bouncing.
+//!
+//! Friction is Coulomb's law as an elastic-plastic return mapping (Simo and Laursen 1992, "An augmented Lagrangian
+//! treatment of contact problems involving friction") that begins with the friction at the start of the time step, so
+//! that what sticks does not creep. Its bound lags by one Newton iteration (Li et al. 2020, section 5). An edge that
+//! is taut is a contact as well, with the gap -offset - |s|.
+//!
+//! There are no multipliers. Where two contacts ask for more room than there is, as in a narrow gap, multipliers grow
+//! from solve to solve without bound. A force that follows from the gap alone balances. Nor is there an active set:
+//! the force vanishes continuously at the release. In exchange gaps decrease with the load.
+//!
+//! Callers carry friction from one time step to the next: as a share of the normal force, in
+//! [`RepulsionSpring::friction_ratio`], from what [`crate::Dynamics::contact_forces`] returns.
 //!
 //! | file | holds |
 //! |---|---|
 //! | `spring` | [`RepulsionSpring`], the description of a contact |
-//! | `state` | multipliers and friction of a contact |
-//! | `springs` | all springs, their depths, slips and forces |
-//! | `prepare` | stiffness and the initial active set |
-//! | `linearize` | force and Hessian of each active spring |
-//! | `active_set` | the update of active set and multipliers after a solve |
+//! | `law` | the normal force of a gap |
+//! | `state` | what changes from solve to solve, friction |
+//! | `springs` | all springs, their gaps, slips and forces |
+//! | `prepare` | the laws in a time step: stiffness, drag, friction at the start |
+//! | `linearize` | force and Hessian of each spring |
+//! | `update` | bends of laws and bounds of friction after a solve |
 //! | `energy` | energies |
 
-mod active_set;
 mod energy;
+mod law;
 mod linearize;
 mod prepare;
 pub(crate) mod spring;
 pub(crate) mod springs;
 mod state;
+mod update;
 
-pub use spring::RepulsionSpring;
+pub use spring::{RepulsionSpring, SpringKind};

@@ -1,135 +1,150 @@
-//! Stiffness of springs, and the guess of the active set that a time step starts from.
+//! The laws of springs in a time step, and their state at the iterate that a target begins from.
+//!
+//! The stiffness of a spring is relative to that of the nodes it acts on, so that a contact neither gives way nor
+//! makes the system ill-conditioned. A node is as stiff as its inertia and its body at rest in the softest direction:
+//! bending for cloth. Two things correct that. A whole body cannot resist more than its own inertia, however stiff it
+//! is. And what lies under a stack carries what presses on it: a node is backed by the stiffness of the nodes at the
+//! other side of its closed contacts.
 
+use super::law::{MIN_BEND, NormalLaw};
+use super::spring::SpringKind;
 use super::springs::Repulsion;
-use super::state::{Friction, SpringState};
+use super::state::SpringState;
 use crate::model::DynamicsModel;
 use crate::nodes::{CHUNK, NO_NODE};
 use bowknot_geometry::Vector;
-use nalgebra::Matrix3;
 use rayon::prelude::*;
 
-/// A spring is active at first if inertia leads to a gap that is less than the desired one plus this share of
-/// it: bodies at rest keep their gap only up to rounding.
-const ACTIVATION_MARGIN: f64 = 0.01;
+/// Compliance of nodes against rigid motion of their bodies, in dt^2 / mass of the body. Larger: softer contacts of
+/// stiff and light bodies. Smaller: they hardly give way, and conjugate gradients take longer.
+const RIGID_COMPLIANCE: f64 = 1.0;
 
-/// Compliance of springs against rigid motion of bodies, in dt^2 / M. The inertia of a stiff body is far less
-/// than the diagonal block of a node suggests. With springs as stiff as the block, errors of micrometers that
-/// one linear solve makes in a rotation become forces of many times the weight of the body, and the updates
-/// of the active set diverge.
-const RIGID_COMPLIANCE: f64 = 0.3;
+/// Time in which contacts open [s]. Larger: they open more slowly and bounce less. Smaller: they return more energy.
+const OPENING_TIME: f64 = 0.01;
 
-/// A force of friction that is smaller than its bound by more than this share sticks.
-const FRICTION_BOUND_TOLERANCE: f64 = 1e-6;
+/// Share of the gap's room at the iterate at which the static force begins to go on linearly, and its largest value.
+/// Larger: steps that close gaps by more see the linear law, which the update then corrects. Smaller: the exact law at
+/// once, but Newton's method takes shorter steps.
+const BEND_SHARE: f64 = 0.5;
+const MAX_BEND: f64 = 0.5;
 
-/// A contact sticks if its slip is less than this share of the slip that inertia leads to.
-const MAX_STICKING_SLIP: f64 = 0.1;
+/// Smallest share of the room at which the stiffness of sticking is taken. Larger: softer sticking of pressed
+/// contacts, which slip farther before they slide. Smaller: stiffer systems.
+const MIN_GRIP_SHARE: f64 = 0.2;
+
+/// Share of the bound of friction from which on a contact slid in the last time step. Larger: more contacts are first
+/// taken to stick on. Smaller: more are first taken to slide.
+const SLIDING: f64 = 0.999;
+
+/// Share of the largest stiffness at rest that counts at edges at their limit. Larger: edges exceed their limit by
+/// less. Smaller: systems are better conditioned.
+const ALONG: f64 = 0.1;
+
+/// Share of the stiffness of what presses on a node that backs it at its other contacts. Larger: the bottom of a stack
+/// gives way less, but systems are stiffer. Smaller: loads press through to the floor of the law.
+const BACKING: f64 = 0.5;
+
+/// Largest ratio of the backed stiffness of a node to its own. Larger: light nodes under heavy ones give way less.
+/// Smaller: systems are better conditioned.
+const MAX_BACKING: f64 = 30.0;
+
+/// Layers through which backing passes. More: higher stacks are backed. Fewer: less time.
+const BACKING_PASSES: usize = 4;
 
 impl Repulsion {
-    /// Sets the stiffness of the springs and guesses the active set. In the first iteration of a time step
-    /// the guess is the active set at the positions `inertial`, where inertia leads; in later iterations it
-    /// is the active set at the `iterate`. `diagonal` has the diagonal blocks of the Newton system without
-    /// springs; `rate` is 1 / dt [1/s]. Blocks and positions have one entry per watched node, `free` one per node.
+    /// Sets the laws and the state of friction. `rate` is 1 / dt [1/s]; positions have one entry per watched node,
+    /// `free` one per node. With positions `ahead`, where inertia leads, open contacts that close there are taken for
+    /// closed in the first solve, and friction is linearized there.
     pub fn prepare(
         &mut self,
         model: &DynamicsModel,
-        diagonal: &[Matrix3<f64>],
         rate: f64,
         free: &[bool],
-        inertial: &[Vector],
-        iterate: Option<&[Vector]>,
+        iterate: &[Vector],
+        ahead: Option<&[Vector]>,
     ) {
-        self.guessed = true;
-        self.note_lacking(free, iterate.unwrap_or(inertial));
-        let softest = self.softest_stiffness(model, diagonal);
+        self.note_lacking(free, iterate);
+        let own: Vec<f64> = self.watched().iter().map(|&node| own_stiffness(model, rate, node)).collect();
+        let backed = self.backed_stiffness(&own, free, iterate);
         let mut states = std::mem::take(&mut self.states);
         states.par_iter_mut().enumerate().with_min_len(CHUNK).for_each(|(spring, state)| {
             let s = &self.springs[spring];
-            let mut compliance = 0.0;
-            let places = self.nodes[spring].iter().zip(&self.places[spring]);
-            for ((&node, &place), weight) in places.zip(s.weights) {
-                if node != NO_NODE && free[node as usize] {
-                    let (node, place) = (node as usize, place as usize);
-                    let along = || s.normal.dot(&(diagonal[place] * s.normal));
-                    let local = if model.strands[node] { softest[place] } else { along() };
-                    let rigid = model.component_masses[node] * rate * rate;
-                    compliance += weight * weight * (1.0 / local + RIGID_COMPLIANCE / rigid);
-                }
-            }
-            *state = SpringState::INACTIVE;
+            let compliance = |of_node: &dyn Fn(u32, usize) -> f64| -> f64 {
+                let nodes = self.nodes[spring].iter().zip(&self.places[spring]).zip(s.weights);
+                let moving = nodes.filter(|((node, _), _)| **node != NO_NODE && free[**node as usize]);
+                moving.map(|((&node, &place), weight)| weight * weight / of_node(node, place as usize)).sum()
+            };
+            let compliance = match s.kind {
+                SpringKind::Contact => compliance(&|_, place| backed[place]),
+                SpringKind::Limit => compliance(&|node, _| along_stiffness(model, rate, node)),
+            };
+            *state = SpringState::default();
             if compliance <= 0.0 || s.stiffness == 0.0 {
                 return;
             }
-            state.stiffness = s.stiffness / compliance;
-            match iterate {
-                None => self.guess_from_inertia(spring, state, inertial),
-                Some(iterate) => self.guess_from_iterate(spring, state, inertial, iterate),
-            }
-            state.lambda = if state.active { self.known_multipliers(spring).0 } else { 0.0 };
+            state.acts = true;
+            let (gap, _) = self.gap_and_slip(spring, iterate);
+            let drag = OPENING_TIME * rate;
+            state.law =
+                NormalLaw::new(s.stiffness / compliance, s.reach, s.floor, self.start_gap(spring), drag);
+            // Before the law is bent: what friction was in the last time step does not depend on the iterate.
+            let ratio = s.friction_ratio - s.normal * s.normal.dot(&s.friction_ratio);
+            state.tau = ratio * state.law.force_at_start();
+            state.law.bend_at((BEND_SHARE * state.law.share(gap)).clamp(MIN_BEND, MAX_BEND));
+            state.grip = state.law.tangent(gap, MIN_GRIP_SHARE);
+            let push = state.law.at(gap);
+            state.bound = s.friction * push.force;
+            // What stuck is likely to stick on.
+            let stuck = state.tau != Vector::zeros() && state.tau.norm() < SLIDING * state.bound;
+            state.slip_ahead = ahead.filter(|_| !stuck).map(|ahead| self.gap_and_slip(spring, ahead).1);
+            state.predicted =
+                push.force == 0.0 && ahead.is_some_and(|ahead| self.gap_and_slip(spring, ahead).0 < s.reach);
         });
         self.states = states;
     }
 
-    /// The known multipliers lambda and tau [N].
-    fn known_multipliers(&self, spring: usize) -> (f64, Vector) {
-        let s = &self.springs[spring];
-        (s.normal.dot(&s.force).max(0.0), s.force - s.normal * s.normal.dot(&s.force))
-    }
-
-    fn guess_from_inertia(&self, spring: usize, state: &mut SpringState, inertial: &[Vector]) {
-        let s = &self.springs[spring];
-        let (lambda, tau) = self.known_multipliers(spring);
-        let (depth, slip) = self.depth_and_slip(spring, inertial);
-        // A contact that inertia opens is inactive, even if it carried a force; an upper limit of a distance
-        // is active as long as it carries one.
-        state.active = depth > -ACTIVATION_MARGIN * s.desired.max(0.0) || s.desired < 0.0 && lambda > 0.0;
-        let length = slip.norm();
-        if state.active && s.friction > 0.0 {
-            // Coulomb's law for the vertices on their own: a contact sticks if friction could hold its
-            // vertices, or if it carries a force and friction stays below its bound where inertia leads.
-            let bound = s.friction * (lambda + state.stiffness * depth.max(0.0));
-            let holds = lambda > 0.0 && (tau - slip * state.stiffness).norm() < bound;
-            state.friction = if holds || length <= s.friction * depth {
-                Friction::Stick(tau)
-            } else {
-                let bound = s.friction * lambda;
-                Friction::Slide(slip / length, bound, (bound / length).min(state.stiffness))
-            };
-        }
-    }
-
-    fn guess_from_iterate(
-        &self,
-        spring: usize,
-        state: &mut SpringState,
-        inertial: &[Vector],
-        iterate: &[Vector],
-    ) {
-        let s = &self.springs[spring];
-        let (lambda, tau) = self.known_multipliers(spring);
-        let (depth, slip) = self.depth_and_slip(spring, iterate);
-        state.active = lambda > 0.0 || depth > 0.0;
-        if state.active {
-            let (bound, length) = (s.friction * lambda, slip.norm());
-            let free_slip = self.depth_and_slip(spring, inertial).1.norm();
-            let sticks = tau.norm() < (1.0 - FRICTION_BOUND_TOLERANCE) * bound
-                && length < MAX_STICKING_SLIP * free_slip;
-            state.friction = if sticks {
-                Friction::Stick(tau)
-            } else if bound > 0.0 && length > 0.0 {
-                Friction::Slide(slip / length, bound, (bound / length).min(state.stiffness))
-            } else {
-                Friction::None
-            };
-        }
-    }
-
-    /// Stiffness of each watched node in its softest direction if it belongs to strands, 0 otherwise [N/m]. A bent strand resists along both of its edges, but only as long as the neighbors do not move.
-    /// Springs as stiff as that are too stiff for it, and the updates of the active set diverge where strands
-    /// cross.
-    fn softest_stiffness(&self, model: &DynamicsModel, diagonal: &[Matrix3<f64>]) -> Vec<f64> {
-        let of_node = |(&node, block): (&u32, &Matrix3<f64>)| {
-            if model.strands[node as usize] { block.symmetric_eigenvalues().min() } else { 0.0 }
+    /// Stiffness of watched nodes [N/m]: their `own`, or, if that is larger, a share of that of what presses on them.
+    fn backed_stiffness(&self, own: &[f64], free: &[bool], x: &[Vector]) -> Vec<f64> {
+        let mut stiffness = own.to_vec();
+        let is_closed = |&spring: &usize| {
+            let s = &self.springs[spring];
+            s.kind == SpringKind::Contact
+                && self.gap_and_slip(spring, x).0.min(self.start_gap(spring)) < s.reach
         };
-        self.watched().par_iter().zip(diagonal).with_min_len(CHUNK).map(of_node).collect()
+        let closed: Vec<usize> = (0..self.springs.len()).filter(is_closed).collect();
+        for _ in 0..BACKING_PASSES {
+            let before = stiffness.clone();
+            for &spring in &closed {
+                let (s, nodes, places) = (&self.springs[spring], &self.nodes[spring], &self.places[spring]);
+                let side =
+                    |sign: f64| (0..4).filter(move |&k| s.weights[k] * sign > 0.0 && nodes[k] != NO_NODE);
+                for sign in [1.0, -1.0] {
+                    let behind: f64 = side(-sign)
+                        .filter(|&k| free[nodes[k] as usize])
+                        .map(|k| s.weights[k].abs() * before[places[k] as usize])
+                        .sum();
+                    for k in side(sign) {
+                        let place = places[k] as usize;
+                        let backing = (BACKING * s.weights[k].abs() * behind).min(MAX_BACKING * own[place]);
+                        stiffness[place] = stiffness[place].max(backing);
+                    }
+                }
+            }
+        }
+        stiffness
     }
+}
+
+/// Stiffness of a node at a contact [N/m].
+fn own_stiffness(model: &DynamicsModel, rate: f64, node: u32) -> f64 {
+    let node = node as usize;
+    let local = model.node_masses[node] * rate * rate + model.node_stiffness[node][0];
+    let rigid = model.component_masses[node] * rate * rate;
+    1.0 / (1.0 / local + RIGID_COMPLIANCE / rigid)
+}
+
+/// Stiffness of a node at an edge that is taut [N/m].
+fn along_stiffness(model: &DynamicsModel, rate: f64, node: u32) -> f64 {
+    let node = node as usize;
+    model.node_masses[node] * rate * rate + ALONG * model.node_stiffness[node][1]
 }

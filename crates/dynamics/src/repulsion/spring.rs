@@ -2,27 +2,48 @@
 
 use bowknot_geometry::Vector;
 
-/// A contact between up to four vertices, as a spring.
+/// What a spring stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpringKind {
+    /// A contact: the gap is n . sum beta_i x_i - offset, with a normal that stays while Newton's method iterates.
+    Contact,
+    /// An upper limit of a distance, such as of the length of an edge: the gap is -offset - |sum beta_i x_i|, and the
+    /// normal turns with the vertices.
+    Limit,
+}
+
+/// A contact between up to four vertices, or an upper limit of a distance, as a nonlinear spring. Its force is a
+/// function of the gap, see [`crate::repulsion`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RepulsionSpring {
+    /// What it stands for.
+    pub kind: SpringKind,
     /// The vertices, of obstacles too. If there are fewer than four, fill up with any vertex and weight 0.
     pub vertices: [u32; 4],
     /// Their weights beta [1], barycentric: positive on the side that the normal points to, negative on the
-    /// other side. For an upper limit of a distance the signs are reversed.
+    /// other side. For an upper limit of a distance from b to a they are -1 at a and 1 at b.
     pub weights: [f64; 4],
-    /// Unit normal n [1].
+    /// Unit normal n [1], in which the gap opens. For a limit it is used only where the distance is 0.
     pub normal: Vector,
-    /// Length that is subtracted from sum beta_i n.x_i to give the gap [m]: 0 between primitives, n.p for a
-    /// half-space through p.
+    /// Length that is subtracted to give the gap [m]: 0 between primitives, n . p for a half-space through p, minus the
+    /// largest distance for a limit.
     pub offset: f64,
-    /// Gap below which the spring pushes [m]. For an upper limit of a distance: minus that limit.
-    pub desired: f64,
-    /// Stiffness k in units of the bodies' own stiffness at the contact [1]: 1 / sum beta_i^2 / (n . H_ii n)
-    /// over free vertices, with H_ii the diagonal blocks of the Newton system, inertia included. Springs of
-    /// light bodies and of strands are softer.
+    /// Gap from which on nothing acts [m].
+    pub reach: f64,
+    /// Gap at which the force becomes infinite [m], below the reach.
+    pub floor: f64,
+    /// Gap at the start of the time step [m]. The drag pulls to it, and friction at the start is a share of the force
+    /// there.
+    pub start_gap: f64,
+    /// Stiffness at the reach in units of 1 / sum beta_i^2 / K_i over the free vertices [1]. K_i is the stiffness of a
+    /// vertex: for a contact inertia (mass / dt^2) plus the body's stiffness at rest in its softest direction, limited
+    /// by the inertia of the whole body; for a limit inertia plus a share of the stiffness in the stiffest direction.
+    /// Nearer to the floor a contact is stiffer without bound.
     pub stiffness: f64,
-    /// Coefficient of friction mu [1]; 0: the force is along the normal.
+    /// Coefficient of friction mu [1]; 0: the force is along the normal. A limit has none.
     pub friction: f64,
-    /// Known force of the contact on the side that the normal points to [N]: its multipliers, lambda n + tau.
-    pub force: Vector,
+    /// Friction at the start of the time step on the side that the normal points to, as a multiple of the normal force
+    /// at the start [1]. Callers keep it from the end of the last time step, see
+    /// [`crate::Dynamics::contact_forces`]; with zero, a contact that sticks first slips a little in each time step.
+    pub friction_ratio: Vector,
 }

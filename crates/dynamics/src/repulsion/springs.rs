@@ -1,6 +1,6 @@
 //! All springs of a scene, over nodes.
 
-use super::spring::RepulsionSpring;
+use super::spring::{RepulsionSpring, SpringKind};
 use super::state::SpringState;
 use crate::error::StepError;
 use crate::linear::springs::{LinearSprings, visit_nodes};
@@ -21,15 +21,16 @@ pub(crate) struct Repulsion {
     pub(super) places: Vec<[u32; 4]>,
     /// The share of obstacles in s [m].
     fixed: Vec<Vector>,
-    /// The part of the desired gap that prescribed nodes lack, see [`Self::note_lacking`] [m].
+    /// The part of the gap that prescribed nodes lack, see [`Self::note_lacking`] [m].
     lacking: Vec<f64>,
     /// s at the start of the time step [m].
     anchors: Vec<Vector>,
+    /// What changes from solve to solve.
     pub(super) states: Vec<SpringState>,
-    /// Whether the active set (which springs push, stick and slide) is a guess. Energies take a guess as
-    /// given until the first update.
-    pub(super) guessed: bool,
-    /// The active springs at the last linearization.
+    /// Whether the next linearization takes sliding friction for as stiff in its direction as across it. That is a
+    /// majorizer of its energy: steps are shorter, but do not overshoot.
+    pub majorizes_friction: bool,
+    /// The springs that pushed at the last linearization.
     pub(super) linear: LinearSprings,
 }
 
@@ -42,12 +43,18 @@ impl Repulsion {
             {
                 return refuse("it names a vertex that does not exist");
             }
-            let numbers = s.weights.iter().chain(s.normal.iter()).chain(s.force.iter());
-            if !numbers.chain([&s.offset, &s.desired]).all(|value| value.is_finite()) {
-                return refuse("its weights, normal, offset, desired gap and force must be finite");
+            let numbers = s.weights.iter().chain(s.normal.iter()).chain(s.friction_ratio.iter());
+            if !numbers.chain([&s.offset, &s.reach, &s.floor, &s.start_gap]).all(|value| value.is_finite()) {
+                return refuse("its weights, normal, offset, gaps and friction must be finite");
             }
             if ![s.stiffness, s.friction].iter().all(|value| *value >= 0.0 && value.is_finite()) {
                 return refuse("its stiffness and friction must be finite and at least 0");
+            }
+            if s.floor >= s.reach {
+                return refuse("its floor must be below its reach");
+            }
+            if s.kind == SpringKind::Limit && s.friction != 0.0 {
+                return refuse("a limit of a distance has no friction");
             }
         }
         let node = |v: u32, w: f64| if w == 0.0 { NO_NODE } else { model.vertex_node[v as usize] };
@@ -72,8 +79,8 @@ impl Repulsion {
             fixed: vec![Vector::zeros(); count],
             lacking: vec![0.0; count],
             anchors: vec![Vector::zeros(); count],
-            states: vec![SpringState::INACTIVE; count],
-            guessed: false,
+            states: vec![SpringState::default(); count],
+            majorizes_friction: false,
             linear: LinearSprings::new(model.node_vertex.len()),
         })
     }
@@ -88,7 +95,7 @@ impl Repulsion {
         &self.watched
     }
 
-    /// The active springs at the last linearization.
+    /// The springs that pushed at the last linearization.
     pub fn linear(&self) -> &LinearSprings {
         &self.linear
     }
@@ -113,12 +120,12 @@ impl Repulsion {
         });
     }
 
-    /// Notes the part of each desired gap that springs do not ask for, with watched nodes at `x`, those that are not
+    /// Notes what is added to each gap because of prescribed nodes, with watched nodes at `x`, those that are not
     /// `free` at their ends; `free` has one entry per node.
     ///
-    /// Where prescribed nodes come nearer than desired, the free nodes of their side would have to make up for it. With
-    /// a closest point near a prescribed node they have a short lever, and would have to go far. So springs ask free
-    /// nodes for no more than the gap in their own places.
+    /// Where prescribed nodes come nearer than the reach, the free nodes of their side would have to make up for it.
+    /// With a closest point near a prescribed node they have a short lever, and would have to go far. So a prescribed
+    /// node counts as if it were at the reach.
     pub(super) fn note_lacking(&mut self, free: &[bool], x: &[Vector]) {
         for (spring, lacking) in self.lacking.iter_mut().enumerate() {
             let (s, nodes, places) = (&self.springs[spring], &self.nodes[spring], &self.places[spring]);
@@ -135,68 +142,78 @@ impl Repulsion {
                 let opposite: Vector = others.map(|k| x[places[k] as usize] * s.weights[k]).sum();
                 let opposite = opposite + self.fixed[spring];
                 let gap = |k: usize| s.normal.dot(&(x[places[k] as usize] * sign + opposite)) - s.offset;
-                *lacking +=
-                    prescribed.map(|k| s.weights[k].abs() * (s.desired - gap(k)).max(0.0)).sum::<f64>();
+                *lacking += prescribed.map(|k| s.weights[k].abs() * (s.reach - gap(k)).max(0.0)).sum::<f64>();
             }
         }
     }
 
-    /// Depth below the desired gap [m] and slip [m] with watched nodes at `x`.
+    /// Gap [m] and slip [m] with watched nodes at `x`.
     #[inline]
-    pub(super) fn depth_and_slip(&self, spring: usize, x: &[Vector]) -> (f64, Vector) {
+    pub(super) fn gap_and_slip(&self, spring: usize, x: &[Vector]) -> (f64, Vector) {
         let s = &self.springs[spring];
+        let sides = self.sides(spring, x);
+        if s.kind == SpringKind::Limit {
+            return (-s.offset - sides.norm(), Vector::zeros());
+        }
+        let moved = sides - self.anchors[spring];
+        let gap = s.normal.dot(&sides) - s.offset + self.lacking[spring];
+        (gap, moved - s.normal * s.normal.dot(&moved))
+    }
+
+    /// Gap at the start of the time step [m], with what prescribed nodes lack at its end.
+    pub(super) fn start_gap(&self, spring: usize) -> f64 {
+        self.springs[spring].start_gap + self.lacking[spring]
+    }
+
+    /// The direction in which the gap opens, with watched nodes at `x`: that of a limit turns with its ends.
+    pub(super) fn normal(&self, spring: usize, x: &[Vector]) -> Vector {
+        let s = &self.springs[spring];
+        match s.kind {
+            SpringKind::Contact => s.normal,
+            SpringKind::Limit => (-self.sides(spring, x)).try_normalize(0.0).unwrap_or(s.normal),
+        }
+    }
+
+    /// s = sum beta_i x_i with watched nodes at `x` [m].
+    fn sides(&self, spring: usize, x: &[Vector]) -> Vector {
         let mut sides = self.fixed[spring];
-        for (&place, weight) in self.places[spring].iter().zip(s.weights) {
+        for (&place, weight) in self.places[spring].iter().zip(self.springs[spring].weights) {
             if place != NO_NODE {
                 sides += x[place as usize] * weight;
             }
         }
-        let moved = sides - self.anchors[spring];
-        let desired = s.desired - self.lacking[spring];
-        (desired + s.offset - s.normal.dot(&sides), moved - s.normal * s.normal.dot(&moved))
+        sides
     }
 
-    /// Forces of the springs with watched nodes at `x` [N], by spring: the multipliers that the next solve starts
-    /// from.
+    /// Forces of the springs with watched nodes at `x` [N], by spring. Friction is bounded by the normal force there.
     pub fn forces(&self, x: &[Vector]) -> Vec<Vector> {
         let force = |spring: usize| {
             let (state, s) = (&self.states[spring], &self.springs[spring]);
-            if !state.active {
+            if !state.acts {
                 return Vector::zeros();
             }
-            let (depth, slip) = self.depth_and_slip(spring, x);
-            let lambda = (state.lambda + state.stiffness * depth).max(0.0);
-            let friction = state.coulomb(state.tau(), &slip, s.friction * lambda);
-            s.normal * lambda + SpringState { friction, ..*state }.tau()
+            let (gap, slip) = self.gap_and_slip(spring, x);
+            let push = state.push(gap).force;
+            let bound = s.friction * push;
+            self.normal(spring, x) * push + state.rub(&slip, bound).force
         };
         (0..self.springs.len()).into_par_iter().with_min_len(CHUNK).map(force).collect()
     }
 
-    /// Subtracts the known forces of the springs on the nodes from `gradient` [N].
-    pub fn subtract_known_forces(&self, gradient: &mut [Vector]) {
-        for (spring, nodes) in self.springs.iter().zip(&self.nodes) {
-            for (&node, weight) in nodes.iter().zip(spring.weights) {
-                if node != NO_NODE {
-                    gradient[node as usize] -= spring.force * weight;
-                }
-            }
-        }
-    }
-
-    /// The known forces of the springs on the watched nodes [N].
-    pub fn known_forces(&self) -> Vec<Vector> {
+    /// The forces of the springs on the watched nodes at `x` [N].
+    pub fn forces_on_nodes(&self, x: &[Vector]) -> Vec<Vector> {
         let mut forces = vec![Vector::zeros(); self.watched.len()];
-        for (spring, places) in self.springs.iter().zip(&self.places) {
+        for ((force, spring), places) in self.forces(x).iter().zip(&self.springs).zip(&self.places) {
             for (&place, weight) in places.iter().zip(spring.weights) {
                 if place != NO_NODE {
-                    forces[place as usize] += spring.force * weight;
+                    forces[place as usize] += force * weight;
                 }
             }
         }
         forces
     }
 
-    /// Calls `visit` with the nodes of every spring, active or not, see [`visit_nodes`].
+    /// Calls `visit` with the nodes of every spring, whether it pushes or not, see [`visit_nodes`].
     pub fn for_each_spring(&self, mut visit: impl FnMut(&[u32], bool)) {
         let springs = self.nodes.iter().zip(&self.springs);
         springs.for_each(|(nodes, spring)| visit_nodes(nodes, &spring.weights, &mut visit));

@@ -20,6 +20,7 @@ struct Vertex {
 const OBSTACLE: u32 = 1u;
 const PRESCRIBED: u32 = 2u;
 const SELF_COLLIDES: u32 = 4u;
+const KNOWN: u32 = 8u;
 
 struct Ball {
     center: vec3<i32>,

@@ -124,6 +124,9 @@ impl<E: Engine> Collision<E> {
                 growth: self.lengths.growth,
                 range: self.settings.range as f32,
                 first_half_space: self.sizes.vertices as u32,
+                known: self.settings.known as f32,
+                guarded: self.settings.guarded as f32,
+                guarded_floor: self.settings.guarded_floor as f32,
             },
             self.buffers.capacity,
         );

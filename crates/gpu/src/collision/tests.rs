@@ -68,11 +68,20 @@ fn states(collision: &mut Collision<TwinEngine>) -> HashMap<Candidate, PairState
 fn desired_distances_are_those_of_bodies_rest_shapes_and_gaps() {
     let (model, x) = sheets();
     let rest: Vec<Point> = x.iter().map(|x| x * 1.5 + Vector::new(7.0, 0.0, 0.0)).collect();
-    for (thickness, growth) in [(None, f64::INFINITY), (None, 1e-4), (Some(2e-3), f64::INFINITY)] {
+    let cases = [
+        (None, f64::INFINITY, false),
+        (None, 1e-4, false),
+        (Some(2e-3), f64::INFINITY, false),
+        (None, f64::INFINITY, true),
+    ];
+    // The upper sheet.
+    let upper: Vec<bool> = model.vertex_body().iter().map(|body| *body == 0).collect();
+    for (thickness, growth, knows) in cases {
         let mut collision = collision(&model, &x, &rest, thickness);
-        collision.begin(&Call { growth, ..Call::toward(&x) }).unwrap();
+        let known = if knows { upper.as_slice() } else { &[] };
+        collision.begin(&Call { growth, known, ..Call::toward(&x) }).unwrap();
         collision.step().unwrap();
-        let (mut neighbors, mut close) = (0, 0);
+        let (mut neighbors, mut close, mut guarded) = (0, 0, 0);
         for (candidate, state) in states(&mut collision) {
             let edge = |e: u32| model.topology().edges[e as usize];
             let (kind, vertices) = if candidate.kind() == Kind::EdgeEdge as u32 {
@@ -90,12 +99,16 @@ fn desired_distances_are_those_of_bodies_rest_shapes_and_gaps() {
                 delta = delta.min(0.5 * distance(&rest));
                 neighbors += usize::from(delta < DELTA);
             }
-            let desired = delta.min(distance(&x) + growth);
+            let mut desired = delta.min(distance(&x) + growth);
             close += usize::from(desired < delta);
             let least = match thickness {
                 None => MIN_SEPARATION.min(0.1 * desired),
                 Some(thickness) => thickness.min(delta / 1.5).min(distance(&x)),
             };
+            if knows && body(0).min(body(kind.side_a())) == 0 && distance(&x) < 1.3 * delta {
+                desired = desired.min((0.7 * distance(&x)).max(least + 0.35 * (delta - least)));
+                guarded += usize::from(desired < 0.9 * delta);
+            }
             let quantum = collision.grid.quantum();
             let [found, found_least] = [state.desired, state.min_separation].map(|l| f64::from(l) * quantum);
             // Each of the closest points is off by the rounding to the grid.
@@ -103,6 +116,7 @@ fn desired_distances_are_those_of_bodies_rest_shapes_and_gaps() {
             assert!((found_least - least).abs() < 2.0 * quantum, "{candidate:?}: {found_least} {least}");
         }
         assert!(neighbors > 50 && (close > 50) == growth.is_finite(), "{neighbors} {close}");
+        assert_eq!(guarded > 50, knows, "{guarded}");
     }
 }
 

@@ -16,6 +16,9 @@ pub struct Params {
     pub growth: f32,
     pub range: f32,
     pub first_half_space: u32,
+    pub known: f32,
+    pub guarded: f32,
+    pub guarded_floor: f32,
 }
 
 const MIN_SEPARATION_SHARE: f32 = 0.1;
@@ -108,11 +111,17 @@ fn first_state(
             delta = delta.min(0.5 * rest_distance(pair, rest));
         }
     }
-    let desired = delta.min(separation.distance.max(0.0) + params.growth);
+    let distance = separation.distance.max(0.0);
+    let mut desired = delta.min(distance + params.growth);
     let min_separation = if thickness >= 0.0 {
         thickness.min(delta / MIN_SEPARATION_MARGIN).min(separation.width.max(0.0))
     } else {
         params.min_separation.min(MIN_SEPARATION_SHARE * desired)
     };
+    let is_known = pair.vertices.iter().any(|&v| vertices[v as usize].flags & Vertex::KNOWN != 0);
+    if is_known && distance < params.known * delta {
+        let lowest = min_separation + params.guarded_floor * (delta - min_separation);
+        desired = desired.min(lowest.max(params.guarded * distance));
+    }
     PairState { desired, min_separation, range, ..PairState::NEW }
 }

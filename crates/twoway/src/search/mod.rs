@@ -20,6 +20,7 @@ use bowknot_proximity::{CandidateList, PairList, ProximitySearch};
 use bowknot_stepper::{Bound, TrustRegionRule};
 use flight::Flight;
 use near::NearPairs;
+pub use near::{GUARDED, GUARDED_FLOOR, KNOWN};
 use regions::Regions;
 use std::time::Instant;
 

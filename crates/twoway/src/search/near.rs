@@ -6,6 +6,7 @@
 
 use super::regions::Regions;
 use super::sides::{Sides, range_count, range_of};
+use crate::call::CallInput;
 use crate::scene::CollisionScene;
 use crate::spacing::MIN_SEPARATION_MARGIN;
 use crate::state::{ContactSet, ResolveState};
@@ -223,7 +224,7 @@ impl NearPairs {
                     *multiplier = old.multipliers[matched as usize];
                     return 0;
                 }
-                let first = first_values(scene, kind, pair, separation, growth);
+                let first = first_values(scene, kind, pair, separation, growth, &state.call);
                 (*desired, *min_separation, *multiplier) = (first.desired, first.min_separation, 0.0);
                 usize::from(first.lowered)
             });
@@ -349,6 +350,16 @@ impl Lists<'_> {
     }
 }
 
+/// Distance in the desired one below which the target knows a contact.
+pub const KNOWN: f64 = 1.3;
+
+/// Share of its gap that the row of a contact guards which the target knows.
+pub const GUARDED: f64 = 0.7;
+
+/// Smallest distance that such a row asks for, in the way from the minimum separation to the desired distance. At the minimum separation
+/// the forward step closes no pair further, and a pair that is held there is stuck.
+pub const GUARDED_FLOOR: f64 = 0.35;
+
 /// Data of a pair that is new in this call.
 #[derive(Clone, Copy, Debug, Default)]
 struct FirstValues {
@@ -365,6 +376,7 @@ fn first_values(
     pair: &Pair,
     separation: &Separation,
     growth: f64,
+    call: &CallInput,
 ) -> FirstValues {
     let (model, rest) = (scene.model(), scene.rest());
     let spacing = scene.spacing().of(model, kind, pair);
@@ -379,6 +391,13 @@ fn first_values(
             guaranteed.min(unlimited / MIN_SEPARATION_MARGIN).min(separation.width.max(0.0))
         }
     };
+    let is_known = pair.vertices[..kind.vertex_count()].iter().any(|&v| call.is_known(v as usize));
+    let (unlimited, _) = rule.without_growth_limit(model, kind, pair, rest);
+    if is_known && separation.distance < KNOWN * unlimited {
+        let least = min_separation + GUARDED_FLOOR * (unlimited - min_separation);
+        let desired = (GUARDED * separation.distance).max(least).min(desired);
+        return FirstValues { desired, min_separation, lowered };
+    }
     FirstValues { desired, min_separation, lowered }
 }
 

@@ -1,6 +1,6 @@
 //! Newton's method with its vectors on a device: what a backend gets and does.
 //!
-//! The host decides (active sets, line searches, when to end), the backend computes. Between [`NewtonBackend::begin_target`]
+//! The host decides (springs, line searches, when to end), the backend computes. Between [`NewtonBackend::begin_target`]
 //! and [`NewtonBackend::target`] no vector over all nodes crosses to the other side: the host sees sums, and positions of the
 //! nodes that springs act on.
 //!

@@ -9,7 +9,6 @@ use crate::linear::failure::LinearBackendError;
 use crate::linear::springs::LinearSprings;
 use crate::repulsion::springs::Repulsion;
 use bowknot_geometry::Vector;
-use nalgebra::Matrix3;
 
 /// Why bodies on a device cannot go on.
 #[derive(Debug)]
@@ -31,14 +30,8 @@ pub type Answer<T> = Result<T, Lost>;
 
 /// State and operations of a target: the iterate x, the step p, the trial, and one kept trial.
 pub trait Bodies: Send {
-    /// Makes the iterate that of the beginning of the target.
-    fn begin_again(&mut self) -> Answer<()>;
-
     /// Computes gradient and matrix of the bodies at the iterate, without springs.
     fn linearize(&mut self, filter: Filter) -> Answer<()>;
-
-    /// The diagonal blocks of that matrix at the watched nodes [N/m].
-    fn diagonal(&mut self) -> Answer<Vec<Matrix3<f64>>>;
 
     /// The watched nodes at the iterate [m].
     fn iterate(&self) -> Vec<Vector>;
@@ -112,12 +105,6 @@ pub struct BodyEnergies {
     pub internal: f64,
     /// What rounding to single precision may change of the difference to the beginning of the search.
     pub rounding: f64,
-}
-
-impl BodyEnergies {
-    pub fn total(&self) -> f64 {
-        self.kinetic + self.internal
-    }
 }
 
 /// What a step promises.

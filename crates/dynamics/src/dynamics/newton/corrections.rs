@@ -66,7 +66,7 @@ impl Newton<'_> {
     /// Makes one more iteration with an accurate solve if the last solve was inexact.
     pub(super) fn refine(&mut self, info: &mut NewtonInfo) -> Answer<()> {
         if info.cg.residual > self.params.newton.cg_tolerance {
-            self.repulsion.update_active_set(&self.bodies.trial());
+            self.repulsion.update(&self.bodies.trial());
             self.bodies.start_from_trial()?;
             info.add(&self.iterate(Accuracy::Full)?);
         }

@@ -13,7 +13,6 @@ use crate::nodes::CHUNK;
 use crate::params::DynamicsParams;
 use crate::repulsion::springs::Repulsion;
 use bowknot_geometry::Vector;
-use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 /// Steps shorter than this share of the largest coordinate are rounding errors.
@@ -26,8 +25,8 @@ pub struct CpuBodies<'a> {
     pub step: &'a Step,
     pub work: &'a mut Workspace,
     watched: &'a [u32],
-    /// Where the target began: the iterate, and displacements of the nodes that are not free to their ends.
-    began: [Vec<Vector>; 2],
+    /// The iterate that the target began with.
+    began: Vec<Vector>,
     kept: Vec<Vector>,
 }
 
@@ -40,7 +39,7 @@ impl<'a> CpuBodies<'a> {
         work: &'a mut Workspace,
         watched: &'a [u32],
     ) -> Self {
-        let began = [work.x.clone(), work.imposed.clone()];
+        let began = work.x.clone();
         Self { model, params, step, work, watched, began, kept: Vec::new() }
     }
 
@@ -50,19 +49,9 @@ impl<'a> CpuBodies<'a> {
 }
 
 impl Bodies for CpuBodies<'_> {
-    fn begin_again(&mut self) -> Answer<()> {
-        self.work.x.copy_from_slice(&self.began[0]);
-        self.work.imposed.copy_from_slice(&self.began[1]);
-        Ok(())
-    }
-
     fn linearize(&mut self, filter: Filter) -> Answer<()> {
         self.linearize_bodies(filter);
         Ok(())
-    }
-
-    fn diagonal(&mut self) -> Answer<Vec<Matrix3<f64>>> {
-        Ok(self.watched.iter().map(|&node| self.work.values.diagonal[node as usize]).collect())
     }
 
     fn iterate(&self) -> Vec<Vector> {
@@ -150,7 +139,7 @@ impl Bodies for CpuBodies<'_> {
     }
 
     fn distance_from_start(&self) -> f64 {
-        largest_distance(&self.work.trial, &self.began[0], &self.work.free)
+        largest_distance(&self.work.trial, &self.began, &self.work.free)
     }
 
     fn start_from_trial(&mut self) -> Answer<()> {
@@ -175,8 +164,9 @@ impl Bodies for CpuBodies<'_> {
         filter: Filter,
     ) -> Answer<Imbalance> {
         self.linearize_bodies(filter);
-        let Self { model, step, work, .. } = self;
-        repulsion.subtract_known_forces(&mut work.gradient);
+        let forces = repulsion.forces_on_nodes(&self.iterate());
+        let Self { model, step, work, watched, .. } = self;
+        watched.iter().zip(forces).for_each(|(&node, force)| work.gradient[node as usize] -= force);
         for node in 0..work.x.len() {
             let counts = work.free[node] && counted[node];
             work.right_side[node] = if counts { -work.gradient[node] } else { Vector::zeros() };
@@ -185,7 +175,7 @@ impl Bodies for CpuBodies<'_> {
             pattern: &model.pattern,
             values: &work.values,
             scalar: &step.scalar,
-            springs: None,
+            springs: (!repulsion.linear().is_empty()).then_some(repulsion.linear()),
             free: &work.free,
         };
         work.solver.precondition(&system, &work.x, &work.right_side, &mut work.step);

@@ -116,20 +116,8 @@ impl DeviceBodies<'_> {
 }
 
 impl Bodies for DeviceBodies<'_> {
-    fn begin_again(&mut self) -> Answer<()> {
-        let watched = self.backend.begin_again()?;
-        self.iterate = self.beginning.with_ends(watched);
-        Ok(())
-    }
-
     fn linearize(&mut self, filter: Filter) -> Answer<()> {
         Ok(self.backend.linearize(filter == Filter::Absolute)?)
-    }
-
-    fn diagonal(&mut self) -> Answer<Vec<Matrix3<f64>>> {
-        let mut blocks = Vec::new();
-        self.backend.diagonal(&mut blocks)?;
-        Ok(blocks)
     }
 
     fn iterate(&self) -> Vec<Vector> {
@@ -251,7 +239,7 @@ impl Bodies for DeviceBodies<'_> {
         counted: &[bool],
         filter: Filter,
     ) -> Answer<Imbalance> {
-        let known = repulsion.known_forces();
+        let known = repulsion.forces_on_nodes(&self.iterate());
         let found = self.backend.out_of_balance(&known, counted, filter == Filter::Absolute)?;
         Ok(Imbalance { squared_force: found.squared_force, products: found.products })
     }

@@ -39,25 +39,23 @@ impl Newton<'_> {
         self.bodies.restore_momentum(&flying_groups(self.model, self.repulsion, self.free))?;
         let mut info = NewtonInfo { iterations: 1, cg: solved.info, ..NewtonInfo::default() };
         self.search_line(&mut info)?;
+        self.repulsion.majorizes_friction = info.step_length < 1.0;
         info.max_displacement = self.bodies.distance_from_iterate();
         Ok(info)
     }
 
-    /// Computes gradient and matrix at the iterate. Springs that have not been prepared get their stiffness and the guess
-    /// of the active set.
+    /// Computes gradient and matrix at the iterate. Springs that have not been prepared get their laws.
     pub fn linearize(&mut self) -> Answer<()> {
         self.bodies.linearize(Filter::new(self.params.newton.hessian_filter, self.is_first))?;
         if self.repulsion.is_empty() {
             return Ok(());
         }
         if std::mem::take(&mut self.course.unprepared) {
-            let diagonal = self.bodies.diagonal()?;
-            let iterate = (!self.is_first).then(|| self.bodies.iterate_at_ends());
-            let inertial = self.bodies.inertial_at_ends();
-            let rate = 1.0 / self.dt;
-            self.repulsion.prepare(self.model, &diagonal, rate, self.free, &inertial, iterate.as_deref());
+            let inertial = self.is_first.then(|| self.bodies.inertial_at_ends());
+            let iterate = self.bodies.iterate_at_ends();
+            self.repulsion.prepare(self.model, 1.0 / self.dt, self.free, &iterate, inertial.as_deref());
         }
-        self.repulsion.linearize(&self.bodies.iterate());
+        self.repulsion.linearize(&self.bodies.iterate(), true);
         Ok(())
     }
 }

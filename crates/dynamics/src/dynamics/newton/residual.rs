@@ -6,10 +6,14 @@ use crate::dynamics::info::Residual;
 use crate::elements::filter::Filter;
 
 impl Newton<'_> {
-    /// The residual of the time step at the iterate over the nodes that are `counted`; contact forces are the
-    /// known forces of the springs.
+    /// The residual of the time step at the iterate over the nodes that are `counted`; contact forces are
+    /// those of the springs there. The next target prepares the springs again.
     pub fn residual(&mut self, counted: &[bool]) -> Answer<Residual> {
         let filter = Filter::new(self.params.newton.hessian_filter, self.is_first);
+        let iterate = self.bodies.iterate();
+        self.repulsion.prepare(self.model, 1.0 / self.dt, self.free, &iterate, None);
+        self.repulsion.linearize(&iterate, false);
+        self.course.unprepared = true;
         let imbalance = self.bodies.out_of_balance(self.repulsion, counted, filter)?;
         let mut largest: f64 = 0.0;
         for (component, product) in self.model.components.iter().zip(&imbalance.products) {

@@ -46,9 +46,6 @@ pub struct DeviceStep {
 /// What the iterations of a time step have found out.
 #[derive(Debug, Default)]
 pub struct Course {
-    /// Potential without springs that no target may exceed by more than springs have stored: that at the
-    /// first iterate of the step [J].
-    pub max_potential: Option<f64>,
     /// Whether springs must be prepared: they have been set since the last Newton iteration, or the step has
     /// just begun.
     pub unprepared: bool,
