@@ -58,6 +58,7 @@ impl Recorder {
             time_step: Some(problem.time_step),
             groups: problem.groups.to_vec(),
             start: problem.start.to_vec(),
+            known: problem.known.to_vec(),
             ..self.fixed.clone()
         }
     }

@@ -62,7 +62,7 @@ impl States {
             time_step: self.time_step,
             start: (!self.start.is_empty()).then_some(&self.start),
             groups: &self.groups,
-            known: &[],
+            known: &self.known,
             max_steps: None,
         }
     }

@@ -14,7 +14,7 @@ use std::io::{Seek, Write};
 use std::path::Path;
 
 /// The arrays of a problem.
-const ARRAYS: [&str; 24] = [
+const ARRAYS: [&str; 25] = [
     "x",
     "y",
     "F",
@@ -36,6 +36,7 @@ const ARRAYS: [&str; 24] = [
     "pair_friction",
     "group",
     "start",
+    "known",
     filters::GROUPS,
     filters::MASK,
     filters::SELF_COLLISION,
@@ -51,7 +52,7 @@ const ARRAYS: [&str; 24] = [
 /// `delta` [m], `friction`, `stretch_limit` [1], each nan where the body leaves it open; `plane_thickness[h]`
 /// [m] and `plane_friction[h]` likewise; `pair_friction[k,3]`: two bodies, half-spaces numbered after the
 /// bodies, and their coefficient. `group[n]`: pins that go as one, -1 for none. `start[n,3]` [m]: what
-/// friction measures slip from. `collision_groups[b]`, `collides_with[b]` (bits of the groups that a body is in,
+/// friction measures slip from. `known[n]`: vertices whose contacts the target knows. `collision_groups[b]`, `collides_with[b]` (bits of the groups that a body is in,
 /// and of those that it meets) and `self_collision[b]`: which bodies collide.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct States {
@@ -89,6 +90,8 @@ pub struct States {
     pub groups: Vec<u32>,
     /// Positions at the start of the time step; empty: those of `x`.
     pub start: Vec<Point>,
+    /// Vertices whose contacts the target knows; empty: none.
+    pub known: Vec<bool>,
     /// Which bodies each body collides with; empty: each with all, and deformable ones with themselves.
     pub filters: Vec<BodyFilter>,
 }
@@ -128,6 +131,7 @@ impl States {
             pair_frictions: pair_frictions(&mut archive, count, half_spaces.len())?,
             groups: groups(&mut archive, n)?,
             start: archive.points("start", Some(n))?.unwrap_or_default(),
+            known: flags(&mut archive, "known", n)?,
             filters: filters::read(&mut archive, &body, &obstacle)?,
             triangles: archive.elements("F", n)?,
             strands: archive.elements("E", n)?,
@@ -207,6 +211,9 @@ impl States {
         }
         if !self.start.is_empty() && self.start != self.x {
             archive.add_array("start", &points(&self.start))?;
+        }
+        if self.known.contains(&true) {
+            archive.add_array("known", &Array1::from_iter(self.known.iter().copied()))?;
         }
         Ok(())
     }

@@ -142,6 +142,7 @@ fn states() -> States {
             friction: 0.75,
         }],
         groups: vec![3, 3, ResolveInput::NO_GROUP, 0, ResolveInput::NO_GROUP, ResolveInput::NO_GROUP],
+        known: vec![true, true, true, false, false, false],
         filters: vec![
             BodyFilter { groups: 1 << 31, self_collision: false, ..BodyFilter::DEFORMABLE },
             BodyFilter { groups: 0b1010, mask: 0x8000_0001, ..BodyFilter::DEFORMABLE },

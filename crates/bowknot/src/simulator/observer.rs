@@ -28,6 +28,8 @@ pub struct CollisionProblem<'a> {
     pub start: &'a [Point],
     /// Pinned vertices that move as one, see [`ResolveInput::groups`].
     pub groups: &'a [u32],
+    /// Vertices whose contacts the dynamics knows, see [`ResolveInput::known`].
+    pub known: &'a [bool],
 }
 
 /// A state that the two-way method has accepted.

@@ -367,6 +367,7 @@ impl Simulator {
                 time_step: *dt,
                 start: &start[..count],
                 groups,
+                known: contacts.known(count),
             };
             if observer.problem(&problem).is_break() {
                 return Err(SimulationError::Interrupted);

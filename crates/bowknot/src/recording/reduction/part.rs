@@ -99,6 +99,7 @@ impl States {
             pair_frictions: self.pair_frictions.iter().filter_map(pair).collect(),
             groups: pick(&self.groups, &vertices),
             start: pick(&self.start, &vertices),
+            known: pick(&self.known, &vertices),
             filters: filters::kept(pick(&self.filters, &old_bodies)),
         }
     }
