@@ -1,6 +1,6 @@
 //! All that a simulation must remember between two time steps.
 
-use super::contacts::ContactForce;
+use super::friction::ContactForce;
 use super::sleep::SleepState;
 use bowknot_geometry::{Point, Vector};
 

@@ -6,7 +6,7 @@
 //! (`taut.rs`).
 
 use super::crowding::share_stiffness;
-use super::friction::FrictionMemory;
+use super::friction::{ContactForce, FrictionMemory};
 use super::solved::solved_vertices;
 use super::taut::LimitedEdges;
 use bowknot_constraints::{Feature, FrictionModel};
@@ -51,17 +51,6 @@ pub(super) struct Contacts {
     touching: Touching,
     /// The component of each vertex, see [`DynamicsModel::components_of_vertices`]. A component is part of one body.
     components: Vec<u32>,
-}
-
-/// The force that a contact carries.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactForce {
-    /// The two features in contact.
-    pub features: [Feature; 2],
-    /// Unit normal, towards the first feature [1].
-    pub normal: Vector,
-    /// The force on the first feature, friction included [N].
-    pub force: Vector,
 }
 
 /// A pair that is a contact.

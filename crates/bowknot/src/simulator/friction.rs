@@ -4,11 +4,21 @@
 //! explains. So a contact begins a time step with the ratio of friction to pressure that it ended the last one with. One
 //! that is new, as a vertex has slid to another triangle, takes the ratio of its vertices against the same body.
 
-use super::contacts::ContactForce;
 use bowknot_constraints::Feature;
 use bowknot_geometry::{Topology, Vector};
 use bowknot_twoway::CollisionScene;
 use rustc_hash::FxHashMap;
+
+/// The force that a contact carries.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactForce {
+    /// The two features in contact.
+    pub features: [Feature; 2],
+    /// Unit normal, towards the first feature [1].
+    pub normal: Vector,
+    /// The force on the first feature, friction included [N].
+    pub force: Vector,
+}
 
 /// A vertex, and a body that touches it; half-spaces count down from `u32::MAX`.
 type Side = (u32, u32);

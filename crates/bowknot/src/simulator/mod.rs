@@ -29,8 +29,8 @@ mod waking;
 
 pub use backend::{BackendError, CollisionBackend, Cpu};
 pub use checkpoint::Checkpoint;
-pub use contacts::ContactForce;
 pub use error::{SimulationError, describe_intersections};
+pub use friction::ContactForce;
 pub use observer::{AcceptedStep, CollisionProblem, Iterated, SimulationObserver};
 pub use process::{cpu_seconds, peak_memory_bytes};
 #[cfg(feature = "gpu")]

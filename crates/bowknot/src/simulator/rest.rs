@@ -5,8 +5,8 @@
 //! between bodies asleep are put aside and handed back when these wake, so that a pile need not settle anew.
 
 use super::approach::BodyElements;
-use super::contacts::ContactForce;
 use super::error::SimulationError;
+use super::friction::ContactForce;
 use super::sleep::{Hold, Sleep};
 use bowknot_dynamics::{Dynamics, Energies};
 use bowknot_geometry::Point;

@@ -8,8 +8,9 @@
 
 use super::backend::{BackendError, CollisionBackend, Cpu};
 use super::checkpoint::Checkpoint;
-use super::contacts::{ContactForce, Contacts};
+use super::contacts::Contacts;
 use super::error::{SimulationError, describe_intersections};
+use super::friction::ContactForce;
 use super::inside;
 use super::interior::{self, Interior};
 use super::observer::{CollisionProblem, Iterated, Relay, SimulationObserver};

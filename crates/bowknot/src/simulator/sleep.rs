@@ -10,7 +10,7 @@
 //! Unlike there, an island must be held by something at rest: an obstacle, a half-space or a pin. What floats
 //! without gravity may drift as slowly as it likes, and the momentum of free bodies is not changed.
 
-use super::contacts::ContactForce;
+use super::friction::ContactForce;
 use bowknot_dynamics::Touching;
 use bowknot_geometry::{Point, UnionFind};
 use bowknot_scene::SleepParams;

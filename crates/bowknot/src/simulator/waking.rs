@@ -1,8 +1,8 @@
 //! Puts bodies to sleep after a time step, and wakes them before one.
 
 use super::approach::Motion;
-use super::contacts::ContactForce;
 use super::error::SimulationError;
+use super::friction::ContactForce;
 use super::rest::{Awake, Rest};
 use super::simulator::{Scratch, Simulator, resolve_error, time_of};
 use super::sleep::{SleepState, part};
