@@ -18,7 +18,7 @@ use rayon::prelude::*;
 const TAUT: f64 = 0.98;
 
 /// Share of its limit up to which nothing pulls.
-const SLACK: f64 = 0.996;
+const SLACK: f64 = 0.999;
 
 /// Ratio of the limit to the length at the start.
 const OVER_LIMIT: f64 = 1.003;
