@@ -330,7 +330,8 @@ pub fn table_edge(pull: f64, friction: f64, steps: usize, settings: &[String]) -
     let rows = (LENGTH / EDGE).round() as usize;
     let stations: Vec<f64> = (0..=rows).map(|row| LENGTH * row as f64 / rows as f64 - lying).collect();
     let columns = (WIDTH / EDGE).round() as usize;
-    let start = strip("sheet.obj", &stations, delta, columns, WIDTH);
+    // Where contacts carry load: between the contact distance and the reach of their forces.
+    let start = strip("sheet.obj", &stations, 1.1 * delta, columns, WIDTH);
     let end = 0.5 * PI * around;
     let table: Vec<f64> = (0..=8)
         .map(|k| -0.4 + 0.05 * f64::from(k))

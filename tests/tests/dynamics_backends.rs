@@ -266,12 +266,13 @@ impl<E: Metering> NewtonBackend for Counted<E> {
 
     fn out_of_balance(
         &mut self,
+        springs: &AssemblySprings<'_>,
         known: &[Vector],
         counted: &[bool],
         absolute: bool,
     ) -> Result<OutOfBalance, LinearBackendError> {
         self.count_system()?;
-        self.inner.out_of_balance(known, counted, absolute)
+        self.inner.out_of_balance(springs, known, counted, absolute)
     }
 }
 

@@ -26,9 +26,12 @@ fn a_ball_rolls_down_a_slope() {
 #[test]
 fn a_sheet_slides_over_a_rounded_edge_where_what_hangs_pulls_enough() {
     for friction in [0.2, 0.4] {
+        let settled = theory::table_edge(0.95, friction, 20, &[]);
         let held = theory::table_edge(0.95, friction, 100, &[]);
         let slid = theory::table_edge(1.05, friction, 100, &[]);
         assert!(held < 1e-3 && slid > 5e-2, "mu = {friction}: {held} m below, {slid} m above");
+        let creep = (held - settled) / 0.8;
+        assert!(creep < 2e-5, "mu = {friction}: creeps by {creep} m/s");
     }
 }
 

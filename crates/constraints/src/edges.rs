@@ -83,6 +83,12 @@ impl EdgeLimits {
         });
     }
 
+    /// Lets some edges be longer by a factor: those that the target keeps within their limits itself.
+    pub fn widen(&mut self, factor: f64, is_known: impl Fn(&[u32; 2]) -> bool + Sync) {
+        let edges = self.balls.par_iter_mut().with_min_len(CHUNK);
+        edges.filter(|ball| is_known(&ball.vertices)).for_each(|ball| ball.limit *= factor);
+    }
+
     /// The edges of a vertex, ascending. Cost: constant.
     pub fn of_vertex(&self, vertex: u32) -> &[u32] {
         match self.incident_starts.get(vertex as usize..vertex as usize + 2) {

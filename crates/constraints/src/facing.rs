@@ -20,8 +20,10 @@ const FLAT: f64 = 2e-3;
 const NARROWEST: f64 = 0.01;
 const WIDEST: f64 = 0.1;
 
-/// Sine of the angle between the faces of an edge from which on it counts as bent.
-const BENT: f64 = 0.05;
+/// Sine of the angle between the faces of an edge from which on it begins to count as bent, and from which on it does in full. Larger:
+/// what slides on slightly bent surfaces is lifted and let down, and loses speed.
+const NEARLY_FLAT: f64 = 5e-4;
+const BENT: f64 = 0.01;
 
 /// Largest number of passes over the neighbors of a pair's features that turn its normal into their cones.
 const MAX_TURNS: usize = 4;
@@ -169,7 +171,11 @@ impl Facing {
                 rise < WIDEST
             });
             share *= ((WIDEST - rise) / (WIDEST - NARROWEST)).clamp(0.0, 1.0);
-            bend = bend.max(if count > 1 { ((fall - FLAT) / (BENT - FLAT)).clamp(0.0, 1.0) } else { 1.0 });
+            bend = bend.max(if count > 1 {
+                ((fall - NEARLY_FLAT) / (BENT - NEARLY_FLAT)).clamp(0.0, 1.0)
+            } else {
+                1.0
+            });
             if share == 0.0 {
                 return 0.0;
             }

@@ -208,6 +208,21 @@ fn limits_from_rest_shorten_a_stretched_edge_by_a_bounded_share_per_call() {
 }
 
 #[test]
+fn limits_widen_where_they_are_known_and_until_the_next_call() {
+    let topology = Topology::builder(3).strand_edges([[0, 1], [1, 2]]).build().unwrap();
+    let rest = [0.0, 1.0, 2.0].map(|x| Point::new(x, 0.0, 0.0));
+    let mut edges = EdgeLimits::new(&topology, &rest, &[true; 3], |_| 1.1);
+    let limit = |edges: &EdgeLimits, edge: [u32; 2]| {
+        edges.balls.iter().find(|ball| ball.vertices == edge).expect("an edge").limit
+    };
+    edges.begin(&rest, EdgeReference::Rest);
+    edges.widen(1.5, |edge| edge.contains(&2));
+    assert!((limit(&edges, [0, 1]) - 1.1).abs() < 1e-15 && (limit(&edges, [1, 2]) - 1.65).abs() < 1e-15);
+    edges.begin(&rest, EdgeReference::Rest);
+    assert!((limit(&edges, [1, 2]) - 1.1).abs() < 1e-15);
+}
+
+#[test]
 fn the_desired_distance_is_lower_in_fine_meshes_and_for_pairs_that_start_close() {
     let topology = Topology::builder(4).triangles([[1, 2, 3]]).particles([0]).build().unwrap();
     let model = CollisionModel::single_body(topology);

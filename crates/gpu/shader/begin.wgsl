@@ -1,11 +1,14 @@
 // The start of a call: aims are the targets, no edge pulls, nothing has swung back or waited. An edge that is too long already
-// may have nearly its length. One thread per vertex and edge.
+// may have nearly its length, and one that the target keeps within its limit may be a little longer. One thread per vertex and
+// edge.
 
 struct Params {
     vertices: u32,
     limits: u32,
     // 1: slip counts from the present positions.
     slips_from_here: u32,
+    // Factor on the limits of edges that the target knows.
+    guarded_stretch: f32,
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -16,6 +19,7 @@ struct Params {
 @group(0) @binding(5) var<storage, read_write> slip_start: array<vec4<i32>>;
 @group(0) @binding(6) var<storage, read_write> swings: array<vec4<f32>>;
 @group(0) @binding(7) var<storage, read_write> late: array<Late>;
+@group(0) @binding(8) var<storage, read> vertices: array<Vertex>;
 
 // Smallest ratio of an edge's limit to its length at the start: an edge that starts too long is shortened a little in each call.
 const START_SHARE: f32 = 0.97;
@@ -36,7 +40,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     for (var e = id.x; e < params.limits; e += stride) {
         let edge = limits[e];
         let along = vec3<f32>(positions[edge.a].xyz - positions[edge.b].xyz);
-        limits[e].limit = max(edge.longest, START_SHARE * sqrt(dot(along, along)));
+        let is_known = ((vertices[edge.a].flags | vertices[edge.b].flags) & KNOWN) != 0u;
+        let factor = select(1.0, params.guarded_stretch, is_known);
+        limits[e].limit = factor * max(edge.longest, START_SHARE * sqrt(dot(along, along)));
         limits[e].multiplier = vec3<f32>(0.0);
     }
 }

@@ -104,6 +104,8 @@ pub struct Settings {
     pub guarded: f64,
     /// Smallest distance that such a row asks for, in the way from the minimum separation to the desired distance.
     pub guarded_floor: f64,
+    /// Factor on the stretch limits of edges that the target knows.
+    pub guarded_stretch: f64,
     /// Whether all multipliers are scaled by one factor before each sweep.
     pub coarse_correction: bool,
     /// Share of a gap that a step may use up.
@@ -129,6 +131,7 @@ impl Default for Settings {
             known: 1.3,
             guarded: 0.7,
             guarded_floor: 0.35,
+            guarded_stretch: 1.0125,
             coarse_correction: true,
             damping: 0.9,
         }
@@ -485,11 +488,12 @@ impl<E: Engine> Collision<E> {
         recording.write(b.control, &[Control::of_new_call()]);
         recording.dispatch(
             &stages::BEGIN,
-            &[b.positions, b.targets, b.limits, b.aims, b.slip_start, b.swings, b.late],
+            &[b.positions, b.targets, b.limits, b.aims, b.slip_start, b.swings, b.late, b.vertices],
             cpu::begin::Params {
                 vertices: self.sizes.vertices as u32,
                 limits: self.edges.len() as u32,
                 slips_from_here: u32::from(slips_from_here),
+                guarded_stretch: self.settings.guarded_stretch as f32,
             },
             self.sizes.vertices.max(self.edges.len()),
         );

@@ -121,7 +121,7 @@ pub(crate) static BEGIN: Stage = Stage {
     name: "begin",
     parts: &[TYPES, include_str!("../shader/begin.wgsl")],
     workgroup: 256,
-    bindings: &[Read, Read, Write, Write, Write, Write, Write],
+    bindings: &[Read, Read, Write, Write, Write, Write, Write, Read],
     twin: cpu::begin::bound,
 };
 

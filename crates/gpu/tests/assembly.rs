@@ -262,11 +262,12 @@ impl<E: Engine + Debug + Send> NewtonBackend for Assembling<E> {
 
     fn out_of_balance(
         &mut self,
+        springs: &AssemblySprings<'_>,
         known: &[Vector],
         counted: &[bool],
         absolute: bool,
     ) -> Result<OutOfBalance, LinearBackendError> {
-        self.inner.out_of_balance(known, counted, absolute)
+        self.inner.out_of_balance(springs, known, counted, absolute)
     }
 }
 

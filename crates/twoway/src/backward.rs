@@ -25,7 +25,7 @@ use crate::stages::BackwardStep;
 use crate::state::ResolveState;
 use crate::statistics::Statistics;
 use crate::stop::Residuals;
-use bowknot_constraints::{ContactRows, EdgeForm, EdgeLimits};
+use bowknot_constraints::{ContactRows, EdgeForm, EdgeLimits, EdgeReference};
 use bowknot_geometry::{Point, Vector};
 use bowknot_lcp::{self as lcp, ConstraintSet, Schedule, TangentVector};
 
@@ -73,6 +73,9 @@ pub struct LcpBackward<K = ColoredSweeps> {
     body_residuals: Vec<BodyResidual>,
 }
 
+/// Factor on the stretch limits of edges that the target keeps within their limits itself: their rows only guard.
+pub const GUARDED_STRETCH: f64 = 1.0125;
+
 /// Sums over some vertices of a body.
 #[derive(Clone, Copy, Debug, Default)]
 struct BodyResidual {
@@ -99,6 +102,10 @@ impl<K: RowSolver> BackwardStep for LcpBackward<K> {
             };
         }
         self.edges.begin(&state.x, params.edge_reference);
+        if params.edge_reference == EdgeReference::Rest {
+            let is_known = |edge: &[u32; 2]| edge.iter().any(|&v| state.call.is_known(v as usize));
+            self.edges.widen(GUARDED_STRETCH, is_known);
+        }
         if !self.keeps_to_live_edges(scene) {
             self.forces.clear();
             self.forces.resize(self.edges.balls.len(), Vector::zeros());

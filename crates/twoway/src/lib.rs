@@ -58,7 +58,7 @@ pub use bowknot_proximity as proximity;
 pub use bowknot_stepper as stepper;
 
 pub use adopt::{CallEnd, PairMultipliers};
-pub use backward::LcpBackward;
+pub use backward::{GUARDED_STRETCH, LcpBackward};
 pub use bodies::{BodyContact, ContactSide, ContactTable, HalfSpaceContact, PairFriction};
 pub use bowknot_constraints::ContactParams;
 pub use bowknot_errors::{Errors, ParamError, Parameters};

@@ -82,6 +82,7 @@ pub fn collision<E: Engine>(
         known: bowknot_twoway::KNOWN,
         guarded: bowknot_twoway::GUARDED,
         guarded_floor: bowknot_twoway::GUARDED_FLOOR,
+        guarded_stretch: bowknot_twoway::GUARDED_STRETCH,
         coarse_correction: backward.coarse_correction,
         damping: params.solver.forward.damping,
     };

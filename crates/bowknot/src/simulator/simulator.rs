@@ -15,6 +15,7 @@ use super::inside;
 use super::interior::{self, Interior};
 use super::observer::{CollisionProblem, Iterated, Relay, SimulationObserver};
 use super::overlap;
+use super::prescribed::{Ends, largest_lag};
 use super::process::cpu_seconds;
 use super::progress::Progress;
 use super::relaxation::relax_target;
@@ -82,6 +83,7 @@ pub(super) struct Scratch {
     y: Vec<Point>,
     pub(super) prescribed: Vec<bool>,
     pub(super) keyframes: Vec<Point>,
+    ends: Ends,
     pub(super) groups: Vec<u32>,
 }
 
@@ -321,7 +323,7 @@ impl Simulator {
             ..
         } = self;
         let dynamics = rest.as_mut().and_then(Rest::dynamics).unwrap_or(dynamics);
-        let Scratch { start, x, y, prescribed, keyframes, groups } = scratch;
+        let Scratch { start, x, y, prescribed, keyframes, ends, groups } = scratch;
         let target_error = |source| SimulationError::target(step, source);
         let count = world.collision_vertices();
 
@@ -333,11 +335,12 @@ impl Simulator {
         statistics.seconds.dynamics += timer.elapsed().as_secs_f64();
         y.clone_from(start);
         x.clone_from(start);
+        ends.begin(keyframes);
         let mut progress = Progress::new(*step_tolerance * resolver.scene().lengths().edge, *dt);
         for iteration in 0..self.newton_iterations {
             let last = iteration + 1 == self.newton_iterations;
             let timer = Instant::now();
-            let info = dynamics.newton_target(x, prescribed, keyframes, y).map_err(target_error)?;
+            let info = dynamics.newton_target(x, prescribed, &ends.places, y).map_err(target_error)?;
             statistics.add_newton(&info, timer.elapsed().as_secs_f64());
             if !info.cg.converged {
                 tracing::debug!(
@@ -382,6 +385,7 @@ impl Simulator {
                 known: contacts.known(count),
                 max_steps: (!last).then_some(MAX_INTERMEDIATE_STEPS),
             };
+            ends.note(world, prescribed, &x[..count]);
             let resolved = backend.resolve(resolver, &mut x[..count], &y[..count], &input, &mut relay);
             if relay.stopped {
                 return Err(SimulationError::Interrupted);
@@ -398,6 +402,8 @@ impl Simulator {
             }
 
             let timer = Instant::now();
+            let delta = resolver.scene().lengths().delta;
+            ends.hold_back(world, prescribed, [start, &x[..count]], delta, resolved.converged);
             contacts.note_touching(resolver);
             contacts.note_rows(resolver);
             contacts.find(resolver, start);
@@ -420,6 +426,7 @@ impl Simulator {
                 break;
             }
         }
+        statistics.prescribed_lag_m = largest_lag(&x[..count], keyframes, prescribed, backend.resolution());
         contacts.end_step(&dynamics.contact_forces());
         statistics.pressing_contacts = contacts.pressing();
         let judged = backend.judge(resolver.scene(), &x[..count]);

@@ -2,26 +2,27 @@
 //!
 //! The collision stage keeps edges within their limits, in the metric of mass. If the dynamics did not know
 //! the limits, it would stretch edges beyond them in each iteration, and the collision stage would pull them
-//! back and crush their neighbors. So a taut edge is a one-sided spring like a contact: it pulls beyond its
-//! limit, and its force passes to the next iteration. Forces that rows of the collision stage add are not
-//! passed on.
+//! back and crush their neighbors. So an edge at its limit is a spring with the law of a contact: it pulls
+//! beyond the limit, without bound a little farther. The rows of the collision stage begin behind that, and
+//! only guard.
 
 use bowknot_constraints::EdgeReference;
 use bowknot_dynamics::{RepulsionSpring, SpringKind};
 use bowknot_geometry::{Point, Vector};
 use bowknot_scene::BodyKind;
 use bowknot_scene::world::World;
-use bowknot_twoway::CollisionScene;
+use bowknot_twoway::{CollisionScene, GUARDED_STRETCH};
 use rayon::prelude::*;
 
 /// Share of its limit above which an edge counts as taut.
 const TAUT: f64 = 0.98;
 
-/// Share of its limit up to which nothing pulls.
-const SLACK: f64 = 0.999;
+/// Way beyond its limit within which the force of an edge grows without bound [1], most of the way to its row. Larger:
+/// edges are longer. Smaller: the system is stiffer.
+const ROOM: f64 = 0.8 * (GUARDED_STRETCH - 1.0);
 
-/// Ratio of the limit to the length at the start.
-const OVER_LIMIT: f64 = 1.003;
+/// The part of the way that is left to an edge that starts at its end.
+const LEFT: f64 = 0.3;
 
 /// Edges that one thread looks at, at least.
 const MIN_EDGES: usize = 4096;
@@ -71,17 +72,17 @@ impl LimitedEdges {
                 return None;
             }
             let [a, b] = edge.vertices;
-            let first = length(start, edge.vertices).norm();
-            let limit = edge.limit.max(first * OVER_LIMIT);
+            let (first, room) = (length(start, edge.vertices).norm(), ROOM * edge.limit);
+            let longest = (edge.limit + room).max(first + LEFT * room);
             Some(RepulsionSpring {
                 kind: SpringKind::Limit,
                 vertices: [a, b, a, a],
                 weights: [-1.0, 1.0, 0.0, 0.0],
                 normal: now.try_normalize(0.0)?,
-                offset: -limit,
-                reach: limit - SLACK * edge.limit,
+                offset: -longest,
+                reach: room,
                 floor: 0.0,
-                start_gap: limit - first,
+                start_gap: longest - first,
                 stiffness,
                 friction: 0.0,
                 friction_ratio: Vector::zeros(),

@@ -61,8 +61,9 @@ fn a_block_comes_to_rest_on_the_ground() {
     assert!(statistics.iter().any(|s| s.interior_solves > 0), "the inside never had to follow");
     let last = statistics.last().expect("steps");
     assert!(last.max_speed < 0.1, "{}", last.max_speed);
+    // Contact forces reach 1.2 times as far as the contact distance of 5.5 mm.
     let lowest = simulator.positions().iter().map(|p| p.z).fold(f64::MAX, f64::min);
-    assert!(lowest > 0.0 && lowest < 0.006, "{lowest}");
+    assert!(lowest > 0.0 && lowest < 0.0066, "{lowest}");
     // Under its own weight it is lower than it was, and wider at the foot.
     let middle = center(simulator.positions());
     assert!((0.08..0.105).contains(&middle.z) && middle.x.abs() < 5e-3, "{middle}");
@@ -318,10 +319,10 @@ fn rubber_on_a_slope(friction: f64, repulsion: f64) -> (f64, f64, f64) {
 
 #[test]
 fn a_stiff_block_sticks_to_a_slope_and_slides_as_a_rigid_one() {
-    let (way, acceleration, stuck) = rubber_on_a_slope(0.5, 10.0);
+    let (way, acceleration, stuck) = rubber_on_a_slope(0.5, 1.0);
     assert!(way < 2e-3 && acceleration.abs() < 1e-6 && stuck < 1e-3, "{way} {acceleration} {stuck}");
     // Above the angle of friction: g (sin - mu cos).
-    let (_, acceleration, elastic) = rubber_on_a_slope(0.3, 10.0);
+    let (_, acceleration, elastic) = rubber_on_a_slope(0.3, 1.0);
     let expected = 9.81 * (0.4 - 0.3) / f64::hypot(1.0, 0.4);
     assert!(
         (acceleration - expected).abs() < 0.01 * expected && elastic < 1e-3,
@@ -339,8 +340,9 @@ fn a_restart_of_all_kinds_of_bodies_gives_the_same_bits() {
         let text = format!("{repulsion}{MIXED}");
         let mut whole = simulator(&text);
         let statistics = run(&mut whole, 12);
-        assert!(statistics.last().expect("steps").pressing_contacts > 0);
-        let springs = statistics.last().expect("steps").repulsion_springs;
+        let last = statistics.last().expect("steps");
+        assert!(last.contact_rows + last.pressing_contacts > 0);
+        let springs = last.repulsion_springs;
         assert_eq!(springs > 0, repulsion.is_empty(), "{springs} springs");
         let checkpoint = whole.checkpoint();
         run(&mut whole, 8);

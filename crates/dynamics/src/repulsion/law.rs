@@ -56,14 +56,21 @@ fn shape(s: f64) -> [f64; 3] {
 }
 
 impl NormalLaw {
-    /// A law that bends as late as possible. The reach must be above the floor. `start` is the gap at the start of the
-    /// time step, `ratio` the drag in units of the static stiffness there.
-    pub fn new(stiffness: f64, reach: f64, floor: f64, start: f64, ratio: f64) -> Self {
+    /// A law without drag that bends as late as possible. The reach must be above the floor. `start` is the gap at the
+    /// start of the time step.
+    pub fn new(stiffness: f64, reach: f64, floor: f64, start: f64) -> Self {
         let from = start.min(reach).max(floor + MIN_BEND * (reach - floor));
         let mut law = Self { stiffness, reach, floor, from, release: reach, bend: MIN_BEND, drag: 0.0 };
-        law.drag = ratio * stiffness * shape(law.share(from).max(MIN_DRAG_SHARE))[1];
         law.find_release();
         law
+    }
+
+    /// Sets the drag to that of a contact with a `gap`: to `ratio` times the static stiffness there, less the nearer to
+    /// the reach, where it is 0.
+    pub fn set_drag(&mut self, ratio: f64, gap: f64) {
+        let share = self.share(gap).clamp(MIN_DRAG_SHARE, 1.0);
+        self.drag = ratio * self.stiffness * (1.0 - share) * shape(share)[1];
+        self.find_release();
     }
 
     /// Lets the static force go on linearly below a share of the room.

@@ -20,7 +20,7 @@ use rayon::prelude::*;
 const RIGID_COMPLIANCE: f64 = 1.0;
 
 /// Time in which contacts open [s]. Larger: they open more slowly and bounce less. Smaller: they return more energy.
-const OPENING_TIME: f64 = 0.01;
+const OPENING_TIME: f64 = 0.03;
 
 /// Share of the gap's room at the iterate at which the static force begins to go on linearly, and its largest value.
 /// Larger: steps that close gaps by more see the linear law, which the update then corrects. Smaller: the exact law at
@@ -84,9 +84,8 @@ impl Repulsion {
             }
             state.acts = true;
             let (gap, _) = self.gap_and_slip(spring, iterate);
-            let drag = OPENING_TIME * rate;
-            state.law =
-                NormalLaw::new(s.stiffness / compliance, s.reach, s.floor, self.start_gap(spring), drag);
+            state.law = NormalLaw::new(s.stiffness / compliance, s.reach, s.floor, self.start_gap(spring));
+            state.law.set_drag(OPENING_TIME * rate, s.start_gap);
             // Before the law is bent: what friction was in the last time step does not depend on the iterate.
             let ratio = s.friction_ratio - s.normal * s.normal.dot(&s.friction_ratio);
             state.tau = ratio * state.law.force_at_start();

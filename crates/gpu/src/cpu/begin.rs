@@ -2,7 +2,7 @@
 
 use super::{difference, dot};
 use crate::bound::Bound;
-use crate::layout::{EdgeLimit, Late};
+use crate::layout::{EdgeLimit, Late, Vertex};
 use bytemuck::{Pod, Zeroable};
 
 #[repr(C)]
@@ -11,6 +11,7 @@ pub struct Params {
     pub vertices: u32,
     pub limits: u32,
     pub slips_from_here: u32,
+    pub guarded_stretch: f32,
 }
 
 const START_SHARE: f32 = 0.97;
@@ -25,6 +26,7 @@ pub fn bound(buffers: Bound<'_>) {
         &mut buffers.write(4),
         &mut buffers.write(5),
         &mut buffers.write(6),
+        &buffers.read(7),
     );
 }
 
@@ -38,6 +40,7 @@ pub fn begin(
     slip_start: &mut [[i32; 4]],
     swings: &mut [[f32; 4]],
     late: &mut [Late],
+    all: &[Vertex],
 ) {
     let vertices = params.vertices as usize;
     aims[..vertices].copy_from_slice(&targets[..vertices]);
@@ -48,7 +51,9 @@ pub fn begin(
     late[..vertices].fill(Late::NEW);
     for edge in &mut limits[..params.limits as usize] {
         let along = difference(positions[edge.a as usize], positions[edge.b as usize]);
-        edge.limit = edge.longest.max(START_SHARE * dot(along, along).sqrt());
+        let is_known = (all[edge.a as usize].flags | all[edge.b as usize].flags) & Vertex::KNOWN != 0;
+        let factor = if is_known { params.guarded_stretch } else { 1.0 };
+        edge.limit = factor * edge.longest.max(START_SHARE * dot(along, along).sqrt());
         edge.multiplier = [0.0; 3];
     }
 }

@@ -195,12 +195,13 @@ impl<E: Engine + Debug + Send> NewtonBackend for ConjugateGradients<E> {
 
     fn out_of_balance(
         &mut self,
+        springs: &AssemblySprings<'_>,
         known: &[Vector],
         counted: &[bool],
         absolute: bool,
     ) -> Result<OutOfBalance, LinearBackendError> {
         self.newton()?;
         self.linearize_newton(absolute)?;
-        Ok(self.balance(known, counted)?)
+        Ok(self.balance(springs, known, counted)?)
     }
 }

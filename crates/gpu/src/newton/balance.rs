@@ -69,7 +69,12 @@ impl Newton {
 
 impl<E: Engine + Debug + Send> ConjugateGradients<E> {
     /// See [`bowknot_dynamics::NewtonBackend::out_of_balance`]; the matrix is that of the iterate.
-    pub(super) fn balance(&mut self, known: &[Vector], counted: &[bool]) -> Result<OutOfBalance, GpuError> {
+    pub(super) fn balance(
+        &mut self,
+        springs: &AssemblySprings<'_>,
+        known: &[Vector],
+        counted: &[bool],
+    ) -> Result<OutOfBalance, GpuError> {
         let (Some(newton), Some(assembly)) = (&mut self.newton, &self.assembly) else {
             return Ok(OutOfBalance::default());
         };
@@ -82,7 +87,7 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
         let forces = if known.iter().all(|force| *force == Vector::zeros()) { 0 } else { known.len() };
         let single = |force: &Vector| [force.x as f32, force.y as f32, force.z as f32, 0.0];
         recording.write(newton.vectors.forces, &known.iter().map(single).collect::<Vec<_>>());
-        self.record_preconditioner(&AssemblySprings::default(), iterate, quantum, &mut recording)?;
+        self.record_preconditioner(springs, iterate, quantum, &mut recording)?;
         let (Some(newton), Some(recorder)) = (&self.newton, &self.recorder) else {
             return Ok(OutOfBalance::default());
         };

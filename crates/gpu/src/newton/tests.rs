@@ -59,7 +59,8 @@ fn run<E: Engine + Debug + Send>(
         log += &format!("{blocks:?} {solved:?} {sums:?} {trials:?}");
         fixture.begin_target(solver, if returns { &fixture.iterate } else { &y });
     }
-    log += &format!("{:?}", solver.out_of_balance(&known, &counted, true).expect("runs"));
+    let balance = solver.out_of_balance(&fixture.springs(), &known, &counted, true);
+    log += &format!("{:?}", balance.expect("runs"));
     (y, log)
 }
 
@@ -305,7 +306,9 @@ fn many_grains<E: Engine + Debug + Send>(engine: E) -> (ConjugateGradients<E>, S
         assert!((sum - expected).norm() < 16.0 * UNIT * scale, "{component:?}");
     }
     let counted = vec![true; free.len()];
-    let balance = solver.out_of_balance(&[Vector::zeros(); 2], &counted, false).expect("runs");
+    let balance = solver
+        .out_of_balance(&AssemblySprings::default(), &[Vector::zeros(); 2], &counted, false)
+        .expect("runs");
     let force: f64 = (0..p.len()).filter(|k| free[*k]).map(|k| gradient[k].norm_squared()).sum();
     assert!((balance.squared_force - force).abs() < 1e-5 * force, "{} and {force}", balance.squared_force);
     (solver, format!("{solved:?} {trial:?} {sums:?} {balance:?}"))

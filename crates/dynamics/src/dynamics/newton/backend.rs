@@ -134,12 +134,13 @@ pub trait NewtonBackend: Debug + Send {
     fn target(&mut self, y: &mut [Vector]) -> Result<(), LinearBackendError>;
 
     /// Forces out of balance at the iterate: r = -(g - f) over the `counted` free nodes, with the gradient g of the bodies and
-    /// known forces f on the watched nodes [N]. The matrix is that of the iterate, without springs.
+    /// known forces f on the watched nodes [N]. The matrix is that of the iterate, with the matrices of springs.
     ///
     /// # Errors
     /// What the backend fails of.
     fn out_of_balance(
         &mut self,
+        springs: &AssemblySprings<'_>,
         known: &[Vector],
         counted: &[bool],
         absolute: bool,

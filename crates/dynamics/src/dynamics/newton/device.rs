@@ -137,22 +137,13 @@ impl Bodies for DeviceBodies<'_> {
     }
 
     fn solve(&mut self, springs: &LinearSprings, limits: Limits) -> Answer<LinearSolve> {
-        let springs = if springs.is_empty() {
-            AssemblySprings::default()
-        } else {
-            AssemblySprings {
-                springs: springs.all(),
-                starts: springs.starts(),
-                entries: springs.all_entries(),
-            }
-        };
         let limits = SolveLimits {
             tolerance: limits.tolerance,
             own_tolerance: limits.own_tolerance,
             min_scale: limits.min_scale,
             max_iterations: limits.max_iterations,
         };
-        let solved = self.backend.solve(&springs, &limits)?;
+        let solved = self.backend.solve(&for_device(springs), &limits)?;
         if solved.stalled {
             return Err(Lost::Stalled);
         }
@@ -240,9 +231,18 @@ impl Bodies for DeviceBodies<'_> {
         filter: Filter,
     ) -> Answer<Imbalance> {
         let known = repulsion.forces_on_nodes(&self.iterate());
-        let found = self.backend.out_of_balance(&known, counted, filter == Filter::Absolute)?;
+        let springs = for_device(repulsion.linear());
+        let found = self.backend.out_of_balance(&springs, &known, counted, filter == Filter::Absolute)?;
         Ok(Imbalance { squared_force: found.squared_force, products: found.products })
     }
+}
+
+/// Linearized springs as a device gets them.
+fn for_device(springs: &LinearSprings) -> AssemblySprings<'_> {
+    if springs.is_empty() {
+        return AssemblySprings::default();
+    }
+    AssemblySprings { springs: springs.all(), starts: springs.starts(), entries: springs.all_entries() }
 }
 
 /// Translates each of the `groups` of flying components at the trial so that its linear momentum at the end of the time step

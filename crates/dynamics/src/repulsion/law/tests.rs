@@ -4,13 +4,20 @@ const FLOOR: f64 = 0.001;
 const REACH: f64 = 0.005;
 const K: f64 = 40.0;
 
+/// The law of a contact that begins with a gap.
+fn with_drag(start: f64, ratio: f64) -> NormalLaw {
+    let mut law = NormalLaw::new(K, REACH, FLOOR, start);
+    law.set_drag(ratio, start);
+    law
+}
+
 /// Laws of contacts that begin deep, halfway, and open, with and without drag, bent early and late.
 fn laws() -> Vec<NormalLaw> {
     let mut laws = Vec::new();
     for start in [0.0, 0.0011, 0.0014, 0.003, 0.0049, 0.01] {
         for ratio in [0.0, 0.1, 1.0, 10.0] {
             for bend in [MIN_BEND, 0.1, 0.5] {
-                let mut law = NormalLaw::new(K, REACH, FLOOR, start, ratio);
+                let mut law = with_drag(start, ratio);
                 law.bend_at(bend);
                 laws.push(law);
             }
@@ -89,23 +96,23 @@ fn at_the_gap_of_the_start_only_the_static_force_acts() {
         let s = (start - FLOOR) / (REACH - FLOOR);
         let expected = K * (REACH - FLOOR) * (1.0 - s) / (s * s);
         for ratio in [0.0, 1.0, 10.0] {
-            let law = NormalLaw::new(K, REACH, FLOOR, start, ratio);
+            let law = with_drag(start, ratio);
             assert!((law.at(start).force / expected - 1.0).abs() < 1e-12, "{start} {ratio}");
             assert_eq!(law.force_at_start(), law.at(start).force);
             // The drag resists opening and closing.
-            let still = NormalLaw::new(K, REACH, FLOOR, start, 0.0);
+            let still = with_drag(start, 0.0);
             assert!(law.at(start - 1e-5).force >= still.at(start - 1e-5).force);
             assert!(law.at(start + 1e-5).force <= still.at(start + 1e-5).force);
         }
     }
     // Beyond the reach nothing acts, and there is nothing to drag.
-    let open = NormalLaw::new(K, REACH, FLOOR, 0.01, 1.0);
+    let open = with_drag(0.01, 1.0);
     assert_eq!((open.drag, open.force_at_start(), open.release), (0.0, 0.0, REACH));
 }
 
 #[test]
 fn a_bend_changes_the_force_below_it_only() {
-    let exact = NormalLaw::new(K, REACH, FLOOR, 0.003, 0.1);
+    let exact = with_drag(0.003, 0.1);
     let mut bent = exact;
     bent.bend_at(0.3);
     assert_eq!((bent.bend(), bent.release), (0.3, exact.release));

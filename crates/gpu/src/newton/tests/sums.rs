@@ -3,7 +3,7 @@
 use super::UNIT;
 use super::fixture::{DT, LIMITS, fixtures, read, solver};
 use crate::engine::TwinEngine;
-use bowknot_dynamics::{NewtonBackend, SolveLimits};
+use bowknot_dynamics::{AssemblySprings, NewtonBackend, SolveLimits};
 use bowknot_geometry::{Point, Vector};
 use nalgebra::Matrix3;
 
@@ -70,7 +70,8 @@ fn forces_out_of_balance_are_those_of_the_cpu() {
         let held: Vec<bool> = by_vertex(&fixture.free).iter().map(|free| !free).collect();
         let expected = fixture.dynamics.residual(&points, &held, &by_vertex(&counted)).expect("a step");
         let none = vec![Vector::zeros(); x.len()];
-        let found = solver.out_of_balance(&none, &counted, false).expect("runs");
+        let no_springs = AssemblySprings::default();
+        let found = solver.out_of_balance(&no_springs, &none, &counted, false).expect("runs");
         let (mut largest, mut worst) = (0.0f64, 0.0f64);
         for (component, product) in fixture.model.components.iter().zip(&found.products) {
             let free = component.clone().filter(|n| fixture.free[*n as usize]);
@@ -88,8 +89,27 @@ fn forces_out_of_balance_are_those_of_the_cpu() {
 
         // Known forces that are all there are leave nothing, and do not change the gradient.
         let gradient = fixture.gradient(&x);
-        let balanced = solver.out_of_balance(&gradient, &counted, false).expect("runs");
+        let balanced = solver.out_of_balance(&no_springs, &gradient, &counted, false).expect("runs");
         assert!(balanced.squared_force.sqrt() < 1e-4 * force, "{}: {balanced:?}", fixture.name);
-        assert!(worst > 0.0 && solver.out_of_balance(&none, &counted, false).expect("runs") == found);
+        let again = solver.out_of_balance(&no_springs, &none, &counted, false).expect("runs");
+        assert!(worst > 0.0 && again == found);
+    }
+}
+
+#[test]
+fn springs_stiffen_what_forces_out_of_balance_are_measured_with() {
+    for fixture in fixtures() {
+        let mut solver = solver(TwinEngine::new(), &fixture);
+        let x = fixture.begin(&mut solver);
+        let (none, counted) = (vec![Vector::zeros(); x.len()], vec![true; x.len()]);
+        let mut products = |springs: &AssemblySprings<'_>| {
+            let balance = solver.out_of_balance(springs, &none, &counted, false).expect("runs");
+            (balance.products.iter().sum::<f64>(), balance.squared_force)
+        };
+        let (without, force) = products(&AssemblySprings::default());
+        let (with, same) = products(&fixture.springs());
+        assert_eq!(force, same);
+        let is_stiffer = if fixture.springs.is_empty() { with == without } else { with < 0.999 * without };
+        assert!(is_stiffer, "{}: {with} {without}", fixture.name);
     }
 }
