@@ -2,7 +2,8 @@
 //! of the CPU, and so are the statistics of the runs.
 //!
 //! Where bodies crumple, differences of the size of a tolerance grow. The yardstick for them are runs on the CPU with
-//! one sweep more per backward step, and with more accurate linear solves, which should make no difference either.
+//! one sweep more per backward step, more accurate linear solves, and time steps solved to a tenth of the tolerance, which
+//! should make no difference either.
 //!
 //! `--ignored` runs every scene of the paper and prints a table; without it there are some small ones.
 
@@ -71,6 +72,8 @@ enum On {
     CpuOnceMore,
     /// With linear solves a hundred times as accurate.
     CpuAccurate,
+    /// With a tenth of the tolerance of time steps.
+    CpuSolved,
     Twins,
 }
 
@@ -88,6 +91,7 @@ fn course((name, scale, sets, steps): Case<'_>, on: On) -> Course {
         On::Cpu | On::Twins => (),
         On::CpuOnceMore => sets.push("solver.backward.sweeps=9".to_owned()),
         On::CpuAccurate => sets.push("solver.newton.cg_tolerance=1e-6".to_owned()),
+        On::CpuSolved => sets.push("solver.newton.step_tolerance=0.0003".to_owned()),
     }
     let scene = Scene::builtin(name, scale).and_then(|scene| scene.with_sets(&sets)).expect("a scene");
     let mut simulator = Simulator::new(&scene).expect("a simulator");
@@ -134,7 +138,7 @@ fn ends_apart(a: &Course, b: &Course) -> f64 {
 fn runs_on_the_kernels_go_as_on_the_cpu() {
     for case in SMALL {
         let [cpu, twins] = [On::Cpu, On::Twins].map(|on| course(case, on));
-        let others = [On::CpuOnceMore, On::CpuAccurate].map(|on| course(case, on));
+        let others = [On::CpuOnceMore, On::CpuAccurate, On::CpuSolved].map(|on| course(case, on));
         let (name, steps) = (case.0, case.3);
         assert!(cpu.first_contact < steps, "{name}: the scene has not come to its contacts");
         assert_eq!(cpu.first_contact, twins.first_contact, "{name}");

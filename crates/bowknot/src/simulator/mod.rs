@@ -6,6 +6,7 @@ mod backend;
 mod checkpoint;
 mod contacts;
 mod crowding;
+mod ends;
 mod error;
 mod friction;
 mod inside;

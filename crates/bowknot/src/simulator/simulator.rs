@@ -9,13 +9,13 @@
 use super::backend::{BackendError, CollisionBackend, Cpu};
 use super::checkpoint::Checkpoint;
 use super::contacts::Contacts;
+use super::ends::{Ends, largest_lag};
 use super::error::{SimulationError, describe_intersections};
 use super::friction::ContactForce;
 use super::inside;
 use super::interior::{self, Interior};
 use super::observer::{CollisionProblem, Iterated, Relay, SimulationObserver};
 use super::overlap;
-use super::prescribed::{Ends, largest_lag};
 use super::process::cpu_seconds;
 use super::progress::Progress;
 use super::relaxation::relax_target;
