@@ -65,11 +65,11 @@ impl NormalLaw {
         law
     }
 
-    /// Sets the drag to that of a contact with a `gap`: to `ratio` times the static stiffness there, less the nearer to
-    /// the reach, where it is 0.
+    /// Sets the drag to `ratio` times the static stiffness at the start of the time step, and less the nearer the `gap` is
+    /// to the reach, where it is 0.
     pub fn set_drag(&mut self, ratio: f64, gap: f64) {
-        let share = self.share(gap).clamp(MIN_DRAG_SHARE, 1.0);
-        self.drag = ratio * self.stiffness * (1.0 - share) * shape(share)[1];
+        let depth = 1.0 - self.share(gap).clamp(MIN_DRAG_SHARE, 1.0);
+        self.drag = ratio * depth * self.tangent(self.from, MIN_DRAG_SHARE);
         self.find_release();
     }
 

@@ -299,7 +299,7 @@ fn springs_do_not_throw_what_hangs_on_held_vertices() {
         Body::obstacle("point", vec![3]),
     ];
     let mut dynamics = dynamics(&rest, bodies, weightless(with_tolerance(1e-8)));
-    let mut spring = RepulsionSpring {
+    let spring = RepulsionSpring {
         kind: SpringKind::Contact,
         vertices: [0, 1, 2, 3],
         weights: [0.98, 0.01, 0.01, -1.0],
@@ -316,7 +316,6 @@ fn springs_do_not_throw_what_hangs_on_held_vertices() {
     let held = [true, false, false, true];
     // The drag lets it rise over several time steps.
     for _ in 0..6 {
-        spring.start_gap = (0..4).map(|k| spring.weights[k] * x[k].z).sum();
         step(&mut dynamics, &mut [spring], (&mut x, &mut v), (0.01, 4), (&held, &rest));
     }
     let risen = x[1].z.max(x[2].z);
