@@ -38,6 +38,13 @@ pub struct PairMultipliers {
     pub friction: Vector,
 }
 
+impl PairMultipliers {
+    /// Whether all numbers are finite.
+    pub(crate) fn is_finite(&self) -> bool {
+        self.normal.is_finite() && self.friction.iter().all(|c| c.is_finite())
+    }
+}
+
 impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
     /// Makes [`Self::state`] that of a `call` which something else has made: pairs in range at its end, their
     /// contact geometry, and what they carry. Adds to `statistics` what [`Self::resolve_with`] adds at the end

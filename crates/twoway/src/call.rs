@@ -1,12 +1,13 @@
 //! What is given for one call, checked.
 
+use crate::adopt::PairMultipliers;
 use crate::error::ResolveError;
 use crate::groups::Groups;
 use crate::input::ResolveInput;
 use crate::scene::CollisionScene;
 use crate::validation::{check_finite, check_length, largest_coordinate};
 use bowknot_constraints::FrictionModel;
-use bowknot_geometry::Point;
+use bowknot_geometry::{PairKind, Point};
 use bowknot_stepper::Rounding;
 
 /// The input of one call, checked against the scene.
@@ -17,6 +18,8 @@ pub struct CallInput {
     time_step: Option<f64>,
     slip_start: Vec<Point>,
     known: Vec<bool>,
+    carried: Vec<PairMultipliers>,
+    has_unknown: bool,
 }
 
 impl CallInput {
@@ -57,6 +60,7 @@ impl CallInput {
         let is_obstacle = |v: usize| model.is_obstacle(v as u32);
         let is_given = |v: usize| input.prescribed.get(v).copied().unwrap_or(false);
         let prescribed: Vec<bool> = (0..vertices).map(|v| is_obstacle(v) || is_given(v)).collect();
+        let has_unknown = input.known.iter().zip(&prescribed).any(|(known, prescribed)| !known && !prescribed);
         let has_friction = scene.friction_model() != FrictionModel::None;
         let slip_start = if has_friction { input.start.unwrap_or(positions).to_vec() } else { Vec::new() };
         Ok(Self {
@@ -65,6 +69,8 @@ impl CallInput {
             time_step: input.time_step,
             slip_start,
             known: input.known.to_vec(),
+            has_unknown,
+            carried: input.carried.iter().filter(|pair| pair.is_finite()).copied().collect(),
         })
     }
 
@@ -88,6 +94,17 @@ impl CallInput {
     /// Groups of pinned vertices that move together.
     pub fn groups(&self) -> &Groups {
         &self.groups
+    }
+
+    /// Whether the target knows contacts, but not those of some vertices that move: rows alone hold these.
+    pub fn has_unknown(&self) -> bool {
+        self.has_unknown
+    }
+
+    /// What a pair carries at the start.
+    pub fn carried(&self, kind: PairKind, elements: [u32; 2]) -> Option<&PairMultipliers> {
+        let place = self.carried.binary_search_by_key(&(kind, elements), |pair| (pair.kind, pair.elements));
+        place.ok().map(|place| &self.carried[place])
     }
 
     /// Vertices whose contacts the target knows, one entry per vertex; empty: none.

@@ -1,5 +1,6 @@
 //! What a caller gives with each call.
 
+use crate::adopt::PairMultipliers;
 use bowknot_geometry::Point;
 
 /// What changes from call to call, beside positions and target.
@@ -21,6 +22,9 @@ pub struct ResolveInput<'a> {
     /// Vertices whose contacts the target knows, one entry per vertex; empty: none. Pairs with one of them that are near
     /// at the start of the call only get rows that guard part of their gap: the target is to decide about the rest.
     pub known: &'a [bool],
+    /// What pairs carry at the start, ascending by kind and elements: the first backward step starts from it. Pairs without
+    /// an entry carry nothing; entries of pairs that are out of range, or without finite numbers, are left out.
+    pub carried: &'a [PairMultipliers],
     /// Largest number of two-way steps, if smaller than that of the parameters, for a caller that continues
     /// from any state.
     pub max_steps: Option<usize>,

@@ -7,6 +7,7 @@
 
 use super::crowding::share_stiffness;
 use super::friction::{ContactForce, FrictionMemory};
+use super::rows::RowForces;
 use super::solved::solved_vertices;
 use super::taut::LimitedEdges;
 use bowknot_constraints::{Feature, FrictionModel};
@@ -14,7 +15,7 @@ use bowknot_dynamics::{Dynamics, DynamicsModel, RepulsionSpring, SpringKind, Ste
 use bowknot_geometry::{PairKind, Point, Vector};
 use bowknot_scene::RepulsionParams;
 use bowknot_scene::world::World;
-use bowknot_twoway::Resolver;
+use bowknot_twoway::{PairMultipliers, Resolver};
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
@@ -37,8 +38,10 @@ pub(super) struct Contacts {
     springs: Vec<RepulsionSpring>,
     /// Features of each contact's sides, [`oriented`]. Springs of edges follow after those of contacts.
     features: Vec<[Feature; 2]>,
-    /// The forces at the end of the last time step.
+    /// The forces at the end of the last time step: of so many springs, then of rows.
     carried: Vec<ContactForce>,
+    pressing: usize,
+    rows: RowForces,
     memory: FrictionMemory,
     /// The edges that have a stretch limit.
     limited: LimitedEdges,
@@ -110,7 +113,12 @@ impl Contacts {
 
     /// Number of contacts that carried a force at the end of the last time step.
     pub fn pressing(&self) -> usize {
-        self.carried.len()
+        self.pressing
+    }
+
+    /// What rows alone carry where the dynamics knows contacts.
+    pub fn row_multipliers(&self) -> &[PairMultipliers] {
+        if self.stiffness == 0.0 { &[] } else { self.rows.multipliers() }
     }
 
     /// Continues with the forces of a checkpoint.
@@ -121,22 +129,25 @@ impl Contacts {
     /// Begins a time step at the positions `start`. It forgets the pairs of the last time step that are out
     /// of contact range, and finds the contacts from positions and forces alone, so that a resumed run finds
     /// the same.
-    pub fn begin_step(&mut self, resolver: &Resolver, start: &[Point]) {
+    pub fn begin_step(&mut self, resolver: &Resolver, start: &[Point], dt: f64) {
         self.touching = Touching::default();
         self.note_touching(resolver);
         self.memory = FrictionMemory::new(resolver.scene(), &self.carried);
+        self.rows.begin_step(resolver.scene(), &self.carried, &self.solved, dt);
         self.counted.clone_from(&self.solved);
         self.find(resolver, start);
     }
 
-    /// Ends a time step with the `forces` of the springs [N].
-    pub fn end_step(&mut self, forces: &[Vector]) {
+    /// Ends a time step with the `forces` of the springs [N], and those of the rows.
+    pub fn end_step(&mut self, forces: &[Vector], resolver: &Resolver) {
         let of_contacts = self.features.iter().zip(&self.springs).zip(forces);
         let pushes = of_contacts.filter(|(_, force)| **force != Vector::zeros());
         let force = |((features, spring), force): ((&[Feature; 2], &RepulsionSpring), &Vector)| {
             ContactForce { features: *features, normal: spring.normal, force: *force }
         };
         self.carried = pushes.map(force).collect();
+        self.pressing = self.carried.len();
+        self.carried.extend(self.rows.forces(resolver, &self.solved));
     }
 
     /// Adds the pairs in contact range to [`Self::touching`], which joins components and holds them: a pair within a
@@ -171,6 +182,7 @@ impl Contacts {
     /// Notes the vertices that only rows of the collision stage hold, after a call of it: the residual does not count them.
     pub fn note_rows(&mut self, resolver: &Resolver) {
         let contacts = &resolver.state().contacts;
+        self.rows.note(resolver, &self.solved);
         self.counted.clone_from(&self.solved);
         for kind in PairKind::ALL {
             for p in contacts.pairs.range(kind).filter(|&p| contacts.multipliers[p] != 0.0) {

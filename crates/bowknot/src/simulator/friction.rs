@@ -89,7 +89,7 @@ fn for_each_side(scene: &CollisionScene, features: &[Feature; 2], mut visit: imp
 }
 
 /// The vertices of a feature; none of a half-space.
-fn vertices<'a>(topology: &'a Topology, feature: &'a Feature) -> &'a [u32] {
+pub(super) fn vertices<'a>(topology: &'a Topology, feature: &'a Feature) -> &'a [u32] {
     match feature {
         Feature::Vertex(vertex) => std::slice::from_ref(vertex),
         Feature::Edge(edge) => topology.edges.get(*edge as usize).map_or(&[], |edge| edge),

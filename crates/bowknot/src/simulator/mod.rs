@@ -19,6 +19,7 @@ mod progress;
 mod reach;
 mod relaxation;
 mod rest;
+mod rows;
 #[allow(clippy::module_inception, reason = "the type that the module is named for")]
 mod simulator;
 mod sleep;

@@ -329,7 +329,7 @@ impl Simulator {
 
         let timer = Instant::now();
         dynamics.begin_step(start, velocities, *dt).map_err(target_error)?;
-        contacts.begin_step(resolver, start);
+        contacts.begin_step(resolver, start, *dt);
         contacts.apply(dynamics).map_err(target_error)?;
         statistics.repulsion_springs = contacts.springs().len();
         statistics.seconds.dynamics += timer.elapsed().as_secs_f64();
@@ -383,6 +383,7 @@ impl Simulator {
                 start: Some(&start[..count]),
                 groups,
                 known: contacts.known(count),
+                carried: contacts.row_multipliers(),
                 max_steps: (!last).then_some(MAX_INTERMEDIATE_STEPS),
             };
             ends.note(world, prescribed, &x[..count]);
@@ -427,7 +428,7 @@ impl Simulator {
             }
         }
         statistics.prescribed_lag_m = largest_lag(&x[..count], keyframes, prescribed, backend.resolution());
-        contacts.end_step(&dynamics.contact_forces());
+        contacts.end_step(&dynamics.contact_forces(), resolver);
         statistics.pressing_contacts = contacts.pressing();
         let judged = backend.judge(resolver.scene(), &x[..count]);
         judged.map_err(|source| backend_error(world, step, source))?;

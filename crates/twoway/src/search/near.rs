@@ -6,6 +6,7 @@
 
 use super::regions::Regions;
 use super::sides::{Sides, range_count, range_of};
+use crate::adopt::PairMultipliers;
 use crate::call::CallInput;
 use crate::scene::CollisionScene;
 use crate::spacing::MIN_SEPARATION_MARGIN;
@@ -199,8 +200,9 @@ impl NearPairs {
 
     /// Carries the data of pairs over to the new list, and initializes those of new pairs.
     fn inherit(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
-        let (contacts, old) = (&mut state.contacts, &self.old);
+        let (contacts, old, starts) = (&mut state.contacts, &self.old, state.step == 0);
         let growth = state.call.time_step().map_or(f64::INFINITY, |dt| scene.lengths().separation_speed * dt);
+        let carried = |kind: PairKind, pair: &Pair| starts.then(|| state.call.carried(kind, pair.elements)).flatten();
         let count = contacts.pairs.len();
         contacts.desired.resize(count, 0.0);
         contacts.min_separations.resize(count, 0.0);
@@ -225,17 +227,23 @@ impl NearPairs {
                     return 0;
                 }
                 let first = first_values(scene, kind, pair, separation, growth, &state.call);
-                (*desired, *min_separation, *multiplier) = (first.desired, first.min_separation, 0.0);
+                (*desired, *min_separation) = (first.desired, first.min_separation);
+                *multiplier = carried(kind, pair).map_or(0.0, |carried| carried.normal);
                 usize::from(first.lowered)
             });
             statistics.lowered_pairs += lowered.sum::<usize>();
         }
         if scene.friction_model() == FrictionModel::Coulomb {
-            self.inherit_friction(scene, contacts);
+            self.inherit_friction(scene, contacts, carried);
         }
     }
 
-    fn inherit_friction(&self, scene: &CollisionScene, contacts: &mut ContactSet) {
+    fn inherit_friction<'a>(
+        &self,
+        scene: &CollisionScene,
+        contacts: &mut ContactSet,
+        carried: impl Fn(PairKind, &Pair) -> Option<&'a PairMultipliers> + Sync,
+    ) {
         let (count, old) = (contacts.pairs.len(), &self.old.friction_multipliers);
         contacts.friction_multipliers.resize(count, Vector::zeros());
         contacts.frictions.resize(count, 0.0);
@@ -249,7 +257,8 @@ impl NearPairs {
             );
             let places = places.into_par_iter().with_min_len(CHUNK);
             places.for_each(|(multiplier, friction, &matched, pair)| {
-                *multiplier = old.get(matched as usize).copied().unwrap_or_else(Vector::zeros);
+                let first = || carried(kind, pair).map_or_else(Vector::zeros, |carried| carried.friction);
+                *multiplier = old.get(matched as usize).copied().unwrap_or_else(first);
                 *friction = scene.contact().friction_of_pair(scene.model(), kind, pair);
             });
         }

@@ -1,0 +1,107 @@
+//! What rows of the collision stage carry where the dynamics knows no contact: among grains, and between them and
+//! obstacles.
+//!
+//! A call starts from what the last one ended with, also that of the last time step. So its few sweeps go on where those
+//! before it ended, and a pile stands, whose weight they would not carry down from its top in one time step.
+
+use super::friction::{ContactForce, vertices};
+use bowknot_constraints::Feature;
+use bowknot_geometry::{PairKind, Vector};
+use bowknot_twoway::{CollisionScene, PairMultipliers, Resolver};
+
+/// Share of what rows carry that the next call starts from. 1: where rows contradict each other, multipliers would grow from
+/// call to call without bound.
+const KEPT: f64 = 0.95;
+
+/// What rows carry.
+#[derive(Clone, Debug, Default)]
+pub(super) struct RowForces {
+    /// In the order that a call wants them in.
+    multipliers: Vec<PairMultipliers>,
+    /// Force of a multiplier of 1 m [N/m].
+    scale: f64,
+}
+
+impl RowForces {
+    /// Begins a time step of `dt` [s] with the contact forces at the end of the last one. Vertices that are `solved` are
+    /// those whose contacts the dynamics knows.
+    pub fn begin_step(&mut self, scene: &CollisionScene, carried: &[ContactForce], solved: &[bool], dt: f64) {
+        self.scale = scene.mean_mass() / (dt * dt);
+        let topology = scene.model().topology();
+        let is_row = |force: &&ContactForce| {
+            // The features of a checkpoint may be anything.
+            let mut used = force.features.iter().flat_map(|feature| vertices(topology, feature));
+            used.all(|&v| solved.get(v as usize) == Some(&false))
+        };
+        let multipliers = carried.iter().filter(is_row).filter_map(|ContactForce { features, normal, force }| {
+            let (kind, elements) = pair(features)?;
+            let pressure = normal.dot(force);
+            let friction = (force - normal * pressure) * (KEPT / self.scale);
+            Some(PairMultipliers { kind, elements, normal: KEPT * pressure / self.scale, friction })
+        });
+        self.multipliers = multipliers.collect();
+        self.multipliers.sort_unstable_by_key(|pair| (pair.kind, pair.elements));
+    }
+
+    /// What the next call starts from.
+    pub fn multipliers(&self) -> &[PairMultipliers] {
+        &self.multipliers
+    }
+
+    /// Notes what the pairs carry that a call of the collision stage ended with.
+    pub fn note(&mut self, resolver: &Resolver, solved: &[bool]) {
+        self.multipliers.clear();
+        let contacts = &resolver.state().contacts;
+        for (kind, place) in pressing(resolver, solved) {
+            let friction = contacts.friction_multipliers.get(place).copied().unwrap_or_else(Vector::zeros);
+            let (elements, normal) = (contacts.pairs.pairs()[place].elements, contacts.multipliers[place]);
+            self.multipliers.push(PairMultipliers { kind, elements, normal: KEPT * normal, friction: friction * KEPT });
+        }
+        self.multipliers.sort_unstable_by_key(|pair| (pair.kind, pair.elements));
+    }
+
+    /// The same as forces, at the end of a time step.
+    pub fn forces(&self, resolver: &Resolver, solved: &[bool]) -> Vec<ContactForce> {
+        let contacts = &resolver.state().contacts;
+        let force = |(kind, place): (PairKind, usize)| {
+            let friction = contacts.friction_multipliers.get(place).copied().unwrap_or_else(Vector::zeros);
+            let normal = contacts.separations[place].normal;
+            let force = (normal * contacts.multipliers[place] + friction) * self.scale;
+            Some(ContactForce { features: features(kind, contacts.pairs.pairs()[place].elements)?, normal, force })
+        };
+        pressing(resolver, solved).filter_map(force).collect()
+    }
+}
+
+/// Kinds and places of the pairs that press and that rows alone hold.
+fn pressing<'a>(resolver: &'a Resolver, solved: &'a [bool]) -> impl Iterator<Item = (PairKind, usize)> + 'a {
+    let contacts = &resolver.state().contacts;
+    let of_kind = |kind: PairKind| contacts.pairs.range(kind).map(move |place| (kind, place));
+    PairKind::ALL.into_iter().flat_map(of_kind).filter(move |&(kind, place)| {
+        let used = &contacts.pairs.pairs()[place].vertices[..kind.vertex_count()];
+        contacts.multipliers[place] != 0.0 && !used.iter().any(|&v| solved[v as usize])
+    })
+}
+
+/// The elements of a pair of a vertex, and what it touches.
+fn features(kind: PairKind, [a, b]: [u32; 2]) -> Option<[Feature; 2]> {
+    let other = match kind {
+        PairKind::VertexVertex => Feature::Vertex(b),
+        PairKind::VertexEdge => Feature::Edge(b),
+        PairKind::VertexTriangle => Feature::Triangle(b),
+        PairKind::VertexHalfSpace => Feature::HalfSpace(b),
+        PairKind::EdgeEdge => return None,
+    };
+    Some([Feature::Vertex(a), other])
+}
+
+/// The pair of such features.
+fn pair(features: &[Feature; 2]) -> Option<(PairKind, [u32; 2])> {
+    let [Feature::Vertex(a), other] = *features else { return None };
+    Some(match other {
+        Feature::Vertex(b) => (PairKind::VertexVertex, [a, b]),
+        Feature::Edge(b) => (PairKind::VertexEdge, [a, b]),
+        Feature::Triangle(b) => (PairKind::VertexTriangle, [a, b]),
+        Feature::HalfSpace(b) => (PairKind::VertexHalfSpace, [a, b]),
+    })
+}
