@@ -113,7 +113,11 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let count = min(atomicLoad(&control.candidates), params.capacity);
     for (var c = id.x; c < count; c += 128u * MOST_WORKGROUPS) {
         if states[c].desired < 0.0 {
-            states[c] = first_state(candidates[c], separations[c]);
+            // What the pair carries at the start of the call stays (resume.wgsl).
+            let first = first_state(candidates[c], separations[c]);
+            states[c].desired = first.desired;
+            states[c].min_separation = first.min_separation;
+            states[c].range = first.range;
         }
         separations[c].min_separation = states[c].min_separation;
         separations[c].wanted = states[c].desired;

@@ -12,6 +12,7 @@
 //! within contact range are candidates in any case. If these alone are too many, the call ends with an error.
 
 mod buffers;
+mod carried;
 mod end;
 mod near_list;
 mod record;
@@ -35,6 +36,7 @@ use crate::recording::{BufferId, Recording};
 use crate::stages;
 use bowknot_geometry::{CollisionModel, Point, Vector};
 use buffers::{Buffers, Sizes, words};
+use carried::CarriedList;
 use near_list::NearList;
 pub use stop::Stop;
 use trees::Trees;
@@ -150,15 +152,36 @@ pub struct Call<'a> {
     /// Vertices whose contacts the target knows: pairs with one of them that are near when they become candidates guard
     /// only a part of their gap. Empty: none.
     pub known: &'a [bool],
+    /// What pairs carry at the start, in any order: the first step sweeps on from it. Pairs without an entry carry nothing;
+    /// entries of pairs that do not press, or that the first search does not find, are left out.
+    pub carried: &'a [Carried],
     /// When the call ends.
     pub stop: Stop,
 }
 
 impl<'a> Call<'a> {
-    /// Toward a target that knows no contacts. Pairs may open at once, slip counts from here, and the host alone ends
+    /// Toward a target that knows no contacts, with pairs that carry nothing. Pairs may open at once, slip counts from here, and the host alone ends
     /// the call.
     pub fn toward(target: &'a [Point]) -> Self {
-        Self { target, growth: f64::INFINITY, slip_start: &[], known: &[], stop: Stop::NEVER }
+        Self { target, growth: f64::INFINITY, slip_start: &[], known: &[], carried: &[], stop: Stop::NEVER }
+    }
+}
+
+/// What a pair carries at the start of a call.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Carried {
+    /// The pair. Where both sides are of one kind, their order is that of `friction` alone.
+    pub candidate: Candidate,
+    /// Multiplier of its contact row [m, in units of the mean mass].
+    pub multiplier: f64,
+    /// Multiplier of friction on side *a*, in the same units.
+    pub friction: Vector,
+}
+
+impl From<&ContactRow> for Carried {
+    /// What a call carried at its end.
+    fn from(row: &ContactRow) -> Self {
+        Self { candidate: row.candidate, multiplier: row.multiplier, friction: row.friction }
     }
 }
 
@@ -238,6 +261,7 @@ pub struct Collision<E> {
     /// As they are on the device.
     vertices: Vec<Vertex>,
     near: NearList,
+    carried: CarriedList,
     trees: Trees,
     edges: Edges,
     bricks: Bricks,
@@ -385,6 +409,7 @@ impl<E: Engine> Collision<E> {
             vertices.iter().any(|v| v.flags & (Vertex::PRESCRIBED | Vertex::OBSTACLE) == Vertex::PRESCRIBED);
         let buffers = Buffers::new(&mut engine, &sizes)?;
         let near = NearList::new(&mut engine)?;
+        let carried = CarriedList::new(&mut engine)?;
         let mut setup = Recording::default();
         setup.write(buffers.rest, &padded(&rest_on_grid));
         setup.write(buffers.vertices, &vertices);
@@ -414,6 +439,7 @@ impl<E: Engine> Collision<E> {
             buffers,
             vertices,
             near,
+            carried,
             trees,
             edges,
             bricks,
@@ -474,8 +500,10 @@ impl<E: Engine> Collision<E> {
         let (target, slip_start) = (inside(call.target), inside(call.slip_start));
         let slips_from_here = slip_start.is_empty();
         let changes = self.set_known(call.known)?;
-        let b = &self.buffers;
+        let carried = carried::sorted(&grid, call.carried);
         let mut recording = Recording::default();
+        self.carried.set(&mut self.engine, &carried, &mut recording)?;
+        let b = &self.buffers;
         if changes {
             recording.write(b.vertices, &self.vertices);
         }

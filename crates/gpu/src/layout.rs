@@ -149,6 +149,17 @@ impl Candidate {
     pub fn kind(&self) -> u32 {
         self.kind_and_a >> Self::ELEMENT_BITS
     }
+
+    /// The same pair with sides of one kind in the order of their numbers: a search may find it either way.
+    pub(crate) fn ordered(self) -> Self {
+        let (kind, a) = (self.kind(), self.a());
+        let is_symmetric = kind == Kind::VertexVertex as u32 || kind == Kind::EdgeEdge as u32;
+        if is_symmetric && self.b < a {
+            Self { kind_and_a: kind << Self::ELEMENT_BITS | self.b, b: a }
+        } else {
+            self
+        }
+    }
 }
 
 /// Contact geometry of a candidate.
@@ -201,6 +212,20 @@ impl PairState {
         range: 0.0,
         padding: 0,
     };
+}
+
+/// What a pair carries at the start of a call, in a list that is sorted by pair.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub struct CarriedState {
+    /// Multiplier of friction on side *a*.
+    pub friction: [f32; 3],
+    /// Multiplier of the contact row.
+    pub multiplier: f32,
+    /// The pair, [ordered](Candidate::ordered).
+    pub candidate: Candidate,
+    pub padding_0: u32,
+    pub padding_1: u32,
 }
 
 /// A contact row, linearized at the positions: value + normal . sum of weights u >= 0.

@@ -39,7 +39,7 @@ pub use bowknot_dynamics as dynamics;
 pub use bowknot_geometry as geometry;
 
 pub use adapter::Adapter;
-pub use collision::{Call, Collision, CollisionError, ContactRow, End, Settings, StepReport, Stop};
+pub use collision::{Call, Carried, Collision, CollisionError, ContactRow, End, Settings, StepReport, Stop};
 pub use engine::{
     ComparingEngine, DeviceEngine, Difference, Engine, PhaseSeconds, Profile, StageTime, TwinEngine,
 };

@@ -357,6 +357,14 @@ pub(crate) static INHERIT: Stage = Stage {
     twin: cpu::inherit::bound,
 };
 
+pub(crate) static RESUME: Stage = Stage {
+    name: "resume",
+    parts: &[TYPES, include_str!("../shader/resume.wgsl")],
+    workgroup: 256,
+    bindings: &[Read, Read, Write, Write],
+    twin: cpu::resume::bound,
+};
+
 pub(crate) static SPACE: Stage = Stage {
     name: "space",
     parts: &[TYPES, CLOSEST, PAIR, include_str!("../shader/space.wgsl")],
@@ -455,6 +463,7 @@ pub(crate) static ALL: &[&Stage] = &[
     &PLACE,
     &KEEP,
     &INHERIT,
+    &RESUME,
     &SEPARATE,
     &SPACE,
     &LIMIT,

@@ -73,6 +73,9 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
         state.y.copy_from_slice(end.aims);
         state.step = statistics.steps;
         let contacts = &mut state.contacts;
+        // The search gave pairs what they carried at the start of the call.
+        contacts.multipliers.fill(0.0);
+        contacts.friction_multipliers.fill(Vector::zeros());
         let mut sorted = end.contacts.to_vec();
         sorted.sort_unstable_by_key(|contact| (contact.kind, contact.elements));
         for of_kind in sorted.chunk_by(|a, b| a.kind == b.kind) {

@@ -60,7 +60,8 @@ impl CallInput {
         let is_obstacle = |v: usize| model.is_obstacle(v as u32);
         let is_given = |v: usize| input.prescribed.get(v).copied().unwrap_or(false);
         let prescribed: Vec<bool> = (0..vertices).map(|v| is_obstacle(v) || is_given(v)).collect();
-        let has_unknown = input.known.iter().zip(&prescribed).any(|(known, prescribed)| !known && !prescribed);
+        let has_unknown =
+            input.known.iter().zip(&prescribed).any(|(known, prescribed)| !known && !prescribed);
         let has_friction = scene.friction_model() != FrictionModel::None;
         let slip_start = if has_friction { input.start.unwrap_or(positions).to_vec() } else { Vec::new() };
         Ok(Self {
@@ -99,6 +100,11 @@ impl CallInput {
     /// Whether the target knows contacts, but not those of some vertices that move: rows alone hold these.
     pub fn has_unknown(&self) -> bool {
         self.has_unknown
+    }
+
+    /// What pairs carry at the start, ascending by kind and elements.
+    pub fn all_carried(&self) -> &[PairMultipliers] {
+        &self.carried
     }
 
     /// What a pair carries at the start.

@@ -73,7 +73,7 @@ pub use live::{LiveRows, LiveSystem};
 pub use observer::{AcceptedState, Observer};
 pub use params::{BackwardParams, Params, SolverParams};
 pub use resolver::Resolver;
-pub use row_solver::{ColoredSweeps, RowSolver, RowSystem};
+pub use row_solver::{ColoredSweeps, RowSolver, RowSystem, UNKNOWN_SWEEPS};
 pub use scene::{CollisionScene, Lengths};
 pub use search::{GUARDED, GUARDED_FLOOR, KNOWN, TrustRegionSearch};
 pub use spacing::{MIN_SEPARATION_MARGIN, PairSpacing, Spacing};

@@ -11,7 +11,7 @@ use bowknot_lcp as lcp;
 
 /// Factor on the sweeps of calls in which rows alone hold some vertices, beside a target that knows its other contacts. More:
 /// piles stand steeper, as they should. Fewer: less time.
-const UNKNOWN: usize = 4;
+pub const UNKNOWN_SWEEPS: usize = 4;
 
 /// Number of sweeps between two checks of the stretch while polishing.
 const POLISH_BATCH: usize = 8;
@@ -121,7 +121,7 @@ fn sweep_and_polish<R>(
     stretch: impl Fn(&R) -> f64,
 ) -> Result<(), lcp::LcpError> {
     let params = &scene.params().solver.backward;
-    batch(rows, if state.call.has_unknown() { UNKNOWN * params.sweeps } else { params.sweeps })?;
+    batch(rows, if state.call.has_unknown() { UNKNOWN_SWEEPS * params.sweeps } else { params.sweeps })?;
     if state.remaining < params.polish_distance * scene.lengths().edge {
         let allowed = 1.0 + 0.5 * scene.params().solver.stop.stretch_tolerance;
         let mut sweeps = params.sweeps;

@@ -5,7 +5,9 @@ use super::judge::SceneJudge;
 use super::{flight, pairs, setup};
 use crate::simulator::{BackendError, CollisionBackend, MIN_VERTICES};
 use bowknot_geometry::Point;
-use bowknot_gpu::{Call, Collision, ContactRow, End, Engine, Grid, Phase, PhaseSeconds, StepReport, Stop};
+use bowknot_gpu::{
+    Call, Carried, Collision, ContactRow, End, Engine, Grid, Phase, PhaseSeconds, StepReport, Stop,
+};
 use bowknot_twoway::{
     AcceptedState, CallEnd, CallInput, CollisionScene, Observer, PairMultipliers, Residuals, ResolveInput,
     Resolver, StallDetector, Statistics, StopTest, max_stretch,
@@ -78,6 +80,8 @@ struct CallConstraints {
     prescribed: Vec<bool>,
     groups: Vec<u32>,
     obstacles: Vec<bool>,
+    /// Decides the sweeps.
+    has_unknown: bool,
 }
 
 impl CallConstraints {
@@ -86,12 +90,14 @@ impl CallConstraints {
             prescribed: call.prescribed().to_vec(),
             groups: input.groups.to_vec(),
             obstacles: obstacles(scene).collect(),
+            has_unknown: call.has_unknown(),
         }
     }
 
     fn are_those_of(&self, scene: &CollisionScene, call: &CallInput, input: &ResolveInput<'_>) -> bool {
         self.prescribed == call.prescribed()
             && self.groups == input.groups
+            && self.has_unknown == call.has_unknown()
             && self.obstacles.iter().copied().eq(obstacles(scene))
     }
 }
@@ -204,7 +210,11 @@ impl<E: Engine + Debug + Send> Device<E> {
         let speed = scene.lengths().separation_speed;
         let growth = input.time_step.map_or(f64::INFINITY, |dt| speed * dt);
         let slip_start = if call.slip_start().is_empty() { &start } else { call.slip_start() };
-        collision.begin(&Call { target, growth, slip_start, known: call.known(), stop: rule(&stop) })?;
+        // As on the CPU, pairs that meet after a flight carry nothing.
+        let starts = if statistics.steps == 0 { call.all_carried() } else { &[] };
+        let carried: Vec<Carried> = starts.iter().filter_map(pairs::carried).collect();
+        let (known, stop_rule) = (call.known(), rule(&stop));
+        collision.begin(&Call { target, growth, slip_start, known, carried: &carried, stop: stop_rule })?;
 
         while flight_observed.is_continue() && stop.allows_step(statistics.steps) {
             let most = if sees_each_state { 1 } else { steps_per_submission };

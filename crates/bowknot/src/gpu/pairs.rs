@@ -1,7 +1,7 @@
 //! Pairs of a device as the CPU names them.
 
 use bowknot_geometry::{PairKind, Topology};
-use bowknot_gpu::{Candidate, ContactRow};
+use bowknot_gpu::{Candidate, Carried, ContactRow, Kind};
 use bowknot_proximity::{Pair, PairList};
 use bowknot_twoway::{CollisionScene, PairMultipliers};
 use rayon::prelude::*;
@@ -37,6 +37,20 @@ pub fn multipliers(row: &ContactRow) -> Option<PairMultipliers> {
     let kind = *PairKind::ALL.get(row.candidate.kind() as usize)?;
     let (elements, sign) = elements(kind, &row.candidate);
     Some(PairMultipliers { kind, elements, normal: row.multiplier, friction: row.friction * sign })
+}
+
+/// What a pair carries, as the device names it: the inverse of [`multipliers`]. None if no device numbers as many elements.
+pub fn carried(pair: &PairMultipliers) -> Option<Carried> {
+    let kind = match pair.kind {
+        PairKind::VertexVertex => Kind::VertexVertex,
+        PairKind::VertexEdge => Kind::VertexEdge,
+        PairKind::VertexTriangle => Kind::VertexTriangle,
+        PairKind::EdgeEdge => Kind::EdgeEdge,
+        PairKind::VertexHalfSpace => Kind::VertexHalfSpace,
+    };
+    let ([a, b], friction) = (pair.elements, pair.friction);
+    let has_number = a >> Candidate::ELEMENT_BITS == 0;
+    has_number.then(|| Carried { candidate: Candidate::new(kind, a, b), multiplier: pair.normal, friction })
 }
 
 /// The elements in the order of the CPU, and -1 if that changes sides.

@@ -5,7 +5,7 @@ use bowknot_constraints::{ContactForm, EdgeForm, EdgeReference, FrictionModel};
 use bowknot_geometry::Point;
 use bowknot_gpu::{Collision, CollisionError, Constraints, Engine, Grid, Lengths, Settings};
 use bowknot_stepper::{Bound, TrustRegionRule};
-use bowknot_twoway::{CallInput, CollisionScene, ContactSide, ResolveInput, StopRule};
+use bowknot_twoway::{CallInput, CollisionScene, ContactSide, ResolveInput, StopRule, UNKNOWN_SWEEPS};
 
 /// Sweeps of a device in place of so many on the CPU: five for eight. Each goes over buckets of rows and clusters of edges more
 /// than once, and a backward step solves its rows as well (`docs/gpu/collisions.md`).
@@ -64,9 +64,10 @@ pub fn collision<E: Engine>(
         pair_frictions: &pair_frictions,
     };
     let backward = &params.solver.backward;
+    let sweeps = if call.has_unknown() { UNKNOWN_SWEEPS * backward.sweeps } else { backward.sweeps };
     let defaults = Settings::default();
     let settings = Settings {
-        sweeps: sweeps_on_device(backward.sweeps),
+        sweeps: sweeps_on_device(sweeps),
         cluster_sweeps: defaults.cluster_sweeps,
         bucket_sweeps: defaults.bucket_sweeps,
         bucket_vertices: defaults.bucket_vertices,

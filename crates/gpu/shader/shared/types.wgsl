@@ -81,6 +81,14 @@ struct PairState {
     padding: u32,
 }
 
+struct CarriedState {
+    friction: vec3<f32>,
+    multiplier: f32,
+    candidate: Candidate,
+    padding_0: u32,
+    padding_1: u32,
+}
+
 struct Row {
     vertices: vec4<u32>,
     weights: vec4<f32>,

@@ -486,3 +486,77 @@ fn targets_are_polished_near_the_end_while_edges_are_too_long() {
     let settings = Settings { polish_sweeps: settings.sweeps, ..settings };
     assert!(!settings.polishes_after(&report(0.5 * EDGE, 1.02)));
 }
+
+/// A column of grains on the ground, that weighs down and is pulled aside.
+#[test]
+fn a_call_that_starts_from_what_the_last_one_carried_has_nothing_left_to_do() {
+    let count = 24;
+    let x: Vec<Point> = (0..count).map(|k| Point::new(0.0, 0.0, DELTA * (1.0 + f64::from(k)))).collect();
+    let topology = Topology::builder(x.len()).particles(0..count).build().unwrap();
+    let ground = bowknot_geometry::HalfSpace::new(Point::origin(), Vector::z()).unwrap();
+    let model =
+        CollisionModel::new(topology, vec![0; x.len()], vec![BodyFilter::DEFORMABLE], vec![ground]).unwrap();
+    let lengths = Lengths {
+        edges: &vec![DELTA; x.len()],
+        margins: &vec![DELTA; x.len()],
+        deltas: &vec![DELTA; x.len()],
+        half_space_deltas: &[],
+        thicknesses: &[],
+        half_space_thicknesses: &[],
+        min_separation: MIN_SEPARATION,
+        edge_limits: &[],
+    };
+    let constraints = Constraints {
+        frictions: &vec![0.8; x.len()],
+        half_space_frictions: &[0.8],
+        ..Constraints::default()
+    };
+    // At rest the grains are far from each other, so that they keep their distance though they are of one body.
+    let rest: Vec<Point> = x.iter().map(|x| x * 10.0).collect();
+    let engine = TwinEngine::new();
+    let mut collision =
+        Collision::new(engine, &model, &x, &rest, &lengths, &constraints, &Settings::default()).unwrap();
+    let pull = Vector::new(0.02, 0.0, -0.1) * DELTA;
+    let target: Vec<Point> = x.iter().map(|x| x + pull).collect();
+    // As many steps, then the place and what the rows carry.
+    let mut call = |steps: usize, carried: &[Carried]| {
+        collision.place(&x).unwrap();
+        collision.begin(&Call { carried, slip_start: &x, ..Call::toward(&target) }).unwrap();
+        let last = (0..steps).map(|_| collision.step().unwrap()).last().unwrap();
+        (last, collision.end().unwrap())
+    };
+    let (_, end) = call(400, &[]);
+    let carried: Vec<Carried> = end.rows.iter().map(Carried::from).collect();
+    let weight = f64::from(count) * 0.1 * DELTA;
+    let at = |end: &End, kind: Kind| {
+        let of_kind = end.rows.iter().filter(|row| row.candidate.kind() == kind as u32);
+        of_kind.map(|row| row.multiplier).fold(0.0, f64::max)
+    };
+    assert!((at(&end, Kind::VertexHalfSpace) / weight - 1.0).abs() < 0.01, "{end:?}");
+    assert!(end.rows.iter().all(|row| row.friction.norm() > 0.1 * row.multiplier), "{end:?}");
+    let (cold, cold_end) = call(1, &[]);
+    let (warm, warm_end) = call(1, &carried);
+    assert!(warm.largest_move < 1e-3 * cold.largest_move, "{warm:?} {cold:?}");
+    let held = at(&cold_end, Kind::VertexHalfSpace) / weight;
+    assert!(held < 0.9, "{held}");
+    for row in &warm_end.rows {
+        let before = end.rows.iter().find(|before| before.candidate == row.candidate).unwrap();
+        let change = (row.multiplier - before.multiplier).abs() + (row.friction - before.friction).norm();
+        assert!(change < 0.01 * weight, "{row:?} {before:?}");
+    }
+    // Neither the order of the entries nor that of the grains of a pair matters, and what is no number is left out.
+    let swapped = carried.iter().rev().map(|pair| match pair.candidate.kind() == Kind::VertexVertex as u32 {
+        true => Carried {
+            candidate: Candidate::new(Kind::VertexVertex, pair.candidate.b, pair.candidate.a()),
+            friction: -pair.friction,
+            ..*pair
+        },
+        false => *pair,
+    });
+    let far = Carried { candidate: Candidate::new(Kind::VertexVertex, 0, 20), ..carried[0] };
+    let nan = Carried { multiplier: f64::NAN, candidate: Candidate::new(Kind::VertexVertex, 0, 2), ..far };
+    let swapped: Vec<Carried> = swapped.chain([far, nan]).collect();
+    assert!(call(1, &swapped) == (warm, warm_end));
+    // A call without entries starts without them.
+    assert!(call(1, &[]) == (cold, cold_end));
+}

@@ -83,6 +83,7 @@ pub mod rescale;
 pub mod residuals;
 pub mod residue;
 pub mod restart;
+pub mod resume;
 pub mod rigid;
 pub mod separate;
 pub mod settle;

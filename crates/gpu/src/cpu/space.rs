@@ -55,7 +55,9 @@ pub fn space(
     for c in 0..control.candidates.min(params.capacity) as usize {
         if states[c].desired < 0.0 {
             let pair = pair_of(candidates[c], edges, triangles);
-            states[c] = first_state(&params, candidates[c], &pair, &separations[c], rest, vertices);
+            let first = first_state(&params, candidates[c], &pair, &separations[c], rest, vertices);
+            let PairState { friction, multiplier, .. } = states[c];
+            states[c] = PairState { friction, multiplier, ..first };
         }
         separations[c].min_separation = states[c].min_separation;
         separations[c].wanted = states[c].desired;

@@ -2,7 +2,9 @@
 
 use crate::scene::{EDGE, Scene, assert_no_intersections, collision, device, scene, target, with_settings};
 use bowknot_geometry::{BodyFilter, CollisionModel, HalfSpace, Point, Topology, Vector};
-use bowknot_gpu::{Call, ComparingEngine, Constraints, Phase, PhaseSeconds, Settings, Stop, TwinEngine};
+use bowknot_gpu::{
+    Call, Carried, ComparingEngine, Constraints, Phase, PhaseSeconds, Settings, Stop, TwinEngine,
+};
 
 /// With all contact rows in one bucket, and in many.
 #[test]
@@ -14,11 +16,16 @@ fn every_kernel_computes_what_its_twin_does() {
         let settings = Settings { bucket_vertices, ..Settings::default() };
         let mut collision = with_settings(engine, &scene, &Constraints::default(), &settings).unwrap();
         let every_third: Vec<bool> = (0..scene.x.len()).map(|v| v % 3 == 0).collect();
+        let mut carried: Vec<Carried> = Vec::new();
         for known in [&[], every_third.as_slice()] {
-            collision.begin(&Call { known, ..Call::toward(&target(&scene, &mut random)) }).unwrap();
+            assert_eq!(carried.iter().any(|pair| pair.multiplier > 0.0), !known.is_empty());
+            let target = target(&scene, &mut random);
+            collision.begin(&Call { known, carried: &carried, ..Call::toward(&target) }).unwrap();
             for step in 0..3 {
                 collision.steps(1 + step % 2 * 2).unwrap();
-                scene.x = collision.end().unwrap().positions;
+                let end = collision.end().unwrap();
+                scene.x = end.positions;
+                carried = end.rows.iter().map(Carried::from).collect();
                 assert_no_intersections(&scene, &scene.x, &format!("step {step}"));
             }
         }

@@ -60,7 +60,8 @@ fn pairs_that_are_known_need_no_search() {
         friction: Vector::zeros(),
     });
     let contacts: Vec<PairMultipliers> = carried.collect();
-    let mut adopt = |near: Option<&PairList>| {
+    let mut adopt = |near: Option<&PairList>, carried: &[PairMultipliers]| {
+        let input = ResolveInput { carried, ..input };
         let call = CallInput::new(resolver.scene(), &x, &target, &input).unwrap();
         let call_end = CallEnd {
             start: &x,
@@ -74,13 +75,23 @@ fn pairs_that_are_known_need_no_search() {
         resolver.adopt(&call_end, call, &mut statistics).unwrap();
         (described(&resolver.state().contacts), statistics.min_gap_m, statistics.injected_j)
     };
-    let (searched, known) = (adopt(None), adopt(Some(&near)));
+    let (searched, known) = (adopt(None, &[]), adopt(Some(&near), &[]));
     assert!(searched == known);
     // Only these: nothing is searched for.
-    let (empty, gap, _) = adopt(Some(&PairList::default()));
+    let (empty, gap, _) = adopt(Some(&PairList::default()), &[]);
     assert!(gap.is_none() && empty != searched.0);
     // A search after it finds all again.
-    assert!(adopt(None) == searched);
+    assert!(adopt(None, &[]) == searched);
+    // What pairs carried at the start of the call is no more.
+    let all = (0..state.contacts.pairs.len()).map(|p| PairMultipliers {
+        kind: state.contacts.pairs.kind(p),
+        elements: state.contacts.pairs.pairs()[p].elements,
+        normal: 1.0,
+        friction: Vector::zeros(),
+    });
+    let mut all: Vec<PairMultipliers> = all.collect();
+    all.sort_unstable_by_key(|pair| (pair.kind, pair.elements));
+    assert!(adopt(None, &all) == searched);
     assert!(state.contacts.pairs.len() > 50 && !contacts.is_empty(), "{}", state.contacts.pairs.len());
     assert!(near.len() > 4 * state.contacts.pairs.len(), "{}", near.len());
 }
