@@ -14,6 +14,10 @@ use bowknot_errors::counted;
 use std::ops::ControlFlow;
 use std::path::Path;
 
+/// What lowers the number of time steps whose residuals end above the tolerance.
+const REMEDY: &str =
+    "fewer with more Newton iterations (--set simulation.newton_iterations=30) or a shorter --dt";
+
 /// Largest number of bodies whose sizes are printed.
 const MAX_SIZES: usize = 10;
 
@@ -205,6 +209,13 @@ fn progress_text(progress: &Progress<'_>) -> String {
     if statistics.asleep_vertices > 0 {
         text += &format!(", {} asleep", counted(statistics.asleep_vertices, "vertex", "vertices"));
     }
+    if statistics.residual_m > statistics.tolerance_m && !statistics.solved {
+        let [residual, tolerance] = [statistics.residual_m, statistics.tolerance_m];
+        text += &format!(", residual {}", residual_text(residual, tolerance));
+        if let Some(unsolved) = &statistics.unsolved {
+            text += &format!(", at {}", unsolved.bodies());
+        }
+    }
     if let (false, Some(body)) = (statistics.converged, &statistics.slowest_body) {
         text += &format!(", {body} is {:.1} mm short of its target", 1e3 * statistics.remaining_m);
     }
@@ -253,6 +264,7 @@ fn to_text(outcome: &Outcome, out: &Path, frames: usize) -> String {
         number(max.and_then(|max| max.max_stretch), 3),
     ));
     lines.extend(unreached_targets(summary));
+    lines.extend(unsolved_steps(summary));
     if let Some(slowest) = &summary.slowest_step {
         let steps = counted(slowest.two_way_steps, "two-way step", "two-way steps");
         lines.push(format!("slowest: time step {} with {steps}, which waited for", slowest.step));
@@ -272,6 +284,41 @@ fn to_text(outcome: &Outcome, out: &Path, frames: usize) -> String {
         lines.push("continue with --resume".to_owned());
     }
     lines.join("\n")
+}
+
+/// A residual [m] in words, with its ratio to the tolerance [m], if there is one.
+fn residual_text(residual: f64, tolerance: f64) -> String {
+    let mut text = format!("{} mm", two_digits(1e3 * residual));
+    if tolerance > 0.0 {
+        text += &format!(", {} times the tolerance", two_digits(residual / tolerance));
+    }
+    text
+}
+
+/// A number with two digits, or as an integer.
+fn two_digits(value: f64) -> String {
+    if value >= 10.0 {
+        return format!("{value:.0}");
+    }
+    let digits = (1.0 - value.log10().floor()).clamp(0.0, 9.0) as usize;
+    if value > 0.0 && value < 1e-4 { format!("{value:.1e}") } else { format!("{value:.digits$}") }
+}
+
+/// Time steps that ended unsolved, where the first of them is out of balance, and what helps.
+fn unsolved_steps(summary: &Summary) -> Vec<String> {
+    let Some(first) = &summary.first_unsolved else { return Vec::new() };
+    let steps = counted(summary.frames, "time step", "time steps");
+    let at = first.at.as_ref().map_or_else(String::new, |at| format!(", at {} m", at.short()));
+    let mut line = format!(
+        "warning: {} of {steps} ended unsolved: the first is time step {}{at}",
+        summary.unsolved_steps, first.step
+    );
+    let largest = summary.max.as_ref().and_then(|max| max.residual_m).unwrap_or(first.residual_m);
+    if largest <= first.tolerance_m || first.tolerance_m == 0.0 {
+        return vec![line];
+    }
+    line += &format!("; the largest residual is {}", residual_text(largest, first.tolerance_m));
+    vec![line, format!("  {REMEDY}")]
 }
 
 /// Time steps that ended at a limit, and obstacles and pins with something in their way.

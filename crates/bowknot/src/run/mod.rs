@@ -19,7 +19,9 @@ pub use backends::{BackendRecord, Backends};
 pub use checker::Checker;
 pub use export::{ExportOptions, Exported, export};
 pub use progress::{Progress, WithinStep};
-pub use summary::{EnergyNumbers, SecondsNumbers, SkippedNumbers, SlowStep, StepNumbers, Summary};
+pub use summary::{
+    EnergyNumbers, SecondsNumbers, SkippedNumbers, SlowStep, StepNumbers, Summary, UnsolvedStep,
+};
 pub use watch::{FailureWatch, SmallestState};
 pub use writer::{RunWriter, refuse_run};
 
@@ -197,6 +199,8 @@ fn run_steps(
         max: totals.max().map_err(unwritable)?,
         min_gap_m: totals.min_gap(),
         slowest_step: totals.slowest().cloned(),
+        unsolved_steps: totals.unsolved_steps(),
+        first_unsolved: totals.first_unsolved().cloned(),
         peak_memory_bytes: peak_memory_bytes(),
         intersections: checker.as_ref().map(Checker::intersections),
     };

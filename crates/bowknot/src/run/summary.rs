@@ -1,7 +1,7 @@
 //! The summary of a run: `summary.json`.
 
 use super::backends::CPU;
-use crate::simulator::{StepStatistics, WaitingElements};
+use crate::simulator::{StepStatistics, Unsolved, WaitingElements};
 use bowknot_scene::world::SceneInfo;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -33,6 +33,12 @@ pub struct Summary {
     /// The time step with the most two-way steps, if a step was so slow that it tells what it waited for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub slowest_step: Option<SlowStep>,
+    /// Time steps that ended unsolved, see [`StepStatistics::solved`].
+    #[serde(default)]
+    pub unsolved_steps: usize,
+    /// The first of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub first_unsolved: Option<UnsolvedStep>,
     /// Largest resident memory so far [bytes]; none where the system does not report it.
     pub peak_memory_bytes: Option<u64>,
     /// Intersections found in accepted states and on the paths between them; none if not checked.
@@ -54,6 +60,20 @@ pub struct SlowStep {
     pub two_way_steps: usize,
     /// What held back the vertices that had farthest to go.
     pub waits: Vec<WaitingElements>,
+}
+
+/// A time step that ended unsolved.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct UnsolvedStep {
+    /// Its index, from 1.
+    pub step: usize,
+    /// Residual at its end [m].
+    pub residual_m: f64,
+    /// Tolerance of the residual [m]; 0 if there is none.
+    pub tolerance_m: f64,
+    /// The bodies and the place where forces are out of balance, if known.
+    #[serde(flatten)]
+    pub at: Option<Unsolved>,
 }
 
 /// The numbers of [`StepStatistics`], combined over time steps. Each is none if no time step has it; flags
@@ -94,7 +114,9 @@ pub struct StepNumbers {
     pub searches: Option<f64>,
     pub seconds: SecondsNumbers,
     pub skipped: SkippedNumbers,
+    pub solved: Option<f64>,
     pub stationarity_m: Option<f64>,
+    pub tolerance_m: Option<f64>,
     pub two_way_steps: Option<f64>,
     pub waiting: BTreeMap<String, Option<f64>>,
 }
@@ -144,16 +166,25 @@ pub(super) struct Totals {
     max: Value,
     min_gap: Option<f64>,
     slowest: Option<SlowStep>,
+    unsolved_steps: usize,
+    first_unsolved: Option<UnsolvedStep>,
 }
 
 impl Totals {
     pub fn add(&mut self, statistics: &StepStatistics) {
-        // The index, the time, the name of a body and what was waited for have no mean.
+        // The index, the time, names, places and what was waited for have no mean.
         let Ok(Value::Object(mut values)) = serde_json::to_value(statistics) else { return };
         values.remove("step");
         values.remove("time");
         values.remove("slowest_body");
         values.remove("waits");
+        values.remove("unsolved");
+        if !statistics.solved {
+            self.unsolved_steps += 1;
+            let StepStatistics { step, residual_m, tolerance_m, .. } = *statistics;
+            let at = statistics.unsolved.clone();
+            self.first_unsolved.get_or_insert(UnsolvedStep { step, residual_m, tolerance_m, at });
+        }
         let slowest = self.slowest.as_ref().map_or(0, |slowest| slowest.two_way_steps);
         if !statistics.waits.is_empty() && statistics.two_way_steps > slowest {
             let StepStatistics { step, two_way_steps, .. } = *statistics;
@@ -186,6 +217,14 @@ impl Totals {
 
     pub fn slowest(&self) -> Option<&SlowStep> {
         self.slowest.as_ref()
+    }
+
+    pub fn unsolved_steps(&self) -> usize {
+        self.unsolved_steps
+    }
+
+    pub fn first_unsolved(&self) -> Option<&UnsolvedStep> {
+        self.first_unsolved.as_ref()
     }
 
     pub fn min_gap(&self) -> Option<f64> {
@@ -268,6 +307,45 @@ mod tests {
         assert_eq!(totals.min_gap(), Some(0.001));
         assert_eq!(totals.steps(), 3);
         assert_eq!(Totals::default().mean().unwrap(), None);
+    }
+
+    #[test]
+    fn the_first_unsolved_step_is_kept_and_all_are_counted() {
+        let step = |step, residual_m, solved| {
+            let unsolved = (!solved)
+                .then(|| Unsolved { bodies: vec!["strip".to_owned(), "left".to_owned()], place_m: [9.0; 3] });
+            let tolerance_m = 0.1;
+            StepStatistics { step, residual_m, tolerance_m, solved, unsolved, ..StepStatistics::default() }
+        };
+        let mut totals = Totals::default();
+        totals.add(&step(1, 0.1, true));
+        assert_eq!((totals.unsolved_steps(), totals.first_unsolved()), (0, None));
+        [step(2, 0.2, false), step(3, 0.4, false), step(4, 0.0, true)].iter().for_each(|s| totals.add(s));
+        assert_eq!(totals.unsolved_steps(), 2);
+        let first = totals.first_unsolved().unwrap();
+        assert_eq!(
+            serde_json::to_string(first).unwrap(),
+            r#"{"step":2,"residual_m":0.2,"tolerance_m":0.1,"bodies":["strip","left"],"place_m":[9.0,9.0,9.0]}"#
+        );
+        let read: UnsolvedStep = serde_json::from_str(&serde_json::to_string(first).unwrap()).unwrap();
+        assert_eq!(&read, first);
+        let mean = totals.mean().unwrap().unwrap();
+        assert_eq!((mean.solved, totals.max().unwrap().unwrap().residual_m), (Some(0.5), Some(0.4)));
+        let nowhere = UnsolvedStep { step: 7, ..UnsolvedStep::default() };
+        let text = serde_json::to_string(&nowhere).unwrap();
+        assert_eq!(text, r#"{"step":7,"residual_m":0.0,"tolerance_m":0.0}"#);
+        assert_eq!(serde_json::from_str::<UnsolvedStep>(&text).unwrap(), nowhere);
+    }
+
+    /// Statistics of earlier versions do not say whether a time step was solved.
+    #[test]
+    fn lines_without_the_flag_are_not_called_unsolved() {
+        let mut line = serde_json::to_value(StepStatistics::default()).unwrap();
+        let fields = line.as_object_mut().unwrap();
+        assert!(fields.remove("solved").is_some() && fields.remove("tolerance_m").is_some());
+        let mut totals = Totals::default();
+        totals.add(&serde_json::from_value(line).unwrap());
+        assert_eq!(totals.unsolved_steps(), 0);
     }
 
     /// Reading the combined statistics into the struct loses no key, changes no number and keeps the order.

@@ -138,14 +138,29 @@ impl Contacts {
         self.find(resolver, start);
     }
 
+    /// The component of a vertex; obstacles and vertices that do not exist have the same.
+    pub fn component(&self, vertex: u32) -> u32 {
+        self.components.get(vertex as usize).copied().unwrap_or(u32::MAX)
+    }
+
+    /// The contacts with the `forces` of the springs [N] that push: features, spring, force.
+    pub fn pushes<'a>(
+        &'a self,
+        forces: &'a [Vector],
+    ) -> impl Iterator<Item = (&'a [Feature; 2], &'a RepulsionSpring, &'a Vector)> {
+        let of_contacts = self.features.iter().zip(&self.springs).zip(forces);
+        let of_contacts = of_contacts.map(|((features, spring), force)| (features, spring, force));
+        of_contacts.filter(|(_, _, force)| **force != Vector::zeros())
+    }
+
     /// Ends a time step with the `forces` of the springs [N], and those of the rows.
     pub fn end_step(&mut self, forces: &[Vector], resolver: &Resolver) {
-        let of_contacts = self.features.iter().zip(&self.springs).zip(forces);
-        let pushes = of_contacts.filter(|(_, force)| **force != Vector::zeros());
-        let force = |((features, spring), force): ((&[Feature; 2], &RepulsionSpring), &Vector)| {
-            ContactForce { features: *features, normal: spring.normal, force: *force }
+        let force = |(features, spring, force): (&[Feature; 2], &RepulsionSpring, &Vector)| ContactForce {
+            features: *features,
+            normal: spring.normal,
+            force: *force,
         };
-        self.carried = pushes.map(force).collect();
+        self.carried = self.pushes(forces).map(force).collect();
         self.pressing = self.carried.len();
         self.carried.extend(self.rows.forces(resolver, &self.solved));
     }

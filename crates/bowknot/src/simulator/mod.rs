@@ -26,6 +26,7 @@ mod sleep;
 mod solved;
 mod statistics;
 mod taut;
+mod unsolved;
 mod waits;
 mod waking;
 
@@ -40,4 +41,5 @@ pub(crate) use simulator::MIN_VERTICES;
 pub use simulator::Simulator;
 pub use sleep::SleepState;
 pub use statistics::{Energy, StepSeconds, StepStatistics};
+pub use unsolved::Unsolved;
 pub use waits::WaitingElements;

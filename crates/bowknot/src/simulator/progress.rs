@@ -39,6 +39,16 @@ impl Progress {
         Self { tolerance: tolerance * ratio.min(ratio * ratio), smallest: f64::INFINITY, stalled: 0 }
     }
 
+    /// The tolerance of the residual in force [m]; 0 if there is none.
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    /// Whether a time step that ends at `residual` [m] is solved: without a tolerance any is.
+    pub fn solves(&self, residual: f64) -> bool {
+        self.tolerance == 0.0 || residual <= self.tolerance
+    }
+
     /// Whether the iterations oscillate about the solution.
     pub fn oscillates(&self) -> bool {
         self.stalled >= OSCILLATING
@@ -85,6 +95,14 @@ mod tests {
         let mut progress = Progress::new(0.0, 0.01);
         let oscillates = [1.0, 0.9, 0.8, 0.7, 0.1].map(|r| (progress.ends(r), progress.oscillates()));
         assert_eq!(oscillates, [false, false, true, true, false].map(|oscillates| (false, oscillates)));
+    }
+
+    #[test]
+    fn a_residual_up_to_the_tolerance_solves_and_without_a_tolerance_any_does() {
+        let progress = Progress::new(1e-3, 0.02);
+        assert_eq!(progress.tolerance(), 2e-3);
+        assert_eq!([0.0, 2e-3, 2.1e-3, f64::NAN].map(|r| progress.solves(r)), [true, true, false, false]);
+        assert!(Progress::new(0.0, 0.01).solves(1.0));
     }
 
     #[test]

@@ -22,9 +22,10 @@ use super::relaxation::relax_target;
 use super::rest::Rest;
 use super::sleep::SleepState;
 use super::statistics::StepStatistics;
+use super::unsolved::Search;
 use super::waits::WaitingElements;
 use bowknot_check::{Judge, StateOptions, StateReport};
-use bowknot_dynamics::{Dynamics, DynamicsModel, LinearBackend};
+use bowknot_dynamics::{Dynamics, DynamicsModel, LinearBackend, Residual};
 use bowknot_errors::counted;
 use bowknot_geometry::{Point, Vector};
 use bowknot_scene::world::{Attachment, World};
@@ -234,7 +235,16 @@ impl Simulator {
         let (timer, cpu_start) = (Instant::now(), cpu_seconds());
         let step = self.step + 1;
         let time = time_of(step, self.dt);
-        let mut statistics = StepStatistics { step, time, converged: true, ..StepStatistics::default() };
+        let progress = Progress::new(self.step_tolerance * self.resolver.scene().lengths().edge, self.dt);
+        let tolerance_m = progress.tolerance();
+        let mut statistics = StepStatistics {
+            step,
+            time,
+            tolerance_m,
+            converged: true,
+            solved: true,
+            ..StepStatistics::default()
+        };
 
         let mut scratch = std::mem::take(&mut self.scratch);
         scratch.start.clone_from(&self.positions);
@@ -253,7 +263,7 @@ impl Simulator {
             return Ok(statistics);
         }
         let carried = self.contacts.carried();
-        let result = self.iterate(step, &mut scratch, observer, &mut statistics);
+        let result = self.iterate(step, progress, &mut scratch, observer, &mut statistics);
         if let Err(error) = result {
             self.positions.clone_from(&scratch.start);
             self.anchors = anchors;
@@ -303,6 +313,7 @@ impl Simulator {
     fn iterate(
         &mut self,
         step: usize,
+        mut progress: Progress,
         scratch: &mut Scratch,
         observer: &mut dyn SimulationObserver,
         statistics: &mut StepStatistics,
@@ -317,7 +328,6 @@ impl Simulator {
             dt,
             interior,
             contacts,
-            step_tolerance,
             rest,
             measured,
             ..
@@ -336,7 +346,8 @@ impl Simulator {
         y.clone_from(start);
         x.clone_from(start);
         ends.begin(keyframes);
-        let mut progress = Progress::new(*step_tolerance * resolver.scene().lengths().edge, *dt);
+        let mut slowest_body = None;
+        let mut imbalance = Residual::default();
         for iteration in 0..self.newton_iterations {
             let last = iteration + 1 == self.newton_iterations;
             let timer = Instant::now();
@@ -396,6 +407,7 @@ impl Simulator {
                 *statistics.seconds.device.get_or_insert_default() += seconds;
             }
             let cut = !last && !resolved.converged && resolved.steps >= MAX_INTERMEDIATE_STEPS;
+            slowest_body = resolved.slowest_body.filter(|_| !resolved.converged);
             statistics.add_collision(&resolved, |body| world.name_of(body).to_owned());
             if !resolved.waits.is_empty() {
                 statistics.waits =
@@ -420,7 +432,7 @@ impl Simulator {
             contacts.apply(dynamics).map_err(target_error)?;
             let residual = dynamics.residual(x, prescribed, contacts.counted()).map_err(target_error)?;
             statistics.seconds.dynamics += timer.elapsed().as_secs_f64();
-            (statistics.residual_n, statistics.residual_m) = (residual.force, residual.distance);
+            imbalance = residual;
             tracing::debug!(step, iteration, residual.force, residual.distance, "time step");
             observer.iterated(&Iterated { step, iteration, residual });
             if progress.ends(residual.distance) && !cut {
@@ -428,7 +440,21 @@ impl Simulator {
             }
         }
         statistics.prescribed_lag_m = largest_lag(&x[..count], keyframes, prescribed, backend.resolution());
-        contacts.end_step(&dynamics.contact_forces(), resolver);
+        (statistics.residual_n, statistics.residual_m) = (imbalance.force, imbalance.distance);
+        let forces = dynamics.contact_forces();
+        let is_balanced = progress.solves(imbalance.distance);
+        statistics.solved = statistics.converged && is_balanced;
+        if !statistics.solved {
+            let search = Search { world, contacts, forces: &forces, positions: x };
+            let of_forces = || imbalance.vertex.map(|vertex| search.of_forces(vertex));
+            let of_collisions = || search.of_collisions(&statistics.waits, slowest_body);
+            // Where forces balance, what stopped the collision stage is the cause.
+            statistics.unsolved = match is_balanced {
+                true => of_collisions().or_else(of_forces),
+                false => of_forces().or_else(of_collisions),
+            };
+        }
+        contacts.end_step(&forces, resolver);
         statistics.pressing_contacts = contacts.pressing();
         let judged = backend.judge(resolver.scene(), &x[..count]);
         judged.map_err(|source| backend_error(world, step, source))?;

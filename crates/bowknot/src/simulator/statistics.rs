@@ -1,5 +1,6 @@
 //! What a time step reports: one line of `stats.jsonl`.
 
+use super::unsolved::Unsolved;
 use super::waits::WaitingElements;
 use bowknot_dynamics::{Energies, NewtonInfo};
 use bowknot_geometry::{Point, Vector};
@@ -100,6 +101,16 @@ pub struct StepStatistics {
     /// What they are worth in distance [m], see [`bowknot_dynamics::Residual::distance`].
     #[serde(default)]
     pub residual_m: f64,
+    /// The tolerance of `residual_m` that ends the Newton iterations of a time step [m]; 0 if there is none.
+    #[serde(default)]
+    pub tolerance_m: f64,
+    /// Whether the time step ended as a solution: `residual_m` at most `tolerance_m`, if there is a tolerance, and the
+    /// last collision problem converged. True for lines that do not say it.
+    #[serde(default = "not_said")]
+    pub solved: bool,
+    /// Where forces are out of balance in a time step that is not solved.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unsolved: Option<Unsolved>,
     /// Tetrahedra without a positive volume at the end.
     #[serde(default)]
     pub inverted_tets: usize,
@@ -109,6 +120,11 @@ pub struct StepStatistics {
     /// Vertices of bodies that sleep during the next time step, those inside of solids included.
     #[serde(default)]
     pub asleep_vertices: usize,
+}
+
+/// [`StepStatistics::solved`] of lines that do not say it.
+fn not_said() -> bool {
+    true
 }
 
 /// Energies [J].

@@ -51,4 +51,6 @@ pub struct Residual {
     /// component. As H is at least M / dt^2, this is an upper bound of the root mean square distance,
     /// weighted by mass, to the state in which the forces balance, up to the quality of P.
     pub distance: f64,
+    /// A vertex of the component with this distance; none if no forces count.
+    pub vertex: Option<u32>,
 }

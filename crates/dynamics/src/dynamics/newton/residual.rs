@@ -15,14 +15,16 @@ impl Newton<'_> {
         self.repulsion.linearize(&iterate, false);
         self.course.unprepared = true;
         let imbalance = self.bodies.out_of_balance(self.repulsion, counted, filter)?;
-        let mut largest: f64 = 0.0;
+        let (mut largest, mut vertex): (f64, _) = (0.0, None);
         for (component, product) in self.model.components.iter().zip(&imbalance.products) {
             let nodes = (component.start as usize..component.end as usize).filter(|&n| self.free[n]);
             let mass: f64 = nodes.map(|n| self.model.node_masses[n]).sum();
-            if mass > 0.0 {
-                largest = largest.max(product / mass);
+            if mass > 0.0 && product / mass > largest {
+                largest = product / mass;
+                vertex = Some(self.model.node_vertex[component.start as usize]);
             }
         }
-        Ok(Residual { force: imbalance.squared_force.sqrt(), distance: self.dt * largest.sqrt() })
+        let force = imbalance.squared_force.sqrt();
+        Ok(Residual { force, distance: self.dt * largest.sqrt(), vertex })
     }
 }

@@ -9,7 +9,10 @@ const lineColor = (k) => (theme() === "dark" ? LINES : LINES_LIGHT)[k % LINES.le
 /** Lengths [m] and times [s] below this are rounding: a logarithmic axis does not show their decades. */
 const ROUNDING = 1e-12;
 
-/** What is plotted; series whose column is missing are left out, and plots without series. `idle`: so are series that are always 0. */
+/**
+ * What is plotted, as [column, name, how]; `mark`: points, a line otherwise. Series whose column is missing are left out, and plots without series. `idle`: so
+ * are series that are always 0.
+ */
 const PLOTS = [
     { title: "Two-way steps and searches", series: [["two_way_steps", "steps"], ["searches", "searches"]] },
     { title: "Pairs and rows", log: true, series: [["pairs", "pairs"], ["contact_rows", "contact rows"], ["edge_rows", "edge rows"], ["active_rows", "active rows"]] },
@@ -18,6 +21,7 @@ const PLOTS = [
         series: ["dynamics", "search", "evaluate", "backward", "forward", "other"].map((stage) => [`seconds.${stage}`, stage]),
     },
     { title: "Distance not travelled", unit: "m", log: true, series: [["remaining_m", "remaining"], ["stationarity_m", "stationarity"]] },
+    { title: "Residual", unit: "m", log: true, idle: true, series: [["residual_m", "residual"], ["tolerance_m", "tolerance"], ["unsolved.residual_m", "unsolved", "mark"]] },
     { title: "Smallest gap", unit: "m", series: [["min_gap_m", "gap"]] },
     { title: "Largest stretch", series: [["max_stretch", "of rest length"], ["max_step_stretch", "within the step"]] },
     { title: "Energy", unit: "J", series: [] },
@@ -25,6 +29,13 @@ const PLOTS = [
     { title: "Vertices asleep", idle: true, series: [["asleep_vertices", "asleep"]] },
     { title: "Linear solve", series: [["cg_iterations", "CG iterations"], ["newton_iterations", "Newton iterations"]] },
 ];
+
+/** Residuals of the time steps that ended unsolved, as a column; none if all are solved, or the run does not say. */
+function addUnsolved() {
+    const { solved, residual_m: residuals } = columns;
+    if (!residuals || !solved?.includes(0)) return;
+    columns["unsolved.residual_m"] = residuals.map((residual, row) => (solved[row] === 0 ? residual : null));
+}
 
 /** The plots that this run has columns for; kinds of energy come from the columns, since bodies bring their own. */
 function plotsOf() {
@@ -46,6 +57,7 @@ class Plots {
     constructor(panel, seek) {
         this.panel = panel;
         this.seek = seek;
+        addUnsolved();
         this.x = rowTimes();
         this.timed = "time" in columns;
         this.plots = this.x.length > 0 ? plotsOf() : [];
@@ -124,7 +136,8 @@ class Plots {
         const count = plot.series.length;
         const data = this.data(plot);
         plot.chart?.destroy();
-        const color = (k) => lineColor(plot.stacked ? count - 1 - k : k);
+        const isMark = (k) => plot.series[k][2] === "mark";
+        const color = (k) => (isMark(k) ? cssColor("--bad") : lineColor(plot.stacked ? count - 1 - k : k));
         const muted = cssColor("--muted");
         const axis = {
             stroke: muted, font: "10.5px system-ui, sans-serif", ticks: { show: false },
@@ -132,7 +145,8 @@ class Plots {
         };
         const series = plot.series.map((_, k) => ({
             stroke: color(k), width: plot.stacked ? 0 : 1.5, fill: plot.stacked ? color(k) : undefined,
-            points: { show: this.x.length < 3, size: 5 }, spanGaps: false,
+            points: { show: isMark(k) || this.x.length < 3, size: 5, ...(isMark(k) && { fill: color(k) }) }, spanGaps: false,
+            ...(isMark(k) && { paths: () => null }),
         }));
         const options = {
             width: Math.max(this.panel.clientWidth - 24, 100), height: 104, padding: [6, 16, 0, 0],
@@ -162,7 +176,7 @@ class Plots {
 
     /** Ends of the vertical axis. */
     range(plot) {
-        const fromZero = plot.stacked || ["Pairs and rows", "Two-way steps and searches", "Smallest gap", "Largest speed", "Linear solve"].includes(plot.title);
+        const fromZero = plot.stacked || ["Pairs and rows", "Two-way steps and searches", "Smallest gap", "Largest speed", "Residual", "Linear solve"].includes(plot.title);
         return (_, low, high) => {
             if (low === null || high === null || !Number.isFinite(low)) return plot.log ? [1e-6, 1] : [0, 1];
             if (plot.log) return [plot.floor, Math.max(10 ** Math.ceil(Math.log10(high) - 1e-9), 10 * plot.floor)];
@@ -224,9 +238,9 @@ class Plots {
     label() {
         const row = this.row ?? this.rowAt(this.now);
         for (const plot of this.plots) {
-            plot.keys.replaceChildren(...plot.series.map(([key, name], k) => {
+            plot.keys.replaceChildren(...plot.series.map(([key, name, how], k) => {
                 const value = row === null ? null : columns[key][row];
-                return make("span", {}, make("i", { style: `background:${lineColor(k)}` }), name, make("b", { textContent: show(value, plot.unit) }));
+                return make("span", {}, make("i", { style: `background:${how === "mark" ? cssColor("--bad") : lineColor(k)}` }), name, make("b", { textContent: show(value, plot.unit) }));
             }));
         }
     }

@@ -39,6 +39,9 @@ function verdicts() {
     return list;
 }
 
+/** Number of time steps that ended unsolved; 0 if the run does not say. */
+const unsolvedSteps = () => present(columns.solved).filter((solved) => solved === 0).length;
+
 function chips() {
     const { vertices, triangles, tets, strand_edges: strands, particles } = counts();
     const list = [
@@ -46,9 +49,11 @@ function chips() {
         [strands, "strand edge", "strand edges", "minor"], [particles, "particle", "particles", "minor"],
     ];
     const chip = (className, ...content) => make("span", { className: `chip ${className}` }, ...content);
+    const unsolved = unsolvedSteps();
     const bold = (text) => make("b", { textContent: text });
     return [
         ...verdicts().map(([words, kind]) => chip(kind, words)),
+        ...(unsolved > 0 ? [chip("warn", bold(show(unsolved)), ` ${noun(unsolved, "time step", "time steps")} unsolved`)] : []),
         ...list.filter(([count]) => count > 0).map(([count, one, many, kind]) => chip(kind, bold(show(count)), ` ${noun(count, one, many)}`)),
         ...(meta.dt ? [chip("minor", "time step ", bold(show(meta.dt, "s")))] : []),
         ...(meta.preset ? [chip("minor", "preset ", bold(meta.preset))] : []),
@@ -64,7 +69,8 @@ function tiles() {
     if (has("min_gap_m")) list.push(tile(show(smallest(columns.min_gap_m), "m"), "smallest gap"));
     if (has("max_stretch")) list.push(tile(show(largest(columns.max_stretch)), "largest stretch"));
     if (has("remaining_m")) list.push(tile(show(largest(columns.remaining_m), "m"), "largest distance not travelled"));
-    if (has("converged")) list.push(tile(`${show(100 * mean(columns.converged))} %`, "of time steps met the stopping rule"));
+    if (has("converged")) list.push(tile(`${show(100 * mean(columns.converged))} %`, "of time steps met the stopping rule of collisions"));
+    if (has("solved")) list.push(tile(`${show(100 * mean(columns.solved))} %`, "of time steps are solved", unsolvedSteps() > 0 ? "warn" : "good"));
     const peak = meta.summary?.peak_memory_bytes;
     if (peak) list.push(tile(show(peak, "B"), "memory at most"));
     return make("div", { className: "tiles" }, ...list);
@@ -97,12 +103,26 @@ function averages() {
     const list = [
         ["two_way_steps", "two-way steps"], ["searches", "searches"], ["pairs", "pairs"], ["contact_rows", "contact rows"], ["edge_rows", "edge rows"],
         ["active_rows", "active rows"], ["frozen_pairs", "frozen pairs"], ["newton_iterations", "Newton iterations"], ["cg_iterations", "CG iterations"],
+        ["residual_m", "residual", "m"],
         ["max_speed", "largest speed", "m/s"], ["max_step_stretch", "stretch within a step"], ["seconds.total", "wall time", "s"], ["cpu_seconds", "processor time", "s"],
     ].filter(([key]) => present(columns[key]).length > 0);
     if (list.length === 0) return [];
     const line = (tag, cells) => make("tr", {}, ...cells.map((text) => make(tag, { textContent: text })));
     const body = list.map(([key, name, unit]) => line("td", [name, show(mean(columns[key]), unit), show(largest(columns[key]), unit)]));
     return [make("h2", { textContent: "A time step" }), make("table", {}, line("th", ["", "mean", "largest"]), ...body)];
+}
+
+/** How many time steps ended unsolved, and where the first of them is out of balance. */
+function unsolved() {
+    const count = unsolvedSteps();
+    if (count === 0) return [];
+    const { step, residual_m: residual, tolerance_m: tolerance, bodies, place_m: place } = meta.summary?.first_unsolved ?? {};
+    const worst = largest(columns.residual_m);
+    return rows("Unsolved time steps", [
+        ["number", show(count)], ["first", step && show(step)], ["bodies", bodies?.join(" and ")],
+        ["place", place && `(${place.map((length) => show(length, "m")).join(", ")})`],
+        ["its residual", step && show(residual, "m")], ["largest residual", worst >= 0 ? show(worst, "m") : null], ["tolerance", tolerance > 0 ? show(tolerance, "m") : null],
+    ]);
 }
 
 /** The speed at which the page begins to play, and why. */
@@ -133,6 +153,7 @@ function fillSummary(panel) {
             ["processor time", present(columns.cpu_seconds).length > 0 ? show(sum(columns.cpu_seconds), "s") : null],
         ]),
         ...rows("Check", [["every accepted state and path", verdicts().map(([words]) => words).join("; ")]]),
+        ...unsolved(),
         ...shares(),
         ...averages(),
         ...rows("This page", [
