@@ -9,14 +9,14 @@ use crate::progress::Bar;
 use crate::{bare_mesh, failure_dump, gpu, output, setup};
 use bowknot::check::{Judge, StateReport};
 use bowknot::run::{FailureWatch, Outcome, Progress, Summary};
+use bowknot::scene::SimulationParams;
 use bowknot::{Scene, SimulationError, Simulator, World};
 use bowknot_errors::counted;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-/// What lowers the number of time steps whose residuals end above the tolerance.
-const REMEDY: &str =
-    "fewer with more Newton iterations (--set simulation.newton_iterations=30) or a shorter --dt";
+/// Largest `simulation.newton_iterations` that scenes may have.
+const MAX_NEWTON_ITERATIONS: usize = 1000;
 
 /// Largest number of bodies whose sizes are printed.
 const MAX_SIZES: usize = 10;
@@ -86,7 +86,7 @@ pub fn simulate(options: &RunOptions) -> Result<Exit, Failure> {
     if options.json {
         output::print_json(&outcome.summary)?;
     } else if !options.quiet {
-        output::print(&to_text(&outcome, &out, scene.simulation.frames))?;
+        output::print(&to_text(&outcome, &out, &scene.simulation))?;
     }
     Ok(match outcome.summary.intersections {
         Some(count) if count > 0 => Exit::CheckFailed,
@@ -228,7 +228,8 @@ fn progress_text(progress: &Progress<'_>) -> String {
     text
 }
 
-fn to_text(outcome: &Outcome, out: &Path, frames: usize) -> String {
+fn to_text(outcome: &Outcome, out: &Path, simulation: &SimulationParams) -> String {
+    let frames = simulation.frames;
     let summary = &outcome.summary;
     let (mean, max) = (summary.mean.as_ref(), summary.max.as_ref());
     let mut lines = Vec::new();
@@ -264,7 +265,7 @@ fn to_text(outcome: &Outcome, out: &Path, frames: usize) -> String {
         number(max.and_then(|max| max.max_stretch), 3),
     ));
     lines.extend(unreached_targets(summary));
-    lines.extend(unsolved_steps(summary));
+    lines.extend(unsolved_steps(summary, simulation));
     if let Some(slowest) = &summary.slowest_step {
         let steps = counted(slowest.two_way_steps, "two-way step", "two-way steps");
         lines.push(format!("slowest: time step {} with {steps}, which waited for", slowest.step));
@@ -305,7 +306,7 @@ fn two_digits(value: f64) -> String {
 }
 
 /// Time steps that ended unsolved, where the first of them is out of balance, and what helps.
-fn unsolved_steps(summary: &Summary) -> Vec<String> {
+fn unsolved_steps(summary: &Summary, simulation: &SimulationParams) -> Vec<String> {
     let Some(first) = &summary.first_unsolved else { return Vec::new() };
     let steps = counted(summary.frames, "time step", "time steps");
     let at = first.at.as_ref().map_or_else(String::new, |at| format!(", at {} m", at.short()));
@@ -318,7 +319,21 @@ fn unsolved_steps(summary: &Summary) -> Vec<String> {
         return vec![line];
     }
     line += &format!("; the largest residual is {}", residual_text(largest, first.tolerance_m));
-    vec![line, format!("  {REMEDY}")]
+    let iterations = summary.max.as_ref().and_then(|max| max.newton_iterations).unwrap_or(0.0);
+    vec![line, format!("  what helps: {}", remedy(simulation, iterations))]
+}
+
+/// What lowers residuals, after a run that took at most so many Newton `iterations` in a time step.
+fn remedy(simulation: &SimulationParams, iterations: f64) -> String {
+    // Digits of a quarter that rounding has added are left out.
+    let dt = format!("{:.6e}", simulation.dt / 4.0).parse().unwrap_or(simulation.dt / 4.0);
+    let mut text = format!("a quarter of the time step (--dt {dt:?} with four times the --frames)");
+    let limit = simulation.newton_iterations;
+    if iterations >= limit as f64 && limit < MAX_NEWTON_ITERATIONS {
+        let more = (3 * limit).clamp(30, MAX_NEWTON_ITERATIONS);
+        text += &format!(", more Newton iterations (--set simulation.newton_iterations={more}), or both");
+    }
+    text
 }
 
 /// Time steps that ended at a limit, and obstacles and pins with something in their way.

@@ -99,12 +99,16 @@ fn a_run_leaves_the_folder_that_other_tools_rely_on() {
         "asleep_vertices",
         "residual_n",
         "residual_m",
+        "solved",
+        "tolerance_m",
     ];
     expected.sort_unstable();
     for (index, line) in lines.iter().enumerate() {
         let mut found = keys(line);
         found.sort_unstable();
+        found.retain(|key| *key != "unsolved");
         assert_eq!(found, expected);
+        assert_eq!(line.get("unsolved").is_some(), line["solved"] == false, "{line}");
         assert_eq!(line["step"], index as u64 + 1);
         let parts = line["seconds"].as_object().expect("seconds");
         let total = parts["total"].as_f64().expect("a number");

@@ -152,8 +152,8 @@ fn a_browser_plays_the_page() {
         &dom[dom.find("<body").unwrap()..][..3000]
     );
     assert_eq!((state("frames"), state("webgl")), (Some("4"), Some("yes")));
-    assert_eq!(state("plots"), Some("8"));
-    assert_eq!(dom.matches("class=\"u-over\"").count(), 8, "every plot is drawn");
+    assert_eq!(state("plots"), Some("9"));
+    assert_eq!(dom.matches("class=\"u-over\"").count(), 9, "every plot is drawn");
     let speed = "slower than real time: the run lasts 30 ms";
     assert!(dom.contains(speed), "the page says how fast it plays, and why");
     assert!(dom.contains("0.03 s") && dom.contains(">not checked<"), "the last frame's time; the verdict");
@@ -182,7 +182,7 @@ fn a_browser_without_webgl_still_plots() {
         (data(&dom, "state"), data(&dom, "webgl"), data(&dom, "errors")),
         (Some("ready"), Some("no"), None)
     );
-    assert_eq!(dom.matches("class=\"u-over\"").count(), 8);
+    assert_eq!(dom.matches("class=\"u-over\"").count(), 9);
     assert!(dom.contains("no WebGL 2") && dom.contains(">not ended<"));
 
     // Nor does a run without statistics fail it.

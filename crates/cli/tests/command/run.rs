@@ -15,7 +15,7 @@ fn a_run_writes_its_folder() {
         let step: serde_json::Value = serde_json::from_str(line).unwrap();
         for key in "step time newton_iterations cg_iterations two_way_steps searches pairs contact_rows edge_rows \
                     active_rows frozen_pairs remaining_r remaining_m stationarity_m converged min_gap_m max_stretch \
-                    max_step_stretch max_speed energy momentum center_of_mass seconds cpu_seconds skipped"
+                    max_step_stretch max_speed energy momentum center_of_mass seconds cpu_seconds skipped residual_n residual_m tolerance_m solved"
             .split_whitespace()
         {
             assert!(step.get(key).is_some(), "{key} is missing: {line}");
@@ -286,6 +286,74 @@ fn a_pin_that_would_go_through_the_ground_waits_and_is_named() {
     assert_eq!(last["prescribed_lag_m"].as_f64().unwrap(), behind);
     let free = place.run(&format!("{SMALL} --out free")).ok();
     assert!(!free.stdout.contains("held up") && !free.stdout.contains("ended at the limit"), "{free:#?}");
+}
+
+/// A single Newton iteration does not balance the forces of an impact.
+#[test]
+fn a_run_says_which_time_steps_are_unsolved() {
+    let place = Place::new();
+    let run = |options: &str| {
+        let start = "--set body.0.velocity=[0,0,-4] --threads 1 --out run";
+        place.run(&format!("run drape --scale 0.2 --frames 8 {start} {options}")).ok()
+    };
+    let ended = run("--set simulation.newton_iterations=1");
+    let lines: Vec<serde_json::Value> =
+        place.read("run/stats.jsonl").lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let unsolved: Vec<&serde_json::Value> = lines.iter().filter(|line| line["solved"] == false).collect();
+    assert!(!unsolved.is_empty() && unsolved.len() < lines.len(), "{lines:?}");
+    for line in &lines {
+        let [residual, tolerance] = ["residual_m", "tolerance_m"].map(|key| line[key].as_f64().unwrap());
+        assert!(tolerance > 0.0, "{line}");
+        let solved = residual <= tolerance && line["converged"] == true;
+        assert_eq!((&line["solved"], line.get("unsolved").is_none()), (&solved.into(), solved), "{line}");
+    }
+    let both = ["sheet", "ball"].map(serde_json::Value::from);
+    let at = unsolved.iter().map(|line| &line["unsolved"]);
+    let mut of_both = at.filter(|at| at["bodies"].as_array().unwrap()[..] == both);
+    let place_of_both = of_both.next().expect("a time step with a contact")["place_m"].as_array().unwrap();
+    // At the top of the ball.
+    assert!(place_of_both.iter().all(|c| c.as_f64().unwrap().abs() < 0.5), "{place_of_both:?}");
+
+    let summary: serde_json::Value = serde_json::from_str(&place.read("run/summary.json")).unwrap();
+    let share = 1.0 - unsolved.len() as f64 / lines.len() as f64;
+    assert!((summary["mean"]["solved"].as_f64().unwrap() - share).abs() < 1e-12, "{summary}");
+    assert_eq!(
+        (&summary["mean"]["converged"], &summary["unsolved_steps"]),
+        (&1.0.into(), &unsolved.len().into())
+    );
+    let first = &summary["first_unsolved"];
+    for key in ["step", "residual_m", "tolerance_m"] {
+        assert_eq!(first[key], unsolved[0][key], "{key}");
+    }
+    for key in ["bodies", "place_m"] {
+        assert_eq!(first[key], unsolved[0]["unsolved"][key], "{key}");
+    }
+    let names: Vec<&str> =
+        first["bodies"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
+    let words = format!(
+        "warning: {} of 8 time steps ended unsolved: the first is time step {}, at {} at (",
+        unsolved.len(),
+        first["step"],
+        names.join(" and ")
+    );
+    assert!(ended.stdout.contains(&words), "{words}: {ended:#?}");
+    assert!(ended.stdout.contains(" times the tolerance"), "{ended:#?}");
+    assert!(ended.stdout.contains("simulation.newton_iterations=30"), "{ended:#?}");
+}
+
+#[test]
+fn a_run_whose_time_steps_are_solved_says_nothing_of_them() {
+    let place = Place::new();
+    let ended = place.run(SMALL).ok();
+    assert!(!ended.stdout.contains("unsolved") && !ended.stderr.contains("unsolved"), "{ended:#?}");
+    assert!(!ended.stdout.contains("tolerance") && !ended.stderr.contains("tolerance"), "{ended:#?}");
+    let summary: serde_json::Value = serde_json::from_str(&place.read("out/drape/summary.json")).unwrap();
+    assert_eq!((&summary["mean"]["solved"], &summary["unsolved_steps"]), (&1.0.into(), &0.into()));
+    assert!(summary.get("first_unsolved").is_none(), "{summary}");
+    // Without a tolerance there is nothing to compare with.
+    let more = "--set simulation.newton_iterations=1 --set solver.newton.step_tolerance=0 --out without";
+    let ended = place.run(&format!("{SMALL} --set body.0.velocity=[0,0,-4] {more}")).ok();
+    assert!(!ended.stdout.contains("unsolved"), "{ended:#?}");
 }
 
 #[test]
