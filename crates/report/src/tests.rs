@@ -335,6 +335,23 @@ fn statistics_become_columns() {
 }
 
 #[test]
+fn a_page_has_what_its_scripts_need_to_mark_unsolved_time_steps() {
+    let folder = frames(3);
+    let lines = "{\"step\":1,\"residual_m\":1e-5,\"tolerance_m\":1e-3,\"solved\":true}\n\
+                 {\"step\":2,\"residual_m\":0.04,\"tolerance_m\":1e-3,\"solved\":false,\
+                 \"unsolved\":{\"bodies\":[\"strip\",\"left\"],\"place_m\":[0,0,1]}}\n";
+    fs::write(folder.path().join("stats.jsonl"), lines).expect("statistics");
+    let first = json!({ "step": 2, "residual_m": 0.04, "bodies": ["strip", "left"], "place_m": [0, 0, 1] });
+    let summary = json!({ "frames": 2, "unsolved_steps": 1, "first_unsolved": first });
+    fs::write(folder.path().join("summary.json"), summary.to_string()).expect("a summary");
+    let (_, page) = report(folder.path(), &ReportOptions::default()).expect("a page");
+    let columns: Value = serde_json::from_str(element(&page, "columns")).expect("JSON");
+    assert_eq!((&columns["solved"], &columns["residual_m"]), (&json!([1.0, 0.0]), &json!([1e-5, 0.04])));
+    assert_eq!(columns["tolerance_m"], json!([1e-3, 1e-3]));
+    assert_eq!(meta(&page)["summary"]["first_unsolved"], first);
+}
+
+#[test]
 fn a_budget_leaves_frames_out_but_never_the_last() {
     let folder = tempfile::tempdir().expect("a folder");
     fs::create_dir(folder.path().join("frames")).expect("a folder");

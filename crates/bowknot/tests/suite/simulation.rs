@@ -2,7 +2,7 @@ use super::scene;
 use bowknot::check::{PathOptions, StateOptions};
 use bowknot::geometry::{Point, Vector};
 use bowknot::simulator::{AcceptedStep, Checkpoint, SimulationError};
-use bowknot::{Scene, SimulationObserver, Simulator};
+use bowknot::{Scene, SimulationObserver, Simulator, StepStatistics};
 use std::ops::ControlFlow;
 
 const SHEET: &str = r#"
@@ -55,6 +55,40 @@ fn falls_freely(edge: f64) {
     assert!((statistics.energy.kinetic - 0.5 * mass * (g * n * dt).powi(2)).abs() < 1e-7);
     assert!((statistics.center_of_mass[2] - simulator.positions()[0].z).abs() < 1e-9);
     assert!(statistics.converged && statistics.two_way_steps >= 1);
+}
+
+/// Statistics after some time steps of the sheet with `more` in its scene.
+fn end(more: &str, steps: usize, sets: &[&str]) -> (StepStatistics, Simulator) {
+    let scene = scene(&format!("{SHEET}{more}")).with_sets(sets).expect("sound keys");
+    let mut simulator = Simulator::new(&scene).expect("a simulator");
+    let statistics = (0..steps).map(|_| simulator.step().expect("a step")).last().expect("steps");
+    (statistics, simulator)
+}
+
+#[test]
+fn an_unsolved_time_step_names_its_bodies_and_the_place() {
+    let tight = "solver.newton.step_tolerance=1e-9";
+    let one = "simulation.newton_iterations=1";
+    let pin = "[[pin]]\nside = \"x-min\"\n";
+    let (statistics, simulator) = end(pin, 10, &[one, tight]);
+    assert!(!statistics.solved && statistics.residual_m > statistics.tolerance_m, "{statistics:?}");
+    let unsolved = statistics.unsolved.expect("a place");
+    assert_eq!(unsolved.bodies, ["sheet"], "nothing presses on it");
+    let positions = simulator.positions();
+    let mean = positions.iter().map(|x| x.coords).sum::<Vector>() / positions.len() as f64;
+    assert!((Vector::from(unsolved.place_m) - mean).norm() < 1e-12, "{unsolved:?}");
+
+    let (statistics, _) = end(pin, 10, &[one, "solver.newton.step_tolerance=0"]);
+    assert!(statistics.solved && statistics.unsolved.is_none() && statistics.tolerance_m == 0.0);
+    assert!(statistics.residual_m > 0.0, "there is nothing to compare it with");
+
+    let ground = "[[obstacle]]\nname = \"floor\"\nshape = { type = \"half-space\" }\n";
+    let fall = ["body.0.translate=[0, 0, 0.1]", "body.0.velocity=[0.5, 0, -3]"];
+    let (statistics, _) = end(ground, 4, &[&fall[..], &[one, tight]].concat());
+    assert!(statistics.pressing_contacts > 0, "{statistics:?}");
+    let unsolved = statistics.unsolved.expect("a place");
+    assert_eq!(unsolved.bodies, ["sheet", "floor"]);
+    assert!(unsolved.place_m[2].abs() < 0.03, "{unsolved:?}");
 }
 
 #[test]

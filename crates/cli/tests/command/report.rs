@@ -169,6 +169,40 @@ fn a_browser_plays_the_page() {
 }
 
 #[test]
+fn a_browser_shows_unsolved_time_steps_and_opens_runs_that_do_not_tell_them() {
+    let Some(chromium) = chromium() else { return };
+    let place = Place::new();
+    let start = "--set body.0.velocity=[0,0,-4] --set simulation.newton_iterations=1 --threads 1";
+    place.run(&format!("run drape --scale 0.2 --frames 4 {start} --out run")).ok();
+    place.run("report run").ok();
+    let page = place.path("run/report.html");
+    let (dom, _) = open(&chromium, &page, "tab=summary", &[]);
+    assert_eq!((data(&dom, "state"), data(&dom, "errors")), (Some("ready"), None));
+    for words in
+        ["<b>2</b> time steps unsolved<", ">of time steps are solved<", ">sheet and ball<", ">Residual<"]
+    {
+        assert!(dom.contains(words), "{words}");
+    }
+
+    // Lines as earlier versions wrote them.
+    let mut old = String::new();
+    for line in place.read("run/stats.jsonl").lines() {
+        let mut line: serde_json::Value = serde_json::from_str(line).unwrap();
+        ["solved", "unsolved", "tolerance_m"]
+            .iter()
+            .for_each(|key| drop(line.as_object_mut().unwrap().remove(*key)));
+        old += &format!("{line}\n");
+    }
+    place.write("run/stats.jsonl", &old);
+    std::fs::remove_file(place.path("run/summary.json")).unwrap();
+    place.run("report run").ok();
+    let (dom, _) = open(&chromium, &page, "tab=summary", &[]);
+    assert_eq!((data(&dom, "state"), data(&dom, "errors")), (Some("ready"), None));
+    assert!(dom.contains(">Residual<"), "the residual alone");
+    assert!(!dom.contains(">of time steps are solved<") && !dom.contains("time steps unsolved<"), "no claim");
+}
+
+#[test]
 fn a_browser_without_webgl_still_plots() {
     let Some(chromium) = chromium() else { return };
     let place = Place::new();

@@ -117,9 +117,11 @@ function unsolved() {
     const count = unsolvedSteps();
     if (count === 0) return [];
     const { step, residual_m: residual, tolerance_m: tolerance, bodies, place_m: place } = meta.summary?.first_unsolved ?? {};
+    const [one, other] = bodies ?? [];
+    const names = other !== undefined && other === one ? `${one} and itself` : bodies?.join(" and ");
     const worst = largest(columns.residual_m);
     return rows("Unsolved time steps", [
-        ["number", show(count)], ["first", step && show(step)], ["bodies", bodies?.join(" and ")],
+        ["number", show(count)], ["first", step && show(step)], ["bodies", names],
         ["place", place && `(${place.map((length) => show(length, "m")).join(", ")})`],
         ["its residual", step && show(residual, "m")], ["largest residual", worst >= 0 ? show(worst, "m") : null], ["tolerance", tolerance > 0 ? show(tolerance, "m") : null],
     ]);
