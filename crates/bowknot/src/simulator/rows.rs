@@ -33,12 +33,13 @@ impl RowForces {
             let mut used = force.features.iter().flat_map(|feature| vertices(topology, feature));
             used.all(|&v| solved.get(v as usize) == Some(&false))
         };
-        let multipliers = carried.iter().filter(is_row).filter_map(|ContactForce { features, normal, force }| {
-            let (kind, elements) = pair(features)?;
-            let pressure = normal.dot(force);
-            let friction = (force - normal * pressure) * (KEPT / self.scale);
-            Some(PairMultipliers { kind, elements, normal: KEPT * pressure / self.scale, friction })
-        });
+        let multipliers =
+            carried.iter().filter(is_row).filter_map(|ContactForce { features, normal, force }| {
+                let (kind, elements) = pair(features)?;
+                let pressure = normal.dot(force);
+                let friction = (force - normal * pressure) * (KEPT / self.scale);
+                Some(PairMultipliers { kind, elements, normal: KEPT * pressure / self.scale, friction })
+            });
         self.multipliers = multipliers.collect();
         self.multipliers.sort_unstable_by_key(|pair| (pair.kind, pair.elements));
     }
@@ -55,7 +56,12 @@ impl RowForces {
         for (kind, place) in pressing(resolver, solved) {
             let friction = contacts.friction_multipliers.get(place).copied().unwrap_or_else(Vector::zeros);
             let (elements, normal) = (contacts.pairs.pairs()[place].elements, contacts.multipliers[place]);
-            self.multipliers.push(PairMultipliers { kind, elements, normal: KEPT * normal, friction: friction * KEPT });
+            self.multipliers.push(PairMultipliers {
+                kind,
+                elements,
+                normal: KEPT * normal,
+                friction: friction * KEPT,
+            });
         }
         self.multipliers.sort_unstable_by_key(|pair| (pair.kind, pair.elements));
     }
@@ -67,7 +73,11 @@ impl RowForces {
             let friction = contacts.friction_multipliers.get(place).copied().unwrap_or_else(Vector::zeros);
             let normal = contacts.separations[place].normal;
             let force = (normal * contacts.multipliers[place] + friction) * self.scale;
-            Some(ContactForce { features: features(kind, contacts.pairs.pairs()[place].elements)?, normal, force })
+            Some(ContactForce {
+                features: features(kind, contacts.pairs.pairs()[place].elements)?,
+                normal,
+                force,
+            })
         };
         pressing(resolver, solved).filter_map(force).collect()
     }

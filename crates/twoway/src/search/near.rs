@@ -202,7 +202,8 @@ impl NearPairs {
     fn inherit(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
         let (contacts, old, starts) = (&mut state.contacts, &self.old, state.step == 0);
         let growth = state.call.time_step().map_or(f64::INFINITY, |dt| scene.lengths().separation_speed * dt);
-        let carried = |kind: PairKind, pair: &Pair| starts.then(|| state.call.carried(kind, pair.elements)).flatten();
+        let carried =
+            |kind: PairKind, pair: &Pair| starts.then(|| state.call.carried(kind, pair.elements)).flatten();
         let count = contacts.pairs.len();
         contacts.desired.resize(count, 0.0);
         contacts.min_separations.resize(count, 0.0);
