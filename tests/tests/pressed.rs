@@ -186,3 +186,193 @@ fn a_pile_of_blocks_falls_asleep_and_goes_on() {
     );
     assert!(course.asleep.is_some(), "awake");
 }
+
+#[test]
+fn a_finger_holds_a_sheet_on_the_ground_at_rest() {
+    let text = r#"
+        [contact]
+        delta = 0.001
+        [[body]]
+        name = "sheet"
+        shape = { type = "sheet", size = [0.3, 0.3], edge = 0.02 }
+        translate = [0, 0, 0.001]
+        friction = 0.3
+        material = "cotton"
+        [[body]]
+        name = "finger"
+        kind = "solid"
+        shape = { type = "block", size = [0.06, 0.06, 0.06], edge = 0.02 }
+        translate = [0, 0, 0.035]
+        friction = 0.3
+        material = "silicone"
+        [[pin]]
+        body = "finger"
+        side = "z-max"
+        motion = { keyframes = [{ time = 0.3, translate = [0, 0, -0.008] }] }
+        [[obstacle]]
+        shape = { type = "half-space" }
+        friction = 0.3
+    "#;
+    let course = Course::of(text, 130);
+    assert!(course.asleep.is_some_and(|step| step <= 130), "awake a second after the finger stopped");
+    let (speed, stretch) = (course.most(|s| s.max_speed), course.most(|s| s.max_stretch));
+    assert!(speed < 0.1 && stretch < 1.05, "{speed} m/s, stretched {stretch} times");
+}
+
+/// A strip of denim between two pads of rubber that close, pinned above for so long.
+fn pinched_strip(friction: f64) -> String {
+    let pad = |name: &str, y: f64, side: &str| {
+        format!(
+            r#"
+            [[body]]
+            name = "{name}"
+            kind = "solid"
+            shape = {{ type = "block", size = [0.1, 0.02, 0.04], edge = 0.02 }}
+            translate = [0, {y}, 0]
+            friction = {friction}
+            material = "rubber"
+            gravity = [0, 0, 0]
+            [[pin]]
+            body = "{name}"
+            side = "{side}"
+            motion = {{ keyframes = [{{ time = 0.3, translate = [0, {}, 0] }}] }}
+            "#,
+            -0.006 * y.signum()
+        )
+    };
+    format!(
+        r#"
+        [simulation]
+        air_drag = 1
+        [contact]
+        delta = 0.002
+        [[body]]
+        name = "strip"
+        shape = {{ type = "sheet", size = [0.1, 0.3], edge = 0.02 }}
+        rotate = [90, 0, 0]
+        translate = [0, 0, -0.12]
+        friction = {friction}
+        material = "denim"
+        [[pin]]
+        body = "strip"
+        side = "z-max"
+        end = 0.4
+        {}{}
+        [solver.sleep]
+        enabled = false
+        "#,
+        pad("left", -0.0151, "y-min"),
+        pad("right", 0.0151, "y-max")
+    )
+}
+
+#[test]
+fn pads_hold_a_strip_without_creep() {
+    for friction in [0.3, 1.0] {
+        let course = Course::of(&pinched_strip(friction), 300);
+        let speed = course.most(|s| s.max_speed);
+        assert!(speed < 0.5, "mu = {friction}: {speed} m/s");
+        let fallen = course.steps[199].center_of_mass[2] - course.steps[299].center_of_mass[2];
+        assert!(fallen.abs() < 5e-5, "mu = {friction}: it creeps {fallen} m in a second");
+    }
+}
+
+#[test]
+fn blocks_between_a_floor_and_a_wall_come_to_rest() {
+    let block = |k: usize, rotate: [f64; 3], translate: [f64; 3]| {
+        format!(
+            r#"
+            [[body]]
+            name = "part{k}"
+            kind = "solid"
+            shape = {{ type = "block", size = [0.09, 0.05, 0.035], edge = 0.025 }}
+            material = "rubber"
+            friction = 0.4
+            rotate = {rotate:?}
+            translate = {translate:?}
+            "#
+        )
+    };
+    let text = format!(
+        r#"
+        [[obstacle]]
+        name = "floor"
+        shape = "half-space"
+        friction = 0.4
+        [[obstacle]]
+        name = "wall"
+        shape = {{ type = "box", size = [0.02, 0.3, 0.15], edge = 0.1 }}
+        translate = [-0.06, 0, 0.06]
+        friction = 0.4
+        {}{}{}
+        "#,
+        block(0, [-10.0, 35.0, 139.0], [0.013, 0.017, 0.08]),
+        block(1, [20.0, 40.0, 148.0], [0.011, -0.019, 0.18]),
+        block(2, [20.0, -7.0, 141.0], [0.015, 0.02, 0.28])
+    );
+    let course = Course::of(&text, 150);
+    let end = course.steps[149].max_speed;
+    assert!(end < 1e-9, "{end} m/s after 1.5 s");
+}
+
+/// A soft ball under a plate that presses it to a fifth of its height, and leaves again.
+#[test]
+fn a_ball_that_was_pressed_flat_recovers() {
+    let text = r#"
+        [[body]]
+        name = "ball"
+        kind = "solid"
+        shape = { type = "tet-ball", radius = 0.05, edge = 0.02 }
+        material = { density = 100, young_modulus = 1e4, poisson_ratio = 0.4, model = "stable-neo-hookean" }
+        translate = [0, 0, 0.0525]
+        friction = 0.2
+        [[obstacle]]
+        name = "floor"
+        shape = { type = "half-space" }
+        friction = 0.2
+        [[obstacle]]
+        name = "press"
+        shape = { type = "box", size = [0.3, 0.3, 0.04], edge = 0.1 }
+        translate = [0, 0, 0.13]
+        [obstacle.motion]
+        keyframes = [
+            { time = 0.6, translate = [0, 0, -0.09] },
+            { time = 0.8, translate = [0, 0, -0.09] },
+            { time = 1.0, translate = [0, 0, 0.1] },
+        ]
+    "#;
+    let course = Course::of(text, 160);
+    let speed = course.most(|s| s.max_speed);
+    assert!(speed < 10.0, "{speed} m/s");
+    assert_eq!(course.steps[159].inverted_tets, 0);
+}
+
+#[test]
+fn a_column_of_grains_stands() {
+    let text = r#"
+        [[body]]
+        kind = "particles"
+        shape = { type = "grains", count = [1, 1, 8], spacing = 0.0165, jitter = 0.05 }
+        material = { base = "sand", radius = 0.004 }
+        friction = 0.5
+        translate = [0, 0, 0.08]
+        [[obstacle]]
+        shape = "half-space"
+        friction = 0.5
+    "#;
+    let course = Course::of(text, 150);
+    assert!(course.asleep.is_some_and(|step| step <= 100), "awake after 1 s");
+    // They touch at their distance of contact.
+    let closest = course.steps.iter().filter_map(|s| s.min_gap_m).fold(f64::MAX, f64::min);
+    assert!(closest > 3e-3, "{closest} m apart");
+}
+
+/// A pile of sand keeps its height, in place of flowing on.
+#[test]
+fn a_pile_of_grains_comes_to_rest() {
+    let scene = Scene::builtin("sand", 0.07).expect("a scene");
+    let mut simulator = Simulator::new(&scene).expect("a simulator");
+    let heights: Vec<f64> = (0..250).map(|_| simulator.step().expect("a step").center_of_mass[2]).collect();
+    let sunk = heights[199] - heights[249];
+    assert!(sunk.abs() < 2e-3 * heights[199], "{sunk} of {} m in half a second", heights[199]);
+}
