@@ -50,6 +50,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         } else if turn > 0.0 {
             factor = max(factor * DECAY, 1.0);
         }
-        swings[v] = vec4<f32>(displacement.xyz, factor);
+        // 0 in the first step of a call (begin.wgsl).
+        swings[v] = vec4<f32>(displacement.xyz, max(factor, 1.0));
     }
 }

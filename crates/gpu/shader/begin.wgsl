@@ -34,7 +34,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         if params.slips_from_here != 0u {
             slip_start[v] = positions[v];
         }
-        swings[v] = vec4<f32>(0.0, 0.0, 0.0, 1.0);
+        // What pairs carry at the start damps nothing: it would hold what has moved on since.
+        swings[v] = vec4<f32>(0.0);
         late[v] = Late(LARGEST, 0u);
     }
     for (var e = id.x; e < params.limits; e += stride) {

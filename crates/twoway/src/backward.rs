@@ -312,7 +312,10 @@ impl<K: RowSolver> LcpBackward<K> {
             let edges = balls.iter().zip(self.edge_multipliers.iter().copied());
             self.proximal.add_edges(scene, state, edges);
         }
-        self.proximal.add_contacts(scene, state, &self.selection.pressing);
+        // What pairs carry at the start of a call damps nothing: it would hold what has moved on since.
+        if state.step > 0 {
+            self.proximal.add_contacts(scene, state, &self.selection.pressing);
+        }
     }
 
     /// Builds the rows of the selected pairs, with their multipliers of the last step.

@@ -54,6 +54,6 @@ pub fn aim(
         } else if turn > 0.0 {
             factor = (factor * DECAY).max(1.0);
         }
-        swings[v] = [x, y, z, factor];
+        swings[v] = [x, y, z, factor.max(1.0)];
     }
 }

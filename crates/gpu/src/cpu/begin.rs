@@ -47,7 +47,7 @@ pub fn begin(
     if params.slips_from_here != 0 {
         slip_start[..vertices].copy_from_slice(&positions[..vertices]);
     }
-    swings[..vertices].fill([0.0, 0.0, 0.0, 1.0]);
+    swings[..vertices].fill([0.0; 4]);
     late[..vertices].fill(Late::NEW);
     for edge in &mut limits[..params.limits as usize] {
         let along = difference(positions[edge.a as usize], positions[edge.b as usize]);
