@@ -59,6 +59,7 @@ impl Recorder {
             groups: problem.groups.to_vec(),
             start: problem.start.to_vec(),
             known: problem.known.to_vec(),
+            carried: problem.carried.to_vec(),
             ..self.fixed.clone()
         }
     }

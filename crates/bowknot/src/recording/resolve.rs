@@ -63,7 +63,7 @@ impl States {
             start: (!self.start.is_empty()).then_some(&self.start),
             groups: &self.groups,
             known: &self.known,
-            carried: &[],
+            carried: &self.carried,
             max_steps: None,
         }
     }

@@ -3,18 +3,20 @@
 use super::columns::per;
 use super::filters;
 use bowknot_errors::counted;
-use bowknot_geometry::{BodyFilter, HalfSpace, Point, Vector};
+use bowknot_geometry::{BodyFilter, HalfSpace, PairKind, Point, Vector};
 use bowknot_io::IoError;
 use bowknot_io::npz::{Archive, write_archive};
 use bowknot_scene::nearest;
-use bowknot_twoway::{BodyContact, ContactSide, HalfSpaceContact, PairFriction, ResolveInput};
+use bowknot_twoway::{
+    BodyContact, ContactSide, HalfSpaceContact, PairFriction, PairMultipliers, ResolveInput,
+};
 use ndarray::{Array0, Array1, Array2};
 use ndarray_npy::{NpzWriter, WriteNpzError};
 use std::io::{Seek, Write};
 use std::path::Path;
 
 /// The arrays of a problem.
-const ARRAYS: [&str; 25] = [
+const ARRAYS: [&str; 27] = [
     "x",
     "y",
     "F",
@@ -37,6 +39,8 @@ const ARRAYS: [&str; 25] = [
     "group",
     "start",
     "known",
+    "carried",
+    "multipliers",
     filters::GROUPS,
     filters::MASK,
     filters::SELF_COLLISION,
@@ -52,8 +56,11 @@ const ARRAYS: [&str; 25] = [
 /// `delta` [m], `friction`, `stretch_limit` [1], each nan where the body leaves it open; `plane_thickness[h]`
 /// [m] and `plane_friction[h]` likewise; `pair_friction[k,3]`: two bodies, half-spaces numbered after the
 /// bodies, and their coefficient. `group[n]`: pins that go as one, -1 for none. `start[n,3]` [m]: what
-/// friction measures slip from. `known[n]`: vertices whose contacts the target knows. `collision_groups[b]`, `collides_with[b]` (bits of the groups that a body is in,
-/// and of those that it meets) and `self_collision[b]`: which bodies collide.
+/// friction measures slip from. `known[n]`: vertices whose contacts the target knows. `carried[k,3]`: pairs that carry
+/// something at the start, by their kind (0 vertex and vertex, 1 vertex and edge, 2 vertex and triangle, 3 edge and edge, 4
+/// vertex and half-space) and elements, and `multipliers[k,4]`: of normal and friction [m]. `collision_groups[b]`,
+/// `collides_with[b]` (bits of the groups that a body is in, and of those that it meets) and `self_collision[b]`: which
+/// bodies collide.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct States {
     /// The state, free of intersections.
@@ -92,6 +99,8 @@ pub struct States {
     pub start: Vec<Point>,
     /// Vertices whose contacts the target knows; empty: none.
     pub known: Vec<bool>,
+    /// What pairs carry at the start, ascending by kind and elements.
+    pub carried: Vec<PairMultipliers>,
     /// Which bodies each body collides with; empty: each with all, and deformable ones with themselves.
     pub filters: Vec<BodyFilter>,
 }
@@ -131,7 +140,8 @@ impl States {
             pair_frictions: pair_frictions(&mut archive, count, half_spaces.len())?,
             groups: groups(&mut archive, n)?,
             start: archive.points("start", Some(n))?.unwrap_or_default(),
-            known: flags(&mut archive, "known", n)?,
+            known: if archive.has("known") { flags(&mut archive, "known", n)? } else { Vec::new() },
+            carried: carried(&mut archive)?,
             filters: filters::read(&mut archive, &body, &obstacle)?,
             triangles: archive.elements("F", n)?,
             strands: archive.elements("E", n)?,
@@ -212,8 +222,15 @@ impl States {
         if !self.start.is_empty() && self.start != self.x {
             archive.add_array("start", &points(&self.start))?;
         }
-        if self.known.contains(&true) {
+        if !self.known.is_empty() {
             archive.add_array("known", &Array1::from_iter(self.known.iter().copied()))?;
+        }
+        if !self.carried.is_empty() {
+            let pairs = self.carried.iter().map(|c| [c.kind as u32, c.elements[0], c.elements[1]]);
+            archive.add_array("carried", &table(&pairs.collect::<Vec<_>>(), |v| v))?;
+            let multipliers =
+                self.carried.iter().map(|c| [c.normal, c.friction.x, c.friction.y, c.friction.z]);
+            archive.add_array("multipliers", &table(&multipliers.collect::<Vec<_>>(), |v| v))?;
         }
         Ok(())
     }
@@ -229,6 +246,32 @@ pub fn write_result(path: &Path, problem: &States, x: &[Point]) -> Result<(), Io
         archive.add_array("x", &points(x))?;
         problem.write_elements(archive)
     })
+}
+
+/// What pairs carry at the start; none if nothing is said.
+fn carried(archive: &mut Archive<'_>) -> Result<Vec<PairMultipliers>, IoError> {
+    let (Some(pairs), Some(multipliers)) = (archive.rows::<3>("carried")?, archive.rows::<4>("multipliers")?)
+    else {
+        return Ok(Vec::new());
+    };
+    if pairs.len() != multipliers.len() {
+        return Err(archive.fault("multipliers", "has not one row for each row of carried"));
+    }
+    let whole = |x: f64| (x >= 0.0 && x <= f64::from(u32::MAX) && x.fract() == 0.0).then_some(x as u32);
+    let entry = |([kind, a, b], [normal, x, y, z]): ([f64; 3], [f64; 4])| {
+        let kind = *PairKind::ALL.get(whole(kind)? as usize)?;
+        Some(PairMultipliers {
+            kind,
+            elements: [whole(a)?, whole(b)?],
+            normal,
+            friction: Vector::new(x, y, z),
+        })
+    };
+    let carried: Option<Vec<PairMultipliers>> = pairs.into_iter().zip(multipliers).map(entry).collect();
+    let mut carried =
+        carried.ok_or_else(|| archive.fault("carried", "is no kind of pair, or no number of an element"))?;
+    carried.sort_unstable_by_key(|pair| (pair.kind, pair.elements));
+    Ok(carried)
 }
 
 /// Refuses arrays of unknown names: a misspelled one would be ignored, and the result be that of another

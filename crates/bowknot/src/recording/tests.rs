@@ -2,9 +2,11 @@ use super::*;
 use crate::Scene;
 use crate::simulator::SimulationObserver;
 use crate::simulator::{CollisionProblem, Simulator};
-use bowknot_geometry::{BodyFilter, HalfSpace, Point, Vector};
+use bowknot_geometry::{BodyFilter, HalfSpace, PairKind, Point, Vector};
 use bowknot_twoway::Params;
-use bowknot_twoway::{BodyContact, ContactSide, HalfSpaceContact, PairFriction, ResolveInput};
+use bowknot_twoway::{
+    BodyContact, ContactSide, HalfSpaceContact, PairFriction, PairMultipliers, ResolveInput,
+};
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -143,6 +145,12 @@ fn states() -> States {
         }],
         groups: vec![3, 3, ResolveInput::NO_GROUP, 0, ResolveInput::NO_GROUP, ResolveInput::NO_GROUP],
         known: vec![true, true, true, false, false, false],
+        carried: vec![PairMultipliers {
+            kind: PairKind::VertexHalfSpace,
+            elements: [3, 0],
+            normal: 1e-300,
+            friction: Vector::new(0.1, -0.0, 1.0 / 3.0),
+        }],
         filters: vec![
             BodyFilter { groups: 1 << 31, self_collision: false, ..BodyFilter::DEFORMABLE },
             BodyFilter { groups: 0b1010, mask: 0x8000_0001, ..BodyFilter::DEFORMABLE },

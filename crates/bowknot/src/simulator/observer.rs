@@ -6,7 +6,7 @@ use bowknot_geometry::Point;
 use bowknot_scene::world::World;
 #[cfg(doc)]
 use bowknot_twoway::ResolveInput;
-use bowknot_twoway::{AcceptedState, Observer, Wait};
+use bowknot_twoway::{AcceptedState, Observer, PairMultipliers, Wait};
 use std::ops::ControlFlow;
 
 /// A collision problem on its way to the two-way method. Slices have one entry per vertex that collides.
@@ -30,6 +30,8 @@ pub struct CollisionProblem<'a> {
     pub groups: &'a [u32],
     /// Vertices whose contacts the dynamics knows, see [`ResolveInput::known`].
     pub known: &'a [bool],
+    /// What pairs carry at the start, see [`ResolveInput::carried`].
+    pub carried: &'a [PairMultipliers],
 }
 
 /// A state that the two-way method has accepted.

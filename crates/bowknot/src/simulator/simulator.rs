@@ -383,6 +383,7 @@ impl Simulator {
                 start: &start[..count],
                 groups,
                 known: contacts.known(count),
+                carried: contacts.row_multipliers(),
             };
             if observer.problem(&problem).is_break() {
                 return Err(SimulationError::Interrupted);

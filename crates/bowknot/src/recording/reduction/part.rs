@@ -100,6 +100,8 @@ impl States {
             groups: pick(&self.groups, &vertices),
             start: pick(&self.start, &vertices),
             known: pick(&self.known, &vertices),
+            // Elements have other numbers in a part.
+            carried: Vec::new(),
             filters: filters::kept(pick(&self.filters, &old_bodies)),
         }
     }
