@@ -14,7 +14,9 @@ fn problem() -> States {
     let scene = Scene::builtin("sand", 0.08).and_then(|scene| scene.with_sets(&sets)).expect("a scene");
     let options = RunOptions { out: folder.path().join("sand"), ..RunOptions::default() };
     run::run(&scene, &options, &mut |_| ControlFlow::Continue(())).expect("a run");
-    States::read(&folder.path().join("sand/states/000056_00.npz")).expect("the last problem")
+    let last = States::read(&folder.path().join("sand/states/000056_00.npz")).expect("the last problem");
+    // The sweeps of a call alone, from nothing.
+    States { known: Vec::new(), carried: Vec::new(), ..last }
 }
 
 #[test]

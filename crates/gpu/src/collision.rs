@@ -36,6 +36,7 @@ use crate::recording::{BufferId, Recording};
 use crate::stages;
 use bowknot_geometry::{CollisionModel, Point, Vector};
 use buffers::{Buffers, Sizes, words};
+pub use carried::Carried;
 use carried::CarriedList;
 use near_list::NearList;
 pub use stop::Stop;
@@ -165,17 +166,6 @@ impl<'a> Call<'a> {
     pub fn toward(target: &'a [Point]) -> Self {
         Self { target, growth: f64::INFINITY, slip_start: &[], known: &[], carried: &[], stop: Stop::NEVER }
     }
-}
-
-/// What a pair carries at the start of a call.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Carried {
-    /// The pair. Where both sides are of one kind, their order is that of `friction` alone.
-    pub candidate: Candidate,
-    /// Multiplier of its contact row [m, in units of the mean mass].
-    pub multiplier: f64,
-    /// Multiplier of friction on side *a*, in the same units.
-    pub friction: Vector,
 }
 
 impl From<&ContactRow> for Carried {

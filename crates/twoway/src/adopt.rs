@@ -2,10 +2,11 @@
 
 use crate::call::CallInput;
 use crate::error::ResolveError;
+use crate::multipliers::PairMultipliers;
 use crate::resolver::{Resolver, check_pairs};
 use crate::stages::{BackwardStep, ForwardStep, Search};
 use crate::statistics::Statistics;
-use bowknot_geometry::{PairKind, Point, Vector};
+use bowknot_geometry::{Point, Vector};
 use bowknot_proximity::PairList;
 
 /// The end of a call.
@@ -23,26 +24,6 @@ pub struct CallEnd<'a> {
     pub contacts: &'a [PairMultipliers],
     /// Pairs among which are all that are in contact range at `positions`. None: they are searched for.
     pub near: Option<&'a PairList>,
-}
-
-/// What a contact carries at the end of a call.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PairMultipliers {
-    /// The pair's kind.
-    pub kind: PairKind,
-    /// The pair's elements, as [`bowknot_proximity::Pair`] has them.
-    pub elements: [u32; 2],
-    /// Multiplier of the contact row [m, in units of relative mass].
-    pub normal: f64,
-    /// Friction multiplier, in space [m, in units of relative mass].
-    pub friction: Vector,
-}
-
-impl PairMultipliers {
-    /// Whether all numbers are finite.
-    pub(crate) fn is_finite(&self) -> bool {
-        self.normal.is_finite() && self.friction.iter().all(|c| c.is_finite())
-    }
 }
 
 impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {

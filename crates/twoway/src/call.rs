@@ -1,9 +1,9 @@
 //! What is given for one call, checked.
 
-use crate::adopt::PairMultipliers;
 use crate::error::ResolveError;
 use crate::groups::Groups;
 use crate::input::ResolveInput;
+use crate::multipliers::PairMultipliers;
 use crate::scene::CollisionScene;
 use crate::validation::{check_finite, check_length, largest_coordinate};
 use bowknot_constraints::FrictionModel;

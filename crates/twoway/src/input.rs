@@ -1,6 +1,6 @@
 //! What a caller gives with each call.
 
-use crate::adopt::PairMultipliers;
+use crate::multipliers::PairMultipliers;
 use bowknot_geometry::Point;
 
 /// What changes from call to call, beside positions and target.

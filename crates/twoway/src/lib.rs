@@ -25,6 +25,7 @@ mod injection;
 mod input;
 mod lag;
 mod live;
+mod multipliers;
 mod observer;
 mod oscillation;
 mod params;
@@ -57,7 +58,7 @@ pub use bowknot_proximity as proximity;
 /// The certified forward step, and its part of the parameters.
 pub use bowknot_stepper as stepper;
 
-pub use adopt::{CallEnd, PairMultipliers};
+pub use adopt::CallEnd;
 pub use backward::{GUARDED_STRETCH, LcpBackward};
 pub use bodies::{BodyContact, ContactSide, ContactTable, HalfSpaceContact, PairFriction};
 pub use bowknot_constraints::ContactParams;
@@ -70,6 +71,7 @@ pub use groups::Groups;
 pub use input::ResolveInput;
 pub use lag::{Lag, PrescribedEntity};
 pub use live::{LiveRows, LiveSystem};
+pub use multipliers::PairMultipliers;
 pub use observer::{AcceptedState, Observer};
 pub use params::{BackwardParams, Params, SolverParams};
 pub use resolver::Resolver;

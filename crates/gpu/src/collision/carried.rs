@@ -1,14 +1,25 @@
 //! What pairs carry at the start of a call.
 
-use super::buffers::words;
-use super::{Carried, Collision};
+use super::buffers::{Buffers, words};
 use crate::cpu;
 use crate::engine::Engine;
 use crate::error::GpuError;
 use crate::grid::Grid;
-use crate::layout::CarriedState;
+use crate::layout::{Candidate, CarriedState};
 use crate::recording::{BufferId, Recording};
 use crate::stages;
+use bowknot_geometry::Vector;
+
+/// What a pair carries at the start of a call.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Carried {
+    /// The pair. Where both sides are of one kind, their order is that of `friction` alone.
+    pub candidate: Candidate,
+    /// Multiplier of its contact row [m, in units of the mean mass].
+    pub multiplier: f64,
+    /// Multiplier of friction on side *a*, in the same units.
+    pub friction: Vector,
+}
 
 /// Entries in the order of the search in `resume.wgsl`. Those that do not press, or have no finite numbers in single
 /// precision, are left out.
@@ -74,19 +85,16 @@ impl CarriedList {
         let buffer = engine.buffer("carried multipliers", words::<CarriedState>(capacity))?;
         Ok(Self { buffer, capacity, count: 0 })
     }
-}
 
-impl<E: Engine> Collision<E> {
     /// Gives new candidates what their pairs carry, if any does. [`stages::SPACE`] keeps it when it completes their states.
-    pub(super) fn record_resume(&self, recording: &mut Recording) {
-        if self.carried.count == 0 {
+    pub fn record(&self, b: &Buffers, recording: &mut Recording) {
+        if self.count == 0 {
             return;
         }
-        let b = &self.buffers;
         recording.dispatch(
             &stages::RESUME,
-            &[self.carried.buffer, b.candidates, b.states, b.control],
-            cpu::resume::Params { capacity: b.capacity as u32, carried: self.carried.count as u32 },
+            &[self.buffer, b.candidates, b.states, b.control],
+            cpu::resume::Params { capacity: b.capacity as u32, carried: self.count as u32 },
             b.capacity,
         );
     }

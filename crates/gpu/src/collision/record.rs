@@ -38,7 +38,7 @@ impl<E: Engine> Collision<E> {
         self.record_restart(true, recording);
         self.record_paths(recording);
         self.record_search(recording);
-        self.record_resume(recording);
+        self.carried.record(&self.buffers, recording);
         self.record_decision(AFTER_SEARCH, dispatches, recording);
     }
 

@@ -6,8 +6,8 @@
 
 use super::regions::Regions;
 use super::sides::{Sides, range_count, range_of};
-use crate::adopt::PairMultipliers;
 use crate::call::CallInput;
+use crate::multipliers::PairMultipliers;
 use crate::scene::CollisionScene;
 use crate::spacing::MIN_SEPARATION_MARGIN;
 use crate::state::{ContactSet, ResolveState};
