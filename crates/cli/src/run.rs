@@ -15,9 +15,6 @@ use bowknot_errors::counted;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-/// Largest `simulation.newton_iterations` that scenes may have.
-const MAX_NEWTON_ITERATIONS: usize = 1000;
-
 /// Largest number of bodies whose sizes are printed.
 const MAX_SIZES: usize = 10;
 
@@ -329,8 +326,9 @@ fn remedy(simulation: &SimulationParams, iterations: f64) -> String {
     let dt = format!("{:.6e}", simulation.dt / 4.0).parse().unwrap_or(simulation.dt / 4.0);
     let mut text = format!("a quarter of the time step (--dt {dt:?} with four times the --frames)");
     let limit = simulation.newton_iterations;
-    if iterations >= limit as f64 && limit < MAX_NEWTON_ITERATIONS {
-        let more = (3 * limit).clamp(30, MAX_NEWTON_ITERATIONS);
+    let most = SimulationParams::MAX_NEWTON_ITERATIONS;
+    if iterations >= limit as f64 && limit < most {
+        let more = (3 * limit).clamp(30, most);
         text += &format!(", more Newton iterations (--set simulation.newton_iterations={more}), or both");
     }
     text

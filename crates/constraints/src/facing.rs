@@ -20,8 +20,8 @@ const FLAT: f64 = 2e-3;
 const NARROWEST: f64 = 0.01;
 const WIDEST: f64 = 0.1;
 
-/// Sine of the angle between the faces of an edge from which on it begins to count as bent, and from which on it does in full. Larger:
-/// what slides on slightly bent surfaces is lifted and let down, and loses speed.
+/// Sines of the angle between the faces of an edge from which on it begins to count as bent, and does in full. Larger: what
+/// slides on slightly bent surfaces is lifted and let down, and loses speed.
 const NEARLY_FLAT: f64 = 5e-4;
 const BENT: f64 = 0.01;
 
@@ -171,11 +171,8 @@ impl Facing {
                 rise < WIDEST
             });
             share *= ((WIDEST - rise) / (WIDEST - NARROWEST)).clamp(0.0, 1.0);
-            bend = bend.max(if count > 1 {
-                ((fall - NEARLY_FLAT) / (BENT - NEARLY_FLAT)).clamp(0.0, 1.0)
-            } else {
-                1.0
-            });
+            let bent = ((fall - NEARLY_FLAT) / (BENT - NEARLY_FLAT)).clamp(0.0, 1.0);
+            bend = bend.max(if count > 1 { bent } else { 1.0 });
             if share == 0.0 {
                 return 0.0;
             }

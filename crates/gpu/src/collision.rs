@@ -161,8 +161,8 @@ pub struct Call<'a> {
 }
 
 impl<'a> Call<'a> {
-    /// Toward a target that knows no contacts, with pairs that carry nothing. Pairs may open at once, slip counts from here, and the host alone ends
-    /// the call.
+    /// Toward a target that knows no contacts, with pairs that carry nothing. Pairs may open at once, slip counts from
+    /// here, and the host alone ends the call.
     pub fn toward(target: &'a [Point]) -> Self {
         Self { target, growth: f64::INFINITY, slip_start: &[], known: &[], carried: &[], stop: Stop::NEVER }
     }

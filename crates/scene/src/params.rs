@@ -193,12 +193,18 @@ impl Default for OutputParams {
     }
 }
 
+impl SimulationParams {
+    /// Largest [`Self::newton_iterations`].
+    pub const MAX_NEWTON_ITERATIONS: usize = 1000;
+}
+
 impl Parameters for SimulationParams {
     fn check(&self, checks: &mut Checks) {
         let fits = (1e-6..=1.0).contains(&self.dt);
         checks.require(fits, "dt", self.dt, "must be a number of seconds from 1e-6 to 1");
         checks.require(self.frames <= 1_000_000, "frames", self.frames, "must be at most 1000000");
-        let (iterations, fits) = (self.newton_iterations, (1..=1000).contains(&self.newton_iterations));
+        let iterations = self.newton_iterations;
+        let fits = (1..=Self::MAX_NEWTON_ITERATIONS).contains(&iterations);
         checks.require(fits, "newton_iterations", iterations, "must lie from 1 to 1000");
     }
 }

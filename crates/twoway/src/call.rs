@@ -63,6 +63,9 @@ impl CallInput {
         let has_unknown =
             input.known.iter().zip(&prescribed).any(|(known, prescribed)| !known && !prescribed);
         let has_friction = scene.friction_model() != FrictionModel::None;
+        let mut carried: Vec<PairMultipliers> =
+            input.carried.iter().filter(|pair| pair.is_finite()).copied().collect();
+        carried.sort_unstable_by_key(|pair| (pair.kind, pair.elements));
         let slip_start = if has_friction { input.start.unwrap_or(positions).to_vec() } else { Vec::new() };
         Ok(Self {
             groups: Groups::new(input.groups, &prescribed, is_obstacle),
@@ -71,7 +74,7 @@ impl CallInput {
             slip_start,
             known: input.known.to_vec(),
             has_unknown,
-            carried: input.carried.iter().filter(|pair| pair.is_finite()).copied().collect(),
+            carried,
         })
     }
 

@@ -22,8 +22,8 @@ pub struct ResolveInput<'a> {
     /// Vertices whose contacts the target knows, one entry per vertex; empty: none. Pairs with one of them that are near
     /// at the start of the call only get rows that guard part of their gap: the target is to decide about the rest.
     pub known: &'a [bool],
-    /// What pairs carry at the start, ascending by kind and elements: the first backward step starts from it. Pairs without
-    /// an entry carry nothing; entries of pairs that are out of range, or without finite numbers, are left out.
+    /// What pairs carry at the start, in any order: the first backward step starts from it. Pairs without an entry carry
+    /// nothing; entries of pairs that are out of range, or without finite numbers, are left out.
     pub carried: &'a [PairMultipliers],
     /// Largest number of two-way steps, if smaller than that of the parameters, for a caller that continues
     /// from any state.

@@ -121,10 +121,10 @@ fn sweep_and_polish<R>(
     stretch: impl Fn(&R) -> f64,
 ) -> Result<(), lcp::LcpError> {
     let params = &scene.params().solver.backward;
-    batch(rows, if state.call.has_unknown() { UNKNOWN_SWEEPS * params.sweeps } else { params.sweeps })?;
+    let mut sweeps = if state.call.has_unknown() { UNKNOWN_SWEEPS * params.sweeps } else { params.sweeps };
+    batch(rows, sweeps)?;
     if state.remaining < params.polish_distance * scene.lengths().edge {
         let allowed = 1.0 + 0.5 * scene.params().solver.stop.stretch_tolerance;
-        let mut sweeps = params.sweeps;
         while sweeps < params.polish_sweeps && stretch(rows) > allowed {
             let more = POLISH_BATCH.min(params.polish_sweeps - sweeps);
             batch(rows, more)?;

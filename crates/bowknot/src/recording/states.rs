@@ -99,7 +99,7 @@ pub struct States {
     pub start: Vec<Point>,
     /// Vertices whose contacts the target knows; empty: none.
     pub known: Vec<bool>,
-    /// What pairs carry at the start, ascending by kind and elements.
+    /// What pairs carry at the start.
     pub carried: Vec<PairMultipliers>,
     /// Which bodies each body collides with; empty: each with all, and deformable ones with themselves.
     pub filters: Vec<BodyFilter>,
@@ -268,10 +268,7 @@ fn carried(archive: &mut Archive<'_>) -> Result<Vec<PairMultipliers>, IoError> {
         })
     };
     let carried: Option<Vec<PairMultipliers>> = pairs.into_iter().zip(multipliers).map(entry).collect();
-    let mut carried =
-        carried.ok_or_else(|| archive.fault("carried", "is no kind of pair, or no number of an element"))?;
-    carried.sort_unstable_by_key(|pair| (pair.kind, pair.elements));
-    Ok(carried)
+    carried.ok_or_else(|| archive.fault("carried", "has a kind of pair or an element that does not exist"))
 }
 
 /// Refuses arrays of unknown names: a misspelled one would be ignored, and the result be that of another

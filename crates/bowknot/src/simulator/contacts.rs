@@ -134,7 +134,6 @@ impl Contacts {
         self.note_touching(resolver);
         self.memory = FrictionMemory::new(resolver.scene(), &self.carried);
         self.rows.begin_step(resolver.scene(), &self.carried, &self.solved, dt);
-        self.counted.clone_from(&self.solved);
         self.find(resolver, start);
     }
 
@@ -194,17 +193,19 @@ impl Contacts {
         rayon::scope(|_| PairKind::ALL.into_iter().for_each(note));
     }
 
-    /// Notes the vertices that only rows of the collision stage hold, after a call of it: the residual does not count them.
+    /// Notes what rows alone carry after a call of the collision stage. If the dynamics knows no contacts they hold all
+    /// bodies, and the residual does not count the vertices where they press.
     pub fn note_rows(&mut self, resolver: &Resolver) {
-        let contacts = &resolver.state().contacts;
         self.rows.note(resolver, &self.solved);
+        if self.stiffness != 0.0 {
+            return;
+        }
+        let contacts = &resolver.state().contacts;
         self.counted.clone_from(&self.solved);
         for kind in PairKind::ALL {
             for p in contacts.pairs.range(kind).filter(|&p| contacts.multipliers[p] != 0.0) {
                 let used = &contacts.pairs.pairs()[p].vertices[..kind.vertex_count()];
-                if self.stiffness == 0.0 || !self.is_elastic(used) {
-                    used.iter().for_each(|&v| self.counted[v as usize] = false);
-                }
+                used.iter().for_each(|&v| self.counted[v as usize] = false);
             }
         }
     }

@@ -79,10 +79,3 @@ fn farthest(vertices: impl Iterator<Item = u32>, prescribed: &[bool], a: &[Point
     let prescribed = vertices.map(|v| v as usize).filter(|&v| v < a.len() && prescribed[v]);
     prescribed.map(|v| (b[v] - a[v]).norm()).fold(0.0, f64::max)
 }
-
-/// Largest distance of a prescribed vertex from its keyframe [m]; distances up to `resolution` are rounding.
-pub(super) fn largest_lag(x: &[Point], keyframes: &[Point], prescribed: &[bool], resolution: f64) -> f64 {
-    let lag = |v: usize| (keyframes[v] - x[v]).norm();
-    let largest = (0..x.len()).filter(|&v| prescribed[v]).map(lag).fold(0.0, f64::max);
-    if largest > resolution { largest } else { 0.0 }
-}

@@ -16,7 +16,6 @@ const KEPT: f64 = 0.95;
 /// What rows carry.
 #[derive(Clone, Debug, Default)]
 pub(super) struct RowForces {
-    /// In the order that a call wants them in.
     multipliers: Vec<PairMultipliers>,
     /// Force of a multiplier of 1 m [N/m].
     scale: f64,
@@ -37,11 +36,10 @@ impl RowForces {
             carried.iter().filter(is_row).filter_map(|ContactForce { features, normal, force }| {
                 let (kind, elements) = pair(features)?;
                 let pressure = normal.dot(force);
-                let friction = (force - normal * pressure) * (KEPT / self.scale);
-                Some(PairMultipliers { kind, elements, normal: KEPT * pressure / self.scale, friction })
+                let friction = (force - normal * pressure) / self.scale;
+                Some(PairMultipliers { kind, elements, normal: pressure / self.scale, friction })
             });
-        self.multipliers = multipliers.collect();
-        self.multipliers.sort_unstable_by_key(|pair| (pair.kind, pair.elements));
+        self.multipliers = multipliers.map(kept).collect();
     }
 
     /// What the next call starts from.
@@ -52,44 +50,38 @@ impl RowForces {
     /// Notes what the pairs carry that a call of the collision stage ended with.
     pub fn note(&mut self, resolver: &Resolver, solved: &[bool]) {
         self.multipliers.clear();
-        let contacts = &resolver.state().contacts;
-        for (kind, place) in pressing(resolver, solved) {
-            let friction = contacts.friction_multipliers.get(place).copied().unwrap_or_else(Vector::zeros);
-            let (elements, normal) = (contacts.pairs.pairs()[place].elements, contacts.multipliers[place]);
-            self.multipliers.push(PairMultipliers {
-                kind,
-                elements,
-                normal: KEPT * normal,
-                friction: friction * KEPT,
-            });
-        }
-        self.multipliers.sort_unstable_by_key(|pair| (pair.kind, pair.elements));
+        self.multipliers.extend(pressing(resolver, solved).map(|(pair, _)| kept(pair)));
     }
 
     /// The same as forces, at the end of a time step.
     pub fn forces(&self, resolver: &Resolver, solved: &[bool]) -> Vec<ContactForce> {
-        let contacts = &resolver.state().contacts;
-        let force = |(kind, place): (PairKind, usize)| {
-            let friction = contacts.friction_multipliers.get(place).copied().unwrap_or_else(Vector::zeros);
-            let normal = contacts.separations[place].normal;
-            let force = (normal * contacts.multipliers[place] + friction) * self.scale;
-            Some(ContactForce {
-                features: features(kind, contacts.pairs.pairs()[place].elements)?,
-                normal,
-                force,
-            })
+        let force = |(pair, normal): (PairMultipliers, Vector)| {
+            let force = (normal * pair.normal + pair.friction) * self.scale;
+            Some(ContactForce { features: features(pair.kind, pair.elements)?, normal, force })
         };
         pressing(resolver, solved).filter_map(force).collect()
     }
 }
 
-/// Kinds and places of the pairs that press and that rows alone hold.
-fn pressing<'a>(resolver: &'a Resolver, solved: &'a [bool]) -> impl Iterator<Item = (PairKind, usize)> + 'a {
+fn kept(pair: PairMultipliers) -> PairMultipliers {
+    PairMultipliers { normal: KEPT * pair.normal, friction: pair.friction * KEPT, ..pair }
+}
+
+/// What the pairs carry that press and that rows alone hold, and their normals.
+fn pressing<'a>(
+    resolver: &'a Resolver,
+    solved: &'a [bool],
+) -> impl Iterator<Item = (PairMultipliers, Vector)> + 'a {
     let contacts = &resolver.state().contacts;
     let of_kind = |kind: PairKind| contacts.pairs.range(kind).map(move |place| (kind, place));
-    PairKind::ALL.into_iter().flat_map(of_kind).filter(move |&(kind, place)| {
-        let used = &contacts.pairs.pairs()[place].vertices[..kind.vertex_count()];
-        contacts.multipliers[place] != 0.0 && !used.iter().any(|&v| solved[v as usize])
+    PairKind::ALL.into_iter().flat_map(of_kind).filter_map(move |(kind, place)| {
+        let (pair, normal) = (&contacts.pairs.pairs()[place], contacts.multipliers[place]);
+        if normal == 0.0 || pair.vertices[..kind.vertex_count()].iter().any(|&v| solved[v as usize]) {
+            return None;
+        }
+        let friction = contacts.friction_multipliers.get(place).copied().unwrap_or_else(Vector::zeros);
+        let carried = PairMultipliers { kind, elements: pair.elements, normal, friction };
+        Some((carried, contacts.separations[place].normal))
     })
 }
 

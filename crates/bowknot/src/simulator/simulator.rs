@@ -9,7 +9,7 @@
 use super::backend::{BackendError, CollisionBackend, Cpu};
 use super::checkpoint::Checkpoint;
 use super::contacts::Contacts;
-use super::ends::{Ends, largest_lag};
+use super::ends::Ends;
 use super::error::{SimulationError, describe_intersections};
 use super::friction::ContactForce;
 use super::inside;
@@ -278,6 +278,7 @@ impl Simulator {
         let dynamics = rest.as_mut().and_then(Rest::dynamics).unwrap_or(dynamics);
         dynamics.end_velocities(positions, &scratch.prescribed, contacts.touching(), velocities);
         statistics.waiting = self.waiting(time, &scratch);
+        statistics.prescribed_lag_m = statistics.waiting.values().copied().fold(0.0, f64::max);
         self.scratch = scratch;
         self.step = step;
         self.fall_asleep()?;
@@ -440,7 +441,6 @@ impl Simulator {
                 break;
             }
         }
-        statistics.prescribed_lag_m = largest_lag(&x[..count], keyframes, prescribed, backend.resolution());
         (statistics.residual_n, statistics.residual_m) = (imbalance.force, imbalance.distance);
         let forces = dynamics.contact_forces();
         let is_balanced = progress.solves(imbalance.distance);

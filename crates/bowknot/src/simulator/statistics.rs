@@ -193,7 +193,6 @@ impl StepStatistics {
         self.skipped.searches += call.skipped.searches;
         self.skipped.evaluations += call.skipped.evaluations;
         self.skipped.rows += call.skipped.rows;
-        self.prescribed_lag_m = call.prescribed_lag_m;
         self.slowest_body = call.slowest_body.filter(|_| !call.converged).map(name_of);
     }
 

@@ -22,7 +22,7 @@ pub struct Carried {
 }
 
 /// Entries in the order of the search in `resume.wgsl`. Those that do not press, or have no finite numbers in single
-/// precision, are left out.
+/// precision, are left out, and all but the first of a pair.
 pub fn sorted(grid: &Grid, carried: &[Carried]) -> Vec<CarriedState> {
     let entry = |pair: &Carried| {
         let candidate = pair.candidate.ordered();
@@ -42,6 +42,7 @@ pub fn sorted(grid: &Grid, carried: &[Carried]) -> Vec<CarriedState> {
     let entries = carried.iter().map(entry).filter(|entry| entry.multiplier > 0.0 && is_finite(entry));
     let mut entries: Vec<CarriedState> = entries.collect();
     entries.sort_by_key(|entry| entry.candidate);
+    entries.dedup_by_key(|entry| entry.candidate);
     entries
 }
 

@@ -21,23 +21,6 @@ pub fn bound(buffers: Bound<'_>) {
     );
 }
 
-fn place_of(carried: &[CarriedState], pair: Candidate) -> Option<usize> {
-    let (mut low, mut high) = (0, carried.len());
-    while low < high {
-        let middle = (low + high) / 2;
-        let found = carried[middle].candidate;
-        if found == pair {
-            return Some(middle);
-        }
-        if found < pair {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
-    }
-    None
-}
-
 pub fn resume(
     params: Params,
     carried: &[CarriedState],
@@ -48,7 +31,7 @@ pub fn resume(
     let carried = &carried[..params.carried as usize];
     for c in 0..control.candidates.min(params.capacity) as usize {
         let pair = candidates[c].ordered();
-        let Some(place) = place_of(carried, pair) else { continue };
+        let Ok(place) = carried.binary_search_by_key(&pair, |entry| entry.candidate) else { continue };
         let CarriedState { friction, multiplier, .. } = carried[place];
         let swapped = pair != candidates[c];
         states[c].friction = if swapped { friction.map(|f| -f) } else { friction };
