@@ -19,6 +19,12 @@ impl Course {
         Self { steps, asleep }
     }
 
+    /// Share of the time steps from one on that are solved.
+    fn solved(&self, from: usize) -> f64 {
+        let steps = &self.steps[from..];
+        steps.iter().filter(|s| s.solved).count() as f64 / steps.len() as f64
+    }
+
     fn most(&self, quantity: impl Fn(&StepStatistics) -> f64) -> f64 {
         self.steps.iter().map(quantity).fold(0.0, f64::max)
     }
@@ -270,11 +276,107 @@ fn pinched_strip(friction: f64) -> String {
 fn pads_hold_a_strip_without_creep() {
     for friction in [0.3, 1.0] {
         let course = Course::of(&pinched_strip(friction), 300);
+        let solved = course.solved(100);
+        assert!(solved > 0.9, "mu = {friction}: {solved} of the time steps are solved");
         let speed = course.most(|s| s.max_speed);
         assert!(speed < 0.5, "mu = {friction}: {speed} m/s");
         let fallen = course.steps[199].center_of_mass[2] - course.steps[299].center_of_mass[2];
         assert!(fallen.abs() < 5e-5, "mu = {friction}: it creeps {fallen} m in a second");
     }
+}
+
+/// A sheet twisted by two turns, so that its edges are at their limits and its layers press on each other.
+#[test]
+fn a_twisted_sheet_is_solved_once_its_pins_rest() {
+    let pin = |side: &str, sign: f64| {
+        format!(
+            "[[pin]]\nside = \"{side}\"\nmotion = {{ axis = [1, 0, 0], keyframes = [{{ time = 1.2, angle = {}, \
+             translate = [{}, 0, 0] }}] }}\n",
+            360.0 * sign,
+            -0.05 * sign
+        )
+    };
+    let text = format!(
+        r#"
+        [simulation]
+        gravity = [0, 0, 0]
+        [[body]]
+        shape = {{ type = "sheet", size = [0.5, 0.25], edge = 0.03 }}
+        material = {{ base = "cotton", stretch_damping = 0.05, bend_damping = 0.05 }}
+        friction = 0.2
+        {}{}
+        "#,
+        pin("x-min", -1.0),
+        pin("x-max", 1.0)
+    );
+    let course = Course::of(&text, 240);
+    let (solved, stretch) = (course.solved(160), course.steps[239].max_stretch);
+    assert!(solved > 0.9, "{solved} of the time steps are solved");
+    // Its limit is 1.05.
+    assert!(stretch < 1.065, "stretched {stretch} times");
+    let speed = course.steps[220..].iter().map(|s| s.max_speed).fold(0.0, f64::max);
+    assert!(speed < 0.2, "{speed} m/s a second after its pins stopped");
+}
+
+/// Crumpled by a pin that lowers it on a table, and then released.
+#[test]
+fn a_cloth_that_is_lowered_on_a_table_lies_flat_on_itself() {
+    let text = r#"
+        [[body]]
+        shape = { type = "sheet", size = [0.4, 0.4], edge = 0.02 }
+        material = "cotton"
+        friction = 0.4
+        rotate = [0, 0, 45]
+        translate = [0, 0, 0.6]
+        [[obstacle]]
+        shape = { type = "box", size = [0.8, 0.8, 0.05], edge = 0.05 }
+        translate = [0, 0, -0.025]
+        friction = 0.4
+        [[pin]]
+        side = "x-max"
+        end = 3.0
+        motion = { keyframes = [{ time = 1.0 }, { time = 2.8, translate = [0.0, 0.0, -0.57] }] }
+    "#;
+    let course = Course::of(text, 400);
+    let end = &course.steps[399];
+    let height = end.center_of_mass[2];
+    assert!((0.01..0.045).contains(&height), "its mean height is {height} m");
+    assert!(end.max_speed < 0.1, "{} m/s a second after its release", end.max_speed);
+}
+
+#[test]
+fn cloth_below_and_above_grains_comes_to_rest() {
+    let sheet = |name: &str, z: f64| {
+        format!(
+            r#"
+            [[body]]
+            name = "{name}"
+            shape = {{ type = "sheet", size = [0.2, 0.2], edge = 0.025 }}
+            material = "cotton"
+            friction = 0.5
+            translate = [0, 0, {z}]
+            "#
+        )
+    };
+    let text = format!(
+        r#"
+        {}{}
+        [[body]]
+        name = "grains"
+        kind = "particles"
+        shape = {{ type = "grains", count = [4, 4, 3], spacing = 0.0165, jitter = 0.05 }}
+        material = {{ base = "sand", radius = 0.004 }}
+        friction = 0.5
+        translate = [0, 0, 0.08]
+        [[obstacle]]
+        shape = "half-space"
+        friction = 0.5
+        "#,
+        sheet("below", 0.01),
+        sheet("above", 0.16)
+    );
+    let course = Course::of(&text, 150);
+    assert!(course.asleep.is_some(), "awake after 1.5 s");
 }
 
 #[test]

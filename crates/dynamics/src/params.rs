@@ -49,8 +49,7 @@ pub struct NewtonParams {
     /// that the forces out of balance are worth, see [`crate::Residual::distance`]. It is for callers that
     /// alternate Newton iterations with a collision stage, and for time steps of 1/100 s: in shorter ones the
     /// residual shrinks with the square of the time step, in longer ones it grows. Smaller: more iterations,
-    /// up to `simulation.newton_iterations`. Iterations also end if three in a row do not reduce a residual
-    /// of at most four tolerances by three tenths. 0: all iterations are made. Default 0.003.
+    /// up to `simulation.newton_iterations`. 0: all iterations are made. Default 0.003.
     pub step_tolerance: f64,
     /// Largest number of iterations of a linear solve [1]. At this number the solve ends with its last
     /// iterate and reports that it has not converged. Default 10000.

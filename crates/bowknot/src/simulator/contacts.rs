@@ -5,6 +5,7 @@
 //! gap. What a contact remembers is friction alone (`friction.rs`). Edges near their stretch limits are springs as well
 //! (`taut.rs`).
 
+use super::averaging::{FoundContacts, gap};
 use super::crowding::share_stiffness;
 use super::friction::{ContactForce, FrictionMemory};
 use super::rows::RowForces;
@@ -15,7 +16,7 @@ use bowknot_dynamics::{Dynamics, DynamicsModel, RepulsionSpring, SpringKind, Ste
 use bowknot_geometry::{PairKind, Point, Vector};
 use bowknot_scene::RepulsionParams;
 use bowknot_scene::world::World;
-use bowknot_twoway::{PairMultipliers, Resolver};
+use bowknot_twoway::{GUARDED_FLOOR, PairMultipliers, Resolver};
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
@@ -24,6 +25,11 @@ const REACH: f64 = 1.2;
 
 /// Gap at which the force becomes infinite, in the way from the minimum separation to the desired distance.
 const FLOOR: f64 = 0.4;
+
+/// Height from which down on a pair is a contact even if its features do not face each other, in the way from the minimum
+/// separation to the desired distance. It is a whole one where the rows of the collision stage guard it: what a row holds the
+/// dynamics must know, else it closes the pair in each iteration anew. Higher: tilted normals push bodies that slide.
+const DEEP: f64 = 0.45;
 
 /// Sine of the angle between two edges below which they count as nearly parallel.
 const PARALLEL: f64 = 0.1;
@@ -35,9 +41,10 @@ const MIN_PAIRS: usize = 1024;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Contacts {
     stiffness: f64,
-    springs: Vec<RepulsionSpring>,
-    /// Features of each contact's sides, [`oriented`]. Springs of edges follow after those of contacts.
-    features: Vec<[Feature; 2]>,
+    /// The contacts that were found last, with their features [`oriented`]. Springs of edges follow after theirs.
+    found: FoundContacts,
+    /// Times that contacts were found since the time step began.
+    finds: usize,
     /// The forces at the end of the last time step: of so many springs, then of rows.
     carried: Vec<ContactForce>,
     pressing: usize,
@@ -88,17 +95,12 @@ impl Contacts {
         self.solved.resize(world.positions.len(), false);
         solved_vertices(world, asleep).for_each(|v| self.solved[v] = true);
         self.counted.clone_from(&self.solved);
-        self.clear();
-    }
-
-    fn clear(&mut self) {
-        self.springs.clear();
-        self.features.clear();
+        self.found = FoundContacts::default();
     }
 
     /// The springs.
     pub fn springs(&self) -> &[RepulsionSpring] {
-        &self.springs
+        &self.found.springs
     }
 
     /// Pairs that have been in contact range since the time step began.
@@ -131,6 +133,7 @@ impl Contacts {
     /// the same.
     pub fn begin_step(&mut self, resolver: &Resolver, start: &[Point], dt: f64) {
         self.touching = Touching::default();
+        self.finds = 0;
         self.note_touching(resolver);
         self.memory = FrictionMemory::new(resolver.scene(), &self.carried);
         self.rows.begin_step(resolver.scene(), &self.carried, &self.solved, dt);
@@ -147,7 +150,7 @@ impl Contacts {
         &'a self,
         forces: &'a [Vector],
     ) -> impl Iterator<Item = (&'a [Feature; 2], &'a RepulsionSpring, &'a Vector)> {
-        let of_contacts = self.features.iter().zip(&self.springs).zip(forces);
+        let of_contacts = self.found.features.iter().zip(&self.found.springs).zip(forces);
         let of_contacts = of_contacts.map(|((features, spring), force)| (features, spring, force));
         of_contacts.filter(|(_, _, force)| **force != Vector::zeros())
     }
@@ -213,27 +216,40 @@ impl Contacts {
     /// Finds the contacts at the present state of the collision stage, in the order of its candidate pairs. `start` are
     /// positions at the start of the time step.
     pub fn find(&mut self, resolver: &Resolver, start: &[Point]) {
-        self.clear();
         if self.stiffness == 0.0 {
             return;
         }
         let (scene, state) = (resolver.scene(), resolver.state());
-        let mut found = self.near_contacts(resolver);
+        let mut near = self.near_contacts(resolver);
         // Pairs with the same features are one contact.
         let mut known = FxHashSet::default();
-        found.retain(|contact| known.insert(contact.features));
-        self.features.extend(found.iter().map(|contact| contact.features));
-        let of_contacts = found.par_iter().with_min_len(MIN_PAIRS);
-        let spring = |contact: &NearContact| self.spring(resolver, contact, start);
-        let mut springs: Vec<RepulsionSpring> = of_contacts.map(spring).collect();
-        let distance = |contact: &NearContact| state.contacts.separations[contact.place].distance;
-        let shares: Vec<[f64; 2]> = found.iter().map(|contact| [contact.share, distance(contact)]).collect();
-        share_stiffness(&mut springs, &shares, &self.solved);
-        for (spring, features) in springs.iter_mut().zip(&self.features) {
+        near.retain(|contact| known.insert(contact.features));
+        let of_contacts = near.par_iter().with_min_len(MIN_PAIRS);
+        let spring = |contact: &NearContact| self.spring(resolver, contact);
+        let mut found = FoundContacts {
+            features: near.iter().map(|contact| contact.features).collect(),
+            springs: of_contacts.map(spring).collect(),
+            distances: near
+                .iter()
+                .map(|contact| state.contacts.separations[contact.place].distance)
+                .collect(),
+        };
+        let shares: Vec<f64> = near.iter().map(|contact| contact.share).collect();
+        share_stiffness(&mut found.springs, &shares, &found.distances, &self.solved);
+        for (spring, features) in found.springs.iter_mut().zip(&found.features) {
             spring.friction_ratio = self.memory.of(scene, features);
         }
-        self.springs = springs;
-        self.springs.extend(self.limited.taut(&state.x, start, self.stiffness));
+        if self.finds > 1 {
+            found.average(&self.found, self.finds, self.stiffness, &state.x);
+        }
+        self.finds += 1;
+        // For contacts that are new or have turned, the gap between the same points at the start may be smaller than the
+        // one that the collision stage has reached.
+        for (spring, distance) in found.springs.iter_mut().zip(&found.distances) {
+            spring.start_gap = gap(spring, start).max(distance.min(spring.reach / REACH));
+        }
+        found.springs.extend(self.limited.taut(&state.x, start, self.stiffness));
+        self.found = found;
     }
 
     /// The pairs in contact range that are contacts and deform something.
@@ -249,8 +265,10 @@ impl Contacts {
                     return None;
                 }
                 let (features, sign) = oriented(scene.features(kind, pair, separation));
-                let share = scene.contact_share(features, &(separation.normal * sign), &state.x)
+                let facing = scene.contact_share(features, &(separation.normal * sign), &state.x)
                     * crossing(&features, &pair.vertices, &state.x);
+                let [desired, least] = [scene.desired_distance(kind, pair), scene.min_separation(kind, pair)];
+                let share = facing.max(guarded((separation.distance - least) / (desired - least)));
                 (share > 0.0).then_some(NearContact { features, sign, share, kind, place })
             };
             contacts.pairs.range(kind).into_par_iter().with_min_len(MIN_PAIRS).filter_map(contact)
@@ -261,12 +279,11 @@ impl Contacts {
         found
     }
 
-    /// The spring of a contact, without friction from before.
+    /// The spring of a contact, without what follows from the start of the time step: gap and friction.
     fn spring(
         &self,
         resolver: &Resolver,
         &NearContact { features, sign, kind, place, .. }: &NearContact,
-        start: &[Point],
     ) -> RepulsionSpring {
         let (scene, state) = (resolver.scene(), resolver.state());
         let contacts = &state.contacts;
@@ -280,12 +297,7 @@ impl Contacts {
         let weights = separation.signed_weights(kind).map(|weight| weight * sign);
         let mut vertices = pair.vertices;
         (0..4).filter(|&k| weights[k] == 0.0).for_each(|k| vertices[k] = pair.vertices[0]);
-        let sides: Vector = (0..4).map(|k| start[vertices[k] as usize].coords * weights[k]).sum();
-        let (desired, distance) = (scene.desired_distance(kind, pair), separation.distance);
-        // For contacts that are new or have turned, the gap between the same points at the start may
-        // be smaller than the one that the collision stage has reached.
-        let start_gap = (normal.dot(&sides) - offset).max(distance.min(desired));
-        let least = scene.min_separation(kind, pair);
+        let [desired, least] = [scene.desired_distance(kind, pair), scene.min_separation(kind, pair)];
         let floor = least + FLOOR * (desired - least);
         RepulsionSpring {
             kind: SpringKind::Contact,
@@ -295,7 +307,7 @@ impl Contacts {
             offset,
             reach: REACH * desired,
             floor,
-            start_gap,
+            start_gap: 0.0,
             stiffness: self.stiffness,
             friction: contacts.frictions.get(place).copied().unwrap_or(0.0),
             friction_ratio: Vector::zeros(),
@@ -321,7 +333,7 @@ impl Contacts {
 
     /// Gives the springs to the dynamics.
     pub fn apply(&self, dynamics: &mut Dynamics) -> Result<(), StepError> {
-        if self.stiffness == 0.0 { Ok(()) } else { dynamics.set_repulsion(&self.springs) }
+        if self.stiffness == 0.0 { Ok(()) } else { dynamics.set_repulsion(&self.found.springs) }
     }
 }
 
@@ -335,6 +347,12 @@ fn crossing(features: &[Feature; 2], vertices: &[u32; 4], x: &[Point]) -> f64 {
     let (first, second) = (edge(0), edge(2));
     let product = PARALLEL * first.norm() * second.norm();
     if product > 0.0 { (first.cross(&second).norm() / product).min(1.0).powi(2) } else { 0.0 }
+}
+
+/// How much of a contact a pair at a height above the minimum separation is, see [`DEEP`], however its features face each
+/// other [1].
+fn guarded(height: f64) -> f64 {
+    ((DEEP - height) / (DEEP - GUARDED_FLOOR)).clamp(0.0, 1.0)
 }
 
 /// Features with a vertex before an edge, so that pairs of different kinds at the same features are one

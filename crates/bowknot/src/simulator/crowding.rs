@@ -11,12 +11,17 @@ use rustc_hash::FxHashMap;
 /// Distance, in its reach, from which on a contact does not count among its neighbors. From the reach on it counts less.
 const FADED: f64 = 1.5;
 
-/// Multiplies the stiffness of contacts with their share. `contacts` has how much of a contact each is [1] and its distance [m];
+/// Multiplies the stiffness of contacts with their share. `shares` is how much of a contact each is [1], `gaps` its distance [m];
 /// vertices that are not `deformable` do not count.
-pub(super) fn share_stiffness(springs: &mut [RepulsionSpring], contacts: &[[f64; 2]], deformable: &[bool]) {
-    let crowd = Crowd::new(springs, contacts, deformable);
+pub(super) fn share_stiffness(
+    springs: &mut [RepulsionSpring],
+    shares: &[f64],
+    gaps: &[f64],
+    deformable: &[bool],
+) {
+    let crowd = Crowd::new(springs, shares, gaps, deformable);
     let crowds: Vec<f64> = springs.iter().map(|spring| crowd.around(spring)).collect();
-    for ((spring, [share, _]), crowd) in springs.iter_mut().zip(contacts).zip(crowds) {
+    for ((spring, share), crowd) in springs.iter_mut().zip(shares).zip(crowds) {
         spring.stiffness *= share / crowd;
     }
 }
@@ -27,9 +32,9 @@ struct Crowd {
 }
 
 impl Crowd {
-    fn new(springs: &[RepulsionSpring], contacts: &[[f64; 2]], deformable: &[bool]) -> Self {
+    fn new(springs: &[RepulsionSpring], shares: &[f64], gaps: &[f64], deformable: &[bool]) -> Self {
         let mut of_vertices: FxHashMap<u32, Vec<(f64, Vector)>> = FxHashMap::default();
-        for (spring, [share, distance]) in springs.iter().zip(contacts) {
+        for ((spring, share), distance) in springs.iter().zip(shares).zip(gaps) {
             let near = (FADED - distance / spring.reach) / (FADED - 1.0);
             let counts = share * near.clamp(0.0, 1.0);
             if counts > 0.0 {

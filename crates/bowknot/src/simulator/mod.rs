@@ -2,6 +2,7 @@
 //! observer.
 
 mod approach;
+mod averaging;
 mod backend;
 mod checkpoint;
 mod contacts;
@@ -15,9 +16,7 @@ mod observer;
 mod overlap;
 mod prescribed;
 mod process;
-mod progress;
 mod reach;
-mod relaxation;
 mod rest;
 mod rows;
 #[allow(clippy::module_inception, reason = "the type that the module is named for")]
@@ -26,6 +25,7 @@ mod sleep;
 mod solved;
 mod statistics;
 mod taut;
+mod tolerance;
 mod unsolved;
 mod waits;
 mod waking;

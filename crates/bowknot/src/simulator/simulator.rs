@@ -17,11 +17,10 @@ use super::interior::{self, Interior};
 use super::observer::{CollisionProblem, Iterated, Relay, SimulationObserver};
 use super::overlap;
 use super::process::cpu_seconds;
-use super::progress::Progress;
-use super::relaxation::relax_target;
 use super::rest::Rest;
 use super::sleep::SleepState;
 use super::statistics::StepStatistics;
+use super::tolerance::Tolerance;
 use super::unsolved::Search;
 use super::waits::WaitingElements;
 use bowknot_check::{Judge, StateOptions, StateReport};
@@ -235,8 +234,8 @@ impl Simulator {
         let (timer, cpu_start) = (Instant::now(), cpu_seconds());
         let step = self.step + 1;
         let time = time_of(step, self.dt);
-        let progress = Progress::new(self.step_tolerance * self.resolver.scene().lengths().edge, self.dt);
-        let tolerance_m = progress.tolerance();
+        let tolerance = Tolerance::new(self.step_tolerance * self.resolver.scene().lengths().edge, self.dt);
+        let tolerance_m = tolerance.meters();
         let mut statistics = StepStatistics {
             step,
             time,
@@ -263,7 +262,7 @@ impl Simulator {
             return Ok(statistics);
         }
         let carried = self.contacts.carried();
-        let result = self.iterate(step, progress, &mut scratch, observer, &mut statistics);
+        let result = self.iterate(step, tolerance, &mut scratch, observer, &mut statistics);
         if let Err(error) = result {
             self.positions.clone_from(&scratch.start);
             self.anchors = anchors;
@@ -314,7 +313,7 @@ impl Simulator {
     fn iterate(
         &mut self,
         step: usize,
-        mut progress: Progress,
+        tolerance: Tolerance,
         scratch: &mut Scratch,
         observer: &mut dyn SimulationObserver,
         statistics: &mut StepStatistics,
@@ -361,9 +360,6 @@ impl Simulator {
                     residual = info.cg.residual,
                     "the linear solve did not converge"
                 );
-            }
-            if progress.oscillates() && !contacts.springs().is_empty() {
-                relax_target(world, x, y, prescribed);
             }
             match self.collision_every {
                 CollisionEvery::Step if !last => {
@@ -437,13 +433,13 @@ impl Simulator {
             imbalance = residual;
             tracing::debug!(step, iteration, residual.force, residual.distance, "time step");
             observer.iterated(&Iterated { step, iteration, residual });
-            if progress.ends(residual.distance) && !cut {
+            if tolerance.ends(residual.distance) && !cut {
                 break;
             }
         }
         (statistics.residual_n, statistics.residual_m) = (imbalance.force, imbalance.distance);
         let forces = dynamics.contact_forces();
-        let is_balanced = progress.solves(imbalance.distance);
+        let is_balanced = tolerance.solves(imbalance.distance);
         statistics.solved = statistics.converged && is_balanced;
         if !statistics.solved {
             let search = Search { world, contacts, forces: &forces, positions: x };

@@ -21,8 +21,12 @@ const TAUT: f64 = 0.98;
 /// edges are longer. Smaller: the system is stiffer.
 const ROOM: f64 = 0.8 * (GUARDED_STRETCH - 1.0);
 
-/// The part of the way that is left to an edge that starts at its end.
+/// The part of the way that is left to an edge that starts far beyond its limit, so that it is pulled back gently.
 const LEFT: f64 = 0.3;
+
+/// How much farther an edge that starts behind its row may be, per meter that it starts behind it [1]. Above 1, so that those
+/// a little behind are held as all others, and the force does not jump.
+const YIELD: f64 = 3.0;
 
 /// Edges that one thread looks at, at least.
 const MIN_EDGES: usize = 4096;
@@ -72,15 +76,15 @@ impl LimitedEdges {
                 return None;
             }
             let [a, b] = edge.vertices;
-            let (first, room) = (length(start, edge.vertices).norm(), ROOM * edge.limit);
-            let longest = (edge.limit + room).max(first + LEFT * room);
+            let first = length(start, edge.vertices).norm();
+            let longest = longest(edge.limit, first);
             Some(RepulsionSpring {
                 kind: SpringKind::Limit,
                 vertices: [a, b, a, a],
                 weights: [-1.0, 1.0, 0.0, 0.0],
                 normal: now.try_normalize(0.0)?,
                 offset: -longest,
-                reach: room,
+                reach: ROOM * edge.limit,
                 floor: 0.0,
                 start_gap: longest - first,
                 stiffness,
@@ -89,5 +93,31 @@ impl LimitedEdges {
             })
         };
         self.edges.par_iter().with_min_len(MIN_EDGES).filter_map(taut).collect()
+    }
+}
+
+/// Length at which the force of an edge with this `limit` becomes infinite, if it is `first` long at the start of the time
+/// step [m].
+fn longest(limit: f64, first: f64) -> f64 {
+    let room = ROOM * limit;
+    let wall = limit + room;
+    let beyond = (first - GUARDED_STRETCH * limit).max(0.0);
+    (wall + YIELD * beyond).min(wall.max(first + LEFT * room))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edges_within_their_rows_have_one_wall_and_those_far_beyond_are_pulled_back_gently() {
+        let wall = 1.0 + ROOM;
+        for first in [0.9, 1.0, wall, GUARDED_STRETCH] {
+            assert_eq!(longest(1.0, first), wall, "{first}");
+        }
+        assert_eq!(longest(1.0, 1.5), 1.5 + LEFT * ROOM);
+        let lengths = (0..1000).map(|k| longest(1.0, GUARDED_STRETCH + 1e-5 * f64::from(k)));
+        let steps: Vec<f64> = lengths.collect::<Vec<_>>().windows(2).map(|pair| pair[1] - pair[0]).collect();
+        assert!(steps.iter().all(|step| (0.0..=YIELD * 1.001e-5).contains(step)), "it jumps");
     }
 }
