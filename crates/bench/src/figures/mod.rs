@@ -16,6 +16,7 @@ mod gpu_prediction;
 mod impact_zones;
 mod joint;
 mod lengths;
+mod loaded;
 mod newton;
 mod overview;
 mod parameters;
