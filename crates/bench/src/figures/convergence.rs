@@ -133,7 +133,8 @@ fn residuals(bench: &Bench, subjects: &[Subject], loaded: &[Subject]) -> Result<
             .measured(&format!("convergence/{}-residuals", subject.scene), || subject.residuals(bench))?;
         let half = &of_steps[of_steps.len() / 2..];
         let at = |share: f64| -> Vec<f64> {
-            let of_iteration = |k: usize| half.iter().map(|step| step[k]).collect::<Vec<f64>>();
+            let of_iteration =
+                |k: usize| half.iter().filter_map(|step| step.get(k).copied()).collect::<Vec<f64>>();
             (0..SHOWN).map(|k| quantile(&of_iteration(k), share)).collect()
         };
         for (name, share) in [("median", 0.5), ("lower quartile", 0.25), ("upper quartile", 0.75)] {
