@@ -50,7 +50,7 @@ const LOADED: [Subject; 5] = [
     loaded("cube on a sheet", loaded::CUBE_ON_SHEET, 100),
     loaded("strip between pads", loaded::STRIP, 160),
     loaded("twisted sheet", loaded::TWISTED, 200),
-    loaded("cloth below and above grains", loaded::GRAINS, 100),
+    loaded("grains and cloth", loaded::GRAINS, 100),
 ];
 
 /// Iterations of each time step whose residuals are shown.
