@@ -126,45 +126,73 @@ fn without_friction_a_cube_pushes_the_sheet_below_it_to_no_side() {
     assert!(sideways < 1e-6, "{sideways} kg m/s");
 }
 
+/// A block without weight, pinned on one side, that moves inward by so much [m] until a time [s]. `axis` is 0 for x and 1 for y; it
+/// stands at `place` on that axis.
+struct Pad {
+    name: &'static str,
+    axis: usize,
+    place: f64,
+    size: [f64; 3],
+    friction: f64,
+    material: &'static str,
+    way: f64,
+    until: f64,
+}
+
+impl Pad {
+    fn toml(&self) -> String {
+        let Self { name, axis, place, size, friction, material, way, until } = self;
+        let along = |length: f64| {
+            let mut vector = [0.0; 3];
+            vector[*axis] = length;
+            vector
+        };
+        let side = format!("{}-{}", ["x", "y"][*axis], if *place < 0.0 { "min" } else { "max" });
+        format!(
+            r#"
+            [[body]]
+            name = "{name}"
+            kind = "solid"
+            shape = {{ type = "block", size = {size:?}, edge = 0.02 }}
+            translate = {:?}
+            friction = {friction}
+            material = "{material}"
+            gravity = [0, 0, 0]
+            [[pin]]
+            body = "{name}"
+            side = "{side}"
+            motion = {{ keyframes = [{{ time = {until}, translate = {:?} }}] }}
+            "#,
+            along(*place),
+            along(-way * place.signum())
+        )
+    }
+}
+
 #[test]
 fn a_cube_between_soft_pads_is_held() {
-    let text = r#"
+    let pad = |name: &'static str, place: f64| {
+        let (size, friction, material) = ([0.02, 0.04, 0.04], 0.8, "silicone");
+        Pad { name, axis: 0, place, size, friction, material, way: 0.001, until: 0.1 }.toml()
+    };
+    let text = format!(
+        r#"
         [contact]
         delta = 0.001
         [[body]]
         name = "cube"
         kind = "solid"
-        shape = { type = "block", size = [0.04, 0.04, 0.04], edge = 0.02 }
+        shape = {{ type = "block", size = [0.04, 0.04, 0.04], edge = 0.02 }}
         friction = 0.8
         material = "rubber"
-        [[body]]
-        name = "left"
-        kind = "solid"
-        shape = { type = "block", size = [0.02, 0.04, 0.04], edge = 0.02 }
-        translate = [-0.0311, 0, 0]
-        friction = 0.8
-        material = "silicone"
-        gravity = [0, 0, 0]
-        [[body]]
-        name = "right"
-        kind = "solid"
-        shape = { type = "block", size = [0.02, 0.04, 0.04], edge = 0.02 }
-        translate = [0.0311, 0, 0]
-        friction = 0.8
-        material = "silicone"
-        gravity = [0, 0, 0]
-        [[pin]]
-        body = "left"
-        side = "x-min"
-        motion = { keyframes = [{ time = 0.1, translate = [0.001, 0, 0] }] }
-        [[pin]]
-        body = "right"
-        side = "x-max"
-        motion = { keyframes = [{ time = 0.1, translate = [-0.001, 0, 0] }] }
+        {}{}
         [solver.sleep]
         enabled = false
-    "#;
-    let course = Course::of(text, 200);
+        "#,
+        pad("left", -0.0311),
+        pad("right", 0.0311)
+    );
+    let course = Course::of(&text, 200);
     let fallen = course.steps[100].center_of_mass[2] - course.steps[199].center_of_mass[2];
     assert!(fallen.abs() < 1e-5, "it creeps {fallen} m in a second");
 }
@@ -227,24 +255,9 @@ fn a_finger_holds_a_sheet_on_the_ground_at_rest() {
 
 /// A strip of denim between two pads of rubber that close, pinned above for so long.
 fn pinched_strip(friction: f64) -> String {
-    let pad = |name: &str, y: f64, side: &str| {
-        format!(
-            r#"
-            [[body]]
-            name = "{name}"
-            kind = "solid"
-            shape = {{ type = "block", size = [0.1, 0.02, 0.04], edge = 0.02 }}
-            translate = [0, {y}, 0]
-            friction = {friction}
-            material = "rubber"
-            gravity = [0, 0, 0]
-            [[pin]]
-            body = "{name}"
-            side = "{side}"
-            motion = {{ keyframes = [{{ time = 0.3, translate = [0, {}, 0] }}] }}
-            "#,
-            -0.006 * y.signum()
-        )
+    let pad = |name: &'static str, place: f64| {
+        let (size, material) = ([0.1, 0.02, 0.04], "rubber");
+        Pad { name, axis: 1, place, size, friction, material, way: 0.006, until: 0.3 }.toml()
     };
     format!(
         r#"
@@ -267,8 +280,8 @@ fn pinched_strip(friction: f64) -> String {
         [solver.sleep]
         enabled = false
         "#,
-        pad("left", -0.0151, "y-min"),
-        pad("right", 0.0151, "y-max")
+        pad("left", -0.0151),
+        pad("right", 0.0151)
     )
 }
 
@@ -337,11 +350,11 @@ fn a_cloth_that_is_lowered_on_a_table_lies_flat_on_itself() {
         end = 3.0
         motion = { keyframes = [{ time = 1.0 }, { time = 2.8, translate = [0.0, 0.0, -0.57] }] }
     "#;
-    let course = Course::of(text, 400);
-    let end = &course.steps[399];
+    let course = Course::of(text, 450);
+    let end = &course.steps[449];
     let height = end.center_of_mass[2];
     assert!((0.01..0.045).contains(&height), "its mean height is {height} m");
-    assert!(end.max_speed < 0.1, "{} m/s a second after its release", end.max_speed);
+    assert!(end.max_speed < 0.1, "{} m/s one and a half seconds after its release", end.max_speed);
 }
 
 #[test]
