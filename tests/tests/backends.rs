@@ -298,6 +298,8 @@ const SIDE_BY_SIDE: &str = r#"
 [simulation]
 dt = 0.01
 gravity = [3, 0, -9]
+[solver.newton]
+cg_tolerance = 1e-8
 [solver.sleep]
 enabled = false
 [contact]
@@ -346,9 +348,7 @@ fn bodies_rest_as_high_above_a_half_space_and_rub_as_on_the_cpu() {
         for (body, slides) in [false, false, true].into_iter().enumerate() {
             let mean = |x: &[Point]| mean(&cpu, body, x);
             let [start, end, other] = [mean(&start), mean(cpu.positions()), mean(device.positions())];
-            // A hundredth of what a time step may be off: 0.003 edges.
-            let tolerance = 0.01 * 0.003 * 0.05;
-            assert!((end - other).norm() < tolerance, "{ground}, body {body}: {other}, not {end}");
+            assert!((end - other).norm() < 1e-6, "{ground}, body {body}: {other}, not {end}");
             assert_eq!(end.x - start.x > 0.2, slides, "{ground}, body {body}: {start} to {end}");
         }
     }

@@ -3,6 +3,20 @@
 use bowknot::scene::Scene;
 use bowknot::{Simulator, StepStatistics};
 
+const SLOT: &str = include_str!("../scenes/slot.toml");
+const CUBE_ON_SHEET: &str = include_str!("../scenes/cube-on-sheet.toml");
+const GRIPPED_CUBE: &str = include_str!("../scenes/gripped-cube.toml");
+const STRIP: &str = include_str!("../scenes/strip-between-pads.toml");
+const TWISTED_SHEET: &str = include_str!("../scenes/twisted-sheet.toml");
+const LOWERED_CLOTH: &str = include_str!("../scenes/lowered-cloth.toml");
+const GRAINS_AND_CLOTH: &str = include_str!("../scenes/grains-and-cloth.toml");
+
+/// A scene with other values.
+fn with(text: &str, before: &str, after: &str) -> String {
+    assert!(text.contains(before), "{before} is not in the scene");
+    text.replace(before, after)
+}
+
 /// What a run of a scene comes to.
 struct Course {
     steps: Vec<StepStatistics>,
@@ -30,29 +44,11 @@ impl Course {
     }
 }
 
-/// A sheet between two boxes that leave it a gap of so much on either side [m]; the contact distance is 2.2 mm.
-fn slot(gap: f64) -> String {
-    let half = 0.01 + gap;
-    format!(
-        r#"
-        [simulation]
-        gravity = [0, 0, 0]
-        [[body]]
-        shape = {{ type = "sheet", size = [0.04, 0.04], edge = 0.02 }}
-        [[obstacle]]
-        shape = {{ type = "box", size = [0.05, 0.05, 0.02], edge = 0.025 }}
-        translate = [0, 0, -{half}]
-        [[obstacle]]
-        shape = {{ type = "box", size = [0.05, 0.05, 0.02], edge = 0.025 }}
-        translate = [0, 0, {half}]
-        "#
-    )
-}
-
 #[test]
 fn a_sheet_in_a_slot_narrower_than_two_contact_distances_stays_still() {
     for gap in [2.1e-3, 2e-3, 1.5e-3] {
-        let course = Course::of(&slot(gap), 60);
+        // Half of each box is 10 mm.
+        let course = Course::of(&with(SLOT, "0.0115", &(0.01 + gap).to_string()), 60);
         let (speed, elastic) = (course.most(|s| s.max_speed), course.most(|s| s.energy.elastic));
         assert!(speed < 1e-9 && elastic < 1e-12, "{gap} m: {speed} m/s, {elastic} J");
         assert!(course.asleep.is_some_and(|step| step <= 60), "{gap} m: awake");
@@ -83,35 +79,9 @@ fn plates_that_close_on_a_sheet_hold_it() {
     assert!(course.asleep.is_some(), "awake");
 }
 
-/// A rubber cube on a cotton sheet on the ground, with a coefficient of friction.
-fn pressed_sheet(friction: f64) -> String {
-    format!(
-        r#"
-        [contact]
-        delta = 0.001
-        [[body]]
-        name = "sheet"
-        shape = {{ type = "sheet", size = [0.3, 0.3], edge = 0.02 }}
-        translate = [0, 0, 0.001]
-        friction = {friction}
-        material = "cotton"
-        [[body]]
-        name = "cube"
-        kind = "solid"
-        shape = {{ type = "block", size = [0.06, 0.06, 0.06], edge = 0.02 }}
-        translate = [0, 0, 0.0325]
-        friction = {friction}
-        material = "rubber"
-        [[obstacle]]
-        shape = {{ type = "half-space" }}
-        friction = {friction}
-        "#
-    )
-}
-
 #[test]
 fn a_cube_on_a_sheet_comes_to_rest_where_it_is() {
-    let course = Course::of(&pressed_sheet(0.3), 100);
+    let course = Course::of(CUBE_ON_SHEET, 100);
     assert!(course.asleep.is_some_and(|step| step <= 100), "awake after 1 s");
     let centers = [&course.steps[10], &course.steps[99]].map(|s| s.center_of_mass);
     let shift = (centers[1][0] - centers[0][0]).hypot(centers[1][1] - centers[0][1]);
@@ -120,79 +90,15 @@ fn a_cube_on_a_sheet_comes_to_rest_where_it_is() {
 
 #[test]
 fn without_friction_a_cube_pushes_the_sheet_below_it_to_no_side() {
-    let course = Course::of(&pressed_sheet(0.0), 100);
+    let course = Course::of(&with(CUBE_ON_SHEET, "friction = 0.3", "friction = 0"), 100);
     let sideways = course.most(|s| s.momentum[0].hypot(s.momentum[1]));
     // The cube fell with 0.014 kg m/s.
     assert!(sideways < 1e-6, "{sideways} kg m/s");
 }
 
-/// A block without weight, pinned on one side, that moves inward by so much [m] until a time [s]. `axis` is 0 for x and 1 for y; it
-/// stands at `place` on that axis.
-struct Pad {
-    name: &'static str,
-    axis: usize,
-    place: f64,
-    size: [f64; 3],
-    friction: f64,
-    material: &'static str,
-    way: f64,
-    until: f64,
-}
-
-impl Pad {
-    fn toml(&self) -> String {
-        let Self { name, axis, place, size, friction, material, way, until } = self;
-        let along = |length: f64| {
-            let mut vector = [0.0; 3];
-            vector[*axis] = length;
-            vector
-        };
-        let side = format!("{}-{}", ["x", "y"][*axis], if *place < 0.0 { "min" } else { "max" });
-        format!(
-            r#"
-            [[body]]
-            name = "{name}"
-            kind = "solid"
-            shape = {{ type = "block", size = {size:?}, edge = 0.02 }}
-            translate = {:?}
-            friction = {friction}
-            material = "{material}"
-            gravity = [0, 0, 0]
-            [[pin]]
-            body = "{name}"
-            side = "{side}"
-            motion = {{ keyframes = [{{ time = {until}, translate = {:?} }}] }}
-            "#,
-            along(*place),
-            along(-way * place.signum())
-        )
-    }
-}
-
 #[test]
 fn a_cube_between_soft_pads_is_held() {
-    let pad = |name: &'static str, place: f64| {
-        let (size, friction, material) = ([0.02, 0.04, 0.04], 0.8, "silicone");
-        Pad { name, axis: 0, place, size, friction, material, way: 0.001, until: 0.1 }.toml()
-    };
-    let text = format!(
-        r#"
-        [contact]
-        delta = 0.001
-        [[body]]
-        name = "cube"
-        kind = "solid"
-        shape = {{ type = "block", size = [0.04, 0.04, 0.04], edge = 0.02 }}
-        friction = 0.8
-        material = "rubber"
-        {}{}
-        [solver.sleep]
-        enabled = false
-        "#,
-        pad("left", -0.0311),
-        pad("right", 0.0311)
-    );
-    let course = Course::of(&text, 200);
+    let course = Course::of(GRIPPED_CUBE, 200);
     let fallen = course.steps[100].center_of_mass[2] - course.steps[199].center_of_mass[2];
     assert!(fallen.abs() < 1e-5, "it creeps {fallen} m in a second");
 }
@@ -253,42 +159,11 @@ fn a_finger_holds_a_sheet_on_the_ground_at_rest() {
     assert!(speed < 0.1 && stretch < 1.05, "{speed} m/s, stretched {stretch} times");
 }
 
-/// A strip of denim between two pads of rubber that close, pinned above for so long.
-fn pinched_strip(friction: f64) -> String {
-    let pad = |name: &'static str, place: f64| {
-        let (size, material) = ([0.1, 0.02, 0.04], "rubber");
-        Pad { name, axis: 1, place, size, friction, material, way: 0.006, until: 0.3 }.toml()
-    };
-    format!(
-        r#"
-        [simulation]
-        air_drag = 1
-        [contact]
-        delta = 0.002
-        [[body]]
-        name = "strip"
-        shape = {{ type = "sheet", size = [0.1, 0.3], edge = 0.02 }}
-        rotate = [90, 0, 0]
-        translate = [0, 0, -0.12]
-        friction = {friction}
-        material = "denim"
-        [[pin]]
-        body = "strip"
-        side = "z-max"
-        end = 0.4
-        {}{}
-        [solver.sleep]
-        enabled = false
-        "#,
-        pad("left", -0.0151),
-        pad("right", 0.0151)
-    )
-}
-
 #[test]
 fn pads_hold_a_strip_without_creep() {
     for friction in [0.3, 1.0] {
-        let course = Course::of(&pinched_strip(friction), 300);
+        let strip = with(STRIP, "friction = 0.5", &format!("friction = {friction}"));
+        let course = Course::of(&format!("{strip}[solver.sleep]\nenabled = false\n"), 300);
         let solved = course.solved(100);
         assert!(solved > 0.9, "mu = {friction}: {solved} of the time steps are solved");
         let speed = course.most(|s| s.max_speed);
@@ -298,31 +173,10 @@ fn pads_hold_a_strip_without_creep() {
     }
 }
 
-/// A sheet twisted by two turns, so that its edges are at their limits and its layers press on each other.
+/// Its edges are at their limits, and its layers press on each other.
 #[test]
 fn a_twisted_sheet_is_solved_once_its_pins_rest() {
-    let pin = |side: &str, sign: f64| {
-        format!(
-            "[[pin]]\nside = \"{side}\"\nmotion = {{ axis = [1, 0, 0], keyframes = [{{ time = 1.2, angle = {}, \
-             translate = [{}, 0, 0] }}] }}\n",
-            360.0 * sign,
-            -0.05 * sign
-        )
-    };
-    let text = format!(
-        r#"
-        [simulation]
-        gravity = [0, 0, 0]
-        [[body]]
-        shape = {{ type = "sheet", size = [0.5, 0.25], edge = 0.03 }}
-        material = {{ base = "cotton", stretch_damping = 0.05, bend_damping = 0.05 }}
-        friction = 0.2
-        {}{}
-        "#,
-        pin("x-min", -1.0),
-        pin("x-max", 1.0)
-    );
-    let course = Course::of(&text, 240);
+    let course = Course::of(&with(TWISTED_SHEET, "edge = 0.02", "edge = 0.03"), 240);
     let (solved, stretch) = (course.solved(160), course.steps[239].max_stretch);
     assert!(solved > 0.9, "{solved} of the time steps are solved");
     // Its limit is 1.05.
@@ -331,26 +185,9 @@ fn a_twisted_sheet_is_solved_once_its_pins_rest() {
     assert!(speed < 0.2, "{speed} m/s a second after its pins stopped");
 }
 
-/// Crumpled by a pin that lowers it on a table, and then released.
 #[test]
 fn a_cloth_that_is_lowered_on_a_table_lies_flat_on_itself() {
-    let text = r#"
-        [[body]]
-        shape = { type = "sheet", size = [0.4, 0.4], edge = 0.02 }
-        material = "cotton"
-        friction = 0.4
-        rotate = [0, 0, 45]
-        translate = [0, 0, 0.6]
-        [[obstacle]]
-        shape = { type = "box", size = [0.8, 0.8, 0.05], edge = 0.05 }
-        translate = [0, 0, -0.025]
-        friction = 0.4
-        [[pin]]
-        side = "x-max"
-        end = 3.0
-        motion = { keyframes = [{ time = 1.0 }, { time = 2.8, translate = [0.0, 0.0, -0.57] }] }
-    "#;
-    let course = Course::of(text, 450);
+    let course = Course::of(LOWERED_CLOTH, 450);
     let end = &course.steps[449];
     let height = end.center_of_mass[2];
     assert!((0.01..0.045).contains(&height), "its mean height is {height} m");
@@ -359,36 +196,7 @@ fn a_cloth_that_is_lowered_on_a_table_lies_flat_on_itself() {
 
 #[test]
 fn cloth_below_and_above_grains_comes_to_rest() {
-    let sheet = |name: &str, z: f64| {
-        format!(
-            r#"
-            [[body]]
-            name = "{name}"
-            shape = {{ type = "sheet", size = [0.2, 0.2], edge = 0.025 }}
-            material = "cotton"
-            friction = 0.5
-            translate = [0, 0, {z}]
-            "#
-        )
-    };
-    let text = format!(
-        r#"
-        {}{}
-        [[body]]
-        name = "grains"
-        kind = "particles"
-        shape = {{ type = "grains", count = [4, 4, 3], spacing = 0.0165, jitter = 0.05 }}
-        material = {{ base = "sand", radius = 0.004 }}
-        friction = 0.5
-        translate = [0, 0, 0.08]
-        [[obstacle]]
-        shape = "half-space"
-        friction = 0.5
-        "#,
-        sheet("below", 0.01),
-        sheet("above", 0.16)
-    );
-    let course = Course::of(&text, 150);
+    let course = Course::of(GRAINS_AND_CLOTH, 150);
     assert!(course.asleep.is_some(), "awake after 1.5 s");
 }
 

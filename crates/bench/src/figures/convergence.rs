@@ -1,7 +1,6 @@
 //! The solution of a time step: its residual over iterations, and the cost of coming close to a converged
 //! solution.
 
-use super::loaded;
 use crate::bench::Bench;
 use crate::chart::{Axis, Chart, Mark, Series, Style};
 use crate::figure::{Figure, Part, Report};
@@ -46,11 +45,11 @@ const SUBJECTS: [Subject; 5] = [
 
 /// Scenes in which bodies press on each other, whose residuals full runs show too.
 const LOADED: [Subject; 5] = [
-    loaded("sheet in a slot", loaded::SLOT, 40),
-    loaded("cube on a sheet", loaded::CUBE_ON_SHEET, 100),
-    loaded("strip between pads", loaded::STRIP, 160),
-    loaded("twisted sheet", loaded::TWISTED, 200),
-    loaded("grains and cloth", loaded::GRAINS, 100),
+    loaded("sheet in a slot", include_str!("../../../../tests/scenes/slot.toml"), 40),
+    loaded("cube on a sheet", include_str!("../../../../tests/scenes/cube-on-sheet.toml"), 100),
+    loaded("strip between pads", include_str!("../../../../tests/scenes/strip-between-pads.toml"), 160),
+    loaded("twisted sheet", include_str!("../../../../tests/scenes/twisted-sheet.toml"), 200),
+    loaded("grains and cloth", include_str!("../../../../tests/scenes/grains-and-cloth.toml"), 100),
 ];
 
 /// Iterations of each time step whose residuals are shown.
@@ -95,8 +94,8 @@ impl Figure for Convergence {
          16 iterations (`solver.newton.step_tolerance=0`), medians and quartiles over the time steps of the \
          second half of small runs. The residual is the net force of inertia, elasticity, contact and friction, \
          converted to a distance in mean edge lengths. By default a time step ends at 0.003 (at time steps \
-         of 1/20 s: 0.015), or after 8 iterations. \n\nSecond part: the distance of a time step from a converged one, and its CPU time. \
-         From four states of each scene, the one before the first contact and three more up to the end of \
+         of 1/20 s: 0.015), or after 8 iterations. \n\nSecond part: the distance of a time step from a \
+         converged one, and its CPU time. From four states of each scene, the one before the first contact and three more up to the end of \
          the run, four time steps are made with each setting. Their positions are compared with those of 32 \
          iterations: root mean squares over states and vertices. That reference is the method's own most \
          exact run: distances show that it agrees with itself, not that it is right. If distances fall while \

@@ -16,7 +16,6 @@ mod gpu_prediction;
 mod impact_zones;
 mod joint;
 mod lengths;
-mod loaded;
 mod newton;
 mod overview;
 mod parameters;

@@ -71,6 +71,9 @@ struct NearContact {
     sign: f64,
     /// How much of a contact it is [1].
     share: f64,
+    /// Desired distance and minimum separation of the pair [m].
+    desired: f64,
+    least: f64,
     kind: PairKind,
     /// Its place in the list of pairs.
     place: usize,
@@ -245,9 +248,10 @@ impl Contacts {
         self.finds += 1;
         // For contacts that are new or have turned, the gap between the same points at the start may be smaller than the
         // one that the collision stage has reached.
-        for (spring, distance) in found.springs.iter_mut().zip(&found.distances) {
+        let all = found.springs.par_iter_mut().zip(&found.distances).with_min_len(MIN_PAIRS);
+        all.for_each(|(spring, distance)| {
             spring.start_gap = gap(spring, start).max(distance.min(spring.reach / REACH));
-        }
+        });
         found.springs.extend(self.limited.taut(&state.x, start, self.stiffness));
         self.found = found;
     }
@@ -267,9 +271,9 @@ impl Contacts {
                 let (features, sign) = oriented(scene.features(kind, pair, separation));
                 let facing = scene.contact_share(features, &(separation.normal * sign), &state.x)
                     * crossing(&features, &pair.vertices, &state.x);
-                let [desired, least] = [scene.desired_distance(kind, pair), scene.min_separation(kind, pair)];
+                let (desired, least) = (scene.desired_distance(kind, pair), scene.min_separation(kind, pair));
                 let share = facing.max(guarded((separation.distance - least) / (desired - least)));
-                (share > 0.0).then_some(NearContact { features, sign, share, kind, place })
+                (share > 0.0).then_some(NearContact { features, sign, share, desired, least, kind, place })
             };
             contacts.pairs.range(kind).into_par_iter().with_min_len(MIN_PAIRS).filter_map(contact)
         };
@@ -283,7 +287,7 @@ impl Contacts {
     fn spring(
         &self,
         resolver: &Resolver,
-        &NearContact { features, sign, kind, place, .. }: &NearContact,
+        &NearContact { features, sign, desired, least, kind, place, .. }: &NearContact,
     ) -> RepulsionSpring {
         let (scene, state) = (resolver.scene(), resolver.state());
         let contacts = &state.contacts;
@@ -297,7 +301,6 @@ impl Contacts {
         let weights = separation.signed_weights(kind).map(|weight| weight * sign);
         let mut vertices = pair.vertices;
         (0..4).filter(|&k| weights[k] == 0.0).for_each(|k| vertices[k] = pair.vertices[0]);
-        let [desired, least] = [scene.desired_distance(kind, pair), scene.min_separation(kind, pair)];
         let floor = least + FLOOR * (desired - least);
         RepulsionSpring {
             kind: SpringKind::Contact,
