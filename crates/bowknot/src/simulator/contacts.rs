@@ -9,7 +9,7 @@ use super::averaging::{FoundContacts, gap};
 use super::crowding::share_stiffness;
 use super::friction::{ContactForce, FrictionMemory};
 use super::rows::RowForces;
-use super::solved::solved_vertices;
+use super::solved::SolvedVertices;
 use super::taut::LimitedEdges;
 use bowknot_constraints::{Feature, FrictionModel};
 use bowknot_dynamics::{Dynamics, DynamicsModel, RepulsionSpring, SpringKind, StepError, Touching};
@@ -52,8 +52,8 @@ pub(super) struct Contacts {
     memory: FrictionMemory,
     /// The edges that have a stretch limit.
     limited: LimitedEdges,
-    /// Which vertices of the world belong to bodies that Newton's method solves together with their contacts.
-    solved: Vec<bool>,
+    /// Which vertices Newton's method solves together with their contacts.
+    solved: SolvedVertices,
     /// Of these, the vertices whose forces the residual of a time step counts.
     counted: Vec<bool>,
     /// Pairs that were in contact range at the start of the time step or after one of its collision stages, without those
@@ -94,10 +94,8 @@ impl Contacts {
     /// the `resolver`. Contacts must be found anew.
     pub fn leave_out(&mut self, world: &World, resolver: &Resolver, asleep: &[bool]) {
         self.limited = LimitedEdges::new(resolver.scene(), world);
-        self.solved.clear();
-        self.solved.resize(world.positions.len(), false);
-        solved_vertices(world, asleep).for_each(|v| self.solved[v] = true);
-        self.counted.clone_from(&self.solved);
+        self.solved = SolvedVertices::new(world, asleep);
+        self.counted = self.solved.flags().to_vec();
         self.found = FoundContacts::default();
     }
 
@@ -138,8 +136,10 @@ impl Contacts {
         self.touching = Touching::default();
         self.finds = 0;
         self.note_touching(resolver);
+        self.solved.begin_step(&self.touching);
+        self.counted.copy_from_slice(self.solved.flags());
         self.memory = FrictionMemory::new(resolver.scene(), &self.carried);
-        self.rows.begin_step(resolver.scene(), &self.carried, &self.solved, dt);
+        self.rows.begin_step(resolver.scene(), &self.carried, self.solved.flags(), dt);
         self.find(resolver, start);
     }
 
@@ -167,7 +167,7 @@ impl Contacts {
         };
         self.carried = self.pushes(forces).map(force).collect();
         self.pressing = self.carried.len();
-        self.carried.extend(self.rows.forces(resolver, &self.solved));
+        self.carried.extend(self.rows.forces(resolver, self.solved.flags()));
     }
 
     /// Adds the pairs in contact range to [`Self::touching`], which joins components and holds them: a pair within a
@@ -202,12 +202,12 @@ impl Contacts {
     /// Notes what rows alone carry after a call of the collision stage. If the dynamics knows no contacts they hold all
     /// bodies, and the residual does not count the vertices where they press.
     pub fn note_rows(&mut self, resolver: &Resolver) {
-        self.rows.note(resolver, &self.solved);
+        self.rows.note(resolver, self.solved.flags());
         if self.stiffness != 0.0 {
             return;
         }
         let contacts = &resolver.state().contacts;
-        self.counted.clone_from(&self.solved);
+        self.counted.copy_from_slice(self.solved.flags());
         for kind in PairKind::ALL {
             for p in contacts.pairs.range(kind).filter(|&p| contacts.multipliers[p] != 0.0) {
                 let used = &contacts.pairs.pairs()[p].vertices[..kind.vertex_count()];
@@ -238,7 +238,7 @@ impl Contacts {
                 .collect(),
         };
         let shares: Vec<f64> = near.iter().map(|contact| contact.share).collect();
-        share_stiffness(&mut found.springs, &shares, &found.distances, &self.solved);
+        share_stiffness(&mut found.springs, &shares, &found.distances, self.solved.flags());
         for (spring, features) in found.springs.iter_mut().zip(&found.features) {
             spring.friction_ratio = self.memory.of(scene, features);
         }
@@ -326,12 +326,12 @@ impl Contacts {
 
     /// Which of so many vertices have contacts that the dynamics knows; none if it knows no contacts.
     pub fn known(&self, count: usize) -> &[bool] {
-        if self.stiffness == 0.0 { &[] } else { &self.solved[..count] }
+        if self.stiffness == 0.0 { &[] } else { &self.solved.flags()[..count] }
     }
 
     /// Whether a contact deforms something.
     fn is_elastic(&self, vertices: &[u32]) -> bool {
-        vertices.iter().any(|&v| self.solved[v as usize])
+        vertices.iter().any(|&v| self.solved.flags()[v as usize])
     }
 
     /// Gives the springs to the dynamics.

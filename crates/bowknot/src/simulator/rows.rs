@@ -1,4 +1,5 @@
-//! What rows of the collision stage carry where the dynamics knows no contact: in scenes of grains and obstacles alone.
+//! What rows of the collision stage carry where the dynamics knows no contact: among grains that press on nothing that
+//! deforms, and between them and obstacles.
 //!
 //! A call starts from what the last one ended with, also that of the last time step. So its few sweeps go on where those
 //! before it ended, and a pile stands, whose weight they would not carry down from its top in one time step.
