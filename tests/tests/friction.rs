@@ -15,6 +15,15 @@ fn a_belt_holds_by_the_exponential_of_its_angle() {
 }
 
 #[test]
+fn a_rope_over_a_bar_holds_up_to_the_exponential_of_its_angle() {
+    for friction in [0.3, 0.5] {
+        let held = theory::rope(0.9, friction, (150, 300), &[]);
+        let slides = theory::rope(1.1, friction, (50, 100), &[]);
+        assert!(held.abs() < 5e-5 && slides > 1e-2, "mu = {friction}: {held} m/s below, {slides} m/s above");
+    }
+}
+
+#[test]
 fn a_ball_rolls_down_a_slope() {
     for dt in [0.01, 0.0025] {
         let steps = (0.4 / dt) as usize;

@@ -28,6 +28,14 @@ const BENT: f64 = 0.01;
 /// Largest number of passes over the neighbors of a pair's features that turn its normal into their cones.
 const MAX_TURNS: usize = 4;
 
+/// Sine of the angle between the directions to two neighbors from which on they span a plane, and the largest one between a
+/// plane and the directions in it: above rounding.
+const MIN_CROSSING: f64 = 0.1;
+const PLANE: f64 = 1e-9;
+
+/// Cosine of the angle between normal and plane up to which the plane counts. Farther off a pair is no contact.
+const NEAR_PLANE: f64 = 0.98;
+
 /// Smallest length of a turned normal that has a direction.
 const MIN_TURNED_LENGTH: f64 = 0.1;
 
@@ -180,15 +188,24 @@ impl Facing {
         if matches!(features, [Feature::Edge(_), Feature::Edge(_)]) { share * bend } else { share }
     }
 
-    /// The direction in the normal cones of both `features` at `positions` that is closest to `normal`,
-    /// approximately. A contact is pushed along it if its normal has left the cones a little. Unit vectors.
+    /// The direction in the normal cones of both `features` at `positions` that is closest to `normal`, approximately. A
+    /// contact is pushed along it if its normal has left the cones a little. If the surface of a `rigid` side is flat there,
+    /// its normal counts alone: a plane without friction pushes to no side, whatever lies on it. Unit vectors.
     pub fn turned(
         &self,
         topology: &Topology,
         features: [Feature; 2],
         normal: &Vector,
         positions: &[Point],
+        rigid: Option<usize>,
     ) -> Vector {
+        if let Some(plane) = rigid.and_then(|side| self.plane(topology, features[side], positions)) {
+            // At the border of the surface directions beside it are contacts as well.
+            let rise = plane.dot(normal);
+            if rise.abs() >= NEAR_PLANE {
+                return plane * rise.signum();
+            }
+        }
         if above_a_face(&features) {
             return *normal;
         }
@@ -209,6 +226,29 @@ impl Facing {
             }
         }
         turned.try_normalize(MIN_TURNED_LENGTH).unwrap_or(*normal)
+    }
+
+    /// The normal of the surface, of either sign, if it is a plane around an edge or a vertex.
+    fn plane(&self, topology: &Topology, feature: Feature, positions: &[Point]) -> Option<Vector> {
+        let edge = |e: u32| {
+            let [a, b] = topology.edges[e as usize].map(|v| positions[v as usize]);
+            (b - a).normalize()
+        };
+        let mut first = if let Feature::Edge(e) = feature { Some(edge(e)) } else { None };
+        let mut normal: Option<Vector> = None;
+        let is_plane = self.all_neighbors(topology, feature, positions, |to| {
+            let along = to.normalize();
+            match (first, normal) {
+                (None, _) => first = Some(along),
+                (Some(first), None) => {
+                    let across = first.cross(&along);
+                    normal = (across.norm() > MIN_CROSSING).then(|| across.normalize());
+                }
+                (Some(_), Some(normal)) => return normal.dot(&along).abs() <= PLANE,
+            }
+            true
+        });
+        normal.filter(|_| is_plane)
     }
 
     /// Whether all directions in which the surface continues from a feature pass a test; they have any length. It ends

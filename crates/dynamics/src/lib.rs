@@ -50,7 +50,7 @@ pub use nalgebra::Matrix3;
 pub use body::{Body, BodyShape};
 pub use bowknot_errors::{Errors, ParamError, Parameters};
 pub use dynamics::{
-    BodiesPotential, Dynamics, NewtonBackend, NewtonInfo, NewtonSolve, NewtonStep, NewtonTarget,
+    BodiesPotential, Dynamics, Held, NewtonBackend, NewtonInfo, NewtonSolve, NewtonStep, NewtonTarget,
     OutOfBalance, Residual, SolveLimits, StepTerms, Touching, Trial, Watched,
 };
 pub use error::{ModelError, StepError};

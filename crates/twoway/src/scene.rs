@@ -176,10 +176,16 @@ impl CollisionScene {
         self.facing.contact_share(self.model.topology(), features, normal, positions)
     }
 
-    /// The direction in the normal cones of both `features` that is closest to `normal`, see
-    /// [`Facing::turned`](bowknot_constraints::Facing::turned).
-    pub fn turned(&self, features: [Feature; 2], normal: &Vector, positions: &[Point]) -> Vector {
-        self.facing.turned(self.model.topology(), features, normal, positions)
+    /// The direction in the normal cones of both `features` that is closest to `normal`, first of all in that of the `rigid`
+    /// side, see [`Facing::turned`](bowknot_constraints::Facing::turned).
+    pub fn turned(
+        &self,
+        features: [Feature; 2],
+        normal: &Vector,
+        positions: &[Point],
+        rigid: Option<usize>,
+    ) -> Vector {
+        self.facing.turned(self.model.topology(), features, normal, positions, rigid)
     }
 
     /// Largest ratio of an edge's length to its reference length in a body; infinite for no limit.

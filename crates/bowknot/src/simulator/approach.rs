@@ -9,7 +9,8 @@
 //! vertices along the straight line from its place to its keyframe, a part of the way at a time, and never
 //! beyond. Bodies that are awake form pairs with those asleep, so the collision stage keeps them apart
 //! wherever they go, and a place at the end that is only predicted does no harm: what wakes later than it is
-//! touched has been an unyielding obstacle for a moment.
+//! touched has been an unyielding obstacle for a moment. For the same reason bodies at rest need not count as movers. If
+//! they did, two that are near each other without touching would wake each other in turn for ever.
 
 use bowknot_geometry::{Aabb, Point};
 use bowknot_scene::world::World;
@@ -30,6 +31,8 @@ pub(super) struct Motion<'a> {
     pub margins: &'a [f64],
     /// Which bodies sleep.
     pub asleep: &'a [bool],
+    /// Which deformable bodies are at rest; they sleep or soon will. Others count as movers.
+    pub at_rest: &'a [bool],
 }
 
 impl BodyElements {
@@ -49,14 +52,16 @@ impl BodyElements {
     }
 
     /// Which bodies asleep are in contact range of the path of a body that is not and with which they may
-    /// collide: one entry per body. Obstacles that do not move are left out.
+    /// collide: one entry per body. Obstacles that do not move, and bodies at rest, come near nothing.
     pub fn approached(&self, world: &World, motion: &Motion<'_>) -> Vec<bool> {
         let bodies = 0..world.bodies.len();
         let bounds: Vec<Aabb> = bodies.clone().map(|body| Self::bounds(world, body, motion)).collect();
         let moves = |body: usize| {
             let vertices = world.bodies[body].vertices.clone();
-            world.bodies[body].kind.is_some()
-                || vertices.map(|v| v as usize).any(|v| motion.start[v] != motion.end[v])
+            match world.bodies[body].kind {
+                Some(_) => !motion.at_rest[body],
+                None => vertices.map(|v| v as usize).any(|v| motion.start[v] != motion.end[v]),
+            }
         };
         let movers: Vec<usize> = bodies.clone().filter(|&b| !motion.asleep[b] && moves(b)).collect();
         let comes_near = |sleeper: usize| {

@@ -7,12 +7,12 @@
 
 use super::averaging::{FoundContacts, gap};
 use super::crowding::share_stiffness;
-use super::friction::{ContactForce, FrictionMemory};
+use super::friction::{ContactForce, FrictionMemory, vertices as vertices_of};
 use super::rows::RowForces;
 use super::solved::SolvedVertices;
 use super::taut::LimitedEdges;
 use bowknot_constraints::{Feature, FrictionModel};
-use bowknot_dynamics::{Dynamics, DynamicsModel, RepulsionSpring, SpringKind, StepError, Touching};
+use bowknot_dynamics::{Dynamics, DynamicsModel, Held, RepulsionSpring, SpringKind, StepError, Touching};
 use bowknot_geometry::{PairKind, Point, Vector};
 use bowknot_scene::RepulsionParams;
 use bowknot_scene::world::World;
@@ -170,11 +170,12 @@ impl Contacts {
         self.carried.extend(self.rows.forces(resolver, self.solved.flags()));
     }
 
-    /// Adds the pairs in contact range to [`Self::touching`], which joins components and holds them: a pair within a
-    /// component does neither.
+    /// Adds the pairs in contact range to [`Self::touching`], which joins components, and what holds them. Pairs within a
+    /// component do neither.
     pub fn note_touching(&mut self, resolver: &Resolver) {
         let (scene, contacts) = (resolver.scene(), &resolver.state().contacts);
-        let (pairs, touching, components) = (contacts.pairs.pairs(), &mut self.touching, &self.components);
+        let Self { touching, components, solved, .. } = self;
+        let pairs = contacts.pairs.pairs();
         let within_component = |used: &[u32]| {
             let first = components[used[0] as usize];
             used.len() > 1 && used[1..].iter().all(|&v| components[v as usize] == first)
@@ -187,13 +188,26 @@ impl Contacts {
                     !within_component(used)
                         && contacts.separations[*p].distance < scene.contact_range(kind, &pairs[*p])
                 })
-                .map(|(_, used)| used);
-            if kind == PairKind::VertexHalfSpace {
-                touching.held.par_extend(in_range.map(|used| used[0]));
-            } else {
-                let joined = in_range.flat_map_iter(|used| used[1..].iter().map(|&v| [used[0], v]));
-                touching.pairs.par_extend(joined);
-            }
+                .collect::<Vec<_>>();
+            let is_half_space = kind == PairKind::VertexHalfSpace;
+            // Meshes have pairs with many normals near each contact, of which few push.
+            let pushes = |place: &usize| is_half_space || contacts.multipliers[*place] != 0.0;
+            let held = in_range.par_iter().filter(|(place, _)| pushes(place)).filter_map(|&(place, used)| {
+                let vertex = *used.iter().find(|v| solved.moves(**v))?;
+                let held = is_half_space || !used.iter().all(|&v| solved.moves(v));
+                let rough = contacts.frictions.get(place).is_some_and(|friction| *friction > 0.0);
+                let normal = || {
+                    let separation = &contacts.separations[place];
+                    let features = scene.features(kind, &pairs[place], separation);
+                    turned(resolver, solved, features, &separation.normal)
+                };
+                held.then(|| Held { vertex, normal: normal(), rough })
+            });
+            touching.held.par_extend(held);
+            let joined = in_range.par_iter();
+            touching
+                .pairs
+                .par_extend(joined.flat_map_iter(|(_, used)| used[1..].iter().map(|&v| [used[0], v])));
         };
         // One way to the threads for all loops.
         rayon::scope(|_| PairKind::ALL.into_iter().for_each(note));
@@ -246,6 +260,8 @@ impl Contacts {
             found.average(&self.found, self.finds, self.stiffness, &state.x);
         }
         self.finds += 1;
+        let held: Vec<_> = found.springs.iter().filter_map(|spring| self.held_by(spring)).collect();
+        self.touching.held.extend(held);
         // For contacts that are new or have turned, the gap between the same points at the start may be smaller than the
         // one that the collision stage has reached.
         let all = found.springs.par_iter_mut().zip(&found.distances).with_min_len(MIN_PAIRS);
@@ -292,9 +308,7 @@ impl Contacts {
         let (scene, state) = (resolver.scene(), resolver.state());
         let contacts = &state.contacts;
         let (separation, pair) = (&contacts.separations[place], &contacts.pairs.pairs()[place]);
-        // A normal outside of the cones is turned to their border: a tilted one would push sliding
-        // bodies aside.
-        let normal = scene.turned(features, &(separation.normal * sign), &state.x);
+        let normal = turned(resolver, &self.solved, features, &(separation.normal * sign));
         let plane = (kind == PairKind::VertexHalfSpace)
             .then(|| scene.model().half_spaces()[pair.elements[1] as usize]);
         let offset = plane.map_or(0.0, |plane| plane.offset);
@@ -315,6 +329,16 @@ impl Contacts {
             friction: contacts.frictions.get(place).copied().unwrap_or(0.0),
             friction_ratio: Vector::zeros(),
         }
+    }
+
+    /// What a contact with an obstacle or a half-space holds.
+    fn held_by(&self, spring: &RepulsionSpring) -> Option<Held> {
+        let RepulsionSpring { vertices, weights, normal, friction, .. } = *spring;
+        let moving = |k: &usize| weights[*k] != 0.0 && self.solved.moves(vertices[*k]);
+        let held = (0..4).filter(moving).map(|k| weights[k]).sum::<f64>().abs() > 0.5;
+        held.then(|| {
+            (0..4).find(moving).map(|k| Held { vertex: vertices[k], normal, rough: friction > 0.0 })
+        })?
     }
 
     /// Whether the residual of a time step counts the forces on each vertex: those of bodies that Newton's
@@ -338,6 +362,16 @@ impl Contacts {
     pub fn apply(&self, dynamics: &mut Dynamics) -> Result<(), StepError> {
         if self.stiffness == 0.0 { Ok(()) } else { dynamics.set_repulsion(&self.found.springs) }
     }
+}
+
+/// The normal of a contact. One outside of the cones of its features is turned to their border: a tilted one would push
+/// sliding bodies aside.
+fn turned(resolver: &Resolver, solved: &SolvedVertices, features: [Feature; 2], normal: &Vector) -> Vector {
+    let (scene, x) = (resolver.scene(), &resolver.state().x);
+    let topology = scene.model().topology();
+    let moves = |feature: &Feature| vertices_of(topology, feature).iter().any(|&v| solved.moves(v));
+    let rigid = features.iter().position(|feature| !moves(feature));
+    scene.turned(features, normal, x, rigid)
 }
 
 /// How far two edges are from parallel [1]: 1 if they cross at a sine of [`PARALLEL`] or more, and for other features. The closest

@@ -160,7 +160,8 @@ impl Sleep {
                 (true, true) => {}
             }
         }
-        touching.held.iter().for_each(|&v| held[body_of(v)] = true);
+        // Contacts with moving obstacles have made their bodies restless.
+        touching.held.iter().for_each(|contact| held[body_of(contact.vertex)] = true);
         let (mut any_restless, mut any_held) = (vec![false; count], vec![false; count]);
         for body in 0..count {
             let root = sets.find(body as u32) as usize;

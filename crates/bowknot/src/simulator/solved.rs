@@ -57,6 +57,11 @@ impl SolvedVertices {
         }
     }
 
+    /// Whether a vertex is one of a deformable body or of grains that are awake.
+    pub fn moves(&self, vertex: u32) -> bool {
+        self.deformable[vertex as usize] || self.grains[vertex as usize]
+    }
+
     /// One entry per vertex of the world.
     pub fn flags(&self) -> &[bool] {
         &self.solved

@@ -81,11 +81,13 @@ impl Simulator {
         self.predict(scratch);
         let Some(rest) = &mut self.rest else { return Ok(()) };
         let count = self.world.collision_vertices();
+        let at_rest: Vec<bool> = rest.sleep.state.calm_steps.iter().map(|steps| *steps > 0).collect();
         let motion = Motion {
             start: &scratch.start[..count],
             end: &rest.predicted[..count],
             margins: &rest.margins,
             asleep: &rest.asleep,
+            at_rest: &at_rest,
         };
         let approached = rest.elements.approached(&self.world, &motion);
         wakes.iter_mut().zip(approached).for_each(|(wakes, near)| *wakes |= near);

@@ -44,7 +44,7 @@ fn a_tilted_normal_turns_into_the_cone_and_one_within_stays() {
     let facing = Facing::new(&topology);
     let edge = topology.edges.iter().position(|e| *e == [0, 1]).expect("an edge") as u32;
     let turned = |x: &[Point], n: Vector| {
-        facing.turned(&topology, [Feature::Vertex(4), Feature::Edge(edge)], &n.normalize(), x)
+        facing.turned(&topology, [Feature::Vertex(4), Feature::Edge(edge)], &n.normalize(), x, None)
     };
     assert!((turned(&x, Vector::new(0.1, 0.0, 1.0)) - Vector::z()).norm() < 1e-12);
     let (_, ridge) = roof(0.5, &[[0.1, 0.5, 0.1]]);
@@ -52,6 +52,41 @@ fn a_tilted_normal_turns_into_the_cone_and_one_within_stays() {
     assert_eq!(turned(&ridge, within), within);
     let leaned = turned(&ridge, Vector::new(1.0, 0.0, 1.0));
     assert!((leaned - Vector::new(0.5, 0.0, 1.0).normalize()).norm() < 1e-12, "{leaned}");
+}
+
+/// A fan of six triangles around vertex 0, flat, and one triangle above it, tilted: vertices 7 to 9.
+#[test]
+fn the_normal_of_a_rigid_plane_counts_alone() {
+    let rim = |k: u32| {
+        let (sin, cos) = (f64::from(k) * 60.0f64.to_radians()).sin_cos();
+        Point::new(cos, sin, 0.0)
+    };
+    let mut x = vec![Point::origin()];
+    x.extend((0..6).map(rim));
+    x.extend([[-0.3, -0.3, 0.1], [0.6, -0.3, 0.11], [-0.3, 0.6, 0.12]].map(Point::from));
+    let mut triangles: Vec<[u32; 3]> = (0..6).map(|k| [0, 1 + k, 1 + (k + 1) % 6]).collect();
+    triangles.push([7, 8, 9]);
+    let topology = Topology::builder(x.len()).triangles(triangles).build().expect("valid");
+    let facing = Facing::new(&topology);
+    let normal = (x[8] - x[7]).cross(&(x[9] - x[7])).normalize();
+    let features = [Feature::Vertex(0), Feature::Triangle(6)];
+    let turned = |rigid| facing.turned(&topology, features, &-normal, &x, rigid);
+    assert_eq!((turned(None), turned(Some(1))), (-normal, -normal));
+    assert!((turned(Some(0)) + Vector::z()).norm() < 1e-15, "{}", turned(Some(0)));
+    // Beyond its border, above one of its edges, and where it is bent.
+    let turned = |features, normal: Vector, x: &[Point]| {
+        facing.turned(&topology, features, &normal.normalize(), x, Some(1))
+    };
+    let [x_axis, tilted] = [Vector::x(), Vector::new(0.05, 0.02, 1.0)];
+    assert_eq!(turned([Feature::Vertex(7), Feature::Vertex(1)], x_axis, &x), x_axis);
+    let spoke = topology.edges.iter().position(|e| *e == [0, 1]).expect("an edge") as u32;
+    for (feature, lowered) in [(Feature::Vertex(0), [1, 2, 6]), (Feature::Edge(spoke), [2, 6, 6])] {
+        let features = [Feature::Vertex(7), feature];
+        assert!((turned(features, tilted, &x) - Vector::z()).norm() < 1e-15);
+        let mut bent = x.clone();
+        lowered.iter().for_each(|&v: &usize| bent[v].z = -0.1);
+        assert!((turned(features, tilted, &bent) - Vector::z()).norm() > 1e-3);
+    }
 }
 
 #[test]

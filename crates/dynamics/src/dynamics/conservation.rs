@@ -15,14 +15,16 @@
 //! velocities at (x0 + x1) / 2, is replaced by one about x1 that includes the lost term; the rest of the
 //! motion, vibrations, stays. Groups of bodies that touch nothing but each other then get a common rigid
 //! motion, which gives them exactly the linear and angular momentum that gravity and air leave them:
-//! tolerances of linear solves and contacts have no effect on these.
+//! tolerances of linear solves and contacts have no effect on these. Groups that touch obstacles without
+//! friction keep their linear momentum in the directions across all normals of these contacts.
 //!
 //! Positions do not change, so no intersection can result. Energy is not gained: a body, or a group of bodies
 //! that touch, ends with at most the kinetic energy that it had at the start plus the work of gravity, air
 //! and elasticity since, or with at most the kinetic energy without the correction.
 
+use super::newton::momentum::nodes_of;
 use super::newton::state::Step;
-use crate::groups::Groups;
+use crate::groups::{Group, Groups, Hold};
 use crate::model::DynamicsModel;
 use crate::params::Environment;
 use crate::repulsion::springs::Repulsion;
@@ -40,10 +42,21 @@ const MAX_TURN: f64 = 0.7;
 /// The contacts that occurred during a time step.
 #[derive(Clone, Debug, Default)]
 pub struct Touching {
-    /// Pairs of vertices that a contact joins. A vertex of an obstacle holds the other one.
+    /// Pairs of vertices that a contact joins. Those with vertices of obstacles join nothing.
     pub pairs: Vec<[u32; 2]>,
-    /// Vertices that something else held, such as a half-space.
-    pub held: Vec<u32>,
+    /// Vertices that touch an obstacle or a half-space.
+    pub held: Vec<Held>,
+}
+
+/// A vertex that touches an obstacle or a half-space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Held {
+    /// The vertex.
+    pub vertex: u32,
+    /// The direction of the contact, a unit vector of either sign.
+    pub normal: Vector,
+    /// Whether there is friction. If not, momentum across the normal is conserved.
+    pub rough: bool,
 }
 
 /// Rigid part of the motion of some nodes.
@@ -192,24 +205,21 @@ impl Correction<'_> {
         v
     }
 
-    /// Groups of components that touch each other and nothing else.
-    fn free_groups(&self, free: &[bool], touching: &Touching, repulsion: &Repulsion) -> Vec<Vec<usize>> {
+    /// Groups of components that touch each other, and that nothing else holds in some direction.
+    fn free_groups(&self, free: &[bool], touching: &Touching, repulsion: &Repulsion) -> Vec<Group> {
         let count = self.model.components.len();
         let component = |vertex: u32| self.model.component(self.model.vertex_node[vertex as usize]);
         let mut groups = Groups::new(count);
-        (0..count).filter(|&c| !free[c]).for_each(|c| groups.hold(c));
+        (0..count).filter(|&c| !free[c]).for_each(|c| groups.hold(c, Hold::Fully));
         // Obstacles are in no component.
         let inside = |c: &usize| *c < count;
         for pair in &touching.pairs {
-            let both = pair.map(component);
-            groups.join_all(both.into_iter().filter(inside), !both.iter().all(inside));
+            groups.join_all(pair.map(component).into_iter().filter(inside), Hold::NONE);
         }
-        for vertex in &touching.held {
-            groups.join_all(Some(component(*vertex)).filter(inside), true);
+        for Held { vertex, normal, rough } in &touching.held {
+            groups.join_all(Some(component(*vertex)).filter(inside), Hold::contact(normal, *rough));
         }
-        repulsion.for_each_spring(|nodes, held| {
-            groups.join_all(nodes.iter().map(|&node| self.model.component(node)), held);
-        });
+        repulsion.join(self.model, &mut groups, false);
         groups.free()
     }
 
@@ -253,10 +263,11 @@ impl Correction<'_> {
         nodes.for_each(|n| v[n] += change(n) * share);
     }
 
-    /// Gives a group of components the momenta that outer forces leave it, by a rigid motion of the group.
-    fn conserve(&self, group: &[usize], v: &mut [Vector]) {
+    /// Gives a group of components the momenta that outer forces leave it, by a rigid motion of the group: all of them if
+    /// nothing holds it, else linear momentum in its free directions.
+    fn conserve(&self, group: &Group, v: &mut [Vector]) {
         let components = &self.model.components;
-        let nodes = group.iter().flat_map(|&c| components[c].start as usize..components[c].end as usize);
+        let nodes = nodes_of(self.model, group);
         let start = Rigid::of(self.model, nodes.clone(), self.x0, self.v0);
         let end = Rigid::of(self.model, nodes.clone(), self.x1, v);
         let (mut mass, mut impulse, mut torque) = (0.0, Vector::zeros(), Vector::zeros());
@@ -265,13 +276,16 @@ impl Correction<'_> {
             impulse += self.forces[n] * self.dt;
             torque += (self.x1[n] - end.center).cross(&self.forces[n]) * self.dt;
         }
+        let is_free = group.free == Matrix3::identity();
         let velocity = start.velocity + impulse / mass;
-        // Angular momentum is not prescribed in two cases. Friction takes some from the motion of grains,
-        // which have no spin that could take it up; and the forces of the air depend on the velocities that
-        // are corrected here.
+        let velocity = if is_free { velocity } else { end.velocity + group.free * (velocity - end.velocity) };
+        // Angular momentum is not prescribed in three cases. Contacts with obstacles change it; friction takes some from
+        // the motion of grains, which have no spin that could take it up; and the forces of the air depend on the
+        // velocities that are corrected here.
         let exact = end.spin(start.angular + torque);
-        let turns = !self.in_air
-            && group.iter().all(|&c| components[c].len() > 1)
+        let turns = is_free
+            && !self.in_air
+            && group.members.iter().all(|&c| components[c].len() > 1)
             && exact.norm() * self.dt < MAX_TURN;
         let rotation = if turns { exact } else { end.spin(end.angular) };
         let before = |n: usize| end.velocity + end.spin(end.angular).cross(&(self.x1[n] - end.center));
@@ -284,7 +298,7 @@ impl Correction<'_> {
             rigid += half * after(n).norm_squared();
             beside += half * (v[n] - before(n)).norm_squared();
         }
-        let released = group.iter().map(|&c| self.released[c]).sum();
+        let released = group.members.iter().map(|&c| self.released[c]).sum();
         let allowed = mean.max(self.kinetic_allowed(nodes.clone(), released));
         let share = if rigid + beside > allowed { ((allowed - rigid) / beside).max(0.0).sqrt() } else { 1.0 };
         for n in nodes {

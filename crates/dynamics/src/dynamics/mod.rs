@@ -23,7 +23,7 @@ mod newton;
 mod two_level;
 
 pub use bodies_potential::{BodiesPotential, StepTerms};
-pub use conservation::Touching;
+pub use conservation::{Held, Touching};
 pub use info::{NewtonInfo, Residual};
 pub use newton::backend::{
     NewtonBackend, NewtonSolve, NewtonStep, NewtonTarget, OutOfBalance, SolveLimits, Trial, Watched,
@@ -46,7 +46,7 @@ use conservation::EndOfStep;
 use newton::bodies::{Answer, Bodies, BodyEnergies, Lost};
 use newton::cpu::CpuBodies;
 use newton::device::{Beginning, conserve_momentum, on_device};
-use newton::momentum::flying_groups;
+use newton::momentum::free_groups;
 use newton::state::{Course, EvaluationCache, Newton, Step, Workspace};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -253,7 +253,7 @@ impl Dynamics {
             match on_device(model, params, step, course, backend, beginning, target, &mut over) {
                 Ok(done) => {
                     if sets_trial {
-                        let groups = flying_groups(model, repulsion, &free);
+                        let groups = free_groups(model, repulsion, &free);
                         conserve_momentum(model, params, step, &groups, trial);
                     }
                     return Ok(done);

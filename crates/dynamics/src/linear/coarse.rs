@@ -156,7 +156,7 @@ impl Coarse {
     /// The graph of the mesh and the springs.
     fn join(&self, springs: &LinearSprings, x: &[Vector]) -> Graph {
         let mut pairs: Vec<[u32; 2]> = self.mesh.pairs().collect();
-        springs.for_each_spring(|nodes, _| {
+        springs.for_each_spring(|nodes| {
             let moving = || nodes.iter().filter(|n| self.arms[**n as usize].free > 0.0);
             let aggregate = |n: &u32| self.aggregate_of[*n as usize];
             for a in moving().map(aggregate) {

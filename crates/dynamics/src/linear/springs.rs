@@ -114,9 +114,11 @@ impl LinearSprings {
         }
     }
 
-    /// Calls `visit` with the nodes of each spring, see [`visit_nodes`].
-    pub fn for_each_spring(&self, mut visit: impl FnMut(&[u32], bool)) {
-        self.springs.iter().for_each(|spring| visit_nodes(&spring.nodes, &spring.weights, &mut visit));
+    /// Calls `visit` with the nodes of each spring.
+    pub fn for_each_spring(&self, mut visit: impl FnMut(&[u32])) {
+        self.springs
+            .iter()
+            .for_each(|spring| visit_nodes(&spring.nodes, &spring.weights, |nodes, _| visit(nodes)));
     }
 
     /// All springs.
@@ -147,7 +149,7 @@ impl LinearSprings {
 
 /// Calls `visit` with the nodes of a spring, and whether an obstacle or a half-space holds them: their
 /// weights then do not sum to 0.
-pub(crate) fn visit_nodes(nodes: &[u32; 4], weights: &[f64; 4], visit: &mut impl FnMut(&[u32], bool)) {
+pub(crate) fn visit_nodes(nodes: &[u32; 4], weights: &[f64; 4], visit: impl FnOnce(&[u32], bool)) {
     let mut joined = [NO_NODE; 4];
     let (mut count, mut sum) = (0, 0.0);
     for (&node, weight) in nodes.iter().zip(weights) {

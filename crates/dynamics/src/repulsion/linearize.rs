@@ -21,7 +21,7 @@ impl Repulsion {
             }
         });
         self.states = states;
-        let pushes = |s: &u32| self.states[*s as usize].model[2] > 0.0;
+        let pushes = |s: &u32| self.states[*s as usize].pushes();
         let pushing: Vec<u32> = (0..self.springs.len() as u32).filter(pushes).collect();
         let mut linear = std::mem::take(&mut self.linear);
         linear.set(|springs| {

@@ -3,6 +3,7 @@
 use super::spring::{RepulsionSpring, SpringKind};
 use super::state::SpringState;
 use crate::error::StepError;
+use crate::groups::{Groups, Hold};
 use crate::linear::springs::{LinearSprings, visit_nodes};
 use crate::model::DynamicsModel;
 use crate::nodes::{CHUNK, NO_NODE};
@@ -213,9 +214,18 @@ impl Repulsion {
         forces
     }
 
-    /// Calls `visit` with the nodes of every spring, whether it pushes or not, see [`visit_nodes`].
-    pub fn for_each_spring(&self, mut visit: impl FnMut(&[u32], bool)) {
-        let springs = self.nodes.iter().zip(&self.springs);
-        springs.for_each(|(nodes, spring)| visit_nodes(nodes, &spring.weights, &mut visit));
+    /// Joins the components that springs join, and holds those that springs join to obstacles and half-spaces. All springs
+    /// count, or those `pushing` at the last linearization.
+    pub fn join(&self, model: &DynamicsModel, groups: &mut Groups, pushing: bool) {
+        for ((spring, nodes), state) in self.springs.iter().zip(&self.nodes).zip(&self.states) {
+            if pushing && !state.pushes() {
+                continue;
+            }
+            visit_nodes(nodes, &spring.weights, |nodes, held| {
+                let hold =
+                    if held { Hold::contact(&spring.normal, spring.friction > 0.0) } else { Hold::NONE };
+                groups.join_all(nodes.iter().map(|&node| model.component(node)), hold);
+            });
+        }
     }
 }

@@ -60,6 +60,11 @@ pub(super) struct LinearRub {
 }
 
 impl SpringState {
+    /// Whether it pushed at the last linearization.
+    pub fn pushes(&self) -> bool {
+        self.model[2] > 0.0
+    }
+
     /// The normal force at a gap.
     pub fn push(&self, gap: f64) -> Push {
         if self.predicted { self.law.predicted(gap) } else { self.law.at(gap) }

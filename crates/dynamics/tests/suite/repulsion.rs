@@ -121,6 +121,33 @@ fn sheets_fly_together_with_their_momentum_at_any_tolerance() {
     assert!(mean(count..2 * count) > 0.1, "the lower sheet pushed the upper: {}", mean(count..2 * count));
 }
 
+/// A sheet on another that falls on a smooth plane of any slope and slides: gravity acts along the normal.
+#[test]
+fn sheets_keep_their_momentum_along_a_smooth_plane_at_any_tolerance() {
+    for normal in [Vector::z(), Vector::new(0.3, -0.2, 0.9).normalize()] {
+        let (mut dynamics, rest) = sheets(with_gravity(with_tolerance(1e-2), normal * -9.81));
+        let count = rest.len() / 2;
+        let mut springs = springs(count as u32, 10.0);
+        let below = |s: &RepulsionSpring| {
+            let weights = [0.0, 1.0, 0.0, 0.0];
+            // Of different stiffness, so that the sheet is pushed unevenly.
+            let stiffness = 5.0 + f64::from(s.vertices[1] % 7);
+            RepulsionSpring { weights, normal, offset: -0.02, stiffness, ..*s }
+        };
+        springs.extend(springs.clone().iter().map(below));
+        let (mut x, mut v) = (rest.clone(), vec![Vector::zeros(); rest.len()]);
+        (0..2 * count).for_each(|k| v[k] = Vector::new(0.1, 0.2, 0.0));
+        let held: Vec<bool> = (0..rest.len()).map(|k| k == 2 * count).collect();
+        let before = dynamics.momentum(&v);
+        for _ in 0..20 {
+            step(&mut dynamics, &mut springs, (&mut x, &mut v), (0.01, 2), (&held, &rest));
+        }
+        let change = dynamics.momentum(&v) - before;
+        let across = change - normal * normal.dot(&change);
+        assert!(across.norm() < 1e-12 * before.norm(), "{}", across.norm() / before.norm());
+    }
+}
+
 #[test]
 fn targets_end_with_an_accurate_solve_and_a_residual_between_them_changes_no_bit() {
     let targets = |measured: bool| {

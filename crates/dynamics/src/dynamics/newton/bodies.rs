@@ -4,6 +4,7 @@
 //! bodies. Springs act on the *watched* nodes, whose positions come back.
 
 use crate::elements::filter::Filter;
+use crate::groups::Group;
 use crate::linear::accuracy::{CgInfo, Limits};
 use crate::linear::failure::LinearBackendError;
 use crate::linear::springs::LinearSprings;
@@ -45,9 +46,9 @@ pub trait Bodies: Send {
     /// Solves for the step, with linearized springs added to gradient and matrix.
     fn solve(&mut self, springs: &LinearSprings, limits: Limits) -> Answer<LinearSolve>;
 
-    /// Translates each of the `groups` of components, all of whose nodes are free and which nothing holds, so that its linear
-    /// momentum is conserved whatever the error of the solve.
-    fn restore_momentum(&mut self, groups: &[Vec<usize>]) -> Answer<()>;
+    /// Translates each of the `groups` of components, all of whose nodes are free, so that its linear momentum in its free
+    /// directions is conserved whatever the error of the solve.
+    fn restore_momentum(&mut self, groups: &[Group]) -> Answer<()>;
 
     /// Begins a search along the step: places the trial at a length of 0, from which changes of energy count. The next trial is
     /// that at full length.

@@ -4,6 +4,7 @@ use super::bodies::{Answer, Bodies, BodyEnergies, Imbalance, LinearSolve, Promis
 use super::momentum::{Inertia, shift_group};
 use super::state::{Step, Workspace, negate_forces};
 use crate::elements::filter::Filter;
+use crate::groups::Group;
 use crate::linear::accuracy::Limits;
 use crate::linear::springs::LinearSprings;
 use crate::linear::system::System;
@@ -106,7 +107,7 @@ impl Bodies for CpuBodies<'_> {
         Ok(LinearSolve { info, scale: work.solver.scale() })
     }
 
-    fn restore_momentum(&mut self, groups: &[Vec<usize>]) -> Answer<()> {
+    fn restore_momentum(&mut self, groups: &[Group]) -> Answer<()> {
         let Self { model, params, step, work, .. } = self;
         let inertia = Inertia::new(params, step);
         for group in groups {

@@ -3,10 +3,11 @@
 use super::backend::{NewtonBackend, NewtonTarget, SolveLimits, Trial};
 use super::bodies::{Answer, Bodies, BodyEnergies, Imbalance, LinearSolve, Lost, Promise};
 use super::cpu::NEGLIGIBLE_STEP;
-use super::momentum::{Inertia, nodes_of};
+use super::momentum::{Inertia, nodes_of, translation};
 use super::state::{Course, DeviceStep, Step};
 use crate::dynamics::bodies_potential::StepTerms;
 use crate::elements::filter::Filter;
+use crate::groups::Group;
 use crate::linear::accuracy::Limits;
 use crate::linear::assembly::AssemblySprings;
 use crate::linear::springs::LinearSprings;
@@ -150,7 +151,7 @@ impl Bodies for DeviceBodies<'_> {
         Ok(LinearSolve { info: solved.info, scale: solved.scale })
     }
 
-    fn restore_momentum(&mut self, groups: &[Vec<usize>]) -> Answer<()> {
+    fn restore_momentum(&mut self, groups: &[Group]) -> Answer<()> {
         if groups.is_empty() {
             return Ok(());
         }
@@ -158,11 +159,10 @@ impl Bodies for DeviceBodies<'_> {
         self.backend.component_residuals(&mut residuals)?;
         let mut translations = vec![Vector::zeros(); self.model.components.len()];
         for group in groups {
-            let residual: Vector = group.iter().map(|&c| residuals[c]).sum();
-            let total: Matrix3<f64> = group.iter().map(|&c| self.on_device.component_sums[c]).sum();
-            // The matrix is positive definite unless the state is not finite, which the caller reports.
-            let shift = total.try_inverse().map_or_else(Vector::zeros, |inverse| inverse * residual);
-            group.iter().for_each(|&c| translations[c] = shift);
+            let residual: Vector = group.members.iter().map(|&c| residuals[c]).sum();
+            let total: Matrix3<f64> = group.members.iter().map(|&c| self.on_device.component_sums[c]).sum();
+            let shift = translation(group, &total, &residual);
+            group.members.iter().for_each(|&c| translations[c] = shift);
         }
         Ok(self.backend.translate(&translations)?)
     }
@@ -245,14 +245,14 @@ fn for_device(springs: &LinearSprings) -> AssemblySprings<'_> {
     AssemblySprings { springs: springs.all(), starts: springs.starts(), entries: springs.all_entries() }
 }
 
-/// Translates each of the `groups` of flying components at the trial so that its linear momentum at the end of the time step
-/// is that of the forces on it, in double precision: inertia and the forces of air balance where the translation minimizes
-/// them, and forces within a group have no sum. On the device positions and sums are rounded to single precision.
+/// Translates each of the `groups` of components at the trial so that its linear momentum at the end of the time step is that
+/// of the forces on it in its free directions, in double precision: inertia and the forces of air balance where the
+/// translation minimizes them, and forces within a group have no sum. On the device positions and sums are rounded to single precision.
 pub fn conserve_momentum(
     model: &DynamicsModel,
     params: &DynamicsParams,
     step: &Step,
-    groups: &[Vec<usize>],
+    groups: &[Group],
     trial: &mut [Vector],
 ) {
     let inertia = Inertia::new(params, step);
@@ -260,11 +260,8 @@ pub fn conserve_momentum(
         let nodes = || nodes_of(model, group);
         let force = |n: usize| inertia.gradient(model, step, n, &trial[n]);
         let sum: Vector = nodes().map(force).sum();
-        let total = inertia.of_nodes(model, nodes());
-        if let Some(inverse) = total.try_inverse() {
-            let shift = inverse * sum;
-            nodes().for_each(|n| trial[n] -= shift);
-        }
+        let shift = translation(group, &inertia.of_nodes(model, nodes()), &sum);
+        nodes().for_each(|n| trial[n] -= shift);
     }
 }
 

@@ -1,7 +1,7 @@
 //! One Newton iteration: a linear system, its solution, the line search.
 
 use super::bodies::Answer;
-use super::momentum::flying_groups;
+use super::momentum::free_groups;
 use super::state::Newton;
 use crate::dynamics::info::NewtonInfo;
 use crate::elements::filter::Filter;
@@ -36,7 +36,7 @@ impl Newton<'_> {
         if self.course.min_scale == 0.0 {
             self.course.min_scale = solved.scale;
         }
-        self.bodies.restore_momentum(&flying_groups(self.model, self.repulsion, self.free))?;
+        self.bodies.restore_momentum(&free_groups(self.model, self.repulsion, self.free))?;
         let mut info = NewtonInfo { iterations: 1, cg: solved.info, ..NewtonInfo::default() };
         self.search_line(&mut info)?;
         self.repulsion.majorizes_friction = info.step_length < 1.0;

@@ -2,7 +2,7 @@
 
 use super::state::Step;
 use crate::drag::Drag;
-use crate::groups::Groups;
+use crate::groups::{Group, Groups};
 use crate::model::DynamicsModel;
 use crate::params::DynamicsParams;
 use crate::repulsion::springs::Repulsion;
@@ -57,46 +57,42 @@ impl Inertia<'_> {
     }
 }
 
-/// The groups of freely flying components, each by its components: those of which no node is held by a keyframe or by a
-/// spring. Components that springs join form one group.
-pub(crate) fn flying_groups(model: &DynamicsModel, repulsion: &Repulsion, free: &[bool]) -> Vec<Vec<usize>> {
-    let mut flying = if repulsion.is_empty() {
-        (0..model.components.len()).map(|component| vec![component]).collect()
-    } else {
-        let mut groups = Groups::new(model.components.len());
-        repulsion.linear().for_each_spring(|nodes, held| {
-            groups.join_all(nodes.iter().map(|&node| model.component(node)), held);
-        });
-        groups.free()
-    };
-    flying.retain(|group| nodes_of(model, group).all(|n| free[n]));
-    flying
+/// The groups of components that springs join, of which no node is held by a keyframe, and which can move freely in some
+/// direction.
+pub(crate) fn free_groups(model: &DynamicsModel, repulsion: &Repulsion, free: &[bool]) -> Vec<Group> {
+    let mut groups = Groups::new(model.components.len());
+    repulsion.join(model, &mut groups, true);
+    let mut groups = groups.free();
+    groups.retain(|group| nodes_of(model, group).all(|n| free[n]));
+    groups
 }
 
-/// Translates a group of freely flying components so that the `residual` of the linear solve sums to zero
-/// over it. Inner forces then cancel, and the linear momentum of the group is conserved to rounding at any
-/// tolerance. In a translation H sums to inertia and drag alone, so the translation is the sum of residuals
-/// divided by these.
+/// The translation of a group in its free directions that takes away the `force` on it [N], against the `resistance` to
+/// translations [N/m]. Forces within the group have no sum.
+pub(crate) fn translation(group: &Group, resistance: &Matrix3<f64>, force: &Vector) -> Vector {
+    let held = (Matrix3::identity() - group.free) * resistance.trace();
+    // The matrix is positive definite unless the state is not finite, which the caller reports.
+    let inverse = (group.free * resistance * group.free + held).try_inverse();
+    inverse.map_or_else(Vector::zeros, |inverse| group.free * (inverse * (group.free * force)))
+}
+
+/// Translates a group so that the `residual` of the linear solve sums to zero over it in its free directions. Inner forces
+/// then cancel, and its linear momentum there is conserved to rounding at any tolerance. In such a translation H sums to
+/// inertia and drag alone, so the translation is the sum of residuals divided by these.
 pub(crate) fn shift_group(
     model: &DynamicsModel,
-    group: &[usize],
+    group: &Group,
     inertia: &Inertia<'_>,
     residual: &[Vector],
     step: &mut [Vector],
 ) {
     let nodes = || nodes_of(model, group);
     let sum: Vector = nodes().map(|n| residual[n]).sum();
-    let shift = match inertia.drag {
-        None => sum / (nodes().map(|n| model.node_masses[n]).sum::<f64>() * inertia.per_mass),
-        // The matrix is positive definite unless the state is not finite, which the caller reports.
-        Some(_) => {
-            inertia.of_nodes(model, nodes()).try_inverse().map_or_else(Vector::zeros, |inverse| inverse * sum)
-        }
-    };
+    let shift = translation(group, &inertia.of_nodes(model, nodes()), &sum);
     nodes().for_each(|n| step[n] += shift);
 }
 
 /// The nodes of a group of components.
-pub(crate) fn nodes_of(model: &DynamicsModel, group: &[usize]) -> impl Iterator<Item = usize> + Clone {
-    group.iter().flat_map(|&c| model.components[c].start as usize..model.components[c].end as usize)
+pub(crate) fn nodes_of(model: &DynamicsModel, group: &Group) -> impl Iterator<Item = usize> + Clone {
+    group.members.iter().flat_map(|&c| model.components[c].start as usize..model.components[c].end as usize)
 }
