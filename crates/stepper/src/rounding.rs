@@ -2,8 +2,8 @@
 
 /// Absolute rounding bounds at the scale of a scene's coordinates.
 ///
-/// Let u = 2^-53, ulp(C) = 2 u C, and C the largest coordinate before or after a step. No vertex travels
-/// farther than C/2 ([`crate::Stepper::limit_travel`]). The update x + alpha d is rounded twice, by at most
+/// Let u = 2^-53, ulp(C) = 2 u C, and C the largest coordinate before or after a step, at least twice the longest
+/// travel. The update x + alpha d is rounded twice, by at most
 /// u |alpha d| + u |x'| <= 1.5 u C in each component, which is less than 1.5 sqrt(3) u C = 1.3 ulp(C) along
 /// any unit vector. The closing speed n . d, from which a share is computed, is off by at most 4 u |d|, and
 /// its factor for the cap of the travel, the shares and the division that makes alpha of them round five

@@ -62,7 +62,7 @@ pub struct Stepper {
     /// Smallest step size of each obstacle or group, while they are limited.
     smallest: Vec<f64>,
     rounding: Option<Rounding>,
-    /// Largest coordinate of positions and targets [m].
+    /// Largest coordinate of positions and targets, at least twice the longest displacement [m].
     largest_coordinate: f64,
 }
 
@@ -99,7 +99,7 @@ impl Stepper {
             *cap = 1.0;
             *d = y - x;
             if d.iter().all(|c| c.is_finite()) {
-                return (x.coords.amax().max(y.coords.amax()), 0);
+                return (x.coords.amax().max(y.coords.amax()).max(2.0 * d.norm()), 0);
             }
             *d = Vector::zeros();
             (x.coords.amax(), 1)
@@ -130,11 +130,10 @@ impl Stepper {
         caps.for_each(|(cap, alpha)| *cap = f64::from_bits(*alpha.get_mut()));
     }
 
-    /// Lets a vertex travel by at most `longest` [m], and by at most half of the largest coordinate: the bounds
-    /// of [`Rounding`] hold for no more.
+    /// Lets a vertex travel by at most `longest` [m].
     #[inline]
     pub fn limit_travel(&self, vertex: usize, longest: f64) {
-        self.limit_length(vertex, longest.min(0.5 * self.largest_coordinate));
+        self.limit_length(vertex, longest);
     }
 
     /// Largest step size of a vertex, whatever its pairs: 1, or what [`Self::cap_travel`] has left.
@@ -309,7 +308,8 @@ impl Stepper {
         separation.width > rounding.frozen && closing <= allowed
     }
 
-    /// Largest coordinate of positions and targets of this step [m].
+    /// Largest coordinate of positions and targets of this step, at least twice the longest displacement [m]: what the bounds
+    /// of [`Rounding`] hold for.
     pub fn largest_coordinate(&self) -> f64 {
         self.largest_coordinate
     }

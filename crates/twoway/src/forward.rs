@@ -142,11 +142,6 @@ impl CertifiedForward {
         }
         let (stepper, damping) = (&self.stepper, params.damping);
         let displacements = stepper.displacements();
-        // The bounds of rounding hold for no longer moves.
-        let longest = 0.5 * stepper.largest_coordinate();
-        if !displacements.par_iter().with_min_len(CHUNK).all(|d| d.norm() <= longest) {
-            return false;
-        }
         let stays_open = |kind, vertices: &[u32; 4], at: &Separation, least: f64| {
             stepper.stays_open(kind, vertices, at, least, displacements, |_| 0.0, damping)
         };

@@ -338,6 +338,7 @@ impl Simulator {
         let count = world.collision_vertices();
 
         let timer = Instant::now();
+        dynamics.set_step_tolerance(tolerance.meters());
         dynamics.begin_step(start, velocities, *dt).map_err(target_error)?;
         contacts.begin_step(resolver, start, *dt);
         contacts.apply(dynamics).map_err(target_error)?;

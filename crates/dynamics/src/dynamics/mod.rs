@@ -63,6 +63,8 @@ pub struct Dynamics {
     /// None in a vacuum.
     surfaces: Option<DragSurfaces>,
     repulsion: Repulsion,
+    /// See [`Self::set_step_tolerance`] [m].
+    step_tolerance: f64,
     step: Option<Step>,
     course: Course,
     work: Workspace,
@@ -96,7 +98,17 @@ impl Dynamics {
         let surfaces = (params.environment.air_density > 0.0).then(|| DragSurfaces::new(&model));
         let repulsion = Repulsion::default();
         let course = Course::default();
-        Ok(Self { external_forces: zero(), surfaces, repulsion, model, params, step: None, course, work })
+        Ok(Self {
+            external_forces: zero(),
+            surfaces,
+            repulsion,
+            model,
+            params,
+            step_tolerance: 0.0,
+            step: None,
+            course,
+            work,
+        })
     }
 
     /// The model.
@@ -153,6 +165,13 @@ impl Dynamics {
         Environment { wind, ..self.params.environment }.validate()?;
         self.params.environment.wind = wind;
         Ok(())
+    }
+
+    /// Sets the [`Residual::distance`] at which a time step counts as solved [m], 0 at first: none. It takes effect at the next
+    /// [`Self::begin_step`]. Linear solves that correct a step are then accurate enough for it, however far bodies move in
+    /// the step and however much they differ in mass.
+    pub fn set_step_tolerance(&mut self, distance: f64) {
+        self.step_tolerance = distance;
     }
 
     /// Sets the springs of contacts; there are none at first. They are kept until they are set again and take
@@ -316,7 +335,8 @@ impl Dynamics {
         }
         step.dt = dt;
         step.last_target = None;
-        self.course = Course { unprepared: true, ..Course::default() };
+        let step_tolerance = self.step_tolerance;
+        self.course = Course { unprepared: true, step_tolerance, ..Course::default() };
         self.work.solver.begin_step();
         self.work.cache.clear();
         step.positions.clear();

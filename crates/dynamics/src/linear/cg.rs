@@ -22,17 +22,6 @@ pub(crate) struct Krylov<T: Real> {
     /// The search direction, and H times it.
     p: Vec<Lane<T>>,
     q: Vec<Lane<T>>,
-    /// Directions of guesses with their images and curvatures.
-    guesses: Vec<Guess<T>>,
-    guess_count: usize,
-    partial: Vec<f64>,
-}
-
-#[derive(Debug, Default)]
-struct Guess<T: Real> {
-    direction: Vec<Lane<T>>,
-    image: Vec<Lane<T>>,
-    curvature: f64,
 }
 
 impl<T: Real> Krylov<T> {
@@ -49,43 +38,22 @@ impl<T: Real> Krylov<T> {
     /// Starts from x = 0 with the residual `b` times `factor`. Returns its squared norm, that of the
     /// preconditioner.
     pub fn begin(&mut self, levels: &mut Levels, b: &[Vector], factor: f64) -> f64 {
+        self.load(b, factor);
+        self.preconditioner.apply(levels, &self.r, &mut self.z)
+    }
+
+    /// The same without the norm.
+    pub fn load(&mut self, b: &[Vector], factor: f64) {
         for vector in [&mut self.x, &mut self.z, &mut self.p, &mut self.q] {
             vector.resize(b.len(), Lane::default());
         }
         self.x.fill(Lane::default());
-        self.guess_count = 0;
         b.par_iter().with_min_len(CHUNK).map(|b| Lane::new(b, factor)).collect_into_vec(&mut self.r);
-        self.preconditioner.apply(levels, &self.r, &mut self.z)
     }
 
     /// Copies the preconditioned residual, times `factor`.
     pub fn copy_preconditioned(&self, factor: f64, to: &mut [Vector]) {
         to.iter_mut().zip(&self.z).for_each(|(to, z)| *to = z.vector() * factor);
-    }
-
-    /// Moves x to the minimum of the energy along `guess` times `factor`, made conjugate to the guesses
-    /// before.
-    pub fn try_guess(&mut self, system: &System<'_>, guess: &[Vector], factor: f64) {
-        if self.guesses.len() == self.guess_count {
-            self.guesses.push(Guess { direction: Vec::new(), image: Vec::new(), curvature: 0.0 });
-        }
-        let (before, rest) = self.guesses.split_at_mut(self.guess_count);
-        let Guess { direction: p, image: q, curvature } = &mut rest[0];
-        guess.par_iter().with_min_len(CHUNK).map(|g| Lane::new(g, factor)).collect_into_vec(p);
-        q.resize(guess.len(), Lane::default());
-        *curvature = self.operator.multiply(system, p, q);
-        for other in before {
-            let share = T::from_f64(-dot(p, &other.image, &mut self.partial) / other.curvature);
-            add_scaled(p, share, &other.direction);
-            add_scaled(q, share, &other.image);
-            *curvature = dot(p, q, &mut self.partial);
-        }
-        if *curvature > 0.0 && curvature.is_finite() {
-            let step = dot(p, &self.r, &mut self.partial) / *curvature;
-            add_scaled(&mut self.x, T::from_f64(step), p);
-            add_scaled(&mut self.r, T::from_f64(-step), q);
-            self.guess_count += 1;
-        }
     }
 
     /// Iterates until the squared norm of the residual is at most `goal` or `max_iterations` are made.
@@ -140,18 +108,4 @@ impl<T: Real> Krylov<T> {
     pub fn copy_residual(&self, factor: f64, to: &mut [Vector]) {
         to.iter_mut().zip(&self.r).for_each(|(to, r)| *to = r.vector() * factor);
     }
-}
-
-fn dot<T: Real>(a: &[Lane<T>], b: &[Lane<T>], partial: &mut Vec<f64>) -> f64 {
-    a.par_chunks(CHUNK)
-        .zip(b.par_chunks(CHUNK))
-        .map(|(a, b)| a.iter().zip(b).map(|(a, b)| a.dot(b)).sum())
-        .collect_into_vec(partial);
-    partial.iter().sum()
-}
-
-fn add_scaled<T: Real>(y: &mut [Lane<T>], factor: T, x: &[Lane<T>]) {
-    y.par_chunks_mut(CHUNK).zip(x.par_chunks(CHUNK)).for_each(|(y, x)| {
-        y.iter_mut().zip(x).for_each(|(y, x)| *y += *x * factor);
-    });
 }

@@ -9,6 +9,7 @@ pub(crate) mod cholesky;
 pub(crate) mod coarse;
 pub(crate) mod direct;
 pub(crate) mod failure;
+mod guesses;
 pub(crate) mod lane;
 pub(crate) mod operator;
 pub(crate) mod ordering;

@@ -3,23 +3,15 @@
 use super::accuracy::{CgInfo, Limits, MARGIN, MIN_GAIN, unit_factor};
 use super::backend::LinearBackend;
 use super::failure::LinearBackendError;
+use super::guesses::Guesses;
 use super::system::System;
-use super::vectors::{add_scaled, dot};
 use bowknot_geometry::Vector;
 
 /// The backend and the buffers of a refinement.
 #[derive(Debug)]
 pub(super) struct Refinement {
     pub backend: Box<dyn LinearBackend>,
-    guesses: Vec<Guess>,
-}
-
-/// A direction, its image under H and its curvature.
-#[derive(Debug, Default)]
-struct Guess {
-    direction: Vec<Vector>,
-    image: Vec<Vector>,
-    curvature: f64,
+    guesses: Guesses,
 }
 
 /// How a solve ended.
@@ -34,7 +26,7 @@ pub(super) struct Refined {
 
 impl Refinement {
     pub fn new(backend: Box<dyn LinearBackend>) -> Self {
-        Self { backend, guesses: Vec::new() }
+        Self { backend, guesses: Guesses::default() }
     }
 
     /// Solves H x = b, as [`super::solver::LinearSolver::solve`] does. `residual` becomes b - H x, in the precision
@@ -60,9 +52,7 @@ impl Refinement {
         let goal = limits.tolerance * limits.tolerance * relative;
         let goal = goal.max(limits.own_tolerance * limits.own_tolerance * scale);
 
-        for (k, guess) in guesses.iter().enumerate() {
-            self.try_guess(k, system, guess, x, residual)?;
-        }
+        self.guesses.start(system, guesses, x, residual);
         let mut norm = scale;
         if !guesses.is_empty() {
             self.subtract_product(system, x, b, residual)?;
@@ -97,40 +87,4 @@ impl Refinement {
         residual.iter_mut().zip(b).for_each(|(r, b)| *r = b - *r);
         Ok(())
     }
-
-    /// Moves x to the minimum of the energy along guess `k`, made conjugate to the guesses before.
-    fn try_guess(
-        &mut self,
-        k: usize,
-        system: &System<'_>,
-        guess: &[Vector],
-        x: &mut [Vector],
-        residual: &mut [Vector],
-    ) -> Result<(), LinearBackendError> {
-        if self.guesses.len() == k {
-            self.guesses.push(Guess::default());
-        }
-        let (before, rest) = self.guesses.split_at_mut(k);
-        let Guess { direction: p, image: q, curvature } = &mut rest[0];
-        p.clear();
-        p.extend_from_slice(guess);
-        q.resize(p.len(), Vector::zeros());
-        *curvature = system.multiply(p, q);
-        for other in before.iter().filter(|other| is_positive(other.curvature)) {
-            let share = -dot(p, &other.image) / other.curvature;
-            add_scaled(p, share, &other.direction);
-            add_scaled(q, share, &other.image);
-            *curvature = dot(p, q);
-        }
-        if is_positive(*curvature) {
-            let step = dot(p, residual) / *curvature;
-            add_scaled(x, step, p);
-            add_scaled(residual, -step, q);
-        }
-        Ok(())
-    }
-}
-
-fn is_positive(curvature: f64) -> bool {
-    curvature > 0.0 && curvature.is_finite()
 }

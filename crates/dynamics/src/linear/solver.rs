@@ -13,6 +13,7 @@ use super::cg::Krylov;
 use super::coarse::Coarse;
 use super::direct::Direct;
 use super::failure::LinearBackendError;
+use super::guesses::Guesses;
 use super::preconditioner::Levels;
 use super::refinement::Refinement;
 use super::system::System;
@@ -29,6 +30,7 @@ pub(crate) struct LinearSolver {
     precise: bool,
     single: Krylov<f32>,
     double: Krylov<f64>,
+    guesses: Guesses,
     /// Solves in place of `single`, with the patches of nodes for its preconditioner.
     backend: Option<(Refinement, Vec<Range<u32>>)>,
     /// Whether the backend does the whole of Newton iterations for this model.
@@ -191,7 +193,7 @@ impl LinearSolver {
         x.fill(Vector::zeros());
         self.residual.clear();
         self.residual.extend_from_slice(b);
-        let Self { levels, precise, single, double, residual, scale, .. } = self;
+        let Self { levels, precise, single, double, guesses: start, residual, scale, .. } = self;
 
         let mut factor = unit_factor(b);
         let norm = if *precise { double.begin(levels, b, factor) } else { single.begin(levels, b, factor) };
@@ -206,12 +208,14 @@ impl LinearSolver {
         let goal = (limits.tolerance * limits.tolerance * scale).max(enough);
         let mut left = limits.max_iterations;
 
+        start.start(system, guesses, x, residual);
+        factor = unit_factor(residual);
         if *precise {
             double.fill_operator(system);
-            guesses.iter().for_each(|guess| double.try_guess(system, guess, factor));
+            double.load(residual, factor);
         } else {
             single.fill_operator(system);
-            guesses.iter().for_each(|guess| single.try_guess(system, guess, factor));
+            single.load(residual, factor);
             loop {
                 let before = norm;
                 left -= single.iterate(system, levels, MARGIN * MARGIN * goal * factor * factor, left).0;
@@ -227,7 +231,7 @@ impl LinearSolver {
                     *precise = true;
                     double.fill_preconditioner(system, levels);
                     double.fill_operator(system);
-                    double.begin(levels, residual, factor);
+                    double.load(residual, factor);
                     break;
                 }
             }

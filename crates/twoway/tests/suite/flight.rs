@@ -24,8 +24,6 @@ impl Layers {
         for height in heights {
             sheet(8, EDGE, height, &mut x, &mut triangles);
         }
-        // Away from the origin: no step is longer than half of the largest coordinate.
-        x.iter_mut().for_each(|p| p.x += 10.0);
         let half = x.len() / 2;
         let topology = Topology::builder(x.len()).triangles(triangles).build().unwrap();
         let of_vertices = (0..x.len()).map(|v| u32::from(v >= half && bodies == 2)).collect();

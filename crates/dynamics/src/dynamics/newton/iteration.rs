@@ -6,6 +6,7 @@ use super::state::Newton;
 use crate::dynamics::info::NewtonInfo;
 use crate::elements::filter::Filter;
 use crate::linear::accuracy::Limits;
+use std::ops::Range;
 
 /// Residual at which an inexact linear solve ends, relative to its own right-hand side.
 const INEXACT_TOLERANCE: f64 = 0.03;
@@ -34,7 +35,7 @@ impl Newton<'_> {
         };
         let solved = self.bodies.solve(self.repulsion.linear(), limits)?;
         if self.course.min_scale == 0.0 {
-            self.course.min_scale = solved.scale;
+            self.course.min_scale = solved.scale.min(self.largest_scale());
         }
         self.bodies.restore_momentum(&free_groups(self.model, self.repulsion, self.free))?;
         let mut info = NewtonInfo { iterations: 1, cg: solved.info, ..NewtonInfo::default() };
@@ -42,6 +43,16 @@ impl Newton<'_> {
         self.repulsion.majorizes_friction = info.step_length < 1.0;
         info.max_displacement = self.bodies.distance_from_iterate();
         Ok(info)
+    }
+
+    /// The largest squared norm that [`Limits::tolerance`] may be relative to: with a residual of that share of it, the
+    /// [`Residual::distance`](crate::Residual::distance) of each component is below half of the tolerance of the time step.
+    fn largest_scale(&self) -> f64 {
+        let share = 0.5 * self.course.step_tolerance / (self.dt * self.params.newton.cg_tolerance);
+        let mass =
+            |nodes: &Range<u32>| nodes.clone().map(|n| self.model.node_masses[n as usize]).sum::<f64>();
+        let lightest = self.model.components.iter().map(mass).fold(f64::INFINITY, f64::min);
+        if share > 0.0 { share * share * lightest } else { f64::INFINITY }
     }
 
     /// Computes gradient and matrix at the iterate. Springs that have not been prepared get their laws.
