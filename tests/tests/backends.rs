@@ -74,6 +74,8 @@ enum On {
     CpuAccurate,
     /// With a tenth of the tolerance of time steps.
     CpuSolved,
+    /// With trust regions of one size: iterations come to contacts another way, which decides where these begin.
+    CpuUniform,
     Twins,
 }
 
@@ -92,6 +94,7 @@ fn course((name, scale, sets, steps): Case<'_>, on: On) -> Course {
         On::CpuOnceMore => sets.push("solver.backward.sweeps=9".to_owned()),
         On::CpuAccurate => sets.push("solver.newton.cg_tolerance=1e-6".to_owned()),
         On::CpuSolved => sets.push("solver.newton.step_tolerance=0.0003".to_owned()),
+        On::CpuUniform => sets.push("solver.forward.trust_region=uniform".to_owned()),
     }
     let scene = Scene::builtin(name, scale).and_then(|scene| scene.with_sets(&sets)).expect("a scene");
     let mut simulator = Simulator::new(&scene).expect("a simulator");
@@ -138,7 +141,8 @@ fn ends_apart(a: &Course, b: &Course) -> f64 {
 fn runs_on_the_kernels_go_as_on_the_cpu() {
     for case in SMALL {
         let [cpu, twins] = [On::Cpu, On::Twins].map(|on| course(case, on));
-        let others = [On::CpuOnceMore, On::CpuAccurate, On::CpuSolved].map(|on| course(case, on));
+        let others =
+            [On::CpuOnceMore, On::CpuAccurate, On::CpuSolved, On::CpuUniform].map(|on| course(case, on));
         let (name, steps) = (case.0, case.3);
         assert!(cpu.first_contact < steps, "{name}: the scene has not come to its contacts");
         assert_eq!(cpu.first_contact, twins.first_contact, "{name}");
