@@ -16,8 +16,8 @@ impl DesiredDistance {
     /// The desired distance [m] of a pair that has the distance `gap` when it first becomes a candidate in a
     /// call, and whether it was lowered because the pair are neighbors in a fine mesh.
     ///
-    /// The desired distance of neighbors is at most half of their rest distance: otherwise `delta` would
-    /// tear a fine mesh apart. A pair that starts closer than its desired distance opens by at most `growth`
+    /// The desired distance of neighbors, pairs of one connected component, is at most half of their rest distance:
+    /// otherwise `delta` would tear a fine mesh apart. A pair that starts closer than its desired distance opens by at most `growth`
     /// per call.
     pub fn of(
         &self,
@@ -43,8 +43,8 @@ impl DesiredDistance {
         let mut desired = self.delta;
         let mut lowered = false;
         if kind != PairKind::VertexHalfSpace {
-            let body = |side: usize| model.vertex_body()[pair.vertices[side] as usize];
-            if body(0) == body(kind.side_a()) {
+            let component = |side: usize| model.vertex_component()[pair.vertices[side] as usize];
+            if component(0) == component(kind.side_a()) {
                 let rest = distance::closest(kind, &pair.vertices.map(|v| rest[v as usize])).distance;
                 if 0.5 * rest < desired {
                     desired = 0.5 * rest;

@@ -224,14 +224,20 @@ fn limits_widen_where_they_are_known_and_until_the_next_call() {
 
 #[test]
 fn the_desired_distance_is_lower_in_fine_meshes_and_for_pairs_that_start_close() {
-    let topology = Topology::builder(4).triangles([[1, 2, 3]]).particles([0]).build().unwrap();
+    // Vertex 0 above a triangle, in the same component.
+    let topology = Topology::builder(5).triangles([[1, 2, 3], [0, 4, 1]]).build().unwrap();
     let model = CollisionModel::single_body(topology);
     let pair = Pair { elements: [0, 0], vertices: [0, 1, 2, 3] };
-    let rest = [[0.2, 0.2, 0.004], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point::from);
+    let rest = [[0.2, 0.2, 0.004], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]]
+        .map(Point::from);
     let free = DesiredDistance { delta: 0.01, growth: f64::INFINITY };
     let (desired, lowered) = free.of(&model, PairKind::VertexTriangle, &pair, &rest, 0.004);
     assert!(lowered && (desired - 0.002).abs() < 1e-15, "half of the rest distance: {desired}");
     let slow = DesiredDistance { delta: 0.001, growth: 2e-4 };
     let (desired, lowered) = slow.of(&model, PairKind::VertexTriangle, &pair, &rest, 1e-5);
     assert!(!lowered && (desired - 2.1e-4).abs() < 1e-15, "present gap plus growth: {desired}");
+    // Two parts of one body are no neighbors.
+    let parts = Topology::builder(4).triangles([[1, 2, 3]]).particles([0]).build().unwrap();
+    let parts = CollisionModel::single_body(parts);
+    assert_eq!(free.of(&parts, PairKind::VertexTriangle, &pair, &rest[..4], 0.004), (0.01, false));
 }

@@ -67,6 +67,7 @@ pub enum ModelError {
 pub struct CollisionModel {
     topology: Topology,
     vertex_body: Vec<u32>,
+    vertex_component: Vec<u32>,
     bodies: Vec<BodyFilter>,
     half_spaces: Vec<HalfSpace>,
 }
@@ -99,14 +100,19 @@ impl CollisionModel {
         let triangles = topology.triangles.iter().enumerate().find_map(|(i, t)| mixed("triangle", i, t));
         match edges.or(triangles) {
             Some(error) => Err(error),
-            None => Ok(Self { topology, vertex_body, bodies, half_spaces }),
+            None => {
+                let vertex_component = topology.connected_components().of_vertex;
+                Ok(Self { topology, vertex_body, vertex_component, bodies, half_spaces })
+            }
         }
     }
 
     /// One self-colliding deformable body.
     pub fn single_body(topology: Topology) -> Self {
         let vertex_body = vec![0; topology.vertex_count];
-        Self { topology, vertex_body, bodies: vec![BodyFilter::DEFORMABLE], half_spaces: Vec::new() }
+        let vertex_component = topology.connected_components().of_vertex;
+        let bodies = vec![BodyFilter::DEFORMABLE];
+        Self { topology, vertex_body, vertex_component, bodies, half_spaces: Vec::new() }
     }
 
     /// Changes which bodies are obstacles, one entry per body. Nothing else changes.
@@ -126,6 +132,11 @@ impl CollisionModel {
     /// Body of each vertex.
     pub fn vertex_body(&self) -> &[u32] {
         &self.vertex_body
+    }
+
+    /// Connected component of each vertex, a part of its body.
+    pub fn vertex_component(&self) -> &[u32] {
+        &self.vertex_component
     }
 
     /// Filter of each body.

@@ -1,7 +1,7 @@
 // Desired distance and minimum separation of candidates that are new, and the minimum separation of all for the forward
 // step.
 //
-// The desired distance of two elements of one body is at most half of their rest distance: otherwise it would tear a fine
+// The desired distance of two elements of one connected component is at most half of their rest distance: otherwise it would tear a fine
 // mesh apart. A pair that starts closer opens by at most `growth` in a call. Where the target knows the contacts of a
 // vertex, pairs that are near guard only a part of their gap: the target decides about the rest.
 
@@ -24,6 +24,7 @@ struct Params {
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
+// Positions in the rest shape, and the connected component.
 @group(0) @binding(1) var<storage, read> rest: array<vec4<i32>>;
 @group(0) @binding(2) var<storage, read> edges: array<vec2<u32>>;
 @group(0) @binding(3) var<storage, read> triangles: array<vec4<u32>>;
@@ -87,7 +88,7 @@ fn first_state(candidate: Candidate, separation: Separation) -> PairState {
             thickness = 0.5 * (of_a + of_b);
         }
         range = params.range * delta;
-        if a.body == b.body {
+        if rest[pair.vertices[0]].w == rest[pair.vertices[pair.side_a]].w {
             delta = min(delta, 0.5 * rest_distance(pair));
         }
     }

@@ -401,7 +401,9 @@ impl<E: Engine> Collision<E> {
         let near = NearList::new(&mut engine)?;
         let carried = CarriedList::new(&mut engine)?;
         let mut setup = Recording::default();
-        setup.write(buffers.rest, &padded(&rest_on_grid));
+        let of_vertices = rest_on_grid.iter().zip(model.vertex_component());
+        let rest: Vec<[i32; 4]> = of_vertices.map(|(&[x, y, z], &c)| [x, y, z, c as i32]).collect();
+        setup.write(buffers.rest, &rest);
         setup.write(buffers.vertices, &vertices);
         setup.write(buffers.edges, &topology.edges);
         setup.write(buffers.triangles, &triangles);

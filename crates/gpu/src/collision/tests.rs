@@ -95,7 +95,8 @@ fn desired_distances_are_those_of_bodies_rest_shapes_and_gaps() {
                 |points: &[Point]| distance::closest(kind, &vertices.map(|v| points[v as usize])).distance;
             let body = |side: usize| model.vertex_body()[vertices[side] as usize];
             let mut delta = DELTA;
-            if body(0) == body(kind.side_a()) {
+            let component = |side: usize| model.vertex_component()[vertices[side] as usize];
+            if component(0) == component(kind.side_a()) {
                 delta = delta.min(0.5 * distance(&rest));
                 neighbors += usize::from(delta < DELTA);
             }

@@ -103,13 +103,14 @@ fn first_state(
         }
     } else {
         let b = vertices[pair.vertices[pair.side_a] as usize];
+        let component = |side: usize| rest[pair.vertices[side] as usize][3];
         delta = 0.5 * (a.delta + b.delta);
         if a.thickness.max(b.thickness) >= 0.0 {
             let of = |thickness: f32| if thickness >= 0.0 { thickness } else { params.min_separation };
             thickness = 0.5 * (of(a.thickness) + of(b.thickness));
         }
         range = params.range * delta;
-        if a.body == b.body {
+        if component(0) == component(pair.side_a) {
             delta = delta.min(0.5 * rest_distance(pair, rest));
         }
     }
