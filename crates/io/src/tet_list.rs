@@ -5,6 +5,7 @@ use crate::error::{IoError, Place};
 use crate::import::Import;
 use crate::mesh::Mesh;
 use crate::numbering::Numbering;
+use crate::read::without_mark;
 use bowknot_errors::Parameters;
 use bowknot_errors::counted;
 use std::fs;
@@ -20,7 +21,7 @@ use std::path::Path;
 pub fn read_tet_list(path: &Path, import: &Import) -> Result<Mesh, IoError> {
     import.validate().map_err(|errors| IoError::content(path, Place::File, errors.to_string()))?;
     let bytes = fs::read(path).map_err(|source| IoError::system("read", path, source))?;
-    let text = String::from_utf8_lossy(&bytes);
+    let text = String::from_utf8_lossy(without_mark(&bytes));
     let (mesh, skipped) =
         parse(&text, import).map_err(|(place, message)| IoError::content(path, place, message))?;
     if skipped > 0 {

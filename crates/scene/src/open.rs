@@ -19,7 +19,8 @@ impl Scene {
     pub fn load<S: AsRef<str>>(path: impl AsRef<Path>, sets: &[S]) -> Result<Self, SceneError> {
         let path = path.as_ref();
         let text = std::fs::read_to_string(path).map_err(|source| IoError::system("read", path, source))?;
-        let mut source = Source::parse(&text, path)?;
+        let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+        let mut source = Source::parse(text, path)?;
         apply(&mut source, sets)?;
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         let name = path.file_stem().and_then(|s| s.to_str()).unwrap_or("scene");

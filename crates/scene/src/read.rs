@@ -33,15 +33,14 @@ const TABLES: [&str; 7] = ["simulation", "contact", "solver", "output", "body", 
 pub(super) fn scene(source: &Source, folder: &Path, name: &str) -> Result<Scene, SceneError> {
     let mut reader = Reader::new(source);
     let root = &source.table;
-    reader.check_keys(root, "", &TABLES);
+    check_tables(&mut reader, root);
 
     let mut scene = read_solver(&mut reader, root);
     folder.clone_into(&mut scene.folder);
     scene.origins = source.origins();
 
     let table = reader.table(root, "", "simulation");
-    let known = [field_names::<SimulationParams>(), field_names::<Environment>()].concat();
-    reader.check_keys(&table, "simulation", &known);
+    reader.check_keys(&table, "simulation", &simulation_keys());
     scene.simulation = reader.fields(&SimulationParams::default(), &table, "simulation", &[]);
     if scene.simulation.name.is_empty() {
         name.clone_into(&mut scene.simulation.name);
@@ -68,6 +67,27 @@ pub(super) fn scene(source: &Source, folder: &Path, name: &str) -> Result<Scene,
     }
     validate::scene(&scene, source)?;
     Ok(scene)
+}
+
+fn simulation_keys() -> Vec<&'static str> {
+    [field_names::<SimulationParams>(), field_names::<Environment>()].concat()
+}
+
+/// Reports top-level keys that are no tables. One that is a key of a table is said to be that, such as `wind`.
+fn check_tables(reader: &mut Reader<'_>, root: &Table) {
+    let tables = [
+        ("simulation", simulation_keys()),
+        ("contact", field_names::<ContactParams>().to_vec()),
+        ("output", field_names::<OutputParams>().to_vec()),
+    ];
+    let mut known = TABLES.to_vec();
+    for key in root.keys() {
+        if let Some((table, _)) = tables.iter().find(|(_, keys)| keys.contains(&key.as_str())) {
+            reader.fail(key, format!("unknown key; did you mean {table}.{key}?"));
+            known.push(key);
+        }
+    }
+    reader.check_keys(root, "", &known);
 }
 
 /// Reads the parameters of the two-way method alone.

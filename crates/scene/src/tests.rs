@@ -149,6 +149,7 @@ fn problems_name_file_line_key_and_what_is_allowed() {
         ),
         ("side = \"x-min\"", "side = \"left\"", "scene.toml:29: pin[0].side: \"left\" must be one of x-min,"),
         ("[solver]", "[slover]", "scene.toml:9: slover: unknown key; did you mean solver?"),
+        ("[solver]", "[wind]", "scene.toml:9: wind: unknown key; did you mean simulation.wind?"),
         (
             "name = \"ground\"",
             "name = \"sheet\"",
@@ -204,6 +205,14 @@ fn syntax_errors_have_line_and_column() {
 #[test]
 fn an_empty_scene_is_refused() {
     assert!(matches!(Scene::from_toml("[simulation]\n", ""), Err(SceneError::Empty)));
+}
+
+#[test]
+fn a_byte_order_mark_hides_no_line() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("marked.toml");
+    std::fs::write(&path, "\u{feff}[simulation]\nframes = 7\n[[body]]\nshape = \"sheet\"\n").expect("writes");
+    assert_eq!(Scene::load(&path, &[""; 0]).expect("a scene").simulation.frames, 7);
 }
 
 #[test]

@@ -125,7 +125,7 @@ fn info_lists_the_structure_of_a_mesh_and_its_problems() {
     let ended = place.run("check bad.obj");
     assert!(ended.stderr.contains("bad.obj: triangle 4 repeats triangle 2"), "{ended:#?}");
     assert_eq!(place.run("check bad.obj --json").json()["mesh_problems"], 1);
-    place.write("flat.t", "Vertex 0 0 0 0\nVertex 1 1 0 0\nVertex 2 0 1 0\nVertex 3 0 0 -1\nTet 0 0 1 2 3\n");
+    place.write("flat.t", "Vertex 0 0 0 0\nVertex 1 1 0 0\nVertex 2 0 1 0\nVertex 3 1 1 0\nTet 0 0 1 2 3\n");
     let info = place.run("info flat.t --json").ok().json();
-    assert!(info["problems"][0].as_str().unwrap().contains("1 inverted"), "{info}");
+    assert!(info["problems"][0].as_str().unwrap().contains("1 flat"), "{info}");
 }

@@ -5,6 +5,7 @@ use super::write::{NAMELESS, OBSTACLE_FROM};
 use crate::error::{IoError, Place};
 use crate::import::Import;
 use crate::mesh::Mesh;
+use crate::read::without_mark;
 use crate::surface::{Corner, Surface};
 use bowknot_errors::{Parameters, counted};
 use std::fs;
@@ -56,7 +57,7 @@ fn read(path: &Path, import: &Import, dialect: Dialect) -> Result<Mesh, IoError>
     import.validate().map_err(|errors| IoError::content(path, Place::File, errors.to_string()))?;
     let bytes = fs::read(path).map_err(|source| IoError::system("read", path, source))?;
     // Names of groups and materials may be in any encoding; the numbers are ASCII.
-    let text = String::from_utf8_lossy(&bytes);
+    let text = String::from_utf8_lossy(without_mark(&bytes));
     let mut reader = Reader {
         path,
         import,

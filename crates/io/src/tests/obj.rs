@@ -26,6 +26,19 @@ fn obj_statements_of_every_kind() {
 }
 
 #[test]
+fn a_byte_order_mark_hides_no_line() {
+    let folder = folder();
+    let path = write(&folder, "a.obj", "\u{feff}v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    assert_eq!(read_obj(&path, &Import::default()).unwrap().positions.len(), 3);
+    let path = write(
+        &folder,
+        "a.t",
+        "\u{feff}Vertex 0 0 0 0\nVertex 1 1 0 0\nVertex 2 0 1 0\nVertex 3 0 0 1\nTet 0 0 1 2 3\n",
+    );
+    assert_eq!(read_mesh(&path, &Import::default()).unwrap().positions.len(), 4);
+}
+
+#[test]
 fn obj_faces_may_precede_their_vertices() {
     let folder = folder();
     let path = write(&folder, "a.obj", "f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n");

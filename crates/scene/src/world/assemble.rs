@@ -22,7 +22,7 @@ impl World {
     ///
     /// # Errors
     /// What [`Scene::validate`] refuses; meshes that are missing, malformed, or of other elements than their
-    /// body is made of; triangles of a deformable body without area or repeated; tetrahedra that are inverted
+    /// body is made of; triangles of a deformable body without area or repeated; tetrahedra that overlap
     /// or flat; strand edges whose points coincide; sequences whose topology changes; pins without vertices.
     pub fn new(scene: &Scene) -> Result<Self, SceneError> {
         scene.validate()?;

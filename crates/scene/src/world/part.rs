@@ -128,7 +128,7 @@ impl Part {
                 }
             }
             BodyKind::Solid => {
-                self.check_tets().map_err(fault)?;
+                self.order_tets(name, warnings).map_err(fault)?;
                 self.split_surface();
             }
             BodyKind::Strands => self.check_strands().map_err(fault)?,
@@ -162,9 +162,11 @@ impl Part {
         (own, counts)
     }
 
-    fn check_tets(&self) -> Result<(), String> {
-        let (mut inverted, mut flat) = (Vec::new(), Vec::new());
-        for (index, tet) in self.tets.iter().enumerate() {
+    /// Gives all tetrahedra the same handedness: the order of their vertices is no geometry. Refuses flat ones, and pairs that
+    /// lie on the same side of the face that they share.
+    fn order_tets(&mut self, name: &str, warnings: &mut Vec<String>) -> Result<(), String> {
+        let (mut turned, mut flat) = (Vec::new(), Vec::new());
+        for (index, tet) in self.tets.iter_mut().enumerate() {
             let [a, b, c, d] = tet.map(|v| self.positions[v as usize]);
             let edges = [b - a, c - a, d - a, c - b, d - b, d - c];
             let longest = edges.iter().map(|e| e.norm()).fold(0.0, f64::max);
@@ -172,28 +174,33 @@ impl Part {
             if volume.abs() <= FLAT * longest.powi(3) {
                 flat.push(index);
             } else if volume < 0.0 {
-                inverted.push(index);
+                tet.swap(2, 3);
+                turned.push(index);
             }
         }
-        if inverted.is_empty() && flat.is_empty() {
-            return Ok(());
-        }
+        let overlapping = overlapping(&self.positions, &self.tets);
         let listed = |list: &[usize], what: &str| match list {
             [] => None,
             list => Some(format!("{} {what}: {}", list.len(), first(list.iter()))),
         };
-        let lists: Vec<String> =
-            [listed(&inverted, "inverted"), listed(&flat, "flat")].into_iter().flatten().collect();
-        let hint = if inverted.len() == self.tets.len() {
-            "swap two vertices of every tetrahedron"
-        } else {
-            "mend or remove them"
-        };
-        Err(format!(
-            "of {}, {}; {hint}",
-            counted(self.tets.len(), "tetrahedron", "tetrahedra"),
-            lists.join("; ")
-        ))
+        let faults = [listed(&flat, "flat"), listed(&overlapping, "on the same side of a face as another")];
+        let faults: Vec<String> = faults.into_iter().flatten().collect();
+        let of_all = |count: usize| counted(count, "tetrahedron", "tetrahedra");
+        if !faults.is_empty() {
+            return Err(format!(
+                "of {}, {}; mend or remove them",
+                of_all(self.tets.len()),
+                faults.join("; ")
+            ));
+        }
+        if let Some(first) = turned.first() {
+            warnings.push(format!(
+                "body {name}: {} of {} had their vertices in the opposite order and have been renumbered, the first is {first}",
+                turned.len(),
+                of_all(self.tets.len())
+            ));
+        }
+        Ok(())
     }
 
     fn check_strands(&self) -> Result<(), String> {
@@ -291,4 +298,23 @@ pub(super) fn element_of(kind: BodyKind) -> (&'static str, &'static str) {
 fn first<T: ToString>(list: impl ExactSizeIterator<Item = T>) -> String {
     let more = if list.len() > LISTED { ", .." } else { "" };
     list.take(LISTED).map(|entry| entry.to_string()).collect::<Vec<_>>().join(", ") + more
+}
+
+/// Tetrahedra that share a face with an earlier one on the same side of it, ascending.
+fn overlapping(x: &[Point], tets: &[[u32; 4]]) -> Vec<usize> {
+    let mut sides: HashMap<[u32; 3], f64> = HashMap::new();
+    let mut found = Vec::new();
+    for (index, &[a, b, c, d]) in tets.iter().enumerate() {
+        let overlaps =
+            [([a, b, c], d), ([a, b, d], c), ([a, c, d], b), ([b, c, d], a)].map(|(mut face, apex)| {
+                face.sort_unstable();
+                let [p, q, r, s] = [face[0], face[1], face[2], apex].map(|v| x[v as usize]);
+                let side = (q - p).cross(&(r - p)).dot(&(s - p));
+                sides.insert(face, side).is_some_and(|other| other * side > 0.0)
+            });
+        if overlaps.contains(&true) {
+            found.push(index);
+        }
+    }
+    found
 }

@@ -8,6 +8,8 @@ use std::fmt;
 const LARGE: f64 = 20.0;
 /// Extent below which a body is likely to be in kilometers, or scaled down twice [m].
 const SMALL: f64 = 1e-3;
+/// Share of the largest side of a bounding box below which a side counts as none.
+const FLAT: f64 = 1e-9;
 /// Ratio of the extents of a body and an obstacle from which on one of them is likely in another unit.
 const MAX_RATIO: f64 = 100.0;
 
@@ -35,7 +37,9 @@ impl BodySize {
 impl fmt::Display for BodySize {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let kind = self.kind.map_or("obstacle", |kind| kind.name());
-        let [x, y, z] = self.extent.map(rounded);
+        // What rounding leaves of a flat body is no extent.
+        let extent = |side: f64| if side < FLAT * self.largest() { 0.0 } else { rounded(side) };
+        let [x, y, z] = self.extent.map(extent);
         let vertices = counted(self.vertices, "vertex", "vertices");
         write!(f, "{kind} {}: {vertices}, {x} x {y} x {z} m", self.name)
     }
@@ -95,6 +99,13 @@ mod tests {
             radius / 2.0,
             -2.0 * radius
         )
+    }
+
+    #[test]
+    fn a_flat_body_has_no_third_extent_however_it_is_turned() {
+        let scene = Scene::from_toml(&(sheet(0.4) + "rotate = [90, 0, 0]\n"), "").expect("a scene");
+        let size = World::new(&scene).expect("a world").sizes()[0].to_string();
+        assert_eq!(size, "cloth sheet: 121 vertices, 0.4 x 0 x 0.4 m");
     }
 
     #[test]
