@@ -50,3 +50,8 @@ impl Parameters for Import {
         checks.positive("scale", self.scale);
     }
 }
+
+/// A text without the byte order mark that some editors put before it.
+pub(crate) fn without_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+}

@@ -9,11 +9,6 @@ use crate::ply::read_ply;
 use crate::tet_list::read_tet_list;
 use std::path::Path;
 
-/// A text without the byte order mark that some editors put before it.
-pub(crate) fn without_mark(bytes: &[u8]) -> &[u8] {
-    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
-}
-
 /// Endings of the files that [`read_mesh`] reads, in lower case.
 pub const MESH_ENDINGS: [&str; 5] = ["obj", "ply", "msh", "t", "seg"];
 

@@ -2,10 +2,9 @@
 //! write.
 
 use crate::error::{IoError, Place};
-use crate::import::Import;
+use crate::import::{Import, without_mark};
 use crate::mesh::Mesh;
 use crate::numbering::Numbering;
-use crate::read::without_mark;
 use bowknot_errors::Parameters;
 use bowknot_errors::counted;
 use std::fs;

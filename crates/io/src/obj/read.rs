@@ -3,9 +3,8 @@
 use super::faces::Faces;
 use super::write::{NAMELESS, OBSTACLE_FROM};
 use crate::error::{IoError, Place};
-use crate::import::Import;
+use crate::import::{Import, without_mark};
 use crate::mesh::Mesh;
-use crate::read::without_mark;
 use crate::surface::{Corner, Surface};
 use bowknot_errors::{Parameters, counted};
 use std::fs;
