@@ -1,9 +1,9 @@
 // Desired distance and minimum separation of candidates that are new, and the minimum separation of all for the forward
 // step.
 //
-// The desired distance of two elements of one connected component is at most half of their rest distance: otherwise it would tear a fine
-// mesh apart. A pair that starts closer opens by at most `growth` in a call. Where the target knows the contacts of a
-// vertex, pairs that are near guard only a part of their gap: the target decides about the rest.
+// The desired distance of two elements of one connected component is at most half of their rest distance: otherwise it
+// would tear a fine mesh apart. A pair that starts closer opens by at most `growth` in a call. Where the target knows the
+// contacts of a vertex, pairs that are near guard only a part of their gap: the target decides about the rest.
 
 struct Params {
     capacity: u32,

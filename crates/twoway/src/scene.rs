@@ -176,8 +176,8 @@ impl CollisionScene {
         self.facing.contact_share(self.model.topology(), features, normal, positions)
     }
 
-    /// The direction in the normal cones of both `features` that is closest to `normal`, first of all in that of the `rigid`
-    /// side, see [`Facing::turned`](bowknot_constraints::Facing::turned).
+    /// The direction in the normal cones of both `features` that is closest to `normal`, or the normal of the `rigid` side where
+    /// that is flat, see [`Facing::turned`](bowknot_constraints::Facing::turned).
     pub fn turned(
         &self,
         features: [Feature; 2],

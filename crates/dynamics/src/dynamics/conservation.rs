@@ -44,11 +44,11 @@ const MAX_TURN: f64 = 0.7;
 pub struct Touching {
     /// Pairs of vertices that a contact joins. Those with vertices of obstacles join nothing.
     pub pairs: Vec<[u32; 2]>,
-    /// Vertices that touch an obstacle or a half-space.
+    /// Vertices that an obstacle or a half-space may push.
     pub held: Vec<Held>,
 }
 
-/// A vertex that touches an obstacle or a half-space.
+/// A vertex that an obstacle or a half-space may push.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Held {
     /// The vertex.
