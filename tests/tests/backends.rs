@@ -302,8 +302,6 @@ const SIDE_BY_SIDE: &str = r#"
 [simulation]
 dt = 0.01
 gravity = [3, 0, -9]
-[solver.newton]
-cg_tolerance = 1e-8
 [solver.sleep]
 enabled = false
 [contact]
