@@ -167,16 +167,15 @@ fn a_finger_holds_a_sheet_on_the_ground_at_rest() {
 
 #[test]
 fn pads_hold_a_strip_without_creep() {
-    for friction in [0.3, 0.8, 1.0] {
+    for friction in [0.3, 0.8, 0.9, 1.0, 1.05] {
         let strip = with(STRIP, "friction = 0.5", &format!("friction = {friction}"));
         let course = Course::of(&format!("{strip}[solver.sleep]\nenabled = false\n"), 300);
         let solved = course.solved(100);
-        // Near 1 chance decides whether iterations come to the tolerance.
-        assert!(friction == 1.0 || solved > 0.9, "mu = {friction}: {solved} of the time steps are solved");
+        assert!(solved > 0.9, "mu = {friction}: {solved} of the time steps are solved");
         let speed = course.most(|s| s.max_speed);
         assert!(speed < 0.5, "mu = {friction}: {speed} m/s");
         let fallen = course.steps[199].center_of_mass[2] - course.steps[299].center_of_mass[2];
-        assert!(fallen.abs() < 5e-5, "mu = {friction}: it creeps {fallen} m in a second");
+        assert!(fallen.abs() < 5e-6, "mu = {friction}: it creeps {fallen} m in a second");
     }
 }
 

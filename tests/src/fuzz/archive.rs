@@ -14,7 +14,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 /// Names of arrays, by the choices of the parts: those of problems and stacks, then those of checkpoints.
-const NAMES: [&str; 38] = [
+const NAMES: [&str; 39] = [
     "x",
     "y",
     "F",
@@ -53,6 +53,7 @@ const NAMES: [&str; 38] = [
     "sleep_origins",
     "sleep_calm_steps",
     "sleep_islands",
+    "contact_means",
 ];
 
 /// Reads the parts of the input as arrays, header included, of an archive whose sums are right. The first byte
@@ -126,10 +127,12 @@ fn scene() -> &'static Scene {
 /// A checkpoint of a simulation in contact.
 pub fn sound_checkpoint() -> Checkpoint {
     let mut simulator = Simulator::new(scene()).expect("a simulator");
-    for _ in 0..3 {
+    for _ in 0..40 {
         simulator.step().expect("a step");
     }
-    simulator.checkpoint()
+    let checkpoint = simulator.checkpoint();
+    assert!(!checkpoint.contacts.forces.is_empty() && !checkpoint.contacts.means.is_empty());
+    checkpoint
 }
 
 /// Reads a checkpoint: the bytes as they are, or as arrays of a sound archive. What is read must be refused by a
@@ -171,7 +174,7 @@ fn damage(checkpoint: &mut Checkpoint, draw: &mut super::Draw<'_>) {
     use bowknot::constraints::Feature;
     let number = |draw: &mut super::Draw<'_>| if draw.below(2) == 0 { draw.any() } else { draw.grid() };
     let (vertex, axis) = (draw.below(256), draw.below(3));
-    match draw.below(10) {
+    match draw.below(12) {
         0 => checkpoint.step = draw.any().to_bits() as usize,
         1 => {
             let count = checkpoint.positions.len().max(1);
@@ -194,8 +197,9 @@ fn damage(checkpoint: &mut Checkpoint, draw: &mut super::Draw<'_>) {
         }
         6 => checkpoint.anchors.iter_mut().for_each(|anchors| anchors.truncate(vertex)),
         7 | 8 => {
-            let count = checkpoint.contacts.len().max(1);
-            if let Some(contact) = checkpoint.contacts.get_mut(vertex % count) {
+            let forces = &mut checkpoint.contacts.forces;
+            let count = forces.len().max(1);
+            if let Some(contact) = forces.get_mut(vertex % count) {
                 let index = [0, 1, 7, 100, 1 << 20, u32::MAX][draw.below(6)];
                 match draw.below(6) {
                     0 => contact.features[axis % 2] = Feature::Vertex(index),
@@ -204,6 +208,23 @@ fn damage(checkpoint: &mut Checkpoint, draw: &mut super::Draw<'_>) {
                     3 => contact.features[axis % 2] = Feature::HalfSpace(index),
                     4 => contact.force[axis] = number(draw),
                     _ => contact.normal[axis] = number(draw),
+                }
+            }
+        }
+        9 | 10 => {
+            let means = &mut checkpoint.contacts.means;
+            let count = means.len().max(1);
+            if let Some(mean) = means.get_mut(vertex % count) {
+                let spring = &mut mean.spring;
+                match draw.below(8) {
+                    0 => spring.vertices[axis] = [0, 1, 7, 100, 1 << 20, u32::MAX][draw.below(6)],
+                    1 => spring.weights[axis] = number(draw),
+                    2 => spring.normal[axis] = number(draw),
+                    3 => spring.floor = number(draw),
+                    4 => spring.reach = number(draw),
+                    5 => spring.stiffness = number(draw),
+                    6 => mean.features[axis % 2] = Feature::Edge([0, 1 << 20][draw.below(2)]),
+                    _ => mean.depth = draw.any().to_bits() as u32,
                 }
             }
         }

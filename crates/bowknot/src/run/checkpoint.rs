@@ -1,7 +1,8 @@
 //! The file of a checkpoint.
 
-use crate::simulator::{Checkpoint, ContactForce, SleepState};
+use crate::simulator::{CarriedContacts, Checkpoint, ContactForce, ContactMean, SleepState};
 use bowknot_constraints::Feature;
+use bowknot_dynamics::{RepulsionSpring, SpringKind};
 use bowknot_geometry::{Point, Vector};
 use bowknot_io::IoError;
 use bowknot_io::npz::{Archive, write_archive};
@@ -14,8 +15,9 @@ const CHECKSUM: &str = "checksum";
 impl Checkpoint {
     /// Writes the state as one NPZ file, atomically: `step[1]`, `positions[n,3]`, `velocities[n,3]`,
     /// `anchor_counts[p]`, `anchors[k,3]`, `contact_features[c,4]` (kind and index of either feature: 0
-    /// vertex, 1 edge, 2 triangle, 3 half-space), `contact_normals[c,3]`, `contact_forces[c,3]`; where bodies
-    /// may sleep, `sleep_origins[n,3]`, `sleep_calm_steps[b]` and `sleep_islands[b]` (4294967295: awake); and
+    /// vertex, 1 edge, 2 triangle, 3 half-space), `contact_normals[c,3]`, `contact_forces[c,3]`; of contacts near
+    /// rest `contact_means[m,22]` (kind and index of either feature, four vertices, their weights, normal, offset, reach, floor,
+    /// stiffness, friction, distance, and how many times found the mean goes back); where bodies may sleep, `sleep_origins[n,3]`, `sleep_calm_steps[b]` and `sleep_islands[b]` (4294967295: awake); and
     /// `checksum[8]` of all that.
     ///
     /// # Errors
@@ -23,20 +25,18 @@ impl Checkpoint {
     pub fn write(&self, path: &Path) -> Result<(), IoError> {
         let points = |points: &[Point]| table(points.iter().map(|p| [p.x, p.y, p.z]));
         let vectors = |vectors: &[Vector]| table(vectors.iter().map(|v| [v.x, v.y, v.z]));
-        let of_contacts = |vector: fn(&ContactForce) -> Vector| {
-            vectors(&self.contacts.iter().map(vector).collect::<Vec<Vector>>())
+        let CarriedContacts { forces, means } = &self.contacts;
+        let of_forces = |vector: fn(&ContactForce) -> Vector| {
+            vectors(&forces.iter().map(vector).collect::<Vec<Vector>>())
         };
-        let codes = self.contacts.iter().map(|c| {
-            let [a, b] = c.features.map(code);
-            [a[0], a[1], b[0], b[1]]
-        });
         write_archive(path, false, |archive| {
             archive.add_array("step", &Array1::from_elem(1, self.step as u64))?;
             let counts: Array1<u64> = self.anchors.iter().map(|a| a.len() as u64).collect();
             archive.add_array("anchor_counts", &counts)?;
-            archive.add_array("contact_features", &table(codes))?;
-            archive.add_array("contact_normals", &of_contacts(|c| c.normal))?;
-            archive.add_array("contact_forces", &of_contacts(|c| c.force))?;
+            archive.add_array("contact_features", &table(forces.iter().map(|c| codes(c.features))))?;
+            archive.add_array("contact_normals", &of_forces(|c| c.normal))?;
+            archive.add_array("contact_forces", &of_forces(|c| c.force))?;
+            archive.add_array("contact_means", &table(means.iter().map(row_of)))?;
             archive.add_array("positions", &points(&self.positions))?;
             archive.add_array("velocities", &vectors(&self.velocities))?;
             archive.add_array("anchors", &points(&self.anchors.concat()))?;
@@ -67,7 +67,7 @@ impl Checkpoint {
             positions: rows(&mut archive, "positions")?.into_iter().map(Point::from).collect(),
             velocities: rows(&mut archive, "velocities")?.into_iter().map(Vector::from).collect(),
             anchors: anchors(&mut archive)?,
-            contacts: contacts(&mut archive)?,
+            contacts: CarriedContacts { forces: forces(&mut archive)?, means: means(&mut archive)? },
             sleep: SleepState::default(),
         };
         if archive.has("sleep_origins") {
@@ -97,9 +97,9 @@ fn missing(archive: &Archive<'_>, name: &str) -> IoError {
     archive.file_fault(format!("array {name} is missing: not a checkpoint, or one of an earlier version"))
 }
 
-/// An array of points or vectors, which must be there.
-fn rows(archive: &mut Archive<'_>, name: &str) -> Result<Vec<[f64; 3]>, IoError> {
-    archive.rows::<3>(name)?.ok_or_else(|| missing(archive, name))
+/// An array of points, vectors or other rows, which must be there.
+fn rows<const N: usize>(archive: &mut Archive<'_>, name: &str) -> Result<Vec<[f64; N]>, IoError> {
+    archive.rows::<N>(name)?.ok_or_else(|| missing(archive, name))
 }
 
 /// An array of whole numbers, which must be there.
@@ -132,21 +132,65 @@ fn anchors(archive: &mut Archive<'_>) -> Result<Vec<Vec<Point>>, IoError> {
     Ok(split)
 }
 
-fn contacts(archive: &mut Archive<'_>) -> Result<Vec<ContactForce>, IoError> {
+fn forces(archive: &mut Archive<'_>) -> Result<Vec<ContactForce>, IoError> {
     const FEATURES: &str = "contact_features";
     let (normals, forces) = (rows(archive, "contact_normals")?, rows(archive, "contact_forces")?);
-    let codes = archive.rows::<4>(FEATURES)?.ok_or_else(|| missing(archive, FEATURES))?;
-    let codes = whole(archive, FEATURES, codes.as_flattened())?;
-    let codes = codes.as_chunks::<4>().0;
+    let codes: Vec<[f64; 4]> = rows(archive, FEATURES)?;
     if codes.len() != forces.len() || normals.len() != forces.len() {
         return Err(archive.fault(FEATURES, "has not one row for each normal and each force"));
     }
-    let contacts = codes.iter().zip(normals.into_iter().zip(forces)).map(|(row, (normal, force))| {
-        let features = [feature(row[0], row[1])?, feature(row[2], row[3])?];
-        Some(ContactForce { features, normal: Vector::from(normal), force: Vector::from(force) })
-    });
-    let contacts: Option<Vec<ContactForce>> = contacts.collect();
-    contacts.ok_or_else(|| archive.fault(FEATURES, "has an unknown kind of feature"))
+    let force = |(codes, (normal, force)): ([f64; 4], ([f64; 3], [f64; 3]))| {
+        let features = features(archive, FEATURES, codes)?;
+        Ok(ContactForce { features, normal: Vector::from(normal), force: Vector::from(force) })
+    };
+    codes.into_iter().zip(normals.into_iter().zip(forces)).map(force).collect()
+}
+
+/// A mean as a row.
+fn row_of(mean: &ContactMean) -> [f64; 22] {
+    let RepulsionSpring { vertices, weights, normal, offset, reach, floor, stiffness, friction, .. } =
+        mean.spring;
+    let fours = [
+        codes(mean.features).map(|code| code as f64),
+        vertices.map(f64::from),
+        weights,
+        [normal.x, normal.y, normal.z, offset],
+        [reach, floor, stiffness, friction],
+    ];
+    let last = [mean.distance, f64::from(mean.depth)];
+    let numbers = fours.as_flattened().iter().chain(&last);
+    let mut row = [0.0; 22];
+    row.iter_mut().zip(numbers).for_each(|(place, number)| *place = *number);
+    row
+}
+
+fn means(archive: &mut Archive<'_>) -> Result<Vec<ContactMean>, IoError> {
+    const MEANS: &str = "contact_means";
+    let mut means = Vec::new();
+    for row in rows::<22>(archive, MEANS)? {
+        let (fours, last) = row.as_chunks::<4>();
+        let (&[codes, vertices, weights, [x, y, z, offset], spring], &[distance, depth]) = (fours, last)
+        else {
+            unreachable!("a row has five times four numbers and two")
+        };
+        let [reach, floor, stiffness, friction] = spring;
+        let spring = RepulsionSpring {
+            kind: SpringKind::Contact,
+            vertices: vertices.map(|vertex| vertex as u32),
+            weights,
+            normal: Vector::new(x, y, z),
+            offset,
+            reach,
+            floor,
+            start_gap: 0.0,
+            stiffness,
+            friction,
+            friction_ratio: Vector::zeros(),
+        };
+        let features = features(archive, MEANS, codes)?;
+        means.push(ContactMean { features, spring, distance, depth: depth as u32 });
+    }
+    Ok(means)
 }
 
 /// The checksum of a checkpoint's content. CRCs of the archive guard its arrays one by one; this one guards them
@@ -159,10 +203,14 @@ fn checksum(checkpoint: &Checkpoint) -> [u8; 8] {
     sum.vectors(velocities);
     sum.add(anchors.len() as u64);
     anchors.iter().for_each(|anchors| sum.points(anchors));
-    sum.add(contacts.len() as u64);
-    for contact in contacts {
-        contact.features.iter().flat_map(|&feature| code(feature)).for_each(|word| sum.add(word));
+    sum.add(contacts.forces.len() as u64);
+    for contact in &contacts.forces {
+        codes(contact.features).into_iter().for_each(|word| sum.add(word));
         sum.vectors(&[contact.normal, contact.force]);
+    }
+    sum.add(contacts.means.len() as u64);
+    for mean in &contacts.means {
+        row_of(mean).into_iter().for_each(|number| sum.add(number.to_bits()));
     }
     sum.points(&sleep.origins);
     for numbers in [&sleep.calm_steps, &sleep.islands] {
@@ -192,6 +240,12 @@ impl Checksum {
     }
 }
 
+/// Two features in numbers.
+fn codes(features: [Feature; 2]) -> [u64; 4] {
+    let [a, b] = features.map(code);
+    [a[0], a[1], b[0], b[1]]
+}
+
 /// A feature in numbers.
 fn code(feature: Feature) -> [u64; 2] {
     match feature {
@@ -202,15 +256,22 @@ fn code(feature: Feature) -> [u64; 2] {
     }
 }
 
-fn feature(kind: u64, index: u64) -> Option<Feature> {
-    let index = u32::try_from(index).ok()?;
-    match kind {
-        0 => Some(Feature::Vertex(index)),
-        1 => Some(Feature::Edge(index)),
-        2 => Some(Feature::Triangle(index)),
-        3 => Some(Feature::HalfSpace(index)),
-        _ => None,
-    }
+/// Two features from their numbers in the array `name`.
+fn features(archive: &Archive<'_>, name: &str, codes: [f64; 4]) -> Result<[Feature; 2], IoError> {
+    let codes = whole(archive, name, &codes)?;
+    let feature = |kind: u64, index: u64| {
+        let index = u32::try_from(index).ok()?;
+        match kind {
+            0 => Some(Feature::Vertex(index)),
+            1 => Some(Feature::Edge(index)),
+            2 => Some(Feature::Triangle(index)),
+            3 => Some(Feature::HalfSpace(index)),
+            _ => None,
+        }
+    };
+    let pair = feature(codes[0], codes[1]).zip(feature(codes[2], codes[3]));
+    let (a, b) = pair.ok_or_else(|| archive.fault(name, "has an unknown kind of feature"))?;
+    Ok([a, b])
 }
 
 #[cfg(test)]
@@ -226,11 +287,31 @@ mod tests {
             positions: vec![Point::new(0.1, -0.0, 1e-300), Point::new(1.0 / 3.0, 2.0, 3.0)],
             velocities: vec![Vector::new(-1e300, 0.0, 5e-324), Vector::zeros()],
             anchors: vec![Vec::new(), vec![Point::new(0.7, 0.8, 0.9)]],
-            contacts: vec![ContactForce {
-                features: [Feature::Vertex(7), Feature::HalfSpace(1)],
-                normal: Vector::z(),
-                force: Vector::new(0.1, -0.0, 1e-300),
-            }],
+            contacts: CarriedContacts {
+                forces: vec![ContactForce {
+                    features: [Feature::Vertex(7), Feature::HalfSpace(1)],
+                    normal: Vector::z(),
+                    force: Vector::new(0.1, -0.0, 1e-300),
+                }],
+                means: vec![ContactMean {
+                    features: [Feature::Vertex(7), Feature::Triangle(2)],
+                    spring: RepulsionSpring {
+                        kind: SpringKind::Contact,
+                        vertices: [7, 3, u32::MAX, 0],
+                        weights: [1.0, -1.0 / 3.0, -0.0, 5e-324],
+                        normal: Vector::new(0.1, 0.2, 0.3),
+                        offset: -0.5,
+                        reach: 0.012,
+                        floor: 0.004,
+                        start_gap: 0.0,
+                        stiffness: 0.7,
+                        friction: 0.3,
+                        friction_ratio: Vector::zeros(),
+                    },
+                    distance: 0.01,
+                    depth: 9,
+                }],
+            },
             sleep: SleepState {
                 origins: vec![Point::new(0.2, -0.0, 1e-300), Point::origin()],
                 calm_steps: vec![3, 50],
@@ -288,7 +369,8 @@ mod tests {
         let other = Checkpoint { step: 4, ..checkpoint };
         write_archive(&path, false, |archive| {
             let mut old = ndarray_npy::NpzReader::new(std::io::Cursor::new(&bytes)).expect("an archive");
-            for name in ["positions", "velocities", "anchors", "contact_normals", "contact_forces"] {
+            let contacts = ["contact_normals", "contact_forces", "contact_means"];
+            for name in ["positions", "velocities", "anchors"].into_iter().chain(contacts) {
                 let array: Array2<f64> = old.by_name(name).expect("an array");
                 archive.add_array(name, &array)?;
             }

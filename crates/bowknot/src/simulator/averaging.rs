@@ -1,4 +1,4 @@
-//! Contacts over the Newton iterations of a time step.
+//! Contacts over the Newton iterations of a time step, and over the time steps of bodies at rest.
 //!
 //! Contacts follow from positions, but not smoothly. Normals turn with the bodies, so that bodies pressed together overshoot,
 //! to one side and the other in turn. And contacts come and go: that of two crossing edges ends at once where its closest
@@ -8,7 +8,8 @@
 //! So each contact is the mean of what it was after the iterations so far (Mann, "Mean value methods in iteration",
 //! Proceedings of the American Mathematical Society 4, 1953). Contacts that come and go tend to the mixture of both sets
 //! whose forces balance: a solution in the sense of Filippov. What contacts were at the start of the time step does not count:
-//! in an impact that is far off.
+//! in an impact that is far off. Near rest it is not, and there the mean goes on from time step to time step: else each would
+//! begin anew between the two sets, and end there if it has too few iterations.
 
 use bowknot_constraints::Feature;
 use bowknot_dynamics::RepulsionSpring;
@@ -22,6 +23,23 @@ const STILL_THERE: f64 = 0.9;
 /// Stiffness, in that of a whole contact, below which one that is none any more is forgotten.
 const FORGOTTEN: f64 = 0.01;
 
+/// Way of its vertices over which the mean of a contact goes back, in its reach. Less forgets too soon to settle at the border
+/// between two sets; more lags behind bodies that slide.
+const MEMORY: f64 = 0.1;
+
+/// A contact near rest, for the next time step: the mean of what it was.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactMean {
+    /// The two features in contact.
+    pub features: [Feature; 2],
+    /// Its spring. What follows from the start of a time step is 0: `start_gap` and `friction_ratio`.
+    pub spring: RepulsionSpring,
+    /// Distance where it was found [m].
+    pub distance: f64,
+    /// How many times found the mean goes back.
+    pub depth: u32,
+}
+
 /// Contacts: their features, springs, and distances where they were found [m]. Other springs may follow after theirs.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FoundContacts {
@@ -30,24 +48,107 @@ pub(super) struct FoundContacts {
     pub distances: Vec<f64>,
 }
 
+/// How often contacts have been found.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Finds {
+    /// In this time step, at its start included.
+    in_step: u32,
+    /// How many times means go back before this time step, by vertex; `u32::MAX` for vertices that cannot move.
+    before: Vec<u32>,
+}
+
+impl Finds {
+    /// Begins a time step with the means of the last one. `moves` says which vertices can move.
+    pub fn begin_step(&mut self, means: &[ContactMean], moves: impl Iterator<Item = bool>) {
+        self.in_step = 0;
+        self.before.clear();
+        self.before.extend(moves.map(|moves| if moves { 0 } else { u32::MAX }));
+        for ContactMean { spring, depth, .. } in means {
+            for vertex in used(spring) {
+                let known = &mut self.before[vertex as usize];
+                *known = (*known).max(*depth);
+            }
+        }
+    }
+
+    /// Notes that contacts have been found.
+    pub fn add(&mut self) {
+        self.in_step += 1;
+    }
+
+    /// How many finds the mean of a contact goes back, if its vertices have moved from one of `way` to the other in this time
+    /// step: so many that they have not moved far meanwhile.
+    fn depth(&self, spring: &RepulsionSpring, [start, x]: [&[Point]; 2]) -> u32 {
+        let moved = |v: u32| (x[v as usize] - start[v as usize]).norm();
+        let of_vertex = |v: u32| {
+            self.before[v as usize]
+                .saturating_add(self.in_step)
+                .min((MEMORY * spring.reach / moved(v)) as u32)
+        };
+        used(spring).map(of_vertex).min().unwrap_or(0)
+    }
+
+    /// Whether the mean of a contact goes back beyond the start of the time step.
+    pub fn goes_on(&self, spring: &RepulsionSpring, way: [&[Point]; 2]) -> bool {
+        self.depth(spring, way) > self.in_step
+    }
+
+    /// Share of what a contact is now in the mean [1]. In the first iteration contacts are farthest off, so the second
+    /// counts twice as much.
+    fn share_of_new(&self, spring: &RepulsionSpring, way: [&[Point]; 2]) -> f64 {
+        match (self.depth(spring, way), self.in_step) {
+            (depth, in_step) if depth > in_step => 1.0 / f64::from(depth),
+            (_, 0 | 1) => 1.0,
+            (_, 2) => 2.0 / 3.0,
+            (_, in_step) => 1.0 / f64::from(in_step),
+        }
+    }
+}
+
 impl FoundContacts {
-    /// Averages these contacts, found at the positions `x` after so many `iterations`, with the means `before`.
-    /// Contacts that are none any more stay with their part. `stiffness` is that of a whole one.
-    pub fn average(&mut self, before: &Self, iterations: usize, stiffness: f64, x: &[Point]) {
-        let new = share_of(iterations);
+    /// The means of the last time step.
+    pub fn from_means(means: &[ContactMean]) -> Self {
+        Self {
+            features: means.iter().map(|mean| mean.features).collect(),
+            springs: means.iter().map(|mean| mean.spring).collect(),
+            distances: means.iter().map(|mean| mean.distance).collect(),
+        }
+    }
+
+    /// The means of contacts near rest, at the end of a time step whose vertices have moved from one of `way` to the other.
+    pub fn means(&self, finds: &Finds, way: [&[Point]; 2]) -> Vec<ContactMean> {
+        let all = self.features.iter().zip(&self.springs).zip(&self.distances);
+        let mean = |((features, spring), distance): ((&[Feature; 2], &RepulsionSpring), &f64)| {
+            let depth = finds.depth(spring, way);
+            (depth > 0).then(|| ContactMean {
+                features: *features,
+                spring: RepulsionSpring { start_gap: 0.0, friction_ratio: Vector::zeros(), ..*spring },
+                distance: *distance,
+                depth,
+            })
+        };
+        all.filter_map(mean).collect()
+    }
+
+    /// Averages these contacts, found now, with the means `before`. Vertices have moved from one of `way` to the other in
+    /// this time step. Contacts that are none any more stay with their part. `stiffness` is that of a whole one.
+    pub fn average(&mut self, before: &Self, finds: &Finds, stiffness: f64, way: [&[Point]; 2]) {
         let all_before = before.features.iter().zip(&before.springs).zip(&before.distances);
         let mut gone: FxHashMap<&[Feature; 2], &RepulsionSpring> =
             all_before.clone().map(|(contact, _)| contact).collect();
         for (features, spring) in self.features.iter().zip(&mut self.springs) {
+            let new = finds.share_of_new(spring, way);
             match gone.remove(features) {
-                Some(old) => mix(spring, old, new),
+                Some(old) if new < 1.0 => mix(spring, old, new),
                 None => spring.stiffness *= new,
+                Some(_) => (),
             }
         }
         for ((features, old), &distance) in all_before {
-            let left = RepulsionSpring { stiffness: old.stiffness * (1.0 - new), ..*old };
+            let kept = 1.0 - finds.share_of_new(old, way);
+            let left = RepulsionSpring { stiffness: old.stiffness * kept, ..*old };
             let least = old.floor + STILL_THERE * (distance - old.floor);
-            let stays = || left.stiffness > FORGOTTEN * stiffness && gap(old, x) > least;
+            let stays = || left.stiffness > FORGOTTEN * stiffness && gap(old, way[1]) > least;
             if gone.contains_key(features) && stays() {
                 self.features.push(*features);
                 self.springs.push(left);
@@ -57,10 +158,9 @@ impl FoundContacts {
     }
 }
 
-/// Share of an iteration in the mean, the first is number 1. In the first one contacts are farthest off, so the second counts
-/// twice as much.
-fn share_of(iteration: usize) -> f64 {
-    if iteration == 2 { 2.0 / 3.0 } else { 1.0 / iteration as f64 }
+/// The vertices of a contact.
+fn used(spring: &RepulsionSpring) -> impl Iterator<Item = u32> + '_ {
+    spring.vertices.iter().zip(spring.weights).filter(|(_, weight)| *weight != 0.0).map(|(vertex, _)| *vertex)
 }
 
 /// Moves the spring of a contact from the `new` part on to what it was before.
@@ -116,15 +216,20 @@ mod tests {
         [Point::new(0.0, 0.0, height), Point::origin()]
     }
 
+    /// So many finds in this time step and `before` it.
+    fn finds(in_step: u32, before: u32) -> Finds {
+        Finds { in_step, before: vec![before; 2] }
+    }
+
     const FIRST: [Feature; 2] = [Feature::Edge(0), Feature::Edge(1)];
     const SECOND: [Feature; 2] = [Feature::Edge(0), Feature::Edge(2)];
 
     #[test]
     fn contacts_that_take_turns_tend_to_half_of_each() {
-        let mut mean = contacts(&[FIRST]);
+        let (mut mean, x) = (contacts(&[FIRST]), at(0.5));
         for iteration in 2..200 {
             let mut found = contacts(&[if iteration % 2 == 0 { SECOND } else { FIRST }]);
-            found.average(&mean, iteration, WHOLE, &at(0.5));
+            found.average(&mean, &finds(iteration, 0), WHOLE, [&x, &x]);
             mean = found;
         }
         let mut shares: Vec<f64> = mean.springs.iter().map(|spring| spring.stiffness / WHOLE).collect();
@@ -135,8 +240,8 @@ mod tests {
     #[test]
     fn a_contact_that_is_none_any_more_goes_where_its_plane_is_left() {
         for (height, count) in [(0.5, 2), (0.9, 2), (0.4, 1)] {
-            let mut found = contacts(&[SECOND]);
-            found.average(&contacts(&[FIRST]), 2, WHOLE, &at(height));
+            let (mut found, x) = (contacts(&[SECOND]), at(height));
+            found.average(&contacts(&[FIRST]), &finds(2, 0), WHOLE, [&x, &x]);
             assert_eq!(
                 (found.features.len(), found.springs.len(), found.distances.len()),
                 (count, count, count)
@@ -150,10 +255,46 @@ mod tests {
         found.springs[0].normal = Vector::x();
         found.springs[0].weights = [0.2, -1.0, 0.8, 0.0];
         before.springs[0].normal = Vector::z();
-        found.average(&before, 4, WHOLE, &at(0.5));
+        found.average(&before, &finds(4, 0), WHOLE, [&at(0.5), &at(0.5)]);
         let spring = found.springs[0];
         assert!((spring.normal - Vector::new(1.0, 0.0, 3.0).normalize()).norm() < 1e-12);
         assert!(spring.weights.iter().zip([0.8, -1.0, 0.2, 0.0]).all(|(a, b)| (a - b).abs() < 1e-12));
         assert_eq!(spring.stiffness, WHOLE);
+    }
+
+    /// A time step of one iteration that ends with one set of contacts, then one that ends with the other, and so on.
+    #[test]
+    fn means_go_on_near_rest_and_begin_anew_in_motion() {
+        for (way, bounds) in [(0.002, 0.4..0.6), (0.2, 1.0..1.1)] {
+            let (mut carried, [start, x]) = (Vec::new(), [at(0.5), at(0.5 + way)]);
+            for step in 0..100 {
+                let now = [if step % 2 == 0 { FIRST } else { SECOND }];
+                let mut finds = Finds::default();
+                finds.begin_step(&carried, [true; 2].into_iter());
+                let mut mean = FoundContacts::from_means(&carried);
+                for way in [[&start[..], &start[..]], [&start[..], &x[..]]] {
+                    let mut found = contacts(&now);
+                    found.average(&mean, &finds, WHOLE, way);
+                    finds.add();
+                    mean = found;
+                }
+                carried = mean.means(&finds, [&start, &x]);
+                let last = mean.springs[0].stiffness / WHOLE;
+                assert!(step < 60 || bounds.contains(&last), "step {step}: {last}");
+            }
+        }
+    }
+
+    #[test]
+    fn means_go_back_as_far_as_vertices_have_hardly_moved() {
+        let spring = contacts(&[FIRST]).springs[0];
+        let mut finds = Finds::default();
+        let mean = ContactMean { features: FIRST, spring, distance: 0.5, depth: 7 };
+        // Vertex 1 cannot move, so how long it has been known does not count.
+        finds.begin_step(&[mean], [true, false].into_iter());
+        finds.add();
+        for (way, depth) in [(0.0, 8), (0.01, 8), (0.021, 4), (0.2, 0)] {
+            assert_eq!(finds.depth(&spring, [&at(0.5), &at(0.5 + way)]), depth, "{way}");
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! All that a simulation must remember between two time steps.
 
-use super::friction::ContactForce;
+use super::contacts::CarriedContacts;
 use super::sleep::SleepState;
 use bowknot_geometry::{Point, Vector};
 
@@ -18,8 +18,8 @@ pub struct Checkpoint {
     /// For each pin that takes hold later than time 0 and has done so: where its vertices belong without
     /// its motion [m]. Empty for the others.
     pub anchors: Vec<Vec<Point>>,
-    /// The forces that contacts of the dynamics carry, those between bodies asleep included.
-    pub contacts: Vec<ContactForce>,
+    /// What contacts remember; the forces include those between bodies asleep.
+    pub contacts: CarriedContacts,
     /// Which bodies sleep, and how long the others have been at rest. Empty if bodies never sleep.
     pub sleep: SleepState,
 }

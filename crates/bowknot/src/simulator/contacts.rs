@@ -2,10 +2,10 @@
 //!
 //! After each collision stage the pairs within contact range are divided into contacts and neighbors
 //! ([`Facing`](bowknot_constraints::Facing)). Each contact becomes a spring of the Newton system, whose force follows from its
-//! gap. What a contact remembers is friction alone (`friction.rs`). Edges near their stretch limits are springs as well
+//! gap. What a contact remembers is friction (`friction.rs`) and, near rest, its mean (`averaging.rs`). Edges near their stretch limits are springs as well
 //! (`taut.rs`).
 
-use super::averaging::{FoundContacts, gap};
+use super::averaging::{ContactMean, Finds, FoundContacts, gap};
 use super::crowding::share_stiffness;
 use super::friction::{ContactForce, FrictionMemory, vertices as vertices_of};
 use super::rows::RowForces;
@@ -37,16 +37,24 @@ const PARALLEL: f64 = 0.1;
 /// Pairs that one thread looks at, at least.
 const MIN_PAIRS: usize = 1024;
 
+/// What contacts remember from one time step to the next.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CarriedContacts {
+    /// The forces that they carry.
+    pub forces: Vec<ContactForce>,
+    /// Those near rest.
+    pub means: Vec<ContactMean>,
+}
+
 /// The contacts in force.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Contacts {
     stiffness: f64,
     /// The contacts that were found last, with their features [`oriented`]. Springs of edges follow after theirs.
     found: FoundContacts,
-    /// Times that contacts were found since the time step began.
-    finds: usize,
-    /// The forces at the end of the last time step: of so many springs, then of rows.
-    carried: Vec<ContactForce>,
+    finds: Finds,
+    /// At the end of the last time step. Its forces are those of so many springs, then of rows.
+    carried: CarriedContacts,
     pressing: usize,
     rows: RowForces,
     memory: FrictionMemory,
@@ -109,9 +117,9 @@ impl Contacts {
         &self.touching
     }
 
-    /// The forces at the end of the last time step.
-    pub fn carried(&self) -> Vec<ContactForce> {
-        self.carried.clone()
+    /// What contacts remember of the last time step.
+    pub fn carried(&self) -> &CarriedContacts {
+        &self.carried
     }
 
     /// Number of contacts that carried a force at the end of the last time step.
@@ -124,22 +132,28 @@ impl Contacts {
         if self.stiffness == 0.0 { &[] } else { self.rows.multipliers() }
     }
 
-    /// Continues with the forces of a checkpoint.
-    pub fn resume(&mut self, carried: &[ContactForce]) {
-        self.carried = carried.to_vec();
+    /// Continues with what is carried. It may be that of a checkpoint, with any numbers in it.
+    pub fn resume(&mut self, carried: CarriedContacts) {
+        self.carried = carried;
     }
 
     /// Begins a time step at the positions `start`. It forgets the pairs of the last time step that are out
-    /// of contact range, and finds the contacts from positions and forces alone, so that a resumed run finds
+    /// of contact range, and finds the contacts from positions and what is carried alone, so that a resumed run finds
     /// the same.
     pub fn begin_step(&mut self, resolver: &Resolver, start: &[Point], dt: f64) {
         self.touching = Touching::default();
-        self.finds = 0;
         self.note_touching(resolver);
         self.solved.begin_step(&self.touching);
+        let CarriedContacts { forces, means } = &self.carried;
+        let vertices = resolver.state().x.len() as u32;
+        let exists = |mean: &&ContactMean| mean.spring.vertices.iter().all(|&vertex| vertex < vertices);
+        let is_known = |mean: &&ContactMean| exists(mean) && self.is_elastic(&mean.spring.vertices);
+        let means: Vec<ContactMean> = means.iter().filter(is_known).copied().collect();
+        self.finds.begin_step(&means, (0..vertices).map(|vertex| self.solved.moves(vertex)));
+        self.found = FoundContacts::from_means(&means);
         self.counted.copy_from_slice(self.solved.flags());
-        self.memory = FrictionMemory::new(resolver.scene(), &self.carried);
-        self.rows.begin_step(resolver.scene(), &self.carried, self.solved.flags(), dt);
+        self.memory = FrictionMemory::new(resolver.scene(), forces);
+        self.rows.begin_step(resolver.scene(), forces, self.solved.flags(), dt);
         self.find(resolver, start);
     }
 
@@ -158,16 +172,18 @@ impl Contacts {
         of_contacts.filter(|(_, _, force)| **force != Vector::zeros())
     }
 
-    /// Ends a time step with the `forces` of the springs [N], and those of the rows.
-    pub fn end_step(&mut self, forces: &[Vector], resolver: &Resolver) {
+    /// Ends a time step from the positions `start` with the `forces` of the springs [N], and those of the rows.
+    pub fn end_step(&mut self, forces: &[Vector], resolver: &Resolver, start: &[Point]) {
         let force = |(features, spring, force): (&[Feature; 2], &RepulsionSpring, &Vector)| ContactForce {
             features: *features,
             normal: spring.normal,
             force: *force,
         };
-        self.carried = self.pushes(forces).map(force).collect();
-        self.pressing = self.carried.len();
-        self.carried.extend(self.rows.forces(resolver, self.solved.flags()));
+        let mut forces: Vec<ContactForce> = self.pushes(forces).map(force).collect();
+        self.pressing = forces.len();
+        forces.extend(self.rows.forces(resolver, self.solved.flags()));
+        let means = self.found.means(&self.finds, [start, &resolver.state().x]);
+        self.carried = CarriedContacts { forces, means };
     }
 
     /// Adds the pairs in contact range to [`Self::touching`], which joins components, and what holds them. Pairs within a
@@ -253,21 +269,23 @@ impl Contacts {
         };
         let shares: Vec<f64> = near.iter().map(|contact| contact.share).collect();
         share_stiffness(&mut found.springs, &shares, &found.distances, self.solved.flags());
+        found.average(&self.found, &self.finds, self.stiffness, [start, &state.x]);
         for (spring, features) in found.springs.iter_mut().zip(&found.features) {
             spring.friction_ratio = self.memory.of(scene, features);
         }
-        if self.finds > 1 {
-            found.average(&self.found, self.finds, self.stiffness, &state.x);
-        }
-        self.finds += 1;
         let held: Vec<_> = found.springs.iter().filter_map(|spring| self.held_by(spring)).collect();
         self.touching.held.extend(held);
         // For contacts that are new or have turned, the gap between the same points at the start may be smaller than the
         // one that the collision stage has reached.
         let all = found.springs.par_iter_mut().zip(&found.distances).with_min_len(MIN_PAIRS);
         all.for_each(|(spring, distance)| {
-            spring.start_gap = gap(spring, start).max(distance.min(spring.reach / REACH));
+            let at_start = gap(spring, start);
+            spring.start_gap = match self.finds.goes_on(spring, [start, &state.x]) {
+                true => at_start,
+                false => at_start.max(distance.min(spring.reach / REACH)),
+            };
         });
+        self.finds.add();
         found.springs.extend(self.limited.taut(&state.x, start, self.stiffness));
         self.found = found;
     }

@@ -30,8 +30,10 @@ mod unsolved;
 mod waits;
 mod waking;
 
+pub use averaging::ContactMean;
 pub use backend::{BackendError, CollisionBackend, Cpu};
 pub use checkpoint::Checkpoint;
+pub use contacts::CarriedContacts;
 pub use error::{SimulationError, describe_intersections};
 pub use friction::ContactForce;
 pub use observer::{AcceptedStep, CollisionProblem, Iterated, SimulationObserver};

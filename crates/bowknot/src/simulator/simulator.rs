@@ -8,10 +8,9 @@
 
 use super::backend::{BackendError, CollisionBackend, Cpu};
 use super::checkpoint::Checkpoint;
-use super::contacts::Contacts;
+use super::contacts::{CarriedContacts, Contacts};
 use super::ends::Ends;
 use super::error::{SimulationError, describe_intersections};
-use super::friction::ContactForce;
 use super::inside;
 use super::interior::{self, Interior};
 use super::observer::{CollisionProblem, Iterated, Relay, SimulationObserver};
@@ -100,7 +99,7 @@ impl Simulator {
         let report = simulator.judge().check_state(&simulator.positions[..count], &options)?;
         if report.is_clear() {
             inside::enclosed_bodies(&simulator.world).iter().for_each(|body| tracing::warn!("{body}"));
-            simulator.find_contacts(&[])?;
+            simulator.find_contacts(CarriedContacts::default())?;
             return Ok(simulator);
         }
         let lines = describe_intersections(&simulator.world, &report.intersections);
@@ -201,7 +200,7 @@ impl Simulator {
     }
 
     /// Finds the contacts at the present state, and refuses coordinates too large for the minimum separation.
-    pub(super) fn find_contacts(&mut self, carried: &[ContactForce]) -> Result<(), SimulationError> {
+    pub(super) fn find_contacts(&mut self, carried: CarriedContacts) -> Result<(), SimulationError> {
         let Self { world, resolver, contacts, positions, step, dt, .. } = self;
         let input = ResolveInput { time_step: Some(*dt), ..ResolveInput::default() };
         resolver
@@ -261,7 +260,7 @@ impl Simulator {
             self.close(timer, cpu_start, &mut statistics);
             return Ok(statistics);
         }
-        let carried = self.contacts.carried();
+        let carried = self.contacts.carried().clone();
         let result = self.iterate(step, tolerance, &mut scratch, observer, &mut statistics);
         if let Err(error) = result {
             self.positions.clone_from(&scratch.start);
@@ -269,7 +268,7 @@ impl Simulator {
             self.attachments.iter_mut().for_each(Vec::clear);
             self.scratch = scratch;
             // The resolver still has the pairs of the abandoned step.
-            self.find_contacts(&carried)?;
+            self.find_contacts(carried)?;
             return Err(error);
         }
 
@@ -452,7 +451,7 @@ impl Simulator {
                 false => of_forces().or_else(of_collisions),
             };
         }
-        contacts.end_step(&forces, resolver);
+        contacts.end_step(&forces, resolver, start);
         statistics.pressing_contacts = contacts.pressing();
         let judged = backend.judge(resolver.scene(), &x[..count]);
         judged.map_err(|source| backend_error(world, step, source))?;
@@ -547,10 +546,10 @@ impl Simulator {
         }
         let before = self.checkpoint();
         self.adopt(checkpoint);
-        self.take_out(&checkpoint.contacts).map_err(|error| {
+        self.take_out(checkpoint.contacts.clone()).map_err(|error| {
             self.adopt(&before);
             // The state before was a sound one.
-            let _ = self.take_out(&before.contacts);
+            let _ = self.take_out(before.contacts);
             error.to_string()
         })
     }

@@ -1,8 +1,8 @@
 //! Puts bodies to sleep after a time step, and wakes them before one.
 
 use super::approach::Motion;
+use super::contacts::CarriedContacts;
 use super::error::SimulationError;
-use super::friction::ContactForce;
 use super::rest::{Awake, Rest};
 use super::simulator::{Scratch, Simulator, resolve_error, time_of};
 use super::sleep::{SleepState, part};
@@ -93,7 +93,7 @@ impl Simulator {
         wakes.iter_mut().zip(approached).for_each(|(wakes, near)| *wakes |= near);
         if rest.sleep.wake(&wakes) {
             let carried = self.carried();
-            self.take_out(&carried)?;
+            self.take_out(carried)?;
         }
         let Some(rest) = &self.rest else { return Ok(()) };
         for (body, _) in self.world.bodies.iter().zip(&rest.asleep).filter(|(_, asleep)| **asleep) {
@@ -132,22 +132,22 @@ impl Simulator {
         let Some(rest) = rest else { return Ok(()) };
         if rest.sleep.update(world, positions, contacts.touching(), &rest.hold) {
             let carried = self.carried();
-            self.take_out(&carried)?;
+            self.take_out(carried)?;
         }
         Ok(())
     }
 
-    /// All contact forces, those between bodies asleep included.
-    pub(super) fn carried(&self) -> Vec<ContactForce> {
-        let mut carried = self.contacts.carried();
+    /// What contacts remember, with the forces between bodies asleep.
+    pub(super) fn carried(&self) -> CarriedContacts {
+        let mut carried = self.contacts.carried().clone();
         let put_aside = self.rest.as_ref().and_then(|rest| rest.awake.as_ref());
-        carried.extend(put_aside.iter().flat_map(|awake| &awake.forces));
+        carried.forces.extend(put_aside.iter().flat_map(|awake| &awake.forces));
         carried
     }
 
     /// Makes the collision stage and the dynamics work on the bodies that are awake alone, and finds their
-    /// contacts; `carried` are all contact forces.
-    pub(super) fn take_out(&mut self, carried: &[ContactForce]) -> Result<(), SimulationError> {
+    /// contacts; `carried` is what all contacts remember.
+    pub(super) fn take_out(&mut self, carried: CarriedContacts) -> Result<(), SimulationError> {
         let Self { world, resolver, contacts, step, dynamics, positions, velocities, rest, .. } = self;
         let Some(rest) = rest else { return self.find_contacts(carried) };
         let asleep = rest.sleep.asleep();
@@ -172,7 +172,7 @@ impl Simulator {
             }
             rest.asleep = asleep;
         }
-        let parted = part(world, &rest.asleep, carried);
+        let parted = part(world, &rest.asleep, &carried.forces);
         if let Some(awake) = &mut rest.awake {
             awake.forces = parted.asleep;
         }
@@ -181,7 +181,7 @@ impl Simulator {
                 velocities[range.start as usize..range.end as usize].fill(Vector::zeros());
             }
         }
-        self.find_contacts(&parted.awake)
+        self.find_contacts(CarriedContacts { forces: parted.awake, ..carried })
     }
 
     /// The state of sleep, for a checkpoint.
