@@ -84,7 +84,10 @@ fn info_of_scene(info: SceneInfo) -> Info {
 fn info_of_file(name: &str, import: &[String]) -> Result<Info, Failure> {
     let scene = bare_mesh::scene(name, import)?;
     let body = &scene.bodies[0];
-    let mesh = read_mesh(Path::new(name), &Import { up: body.up, scale: body.scale })?;
+    let mut mesh = read_mesh(Path::new(name), &Import { up: body.up, scale: body.scale })?;
+    if let Some(faults) = mesh.triangulate().describe() {
+        eprintln!("warning: {name}: {faults}");
+    }
     let mut problems = problems(&mesh);
     // What only the assembly finds, such as inverted tetrahedra. A frame with obstacles is no body.
     if problems.is_empty() && mesh.obstacle.is_none() {

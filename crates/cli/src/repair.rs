@@ -17,7 +17,10 @@ pub fn repair(options: &RepairOptions) -> Result<Exit, Failure> {
         )));
     }
     output::refuse_overwrite(&options.out, &[&options.mesh])?;
-    let mesh = read_mesh(&options.mesh, &Import::default())?;
+    let mut mesh = read_mesh(&options.mesh, &Import::default())?;
+    if let Some(faults) = mesh.triangulate().describe() {
+        eprintln!("warning: {}: {faults}", options.mesh.display());
+    }
     let params = RepairParams { weld_distance: options.weld_distance };
     let (clean, report) = bowknot::repair::repair(&mesh, &params)
         .map_err(|error| Failure::input(format!("{}: {error}", options.mesh.display())))?;

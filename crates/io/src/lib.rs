@@ -46,7 +46,7 @@ pub use obj::{read_obj, read_obj_surface, read_segments, write_obj};
 pub use pc2::{truncate_pc2, write_pc2_frame};
 pub use ply::{read_ply, write_ply};
 pub use read::{MESH_ENDINGS, read_mesh};
-pub use surface::{Corner, EdgeSplit, Labels, Polygon, Surface};
+pub use surface::{Corner, EdgeSplit, Labels, Polygon, PolygonFaults, Surface};
 pub use tet_list::read_tet_list;
 pub use usd::{UsdBody, write_usda};
 pub use vtu::{write_pvd, write_vtu};

@@ -23,7 +23,7 @@ pub struct Mesh {
     /// Body of each vertex, if the file says so.
     pub body: Option<Vec<u32>>,
     /// The polygons whose fans are the triangles, and what modeling tools say about them; none if the file
-    /// has nameless triangles only, or is no OBJ.
+    /// has nameless triangles only, or is neither OBJ nor PLY.
     pub surface: Option<Surface>,
 }
 

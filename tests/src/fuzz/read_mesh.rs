@@ -72,6 +72,10 @@ fn mesh(
     assert_eq!(again.particles, mesh.particles);
     mesh.drop_unused_vertices();
     check_sound(&mesh);
+    let triangles = mesh.triangles.len();
+    mesh.triangulate();
+    check_sound(&mesh);
+    assert_eq!(mesh.triangles.len(), triangles, "polygons have as many triangles as their fans");
     true
 }
 

@@ -77,8 +77,9 @@ fn loose_vertices_and_degenerate_obstacle_triangles_are_dropped_with_a_warning()
 
 #[test]
 fn polygons_of_obstacles_lose_the_triangles_that_are_dropped() {
-    // The first triangle of the pentagon's fan has no area, and its second vertex no other triangle.
-    let pentagon = format!("{SQUARE}v 2 0 0\nvt 0 1\nvt 1 0\nusemtl wood\nf 1/1 2 5/2 3 4\n");
+    // Two corners of the pentagon are at one place. So the first triangle of its fan has no area, and its second vertex no other
+    // triangle.
+    let pentagon = format!("{SQUARE}v 1 0 0\nvt 0 1\nvt 1 0\nusemtl wood\nf 1/1 2 5/2 3 4\n");
     let world = mesh(&pentagon, true).expect("a world");
     let thing = &world.bodies[1];
     let surface = thing.surface.as_ref().expect("a surface");

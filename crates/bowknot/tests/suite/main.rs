@@ -19,6 +19,7 @@ mod golden;
 /// Numbers far out of range at every key of a scene.
 mod hostile;
 /// Sets of defaults: what `quick` saves, and that nothing intersects.
+mod polygons;
 mod presets;
 /// `docs/scene-reference.md` follows the structs.
 mod reference;

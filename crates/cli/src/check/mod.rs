@@ -129,7 +129,12 @@ impl Checker<'_> {
                 self.archive(file)?;
                 joined = false;
             } else {
-                let mut mesh = read_mesh(file, &Import::default())?.into_surface();
+                let mut mesh = read_mesh(file, &Import::default())?;
+                // The polygons of a frame have deformed.
+                if mesh.body.is_none() && mesh.obstacle.is_none() {
+                    mesh.triangulate();
+                }
+                let mut mesh = mesh.into_surface();
                 // Names of faces make no other state.
                 mesh.surface = None;
                 self.state(file, file.display().to_string(), mesh, joined)?;

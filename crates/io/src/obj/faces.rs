@@ -65,11 +65,7 @@ impl Faces {
         if self.surface.is_none() && is_plain {
             return;
         }
-        let surface = self.surface.get_or_insert_with(|| {
-            let mut surface = Surface::default();
-            surface.push_triangles(before, &Labels::default());
-            surface
-        });
+        let surface = self.surface.get_or_insert_with(|| Surface::of_triangles(before));
         surface.push(corners.iter().copied(), &self.labels);
     }
 

@@ -5,6 +5,7 @@ use super::payload::{Payload, Row};
 use crate::error::{IoError, Place};
 use crate::import::Import;
 use crate::mesh::Mesh;
+use crate::surface::{Corner, Labels, Surface};
 use bowknot_errors::Parameters;
 use bowknot_errors::counted;
 use std::fs;
@@ -135,13 +136,17 @@ impl<'a> Sink<'a> {
                 if corners.len() < 3 {
                     return Err(format!("a face needs 3 vertices, this one has {}", corners.len()));
                 }
-                let first = vertex(corners[0], *vertices)?;
-                let mut previous = vertex(corners[1], *vertices)?;
-                for &corner in &corners[2..] {
-                    let corner = vertex(corner, *vertices)?;
-                    mesh.triangles.push([first, previous, corner]);
-                    previous = corner;
+                let corners = corners.iter().map(|&value| vertex(value, *vertices));
+                let corners: Vec<u32> = corners.collect::<Result<_, _>>()?;
+                let Mesh { triangles, surface, .. } = mesh;
+                if corners.len() > 3 {
+                    surface.get_or_insert_with(|| Surface::of_triangles(triangles));
                 }
+                if let Some(surface) = surface {
+                    let corners = corners.iter().map(|&vertex| Corner::new(vertex, None, None));
+                    surface.push(corners, &Labels::default());
+                }
+                triangles.extend(corners[1..].windows(2).map(|pair| [corners[0], pair[0], pair[1]]));
                 Ok(())
             }
             Self::Edge { ends, vertices } => {

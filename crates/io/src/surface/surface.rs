@@ -85,6 +85,13 @@ impl Surface {
         Self { texture_coordinates, normal_count, material_libraries, ..Self::default() }
     }
 
+    /// A surface of nameless triangles.
+    pub fn of_triangles(triangles: &[[u32; 3]]) -> Self {
+        let mut surface = Self::default();
+        surface.push_triangles(triangles, &Labels::default());
+        surface
+    }
+
     /// Appends a polygon. Its corners, three at least, must be of existing texture coordinates and normals.
     pub fn push(&mut self, corners: impl IntoIterator<Item = Corner>, labels: &Labels) {
         if self.labels.last() != Some(labels) {

@@ -5,6 +5,7 @@ mod exports;
 mod lists;
 mod obj;
 mod ply;
+mod polygons;
 mod robust;
 mod surface;
 

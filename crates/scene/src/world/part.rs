@@ -92,6 +92,12 @@ impl Part {
         });
     }
 
+    /// Makes the triangles fill the polygons.
+    fn triangulate(&mut self, owner: &str, warnings: &mut Vec<String>) {
+        let faults = self.edit(Mesh::triangulate);
+        warnings.extend(faults.describe().map(|faults| format!("{owner}: {faults}")));
+    }
+
     /// Makes a body of the mesh: refuses elements of other kinds and faulty ones, drops loose vertices.
     pub fn into_body(
         mut self,
@@ -99,6 +105,7 @@ impl Part {
         name: &str,
         warnings: &mut Vec<String>,
     ) -> Result<Self, SceneError> {
+        self.triangulate(&format!("body {name}"), warnings);
         // Loose vertices of a PLY come as particles; where there are other elements they are leftovers.
         if kind != BodyKind::Particles {
             self.particles.clear();
@@ -247,6 +254,7 @@ impl Part {
     /// Makes an obstacle of the mesh: the surface of tetrahedra, without triangles that have no area or are
     /// repeated.
     pub fn into_obstacle(mut self, owner: &str, warnings: &mut Vec<String>) -> Result<Self, SceneError> {
+        self.triangulate(owner, warnings);
         if !self.tets.is_empty() {
             let mut triangles = boundary_triangles(&std::mem::take(&mut self.tets));
             triangles.append(&mut self.triangles);
