@@ -56,6 +56,30 @@ fn grains_slide_on_meshes_as_on_a_plane() {
 }
 
 #[test]
+fn on_25_degrees_bodies_speed_up_as_theory_says() {
+    for friction in [0.3, 0.4] {
+        let sliders = [
+            Slider::JellyCube,
+            Slider::StiffCube,
+            Slider::Patch,
+            Slider::Strands,
+            Slider::Grains,
+            Slider::Layers,
+        ];
+        for slider in sliders {
+            for ground in [Ground::HalfSpace, Ground::Irregular] {
+                let slope = Slope { degrees: 25.0, ..Slope::new(slider, ground, friction) };
+                let run = slope.run(50);
+                // While it settles friction is not that of its weight.
+                let gained = run.speed(48..51) - run.speed(23..26);
+                let ratio = gained / (slope.acceleration() * 0.25);
+                assert!((ratio - 1.0).abs() < 0.01, "{slider:?} on {ground:?}, mu = {friction}: {ratio}");
+            }
+        }
+    }
+}
+
+#[test]
 fn at_mu_0_3_speeds_are_right_within_what_one_percent_of_friction_makes_of_them() {
     // An error of 1 % of friction gives one of 4.7 % of the acceleration here.
     for (slider, grounds, share) in [
