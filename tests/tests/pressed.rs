@@ -207,6 +207,30 @@ fn cloth_below_and_above_grains_comes_to_rest() {
 }
 
 #[test]
+fn a_snug_sleeve_over_two_balls_falls_asleep() {
+    let ball = |name: &str, x: f64| {
+        format!(
+            r#"
+            [[obstacle]]
+            name = "{name}"
+            friction = 0.3
+            shape = {{ type = "ball", radius = 0.05, edge = 0.01 }}
+            translate = [{x}, 0.0, 0.0]
+            "#
+        )
+    };
+    let sleeve = r#"
+        [[body]]
+        name = "sleeve"
+        friction = 0.3
+        shape = { type = "tube", radius = 0.0535, length = 0.4, edge = 0.0125 }
+    "#;
+    let course = Course::of(&(sleeve.to_owned() + &ball("left", -0.08) + &ball("right", 0.08)), 250);
+    assert!(course.asleep.is_some(), "awake after 2.5 s");
+    assert!(course.solved(50) > 0.95, "{} of the time steps are solved", course.solved(50));
+}
+
+#[test]
 fn blocks_between_a_floor_and_a_wall_come_to_rest() {
     let block = |k: usize, rotate: [f64; 3], translate: [f64; 3]| {
         format!(
