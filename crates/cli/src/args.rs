@@ -263,6 +263,9 @@ pub struct RepairOptions {
     /// border edges]
     #[arg(long, value_name = "D", value_parser = positive)]
     pub weld_distance: Option<f64>,
+    /// Drop all lines, such as leftovers and those along which other programs sew
+    #[arg(long)]
+    pub drop_lines: bool,
     /// Print JSON
     #[arg(long)]
     pub json: bool,

@@ -21,7 +21,7 @@ pub fn repair(options: &RepairOptions) -> Result<Exit, Failure> {
     if let Some(faults) = mesh.triangulate().describe() {
         eprintln!("warning: {}: {faults}", options.mesh.display());
     }
-    let params = RepairParams { weld_distance: options.weld_distance };
+    let params = RepairParams { weld_distance: options.weld_distance, drop_lines: options.drop_lines };
     let (clean, report) = bowknot::repair::repair(&mesh, &params)
         .map_err(|error| Failure::input(format!("{}: {error}", options.mesh.display())))?;
     dump::write_view(&options.out, &clean.view())?;
@@ -71,7 +71,11 @@ fn to_text(report: &RepairReport, out: &Path, left_out: &[&str]) -> String {
         (report.zero_area_triangles, "dropped triangles without area"),
         (report.repeated_triangles, "dropped triangles given twice"),
         (report.cut_polygons, "cut polygons around these triangles"),
-        (report.dropped_strands, "dropped strand edges given twice or without length"),
+        (report.dropped_strands, "dropped lines"),
+        (
+            report.lines,
+            "lines that stay (--drop-lines drops them; cloth may have none between its triangles)",
+        ),
         (report.unused_vertices, "dropped vertices that no element used"),
     ] {
         if count > 0 {

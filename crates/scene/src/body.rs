@@ -25,6 +25,10 @@ pub struct BodySpec {
     /// Generated mesh, see the shapes. Either this or `mesh`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shape: Option<Shape>,
+    /// Whether lines of a cloth's mesh that join vertices of its triangles where no edge does are left out. Other programs sew along
+    /// such lines; sewing is not simulated, so without this key they are refused. Lines that lead elsewhere or run along edges
+    /// are left out with a warning anyway. Default false.
+    pub drop_lines: bool,
     /// Axis of the mesh that points up: `x`, `y` or `z`. With `y`, as most modeling tools have it, y becomes z
     /// and z becomes -y; with `x`, x becomes z, y becomes x and z becomes y. Default `z`.
     pub up: Up,
@@ -78,6 +82,7 @@ impl Default for BodySpec {
             kind: BodyKind::default(),
             mesh: None,
             shape: None,
+            drop_lines: false,
             up: Up::Z,
             scale: 1.0,
             rotate: Vector::zeros(),

@@ -65,7 +65,7 @@ pub use params::{
     CollisionEvery, Format, InteriorFollows, OutputParams, Preset, RepulsionParams, SceneSolverParams,
     SimulationParams, SleepParams,
 };
-pub use pin::{PinSpec, Region, Side};
+pub use pin::{PinSpec, Region, RootEnd, Side};
 pub use world::{SceneInfo, World};
 
 /// The README's example is tested with the documentation.

@@ -21,9 +21,12 @@ pub struct PinSpec {
     /// `z-max`. Default none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub side: Option<Side>,
-    /// How many vertices of each strand are held, from its root on, the end that comes first in the mesh [1]:
-    /// 1 hinges strands, 2 or more clamp their direction as well. Default 0.
+    /// How many vertices of each strand are held, from its root on [1]: 1 hinges strands, 2 or more clamp their direction as
+    /// well. Default 0.
     pub roots: usize,
+    /// Which end of each strand is its root: `first`, the vertex that comes first in the mesh; `last`, the one farthest from that
+    /// along the strand; `nearest`, that of the two which is nearer to an obstacle at the start. Default `first`.
+    pub root_end: RootEnd,
     /// Rigid motion over time, see the motions. Default: held where they are.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub motion: Option<Motion>,
@@ -45,6 +48,19 @@ pub struct Region {
     pub min: Point,
     /// Upper corner [m]; components may be inf. Default inf.
     pub max: Point,
+}
+
+/// Which end of a strand is its root.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RootEnd {
+    /// The vertex that comes first in the mesh.
+    #[default]
+    First,
+    /// The vertex that is farthest from it along the strand.
+    Last,
+    /// That of the two which is nearer to an obstacle.
+    Nearest,
 }
 
 /// A side of a body's bounding box.
@@ -99,6 +115,7 @@ impl Default for PinSpec {
             region: None,
             side: None,
             roots: 0,
+            root_end: RootEnd::First,
             motion: None,
             follow: None,
             start: 0.0,

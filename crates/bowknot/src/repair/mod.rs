@@ -32,6 +32,8 @@ pub struct RepairParams {
     /// edge. Larger: wider seams close, but more of the cloth is pulled together; keep it below the shortest
     /// edge.
     pub weld_distance: Option<f64>,
+    /// Whether all lines of a mesh of triangles are dropped. Default false.
+    pub drop_lines: bool,
 }
 
 /// Intersections between two connected parts of a mesh, or of one with itself.
@@ -84,8 +86,10 @@ pub struct RepairReport {
     pub repeated_triangles: usize,
     /// Polygons of an OBJ that were cut because triangles of them were dropped or split.
     pub cut_polygons: usize,
-    /// Strand edges dropped because they repeat another or have no length.
+    /// Strand edges dropped because they repeat another, have no length, or are lines that were to be dropped.
     pub dropped_strands: usize,
+    /// Strand edges that stay beside triangles, and keep the mesh from being cloth.
+    pub lines: usize,
     /// Vertices dropped because nothing uses them, welded ones not counted.
     pub unused_vertices: usize,
     /// The mesh as it was; none if it could not be judged.
@@ -135,6 +139,9 @@ pub fn repair(mesh: &Mesh, params: &RepairParams) -> Result<(Mesh, RepairReport)
     // A mesh that repeats a vertex within a triangle is not judged as it is, but can be repaired.
     let mut report = RepairReport { before: judge(mesh).ok(), ..RepairReport::default() };
     let mut mesh = mesh.clone();
+    if params.drop_lines {
+        report.dropped_strands = std::mem::take(&mut mesh.strands).len();
+    }
     // First, so that a triangle given twice does not hide a border, nor one without area make one.
     clean::drop_bad_elements(&mut mesh, &mut report);
     report.unused_vertices = mesh.drop_unused_vertices();
@@ -145,6 +152,7 @@ pub fn repair(mesh: &Mesh, params: &RepairParams) -> Result<(Mesh, RepairReport)
     seams::split_t_seams(&mut mesh, distance, &mut report);
     clean::drop_bad_elements(&mut mesh, &mut report);
     mesh.drop_unused_vertices();
+    report.lines = mesh.strands.len();
     report.after = judge(&mesh)?;
     Ok((mesh, report))
 }

@@ -63,7 +63,7 @@ fn a_seam_that_crosses_a_little_is_welded_in_the_middle() {
     // A seam farther apart than the weld distance stays open, and one within a given distance closes.
     let wide = two_panels(0.02, 0.0);
     assert_eq!(repaired(&wide).1.welded_vertices, 0);
-    let given = RepairParams { weld_distance: Some(0.021) };
+    let given = RepairParams { weld_distance: Some(0.021), ..RepairParams::default() };
     assert_eq!(repair(&wide, &given).unwrap().1.welded_vertices, 5);
 }
 
@@ -101,6 +101,10 @@ fn what_stands_for_nothing_is_dropped() {
     assert_eq!((report.zero_area_triangles, report.repeated_triangles), (2, 1), "{report:?}");
     assert_eq!((report.dropped_strands, report.unused_vertices), (2, 1));
     assert_eq!((clean.triangles.len(), clean.positions.len(), clean.strands), (triangles, 50, vec![[0, 1]]));
+    assert_eq!(report.lines, 1);
+    let (clean, report) =
+        repair(&mesh, &RepairParams { drop_lines: true, ..RepairParams::default() }).expect("repairs");
+    assert_eq!((clean.strands.len(), report.dropped_strands, report.lines), (0, 3, 0));
     assert!(report.before.is_none(), "a triangle of two vertices is not judged");
     assert_eq!(report.after.intersections, 0);
 }
@@ -125,7 +129,8 @@ fn closed_surfaces_and_what_crosses_away_from_borders_stay() {
 #[test]
 fn what_cannot_be_repaired_is_refused() {
     let mesh = two_panels(0.0, 0.0);
-    let with = |distance| repair(&mesh, &RepairParams { weld_distance: Some(distance) });
+    let with =
+        |distance| repair(&mesh, &RepairParams { weld_distance: Some(distance), ..RepairParams::default() });
     for distance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(matches!(with(distance), Err(RepairError::WeldDistance(_))));
     }

@@ -113,6 +113,62 @@ fn meshes_must_be_of_the_elements_of_their_kind() {
 }
 
 #[test]
+fn lines_that_lead_nowhere_are_left_out_of_cloth_and_those_to_sew_along_are_refused() {
+    // Two triangles, and three vertices away from them.
+    let cloth =
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 3 0 0\nv 4 0 0\nv 3 1 0\nv 8 8 0\nv 9 9 0\nv 9 9 9\nf 1 2 3\nf 4 5 6\n";
+    for (lines, count) in [("l 7 8 9", 2), ("l 1 7", 1), ("l 1 2", 1), ("l 3 2 1\nl 9 4", 3)] {
+        let world = with_mesh("cloth", "mesh.obj", &format!("{cloth}{lines}\n")).expect("a world");
+        assert_eq!((world.positions.len(), world.bodies[0].strands.len()), (6, 0), "{lines}");
+        let expected = format!("body it: left out {count} line");
+        assert!(world.warnings.iter().any(|warning| warning.starts_with(&expected)), "{:?}", world.warnings);
+    }
+    let sewing = format!("{cloth}l 7 8\nl 2 4\nl 3 6\n");
+    let message = with_mesh("cloth", "mesh.obj", &sewing).expect_err("refused");
+    let expected = "scene.toml:4: body it: 2 lines of the mesh join vertices of its triangles, the first vertices 1 and 3: \
+                    other programs sew";
+    assert!(message.starts_with(expected) && message.contains("drop_lines = true"), "{message}");
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("mesh.obj"), sewing).expect("a mesh");
+    let text = "body = [{ mesh = \"mesh.obj\", drop_lines = true }]";
+    let world = Scene::from_toml(text, folder.path()).and_then(|scene| World::new(&scene)).expect("a world");
+    assert!(
+        world.warnings[0].contains("left out 3 lines, the first joins vertices 1 and 3"),
+        "{:?}",
+        world.warnings
+    );
+}
+
+#[test]
+fn roots_are_at_the_end_that_is_asked_for_and_tips_are_told() {
+    // Two strands off a ball, the second written tip first, and a ring.
+    let strands = "v 0 0 0.12\nv 0 0 0.2\nv 0 0 0.3\nv 0.3 0 0\nv 0.2 0 0\nv 0.12 0 0\nl 1 2 3\nl 4 5 6\n";
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("hair.obj"), strands).expect("a mesh");
+    let world = |end: &str, obstacle: &str| {
+        let text = format!(
+            "body = [{{ name = \"hair\", kind = \"strands\", material = \"lock\", mesh = \"hair.obj\" }}]\n\
+             pin = [{{ body = \"hair\", roots = 2{end} }}]\n{obstacle}"
+        );
+        Scene::from_toml(&text, folder.path()).and_then(|scene| World::new(&scene)).expect("a world")
+    };
+    let ball = "obstacle = [{ shape = { type = \"ball\", radius = 0.1, edge = 0.02 } }]";
+    let tips =
+        |world: &World| world.warnings.iter().filter(|w| w.contains("1 of 2 strands begin farther")).count();
+    for (end, held, warnings) in [
+        ("", vec![0, 1, 3, 4], 1),
+        (", root_end = \"last\"", vec![1, 2, 4, 5], 0),
+        (", root_end = \"nearest\"", vec![0, 1, 4, 5], 0),
+    ] {
+        let world = world(end, ball);
+        assert_eq!((&world.pins[0].vertices, tips(&world)), (&held, warnings), "{end}: {:?}", world.warnings);
+    }
+    let ground = "obstacle = [{ shape = { type = \"half-space\" } , translate = [0.0, 0.0, -1.0] }]";
+    assert_eq!(tips(&world("", ground)), 0, "the second strand is level");
+    assert_eq!(world(", root_end = \"nearest\"", "").pins[0].vertices, [0, 1, 3, 4]);
+}
+
+#[test]
 fn strands_with_repeated_points_are_listed() {
     let mesh = "v 9 9 9\nv 0 0 0\nv 0 0 0\nv 1 0 0\nv 1 0 0\nl 2 3 4 5\nl 4 3\n";
     let message = with_mesh("strands", "mesh.obj", mesh).expect_err("refused");

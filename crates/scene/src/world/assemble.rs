@@ -2,6 +2,7 @@
 
 use super::part::Part;
 use super::pins::pins;
+use super::roots::Surroundings;
 use super::unused::unused_keys;
 use super::{ObstacleMotion, Placing, Procedural, World, WorldBody, WorldContact, joined, sequence, size};
 use crate::body::BodySpec;
@@ -69,7 +70,7 @@ impl Assembly {
         let import = Import { up: body.up, scale: body.scale };
         let placing = Placing { import, rotate: body.rotate, translate: body.translate };
         let part = Part::load(&scene.folder, body.mesh.as_deref(), body.shape.as_ref(), &import)?;
-        let mut part = part.into_body(body.kind, &body.name, &mut self.warnings)?;
+        let mut part = part.into_body(body.kind, &body.name, body.drop_lines, &mut self.warnings)?;
         placing.place(&mut part.positions);
         let mut velocities = initial_velocities(body, &part.positions);
 
@@ -198,7 +199,13 @@ impl Assembly {
     }
 
     fn finish(mut self, scene: &Scene, deformable_vertices: usize) -> Result<World, SceneError> {
-        let pins = pins(scene, &self.bodies, &self.positions)?;
+        let is_obstacle = |triangle: &&[u32; 3]| triangle[0] as usize >= deformable_vertices;
+        let surroundings = Surroundings {
+            triangles: self.triangles.iter().filter(is_obstacle).copied().collect(),
+            half_spaces: &self.half_spaces,
+            positions: &self.positions,
+        };
+        let pins = pins(scene, &self.bodies, &surroundings, &mut self.warnings)?;
         self.contact.pairs = self.friction_pairs(scene);
         let topology = Topology::builder(self.base.len())
             .triangles(self.triangles)

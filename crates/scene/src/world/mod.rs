@@ -16,6 +16,7 @@ mod follow;
 mod motion;
 mod part;
 mod pins;
+mod roots;
 mod sequence;
 mod size;
 mod unused;

@@ -6,7 +6,7 @@ use crate::shapes::Shape;
 use bowknot_errors::counted;
 use bowknot_geometry::{MeshProblem, Point, boundary_triangles, check_mesh};
 use bowknot_io::{self as io, Import, Mesh, Surface};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 /// How many faulty elements a message lists.
@@ -103,9 +103,13 @@ impl Part {
         mut self,
         kind: BodyKind,
         name: &str,
+        drop_lines: bool,
         warnings: &mut Vec<String>,
     ) -> Result<Self, SceneError> {
         self.triangulate(&format!("body {name}"), warnings);
+        if kind == BodyKind::Cloth && !self.triangles.is_empty() {
+            self.leave_out_lines(name, drop_lines, warnings)?;
+        }
         // Loose vertices of a PLY come as particles; where there are other elements they are leftovers.
         if kind != BodyKind::Particles {
             self.particles.clear();
@@ -154,6 +158,43 @@ impl Part {
             ));
         }
         Ok(self)
+    }
+
+    /// Leaves out lines of a cloth that are leftovers: those along edges of triangles, and those with an end at no triangle.
+    /// Refuses the others, unless they are to be dropped as well.
+    fn leave_out_lines(
+        &mut self,
+        name: &str,
+        drop_lines: bool,
+        warnings: &mut Vec<String>,
+    ) -> Result<(), SceneError> {
+        let mut edges = HashSet::new();
+        let mut of_triangles = vec![false; self.positions.len()];
+        for &[a, b, c] in &self.triangles {
+            edges.extend([[a, b], [b, c], [c, a]].map(|[p, q]| [p.min(q), p.max(q)]));
+            [a, b, c].into_iter().for_each(|v| of_triangles[v as usize] = true);
+        }
+        let sews = |&[p, q]: &[u32; 2]| {
+            of_triangles[p as usize] && of_triangles[q as usize] && !edges.contains(&[p.min(q), p.max(q)])
+        };
+        let lines = std::mem::take(&mut self.strands);
+        let (sewing, others): (Vec<[u32; 2]>, Vec<_>) = lines.into_iter().partition(sews);
+        if let (false, Some([p, q])) = (drop_lines, sewing.first()) {
+            let [p, q] = [p, q].map(|v| self.numbers[*v as usize]);
+            let message = format!(
+                "{} of the mesh join vertices of its triangles, the first vertices {p} and {q}: other programs sew along \
+                 such lines, which is not simulated; leave them out with drop_lines = true, or let `bowknot repair` weld \
+                 borders that lie together",
+                counted(sewing.len(), "line", "lines")
+            );
+            return Err(SceneError::Body { body: format!("body {name}"), message });
+        }
+        if let Some([p, q]) = sewing.first().or(others.first()) {
+            let [p, q] = [p, q].map(|v| self.numbers[*v as usize]);
+            let lines = counted(sewing.len() + others.len(), "line", "lines");
+            warnings.push(format!("body {name}: left out {lines}, the first joins vertices {p} and {q}"));
+        }
+        Ok(())
     }
 
     /// Number of elements of a kind, and of the others with their kinds.

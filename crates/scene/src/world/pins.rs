@@ -1,6 +1,7 @@
 //! Which vertices pins hold.
 
 use super::part::element_of;
+use super::roots::{Surroundings, roots};
 use super::{Pin, WorldBody, bounds};
 use crate::description::Scene;
 use crate::error::SceneError;
@@ -9,8 +10,13 @@ use crate::pin::PinSpec;
 use bowknot_errors::counted;
 use bowknot_geometry::Point;
 
-/// The pins of a scene, given its bodies and the positions at time 0.
-pub(super) fn pins(scene: &Scene, bodies: &[WorldBody], positions: &[Point]) -> Result<Vec<Pin>, SceneError> {
+/// The pins of a scene, given its bodies, its obstacles and the positions at time 0.
+pub(super) fn pins(
+    scene: &Scene,
+    bodies: &[WorldBody],
+    surroundings: &Surroundings<'_>,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<Pin>, SceneError> {
     let mut pins: Vec<Pin> = Vec::new();
     for (index, spec) in scene.pins.iter().enumerate() {
         let key = format!("pin[{index}]");
@@ -21,7 +27,14 @@ pub(super) fn pins(scene: &Scene, bodies: &[WorldBody], positions: &[Point]) -> 
         let Some(body) = bodies.iter().find(|b| b.kind.is_some() && b.name == spec.body) else {
             return Err(fault(format!("no body {:?}", spec.body)));
         };
-        let vertices = pinned(spec, body, positions).map_err(fault)?;
+        let mut vertices = pinned(spec, body, surroundings.positions).map_err(fault)?;
+        if spec.roots > 0 && body.kind == Some(BodyKind::Strands) {
+            let (held, warning) = roots(body, spec.roots, spec.root_end, surroundings);
+            vertices.extend(held);
+            warnings.extend(warning.map(|warning| format!("{key} of {}: {warning}", spec.body)));
+        }
+        vertices.sort_unstable();
+        vertices.dedup();
         if vertices.is_empty() {
             return Err(fault("it selects no vertex of the body".to_owned()));
         }
@@ -46,6 +59,7 @@ pub(super) fn pins(scene: &Scene, bodies: &[WorldBody], positions: &[Point]) -> 
     Ok(pins)
 }
 
+/// The vertices of its other selectors than roots.
 fn pinned(spec: &PinSpec, body: &WorldBody, positions: &[Point]) -> Result<Vec<u32>, String> {
     let at = |v: u32| &positions[v as usize];
     let all = || body.vertices.clone().chain(body.interior.clone());
@@ -82,45 +96,5 @@ fn pinned(spec: &PinSpec, body: &WorldBody, positions: &[Point]) -> Result<Vec<u
         };
         vertices.extend(all().filter(on));
     }
-    if spec.roots > 0 && body.kind == Some(BodyKind::Strands) {
-        vertices.extend(roots(body, spec.roots));
-    }
-    vertices.sort_unstable();
-    vertices.dedup();
     Ok(vertices)
-}
-
-/// The vertices of strands within `count - 1` edges of their root, the vertex of each strand that comes
-/// first.
-fn roots(body: &WorldBody, count: usize) -> Vec<u32> {
-    let first = body.vertices.start;
-    let n = body.vertices.len();
-    let mut neighbors = vec![Vec::new(); n];
-    for &[a, b] in &body.strands {
-        neighbors[(a - first) as usize].push((b - first) as usize);
-        neighbors[(b - first) as usize].push((a - first) as usize);
-    }
-    let mut seen = vec![false; n];
-    let mut held = Vec::new();
-    for root in 0..n {
-        if seen[root] {
-            continue;
-        }
-        // Breadth first: vertices come in the order of their distance along the strand.
-        seen[root] = true;
-        let mut queue = vec![(root, 0)];
-        let mut next = 0;
-        while let Some(&(v, distance)) = queue.get(next) {
-            next += 1;
-            if distance < count {
-                held.push(first + v as u32);
-            }
-            for &w in &neighbors[v] {
-                if !std::mem::replace(&mut seen[w], true) {
-                    queue.push((w, distance + 1));
-                }
-            }
-        }
-    }
-    held
 }
