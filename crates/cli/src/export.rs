@@ -4,6 +4,7 @@ use crate::args::ExportOptions;
 use crate::exit::{Exit, Failure};
 use crate::output;
 use crate::progress::Bar;
+use bowknot::run::Rate;
 use bowknot_errors::counted;
 
 pub fn export(options: &ExportOptions) -> Result<Exit, Failure> {
@@ -20,6 +21,7 @@ pub fn export(options: &ExportOptions) -> Result<Exit, Failure> {
         formats: options.format.iter().map(|format| format.of_scene()).collect(),
         out: out.clone(),
         time_step: options.dt,
+        rate: options.fps.map_or(Rate::Every(options.every), Rate::PerSecond),
     };
     let mut bar: Option<Bar> = None;
     let result = bowknot::run::export(&options.source, &export_options, &mut |done, frames| {

@@ -46,7 +46,12 @@ pub fn run_folder(data: &[u8]) -> bool {
         }
     };
     let formats = vec![Format::Vtu, Format::Pc2, Format::Usd];
-    let options = ExportOptions { formats, out: folder.path().join("exported"), time_step: None };
+    let options = ExportOptions {
+        formats,
+        out: folder.path().join("exported"),
+        time_step: None,
+        ..ExportOptions::default()
+    };
     match export(folder.path(), &options, &mut |_, _| {}) {
         Ok(exported) => assert!(exported.frames > 0),
         Err(error) => assert!(!error.to_string().is_empty()),

@@ -15,8 +15,56 @@ pub struct ExportOptions {
     pub formats: Vec<Format>,
     /// Output folder; frames of the same names are overwritten.
     pub out: PathBuf,
-    /// Time from frame to frame [s]; none: that of the run's scene.
+    /// Time from frame to frame of the source [s]; none: that of the run's scene.
     pub time_step: Option<f64>,
+    /// Which frames are taken.
+    pub rate: Rate,
+}
+
+/// Which frames an export takes. They are numbered anew.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Rate {
+    /// The first, and every so many from there on [1]; at least 1.
+    Every(usize),
+    /// So many per second [1/s], which must be those at whole numbers of time steps.
+    PerSecond(f64),
+}
+
+impl Default for Rate {
+    fn default() -> Self {
+        Self::Every(1)
+    }
+}
+
+impl Rate {
+    /// Frames from one that is taken to the next.
+    fn stride(self, time_step: f64) -> Result<usize, String> {
+        /// Relative error of a number of time steps that is still whole: rates such as 24 and steps such as 1/96 s are
+        /// written with few digits.
+        const WHOLE: f64 = 1e-3;
+        match self {
+            Self::Every(0) => Err("of frames every 0 none is taken: give 1 or more".to_owned()),
+            Self::Every(stride) => Ok(stride),
+            Self::PerSecond(rate) => {
+                let steps = 1.0 / (rate * time_step);
+                let whole = steps.round();
+                if whole >= 1.0 && (steps - whole).abs() <= WHOLE * steps {
+                    return Ok(whole as usize);
+                }
+                let below = steps.floor().max(1.0);
+                let rates = [below, below + 1.0].map(|stride| 1.0 / (stride * time_step));
+                Err(format!(
+                    "{rate} frames per second are none of its time steps of {time_step} s: it has {:.6} per second, {:.6} in \
+                     every {} and {:.6} in every {}; run it with a time step that divides 1/{rate} s",
+                    1.0 / time_step,
+                    rates[0],
+                    below,
+                    rates[1],
+                    below + 1.0
+                ))
+            }
+        }
+    }
 }
 
 /// What was exported.
@@ -51,6 +99,7 @@ pub fn export(
         options.time_step.or(scene.as_ref().map(|scene| scene.simulation.dt)).ok_or_else(|| {
             fault("no scene.toml in it that says the time from frame to frame: give it with --dt".to_owned())
         })?;
+    let stride = options.rate.stride(time_step).map_err(fault)?;
     let frames = open(source)?;
     let format = match frames.ending().as_str() {
         "ply" => Format::Ply,
@@ -68,10 +117,13 @@ pub fn export(
     create_folder(&options.out)?;
     let spool = options.out.join(format!(".frames.{}.part", std::process::id()));
     let layout = Layout::of_mesh(&first, surface_of(source, &first)?, names);
-    let writer = FrameWriter::new(&options.out, &options.formats, layout, spool, time_step, width)?;
+    let writer =
+        FrameWriter::new(&options.out, &options.formats, layout, spool, time_step * stride as f64, width)?;
     let elements = Mesh { positions: Vec::new(), surface: None, ..first.clone() };
     let mut write = || {
-        for index in 0..frames.len() {
+        let taken = frames.len().div_ceil(stride);
+        for place in 0..taken {
+            let index = place * stride;
             let mut mesh = frames.read(index)?;
             // That of the first frame is written. Which corners share a normal may look different in each.
             mesh.surface = None;
@@ -80,15 +132,15 @@ pub fn export(
                 let message = "its elements differ from those of the first frame: export it by itself";
                 return Err(IoError::content(frames.path(index), Place::File, message));
             }
-            writer.write(index, &positions)?;
-            progress(index + 1, frames.len());
+            writer.write(place, &positions)?;
+            progress(place + 1, taken);
         }
-        writer.finish(frames.len())
+        writer.finish(taken)?;
+        Ok(taken)
     };
     let written = write();
     writer.remove_spool();
-    written?;
-    Ok(Exported { frames: frames.len(), vertices: first.positions.len() })
+    Ok(Exported { frames: written?, vertices: first.positions.len() })
 }
 
 /// What is known about the faces of the frames of `source`, of which `first` is the first.

@@ -1,7 +1,8 @@
 use bowknot::check::{Judge, PathOptions, StateOptions};
 use bowknot::io::{FrameStack, Import, read_mesh};
 use bowknot::recording::States;
-use bowknot::run::{Outcome, Progress, RunOptions, run};
+use bowknot::run::{ExportOptions, Outcome, Progress, Rate, RunOptions, export, run};
+use bowknot::scene::Format;
 use bowknot::simulator::SimulationError;
 use bowknot::{Scene, World};
 use serde_json::Value;
@@ -359,4 +360,38 @@ fn formats_may_change_when_a_run_is_resumed() {
     }
     let grids = fs::read_to_string(parts.join("frames.pvd")).expect("a collection");
     assert_eq!(grids.matches("<DataSet").count(), 2, "only frames 5 and 6 are there as VTU: {grids}");
+}
+
+#[test]
+fn exports_take_every_so_many_frames_or_so_many_per_second() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("run");
+    let text =
+        format!("simulation = {{ dt = {}, frames = 10 }}\nbody = [{{ shape = \"sheet\" }}]\n", 1.0 / 96.0);
+    go(&Scene::from_toml(&text, "").expect("a scene"), &options(&out)).expect("a run");
+    let exported = |rate: Rate, name: &str| {
+        let options = ExportOptions {
+            formats: vec![Format::Ply, Format::Vtu],
+            out: folder.path().join(name),
+            time_step: None,
+            rate,
+        };
+        export(&out, &options, &mut |_, _| {}).map(|exported| exported.frames).map_err(|e| e.to_string())
+    };
+    for (rate, name) in [(Rate::Every(4), "every"), (Rate::PerSecond(24.0), "rate")] {
+        assert_eq!(exported(rate, name), Ok(3));
+        let frames = folder.path().join(name).join("frames");
+        assert_eq!(names(&frames).len(), 6);
+        for (place, frame) in [(0, 0), (1, 4), (2, 8)] {
+            let [taken, given] =
+                [frames.join(format!("{place:06}.ply")), out.join(format!("frames/{frame:06}.ply"))]
+                    .map(|path| fs::read(path).expect("a frame"));
+            assert_eq!(taken, given, "frame {place}");
+        }
+        let times = fs::read_to_string(folder.path().join(name).join("frames.pvd")).expect("times");
+        assert!(times.contains(&format!("timestep=\"{}\"", 2.0 * (4.0 / 96.0))), "{times}");
+    }
+    let message = exported(Rate::PerSecond(25.0), "no").expect_err("none of its time steps");
+    assert!(message.contains("32.000000 in every 3 and 24.000000 in every 4"), "{message}");
+    assert!(exported(Rate::Every(0), "no").is_err() && !folder.path().join("no").exists());
 }
