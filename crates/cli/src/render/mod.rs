@@ -3,6 +3,7 @@
 mod colors;
 mod edges;
 mod folder;
+mod framing;
 mod gaps;
 
 use crate::args::{Direction, FrameRange, RenderOptions};
@@ -17,6 +18,7 @@ use bowknot_render::{
 };
 use colors::Coloring;
 use folder::RunFolder;
+use framing::Framing;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -145,7 +147,7 @@ fn select(options: &RenderOptions, output: Output, run: &RunFolder) -> Result<(V
     Ok((frames, options.fps.unwrap_or(1.0 / (dt * range.step as f64))))
 }
 
-/// The camera, which is fitted to the whole run unless the options give one, and the ground.
+/// The camera, which is fitted to the whole run, without bodies that have left the scene, unless the options give one, and the ground.
 fn shot(
     options: &RenderOptions,
     run: &RunFolder,
@@ -167,8 +169,10 @@ fn shot(
             let every = (run.last_frame() / FITTED_FRAMES).max(1);
             let spread = run.frames().filter(|frame| frame % every == 0 || *frame == run.last_frame());
             let radius = run.radius();
+            let framing = Framing::new(run.elements());
             for frame in spread.chain(frames.iter().copied()) {
-                run.positions(frame)?.iter().for_each(|p| fit.add(p, radius));
+                let positions = run.positions(frame)?;
+                framing.staying(&positions).for_each(|p| fit.add(p, radius));
             }
             let camera = fit.camera();
             match eye {
