@@ -140,6 +140,38 @@ fn lines_that_lead_nowhere_are_left_out_of_cloth_and_those_to_sew_along_are_refu
 }
 
 #[test]
+fn obstacles_that_jump_are_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (frame, x) in [(1, 0.0), (2, 0.3), (3, 0.9)] {
+        let arm = format!("v {x} 0 -2\nv {x} 1 -2\nv {x} 0 -3\nf 1 2 3\n");
+        fs::write(folder.path().join(format!("{frame}.obj")), arm).expect("a frame");
+    }
+    let warnings = |obstacle: &str| {
+        let text = format!(
+            "simulation = {{ frames = 100 }}\nbody = [{{ shape = {{ type = \"sheet\", edge = 0.05 }} }}]\n\
+             [[obstacle]]\nname = \"arm\"\n{obstacle}"
+        );
+        let world =
+            Scene::from_toml(&text, folder.path()).and_then(|scene| World::new(&scene)).expect("a world");
+        let jumps = |warning: &&String| warning.starts_with("obstacle arm moves by up to");
+        world.warnings.iter().filter(jumps).cloned().collect::<Vec<_>>()
+    };
+    let keyed = |time: f64| {
+        let motion = format!(
+            "motion = {{ keyframes = [{{ time = 0.2 }}, {{ time = {time}, translate = [2.0, 0, 0] }}] }}"
+        );
+        warnings(&format!("shape = {{ type = \"ball\" }}\ntranslate = [0, 0, -2]\n{motion}\n"))
+    };
+    assert_eq!(keyed(1.0), [""; 0]);
+    let told = keyed(0.22);
+    assert!(told[0].contains("1.000 m in a time step") && told[0].contains("at 0.2"), "{told:?}");
+    let in_frames = |rate: f64| warnings(&format!("sequence = \".\"\nsequence_rate = {rate:?}\n"));
+    assert_eq!(in_frames(24.0), [""; 0]);
+    let told = in_frames(100.0);
+    assert!(told[0].contains("0.600 m in a time step") && told[0].contains("at 0.010 s"), "{told:?}");
+}
+
+#[test]
 fn roots_are_at_the_end_that_is_asked_for_and_tips_are_told() {
     // Two strands off a ball, the second written tip first, and a ring.
     let strands = "v 0 0 0.12\nv 0 0 0.2\nv 0 0 0.3\nv 0.3 0 0\nv 0.2 0 0\nv 0.12 0 0\nl 1 2 3\nl 4 5 6\n";

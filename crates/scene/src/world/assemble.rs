@@ -4,7 +4,9 @@ use super::part::Part;
 use super::pins::pins;
 use super::roots::Surroundings;
 use super::unused::unused_keys;
-use super::{ObstacleMotion, Placing, Procedural, World, WorldBody, WorldContact, joined, sequence, size};
+use super::{
+    ObstacleMotion, Placing, Procedural, World, WorldBody, WorldContact, joined, jumps, sequence, size,
+};
 use crate::body::BodySpec;
 use crate::description::Scene;
 use crate::error::SceneError;
@@ -230,6 +232,8 @@ impl Assembly {
         };
         world.warnings.extend(size::warnings(&world.sizes()));
         world.warnings.extend(unused_keys(scene));
+        let simulation = &scene.simulation;
+        world.warnings.extend(jumps::warnings(&world, simulation.dt, simulation.frames));
         for warning in &world.warnings {
             tracing::warn!("{warning}");
         }

@@ -13,6 +13,7 @@
 
 mod assemble;
 mod follow;
+mod jumps;
 mod motion;
 mod part;
 mod pins;
