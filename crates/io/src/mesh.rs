@@ -22,6 +22,8 @@ pub struct Mesh {
     pub obstacle: Option<Vec<bool>>,
     /// Body of each vertex, if the file says so.
     pub body: Option<Vec<u32>>,
+    /// Names of the bodies, in the order of their numbers, if the file says so; there may be fewer than bodies.
+    pub names: Vec<String>,
     /// The polygons whose fans are the triangles, and what modeling tools say about them; none if the file
     /// has nameless triangles only, or is neither OBJ nor PLY.
     pub surface: Option<Surface>,
@@ -44,6 +46,8 @@ pub struct MeshView<'a> {
     pub obstacle: &'a [bool],
     /// Body of each vertex; empty: all belong to body 0.
     pub body: &'a [u32],
+    /// Names of the bodies, in the order of their numbers; there may be fewer than bodies.
+    pub names: &'a [String],
     /// The polygons whose fans are the triangles, then the fans of the quads: what OBJ, PLY and USD hold in
     /// their place.
     pub surface: Option<&'a Surface>,
@@ -60,6 +64,7 @@ impl Mesh {
             particles: &self.particles,
             obstacle: self.obstacle.as_deref().unwrap_or(&[]),
             body: self.body.as_deref().unwrap_or(&[]),
+            names: &self.names,
             surface: self.surface.as_ref(),
         }
     }

@@ -95,7 +95,7 @@ fn solid(path: &Path) -> bool {
 
 /// Checks that indices are in range and numbers finite, and that neither the topology nor the judge panics.
 fn check_sound(mesh: &Mesh) {
-    let Mesh { positions, triangles, tets, strands, particles, obstacle, body, surface } = mesh;
+    let Mesh { positions, triangles, tets, strands, particles, obstacle, body, surface, names: _ } = mesh;
     let count = positions.len();
     let named = triangles.iter().flatten().chain(strands.iter().flatten()).chain(particles);
     let named = named.chain(tets.iter().flatten());

@@ -112,7 +112,7 @@ pub fn export(
     }
 
     let first = frames.read(0)?;
-    let names = scene.as_ref().map(names).unwrap_or_default();
+    let names = scene.as_ref().map_or_else(|| first.names.clone(), names);
     let width = scene.as_ref().and_then(|scene| scene.contact.delta);
     create_folder(&options.out)?;
     let spool = options.out.join(format!(".frames.{}.part", std::process::id()));

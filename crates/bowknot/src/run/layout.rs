@@ -106,6 +106,7 @@ impl Layout {
             particles: &self.particles,
             obstacle: &self.obstacle,
             body: &self.body,
+            names: &self.names,
             surface: self.surface.as_ref(),
         }
     }

@@ -395,3 +395,27 @@ fn exports_take_every_so_many_frames_or_so_many_per_second() {
     assert!(message.contains("32.000000 in every 3 and 24.000000 in every 4"), "{message}");
     assert!(exported(Rate::Every(0), "no").is_err() && !folder.path().join("no").exists());
 }
+
+#[test]
+fn frames_picked_by_hand_keep_the_names_of_their_bodies() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (out, picked) = (folder.path().join("run"), folder.path().join("picked"));
+    let text = "simulation = { frames = 3 }\n\
+                body = [{ name = \"left sleeve\", shape = \"sheet\" }, { name = \"cap\", shape = \"sheet\", translate = [0, 0, 1] }]\n";
+    go(&Scene::from_toml(text, "").expect("a scene"), &options(&out)).expect("a run");
+    fs::create_dir(&picked).expect("a folder");
+    for frame in ["000001.ply", "000003.ply"] {
+        fs::copy(out.join("frames").join(frame), picked.join(frame)).expect("a frame");
+    }
+    let options = ExportOptions {
+        formats: vec![Format::Pc2],
+        out: folder.path().join("there"),
+        time_step: Some(0.02),
+        ..ExportOptions::default()
+    };
+    export(&picked, &options, &mut |_, _| {}).expect("exported");
+    assert_eq!(
+        names(&folder.path().join("there/pc2")),
+        ["cap.obj", "cap.pc2", "left_sleeve.obj", "left_sleeve.pc2"]
+    );
+}

@@ -94,6 +94,8 @@ impl Element {
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
+    /// Names of bodies, as [`super::write_ply`] writes them.
+    pub(super) names: Vec<String>,
     /// Where the payload begins [bytes].
     pub(super) payload: usize,
     /// Lines before the payload.
@@ -107,6 +109,7 @@ impl Header {
     pub(super) fn parse(bytes: &[u8]) -> Result<Self, Fault> {
         let mut encoding = None;
         let mut elements: Vec<Element> = Vec::new();
+        let mut names = Vec::new();
         let mut offset = 0;
         let mut number = 0;
         loop {
@@ -128,6 +131,7 @@ impl Header {
                 continue;
             }
             match words.as_slice() {
+                ["comment", "body", ..] => names.extend(body_name(&line, names.len())),
                 [] | ["comment" | "obj_info", ..] => {}
                 ["end_header"] => break,
                 ["format", name, _version] => encoding = Some(parse_encoding(name, number)?),
@@ -154,8 +158,14 @@ impl Header {
             }
         }
         let encoding = encoding.ok_or_else(|| (number, "the header names no format".to_owned()))?;
-        Ok(Self { encoding, elements, payload: offset, lines: number })
+        Ok(Self { encoding, elements, names, payload: offset, lines: number })
     }
+}
+
+/// The name in the comment of a body, if it is the one of this number.
+fn body_name(line: &str, number: usize) -> Option<String> {
+    let name = line.trim_end_matches('\r').strip_prefix(&format!("comment body {number} "))?;
+    Some(name.to_owned())
 }
 
 fn not_ply() -> Fault {

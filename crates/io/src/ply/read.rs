@@ -13,7 +13,8 @@ use std::path::Path;
 
 /// Reads a PLY file: `vertex` (x y z, and `obstacle`, `body` if there), `face` (a list `vertex_indices` or
 /// `vertex_index` of any integer type, as fans around the first vertex), `edge` (`vertex1`, `vertex2`); other
-/// elements and properties are skipped. Vertices of no face and no edge are particles.
+/// elements and properties are skipped. Vertices of no face and no edge are particles. Names of bodies are read as
+/// [`write_ply`](crate::write_ply) writes them.
 ///
 /// # Errors
 /// A missing, malformed or truncated file, coordinates that are not finite, indices of vertices that do not
@@ -38,7 +39,7 @@ fn parse(bytes: &[u8], import: &Import) -> Result<Mesh, (Place, String)> {
         return Err((Place::File, "triangle strips are not read: export triangles or polygons".to_owned()));
     }
 
-    let mut mesh = Mesh::default();
+    let mut mesh = Mesh { names: header.names.clone(), ..Mesh::default() };
     let mut payload = Payload::new(bytes, &header);
     let mut row = Row::default();
     for element in header.elements.iter().filter(|e| !e.properties.is_empty()) {

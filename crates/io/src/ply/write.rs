@@ -14,7 +14,7 @@ const PIECE: usize = u8::MAX as usize;
 ///
 /// `vertex`: x y z (double), `obstacle` (uchar, 0 or 1), `body` (int). `face`: list (uchar int)
 /// `vertex_indices`, triangles first, then quads. `edge`, if there are strands: `vertex1`, `vertex2` (int).
-/// Particles are the vertices that none of these names.
+/// Particles are the vertices that none of these names. Names of bodies are comments: `body`, number, name.
 ///
 /// The surface of the mesh, if it has one, gives the faces: polygons, those of more than 255 corners in
 /// pieces. If no vertex has two texture coordinates, vertices also have `s` and `t` (double). What else it
@@ -31,12 +31,17 @@ pub fn write_ply(path: &Path, mesh: &MeshView<'_>) -> Result<(), IoError> {
         };
         let texture =
             mesh.surface.and_then(|surface| surface.vertex_texture_coordinates(mesh.positions.len()));
+        let names = mesh.names.iter().enumerate().map(|(body, name)| {
+            let name = name.replace(char::is_control, " ");
+            format!("comment body {body} {name}\n")
+        });
         let texture_header = if texture.is_some() { "property double s\nproperty double t\n" } else { "" };
         write!(
             out,
-            "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty double x\nproperty double y\n\
+            "ply\nformat binary_little_endian 1.0\n{}element vertex {}\nproperty double x\nproperty double y\n\
              property double z\nproperty uchar obstacle\nproperty int body\n{texture_header}element face {faces}\n\
              property list uchar int vertex_indices\n",
+            names.collect::<String>(),
             mesh.positions.len()
         )?;
         if !mesh.strands.is_empty() {

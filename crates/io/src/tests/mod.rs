@@ -43,6 +43,7 @@ fn sample() -> Mesh {
         particles: vec![5],
         obstacle: Some(vec![false, false, false, false, false, true]),
         body: Some(vec![0, 0, 0, 0, 1, 2]),
+        names: vec!["a".to_owned(), "b c".to_owned()],
         surface: None,
     }
 }

@@ -7,7 +7,7 @@ fn obj_round_trips_to_the_same_bits() {
     let folder = folder();
     let path = folder.path().join("mesh.obj");
     write_obj(&path, &sample().view()).unwrap();
-    let expected = Mesh { body: None, ..sample() };
+    let expected = Mesh { body: None, names: Vec::new(), ..sample() };
     assert_eq!(read_mesh(&path, &Import::default()).unwrap(), expected);
 }
 

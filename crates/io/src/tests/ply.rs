@@ -117,3 +117,20 @@ fn ply_bodies_are_numbers_that_can_be_written() {
         assert!(text.contains(&format!("body {body} must be a whole number from 0 to 2147483647")), "{text}");
     }
 }
+
+#[test]
+fn names_of_bodies_are_comments() {
+    let folder = folder();
+    let path = folder.path().join("a.ply");
+    let names = ["left  sleeve", " \u{e9}toffe\nelement x", ""].map(str::to_owned).to_vec();
+    let mesh =
+        Mesh { positions: vec![Point::origin(); 3], triangles: vec![[0, 1, 2]], names, ..Mesh::default() };
+    write_ply(&path, &mesh.view()).unwrap();
+    let again = read_ply(&path, &Import::default()).unwrap();
+    assert_eq!(again.names, ["left  sleeve", " \u{e9}toffe element x", ""]);
+    // Others' comments are no names.
+    let other = "ply\nformat ascii 1.0\ncomment body 7 x\ncomment body of water\ncomment body 0 a\r\nelement vertex 1\n\
+                 property float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n";
+    let path = write(&folder, "b.ply", other);
+    assert_eq!(read_ply(&path, &Import::default()).unwrap().names, ["a"]);
+}
