@@ -285,7 +285,7 @@ pub struct ExportOptions {
     /// Time between frames of DIR [s; default: that of the run, if DIR is the folder of a run]
     #[arg(long, value_name = "S", value_parser = positive)]
     pub dt: Option<f64>,
-    /// Take every N-th frame from the first on; they are numbered anew
+    /// Take every N-th frame from the first on, into another folder; they are numbered anew
     #[arg(long, value_name = "N", value_parser = stride, default_value_t = 1)]
     pub every: usize,
     /// Take so many frames per second, such as 24 of a run with time steps of 1/96 s

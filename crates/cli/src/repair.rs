@@ -74,7 +74,7 @@ fn to_text(report: &RepairReport, out: &Path, left_out: &[&str]) -> String {
         (report.dropped_strands, "dropped lines"),
         (
             report.lines,
-            "lines that stay (--drop-lines drops them; cloth may have none between its triangles)",
+            "lines that stay (--drop-lines drops them; cloth may have none that join its triangles)",
         ),
         (report.unused_vertices, "dropped vertices that no element used"),
     ] {

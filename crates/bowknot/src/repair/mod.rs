@@ -88,7 +88,7 @@ pub struct RepairReport {
     pub cut_polygons: usize,
     /// Strand edges dropped because they repeat another, have no length, or are lines that were to be dropped.
     pub dropped_strands: usize,
-    /// Strand edges that stay beside triangles, and keep the mesh from being cloth.
+    /// Strand edges that stay beside triangles. Those between triangles keep the mesh from being cloth.
     pub lines: usize,
     /// Vertices dropped because nothing uses them, welded ones not counted.
     pub unused_vertices: usize,

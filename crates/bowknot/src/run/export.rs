@@ -39,16 +39,15 @@ impl Default for Rate {
 impl Rate {
     /// Frames from one that is taken to the next.
     fn stride(self, time_step: f64) -> Result<usize, String> {
-        /// Relative error of a number of time steps that is still whole: rates such as 24 and steps such as 1/96 s are
-        /// written with few digits.
-        const WHOLE: f64 = 1e-3;
+        /// Error of a number of time steps that is still whole: steps such as 1/96 s are written with few digits.
+        const WHOLE: f64 = 1e-2;
         match self {
             Self::Every(0) => Err("of frames every 0 none is taken: give 1 or more".to_owned()),
             Self::Every(stride) => Ok(stride),
             Self::PerSecond(rate) => {
                 let steps = 1.0 / (rate * time_step);
                 let whole = steps.round();
-                if whole >= 1.0 && (steps - whole).abs() <= WHOLE * steps {
+                if whole >= 1.0 && (steps - whole).abs() <= WHOLE {
                     return Ok(whole as usize);
                 }
                 let below = steps.floor().max(1.0);
@@ -106,6 +105,11 @@ pub fn export(
         "obj" => Format::Obj,
         _ => Format::Npz,
     };
+    if stride > 1 && same_folder(&options.out, source) {
+        let message =
+            "some of its frames, numbered anew, would mix with its own: name another folder with --out";
+        return Err(fault(message.to_owned()));
+    }
     if options.formats.contains(&format) && same_folder(&options.out, source) {
         let message = format!("its frames are {format:?} files already: name another folder with --out");
         return Err(fault(message));

@@ -23,7 +23,7 @@ const STILL_THERE: f64 = 0.9;
 /// Stiffness, in that of a whole contact, below which one that is none any more is forgotten.
 const FORGOTTEN: f64 = 0.01;
 
-/// Way of its vertices over which the mean of a contact goes back, in its reach. Less forgets too soon to settle at the border
+/// Way of its vertices, in its reach, over which the mean of a contact goes back at most. Less forgets too soon to settle at the border
 /// between two sets; more lags behind bodies that slide.
 const MEMORY: f64 = 0.1;
 
@@ -53,16 +53,16 @@ pub(super) struct FoundContacts {
 pub(super) struct Finds {
     /// In this time step, at its start included.
     in_step: u32,
-    /// How many times means go back before this time step, by vertex; `u32::MAX` for vertices that cannot move.
+    /// How many times the means of its contacts go back before this time step at most, by vertex.
     before: Vec<u32>,
 }
 
 impl Finds {
-    /// Begins a time step with the means of the last one. `moves` says which vertices can move.
-    pub fn begin_step(&mut self, means: &[ContactMean], moves: impl Iterator<Item = bool>) {
+    /// Begins a time step of so many vertices with the means of the last one.
+    pub fn begin_step(&mut self, means: &[ContactMean], vertices: usize) {
         self.in_step = 0;
         self.before.clear();
-        self.before.extend(moves.map(|moves| if moves { 0 } else { u32::MAX }));
+        self.before.resize(vertices, 0);
         for ContactMean { spring, depth, .. } in means {
             for vertex in used(spring) {
                 let known = &mut self.before[vertex as usize];
@@ -89,7 +89,7 @@ impl Finds {
     }
 
     /// Whether the mean of a contact goes back beyond the start of the time step.
-    pub fn goes_on(&self, spring: &RepulsionSpring, way: [&[Point]; 2]) -> bool {
+    fn goes_on(&self, spring: &RepulsionSpring, way: [&[Point]; 2]) -> bool {
         self.depth(spring, way) > self.in_step
     }
 
@@ -131,14 +131,18 @@ impl FoundContacts {
     }
 
     /// Averages these contacts, found now, with the means `before`. Vertices have moved from one of `way` to the other in
-    /// this time step. Contacts that are none any more stay with their part. `stiffness` is that of a whole one.
-    pub fn average(&mut self, before: &Self, finds: &Finds, stiffness: f64, way: [&[Point]; 2]) {
+    /// this time step. Contacts that are none any more stay with their part. `stiffness` is that of a whole one. Returns
+    /// which of them are among the means and go on with these from before the time step.
+    pub fn average(&mut self, before: &Self, finds: &Finds, stiffness: f64, way: [&[Point]; 2]) -> Vec<bool> {
+        let mut go_on = Vec::with_capacity(self.features.len());
         let all_before = before.features.iter().zip(&before.springs).zip(&before.distances);
         let mut gone: FxHashMap<&[Feature; 2], &RepulsionSpring> =
             all_before.clone().map(|(contact, _)| contact).collect();
         for (features, spring) in self.features.iter().zip(&mut self.springs) {
             let new = finds.share_of_new(spring, way);
-            match gone.remove(features) {
+            let known = gone.remove(features);
+            go_on.push(known.is_some() && finds.goes_on(spring, way));
+            match known {
                 Some(old) if new < 1.0 => mix(spring, old, new),
                 None => spring.stiffness *= new,
                 Some(_) => (),
@@ -153,8 +157,10 @@ impl FoundContacts {
                 self.features.push(*features);
                 self.springs.push(left);
                 self.distances.push(distance);
+                go_on.push(finds.goes_on(old, way));
             }
         }
+        go_on
     }
 }
 
@@ -270,7 +276,7 @@ mod tests {
             for step in 0..100 {
                 let now = [if step % 2 == 0 { FIRST } else { SECOND }];
                 let mut finds = Finds::default();
-                finds.begin_step(&carried, [true; 2].into_iter());
+                finds.begin_step(&carried, 2);
                 let mut mean = FoundContacts::from_means(&carried);
                 for way in [[&start[..], &start[..]], [&start[..], &x[..]]] {
                     let mut found = contacts(&now);
@@ -290,11 +296,29 @@ mod tests {
         let spring = contacts(&[FIRST]).springs[0];
         let mut finds = Finds::default();
         let mean = ContactMean { features: FIRST, spring, distance: 0.5, depth: 7 };
-        // Vertex 1 cannot move, so how long it has been known does not count.
-        finds.begin_step(&[mean], [true, false].into_iter());
+        finds.begin_step(&[mean], 3);
         finds.add();
         for (way, depth) in [(0.0, 8), (0.01, 8), (0.021, 4), (0.2, 0)] {
             assert_eq!(finds.depth(&spring, [&at(0.5), &at(0.5 + way)]), depth, "{way}");
         }
+    }
+
+    /// What has long been at rest is met by something that is new there: at the start of the time step nothing has moved.
+    #[test]
+    fn a_contact_of_a_vertex_without_any_is_whole_at_once_and_does_not_go_on() {
+        let mean =
+            ContactMean { features: FIRST, spring: contacts(&[FIRST]).springs[0], distance: 0.5, depth: 99 };
+        let mut finds = Finds::default();
+        finds.begin_step(&[mean], 3);
+        let mut found = contacts(&[FIRST, SECOND]);
+        found.springs[1].vertices = [0, 2, 0, 0];
+        let x = [at(0.5)[0], at(0.5)[1], Point::new(0.0, 0.0, 1.0)];
+        let go_on = found.average(&FoundContacts::from_means(&[mean]), &finds, WHOLE, [&x, &x]);
+        assert_eq!((go_on, found.springs[1].stiffness), (vec![true, false], WHOLE));
+        // Between vertices that are known it has its share, but no past.
+        let mut found = contacts(&[SECOND]);
+        let go_on = found.average(&FoundContacts::from_means(&[mean]), &finds, WHOLE, [&x, &x]);
+        assert_eq!((go_on, found.features.len()), (vec![false, true], 2));
+        assert!((found.springs[0].stiffness - WHOLE / 99.0).abs() < 1e-12);
     }
 }

@@ -149,7 +149,7 @@ impl Contacts {
         let exists = |mean: &&ContactMean| mean.spring.vertices.iter().all(|&vertex| vertex < vertices);
         let is_known = |mean: &&ContactMean| exists(mean) && self.is_elastic(&mean.spring.vertices);
         let means: Vec<ContactMean> = means.iter().filter(is_known).copied().collect();
-        self.finds.begin_step(&means, (0..vertices).map(|vertex| self.solved.moves(vertex)));
+        self.finds.begin_step(&means, vertices as usize);
         self.found = FoundContacts::from_means(&means);
         self.counted.copy_from_slice(self.solved.flags());
         self.memory = FrictionMemory::new(resolver.scene(), forces);
@@ -269,7 +269,7 @@ impl Contacts {
         };
         let shares: Vec<f64> = near.iter().map(|contact| contact.share).collect();
         share_stiffness(&mut found.springs, &shares, &found.distances, self.solved.flags());
-        found.average(&self.found, &self.finds, self.stiffness, [start, &state.x]);
+        let go_on = found.average(&self.found, &self.finds, self.stiffness, [start, &state.x]);
         for (spring, features) in found.springs.iter_mut().zip(&found.features) {
             spring.friction_ratio = self.memory.of(scene, features);
         }
@@ -277,13 +277,11 @@ impl Contacts {
         self.touching.held.extend(held);
         // For contacts that are new or have turned, the gap between the same points at the start may be smaller than the
         // one that the collision stage has reached.
-        let all = found.springs.par_iter_mut().zip(&found.distances).with_min_len(MIN_PAIRS);
-        all.for_each(|(spring, distance)| {
+        let all = found.springs.par_iter_mut().zip(&found.distances).zip(&go_on).with_min_len(MIN_PAIRS);
+        all.for_each(|((spring, distance), goes_on)| {
             let at_start = gap(spring, start);
-            spring.start_gap = match self.finds.goes_on(spring, [start, &state.x]) {
-                true => at_start,
-                false => at_start.max(distance.min(spring.reach / REACH)),
-            };
+            let reached = distance.min(spring.reach / REACH);
+            spring.start_gap = if *goes_on { at_start } else { at_start.max(reached) };
         });
         self.finds.add();
         found.springs.extend(self.limited.taut(&state.x, start, self.stiffness));

@@ -117,7 +117,7 @@ fn lines_that_lead_nowhere_are_left_out_of_cloth_and_those_to_sew_along_are_refu
     // Two triangles, and three vertices away from them.
     let cloth =
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 3 0 0\nv 4 0 0\nv 3 1 0\nv 8 8 0\nv 9 9 0\nv 9 9 9\nf 1 2 3\nf 4 5 6\n";
-    for (lines, count) in [("l 7 8 9", 2), ("l 1 7", 1), ("l 1 2", 1), ("l 3 2 1\nl 9 4", 3)] {
+    for (lines, count) in [("l 7 8 9", 2), ("l 1 7", 1), ("l 1 2", 1), ("l 3 2 1\nl 9 4", 3), ("l 3 3", 1)] {
         let world = with_mesh("cloth", "mesh.obj", &format!("{cloth}{lines}\n")).expect("a world");
         assert_eq!((world.positions.len(), world.bodies[0].strands.len()), (6, 0), "{lines}");
         let expected = format!("body it: left out {count} line");
@@ -125,7 +125,7 @@ fn lines_that_lead_nowhere_are_left_out_of_cloth_and_those_to_sew_along_are_refu
     }
     let sewing = format!("{cloth}l 7 8\nl 2 4\nl 3 6\n");
     let message = with_mesh("cloth", "mesh.obj", &sewing).expect_err("refused");
-    let expected = "scene.toml:4: body it: 2 lines of the mesh join vertices of its triangles, the first vertices 1 and 3: \
+    let expected = "scene.toml:4: body it: the mesh has 2 lines between vertices of its triangles, the first joins vertices 1 and 3: \
                     other programs sew";
     assert!(message.starts_with(expected) && message.contains("drop_lines = true"), "{message}");
     let folder = tempfile::tempdir().expect("a folder");

@@ -393,6 +393,8 @@ fn exports_take_every_so_many_frames_or_so_many_per_second() {
     }
     let message = exported(Rate::PerSecond(25.0), "no").expect_err("none of its time steps");
     assert!(message.contains("32.000000 in every 3 and 24.000000 in every 4"), "{message}");
+    let message = exported(Rate::Every(2), "run").expect_err("among its own frames");
+    assert!(message.contains("name another folder with --out"), "{message}");
     assert!(exported(Rate::Every(0), "no").is_err() && !folder.path().join("no").exists());
 }
 

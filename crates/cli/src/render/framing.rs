@@ -3,6 +3,7 @@
 use crate::bare_mesh::extent;
 use bowknot::geometry::Point;
 use bowknot::io::Mesh;
+use std::collections::{HashMap, HashSet};
 
 /// Distance from where all bodies are at the start, in the diagonal of their box there, beyond which a body has left.
 const LEFT: f64 = 1.0;
@@ -24,14 +25,13 @@ impl<'a> Framing<'a> {
 
     /// The positions of a frame without those of bodies that have left; all of them if no deformable body stays.
     pub fn staying(&self, positions: &'a [Point]) -> impl Iterator<Item = &'a Point> {
-        let count = self.body.iter().max().map_or(1, |most| *most as usize + 1);
-        let body = |v: usize| self.body.get(v).map_or(0, |body| *body as usize);
-        let mut boxes = vec![[Point::from([f64::INFINITY; 3]), Point::from([f64::NEG_INFINITY; 3])]; count];
-        let mut deformable = vec![true; count];
+        let body = |v: usize| self.body.get(v).copied().unwrap_or(0);
+        // Lower and upper corner, and whether it deforms. Numbers of bodies may be any.
+        let mut boxes: HashMap<u32, ([Point; 2], bool)> = HashMap::new();
         for (v, x) in positions.iter().enumerate() {
-            let [low, high] = &mut boxes[body(v)];
+            let ([low, high], deforms) = boxes.entry(body(v)).or_insert(([*x; 2], true));
             (*low, *high) = (low.inf(x), high.sup(x));
-            deformable[body(v)] &= !self.obstacle.get(v).copied().unwrap_or(false);
+            *deforms &= !self.obstacle.get(v).copied().unwrap_or(false);
         }
         let [low, high] = self.home;
         let farthest = LEFT * (high - low).norm();
@@ -39,12 +39,11 @@ impl<'a> Framing<'a> {
             let apart = (l - high).sup(&(low - h)).map(|gap| gap.max(0.0));
             apart.norm() > farthest
         };
-        let mut left: Vec<bool> = boxes.iter().map(has_left).collect();
-        if !left.iter().zip(&deformable).any(|(left, deformable)| !left && *deformable) {
-            left.fill(false);
-        }
+        let any_stays = boxes.values().any(|(corners, deforms)| *deforms && !has_left(corners));
+        let left = boxes.iter().filter(|(_, (corners, _))| any_stays && has_left(corners));
+        let left: HashSet<u32> = left.map(|(body, _)| *body).collect();
         let own = self.body;
-        let stays = move |v: usize| !left[own.get(v).map_or(0, |body| *body as usize)];
+        let stays = move |v: usize| !left.contains(&own.get(v).copied().unwrap_or(0));
         positions.iter().enumerate().filter(move |(v, _)| stays(*v)).map(|(_, x)| x)
     }
 }

@@ -13,10 +13,14 @@ use std::collections::HashMap;
 /// Corners that a polygon has at most for its fans around all of them to be tried.
 const MOST_CORNERS: usize = 64;
 
-/// Sine of the angle between two sides up to which their corner is on a straight line.
-const STRAIGHT: f64 = 1e-9;
+/// Sine of the angle between two sides up to which their corner is on a straight line. Files of single precision have such
+/// corners 1e-7 beside it.
+const STRAIGHT: f64 = 1e-6;
 
-/// Height of corners over the mean plane of a polygon, in the root of its area, from which on it has no plane outline.
+/// Twice the area of a triangle over its longest side squared, below which another fan is preferred if it is better.
+const THIN: f64 = 1e-3;
+
+/// Height of corners over the mean plane of a polygon, in the root of twice its area, from which on it has no plane outline.
 const WARPED: f64 = 0.2;
 
 /// Relative error of areas up to which triangles fill a polygon.
@@ -48,7 +52,7 @@ impl PolygonFaults {
 
 impl Mesh {
     /// Makes the triangles fill the polygons of the surface, see [`Surface`]. Polygons that are convex keep their
-    /// first corners. Nothing changes for a mesh without polygons.
+    /// first corners, unless their triangles would be slivers. Nothing changes for a mesh without polygons.
     pub fn triangulate(&mut self) -> PolygonFaults {
         let mut faults = PolygonFaults::default();
         let Some(surface) = &self.surface else { return faults };
@@ -127,34 +131,46 @@ impl Filling {
         if count == 3 || area == 0.0 || !area.is_finite() {
             return Self::Fan(0);
         }
-        let is_filled_from = |start: usize| {
-            let corner = |k: usize| &outline[(start + k) % count];
-            (1..count - 1).all(|k| {
-                let triangle = (corner(k) - corner(0)).cross(&(corner(k + 1) - corner(0)));
-                triangle.dot(&normal) > FILLED * FILLED * area * area
-            })
+        let corner = |k: usize| outline[k % count];
+        let fan = |start: usize| {
+            fan_quality((1..count).map(|k| corner(start + k) - corner(start)), &(normal / area))
         };
-        if is_filled_from(0) {
-            return Self::Fan(0);
-        }
+        let first = fan(0);
         // Whoever repeats a corner is told so.
-        if (0..count).any(|k| outline[k] == outline[(k + 1) % count]) {
+        if first > THIN || (0..count).any(|k| corner(k) == corner(k + 1)) {
             return Self::Fan(0);
         }
         let flat = Flat::new(outline, &(normal / area));
-        if flat.height > WARPED * area.sqrt() {
+        if first <= 0.0 && flat.height > WARPED * area.sqrt() {
             return Self::Warped;
         }
-        if flat.crosses_itself() {
+        if first <= 0.0 && flat.crosses_itself() {
             return Self::Crossing;
         }
-        if count <= MOST_CORNERS
-            && let Some(start) = (1..count).find(|&start| is_filled_from(start))
-        {
+        let others = if count <= MOST_CORNERS { 1..count } else { 0..0 };
+        let better = |best: (usize, f64), next: (usize, f64)| if next.1 > best.1 { next } else { best };
+        let (start, quality) = others.map(|start| (start, fan(start))).fold((0, first), better);
+        if quality > THIN || first > 0.0 {
             return Self::Fan(start);
         }
-        flat.triangles().map_or(Self::Fan(0), Self::Triangles)
+        // Where no triangles fill it, sides lie on each other.
+        flat.triangles().map_or(Self::Crossing, Self::Triangles)
     }
+}
+
+/// The least ratio of twice the area of a triangle to its longest side squared in a fan, whose sides from the apex these are;
+/// not above 0 if a triangle faces away from the `normal`, or the fan goes around its apex.
+fn fan_quality(mut sides: impl Iterator<Item = Vector>, normal: &Vector) -> f64 {
+    let Some(mut before) = sides.next() else { return 0.0 };
+    let (mut least, mut angle) = (f64::INFINITY, 0.0);
+    for side in sides {
+        let (doubled, dot) = (before.cross(&side).dot(normal), before.dot(&side));
+        let longest = before.norm_squared().max(side.norm_squared()).max((side - before).norm_squared());
+        least = least.min(doubled / longest);
+        angle += doubled.atan2(dot);
+        before = side;
+    }
+    if angle < std::f64::consts::TAU { least } else { 0.0 }
 }
 
 /// Twice the area of a polygon times its mean normal [m^2] (Newell's formula; Sutherland, Sproull, Schumacker, "A
@@ -193,12 +209,28 @@ impl Flat {
         Self { points, turning, height }
     }
 
-    /// Whether the outline goes around more or less than once.
+    /// Whether two sides cross within both.
     fn crosses_itself(&self) -> bool {
         let count = self.turning.len();
         let corner = |k: usize| self.points[self.turning[k % count]];
-        let turns = (0..count).map(|k| Turn::at([corner(k), corner(k + 1), corner(k + 2)]).angle());
-        (turns.sum::<f64>() - std::f64::consts::TAU).abs() > 1.0
+        let side = |k: usize| {
+            let ([a, b], [c, d]) = (corner(k), corner(k + 1));
+            Side { x: [a.min(c), a.max(c)], y: [b.min(d), b.max(d)], first: k }
+        };
+        let mut sides: Vec<Side> = (0..count).map(side).collect();
+        sides.sort_by(|a, b| a.x[0].total_cmp(&b.x[0]));
+        let orientation = |p, q, r| robust::orient2d(coord(p), coord(q), coord(r));
+        let cross = |i: usize, j: usize| {
+            let [a, b, c, d] = [corner(i), corner(i + 1), corner(j), corner(j + 1)];
+            orientation(a, b, c) * orientation(a, b, d) < 0.0
+                && orientation(c, d, a) * orientation(c, d, b) < 0.0
+        };
+        sides.iter().enumerate().any(|(place, one)| {
+            let mut beside = sides[place + 1..].iter().take_while(|other| other.x[0] <= one.x[1]);
+            beside.any(|other| {
+                other.y[0] <= one.y[1] && one.y[0] <= other.y[1] && cross(one.first, other.first)
+            })
+        })
     }
 
     /// Triangles of the corners; none if none fill the outline.
@@ -273,9 +305,15 @@ impl Turn {
     fn is_straight(&self) -> bool {
         self.dot > 0.0 && self.cross.abs() <= STRAIGHT * self.dot
     }
+}
 
-    /// To the left, in radians.
-    fn angle(&self) -> f64 {
-        self.cross.atan2(self.dot)
-    }
+/// A side of an outline: its range in x and in y, and the place of its first corner.
+struct Side {
+    x: [f64; 2],
+    y: [f64; 2],
+    first: usize,
+}
+
+fn coord([x, y]: [f64; 2]) -> robust::Coord<f64> {
+    robust::Coord { x, y }
 }

@@ -156,19 +156,63 @@ fn other_polygons_and_their_labels_stay() {
 }
 
 #[test]
+fn corners_beside_straight_sides_give_no_slivers() {
+    let house = |y: f64| [[0.0, 0.0], [0.5, y], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let ell = |d: f64| {
+        [
+            [2.0, 0.0],
+            [2.0, 1.0],
+            [1.5, 1.0 + d],
+            [1.0, 1.0],
+            [1.0, 1.5],
+            [1.0 - d, 2.0],
+            [0.0, 2.0],
+            [0.0, 0.0],
+        ]
+    };
+    for d in [1e-7, -1e-7, 1e-12, -1e-12, 0.0] {
+        for outline in [&house(d)[..], &ell(d)] {
+            let mut mesh = polygon(flat(outline));
+            assert_eq!(mesh.triangulate(), PolygonFaults::default());
+            let least = mesh.triangles.iter().map(|&t| area(&mesh, t).z).fold(f64::INFINITY, f64::min);
+            assert!(least > 0.1, "{d}: {:?}", mesh.triangles);
+        }
+    }
+}
+
+#[test]
 fn what_has_no_outline_is_told_and_stays() {
+    let turn =
+        |angle: f64, radius: f64| [radius * angle.to_radians().cos(), radius * angle.to_radians().sin()];
+    let pentagram: Vec<[f64; 2]> = (0..5).map(|k| turn(144.0 * f64::from(k), 1.0)).collect();
+    // Around its first corner, more than once.
+    let spiral: Vec<[f64; 2]> = std::iter::once([0.0, 0.0])
+        .chain((0..6).map(|k| turn(100.0 * f64::from(k), f64::from(k + 1))))
+        .collect();
     let bow = [[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 1.0]];
-    let mut bent = flat(&CEE);
-    bent.iter_mut().step_by(2).for_each(|p| p.z = 2.0);
-    let crossing = PolygonFaults { crossing: vec![0], ..PolygonFaults::default() };
-    let warped = PolygonFaults { warped: vec![0], ..PolygonFaults::default() };
-    for (positions, faults, word) in [(flat(&bow), crossing, "crosses"), (bent, warped, "flat")] {
-        let mut mesh = polygon(positions);
+    // It turns around once.
+    let notch = [[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [2.0, -1.0], [0.0, 2.0]];
+    // Teeth that reach through the base, more than can be tried one by one.
+    let mut comb = vec![[0.0, 0.0], [4001.0, 0.0]];
+    comb.extend((0..4000).map(|k| [f64::from(4000 - k), [9.0, -1.0][k as usize % 2]]));
+    for outline in [&pentagram[..], &spiral, &bow, &notch, &comb] {
+        let mut mesh = polygon(flat(outline));
         let before = mesh.clone();
         let found = mesh.triangulate();
-        assert_eq!((&found, &mesh), (&faults, &before));
-        assert!(found.describe().is_some_and(|text| text.contains(word)), "{found:?}");
+        assert!(
+            found.crossing == [0] && found.warped.is_empty() && mesh == before,
+            "{:?}",
+            &outline[..5.min(outline.len())]
+        );
+        assert!(found.describe().is_some_and(|text| text.contains("crosses")), "{found:?}");
     }
+    let mut bent = flat(&CEE);
+    bent.iter_mut().step_by(2).for_each(|p| p.z = 2.0);
+    let mut mesh = polygon(bent);
+    let before = mesh.clone();
+    let found = mesh.triangulate();
+    assert!(found.warped == [0] && found.crossing.is_empty() && mesh == before, "{found:?}");
+    assert!(found.describe().is_some_and(|text| text.contains("flat")), "{found:?}");
     // Others say what is wrong with these.
     let repeated = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [1.0, 1.0]];
     for outline in [&repeated[..], &[[0.0; 2]; 5], &[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0]]] {

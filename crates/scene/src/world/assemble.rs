@@ -201,10 +201,9 @@ impl Assembly {
     }
 
     fn finish(mut self, scene: &Scene, deformable_vertices: usize) -> Result<World, SceneError> {
-        let is_obstacle = |triangle: &&[u32; 3]| triangle[0] as usize >= deformable_vertices;
         let surroundings = Surroundings {
-            triangles: self.triangles.iter().filter(is_obstacle).copied().collect(),
-            half_spaces: &self.half_spaces,
+            triangles: &self.triangles,
+            first_vertex: deformable_vertices as u32,
             positions: &self.positions,
         };
         let pins = pins(scene, &self.bodies, &surroundings, &mut self.warnings)?;

@@ -175,14 +175,17 @@ impl Part {
             [a, b, c].into_iter().for_each(|v| of_triangles[v as usize] = true);
         }
         let sews = |&[p, q]: &[u32; 2]| {
-            of_triangles[p as usize] && of_triangles[q as usize] && !edges.contains(&[p.min(q), p.max(q)])
+            p != q
+                && of_triangles[p as usize]
+                && of_triangles[q as usize]
+                && !edges.contains(&[p.min(q), p.max(q)])
         };
         let lines = std::mem::take(&mut self.strands);
         let (sewing, others): (Vec<[u32; 2]>, Vec<_>) = lines.into_iter().partition(sews);
         if let (false, Some([p, q])) = (drop_lines, sewing.first()) {
             let [p, q] = [p, q].map(|v| self.numbers[*v as usize]);
             let message = format!(
-                "{} of the mesh join vertices of its triangles, the first vertices {p} and {q}: other programs sew along \
+                "the mesh has {} between vertices of its triangles, the first joins vertices {p} and {q}: other programs sew along \
                  such lines, which is not simulated; leave them out with drop_lines = true, or let `bowknot repair` weld \
                  borders that lie together",
                 counted(sewing.len(), "line", "lines")

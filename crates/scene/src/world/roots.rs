@@ -3,29 +3,30 @@
 use super::WorldBody;
 use crate::pin::RootEnd;
 use bowknot_errors::counted;
+use bowknot_geometry::Point;
 use bowknot_geometry::distance::vertex_triangle;
-use bowknot_geometry::{HalfSpace, Point};
 use std::collections::HashSet;
 
 /// Strands that are looked at for a warning, at most.
-const LOOKED_AT: usize = 200;
+const LOOKED_AT: usize = 50;
+
+/// Distance from an obstacle within which an end may be a root, in the distance of both ends.
+const NEAR: f64 = 0.25;
 
 /// The obstacles at time 0.
 pub(super) struct Surroundings<'a> {
-    /// Their triangles.
-    pub triangles: Vec<[u32; 3]>,
-    pub half_spaces: &'a [HalfSpace],
+    /// The triangles of all bodies; those of obstacles are at vertices from `first_vertex` on.
+    pub triangles: &'a [[u32; 3]],
+    pub first_vertex: u32,
     /// Of all vertices [m].
     pub positions: &'a [Point],
 }
 
 impl Surroundings<'_> {
-    /// Distance of a point from the nearest obstacle [m]; infinite without any.
+    /// Distance of a point from the nearest obstacle with a mesh [m]; infinite without any. No roots are in a half-space.
     fn distance(&self, x: &Point) -> f64 {
-        let of_planes =
-            self.half_spaces.iter().map(|plane| (plane.normal.dot(&x.coords) - plane.offset).abs());
-        let nearest = of_planes.fold(f64::INFINITY, f64::min);
-        self.triangles.iter().fold(nearest, |nearest, triangle| {
+        let of_obstacles = self.triangles.iter().filter(|triangle| triangle[0] >= self.first_vertex);
+        of_obstacles.fold(f64::INFINITY, |nearest, triangle| {
             let [a, b, c] = triangle.map(|v| &self.positions[v as usize]);
             // No point of the triangle is farther from a than the longer of its two edges there.
             let radius = (b - a).norm().max((c - a).norm());
@@ -58,13 +59,15 @@ pub(super) fn roots(
         let looked_at = || ends.iter().step_by(ends.len().div_ceil(LOOKED_AT).max(1));
         let is_tip = |&&[first, last]: &&[u32; 2]| {
             let [x, y] = [first, last].map(|v| surroundings.positions[v as usize]);
-            distance(first) > distance(last) + 0.5 * (x - y).norm()
+            let (length, of_last) = ((x - y).norm(), distance(last));
+            of_last <= NEAR * length && distance(first) > of_last + 0.5 * length
         };
         let (tips, looked_at) = (looked_at().filter(is_tip).count(), looked_at().count());
         (tips > 0).then(|| {
             let strands = counted(looked_at, "strand", "strands");
+            let all = if looked_at == ends.len() { "" } else { " that were looked at" };
             format!(
-                "{tips} of {strands} begin farther from all obstacles than they end: if they were written tip first, \
+                "{tips} of {strands}{all} begin farther from all obstacles than they end: if they were written tip first, \
                  root_end = \"nearest\" holds the nearer ends"
             )
         })

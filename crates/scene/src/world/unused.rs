@@ -4,6 +4,7 @@ use crate::description::Scene;
 use crate::kind::BodyKind;
 use crate::obstacle::ObstacleSpec;
 use crate::params::{InteriorFollows, RepulsionParams};
+use crate::pin::RootEnd;
 use crate::shapes::Shape;
 use bowknot_constraints::FrictionModel;
 use bowknot_dynamics::Environment;
@@ -21,6 +22,7 @@ pub(super) fn unused_keys(scene: &Scene) -> Vec<String> {
     of_friction(scene, &mut note);
     of_solver(scene, &mut note);
     of_obstacles(scene, &mut note);
+    of_meshes(scene, &mut note);
     unused
 }
 
@@ -33,6 +35,17 @@ fn of_air(scene: &Scene, note: Note<'_>) {
     note(is_vacuum && own.wind != default.wind, "simulation.wind", why);
     note(is_vacuum && own.drag_normal != default.drag_normal, "simulation.drag_normal", why);
     note(is_vacuum && own.drag_tangential != default.drag_tangential, "simulation.drag_tangential", why);
+}
+
+fn of_meshes(scene: &Scene, note: Note<'_>) {
+    for (index, body) in scene.bodies.iter().enumerate() {
+        let why = "only the meshes of cloth leave out lines";
+        note(body.drop_lines && body.kind != BodyKind::Cloth, &format!("body[{index}].drop_lines"), why);
+    }
+    for (index, pin) in scene.pins.iter().enumerate() {
+        let is_alone = pin.roots == 0 && pin.root_end != RootEnd::First;
+        note(is_alone, &format!("pin[{index}].root_end"), "it holds no roots");
+    }
 }
 
 fn of_friction(scene: &Scene, note: Note<'_>) {
