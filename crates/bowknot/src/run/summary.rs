@@ -312,8 +312,11 @@ mod tests {
     #[test]
     fn the_first_unsolved_step_is_kept_and_all_are_counted() {
         let step = |step, residual_m, solved: bool| {
-            let unsolved = (!solved)
-                .then(|| Unsolved { bodies: vec!["strip".to_owned(), "left".to_owned()], place_m: [9.0; 3] });
+            let unsolved = (!solved).then(|| Unsolved {
+                bodies: vec!["strip".to_owned(), "left".to_owned()],
+                place_m: [9.0; 3],
+                cause: None,
+            });
             let tolerance_m = 0.1;
             StepStatistics { step, residual_m, tolerance_m, solved, unsolved, ..StepStatistics::default() }
         };

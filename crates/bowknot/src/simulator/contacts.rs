@@ -10,7 +10,7 @@ use super::crowding::share_stiffness;
 use super::friction::{ContactForce, FrictionMemory, vertices as vertices_of};
 use super::rows::RowForces;
 use super::solved::SolvedVertices;
-use super::taut::LimitedEdges;
+use super::taut::{HeldApart, LimitedEdges};
 use bowknot_constraints::{Feature, FrictionModel};
 use bowknot_dynamics::{Dynamics, DynamicsModel, Held, RepulsionSpring, SpringKind, StepError, Touching};
 use bowknot_geometry::{PairKind, Point, Vector};
@@ -155,6 +155,11 @@ impl Contacts {
         self.memory = FrictionMemory::new(resolver.scene(), forces);
         self.rows.begin_step(resolver.scene(), forces, self.solved.flags(), dt);
         self.find(resolver, start);
+    }
+
+    /// Prescribed vertices that edges cannot reach, see [`LimitedEdges::held_apart`].
+    pub fn held_apart(&self, x: &[Point], prescribed: &[bool]) -> Option<HeldApart> {
+        self.limited.held_apart(x, prescribed)
     }
 
     /// The component of a vertex; obstacles and vertices that do not exist have the same.

@@ -450,6 +450,9 @@ impl Simulator {
                 true => of_collisions().or_else(of_forces),
                 false => of_forces().or_else(of_collisions),
             };
+            if let Some(unsolved) = &mut statistics.unsolved {
+                unsolved.cause = search.cause(prescribed);
+            }
         }
         contacts.end_step(&forces, resolver, start);
         statistics.pressing_contacts = contacts.pressing();

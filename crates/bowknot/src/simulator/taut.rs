@@ -13,6 +13,7 @@ use bowknot_scene::BodyKind;
 use bowknot_scene::world::World;
 use bowknot_twoway::{CollisionScene, GUARDED_STRETCH};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 /// Share of its limit above which an edge counts as taut.
 const TAUT: f64 = 0.98;
@@ -44,7 +45,44 @@ struct LimitedEdge {
     limit: f64,
 }
 
+/// Two prescribed vertices farther apart than the two edges between them may be long.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct HeldApart {
+    pub vertices: [u32; 2],
+    /// Their distance [m].
+    pub distance: f64,
+    /// What the limits of the edges allow [m].
+    pub allowed: f64,
+}
+
 impl LimitedEdges {
+    /// The prescribed vertices that are farthest beyond what the edges between them allow, over one vertex that is free; none
+    /// if they allow all. The rows of such edges contradict each other.
+    pub fn held_apart(&self, x: &[Point], prescribed: &[bool]) -> Option<HeldApart> {
+        let is_held = |v: u32| prescribed[v as usize];
+        // The edges to prescribed vertices of each free vertex that has any.
+        let mut held: BTreeMap<u32, Vec<(u32, f64)>> = BTreeMap::new();
+        for &LimitedEdge { vertices: [a, b], limit } in &self.edges {
+            match (is_held(a), is_held(b)) {
+                (true, false) => held.entry(b).or_default().push((a, limit)),
+                (false, true) => held.entry(a).or_default().push((b, limit)),
+                _ => {}
+            }
+        }
+        let pairs = held.values().flat_map(|ends| {
+            let pair = move |k: usize| ends[..k].iter().map(move |other| (*other, ends[k]));
+            (1..ends.len()).flat_map(pair)
+        });
+        let apart = pairs.map(|((a, to_a), (b, to_b))| HeldApart {
+            vertices: [a, b],
+            distance: (x[a as usize] - x[b as usize]).norm(),
+            allowed: to_a + to_b,
+        });
+        let excess = |apart: &HeldApart| apart.distance / apart.allowed;
+        let beyond = apart.filter(|apart| excess(apart) > GUARDED_STRETCH);
+        beyond.max_by(|a, b| excess(a).total_cmp(&excess(b)))
+    }
+
     /// The edges of cloth and strands with limits relative to their rest lengths. Limits relative to the
     /// start of each call do not bound the stretch over several calls, so these edges get no springs.
     pub fn new(scene: &CollisionScene, world: &World) -> Self {
@@ -108,6 +146,19 @@ fn longest(limit: f64, first: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn prescribed_vertices_beyond_what_edges_between_them_allow_are_found() {
+        let edge = |a: u32, b: u32| LimitedEdge { vertices: [a, b], limit: 1.05 };
+        // 0 - 1 - 2 - 3 - 4, where 0, 2 and 4 are held.
+        let edges = LimitedEdges { edges: vec![edge(0, 1), edge(2, 1), edge(2, 3), edge(3, 4)] };
+        let prescribed = [true, false, true, false, true];
+        let at = |x: [f64; 5]| edges.held_apart(&x.map(|x| Point::new(x, 0.0, 0.0)), &prescribed);
+        assert_eq!(at([0.0, 1.0, 2.0, 3.0, 4.12]), None);
+        let apart = at([0.0, 1.0, 2.15, 3.0, 4.4]).expect("both");
+        assert_eq!((apart.vertices, apart.allowed), ([2, 4], 2.1));
+        assert!((apart.distance - 2.25).abs() < 1e-12);
+    }
 
     #[test]
     fn edges_within_their_rows_have_one_wall_and_those_far_beyond_are_pulled_back_gently() {
