@@ -316,9 +316,9 @@ fn unsolved_steps(summary: &Summary, simulation: &SimulationParams) -> Vec<Strin
         return vec![line];
     }
     line += &format!("; the largest residual is {}", residual_text(largest, first.tolerance_m));
-    if first.at.as_ref().is_some_and(|at| at.cause.is_some()) {
-        let help = "  what helps: pins nearer together, or a larger stretch_limit of the body";
-        return vec![line, help.to_owned()];
+    if let Some(cause) = first.at.as_ref().and_then(|at| at.cause.as_ref()) {
+        let help = "pins nearer together, or a larger stretch_limit of the body";
+        return vec![format!("{line}; {cause}"), format!("  what helps: {help}")];
     }
     let iterations = summary.max.as_ref().and_then(|max| max.newton_iterations).unwrap_or(0.0);
     vec![line, format!("  what helps: {}", remedy(simulation, iterations))]

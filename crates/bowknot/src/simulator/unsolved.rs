@@ -35,8 +35,7 @@ impl Unsolved {
     /// The bodies and the place, for a line.
     pub fn short(&self) -> String {
         let [x, y, z] = self.place_m;
-        let cause = self.cause.as_ref().map_or_else(String::new, |cause| format!(": {cause}"));
-        format!("{} at ({x:.3}, {y:.3}, {z:.3}){cause}", self.bodies())
+        format!("{} at ({x:.3}, {y:.3}, {z:.3})", self.bodies())
     }
 }
 

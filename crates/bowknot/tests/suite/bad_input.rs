@@ -44,8 +44,8 @@ fn meshes_are_refused_by_name_and_place() {
             "scene.toml:3: body cloth: triangle 2 repeats triangle 0 (vertices 2, 0, 1), at",
         ),
         (
-            format!("{SQUARE}f 1 2 3\nl 3 4\n"),
-            "scene.toml:3: body cloth: the mesh has 1 strand edge, but a cloth",
+            format!("{SQUARE}f 1 2 3\nf 1 3 4\nl 2 4\n"),
+            "scene.toml:3: body cloth: the mesh has 1 line between vertices of its triangles, the first joins vertices 1 and 3",
         ),
     ] {
         let message = mesh(&content, false).expect_err("refused");
