@@ -13,6 +13,9 @@ use std::path::Path;
 const BALL_RADIUS: f64 = 0.25;
 /// Gap between the ball and the lowest vertex at the start, relative to the same extent.
 const GAP: f64 = 0.05;
+/// The gap is at least so many mean edge lengths: twice the contact distance that a scene has by default. Nearer, a coarse mesh
+/// would be thrown off at the start.
+const EDGE_GAP: f64 = 0.2;
 
 /// Whether the argument SCENE names a mesh file rather than a scene.
 pub fn is_mesh(name: &str) -> bool {
@@ -55,8 +58,9 @@ pub fn scene(name: &str, sets: &[String]) -> Result<Scene, Failure> {
     let (low, high) = extent(&mesh.positions);
     let size = (high.x - low.x).max(high.y - low.y).max((high.z - low.z) * 0.1);
 
+    let gap = (GAP * size).max(EDGE_GAP * mean_edge(&mesh));
     let radius = BALL_RADIUS * size;
-    let center = Vector::new((low.x + high.x) / 2.0, (low.y + high.y) / 2.0, low.z - GAP * size - radius);
+    let center = Vector::new((low.x + high.x) / 2.0, (low.y + high.y) / 2.0, low.z - gap - radius);
     let ball = ObstacleSpec {
         name: "ball".to_owned(),
         shape: Some(Shape::Ball(Ball { radius, edge: radius / 12.0 })),
@@ -84,6 +88,16 @@ fn kind(mesh: &Mesh) -> BodyKind {
     } else {
         BodyKind::Particles
     }
+}
+
+/// Mean length of the edges of all elements [m]; 0 without any. Edges count once for each element that they belong to.
+fn mean_edge(mesh: &Mesh) -> f64 {
+    let of_triangles = mesh.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let of_tets = mesh.tets.iter().flat_map(|&[a, b, c, d]| [[a, b], [a, c], [a, d], [b, c], [b, d], [c, d]]);
+    let edges = of_triangles.chain(of_tets).chain(mesh.strands.iter().copied());
+    let length = |[a, b]: [u32; 2]| (mesh.positions[a as usize] - mesh.positions[b as usize]).norm();
+    let (sum, count) = edges.map(length).fold((0.0, 0u32), |(sum, count), length| (sum + length, count + 1));
+    sum / f64::from(count.max(1))
 }
 
 /// The lower and upper corner of the bounding box.

@@ -27,6 +27,19 @@ fn a_run_writes_its_folder() {
     assert!(frame("again") == frame("out/drape"), "scene.toml makes other frames");
 }
 
+/// Its contact distance, a tenth of its mean edge length, is larger than a twentieth of its size.
+#[test]
+fn a_coarse_mesh_falls_freely_on_its_ball() {
+    let place = Place::new();
+    place.write("quad.obj", "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nf 1 2 3 4\n");
+    place.run("run quad.obj --frames 5 --out run").ok();
+    for (index, line) in place.read("run/stats.jsonl").lines().enumerate() {
+        let step: serde_json::Value = serde_json::from_str(line).unwrap();
+        let (found, expected) = (step["max_speed"].as_f64().unwrap(), 0.0981 * (index + 1) as f64);
+        assert!((found - expected).abs() < 1e-6, "time step {}: {found} m/s, not {expected}", index + 1);
+    }
+}
+
 #[test]
 fn a_run_begins_with_the_sizes_of_its_bodies_and_what_is_odd_about_the_scene() {
     let place = Place::new();
