@@ -85,15 +85,16 @@ fn info_of_file(name: &str, import: &[String]) -> Result<Info, Failure> {
     let scene = bare_mesh::scene(name, import)?;
     let body = &scene.bodies[0];
     let mut mesh = read_mesh(Path::new(name), &Import { up: body.up, scale: body.scale })?;
-    if let Some(faults) = mesh.triangulate().describe() {
-        eprintln!("warning: {name}: {faults}");
-    }
+    let faults = mesh.triangulate().describe();
     let mut problems = problems(&mesh);
     // What only the assembly finds, such as inverted tetrahedra. A frame with obstacles is no body.
     if problems.is_empty() && mesh.obstacle.is_none() {
         // Without the ball and the ground, which nobody asked for here.
         let alone = Scene { obstacles: Vec::new(), ..scene };
         problems.extend(World::new(&alone).err().map(|error| error.to_string()));
+    } else if let Some(faults) = faults {
+        // The assembly tells them otherwise.
+        eprintln!("warning: {name}: {faults}");
     }
     let has_unit = import.iter().any(|set| set.starts_with("body.0.scale="));
     Ok(Info { has_unit, ..info_of_mesh(mesh, problems) })

@@ -16,8 +16,9 @@ impl Checkpoint {
     /// Writes the state as one NPZ file, atomically: `step[1]`, `positions[n,3]`, `velocities[n,3]`,
     /// `anchor_counts[p]`, `anchors[k,3]`, `contact_features[c,4]` (kind and index of either feature: 0
     /// vertex, 1 edge, 2 triangle, 3 half-space), `contact_normals[c,3]`, `contact_forces[c,3]`; of contacts near
-    /// rest `contact_means[m,22]` (kind and index of either feature, four vertices, their weights, normal, offset, reach, floor,
-    /// stiffness, friction, distance, and how many times found the mean goes back); where bodies may sleep, `sleep_origins[n,3]`, `sleep_calm_steps[b]` and `sleep_islands[b]` (4294967295: awake); and
+    /// rest `contact_means[m,22]` (kind and index of either feature, four vertices, their weights, normal, offset,
+    /// reach, floor, stiffness, friction, distance, and how many times found the mean goes back); where bodies
+    /// may sleep, `sleep_origins[n,3]`, `sleep_calm_steps[b]` and `sleep_islands[b]` (4294967295: awake); and
     /// `checksum[8]` of all that.
     ///
     /// # Errors

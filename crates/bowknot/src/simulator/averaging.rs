@@ -88,19 +88,14 @@ impl Finds {
         used(spring).map(of_vertex).min().unwrap_or(0)
     }
 
-    /// Whether the mean of a contact goes back beyond the start of the time step.
-    fn goes_on(&self, spring: &RepulsionSpring, way: [&[Point]; 2]) -> bool {
-        self.depth(spring, way) > self.in_step
-    }
-
-    /// Share of what a contact is now in the mean [1]. In the first iteration contacts are farthest off, so the second
-    /// counts twice as much.
-    fn share_of_new(&self, spring: &RepulsionSpring, way: [&[Point]; 2]) -> f64 {
-        match (self.depth(spring, way), self.in_step) {
-            (depth, in_step) if depth > in_step => 1.0 / f64::from(depth),
-            (_, 0 | 1) => 1.0,
-            (_, 2) => 2.0 / 3.0,
-            (_, in_step) => 1.0 / f64::from(in_step),
+    /// Share of what a contact is now in a mean of this depth [1], and whether that goes back beyond the start of the time step. In
+    /// the first iteration contacts are farthest off, so the second counts twice as much.
+    fn share_of_new(&self, depth: u32) -> (f64, bool) {
+        match self.in_step {
+            in_step if depth > in_step => (1.0 / f64::from(depth), true),
+            0 | 1 => (1.0, false),
+            2 => (2.0 / 3.0, false),
+            in_step => (1.0 / f64::from(in_step), false),
         }
     }
 }
@@ -139,9 +134,9 @@ impl FoundContacts {
         let mut gone: FxHashMap<&[Feature; 2], &RepulsionSpring> =
             all_before.clone().map(|(contact, _)| contact).collect();
         for (features, spring) in self.features.iter().zip(&mut self.springs) {
-            let new = finds.share_of_new(spring, way);
+            let (new, goes_on) = finds.share_of_new(finds.depth(spring, way));
             let known = gone.remove(features);
-            go_on.push(known.is_some() && finds.goes_on(spring, way));
+            go_on.push(known.is_some() && goes_on);
             match known {
                 Some(old) if new < 1.0 => mix(spring, old, new),
                 None => spring.stiffness *= new,
@@ -149,15 +144,17 @@ impl FoundContacts {
             }
         }
         for ((features, old), &distance) in all_before {
-            let kept = 1.0 - finds.share_of_new(old, way);
-            let left = RepulsionSpring { stiffness: old.stiffness * kept, ..*old };
+            if !gone.contains_key(features) {
+                continue;
+            }
+            let (new, goes_on) = finds.share_of_new(finds.depth(old, way));
+            let left = RepulsionSpring { stiffness: old.stiffness * (1.0 - new), ..*old };
             let least = old.floor + STILL_THERE * (distance - old.floor);
-            let stays = || left.stiffness > FORGOTTEN * stiffness && gap(old, way[1]) > least;
-            if gone.contains_key(features) && stays() {
+            if left.stiffness > FORGOTTEN * stiffness && gap(old, way[1]) > least {
                 self.features.push(*features);
                 self.springs.push(left);
                 self.distances.push(distance);
-                go_on.push(finds.goes_on(old, way));
+                go_on.push(goes_on);
             }
         }
         go_on

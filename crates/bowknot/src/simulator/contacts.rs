@@ -1,9 +1,9 @@
 //! The contacts that the dynamics knows of.
 //!
 //! After each collision stage the pairs within contact range are divided into contacts and neighbors
-//! ([`Facing`](bowknot_constraints::Facing)). Each contact becomes a spring of the Newton system, whose force follows from its
-//! gap. What a contact remembers is friction (`friction.rs`) and, near rest, its mean (`averaging.rs`). Edges near their stretch limits are springs as well
-//! (`taut.rs`).
+//! ([`Facing`](bowknot_constraints::Facing)). Each contact becomes a spring of the Newton system, whose force follows
+//! from its gap. What a contact remembers is friction (`friction.rs`) and, near rest, its mean (`averaging.rs`). Edges
+//! near their stretch limits are springs as well (`taut.rs`).
 
 use super::averaging::{ContactMean, Finds, FoundContacts, gap};
 use super::crowding::share_stiffness;

@@ -260,14 +260,14 @@ impl Simulator {
             self.close(timer, cpu_start, &mut statistics);
             return Ok(statistics);
         }
-        let carried = self.contacts.carried().clone();
         let result = self.iterate(step, tolerance, &mut scratch, observer, &mut statistics);
         if let Err(error) = result {
             self.positions.clone_from(&scratch.start);
             self.anchors = anchors;
             self.attachments.iter_mut().for_each(Vec::clear);
             self.scratch = scratch;
-            // The resolver still has the pairs of the abandoned step.
+            // The resolver still has the pairs of the abandoned step. What contacts remember changes at its end alone.
+            let carried = self.contacts.carried().clone();
             self.find_contacts(carried)?;
             return Err(error);
         }
@@ -454,10 +454,10 @@ impl Simulator {
                 unsolved.cause = search.cause(prescribed);
             }
         }
-        contacts.end_step(&forces, resolver, start);
-        statistics.pressing_contacts = contacts.pressing();
         let judged = backend.judge(resolver.scene(), &x[..count]);
         judged.map_err(|source| backend_error(world, step, source))?;
+        contacts.end_step(&forces, resolver, start);
+        statistics.pressing_contacts = contacts.pressing();
         positions.clone_from(x);
         Ok(())
     }

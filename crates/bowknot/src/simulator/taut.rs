@@ -56,33 +56,6 @@ pub(super) struct HeldApart {
 }
 
 impl LimitedEdges {
-    /// The prescribed vertices that are farthest beyond what the edges between them allow, over one vertex that is free; none
-    /// if they allow all. The rows of such edges contradict each other.
-    pub fn held_apart(&self, x: &[Point], prescribed: &[bool]) -> Option<HeldApart> {
-        let is_held = |v: u32| prescribed[v as usize];
-        // The edges to prescribed vertices of each free vertex that has any.
-        let mut held: BTreeMap<u32, Vec<(u32, f64)>> = BTreeMap::new();
-        for &LimitedEdge { vertices: [a, b], limit } in &self.edges {
-            match (is_held(a), is_held(b)) {
-                (true, false) => held.entry(b).or_default().push((a, limit)),
-                (false, true) => held.entry(a).or_default().push((b, limit)),
-                _ => {}
-            }
-        }
-        let pairs = held.values().flat_map(|ends| {
-            let pair = move |k: usize| ends[..k].iter().map(move |other| (*other, ends[k]));
-            (1..ends.len()).flat_map(pair)
-        });
-        let apart = pairs.map(|((a, to_a), (b, to_b))| HeldApart {
-            vertices: [a, b],
-            distance: (x[a as usize] - x[b as usize]).norm(),
-            allowed: to_a + to_b,
-        });
-        let excess = |apart: &HeldApart| apart.distance / apart.allowed;
-        let beyond = apart.filter(|apart| excess(apart) > GUARDED_STRETCH);
-        beyond.max_by(|a, b| excess(a).total_cmp(&excess(b)))
-    }
-
     /// The edges of cloth and strands with limits relative to their rest lengths. Limits relative to the
     /// start of each call do not bound the stretch over several calls, so these edges get no springs.
     pub fn new(scene: &CollisionScene, world: &World) -> Self {
@@ -131,6 +104,33 @@ impl LimitedEdges {
             })
         };
         self.edges.par_iter().with_min_len(MIN_EDGES).filter_map(taut).collect()
+    }
+
+    /// The prescribed vertices that are farthest beyond what the edges between them allow, over one vertex that is free; none
+    /// if they allow all. The rows of such edges contradict each other.
+    pub fn held_apart(&self, x: &[Point], prescribed: &[bool]) -> Option<HeldApart> {
+        let is_held = |v: u32| prescribed[v as usize];
+        // The edges to prescribed vertices of each free vertex that has any.
+        let mut held: BTreeMap<u32, Vec<(u32, f64)>> = BTreeMap::new();
+        for &LimitedEdge { vertices: [a, b], limit } in &self.edges {
+            match (is_held(a), is_held(b)) {
+                (true, false) => held.entry(b).or_default().push((a, limit)),
+                (false, true) => held.entry(a).or_default().push((b, limit)),
+                _ => {}
+            }
+        }
+        let pairs = held.values().flat_map(|ends| {
+            let pair = move |k: usize| ends[..k].iter().map(move |other| (*other, ends[k]));
+            (1..ends.len()).flat_map(pair)
+        });
+        let apart = pairs.map(|((a, to_a), (b, to_b))| HeldApart {
+            vertices: [a, b],
+            distance: (x[a as usize] - x[b as usize]).norm(),
+            allowed: to_a + to_b,
+        });
+        let excess = |apart: &HeldApart| apart.distance / apart.allowed;
+        let beyond = apart.filter(|apart| excess(apart) > GUARDED_STRETCH);
+        beyond.max_by(|a, b| excess(a).total_cmp(&excess(b)))
     }
 }
 

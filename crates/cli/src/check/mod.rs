@@ -131,8 +131,11 @@ impl Checker<'_> {
             } else {
                 let mut mesh = read_mesh(file, &Import::default())?;
                 // The polygons of a frame have deformed.
-                if mesh.body.is_none() && mesh.obstacle.is_none() {
-                    mesh.triangulate();
+                if mesh.body.is_none()
+                    && mesh.obstacle.is_none()
+                    && let Some(faults) = mesh.triangulate().describe()
+                {
+                    self.bar.print(&format!("warning: {}: {faults}", file.display()));
                 }
                 let mut mesh = mesh.into_surface();
                 // Names of faces make no other state.

@@ -38,15 +38,16 @@ pub struct PolygonFaults {
 impl PolygonFaults {
     /// The faults in words; none if there are none.
     pub fn describe(&self) -> Option<String> {
-        let of = |list: &[usize], one: &str, many: &str| {
-            let first = list.first()?;
-            let what = if list.len() == 1 { one.to_owned() } else { format!("{} {many}", list.len()) };
-            Some(format!("{what}, the first is polygon {first}"))
+        let of = |list: &[usize], one: &str, many: &str| match list {
+            [] => None,
+            [polygon] => Some(format!("polygon {polygon} {one}")),
+            [first, ..] => Some(format!("{} polygons {many}, the first is polygon {first}", list.len())),
         };
-        let crossing = of(&self.crossing, "a polygon crosses itself", "polygons cross themselves");
-        let warped = of(&self.warped, "a polygon is far from flat", "polygons are far from flat");
+        let crossing = of(&self.crossing, "crosses itself", "cross themselves");
+        let warped = of(&self.warped, "is far from flat", "are far from flat");
         let faults: Vec<String> = crossing.into_iter().chain(warped).collect();
-        (!faults.is_empty()).then(|| faults.join("; ") + "; their triangles share their first corner")
+        (!faults.is_empty())
+            .then(|| faults.join("; ") + "; the triangles of such polygons share their first corner")
     }
 }
 
