@@ -35,6 +35,15 @@ pub enum BodyShape {
         /// Its material.
         material: SolidMaterial,
     },
+    /// A solid of tets with nodes in the middles of their edges, which bend and shear as they should where those of
+    /// [`Self::Solid`] are too stiff.
+    QuadraticSolid {
+        /// Its tets: the corners as in [`Self::Solid`], then the middles of the edges 01, 02, 03, 12, 13, 23, which must lie
+        /// in the middles of straight edges at rest.
+        tets: Vec<[u32; 10]>,
+        /// Its material.
+        material: SolidMaterial,
+    },
     /// Hair, yarns: paths of edges, which may branch.
     Strands {
         /// Their edges.
@@ -72,6 +81,11 @@ impl Body {
         Self::new(name, BodyShape::Solid { tets, material })
     }
 
+    /// A solid of tets with nodes in the middles of their edges, see [`BodyShape::QuadraticSolid`].
+    pub fn quadratic_solid(name: impl Into<String>, tets: Vec<[u32; 10]>, material: SolidMaterial) -> Self {
+        Self::new(name, BodyShape::QuadraticSolid { tets, material })
+    }
+
     /// Strands of edges.
     pub fn strands(name: impl Into<String>, edges: Vec<[u32; 2]>, material: StrandMaterial) -> Self {
         Self::new(name, BodyShape::Strands { edges, material })
@@ -100,6 +114,7 @@ impl BodyShape {
         match self {
             Self::Cloth { triangles, .. } => triangles.iter().for_each(|t| visit(t)),
             Self::Solid { tets, .. } => tets.iter().for_each(|t| visit(t)),
+            Self::QuadraticSolid { tets, .. } => tets.iter().for_each(|t| visit(t)),
             Self::Strands { edges, .. } => edges.iter().for_each(|e| visit(e)),
             Self::Particles { vertices, .. } | Self::Obstacle { vertices } => {
                 vertices.iter().for_each(|v| visit(&[*v]));

@@ -23,7 +23,7 @@
 use crate::body::BodyShape;
 use crate::model::DynamicsModel;
 use crate::params::Environment;
-use bowknot_geometry::{Vector, boundary_triangles};
+use bowknot_geometry::{Vector, boundary_triangles, divide_tetrahedron};
 use nalgebra::Matrix3;
 
 /// Drag coefficient of a sphere.
@@ -61,6 +61,10 @@ impl DragSurfaces {
                 }
                 BodyShape::Solid { tets, .. } => {
                     surfaces.triangles.extend(boundary_triangles(tets).iter().map(|t| (t.map(node), 0.5)));
+                }
+                BodyShape::QuadraticSolid { tets, .. } => {
+                    let parts: Vec<[u32; 4]> = tets.iter().flat_map(divide_tetrahedron).collect();
+                    surfaces.triangles.extend(boundary_triangles(&parts).iter().map(|t| (t.map(node), 0.5)));
                 }
                 BodyShape::Strands { edges, material } => {
                     surfaces.edges.extend(edges.iter().map(|e| (e.map(node), material.radius)));

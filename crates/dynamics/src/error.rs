@@ -85,6 +85,21 @@ pub enum ModelError {
         /// Tets without volume.
         flat: Vec<usize>,
     },
+    /// A middle of an edge of a quadratic tet lies elsewhere.
+    #[error(
+        "body \"{body}\": vertex {vertex} of quadratic tet {index} lies {off:e} m from the middle of its edge: edges must be straight \
+         at rest and divided in half"
+    )]
+    OffMiddle {
+        /// Name of the body.
+        body: String,
+        /// The tet.
+        index: usize,
+        /// The vertex.
+        vertex: u32,
+        /// Distance from the middle [m].
+        off: f64,
+    },
     /// The warp direction is normal to triangles, so that it has no projection into them.
     #[error(
         "body \"{body}\": warp_direction is normal to {} of its triangles{}: choose a direction along the cloth",

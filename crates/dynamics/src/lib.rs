@@ -56,7 +56,8 @@ pub use dynamics::{
 pub use error::{ModelError, StepError};
 pub use linear::accuracy::CgInfo;
 pub use linear::assembly::{
-    AssemblySprings, BendElement, ElementModel, MembraneElement, SolidKind, StrandElement, TetrahedronElement,
+    AssemblySprings, BendElement, ElementModel, MembraneElement, QuadraticElement, SolidKind, StrandElement,
+    TetrahedronElement,
 };
 pub use linear::backend::{LinearBackend, LinearSystem, SparseRows};
 pub use linear::failure::LinearBackendError;

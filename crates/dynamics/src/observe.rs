@@ -8,9 +8,10 @@ use crate::elements::set::{Displaced, ElementKind, Motion};
 use crate::model::DynamicsModel;
 use crate::model::measures::volume;
 use crate::nodes::CHUNK;
-use bowknot_geometry::{Point, Vector};
+use bowknot_geometry::{Point, Vector, divide_tetrahedron};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// Elastic energy of all deformable bodies [J] by the kind of element that stores it.
@@ -150,10 +151,14 @@ impl DynamicsModel {
 
     /// Signed volume [m^3] of all tets at positions `x` [m].
     pub fn volume(&self, x: &[Point]) -> f64 {
-        self.solids().flat_map(|(_, tets)| tets).map(|tet| volume(&tet.map(|v| x[v as usize].coords))).sum()
+        let of_solid = |tets: &[[u32; 4]]| -> f64 {
+            tets.iter().map(|tet| volume(&tet.map(|v| x[v as usize].coords))).sum()
+        };
+        self.solids().map(|(_, tets)| of_solid(&tets)).sum()
     }
 
-    /// Tets without positive volume at positions `x` [m]: body and index of each tet, ascending.
+    /// Tets without positive volume at positions `x` [m]: body and index of each tet, ascending. Quadratic ones count as eight,
+    /// see [`divide_tetrahedron`].
     pub fn inverted_tets(&self, x: &[Point]) -> Vec<[usize; 2]> {
         let mut inverted = Vec::new();
         for (body, tets) in self.solids() {
@@ -165,10 +170,13 @@ impl DynamicsModel {
         inverted
     }
 
-    /// Tets of each solid, with the index of its body.
-    fn solids(&self) -> impl Iterator<Item = (usize, &[[u32; 4]])> {
+    /// Tets of each solid, with the index of its body; the parts of quadratic ones.
+    fn solids(&self) -> impl Iterator<Item = (usize, Cow<'_, [[u32; 4]]>)> {
         self.bodies().iter().enumerate().filter_map(|(index, body)| match &body.shape {
-            BodyShape::Solid { tets, .. } => Some((index, tets.as_slice())),
+            BodyShape::Solid { tets, .. } => Some((index, Cow::from(tets))),
+            BodyShape::QuadraticSolid { tets, .. } => {
+                Some((index, tets.iter().flat_map(divide_tetrahedron).collect()))
+            }
             _ => None,
         })
     }

@@ -53,6 +53,7 @@ pub use point::{Point, Vector};
 pub use separation::Separation;
 pub use topology::{
     Components, EdgeTriangles, Topology, TopologyBuilder, TopologyError, boundary_triangles, check_elements,
+    divide_tetrahedron,
 };
 pub use union_find::UnionFind;
 pub use vertex_range::VertexOutOfRange;

@@ -8,6 +8,7 @@
 //! | [`triangle`], [`woven`] | stretching and shearing of cloth, isotropic and woven; [`membrane`]: what both share |
 //! | [`bending`], [`shell`] | bending of cloth that is flat or curved at rest |
 //! | [`tetrahedron`] | strain of solids, with a law of [`solid_law`] |
+//! | [`quadratic`] | tetrahedra of linear strain, each four of constant strain |
 //! | [`strand`] | stretching and bending of strands |
 //! | [`svd`] | singular values of 3 x 3 matrices |
 
@@ -15,6 +16,7 @@ pub(crate) mod bending;
 pub(crate) mod element;
 pub(crate) mod filter;
 mod membrane;
+pub(crate) mod quadratic;
 pub(crate) mod set;
 pub(crate) mod shell;
 mod solid_law;

@@ -2,7 +2,8 @@
 //!
 //! F = sum x_a g_a^T, with g_a the gradients of the shape functions at rest. The energy is V W(F) with W a
 //! [`SolidLaw`]. Its curvatures come from an analytic eigensystem in the frames of the singular vectors, and
-//! each is filtered separately. Linear tetrahedra lock in bending as Poisson's ratio approaches 0.5.
+//! each is filtered separately. Linear tetrahedra are too stiff in
+//! bending, and lock as Poisson's ratio approaches 0.5; [`super::quadratic`] has others.
 //!
 //! Damping is a potential of the Green strain increment since the start of the step, as for triangles
 //! ([`super::triangle`]): `beta/dt (mu |dE|^2 + lambda/2 tr(dE)^2)` with the Lame parameters of small strain.
@@ -49,9 +50,28 @@ impl Tetrahedron {
         })
     }
 
+    /// The same with a share of its volume.
+    pub fn with_share(self, share: f64) -> Self {
+        Self { volume: self.volume * share, ..self }
+    }
+
+    /// F with the corners at `x`.
     #[inline]
-    fn deformation(&self, x: &[Vector; 4]) -> Matrix3<f64> {
+    pub fn deformation(&self, x: &[Vector; 4]) -> Matrix3<f64> {
         edges(x) * self.gradients
+    }
+
+    /// What a backend knows of it.
+    pub fn description(&self) -> TetrahedronElement {
+        let (kind, constants) = self.law.describe();
+        TetrahedronElement {
+            nodes: self.nodes,
+            gradients: std::array::from_fn(|a| std::array::from_fn(|k| self.gradients[(a, k)])),
+            volume: self.volume,
+            kind,
+            constants,
+            viscosity: self.viscosity.1,
+        }
     }
 
     fn is_damped(&self) -> bool {
@@ -264,15 +284,7 @@ impl Element<4> for Tetrahedron {
     }
 
     fn describe(&self, model: &mut ElementModel) {
-        let (kind, constants) = self.law.describe();
-        model.tetrahedra.push(TetrahedronElement {
-            nodes: self.nodes,
-            gradients: std::array::from_fn(|a| std::array::from_fn(|k| self.gradients[(a, k)])),
-            volume: self.volume,
-            kind,
-            constants,
-            viscosity: self.viscosity.1,
-        });
+        model.tetrahedra.push(self.description());
     }
 }
 

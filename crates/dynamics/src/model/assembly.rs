@@ -3,6 +3,7 @@
 use crate::body::BodyShape;
 use crate::elements::bending::add_bending;
 use crate::elements::element::Element;
+use crate::elements::quadratic::QuadraticTetrahedron;
 use crate::elements::set::{AnyElementSet, ElementKind, ElementSet};
 use crate::elements::shell::CurvedBends;
 use crate::elements::strand::{StrandEdge, StrandTurn, strand_elements};
@@ -22,6 +23,7 @@ pub(super) struct Assembly<'a> {
     woven: Vec<WovenTriangle>,
     curved: CurvedBends,
     tets: Vec<Tetrahedron>,
+    quadratic: Vec<QuadraticTetrahedron>,
     strand_edges: Vec<StrandEdge>,
     strand_turns: Vec<StrandTurn>,
     edges: Vec<[u32; 2]>,
@@ -49,6 +51,7 @@ impl<'a> Assembly<'a> {
             woven: Vec::new(),
             curved: CurvedBends::default(),
             tets: Vec::new(),
+            quadratic: Vec::new(),
             strand_edges: Vec::new(),
             strand_turns: Vec::new(),
             edges: Vec::new(),
@@ -70,6 +73,12 @@ impl<'a> Assembly<'a> {
                 for nodes in tets.iter().map(|t| t.map(node)) {
                     let corners = nodes.map(|n| self.rest[n as usize]);
                     self.tets.extend(Tetrahedron::new(nodes, &corners, material));
+                }
+            }
+            BodyShape::QuadraticSolid { tets, material } => {
+                for nodes in tets.iter().map(|t| t.map(node)) {
+                    let corners = std::array::from_fn(|k| self.rest[nodes[k] as usize]);
+                    self.quadratic.extend(QuadraticTetrahedron::new(nodes, &corners, material));
                 }
             }
             BodyShape::Strands { edges, material } => {
@@ -122,6 +131,7 @@ impl<'a> Assembly<'a> {
         push(&mut element_sets, ElementKind::Bending, self.curved.two);
         push(&mut element_sets, ElementKind::Bending, self.curved.three);
         push(&mut element_sets, ElementKind::Solid, self.tets);
+        push(&mut element_sets, ElementKind::Solid, self.quadratic);
         push(&mut element_sets, ElementKind::StrandStretching, self.strand_edges);
         push(&mut element_sets, ElementKind::StrandBending, self.strand_turns);
         self.edges.sort_unstable();

@@ -2,14 +2,18 @@
 
 use super::measures::{area, longest_edge, volume};
 use crate::body::{Body, BodyShape};
+use crate::elements::quadratic::EDGES;
 use crate::error::ModelError;
 use bowknot_errors::{Errors, ParamError, Parameters};
-use bowknot_geometry::{Point, VertexOutOfRange};
+use bowknot_geometry::{Point, Vector, VertexOutOfRange};
 use std::collections::HashMap;
 
 /// Areas, volumes and lengths count as zero up to this share of the longest edge squared, of the longest edge
 /// cubed and of the largest coordinate.
 const ZERO: f64 = 1e-12;
+
+/// Farthest that a vertex may be from the middle of its edge, over the length of the edge.
+const MIDDLE: f64 = 1e-6;
 
 /// Smallest angle between the warp and a triangle's normal [rad], below which the warp has no direction in
 /// the triangle.
@@ -43,7 +47,7 @@ pub(super) fn check(positions: &[Point], bodies: &[Body]) -> Result<(), Errors<M
 fn check_material(shape: &BodyShape) -> Result<(), Errors<ParamError>> {
     match shape {
         BodyShape::Cloth { material, .. } => material.validate(),
-        BodyShape::Solid { material, .. } => material.validate(),
+        BodyShape::Solid { material, .. } | BodyShape::QuadraticSolid { material, .. } => material.validate(),
         BodyShape::Strands { material, .. } => material.validate(),
         BodyShape::Particles { material, .. } => material.validate(),
         BodyShape::Obstacle { .. } => Ok(()),
@@ -53,7 +57,7 @@ fn check_material(shape: &BodyShape) -> Result<(), Errors<ParamError>> {
 fn element_name(shape: &BodyShape) -> &'static str {
     match shape {
         BodyShape::Cloth { .. } => "triangle",
-        BodyShape::Solid { .. } => "tet",
+        BodyShape::Solid { .. } | BodyShape::QuadraticSolid { .. } => "tet",
         BodyShape::Strands { .. } => "edge",
         BodyShape::Particles { .. } => "particle",
         BodyShape::Obstacle { .. } => "vertex",
@@ -63,7 +67,7 @@ fn element_name(shape: &BodyShape) -> &'static str {
 fn check_indices(body: &Body, vertex_count: usize, errors: &mut Vec<ModelError>) {
     let element = element_name(&body.shape);
     let name = || body.name.clone();
-    let mut seen: HashMap<[u32; 4], usize> = HashMap::new();
+    let mut seen: HashMap<[u32; 10], usize> = HashMap::new();
     let mut index = 0;
     body.shape.for_each_element(|vertices| {
         for (k, &vertex) in vertices.iter().enumerate() {
@@ -74,7 +78,7 @@ fn check_indices(body: &Body, vertex_count: usize, errors: &mut Vec<ModelError>)
                 errors.push(ModelError::RepeatedVertex { body: name(), element, index, vertex });
             }
         }
-        let mut sorted = [u32::MAX; 4];
+        let mut sorted = [u32::MAX; 10];
         sorted[..vertices.len()].copy_from_slice(vertices);
         sorted.sort_unstable();
         // An obstacle may name a vertex more than once.
@@ -130,24 +134,19 @@ fn check_sizes(positions: &[Point], body: &Body, errors: &mut Vec<ModelError>) {
             }
         }
         BodyShape::Solid { tets, .. } => {
-            let (mut inverted, mut flat) = (Vec::new(), Vec::new());
-            for (index, t) in tets.iter().enumerate() {
-                let corners = t.map(at);
-                let volume = volume(&corners);
-                let zero = ZERO * longest_edge(&corners).powi(3);
-                if volume.abs() <= zero {
-                    flat.push(index);
-                } else if volume < 0.0 {
-                    inverted.push(index);
+            check_tets(body, tets.iter().map(|t| t.map(at)), errors);
+        }
+        BodyShape::QuadraticSolid { tets, .. } => {
+            check_tets(body, tets.iter().map(|t| [0, 1, 2, 3].map(|k| at(t[k]))), errors);
+            for (index, tet) in tets.iter().enumerate() {
+                for (&middle, [i, j]) in tet[4..].iter().zip(EDGES) {
+                    let (a, b) = (at(tet[i]), at(tet[j]));
+                    let off = (at(middle) - (a + b) * 0.5).norm();
+                    if off > MIDDLE * (a - b).norm() {
+                        let name = body.name.clone();
+                        errors.push(ModelError::OffMiddle { body: name, index, vertex: middle, off });
+                    }
                 }
-            }
-            if !inverted.is_empty() || !flat.is_empty() {
-                errors.push(ModelError::BadTets {
-                    body: body.name.clone(),
-                    tets: tets.len(),
-                    inverted,
-                    flat,
-                });
             }
         }
         BodyShape::Strands { edges, .. } => {
@@ -158,5 +157,23 @@ fn check_sizes(positions: &[Point], body: &Body, errors: &mut Vec<ModelError>) {
             }
         }
         BodyShape::Particles { .. } | BodyShape::Obstacle { .. } => {}
+    }
+}
+
+/// Tetrahedra with these corners must have a positive volume.
+fn check_tets(body: &Body, tets: impl ExactSizeIterator<Item = [Vector; 4]>, errors: &mut Vec<ModelError>) {
+    let count = tets.len();
+    let (mut inverted, mut flat) = (Vec::new(), Vec::new());
+    for (index, corners) in tets.enumerate() {
+        let volume = volume(&corners);
+        let zero = ZERO * longest_edge(&corners).powi(3);
+        if volume.abs() <= zero {
+            flat.push(index);
+        } else if volume < 0.0 {
+            inverted.push(index);
+        }
+    }
+    if !inverted.is_empty() || !flat.is_empty() {
+        errors.push(ModelError::BadTets { body: body.name.clone(), tets: count, inverted, flat });
     }
 }

@@ -173,8 +173,8 @@ impl DynamicsModel {
         &self.bodies
     }
 
-    /// Mass of each vertex [kg]: a third of the mass of its triangles, a quarter of the mass of its tets,
-    /// half of the mass of its strand edges, the mass of a grain; 0 for vertices of obstacles.
+    /// Mass of each vertex [kg]: a third of the mass of its triangles, a quarter of the mass of its tets (1/32
+    /// of that of quadratic ones at a corner, 7/48 in the middle of an edge), half of the mass of its strand edges, the mass of a grain; 0 for vertices of obstacles.
     pub fn masses(&self) -> &[f64] {
         &self.masses
     }

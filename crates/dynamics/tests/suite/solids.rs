@@ -1,7 +1,9 @@
 //! Solids with known answers: bars, beams, patches, inversion, conservation.
 
-use crate::common::{block, dynamics, equilibrium, weightless, with_gravity, with_tolerance};
-use bowknot_dynamics::{Body, Dynamics, DynamicsParams, HessianFilter, SolidMaterial, SolidModel};
+use crate::common::{block, dynamics, equilibrium, quadratic, weightless, with_gravity, with_tolerance};
+use bowknot_dynamics::{
+    Body, Dynamics, DynamicsModel, DynamicsParams, HessianFilter, SolidMaterial, SolidModel,
+};
 use bowknot_geometry::{Point, Vector};
 
 const MODELS: [SolidModel; 2] = [SolidModel::Stvk, SolidModel::StableNeoHookean];
@@ -90,6 +92,81 @@ fn a_cantilever_meets_beam_theory_as_it_is_refined() {
     }
     assert!(errors[0] > 0.0 && errors[0] < 0.25, "{errors:?}");
     assert!(errors[1] > 0.0 && errors[1] < 0.35 * errors[0], "{errors:?}");
+}
+
+/// Sag of the tip of a cantilever under its own weight, over that of beam theory.
+fn sag(cells: [usize; 3], poisson_ratio: f64, with_middles: bool) -> f64 {
+    let (length, side, e, rho) = (0.2, 0.02, 1e6, 300.0);
+    let (rest, tets) = block([length, side, side], cells);
+    let material =
+        SolidMaterial { density: rho, young_modulus: e, poisson_ratio, ..SolidMaterial::default() };
+    let (rest, body) = if with_middles {
+        let (rest, tets) = quadratic(rest, &tets);
+        (rest, Body::quadratic_solid("beam", tets, material))
+    } else {
+        (rest, Body::solid("beam", tets, material))
+    };
+    // A thousandth of the weight: theory is of small deflections.
+    let params = with_gravity(with_tolerance(1e-8), Vector::new(0.0, 0.0, -9.81e-3));
+    let mut dynamics = dynamics(&rest, vec![body], params);
+    let held: Vec<bool> = rest.iter().map(|p| p.x < 1e-9).collect();
+    let mut x = rest.clone();
+    settle(&mut dynamics, &mut x, &held, &rest, 12);
+    let tip: Vec<f64> =
+        rest.iter().zip(&x).filter(|(r, _)| r.x > length - 1e-9).map(|(r, x)| r.z - x.z).collect();
+    let bending = 9.81e-3 * rho * length.powi(4) / (8.0 * e * side * side / 12.0);
+    let shear = 1.2 * 9.81e-3 * rho * length * length * (1.0 + poisson_ratio) / e;
+    tip.iter().sum::<f64>() / tip.len() as f64 / (bending + shear)
+}
+
+#[test]
+fn quadratic_tetrahedra_bend_where_linear_ones_lock() {
+    // One and two elements thick, at Poisson's ratios of rubber. A direct solution of linear elasticity has the same numbers.
+    for (cells, ratio, expected) in [
+        ([10, 1, 1], 0.45, 0.905),
+        ([20, 2, 2], 0.45, 0.959),
+        ([10, 1, 1], 0.49, 0.854),
+        ([20, 2, 2], 0.49, 0.937),
+    ] {
+        let sag = sag(cells, ratio, true);
+        assert!((sag - expected).abs() < 0.01, "{cells:?}, {ratio}: {sag}");
+    }
+    let linear = sag([10, 1, 1], 0.45, false);
+    assert!(linear < 0.15, "{linear}");
+}
+
+#[test]
+fn the_inside_of_an_affinely_deformed_quadratic_surface_is_affine() {
+    let (rest, tets) = block([1.0, 0.8, 0.6], [2, 2, 2]);
+    let (rest, tets) = quadratic(rest, &tets);
+    let map = nalgebra::Matrix3::new(1.3, 0.2, 0.0, -0.1, 0.8, 0.1, 0.2, 0.0, 0.9);
+    let at_end = |c: f64, size: f64| c < 1e-9 || c > size - 1e-9;
+    let surface: Vec<bool> =
+        rest.iter().map(|p| at_end(p.x, 1.0) || at_end(p.y, 0.8) || at_end(p.z, 0.6)).collect();
+    let target: Vec<Point> = rest.iter().map(|p| map * p).collect();
+    for model in MODELS {
+        let material = SolidMaterial { model, ..SolidMaterial::rubber() };
+        let body = Body::quadratic_solid("block", tets.clone(), material);
+        let mut dynamics = dynamics(&rest, vec![body], weightless(with_tolerance(1e-10)));
+        let mut x = rest.clone();
+        settle(&mut dynamics, &mut x, &surface, &target, 12);
+        let error = x.iter().zip(&target).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        assert!(error < 1e-6, "{model:?}: {error:e}");
+    }
+}
+
+#[test]
+fn middles_of_edges_must_lie_in_the_middle() {
+    let (rest, tets) = block([1.0; 3], [1; 3]);
+    let (mut rest, tets) = quadratic(rest, &tets);
+    let last = rest.len() - 1;
+    rest[last].x += 1e-3;
+    let body = Body::quadratic_solid("block", tets, SolidMaterial::rubber());
+    let message = DynamicsModel::new(rest, vec![body]).expect_err("an edge is bent").to_string();
+    assert!(
+        message.contains(&format!("vertex {last} of quadratic tet")) && message.contains("middle"),
+        "{message}"
+    );
 }
 
 #[test]

@@ -6,7 +6,7 @@ mod setup;
 mod sheet;
 mod strands;
 
-pub use block::block;
+pub use block::{block, quadratic};
 pub use cloth::cloth_model;
 pub use setup::{dynamics, equilibrium, weightless, with_gravity, with_tolerance};
 pub use sheet::sheet;

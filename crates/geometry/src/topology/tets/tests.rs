@@ -40,3 +40,22 @@ fn what_is_shared_is_inside() {
     // Three on one face: no surface, though no solid either.
     assert_eq!(boundary_triangles(&[[0, 1, 2, 3], [0, 2, 1, 4], [0, 1, 2, 5]]).len(), 9);
 }
+
+#[test]
+fn a_tetrahedron_is_divided_into_eight_of_equal_volume() {
+    let corners = [[0.1, 0.2, 0.3], [1.2, 0.1, 0.2], [0.4, 0.9, 0.6], [0.3, 0.4, 1.3]].map(Point::from);
+    let mut positions = corners.to_vec();
+    for [i, j] in [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]] {
+        positions.push(nalgebra::center(&corners[i], &corners[j]));
+    }
+    let volume = |tet: &[u32; 4]| six_volumes(&positions, &boundary_triangles(&[*tet]));
+    let parts = divide_tetrahedron(&std::array::from_fn(|k| k as u32));
+    let whole = volume(&[0, 1, 2, 3]);
+    assert!(
+        parts.iter().all(|part| (volume(part) - whole / 8.0).abs() < 1e-15),
+        "{:?}",
+        parts.map(|p| volume(&p))
+    );
+    // They share their faces but those on the surface, four on each side.
+    assert_eq!(boundary_triangles(&parts).len(), 16);
+}
