@@ -17,6 +17,7 @@ struct Info {
     edges: usize,
     triangles: usize,
     tets: usize,
+    quadratic_tets: usize,
     strand_edges: usize,
     particles: usize,
     obstacle_vertices: usize,
@@ -54,7 +55,10 @@ pub fn info(options: &InfoOptions) -> Result<Exit, Failure> {
         return Err(Failure::input("--up and --scale apply to meshes"));
     } else {
         let sets: [&str; 0] = [];
-        info_of_scene(Scene::open(name, None, &sets).and_then(|scene| scene.info()).map_err(Failure::input)?)
+        let scene = Scene::open(name, None, &sets).map_err(Failure::input)?;
+        let world = World::new(&scene).map_err(Failure::input)?;
+        warn(&world);
+        info_of_scene(world.info(scene.simulation.dt))
     };
     if options.json {
         output::print_json(&info)?;
@@ -64,12 +68,17 @@ pub fn info(options: &InfoOptions) -> Result<Exit, Failure> {
     Ok(Exit::Success)
 }
 
+fn warn(world: &World) {
+    world.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+}
+
 fn info_of_scene(info: SceneInfo) -> Info {
     Info {
         vertices: info.vertices,
         edges: info.edges,
         triangles: info.triangles,
         tets: info.tets,
+        quadratic_tets: info.quadratic_tets,
         strand_edges: info.strand_edges,
         particles: info.particles,
         obstacle_vertices: info.obstacle_vertices,
@@ -91,7 +100,10 @@ fn info_of_file(name: &str, import: &[String]) -> Result<Info, Failure> {
     if problems.is_empty() && mesh.obstacle.is_none() {
         // Without the ball and the ground, which nobody asked for here.
         let alone = Scene { obstacles: Vec::new(), ..scene };
-        problems.extend(World::new(&alone).err().map(|error| error.to_string()));
+        match World::new(&alone) {
+            Ok(world) => warn(&world),
+            Err(error) => problems.push(error.to_string()),
+        }
     } else if let Some(faults) = faults {
         // The assembly tells them otherwise.
         eprintln!("warning: {name}: {faults}");
@@ -120,6 +132,7 @@ fn info_of_mesh(mesh: Mesh, problems: Vec<String>) -> Info {
         edges: edges.len(),
         triangles: triangles.len(),
         tets,
+        quadratic_tets: 0,
         strand_edges: strands.len(),
         particles: mesh.particles.iter().filter(|v| !obstacle(v)).count(),
         obstacle_vertices,
@@ -153,6 +166,7 @@ fn to_text(name: &str, info: &Info, list: usize) -> String {
         ("edges", info.edges),
         ("triangles", info.triangles),
         ("tetrahedra", info.tets),
+        ("quadratic tets", info.quadratic_tets),
         ("strand edges", info.strand_edges),
         ("particles", info.particles),
         ("obstacle vertices", info.obstacle_vertices),

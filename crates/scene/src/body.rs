@@ -1,5 +1,6 @@
 //! Deformable bodies as a scene describes them.
 
+use crate::elements::SolidElements;
 use crate::kind::BodyKind;
 use crate::material::Material;
 use crate::shapes::Shape;
@@ -25,6 +26,12 @@ pub struct BodySpec {
     /// Generated mesh, see the shapes. Either this or `mesh`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shape: Option<Shape>,
+    /// The elements of a solid: `linear` or `quadratic`. Linear tetrahedra are too stiff in bending where a body is only a few of
+    /// them thick. Quadratic ones are not: each edge gets a vertex in its middle, which follow those of the mesh in number, and
+    /// each tetrahedron becomes eight small ones in frames and for contact. Default: quadratic for a shape that is fewer than
+    /// three elements thick and more than four times as long as thick, linear otherwise.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub elements: Option<SolidElements>,
     /// Whether lines of a cloth's mesh that join vertices of its triangles where no edge does are left out. Other programs sew along
     /// such lines; sewing is not simulated, so without this key they are refused. Lines that lead elsewhere or run along edges
     /// are left out with a warning anyway. Default false.
@@ -82,6 +89,7 @@ impl Default for BodySpec {
             kind: BodyKind::default(),
             mesh: None,
             shape: None,
+            elements: None,
             drop_lines: false,
             up: Up::Z,
             scale: 1.0,

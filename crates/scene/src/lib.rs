@@ -18,6 +18,7 @@
 mod body;
 mod builtin;
 mod description;
+mod elements;
 mod error;
 mod explain;
 mod fields;
@@ -53,6 +54,7 @@ pub use bowknot_twoway as twoway;
 pub use body::BodySpec;
 pub use builtin::{BUILTIN, Builtin};
 pub use description::Scene;
+pub use elements::SolidElements;
 pub use error::{SceneError, SceneProblem, nearest};
 pub use friction::FrictionPair;
 pub use kind::BodyKind;

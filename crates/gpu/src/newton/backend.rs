@@ -93,6 +93,10 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
 
 impl<E: Engine + Debug + Send> NewtonBackend for ConjugateGradients<E> {
     fn set_model(&mut self, model: &ElementModel) -> Result<bool, LinearBackendError> {
+        // There is no kernel of quadratic tetrahedra: the CPU assembles their matrices, and the device solves.
+        if !model.quadratic.is_empty() {
+            return Ok(false);
+        }
         self.take_newton_model(model)?;
         Ok(true)
     }

@@ -72,7 +72,7 @@ impl Assembly {
         let import = Import { up: body.up, scale: body.scale };
         let placing = Placing { import, rotate: body.rotate, translate: body.translate };
         let part = Part::load(&scene.folder, body.mesh.as_deref(), body.shape.as_ref(), &import)?;
-        let mut part = part.into_body(body.kind, &body.name, body.drop_lines, &mut self.warnings)?;
+        let mut part = part.into_body(body, &mut self.warnings)?;
         placing.place(&mut part.positions);
         let mut velocities = initial_velocities(body, &part.positions);
 
@@ -80,12 +80,16 @@ impl Assembly {
         self.insides.push((part.positions.split_off(outside), velocities.split_off(outside)));
         let filter = filter(&body.groups, body.collides_with.as_deref(), false, body.self_collision);
         // Numbered within the part; those of the world follow when all of it is known.
-        let tets = std::mem::take(&mut part.tets);
+        let (tets, quadratic_tets) =
+            (std::mem::take(&mut part.tets), std::mem::take(&mut part.quadratic_tets));
         let (vertices, elements) = self.append(part, filter);
         self.velocities.extend(velocities);
         let shape = match body.material {
             Material::Cloth(material) => BodyShape::Cloth { triangles: elements.triangles, material },
-            Material::Solid(material) => BodyShape::Solid { tets: Vec::new(), material },
+            Material::Solid(material) if quadratic_tets.is_empty() => {
+                BodyShape::Solid { tets: Vec::new(), material }
+            }
+            Material::Solid(material) => BodyShape::QuadraticSolid { tets: Vec::new(), material },
             Material::Strands(material) => BodyShape::Strands { edges: elements.strands.clone(), material },
             Material::Particles(material) => {
                 BodyShape::Particles { vertices: vertices.clone().collect(), material }
@@ -108,6 +112,7 @@ impl Assembly {
             vertices,
             interior: 0..0,
             tets,
+            quadratic_tets,
             strands: elements.strands,
             surface: elements.surface,
             motion: ObstacleMotion::Rest,
@@ -158,6 +163,7 @@ impl Assembly {
             vertices,
             interior: 0..0,
             tets: Vec::new(),
+            quadratic_tets: Vec::new(),
             strands: elements.strands,
             surface: elements.surface,
             motion,
@@ -192,8 +198,11 @@ impl Assembly {
             let (start, outside) = (body.vertices.start, body.vertices.len() as u32);
             let number = |v: &mut u32| *v = if *v < outside { *v + start } else { *v - outside + first };
             body.tets.iter_mut().flatten().for_each(number);
-            if let BodyShape::Solid { tets, .. } = &mut self.models[index].shape {
-                tets.clone_from(&body.tets);
+            body.quadratic_tets.iter_mut().flatten().for_each(number);
+            match &mut self.models[index].shape {
+                BodyShape::Solid { tets, .. } => tets.clone_from(&body.tets),
+                BodyShape::QuadraticSolid { tets, .. } => tets.clone_from(&body.quadratic_tets),
+                _ => {}
             }
             self.positions.extend(positions);
             self.velocities.extend(velocities);

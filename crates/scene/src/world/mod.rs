@@ -17,9 +17,11 @@ mod jumps;
 mod motion;
 mod part;
 mod pins;
+mod quadratic;
 mod roots;
 mod sequence;
 mod size;
+mod thickness;
 mod unused;
 
 pub use follow::Attachment;
@@ -89,8 +91,10 @@ pub struct WorldBody {
     pub vertices: Range<u32>,
     /// Its vertices inside of a solid.
     pub interior: Range<u32>,
-    /// Its tetrahedra, of positive volume at time 0, if it is a solid.
+    /// Its tetrahedra, of positive volume at time 0, if it is a solid; eight of each quadratic one.
     pub tets: Vec<[u32; 4]>,
+    /// Its quadratic tetrahedra, if it is a solid of such: corners, then the middles of the edges 01, 02, 03, 12, 13, 23.
+    pub quadratic_tets: Vec<[u32; 10]>,
     /// Its edges, if it is made of strands.
     pub strands: Vec<[u32; 2]>,
     /// What its mesh says about its faces, over its own vertices: polygons whose fans are its triangles.
@@ -141,8 +145,10 @@ pub struct SceneInfo {
     pub edges: usize,
     /// Triangles of deformable bodies: of cloth, and of the surfaces of solids.
     pub triangles: usize,
-    /// Tetrahedra.
+    /// Tetrahedra; a quadratic one counts as eight.
     pub tets: usize,
+    /// Quadratic tetrahedra.
+    pub quadratic_tets: usize,
     /// Strand edges of deformable bodies.
     pub strand_edges: usize,
     /// Deformable particles.
@@ -194,6 +200,7 @@ impl World {
             edges: topology.edges.iter().filter(|e| deformable(e[0])).count(),
             triangles: topology.triangles.iter().filter(|t| deformable(t[0])).count(),
             tets: self.bodies.iter().map(|body| body.tets.len()).sum(),
+            quadratic_tets: self.bodies.iter().map(|body| body.quadratic_tets.len()).sum(),
             strand_edges: topology
                 .strand_edges
                 .iter()

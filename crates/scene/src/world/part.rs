@@ -1,10 +1,14 @@
 //! A mesh on its way into the world: loaded, cleaned, its vertices ordered.
 
+use super::quadratic::with_middles;
+use super::thickness::few_elements_across;
+use crate::body::BodySpec;
+use crate::elements::SolidElements;
 use crate::error::SceneError;
 use crate::kind::BodyKind;
 use crate::shapes::Shape;
 use bowknot_errors::counted;
-use bowknot_geometry::{MeshProblem, Point, boundary_triangles, check_mesh};
+use bowknot_geometry::{MeshProblem, Point, boundary_triangles, check_mesh, divide_tetrahedron};
 use bowknot_io::{self as io, Import, Mesh, Surface};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -20,6 +24,7 @@ pub(super) struct Part {
     pub positions: Vec<Point>,
     pub triangles: Vec<[u32; 3]>,
     pub tets: Vec<[u32; 4]>,
+    pub quadratic_tets: Vec<[u32; 10]>,
     pub strands: Vec<[u32; 2]>,
     pub particles: Vec<u32>,
     /// What the mesh says about its faces: polygons whose fans are the triangles.
@@ -37,7 +42,17 @@ impl Part {
         let mesh_vertices = mesh.positions.len();
         let Mesh { positions, triangles, tets, strands, particles, surface, .. } = mesh;
         let numbers = (0..mesh_vertices as u32).collect();
-        Self { positions, triangles, tets, strands, particles, surface, numbers, mesh_vertices, interior: 0 }
+        Self {
+            positions,
+            triangles,
+            tets,
+            strands,
+            particles,
+            surface,
+            numbers,
+            mesh_vertices,
+            ..Self::default()
+        }
     }
 
     /// Loads a mesh file or makes a shape.
@@ -99,16 +114,11 @@ impl Part {
     }
 
     /// Makes a body of the mesh: refuses elements of other kinds and faulty ones, drops loose vertices.
-    pub fn into_body(
-        mut self,
-        kind: BodyKind,
-        name: &str,
-        drop_lines: bool,
-        warnings: &mut Vec<String>,
-    ) -> Result<Self, SceneError> {
+    pub fn into_body(mut self, spec: &BodySpec, warnings: &mut Vec<String>) -> Result<Self, SceneError> {
+        let (kind, name) = (spec.kind, &*spec.name);
         self.triangulate(&format!("body {name}"), warnings);
         if kind == BodyKind::Cloth && !self.triangles.is_empty() {
-            self.leave_out_lines(name, drop_lines, warnings)?;
+            self.leave_out_lines(name, spec.drop_lines, warnings)?;
         }
         // Loose vertices of a PLY come as particles; where there are other elements they are leftovers.
         if kind != BodyKind::Particles {
@@ -140,6 +150,7 @@ impl Part {
             }
             BodyKind::Solid => {
                 self.order_tets(name, warnings).map_err(fault)?;
+                self.choose_elements(spec, warnings);
                 self.split_surface();
             }
             BodyKind::Strands => self.check_strands().map_err(fault)?,
@@ -254,6 +265,34 @@ impl Part {
         Ok(())
     }
 
+    /// Makes the tetrahedra quadratic where the body asks for that or, in a generated mesh without a choice, where linear ones would
+    /// be too stiff. The vertices of a mesh file are left as they are.
+    fn choose_elements(&mut self, spec: &BodySpec, warnings: &mut Vec<String>) {
+        let few = match spec.elements {
+            Some(SolidElements::Linear) => return,
+            Some(SolidElements::Quadratic) => return self.make_quadratic(),
+            None => few_elements_across(&self.positions, &self.tets),
+        };
+        let Some(across) = few else { return };
+        if spec.shape.is_some() {
+            return self.make_quadratic();
+        }
+        warnings.push(format!(
+            "body {}: it is {across:.1} tetrahedra thick, and linear ones are several times too stiff in bending there; set \
+             elements = \"quadratic\", or mesh it finer (elements = \"linear\" accepts it)",
+            spec.name
+        ));
+    }
+
+    /// Divides each tetrahedron into eight by vertices in the middles of its edges; they follow those of the mesh.
+    fn make_quadratic(&mut self) {
+        self.quadratic_tets = with_middles(&mut self.positions, &self.tets);
+        self.tets = self.quadratic_tets.iter().flat_map(divide_tetrahedron).collect();
+        let added = self.positions.len() - self.numbers.len();
+        self.numbers.extend((self.mesh_vertices..self.mesh_vertices + added).map(|v| v as u32));
+        self.mesh_vertices += added;
+    }
+
     fn check_strands(&self) -> Result<(), String> {
         let mut seen: HashMap<[u32; 2], usize> = HashMap::new();
         let mut faults = Vec::new();
@@ -291,6 +330,7 @@ impl Part {
         let renumber = |v: &mut u32| *v = place[*v as usize];
         self.triangles.iter_mut().flatten().for_each(renumber);
         self.tets.iter_mut().flatten().for_each(renumber);
+        self.quadratic_tets.iter_mut().flatten().for_each(renumber);
         self.positions = order.iter().map(|&v| self.positions[v as usize]).collect();
         self.numbers = order.iter().map(|&v| self.numbers[v as usize]).collect();
     }

@@ -40,6 +40,8 @@ fn of_air(scene: &Scene, note: Note<'_>) {
 fn of_meshes(scene: &Scene, note: Note<'_>) {
     for (index, body) in scene.bodies.iter().enumerate() {
         let why = "only the meshes of cloth leave out lines";
+        let has_none = body.elements.is_some() && body.kind != BodyKind::Solid;
+        note(has_none, &format!("body[{index}].elements"), "only solids have a choice of elements");
         note(body.drop_lines && body.kind != BodyKind::Cloth, &format!("body[{index}].drop_lines"), why);
     }
     for (index, pin) in scene.pins.iter().enumerate() {
