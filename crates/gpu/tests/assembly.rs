@@ -6,8 +6,8 @@ use bodies::sheet;
 use bowknot_gpu::dynamics::{
     AssemblySprings, Body, ClothMaterial, Dynamics, DynamicsModel, DynamicsParams, ElementModel,
     HessianFilter, LinearBackend, LinearBackendError, LinearSystem, Matrix3, NewtonBackend, NewtonSolve,
-    NewtonStep, NewtonTarget, OutOfBalance, PreconditionerKind, RepulsionSpring, SolveLimits, SpringKind,
-    StepError, Trial, Watched,
+    NewtonStep, NewtonTarget, OutOfBalance, PreconditionerKind, RepulsionSpring, SolidMaterial, SolveLimits,
+    SpringKind, StepError, Trial, Watched,
 };
 use bowknot_gpu::geometry::{Point, Vector};
 use bowknot_gpu::{Adapter, ComparingEngine, ConjugateGradients, DeviceEngine, Engine, TwinEngine};
@@ -387,6 +387,30 @@ fn assembled_matrices_are_those_of_the_cpu() {
             assert!(!is_free || (expected - block).abs().max() <= SINGLE * size, "{}, {node}", case.name);
         }
     }
+}
+
+#[test]
+fn matrices_of_quadratic_tetrahedra_come_from_the_cpu() {
+    let (rest, tets) = bodies::block(3);
+    let (rest, tets) = bodies::with_middles(rest, &tets);
+    let shaken = |k: usize| rest[k] + random_vector(&mut fastrand::Rng::with_seed(k as u64)) * 2e-3;
+    let x: Vec<Point> = (0..rest.len()).map(shaken).collect();
+    let held = vec![false; x.len()];
+    let target = |backend: Option<Box<dyn LinearBackend>>| {
+        let body = Body::quadratic_solid("block", tets.clone(), SolidMaterial::rubber());
+        let model = DynamicsModel::new(rest.clone(), vec![body]).expect("a model");
+        let mut dynamics = Dynamics::new(model, DynamicsParams::default()).expect("parameters");
+        dynamics.set_backend(backend);
+        dynamics.begin_step(&x, &vec![Vector::zeros(); x.len()], DT).expect("a time step");
+        let mut y = x.clone();
+        dynamics.newton_target(&x, &held, &x, &mut y).expect("a target");
+        y
+    };
+    let on_device = target(Some(Box::new(ConjugateGradients::new("twins".to_owned(), TwinEngine::new()))));
+    let on_cpu = target(None);
+    let largest = |a: &[Point], b: &[Point]| a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    assert!(largest(&on_cpu, &x) > 1e-3 && on_device != on_cpu, "the device has solved");
+    assert!(largest(&on_cpu, &on_device) < 1e-6, "{:e}", largest(&on_cpu, &on_device));
 }
 
 /// One patch, and one coarse level or two: single precision and the shift of the diagonal make little difference.
