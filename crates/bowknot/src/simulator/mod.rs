@@ -9,6 +9,7 @@ mod contacts;
 mod crowding;
 mod ends;
 mod error;
+mod finished;
 mod friction;
 mod inside;
 mod interior;

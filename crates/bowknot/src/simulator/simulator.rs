@@ -11,6 +11,7 @@ use super::checkpoint::Checkpoint;
 use super::contacts::{CarriedContacts, Contacts};
 use super::ends::Ends;
 use super::error::{SimulationError, describe_intersections};
+use super::finished::Finished;
 use super::inside;
 use super::interior::{self, Interior};
 use super::observer::{CollisionProblem, Iterated, Relay, SimulationObserver};
@@ -83,6 +84,7 @@ pub(super) struct Scratch {
     pub(super) prescribed: Vec<bool>,
     pub(super) keyframes: Vec<Point>,
     ends: Ends,
+    finished: Finished,
     pub(super) groups: Vec<u32>,
 }
 
@@ -332,7 +334,7 @@ impl Simulator {
             ..
         } = self;
         let dynamics = rest.as_mut().and_then(Rest::dynamics).unwrap_or(dynamics);
-        let Scratch { start, x, y, prescribed, keyframes, ends, groups } = scratch;
+        let Scratch { start, x, y, prescribed, keyframes, ends, finished, groups } = scratch;
         let target_error = |source| SimulationError::target(step, source);
         let count = world.collision_vertices();
 
@@ -346,12 +348,15 @@ impl Simulator {
         y.clone_from(start);
         x.clone_from(start);
         ends.begin(keyframes);
+        finished.begin(prescribed);
         let mut slowest_body = None;
         let mut imbalance = Residual::default();
         for iteration in 0..self.newton_iterations {
             let last = iteration + 1 == self.newton_iterations;
             let timer = Instant::now();
-            let info = dynamics.newton_target(x, prescribed, &ends.places, y).map_err(target_error)?;
+            finished.lead(x, &ends.places);
+            let held = finished.held();
+            let info = dynamics.newton_target(x, held, finished.places(), y).map_err(target_error)?;
             statistics.add_newton(&info, timer.elapsed().as_secs_f64());
             if !info.cg.converged {
                 tracing::debug!(
@@ -375,7 +380,7 @@ impl Simulator {
                 iteration,
                 positions: &x[..count],
                 target: &y[..count],
-                prescribed: &prescribed[..count],
+                prescribed: &held[..count],
                 time_step: *dt,
                 start: &start[..count],
                 groups,
@@ -387,7 +392,7 @@ impl Simulator {
             }
             let mut relay = Relay { observer: &mut *observer, world, step, iteration, stopped: false };
             let input = ResolveInput {
-                prescribed: &prescribed[..count],
+                prescribed: &held[..count],
                 time_step: Some(*dt),
                 start: Some(&start[..count]),
                 groups,
@@ -420,8 +425,7 @@ impl Simulator {
             contacts.find(resolver, start);
             x[count..].copy_from_slice(&y[count..]);
             if differ(&x[..count], &y[..count], backend.resolution()) {
-                statistics.interior_solves +=
-                    interior.follow(dynamics, prescribed, y, x).map_err(target_error)?;
+                statistics.interior_solves += interior.follow(dynamics, held, y, x).map_err(target_error)?;
                 if *measured {
                     let change = dynamics.energy_change(start, y, x, *dt, backend.resolution());
                     statistics.collision_energy_j += change.max(0.0);
@@ -435,6 +439,10 @@ impl Simulator {
             observer.iterated(&Iterated { step, iteration, residual });
             if tolerance.ends(residual.distance) && !cut {
                 break;
+            }
+            if !cut {
+                let (distances, springs) = (dynamics.component_distances(), contacts.springs());
+                finished.note(dynamics.model(), distances, contacts.counted(), springs, tolerance);
             }
         }
         (statistics.residual_n, statistics.residual_m) = (imbalance.force, imbalance.distance);

@@ -65,6 +65,8 @@ pub struct Dynamics {
     repulsion: Repulsion,
     /// See [`Self::set_step_tolerance`] [m].
     step_tolerance: f64,
+    /// See [`Self::component_distances`] [m].
+    component_distances: Vec<f64>,
     step: Option<Step>,
     course: Course,
     work: Workspace,
@@ -105,6 +107,7 @@ impl Dynamics {
             model,
             params,
             step_tolerance: 0.0,
+            component_distances: Vec::new(),
             step: None,
             course,
             work,
@@ -232,7 +235,15 @@ impl Dynamics {
         self.repulsion.place_obstacles(x);
         let residual = self.with_bodies(&step, false, |newton| newton.residual(&counted));
         self.step = Some(step);
-        residual
+        let (residual, distances) = residual?;
+        self.component_distances = distances;
+        Ok(residual)
+    }
+
+    /// The [`Residual::distance`] of each connected component in the last call of [`Self::residual`], in the order of
+    /// [`DynamicsModel::components_of_vertices`] [m].
+    pub fn component_distances(&self) -> &[f64] {
+        &self.component_distances
     }
 
     /// Lets Newton's method work from the iterate in the workspace, on a device if there is one for the model. What a

@@ -17,16 +17,23 @@ pub struct CgInfo {
 }
 
 /// When to stop. Norms are those of the preconditioner.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Limits {
     /// Residual relative to b, or to `min_scale` if that is larger [1].
     pub tolerance: f64,
     /// Residual relative to b itself at which the solve may end as well [1].
     pub own_tolerance: f64,
-    /// Smallest squared norm that `tolerance` is relative to: that of the first solve of the time step, which
+    /// Smallest squared norm of each part that `tolerance` is relative to: that of the first solve of the time step, which
     /// the present one corrects.
-    pub min_scale: f64,
+    pub min_scales: Vec<f64>,
     pub max_iterations: usize,
+}
+
+impl Limits {
+    /// That of all parts together, where they end as one: the smallest.
+    pub fn min_scale_of_whole(&self) -> f64 {
+        self.min_scales.iter().copied().reduce(f64::min).unwrap_or(0.0)
+    }
 }
 
 /// Share of the tolerance at which conjugate gradients end, so that the residual in double precision is below

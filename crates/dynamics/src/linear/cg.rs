@@ -2,11 +2,13 @@
 
 use super::lane::{Lane, Real};
 use super::operator::Operator;
+use super::parts::{Parts, Piece};
 use super::preconditioner::{Levels, Preconditioner};
 use super::system::System;
 use crate::nodes::CHUNK;
 use bowknot_geometry::Vector;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// A system in the numbers that a solve computes with, and the vectors of the solve.
 #[derive(Debug, Default)]
@@ -35,11 +37,12 @@ impl<T: Real> Krylov<T> {
         self.operator.fill(system);
     }
 
-    /// Starts from x = 0 with the residual `b` times `factor`. Returns its squared norm, that of the
+    /// Starts from x = 0 with the residual `b` times `factor`. Returns its squared norms by part, those of the
     /// preconditioner.
-    pub fn begin(&mut self, levels: &mut Levels, b: &[Vector], factor: f64) -> f64 {
+    pub fn begin(&mut self, levels: &mut Levels, parts: &Parts, b: &[Vector], factor: f64) -> Vec<f64> {
         self.load(b, factor);
-        self.preconditioner.apply(levels, &self.r, &mut self.z)
+        let all = vec![true; parts.count()];
+        self.preconditioner.apply(levels, (parts, &all), &self.r, &mut self.z)
     }
 
     /// The same without the norm.
@@ -56,42 +59,61 @@ impl<T: Real> Krylov<T> {
         to.iter_mut().zip(&self.z).for_each(|(to, z)| *to = z.vector() * factor);
     }
 
-    /// Iterates until the squared norm of the residual is at most `goal` or `max_iterations` are made.
-    /// Returns the number of iterations and the squared norm.
+    /// Iterates until the squared norm of the residual of each part is at most its entry of `goals`, or `max_iterations` are
+    /// made. Returns the number of iterations and the squared norms.
     pub fn iterate(
         &mut self,
         system: &System<'_>,
         levels: &mut Levels,
-        goal: f64,
+        parts: &Parts,
+        goals: &[f64],
         max_iterations: usize,
-    ) -> (usize, f64) {
+    ) -> (usize, Vec<f64>) {
         let Self { operator, preconditioner, x, r, z, p, q, .. } = self;
-        let mut rz = preconditioner.apply(levels, r, z);
+        let mut active = vec![true; parts.count()];
+        let mut rz = preconditioner.apply(levels, (parts, &active), r, z);
         p.copy_from_slice(z);
-        let goal = goal.max(T::MAX_REDUCTION * T::MAX_REDUCTION * rz);
+        let goal = |(goal, rz): (&f64, &f64)| goal.max(T::MAX_REDUCTION * T::MAX_REDUCTION * rz);
+        let goals: Vec<f64> = goals.iter().zip(&rz).map(goal).collect();
         let mut iterations = 0;
-        while rz > goal && iterations < max_iterations {
-            let curvature = operator.multiply(system, p, q);
-            // H is positive definite; the loop ends here on numbers that are not finite and when p vanishes.
-            if !(curvature > 0.0 && curvature.is_finite()) {
+        let (mut steps, mut ratios) = (vec![T::default(); parts.count()], vec![T::default(); parts.count()]);
+        loop {
+            for (part, active) in active.iter_mut().enumerate() {
+                *active &= rz[part] > goals[part];
+            }
+            if !active.contains(&true) || iterations == max_iterations {
                 break;
             }
-            let step = T::from_f64(rz / curvature);
-            r.par_chunks_mut(CHUNK).zip(q.par_chunks(CHUNK)).for_each(|(r, q)| {
-                r.iter_mut().zip(q).for_each(|(r, q)| *r -= *q * step);
+            let curvatures = operator.multiply(system, (parts, &active), p, q);
+            for (part, active) in active.iter_mut().enumerate() {
+                // H is positive definite; a part ends here on numbers that are not finite and when p vanishes.
+                *active &= curvatures[part] > 0.0 && curvatures[part].is_finite();
+                steps[part] = T::from_f64(rz[part] / curvatures[part]);
+            }
+            if !active.contains(&true) {
+                break;
+            }
+            r.par_chunks_mut(CHUNK).zip(q.par_chunks(CHUNK)).enumerate().for_each(|(chunk, (r, q))| {
+                for (nodes, part) in local(parts, &active, chunk) {
+                    r[nodes.clone()].iter_mut().zip(&q[nodes]).for_each(|(r, q)| *r -= *q * steps[part]);
+                }
             });
-            let next = preconditioner.apply(levels, r, z);
-            let ratio = T::from_f64(next / rz);
-            rz = next;
+            let next = preconditioner.apply(levels, (parts, &active), r, z);
+            for part in (0..parts.count()).filter(|&part| active[part]) {
+                ratios[part] = T::from_f64(next[part] / rz[part]);
+                rz[part] = next[part];
+            }
             // x moves along p here, where p is read in any case.
-            x.par_chunks_mut(CHUNK).zip(p.par_chunks_mut(CHUNK)).zip(z.par_chunks(CHUNK)).for_each(
-                |((x, p), z)| {
-                    for k in 0..x.len() {
+            let chunks = x.par_chunks_mut(CHUNK).zip(p.par_chunks_mut(CHUNK)).zip(z.par_chunks(CHUNK));
+            chunks.enumerate().for_each(|(chunk, ((x, p), z))| {
+                for (nodes, part) in local(parts, &active, chunk) {
+                    let (step, ratio) = (steps[part], ratios[part]);
+                    for k in nodes {
                         x[k] += p[k] * step;
                         p[k] = z[k] + p[k] * ratio;
                     }
-                },
-            );
+                }
+            });
             iterations += 1;
         }
         (iterations, rz)
@@ -108,4 +130,15 @@ impl<T: Real> Krylov<T> {
     pub fn copy_residual(&self, factor: f64, to: &mut [Vector]) {
         to.iter_mut().zip(&self.r).for_each(|(to, r)| *to = r.vector() * factor);
     }
+}
+
+/// Nodes of the active parts in a chunk, counted from its first, with their parts.
+fn local<'a>(
+    parts: &'a Parts,
+    active: &'a [bool],
+    chunk: usize,
+) -> impl Iterator<Item = (Range<usize>, usize)> + 'a {
+    let first = chunk * CHUNK;
+    let pieces = parts.of_chunk(chunk).iter().filter(|piece| active[piece.part]);
+    pieces.map(move |Piece { nodes, part }| (nodes.start - first..nodes.end - first, *part))
 }

@@ -13,6 +13,7 @@ mod guesses;
 pub(crate) mod lane;
 pub(crate) mod operator;
 pub(crate) mod ordering;
+pub(crate) mod parts;
 pub(crate) mod preconditioner;
 mod refinement;
 pub(crate) mod scalar;

@@ -1,6 +1,7 @@
 //! The matrix of a linear solve in the numbers that the solve computes with, see [`super::solver`].
 
 use super::lane::{Lane, PackedBlocks, Real, pack};
+use super::parts::Parts;
 use super::system::System;
 use crate::nodes::{CHUNK, NO_NODE};
 use nalgebra::Matrix3;
@@ -64,9 +65,15 @@ impl<T: Real> Operator<T> {
         }
     }
 
-    /// Sets y = H x on free rows and 0 elsewhere; returns x . y. `system` is the one of [`Self::fill`]; x is
-    /// zero at nodes that are not free.
-    pub fn multiply(&mut self, system: &System<'_>, x: &[Lane<T>], y: &mut [Lane<T>]) -> f64 {
+    /// Sets y = H x on free rows and 0 on others, in the parts that are `active`; returns x . y by part. `system` is the one of
+    /// [`Self::fill`]; x is zero at nodes that are not free.
+    pub fn multiply(
+        &mut self,
+        system: &System<'_>,
+        (parts, active): (&Parts, &[bool]),
+        x: &[Lane<T>],
+        y: &mut [Lane<T>],
+    ) -> Vec<f64> {
         let reaction = |spring: &Spring<T>| {
             let mut sum = Lane::default();
             for (&node, &weight) in spring.nodes.iter().zip(&spring.weights) {
@@ -80,20 +87,20 @@ impl<T: Real> Operator<T> {
         self.springs.par_iter().with_min_len(CHUNK).map(reaction).collect_into_vec(&mut self.reactions);
         let mut partial = std::mem::take(&mut self.partial);
         let this = &*self;
-        let chunks = y.par_chunks_mut(CHUNK).enumerate().map(|(chunk, y)| {
+        let chunks = y.par_chunks_mut(CHUNK).zip(parts.room(&mut partial)).enumerate();
+        chunks.for_each(|(chunk, (y, sums))| {
             let first = chunk * CHUNK;
-            let mut sum = 0.0;
-            for (k, y) in y.iter_mut().enumerate() {
-                let product =
-                    if system.free[first + k] { this.row(system, first + k, x) } else { Lane::default() };
-                sum += x[first + k].dot(&product);
-                *y = product;
+            let pieces = parts.of_chunk(chunk).iter().zip(sums);
+            for (piece, sum) in pieces.filter(|(piece, _)| active[piece.part]) {
+                for node in piece.nodes.clone() {
+                    let product = if system.free[node] { this.row(system, node, x) } else { Lane::default() };
+                    *sum += x[node].dot(&product);
+                    y[node - first] = product;
+                }
             }
-            sum
         });
-        chunks.collect_into_vec(&mut partial);
         self.partial = partial;
-        self.partial.iter().sum()
+        parts.sums(&self.partial)
     }
 
     #[inline(always)]

@@ -3,6 +3,7 @@
 use super::coarse::Coarse;
 use super::direct::Direct;
 use super::lane::{Lane, PackedBlocks, Real, pack};
+use super::parts::Parts;
 use super::system::System;
 use crate::nodes::CHUNK;
 use bowknot_geometry::Vector;
@@ -57,8 +58,14 @@ impl<T: Real> Preconditioner<T> {
         }
     }
 
-    /// Sets z = M^-1 r; returns r . z.
-    pub fn apply(&mut self, levels: &mut Levels, r: &[Lane<T>], z: &mut [Lane<T>]) -> f64 {
+    /// Sets z = M^-1 r in the parts that are `active`; returns r . z by part.
+    pub fn apply(
+        &mut self,
+        levels: &mut Levels,
+        (parts, active): (&Parts, &[bool]),
+        r: &[Lane<T>],
+        z: &mut [Lane<T>],
+    ) -> Vec<f64> {
         if let Some(direct) = &mut levels.direct {
             direct.solve(r);
         }
@@ -67,31 +74,31 @@ impl<T: Real> Preconditioner<T> {
         }
         let (direct, coarse) = (levels.direct.as_ref(), levels.coarse.as_ref());
         let (inverses, arms) = (&self.inverses, &self.arms);
-        let chunks = z.par_chunks_mut(CHUNK).zip(r.par_chunks(CHUNK)).enumerate().map(|(chunk, (z, r))| {
+        let chunks = z.par_chunks_mut(CHUNK).zip(parts.room(&mut self.partial)).enumerate();
+        chunks.for_each(|(chunk, (z, sums))| {
             let first = chunk * CHUNK;
-            let mut sum = 0.0;
             let (mut aggregate, mut motion) = (u32::MAX, super::coarse::Motion::default());
-            for (k, (z, r)) in z.iter_mut().zip(r).enumerate() {
-                let node = first + k;
-                let mut value = match direct.and_then(|direct| direct.displacement(node)) {
-                    Some(exact) => Lane::new(&exact, 1.0),
-                    None => inverses.product(node, *r),
-                };
-                if let Some(coarse) = coarse {
-                    if coarse.aggregate_of(node) != aggregate {
-                        aggregate = coarse.aggregate_of(node);
-                        motion = coarse.motion(aggregate);
+            let pieces = parts.of_chunk(chunk).iter().zip(sums);
+            for (piece, sum) in pieces.filter(|(piece, _)| active[piece.part]) {
+                for node in piece.nodes.clone() {
+                    let mut value = match direct.and_then(|direct| direct.displacement(node)) {
+                        Some(exact) => Lane::new(&exact, 1.0),
+                        None => inverses.product(node, r[node]),
+                    };
+                    if let Some(coarse) = coarse {
+                        if coarse.aggregate_of(node) != aggregate {
+                            aggregate = coarse.aggregate_of(node);
+                            motion = coarse.motion(aggregate);
+                        }
+                        value += motion.displacement(&arms[node]);
                     }
-                    value += motion.displacement(&arms[node]);
+                    let value = value.without_fourth();
+                    *sum += r[node].dot(&value);
+                    z[node - first] = value;
                 }
-                let value = value.without_fourth();
-                sum += r.dot(&value);
-                *z = value;
             }
-            sum
         });
-        chunks.collect_into_vec(&mut self.partial);
-        self.partial.iter().sum()
+        parts.sums(&self.partial)
     }
 }
 

@@ -4,6 +4,7 @@ use super::accuracy::{CgInfo, Limits, MARGIN, MIN_GAIN, unit_factor};
 use super::backend::LinearBackend;
 use super::failure::LinearBackendError;
 use super::guesses::Guesses;
+use super::parts::Parts;
 use super::system::System;
 use bowknot_geometry::Vector;
 
@@ -36,7 +37,7 @@ impl Refinement {
         system: &System<'_>,
         b: &[Vector],
         guesses: &[&[Vector]],
-        limits: Limits,
+        limits: &Limits,
         x: &mut [Vector],
         residual: &mut Vec<Vector>,
     ) -> Result<Refined, LinearBackendError> {
@@ -48,11 +49,11 @@ impl Refinement {
             let info = CgInfo { iterations: 0, residual: 0.0, converged: scale == 0.0 };
             return Ok(Refined { info, scale, stalled: false });
         }
-        let relative = scale.max(limits.min_scale);
+        let relative = scale.max(limits.min_scale_of_whole());
         let goal = limits.tolerance * limits.tolerance * relative;
         let goal = goal.max(limits.own_tolerance * limits.own_tolerance * scale);
 
-        self.guesses.start(system, guesses, x, residual);
+        self.guesses.start(system, &Parts::whole(b.len()), guesses, x, residual);
         let mut norm = scale;
         if !guesses.is_empty() {
             self.subtract_product(system, x, b, residual)?;

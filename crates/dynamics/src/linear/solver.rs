@@ -14,12 +14,25 @@ use super::coarse::Coarse;
 use super::direct::Direct;
 use super::failure::LinearBackendError;
 use super::guesses::Guesses;
+use super::parts::Parts;
 use super::preconditioner::Levels;
 use super::refinement::Refinement;
 use super::system::System;
 use crate::dynamics::NewtonBackend;
 use bowknot_geometry::Vector;
 use std::ops::Range;
+
+/// A linear system H x = b.
+#[derive(Clone, Copy)]
+pub(crate) struct Problem<'a> {
+    pub system: &'a System<'a>,
+    /// Its independent parts.
+    pub parts: &'a Parts,
+    /// Where H was linearized [m].
+    pub positions: &'a [Vector],
+    /// Zero at nodes that are not free.
+    pub b: &'a [Vector],
+}
 
 /// Solves systems and measures residuals.
 #[derive(Debug, Default)]
@@ -41,7 +54,8 @@ pub(crate) struct LinearSolver {
     failure: Option<String>,
     /// b - H x [N].
     residual: Vec<Vector>,
-    scale: f64,
+    /// Squared norms of b by part.
+    scales: Vec<f64>,
 }
 
 impl LinearSolver {
@@ -119,19 +133,19 @@ impl LinearSolver {
     /// Sets `z` to the preconditioner of `system`, linearized at positions `x`, times `r`.
     pub fn precondition(&mut self, system: &System<'_>, x: &[Vector], r: &[Vector], z: &mut [Vector]) {
         self.prepare(system, x);
-        let factor = unit_factor(r);
+        let (factor, whole) = (unit_factor(r), Parts::whole(r.len()));
         if self.precise {
-            self.double.begin(&mut self.levels, r, factor);
+            self.double.begin(&mut self.levels, &whole, r, factor);
             self.double.copy_preconditioned(1.0 / factor, z);
         } else {
-            self.single.begin(&mut self.levels, r, factor);
+            self.single.begin(&mut self.levels, &whole, r, factor);
             self.single.copy_preconditioned(1.0 / factor, z);
         }
     }
 
-    /// Squared norm of b in the last solve.
-    pub fn scale(&self) -> f64 {
-        self.scale
+    /// Squared norms of b in the last solve by part; all are that of the whole if a backend has solved.
+    pub fn scales(&self) -> &[f64] {
+        &self.scales
     }
 
     /// b - H x at the end of the last solve.
@@ -139,7 +153,8 @@ impl LinearSolver {
         &self.residual
     }
 
-    /// Solves H x = b over the free nodes for the `system`, linearized at `positions`; b and x are zero elsewhere.
+    /// Solves H x = b over the free nodes for the `system`, linearized at `positions`; b and x are zero elsewhere. On the CPU
+    /// each of the independent `parts` ends by itself; a backend solves them as one.
     ///
     /// The start is the combination of `guesses` with the least energy, or zero if there are none. The
     /// tolerance is relative to b, not to the first residual: a good guess saves iterations and does not
@@ -149,13 +164,12 @@ impl LinearSolver {
     /// the CPU does the rest of the time step in double precision.
     pub fn solve(
         &mut self,
-        system: &System<'_>,
-        positions: &[Vector],
-        b: &[Vector],
+        problem: &Problem<'_>,
         guesses: &[&[Vector]],
-        limits: Limits,
+        limits: &Limits,
         x: &mut [Vector],
     ) -> CgInfo {
+        let Problem { system, parts, positions, b } = problem;
         if let Some((refinement, patches)) = self.backend.as_mut().filter(|_| !self.on_cpu) {
             x.fill(Vector::zeros());
             let prepared = refinement.backend.prepare(&system.for_backend(positions, patches));
@@ -163,52 +177,63 @@ impl LinearSolver {
                 prepared.and_then(|()| refinement.solve(system, b, guesses, limits, x, &mut self.residual));
             match solved {
                 Ok(refined) if !refined.stalled => {
-                    self.scale = refined.scale;
+                    self.scales = vec![refined.scale; parts.count()];
                     return refined.info;
                 }
                 Ok(refined) => {
                     tracing::debug!("single precision is not enough for the linear solves of a time step");
                     let start = x.to_vec();
                     self.leave_backend_out();
-                    let mut info = self.solve_on_cpu(system, positions, b, &[&start], limits, x);
+                    let mut info = self.solve_on_cpu(problem, &[&start], limits, x);
                     info.iterations += refined.info.iterations;
                     return info;
                 }
                 Err(error) => self.fail(&error),
             }
         }
-        self.solve_on_cpu(system, positions, b, guesses, limits, x)
+        self.solve_on_cpu(problem, guesses, limits, x)
     }
 
     fn solve_on_cpu(
         &mut self,
-        system: &System<'_>,
-        positions: &[Vector],
-        b: &[Vector],
+        &Problem { system, parts, positions, b }: &Problem<'_>,
         guesses: &[&[Vector]],
-        limits: Limits,
+        limits: &Limits,
         x: &mut [Vector],
     ) -> CgInfo {
         self.prepare(system, positions);
         x.fill(Vector::zeros());
         self.residual.clear();
         self.residual.extend_from_slice(b);
-        let Self { levels, precise, single, double, guesses: start, residual, scale, .. } = self;
+        let Self { levels, precise, single, double, guesses: start, residual, scales, .. } = self;
 
         let mut factor = unit_factor(b);
-        let norm = if *precise { double.begin(levels, b, factor) } else { single.begin(levels, b, factor) };
-        let mut norm = norm / (factor * factor);
-        if norm <= 0.0 || !norm.is_finite() {
-            *scale = 0.0;
-            return CgInfo { iterations: 0, residual: 0.0, converged: norm == 0.0 };
+        let norms = if *precise {
+            double.begin(levels, parts, b, factor)
+        } else {
+            single.begin(levels, parts, b, factor)
+        };
+        let mut norms = unscaled(norms, factor);
+        if !norms.iter().all(|norm| *norm >= 0.0 && norm.is_finite()) || norms.iter().all(|norm| *norm == 0.0)
+        {
+            scales.clear();
+            scales.resize(parts.count(), 0.0);
+            return CgInfo { iterations: 0, residual: 0.0, converged: norms.iter().all(|norm| *norm == 0.0) };
         }
-        *scale = norm;
-        let enough = limits.own_tolerance * limits.own_tolerance * norm;
-        let scale = norm.max(limits.min_scale);
-        let goal = (limits.tolerance * limits.tolerance * scale).max(enough);
+        scales.clone_from(&norms);
+        let relative: Vec<f64> =
+            norms.iter().zip(&limits.min_scales).map(|(norm, min)| norm.max(*min)).collect();
+        let goal = |(relative, norm): (&f64, &f64)| {
+            let enough = limits.own_tolerance * limits.own_tolerance * norm;
+            (limits.tolerance * limits.tolerance * relative).max(enough)
+        };
+        let goals: Vec<f64> = relative.iter().zip(&norms).map(goal).collect();
+        let scaled = |share: f64, factor: f64| -> Vec<f64> {
+            goals.iter().map(|goal| share * goal * factor * factor).collect()
+        };
         let mut left = limits.max_iterations;
 
-        start.start(system, guesses, x, residual);
+        start.start(system, parts, guesses, x, residual);
         factor = unit_factor(residual);
         if *precise {
             double.fill_operator(system);
@@ -217,16 +242,20 @@ impl LinearSolver {
             single.fill_operator(system);
             single.load(residual, factor);
             loop {
-                let before = norm;
-                left -= single.iterate(system, levels, MARGIN * MARGIN * goal * factor * factor, left).0;
+                let before = norms;
+                left -= single.iterate(system, levels, parts, &scaled(MARGIN * MARGIN, factor), left).0;
                 single.add_solution(1.0 / factor, x);
                 subtract_product(system, x, b, residual);
                 factor = unit_factor(residual);
-                norm = single.begin(levels, residual, factor) / (factor * factor);
-                if norm <= goal || left == 0 || !norm.is_finite() {
+                norms = unscaled(single.begin(levels, parts, residual, factor), factor);
+                let ended = |(norm, goal): (&f64, &f64)| norm <= goal || !norm.is_finite();
+                if norms.iter().zip(&goals).all(ended) || left == 0 {
                     break;
                 }
-                if norm > MIN_GAIN * MIN_GAIN * before {
+                let stalls = |((norm, before), goal): ((&f64, &f64), &f64)| {
+                    norm > goal && *norm > MIN_GAIN * MIN_GAIN * before
+                };
+                if norms.iter().zip(&before).zip(&goals).any(stalls) {
                     tracing::debug!("single precision is not enough for the linear solves of a time step");
                     *precise = true;
                     double.fill_preconditioner(system, levels);
@@ -237,12 +266,23 @@ impl LinearSolver {
             }
         }
         if *precise {
-            let (iterations, squared) = double.iterate(system, levels, goal * factor * factor, left);
-            (left, norm) = (left - iterations, squared / (factor * factor));
+            let (iterations, squared) = double.iterate(system, levels, parts, &scaled(1.0, factor), left);
+            left -= iterations;
+            norms = unscaled(squared, factor);
             double.add_solution(1.0 / factor, x);
             double.copy_residual(1.0 / factor, residual);
         }
-        let iterations = limits.max_iterations - left;
-        CgInfo { iterations, residual: (norm / scale).sqrt(), converged: norm <= goal }
+        let shares = norms.iter().zip(&relative).filter(|(_, relative)| **relative > 0.0);
+        let largest = shares.map(|(norm, relative)| norm / relative).fold(0.0, f64::max);
+        CgInfo {
+            iterations: limits.max_iterations - left,
+            residual: largest.sqrt(),
+            converged: norms.iter().zip(&goals).all(|(norm, goal)| norm <= goal),
+        }
     }
+}
+
+/// Squared norms of vectors that were multiplied by a factor.
+fn unscaled(norms: Vec<f64>, factor: f64) -> Vec<f64> {
+    norms.into_iter().map(|norm| norm / (factor * factor)).collect()
 }

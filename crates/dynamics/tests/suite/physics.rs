@@ -54,6 +54,37 @@ fn floating(params: DynamicsParams, material: ClothMaterial) -> (Dynamics, Vec<P
 }
 
 #[test]
+fn a_linear_solve_of_one_body_does_not_depend_on_another() {
+    // A wavy sheet that hangs from an edge, alone and beside a stiffer one that needs more iterations.
+    let (rest, triangles) = sheet(0.5, 0.4, 20, 16);
+    let count = rest.len();
+    let target = |bodies: usize| {
+        let stiffness = [ClothMaterial::cotton(), ClothMaterial::denim()];
+        let offset = |body: usize| Vector::new(6.0 * body as f64, 0.0, 0.0);
+        let places: Vec<Point> = (0..bodies).flat_map(|b| rest.iter().map(move |p| p + offset(b))).collect();
+        let body = |b: usize| {
+            let own = triangles.iter().map(|t| t.map(|v| v + (b * count) as u32)).collect();
+            Body::cloth(format!("sheet {b}"), own, stiffness[b])
+        };
+        let mut dynamics = dynamics(&places, (0..bodies).map(body).collect(), DynamicsParams::default());
+        let wave = |(k, p): (usize, &Point)| {
+            let size = 0.002 * (1.0 + 2.0 * (k / count) as f64);
+            p + Vector::new(0.0, 0.0, size * (20.0 * p.x).sin() * (15.0 * p.y).cos())
+        };
+        let x: Vec<Point> = places.iter().enumerate().map(wave).collect();
+        let held: Vec<bool> = (0..x.len()).map(|k| k % count <= 20).collect();
+        dynamics.begin_step(&x, &vec![Vector::zeros(); x.len()], 0.01).expect("a time step");
+        let mut y = x.clone();
+        let info = dynamics.newton_target(&x, &held, &x, &mut y).expect("a target");
+        assert_eq!((info.iterations, info.step_length), (1, 1.0));
+        (info.cg.iterations, y)
+    };
+    let ((alone, one), (beside, both)) = (target(1), target(2));
+    assert!(beside > alone, "{alone} {beside}");
+    assert_eq!(one, both[..count]);
+}
+
+#[test]
 fn free_fall_is_exact() {
     let (rest, triangles) = parallel_sheet(0.5, 0.4, 20, 16);
     let model = cloth_model(&rest, triangles, ClothMaterial::cotton());

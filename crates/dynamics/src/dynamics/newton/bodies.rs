@@ -7,6 +7,7 @@ use crate::elements::filter::Filter;
 use crate::groups::Group;
 use crate::linear::accuracy::{CgInfo, Limits};
 use crate::linear::failure::LinearBackendError;
+use crate::linear::parts::Parts;
 use crate::linear::springs::LinearSprings;
 use crate::repulsion::springs::Repulsion;
 use bowknot_geometry::Vector;
@@ -43,8 +44,8 @@ pub trait Bodies: Send {
     /// The watched nodes where inertia leads free ones, the others at their ends [m].
     fn inertial_at_ends(&self) -> Vec<Vector>;
 
-    /// Solves for the step, with linearized springs added to gradient and matrix.
-    fn solve(&mut self, springs: &LinearSprings, limits: Limits) -> Answer<LinearSolve>;
+    /// Solves for the step, with linearized springs added to gradient and matrix. The system has independent `parts`.
+    fn solve(&mut self, springs: &LinearSprings, parts: &Parts, limits: &Limits) -> Answer<LinearSolve>;
 
     /// Translates each of the `groups` of components, all of whose nodes are free, so that its linear momentum in its free
     /// directions is conserved whatever the error of the solve.
@@ -90,11 +91,11 @@ pub trait Bodies: Send {
 }
 
 /// How a linear solve ended.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct LinearSolve {
     pub info: CgInfo,
-    /// Squared norm of the right-hand side.
-    pub scale: f64,
+    /// Squared norms of the right-hand side by part; all are that of the whole where parts are solved as one.
+    pub scales: Vec<f64>,
 }
 
 /// The potential of the bodies at a trial [J].

@@ -6,6 +6,8 @@ use super::state::{Step, Workspace, negate_forces};
 use crate::elements::filter::Filter;
 use crate::groups::Group;
 use crate::linear::accuracy::Limits;
+use crate::linear::parts::Parts;
+use crate::linear::solver::Problem;
 use crate::linear::springs::LinearSprings;
 use crate::linear::system::System;
 use crate::linear::vectors::dot;
@@ -69,7 +71,7 @@ impl Bodies for CpuBodies<'_> {
         self.gather(|n| if work.free[n] { self.step.inertial[n] } else { work.x[n] + work.imposed[n] })
     }
 
-    fn solve(&mut self, springs: &LinearSprings, limits: Limits) -> Answer<LinearSolve> {
+    fn solve(&mut self, springs: &LinearSprings, parts: &Parts, limits: &Limits) -> Answer<LinearSolve> {
         let Self { model, step, work, .. } = self;
         if !springs.is_empty() {
             let gradient = work.gradient.par_iter_mut().enumerate().with_min_len(CHUNK);
@@ -103,8 +105,9 @@ impl Bodies for CpuBodies<'_> {
         negate_forces(&mut work.right_side, &work.gradient, &work.free);
         let [inertia, last] = &work.guesses;
         let guesses: &[&[Vector]] = &[last.as_slice(), inertia.as_slice()][2 - guesses..];
-        let info = work.solver.solve(&system, &work.x, &work.right_side, guesses, limits, &mut work.step);
-        Ok(LinearSolve { info, scale: work.solver.scale() })
+        let problem = Problem { system: &system, parts, positions: &work.x, b: &work.right_side };
+        let info = work.solver.solve(&problem, guesses, limits, &mut work.step);
+        Ok(LinearSolve { info, scales: work.solver.scales().to_vec() })
     }
 
     fn restore_momentum(&mut self, groups: &[Group]) -> Answer<()> {

@@ -10,6 +10,7 @@ use crate::elements::filter::Filter;
 use crate::groups::Group;
 use crate::linear::accuracy::Limits;
 use crate::linear::assembly::AssemblySprings;
+use crate::linear::parts::Parts;
 use crate::linear::springs::LinearSprings;
 use crate::model::DynamicsModel;
 use crate::nodes::CHUNK;
@@ -137,18 +138,18 @@ impl Bodies for DeviceBodies<'_> {
         self.beginning.watched.iter().zip(&self.iterate[1]).map(position).collect()
     }
 
-    fn solve(&mut self, springs: &LinearSprings, limits: Limits) -> Answer<LinearSolve> {
+    fn solve(&mut self, springs: &LinearSprings, parts: &Parts, limits: &Limits) -> Answer<LinearSolve> {
         let limits = SolveLimits {
             tolerance: limits.tolerance,
             own_tolerance: limits.own_tolerance,
-            min_scale: limits.min_scale,
+            min_scale: limits.min_scale_of_whole(),
             max_iterations: limits.max_iterations,
         };
         let solved = self.backend.solve(&for_device(springs), &limits)?;
         if solved.stalled {
             return Err(Lost::Stalled);
         }
-        Ok(LinearSolve { info: solved.info, scale: solved.scale })
+        Ok(LinearSolve { info: solved.info, scales: vec![solved.scale; parts.count()] })
     }
 
     fn restore_momentum(&mut self, groups: &[Group]) -> Answer<()> {

@@ -6,7 +6,7 @@ use super::state::Newton;
 use crate::dynamics::info::NewtonInfo;
 use crate::elements::filter::Filter;
 use crate::linear::accuracy::Limits;
-use std::ops::Range;
+use crate::linear::parts::Parts;
 
 /// Residual at which an inexact linear solve ends, relative to its own right-hand side.
 const INEXACT_TOLERANCE: f64 = 0.03;
@@ -24,19 +24,19 @@ impl Newton<'_> {
     /// Makes one Newton iteration from the iterate to the trial.
     pub(super) fn iterate(&mut self, accuracy: Accuracy) -> Answer<NewtonInfo> {
         self.linearize()?;
+        let springs = self.repulsion.linear();
+        let parts = Parts::new(&self.model.components, springs);
         let limits = Limits {
             tolerance: self.params.newton.cg_tolerance,
             own_tolerance: match accuracy {
                 Accuracy::Inexact => INEXACT_TOLERANCE,
                 Accuracy::Full => 0.0,
             },
-            min_scale: self.course.min_scale,
+            min_scales: self.min_scales(&parts),
             max_iterations: self.params.newton.cg_max_iterations,
         };
-        let solved = self.bodies.solve(self.repulsion.linear(), limits)?;
-        if self.course.min_scale == 0.0 {
-            self.course.min_scale = solved.scale.min(self.largest_scale());
-        }
+        let solved = self.bodies.solve(springs, &parts, &limits)?;
+        self.note_scales(&parts, &solved.scales);
         self.bodies.restore_momentum(&free_groups(self.model, self.repulsion, self.free))?;
         let mut info = NewtonInfo { iterations: 1, cg: solved.info, ..NewtonInfo::default() };
         self.search_line(&mut info)?;
@@ -45,14 +45,34 @@ impl Newton<'_> {
         Ok(info)
     }
 
-    /// The largest squared norm that [`Limits::tolerance`] may be relative to: with a residual of that share of it, the
-    /// [`Residual::distance`](crate::Residual::distance) of each component is below half of the tolerance of the time step.
-    fn largest_scale(&self) -> f64 {
+    /// The largest of the scales of each part's components.
+    fn min_scales(&self, parts: &Parts) -> Vec<f64> {
+        let mut scales = vec![0.0f64; parts.count()];
+        for (&part, &scale) in parts.of_components().iter().zip(&self.course.scales) {
+            scales[part as usize] = scales[part as usize].max(scale);
+        }
+        scales
+    }
+
+    /// Notes the squared norms of parts as those of their components, where these have none yet.
+    ///
+    /// No scale is so large that with a residual of [`Limits::tolerance`] of it the
+    /// [`Residual::distance`](crate::Residual::distance) of a component would be above half of the tolerance of the time step.
+    fn note_scales(&mut self, parts: &Parts, norms: &[f64]) {
         let share = 0.5 * self.course.step_tolerance / (self.dt * self.params.newton.cg_tolerance);
-        let mass =
-            |nodes: &Range<u32>| nodes.clone().map(|n| self.model.node_masses[n as usize]).sum::<f64>();
-        let lightest = self.model.components.iter().map(mass).fold(f64::INFINITY, f64::min);
-        if share > 0.0 { share * share * lightest } else { f64::INFINITY }
+        let mut lightest = vec![f64::INFINITY; parts.count()];
+        for (&part, nodes) in parts.of_components().iter().zip(&self.model.components) {
+            let mass: f64 = nodes.clone().map(|n| self.model.node_masses[n as usize]).sum();
+            lightest[part as usize] = lightest[part as usize].min(mass);
+        }
+        self.course.scales.resize(parts.of_components().len(), 0.0);
+        for (scale, &part) in self.course.scales.iter_mut().zip(parts.of_components()) {
+            let part = part as usize;
+            if *scale == 0.0 {
+                let largest = if share > 0.0 { share * share * lightest[part] } else { f64::INFINITY };
+                *scale = norms[part].min(largest);
+            }
+        }
     }
 
     /// Computes gradient and matrix at the iterate. Springs that have not been prepared get their laws.

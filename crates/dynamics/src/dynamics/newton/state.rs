@@ -49,9 +49,9 @@ pub struct Course {
     /// Whether springs must be prepared: they have been set since the last Newton iteration, or the step has
     /// just begun.
     pub unprepared: bool,
-    /// See [`crate::linear::accuracy::Limits::min_scale`]: that of the first solve of the time step, unless that is too large
+    /// By component, see [`crate::linear::accuracy::Limits::min_scales`]: that of the first solve of the time step, unless that is too large
     /// for the tolerance of the time step; 0 before.
-    pub min_scale: f64,
+    pub scales: Vec<f64>,
     /// See [`crate::Dynamics::set_step_tolerance`] [m].
     pub step_tolerance: f64,
     /// The time step on the device, once it has begun there.
