@@ -1,6 +1,7 @@
 use super::twisted_ends;
 use crate::body::BodySpec;
 use crate::description::Scene;
+use crate::elements::SolidElements;
 use crate::kind::BodyKind;
 use crate::material::Material;
 use crate::shapes::{Block, Shape};
@@ -20,6 +21,8 @@ pub(super) fn scene(scale: f64) -> Scene {
         kind: BodyKind::Solid,
         shape: Some(Shape::Block(block)),
         material: Material::Solid(material),
+        // As the paper's, though it is one to two of them thick.
+        elements: Some(SolidElements::Linear),
         stretch_limit: Some(f64::INFINITY),
         ..BodySpec::default()
     };
