@@ -55,10 +55,7 @@ pub fn info(options: &InfoOptions) -> Result<Exit, Failure> {
         return Err(Failure::input("--up and --scale apply to meshes"));
     } else {
         let sets: [&str; 0] = [];
-        let scene = Scene::open(name, None, &sets).map_err(Failure::input)?;
-        let world = World::new(&scene).map_err(Failure::input)?;
-        warn(&world);
-        info_of_scene(world.info(scene.simulation.dt))
+        info_of_scene(Scene::open(name, None, &sets).and_then(|scene| scene.info()).map_err(Failure::input)?)
     };
     if options.json {
         output::print_json(&info)?;
@@ -66,10 +63,6 @@ pub fn info(options: &InfoOptions) -> Result<Exit, Failure> {
         output::print(&to_text(name, &info, options.list))?;
     }
     Ok(Exit::Success)
-}
-
-fn warn(world: &World) {
-    world.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
 }
 
 fn info_of_scene(info: SceneInfo) -> Info {
@@ -100,10 +93,7 @@ fn info_of_file(name: &str, import: &[String]) -> Result<Info, Failure> {
     if problems.is_empty() && mesh.obstacle.is_none() {
         // Without the ball and the ground, which nobody asked for here.
         let alone = Scene { obstacles: Vec::new(), ..scene };
-        match World::new(&alone) {
-            Ok(world) => warn(&world),
-            Err(error) => problems.push(error.to_string()),
-        }
+        problems.extend(World::new(&alone).err().map(|error| error.to_string()));
     } else if let Some(faults) = faults {
         // The assembly tells them otherwise.
         eprintln!("warning: {name}: {faults}");

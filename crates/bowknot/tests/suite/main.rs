@@ -10,6 +10,8 @@ mod bad_bodies;
 mod bad_input;
 /// Solids, strands, particles, friction and sequences, from scene to motion.
 mod bodies;
+/// Linear and quadratic elements of solids.
+mod elements;
 /// Stretch limits of fabrics, and what overrides them.
 mod fabrics;
 /// The walking figure, what follows it, and its dresses.
