@@ -35,7 +35,7 @@ impl Recorder {
                 masses: masses[..count].to_vec(),
                 obstacle: (0..count as u32).map(|v| world.collision.is_obstacle(v)).collect(),
                 body: world.collision.vertex_body().to_vec(),
-                half_spaces: half_spaces,
+                half_spaces,
                 body_contacts: contact.bodies.clone(),
                 half_space_contacts: contact.half_spaces.clone(),
                 pair_frictions: contact.pairs.clone(),

