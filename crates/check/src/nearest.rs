@@ -48,7 +48,8 @@ impl Judge {
         let pairs = pairs.into_par_iter().flatten_iter();
         let heights = self.vertices.par_iter().filter(|&&v| self.meets_half_spaces(v)).flat_map_iter(|&v| {
             let height = move |h| self.half_space_places([v, h as u32], &x[v as usize]).1;
-            (0..self.half_spaces.len()).map(move |h| (height(h), PairClass::VertexHalfSpace, [v, h as u32]))
+            let planes = (0..self.half_spaces.len()).filter(|&h| !self.half_spaces[h].is_empty());
+            planes.map(move |h| (height(h), PairClass::VertexHalfSpace, [v, h as u32]))
         });
         let smaller = |a: Measured, b: Measured| match a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))) {
             std::cmp::Ordering::Greater => b,

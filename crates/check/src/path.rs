@@ -125,6 +125,9 @@ impl Judge {
 
 /// Whether a point is above a half-space: certain if true.
 pub(super) fn is_above(half_space: &HalfSpace, point: &Point) -> bool {
+    if half_space.is_empty() {
+        return true;
+    }
     let magnitude = half_space.normal.abs().dot(&point.coords.abs()) + half_space.offset.abs();
     half_space.signed_distance(point) > PLANE_ROUNDING * magnitude + f64::MIN_POSITIVE
 }

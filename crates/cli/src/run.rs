@@ -338,7 +338,7 @@ fn remedy(simulation: &SimulationParams, iterations: f64) -> String {
     text
 }
 
-/// Time steps that ended at a limit, and obstacles and pins with something in their way.
+/// Time steps that ended at a limit, and obstacles and pins with something in their way or place.
 fn unreached_targets(summary: &Summary) -> Vec<String> {
     let mut lines = Vec::new();
     let converged = summary.mean.as_ref().and_then(|mean| mean.converged).unwrap_or(1.0);
@@ -352,6 +352,10 @@ fn unreached_targets(summary: &Summary) -> Vec<String> {
         lines.push(format!(
             "{name} was held up by what was in its way, or by the limit of steps: at most {lag:.3e} m behind its motion"
         ));
+    }
+    for (name, wait) in &summary.waits_to_appear {
+        let steps = counted(wait.steps, "time step", "time steps");
+        lines.push(format!("obstacle {name} waited {steps} to appear: {}", wait.in_the_way));
     }
     lines
 }

@@ -24,6 +24,12 @@ impl BodyFilter {
     pub const DEFORMABLE: Self = Self { obstacle: false, groups: 1, mask: u32::MAX, self_collision: true };
     /// An obstacle that collides with every deformable body.
     pub const OBSTACLE: Self = Self { obstacle: true, groups: 1, mask: u32::MAX, self_collision: false };
+
+    /// The filter while the body is not there: it collides with nothing.
+    #[must_use]
+    pub fn absent(self) -> Self {
+        Self { groups: 0, mask: 0, self_collision: false, ..self }
+    }
 }
 
 /// Why a [`CollisionModel`] cannot be built.
@@ -115,13 +121,14 @@ impl CollisionModel {
         Self { topology, vertex_body, vertex_component, bodies, half_spaces: Vec::new() }
     }
 
-    /// Changes which bodies are obstacles, one entry per body. Nothing else changes.
+    /// Changes the filters of the bodies and the half-spaces, one entry per body and per half-space. Nothing else
+    /// changes.
     ///
     /// # Panics
-    /// If there is another number of entries than of bodies.
-    pub fn set_obstacles(&mut self, obstacle: &[bool]) {
-        assert_eq!(obstacle.len(), self.bodies.len(), "one entry per body");
-        self.bodies.iter_mut().zip(obstacle).for_each(|(body, obstacle)| body.obstacle = *obstacle);
+    /// If there is another number of entries than of bodies or half-spaces.
+    pub fn set_filters(&mut self, bodies: &[BodyFilter], half_spaces: &[HalfSpace]) {
+        self.bodies.copy_from_slice(bodies);
+        self.half_spaces.copy_from_slice(half_spaces);
     }
 
     /// Vertices, edges and triangles.

@@ -3,7 +3,8 @@
 use crate::point::{Point, Vector};
 use serde::{Deserialize, Serialize};
 
-/// The solid below a plane: points with `normal . x < offset` are inside.
+/// The solid below a plane: points with `normal . x < offset` are inside. With an offset of minus infinity it is empty,
+/// and meets nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HalfSpace {
     /// Outward unit normal.
@@ -21,6 +22,18 @@ impl HalfSpace {
         let offset = normal.dot(&point.coords);
         // The offset is not-a-number if the normal is.
         (length.is_finite() && length > 0.0 && offset.is_finite()).then_some(Self { normal, offset })
+    }
+
+    /// The half-space while it is not there: empty, of the same normal.
+    #[must_use]
+    pub fn absent(self) -> Self {
+        Self { offset: f64::NEG_INFINITY, ..self }
+    }
+
+    /// Whether no point is inside, however far down.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.offset == f64::NEG_INFINITY
     }
 
     /// Signed distance of a point from the plane [m], positive outside.
@@ -42,6 +55,8 @@ mod tests {
         assert_eq!(ground.signed_distance(&Point::new(7.0, 8.0, 0.0)), -0.5);
         let wall = HalfSpace::new(Point::new(1.0, 1.0, 1.0), Vector::new(1.0, 2.0, 2.0)).unwrap();
         assert!((wall.signed_distance(&Point::new(2.0, 3.0, 3.0)) - 3.0).abs() < 1e-15);
+        assert!(wall.absent().is_empty() && !wall.is_empty());
+        assert_eq!(wall.absent().signed_distance(&Point::new(0.0, 0.0, -1e60)), f64::INFINITY);
     }
 
     #[test]

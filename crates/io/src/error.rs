@@ -27,6 +27,14 @@ pub enum IoError {
         /// What is wrong and what is allowed.
         message: String,
     },
+    /// A sound mesh file without vertices.
+    #[error("{}: {message}", path.display())]
+    Empty {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        message: &'static str,
+    },
 }
 
 /// Where in a file.
@@ -71,7 +79,7 @@ impl IoError {
     /// The file that is at fault.
     pub fn path(&self) -> &Path {
         match self {
-            Self::System { path, .. } | Self::Content { path, .. } => path,
+            Self::System { path, .. } | Self::Content { path, .. } | Self::Empty { path, .. } => path,
         }
     }
 }

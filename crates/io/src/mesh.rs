@@ -1,7 +1,7 @@
 //! A mesh as files hold it, whatever their format.
 
 use crate::surface::Surface;
-use bowknot_geometry::{Point, boundary_triangles};
+use bowknot_geometry::{Point, UnionFind, boundary_triangles};
 
 /// A mesh read from a file [m, z up].
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -79,6 +79,37 @@ impl Mesh {
         let mut triangles = boundary_triangles(&self.tets);
         triangles.append(&mut self.triangles);
         Self { triangles, tets: Vec::new(), surface: None, ..self }
+    }
+
+    /// Whether each vertex belongs to an obstacle that is not there in a frame with these `positions` [m]: all vertices of
+    /// such a connected part are at one place. Empty if there is none, or the mesh does not say what is an obstacle.
+    pub fn absent(&self, positions: &[Point]) -> Vec<bool> {
+        let Some(obstacle) = self.obstacle.as_ref() else { return Vec::new() };
+        let sides = self.triangles.iter().flat_map(|&[i, j, k]| [[i, j], [i, k]]);
+        let pairs = sides.chain(self.strands.iter().copied()).filter(|[i, _]| obstacle[*i as usize]);
+        let (at_one_place, apart): (Vec<[u32; 2]>, Vec<[u32; 2]>) =
+            pairs.partition(|[i, j]| positions[*i as usize] == positions[*j as usize]);
+        if at_one_place.is_empty() {
+            return Vec::new();
+        }
+        let mut parts = UnionFind::new(positions.len());
+        at_one_place.iter().chain(&apart).for_each(|[i, j]| parts.join(*i, *j));
+        // What elements join has more than one vertex.
+        let mut absent = vec![false; positions.len()];
+        at_one_place.iter().for_each(|[i, _]| absent[parts.root(*i) as usize] = true);
+        apart.iter().for_each(|[i, _]| absent[parts.root(*i) as usize] = false);
+        (0..positions.len() as u32).map(|v| absent[parts.root(v) as usize]).collect()
+    }
+
+    /// Leaves out the elements with a vertex that is marked, one entry per vertex or none at all. Vertices keep their
+    /// numbers.
+    pub fn leave_out(&mut self, marked: &[bool]) {
+        let stays = |v: &u32| marked.get(*v as usize) != Some(&true);
+        self.triangles.retain(|t| t.iter().all(stays));
+        self.tets.retain(|t| t.iter().all(stays));
+        self.strands.retain(|e| e.iter().all(stays));
+        self.particles.retain(stays);
+        self.surface = None;
     }
 
     /// Vertices that no triangle, tetrahedron, strand edge or particle names, ascending.

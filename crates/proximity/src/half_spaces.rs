@@ -32,7 +32,7 @@ pub fn near_half_spaces(
             let start = positions[v as usize];
             let end = displacements.map(|u| start + u[v as usize]);
             let radius = 2.0 * radius(v as usize);
-            for (half_space, index) in half_spaces.iter().zip(0..) {
+            for (half_space, index) in half_spaces.iter().zip(0..).filter(|(plane, _)| !plane.is_empty()) {
                 // Each coordinate of the end is off by up to half a unit in its last place.
                 let reaches =
                     |end: Point| is_near(half_space, &end, radius + f64::EPSILON * end.coords.abs().sum());

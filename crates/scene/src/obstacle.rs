@@ -23,8 +23,8 @@ pub struct ObstacleSpec {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shape: Option<Shape>,
     /// An animation, relative to the scene file: a folder of meshes of equal elements, taken in the order of
-    /// their names, or an NPZ archive of `X[f,n,3]` and `F[m,3]`. Frames are joined linearly. This, `mesh`,
-    /// or `shape`.
+    /// their names, or an NPZ archive of `X[f,n,3]` and `F[m,3]`. Frames are joined linearly. During empty frames, which
+    /// have no vertices or all at one place, the obstacle is not there. This, `mesh`, or `shape`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sequence: Option<PathBuf>,
     /// Frames of the sequence a second [1/s]. Default 30.
@@ -32,6 +32,11 @@ pub struct ObstacleSpec {
     /// When the sequence begins [s]; it is held at its first frame before, and at its last one after. Default
     /// 0.
     pub sequence_start: f64,
+    /// When the obstacle appears [s]; before, it meets nothing. It waits while anything is in its place. Default 0: it is
+    /// there from the start.
+    pub appears: f64,
+    /// When it vanishes [s], later than `appears`; what rests on it then falls. Default inf.
+    pub vanishes: f64,
     /// Axis of the mesh that points up: `x`, `y` or `z`. With `y`, as most modeling tools have it, y becomes z
     /// and z becomes -y; with `x`, x becomes z, y becomes x and z becomes y. Default `z`.
     pub up: Up,
@@ -69,6 +74,8 @@ impl Default for ObstacleSpec {
             sequence: None,
             sequence_rate: 30.0,
             sequence_start: 0.0,
+            appears: 0.0,
+            vanishes: f64::INFINITY,
             up: Up::Z,
             scale: 1.0,
             rotate: Vector::zeros(),
@@ -94,6 +101,14 @@ impl Parameters for ObstacleSpec {
         let fits = rate.is_finite() && rate > 0.0;
         checks.require(fits, "sequence_rate", rate, "must be a number of frames a second above 0");
         checks.finite("sequence_start", self.sequence_start);
+        checks.non_negative("appears", self.appears);
+        let later = self.vanishes > self.appears;
+        checks.require(
+            later,
+            "vanishes",
+            self.vanishes,
+            format!("must be later than appears, {}", self.appears),
+        );
         self.check_geometry(checks);
         self.check_motion(checks);
     }

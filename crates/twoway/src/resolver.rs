@@ -22,7 +22,7 @@ use crate::stretch::max_stretch;
 use crate::validation::check_rows;
 use bowknot_check::{CheckError, Judge, StateOptions, StateReport};
 use bowknot_constraints::FrictionModel;
-use bowknot_geometry::Point;
+use bowknot_geometry::{BodyFilter, HalfSpace, Point};
 use bowknot_proximity::CollisionModel;
 use bowknot_stepper::StepReport;
 use std::time::Instant;
@@ -61,19 +61,27 @@ impl Resolver {
         Ok(Self::with_stages(scene, search, LcpBackward::default(), CertifiedForward::default()))
     }
 
-    /// Changes which bodies are obstacles from the next call on, one entry per body of the collision model,
-    /// for a caller who knows that bodies rest. As obstacles they have no rows and no pairs with other
-    /// obstacles, and their vertices go to their targets. Lengths, masses and edge lengths of vertices stay
-    /// those of the bodies that the resolver was made with. The next call searches for all pairs.
+    /// Changes the filters of the bodies, and the half-spaces, from the next call on, one entry per body and per
+    /// half-space of the collision model. The next call searches for all pairs.
     ///
-    /// **Two obstacles never form a pair.** A body that is made an obstacle is therefore safe from other
+    /// **Bodies that rest** may be made obstacles. They then have no rows and no pairs with other obstacles, and their
+    /// vertices go to their targets. Lengths, masses and edge lengths of vertices stay those of the bodies that the
+    /// resolver was made with. Two obstacles never form a pair: a body that is made an obstacle is safe from other
     /// obstacles only as long as neither moves into the other.
+    ///
+    /// **Obstacles and half-spaces that come and go** are [absent](BodyFilter::absent) meanwhile
+    /// ([half-spaces](HalfSpace::absent)): they meet nothing. Before one comes back the caller makes sure that it
+    /// intersects nothing, as with any start ([`Self::detect_intersections`] with the new filters).
     ///
     /// # Errors
     /// A wrong number of entries; a body that would be deformable although its vertices have no mass. The
     /// resolver is then unchanged.
-    pub fn set_obstacles(&mut self, obstacle: &[bool]) -> Result<(), ResolveError> {
-        self.scene.set_obstacles(obstacle)?;
+    pub fn set_filters(
+        &mut self,
+        bodies: &[BodyFilter],
+        half_spaces: &[HalfSpace],
+    ) -> Result<(), ResolveError> {
+        self.scene.set_filters(bodies, half_spaces)?;
         self.search = TrustRegionSearch::new(&self.scene);
         self.state = ResolveState::default();
         Ok(())

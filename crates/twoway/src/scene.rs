@@ -7,7 +7,7 @@ use crate::spacing::{MIN_SEPARATION_MARGIN, Spacing};
 use crate::validation::{check_finite, check_length, check_rows};
 use bowknot_constraints::{DesiredDistance, Facing, Feature, FrictionModel, STRETCH_LIMIT};
 use bowknot_errors::{Checks, Parameters};
-use bowknot_geometry::{PairKind, Point, Separation, Vector};
+use bowknot_geometry::{BodyFilter, HalfSpace, PairKind, Point, Separation, Vector};
 use bowknot_proximity::{CollisionModel, Pair};
 
 /// The lengths of a scene: those that parameters state, and the others from the mesh [m].
@@ -248,24 +248,31 @@ impl CollisionScene {
         self.contact.set_pairs(pairs)
     }
 
-    /// Changes which bodies are obstacles, see [`crate::Resolver::set_obstacles`].
+    /// Changes the filters of bodies and the half-spaces, see [`crate::Resolver::set_filters`].
     ///
     /// # Errors
-    /// [`ResolveError::Contact`] if there is another number of entries than of bodies; [`ResolveError::Mass`]
-    /// if a body would be deformable whose vertices have no mass. The scene is then unchanged.
-    pub(crate) fn set_obstacles(&mut self, obstacle: &[bool]) -> Result<(), ResolveError> {
+    /// [`ResolveError::Contact`] if there is another number of entries than of bodies or half-spaces;
+    /// [`ResolveError::Mass`] if a body would be deformable whose vertices have no mass. The scene is then unchanged.
+    pub(crate) fn set_filters(
+        &mut self,
+        filters: &[BodyFilter],
+        half_spaces: &[HalfSpace],
+    ) -> Result<(), ResolveError> {
         let mut checks = Checks::default();
-        let bodies = self.model.bodies().len();
-        let allowed = format!("must be {bodies}, one per body of the model");
-        checks.require(obstacle.len() == bodies, "obstacle.len()", obstacle.len(), allowed);
+        for (what, given, count) in [
+            ("filters.len()", filters.len(), self.model.bodies().len()),
+            ("half_spaces.len()", half_spaces.len(), self.model.half_spaces().len()),
+        ] {
+            checks.require(given == count, what, given, format!("must be {count}, as the model has"));
+        }
         checks.finish().map_err(ResolveError::Contact)?;
         for (vertex, &body) in self.model.vertex_body().iter().enumerate() {
             let mass = self.relative_masses[vertex];
-            if !obstacle[body as usize] && mass == 0.0 {
+            if !filters[body as usize].obstacle && mass == 0.0 {
                 return Err(ResolveError::Mass { vertex, body, mass });
             }
         }
-        self.model.set_obstacles(obstacle);
+        self.model.set_filters(filters, half_spaces);
         let vertices = 0..self.rest.len() as u32;
         self.obstacle_vertices = vertices.filter(|&v| self.model.is_obstacle(v)).collect();
         Ok(())

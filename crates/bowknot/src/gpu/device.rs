@@ -4,7 +4,7 @@ use super::error::GpuResolveError;
 use super::judge::SceneJudge;
 use super::{flight, pairs, setup};
 use crate::simulator::{BackendError, CollisionBackend, MIN_VERTICES};
-use bowknot_geometry::Point;
+use bowknot_geometry::{BodyFilter, HalfSpace, Point};
 use bowknot_gpu::{
     Call, Carried, Collision, ContactRow, End, Engine, Grid, Phase, PhaseSeconds, StepReport, Stop,
 };
@@ -79,7 +79,8 @@ struct Prepared<E> {
 struct CallConstraints {
     prescribed: Vec<bool>,
     groups: Vec<u32>,
-    obstacles: Vec<bool>,
+    filters: Vec<BodyFilter>,
+    half_spaces: Vec<HalfSpace>,
     /// Decides the sweeps.
     has_unknown: bool,
 }
@@ -89,7 +90,8 @@ impl CallConstraints {
         Self {
             prescribed: call.prescribed().to_vec(),
             groups: input.groups.to_vec(),
-            obstacles: obstacles(scene).collect(),
+            filters: scene.model().bodies().to_vec(),
+            half_spaces: scene.model().half_spaces().to_vec(),
             has_unknown: call.has_unknown(),
         }
     }
@@ -98,12 +100,9 @@ impl CallConstraints {
         self.prescribed == call.prescribed()
             && self.groups == input.groups
             && self.has_unknown == call.has_unknown()
-            && self.obstacles.iter().copied().eq(obstacles(scene))
+            && self.filters == scene.model().bodies()
+            && self.half_spaces == scene.model().half_spaces()
     }
-}
-
-fn obstacles(scene: &CollisionScene) -> impl Iterator<Item = bool> {
-    scene.model().bodies().iter().map(|body| body.obstacle)
 }
 
 impl<E: Engine + Debug + Send> Device<E> {

@@ -2,14 +2,14 @@
 
 use super::error::GpuResolveError;
 use bowknot_check::{Judge, MotionJudge, StateOptions};
-use bowknot_geometry::{BodyFilter, Point};
+use bowknot_geometry::{BodyFilter, HalfSpace, Point};
 use bowknot_twoway::CollisionScene;
 
 /// The judge of a scene. To make one takes longer than to judge a state, so it is kept.
 #[derive(Debug, Default)]
 pub struct SceneJudge {
-    /// The judge, and the bodies that it was made with: which of them are obstacles may change.
-    made: Option<(Vec<BodyFilter>, MotionJudge)>,
+    /// The judge, and the filters and half-spaces that it was made with, which may change.
+    made: Option<(Vec<BodyFilter>, Vec<HalfSpace>, MotionJudge)>,
 }
 
 impl SceneJudge {
@@ -41,10 +41,15 @@ impl SceneJudge {
     }
 
     fn of(&mut self, scene: &CollisionScene) -> &mut MotionJudge {
-        let bodies = scene.model().bodies();
-        let known = self.made.take().filter(|(known, _)| known == bodies);
-        let made =
-            known.unwrap_or_else(|| (bodies.to_vec(), MotionJudge::new(Judge::from_model(scene.model()))));
-        &mut self.made.insert(made).1
+        let model = scene.model();
+        let fits = |(bodies, half_spaces, _): &(Vec<BodyFilter>, Vec<HalfSpace>, MotionJudge)| {
+            bodies == model.bodies() && half_spaces == model.half_spaces()
+        };
+        let make = || {
+            let judge = MotionJudge::new(Judge::from_model(model));
+            (model.bodies().to_vec(), model.half_spaces().to_vec(), judge)
+        };
+        let made = self.made.take().filter(fits).unwrap_or_else(make);
+        &mut self.made.insert(made).2
     }
 }

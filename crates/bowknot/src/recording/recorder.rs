@@ -14,16 +14,18 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// A recorder of the simulation's problems.
+    /// A recorder of the simulation's problems, until another obstacle appears or vanishes.
     pub fn new(simulator: &Simulator) -> Self {
-        Self::of_world(simulator.world(), simulator.dynamics_model().masses())
+        Self::of_world(simulator.world(), simulator.present(), simulator.dynamics_model().masses())
     }
 
-    /// A recorder of problems of a scene whose vertices have these masses [kg].
-    pub(crate) fn of_world(world: &World, masses: &[f64]) -> Self {
+    /// A recorder of problems of a scene with those bodies and half-spaces that are `present`, whose vertices have these
+    /// masses [kg].
+    pub(crate) fn of_world(world: &World, present: &[bool], masses: &[f64]) -> Self {
         let count = world.collision_vertices();
         let topology = world.collision.topology();
         let contact = &world.contact;
+        let (bodies, half_spaces) = world.filters(present);
         Self {
             fixed: States {
                 triangles: topology.triangles.clone(),
@@ -33,11 +35,11 @@ impl Recorder {
                 masses: masses[..count].to_vec(),
                 obstacle: (0..count as u32).map(|v| world.collision.is_obstacle(v)).collect(),
                 body: world.collision.vertex_body().to_vec(),
-                half_spaces: world.collision.half_spaces().to_vec(),
+                half_spaces,
                 body_contacts: contact.bodies.clone(),
                 half_space_contacts: contact.half_spaces.clone(),
                 pair_frictions: contact.pairs.clone(),
-                filters: filters::kept(world.collision.bodies().to_vec()),
+                filters: filters::kept(bodies),
                 ..States::default()
             },
         }

@@ -329,11 +329,10 @@ fn planes(archive: &mut Archive<'_>) -> Result<Vec<HalfSpace>, IoError> {
     {
         let normal = Vector::new(x, y, z);
         let length = normal.norm();
-        if !(length.is_finite() && length > 0.0 && offset.is_finite()) {
-            return Err(archive.fault(
-                "planes",
-                format!("row {index} needs a normal (not zero) and an offset, all finite"),
-            ));
+        let is_offset = offset.is_finite() || offset == f64::NEG_INFINITY;
+        if !(length.is_finite() && length > 0.0 && is_offset) {
+            let message = format!("row {index} needs a normal (not zero) and an offset, all finite");
+            return Err(archive.fault("planes", message));
         }
         // A normal that is a unit to rounding is kept bit by bit, so that a recorded problem is the one that
         // was run.

@@ -32,6 +32,8 @@ const KEPT: usize = 10;
 #[derive(Debug)]
 pub struct Checker {
     judge: MotionJudge,
+    /// Which bodies and half-spaces were there when the judge was made.
+    present: Vec<bool>,
     /// The state that was judged last, by itself or as the end of a path.
     last: Vec<Point>,
     /// Whether that state is known to be clear.
@@ -47,12 +49,24 @@ impl Checker {
     pub fn new(simulator: &Simulator) -> Self {
         Self {
             judge: MotionJudge::new(simulator.judge()),
+            present: simulator.present().to_vec(),
             last: Vec::new(),
             clear: false,
             states: 0,
             paths: 0,
             intersections: 0,
             findings: Vec::new(),
+        }
+    }
+
+    /// Goes on after a time step at whose end obstacles may have appeared or vanished: the next path is then judged with
+    /// those that are there, from a start that is judged by itself.
+    pub fn follow(&mut self, simulator: &Simulator) {
+        if self.present != simulator.present() {
+            self.judge = MotionJudge::new(simulator.judge());
+            self.present = simulator.present().to_vec();
+            self.last.clear();
+            self.clear = false;
         }
     }
 

@@ -14,7 +14,7 @@ const CHECKSUM: &str = "checksum";
 
 impl Checkpoint {
     /// Writes the state as one NPZ file, atomically: `step[1]`, `positions[n,3]`, `velocities[n,3]`,
-    /// `anchor_counts[p]`, `anchors[k,3]`, `contact_features[c,4]` (kind and index of either feature: 0
+    /// `anchor_counts[p]`, `anchors[k,3]`, `present[b+h]` (1 for bodies and half-spaces that are there), `contact_features[c,4]` (kind and index of either feature: 0
     /// vertex, 1 edge, 2 triangle, 3 half-space), `contact_normals[c,3]`, `contact_forces[c,3]`; of contacts near
     /// rest `contact_means[m,22]` (kind and index of either feature, four vertices, their weights, normal, offset,
     /// reach, floor, stiffness, friction, distance, and how many times found the mean goes back); where bodies
@@ -34,6 +34,7 @@ impl Checkpoint {
             archive.add_array("step", &Array1::from_elem(1, self.step as u64))?;
             let counts: Array1<u64> = self.anchors.iter().map(|a| a.len() as u64).collect();
             archive.add_array("anchor_counts", &counts)?;
+            archive.add_array("present", &Array1::from_iter(self.present.iter().copied()))?;
             archive.add_array("contact_features", &table(forces.iter().map(|c| codes(c.features))))?;
             archive.add_array("contact_normals", &of_forces(|c| c.normal))?;
             archive.add_array("contact_forces", &of_forces(|c| c.force))?;
@@ -68,6 +69,7 @@ impl Checkpoint {
             positions: rows(&mut archive, "positions")?.into_iter().map(Point::from).collect(),
             velocities: rows(&mut archive, "velocities")?.into_iter().map(Vector::from).collect(),
             anchors: anchors(&mut archive)?,
+            present: integers(&mut archive, "present")?.into_iter().map(|flag| flag != 0).collect(),
             contacts: CarriedContacts { forces: forces(&mut archive)?, means: means(&mut archive)? },
             sleep: SleepState::default(),
         };
@@ -197,13 +199,15 @@ fn means(archive: &mut Archive<'_>) -> Result<Vec<ContactMean>, IoError> {
 /// The checksum of a checkpoint's content. CRCs of the archive guard its arrays one by one; this one guards them
 /// together, so that no array is of another checkpoint, or left out.
 fn checksum(checkpoint: &Checkpoint) -> [u8; 8] {
-    let Checkpoint { step, positions, velocities, anchors, contacts, sleep } = checkpoint;
+    let Checkpoint { step, positions, velocities, anchors, present, contacts, sleep } = checkpoint;
     let mut sum = Checksum(0);
     sum.add(*step as u64);
     sum.points(positions);
     sum.vectors(velocities);
     sum.add(anchors.len() as u64);
     anchors.iter().for_each(|anchors| sum.points(anchors));
+    sum.add(present.len() as u64);
+    present.iter().for_each(|&flag| sum.add(u64::from(flag)));
     sum.add(contacts.forces.len() as u64);
     for contact in &contacts.forces {
         codes(contact.features).into_iter().for_each(|word| sum.add(word));
@@ -288,6 +292,7 @@ mod tests {
             positions: vec![Point::new(0.1, -0.0, 1e-300), Point::new(1.0 / 3.0, 2.0, 3.0)],
             velocities: vec![Vector::new(-1e300, 0.0, 5e-324), Vector::zeros()],
             anchors: vec![Vec::new(), vec![Point::new(0.7, 0.8, 0.9)]],
+            present: vec![true, false, true],
             contacts: CarriedContacts {
                 forces: vec![ContactForce {
                     features: [Feature::Vertex(7), Feature::HalfSpace(1)],
@@ -379,6 +384,8 @@ mod tests {
             archive.add_array("contact_features", &codes)?;
             let counts: Array1<u64> = old.by_name("anchor_counts").expect("an array");
             archive.add_array("anchor_counts", &counts)?;
+            let present: Array1<bool> = old.by_name("present").expect("an array");
+            archive.add_array("present", &present)?;
             let sum: Array1<u8> = old.by_name(CHECKSUM).expect("an array");
             archive.add_array(CHECKSUM, &sum)?;
             archive.add_array("step", &Array1::from_elem(1, other.step as u64))

@@ -91,10 +91,19 @@ impl Layout {
         self.surface.is_some()
     }
 
-    /// The world's positions, those inside of solids left out, and the corners of the quads.
-    pub fn with_corners(&self, positions: &[Point]) -> Vec<Point> {
+    /// The world's positions, those inside of solids left out, and the corners of the quads. Obstacles and half-spaces that
+    /// are not `present` (one entry per body, then per half-space) have all their vertices at their first one's place: they
+    /// keep their elements, of which nothing is seen.
+    pub fn with_corners(&self, positions: &[Point], present: &[bool]) -> Vec<Point> {
         let collide = self.obstacle.len() - self.corners.len();
-        [&positions[..collide], &self.corners].concat()
+        let mut all = [&positions[..collide], &self.corners].concat();
+        for v in 1..all.len() {
+            let body = self.body[v];
+            if body == self.body[v - 1] && present.get(body as usize) == Some(&false) {
+                all[v] = all[v - 1];
+            }
+        }
+        all
     }
 
     pub fn view<'a>(&'a self, positions: &'a [Point]) -> MeshView<'a> {

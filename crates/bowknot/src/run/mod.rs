@@ -20,7 +20,7 @@ pub use checker::Checker;
 pub use export::{ExportOptions, Exported, Rate, export};
 pub use progress::{Progress, WithinStep};
 pub use summary::{
-    EnergyNumbers, SecondsNumbers, SkippedNumbers, SlowStep, StepNumbers, Summary, UnsolvedStep,
+    EnergyNumbers, SecondsNumbers, SkippedNumbers, SlowStep, StepNumbers, Summary, UnsolvedStep, WaitToAppear,
 };
 pub use watch::{FailureWatch, SmallestState};
 pub use writer::{RunWriter, refuse_run};
@@ -134,6 +134,7 @@ fn run_steps(
     if let Some(watch) = &options.watch {
         watch.begin(&simulator);
     }
+    let mut there = simulator.present().to_vec();
     let frames = scene.simulation.frames;
     let mut reporter = Reporter::new(progress, frames, &world, &info);
 
@@ -169,6 +170,13 @@ fn run_steps(
                 if let Some(watch) = options.watch.as_ref().filter(|_| !statistics.converged) {
                     watch.not_converged();
                 }
+                if let Some(checker) = &mut checker {
+                    checker.follow(&simulator);
+                }
+                if let Some(watch) = options.watch.as_ref().filter(|_| there != simulator.present()) {
+                    watch.begin(&simulator);
+                }
+                there = simulator.present().to_vec();
                 writer.step(&statistics, &simulator)?;
                 let step = simulator.step_index();
                 interrupted = reporter.between_steps(step, Some(&statistics), checker.as_ref()).is_break();
@@ -201,6 +209,7 @@ fn run_steps(
         slowest_step: totals.slowest().cloned(),
         unsolved_steps: totals.unsolved_steps(),
         first_unsolved: totals.first_unsolved().cloned(),
+        waits_to_appear: totals.waits_to_appear().clone(),
         peak_memory_bytes: peak_memory_bytes(),
         intersections: checker.as_ref().map(Checker::intersections),
     };

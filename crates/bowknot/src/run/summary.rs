@@ -39,6 +39,9 @@ pub struct Summary {
     /// The first of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first_unsolved: Option<UnsolvedStep>,
+    /// The obstacles that waited to appear, by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub waits_to_appear: BTreeMap<String, WaitToAppear>,
     /// Largest resident memory so far [bytes]; none where the system does not report it.
     pub peak_memory_bytes: Option<u64>,
     /// Intersections found in accepted states and on the paths between them; none if not checked.
@@ -74,6 +77,15 @@ pub struct UnsolvedStep {
     /// The bodies and the place where forces are out of balance, if known.
     #[serde(flatten)]
     pub at: Option<Unsolved>,
+}
+
+/// How an obstacle waited to appear.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct WaitToAppear {
+    /// Time steps that it waited.
+    pub steps: usize,
+    /// What was in its place at first, in words.
+    pub in_the_way: String,
 }
 
 /// The numbers of [`StepStatistics`], combined over time steps. Each is none if no time step has it; flags
@@ -168,6 +180,7 @@ pub(super) struct Totals {
     slowest: Option<SlowStep>,
     unsolved_steps: usize,
     first_unsolved: Option<UnsolvedStep>,
+    waits_to_appear: BTreeMap<String, WaitToAppear>,
 }
 
 impl Totals {
@@ -179,6 +192,13 @@ impl Totals {
         values.remove("slowest_body");
         values.remove("waits");
         values.remove("unsolved");
+        values.remove("absent");
+        for (name, wait) in &statistics.absent {
+            if let Some(in_the_way) = wait {
+                let first = || WaitToAppear { steps: 0, in_the_way: in_the_way.clone() };
+                self.waits_to_appear.entry(name.clone()).or_insert_with(first).steps += 1;
+            }
+        }
         if !statistics.solved {
             self.unsolved_steps += 1;
             let StepStatistics { step, residual_m, tolerance_m, .. } = *statistics;
@@ -225,6 +245,10 @@ impl Totals {
 
     pub fn first_unsolved(&self) -> Option<&UnsolvedStep> {
         self.first_unsolved.as_ref()
+    }
+
+    pub fn waits_to_appear(&self) -> &BTreeMap<String, WaitToAppear> {
+        &self.waits_to_appear
     }
 
     pub fn min_gap(&self) -> Option<f64> {

@@ -34,6 +34,7 @@ pub struct SmallestState {
 }
 
 impl FailureWatch {
+    /// Begins, or goes on after an obstacle has appeared or vanished.
     pub(super) fn begin(&self, simulator: &Simulator) {
         self.with(|watched| watched.recorder = Some(Recorder::new(simulator)));
     }
@@ -114,7 +115,8 @@ fn start(scene: &Scene) -> Option<States> {
     let world = World::new(scene).ok()?;
     let masses = world.dynamics_model().ok()?.masses().to_vec();
     let home = &world.positions[..world.collision_vertices()];
-    Some(Recorder::of_world(&world, &masses).at_rest(home))
+    let present = world.present(0.0, scene.simulation.dt);
+    Some(Recorder::of_world(&world, &present, &masses).at_rest(home))
 }
 
 fn smallest(

@@ -57,6 +57,8 @@ pub struct RunWriter {
     checkpoint_every: usize,
     frames: FrameWriter,
     recorder: Recorder,
+    /// Which bodies and half-spaces are there in the time step that goes on.
+    present: Vec<bool>,
     saved: Saved,
     statistics: File,
     /// Length of `stats.jsonl` up to its last whole line [bytes].
@@ -199,12 +201,13 @@ impl RunWriter {
         let layout = Layout::new(simulator.world());
         let dt = scene.simulation.dt;
         let frames = FrameWriter::new(folder, &scene.output.formats, layout, spool, dt, width)?;
-        frames.write_surface(&frames.layout.with_corners(&simulator.world().positions))?;
+        frames.write_surface(&frames.layout.with_corners(&simulator.world().positions, &[]))?;
         Ok(Self {
             folder: folder.to_owned(),
             checkpoint_every: scene.output.checkpoint_every,
             frames,
             recorder: Recorder::new(simulator),
+            present: simulator.present().to_vec(),
             saved: Saved::new(folder),
             statistics,
             statistics_length: 0,
@@ -222,6 +225,10 @@ impl RunWriter {
         statistics: &StepStatistics,
         simulator: &Simulator,
     ) -> Result<(), SimulationError> {
+        if self.present != simulator.present() {
+            self.recorder = Recorder::new(simulator);
+            self.present = simulator.present().to_vec();
+        }
         self.write_frame(simulator)?;
         self.append(statistics)?;
         self.totals.add(statistics);
@@ -256,7 +263,7 @@ impl RunWriter {
     pub fn write_trace(&self, step: usize, iteration: usize, l: usize, x: &[Point]) -> Result<(), IoError> {
         let path = self.folder.join(format!("trace/{step:06}_{iteration:02}_{l:05}.ply"));
         let layout = &self.frames.layout;
-        write_ply(&path, &layout.view(&layout.with_corners(x)))
+        write_ply(&path, &layout.view(&layout.with_corners(x, &self.present)))
     }
 
     /// What the statistics so far add up to.
@@ -270,7 +277,7 @@ impl RunWriter {
     }
 
     fn write_frame(&self, simulator: &Simulator) -> Result<(), IoError> {
-        let positions = self.frames.layout.with_corners(simulator.positions());
+        let positions = self.frames.layout.with_corners(simulator.positions(), &self.present);
         self.frames.write(simulator.step_index(), &positions)
     }
 

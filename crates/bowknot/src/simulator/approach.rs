@@ -33,6 +33,8 @@ pub(super) struct Motion<'a> {
     pub asleep: &'a [bool],
     /// Which deformable bodies are at rest; they sleep or soon will. Others count as movers.
     pub at_rest: &'a [bool],
+    /// Which obstacles appear or vanish, and so count as movers; empty: none.
+    pub changed: &'a [bool],
 }
 
 impl BodyElements {
@@ -60,6 +62,7 @@ impl BodyElements {
             let vertices = world.bodies[body].vertices.clone();
             match world.bodies[body].kind {
                 Some(_) => !motion.at_rest[body],
+                None if motion.changed.get(body) == Some(&true) => true,
                 None => vertices.map(|v| v as usize).any(|v| motion.start[v] != motion.end[v]),
             }
         };

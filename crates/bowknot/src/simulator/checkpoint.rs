@@ -18,6 +18,8 @@ pub struct Checkpoint {
     /// For each pin that takes hold later than time 0 and has done so: where its vertices belong without
     /// its motion [m]. Empty for the others.
     pub anchors: Vec<Vec<Point>>,
+    /// Which bodies, then which half-spaces, are there during the next time step.
+    pub present: Vec<bool>,
     /// What contacts remember; the forces include those between bodies asleep.
     pub contacts: CarriedContacts,
     /// Which bodies sleep, and how long the others have been at rest. Empty if bodies never sleep.

@@ -59,6 +59,8 @@ pub struct Simulator {
     pub(super) step: usize,
     pub(super) positions: Vec<Point>,
     pub(super) velocities: Vec<Vector>,
+    /// See [`Self::present`].
+    pub(super) present: Vec<bool>,
     pub(super) anchors: Vec<Vec<Point>>,
     /// Places of pins that follow an obstacle, by pin and vertex; made from the anchors when first needed.
     pub(super) attachments: Vec<Vec<Option<Attachment>>>,
@@ -96,11 +98,13 @@ impl Simulator {
     /// pairs.
     pub fn new(scene: &Scene) -> Result<Self, SimulationError> {
         let mut simulator = Self::without_start_check(scene)?;
+        simulator.apply_filters()?;
         let options = StateOptions { limit: NAMED_PAIRS, distance: false };
         let count = simulator.world.collision_vertices();
         let report = simulator.judge().check_state(&simulator.positions[..count], &options)?;
         if report.is_clear() {
-            inside::enclosed_bodies(&simulator.world).iter().for_each(|body| tracing::warn!("{body}"));
+            let enclosed = inside::enclosed_bodies(&simulator.world, &simulator.present);
+            enclosed.iter().for_each(|body| tracing::warn!("{body}"));
             simulator.find_contacts(CarriedContacts::default())?;
             return Ok(simulator);
         }
@@ -119,7 +123,8 @@ impl Simulator {
         let world = World::new(scene)?;
         let options = StateOptions { limit: usize::MAX, distance: false };
         let positions = &world.positions[..world.collision_vertices()];
-        let report = Judge::from_model(&world.collision).check_state(positions, &options)?;
+        let model = world.collision_of(&world.present(0.0, scene.simulation.dt));
+        let report = Judge::from_model(&model).check_state(positions, &options)?;
         Ok((world, report))
     }
 
@@ -149,6 +154,7 @@ impl Simulator {
             step: 0,
             positions: world.positions.clone(),
             velocities: world.velocities.clone(),
+            present: world.present(0.0, scene.simulation.dt),
             attachments: vec![Vec::new(); anchors.len()],
             anchors,
             interior: Interior::new(&world, scene.simulation.interior),
@@ -246,6 +252,7 @@ impl Simulator {
             ..StepStatistics::default()
         };
 
+        self.place_absent(time);
         let mut scratch = std::mem::take(&mut self.scratch);
         scratch.start.clone_from(&self.positions);
         let anchors = self.anchors.clone();
@@ -253,18 +260,21 @@ impl Simulator {
         // Bodies that wake here stay awake if the time step is abandoned: it would wake them again.
         if let Err(error) = self.wake_for_step(time, &mut scratch) {
             (self.anchors, self.scratch) = (anchors, scratch);
+            self.place_absent(self.time());
             return Err(error);
         }
         if self.has_nothing_to_do() {
             self.scratch = scratch;
             self.step = step;
             self.velocities.fill(Vector::zeros());
+            self.update_presence(&mut statistics)?;
             self.close(timer, cpu_start, &mut statistics);
             return Ok(statistics);
         }
         let result = self.iterate(step, tolerance, &mut scratch, observer, &mut statistics);
         if let Err(error) = result {
             self.positions.clone_from(&scratch.start);
+            self.place_absent(self.time());
             self.anchors = anchors;
             self.attachments.iter_mut().for_each(Vec::clear);
             self.scratch = scratch;
@@ -282,6 +292,7 @@ impl Simulator {
         self.scratch = scratch;
         self.step = step;
         self.fall_asleep()?;
+        self.update_presence(&mut statistics)?;
         self.close(timer, cpu_start, &mut statistics);
         if let Some(body) = &statistics.slowest_body {
             tracing::debug!(step, %body, remaining_m = statistics.remaining_m, "collisions did not converge");
@@ -505,9 +516,9 @@ impl Simulator {
         &self.resolver
     }
 
-    /// A judge of the simulation's states and paths.
+    /// A judge of the simulation's states and paths in the next time step.
     pub fn judge(&self) -> Judge {
-        Judge::from_model(&self.world.collision)
+        Judge::from_model(&self.collision_model())
     }
 
     /// The state, in full.
@@ -517,6 +528,7 @@ impl Simulator {
             positions: self.positions.clone(),
             velocities: self.velocities.clone(),
             anchors: self.anchors.clone(),
+            present: self.present.clone(),
             contacts: self.carried(),
             sleep: self.sleep_state(),
         }
@@ -545,6 +557,9 @@ impl Simulator {
         if !fits {
             return Err("its pins are not those of the scene".to_owned());
         }
+        if checkpoint.present.len() != self.present.len() {
+            return Err("its obstacles are not those of the scene".to_owned());
+        }
         let (bodies, sleep) = (self.world.bodies.len(), &checkpoint.sleep);
         let is_island = |island: &u32| *island == SleepState::AWAKE || (*island as usize) < bodies;
         let fits = sleep.origins.is_empty()
@@ -570,6 +585,7 @@ impl Simulator {
         self.positions.clone_from(&checkpoint.positions);
         self.velocities.clone_from(&checkpoint.velocities);
         self.anchors.clone_from(&checkpoint.anchors);
+        self.present.clone_from(&checkpoint.present);
         self.attachments.iter_mut().for_each(Vec::clear);
         self.adopt_sleep_state(&checkpoint.sleep);
     }

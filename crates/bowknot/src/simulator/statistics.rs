@@ -75,6 +75,10 @@ pub struct StepStatistics {
     /// keyframes at the end [m].
     #[serde(default)]
     pub waiting: BTreeMap<String, f64>,
+    /// The obstacles that are not there in the next time step, by name, and what is in the place of those that wait to
+    /// appear, in words.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub absent: BTreeMap<String, Option<String>>,
     /// Bound on the kinetic energy that separation to the desired distance injected [J], the sum over all
     /// collision problems, see [`Statistics::injected_j`].
     #[serde(default)]

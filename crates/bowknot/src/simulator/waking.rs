@@ -4,11 +4,10 @@ use super::approach::Motion;
 use super::contacts::CarriedContacts;
 use super::error::SimulationError;
 use super::rest::{Awake, Rest};
-use super::simulator::{Scratch, Simulator, resolve_error, time_of};
+use super::simulator::{Scratch, Simulator, time_of};
 use super::sleep::{SleepState, part};
 use bowknot_dynamics::{Energies, Errors, ParamError, StepError};
 use bowknot_geometry::Vector;
-use bowknot_scene::world::WorldBody;
 
 impl Simulator {
     /// Which bodies of the world sleep during the next time step, see [`bowknot_scene::SleepParams`]. Empty
@@ -88,6 +87,7 @@ impl Simulator {
             margins: &rest.margins,
             asleep: &rest.asleep,
             at_rest: &at_rest,
+            changed: &[],
         };
         let approached = rest.elements.approached(&self.world, &motion);
         wakes.iter_mut().zip(approached).for_each(|(wakes, near)| *wakes |= near);
@@ -148,13 +148,11 @@ impl Simulator {
     /// Makes the collision stage and the dynamics work on the bodies that are awake alone, and finds their
     /// contacts; `carried` is what all contacts remember.
     pub(super) fn take_out(&mut self, carried: CarriedContacts) -> Result<(), SimulationError> {
+        self.apply_filters()?;
         let Self { world, resolver, contacts, step, dynamics, positions, velocities, rest, .. } = self;
         let Some(rest) = rest else { return self.find_contacts(carried) };
         let asleep = rest.sleep.asleep();
         if asleep != rest.asleep {
-            let is_obstacle = |(body, asleep): (&WorldBody, &bool)| body.kind.is_none() || *asleep;
-            let obstacles: Vec<bool> = world.bodies.iter().zip(&asleep).map(is_obstacle).collect();
-            resolver.set_obstacles(&obstacles).map_err(|source| resolve_error(world, *step, source))?;
             contacts.leave_out(world, resolver, &asleep);
             // The dynamics of the bodies that are awake are computed where they were before.
             let mut before = rest.awake.take();

@@ -22,6 +22,8 @@ mod golden;
 mod hostile;
 /// Sets of defaults: what `quick` saves, and that nothing intersects.
 mod polygons;
+/// Obstacles that appear and vanish.
+mod presence;
 mod presets;
 /// `docs/scene-reference.md` follows the structs.
 mod reference;

@@ -7,7 +7,7 @@ use crate::args::CheckOptions;
 use crate::exit::{Exit, Failure};
 use crate::progress::Bar;
 use crate::{archive, failure_dump, output};
-use bowknot::check::{Judge, Parts, PathOptions, StateOptions};
+use bowknot::check::{CheckError, Judge, Parts, PathOptions, PathReport, StateOptions};
 use bowknot::geometry::{MeshProblem, Point, check_mesh};
 use bowknot::io::{Import, Mesh, read_mesh};
 use bowknot::recording::States;
@@ -99,6 +99,8 @@ pub fn check(options: &CheckOptions) -> Result<Exit, Failure> {
 struct PreviousState {
     /// The mesh without its positions.
     elements: Mesh,
+    /// Vertices of obstacles that are not there, see [`Mesh::absent`].
+    absent: Vec<bool>,
     judge: Judge,
     positions: Vec<Point>,
 }
@@ -179,6 +181,7 @@ impl Checker<'_> {
     fn state(&mut self, file: &Path, name: String, mut mesh: Mesh, joined: bool) -> Result<(), Failure> {
         let bad_input = |error| Failure::check(file, &error);
         let positions = std::mem::take(&mut mesh.positions);
+        let absent = mesh.absent(&positions);
         let previous = self.previous.take();
         let same =
             previous.as_ref().is_some_and(|p| p.positions.len() == positions.len() && p.elements == mesh);
@@ -187,33 +190,38 @@ impl Checker<'_> {
                 "its elements differ from those of the file before it, so that there is no path between them";
             return Err(Failure::input(format!("{}: {message}", file.display())));
         }
-        let (judge, last) = match previous {
-            Some(previous) if same => (previous.judge, Some(previous.positions)),
-            _ => {
-                let parts = Parts {
-                    vertex_count: positions.len(),
-                    triangles: &mesh.triangles,
-                    strands: &mesh.strands,
-                    particles: &mesh.particles,
-                    obstacle: mesh.obstacle.as_deref().unwrap_or(&[]),
-                    body: mesh.body.as_deref().unwrap_or(&[]),
-                    half_spaces: &[],
-                };
-                let judge = Judge::new(&parts).map_err(bad_input)?;
-                self.note_problems(&name, &positions, &mesh.triangles);
-                (judge, None)
-            }
+        let last = previous.filter(|_| same);
+        let count = positions.len();
+        if last.is_none() {
+            let mut present = mesh.clone();
+            present.leave_out(&absent);
+            self.note_problems(&name, &positions, &present.triangles);
+        }
+        let mut path = None;
+        if let Some(last) = last.as_ref().filter(|_| joined) {
+            // What appears or vanishes has no path.
+            let common = match last.absent == absent {
+                true => None,
+                false => Some(judge_of(&mesh, count, [&absent, &last.absent]).map_err(bad_input)?),
+            };
+            let judge = common.as_ref().unwrap_or(&last.judge);
+            let options = PathOptions { limit: self.list, ..PathOptions::default() };
+            path = Some(judge.check_path(&last.positions, &positions, &options).map_err(bad_input)?);
+        }
+        let judge = match last {
+            Some(last) if last.absent == absent => last.judge,
+            _ => judge_of(&mesh, count, [&absent, &[]]).map_err(bad_input)?,
         };
-
-        let path = last.filter(|_| joined);
-        self.judged(file, name, &judge, &mesh, &positions, path.as_deref(), || {
-            smallest::state_of(&mesh, &positions)
+        self.judged(file, name, &judge, &mesh, &positions, path, || {
+            let mut present = mesh.clone();
+            present.leave_out(&absent);
+            smallest::state_of(&present, &positions)
         })?;
-        self.previous = Some(PreviousState { elements: mesh, judge, positions });
+        self.previous = Some(PreviousState { elements: mesh, absent, judge, positions });
         Ok(())
     }
 
-    /// Adds the verdict on a state, and on the path from `last`. The mesh says what is of an obstacle and of which
+    /// Adds the verdict on a state, and that on the `path` to it. The mesh says what is of an obstacle and of which
     /// body.
     fn judged(
         &mut self,
@@ -222,7 +230,7 @@ impl Checker<'_> {
         judge: &Judge,
         mesh: &Mesh,
         positions: &[Point],
-        last: Option<&[Point]>,
+        path: Option<PathReport>,
         states: impl FnOnce() -> States,
     ) -> Result<(), Failure> {
         let bad_input = |error| Failure::check(file, &error);
@@ -261,9 +269,7 @@ impl Checker<'_> {
         self.report.too_near |= distance.zip(self.min_distance).is_some_and(|(found, limit)| found < limit);
 
         let mut path_hits = None;
-        if let Some(last) = last {
-            let options = PathOptions { limit: self.list, ..PathOptions::default() };
-            let path = judge.check_path(last, positions, &options).map_err(bad_input)?;
+        if let Some(path) = path {
             findings.extend(path.hits.iter().map(ToString::to_string));
             findings.extend(more(path.hit_count, path.hits.len()));
             path_hits = Some(path.hit_count);
@@ -305,6 +311,21 @@ impl Checker<'_> {
             ));
         }
     }
+}
+
+/// A judge of a mesh without the elements of vertices that are marked in either list.
+fn judge_of(mesh: &Mesh, vertex_count: usize, marked: [&[bool]; 2]) -> Result<Judge, CheckError> {
+    let mut mesh = mesh.clone();
+    marked.iter().for_each(|marked| mesh.leave_out(marked));
+    Judge::new(&Parts {
+        vertex_count,
+        triangles: &mesh.triangles,
+        strands: &mesh.strands,
+        particles: &mesh.particles,
+        obstacle: mesh.obstacle.as_deref().unwrap_or(&[]),
+        body: mesh.body.as_deref().unwrap_or(&[]),
+        half_spaces: &[],
+    })
 }
 
 /// A line for the intersections that are not listed.

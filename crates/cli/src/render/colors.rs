@@ -146,7 +146,7 @@ impl Source {
 
     /// A number per vertex, in the unit of the legend; NaN for obstacles.
     fn values(&self, run: &RunFolder, frame: usize) -> Result<Vec<f64>, Failure> {
-        let positions = run.positions(frame)?;
+        let (positions, ground) = run.frame(frame)?;
         let n = positions.len();
         let mut values = match self {
             Self::Stretch { edges } => {
@@ -160,7 +160,10 @@ impl Source {
                 // Grains have no edges.
                 largest.iter().map(|&ratio| if ratio > 0.0 { ratio } else { f64::NAN }).collect()
             }
-            Self::Gap(gaps) => gaps.measure(&positions).into_iter().map(|gap| 1e3 * gap).collect(),
+            Self::Gap(gaps) => {
+                let absent = run.elements().absent(&positions);
+                gaps.measure(&positions, &ground, &absent).into_iter().map(|gap| 1e3 * gap).collect()
+            }
             Self::Speed => {
                 // The first frame has no frame before it: it shows the speed to the next one.
                 let (before, after) =

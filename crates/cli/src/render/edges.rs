@@ -8,7 +8,9 @@ pub fn mean_edge(mesh: &Mesh) -> Option<f64> {
     let sides = mesh.triangles.iter().flat_map(|&[i, j, k]| [[i, j], [j, k], [k, i]]);
     let lengths = sides
         .chain(mesh.strands.iter().copied())
-        .map(|[i, j]| (mesh.positions[i as usize] - mesh.positions[j as usize]).norm());
+        .map(|[i, j]| (mesh.positions[i as usize] - mesh.positions[j as usize]).norm())
+        // Those of obstacles that are not there are points.
+        .filter(|length| *length > 0.0);
     let (sum, count) = lengths.fold((0.0, 0_usize), |(sum, count), length| (sum + length, count + 1));
     (count > 0).then(|| sum / count as f64)
 }

@@ -28,7 +28,8 @@ pub struct RunFolder {
     frames: BTreeMap<usize, PathBuf>,
     /// Elements and positions of the first frame, without the squares that represent half-spaces.
     elements: Mesh,
-    ground: Vec<HalfSpace>,
+    /// Half-spaces, for each of which a frame has a square.
+    squares: usize,
     radius: f64,
 }
 
@@ -57,7 +58,6 @@ impl RunFolder {
                 counted(vertices, "vertex", "vertices")
             )));
         };
-        let ground = elements.positions[kept..].as_chunks::<4>().0.iter().filter_map(plane).collect();
         elements.positions.truncate(kept);
         elements.surface = None;
         elements.triangles.retain(|t| t.iter().all(|&v| (v as usize) < kept));
@@ -70,7 +70,7 @@ impl RunFolder {
             body.truncate(kept);
         }
         let radius = radius(&scene, &elements);
-        Ok(Self { path: path.to_owned(), scene, frames, elements, ground, radius })
+        Ok(Self { path: path.to_owned(), scene, frames, elements, squares, radius })
     }
 
     /// The scene.
@@ -91,11 +91,6 @@ impl RunFolder {
     /// Whether a vertex belongs to an obstacle.
     pub fn is_obstacle(&self, vertex: usize) -> bool {
         self.elements.obstacle.as_ref().is_some_and(|o| o[vertex])
-    }
-
-    /// The half-spaces.
-    pub fn ground(&self) -> &[HalfSpace] {
-        &self.ground
     }
 
     /// Radius of strands and grains [m]; 0 if there are none.
@@ -129,19 +124,25 @@ impl RunFolder {
 
     /// Positions of a frame [m], without the squares that represent half-spaces.
     pub fn positions(&self, frame: usize) -> Result<Vec<Point>, Failure> {
+        Ok(self.frame(frame)?.0)
+    }
+
+    /// Positions of a frame [m], and the half-spaces that are there.
+    pub fn frame(&self, frame: usize) -> Result<(Vec<Point>, Vec<HalfSpace>), Failure> {
         self.check_frame(frame)?;
         let file = &self.frames[&frame];
         let mut positions = read_mesh(file, &Import::default())?.positions;
         let kept = self.elements.positions.len();
-        if positions.len() != kept + 4 * self.ground.len() {
-            let (file, expected) = (file.display(), kept + 4 * self.ground.len());
+        if positions.len() != kept + 4 * self.squares {
+            let (file, expected) = (file.display(), kept + 4 * self.squares);
             let given = counted(positions.len(), "vertex", "vertices");
             return Err(Failure::input(format!(
                 "{file} has {given}, but other frames of the run have {expected}"
             )));
         }
+        let ground = positions[kept..].as_chunks::<4>().0.iter().filter_map(plane).collect();
         positions.truncate(kept);
-        Ok(positions)
+        Ok((positions, ground))
     }
 }
 
@@ -162,7 +163,8 @@ fn frames(folder: &Path) -> Result<BTreeMap<usize, PathBuf>, Failure> {
     Ok(frames)
 }
 
-/// The half-space of a square with counter-clockwise corners, seen from outside.
+/// The half-space of a square with counter-clockwise corners, seen from outside; none if it has no area, since the
+/// half-space is not there.
 fn plane(corners: &[Point; 4]) -> Option<HalfSpace> {
     HalfSpace::new(corners[0], (corners[1] - corners[0]).cross(&(corners[3] - corners[0])))
 }

@@ -3,8 +3,8 @@
 use super::edges::mean_edge;
 use super::folder::RunFolder;
 use crate::exit::Failure;
-use bowknot::geometry::{Point, Topology};
-use bowknot::proximity::{BodyFilter, CollisionModel, PairList, ProximitySearch};
+use bowknot::geometry::{HalfSpace, Point, Topology};
+use bowknot::proximity::{BodyFilter, CollisionModel, Pair, PairList, ProximitySearch};
 
 /// Largest gap that is measured, relative to the mean edge length. Elements a few edges apart on the same
 /// sheet are farther from each other, so that smaller gaps are contacts.
@@ -34,8 +34,7 @@ impl Gaps {
             .particles(mesh.particles.iter().copied())
             .build()
             .map_err(|errors| bad_input(&errors.first().map(ToString::to_string).unwrap_or_default()))?;
-        let model =
-            CollisionModel::new(topology, body, bodies, run.ground().to_vec()).map_err(|e| bad_input(&e))?;
+        let model = CollisionModel::new(topology, body, bodies, Vec::new()).map_err(|e| bad_input(&e))?;
         Ok(Self { model, cap })
     }
 
@@ -45,11 +44,11 @@ impl Gaps {
     }
 
     /// For each vertex, the smallest distance from an element with this vertex to an element that shares no
-    /// vertex with it [m]; the cap, if there is none within the cap.
-    pub fn measure(&self, positions: &[Point]) -> Vec<f64> {
+    /// vertex with it [m], or to the `ground`; the cap, if there is none within the cap. Elements with a vertex that is
+    /// `absent` count for nothing; one entry per vertex, or none at all.
+    pub fn measure(&self, positions: &[Point], ground: &[HalfSpace], absent: &[bool]) -> Vec<f64> {
         let mut gaps = vec![self.cap; positions.len()];
         let (mut pairs, mut separations) = (PairList::default(), Vec::new());
-        let half_spaces = self.model.half_spaces();
         // A pair is a candidate if its distance is below the sum of the radii of its sides. Half-spaces have
         // no radius and are measured directly.
         let radii = vec![self.cap / 2.0; positions.len()];
@@ -60,13 +59,14 @@ impl Gaps {
             &mut pairs,
             &mut separations,
         );
-        for (pair, separation) in pairs.pairs().iter().zip(&separations) {
+        let is_there = |pair: &Pair| !pair.vertices.iter().any(|v| absent.get(*v as usize) == Some(&true));
+        for (pair, separation) in pairs.pairs().iter().zip(&separations).filter(|(pair, _)| is_there(pair)) {
             for &v in &pair.vertices {
                 gaps[v as usize] = gaps[v as usize].min(separation.distance);
             }
         }
         for (gap, position) in gaps.iter_mut().zip(positions) {
-            for half_space in half_spaces {
+            for half_space in ground {
                 *gap = gap.min(half_space.signed_distance(position));
             }
         }

@@ -83,7 +83,8 @@ pub fn render(options: &RenderOptions) -> Result<Exit, Failure> {
         create_folder(&options.out)?;
     }
     for (index, &frame) in frames.iter().enumerate() {
-        let positions = run.positions(frame)?;
+        let (positions, ground) = run.frame(frame)?;
+        let shot = Shot { ground, ..shot.clone() };
         let values = coloring.shares(index);
         let mut picture = renderer.render(&model, &Frame { positions: &positions, values }, &shot)?;
         if let Some(legend) = coloring.legend() {
@@ -147,7 +148,7 @@ fn select(options: &RenderOptions, output: Output, run: &RunFolder) -> Result<(V
     Ok((frames, options.fps.unwrap_or(1.0 / (dt * range.step as f64))))
 }
 
-/// The camera, which is fitted to the whole run, without bodies that have left the scene, unless the options give one, and the ground.
+/// The camera, which is fitted to the whole run, without bodies that have left the scene, unless the options give one.
 fn shot(
     options: &RenderOptions,
     run: &RunFolder,
@@ -181,7 +182,7 @@ fn shot(
             }
         }
     };
-    Ok(Shot { legend_width, ground: run.ground().to_vec(), ..Shot::new(camera, size) })
+    Ok(Shot { legend_width, ..Shot::new(camera, size) })
 }
 
 fn model(run: &RunFolder) -> Result<Model, Failure> {

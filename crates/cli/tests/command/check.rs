@@ -136,3 +136,27 @@ fn solids_and_strands_are_counted() {
     let info = place.run("info strand.seg").ok();
     assert!(info.stdout.contains("strand edges       2"), "{info:#?}");
 }
+
+/// A lid that waits while a cloth falls through its place, and a ground that vanishes.
+const COMING_AND_GOING: &str = "[[body]]\nname = \"cloth\"\ntranslate = [0, 0, 0.5]\n\
+     shape = { type = \"sheet\", size = [0.2, 0.2], edge = 0.04 }\n\
+     [[obstacle]]\nname = \"lid\"\nshape = { type = \"box\", size = [0.5, 0.5, 0.02] }\ntranslate = [0, 0, 0.49]\n\
+     motion = { spin = 90 }\nappears = 0.045\n\
+     [[obstacle]]\nname = \"ground\"\nshape = \"half-space\"\ntranslate = [0, 0, 0.45]\nvanishes = 0.2\n";
+
+#[test]
+fn obstacles_that_are_not_there_are_not_judged() {
+    let place = Place::new();
+    place.write("scene.toml", COMING_AND_GOING);
+    for backend in ["cpu", "gpu"] {
+        let options = "--frames 30 --trace --check --format ply,npz,obj --threads 1";
+        let ended = place.run(&format!("run scene.toml --backend {backend} {options} --out {backend}")).ok();
+        assert!(ended.stdout.contains("obstacle lid waited "), "{ended:#?}");
+        assert!(ended.stdout.contains("no intersection"), "{ended:#?}");
+        // The minimum separation is a hundredth of an edge.
+        let report = place.run(&format!("check {backend} --min-distance 0.0004 --json")).ok().json();
+        assert_eq!((&report["clear"], &report["mesh_problems"]), (&true.into(), &0.into()), "{report}");
+        assert!(report["paths"].as_u64().unwrap() > 30, "{report}");
+        place.run(&format!("check {backend}/frames.npz")).ok();
+    }
+}

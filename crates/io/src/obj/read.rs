@@ -42,6 +42,8 @@ pub fn read_segments(path: &Path, import: &Import) -> Result<Mesh, IoError> {
     read(path, import, Dialect::Segments)
 }
 
+const NO_VERTICES: &str = "no vertices: not of the OBJ manner, or empty";
+
 /// What the statements mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Dialect {
@@ -55,6 +57,10 @@ enum Dialect {
 fn read(path: &Path, import: &Import, dialect: Dialect) -> Result<Mesh, IoError> {
     import.validate().map_err(|errors| IoError::content(path, Place::File, errors.to_string()))?;
     let bytes = fs::read(path).map_err(|source| IoError::system("read", path, source))?;
+    if bytes.trim_ascii().is_empty() {
+        // Not a mesh without vertices: exports have comments or names at least.
+        return Err(IoError::content(path, Place::File, NO_VERTICES));
+    }
     // Names of groups and materials may be in any encoding; the numbers are ASCII.
     let text = String::from_utf8_lossy(without_mark(&bytes));
     let mut reader = Reader {
@@ -344,11 +350,7 @@ impl Reader<'_> {
         }
         let count = self.mesh.positions.len();
         if count == 0 {
-            return Err(IoError::content(
-                self.path,
-                Place::File,
-                "no vertices: not of the OBJ manner, or empty",
-            ));
+            return Err(IoError::Empty { path: self.path.to_owned(), message: NO_VERTICES });
         }
         self.mesh.obstacle = self.obstacle_from.map(|first| (0..count).map(|v| v >= first).collect());
         self.mesh.surface = self.faces.finish(count, self.dialect == Dialect::Ours);

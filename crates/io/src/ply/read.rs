@@ -22,14 +22,18 @@ use std::path::Path;
 pub fn read_ply(path: &Path, import: &Import) -> Result<Mesh, IoError> {
     import.validate().map_err(|errors| IoError::content(path, Place::File, errors.to_string()))?;
     let bytes = fs::read(path).map_err(|source| IoError::system("read", path, source))?;
-    parse(&bytes, import).map_err(|(place, message)| IoError::content(path, place, message))
+    let mesh = parse(&bytes, import).map_err(|(place, message)| IoError::content(path, place, message))?;
+    if mesh.positions.is_empty() {
+        return Err(IoError::Empty { path: path.to_owned(), message: "it has no vertices" });
+    }
+    Ok(mesh)
 }
 
 fn parse(bytes: &[u8], import: &Import) -> Result<Mesh, (Place, String)> {
     let header = Header::parse(bytes).map_err(|(line, message)| (Place::Line(line), message))?;
     let count = |name: &str| header.elements.iter().find(|e| e.name == name).map_or(0, |e| e.count);
     let vertices = count("vertex");
-    if vertices == 0 {
+    if !header.elements.iter().any(|element| element.name == "vertex") {
         return Err((Place::File, "it has no vertices".to_owned()));
     }
     if vertices > u32::MAX as usize {
@@ -57,7 +61,7 @@ fn parse(bytes: &[u8], import: &Import) -> Result<Mesh, (Place, String)> {
             })?;
         }
     }
-    if mesh.positions.is_empty() {
+    if mesh.positions.len() < vertices {
         return Err((Place::File, "its vertices have no properties".to_owned()));
     }
     let used = mesh.used_by_elements();

@@ -128,3 +128,51 @@ fn unused_vertices_are_dropped_in_order() {
     assert_eq!((mesh.triangles, mesh.strands), (vec![[1, 0, 2]], vec![[2, 3]]));
     assert_eq!((mesh.positions[2], mesh.body), (Point::new(1.0, 2.0, 3.0), Some(vec![0, 0, 0, 1])));
 }
+
+#[test]
+fn obstacles_at_one_place_are_absent() {
+    let at = |z: f64| Point::new(0.0, 0.0, z);
+    // A cloth, two parts of an obstacle, a wire, a loose point of an obstacle.
+    let mesh = Mesh {
+        triangles: vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]],
+        strands: vec![[9, 10]],
+        particles: vec![11],
+        obstacle: Some((0..12).map(|v| v > 2).collect()),
+        ..Mesh::default()
+    };
+    let positions = |absent: &[usize]| -> Vec<Point> {
+        (0..12).map(|v| if absent.contains(&v) { at(9.0) } else { at(v as f64) }).collect()
+    };
+    let absent = |vertices: &[usize]| -> Vec<usize> {
+        let marked = mesh.absent(&positions(vertices));
+        (0..marked.len()).filter(|&v| marked[v]).collect()
+    };
+    assert_eq!(absent(&[]), [0; 0]);
+    assert_eq!(absent(&[3, 4, 5]), [3, 4, 5]);
+    assert_eq!(absent(&[6, 7, 8, 9, 10]), [6, 7, 8, 9, 10]);
+    // What collapses in part is there, as are what deforms and single points.
+    assert_eq!(absent(&[3, 4, 6, 7, 8]), [6, 7, 8]);
+    assert_eq!(absent(&[0, 1, 2, 11]), [0; 0]);
+    let mut left = mesh.clone();
+    left.leave_out(&mesh.absent(&positions(&[3, 4, 5, 9, 10])));
+    assert_eq!((left.triangles, left.strands.len()), (vec![[0, 1, 2], [6, 7, 8]], 0));
+}
+
+#[test]
+fn meshes_without_vertices_are_told_from_damaged_files() {
+    let folder = folder();
+    let header = "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+    for (name, content, is_empty) in [
+        ("a.obj", "# exported\no Plate\n", true),
+        ("b.obj", "", false),
+        ("c.obj", " \n\n", false),
+        ("d.obj", "f 1 2 3\n", false),
+        ("e.ply", header, true),
+        ("f.ply", "ply\nformat ascii 1.0\nend_header\n", false),
+        ("g.ply", &header.replace("vertex 0", "vertex 3"), false),
+        ("h.ply", &header[..40], false),
+    ] {
+        let error = read_mesh(&write(&folder, name, content), &Import::default()).expect_err(name);
+        assert_eq!(matches!(error, IoError::Empty { .. }), is_empty, "{name}: {error}");
+    }
+}

@@ -5,7 +5,8 @@ use super::pins::pins;
 use super::roots::Surroundings;
 use super::unused::unused_keys;
 use super::{
-    ObstacleMotion, Placing, Procedural, World, WorldBody, WorldContact, joined, jumps, sequence, size,
+    ObstacleMotion, Placing, Presence, Procedural, World, WorldBody, WorldContact, joined, jumps, sequence,
+    size,
 };
 use crate::body::BodySpec;
 use crate::description::Scene;
@@ -14,6 +15,7 @@ use crate::material::Material;
 use crate::obstacle::ObstacleSpec;
 use crate::shapes::Shape;
 use bowknot_dynamics::{Body, BodyShape};
+use bowknot_errors::counted;
 use bowknot_geometry::{HalfSpace, Point, Topology, Vector};
 use bowknot_io::Import;
 use bowknot_proximity::{BodyFilter, CollisionModel};
@@ -62,6 +64,7 @@ struct Assembly {
     particles: Vec<u32>,
     half_spaces: Vec<HalfSpace>,
     half_space_names: Vec<String>,
+    half_space_presence: Vec<Presence>,
     /// Positions and velocities of vertices inside of each body.
     insides: Vec<(Vec<Point>, Vec<Vector>)>,
     warnings: Vec<String>,
@@ -116,6 +119,7 @@ impl Assembly {
             strands: elements.strands,
             surface: elements.surface,
             motion: ObstacleMotion::Rest,
+            presence: Presence::default(),
             numbers: elements.numbers,
             mesh_vertices: elements.mesh_vertices,
         });
@@ -130,19 +134,21 @@ impl Assembly {
             // Validation has refused a normal of no length.
             self.half_spaces.extend(HalfSpace::new(Point::from(obstacle.translate), normal));
             self.half_space_names.push(obstacle.name.clone());
+            self.half_space_presence.push(Presence::default().between(obstacle.appears, obstacle.vanishes));
             let (thickness, friction) = (obstacle.thickness, obstacle.friction);
             self.contact.half_spaces.push(HalfSpaceContact { thickness, friction });
             return Ok(());
         }
-        let (part, motion) = if let Some(path) = &obstacle.sequence {
-            let (part, frames) = sequence::load(&scene.folder, path, obstacle, &placing, &mut self.warnings)?;
-            (part, ObstacleMotion::Sequence(frames))
+        let (part, motion, presence) = if let Some(path) = &obstacle.sequence {
+            let (part, frames, presence) =
+                sequence::load(&scene.folder, path, obstacle, &placing, &mut self.warnings)?;
+            (part, ObstacleMotion::Sequence(frames), presence)
         } else {
             let (mesh, shape) = (obstacle.mesh.as_deref(), obstacle.shape.as_ref());
             let part = Part::load(&scene.folder, mesh, shape, &import)?;
             let mut part = part.into_obstacle(&format!("obstacle {}", obstacle.name), &mut self.warnings)?;
             placing.place(&mut part.positions);
-            (part, motion(obstacle, placing))
+            (part, motion(obstacle, placing), Presence::default())
         };
         let mut start = part.positions.clone();
         motion.positions(&part.positions, 0.0, &mut start);
@@ -167,6 +173,7 @@ impl Assembly {
             strands: elements.strands,
             surface: elements.surface,
             motion,
+            presence: presence.between(obstacle.appears, obstacle.vanishes),
             numbers: elements.numbers,
             mesh_vertices: elements.mesh_vertices,
         });
@@ -228,6 +235,7 @@ impl Assembly {
         let mut world = World {
             bodies: self.bodies,
             half_space_names: self.half_space_names,
+            half_space_presence: self.half_space_presence,
             deformable_vertices,
             positions: self.positions,
             velocities: self.velocities,
@@ -242,6 +250,7 @@ impl Assembly {
         world.warnings.extend(unused_keys(scene));
         let simulation = &scene.simulation;
         world.warnings.extend(jumps::warnings(&world, simulation.dt, simulation.frames));
+        world.warnings.extend(never_there(&world, simulation.dt, simulation.frames));
         for warning in &world.warnings {
             tracing::warn!("{warning}");
         }
@@ -261,6 +270,19 @@ impl Assembly {
         };
         scene.friction_pairs.iter().filter_map(pair).collect()
     }
+}
+
+/// Warnings of obstacles that are there in none of so many time steps of `dt` [s].
+fn never_there(world: &World, dt: f64, steps: usize) -> Vec<String> {
+    let presences = world.bodies.iter().map(|body| &body.presence).chain(&world.half_space_presence);
+    let never = world.names().zip(presences).filter(|(_, presence)| !presence.is_ever(dt, steps.max(1)));
+    let warning = |(name, _): (&String, &Presence)| {
+        format!(
+            "obstacle {name} is never there: none of the {} of the run begins while it is",
+            counted(steps, "time step", "time steps")
+        )
+    };
+    never.map(warning).collect()
 }
 
 /// Stretch limit of a body: its own, or that of its material unless the scene has one for all, which is left

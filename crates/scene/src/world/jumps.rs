@@ -1,6 +1,6 @@
 //! Obstacles that jump: what they meet in a time step is far from where it was.
 
-use super::{ObstacleMotion, Sequence, World, bounds};
+use super::{ObstacleMotion, Presence, Sequence, World, WorldBody, bounds};
 use bowknot_geometry::Point;
 
 /// Way in a time step, in mean edge lengths of the deformable bodies, from which on an obstacle is said to jump.
@@ -22,11 +22,11 @@ struct Step {
 pub(super) fn warnings(world: &World, dt: f64, steps: usize) -> Vec<String> {
     let Some(edge) = mean_edge(world) else { return Vec::new() };
     let obstacles = world.bodies.iter().filter(|body| body.kind.is_none());
-    let warning = |body: &super::WorldBody| {
+    let warning = |body: &WorldBody| {
         let base = &world.base[body.vertices.start as usize..body.vertices.end as usize];
         let Step { way, time } = match &body.motion {
-            ObstacleMotion::Sequence(sequence) => of_sequence(sequence, dt),
-            ObstacleMotion::Rigid(_) => of_motion(&body.motion, base, dt, steps),
+            ObstacleMotion::Sequence(sequence) => of_sequence(sequence, &body.presence, dt),
+            ObstacleMotion::Rigid(_) => of_motion(body, base, dt, steps),
             // Shapes that move by themselves do not jump.
             ObstacleMotion::Rest | ObstacleMotion::Procedural(_) => return None,
         };
@@ -51,26 +51,27 @@ fn mean_edge(world: &World) -> Option<f64> {
     (count > 0).then(|| sum / f64::from(count))
 }
 
-/// Of frames, of which a time step may show several.
-fn of_sequence(sequence: &Sequence, dt: f64) -> Step {
+/// Of frames, of which a time step may show several, while the obstacle is there.
+fn of_sequence(sequence: &Sequence, presence: &Presence, dt: f64) -> Step {
     let Sequence { frames, rate, start } = sequence;
     let way = |pair: &[Vec<Point>]| {
         let ways = pair[0].iter().zip(&pair[1]).map(|(a, b)| (b - a).norm());
         ways.fold(0.0, f64::max) * (rate * dt)
     };
     let ways = frames.windows(2).enumerate().map(|(frame, pair)| (frame, way(pair)));
+    let ways = ways.filter(|(frame, _)| presence.holds(start + *frame as f64 / rate, dt));
     let (frame, way) = ways.fold((0, 0.0), |most, next| if next.1 > most.1 { next } else { most });
     Step { way, time: start + frame as f64 / rate }
 }
 
-/// Of a rigid motion: the corners of the box around a body move farther than what is in it.
-fn of_motion(motion: &ObstacleMotion, base: &[Point], dt: f64, steps: usize) -> Step {
+/// Of a rigid motion, while the obstacle is there: the corners of the box around a body move farther than what is in it.
+fn of_motion(body: &WorldBody, base: &[Point], dt: f64, steps: usize) -> Step {
     let (low, high) = bounds(base);
     let corner = |k: usize| Point::from([0, 1, 2].map(|c| if k >> c & 1 == 0 { low[c] } else { high[c] }));
     let corners: Vec<Point> = (0..8).map(corner).collect();
     let at = |step: usize| {
         let mut places = corners.clone();
-        motion.positions(&corners, dt * step as f64, &mut places);
+        body.motion.positions(&corners, dt * step as f64, &mut places);
         places
     };
     let mut most = Step::default();
@@ -78,7 +79,7 @@ fn of_motion(motion: &ObstacleMotion, base: &[Point], dt: f64, steps: usize) -> 
     for step in 1..=steps.min(LOOKED_AT) {
         let now = at(step);
         let way = before.iter().zip(&now).map(|(a, b)| (b - a).norm()).fold(0.0, f64::max);
-        if way > most.way {
+        if way > most.way && body.presence.holds(dt * (step - 1) as f64, dt) {
             most = Step { way, time: dt * (step - 1) as f64 };
         }
         before = now;

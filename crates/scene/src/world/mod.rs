@@ -17,6 +17,7 @@ mod jumps;
 mod motion;
 mod part;
 mod pins;
+mod presence;
 mod quadratic;
 mod roots;
 mod sequence;
@@ -26,6 +27,7 @@ mod unused;
 
 pub use follow::Attachment;
 pub use motion::{ObstacleMotion, Placing, Procedural, Sequence};
+pub use presence::Presence;
 pub use size::BodySize;
 
 use crate::description::Scene;
@@ -33,7 +35,7 @@ use crate::error::SceneError;
 use crate::kind::BodyKind;
 use crate::motion::Motion;
 use bowknot_dynamics::{Body, DynamicsModel};
-use bowknot_geometry::{Point, Vector};
+use bowknot_geometry::{BodyFilter, HalfSpace, Point, Vector};
 use bowknot_io::Surface;
 use bowknot_proximity::CollisionModel;
 use bowknot_twoway::{BodyContact, HalfSpaceContact, PairFriction};
@@ -48,13 +50,15 @@ pub struct World {
     pub bodies: Vec<WorldBody>,
     /// Names of the half-spaces, in the order of [`CollisionModel::half_spaces`].
     pub half_space_names: Vec<String>,
+    /// When the half-spaces are there, in the same order.
+    pub half_space_presence: Vec<Presence>,
     /// Number of deformable vertices that collide; those of obstacles follow.
     pub deformable_vertices: usize,
     /// Positions of all vertices at time 0 [m].
     pub positions: Vec<Point>,
     /// Velocities at time 0 [m/s].
     pub velocities: Vec<Vector>,
-    /// Topology, bodies, filters, half-spaces.
+    /// Topology, bodies, filters, half-spaces, with all obstacles there.
     pub collision: CollisionModel,
     /// Contact data of the bodies and half-spaces of the collision model.
     pub contact: WorldContact,
@@ -101,6 +105,8 @@ pub struct WorldBody {
     pub surface: Option<Surface>,
     /// How it moves, if it is an obstacle.
     pub motion: ObstacleMotion,
+    /// When it is there, if it is an obstacle.
+    pub presence: Presence,
     /// Number in the mesh of each vertex, `vertices` first.
     numbers: Vec<u32>,
     /// Vertices that the mesh has, those left out counted.
@@ -188,6 +194,35 @@ impl World {
 
     fn obstacle_vertices(&self) -> usize {
         self.collision_vertices() - self.deformable_vertices
+    }
+
+    /// Which bodies, then which half-spaces, are to be there at `time`, a multiple of the time step `dt` [s].
+    pub fn present(&self, time: f64, dt: f64) -> Vec<bool> {
+        let bodies = self.bodies.iter().map(|body| &body.presence);
+        bodies.chain(&self.half_space_presence).map(|presence| presence.holds(time, dt)).collect()
+    }
+
+    /// The names of bodies, then of half-spaces.
+    pub fn names(&self) -> impl Iterator<Item = &String> {
+        self.bodies.iter().map(|body| &body.name).chain(&self.half_space_names)
+    }
+
+    /// Filters of the bodies, and half-spaces, of which those are absent that are not `present`: one entry per body, then
+    /// one per half-space.
+    pub fn filters(&self, present: &[bool]) -> (Vec<BodyFilter>, Vec<HalfSpace>) {
+        let (bodies, half_spaces) = present.split_at(self.bodies.len());
+        let body = |(filter, present): (&BodyFilter, &bool)| if *present { *filter } else { filter.absent() };
+        let plane = |(plane, present): (&HalfSpace, &bool)| if *present { *plane } else { plane.absent() };
+        let filters = self.collision.bodies().iter().zip(bodies).map(body).collect();
+        (filters, self.collision.half_spaces().iter().zip(half_spaces).map(plane).collect())
+    }
+
+    /// The collision model with those absent that are not `present`, as for [`Self::filters`].
+    pub fn collision_of(&self, present: &[bool]) -> CollisionModel {
+        let mut model = self.collision.clone();
+        let (filters, half_spaces) = self.filters(present);
+        model.set_filters(&filters, &half_spaces);
+        model
     }
 
     /// Counts.

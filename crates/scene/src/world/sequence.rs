@@ -1,7 +1,7 @@
 //! Animated obstacles from files.
 
 use super::part::Part;
-use super::{Placing, Sequence};
+use super::{Placing, Presence, Sequence};
 use crate::error::SceneError;
 use crate::obstacle::ObstacleSpec;
 use bowknot_errors::counted;
@@ -9,22 +9,26 @@ use bowknot_geometry::Point;
 #[cfg(feature = "npz")]
 use bowknot_io::FrameStack;
 use bowknot_io::{self as io, IoError, MESH_ENDINGS, Mesh, Place, files_in};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+const ALL_EMPTY: &str = "all of its frames are empty, so there is nothing to show: a frame must have vertices at different places";
 
 /// Frames over one topology, as files hold them.
 struct Frames {
+    /// That of the first frame that is not empty.
     mesh: Mesh,
-    positions: Vec<Vec<Point>>,
+    /// None where a frame is empty; one is not.
+    positions: Vec<Option<Vec<Point>>>,
 }
 
-/// Loads the sequence of an obstacle: the part that its first frame makes, and all frames, placed.
+/// Loads the sequence of an obstacle: the part that its first frame makes, all frames, placed, and when it is there.
 pub(super) fn load(
     folder: &Path,
     path: &Path,
     spec: &ObstacleSpec,
     placing: &Placing,
     warnings: &mut Vec<String>,
-) -> Result<(Part, Sequence), SceneError> {
+) -> Result<(Part, Sequence, Presence), SceneError> {
     let path = folder.join(path);
     let is_mesh = path.extension().is_some_and(|ending| MESH_ENDINGS.iter().any(|known| ending == *known));
     if is_mesh {
@@ -35,44 +39,64 @@ pub(super) fn load(
     let frames = if path.is_dir() { of_folder(&path, placing)? } else { of_archive(&path, placing)? };
     let owner = format!("obstacle {}", spec.name);
     let mut part = Part::from_mesh(frames.mesh).into_obstacle(&owner, warnings)?;
-    let kept = |frame: &Vec<Point>| {
-        let mut kept: Vec<Point> = part.numbers.iter().map(|&v| frame[v as usize]).collect();
-        placing.place(&mut kept);
-        kept
-    };
-    let positions: Vec<Vec<Point>> = frames.positions.iter().map(kept).collect();
+    let (rate, start) = (spec.sequence_rate, spec.sequence_start);
+    let time = |frame: usize| start + frame as f64 / rate;
+    let shown: Vec<bool> = frames.positions.iter().map(Option::is_some).collect();
+    let first = shown.iter().take_while(|shown| !**shown).count();
+    let mut positions: Vec<Vec<Point>> = Vec::new();
+    for frame in &frames.positions[first..] {
+        let mut placed: Option<Vec<Point>> =
+            frame.as_ref().map(|frame| part.numbers.iter().map(|&v| frame[v as usize]).collect());
+        placed.iter_mut().for_each(|frame| placing.place(frame));
+        // Where it is meanwhile shows nowhere.
+        positions.extend(placed.or_else(|| positions.last().cloned()));
+    }
     part.positions.clone_from(&positions[0]);
-    let sequence =
-        Sequence { frames: positions.into(), rate: spec.sequence_rate, start: spec.sequence_start };
-    Ok((part, sequence))
+    let presence = Presence::of_frames(&shown, time);
+    Ok((part, Sequence { frames: positions.into(), rate, start: time(first) }, presence))
 }
 
 /// The meshes of a folder in natural order of their names.
 fn of_folder(folder: &Path, placing: &Placing) -> Result<Frames, IoError> {
     let files = files_in(folder, &MESH_ENDINGS)?;
-    let Some(first) = files.first() else {
+    if files.is_empty() {
         return Err(IoError::content(folder, Place::File, "no meshes in it, so no sequence"));
-    };
-    let mut frames: Option<Frames> = None;
-    for file in &files {
-        let mut mesh = io::read_mesh(file, &placing.import)?;
-        let positions = std::mem::take(&mut mesh.positions);
-        let Some(frames) = &mut frames else {
-            let first = Mesh { positions: positions.clone(), ..mesh };
-            frames = Some(Frames { mesh: first, positions: vec![positions] });
-            continue;
-        };
-        if let Some(difference) = difference(&frames.mesh, &mesh, positions.len()) {
-            let message = format!("{difference} than {}; a sequence keeps its topology", first.display());
-            return Err(IoError::content(file, Place::File, message));
-        }
-        frames.positions.push(positions);
     }
-    // There is a first file, so there is a first frame.
-    frames.ok_or_else(|| IoError::content(folder, Place::File, "no meshes in it, so no sequence"))
+    let mut known: Option<(&PathBuf, Mesh)> = None;
+    let mut frames = Vec::with_capacity(files.len());
+    for file in &files {
+        let mut mesh = match io::read_mesh(file, &placing.import) {
+            Err(IoError::Empty { .. }) => {
+                frames.push(None);
+                continue;
+            }
+            mesh => mesh?,
+        };
+        let positions = std::mem::take(&mut mesh.positions);
+        match &known {
+            Some((first, known)) => {
+                if let Some(difference) = difference(known, &mesh, positions.len()) {
+                    let message =
+                        format!("{difference} than {}; a sequence keeps its topology", first.display());
+                    return Err(IoError::content(file, Place::File, message));
+                }
+            }
+            None if is_empty(&positions) => {}
+            None => known = Some((file, Mesh { positions: positions.clone(), ..mesh })),
+        }
+        frames.push(Some(positions).filter(|positions| !is_empty(positions)));
+    }
+    let (_, mesh) = known.ok_or_else(|| IoError::content(folder, Place::File, ALL_EMPTY))?;
+    Ok(Frames { mesh, positions: frames })
 }
 
-/// How a frame differs from the first one in what must not change.
+/// Whether a frame shows nothing: all of its vertices are at one place, as frames of a run have it, and exports of what
+/// was scaled to nothing.
+fn is_empty(positions: &[Point]) -> bool {
+    positions.len() > 1 && positions.iter().all(|p| *p == positions[0])
+}
+
+/// How a frame, whose positions are left out, differs from the first one in what must not change.
 fn difference(first: &Mesh, other: &Mesh, vertices: usize) -> Option<String> {
     if vertices != first.positions.len() {
         return Some(format!(
@@ -110,10 +134,15 @@ fn of_archive(path: &Path, _: &Placing) -> Result<Frames, IoError> {
 #[cfg(feature = "npz")]
 fn of_archive(path: &Path, placing: &Placing) -> Result<Frames, IoError> {
     let stack = FrameStack::read(path)?;
-    let import = |frame: Vec<Point>| frame.iter().map(|p| placing.import.point(p.coords.into())).collect();
-    let positions: Vec<Vec<Point>> = (0..stack.len()).filter_map(|f| stack.frame(f)).map(import).collect();
-    let Some(first) = positions.first() else {
-        return Err(IoError::content(path, Place::Array("X".to_owned()), "holds no frame"));
+    let import = |frame: Vec<Point>| -> Vec<Point> {
+        frame.iter().map(|p| placing.import.point(p.coords.into())).collect()
+    };
+    let shown = |frame: Vec<Point>| (!is_empty(&frame)).then(|| import(frame));
+    let positions: Vec<Option<Vec<Point>>> =
+        (0..stack.len()).filter_map(|f| stack.frame(f)).map(shown).collect();
+    let Some(first) = positions.iter().flatten().next() else {
+        let message = if positions.is_empty() { "holds no frame" } else { ALL_EMPTY };
+        return Err(IoError::content(path, Place::Array("X".to_owned()), message));
     };
     let view = stack.mesh();
     let mesh = Mesh {
