@@ -20,7 +20,8 @@ pub use checker::Checker;
 pub use export::{ExportOptions, Exported, Rate, export};
 pub use progress::{Progress, WithinStep};
 pub use summary::{
-    EnergyNumbers, SecondsNumbers, SkippedNumbers, SlowStep, StepNumbers, Summary, UnsolvedStep,
+    EnergyNumbers, HeldApartStep, SecondsNumbers, SkippedNumbers, SlowStep, StepNumbers, Summary,
+    UnsolvedStep,
 };
 pub use watch::{FailureWatch, SmallestState};
 pub use writer::{RunWriter, refuse_run};
@@ -201,6 +202,8 @@ fn run_steps(
         slowest_step: totals.slowest().cloned(),
         unsolved_steps: totals.unsolved_steps(),
         first_unsolved: totals.first_unsolved().cloned(),
+        held_apart_steps: totals.held_apart_steps(),
+        most_held_apart: totals.most_held_apart().cloned(),
         peak_memory_bytes: peak_memory_bytes(),
         intersections: checker.as_ref().map(Checker::intersections),
     };

@@ -1,7 +1,7 @@
 //! The summary of a run: `summary.json`.
 
 use super::backends::CPU;
-use crate::simulator::{StepStatistics, Unsolved, WaitingElements};
+use crate::simulator::{HeldApart, StepStatistics, Unsolved, WaitingElements};
 use bowknot_scene::world::SceneInfo;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -39,6 +39,12 @@ pub struct Summary {
     /// The first of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first_unsolved: Option<UnsolvedStep>,
+    /// Time steps in which pins held edges over their stretch limits, see [`StepStatistics::held_apart`].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub held_apart_steps: usize,
+    /// That of them in which they asked for most.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub most_held_apart: Option<HeldApartStep>,
     /// Largest resident memory so far [bytes]; none where the system does not report it.
     pub peak_memory_bytes: Option<u64>,
     /// Intersections found in accepted states and on the paths between them; none if not checked.
@@ -74,6 +80,21 @@ pub struct UnsolvedStep {
     /// The bodies and the place where forces are out of balance, if known.
     #[serde(flatten)]
     pub at: Option<Unsolved>,
+}
+
+/// A time step in which pins held edges over their stretch limits.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct HeldApartStep {
+    /// Its index, from 1.
+    pub step: usize,
+    /// Where, and by how much.
+    #[serde(flatten)]
+    pub at: HeldApart,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 /// The numbers of [`StepStatistics`], combined over time steps. Each is none if no time step has it; flags
@@ -168,6 +189,8 @@ pub(super) struct Totals {
     slowest: Option<SlowStep>,
     unsolved_steps: usize,
     first_unsolved: Option<UnsolvedStep>,
+    held_apart_steps: usize,
+    most_held_apart: Option<HeldApartStep>,
 }
 
 impl Totals {
@@ -179,6 +202,13 @@ impl Totals {
         values.remove("slowest_body");
         values.remove("waits");
         values.remove("unsolved");
+        values.remove("held_apart");
+        if let Some(at) = &statistics.held_apart {
+            self.held_apart_steps += 1;
+            if self.most_held_apart.as_ref().is_none_or(|most| at.excess > most.at.excess) {
+                self.most_held_apart = Some(HeldApartStep { step: statistics.step, at: at.clone() });
+            }
+        }
         if !statistics.solved {
             self.unsolved_steps += 1;
             let StepStatistics { step, residual_m, tolerance_m, .. } = *statistics;
@@ -225,6 +255,14 @@ impl Totals {
 
     pub fn first_unsolved(&self) -> Option<&UnsolvedStep> {
         self.first_unsolved.as_ref()
+    }
+
+    pub fn held_apart_steps(&self) -> usize {
+        self.held_apart_steps
+    }
+
+    pub fn most_held_apart(&self) -> Option<&HeldApartStep> {
+        self.most_held_apart.as_ref()
     }
 
     pub fn min_gap(&self) -> Option<f64> {
@@ -312,11 +350,8 @@ mod tests {
     #[test]
     fn the_first_unsolved_step_is_kept_and_all_are_counted() {
         let step = |step, residual_m, solved: bool| {
-            let unsolved = (!solved).then(|| Unsolved {
-                bodies: vec!["strip".to_owned(), "left".to_owned()],
-                place_m: [9.0; 3],
-                cause: None,
-            });
+            let unsolved = (!solved)
+                .then(|| Unsolved { bodies: vec!["strip".to_owned(), "left".to_owned()], place_m: [9.0; 3] });
             let tolerance_m = 0.1;
             StepStatistics { step, residual_m, tolerance_m, solved, unsolved, ..StepStatistics::default() }
         };

@@ -11,6 +11,7 @@ use super::checkpoint::Checkpoint;
 use super::contacts::{CarriedContacts, Contacts};
 use super::ends::Ends;
 use super::error::{SimulationError, describe_intersections};
+use super::held_apart::HeldApart;
 use super::inside;
 use super::interior::{self, Interior};
 use super::observer::{CollisionProblem, Iterated, Relay, SimulationObserver};
@@ -339,7 +340,7 @@ impl Simulator {
         let timer = Instant::now();
         dynamics.set_step_tolerance(tolerance.meters());
         dynamics.begin_step(start, velocities, *dt).map_err(target_error)?;
-        contacts.begin_step(resolver, start, *dt);
+        contacts.begin_step(resolver, prescribed, start, *dt);
         contacts.apply(dynamics).map_err(target_error)?;
         statistics.repulsion_springs = contacts.springs().len();
         statistics.seconds.dynamics += timer.elapsed().as_secs_f64();
@@ -381,6 +382,7 @@ impl Simulator {
                 groups,
                 known: contacts.known(count),
                 carried: contacts.row_multipliers(),
+                yielding: contacts.yielding(),
             };
             if observer.problem(&problem).is_break() {
                 return Err(SimulationError::Interrupted);
@@ -393,6 +395,7 @@ impl Simulator {
                 groups,
                 known: contacts.known(count),
                 carried: contacts.row_multipliers(),
+                yielding: contacts.yielding(),
                 max_steps: (!last).then_some(MAX_INTERMEDIATE_STEPS),
             };
             ends.note(world, prescribed, &x[..count]);
@@ -415,6 +418,7 @@ impl Simulator {
             let timer = Instant::now();
             let delta = resolver.scene().lengths().delta;
             ends.hold_back(world, prescribed, [start, &x[..count]], delta, resolved.converged);
+            contacts.note_held(resolver, x);
             contacts.note_touching(resolver);
             contacts.note_rows(resolver);
             contacts.find(resolver, start);
@@ -450,10 +454,8 @@ impl Simulator {
                 true => of_collisions().or_else(of_forces),
                 false => of_forces().or_else(of_collisions),
             };
-            if let Some(unsolved) = &mut statistics.unsolved {
-                unsolved.cause = search.cause(prescribed);
-            }
         }
+        statistics.held_apart = contacts.over().and_then(|over| HeldApart::new(world, &over));
         let judged = backend.judge(resolver.scene(), &x[..count]);
         judged.map_err(|source| backend_error(world, step, source))?;
         contacts.end_step(&forces, resolver, start);
