@@ -8,7 +8,7 @@ use crate::interrupt::Interrupt;
 use crate::progress::Bar;
 use crate::{bare_mesh, failure_dump, gpu, output, setup};
 use bowknot::check::{Judge, StateReport};
-use bowknot::run::{FailureWatch, Outcome, Progress, Summary};
+use bowknot::run::{FailureWatch, HeldApartStep, Outcome, Progress, Summary};
 use bowknot::scene::SimulationParams;
 use bowknot::{Scene, SimulationError, Simulator, World};
 use bowknot_errors::counted;
@@ -262,6 +262,7 @@ fn to_text(outcome: &Outcome, out: &Path, simulation: &SimulationParams) -> Stri
         number(max.and_then(|max| max.max_stretch), 3),
     ));
     lines.extend(unreached_targets(summary));
+    lines.extend(held_apart(summary));
     lines.extend(unsolved_steps(summary, simulation));
     if let Some(slowest) = &summary.slowest_step {
         let steps = counted(slowest.two_way_steps, "two-way step", "two-way steps");
@@ -302,6 +303,17 @@ fn two_digits(value: f64) -> String {
     if value > 0.0 && value < 1e-4 { format!("{value:.1e}") } else { format!("{value:.digits$}") }
 }
 
+/// Pins that held edges over their stretch limits.
+fn held_apart(summary: &Summary) -> Option<String> {
+    let HeldApartStep { step, at } = summary.most_held_apart.as_ref()?;
+    let steps = counted(summary.frames, "time step", "time steps");
+    Some(format!(
+        "warning: in {} of {steps} pins stretch edges beyond their limits, most in time step {step}: {at}; what helps: a larger \
+         stretch_limit of {}, or pins nearer together",
+        summary.held_apart_steps, at.body
+    ))
+}
+
 /// Time steps that ended unsolved, where the first of them is out of balance, and what helps.
 fn unsolved_steps(summary: &Summary, simulation: &SimulationParams) -> Vec<String> {
     let Some(first) = &summary.first_unsolved else { return Vec::new() };
@@ -316,10 +328,6 @@ fn unsolved_steps(summary: &Summary, simulation: &SimulationParams) -> Vec<Strin
         return vec![line];
     }
     line += &format!("; the largest residual is {}", residual_text(largest, first.tolerance_m));
-    if let Some(cause) = first.at.as_ref().and_then(|at| at.cause.as_ref()) {
-        let help = "pins nearer together, or a larger stretch_limit of the body";
-        return vec![format!("{line}; {cause}"), format!("  what helps: {help}")];
-    }
     let iterations = summary.max.as_ref().and_then(|max| max.newton_iterations).unwrap_or(0.0);
     vec![line, format!("  what helps: {}", remedy(simulation, iterations))]
 }

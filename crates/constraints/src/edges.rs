@@ -83,6 +83,18 @@ impl EdgeLimits {
         });
     }
 
+    /// Lets edges be as long as the entries say [m] if that is more than they may be. Other entries change nothing.
+    pub fn let_yield(&mut self, longer: &[DistanceLimit]) {
+        for DistanceLimit { vertices: [a, b], limit } in longer {
+            let edge =
+                self.of_vertex(*a).iter().find(|&&e| self.balls[e as usize].vertices.contains(b)).copied();
+            if let Some(edge) = edge {
+                let ball = &mut self.balls[edge as usize];
+                ball.limit = ball.limit.max(*limit);
+            }
+        }
+    }
+
     /// Lets some edges be longer by a factor: those that the target keeps within their limits itself.
     pub fn widen(&mut self, factor: f64, is_known: impl Fn(&[u32; 2]) -> bool + Sync) {
         let edges = self.balls.par_iter_mut().with_min_len(CHUNK);

@@ -2,7 +2,7 @@
 
 use bowknot_constraints::{ContactForm, DesiredDistance, EdgeLimits, EdgeReference, contact_row};
 use bowknot_geometry::{PairKind, Point, Topology, Vector, distance, separation};
-use bowknot_lcp::Row;
+use bowknot_lcp::{DistanceLimit, Row};
 use bowknot_proximity::{CollisionModel, Pair};
 
 /// Seeded random numbers.
@@ -240,4 +240,17 @@ fn the_desired_distance_is_lower_in_fine_meshes_and_for_pairs_that_start_close()
     let parts = Topology::builder(4).triangles([[1, 2, 3]]).particles([0]).build().unwrap();
     let parts = CollisionModel::single_body(parts);
     assert_eq!(free.of(&parts, PairKind::VertexTriangle, &pair, &rest[..4], 0.004), (0.01, false));
+}
+
+#[test]
+fn edges_that_yield_may_be_longer_than_their_limits() {
+    let rest = [0.0, 1.0, 2.0].map(|x| Point::new(x, 0.0, 0.0));
+    let topology = Topology::builder(3).strand_edges([[0, 1], [1, 2]]).build().unwrap();
+    let mut edges = EdgeLimits::new(&topology, &rest, &[false, true, false], |_| 1.1);
+    edges.begin(&rest, EdgeReference::Rest);
+    let longer = [([1, 0], 1.4), ([1, 2], 0.9), ([0, 2], 3.0), ([7, 8], 2.0)];
+    edges.let_yield(&longer.map(|(vertices, limit)| DistanceLimit { vertices, limit }));
+    for ball in &edges.balls {
+        assert_eq!(ball.limit, if ball.vertices == [0, 1] { 1.4 } else { 1.1 });
+    }
 }

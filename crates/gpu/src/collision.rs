@@ -156,6 +156,9 @@ pub struct Call<'a> {
     /// What pairs carry at the start, in any order: the first step sweeps on from it. Pairs without an entry carry nothing;
     /// entries of pairs that do not press, or that the first search does not find, are left out.
     pub carried: &'a [Carried],
+    /// Edges that may be longer than their limits, and how long [m]. Entries below the limit, and of edges without one,
+    /// change nothing.
+    pub yielding: &'a [([u32; 2], f64)],
     /// When the call ends.
     pub stop: Stop,
 }
@@ -164,7 +167,15 @@ impl<'a> Call<'a> {
     /// Toward a target that knows no contacts, with pairs that carry nothing. Pairs may open at once, slip counts from
     /// here, and the host alone ends the call.
     pub fn toward(target: &'a [Point]) -> Self {
-        Self { target, growth: f64::INFINITY, slip_start: &[], known: &[], carried: &[], stop: Stop::NEVER }
+        Self {
+            target,
+            growth: f64::INFINITY,
+            slip_start: &[],
+            known: &[],
+            carried: &[],
+            yielding: &[],
+            stop: Stop::NEVER,
+        }
     }
 }
 
@@ -260,6 +271,8 @@ pub struct Collision<E> {
     /// Whether any contact may have friction, and whether vertices of bodies that are no obstacles are prescribed.
     frictional: bool,
     has_pins: bool,
+    /// Whether edges of the last call yielded.
+    yields: bool,
     /// The rule of the call, and the contact rows of its last step.
     stop: Stop,
     row_count: usize,
@@ -411,7 +424,7 @@ impl<E: Engine> Collision<E> {
         setup.write(buffers.pair_frictions, &pair_frictions);
         setup.write(buffers.adjacency, &adjacency.words);
         setup.write(buffers.vertex_blocks, &blocks);
-        setup.write(buffers.limits, &edges.limits(grid));
+        setup.write(buffers.limits, &edges.limits(grid, &[]));
         setup.write(buffers.clusters, &edges.clusters);
         setup.write(buffers.cluster_vertices, &edges.vertices);
         setup.write(buffers.cluster_colors, &edges.color_ends);
@@ -438,6 +451,7 @@ impl<E: Engine> Collision<E> {
             adjacency_starts: [adjacency.edges_first, adjacency.triangles_first],
             frictional,
             has_pins,
+            yields: false,
             stop: Stop::NEVER,
             row_count: 0,
             polishes: false,
@@ -498,6 +512,11 @@ impl<E: Engine> Collision<E> {
         let b = &self.buffers;
         if changes {
             recording.write(b.vertices, &self.vertices);
+        }
+        // Those of the last call stay on the device.
+        if self.yields || !call.yielding.is_empty() {
+            recording.write(b.limits, &self.edges.limits(&grid, call.yielding));
+            self.yields = !call.yielding.is_empty();
         }
         recording.write(b.targets, &padded(&target));
         if !slips_from_here {

@@ -7,6 +7,7 @@
 use crate::grid::Grid;
 use crate::layout::{EdgeCluster, EdgeLimit};
 use bowknot_geometry::Point;
+use std::collections::HashMap;
 use std::ops::Range;
 
 /// Vertices of a cluster that move, at most: as many as the shader has room for.
@@ -105,10 +106,13 @@ impl Edges {
         self.rounds.iter().cloned()
     }
 
-    /// The limits of the scene, without multipliers.
-    pub fn limits(&self, grid: &Grid) -> Vec<EdgeLimit> {
+    /// The limits of the scene, larger for those of the `yielding` edges [m], without multipliers.
+    pub fn limits(&self, grid: &Grid, yielding: &[Limited]) -> Vec<EdgeLimit> {
+        let key = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
+        let larger: HashMap<[u32; 2], f64> =
+            yielding.iter().map(|(edge, limit)| (key(*edge), *limit)).collect();
         let limit = |(&([a, b], limit), &[place_a, place_b]): (&Limited, &[u32; 2])| {
-            let longest = grid.length(limit);
+            let longest = grid.length(larger.get(&key([a, b])).map_or(limit, |larger| limit.max(*larger)));
             EdgeLimit {
                 a,
                 b,
@@ -337,5 +341,18 @@ mod tests {
         let points: Vec<Point> = (0..600).map(|v| Point::new(f64::from(v), 0.0, 0.0)).collect();
         let divided = Edges::new(&all, &vec![1.0; all.len()], &points, |_| true);
         assert_eq!(divided.len(), all.len());
+    }
+
+    #[test]
+    fn edges_that_yield_may_be_longer() {
+        let (all, points) = edges(4);
+        let divided = Edges::new(&all, &vec![1.0; all.len()], &points, |v| v > 0);
+        let grid = Grid::around(&points, 20.0, 1e-3).expect("a grid");
+        let [a, b] = all[30];
+        let limits = divided.limits(&grid, &[([b, a], 2.0), (all[31], 0.5), ([0, 2], 3.0)]);
+        for limit in limits {
+            let expected = if [limit.a, limit.b] == [a, b] { 2.0 } else { 1.0 };
+            assert_eq!(limit.longest, grid.length(expected));
+        }
     }
 }

@@ -103,6 +103,7 @@ impl<K: RowSolver> BackwardStep for LcpBackward<K> {
         }
         self.edges.begin(&state.x, params.edge_reference);
         if params.edge_reference == EdgeReference::Rest {
+            self.edges.let_yield(state.call.yielding());
             let is_known = |edge: &[u32; 2]| edge.iter().any(|&v| state.call.is_known(v as usize));
             self.edges.widen(GUARDED_STRETCH, is_known);
         }

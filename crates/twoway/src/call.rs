@@ -8,6 +8,7 @@ use crate::scene::CollisionScene;
 use crate::validation::{check_finite, check_length, largest_coordinate};
 use bowknot_constraints::FrictionModel;
 use bowknot_geometry::{PairKind, Point};
+use bowknot_lcp::DistanceLimit;
 use bowknot_stepper::Rounding;
 
 /// The input of one call, checked against the scene.
@@ -19,6 +20,7 @@ pub struct CallInput {
     slip_start: Vec<Point>,
     known: Vec<bool>,
     carried: Vec<PairMultipliers>,
+    yielding: Vec<DistanceLimit>,
     has_unknown: bool,
 }
 
@@ -75,6 +77,7 @@ impl CallInput {
             known: input.known.to_vec(),
             has_unknown,
             carried,
+            yielding: input.yielding.iter().filter(|edge| edge.limit.is_finite()).copied().collect(),
         })
     }
 
@@ -114,6 +117,11 @@ impl CallInput {
     pub fn carried(&self, kind: PairKind, elements: [u32; 2]) -> Option<&PairMultipliers> {
         let place = self.carried.binary_search_by_key(&(kind, elements), |pair| (pair.kind, pair.elements));
         place.ok().map(|place| &self.carried[place])
+    }
+
+    /// Edges that may be longer than their stretch limits, and how long [m].
+    pub fn yielding(&self) -> &[DistanceLimit] {
+        &self.yielding
     }
 
     /// Vertices whose contacts the target knows, one entry per vertex; empty: none.

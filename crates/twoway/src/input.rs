@@ -2,6 +2,7 @@
 
 use crate::multipliers::PairMultipliers;
 use bowknot_geometry::Point;
+use bowknot_lcp::DistanceLimit;
 
 /// What changes from call to call, beside positions and target.
 #[derive(Clone, Copy, Debug, Default)]
@@ -25,6 +26,9 @@ pub struct ResolveInput<'a> {
     /// What pairs carry at the start, in any order: the first backward step starts from it. Pairs without an entry carry
     /// nothing; entries of pairs that are out of range, or without finite numbers, are left out.
     pub carried: &'a [PairMultipliers],
+    /// Edges that may be longer than their stretch limits, because prescribed vertices ask for more, and how long [m].
+    /// Entries below the limit, and of edges without one, change nothing.
+    pub yielding: &'a [DistanceLimit],
     /// Largest number of two-way steps, if smaller than that of the parameters, for a caller that continues
     /// from any state.
     pub max_steps: Option<usize>,

@@ -213,7 +213,10 @@ impl<E: Engine + Debug + Send> Device<E> {
         let starts = if statistics.steps == 0 { call.all_carried() } else { &[] };
         let carried: Vec<Carried> = starts.iter().filter_map(pairs::carried).collect();
         let (known, stop_rule) = (call.known(), rule(&stop));
-        collision.begin(&Call { target, growth, slip_start, known, carried: &carried, stop: stop_rule })?;
+        let yielding: Vec<([u32; 2], f64)> =
+            call.yielding().iter().map(|edge| (edge.vertices, edge.limit)).collect();
+        let (carried, yielding) = (&carried[..], &yielding[..]);
+        collision.begin(&Call { target, growth, slip_start, known, carried, yielding, stop: stop_rule })?;
 
         while flight_observed.is_continue() && stop.allows_step(statistics.steps) {
             let most = if sees_each_state { 1 } else { steps_per_submission };

@@ -62,6 +62,7 @@ impl Recorder {
             start: problem.start.to_vec(),
             known: problem.known.to_vec(),
             carried: problem.carried.to_vec(),
+            yielding: problem.yielding.to_vec(),
             ..self.fixed.clone()
         }
     }

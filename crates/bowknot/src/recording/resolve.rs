@@ -64,6 +64,7 @@ impl States {
             groups: &self.groups,
             known: &self.known,
             carried: &self.carried,
+            yielding: &self.yielding,
             max_steps: None,
         }
     }

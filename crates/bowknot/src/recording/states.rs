@@ -7,6 +7,7 @@ use bowknot_geometry::{BodyFilter, HalfSpace, PairKind, Point, Vector};
 use bowknot_io::IoError;
 use bowknot_io::npz::{Archive, write_archive};
 use bowknot_scene::nearest;
+use bowknot_twoway::lcp::DistanceLimit;
 use bowknot_twoway::{
     BodyContact, ContactSide, HalfSpaceContact, PairFriction, PairMultipliers, ResolveInput,
 };
@@ -16,7 +17,7 @@ use std::io::{Seek, Write};
 use std::path::Path;
 
 /// The arrays of a problem.
-const ARRAYS: [&str; 27] = [
+const ARRAYS: [&str; 29] = [
     "x",
     "y",
     "F",
@@ -41,6 +42,8 @@ const ARRAYS: [&str; 27] = [
     "known",
     "carried",
     "multipliers",
+    "yielding",
+    "yielding_limit",
     filters::GROUPS,
     filters::MASK,
     filters::SELF_COLLISION,
@@ -58,7 +61,8 @@ const ARRAYS: [&str; 27] = [
 /// bodies, and their coefficient. `group[n]`: pins that go as one, -1 for none. `start[n,3]` [m]: what
 /// friction measures slip from. `known[n]`: vertices whose contacts the target knows. `carried[k,3]`: pairs that carry
 /// something at the start, by their kind (0 vertex and vertex, 1 vertex and edge, 2 vertex and triangle, 3 edge and edge, 4
-/// vertex and half-space) and elements, and `multipliers[k,4]`: of normal and friction [m]. `collision_groups[b]`,
+/// vertex and half-space) and elements, and `multipliers[k,4]`: of normal and friction [m]. `yielding[k,2]`: edges that may be
+/// longer than by `stretch_limit`, and `yielding_limit[k]`: how long [m]. `collision_groups[b]`,
 /// `collides_with[b]` (bits of the groups that a body is in, and of those that it meets) and `self_collision[b]`: which
 /// bodies collide.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -101,6 +105,8 @@ pub struct States {
     pub known: Vec<bool>,
     /// What pairs carry at the start.
     pub carried: Vec<PairMultipliers>,
+    /// Edges that may be longer than their stretch limits, and how long [m].
+    pub yielding: Vec<DistanceLimit>,
     /// Which bodies each body collides with; empty: each with all, and deformable ones with themselves.
     pub filters: Vec<BodyFilter>,
 }
@@ -142,6 +148,7 @@ impl States {
             start: archive.points("start", Some(n))?.unwrap_or_default(),
             known: if archive.has("known") { flags(&mut archive, "known", n)? } else { Vec::new() },
             carried: carried(&mut archive)?,
+            yielding: yielding(&mut archive, n)?,
             filters: filters::read(&mut archive, &body, &obstacle)?,
             triangles: archive.elements("F", n)?,
             strands: archive.elements("E", n)?,
@@ -232,6 +239,11 @@ impl States {
                 self.carried.iter().map(|c| [c.normal, c.friction.x, c.friction.y, c.friction.z]);
             archive.add_array("multipliers", &table(&multipliers.collect::<Vec<_>>(), |v| v))?;
         }
+        if !self.yielding.is_empty() {
+            let edges: Vec<[u32; 2]> = self.yielding.iter().map(|edge| edge.vertices).collect();
+            archive.add_array("yielding", &elements(&edges))?;
+            archive.add_array("yielding_limit", &Array1::from_iter(self.yielding.iter().map(|e| e.limit)))?;
+        }
         Ok(())
     }
 }
@@ -269,6 +281,21 @@ fn carried(archive: &mut Archive<'_>) -> Result<Vec<PairMultipliers>, IoError> {
     };
     let carried: Option<Vec<PairMultipliers>> = pairs.into_iter().zip(multipliers).map(entry).collect();
     carried.ok_or_else(|| archive.fault("carried", "has a kind of pair or an element that does not exist"))
+}
+
+/// Edges that may be longer than their stretch limits; none if nothing is said.
+fn yielding(archive: &mut Archive<'_>, n: usize) -> Result<Vec<DistanceLimit>, IoError> {
+    let edges = archive.elements::<2>("yielding", n)?;
+    let limits = archive.column("yielding_limit", Some(edges.len()))?.unwrap_or_default();
+    if edges.len() != limits.len() {
+        return Err(archive.fault("yielding", "has no array yielding_limit beside it"));
+    }
+    if let Some(row) = limits.iter().position(|limit| !(limit.is_finite() && *limit > 0.0)) {
+        let message = format!("row {row} is {}; limits are finite and above 0", limits[row]);
+        return Err(archive.fault("yielding_limit", message));
+    }
+    let edge = |(vertices, limit)| DistanceLimit { vertices, limit };
+    Ok(edges.into_iter().zip(limits).map(edge).collect())
 }
 
 /// Refuses arrays of unknown names: a misspelled one would be ignored, and the result be that of another

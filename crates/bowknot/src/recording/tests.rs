@@ -4,6 +4,7 @@ use crate::simulator::SimulationObserver;
 use crate::simulator::{CollisionProblem, Simulator};
 use bowknot_geometry::{BodyFilter, HalfSpace, PairKind, Point, Vector};
 use bowknot_twoway::Params;
+use bowknot_twoway::lcp::DistanceLimit;
 use bowknot_twoway::{
     BodyContact, ContactSide, HalfSpaceContact, PairFriction, PairMultipliers, ResolveInput,
 };
@@ -151,6 +152,7 @@ fn states() -> States {
             normal: 1e-300,
             friction: Vector::new(0.1, -0.0, 1.0 / 3.0),
         }],
+        yielding: vec![DistanceLimit { vertices: [2, 1], limit: 1.0 / 3.0 }],
         filters: vec![
             BodyFilter { groups: 1 << 31, self_collision: false, ..BodyFilter::DEFORMABLE },
             BodyFilter { groups: 0b1010, mask: 0x8000_0001, ..BodyFilter::DEFORMABLE },

@@ -6,18 +6,23 @@ use bowknot_dynamics::{RepulsionSpring, SpringKind};
 use bowknot_geometry::{Point, Vector};
 use bowknot_io::IoError;
 use bowknot_io::npz::{Archive, write_archive};
+use bowknot_twoway::lcp::DistanceLimit;
 use ndarray::{Array1, Array2};
 use std::path::Path;
 
 /// The array of the checksum, as bytes: readers widen numbers to f64, which does not hold all of 64 bits.
 const CHECKSUM: &str = "checksum";
 
+/// The array of edges that yield to prescribed vertices.
+const YIELDING: &str = "yielding_edges";
+
 impl Checkpoint {
     /// Writes the state as one NPZ file, atomically: `step[1]`, `positions[n,3]`, `velocities[n,3]`,
     /// `anchor_counts[p]`, `anchors[k,3]`, `present[b+h]` (1 for bodies and half-spaces that are there), `contact_features[c,4]` (kind and index of either feature: 0
     /// vertex, 1 edge, 2 triangle, 3 half-space), `contact_normals[c,3]`, `contact_forces[c,3]`; of contacts near
     /// rest `contact_means[m,22]` (kind and index of either feature, four vertices, their weights, normal, offset,
-    /// reach, floor, stiffness, friction, distance, and how many times found the mean goes back); where bodies
+    /// reach, floor, stiffness, friction, distance, and how many times found the mean goes back); `yielding_edges[e,3]`, if
+    /// there are any (two vertices, limit); where bodies
     /// may sleep, `sleep_origins[n,3]`, `sleep_calm_steps[b]` and `sleep_islands[b]` (4294967295: awake); and
     /// `checksum[8]` of all that.
     ///
@@ -26,7 +31,7 @@ impl Checkpoint {
     pub fn write(&self, path: &Path) -> Result<(), IoError> {
         let points = |points: &[Point]| table(points.iter().map(|p| [p.x, p.y, p.z]));
         let vectors = |vectors: &[Vector]| table(vectors.iter().map(|v| [v.x, v.y, v.z]));
-        let CarriedContacts { forces, means } = &self.contacts;
+        let CarriedContacts { forces, means, yielding } = &self.contacts;
         let of_forces = |vector: fn(&ContactForce) -> Vector| {
             vectors(&forces.iter().map(vector).collect::<Vec<Vector>>())
         };
@@ -39,6 +44,9 @@ impl Checkpoint {
             archive.add_array("contact_normals", &of_forces(|c| c.normal))?;
             archive.add_array("contact_forces", &of_forces(|c| c.force))?;
             archive.add_array("contact_means", &table(means.iter().map(row_of)))?;
+            if !yielding.is_empty() {
+                archive.add_array(YIELDING, &table(yielding.iter().map(row_of_edge)))?;
+            }
             archive.add_array("positions", &points(&self.positions))?;
             archive.add_array("velocities", &vectors(&self.velocities))?;
             archive.add_array("anchors", &points(&self.anchors.concat()))?;
@@ -70,7 +78,11 @@ impl Checkpoint {
             velocities: rows(&mut archive, "velocities")?.into_iter().map(Vector::from).collect(),
             anchors: anchors(&mut archive)?,
             present: integers(&mut archive, "present")?.into_iter().map(|flag| flag != 0).collect(),
-            contacts: CarriedContacts { forces: forces(&mut archive)?, means: means(&mut archive)? },
+            contacts: CarriedContacts {
+                forces: forces(&mut archive)?,
+                means: means(&mut archive)?,
+                yielding: yielding(&mut archive)?,
+            },
             sleep: SleepState::default(),
         };
         if archive.has("sleep_origins") {
@@ -196,6 +208,18 @@ fn means(archive: &mut Archive<'_>) -> Result<Vec<ContactMean>, IoError> {
     Ok(means)
 }
 
+/// An edge with its limit as a row.
+fn row_of_edge(edge: &DistanceLimit) -> [f64; 3] {
+    let [a, b] = edge.vertices.map(f64::from);
+    [a, b, edge.limit]
+}
+
+fn yielding(archive: &mut Archive<'_>) -> Result<Vec<DistanceLimit>, IoError> {
+    let rows = archive.rows::<3>(YIELDING)?.unwrap_or_default();
+    let edge = |[a, b, limit]: [f64; 3]| DistanceLimit { vertices: [a, b].map(|v| v as u32), limit };
+    Ok(rows.into_iter().map(edge).collect())
+}
+
 /// The checksum of a checkpoint's content. CRCs of the archive guard its arrays one by one; this one guards them
 /// together, so that no array is of another checkpoint, or left out.
 fn checksum(checkpoint: &Checkpoint) -> [u8; 8] {
@@ -216,6 +240,9 @@ fn checksum(checkpoint: &Checkpoint) -> [u8; 8] {
     sum.add(contacts.means.len() as u64);
     for mean in &contacts.means {
         row_of(mean).into_iter().for_each(|number| sum.add(number.to_bits()));
+    }
+    for edge in &contacts.yielding {
+        row_of_edge(edge).into_iter().for_each(|number| sum.add(number.to_bits()));
     }
     sum.points(&sleep.origins);
     for numbers in [&sleep.calm_steps, &sleep.islands] {
@@ -317,6 +344,7 @@ mod tests {
                     distance: 0.01,
                     depth: 9,
                 }],
+                yielding: vec![DistanceLimit { vertices: [3, 7], limit: 1.0 / 3.0 }],
             },
             sleep: SleepState {
                 origins: vec![Point::new(0.2, -0.0, 1e-300), Point::origin()],

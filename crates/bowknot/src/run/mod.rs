@@ -20,7 +20,8 @@ pub use checker::Checker;
 pub use export::{ExportOptions, Exported, Rate, export};
 pub use progress::{Progress, WithinStep};
 pub use summary::{
-    EnergyNumbers, SecondsNumbers, SkippedNumbers, SlowStep, StepNumbers, Summary, UnsolvedStep, WaitToAppear,
+    EnergyNumbers, HeldApartStep, SecondsNumbers, SkippedNumbers, SlowStep, StepNumbers, Summary,
+    UnsolvedStep, WaitToAppear,
 };
 pub use watch::{FailureWatch, SmallestState};
 pub use writer::{RunWriter, refuse_run};
@@ -210,6 +211,8 @@ fn run_steps(
         unsolved_steps: totals.unsolved_steps(),
         first_unsolved: totals.first_unsolved().cloned(),
         waits_to_appear: totals.waits_to_appear().clone(),
+        held_apart_steps: totals.held_apart_steps(),
+        most_held_apart: totals.most_held_apart().cloned(),
         peak_memory_bytes: peak_memory_bytes(),
         intersections: checker.as_ref().map(Checker::intersections),
     };

@@ -1,7 +1,7 @@
 //! The summary of a run: `summary.json`.
 
 use super::backends::CPU;
-use crate::simulator::{StepStatistics, Unsolved, WaitingElements};
+use crate::simulator::{HeldApart, StepStatistics, Unsolved, WaitingElements};
 use bowknot_scene::world::SceneInfo;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -42,6 +42,12 @@ pub struct Summary {
     /// The obstacles that waited to appear, by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub waits_to_appear: BTreeMap<String, WaitToAppear>,
+    /// Time steps in which pins held edges over their stretch limits, see [`StepStatistics::held_apart`].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub held_apart_steps: usize,
+    /// That of them in which they asked for most.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub most_held_apart: Option<HeldApartStep>,
     /// Largest resident memory so far [bytes]; none where the system does not report it.
     pub peak_memory_bytes: Option<u64>,
     /// Intersections found in accepted states and on the paths between them; none if not checked.
@@ -86,6 +92,21 @@ pub struct WaitToAppear {
     pub steps: usize,
     /// What was in its place at first, in words.
     pub in_the_way: String,
+}
+
+/// A time step in which pins held edges over their stretch limits.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct HeldApartStep {
+    /// Its index, from 1.
+    pub step: usize,
+    /// Where, and by how much.
+    #[serde(flatten)]
+    pub at: HeldApart,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 /// The numbers of [`StepStatistics`], combined over time steps. Each is none if no time step has it; flags
@@ -181,6 +202,8 @@ pub(super) struct Totals {
     unsolved_steps: usize,
     first_unsolved: Option<UnsolvedStep>,
     waits_to_appear: BTreeMap<String, WaitToAppear>,
+    held_apart_steps: usize,
+    most_held_apart: Option<HeldApartStep>,
 }
 
 impl Totals {
@@ -197,6 +220,13 @@ impl Totals {
             if let Some(in_the_way) = wait {
                 let first = || WaitToAppear { steps: 0, in_the_way: in_the_way.clone() };
                 self.waits_to_appear.entry(name.clone()).or_insert_with(first).steps += 1;
+            }
+        }
+        values.remove("held_apart");
+        if let Some(at) = &statistics.held_apart {
+            self.held_apart_steps += 1;
+            if self.most_held_apart.as_ref().is_none_or(|most| at.excess > most.at.excess) {
+                self.most_held_apart = Some(HeldApartStep { step: statistics.step, at: at.clone() });
             }
         }
         if !statistics.solved {
@@ -249,6 +279,14 @@ impl Totals {
 
     pub fn waits_to_appear(&self) -> &BTreeMap<String, WaitToAppear> {
         &self.waits_to_appear
+    }
+
+    pub fn held_apart_steps(&self) -> usize {
+        self.held_apart_steps
+    }
+
+    pub fn most_held_apart(&self) -> Option<&HeldApartStep> {
+        self.most_held_apart.as_ref()
     }
 
     pub fn min_gap(&self) -> Option<f64> {
@@ -336,11 +374,8 @@ mod tests {
     #[test]
     fn the_first_unsolved_step_is_kept_and_all_are_counted() {
         let step = |step, residual_m, solved: bool| {
-            let unsolved = (!solved).then(|| Unsolved {
-                bodies: vec!["strip".to_owned(), "left".to_owned()],
-                place_m: [9.0; 3],
-                cause: None,
-            });
+            let unsolved = (!solved)
+                .then(|| Unsolved { bodies: vec!["strip".to_owned(), "left".to_owned()], place_m: [9.0; 3] });
             let tolerance_m = 0.1;
             StepStatistics { step, residual_m, tolerance_m, solved, unsolved, ..StepStatistics::default() }
         };

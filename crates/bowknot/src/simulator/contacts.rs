@@ -8,14 +8,17 @@
 use super::averaging::{ContactMean, Finds, FoundContacts, gap};
 use super::crowding::share_stiffness;
 use super::friction::{ContactForce, FrictionMemory, vertices as vertices_of};
+use super::held::HeldEdges;
+use super::held_apart::OverLimit;
 use super::rows::RowForces;
 use super::solved::SolvedVertices;
-use super::taut::{HeldApart, LimitedEdges};
+use super::taut::LimitedEdges;
 use bowknot_constraints::{Feature, FrictionModel};
 use bowknot_dynamics::{Dynamics, DynamicsModel, Held, RepulsionSpring, SpringKind, StepError, Touching};
 use bowknot_geometry::{PairKind, Point, Vector};
 use bowknot_scene::RepulsionParams;
 use bowknot_scene::world::World;
+use bowknot_twoway::lcp::DistanceLimit;
 use bowknot_twoway::{GUARDED_FLOOR, PairMultipliers, Resolver};
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
@@ -44,6 +47,8 @@ pub struct CarriedContacts {
     pub forces: Vec<ContactForce>,
     /// Those near rest.
     pub means: Vec<ContactMean>,
+    /// The edges that yield to prescribed vertices, with their limits [m].
+    pub yielding: Vec<DistanceLimit>,
 }
 
 /// The contacts in force.
@@ -60,6 +65,7 @@ pub(super) struct Contacts {
     memory: FrictionMemory,
     /// The edges that have a stretch limit.
     limited: LimitedEdges,
+    held: HeldEdges,
     /// Which vertices Newton's method solves together with their contacts.
     solved: SolvedVertices,
     /// Of these, the vertices whose forces the residual of a time step counts.
@@ -102,6 +108,7 @@ impl Contacts {
     /// the `resolver`. Contacts must be found anew.
     pub fn leave_out(&mut self, world: &World, resolver: &Resolver, asleep: &[bool]) {
         self.limited = LimitedEdges::new(resolver.scene(), world);
+        self.held = HeldEdges::default();
         self.solved = SolvedVertices::new(world, asleep);
         self.counted = self.solved.flags().to_vec();
         self.found = FoundContacts::default();
@@ -140,11 +147,15 @@ impl Contacts {
     /// Begins a time step at the positions `start`. It forgets the pairs of the last time step that are out
     /// of contact range, and finds the contacts from positions and what is carried alone, so that a resumed run finds
     /// the same.
-    pub fn begin_step(&mut self, resolver: &Resolver, start: &[Point], dt: f64) {
+    pub fn begin_step(&mut self, resolver: &Resolver, prescribed: &[bool], start: &[Point], dt: f64) {
+        let (rest, before) = (resolver.scene().rest(), &self.carried.yielding);
+        if self.held.begin_step(self.limited.edges(), [rest, start], prescribed, before) {
+            self.limited.set_limits(self.held.limits());
+        }
         self.touching = Touching::default();
         self.note_touching(resolver);
         self.solved.begin_step(&self.touching);
-        let CarriedContacts { forces, means } = &self.carried;
+        let CarriedContacts { forces, means, .. } = &self.carried;
         let vertices = resolver.state().x.len() as u32;
         let exists = |mean: &&ContactMean| mean.spring.vertices.iter().all(|&vertex| vertex < vertices);
         let is_known = |mean: &&ContactMean| exists(mean) && self.is_elastic(&mean.spring.vertices);
@@ -157,9 +168,21 @@ impl Contacts {
         self.find(resolver, start);
     }
 
-    /// Prescribed vertices that edges cannot reach, see [`LimitedEdges::held_apart`].
-    pub fn held_apart(&self, x: &[Point], prescribed: &[bool]) -> Option<HeldApart> {
-        self.limited.held_apart(x, prescribed)
+    /// Notes where the `prescribed` vertices are after a collision stage, `x` [m], see [`HeldEdges::go_on`].
+    pub fn note_held(&mut self, resolver: &Resolver, x: &[Point]) {
+        if self.held.go_on(resolver.scene().rest(), x) {
+            self.limited.set_limits(self.held.limits());
+        }
+    }
+
+    /// The edges that yield, see [`HeldEdges`], with their limits [m].
+    pub fn yielding(&self) -> &[DistanceLimit] {
+        self.limited.yielding()
+    }
+
+    /// What prescribed vertices ask for beyond the limits of edges.
+    pub fn over(&self) -> Option<OverLimit> {
+        self.held.over()
     }
 
     /// The component of a vertex; obstacles and vertices that do not exist have the same.
@@ -188,7 +211,7 @@ impl Contacts {
         self.pressing = forces.len();
         forces.extend(self.rows.forces(resolver, self.solved.flags()));
         let means = self.found.means(&self.finds, [start, &resolver.state().x]);
-        self.carried = CarriedContacts { forces, means };
+        self.carried = CarriedContacts { forces, means, yielding: self.limited.yielding().to_vec() };
     }
 
     /// Adds the pairs in contact range to [`Self::touching`], which joins components, and what holds them. Pairs within a

@@ -6,6 +6,7 @@ use bowknot_geometry::Point;
 use bowknot_scene::world::World;
 #[cfg(doc)]
 use bowknot_twoway::ResolveInput;
+use bowknot_twoway::lcp::DistanceLimit;
 use bowknot_twoway::{AcceptedState, Observer, PairMultipliers, Wait};
 use std::ops::ControlFlow;
 
@@ -32,6 +33,8 @@ pub struct CollisionProblem<'a> {
     pub known: &'a [bool],
     /// What pairs carry at the start, see [`ResolveInput::carried`].
     pub carried: &'a [PairMultipliers],
+    /// Edges with other limits than by the scene [m], see [`ResolveInput::yielding`].
+    pub yielding: &'a [DistanceLimit],
 }
 
 /// A state that the two-way method has accepted.

@@ -12,6 +12,7 @@ use super::contacts::{CarriedContacts, Contacts};
 use super::ends::Ends;
 use super::error::{SimulationError, describe_intersections};
 use super::finished::Finished;
+use super::held_apart::HeldApart;
 use super::inside;
 use super::interior::{self, Interior};
 use super::observer::{CollisionProblem, Iterated, Relay, SimulationObserver};
@@ -352,7 +353,7 @@ impl Simulator {
         let timer = Instant::now();
         dynamics.set_step_tolerance(tolerance.meters());
         dynamics.begin_step(start, velocities, *dt).map_err(target_error)?;
-        contacts.begin_step(resolver, start, *dt);
+        contacts.begin_step(resolver, prescribed, start, *dt);
         contacts.apply(dynamics).map_err(target_error)?;
         statistics.repulsion_springs = contacts.springs().len();
         statistics.seconds.dynamics += timer.elapsed().as_secs_f64();
@@ -397,6 +398,7 @@ impl Simulator {
                 groups,
                 known: contacts.known(count),
                 carried: contacts.row_multipliers(),
+                yielding: contacts.yielding(),
             };
             if observer.problem(&problem).is_break() {
                 return Err(SimulationError::Interrupted);
@@ -409,6 +411,7 @@ impl Simulator {
                 groups,
                 known: contacts.known(count),
                 carried: contacts.row_multipliers(),
+                yielding: contacts.yielding(),
                 max_steps: (!last).then_some(MAX_INTERMEDIATE_STEPS),
             };
             ends.note(world, prescribed, &x[..count]);
@@ -431,6 +434,7 @@ impl Simulator {
             let timer = Instant::now();
             let delta = resolver.scene().lengths().delta;
             ends.hold_back(world, prescribed, [start, &x[..count]], delta, resolved.converged);
+            contacts.note_held(resolver, x);
             contacts.note_touching(resolver);
             contacts.note_rows(resolver);
             contacts.find(resolver, start);
@@ -469,10 +473,8 @@ impl Simulator {
                 true => of_collisions().or_else(of_forces),
                 false => of_forces().or_else(of_collisions),
             };
-            if let Some(unsolved) = &mut statistics.unsolved {
-                unsolved.cause = search.cause(prescribed);
-            }
         }
+        statistics.held_apart = contacts.over().and_then(|over| HeldApart::new(world, &over));
         let judged = backend.judge(resolver.scene(), &x[..count]);
         judged.map_err(|source| backend_error(world, step, source))?;
         contacts.end_step(&forces, resolver, start);

@@ -1,5 +1,6 @@
 //! What a time step reports: one line of `stats.jsonl`.
 
+use super::held_apart::HeldApart;
 use super::unsolved::Unsolved;
 use super::waits::WaitingElements;
 use bowknot_dynamics::{Energies, NewtonInfo};
@@ -115,6 +116,9 @@ pub struct StepStatistics {
     /// Where forces are out of balance in a time step that is not solved.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unsolved: Option<Unsolved>,
+    /// The pins that held edges over their stretch limits at the end, if any did.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub held_apart: Option<HeldApart>,
     /// Tetrahedra without a positive volume at the end.
     #[serde(default)]
     pub inverted_tets: usize,

@@ -11,16 +11,16 @@ use bowknot_dynamics::{RepulsionSpring, SpringKind};
 use bowknot_geometry::{Point, Vector};
 use bowknot_scene::BodyKind;
 use bowknot_scene::world::World;
+use bowknot_twoway::lcp::DistanceLimit;
 use bowknot_twoway::{CollisionScene, GUARDED_STRETCH};
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 
 /// Share of its limit above which an edge counts as taut.
 const TAUT: f64 = 0.98;
 
 /// Way beyond its limit within which the force of an edge grows without bound [1], most of the way to its row. Larger:
 /// edges are longer. Smaller: the system is stiffer.
-const ROOM: f64 = 0.8 * (GUARDED_STRETCH - 1.0);
+pub(super) const ROOM: f64 = 0.8 * (GUARDED_STRETCH - 1.0);
 
 /// The part of the way that is left to an edge that starts far beyond its limit, so that it is pulled back gently.
 const LEFT: f64 = 0.3;
@@ -35,24 +35,12 @@ const MIN_EDGES: usize = 4096;
 /// The edges that have a stretch limit.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LimitedEdges {
-    edges: Vec<LimitedEdge>,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct LimitedEdge {
-    vertices: [u32; 2],
-    /// Largest length [m].
-    limit: f64,
-}
-
-/// Two prescribed vertices farther apart than the two edges between them may be long.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct HeldApart {
-    pub vertices: [u32; 2],
-    /// Their distance [m].
-    pub distance: f64,
-    /// What the limits of the edges allow [m].
-    pub allowed: f64,
+    /// By the scene.
+    edges: Vec<DistanceLimit>,
+    /// The limits in force [m].
+    limits: Vec<f64>,
+    /// The edges that have a larger limit in force, with it.
+    yielding: Vec<DistanceLimit>,
 }
 
 impl LimitedEdges {
@@ -71,31 +59,56 @@ impl LimitedEdges {
             // Bodies asleep are obstacles for the collision stage.
             let limits = matches!(kind, Some(BodyKind::Cloth | BodyKind::Strands))
                 && limit.is_finite()
+                && limit > 0.0
                 && !scene.model().is_obstacle(vertices[0]);
-            limits.then_some(LimitedEdge { vertices, limit })
+            limits.then_some(DistanceLimit { vertices, limit })
         };
-        Self { edges: scene.model().topology().edges.iter().filter_map(limited).collect() }
+        let edges: Vec<DistanceLimit> = scene.model().topology().edges.iter().filter_map(limited).collect();
+        Self { limits: edges.iter().map(|edge| edge.limit).collect(), edges, yielding: Vec::new() }
+    }
+
+    /// The edges with the limits of the scene [m].
+    pub fn edges(&self) -> &[DistanceLimit] {
+        &self.edges
+    }
+
+    /// Puts the larger limits of some edges, by index [m], in force in place of those before.
+    pub fn set_limits(&mut self, larger: impl Iterator<Item = (u32, f64)>) {
+        let Self { edges, limits, yielding } = self;
+        limits.clear();
+        limits.extend(edges.iter().map(|edge| edge.limit));
+        larger.for_each(|(k, limit)| limits[k as usize] = limits[k as usize].max(limit));
+        let yields = |(edge, &limit): (&DistanceLimit, &f64)| {
+            (limit > edge.limit).then_some(DistanceLimit { limit, ..*edge })
+        };
+        yielding.clear();
+        yielding.extend(edges.iter().zip(limits.iter()).filter_map(yields));
+    }
+
+    /// The edges that have a larger limit in force than by the scene, with it [m].
+    pub fn yielding(&self) -> &[DistanceLimit] {
+        &self.yielding
     }
 
     /// The edges that are nearly taut at `x`: each as a spring of the given `stiffness`. `start` are
     /// positions at the start of the time step.
     pub fn taut(&self, x: &[Point], start: &[Point], stiffness: f64) -> Vec<RepulsionSpring> {
         let length = |x: &[Point], [a, b]: [u32; 2]| x[a as usize] - x[b as usize];
-        let taut = |edge: &LimitedEdge| {
+        let taut = |(edge, &limit): (&DistanceLimit, &f64)| {
             let now = length(x, edge.vertices);
-            if now.norm_squared() < (TAUT * edge.limit).powi(2) {
+            if now.norm_squared() < (TAUT * limit).powi(2) {
                 return None;
             }
             let [a, b] = edge.vertices;
             let first = length(start, edge.vertices).norm();
-            let longest = longest(edge.limit, first);
+            let longest = longest(limit, first);
             Some(RepulsionSpring {
                 kind: SpringKind::Limit,
                 vertices: [a, b, a, a],
                 weights: [-1.0, 1.0, 0.0, 0.0],
                 normal: now.try_normalize(0.0)?,
                 offset: -longest,
-                reach: ROOM * edge.limit,
+                reach: ROOM * limit,
                 floor: 0.0,
                 start_gap: longest - first,
                 stiffness,
@@ -103,34 +116,7 @@ impl LimitedEdges {
                 friction_ratio: Vector::zeros(),
             })
         };
-        self.edges.par_iter().with_min_len(MIN_EDGES).filter_map(taut).collect()
-    }
-
-    /// The prescribed vertices that are farthest beyond what the edges between them allow, over one vertex that is free; none
-    /// if they allow all. The rows of such edges contradict each other.
-    pub fn held_apart(&self, x: &[Point], prescribed: &[bool]) -> Option<HeldApart> {
-        let is_held = |v: u32| prescribed[v as usize];
-        // The edges to prescribed vertices of each free vertex that has any.
-        let mut held: BTreeMap<u32, Vec<(u32, f64)>> = BTreeMap::new();
-        for &LimitedEdge { vertices: [a, b], limit } in &self.edges {
-            match (is_held(a), is_held(b)) {
-                (true, false) => held.entry(b).or_default().push((a, limit)),
-                (false, true) => held.entry(a).or_default().push((b, limit)),
-                _ => {}
-            }
-        }
-        let pairs = held.values().flat_map(|ends| {
-            let pair = move |k: usize| ends[..k].iter().map(move |other| (*other, ends[k]));
-            (1..ends.len()).flat_map(pair)
-        });
-        let apart = pairs.map(|((a, to_a), (b, to_b))| HeldApart {
-            vertices: [a, b],
-            distance: (x[a as usize] - x[b as usize]).norm(),
-            allowed: to_a + to_b,
-        });
-        let excess = |apart: &HeldApart| apart.distance / apart.allowed;
-        let beyond = apart.filter(|apart| excess(apart) > GUARDED_STRETCH);
-        beyond.max_by(|a, b| excess(a).total_cmp(&excess(b)))
+        self.edges.par_iter().zip(&self.limits).with_min_len(MIN_EDGES).filter_map(taut).collect()
     }
 }
 
@@ -146,19 +132,6 @@ fn longest(limit: f64, first: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn prescribed_vertices_beyond_what_edges_between_them_allow_are_found() {
-        let edge = |a: u32, b: u32| LimitedEdge { vertices: [a, b], limit: 1.05 };
-        // 0 - 1 - 2 - 3 - 4, where 0, 2 and 4 are held.
-        let edges = LimitedEdges { edges: vec![edge(0, 1), edge(2, 1), edge(2, 3), edge(3, 4)] };
-        let prescribed = [true, false, true, false, true];
-        let at = |x: [f64; 5]| edges.held_apart(&x.map(|x| Point::new(x, 0.0, 0.0)), &prescribed);
-        assert_eq!(at([0.0, 1.0, 2.0, 3.0, 4.12]), None);
-        let apart = at([0.0, 1.0, 2.15, 3.0, 4.4]).expect("both");
-        assert_eq!((apart.vertices, apart.allowed), ([2, 4], 2.1));
-        assert!((apart.distance - 2.25).abs() < 1e-12);
-    }
 
     #[test]
     fn edges_within_their_rows_have_one_wall_and_those_far_beyond_are_pulled_back_gently() {

@@ -1,7 +1,6 @@
 //! Where a time step that is not solved is out of balance, with the names of a scene.
 
 use super::contacts::Contacts;
-use super::taut::HeldApart;
 use super::waits::WaitingElements;
 use bowknot_constraints::Feature;
 use bowknot_geometry::{Point, Vector};
@@ -18,9 +17,6 @@ pub struct Unsolved {
     pub bodies: Vec<String>,
     /// Place [m]: the strongest contact between the two; without one the mean of the part's vertices.
     pub place_m: [f64; 3],
-    /// What no solution can meet, in words: the pins that hold vertices too far apart.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub cause: Option<String>,
 }
 
 impl Unsolved {
@@ -72,12 +68,11 @@ impl Search<'_> {
         let most = pressing.into_values().reduce(|a, b| if b.sum > a.sum { b } else { a });
         match most {
             Some(Pressing { name, place, .. }) => {
-                Unsolved { bodies: vec![own, name], place_m: place.coords.into(), cause: None }
+                Unsolved { bodies: vec![own, name], place_m: place.coords.into() }
             }
             None => Unsolved {
                 bodies: vec![own],
                 place_m: self.mean(body, |v| contacts.component(v) == component),
-                cause: None,
             },
         }
     }
@@ -85,27 +80,11 @@ impl Search<'_> {
     /// What the collision stage waits for: the first of the `waits`, or the slowest body; none if neither is known.
     pub fn of_collisions(&self, waits: &[WaitingElements], slowest_body: Option<u32>) -> Option<Unsolved> {
         if let Some(wait) = waits.first() {
-            return Some(Unsolved { bodies: wait.bodies.clone(), place_m: wait.place_m, cause: None });
+            return Some(Unsolved { bodies: wait.bodies.clone(), place_m: wait.place_m });
         }
         let body = slowest_body?;
         let bodies = vec![self.world.name_of(body).to_owned()];
-        Some(Unsolved { bodies, place_m: self.mean(body, |_| true), cause: None })
-    }
-
-    /// Which vertices are held too far apart, in words, if any of the `prescribed` ones are.
-    pub fn cause(&self, prescribed: &[bool]) -> Option<String> {
-        let HeldApart { vertices: [a, b], distance, allowed } =
-            self.contacts.held_apart(self.positions, prescribed)?;
-        let body = self.body_of(a)?;
-        let number = |v: u32| self.world.bodies[body as usize].mesh_number(v);
-        Some(format!(
-            "vertices {} and {} of {} are held {:.1} mm apart, its edges allow {:.1} mm",
-            number(a),
-            number(b),
-            self.world.name_of(body),
-            1e3 * distance,
-            1e3 * allowed
-        ))
+        Some(Unsolved { bodies, place_m: self.mean(body, |_| true) })
     }
 
     /// The bodies and half-spaces that press on a component, by index; half-spaces count down from `u32::MAX`.
@@ -177,7 +156,7 @@ mod tests {
     fn a_line_names_the_bodies_and_the_place() {
         let short = |bodies: &[&str]| {
             let bodies = bodies.iter().map(|name| (*name).to_owned()).collect();
-            Unsolved { bodies, place_m: [0.1, -0.2, 0.0304], cause: None }.short()
+            Unsolved { bodies, place_m: [0.1, -0.2, 0.0304] }.short()
         };
         assert_eq!(short(&["strip", "left"]), "strip and left at (0.100, -0.200, 0.030)");
         assert_eq!(short(&["strip", "strip"]), "strip and itself at (0.100, -0.200, 0.030)");

@@ -32,7 +32,8 @@ fn sag(text: &str) -> Vector {
 #[test]
 fn thin_blocks_bend_as_beams_do() {
     // q L^4 / (8 EI) + 1.2 q L^2 / (2 G A), less 2.5 % for a deflection of a twelfth of the length.
-    let theory = 0.975 * 9.81 * 300.0 * (0.2f64.powi(4) * 1.5 / (1e6 * 0.02 * 0.02) + 1.2 * 0.04 * 1.45 / 1e6);
+    let theory =
+        0.975 * 9.81 * 300.0 * (0.2f64.powi(4) * 1.5 / (1e6 * 0.02 * 0.02) + 1.2 * 0.04 * 1.45 / 1e6);
     for (edge, least) in [(0.02, 0.86), (0.01, 0.93)] {
         let end = sag(&cantilever(0.02, edge, ""));
         let share = -end.z / theory;
@@ -63,7 +64,8 @@ fn row_of_cubes(count: usize) -> String {
     let mut text = format!("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n", 4 * (count + 1));
     for k in 0..4 * (count + 1) {
         let (x, y, z) = corner(k);
-        writeln!(text, "{} {} {} {}", k + 1, 0.02 * x as f64, 0.02 * y as f64, 0.02 * z as f64).expect("memory");
+        writeln!(text, "{} {} {} {}", k + 1, 0.02 * x as f64, 0.02 * y as f64, 0.02 * z as f64)
+            .expect("memory");
     }
     write!(text, "$EndNodes\n$Elements\n{}\n", 6 * count).expect("memory");
     for cube in 0..count {
@@ -92,8 +94,11 @@ fn a_thin_mesh_is_named_and_keeps_its_vertices() {
     let plain = world("");
     assert_eq!((plain.positions.len(), plain.bodies[0].quadratic_tets.len()), (36, 0));
     assert!(
-        plain.warnings.iter().any(|w| w.contains("body row: it is 1.0 tetrahedra thick")
-            && w.contains("elements = \"quadratic\"")),
+        plain
+            .warnings
+            .iter()
+            .any(|w| w.contains("body row: it is 1.0 tetrahedra thick")
+                && w.contains("elements = \"quadratic\"")),
         "{:?}",
         plain.warnings
     );
@@ -116,6 +121,7 @@ fn a_thin_mesh_is_named_and_keeps_its_vertices() {
 
 #[test]
 fn elements_of_what_is_no_solid_have_no_effect() {
-    let world = World::new(&scene("[[body]]\nelements = \"quadratic\"\nshape = \"sheet\"\n")).expect("a world");
+    let world =
+        World::new(&scene("[[body]]\nelements = \"quadratic\"\nshape = \"sheet\"\n")).expect("a world");
     assert!(world.warnings[0].contains("body[0].elements has no effect"), "{:?}", world.warnings);
 }

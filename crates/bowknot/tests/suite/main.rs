@@ -18,6 +18,8 @@ mod fabrics;
 mod figure;
 /// The same bits on every machine, on any number of threads.
 mod golden;
+/// Pins that hold edges over their stretch limits.
+mod held_apart;
 /// Numbers far out of range at every key of a scene.
 mod hostile;
 /// Sets of defaults: what `quick` saves, and that nothing intersects.

@@ -29,7 +29,7 @@ fn sweep(edges: &[[u32; 2]], vertices: u32) {
     let moves = |v: u32| !v.is_multiple_of(7);
     let divided = Edges::new(edges, &lengths, &points, moves);
     let grid = Grid::around(&points, 20.0, 1e-3).expect("a grid");
-    let limits = divided.limits(&grid);
+    let limits = divided.limits(&grid, &[]);
     let positions = snapped(&grid, &points).expect("on the grid");
     let weights: Vec<[f32; 4]> =
         (0..vertices).map(|v| [0.0, 0.0, 0.0, if moves(v) { 0.5 + random.f32() } else { 0.0 }]).collect();

@@ -3,6 +3,7 @@
 use crate::recording::filters;
 use crate::recording::states::States;
 use bowknot_geometry::Point;
+use bowknot_twoway::lcp::DistanceLimit;
 use bowknot_twoway::{ContactSide, PairFriction};
 use std::collections::BTreeSet;
 
@@ -81,6 +82,10 @@ impl States {
                 friction: pair.friction,
             })
         };
+        let kept_edge = |edge: &DistanceLimit| {
+            let renamed = edge.vertices.map(|v| vertex.get(v as usize).copied().unwrap_or(DROPPED));
+            (!renamed.contains(&DROPPED)).then_some(DistanceLimit { vertices: renamed, limit: edge.limit })
+        };
         Self {
             x: pick(&self.x, &vertices),
             y: pick(&self.y, &vertices),
@@ -102,6 +107,7 @@ impl States {
             known: pick(&self.known, &vertices),
             // Elements have other numbers in a part.
             carried: Vec::new(),
+            yielding: self.yielding.iter().filter_map(kept_edge).collect(),
             filters: filters::kept(pick(&self.filters, &old_bodies)),
         }
     }
