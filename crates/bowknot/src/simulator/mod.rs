@@ -12,6 +12,7 @@ mod error;
 mod friction;
 mod inside;
 mod interior;
+mod near_starts;
 mod observer;
 mod overlap;
 mod prescribed;
@@ -36,6 +37,7 @@ pub use checkpoint::Checkpoint;
 pub use contacts::CarriedContacts;
 pub use error::{SimulationError, describe_intersections};
 pub use friction::ContactForce;
+pub use near_starts::NearStart;
 pub use observer::{AcceptedStep, CollisionProblem, Iterated, SimulationObserver};
 pub use process::{cpu_seconds, peak_memory_bytes};
 #[cfg(feature = "gpu")]
