@@ -254,18 +254,21 @@ pub struct FrameRange {
 
 #[derive(Debug, Args)]
 pub struct RepairOptions {
-    /// A mesh of triangles and strands (.obj, .ply, .msh)
+    /// A mesh of triangles and strands, or of tetrahedra (.obj, .ply, .msh, .t)
     pub mesh: PathBuf,
-    /// File for the repaired mesh (.obj, .ply)
+    /// File for the repaired mesh (.obj, .ply; of tetrahedra .msh, .t)
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
-    /// Weld border vertices nearer than this [unit of the mesh file; default: a hundredth of the mean length of
-    /// border edges]
+    /// Weld border vertices, or any of tetrahedra, nearer than this [unit of the mesh file; default: a hundredth
+    /// of the mean length of border edges, a ten-thousandth of the mean edge of tetrahedra]
     #[arg(long, value_name = "D", value_parser = positive)]
     pub weld_distance: Option<f64>,
     /// Drop all lines, such as leftovers and those along which other programs sew
     #[arg(long)]
     pub drop_lines: bool,
+    /// Drop all triangles of a mesh of tetrahedra
+    #[arg(long)]
+    pub drop_triangles: bool,
     /// Print JSON
     #[arg(long)]
     pub json: bool,

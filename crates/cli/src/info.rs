@@ -2,10 +2,11 @@
 
 use crate::args::InfoOptions;
 use crate::exit::{Exit, Failure};
-use crate::{archive, bare_mesh, gpu, output};
+use crate::{archive, bare_mesh, gpu, near_starts, output};
 use bowknot::geometry::{MeshEdge, MeshProblem, MeshStructure, Point, check_mesh};
 use bowknot::io::{Import, Mesh, read_mesh};
-use bowknot::{Scene, SceneInfo, World};
+use bowknot::simulator::NearStart;
+use bowknot::{Scene, SceneInfo, SimulationError, Simulator, World};
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -24,6 +25,9 @@ struct Info {
     /// A mesh has none.
     time_step: Option<f64>,
     extent: [f64; 3],
+    /// Of a scene alone: only there contact distances are known.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    near_starts: Vec<NearStart>,
     #[serde(skip)]
     has_unit: bool,
     /// A scene has none.
@@ -55,7 +59,7 @@ pub fn info(options: &InfoOptions) -> Result<Exit, Failure> {
         return Err(Failure::input("--up and --scale apply to meshes"));
     } else {
         let sets: [&str; 0] = [];
-        info_of_scene(Scene::open(name, None, &sets).and_then(|scene| scene.info()).map_err(Failure::input)?)
+        info_of_scene(&Scene::open(name, None, &sets).map_err(Failure::input)?)?
     };
     if options.json {
         output::print_json(&info)?;
@@ -65,7 +69,17 @@ pub fn info(options: &InfoOptions) -> Result<Exit, Failure> {
     Ok(Exit::Success)
 }
 
-fn info_of_scene(info: SceneInfo) -> Info {
+fn info_of_scene(scene: &Scene) -> Result<Info, Failure> {
+    let (info, near_starts) = match Simulator::new(scene) {
+        Ok(simulator) => (simulator.world().info(scene.simulation.dt), simulator.near_starts()),
+        // `run` and `check` say what is wrong with the start.
+        Err(SimulationError::StartIntersects { .. }) => (scene.info().map_err(Failure::input)?, Vec::new()),
+        Err(error) => return Err(Failure::input(error)),
+    };
+    Ok(of_counts(info, near_starts))
+}
+
+fn of_counts(info: SceneInfo, near_starts: Vec<NearStart>) -> Info {
     Info {
         vertices: info.vertices,
         edges: info.edges,
@@ -77,6 +91,7 @@ fn info_of_scene(info: SceneInfo) -> Info {
         obstacle_vertices: info.obstacle_vertices,
         time_step: Some(info.time_step),
         extent: info.extent,
+        near_starts,
         has_unit: true,
         surface: None,
     }
@@ -128,6 +143,7 @@ fn info_of_mesh(mesh: Mesh, problems: Vec<String>) -> Info {
         obstacle_vertices,
         time_step: None,
         extent: extent(&mesh.positions),
+        near_starts: Vec::new(),
         has_unit: false,
         surface: Some(Surface { structure: MeshStructure::new(&mesh.positions, &mesh.triangles), problems }),
     }
@@ -172,6 +188,7 @@ fn to_text(name: &str, info: &Info, list: usize) -> String {
     // Nothing tells the unit of a mesh file.
     let unit = if info.has_unit { "m" } else { "(units of the file)" };
     line("extent", format!("{x:.4} x {y:.4} x {z:.4} {unit}"));
+    lines.extend(near_starts::line(&info.near_starts).map(|text| format!("  {text}")));
     if let Some(surface) = &info.surface {
         lines.extend(surface_lines(surface, list));
     }

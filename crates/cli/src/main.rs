@@ -16,6 +16,7 @@ mod fault;
 mod gpu;
 mod info;
 mod interrupt;
+mod near_starts;
 mod output;
 mod progress;
 #[cfg(feature = "render")]

@@ -6,7 +6,7 @@ use crate::exit::{Exit, Failure};
 use crate::fault;
 use crate::interrupt::Interrupt;
 use crate::progress::Bar;
-use crate::{bare_mesh, failure_dump, gpu, output, setup};
+use crate::{bare_mesh, failure_dump, gpu, near_starts, output, setup};
 use bowknot::check::{Judge, StateReport};
 use bowknot::run::{FailureWatch, HeldApartStep, Outcome, Progress, Summary};
 use bowknot::scene::SimulationParams;
@@ -51,6 +51,7 @@ pub fn simulate(options: &RunOptions) -> Result<Exit, Failure> {
         let bar = bar.get_or_insert_with(|| {
             if !options.quiet && !options.json {
                 print_sizes(progress.world);
+                near_starts::line(progress.near_starts).iter().for_each(|line| eprintln!("note: {line}"));
                 computed_by.why.iter().for_each(|why| eprintln!("--backend auto: {why}"));
                 places(&computed_by.collisions, &computed_by.dynamics)
                     .iter()

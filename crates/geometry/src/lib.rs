@@ -30,6 +30,7 @@ mod mesh_structure;
 pub mod pair;
 mod point;
 pub mod separation;
+pub mod tet_check;
 pub mod topology;
 mod union_find;
 mod vertex_range;
@@ -51,6 +52,7 @@ pub use mesh_structure::{MeshBorder, MeshEdge, MeshPart, MeshStructure};
 pub use pair::PairKind;
 pub use point::{Point, Vector};
 pub use separation::Separation;
+pub use tet_check::{SharedSide, TetFaults, check_tets};
 pub use topology::{
     Components, EdgeTriangles, Topology, TopologyBuilder, TopologyError, boundary_triangles, check_elements,
     divide_tetrahedron,

@@ -36,6 +36,8 @@ pub struct MeshView<'a> {
     pub positions: &'a [Point],
     /// Triangles.
     pub triangles: &'a [[u32; 3]],
+    /// Tetrahedra. Only Gmsh files and lists of tetrahedra hold them.
+    pub tets: &'a [[u32; 4]],
     /// Quadrilaterals, such as those that stand for half-spaces.
     pub quads: &'a [[u32; 4]],
     /// Strand edges.
@@ -59,6 +61,7 @@ impl Mesh {
         MeshView {
             positions: &self.positions,
             triangles: &self.triangles,
+            tets: &self.tets,
             quads: &[],
             strands: &self.strands,
             particles: &self.particles,

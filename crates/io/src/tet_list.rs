@@ -1,13 +1,15 @@
 //! Lists of tetrahedra, `.t`: lines `Vertex NUMBER x y z` and `Tet NUMBER a b c d`, as MeshLib and its users
 //! write.
 
+use crate::atomic::write_atomic;
 use crate::error::{IoError, Place};
 use crate::import::{Import, without_mark};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, MeshView};
 use crate::numbering::Numbering;
 use bowknot_errors::Parameters;
 use bowknot_errors::counted;
 use std::fs;
+use std::io::Write;
 use std::path::Path;
 
 /// Reads a list of tetrahedra. `Vertex` lines may have any numbers, which `Tet` lines and `Face` lines (three
@@ -31,6 +33,26 @@ pub fn read_tet_list(path: &Path, import: &Import) -> Result<Mesh, IoError> {
         );
     }
     Ok(mesh)
+}
+
+/// Writes vertices, tetrahedra and triangles as a list, atomically; coordinates round-trip exactly. Vertices are numbered from
+/// 0. Lines and points are not written.
+///
+/// # Errors
+/// The system's refusal, with the path.
+pub fn write_tet_list(path: &Path, mesh: &MeshView<'_>) -> Result<(), IoError> {
+    write_atomic(path, |out| {
+        for (number, p) in mesh.positions.iter().enumerate() {
+            writeln!(out, "Vertex {number} {:?} {:?} {:?}", p.x, p.y, p.z)?;
+        }
+        for (number, [a, b, c, d]) in mesh.tets.iter().enumerate() {
+            writeln!(out, "Tet {number} {a} {b} {c} {d}")?;
+        }
+        for (number, [a, b, c]) in mesh.triangles.iter().enumerate() {
+            writeln!(out, "Face {number} {a} {b} {c}")?;
+        }
+        Ok(())
+    })
 }
 
 /// The mesh, and how many lines were skipped.

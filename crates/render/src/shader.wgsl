@@ -15,6 +15,9 @@ struct Light {
     direction: vec4<f32>,
     // Linear light; w: unused.
     radiance: vec4<f32>,
+    // Tangents of angles along right and up of its map: xy: from its direction to the middle of its part; z: radius of
+    // the part; w: unused.
+    part: vec4<f32>,
 }
 
 struct Scene {
@@ -25,8 +28,12 @@ struct Scene {
     open_sky: vec4<f32>,
     // Center and radius of a ball that contains all casters of shadows.
     bound: vec4<f32>,
-    // Number of lights; width of a texel of the shadow maps [m] as the bits of an f32; 0; 0.
+    // Number of lights; width of a texel of the shadow maps [m] as the bits of an f32; number of key lights, which
+    // come first, plus 256 times the points of each that are looked up in penumbras; 1 if
+    // pixels are reduced four at a time.
     counts: vec4<u32>,
+    // Points spread evenly over a disc; z, w: unused.
+    disc: array<vec4<f32>, 16>,
     palette: array<vec4<f32>, 256>,
     lights: array<Light, 96>,
 }
@@ -40,6 +47,9 @@ struct Scene {
 const AMBIENT: f32 = 0.05;
 const BOUNCE: f32 = 0.16;
 
+// Distance from which on casters count as no farther, in sides of the shadow maps.
+const FARTHEST: f32 = 8.0;
+
 // Light at a point: the irradiance, and the visible share and mean direction of the key light.
 struct Received {
     diffuse: vec3<f32>,
@@ -47,37 +57,166 @@ struct Received {
     key_direction: vec3<f32>,
 }
 
-fn received(point: vec3<f32>, normal: vec3<f32>) -> Received {
+// Where a point with this normal is looked up in the shadow map of a light: offset from the surface by some
+// texels, more at grazing angles, so that it does not shade itself. Coordinates and depth share one unit.
+fn place_in_map(k: u32, point: vec3<f32>, normal: vec3<f32>, cosine: f32) -> vec3<f32> {
     let texel = bitcast<f32>(scene.counts.y);
+    let start = point + normal * (texel * (1.0 + 1.5 * (1.0 - cosine))) + scene.lights[k].direction.xyz * texel;
+    return (scene.lights[k].matrix * vec4<f32>(start, 1.0)).xyz;
+}
+
+// How far the nearest caster in a shadow map lies before a place in it, 0 if none does.
+fn caster(k: u32, at: vec3<f32>) -> f32 {
+    if any(at.xy <= vec2<f32>(0.0)) || any(at.xy >= vec2<f32>(1.0)) {
+        return 0.0;
+    }
+    let side = vec2<f32>(textureDimensions(shadows));
+    let depth = textureLoad(shadows, vec2<u32>(at.xy * side), k, 0);
+    // Only ground lies beyond the depth of the map; casters in the map may shade it.
+    return select(0.0, at.z - depth, depth < min(at.z, 1.0));
+}
+
+// The share of the part of a light in the direction `offset` from its middle [tangents of angles] that is seen
+// past casters at the distance `way`. What is much nearer the receiver does not count: it would shade itself.
+fn seen_past(k: u32, at: vec3<f32>, offset: vec2<f32>, way: f32) -> f32 {
+    let place = at.xy + offset * way * vec2<f32>(1.0, -1.0);
+    return textureSampleCompareLevel(shadows, shadow_sampler, place, k, clamp(at.z - 0.5 * way, 0.0, 1.0));
+}
+
+// The light of the sky where each light casts a hard edge.
+fn hard_sky(point: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     var sum = vec3<f32>(0.0);
-    var key_seen = 0.0;
-    var key_count = 0.0;
-    var key_direction = vec3<f32>(0.0);
-    for (var k = 0u; k < scene.counts.x; k++) {
-        let direction = scene.lights[k].direction;
-        let cosine = dot(normal, direction.xyz);
-        key_count += direction.w;
-        key_direction += direction.w * direction.xyz;
+    for (var k = scene.counts.z & 0xffu; k < scene.counts.x; k++) {
+        let cosine = dot(normal, scene.lights[k].direction.xyz);
         if cosine > 0.0 {
-            // Offset from the surface by some texels, more at grazing angles, so that it does not shade
-            // itself.
-            let start = point + normal * (texel * (1.0 + 1.5 * (1.0 - cosine))) + direction.xyz * texel;
-            let at = (scene.lights[k].matrix * vec4<f32>(start, 1.0)).xyz;
+            let at = place_in_map(k, point, normal, cosine);
             var seen = 1.0;
             if all(at.xy > vec2<f32>(0.0)) && all(at.xy < vec2<f32>(1.0)) {
-                // Only ground lies beyond the depth of the map; casters in the map may shade it.
-                seen = textureSampleCompareLevel(shadows, shadow_sampler, at.xy, k, clamp(at.z, 0.0, 1.0));
+                seen = seen_past(k, at, vec2<f32>(0.0), 0.0);
             }
             sum += scene.lights[k].radiance.rgb * (cosine * seen);
-            key_seen += direction.w * seen;
         }
     }
-    return Received(sum, key_seen / max(key_count, 1.0), normalize(key_direction + vec3<f32>(0.0, 0.0, 1e-6)));
+    return sum;
+}
+
+// The light of the sky where pixels are reduced four at a time: each takes a quarter of the lights, and has time
+// to look around in their maps.
+fn soft_sky(point: vec3<f32>, normal: vec3<f32>, phase: u32) -> vec3<f32> {
+    let side = f32(textureDimensions(shadows).x);
+    let first = (scene.counts.z & 0xffu) + phase;
+    var before = 0.0;
+    var stopped = 0.0;
+    var height = 0.0;
+    var sum = vec3<f32>(0.0);
+    for (var k = first; k < scene.counts.x; k += 4u) {
+        let cosine = dot(normal, scene.lights[k].direction.xyz);
+        if cosine > 0.0 {
+            let way = caster(k, place_in_map(k, point, normal, cosine));
+            before += 1.0;
+            stopped += f32(way > 0.0);
+            height += way * cosine;
+            sum += scene.lights[k].radiance.rgb * (4.0 * cosine);
+        }
+    }
+    if stopped == 0.0 || stopped == before {
+        return select(sum, vec3<f32>(0.0), stopped > 0.0);
+    }
+    height /= stopped;
+    sum = vec3<f32>(0.0);
+    for (var k = first; k < scene.counts.x; k += 4u) {
+        let cosine = dot(normal, scene.lights[k].direction.xyz);
+        if cosine > 0.0 {
+            let at = place_in_map(k, point, normal, cosine);
+            let way = min(height / cosine, FARTHEST);
+            let own = caster(k, at);
+            var seen = f32(own == 0.0);
+            // What lies much nearer casts its own edge.
+            if own == 0.0 || own >= 0.5 * way {
+                let radius = max(scene.lights[k].part.z, 0.75 / (side * max(way, 1e-6)));
+                for (var tap = 0u; tap < 3u; tap++) {
+                    seen += seen_past(k, at, radius * scene.disc[(5u * tap + 4u * phase + 3u * k) % 16u].xy, way);
+                }
+                seen /= 4.0;
+            }
+            sum += scene.lights[k].radiance.rgb * (4.0 * cosine * seen);
+        }
+    }
+    return sum;
+}
+
+// Each small light stands for a part of the key light or of the sky. Its shadow map tells what blocks its
+// middle. Alone it would cast a hard edge, and the edges of all lights bands, the wider the farther the caster.
+// So in penumbras the rest of its part is looked up in the same map, at the distance that casters have in the
+// mean (percentage-closer soft shadows; Fernando 2005).
+fn received(point: vec3<f32>, normal: vec3<f32>, pixel: vec2<f32>) -> Received {
+    let side = f32(textureDimensions(shadows).x);
+    // Pixels of a square of four look up other points, which reduction or the eye averages.
+    let phase = u32(pixel.x) % 2u + 2u * (u32(pixel.y) % 2u);
+    let keys = scene.counts.z & 0xffu;
+    var sum = vec3<f32>(0.0);
+
+    // The key light: how many of its lights the point faces and what blocks how many of them, at which height
+    // above the plane through the point.
+    var key_direction = vec3<f32>(0.0);
+    var before = 0.0;
+    var stopped = 0.0;
+    var height = 0.0;
+    for (var k = 0u; k < keys; k++) {
+        let direction = scene.lights[k].direction.xyz;
+        let cosine = dot(normal, direction);
+        key_direction += direction;
+        if cosine > 0.0 {
+            let way = caster(k, place_in_map(k, point, normal, cosine));
+            before += 1.0;
+            stopped += f32(way > 0.0);
+            height += way * cosine;
+            sum += scene.lights[k].radiance.rgb * cosine;
+        }
+    }
+    var key_seen = before - stopped;
+    if stopped == before {
+        sum = vec3<f32>(0.0);
+    } else if stopped > 0.0 {
+        sum = vec3<f32>(0.0);
+        key_seen = 0.0;
+        height /= stopped;
+        let taps = scene.counts.z >> 8u;
+        for (var k = 0u; k < keys; k++) {
+            let cosine = dot(normal, scene.lights[k].direction.xyz);
+            if cosine <= 0.0 {
+                continue;
+            }
+            let at = place_in_map(k, point, normal, cosine);
+            let way = min(height / cosine, FARTHEST);
+            let own = caster(k, at);
+            // What lies much nearer casts its own edge.
+            if own > 0.0 && own < 0.5 * way {
+                continue;
+            }
+            let radius = max(scene.lights[k].part.z, 0.75 / (side * max(way, 1e-6)));
+            var seen = 0.0;
+            for (var tap = 0u; tap < taps; tap++) {
+                let offset =
+                    scene.lights[k].part.xy + radius * scene.disc[(4u * tap + phase + 3u * k) % 16u].xy;
+                seen += seen_past(k, at, offset, way);
+            }
+            seen /= f32(taps);
+            sum += scene.lights[k].radiance.rgb * (cosine * seen);
+            key_seen += seen;
+        }
+    }
+    if scene.counts.w == 0u {
+        sum += hard_sky(point, normal);
+    } else {
+        sum += soft_sky(point, normal, phase);
+    }
+    return Received(sum, key_seen / max(f32(keys), 1.0), normalize(key_direction + vec3<f32>(0.0, 0.0, 1e-6)));
 }
 
 // Light that a surface of this color sends to the eye.
-fn shade(color: vec3<f32>, point: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
-    let light = received(point, normal);
+fn shade(color: vec3<f32>, point: vec3<f32>, normal: vec3<f32>, pixel: vec2<f32>) -> vec3<f32> {
+    let light = received(point, normal, pixel);
     let ambient = AMBIENT + BOUNCE * (0.5 - 0.5 * normal.z);
     var out = color * (light.diffuse + ambient);
     // A weak highlight (Blinn, 1977) shows the shape.
@@ -138,7 +277,7 @@ fn surface_fragment(in: SurfaceOut, @builtin(front_facing) front: bool) -> @loca
         let gray = vec3<f32>(dot(own, vec3<f32>(0.2126, 0.7152, 0.0722)));
         own = mix(own, mix(own, gray, 0.35) * 0.55 + 0.3, in.color.a);
     }
-    return vec4<f32>(shade(colored(in.value, own), in.point, normal), 1.0);
+    return vec4<f32>(shade(colored(in.value, own), in.point, normal, in.position.xy), 1.0);
 }
 
 // ---- balls: squares that face the viewer; each fragment intersects its ray with the ball
@@ -222,7 +361,7 @@ fn ball_fragment(in: BallOut) -> BallPixel {
         discard;
     }
     let normal = normalize(hit.xyz - in.ball.xyz);
-    return BallPixel(vec4<f32>(shade(in.color.rgb, hit.xyz, normal), coverage), clip.z / clip.w);
+    return BallPixel(vec4<f32>(shade(in.color.rgb, hit.xyz, normal, in.position.xy), coverage), clip.z / clip.w);
 }
 
 @fragment
@@ -256,7 +395,7 @@ fn backdrop_fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec
 // and no horizon. Ground that is not level is darker as far as it faces away from the light.
 @fragment
 fn ground_fragment(in: SurfaceOut) -> @location(0) vec4<f32> {
-    let light = received(in.point, normalize(in.normal)).diffuse;
+    let light = received(in.point, normalize(in.normal), in.position.xy).diffuse;
     let share = (light + AMBIENT) / (scene.open_sky.rgb + AMBIENT);
     let distance = length(in.point - scene.bound.xyz) / scene.bound.w;
     let fade = 1.0 - smoothstep(2.5, 6.0, distance);

@@ -9,7 +9,8 @@ use bowknot_render::geometry::{HalfSpace, Point, Vector};
 use bowknot_render::{Camera, Elements, Frame, Model, Picture, Quality, RenderError, Renderer, Shot, Style};
 
 /// Quick, and fine enough for what is looked at.
-const QUALITY: Quality = Quality { key_lights: 8, sky_lights: 24, shadow_map: 512, supersampling: 1 };
+const QUALITY: Quality =
+    Quality { key_lights: 8, sky_lights: 24, penumbra_taps: 4, shadow_map: 512, supersampling: 1 };
 const SIZE: [u32; 2] = [160, 120];
 const STYLE: Style = Style { strand_radius: 0.16, particle_radius: 0.25 };
 
@@ -101,6 +102,40 @@ fn a_sheet_stands_where_it_is_and_throws_a_soft_shadow() {
     // Shadow darkens but tints little.
     let [x, y] = at(Point::new(0.5, 0.2, -0.5));
     assert!(tint(with.at(x, y)) < 25);
+}
+
+/// The shadow of a sheet two sides above the ground: along a row through its penumbra the light grows without
+/// steps.
+#[test]
+fn the_penumbra_of_a_far_caster_has_no_bands() {
+    let Some(_) = renderer() else { return };
+    let (points, triangles) = square(1.5);
+    let elements = Elements { triangles: &triangles, ..Elements::default() };
+    // The middle of the shadow lies there, see the key light.
+    let target = Point::new(1.5, 1.0, -0.5);
+    let camera = Camera { eye: target + (camera().eye - Point::origin()), target, fov: 30.0 };
+    let shot = Shot { camera, ..Shot { size: [320, 240], ..shot() } };
+    let fine = Quality { shadow_map: 512, ..Quality::FINE };
+    for (quality, steepest, sharpest) in [(Quality::FAST, 0.11, 0.08), (fine, 0.09, 0.03)] {
+        let mut renderer = Renderer::new(quality).unwrap();
+        let picture = draw(&mut renderer, &elements, &points, &shot);
+        // Means over squares of two pixels, as the eye sees them; from the middle of the shadow to the right.
+        let mean = |k: u32| {
+            let square = [[0, 0], [1, 0], [0, 1], [1, 1]];
+            square.iter().map(|[i, j]| light(picture.at(160 + 2 * k + i, 120 + j))).sum::<f64>() / 4.0
+        };
+        let across: Vec<f64> = (0..50).map(mean).collect();
+        let depth = across[49] - across[0];
+        assert!(depth > 40.0, "there is no shadow: {across:?}");
+        for pair in across.windows(2) {
+            let step = (pair[1] - pair[0]) / depth;
+            // The penumbra is some 20 squares wide: 0.05 each, and twice that in its middle.
+            assert!(step > -0.03 && step < steepest, "a step of {step} at {}: {across:?}", pair[0]);
+        }
+        // Bands are flat with steps between them: there the light grows by turns.
+        let bend = across.windows(3).map(|w| (w[2] - 2.0 * w[1] + w[0]).abs() / depth).fold(0.0, f64::max);
+        assert!(bend < sharpest, "a bend of {bend}: {across:?}");
+    }
 }
 
 #[test]

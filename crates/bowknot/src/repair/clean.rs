@@ -1,7 +1,7 @@
 //! Elements that stand for nothing.
 
-use super::{RepairReport, droppable};
-use bowknot_geometry::MeshProblem;
+use super::report::RepairReport;
+use bowknot_geometry::{MeshProblem, check_mesh};
 use bowknot_io::Mesh;
 
 /// Drops triangles without area or given twice, and strand edges likewise. The first of each stays where it
@@ -36,4 +36,11 @@ pub(super) fn drop_bad_elements(mesh: &mut Mesh, report: &mut RepairReport) {
     kept.sort_unstable();
     mesh.strands = kept.into_iter().map(|e| mesh.strands[e]).collect();
     report.dropped_strands += before - mesh.strands.len();
+}
+
+/// The problems of the triangles that dropping them cures.
+fn droppable(mesh: &Mesh) -> Vec<MeshProblem> {
+    let mut problems = check_mesh(&mesh.positions, &mesh.triangles);
+    problems.retain(|p| matches!(p, MeshProblem::ZeroArea { .. } | MeshProblem::RepeatedTriangle { .. }));
+    problems
 }

@@ -1,6 +1,7 @@
 //! T-seams: a vertex of one panel on an edge of another.
 
-use super::{RepairReport, border_edges, border_vertices};
+use super::borders::{border_edges, border_vertices};
+use super::report::RepairReport;
 use bowknot_geometry::{Point, distance};
 use bowknot_io::{EdgeSplit, Mesh};
 
@@ -75,11 +76,11 @@ struct Split {
 /// At most one split a triangle: a second border edge of it waits for the next round.
 fn splits(mesh: &Mesh, distance: f64) -> Vec<Split> {
     let mut vertices: Vec<(u32, Point)> =
-        border_vertices(mesh).into_iter().map(|v| (v, mesh.positions[v as usize])).collect();
+        border_vertices(&mesh.triangles).into_iter().map(|v| (v, mesh.positions[v as usize])).collect();
     vertices.sort_by(|a, b| a.1.x.total_cmp(&b.1.x).then(a.0.cmp(&b.0)));
     let mut splits: Vec<Split> = Vec::new();
     let mut taken = vec![false; mesh.triangles.len()];
-    for (edge, triangle) in border_edges(mesh) {
+    for (edge, triangle) in border_edges(&mesh.triangles) {
         if taken[triangle as usize] {
             continue;
         }

@@ -1,19 +1,19 @@
-//! Border vertices that lie together become one.
+//! Vertices that lie together become one.
 
-use super::{RepairReport, border_vertices, near_pairs};
+use super::report::RepairReport;
 use bowknot_geometry::{Point, UnionFind, Vector};
 use bowknot_io::Mesh;
+use std::collections::HashMap;
 
 /// Places that the report lists.
 const LISTED: usize = 10;
 
-/// Welds border vertices nearer than `distance` [unit of the mesh], nearest pairs first; each group moves to its mean. Two
+/// Welds those of `vertices` nearer than `distance` [unit of the mesh], nearest pairs first; each group moves to its mean. Two
 /// vertices of one edge are never welded, neither directly nor through others: no edge collapses.
-pub(super) fn weld(mesh: &mut Mesh, distance: f64, report: &mut RepairReport) {
-    let border: Vec<(u32, Point)> =
-        border_vertices(mesh).into_iter().map(|v| (v, mesh.positions[v as usize])).collect();
+pub(super) fn weld(mesh: &mut Mesh, vertices: &[u32], distance: f64, report: &mut RepairReport) {
+    let points: Vec<(u32, Point)> = vertices.iter().map(|&v| (v, mesh.positions[v as usize])).collect();
     let mut groups = Groups::new(mesh);
-    for (_, a, b) in near_pairs(&border, distance) {
+    for (_, a, b) in near_pairs(&points, distance) {
         groups.join(a, b);
     }
 
@@ -40,6 +40,7 @@ pub(super) fn weld(mesh: &mut Mesh, distance: f64, report: &mut RepairReport) {
     mesh.positions = welded;
     let rename = |v: &mut u32| *v = representative[*v as usize];
     mesh.triangles.iter_mut().flatten().for_each(rename);
+    mesh.tets.iter_mut().flatten().for_each(rename);
     mesh.strands.iter_mut().flatten().for_each(rename);
     mesh.particles.iter_mut().for_each(rename);
     if let Some(surface) = &mut mesh.surface {
@@ -60,7 +61,9 @@ impl Groups {
         let count = mesh.positions.len();
         let mut neighbors = vec![Vec::new(); count];
         let edges = mesh.triangles.iter().flat_map(|&[i, j, k]| [[i, j], [j, k], [k, i]]);
-        for [i, j] in edges.chain(mesh.strands.iter().copied()) {
+        let of_tets =
+            mesh.tets.iter().flat_map(|&[i, j, k, l]| [[i, j], [i, k], [i, l], [j, k], [j, l], [k, l]]);
+        for [i, j] in edges.chain(of_tets).chain(mesh.strands.iter().copied()) {
             neighbors[i as usize].push(j);
             neighbors[j as usize].push(i);
         }
@@ -86,4 +89,29 @@ impl Groups {
         let moved = std::mem::take(&mut self.members[b as usize]);
         self.members[a as usize].extend(moved);
     }
+}
+
+/// Pairs of points nearer than `distance`, above 0, smaller index first, nearest pairs first. By a grid of cells of that size.
+fn near_pairs(points: &[(u32, Point)], distance: f64) -> Vec<(f64, u32, u32)> {
+    // Saturates far away, which makes some cells larger.
+    let cell = |p: &Point| [p.x, p.y, p.z].map(|c| (c / distance).floor() as i64);
+    let mut cells: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
+    let mut pairs = Vec::new();
+    for (k, (a, p)) in points.iter().enumerate() {
+        let own = cell(p);
+        for shift in 0..27 {
+            let near = [shift % 3, shift / 3 % 3, shift / 9].map(|s| s - 1);
+            let near = [0, 1, 2].map(|i| own[i].saturating_add(near[i]));
+            for (b, q) in cells.get(&near).into_iter().flatten().map(|&other| points[other]) {
+                let apart = (p - q).norm();
+                if apart <= distance {
+                    pairs.push((apart, *a.min(&b), *a.max(&b)));
+                }
+            }
+        }
+        cells.entry(own).or_default().push(k);
+    }
+    pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    pairs.dedup();
+    pairs
 }

@@ -117,6 +117,7 @@ impl Layout {
             body: &self.body,
             names: &self.names,
             surface: self.surface.as_ref(),
+            ..MeshView::default()
         }
     }
 

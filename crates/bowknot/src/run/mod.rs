@@ -137,7 +137,8 @@ fn run_steps(
     }
     let mut there = simulator.present().to_vec();
     let frames = scene.simulation.frames;
-    let mut reporter = Reporter::new(progress, frames, &world, &info);
+    let near_starts = simulator.near_starts();
+    let mut reporter = Reporter::new(progress, frames, &world, &info, &near_starts);
 
     let stop_asked = || options.interrupt.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed));
     let mut interrupted = reporter.between_steps(simulator.step_index(), None, checker.as_ref()).is_break();

@@ -1,7 +1,7 @@
 //! Where a run is, between time steps and within slow ones.
 
 use super::checker::Checker;
-use crate::simulator::{StepStatistics, WaitingElements};
+use crate::simulator::{NearStart, StepStatistics, WaitingElements};
 use bowknot_scene::world::{SceneInfo, World};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -20,6 +20,8 @@ pub struct Progress<'a> {
     pub world: &'a World,
     /// Counts of it.
     pub info: &'a SceneInfo,
+    /// Pairs that started nearer than their contact distance; none of a run that is resumed.
+    pub near_starts: &'a [NearStart],
     /// The last time step; none before the first, and within one.
     pub statistics: Option<&'a StepStatistics>,
     /// Intersections found so far, if checked.
@@ -45,6 +47,7 @@ pub(super) struct Reporter<'a> {
     frames: usize,
     world: &'a World,
     info: &'a SceneInfo,
+    near_starts: &'a [NearStart],
     /// As [`SLOW`].
     slow: [Duration; 2],
     /// Time steps made.
@@ -64,6 +67,7 @@ impl<'a> Reporter<'a> {
         frames: usize,
         world: &'a World,
         info: &'a SceneInfo,
+        near_starts: &'a [NearStart],
     ) -> Self {
         let (began, flow) = (Instant::now(), ControlFlow::Continue(()));
         Self {
@@ -71,6 +75,7 @@ impl<'a> Reporter<'a> {
             frames,
             world,
             info,
+            near_starts,
             slow: SLOW,
             step: 0,
             began,
@@ -119,8 +124,17 @@ impl<'a> Reporter<'a> {
         within: Option<WithinStep<'_>>,
     ) -> ControlFlow<()> {
         let intersections = checker.map(Checker::intersections);
-        let Self { frames, world, info, step, .. } = *self;
-        (self.progress)(&Progress { step, frames, world, info, statistics, intersections, within })
+        let Self { frames, world, info, near_starts, step, .. } = *self;
+        (self.progress)(&Progress {
+            step,
+            frames,
+            world,
+            info,
+            near_starts,
+            statistics,
+            intersections,
+            within,
+        })
     }
 }
 
@@ -154,7 +168,7 @@ mod tests {
                 reason: WaitReason::Planes,
             }]
         };
-        let mut reporter = Reporter::new(&mut progress, 5, &world, &info);
+        let mut reporter = Reporter::new(&mut progress, 5, &world, &info, &[]);
         assert!(reporter.between_steps(4, None, None).is_continue());
         // Fast so far.
         for _ in 0..3 {

@@ -17,6 +17,7 @@ mod held_apart;
 mod inside;
 mod interior;
 mod least_excess;
+mod near_starts;
 mod observer;
 mod overlap;
 mod prescribed;
@@ -43,6 +44,7 @@ pub use contacts::CarriedContacts;
 pub use error::{SimulationError, describe_intersections};
 pub use friction::ContactForce;
 pub use held_apart::{HeldApart, HeldPair};
+pub use near_starts::NearStart;
 pub use observer::{AcceptedStep, CollisionProblem, Iterated, SimulationObserver};
 pub use process::{cpu_seconds, peak_memory_bytes};
 #[cfg(feature = "gpu")]

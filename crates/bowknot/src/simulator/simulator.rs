@@ -15,6 +15,7 @@ use super::finished::Finished;
 use super::held_apart::HeldApart;
 use super::inside;
 use super::interior::{self, Interior};
+use super::near_starts::{self, NearStart};
 use super::observer::{CollisionProblem, Iterated, Relay, SimulationObserver};
 use super::overlap;
 use super::process::cpu_seconds;
@@ -127,6 +128,12 @@ impl Simulator {
         let model = world.collision_of(&world.present(0.0, scene.simulation.dt));
         let report = Judge::from_model(&model).check_state(positions, &options)?;
         Ok((world, report))
+    }
+
+    /// Pairs that are nearer than their contact distance before the first time step, by bodies, most first. Neighbors along the
+    /// surface do not count, nor does anything after the first time step.
+    pub fn near_starts(&self) -> Vec<NearStart> {
+        if self.step == 0 { near_starts::near_starts(&self.world, &self.resolver) } else { Vec::new() }
     }
 
     fn without_start_check(scene: &Scene) -> Result<Self, SimulationError> {

@@ -86,7 +86,7 @@ fn what_cannot_be_repaired() {
     let place = Place::new();
     place.write("seam.obj", SEAM);
     place.run("repair seam.obj").refused(2, &["--out"]);
-    place.run("repair seam.obj --out clean.stl").refused(2, &["clean.stl", ".obj or .ply"]);
+    place.run("repair seam.obj --out clean.stl").refused(2, &["clean.stl", ".obj or .ply", ".msh or .t"]);
     place.run("repair none.obj --out clean.obj").refused(2, &["none.obj", "no such file"]);
     place.run("repair seam.obj --out none/clean.obj").refused(2, &["none/clean.obj"]);
     for distance in ["0", "-1", "nan", "x"] {
@@ -97,6 +97,50 @@ fn what_cannot_be_repaired() {
     place.write("points.obj", "v 0 0 0\np 1\n");
     place.run("repair points.obj --out a.obj").refused(2, &["points.obj", "no triangles"]);
     place.write("solid.t", "Vertex 0 0 0 0\nVertex 1 1 0 0\nVertex 2 0 1 0\nVertex 3 0 0 1\nTet 0 0 1 2 3\n");
-    place.run("repair solid.t --out a.obj").refused(2, &["solid.t", "1 tetrahedron"]);
+    place.run("repair solid.t --out a.obj").refused(2, &["a.obj", "solid.t has tetrahedra", ".msh or .t"]);
+    place
+        .run("repair seam.obj --out a.msh")
+        .refused(2, &["a.msh", "seam.obj has no tetrahedra", ".obj or .ply"]);
     assert!(!place.path("a.obj").exists());
+}
+
+/// A scene of one solid above the ground.
+const SOLID: &str = "[simulation]\nframes = 3\n[[body]]\nname = \"it\"\nkind = \"solid\"\nmesh = \"MESH\"\n\
+                     translate = [0.0, 0.0, 1.5]\n[[obstacle]]\nshape = \"half-space\"\n";
+
+/// Two tetrahedra, all that can be wrong with them, and a scene that takes what is left.
+#[test]
+fn a_solid_is_repaired_and_runs() {
+    let place = Place::new();
+    let text = "Vertex 0 0 0 0\nVertex 1 1 0 0\nVertex 2 0 1 0\nVertex 3 0 0 1\nVertex 4 0 0 -1\nVertex 5 0.1 0.1 2\n\
+                Vertex 6 0 1e-6 0\nVertex 7 1 1 0\nVertex 8 9 9 9\n\
+                Tet 0 0 1 2 3\nTet 1 6 1 2 4\nTet 2 2 1 0 3\nTet 3 0 1 2 5\nTet 4 1 1 2 3\nTet 5 0 1 2 7\n\
+                Face 0 0 1 3\nFace 1 1 3 7\n";
+    place.write("bad.t", text);
+    place.write("scene.toml", SOLID.replace("MESH", "bad.t"));
+    place.run("run scene.toml").refused(2, &["body it"]);
+    let ended = place.run("repair bad.t --out clean.msh").ok();
+    for words in [
+        "before: cannot be checked, because a tetrahedron, triangle or strand names a vertex twice",
+        "welded 1 vertex nearer than",
+        "dropped tetrahedra given twice: 1; the first at (0.25",
+        "named a vertex twice: 1;",
+        "dropped flat tetrahedra: 1; the first at (0.5",
+        "inside out: 1;",
+        "on the same side of a face as another: 1; the first at (0.275",
+        "triangles that stay (--drop-triangles drops them; a solid may have none): 1;",
+        "volume: ",
+        "after: 6 vertices, 2 tetrahedra, 7 triangles",
+        "0 intersections",
+    ] {
+        assert!(ended.stdout.contains(words), "{words:?}: {ended:#?}");
+    }
+    for out in ["clean.msh", "clean.t"] {
+        let report = place.run(&format!("repair bad.t --out {out} --drop-triangles --json")).ok().json();
+        assert_eq!((&report["after"]["tets"], &report["after"]["vertices"]), (&2.into(), &5.into()));
+        assert_eq!(report["solid"]["overlapping"]["count"], 1);
+        place.write("scene.toml", SOLID.replace("MESH", out));
+        let ended = place.run(&format!("run scene.toml --check --out out-{out}")).ok();
+        assert!(!ended.stderr.contains("warning"), "{ended:#?}");
+    }
 }

@@ -129,3 +129,45 @@ fn info_lists_the_structure_of_a_mesh_and_its_problems() {
     let info = place.run("info flat.t --json").ok().json();
     assert!(info["problems"][0].as_str().unwrap().contains("1 flat"), "{info}");
 }
+
+/// Two sheets 4 mm apart, and one far above them.
+#[test]
+fn pairs_that_start_too_near_are_counted_in_one_line() {
+    let place = Place::new();
+    let sheet = |name: &str, z: f64| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nshape = {{ type = \"sheet\", size = [0.1, 0.1], edge = 0.05 }}\n\
+             translate = [0.0, 0.0, {z}]\n"
+        )
+    };
+    let text = |gap: f64| {
+        format!(
+            "[contact]\ndelta = 0.01\n{}{}{}",
+            sheet("low", 0.5),
+            sheet("high", 0.5 + gap),
+            sheet("far", 0.9)
+        )
+    };
+    place.write("near.toml", text(0.004));
+    let words = "start nearer than the contact distance: ";
+    let nearest = " of low and high, the nearest 4.000 of 10.000 mm at (";
+    let ended = place.run("info near.toml").ok();
+    assert!(ended.stdout.contains(words) && ended.stdout.contains(nearest), "{ended:#?}");
+    let info = place.run("info near.toml --json").ok().json();
+    assert_eq!(info["near_starts"][0]["bodies"], serde_json::json!(["low", "high"]));
+    assert_eq!(
+        (&info["near_starts"][0]["within_part"], &info["near_starts"][1]),
+        (&false.into(), &serde_json::Value::Null)
+    );
+    let ended = place.run("run near.toml --frames 2").ok();
+    assert_eq!(ended.stderr.matches(words).count(), 1, "{ended:#?}");
+    let note = ended.stderr.lines().find(|line| line.contains(words)).unwrap();
+    assert!(note.starts_with("note: ") && note.contains(nearest), "{note}");
+    // It started before.
+    let ended = place.run("run near.toml --frames 3 --resume").ok();
+    assert!(!ended.stderr.contains(words), "{ended:#?}");
+    place.write("apart.toml", text(0.0101));
+    assert!(!place.run("info apart.toml").ok().stdout.contains(words));
+    assert!(!place.run("run apart.toml --frames 1").ok().stderr.contains(words));
+    assert!(place.run("info apart.toml --json").ok().json().get("near_starts").is_none());
+}

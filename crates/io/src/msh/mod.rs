@@ -8,6 +8,7 @@ mod cursor;
 mod elements;
 mod nodes;
 mod version;
+mod write;
 
 #[cfg(test)]
 mod tests;
@@ -22,6 +23,8 @@ use nodes::Nodes;
 use std::fs;
 use std::path::Path;
 use version::Version;
+
+pub use write::write_msh;
 
 /// Reads a Gmsh file: tetrahedra, triangles and quadrilaterals (as two triangles), lines as strands, points
 /// as particles; of higher-order elements their corners. Node numbers may be any, vertices are numbered in

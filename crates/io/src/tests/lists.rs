@@ -38,3 +38,27 @@ fn segments_are_strands() {
         read_mesh(&write(&folder, "a.obj", "v 0 0 0\ns 9\n"), &Import::default()).unwrap().strands.is_empty()
     );
 }
+
+/// What is written is read again to the bit.
+#[test]
+fn solids_are_written_as_gmsh_files_and_as_lists() {
+    let folder = folder();
+    let places =
+        [[0.1, 0.2, 1.0 / 3.0], [1e-300, 0.0, 0.0], [0.0, 1e30, 0.0], [-0.0, 0.0, 7.0], [5.0, 5.0, 5.0]];
+    let mesh = Mesh {
+        positions: places.map(|[x, y, z]| Point::new(x, y, z)).to_vec(),
+        tets: vec![[1, 0, 2, 3]],
+        triangles: vec![[2, 1, 4]],
+        ..Mesh::default()
+    };
+    let path = folder.path().join("solid.t");
+    write_tet_list(&path, &mesh.view()).unwrap();
+    assert_eq!(read_mesh(&path, &Import::default()).unwrap(), mesh);
+    let whole = Mesh { strands: vec![[4, 0]], particles: Vec::new(), ..mesh };
+    let path = folder.path().join("solid.msh");
+    write_msh(&path, &whole.view()).unwrap();
+    assert_eq!(read_mesh(&path, &Import::default()).unwrap(), whole);
+    let points = Mesh { particles: vec![3, 1], tets: Vec::new(), triangles: Vec::new(), ..whole };
+    write_msh(&path, &points.view()).unwrap();
+    assert_eq!(read_mesh(&path, &Import::default()).unwrap(), points);
+}

@@ -76,7 +76,7 @@ impl Renderer {
         let device = self.device.device.clone();
         let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
-        let drawn = self.draw(&drawing, shot, [width * factor, height * factor]);
+        let drawn = self.draw(&drawing, shot, factor);
         let (invalid, no_memory) = (wait(validation.pop()), wait(memory.pop()));
         if no_memory.is_some() {
             // What has no memory behind it must not be used again.
@@ -90,7 +90,9 @@ impl Renderer {
         Ok(drawn?.shrink(factor))
     }
 
-    fn draw(&mut self, drawing: &Drawing, shot: &Shot, size: [u32; 2]) -> Result<Picture, RenderError> {
+    /// Draws the picture, larger by a factor.
+    fn draw(&mut self, drawing: &Drawing, shot: &Shot, factor: u32) -> Result<Picture, RenderError> {
+        let size = shot.size.map(|side| side * factor);
         let device = &self.device;
         let targets = match self.targets.take() {
             Some(targets) if targets.size == size => targets,
@@ -101,7 +103,7 @@ impl Renderer {
         let shadows =
             self.shadows.get_or_insert_with(|| ShadowMaps::new(device, light_count, self.quality.shadow_map));
 
-        let uniforms = Uniforms::new(drawing, shot, &self.quality, size)?;
+        let uniforms = Uniforms::new(drawing, shot, &self.quality, size, factor)?;
         let buffers = FrameBuffers::new(device, drawing, shot, &uniforms, shadows);
         let mut encoder = device.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         for (index, layer) in shadows.layers.iter().enumerate().take(uniforms.light_count) {

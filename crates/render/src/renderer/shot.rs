@@ -10,6 +10,9 @@ pub struct Quality {
     pub key_lights: usize,
     /// Number of lights that sample the sky. More give smoother ambient occlusion, at proportional cost.
     pub sky_lights: usize,
+    /// Points of each light that are looked up in penumbras, 1 to 4; neighboring pixels look up others. More
+    /// give smoother penumbras of far casters.
+    pub penumbra_taps: u32,
     /// Side of a shadow map [texels]. A larger one gives finer shadows; memory grows with its square, 2 bytes
     /// per texel and light.
     pub shadow_map: u32,
@@ -20,9 +23,11 @@ pub struct Quality {
 
 impl Quality {
     /// For single pictures.
-    pub const FINE: Self = Self { key_lights: 20, sky_lights: 60, shadow_map: 1024, supersampling: 2 };
+    pub const FINE: Self =
+        Self { key_lights: 20, sky_lights: 60, penumbra_taps: 2, shadow_map: 1024, supersampling: 2 };
     /// For the frames of animations.
-    pub const FAST: Self = Self { key_lights: 8, sky_lights: 24, shadow_map: 768, supersampling: 1 };
+    pub const FAST: Self =
+        Self { key_lights: 8, sky_lights: 24, penumbra_taps: 4, shadow_map: 768, supersampling: 1 };
 }
 
 /// The camera, the size of the picture and the ground around the model.

@@ -3,7 +3,7 @@
 use super::shot::{Quality, Shot};
 use crate::camera::axes;
 use crate::colormap::{to_linear, viridis};
-use crate::lights::lights;
+use crate::lights::{lights, spiral};
 use crate::model::Drawing;
 use crate::{RenderError, palette};
 use bowknot_geometry::Vector;
@@ -14,6 +14,8 @@ use nalgebra::{Matrix4, RowVector4};
 const MAX_LIGHTS: usize = 96;
 /// Distance between two views in their buffer [bytes]: the alignment that every device supports.
 pub const VIEW_STRIDE: usize = 256;
+/// Points that a part of a light is looked up at.
+const DISC: usize = 16;
 /// Tint of the key light.
 const KEY_TINT: [f64; 3] = [1.04, 1.0, 0.95];
 /// Tint of the sky.
@@ -44,6 +46,7 @@ pub struct LightData {
     matrix: [[f32; 4]; 4],
     direction: [f32; 4],
     radiance: [f32; 4],
+    part: [f32; 4],
 }
 
 /// `Scene` in the shader.
@@ -55,12 +58,13 @@ pub struct SceneData {
     open_sky: [f32; 4],
     bound: [f32; 4],
     counts: [u32; 4],
+    disc: [[f32; 4]; DISC],
     palette: [[f32; 4]; 256],
     lights: [LightData; MAX_LIGHTS],
 }
 
 impl Uniforms {
-    /// The uniforms for a drawing of this size [pixels].
+    /// The uniforms for a drawing of this size [pixels], to be reduced by `supersampling`.
     ///
     /// # Errors
     /// [`RenderError::CameraAtTarget`].
@@ -69,6 +73,7 @@ impl Uniforms {
         shot: &Shot,
         quality: &Quality,
         size: [u32; 2],
+        supersampling: u32,
     ) -> Result<Self, RenderError> {
         let [.., back] = shot.camera.axes()?;
         let [key, sky] = light_counts(quality);
@@ -91,12 +96,15 @@ impl Uniforms {
                 matrix: columns(&(to_texture() * matrix)),
                 direction: homogeneous(&light.direction, f64::from(u8::from(light.key))),
                 radiance: [radiance[0] as f32, radiance[1] as f32, radiance[2] as f32, 0.0],
+                part: [light.offset[0], light.offset[1], light.radius, 0.0].map(|v| v as f32),
             };
             for c in 0..3 {
                 scene.open_sky[c] += (radiance[c] * light.direction.z) as f32;
             }
         }
         scene.counts[0] = lights.len() as u32;
+        scene.counts[2] = key as u32 + 256 * quality.penumbra_taps.clamp(1, 4);
+        scene.counts[3] = u32::from(supersampling.is_multiple_of(2));
         Ok(Self { views, scene, light_count: lights.len() })
     }
 }
@@ -124,6 +132,10 @@ fn scene_data(drawing: &Drawing, size: [u32; 2], texel: f64) -> SceneData {
         open_sky: [0.0; 4],
         bound: [0.0, 0.0, 0.0, drawing.radius as f32],
         counts: [0, (texel as f32).to_bits(), 0, 0],
+        disc: std::array::from_fn(|k| {
+            let [x, y] = spiral(k, DISC);
+            [x as f32, y as f32, 0.0, 0.0]
+        }),
         palette: std::array::from_fn(color),
         lights: [LightData::zeroed(); MAX_LIGHTS],
     }

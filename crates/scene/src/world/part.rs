@@ -8,15 +8,15 @@ use crate::error::SceneError;
 use crate::kind::BodyKind;
 use crate::shapes::Shape;
 use bowknot_errors::counted;
-use bowknot_geometry::{MeshProblem, Point, boundary_triangles, check_mesh, divide_tetrahedron};
+use bowknot_geometry::{
+    MeshProblem, Point, TetFaults, boundary_triangles, check_mesh, check_tets, divide_tetrahedron,
+};
 use bowknot_io::{self as io, Import, Mesh, Surface};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 /// How many faulty elements a message lists.
 const LISTED: usize = 20;
-/// A volume below this share of the longest edge cubed is none.
-const FLAT: f64 = 1e-12;
 
 /// A mesh on its way into the world.
 #[derive(Clone, Debug, Default)]
@@ -227,20 +227,10 @@ impl Part {
     /// Gives all tetrahedra the same handedness: the order of their vertices is no geometry. Refuses flat ones, and pairs that
     /// lie on the same side of the face that they share.
     fn order_tets(&mut self, name: &str, warnings: &mut Vec<String>) -> Result<(), String> {
-        let (mut turned, mut flat) = (Vec::new(), Vec::new());
-        for (index, tet) in self.tets.iter_mut().enumerate() {
-            let [a, b, c, d] = tet.map(|v| self.positions[v as usize]);
-            let edges = [b - a, c - a, d - a, c - b, d - b, d - c];
-            let longest = edges.iter().map(|e| e.norm()).fold(0.0, f64::max);
-            let volume = edges[0].cross(&edges[1]).dot(&edges[2]);
-            if volume.abs() <= FLAT * longest.powi(3) {
-                flat.push(index);
-            } else if volume < 0.0 {
-                tet.swap(2, 3);
-                turned.push(index);
-            }
-        }
-        let overlapping = overlapping(&self.positions, &self.tets);
+        let TetFaults { flat, turned, overlapping } = check_tets(&self.positions, &self.tets);
+        let mut overlapping: Vec<usize> = overlapping.iter().map(|shared| shared.tets[1]).collect();
+        overlapping.sort_unstable();
+        overlapping.dedup();
         let listed = |list: &[usize], what: &str| match list {
             [] => None,
             list => Some(format!("{} {what}: {}", list.len(), first(list.iter()))),
@@ -250,11 +240,12 @@ impl Part {
         let of_all = |count: usize| counted(count, "tetrahedron", "tetrahedra");
         if !faults.is_empty() {
             return Err(format!(
-                "of {}, {}; mend or remove them",
+                "of {}, {}; `bowknot repair MESH --out FILE.msh` mends or drops them",
                 of_all(self.tets.len()),
                 faults.join("; ")
             ));
         }
+        turned.iter().for_each(|&index| self.tets[index].swap(2, 3));
         if let Some(first) = turned.first() {
             warnings.push(format!(
                 "body {name}: {} of {} had their vertices in the opposite order and have been renumbered, the first is {first}",
@@ -390,23 +381,4 @@ pub(super) fn element_of(kind: BodyKind) -> (&'static str, &'static str) {
 fn first<T: ToString>(list: impl ExactSizeIterator<Item = T>) -> String {
     let more = if list.len() > LISTED { ", .." } else { "" };
     list.take(LISTED).map(|entry| entry.to_string()).collect::<Vec<_>>().join(", ") + more
-}
-
-/// Tetrahedra that share a face with an earlier one on the same side of it, ascending.
-fn overlapping(x: &[Point], tets: &[[u32; 4]]) -> Vec<usize> {
-    let mut sides: HashMap<[u32; 3], f64> = HashMap::new();
-    let mut found = Vec::new();
-    for (index, &[a, b, c, d]) in tets.iter().enumerate() {
-        let overlaps =
-            [([a, b, c], d), ([a, b, d], c), ([a, c, d], b), ([b, c, d], a)].map(|(mut face, apex)| {
-                face.sort_unstable();
-                let [p, q, r, s] = [face[0], face[1], face[2], apex].map(|v| x[v as usize]);
-                let side = (q - p).cross(&(r - p)).dot(&(s - p));
-                sides.insert(face, side).is_some_and(|other| other * side > 0.0)
-            });
-        if overlaps.contains(&true) {
-            found.push(index);
-        }
-    }
-    found
 }

@@ -6,8 +6,8 @@ use bowknot_geometry::Point;
 #[test]
 fn layouts_agree_with_the_shader() {
     assert_eq!(size_of::<ViewData>(), 64 + 16);
-    assert_eq!(size_of::<LightData>(), 64 + 32);
-    assert_eq!(size_of::<SceneData>(), 5 * 16 + 256 * 16 + MAX_LIGHTS * size_of::<LightData>());
+    assert_eq!(size_of::<LightData>(), 64 + 48);
+    assert_eq!(size_of::<SceneData>(), 5 * 16 + DISC * 16 + 256 * 16 + MAX_LIGHTS * size_of::<LightData>());
     let shader = include_str!("../../shader.wgsl");
     assert!(shader.contains(&format!("array<Light, {MAX_LIGHTS}>")));
     // What devices of the lowest class can bind.
