@@ -93,7 +93,8 @@ impl HeldEdges {
         let went_back = !self.going_back.is_empty();
         self.going_back = going_back(limited, x, before);
         let moved = self.go_on(rest, x);
-        if others && !moved {
+        // Edges between two prescribed vertices are in no patch.
+        if !moved && (others || !self.between.is_empty()) {
             self.over = self.find_over(x);
         }
         others || moved || went_back || !self.going_back.is_empty()
@@ -371,6 +372,18 @@ mod tests {
             }
         }
         assert!(over.is_some_and(|over| over.pair.is_some()));
+    }
+
+    #[test]
+    fn a_body_that_is_held_throughout_is_looked_at_in_each_time_step() {
+        let (limited, rest) = grid(2);
+        let mut edges = HeldEdges::default();
+        for (scale, is_over) in [(1.0, false), (1.1, true), (1.02, false)] {
+            let x: Vec<Point> = rest.iter().map(|x| x * scale).collect();
+            edges.begin_step(&limited, [&rest, &x], &[true; 4], &[]);
+            assert_eq!(edges.over().is_some(), is_over, "{scale}");
+            assert_eq!(edges.limits().count(), 0);
+        }
     }
 
     #[test]

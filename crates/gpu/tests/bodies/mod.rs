@@ -2,7 +2,6 @@
 
 use bowknot_dynamics::{Body, ClothMaterial, RestShape, SolidMaterial, SolidModel, StrandMaterial};
 use bowknot_geometry::{Point, Vector};
-use std::collections::BTreeMap;
 
 /// Bodies with the rest positions of their vertices.
 pub struct Case {
@@ -45,23 +44,6 @@ pub fn block(cubes: usize) -> Block {
         )
     });
     ((0..2 * layer).map(at).collect(), tets.collect())
-}
-
-/// The tetrahedra with vertices in the middles of their edges.
-pub fn with_middles(mut points: Vec<Point>, tets: &[[u32; 4]]) -> (Vec<Point>, Vec<[u32; 10]>) {
-    let mut middles = BTreeMap::new();
-    let mut with_middles = |tet: &[u32; 4]| {
-        let mut middle = |i: usize, j: usize| {
-            *middles.entry([tet[i].min(tet[j]), tet[i].max(tet[j])]).or_insert_with(|| {
-                points.push(nalgebra::center(&points[tet[i] as usize], &points[tet[j] as usize]));
-                points.len() as u32 - 1
-            })
-        };
-        let middles = [middle(0, 1), middle(0, 2), middle(0, 3), middle(1, 2), middle(1, 3), middle(2, 3)];
-        std::array::from_fn(|k| if k < 4 { tet[k] } else { middles[k - 4] })
-    };
-    let tets = tets.iter().map(&mut with_middles).collect();
-    (points, tets)
 }
 
 /// Three strands that are straight, or with curls of that radius [m] and a branch.

@@ -63,7 +63,7 @@ fn through(
     loop {
         let corners = tets[tet];
         let [p, q, r, s] = corners.map(|v| x[v as usize]);
-        sizes += (q - p).cross(&(r - p)).dot(&(s - p)).abs().cbrt();
+        sizes += libm::cbrt((q - p).cross(&(r - p)).dot(&(s - p)).abs());
         count += 1;
         // It leaves by the nearest of the other faces that it runs toward.
         let exits = FACES.into_iter().enumerate().filter_map(|(apex, places)| {

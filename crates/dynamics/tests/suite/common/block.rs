@@ -29,7 +29,7 @@ pub fn filled(
                     };
                     for [a, b] in [[1, 3], [3, 2], [2, 6], [6, 4], [4, 5], [5, 1]] {
                         // Each mirror turns the tets inside out.
-                        let [a, b] = if mirror.count_ones() % 2 == 0 { [a, b] } else { [b, a] };
+                        let [a, b] = if mirror.count_ones().is_multiple_of(2) { [a, b] } else { [b, a] };
                         tets.push([corner(0), corner(a), corner(b), corner(7)]);
                     }
                 }
