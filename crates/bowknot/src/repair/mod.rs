@@ -1,5 +1,5 @@
 //! Cleaning meshes that no simulation can start from: garments whose panels meet in seams without being
-//! joined, and [solids](solid) with faulty tetrahedra.
+//! joined, and solids with faulty tetrahedra.
 //!
 //! What is done to surfaces, in this order: vertices at the open borders of surfaces that lie together are welded; a
 //! border vertex that lies on another border edge (a T-seam) splits the triangle there; triangles without
