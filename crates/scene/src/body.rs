@@ -69,8 +69,8 @@ pub struct BodySpec {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub delta: Option<f64>,
     /// Largest ratio of an edge's length to its rest length [1], above 1; inf: no limit. Default: that of
-    /// `[contact]` if it is given there (`paper` gives it), otherwise that of the material of a cloth and 1.1
-    /// for other kinds.
+    /// `[contact]` if it is given there (`paper` gives it), otherwise that of the material of a cloth, none for solids and
+    /// 1.1 for strands.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stretch_limit: Option<f64>,
     /// Collision groups that the body is in, from 0 to 31 [1]. Default `[0]`.

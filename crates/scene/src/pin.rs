@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 pub struct PinSpec {
     /// Name of the body. May be left out if there is only one.
     pub body: String,
-    /// Vertices by index in the body's mesh, from 0. Default none.
+    /// Vertices by index in the body's mesh, from 0; of quadratic elements also the middles of edges between them. Default none.
     pub vertices: Vec<u32>,
     /// Vertices within an axis-aligned box of the scene at its start. Default none.
     #[serde(rename = "box", skip_serializing_if = "Option::is_none")]

@@ -39,6 +39,11 @@ impl Ends {
         ways.extend(led(world).map(|vertices| farthest(vertices, prescribed, x, places)));
     }
 
+    /// Whether all obstacles and pins are at their ends in `x`.
+    pub fn are_reached(&self, world: &World, prescribed: &[bool], x: &[Point], delta: f64) -> bool {
+        led(world).all(|vertices| farthest(vertices, prescribed, x, &self.places) <= ARRIVED * delta)
+    }
+
     /// After a collision problem: what it has not moved to its end stops where it is, less some room of its way since the
     /// `start` of the time step. At the minimum separation nothing that touches it could move toward it. `delta`: the
     /// contact distance [m].

@@ -1,9 +1,9 @@
 //! Bodies whose time step is solved while that of others goes on.
 //!
 //! Connected bodies that touch neither directly nor through others do not depend on each other. Each such group ends its
-//! iterations by its own residual: from then on its vertices are prescribed, at rest where they are. A contact that is found
+//! iterations by its own residual: from then on the dynamics has its vertices as prescribed, where they are. A contact that is found
 //! later joins two groups, and what had ended goes on. Otherwise the iterations of one body would go on as long as those of any
-//! other, however far away.
+//! other, however far away. The collision stage moves all bodies as ever; those that are finished are at their targets.
 
 use super::tolerance::Tolerance;
 use bowknot_dynamics::{DynamicsModel, RepulsionSpring};
@@ -32,6 +32,11 @@ impl Finished {
         self.held.extend_from_slice(prescribed);
     }
 
+    /// Lets all groups go on.
+    pub fn release(&mut self) {
+        self.held.clone_from(&self.prescribed);
+    }
+
     /// Notes which groups are finished, by the `residuals` of connected components [m], where `springs` may act. A component goes
     /// on if not all of its vertices are `counted`: what rows alone hold has no residual.
     pub fn note(
@@ -42,8 +47,8 @@ impl Finished {
         springs: &[RepulsionSpring],
         tolerance: Tolerance,
     ) {
-        let Self { components, prescribed, held, .. } = self;
-        held.clone_from(prescribed);
+        self.release();
+        let Self { components, held, .. } = self;
         if residuals.len() < 2 {
             return;
         }

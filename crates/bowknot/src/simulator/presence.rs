@@ -48,11 +48,12 @@ impl Simulator {
                 wait = in_the_way(world, resolver.scene(), x, index)?;
             }
             changed[index] = wanted[index] != present[index] && wait.is_none();
-            present[index] ^= changed[index];
-            if !present[index] {
+            if present[index] == changed[index] {
                 statistics.absent.insert(name.clone(), wait);
             }
         }
+        // All at once: an error above changes nothing.
+        present.iter_mut().zip(&changed).for_each(|(present, changed)| *present ^= changed);
         if changed.contains(&true) { self.follow_presence(&changed) } else { Ok(()) }
     }
 

@@ -374,8 +374,8 @@ impl Simulator {
             let last = iteration + 1 == self.newton_iterations;
             let timer = Instant::now();
             finished.lead(x, &ends.places);
-            let held = finished.held();
-            let info = dynamics.newton_target(x, held, finished.places(), y).map_err(target_error)?;
+            let info =
+                dynamics.newton_target(x, finished.held(), finished.places(), y).map_err(target_error)?;
             statistics.add_newton(&info, timer.elapsed().as_secs_f64());
             if !info.cg.converged {
                 tracing::debug!(
@@ -399,7 +399,7 @@ impl Simulator {
                 iteration,
                 positions: &x[..count],
                 target: &y[..count],
-                prescribed: &held[..count],
+                prescribed: &prescribed[..count],
                 time_step: *dt,
                 start: &start[..count],
                 groups,
@@ -412,7 +412,7 @@ impl Simulator {
             }
             let mut relay = Relay { observer: &mut *observer, world, step, iteration, stopped: false };
             let input = ResolveInput {
-                prescribed: &held[..count],
+                prescribed: &prescribed[..count],
                 time_step: Some(*dt),
                 start: Some(&start[..count]),
                 groups,
@@ -447,7 +447,8 @@ impl Simulator {
             contacts.find(resolver, start);
             x[count..].copy_from_slice(&y[count..]);
             if differ(&x[..count], &y[..count], backend.resolution()) {
-                statistics.interior_solves += interior.follow(dynamics, held, y, x).map_err(target_error)?;
+                statistics.interior_solves +=
+                    interior.follow(dynamics, prescribed, y, x).map_err(target_error)?;
                 if *measured {
                     let change = dynamics.energy_change(start, y, x, *dt, backend.resolution());
                     statistics.collision_energy_j += change.max(0.0);
@@ -462,9 +463,13 @@ impl Simulator {
             if tolerance.ends(residual.distance) && !cut {
                 break;
             }
-            if !cut {
+            // A device sets up its matrices anew where other vertices are free.
+            let may_finish = !cut && dynamics.backend().is_none();
+            if may_finish && ends.are_reached(world, prescribed, &x[..count], delta) {
                 let (distances, springs) = (dynamics.component_distances(), contacts.springs());
                 finished.note(dynamics.model(), distances, contacts.counted(), springs, tolerance);
+            } else {
+                finished.release();
             }
         }
         (statistics.residual_n, statistics.residual_m) = (imbalance.force, imbalance.distance);

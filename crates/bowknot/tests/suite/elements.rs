@@ -107,10 +107,10 @@ fn a_thin_mesh_is_named_and_keeps_its_vertices() {
     let quadratic = world(", elements = \"quadratic\"");
     assert!(quadratic.warnings.iter().all(|w| !w.contains("thick")), "{:?}", quadratic.warnings);
     assert_eq!((quadratic.bodies[0].tets.len(), quadratic.bodies[0].quadratic_tets.len()), (384, 48));
-    // Vertices keep their numbers, in pins and in messages.
+    // Vertices keep their numbers, in pins and in messages. A pin holds the middles of edges whose ends it names.
     let pinned: Vec<Point> =
         quadratic.pins[0].vertices.iter().map(|&v| quadratic.positions[v as usize]).collect();
-    assert!(pinned.len() == 4 && pinned.iter().all(|p| p.x == 0.0), "{pinned:?}");
+    assert!(pinned.len() == 9 && pinned.iter().all(|p| p.x == 0.0), "{pinned:?}");
     let number = |v: u32| quadratic.bodies[0].mesh_number(v) as usize;
     for v in (0..quadratic.positions.len() as u32).filter(|&v| number(v) < 36) {
         let k = number(v);

@@ -98,10 +98,15 @@ fn a_body_a_scene_and_a_preset_override_what_the_fabric_says() {
 #[test]
 fn what_is_no_cloth_takes_the_limit_of_the_scene() {
     let block = "kind = \"solid\"\nshape = \"block\"";
-    for (contact, expected) in [("", 1.1), ("[contact]\nstretch_limit = 1.02\n", 1.02)] {
-        let scene = scene(&format!("{contact}[[body]]\n{block}\n"));
-        assert_eq!(World::new(&scene).expect("a world").contact.bodies[0].stretch_limit, None);
-        assert_eq!(limit(&scene), expected);
+    let strands = "kind = \"strands\"\nshape = \"strands\"";
+    for (body, contact, expected) in [
+        (block, "", f64::INFINITY),
+        (block, "[contact]\nstretch_limit = 1.02\n", 1.02),
+        (block, "[contact]\npreset = \"paper\"\n", 1.1),
+        (strands, "", 1.1),
+        (strands, "[contact]\nstretch_limit = 1.02\n", 1.02),
+    ] {
+        assert_eq!(limit(&scene(&format!("{contact}[[body]]\n{body}\n"))), expected, "{contact}{body}");
     }
 }
 

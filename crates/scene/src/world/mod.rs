@@ -114,6 +114,13 @@ pub struct WorldBody {
 }
 
 impl WorldBody {
+    /// The edges of its quadratic tetrahedra, by the vertices at their ends, with those in their middles; some more than once.
+    fn middles(&self) -> impl Iterator<Item = ([u32; 2], u32)> + '_ {
+        self.quadratic_tets.iter().flat_map(|tet| {
+            quadratic::EDGES.iter().zip(&tet[4..]).map(|([i, j], &v)| ([tet[*i], tet[*j]], v))
+        })
+    }
+
     /// Number of one of its vertices in the mesh that it was made of, from 0.
     pub fn mesh_number(&self, vertex: u32) -> u32 {
         let local = if vertex < self.vertices.end {

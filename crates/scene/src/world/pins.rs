@@ -81,6 +81,11 @@ fn pinned(spec: &PinSpec, body: &WorldBody, positions: &[Point]) -> Result<Vec<u
             }
         }
     }
+    // Middles of edges have no numbers in the mesh: they belong to both ends.
+    let mut named = vertices.clone();
+    named.sort_unstable();
+    let is_named = |v: &u32| named.binary_search(v).is_ok();
+    vertices.extend(body.middles().filter(|(ends, _)| ends.iter().all(is_named)).map(|(_, middle)| middle));
     if let Some(region) = &spec.region {
         vertices.extend(all().filter(|&v| region.contains(at(v))));
     }

@@ -4,7 +4,7 @@ use bowknot_geometry::Point;
 use std::collections::HashMap;
 
 /// Edges of a tetrahedron, in the order of the nodes 4 to 9 of a quadratic one.
-const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
+pub(super) const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 
 /// Appends a vertex in the middle of each edge and returns the quadratic tetrahedra: corners, then the middles of the edges 01,
 /// 02, 03, 12, 13, 23.

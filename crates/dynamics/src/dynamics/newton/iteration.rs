@@ -45,34 +45,45 @@ impl Newton<'_> {
         Ok(info)
     }
 
-    /// The largest of the scales of each part's components.
+    /// The largest of the scales of each part's components, and no more than [`Self::largest_scales`].
     fn min_scales(&self, parts: &Parts) -> Vec<f64> {
         let mut scales = vec![0.0f64; parts.count()];
         for (&part, &scale) in parts.of_components().iter().zip(&self.course.scales) {
             scales[part as usize] = scales[part as usize].max(scale);
         }
         scales
+            .iter_mut()
+            .zip(self.largest_scales(parts))
+            .for_each(|(scale, largest)| *scale = scale.min(largest));
+        scales
     }
 
     /// Notes the squared norms of parts as those of their components, where these have none yet.
-    ///
-    /// No scale is so large that with a residual of [`Limits::tolerance`] of it the
-    /// [`Residual::distance`](crate::Residual::distance) of a component would be above half of the tolerance of the time step.
     fn note_scales(&mut self, parts: &Parts, norms: &[f64]) {
+        self.course.scales.resize(parts.of_components().len(), 0.0);
+        if !self.course.scales.contains(&0.0) {
+            return;
+        }
+        let largest = self.largest_scales(parts);
+        for (scale, &part) in self.course.scales.iter_mut().zip(parts.of_components()) {
+            if *scale == 0.0 {
+                *scale = norms[part as usize].min(largest[part as usize]);
+            }
+        }
+    }
+
+    /// The largest squared norms that [`Limits::tolerance`] may be relative to: with a residual of that share of it, the
+    /// [`Residual::distance`](crate::Residual::distance) of each component of the part is below half of the tolerance of the time
+    /// step.
+    fn largest_scales(&self, parts: &Parts) -> Vec<f64> {
         let share = 0.5 * self.course.step_tolerance / (self.dt * self.params.newton.cg_tolerance);
         let mut lightest = vec![f64::INFINITY; parts.count()];
         for (&part, nodes) in parts.of_components().iter().zip(&self.model.components) {
-            let mass: f64 = nodes.clone().map(|n| self.model.node_masses[n as usize]).sum();
+            let mass = self.model.component_masses[nodes.start as usize];
             lightest[part as usize] = lightest[part as usize].min(mass);
         }
-        self.course.scales.resize(parts.of_components().len(), 0.0);
-        for (scale, &part) in self.course.scales.iter_mut().zip(parts.of_components()) {
-            let part = part as usize;
-            if *scale == 0.0 {
-                let largest = if share > 0.0 { share * share * lightest[part] } else { f64::INFINITY };
-                *scale = norms[part].min(largest);
-            }
-        }
+        let largest = |mass: f64| if share > 0.0 { share * share * mass } else { f64::INFINITY };
+        lightest.into_iter().map(largest).collect()
     }
 
     /// Computes gradient and matrix at the iterate. Springs that have not been prepared get their laws.
