@@ -417,7 +417,9 @@ fn matrices_of_quadratic_tetrahedra_come_from_the_cpu() {
     let target = |backend: Option<Box<dyn LinearBackend>>| {
         let body = Body::quadratic_solid("block", tets.clone(), SolidMaterial::rubber());
         let model = DynamicsModel::new(rest.clone(), vec![body]).expect("a model");
-        let mut dynamics = Dynamics::new(model, DynamicsParams::default()).expect("parameters");
+        let mut params = DynamicsParams::default();
+        params.newton.cg_tolerance = 1e-6;
+        let mut dynamics = Dynamics::new(model, params).expect("parameters");
         dynamics.set_backend(backend);
         dynamics.begin_step(&x, &vec![Vector::zeros(); x.len()], DT).expect("a time step");
         let mut y = x.clone();
