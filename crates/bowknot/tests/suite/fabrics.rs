@@ -5,7 +5,7 @@ use bowknot::recording::Recorder;
 use bowknot::recording::States;
 use bowknot::scene::Material;
 use bowknot::simulator::CollisionProblem;
-use bowknot::{Scene, SimulationObserver, Simulator, World};
+use bowknot::{Scene, SimulationObserver, Simulator};
 use std::ops::ControlFlow;
 
 /// A sheet of 0.3 m that hangs from one side.
