@@ -14,7 +14,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 /// Names of arrays, by the choices of the parts: those of problems and stacks, then those of checkpoints.
-const NAMES: [&str; 39] = [
+const NAMES: [&str; 43] = [
     "x",
     "y",
     "F",
@@ -54,6 +54,10 @@ const NAMES: [&str; 39] = [
     "sleep_calm_steps",
     "sleep_islands",
     "contact_means",
+    "present",
+    "yielding",
+    "yielding_limit",
+    "yielding_edges",
 ];
 
 /// Reads the parts of the input as arrays, header included, of an archive whose sums are right. The first byte
