@@ -17,13 +17,10 @@
 
 #[path = "../tests/suite/common/block.rs"]
 mod block;
-#[path = "../tests/suite/common/quadratic.rs"]
-mod quadratic;
 
 use block::{block, filled};
 use bowknot_dynamics::{Body, Dynamics, DynamicsModel, DynamicsParams, SolidMaterial};
-use bowknot_geometry::{Point, Vector};
-use quadratic::quadratic;
+use bowknot_geometry::{Point, Vector, add_edge_middles};
 use std::error::Error;
 
 /// One problem of equilibrium.
@@ -128,7 +125,8 @@ fn solve(case: &Case, kind: Kind, across: usize) -> Result<(f64, usize, f64, usi
         ..SolidMaterial::default()
     };
     let (rest, body) = if kind == Kind::Quadratic {
-        let (rest, tets) = quadratic(rest, &tets);
+        let mut rest = rest;
+        let tets = add_edge_middles(&mut rest, &tets);
         (rest, Body::quadratic_solid("block", tets, material))
     } else {
         (rest, Body::solid("block", tets, material))

@@ -54,8 +54,8 @@ pub use point::{Point, Vector};
 pub use separation::Separation;
 pub use tet_check::{SharedSide, TetFaults, check_tets};
 pub use topology::{
-    Components, EdgeTriangles, Topology, TopologyBuilder, TopologyError, boundary_triangles, check_elements,
-    divide_tetrahedron,
+    Components, EdgeTriangles, TETRAHEDRON_EDGES, Topology, TopologyBuilder, TopologyError, add_edge_middles,
+    boundary_triangles, check_elements, divide_tetrahedron,
 };
 pub use union_find::UnionFind;
 pub use vertex_range::VertexOutOfRange;

@@ -10,7 +10,7 @@ pub use adjacency::{Components, EdgeTriangles};
 pub use builder::TopologyBuilder;
 pub use error::{TopologyError, check_elements};
 pub use primitives::Topology;
-pub use tets::{boundary_triangles, divide_tetrahedron};
+pub use tets::{TETRAHEDRON_EDGES, add_edge_middles, boundary_triangles, divide_tetrahedron};
 
 #[cfg(test)]
 mod tests;

@@ -9,10 +9,9 @@ use bowknot_gpu::dynamics::{
     NewtonStep, NewtonTarget, OutOfBalance, PreconditionerKind, RepulsionSpring, SolidMaterial, SolveLimits,
     SpringKind, StepError, Trial, Watched,
 };
-use bowknot_gpu::geometry::{Point, Vector};
+use bowknot_gpu::geometry::{Point, Vector, add_edge_middles};
 use bowknot_gpu::{Adapter, ComparingEngine, ConjugateGradients, DeviceEngine, Engine, TwinEngine};
 use nalgebra::DMatrix;
-use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::sync::{Arc, Mutex};
 
@@ -390,27 +389,10 @@ fn assembled_matrices_are_those_of_the_cpu() {
     }
 }
 
-/// The tetrahedra with vertices in the middles of their edges.
-fn with_middles(mut points: Vec<Point>, tets: &[[u32; 4]]) -> (Vec<Point>, Vec<[u32; 10]>) {
-    let mut middles = BTreeMap::new();
-    let mut with_middles = |tet: &[u32; 4]| {
-        let mut middle = |i: usize, j: usize| {
-            *middles.entry([tet[i].min(tet[j]), tet[i].max(tet[j])]).or_insert_with(|| {
-                points.push(nalgebra::center(&points[tet[i] as usize], &points[tet[j] as usize]));
-                points.len() as u32 - 1
-            })
-        };
-        let middles = [middle(0, 1), middle(0, 2), middle(0, 3), middle(1, 2), middle(1, 3), middle(2, 3)];
-        std::array::from_fn(|k| if k < 4 { tet[k] } else { middles[k - 4] })
-    };
-    let tets = tets.iter().map(&mut with_middles).collect();
-    (points, tets)
-}
-
 #[test]
 fn matrices_of_quadratic_tetrahedra_come_from_the_cpu() {
-    let (rest, tets) = bodies::block(3);
-    let (rest, tets) = with_middles(rest, &tets);
+    let (mut rest, tets) = bodies::block(3);
+    let tets = add_edge_middles(&mut rest, &tets);
     let shaken = |k: usize| rest[k] + random_vector(&mut fastrand::Rng::with_seed(k as u64)) * 2e-3;
     let x: Vec<Point> = (0..rest.len()).map(shaken).collect();
     let held = vec![false; x.len()];

@@ -472,7 +472,8 @@ impl Dynamics {
             std::mem::replace(free, is_free) != is_free
         };
         if nodes.with_min_len(MIN_NODES).map(place).reduce(|| false, |a, b| a | b) {
-            cache.clear();
+            // Energies of inertia are those of free nodes; gradients and matrices are of all.
+            cache.energies_at.clear();
         }
     }
 

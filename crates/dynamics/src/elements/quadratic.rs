@@ -18,11 +18,8 @@ use super::svd::{Svd, signed_svds};
 use super::tetrahedron::Tetrahedron;
 use crate::linear::assembly::{ElementModel, QuadraticElement};
 use crate::material::solid::SolidMaterial;
-use bowknot_geometry::Vector;
+use bowknot_geometry::{TETRAHEDRON_EDGES, Vector};
 use nalgebra::Matrix3;
-
-/// Corners that the nodes 4 to 9 lie between.
-pub(crate) const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 
 /// Barycentric coordinate of point q: (5 + 3 sqrt 5) / 20 for corner q, and (5 - sqrt 5) / 20 for the others.
 const NEAR: f64 = 0.585_410_196_624_968_5;
@@ -43,7 +40,7 @@ const fn derivatives() -> [[[(usize, f64); 2]; 10]; 4] {
         }
         let mut e = 0;
         while e < 6 {
-            let [i, j] = EDGES[e];
+            let [i, j] = TETRAHEDRON_EDGES[e];
             all[q][4 + e] = [(i, 4.0 * coordinate(q, j)), (j, 4.0 * coordinate(q, i))];
             e += 1;
         }

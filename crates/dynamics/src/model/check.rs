@@ -2,10 +2,9 @@
 
 use super::measures::{area, longest_edge, volume};
 use crate::body::{Body, BodyShape};
-use crate::elements::quadratic::EDGES;
 use crate::error::ModelError;
 use bowknot_errors::{Errors, ParamError, Parameters};
-use bowknot_geometry::{Point, Vector, VertexOutOfRange};
+use bowknot_geometry::{Point, TETRAHEDRON_EDGES, Vector, VertexOutOfRange};
 use std::collections::HashMap;
 
 /// Areas, volumes and lengths count as zero up to this share of the longest edge squared, of the longest edge
@@ -139,7 +138,7 @@ fn check_sizes(positions: &[Point], body: &Body, errors: &mut Vec<ModelError>) {
         BodyShape::QuadraticSolid { tets, .. } => {
             check_tets(body, tets.iter().map(|t| [0, 1, 2, 3].map(|k| at(t[k]))), errors);
             for (index, tet) in tets.iter().enumerate() {
-                for (&middle, [i, j]) in tet[4..].iter().zip(EDGES) {
+                for (&middle, [i, j]) in tet[4..].iter().zip(TETRAHEDRON_EDGES) {
                     let (a, b) = (at(tet[i]), at(tet[j]));
                     let off = (at(middle) - (a + b) * 0.5).norm();
                     if off > MIDDLE * (a - b).norm() {

@@ -1,10 +1,10 @@
 //! Solids with known answers: bars, beams, patches, inversion, conservation.
 
-use crate::common::{block, dynamics, equilibrium, quadratic, weightless, with_gravity, with_tolerance};
+use crate::common::{block, dynamics, equilibrium, weightless, with_gravity, with_tolerance};
 use bowknot_dynamics::{
     Body, Dynamics, DynamicsModel, DynamicsParams, HessianFilter, SolidMaterial, SolidModel,
 };
-use bowknot_geometry::{Point, Vector};
+use bowknot_geometry::{Point, Vector, add_edge_middles};
 
 const MODELS: [SolidModel; 2] = [SolidModel::Stvk, SolidModel::StableNeoHookean];
 
@@ -101,7 +101,8 @@ fn sag(cells: [usize; 3], poisson_ratio: f64, with_middles: bool) -> f64 {
     let material =
         SolidMaterial { density: rho, young_modulus: e, poisson_ratio, ..SolidMaterial::default() };
     let (rest, body) = if with_middles {
-        let (rest, tets) = quadratic(rest, &tets);
+        let mut rest = rest;
+        let tets = add_edge_middles(&mut rest, &tets);
         (rest, Body::quadratic_solid("beam", tets, material))
     } else {
         (rest, Body::solid("beam", tets, material))
@@ -137,8 +138,8 @@ fn quadratic_tetrahedra_bend_where_linear_ones_lock() {
 
 #[test]
 fn the_inside_of_an_affinely_deformed_quadratic_surface_is_affine() {
-    let (rest, tets) = block([1.0, 0.8, 0.6], [2, 2, 2]);
-    let (rest, tets) = quadratic(rest, &tets);
+    let (mut rest, tets) = block([1.0, 0.8, 0.6], [2, 2, 2]);
+    let tets = add_edge_middles(&mut rest, &tets);
     let map = nalgebra::Matrix3::new(1.3, 0.2, 0.0, -0.1, 0.8, 0.1, 0.2, 0.0, 0.9);
     let at_end = |c: f64, size: f64| c < 1e-9 || c > size - 1e-9;
     let surface: Vec<bool> =
@@ -157,8 +158,8 @@ fn the_inside_of_an_affinely_deformed_quadratic_surface_is_affine() {
 
 #[test]
 fn middles_of_edges_must_lie_in_the_middle() {
-    let (rest, tets) = block([1.0; 3], [1; 3]);
-    let (mut rest, tets) = quadratic(rest, &tets);
+    let (mut rest, tets) = block([1.0; 3], [1; 3]);
+    let tets = add_edge_middles(&mut rest, &tets);
     let last = rest.len() - 1;
     rest[last].x += 1e-3;
     let body = Body::quadratic_solid("block", tets, SolidMaterial::rubber());

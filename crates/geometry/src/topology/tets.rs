@@ -1,12 +1,38 @@
-//! The surface of a tetrahedral mesh.
+//! The surface of a tetrahedral mesh, and its division by vertices in the middles of edges.
+
+use crate::Point;
+use std::collections::HashMap;
 
 /// Faces of a tetrahedron with vertices 0 to 3, counter-clockwise seen from outside if its volume (x1 - x0) x
 /// (x2 - x0) . (x3 - x0) / 6 is positive.
 const FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
 
+/// Edges of a tetrahedron with vertices 0 to 3, in the order of the nodes 4 to 9 of one of ten nodes.
+pub const TETRAHEDRON_EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
+
+/// Appends a vertex in the middle of each edge to the `positions` of `tets`, and returns tetrahedra of ten nodes: the corners,
+/// then the middles of [`TETRAHEDRON_EDGES`].
+///
+/// # Panics
+/// If a vertex is not among the positions.
+pub fn add_edge_middles(positions: &mut Vec<Point>, tets: &[[u32; 4]]) -> Vec<[u32; 10]> {
+    let mut middles: HashMap<[u32; 2], u32> = HashMap::new();
+    let mut middle = |a: u32, b: u32| {
+        *middles.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+            positions.push(nalgebra::center(&positions[a as usize], &positions[b as usize]));
+            positions.len() as u32 - 1
+        })
+    };
+    let with_middles = |tet: &[u32; 4]| {
+        let middles = TETRAHEDRON_EDGES.map(|[i, j]| middle(tet[i], tet[j]));
+        std::array::from_fn(|k| if k < 4 { tet[k] } else { middles[k - 4] })
+    };
+    tets.iter().map(with_middles).collect()
+}
+
 /// The eight tetrahedra into which nodes in the middles of the edges divide one (Bey 1995, "Tetrahedral grid refinement").
 ///
-/// `nodes` are the corners, then the middles of the edges 01, 02, 03, 12, 13, 23. Those at the corners come first; all have
+/// `nodes` are the corners, then the middles of [`TETRAHEDRON_EDGES`]. Those at the corners come first; all have
 /// positive volume where the one of the corners has.
 pub fn divide_tetrahedron(nodes: &[u32; 10]) -> [[u32; 4]; 8] {
     const PARTS: [[usize; 4]; 8] = [

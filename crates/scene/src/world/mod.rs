@@ -18,7 +18,6 @@ mod motion;
 mod part;
 mod pins;
 mod presence;
-mod quadratic;
 mod roots;
 mod sequence;
 mod size;
@@ -35,7 +34,7 @@ use crate::error::SceneError;
 use crate::kind::BodyKind;
 use crate::motion::Motion;
 use bowknot_dynamics::{Body, DynamicsModel};
-use bowknot_geometry::{BodyFilter, HalfSpace, Point, Vector};
+use bowknot_geometry::{BodyFilter, HalfSpace, Point, TETRAHEDRON_EDGES, Vector};
 use bowknot_io::Surface;
 use bowknot_proximity::CollisionModel;
 use bowknot_twoway::{BodyContact, HalfSpaceContact, PairFriction};
@@ -117,7 +116,7 @@ impl WorldBody {
     /// The edges of its quadratic tetrahedra, by the vertices at their ends, with those in their middles; some more than once.
     fn middles(&self) -> impl Iterator<Item = ([u32; 2], u32)> + '_ {
         self.quadratic_tets.iter().flat_map(|tet| {
-            quadratic::EDGES.iter().zip(&tet[4..]).map(|([i, j], &v)| ([tet[*i], tet[*j]], v))
+            TETRAHEDRON_EDGES.iter().zip(&tet[4..]).map(|([i, j], &v)| ([tet[*i], tet[*j]], v))
         })
     }
 

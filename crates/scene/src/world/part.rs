@@ -1,6 +1,5 @@
 //! A mesh on its way into the world: loaded, cleaned, its vertices ordered.
 
-use super::quadratic::with_middles;
 use super::thickness::few_elements_across;
 use crate::body::BodySpec;
 use crate::elements::SolidElements;
@@ -9,7 +8,8 @@ use crate::kind::BodyKind;
 use crate::shapes::Shape;
 use bowknot_errors::counted;
 use bowknot_geometry::{
-    MeshProblem, Point, TetFaults, boundary_triangles, check_mesh, check_tets, divide_tetrahedron,
+    MeshProblem, Point, TetFaults, add_edge_middles, boundary_triangles, check_mesh, check_tets,
+    divide_tetrahedron,
 };
 use bowknot_io::{self as io, Import, Mesh, Surface};
 use std::collections::{HashMap, HashSet};
@@ -277,7 +277,7 @@ impl Part {
 
     /// Divides each tetrahedron into eight by vertices in the middles of its edges; they follow those of the mesh.
     fn make_quadratic(&mut self) {
-        self.quadratic_tets = with_middles(&mut self.positions, &self.tets);
+        self.quadratic_tets = add_edge_middles(&mut self.positions, &self.tets);
         self.tets = self.quadratic_tets.iter().flat_map(divide_tetrahedron).collect();
         let added = self.positions.len() - self.numbers.len();
         self.numbers.extend((self.mesh_vertices..self.mesh_vertices + added).map(|v| v as u32));

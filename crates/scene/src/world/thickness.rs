@@ -1,7 +1,6 @@
 //! How thick a solid is, in elements.
 
 use bowknot_geometry::{Point, Vector, boundary_triangles};
-use std::collections::HashMap;
 
 /// Fewer elements than this across a body that bends are too few for linear tetrahedra.
 const FEW: f64 = 3.0;
@@ -30,15 +29,18 @@ pub(super) fn few_elements_across(x: &[Point], tets: &[[u32; 4]]) -> Option<f64>
     (elements < FEW && (high - low).max() > SLENDER * length).then_some(elements)
 }
 
-/// The tetrahedra at each face.
-fn faces(tets: &[[u32; 4]]) -> HashMap<[u32; 3], Vec<usize>> {
-    let mut faces: HashMap<[u32; 3], Vec<usize>> = HashMap::new();
-    for (index, tet) in tets.iter().enumerate() {
-        for face in FACES {
-            faces.entry(sorted(face.map(|k| tet[k]))).or_default().push(index);
-        }
-    }
+/// The faces with a tetrahedron at each, ascending.
+fn faces(tets: &[[u32; 4]]) -> Vec<([u32; 3], usize)> {
+    let of = |(index, tet): (usize, &[u32; 4])| FACES.map(|face| (sorted(face.map(|k| tet[k])), index));
+    let mut faces: Vec<([u32; 3], usize)> = tets.iter().enumerate().flat_map(of).collect();
+    faces.sort_unstable();
     faces
+}
+
+/// The tetrahedra at a face.
+fn at_face(faces: &[([u32; 3], usize)], face: [u32; 3]) -> impl Iterator<Item = usize> + '_ {
+    let first = faces.partition_point(|(other, _)| *other < face);
+    faces[first..].iter().take_while(move |(other, _)| *other == face).map(|(_, tet)| *tet)
 }
 
 fn sorted(mut face: [u32; 3]) -> [u32; 3] {
@@ -50,7 +52,7 @@ fn sorted(mut face: [u32; 3]) -> [u32; 3] {
 fn through(
     x: &[Point],
     tets: &[[u32; 4]],
-    faces: &HashMap<[u32; 3], Vec<usize>>,
+    faces: &[([u32; 3], usize)],
     triangle: [u32; 3],
 ) -> Option<(f64, f64)> {
     let normal =
@@ -58,7 +60,7 @@ fn through(
     let [a, b, c] = triangle.map(|v| x[v as usize].coords);
     let start = Point::from((a + b + c) / 3.0);
     let direction: Vector = -normal(triangle).try_normalize(0.0)?;
-    let (mut face, mut tet) = (sorted(triangle), *faces.get(&sorted(triangle))?.first()?);
+    let (mut face, mut tet) = (sorted(triangle), at_face(faces, sorted(triangle)).next()?);
     let (mut length, mut sizes, mut count) = (0.0, 0.0, 0usize);
     loop {
         let corners = tets[tet];
@@ -79,8 +81,8 @@ fn through(
         let (way, exit) = exits.min_by(|a, b| a.0.total_cmp(&b.0))?;
         length = way.max(length);
         face = exit;
-        match faces[&face].iter().find(|other| **other != tet) {
-            Some(next) if count < MOST => tet = *next,
+        match at_face(faces, face).find(|other| *other != tet) {
+            Some(next) if count < MOST => tet = next,
             _ => return Some((length, length * count as f64 / sizes)),
         }
     }

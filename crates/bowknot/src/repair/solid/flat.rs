@@ -10,7 +10,7 @@
 use super::center;
 use crate::repair::solid_report::SolidRepair;
 use bowknot_geometry::tet_check::is_flat;
-use bowknot_geometry::{Point, Vector};
+use bowknot_geometry::{Point, TETRAHEDRON_EDGES, Vector};
 use bowknot_io::Mesh;
 
 /// Splits per flat tetrahedron of the input, at most: each may leave others flat.
@@ -106,11 +106,10 @@ impl Stars {
 /// The two simplices of a flat tetrahedron that intersect in one point, and this point.
 fn crossing(positions: &[Point], tet: [u32; 4]) -> ([Vec<u32>; 2], Point) {
     let x = tet.map(|v| positions[v as usize]);
-    let pairs = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
     let length = |[i, j]: [usize; 2]| (x[j] - x[i]).norm();
     let by_length = |p: &[usize; 2], q: &[usize; 2]| length(*p).total_cmp(&length(*q));
-    let [i, j] = pairs.into_iter().min_by(by_length).unwrap_or_default();
-    let longest_pair = pairs.into_iter().max_by(by_length).unwrap_or_default();
+    let [i, j] = TETRAHEDRON_EDGES.into_iter().min_by(by_length).unwrap_or_default();
+    let longest_pair = TETRAHEDRON_EDGES.into_iter().max_by(by_length).unwrap_or_default();
     let longest = length(longest_pair);
     if length([i, j]) <= NOTHING * longest {
         return ([vec![tet[i]], vec![tet[j]]], x[i]);

@@ -15,7 +15,7 @@ const CORNERS: [Vector; 4] = [
 fn rest() -> [Vector; 10] {
     std::array::from_fn(|a| match a.checked_sub(4) {
         None => CORNERS[a],
-        Some(e) => (CORNERS[EDGES[e][0]] + CORNERS[EDGES[e][1]]) * 0.5,
+        Some(e) => TETRAHEDRON_EDGES[e].iter().map(|&k| CORNERS[k] * 0.5).sum(),
     })
 }
 

@@ -2,14 +2,12 @@
 
 mod block;
 mod cloth;
-mod quadratic;
 mod setup;
 mod sheet;
 mod strands;
 
 pub use block::block;
 pub use cloth::cloth_model;
-pub use quadratic::quadratic;
 pub use setup::{dynamics, equilibrium, weightless, with_gravity, with_tolerance};
 pub use sheet::sheet;
 pub use strands::strands;

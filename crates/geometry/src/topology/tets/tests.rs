@@ -45,11 +45,10 @@ fn what_is_shared_is_inside() {
 fn a_tetrahedron_is_divided_into_eight_of_equal_volume() {
     let corners = [[0.1, 0.2, 0.3], [1.2, 0.1, 0.2], [0.4, 0.9, 0.6], [0.3, 0.4, 1.3]].map(Point::from);
     let mut positions = corners.to_vec();
-    for [i, j] in [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]] {
-        positions.push(nalgebra::center(&corners[i], &corners[j]));
-    }
+    let nodes = add_edge_middles(&mut positions, &[[0, 1, 2, 3]]);
+    assert_eq!((nodes.len(), positions.len()), (1, 10));
     let volume = |tet: &[u32; 4]| six_volumes(&positions, &boundary_triangles(&[*tet]));
-    let parts = divide_tetrahedron(&std::array::from_fn(|k| k as u32));
+    let parts = divide_tetrahedron(&nodes[0]);
     let whole = volume(&[0, 1, 2, 3]);
     assert!(
         parts.iter().all(|part| (volume(part) - whole / 8.0).abs() < 1e-15),
