@@ -53,7 +53,7 @@ const ARRAYS: [&str; 29] = [
 ///
 /// In the archive: `x[n,3]`, `y[n,3]` [m], `F[m,3]`, and optionally `E[k,2]` (strands), `P[p]` (particles),
 /// `rest[n,3]` [m], `mass[n]` [kg], `fixed[n]`, `O[n]` (obstacle), `body[n]`, `planes[h,4]` (unit normal,
-/// offset [m]), `dt` [s]; stored or deflated, f32 or f64, integers of any width.
+/// offset [m], -inf while it is not there), `dt` [s]; stored or deflated, f32 or f64, integers of any width.
 ///
 /// What bodies bring into their contacts, optional as well, with one entry per body of `body`: `thickness`,
 /// `delta` [m], `friction`, `stretch_limit` [1], each nan where the body leaves it open; `plane_thickness[h]`
@@ -358,7 +358,9 @@ fn planes(archive: &mut Archive<'_>) -> Result<Vec<HalfSpace>, IoError> {
         let length = normal.norm();
         let is_offset = offset.is_finite() || offset == f64::NEG_INFINITY;
         if !(length.is_finite() && length > 0.0 && is_offset) {
-            let message = format!("row {index} needs a normal (not zero) and an offset, all finite");
+            let message = format!(
+                "row {index} needs a normal (finite, not zero) and an offset (finite, or -inf while it is not there)"
+            );
             return Err(archive.fault("planes", message));
         }
         // A normal that is a unit to rounding is kept bit by bit, so that a recorded problem is the one that

@@ -18,8 +18,9 @@ const YIELDING: &str = "yielding_edges";
 
 impl Checkpoint {
     /// Writes the state as one NPZ file, atomically: `step[1]`, `positions[n,3]`, `velocities[n,3]`,
-    /// `anchor_counts[p]`, `anchors[k,3]`, `present[b+h]` (1 for bodies and half-spaces that are there), `contact_features[c,4]` (kind and index of either feature: 0
-    /// vertex, 1 edge, 2 triangle, 3 half-space), `contact_normals[c,3]`, `contact_forces[c,3]`; of contacts near
+    /// `anchor_counts[p]`, `anchors[k,3]`, `present[b+h]` (1 for bodies and half-spaces that are there),
+    /// `contact_features[c,4]` (kind and index of either feature: 0 vertex, 1 edge, 2 triangle, 3 half-space),
+    /// `contact_normals[c,3]`, `contact_forces[c,3]`; of contacts near
     /// rest `contact_means[m,22]` (kind and index of either feature, four vertices, their weights, normal, offset,
     /// reach, floor, stiffness, friction, distance, and how many times found the mean goes back); `yielding_edges[e,3]`, if
     /// there are any (two vertices, limit); where bodies

@@ -180,9 +180,9 @@ impl Contacts {
         self.limited.yielding()
     }
 
-    /// What prescribed vertices ask for beyond the limits of edges.
-    pub fn over(&self) -> Option<OverLimit> {
-        self.held.over()
+    /// What prescribed vertices ask for at `x` [m] beyond the limits of edges.
+    pub fn over(&self, x: &[Point]) -> Option<OverLimit> {
+        self.held.over(x)
     }
 
     /// The component of a vertex; obstacles and vertices that do not exist have the same.

@@ -37,11 +37,10 @@ pub(super) struct HeldEdges {
     /// The vertices for which the patches were made.
     prescribed: Vec<bool>,
     patches: Vec<Patch>,
-    /// Edges between two prescribed vertices.
+    /// Edges between two prescribed vertices, which are in no patch.
     between: Vec<DistanceLimit>,
     /// Edges that go back to their limits, with the limits of the present time step [m].
     going_back: Vec<(u32, f64)>,
-    over: Option<OverLimit>,
 }
 
 /// Free vertices that edges connect, and the prescribed ones around them.
@@ -68,9 +67,16 @@ impl HeldEdges {
         self.patches.iter().flat_map(Patch::yielding).chain(self.going_back.iter().copied())
     }
 
-    /// What prescribed vertices ask for beyond the limits; none if all can be met.
-    pub fn over(&self) -> Option<OverLimit> {
-        self.over
+    /// What prescribed vertices ask for at `x` [m] beyond the limits; none if all can be met.
+    pub fn over(&self, x: &[Point]) -> Option<OverLimit> {
+        let larger = |a: OverLimit, b: OverLimit| if b.excess > a.excess { b } else { a };
+        let between = self.between.iter().filter_map(|&DistanceLimit { vertices, limit: allowed_m }| {
+            let distance_m = (x[vertices[0] as usize] - x[vertices[1] as usize]).norm();
+            let pair = Some(HeldPair { vertices, distance_m, allowed_m });
+            let over = OverLimit { edge: vertices, excess: distance_m / allowed_m, pair };
+            (over.excess > 1.0 + SLACK).then_some(over)
+        });
+        self.patches.iter().filter_map(Patch::over).chain(between).reduce(larger)
     }
 
     /// Begins a time step at positions `x` [m], for edges among the `limited` ones; `before` are those that yielded in the
@@ -93,10 +99,6 @@ impl HeldEdges {
         let went_back = !self.going_back.is_empty();
         self.going_back = going_back(limited, x, before);
         let moved = self.go_on(rest, x);
-        // Edges between two prescribed vertices are in no patch.
-        if !moved && (others || !self.between.is_empty()) {
-            self.over = self.find_over(x);
-        }
         others || moved || went_back || !self.going_back.is_empty()
     }
 
@@ -106,21 +108,7 @@ impl HeldEdges {
         for patch in &mut self.patches {
             changed |= patch.update(rest, x);
         }
-        if changed {
-            self.over = self.find_over(x);
-        }
         changed
-    }
-
-    fn find_over(&self, x: &[Point]) -> Option<OverLimit> {
-        let larger = |a: OverLimit, b: OverLimit| if b.excess > a.excess { b } else { a };
-        let between = self.between.iter().filter_map(|&DistanceLimit { vertices, limit: allowed_m }| {
-            let distance_m = (x[vertices[0] as usize] - x[vertices[1] as usize]).norm();
-            let pair = Some(HeldPair { vertices, distance_m, allowed_m });
-            let over = OverLimit { edge: vertices, excess: distance_m / allowed_m, pair };
-            (over.excess > 1.0 + SLACK).then_some(over)
-        });
-        self.patches.iter().filter_map(Patch::over).chain(between).reduce(larger)
     }
 }
 
@@ -336,7 +324,7 @@ mod tests {
         edges.begin_step(&limited, [&rest, &x], &prescribed, &[]);
         let mut limits: Vec<f64> = limited.iter().map(|edge| edge.limit).collect();
         edges.limits().for_each(|(k, limit)| limits[k as usize] = limit);
-        (limited, limits, edges.over())
+        (limited, limits, edges.over(&x))
     }
 
     #[test]
@@ -381,7 +369,7 @@ mod tests {
         for (scale, is_over) in [(1.0, false), (1.1, true), (1.02, false)] {
             let x: Vec<Point> = rest.iter().map(|x| x * scale).collect();
             edges.begin_step(&limited, [&rest, &x], &[true; 4], &[]);
-            assert_eq!(edges.over().is_some(), is_over, "{scale}");
+            assert_eq!(edges.over(&x).is_some(), is_over, "{scale}");
             assert_eq!(edges.limits().count(), 0);
         }
     }

@@ -486,7 +486,7 @@ impl Simulator {
                 false => of_forces().or_else(of_collisions),
             };
         }
-        statistics.held_apart = contacts.over().and_then(|over| HeldApart::new(world, &over));
+        statistics.held_apart = contacts.over(x).and_then(|over| HeldApart::new(world, &over));
         let judged = backend.judge(resolver.scene(), &x[..count]);
         judged.map_err(|source| backend_error(world, step, source))?;
         contacts.end_step(&forces, resolver, start);
