@@ -10,12 +10,14 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod adopt;
+mod algorithm;
 mod backward;
 mod blocked;
 mod bodies;
 mod call;
 mod chunks;
 mod coarse;
+mod cpu;
 mod error;
 mod filter;
 mod forward;
@@ -59,6 +61,7 @@ pub use bowknot_proximity as proximity;
 pub use bowknot_stepper as stepper;
 
 pub use adopt::CallEnd;
+pub use algorithm::{Call, Processor, Progress};
 pub use backward::{GUARDED_STRETCH, LcpBackward};
 pub use bodies::{BodyContact, ContactSide, ContactTable, HalfSpaceContact, PairFriction};
 pub use bowknot_constraints::ContactParams;

@@ -1,31 +1,28 @@
-//! Algorithm 1: the two-way loop, and its default composition.
+//! The two-way method with its default stages.
 
+use crate::algorithm::Call;
 use crate::backward::LcpBackward;
 use crate::bodies::{BodyContact, HalfSpaceContact, PairFriction};
 use crate::call::{CallInput, check_min_separation};
+use crate::cpu::Cpu;
 use crate::error::ResolveError;
-use crate::filter::filter_slip;
 use crate::forward::CertifiedForward;
 use crate::injection::injected_energy;
 use crate::input::ResolveInput;
 use crate::lag::lags;
-use crate::observer::{AcceptedState, Observer};
+use crate::observer::Observer;
 use crate::params::Params;
 use crate::scene::CollisionScene;
 use crate::search::TrustRegionSearch;
 use crate::stages::{BackwardStep, ForwardStep, Search};
-use crate::stall::StallDetector;
 use crate::state::{ContactSet, ResolveState};
 use crate::statistics::Statistics;
-use crate::stop::StopTest;
 use crate::stretch::max_stretch;
 use crate::validation::check_rows;
 use bowknot_check::{CheckError, Judge, StateOptions, StateReport};
-use bowknot_constraints::FrictionModel;
 use bowknot_geometry::{BodyFilter, HalfSpace, Point};
 use bowknot_proximity::CollisionModel;
 use bowknot_stepper::StepReport;
-use std::time::Instant;
 
 /// From this number of steps on the statistics of a call tell what it waited for.
 const SLOW_STEPS: usize = 32;
@@ -183,9 +180,6 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
 
     /// As [`Self::resolve`], with further input and an observer. It is always valid to stop early.
     ///
-    /// This is Algorithm 1 of the paper. The search keeps D^(l), and a search is due if D^(l) < D^min, or by
-    /// the rule that replaces it.
-    ///
     /// # Errors
     /// As [`Self::resolve`].
     pub fn resolve_with(
@@ -195,68 +189,27 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
         input: &ResolveInput<'_>,
         observer: &mut dyn Observer,
     ) -> Result<Statistics, ResolveError> {
-        let timer = Instant::now();
+        let mut call = Call::new(&self.scene, input);
         self.begin(positions, target, input)?;
         if cfg!(debug_assertions) {
             self.refuse_intersections(positions)?;
         }
-        let Self { scene, state, search, backward, forward } = self;
         let mut statistics = Statistics::default();
-        let stop = &scene.params().solver.stop;
-        let mut stop = StopTest::new(stop, scene.lengths().edge, input.time_step, input.max_steps);
-        let mut stall = StallDetector::new(scene.lengths().edge, scene.arrival_distance());
-
-        while stop.allows_step(state.step) {
-            let searches = statistics.searches;
-            // Within the thread pool: a parallel loop that starts outside of it pays for the crossing.
-            let report = rayon::scope(|_| {
-                search.update(scene, state, &mut statistics);
-                check_pairs(scene, state)?;
-                if state.step == 0 && scene.friction_model() == FrictionModel::Filter {
-                    filter_slip(scene, state);
-                }
-                timed_project(backward, scene, state, &mut statistics);
-                let report = timed_advance(forward, scene, state, search, &mut statistics);
-                // A swept step lists pairs of its own.
-                check_pairs(scene, state).map(|()| report)
-            })?;
-            statistics.skipped.searches += usize::from(statistics.searches == searches);
-            let observed = observer.accepted(&accepted(state));
-            observer.waiting(&|| forward.waits(scene, state));
-            state.step += 1;
-            state.remaining = report.remaining;
-            statistics.remaining_r = report.remaining_fraction;
-            statistics.slowest_body = report.slowest.map(|v| scene.model().vertex_body()[v as usize]);
-
-            statistics.converged = match backward.converged(scene, state) {
-                Some(converged) => converged,
-                None => stop.is_met(&report, || backward.residuals(scene, state)),
-            };
-            let is_out_of_time = stop.is_out_of_time(timer.elapsed().as_secs_f64());
-            let is_stalled = stall.update(
-                farthest(state, true, &state.target),
-                || farthest(state, false, &state.y),
-                || farthest(state, false, &state.previous),
-            );
-            if statistics.converged && stop.takes_finishing_step(&report, state.step, || is_free(state)) {
-                statistics.converged = false;
-            }
-            if statistics.converged || observed.is_break() || is_out_of_time || is_stalled {
-                break;
-            }
-        }
+        let Self { scene, state, search, backward, forward } = self;
+        let mut cpu = Cpu { scene, state, search, backward, forward, report: StepReport::default() };
+        call.run(&mut cpu, observer, &mut statistics)?;
 
         // A call that the caller wants cut short is not slow.
-        let is_cut = input.max_steps.is_some_and(|most| state.step >= most);
-        if state.step >= SLOW_STEPS || (!statistics.converged && !is_cut && state.step > 0) {
-            statistics.waits = forward.waits(scene, state);
+        let is_cut = input.max_steps.is_some_and(|most| statistics.steps >= most);
+        if statistics.steps >= SLOW_STEPS || (!statistics.converged && !is_cut && statistics.steps > 0) {
+            statistics.waits = self.forward.waits(&self.scene, &self.state);
         }
         self.finish(&mut statistics);
         check_pairs(&self.scene, &self.state)?;
         [statistics.max_step_stretch, statistics.max_stretch] =
             max_stretch(&self.scene, [positions, self.scene.rest()], &self.state.x);
         positions.copy_from_slice(&self.state.x);
-        statistics.seconds.total = timer.elapsed().as_secs_f64();
+        statistics.seconds.total = call.seconds();
         Ok(statistics)
     }
 
@@ -299,7 +252,6 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
         let Self { scene, state, search, backward, .. } = self;
         search.finish(scene, state, statistics);
         backward.finish(scene, state, statistics);
-        statistics.steps = state.step;
         statistics.pairs = search.candidate_count();
         self.describe_end(statistics);
     }
@@ -328,50 +280,7 @@ impl<S: Search, B: BackwardStep, F: ForwardStep> Resolver<S, B, F> {
     }
 }
 
-/// Largest distance of a vertex to its place in `ends` [m], of those that are prescribed or of the others.
-fn farthest(state: &ResolveState, prescribed: bool, ends: &[Point]) -> f64 {
-    let vertices = (0..state.x.len()).filter(|&v| state.call.is_prescribed(v) == prescribed);
-    vertices.map(|v| (ends[v] - state.x[v]).norm()).fold(0.0, f64::max)
-}
-
-/// The backward step, with its seconds.
-fn timed_project(
-    backward: &mut impl BackwardStep,
-    scene: &CollisionScene,
-    state: &mut ResolveState,
-    statistics: &mut Statistics,
-) {
-    let timer = Instant::now();
-    backward.project(scene, state, statistics);
-    statistics.seconds.backward += timer.elapsed().as_secs_f64();
-}
-
-/// The forward step, with its seconds less those of searches that it makes.
-fn timed_advance(
-    forward: &mut impl ForwardStep,
-    scene: &CollisionScene,
-    state: &mut ResolveState,
-    search: &mut impl Search,
-    statistics: &mut Statistics,
-) -> StepReport {
-    let (timer, before) = (Instant::now(), statistics.seconds.of_search());
-    let report = forward.advance(scene, state, search, statistics);
-    let searched = statistics.seconds.of_search() - before;
-    statistics.seconds.forward += timer.elapsed().as_secs_f64() - searched;
-    report
-}
-
 /// Refuses a state with so many pairs that rows could not be numbered.
 pub(crate) fn check_pairs(scene: &CollisionScene, state: &ResolveState) -> Result<(), ResolveError> {
     check_rows(state.contacts.pairs.len(), scene.model().topology().edges.len())
-}
-
-/// The state after a forward step, for the observer.
-fn accepted(state: &ResolveState) -> AcceptedState<'_> {
-    AcceptedState { step: state.step, previous: &state.previous, positions: &state.x, target: &state.y }
-}
-
-/// Whether no contact has a multiplier.
-fn is_free(state: &ResolveState) -> bool {
-    state.contacts.multipliers.iter().all(|&multiplier| multiplier == 0.0)
 }
