@@ -46,7 +46,6 @@ mod store;
 mod summary;
 mod table;
 mod targets;
-mod timed;
 
 use anyhow::{Result, bail};
 use bench::{Bench, Size};

@@ -27,6 +27,7 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub mod body;
+mod device_work;
 mod drag;
 pub mod dynamics;
 mod elements;
@@ -49,6 +50,7 @@ pub use nalgebra::Matrix3;
 
 pub use body::{Body, BodyShape};
 pub use bowknot_errors::{Errors, ParamError, Parameters};
+pub use device_work::DeviceWork;
 pub use dynamics::{
     BodiesPotential, Dynamics, Held, NewtonBackend, NewtonInfo, NewtonSolve, NewtonStep, NewtonTarget,
     OutOfBalance, Residual, SolveLimits, StepTerms, Touching, Trial, Watched,

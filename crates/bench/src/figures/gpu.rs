@@ -1,26 +1,46 @@
-//! Time steps on a GPU beside the CPU's: the scenes of Table 2, the stages of a step, the growth with the size.
+//! Time steps in contact on a GPU beside the CPU's: whole time steps, the stages of the device, the growth with the size.
 
 use super::goals::TABLE_2;
 use crate::bench::{Bench, Size};
 use crate::figure::{Figure, Part, Report};
-use crate::table::{Entry, Table, geometric_mean, largest, mean, short};
-use crate::timed::{TimedBackend, taken};
-use anyhow::{Context, Result};
+use crate::table::{Table, geometric_mean, largest, short};
+use anyhow::{Context, Result, anyhow};
 use bowknot::dynamics::LinearBackend;
 use bowknot::gpu::{Adapter, ConjugateGradients, Device, DeviceEngine, Profile, StageTime};
-use bowknot::simulator::{CollisionBackend, Cpu};
-use bowknot::{Scene, Simulator};
+use bowknot::simulator::{Checkpoint, CollisionBackend};
+use bowknot::{Scene, Simulator, StepStatistics};
 use bowknot_errors::counted;
-use std::sync::Arc;
+use std::fs;
 use std::time::Instant;
 
 pub struct Gpu;
 
-/// Scene, its scale and number of time steps, in which the stages are measured: it touches the ball in the last ones.
-const STAGES: (&str, f64, usize) = ("drape", 2.0, 16);
+/// Scenes with their scale, and the time steps that the CPU makes before: they lead into contact.
+const SCENES: [(&str, f64, usize); 12] = [
+    ("bow-knot", 1.0, 60),
+    ("needle", 1.0, 25),
+    ("dress", 1.0, 37),
+    ("tube", 1.0, 40),
+    ("reef-knot", 1.0, 76),
+    ("sphere", 1.0, 32),
+    ("gown", 1.0, 42),
+    ("mat", 1.0, 126),
+    ("hair", 1.0, 36),
+    ("sand", 1.0, 60),
+    ("blade", 1.0, 1),
+    ("funnel", 1.0, 0),
+];
 
-/// Scales of the growth with the size: 10 thousand to 2 million triangles.
-const SCALES: [f64; 6] = [1.4, 3.2, 6.3, 10.0, 14.0, 20.0];
+/// Scales of `drape`, which falls with 4 m/s and lands: 9 thousand to 2 million triangles.
+const SIZES: [f64; 5] = [1.4, 3.2, 6.3, 10.0, 20.0];
+const FALL: &str = "body.0.velocity=[0,0,-4]";
+const FALL_LEAD: usize = 7;
+
+/// Time steps that are measured, after one in which the device compiles its kernels.
+const STEPS: usize = 3;
+
+/// The scene in which the stages are measured.
+const STAGES: (&str, f64, usize) = SCENES[0];
 
 impl Figure for Gpu {
     fn name(&self) -> &'static str {
@@ -32,206 +52,263 @@ impl Figure for Gpu {
     }
 
     fn question(&self) -> &'static str {
-        "First time steps of the scenes of Table 2 at the paper's size, first on the CPU, on as many threads \
-         as `--threads` says, then on the first GPU, with their dynamics. Seconds of the collision stage per \
-         time step, reading of contacts included, and of whole time steps. A time step before them does not count, since the device compiles its \
-         kernels in it. `gpu-stages.csv`: what the stages of the device take, between time stamps of its own, and the bytes of \
-         the buffers that they bind. `gpu-sizes.csv`: growth with the number of triangles. On a software driver everything \
-         runs small, and times mean nothing."
+        "Three time steps in contact on the first GPU, with collisions and dynamics, and the same three on the CPU on as many \
+         threads as `--threads` says: seconds per time step, all of it included. The CPU leads the scenes into contact \
+         and writes that state to `leads/` in the folder of results; what lies there is taken. Per time step: iterations, \
+         submissions, dispatches and waits of the device, milliseconds in which the host records and submits, and in which it waits \
+         for results. `apart_mm`: between the centers of mass of the bodies after these time steps, at most. `paper_s`: the \
+         collision stage alone in the paper, on its GPU, mean over other time steps. `gpu-stages.csv`: what the stages of the \
+         device take, between time stamps of its own, and the bytes of the buffers that they bind. `gpu-sizes.csv`: growth \
+         with the number of triangles. On a software driver everything runs small, and times mean nothing."
     }
 
     fn run(&self, bench: &Bench) -> Result<Report> {
         let adapter = Adapter::choose(None)?;
-        let small = adapter.is_software();
+        let is_small = adapter.is_software() || bench.size != Size::Full;
         println!("  {adapter}");
-        let scale = bench.size.pick(if small { 0.15 } else { 1.0 }, 0.1, 0.1);
-        let mut scenes = table(["scene", "time_steps"]);
-        let count = bench.size.pick(TABLE_2.len(), 3, 1);
+        let mut scenes = table();
         let (mut ratios, mut over_paper) = (Vec::new(), Vec::new());
-        for &(name, frames, paper) in &TABLE_2[..count] {
+        let count = bench.size.pick(SCENES.len(), 3, 1);
+        for &(name, scale, lead) in SCENES[..count].iter().filter(|(name, ..)| bench.wants(name)) {
             if !bench.has_time() {
                 break;
             }
-            let frames = bench.size.pick(if small { frames.min(4) } else { frames }, 3, 1);
-            let pair = Pair::measure(&adapter, name, scale, frames)?;
-            println!("  {name}: CPU {:.4} s, GPU {:.4} s per time step", pair.cpu.mean(), pair.gpu.mean());
-            ratios.push(pair.cpu.mean() / pair.gpu.mean());
-            over_paper.push(pair.gpu.mean() / paper);
-            pair.add(&mut scenes, vec![name.into(), frames.into()], paper);
+            let (scale, lead) = if is_small { (0.1 * scale, lead / 4) } else { (scale, lead) };
+            let course = Course::new(bench, name, scale, &[], lead)?;
+            let [cpu, gpu] = course.both(&adapter)?;
+            let paper = TABLE_2.iter().find(|row| row.0 == name).map_or(f64::NAN, |row| row.2);
+            ratios.push(cpu.seconds / gpu.seconds);
+            over_paper.push(gpu.seconds / paper);
+            course.add(&mut scenes, &cpu, &gpu, paper);
         }
-        let mut sizes = table(["scale", "triangles"]);
-        let scales = bench.size.pick(if small { 2 } else { SCALES.len() }, 1, 1);
-        for scale in &SCALES[..scales] {
+        let stages =
+            if bench.wants("stages") { stages(&adapter, bench, is_small)? } else { Table::default() };
+        let mut sizes = table();
+        let count = if is_small { bench.size.pick(2, 1, 1) } else { SIZES.len() };
+        for &scale in SIZES[..count].iter().filter(|_| bench.wants("sizes")) {
             if !bench.has_time() {
                 break;
             }
-            let pair = Pair::measure(&adapter, "drape", *scale, bench.size.pick(6, 2, 1))?;
-            pair.add(&mut sizes, vec![(*scale).into(), pair.triangles.into()], f64::NAN);
+            let scale = if is_small { 0.2 * scale } else { scale };
+            let course = Course::new(bench, "drape", scale, &[FALL], FALL_LEAD)?;
+            let [cpu, gpu] = course.both(&adapter)?;
+            course.add(&mut sizes, &cpu, &gpu, f64::NAN);
         }
-        let stages = stages(&adapter, bench)?;
-        let note = if small { " It is a software driver: these times mean nothing." } else { "" };
+        let note =
+            if adapter.is_software() { " It is a software driver: these times mean nothing." } else { "" };
         Ok(Report {
             finding: format!(
-                "{adapter}: the CPU ({}) takes {} times as long, geometric mean over {} scenes; the device {} times \
-                 the paper's seconds at most.{note}",
+                "{adapter}: the CPU ({}) takes {} times as long, geometric mean over {} scenes; a whole time step on the \
+                 device takes {} times the paper's collision stage at most.{note}",
                 counted(rayon::current_num_threads(), "thread", "threads"),
                 short(geometric_mean(&ratios)),
                 ratios.len(),
                 short(largest(&over_paper)),
             ),
             parts: vec![
-                Part::table(
-                    self.name(),
-                    "seconds of the collision stage and of whole time steps on a GPU and on the CPU, beside the paper's",
-                    scenes,
-                ),
-                Part::table("gpu-stages", "what the stages of the two-way step take on a GPU", stages),
-                Part::table(
-                    "gpu-sizes",
-                    "growth of the collision stage with the size, on a GPU and on the CPU",
-                    sizes,
-                ),
+                Part::table(self.name(), "whole time steps in contact on a GPU and on the CPU", scenes),
+                Part::table("gpu-stages", "what the stages of a time step take on a GPU", stages),
+                Part::table("gpu-sizes", "growth with the size, on a GPU and on the CPU", sizes),
             ],
         })
     }
 }
 
-fn table(first: [&str; 2]) -> Table {
+fn table() -> Table {
     Table::new([
-        first[0],
-        first[1],
+        "scene",
+        "scale",
         "vertices",
         "cpu_s",
-        "cpu_most_s",
         "gpu_s",
-        "gpu_most_s",
-        "paper_gpu_s",
-        "cpu_steps",
-        "gpu_steps",
-        "gpu_ms_per_step",
-        "cpu_whole_s",
-        "gpu_whole_s",
+        "paper_s",
+        "newton_cpu",
+        "newton_gpu",
+        "linear_cpu",
+        "linear_gpu",
+        "steps_cpu",
+        "steps_gpu",
+        "submissions",
+        "dispatches",
+        "waits",
+        "buffers",
+        "encode_ms",
+        "wait_ms",
+        "collisions_ms",
+        "dynamics_ms",
+        "apart_mm",
     ])
 }
 
-/// The same time steps on both.
-struct Pair {
-    cpu: Measured,
-    gpu: Measured,
-    vertices: usize,
-    triangles: usize,
+/// A scene, and its state in contact.
+struct Course {
+    name: String,
+    scale: f64,
+    scene: Scene,
+    lead: Checkpoint,
 }
 
-/// Seconds and two-way steps of the collision stage by time step, and seconds of all of it.
+/// Time steps on one backend.
 struct Measured {
-    seconds: Vec<f64>,
-    whole: Vec<f64>,
-    steps: Vec<f64>,
+    /// Seconds per time step.
+    seconds: f64,
+    statistics: Vec<StepStatistics>,
+    /// Centers of the vertices of each body at the end [m].
+    centers: Vec<[f64; 3]>,
+    vertices: usize,
 }
 
 impl Measured {
-    fn mean(&self) -> f64 {
-        mean(&self.seconds)
+    /// Mean per time step.
+    fn mean(&self, of: impl Fn(&StepStatistics) -> f64) -> f64 {
+        self.statistics.iter().map(of).sum::<f64>() / self.statistics.len() as f64
     }
 }
 
-impl Pair {
-    fn measure(adapter: &Adapter, name: &str, scale: f64, frames: usize) -> Result<Self> {
-        let scene = Scene::builtin(name, scale)?;
-        let (cpu, world) = simulate(&scene, Box::new(Cpu), None, frames)?;
-        let name = adapter.to_string();
-        let device = Device::new(name.clone(), DeviceEngine::open(adapter)?);
-        let dynamics = ConjugateGradients::new(name, DeviceEngine::open(adapter)?);
-        let (gpu, _) = simulate(&scene, Box::new(device), Some(Box::new(dynamics)), frames)?;
-        let triangles = world.collision.topology().triangles.len();
-        Ok(Self { cpu, gpu, vertices: world.collision_vertices(), triangles })
+impl Course {
+    fn new(bench: &Bench, name: &str, scale: f64, sets: &[&str], lead: usize) -> Result<Self> {
+        let sets: Vec<String> = sets.iter().map(|&set| set.to_owned()).collect();
+        let scene = Scene::builtin(name, scale)?.with_sets(&sets)?;
+        let folder = bench.out().join("leads");
+        fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
+        let file = folder.join(format!("{name}-{scale}.npz"));
+        let lead = if file.exists() {
+            Checkpoint::read(&file)?
+        } else {
+            let mut simulator = Simulator::new(&scene)?;
+            (0..lead).try_for_each(|_| simulator.step().map(|_| ()))?;
+            let lead = simulator.checkpoint();
+            lead.write(&file)?;
+            lead
+        };
+        Ok(Self { name: name.to_owned(), scale, scene, lead })
     }
 
-    fn add(&self, table: &mut Table, first: Vec<Entry>, paper: f64) {
-        let steps: f64 = self.gpu.steps.iter().sum();
-        let mut row = first;
-        row.extend([
-            self.vertices.into(),
-            self.cpu.mean().into(),
-            largest(&self.cpu.seconds).into(),
-            self.gpu.mean().into(),
-            largest(&self.gpu.seconds).into(),
-            paper.into(),
-            mean(&self.cpu.steps).into(),
-            mean(&self.gpu.steps).into(),
-            (1e3 * self.gpu.seconds.iter().sum::<f64>() / steps).into(),
-            mean(&self.cpu.whole).into(),
-            mean(&self.gpu.whole).into(),
-        ]);
-        table.row(row);
+    fn both(&self, adapter: &Adapter) -> Result<[Measured; 2]> {
+        let gpu = self.measure(Some(device(adapter, None)?))?;
+        let cpu = self.measure(None)?;
+        println!(
+            "  {} {}: CPU {:.4} s, GPU {:.4} s per time step",
+            self.name, self.scale, cpu.seconds, gpu.seconds
+        );
+        Ok([cpu, gpu])
     }
-}
 
-/// Runs the first time steps of a scene and times the calls of the backend, but for those of the first one.
-fn simulate(
-    scene: &Scene,
-    backend: Box<dyn CollisionBackend>,
-    dynamics: Option<Box<dyn LinearBackend>>,
-    frames: usize,
-) -> Result<(Measured, Arc<bowknot::World>)> {
-    let mut simulator = Simulator::new(scene)?;
-    let seconds = Arc::default();
-    // The judge is a part of the collision stage.
-    let timed = TimedBackend { backend, resolve: Arc::clone(&seconds), judge: Arc::clone(&seconds) };
-    simulator.set_backend(Box::new(timed))?;
-    simulator.set_dynamics_backend(dynamics);
-    let mut measured = Measured { seconds: Vec::new(), whole: Vec::new(), steps: Vec::new() };
-    for frame in 0..=frames {
-        let timer = Instant::now();
-        let statistics = simulator.step()?;
-        let whole = timer.elapsed().as_secs_f64();
-        let spent = taken(&seconds).wall;
-        // The device compiles its kernels in the first one.
-        if frame == 0 {
-            continue;
+    /// The time steps, on the CPU or on a device.
+    fn measure(&self, device: Option<Backends>) -> Result<Measured> {
+        let mut simulator = Simulator::new(&self.scene)?;
+        let is_device = device.is_some();
+        if let Some((collisions, dynamics)) = device {
+            simulator.set_backend(collisions)?;
+            simulator.set_dynamics_backend(Some(dynamics));
         }
-        measured.seconds.push(spent);
-        measured.whole.push(whole);
-        measured.steps.push(statistics.two_way_steps as f64);
+        let restore =
+            |simulator: &mut Simulator| simulator.restore(&self.lead).map_err(|message| anyhow!(message));
+        restore(&mut simulator)?;
+        if is_device {
+            simulator.step()?;
+            restore(&mut simulator)?;
+        }
+        let mut statistics = Vec::new();
+        let timer = Instant::now();
+        for _ in 0..STEPS {
+            statistics.push(simulator.step()?);
+        }
+        let seconds = timer.elapsed().as_secs_f64() / STEPS as f64;
+        let positions = simulator.positions();
+        let bodies = simulator.world().bodies.iter();
+        let centers = bodies.map(|body| {
+            let vertices = body.vertices.clone().map(|v| positions[v as usize]);
+            let count = body.vertices.len().max(1) as f64;
+            vertices
+                .fold([0.0; 3], |sum, x| [sum[0] + x.x / count, sum[1] + x.y / count, sum[2] + x.z / count])
+        });
+        let centers = centers.collect();
+        Ok(Measured { seconds, statistics, centers, vertices: positions.len() })
     }
-    Ok((measured, Arc::clone(simulator.world())))
+
+    fn add(&self, table: &mut Table, cpu: &Measured, gpu: &Measured, paper: f64) {
+        let distance =
+            |(a, b): (&[f64; 3], &[f64; 3])| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
+        let apart = cpu.centers.iter().zip(&gpu.centers).map(distance).fold(0.0, f64::max);
+        let counted = |of: fn(&bowknot::simulator::DeviceCounts) -> usize| {
+            gpu.mean(|step| step.device.as_ref().map_or(0.0, |device| of(device) as f64))
+        };
+        let host = |step: &StepStatistics| step.seconds.host.unwrap_or_default();
+        table.row([
+            self.name.as_str().into(),
+            self.scale.into(),
+            gpu.vertices.into(),
+            cpu.seconds.into(),
+            gpu.seconds.into(),
+            paper.into(),
+            cpu.mean(|step| step.newton_iterations as f64).into(),
+            gpu.mean(|step| step.newton_iterations as f64).into(),
+            cpu.mean(|step| step.cg_iterations as f64).into(),
+            gpu.mean(|step| step.cg_iterations as f64).into(),
+            cpu.mean(|step| step.two_way_steps as f64).into(),
+            gpu.mean(|step| step.two_way_steps as f64).into(),
+            counted(|device| device.submissions).into(),
+            counted(|device| device.dispatches).into(),
+            counted(|device| device.waits).into(),
+            counted(|device| device.buffers).into(),
+            (1e3 * gpu.mean(|step| host(step).encode)).into(),
+            (1e3 * gpu.mean(|step| host(step).wait)).into(),
+            (1e3 * gpu.mean(|step| step.seconds.total - step.seconds.dynamics)).into(),
+            (1e3 * gpu.mean(|step| step.seconds.dynamics)).into(),
+            (1e3 * apart).into(),
+        ]);
+        println!("{}", table.markdown().lines().last().unwrap_or_default());
+    }
+}
+
+type Backends = (Box<dyn CollisionBackend>, Box<dyn LinearBackend>);
+
+/// The device as both backends, which measures its stages if there are profiles.
+fn device(adapter: &Adapter, profiles: Option<[Profile; 2]>) -> Result<Backends> {
+    let name = adapter.to_string();
+    let [mut collisions, mut dynamics] = [DeviceEngine::open(adapter)?, DeviceEngine::open(adapter)?];
+    if let Some([of_collisions, of_dynamics]) = profiles {
+        collisions.measure(of_collisions);
+        dynamics.measure(of_dynamics);
+    }
+    Ok((Box::new(Device::new(name.clone(), collisions)), Box::new(ConjugateGradients::new(name, dynamics))))
 }
 
 /// What the stages of the device take in one scene.
-fn stages(adapter: &Adapter, bench: &Bench) -> Result<Table> {
+fn stages(adapter: &Adapter, bench: &Bench, is_small: bool) -> Result<Table> {
     let mut table = Table::new([
+        "half",
         "stage",
-        "dispatches_per_step",
-        "us_per_step",
-        "share",
+        "dispatches",
+        "ms",
         "us_per_dispatch",
         "bound_megabytes_per_dispatch",
         "bound_gigabytes_per_s",
     ]);
-    let (name, scale, frames) = STAGES;
-    let small = adapter.is_software() || bench.size != Size::Full;
-    let (scale, frames) = if small { (0.2, bench.size.pick(16, 8, 2)) } else { (scale, frames) };
-    let mut engine = DeviceEngine::open(adapter).context("a device for the stages")?;
-    let profile = Profile::default();
-    engine.measure(profile.clone());
-    let scene = Scene::builtin(name, scale)?;
-    let (measured, _) = simulate(&scene, Box::new(Device::new(adapter.to_string(), engine)), None, frames)?;
-    let steps: f64 = measured.steps.iter().sum();
-    let mut stages: Vec<(&str, StageTime)> = profile.stages();
-    stages.sort_by(|a, b| b.1.seconds.total_cmp(&a.1.seconds));
-    let total: f64 = stages.iter().map(|(_, time)| time.seconds).sum();
-    for (name, time) in stages {
-        let dispatches = time.dispatches as f64;
-        let bytes = time.bytes as f64 / dispatches;
-        table.row([
-            name.into(),
-            (dispatches / steps).into(),
-            (1e6 * time.seconds / steps).into(),
-            (time.seconds / total).into(),
-            (1e6 * time.seconds / dispatches).into(),
-            (1e-6 * bytes).into(),
-            (1e-9 * time.bytes as f64 / time.seconds).into(),
-        ]);
+    let (name, scale, lead) = STAGES;
+    let (scale, lead) = if is_small { (0.1 * scale, lead / 4) } else { (scale, lead) };
+    let profiles = [Profile::default(), Profile::default()];
+    let course = Course::new(bench, name, scale, &[], lead)?;
+    let measured = course.measure(Some(device(adapter, Some(profiles.clone()))?))?;
+    // The time step in which kernels are compiled counts.
+    let steps = measured.statistics.len() as f64 + 1.0;
+    for (half, profile) in ["collisions", "dynamics"].into_iter().zip(profiles) {
+        let mut stages: Vec<(&str, StageTime)> = profile.stages();
+        stages.sort_by(|a, b| b.1.seconds.total_cmp(&a.1.seconds));
+        for (name, time) in stages {
+            let dispatches = time.dispatches as f64;
+            table.row([
+                half.into(),
+                name.into(),
+                (dispatches / steps).into(),
+                (1e3 * time.seconds / steps).into(),
+                (1e6 * time.seconds / dispatches).into(),
+                (1e-6 * time.bytes as f64 / dispatches).into(),
+                (1e-9 * time.bytes as f64 / time.seconds).into(),
+            ]);
+        }
     }
+    println!("{}", table.markdown());
     Ok(table)
 }

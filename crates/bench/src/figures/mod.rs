@@ -11,8 +11,6 @@ mod edge_limits;
 mod funnel;
 mod goals;
 mod gpu;
-mod gpu_host;
-mod gpu_prediction;
 mod impact_zones;
 mod joint;
 mod lengths;
@@ -60,7 +58,5 @@ pub const ALL: &[&dyn Figure] = &[
     &early_contact::EarlyContact,
     &goals::Goals,
     &gpu::Gpu,
-    &gpu_host::GpuHost,
-    &gpu_prediction::GpuPrediction,
     &stability::Stability,
 ];

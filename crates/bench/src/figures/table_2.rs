@@ -49,28 +49,6 @@ const ROWS: [Row; 15] = [
     row("sand", 0.2, 100, [51.0, 160.0], [0.223, 1.550]),
 ];
 
-/// A scene as the paper has it, and a size of it that runs in minutes.
-pub(super) struct PaperScene {
-    pub scene: &'static str,
-    /// The small scale, and the number of time steps, which lead into contact.
-    pub scale: f64,
-    pub frames: usize,
-    /// The paper's steps per time step, and its seconds per time step of the collision stage on a GPU: means.
-    pub steps: f64,
-    pub seconds: f64,
-}
-
-/// The scenes of the paper's table; those with several time steps by their longest.
-pub(super) fn paper_scenes() -> Vec<PaperScene> {
-    let mut scenes: Vec<PaperScene> = Vec::new();
-    for &Row { scene, scale, frames, steps, seconds, .. } in &ROWS {
-        if scenes.last().is_none_or(|last| last.scene != scene) {
-            scenes.push(PaperScene { scene, scale, frames, steps: steps[0], seconds: seconds[0] });
-        }
-    }
-    scenes
-}
-
 impl Figure for Table2 {
     fn name(&self) -> &'static str {
         "table-2"

@@ -4,6 +4,7 @@ use super::error::GpuResolveError;
 use super::judge::SceneJudge;
 use super::{flight, pairs, setup};
 use crate::simulator::{BackendError, CollisionBackend, MIN_VERTICES};
+use bowknot_dynamics::DeviceWork;
 use bowknot_geometry::{BodyFilter, HalfSpace, Point};
 use bowknot_gpu::{
     Call, Carried, Collision, ContactRow, End, Engine, Grid, Phase, PhaseSeconds, StepReport, Stop,
@@ -293,6 +294,11 @@ impl<E: Engine + Debug + Send> CollisionBackend for Device<E> {
 
     fn prepare(&mut self, scene: &CollisionScene, home: &[Point]) -> Result<(), BackendError> {
         Ok(self.set_home(scene, home)?)
+    }
+
+    fn work(&self) -> DeviceWork {
+        let prepared = || self.prepared.as_ref().map(|prepared| prepared.collision.engine().work());
+        self.engine.as_ref().map(Engine::work).or_else(prepared).unwrap_or_default()
     }
 
     fn device_seconds(&self) -> Option<f64> {

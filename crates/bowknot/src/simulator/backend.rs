@@ -1,5 +1,6 @@
 //! What resolves the collisions of a simulation.
 
+use bowknot_dynamics::DeviceWork;
 use bowknot_geometry::Point;
 use bowknot_twoway::{CollisionScene, Observer, ResolveError, ResolveInput, Resolver, Statistics};
 use std::error::Error;
@@ -24,6 +25,11 @@ pub trait CollisionBackend: Debug + Send {
     /// them by stage. None for the CPU and where they are not measured.
     fn device_seconds(&self) -> Option<f64> {
         None
+    }
+
+    /// What its device was asked for since it was opened; nothing for the CPU.
+    fn work(&self) -> DeviceWork {
+        DeviceWork::default()
     }
 
     /// As [`Resolver::resolve_with`]. It leaves the state of the resolver as such a call does. Nobody may rely on the state

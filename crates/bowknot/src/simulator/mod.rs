@@ -51,6 +51,6 @@ pub use process::{cpu_seconds, peak_memory_bytes};
 pub(crate) use simulator::MIN_VERTICES;
 pub use simulator::Simulator;
 pub use sleep::SleepState;
-pub use statistics::{Energy, StepSeconds, StepStatistics};
+pub use statistics::{DeviceCounts, Energy, HostSeconds, StepSeconds, StepStatistics};
 pub use unsolved::Unsolved;
 pub use waits::WaitingElements;

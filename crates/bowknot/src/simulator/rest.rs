@@ -68,6 +68,11 @@ impl Rest {
         self.awake.as_mut().map(|awake| &mut awake.dynamics)
     }
 
+    /// As [`Self::dynamics`], to look at.
+    pub fn awake_dynamics(&self) -> Option<&Dynamics> {
+        self.awake.as_ref().map(|awake| &awake.dynamics)
+    }
+
     /// Whether no deformable body is awake, and there are some.
     pub fn is_all_asleep(&self, world: &World) -> bool {
         self.awake.is_some()

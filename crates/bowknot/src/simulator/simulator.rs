@@ -26,7 +26,7 @@ use super::tolerance::Tolerance;
 use super::unsolved::Search;
 use super::waits::WaitingElements;
 use bowknot_check::{Judge, StateOptions, StateReport};
-use bowknot_dynamics::{Dynamics, DynamicsModel, LinearBackend, Residual};
+use bowknot_dynamics::{DeviceWork, Dynamics, DynamicsModel, LinearBackend, Residual};
 use bowknot_errors::counted;
 use bowknot_geometry::{Point, Vector};
 use bowknot_scene::world::{Attachment, World};
@@ -247,6 +247,7 @@ impl Simulator {
         observer: &mut dyn SimulationObserver,
     ) -> Result<StepStatistics, SimulationError> {
         let (timer, cpu_start) = (Instant::now(), cpu_seconds());
+        let work_start = self.device_work();
         let step = self.step + 1;
         let time = time_of(step, self.dt);
         let tolerance = Tolerance::new(self.step_tolerance * self.resolver.scene().lengths().edge, self.dt);
@@ -302,10 +303,19 @@ impl Simulator {
         self.fall_asleep()?;
         self.update_presence(&mut statistics)?;
         self.close(timer, cpu_start, &mut statistics);
+        statistics.set_device_work(&(self.device_work() - work_start));
         if let Some(body) = &statistics.slowest_body {
             tracing::debug!(step, %body, remaining_m = statistics.remaining_m, "collisions did not converge");
         }
         Ok(statistics)
+    }
+
+    /// What devices were asked for since they were opened.
+    fn device_work(&self) -> DeviceWork {
+        let awake = self.rest.as_ref().and_then(Rest::awake_dynamics);
+        let dynamics = awake.unwrap_or(&self.dynamics);
+        let of_dynamics = dynamics.backend().map(LinearBackend::work);
+        self.backend.work() + of_dynamics.unwrap_or_default()
     }
 
     /// Closes the statistics of a time step that began at `timer` and `cpu_start` [s].

@@ -3,6 +3,7 @@
 use super::failure::LinearBackendError;
 use super::springs::LinearSpring;
 use super::system::System;
+use crate::device_work::DeviceWork;
 use crate::dynamics::NewtonBackend;
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
@@ -17,6 +18,11 @@ use std::ops::Range;
 pub trait LinearBackend: Debug + Send {
     /// What it is called where runs are described.
     fn name(&self) -> String;
+
+    /// What its device was asked for since it was opened.
+    fn work(&self) -> DeviceWork {
+        DeviceWork::default()
+    }
 
     /// Takes over a matrix and prepares its preconditioner. Both stay until the next call.
     ///

@@ -6,6 +6,7 @@ use super::twin::TwinEngine;
 use crate::error::GpuError;
 use crate::recording::{BufferId, Command, Dispatch, Recording};
 use crate::stages::Access;
+use bowknot_dynamics::DeviceWork;
 
 /// Bindings whose content depends on the order of the threads; no result does.
 const UNORDERED: [(&str, usize); 3] = [("sort", 3), ("color", 5), ("color", 6)];
@@ -129,6 +130,10 @@ impl Engine for ComparingEngine {
 
     fn most_words(&self) -> usize {
         self.device.most_words()
+    }
+
+    fn work(&self) -> DeviceWork {
+        self.twin.work()
     }
 
     fn run(&mut self, recording: &Recording, read: &[(BufferId, usize)]) -> Result<Vec<Vec<u32>>, GpuError> {

@@ -7,7 +7,9 @@ use super::traits::{Engine, SMALLEST_BUFFER};
 use crate::adapter::{Adapter, wait};
 use crate::error::GpuError;
 use crate::recording::{BufferId, Command, Dispatch, Recording};
+use bowknot_dynamics::DeviceWork;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 
 /// A device with its buffers and pipelines.
 #[derive(Debug)]
@@ -27,6 +29,7 @@ pub struct DeviceEngine {
     clock: Option<PhaseClock>,
     /// What the driver reported since the last look: it does so from other threads.
     failure: Arc<Mutex<Option<Failure>>>,
+    work: DeviceWork,
 }
 
 #[derive(Debug)]
@@ -70,6 +73,7 @@ impl DeviceEngine {
             profile: None,
             clock,
             failure,
+            work: DeviceWork::default(),
         })
     }
 
@@ -272,6 +276,7 @@ impl Engine for DeviceEngine {
         if wait(scope.pop()).is_some() {
             return Err(GpuError::OutOfMemory { adapter: self.name.clone(), what: label, bytes: size });
         }
+        self.work.buffers += 1;
         self.buffers.push(Some(buffer));
         Ok(BufferId(self.buffers.len() as u32 - 1))
     }
@@ -296,7 +301,9 @@ impl Engine for DeviceEngine {
 
     fn run(&mut self, recording: &Recording, read: &[(BufferId, usize)]) -> Result<Vec<Vec<u32>>, GpuError> {
         self.check()?;
+        let timer = Instant::now();
         let dispatches = recording.dispatch_count();
+        self.work.count(dispatches, read.len());
         if dispatches > 0 {
             self.upload_params(dispatches, recording);
         }
@@ -307,9 +314,15 @@ impl Engine for DeviceEngine {
         }
         let mut clock = self.clock.take();
         clock.iter_mut().for_each(PhaseClock::begin);
-        let result = self.submit(recording, read, &mut clock);
+        let staging = self.submit(recording, read, &mut clock);
+        self.work.encode_s += timer.elapsed().as_secs_f64();
+        let result = staging.and_then(|staging| self.read(staging, read, &mut clock));
         self.clock = clock;
         result
+    }
+
+    fn work(&self) -> DeviceWork {
+        self.work
     }
 
     fn take_phase_seconds(&mut self) -> Option<PhaseSeconds> {
@@ -318,13 +331,13 @@ impl Engine for DeviceEngine {
 }
 
 impl DeviceEngine {
-    /// Submits a recording whose stages are compiled, and reads.
+    /// Submits a recording whose stages are compiled, with copies of what is read, if anything is, to a buffer.
     fn submit(
         &self,
         recording: &Recording,
         read: &[(BufferId, usize)],
         clock: &mut Option<PhaseClock>,
-    ) -> Result<Vec<Vec<u32>>, GpuError> {
+    ) -> Result<Option<wgpu::Buffer>, GpuError> {
         // Writes take place before the next submit: what was recorded before them is submitted first.
         let mut encoder = self.encoder();
         let mut waiting: Vec<(&Dispatch, u64)> = Vec::new();
@@ -357,7 +370,7 @@ impl DeviceEngine {
         let words: usize = read.iter().map(|(_, words)| words).sum();
         if words == 0 {
             self.queue.submit([encoder.finish()]);
-            return self.check().map(|()| read.iter().map(|_| Vec::new()).collect());
+            return self.check().map(|()| None);
         }
         let stamps = clock.as_ref().map_or(0, PhaseClock::bytes);
         let staging = self.device.create_buffer(&wgpu::BufferDescriptor {
@@ -369,7 +382,22 @@ impl DeviceEngine {
         self.encode_reads(&mut encoder, read, &staging);
         clock.iter().for_each(|clock| clock.encode_read(&mut encoder, &staging, 4 * words as u64));
         self.queue.submit([encoder.finish()]);
+        Ok(Some(staging))
+    }
+
+    /// Waits for a submission and takes what it copied to `staging`.
+    fn read(
+        &mut self,
+        staging: Option<wgpu::Buffer>,
+        read: &[(BufferId, usize)],
+        clock: &mut Option<PhaseClock>,
+    ) -> Result<Vec<Vec<u32>>, GpuError> {
+        let Some(staging) = staging else { return Ok(read.iter().map(|_| Vec::new()).collect()) };
+        let timer = Instant::now();
+        self.work.buffers += 1;
         let all = self.map(&staging)?;
+        self.work.wait_s += timer.elapsed().as_secs_f64();
+        let words: usize = read.iter().map(|(_, words)| words).sum();
         clock.iter_mut().for_each(|clock| clock.add(&all[words..]));
         let mut all = all.into_iter();
         Ok(read.iter().map(|&(_, words)| all.by_ref().take(words).collect()).collect())

@@ -3,6 +3,7 @@
 use super::phases::PhaseSeconds;
 use crate::error::GpuError;
 use crate::recording::{BufferId, Recording};
+use bowknot_dynamics::DeviceWork;
 
 /// Words of the smallest buffer: a buffer that is bound must hold an entry of its array, whatever is in it.
 pub(super) const SMALLEST_BUFFER: usize = 32;
@@ -32,6 +33,11 @@ pub trait Engine {
     /// Seconds of the phases since the last call, between time stamps of a device; None if there are none.
     fn take_phase_seconds(&mut self) -> Option<PhaseSeconds> {
         None
+    }
+
+    /// What was asked for since the engine was opened.
+    fn work(&self) -> DeviceWork {
+        DeviceWork::default()
     }
 
     /// Runs a recording, then reads the first words of some buffers.

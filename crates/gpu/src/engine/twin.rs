@@ -5,6 +5,7 @@ use crate::bound::Bound;
 use crate::error::GpuError;
 use crate::layout::NONE;
 use crate::recording::{BufferId, Command, Dispatch, Recording};
+use bowknot_dynamics::DeviceWork;
 use std::cell::{Ref, RefCell};
 
 /// Buffers in the memory of the host.
@@ -13,6 +14,7 @@ pub struct TwinEngine {
     buffers: Vec<RefCell<Vec<u32>>>,
     /// Size of the largest buffer [bytes], if there is a limit.
     largest_buffer: Option<u64>,
+    work: DeviceWork,
 }
 
 impl TwinEngine {
@@ -62,6 +64,7 @@ impl Engine for TwinEngine {
         if let Some(most) = self.largest_buffer.filter(|most| bytes > *most) {
             return Err(GpuError::TooLarge { adapter: "the CPU".to_owned(), what: label, bytes, most });
         }
+        self.work.buffers += 1;
         self.buffers.push(RefCell::new(vec![0; words.max(SMALLEST_BUFFER)]));
         Ok(BufferId(self.buffers.len() as u32 - 1))
     }
@@ -82,7 +85,12 @@ impl Engine for TwinEngine {
         self.largest_buffer.map_or(usize::MAX, |bytes| (bytes / 4) as usize)
     }
 
+    fn work(&self) -> DeviceWork {
+        self.work
+    }
+
     fn run(&mut self, recording: &Recording, read: &[(BufferId, usize)]) -> Result<Vec<Vec<u32>>, GpuError> {
+        self.work.count(recording.dispatch_count(), read.len());
         for command in &recording.commands {
             match command {
                 Command::Write { buffer, words } => self.write(*buffer, words),

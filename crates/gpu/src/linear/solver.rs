@@ -10,7 +10,7 @@ use crate::engine::Engine;
 use crate::error::GpuError;
 use crate::newton::Newton;
 use crate::recording::Recording;
-use bowknot_dynamics::{LinearBackend, LinearBackendError, LinearSystem, NewtonBackend};
+use bowknot_dynamics::{DeviceWork, LinearBackend, LinearBackendError, LinearSystem, NewtonBackend};
 use bowknot_geometry::Vector;
 use std::fmt::Debug;
 
@@ -106,6 +106,10 @@ impl<E: Engine> ConjugateGradients<E> {
 impl<E: Engine + Debug + Send> LinearBackend for ConjugateGradients<E> {
     fn name(&self) -> String {
         self.name.clone()
+    }
+
+    fn work(&self) -> DeviceWork {
+        self.engine.work()
     }
 
     fn prepare(&mut self, system: &LinearSystem<'_>) -> Result<(), LinearBackendError> {
