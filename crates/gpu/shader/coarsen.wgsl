@@ -30,43 +30,65 @@ fn link(group: u32, part: u32) -> vec4<f32> {
     return vec4<f32>(between(parent.center, child.center, params.quantum), child.size) / parent.size;
 }
 
+// Parts that the threads look up at once: the place of their block, whether its transpose counts, and both links.
+const BATCH: u32 = 64u;
+
+var<workgroup> blocks: array<vec2<u32>, 64>;
+var<workgroup> own_links: array<vec4<f32>, 64>;
+var<workgroup> other_links: array<vec4<f32>, 64>;
+
+// An entry of C M_b: shifts as they are, spins turn the way and shrink.
+fn image(at: u32, other: vec4<f32>, r: u32, k: u32) -> f32 {
+    let row = at + 6u * r;
+    if k < 3u {
+        return couplings[row + k];
+    }
+    let moment = cross(other.xyz, vec3<f32>(couplings[row], couplings[row + 1u], couplings[row + 2u]));
+    return moment[k - 3u] + other.w * couplings[row + k];
+}
+
+// An entry of M_a^T C M_b.
+fn product(part: u32, r: u32, k: u32) -> f32 {
+    let at = blocks[part].x;
+    let other = other_links[part];
+    if r < 3u {
+        return image(at, other, r, k);
+    }
+    let force = vec3<f32>(image(at, other, 0u, k), image(at, other, 1u, k), image(at, other, 2u, k));
+    let own = own_links[part];
+    return cross(own.xyz, force)[r - 3u] + own.w * image(at, other, r, k);
+}
+
+// A workgroup per pair, and a thread per entry of its block.
 @compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    for (var t = id.x; t < params.pairs; t += 64u * MOST_WORKGROUPS) {
-        let sum = sums[params.first + t];
-        var total: array<f32, 36>;
-        for (var p = sum.x; p < sum.x + sum.y; p += 1u) {
-            let part = parts[p];
-            let own = link(sum.z, part.a);
-            let other = link(sum.w, part.b);
-            // C M_b, row by row: shifts as they are, spins turn the way and shrink.
-            var image: array<f32, 36>;
-            for (var r = 0u; r < 6u; r += 1u) {
-                let at = 36u * part.block + 6u * r;
-                let force = vec3<f32>(couplings[at], couplings[at + 1u], couplings[at + 2u]);
-                let moment = cross(other.xyz, force);
-                for (var k = 0u; k < 3u; k += 1u) {
-                    image[6u * r + k] = force[k];
-                    image[6u * r + 3u + k] = moment[k] + other.w * couplings[at + 3u + k];
-                }
+fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
+    let t = local.x;
+    let r = t / 6u;
+    let k = t % 6u;
+    for (var pair = group.x; pair < params.pairs; pair += MOST_WORKGROUPS) {
+        let sum = sums[params.first + pair];
+        var total = 0.0;
+        for (var begin = 0u; begin < sum.y; begin += BATCH) {
+            let count = min(BATCH, sum.y - begin);
+            workgroupBarrier();
+            if t < count {
+                let part = parts[sum.x + begin + t];
+                blocks[t] = vec2<u32>(36u * part.block, part.both);
+                own_links[t] = link(sum.z, part.a);
+                other_links[t] = link(sum.w, part.b);
             }
-            // M_a^T of that, column by column.
-            for (var k = 0u; k < 6u; k += 1u) {
-                let force = vec3<f32>(image[k], image[6u + k], image[12u + k]);
-                let moment = cross(own.xyz, force)
-                    + own.w * vec3<f32>(image[18u + k], image[24u + k], image[30u + k]);
-                for (var r = 0u; r < 3u; r += 1u) {
-                    total[6u * r + k] += force[r];
-                    total[6u * (r + 3u) + k] += moment[r];
-                    if part.both == 1u {
-                        total[6u * k + r] += force[r];
-                        total[6u * k + 3u + r] += moment[r];
-                    }
+            workgroupBarrier();
+            for (var part = 0u; part < count && t < 36u; part += 1u) {
+                if blocks[part].y == 0u {
+                    total += product(part, r, k);
+                } else {
+                    total += product(part, max(r, k), min(r, k));
+                    total += product(part, min(r, k), max(r, k));
                 }
             }
         }
-        for (var k = 0u; k < 36u; k += 1u) {
-            couplings[36u * (params.first + t) + k] = total[k];
+        if t < 36u {
+            couplings[36u * (params.first + pair) + t] = total;
         }
     }
 }

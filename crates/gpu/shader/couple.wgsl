@@ -56,59 +56,78 @@ fn add(row: Row, pair: vec2<u32>, j: u32, h: mat3x3<f32>, arm: vec3<f32>, frame:
     return sum;
 }
 
-@compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    for (var t = id.x; t < params.pairs; t += 64u * MOST_WORKGROUPS) {
-        let pair = pairs[params.first + t];
-        let own = frames[params.first_frame + pair.x];
-        let frame = frames[params.first_frame + pair.y];
-        var a: mat3x3<f32>;
-        var b: mat3x3<f32>;
-        var c: mat3x3<f32>;
-        var d: mat3x3<f32>;
-        for (var s = params.width * pair.x; s < params.width * (pair.x + 1u); s += 1u) {
-            let i = slots[s].node;
-            if i == NONE {
-                continue;
-            }
-            let arm = arm_of(i, own);
-            let slice = slices[i / SLICE];
-            var at = slice.x + i % SLICE;
-            var row: Row;
-            for (var k = 0u; k < slice.y; k += 1u) {
-                let h = mat3x3<f32>(
-                    vec3<f32>(number(at + SLICE), number(at + 2u * SLICE), number(at + 3u * SLICE)),
-                    vec3<f32>(number(at + 4u * SLICE), number(at + 5u * SLICE), number(at + 6u * SLICE)),
-                    vec3<f32>(number(at + 7u * SLICE), number(at + 8u * SLICE), number(at + 9u * SLICE)),
-                );
-                // The first block is the sum of the row.
-                if k > 0u {
-                    row = add(row, pair, words[at], h, arm, frame);
-                } else if pair.x == pair.y {
-                    row.shift = h;
-                    row.spin = times_spin(h, arm);
-                }
-                at += BLOCK_WORDS * SLICE;
-            }
-            for (var k = 0u; k < slice.z; k += 1u) {
-                let q = number(at + SLICE);
-                let h = mat3x3<f32>(vec3<f32>(q, 0.0, 0.0), vec3<f32>(0.0, q, 0.0), vec3<f32>(0.0, 0.0, q));
-                row = add(row, pair, words[at], h, arm, frame);
-                at += 2u * SLICE;
-            }
-            a += row.shift;
-            b += row.spin;
-            c += moments(arm, row.shift);
-            d += moments(arm, row.spin);
+// What each node adds to the block of its pair.
+var<workgroup> shares: array<f32, 2368>;
+const SHARE: u32 = 37u;
+
+fn row_of(i: u32, pair: vec2<u32>, arm: vec3<f32>, frame: Frame) -> Row {
+    let slice = slices[i / SLICE];
+    var at = slice.x + i % SLICE;
+    var row: Row;
+    for (var k = 0u; k < slice.y; k += 1u) {
+        let h = mat3x3<f32>(
+            vec3<f32>(number(at + SLICE), number(at + 2u * SLICE), number(at + 3u * SLICE)),
+            vec3<f32>(number(at + 4u * SLICE), number(at + 5u * SLICE), number(at + 6u * SLICE)),
+            vec3<f32>(number(at + 7u * SLICE), number(at + 8u * SLICE), number(at + 9u * SLICE)),
+        );
+        // The first block is the sum of the row.
+        if k > 0u {
+            row = add(row, pair, words[at], h, arm, frame);
+        } else if pair.x == pair.y {
+            row.shift = h;
+            row.spin = times_spin(h, arm);
         }
-        let at = 36u * (params.first + t);
+        at += BLOCK_WORDS * SLICE;
+    }
+    for (var k = 0u; k < slice.z; k += 1u) {
+        let q = number(at + SLICE);
+        let h = mat3x3<f32>(vec3<f32>(q, 0.0, 0.0), vec3<f32>(0.0, q, 0.0), vec3<f32>(0.0, 0.0, q));
+        row = add(row, pair, words[at], h, arm, frame);
+        at += 2u * SLICE;
+    }
+    return row;
+}
+
+// A thread per slot of the first group, and pairs side by side if groups have fewer slots than there are threads.
+@compute @workgroup_size(64)
+fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
+    let t = local.x;
+    let beside = 64u / params.width;
+    for (var begin = beside * group.x; begin < params.pairs; begin += beside * MOST_WORKGROUPS) {
+        workgroupBarrier();
+        let p = begin + t / params.width;
+        var shift: mat3x3<f32>;
+        var spin: mat3x3<f32>;
+        var arm: vec3<f32>;
+        if p < params.pairs {
+            let pair = pairs[params.first + p];
+            let i = slots[params.width * pair.x + t % params.width].node;
+            if i != NONE {
+                arm = arm_of(i, frames[params.first_frame + pair.x]);
+                let row = row_of(i, pair, arm, frames[params.first_frame + pair.y]);
+                shift = row.shift;
+                spin = row.spin;
+            }
+        }
+        let turned_shift = moments(arm, shift);
+        let turned_spin = moments(arm, spin);
         for (var r = 0u; r < 3u; r += 1u) {
             for (var k = 0u; k < 3u; k += 1u) {
-                couplings[at + 6u * r + k] = a[k][r];
-                couplings[at + 6u * r + 3u + k] = b[k][r];
-                couplings[at + 6u * (r + 3u) + k] = c[k][r];
-                couplings[at + 6u * (r + 3u) + 3u + k] = d[k][r];
+                shares[SHARE * t + 6u * r + k] = shift[k][r];
+                shares[SHARE * t + 6u * r + 3u + k] = spin[k][r];
+                shares[SHARE * t + 6u * (r + 3u) + k] = turned_shift[k][r];
+                shares[SHARE * t + 6u * (r + 3u) + 3u + k] = turned_spin[k][r];
             }
+        }
+        workgroupBarrier();
+        let end = 36u * min(beside, params.pairs - begin);
+        for (var k = t; k < end; k += 64u) {
+            var sum = 0.0;
+            let first = SHARE * params.width * (k / 36u) + k % 36u;
+            for (var m = 0u; m < params.width; m += 1u) {
+                sum += shares[first + SHARE * m];
+            }
+            couplings[36u * (params.first + begin) + k] = sum;
         }
     }
 }

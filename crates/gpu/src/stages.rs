@@ -14,8 +14,8 @@ mod stage;
 use crate::cpu;
 
 pub(crate) use assembly::{
-    ASSEMBLE, BEND, COARSEN, COUPLE, DAMPED_TETRAHEDRON, DIAGONAL, DOMAIN, FRAME, INVERT, MEMBRANE, STRAND,
-    TETRAHEDRON,
+    ASSEMBLE, BEND, COARSEN, COUPLE, DAMPED_TETRAHEDRON, DIAGONAL, DOMAIN, FRAME, INVERT, MEMBRANE, PRESS,
+    STRAND, TETRAHEDRON,
 };
 pub(crate) use linear::{CLIMB, DESCEND, MULTIPLY, REDIRECT, STRAND_PRODUCT};
 pub(crate) use newton::{
@@ -488,6 +488,7 @@ pub(crate) static ALL: &[&Stage] = &[
     &FRAME,
     &COUPLE,
     &COARSEN,
+    &PRESS,
     &DOMAIN,
     &ACCUMULATE,
     &ATTEMPT,

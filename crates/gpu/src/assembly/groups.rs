@@ -1,12 +1,12 @@
 //! The buffers of the preconditioner's groups, and the dispatches that make their matrices.
 
-use super::hierarchy::Hierarchy;
+use super::hierarchy::{Hierarchy, Touching};
 use super::layout::Frame;
 use crate::cpu;
 use crate::cpu::sum::THREADS;
 use crate::engine::Engine;
 use crate::error::GpuError;
-use crate::linear::{Buffers, CHILDREN, PATCH_SLOTS};
+use crate::linear::{Buffers, CHILDREN, DOMAIN_WORDS, PATCH_SLOTS};
 use crate::recording::{BufferId, Recording};
 use crate::stages;
 use bowknot_dynamics::LinearSpring;
@@ -23,6 +23,9 @@ pub struct GroupBuffers {
     frames: BufferId,
     couplings: BufferId,
     touching: BufferId,
+    pressed: BufferId,
+    /// Where the chunks of springs begin, and their number.
+    chunks: (usize, usize),
 }
 
 impl GroupBuffers {
@@ -39,6 +42,8 @@ impl GroupBuffers {
             frames: make("frames of groups", size_of::<Frame>() / 4 * h.frames)?,
             couplings: make("blocks of pairs of groups", 36 * h.sums.len())?,
             touching: make("springs of domains", h.domains() + 1)?,
+            pressed: make("sums of springs of domains", 0)?,
+            chunks: (0, 0),
             hierarchy,
         };
         let (h, mut recording) = (&buffers.hierarchy, Recording::default());
@@ -54,7 +59,7 @@ impl GroupBuffers {
     /// Frees the buffers.
     pub fn free<E: Engine>(self, engine: &mut E) {
         let buffers = [self.places, self.pairs, self.sums, self.parts, self.tables, self.frames];
-        let others = [self.couplings, self.touching];
+        let others = [self.couplings, self.touching, self.pressed];
         buffers.into_iter().chain(others).for_each(|buffer| engine.free(buffer));
     }
 
@@ -68,12 +73,18 @@ impl GroupBuffers {
         if springs.is_empty() || self.hierarchy.levels.is_empty() {
             return Ok(());
         }
-        let words = self.hierarchy.touching(springs);
-        if engine.words(self.touching) < words.len() {
-            engine.free(self.touching);
-            self.touching = engine.buffer("springs of domains", words.len() + words.len() / 2)?;
-        }
+        let Touching { words, first, chunks } = self.hierarchy.touching(springs);
+        let mut grow = |buffer: &mut BufferId, label, words: usize| {
+            if engine.words(*buffer) < words {
+                engine.free(*buffer);
+                *buffer = engine.buffer(label, words + words / 2)?;
+            }
+            Ok::<(), GpuError>(())
+        };
+        grow(&mut self.touching, "springs of domains", words.len())?;
+        grow(&mut self.pressed, "sums of springs of domains", DOMAIN_WORDS * chunks)?;
         recording.write(self.touching, &words);
+        self.chunks = (first, chunks);
         Ok(())
     }
 
@@ -133,43 +144,41 @@ impl GroupBuffers {
                         first_frame: level.first_frame as u32,
                         quantum,
                     },
-                    level.pairs,
+                    level.width * level.pairs,
                 );
             } else {
                 recording.dispatch(
                     &stages::COARSEN,
                     &[self.sums, self.parts, self.frames, self.couplings],
                     cpu::coarsen::Params { pairs, first, quantum },
-                    level.pairs,
+                    THREADS * level.pairs,
                 );
             }
+        }
+        let (first, chunks) = self.chunks;
+        if springs && chunks > 0 {
+            recording.dispatch(
+                &stages::PRESS,
+                &[linear.springs, self.touching, self.places, positions, self.frames, self.pressed],
+                cpu::press::Params { chunks: chunks as u32, first: first as u32, quantum },
+                THREADS * chunks,
+            );
         }
         for (index, level) in levels.iter().enumerate() {
             let (inverses, first_inverse) =
                 if index == 0 { (linear.domains, 0) } else { (linear.coarse, coarse(level.first_domain)) };
             recording.dispatch(
                 &stages::DOMAIN,
-                &[
-                    self.tables,
-                    self.couplings,
-                    linear.springs,
-                    self.touching,
-                    self.places,
-                    positions,
-                    self.frames,
-                    inverses,
-                ],
+                &[self.tables, self.couplings, self.touching, self.pressed, self.frames, inverses],
                 cpu::domain::Params {
                     domains: level.domains as u32,
                     first: level.first_domain as u32,
                     first_inverse: first_inverse as u32,
                     first_part: level.first_frame as u32,
                     parts: level.groups as u32,
-                    width: level.width as u32,
-                    springs: u32::from(springs),
-                    quantum,
+                    springs: u32::from(springs && chunks > 0),
                 },
-                THREADS * level.domains,
+                stages::DOMAIN.workgroup * level.domains,
             );
         }
     }

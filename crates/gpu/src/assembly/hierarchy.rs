@@ -1,6 +1,7 @@
 //! Which groups of the preconditioner are coupled, on every level: what the host prepares for a set of free nodes.
 
 use super::layout::Part;
+use crate::cpu::press::Chunk;
 use crate::layout::NONE;
 use crate::linear::{CHILDREN, PATCH_SLOTS, Patches};
 use bowknot_dynamics::{ElementModel, LinearSpring};
@@ -146,8 +147,8 @@ impl Hierarchy {
         self.tables.len() / 64
     }
 
-    /// The springs of each domain: where those of each begin, then the springs.
-    pub fn touching(&self, springs: &[LinearSpring]) -> Vec<u32> {
+    /// The springs of each domain, in chunks.
+    pub fn touching(&self, springs: &[LinearSpring]) -> Touching {
         let place = |node: u32, weight: f64| {
             if node == NONE || weight == 0.0 { NONE } else { self.places[node as usize] }
         };
@@ -157,14 +158,48 @@ impl Hierarchy {
             .collect();
         let lists: Vec<[Vec<u32>; 2]> =
             self.levels.par_iter().map(|level| touching_level(level, &places)).collect();
-        let mut words = vec![self.domains() as u32 + 1];
-        for [ends, _] in &lists {
-            let before = words[words.len() - 1];
-            words.extend(ends.iter().map(|end| before + end));
+        let mut starts = Vec::with_capacity(self.domains() + 1);
+        let mut chunks: Vec<Chunk> = Vec::new();
+        let mut before = 0;
+        for (level, [ends, _]) in self.levels.iter().zip(&lists) {
+            let mut begin = before;
+            for (group, end) in (0..).step_by(CHILDREN).zip(ends) {
+                starts.push(chunks.len() as u32);
+                let end = before + end;
+                while begin < end {
+                    let next = end.min(begin + CHUNK);
+                    let (width, frame) = (level.width as u32, level.first_frame as u32 + group);
+                    chunks.push(Chunk { begin, end: next, width, group, frame });
+                    begin = next;
+                }
+            }
+            before = begin;
         }
+        starts.push(chunks.len() as u32);
+        let (first, count) = (starts.len(), chunks.len());
+        let lists_begin = (first + size_of::<Chunk>() / 4 * count) as u32;
+        for chunk in &mut chunks {
+            chunk.begin += lists_begin;
+            chunk.end += lists_begin;
+        }
+        let mut words = starts;
+        words.extend_from_slice(bytemuck::cast_slice(&chunks));
         lists.iter().for_each(|[_, springs]| words.extend(springs));
-        words
+        Touching { words, first, chunks: count }
     }
+}
+
+/// Most springs of a chunk.
+const CHUNK: u32 = 256;
+
+/// The springs that touch each domain.
+#[derive(Debug)]
+pub struct Touching {
+    /// Where the chunks of each domain begin, then the chunks, then the springs.
+    pub words: Vec<u32>,
+    /// Where the chunks begin, in words.
+    pub first: usize,
+    pub chunks: usize,
 }
 
 /// Where the lists of springs of the domains of a level end, and the lists: ascending springs, each once per domain. `places`

@@ -72,6 +72,7 @@ pub mod parts;
 pub mod pick;
 pub mod place;
 pub mod plan;
+pub mod press;
 pub mod products;
 pub mod recall;
 pub mod redirect;

@@ -103,10 +103,18 @@ pub(crate) static COARSEN: Stage = Stage {
     twin: cpu::coarsen::bound,
 };
 
+pub(crate) static PRESS: Stage = Stage {
+    name: "press",
+    parts: &[LINEAR, GROUPS, include_str!("../../shader/press.wgsl")],
+    workgroup: 64,
+    bindings: &[Read, Read, Read, Read, Read, Write],
+    twin: cpu::press::bound,
+};
+
 pub(crate) static DOMAIN: Stage = Stage {
     name: "domain",
     parts: &[LINEAR, GROUPS, include_str!("../../shader/domain.wgsl")],
-    workgroup: 64,
-    bindings: &[Read, Read, Read, Read, Read, Read, Read, Write],
+    workgroup: 192,
+    bindings: &[Read, Read, Read, Read, Read, Write],
     twin: cpu::domain::bound,
 };
