@@ -28,12 +28,12 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
         if row < params.rows {
             count = starts[row];
         }
-        let up_to = sum_up_to(local.x, count);
+        let before = sum_before(local.x, count);
         if row < params.rows {
-            starts[row] = up_to - count;
+            starts[row] = before;
         }
         if local.x == 255u {
-            blocks[block] = up_to;
+            blocks[block] = sums[255];
         }
         workgroupBarrier();
     }

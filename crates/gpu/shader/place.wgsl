@@ -18,7 +18,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     for (var row = id.x; row < params.rows; row += 256u * MOST_WORKGROUPS) {
-        starts[row] += blocks[row / 256u];
+        starts[row] = saturating_sum(starts[row], blocks[row / 256u]);
     }
     if id.x == 0u {
         if params.list == 0u {

@@ -8,7 +8,6 @@ struct Params {
 @group(0) @binding(1) var<storage, read> tally: array<u32>;
 @group(0) @binding(2) var<storage, read_write> buckets: array<Bucket>;
 
-
 @compute @workgroup_size(256)
 fn main(@builtin(local_invocation_id) local: vec3<u32>) {
     var total = 0u;
@@ -18,10 +17,9 @@ fn main(@builtin(local_invocation_id) local: vec3<u32>) {
         if bucket < params.buckets {
             count = tally[bucket];
         }
-        let up_to = sum_up_to(local.x, count);
+        let start = total + sum_before(local.x, count);
         if bucket < params.buckets {
-            let end = total + up_to;
-            buckets[bucket] = Bucket(end - count, end, 0u);
+            buckets[bucket] = Bucket(start, start + count, 0u);
         }
         total += sums[255];
         workgroupBarrier();

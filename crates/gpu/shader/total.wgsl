@@ -29,11 +29,11 @@ fn main(@builtin(local_invocation_id) local: vec3<u32>) {
         if block < params.blocks {
             count = blocks[block];
         }
-        let up_to = sum_up_to(local.x, count);
+        let before = sum_before(local.x, count);
         if block < params.blocks {
-            blocks[block] = total + up_to - count;
+            blocks[block] = saturating_sum(total, before);
         }
-        total += sums[255];
+        total = saturating_sum(total, sums[255]);
         workgroupBarrier();
     }
     if local.x == 0u {

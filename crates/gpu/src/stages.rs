@@ -327,7 +327,7 @@ pub(crate) static TOTAL: Stage = Stage {
 
 pub(crate) static PLACE: Stage = Stage {
     name: "place",
-    parts: &[TYPES, include_str!("../shader/place.wgsl")],
+    parts: &[TYPES, SCAN, include_str!("../shader/place.wgsl")],
     workgroup: 256,
     bindings: &[Read, Write, Write],
     twin: cpu::place::bound,

@@ -32,10 +32,10 @@ pub fn count(params: Params, starts: &mut [u32], blocks: &mut [u32], control: &C
         return;
     }
     for (block, starts) in starts[..params.rows as usize].chunks_mut(BLOCK).enumerate() {
-        let mut sum = 0;
+        let mut sum = 0u32;
         for start in starts {
             let count = std::mem::replace(start, sum);
-            sum += count;
+            sum = sum.saturating_add(count);
         }
         blocks[block] = sum;
     }

@@ -21,7 +21,7 @@ pub fn place(params: Params, blocks: &[u32], starts: &mut [u32], control: &Contr
         return;
     }
     for row in 0..params.rows as usize {
-        starts[row] += blocks[row / BLOCK];
+        starts[row] = starts[row].saturating_add(blocks[row / BLOCK]);
     }
     starts[params.rows as usize] = if params.list == CANDIDATES { control.candidates } else { control.rows };
 }

@@ -21,11 +21,11 @@ pub fn total(params: Params, blocks: &mut [u32], control: &mut Control) {
     if is_unchanged(params.list, control) {
         return;
     }
-    let mut total = 0;
+    let mut total = 0u32;
     for block in &mut blocks[..params.blocks as usize] {
         let count = *block;
         *block = total;
-        total += count;
+        total = total.saturating_add(count);
     }
     if params.list == CANDIDATES {
         control.candidates = total;
