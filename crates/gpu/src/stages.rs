@@ -31,6 +31,7 @@ pub(crate) use stage::{Access, Stage};
 const TYPES: &str = include_str!("../shader/shared/types.wgsl");
 const CLOSEST: &str = include_str!("../shader/shared/closest.wgsl");
 const SCAN: &str = include_str!("../shader/shared/scan.wgsl");
+const MOST: &str = include_str!("../shader/shared/most.wgsl");
 const PAIR: &str = include_str!("../shader/shared/pair.wgsl");
 const CONTACT: &str = include_str!("../shader/shared/contact.wgsl");
 const FIXED: &str = include_str!("../shader/shared/fixed.wgsl");
@@ -391,7 +392,7 @@ pub(crate) static LIMIT_GROUPS: Stage = Stage {
 
 pub(crate) static ADVANCE: Stage = Stage {
     name: "advance",
-    parts: &[TYPES, include_str!("../shader/advance.wgsl")],
+    parts: &[TYPES, MOST, include_str!("../shader/advance.wgsl")],
     workgroup: 256,
     bindings: &[Read, Read, Read, Read, Read, Write, Write, Write],
     twin: cpu::advance::bound,
@@ -415,7 +416,7 @@ pub(crate) static BALANCE: Stage = Stage {
 
 pub(crate) static STRETCH: Stage = Stage {
     name: "stretch",
-    parts: &[TYPES, include_str!("../shader/stretch.wgsl")],
+    parts: &[TYPES, MOST, include_str!("../shader/stretch.wgsl")],
     workgroup: 256,
     bindings: &[Read, Read, Write],
     twin: cpu::stretch::bound,

@@ -155,3 +155,48 @@ fn structs_lie_alike_on_both_sides() {
     assert_eq!(std::mem::offset_of!(layout::Control, candidates), 4 * layout::Control::RESET_WORDS);
     assert_eq!(members.len(), size_of::<layout::Control>() / 4);
 }
+
+/// The stages that may add to `control` once per turn of a loop: a body has one workgroup there.
+const ONCE_PER_TURN: [&str; 1] = ["balance"];
+
+/// Atomic operations on one word wait for each other, so workgroups reduce first what their threads find.
+#[test]
+fn threads_do_not_queue_at_the_words_of_control() {
+    use naga::{Block, Expression, Function, Handle, Statement};
+
+    fn root(function: &Function, mut expression: Handle<Expression>) -> Option<Handle<naga::GlobalVariable>> {
+        loop {
+            expression = match function.expressions[expression] {
+                Expression::Access { base, .. } | Expression::AccessIndex { base, .. } => base,
+                Expression::GlobalVariable(variable) => return Some(variable),
+                _ => return None,
+            }
+        }
+    }
+
+    fn queues(module: &naga::Module, function: &Function, block: &Block, in_loop: bool) -> bool {
+        block.iter().any(|statement| match statement {
+            Statement::Loop { body, continuing, .. } => {
+                queues(module, function, body, true) || queues(module, function, continuing, true)
+            }
+            Statement::Block(block) => queues(module, function, block, in_loop),
+            Statement::If { accept, reject, .. } => {
+                queues(module, function, accept, in_loop) || queues(module, function, reject, in_loop)
+            }
+            Statement::Switch { cases, .. } => {
+                cases.iter().any(|case| queues(module, function, &case.body, in_loop))
+            }
+            Statement::Atomic { pointer, .. } => {
+                let variable = root(function, *pointer).map(|variable| &module.global_variables[variable]);
+                in_loop && variable.is_some_and(|variable| variable.name.as_deref() == Some("control"))
+            }
+            _ => false,
+        })
+    }
+
+    for stage in ALL.iter().filter(|stage| !ONCE_PER_TURN.contains(&stage.name)) {
+        let module = module_of(stage.name);
+        let main = &module.entry_points[0].function;
+        assert!(!queues(&module, main, &main.body, false), "{}", stage.name);
+    }
+}
