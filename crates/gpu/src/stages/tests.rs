@@ -156,6 +156,38 @@ fn structs_lie_alike_on_both_sides() {
     assert_eq!(members.len(), size_of::<layout::Control>() / 4);
 }
 
+/// A round over more numbers than threads would wait 17 times for all threads.
+#[test]
+fn sums_by_one_workgroup_make_one_round() {
+    fn calls(block: &naga::Block, in_loop: bool) -> usize {
+        block
+            .iter()
+            .map(|statement| match statement {
+                naga::Statement::Loop { body, continuing, .. } => calls(body, true) + calls(continuing, true),
+                naga::Statement::Block(block) => calls(block, in_loop),
+                naga::Statement::If { accept, reject, .. } => calls(accept, in_loop) + calls(reject, in_loop),
+                naga::Statement::ControlBarrier(_) => usize::from(in_loop),
+                naga::Statement::Call { .. } => {
+                    if in_loop {
+                        2
+                    } else {
+                        0
+                    }
+                }
+                _ => 0,
+            })
+            .sum()
+    }
+
+    for stage in ["total", "start_buckets"] {
+        let module = module_of(stage);
+        let main = &module.entry_points[0].function.body;
+        // Of the functions that are called, saturating sums alone may be in a loop.
+        let saturating = 2 * usize::from(stage == "total") * 2;
+        assert_eq!(calls(main, false), saturating, "{stage}");
+    }
+}
+
 /// The stages that may add to `control` once per turn of a loop: a body has one workgroup there.
 const ONCE_PER_TURN: [&str; 1] = ["balance"];
 
