@@ -516,7 +516,7 @@ impl Colored {
     }
 }
 
-/// Dispatches of `climb` per iteration for so many nodes: one per three coarse levels, of which each has an eighth of the
+/// Dispatches of `climb` per iteration for so many nodes: one per four coarse levels, of which each has an eighth of the
 /// groups of the one before.
 fn climbs(nodes: usize) -> f64 {
     let (mut groups, mut levels) = (nodes.div_ceil(NODES_OF_PATCH), 0usize);
@@ -524,7 +524,7 @@ fn climbs(nodes: usize) -> f64 {
         levels += 1;
         groups = if groups <= 8 { 1 } else { groups.div_ceil(8) };
     }
-    levels.div_ceil(3).max(1) as f64
+    levels.div_ceil(4).max(1) as f64
 }
 
 /// The twins, and what they do.

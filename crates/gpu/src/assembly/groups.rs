@@ -3,7 +3,6 @@
 use super::hierarchy::Hierarchy;
 use super::layout::Frame;
 use crate::cpu;
-use crate::cpu::sum::THREADS;
 use crate::engine::Engine;
 use crate::error::GpuError;
 use crate::linear::{Buffers, CHILDREN, PATCH_SLOTS};
@@ -169,7 +168,7 @@ impl GroupBuffers {
                     springs: u32::from(springs),
                     quantum,
                 },
-                THREADS * level.domains,
+                stages::DOMAIN.workgroup * level.domains,
             );
         }
     }

@@ -77,8 +77,7 @@ fn structs_of_linear_solves_lie_alike_on_both_sides() {
         offsets!(linear::Progress: moving, iterations, goal),
     ];
     assert_structs(&module_of("descend"), &structs);
-    let params =
-        offsets!(cpu::climb::Params: groups, firsts, first_domains, domains, workgroups, present, next);
+    let params = offsets!(cpu::climb::Params: groups, firsts, first_domains, domains, workgroups, present, next, parents);
     assert_structs(&module_of("climb"), &[params]);
     // Parameters with an array, which a uniform buffer aligns to 16 bytes.
     let params = offsets!(cpu::redirect::Params: patches, grouped, start, workgroups, levels, norms, present, next, firsts);
