@@ -17,6 +17,16 @@ struct Params {
 // Smallest decrease of the distance to the target that counts as progress, in local edge lengths.
 const LEAST_PROGRESS: f32 = 1e-3;
 
+const LAG: u32 = 0u;
+const FREE_REMAINING: u32 = 1u;
+const FREE_MOVE: u32 = 2u;
+const LARGEST_MOVE: u32 = 3u;
+const UNHINDERED: u32 = 4u;
+const UNHINDERED_LAG: u32 = 5u;
+const WORDS: u32 = 6u;
+
+var<workgroup> shared_overflow: u32;
+
 fn note_progress(v: u32, left: f32, edge: f32) {
     var idle_steps = late[v].idle_steps + 1u;
     if left < late[v].smallest - LEAST_PROGRESS * edge {
@@ -27,10 +37,15 @@ fn note_progress(v: u32, left: f32, edge: f32) {
 }
 
 @compute @workgroup_size(256)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    if atomicLoad(&control.overflow) != 0u {
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
+    if local.x == 0u {
+        shared_overflow = atomicLoad(&control.overflow);
+    }
+    if workgroupUniformLoad(&shared_overflow) != 0u {
         return;
     }
+    // Bits of numbers of at least 0 are ordered as they are.
+    var largest = array<u32, WORDS>();
     for (var v = id.x; v < params.vertices; v += 256u * MOST_WORKGROUPS) {
         let vertex = vertices[v];
         var alpha = bitcast<f32>(alphas[v]);
@@ -42,17 +57,17 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         let length = sqrt(dot(displacement, displacement));
         let left = (1.0 - alpha) * length;
         if (vertex.flags & PRESCRIBED) != 0u {
-            atomicMax(&control.lag, bitcast<u32>(left));
+            largest[LAG] = max(largest[LAG], bitcast<u32>(left));
             note_progress(v, left, vertex.edge);
         } else {
-            atomicMax(&control.free_remaining, bitcast<u32>(left));
-            atomicMax(&control.free_move, bitcast<u32>(alpha * length));
+            largest[FREE_REMAINING] = max(largest[FREE_REMAINING], bitcast<u32>(left));
+            largest[FREE_MOVE] = max(largest[FREE_MOVE], bitcast<u32>(alpha * length));
         }
-        atomicMax(&control.largest_move, bitcast<u32>(alpha * length));
+        largest[LARGEST_MOVE] = max(largest[LARGEST_MOVE], bitcast<u32>(alpha * length));
         if alpha >= paths[v].w {
-            atomicMax(&control.unhindered, bitcast<u32>(left));
+            largest[UNHINDERED] = max(largest[UNHINDERED], bitcast<u32>(left));
             if (vertex.flags & PRESCRIBED) != 0u {
-                atomicMax(&control.unhindered_lag, bitcast<u32>(left));
+                largest[UNHINDERED_LAG] = max(largest[UNHINDERED_LAG], bitcast<u32>(left));
             }
         }
         // The whole way leads to the target to the bit; a part is rounded toward its start.
@@ -61,5 +76,14 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         } else {
             positions[v] = vec4<i32>(position + vec3<i32>(displacement * alpha), 0);
         }
+    }
+    find_most(local.x, largest);
+    if local.x == 0u {
+        atomicMax(&control.lag, most[256u * LAG]);
+        atomicMax(&control.free_remaining, most[256u * FREE_REMAINING]);
+        atomicMax(&control.free_move, most[256u * FREE_MOVE]);
+        atomicMax(&control.largest_move, most[256u * LARGEST_MOVE]);
+        atomicMax(&control.unhindered, most[256u * UNHINDERED]);
+        atomicMax(&control.unhindered_lag, most[256u * UNHINDERED_LAG]);
     }
 }

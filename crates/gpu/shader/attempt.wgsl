@@ -25,7 +25,7 @@ const REACH: i32 = 536870911;
 @group(0) @binding(7) var<storage, read_write> trial: array<vec4<i32>>;
 @group(0) @binding(8) var<storage, read_write> sums: array<f32>;
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(256)
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
     let t = local.x;
     var product = 0.0;

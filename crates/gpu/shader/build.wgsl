@@ -7,14 +7,14 @@ struct Params {
 }
 
 @group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read> edges: array<vec2<u32>>;
-@group(0) @binding(2) var<storage, read> triangles: array<vec4<u32>>;
-@group(0) @binding(3) var<storage, read> vertices: array<Vertex>;
-@group(0) @binding(4) var<storage, read> candidates: array<Candidate>;
-@group(0) @binding(5) var<storage, read> separations: array<Separation>;
-@group(0) @binding(6) var<storage, read> states: array<PairState>;
-@group(0) @binding(7) var<storage, read_write> rows: array<Row>;
-@group(0) @binding(8) var<storage, read_write> proximal: array<atomic<u32>>;
+@group(0) @binding(1) var<storage, read> vertices: array<Vertex>;
+@group(0) @binding(2) var<storage, read> candidates: array<Candidate>;
+@group(0) @binding(3) var<storage, read> separations: array<Separation>;
+@group(0) @binding(4) var<storage, read> states: array<PairState>;
+// With the vertices and the candidate of each (list.wgsl).
+@group(0) @binding(5) var<storage, read_write> rows: array<Row>;
+@group(0) @binding(6) var<storage, read_write> proximal: array<atomic<u32>>;
+@group(0) @binding(7) var<storage, read_write> control: Control;
 
 // A closest point is at a vertex if the other weights of its side are at most this.
 const AT_VERTEX: f32 = 1e-5;
@@ -49,17 +49,14 @@ fn radius_of(pair: Pair, weights: vec4<f32>, gap: f32, sine: f32, edge: f32) -> 
 
 @compute @workgroup_size(128)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    for (var r = id.x; r < params.capacity; r += 128u * MOST_WORKGROUPS) {
+    let count = min(atomicLoad(&control.rows), params.capacity);
+    for (var r = id.x; r < count; r += 128u * MOST_WORKGROUPS) {
         let c = rows[r].candidate;
-        // The list ends here; rows beyond are those of other steps.
-        if c == NONE {
-            continue;
-        }
         let separation = separations[c];
         let state = states[c];
-        let pair = pair_of(candidates[c]);
+        let v = rows[r].vertices;
+        let pair = pair_with(candidates[c].kind_and_a >> ELEMENT_BITS, v);
         let weights = signed_weights(pair, separation);
-        let v = vec4<u32>(pair.vertices[0], pair.vertices[1], pair.vertices[2], pair.vertices[3]);
         if state.multiplier > 0.0 {
             let gap = max(max(separation.distance, state.desired), 1.0);
             for (var k = 0u; k < pair.count; k += 1u) {

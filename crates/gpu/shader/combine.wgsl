@@ -31,7 +31,7 @@ fn product(thread: u32, column: u32) -> f32 {
     return sum_of_threads(thread, sum);
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(256)
 fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
     let curvature = product(local.x, 0u);
     let slope = product(local.x, 1u);
@@ -54,7 +54,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_
             }
         }
     }
-    for (var i = id.x; i < params.nodes; i += 64u * MOST_WORKGROUPS) {
+    for (var i = id.x; i < params.nodes; i += 256u * MOST_WORKGROUPS) {
         let b = right_side[i];
         var p = along * direction[i].xyz;
         var q = along * image[i].xyz;

@@ -17,7 +17,7 @@ struct Params {
 @group(0) @binding(5) var<storage, read> right_side: array<vec4<f32>>;
 @group(0) @binding(6) var<storage, read_write> sums: array<f32>;
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(256)
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
     var products: array<f32, 5>;
     for (var i = THREADS * group.x + local.x; i < params.nodes; i += THREADS * params.workgroups) {

@@ -2,8 +2,9 @@
 // candidate, begin within a block of 256. Counts become sums in place.
 
 struct Params {
+    // Most rows.
     rows: u32,
-    // 0: the list of candidates, which is as it was unless a search changes it; 1: that of contact rows.
+    // See entries.wgsl.
     list: u32,
 }
 
@@ -12,28 +13,26 @@ struct Params {
 @group(0) @binding(2) var<storage, read_write> blocks: array<u32>;
 @group(0) @binding(3) var<storage, read_write> control: Control;
 
-var<workgroup> shared_skips: u32;
+var<workgroup> shared_rows: u32;
 
 @compute @workgroup_size(256)
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
     if local.x == 0u {
-        shared_skips = u32(params.list == 0u && atomicLoad(&control.changed) == 0u);
+        shared_rows = rows_of(params.list, params.rows);
     }
-    if workgroupUniformLoad(&shared_skips) != 0u {
-        return;
-    }
-    for (var block = group.x; 256u * block < params.rows; block += MOST_WORKGROUPS) {
+    let rows = workgroupUniformLoad(&shared_rows);
+    for (var block = group.x; 256u * block < rows; block += MOST_WORKGROUPS) {
         let row = 256u * block + local.x;
         var count = 0u;
-        if row < params.rows {
+        if row < rows {
             count = starts[row];
         }
-        let up_to = sum_up_to(local.x, count);
-        if row < params.rows {
-            starts[row] = up_to - count;
+        let before = sum_before(local.x, count);
+        if row < rows {
+            starts[row] = before;
         }
         if local.x == 255u {
-            blocks[block] = up_to;
+            blocks[block] = sums[255];
         }
         workgroupBarrier();
     }

@@ -1,6 +1,6 @@
 // A step of conjugate gradients along the direction p with the image q, and the fine part of the preconditioner:
-// block-Jacobi, and rigid motions of the groups of each patch. See linear/patches.rs. One workgroup per patch, which go on
-// with strides.
+// block-Jacobi, and rigid motions of the groups of each patch. See linear/patches.rs. One workgroup per four patches, which
+// go on with strides.
 //
 // z overwrites q. The squared norm r . M r is summed level by level: r . D^-1 r + sum f . A^-1 f, with the forces f on the
 // rigid motions of a level and the matrix A of a domain.
@@ -33,10 +33,10 @@ struct Params {
 @group(0) @binding(8) var<storage, read_write> progress: Progress;
 
 var<workgroup> decision: u32;
-// Of each slot the force and its moment; of each group both, and its motion.
-var<workgroup> slot_forces: array<f32, 384>;
-var<workgroup> group_forces: array<f32, 48>;
-var<workgroup> motions: array<f32, 48>;
+// Of each slot of four patches the force and its moment; of each group both, and its motion.
+var<workgroup> slot_forces: array<f32, 1536>;
+var<workgroup> group_forces: array<f32, 192>;
+var<workgroup> motions: array<f32, 192>;
 
 fn is_positive(number: f32) -> bool {
     return number > 0.0 && (bitcast<u32>(number) & 0x7f800000u) != 0x7f800000u;
@@ -50,15 +50,16 @@ fn solve(slot: PatchSlot, r: vec3<f32>) -> vec3<f32> {
     return vec3<f32>(f[3] * r.x - f[0] * y_solved - f[1] * z, y_solved, z);
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(256)
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
     let t = local.x;
     var step = 0.0;
     var norm = 0.0;
     var curvature = 1.0;
     if params.start == 0u {
-        norm = sum_of_parts(t, params.present, params.norms);
-        curvature = sum_of_parts(t, 0u, params.curvatures);
+        let both = two_sums_of_parts(t, vec2<u32>(params.present, 0u), vec2<u32>(params.norms, params.curvatures));
+        norm = both.x;
+        curvature = both.y;
     }
     if t == 0u {
         let goes_on = norm > progress.goal && is_positive(norm) && is_positive(curvature);
@@ -75,9 +76,17 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
     if params.start == 0u {
         step = norm / curvature;
     }
+    // 64 threads per patch, one per slot.
+    let q = t / 64u;
+    let slot_index = t % 64u;
     var squares = 0.0;
-    for (var k = group.x; k < params.patches; k += params.workgroups) {
-        let slot = slots[64u * k + t];
+    for (var first = 4u * group.x; first < params.patches; first += 4u * params.workgroups) {
+        let k = first + q;
+        var slot: PatchSlot;
+        slot.node = NONE;
+        if k < params.patches {
+            slot = slots[64u * k + slot_index];
+        }
         let i = slot.node;
         var r = vec3<f32>(0.0);
         if i != NONE {
@@ -93,7 +102,8 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
         }
         var z = solve(slot, r);
         squares += dot(r, z);
-        if k < params.grouped {
+        if first < params.grouped {
+            let is_grouped = k < params.grouped;
             let arm = vec3<f32>(slot.arm[0], slot.arm[1], slot.arm[2]);
             let moment = cross(arm, r);
             if t % 8u < 2u {
@@ -105,30 +115,34 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
                 slot_forces[6u * t + 3u + c] = moment[c];
             }
             workgroupBarrier();
-            if t < 48u {
+            // Six numbers of each group, those of the patches one after the other.
+            let at = 48u * q + slot_index;
+            if slot_index < 48u {
                 var f = 0.0;
                 for (var m = 0u; m < 8u; m += 1u) {
-                    f += slot_forces[6u * (8u * (t / 6u) + m) + t % 6u];
+                    f += slot_forces[6u * (8u * (at / 6u) + m) + at % 6u];
                 }
-                group_forces[t] = f;
+                group_forces[at] = f;
             }
             workgroupBarrier();
-            if t < 48u {
+            if slot_index < 48u && is_grouped {
                 var motion = 0.0;
                 for (var m = 0u; m < 48u; m += 1u) {
-                    motion += domains[DOMAIN_WORDS * k + 48u * m + t] * group_forces[m];
+                    motion += domains[DOMAIN_WORDS * k + 48u * m + slot_index] * group_forces[48u * q + m];
                 }
-                motions[t] = motion;
-                squares += motion * group_forces[t];
+                motions[at] = motion;
+                squares += motion * group_forces[at];
             }
             // The force on the rigid motion of the patch.
-            if t < 6u {
-                forces[6u * k + t] = force_on_parent(t);
+            if slot_index < 6u && is_grouped {
+                forces[6u * k + slot_index] = force_on_parent(q, slot_index);
             }
             workgroupBarrier();
-            let g = 6u * (t / 8u);
-            let spin = vec3<f32>(motions[g + 3u], motions[g + 4u], motions[g + 5u]);
-            z += vec3<f32>(motions[g], motions[g + 1u], motions[g + 2u]) + cross(spin, arm);
+            if is_grouped {
+                let g = 6u * (t / 8u);
+                let spin = vec3<f32>(motions[g + 3u], motions[g + 4u], motions[g + 5u]);
+                z += vec3<f32>(motions[g], motions[g + 1u], motions[g + 2u]) + cross(spin, arm);
+            }
         }
         if i != NONE {
             image[i] = vec4<f32>(z, 0.0);

@@ -17,13 +17,15 @@ struct Params {
 // 1 for a candidate that is picked.
 @group(0) @binding(6) var<storage, read> starts: array<u32>;
 @group(0) @binding(7) var<storage, read_write> table: array<atomic<u32>>;
+@group(0) @binding(8) var<storage, read_write> control: Control;
 
 // Candidates that do not press come after all that do.
 const NOT_PRESSING: u32 = 0x80000000u;
 
 @compute @workgroup_size(128)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    for (var c = id.x; c < params.capacity; c += 128u * MOST_WORKGROUPS) {
+    let count = min(atomicLoad(&control.candidates), params.capacity);
+    for (var c = id.x; c < count; c += 128u * MOST_WORKGROUPS) {
         if starts[c] == 0u {
             continue;
         }

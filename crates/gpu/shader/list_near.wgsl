@@ -11,10 +11,12 @@ struct Params {
 @group(0) @binding(1) var<storage, read> starts: array<u32>;
 @group(0) @binding(2) var<storage, read> candidates: array<Candidate>;
 @group(0) @binding(3) var<storage, read_write> near: array<Candidate>;
+@group(0) @binding(4) var<storage, read_write> control: Control;
 
 @compute @workgroup_size(256)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    for (var c = id.x; c < params.capacity; c += 256u * MOST_WORKGROUPS) {
+    let count = min(atomicLoad(&control.candidates), params.capacity);
+    for (var c = id.x; c < count; c += 256u * MOST_WORKGROUPS) {
         let place = starts[c];
         if starts[c + 1u] > place && place < params.near_capacity {
             near[place] = candidates[c];

@@ -17,12 +17,14 @@ struct Params {
 @group(0) @binding(6) var<storage, read_write> states: array<PairState>;
 // 1 for a candidate that gets a row.
 @group(0) @binding(7) var<storage, read_write> starts: array<u32>;
+@group(0) @binding(8) var<storage, read_write> control: Control;
 
 const NUMBER: u32 = 0x7fffffffu;
 
 @compute @workgroup_size(128)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    for (var c = id.x; c < params.capacity; c += 128u * MOST_WORKGROUPS) {
+    let count = min(atomicLoad(&control.candidates), params.capacity);
+    for (var c = id.x; c < count; c += 128u * MOST_WORKGROUPS) {
         if starts[c] == 0u {
             continue;
         }

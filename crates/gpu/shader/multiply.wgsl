@@ -78,7 +78,7 @@ fn row(i: u32) -> vec3<f32> {
     return sum;
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(256)
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
     if local.x == 0u {
         is_moving = atomicLoad(&progress.moving);

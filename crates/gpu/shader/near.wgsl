@@ -33,11 +33,7 @@ fn is_near(c: u32) -> bool {
 @compute @workgroup_size(128)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let count = min(atomicLoad(&control.candidates), params.capacity);
-    for (var c = id.x; c < params.capacity; c += 128u * MOST_WORKGROUPS) {
-        var flag = 0u;
-        if c < count {
-            flag = u32(is_near(c));
-        }
-        starts[c] = flag;
+    for (var c = id.x; c < count; c += 128u * MOST_WORKGROUPS) {
+        starts[c] = u32(is_near(c));
     }
 }

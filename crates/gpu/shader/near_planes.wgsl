@@ -42,7 +42,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
                 let height = dot(plane.normal, offset);
                 let size = max(max(abs(offset.x), abs(offset.y)), abs(offset.z));
                 if height - plane.rounding * size <= reach * 1.001 + POINT_ROUNDING {
-                    if params.lists != 0u && first + found < params.capacity {
+                    if params.lists != 0u && first < params.capacity && found < params.capacity - first {
                         candidates[first + found] = Candidate((VERTEX_HALF_SPACE << ELEMENT_BITS) | query.element, p);
                     }
                     found += 1u;

@@ -19,7 +19,7 @@ struct Params {
 @group(0) @binding(6) var<storage, read_write> right_side: array<vec4<f32>>;
 @group(0) @binding(7) var<storage, read_write> sums: array<f32>;
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(256)
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
     var largest = 0.0;
     for (var i = THREADS * group.x + local.x; i < params.nodes; i += THREADS * params.workgroups) {

@@ -39,16 +39,12 @@ fn is_picked(c: u32) -> bool {
 @compute @workgroup_size(128)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let count = min(atomicLoad(&control.candidates), params.capacity);
-    for (var c = id.x; c < params.capacity; c += 128u * MOST_WORKGROUPS) {
-        var flag = 0u;
-        if c < count {
-            if is_picked(c) {
-                flag = 1u;
-            } else {
-                states[c].multiplier = 0.0;
-                states[c].friction = vec3<f32>(0.0);
-            }
+    for (var c = id.x; c < count; c += 128u * MOST_WORKGROUPS) {
+        let picked = is_picked(c);
+        if !picked {
+            states[c].multiplier = 0.0;
+            states[c].friction = vec3<f32>(0.0);
         }
-        starts[c] = flag;
+        starts[c] = u32(picked);
     }
 }

@@ -2,8 +2,9 @@
 // last one ends.
 
 struct Params {
+    // Most rows.
     rows: u32,
-    // As in count.wgsl.
+    // See entries.wgsl.
     list: u32,
 }
 
@@ -14,17 +15,16 @@ struct Params {
 
 @compute @workgroup_size(256)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    if params.list == 0u && atomicLoad(&control.changed) == 0u {
+    let rows = rows_of(params.list, params.rows);
+    for (var row = id.x; row < rows; row += 256u * MOST_WORKGROUPS) {
+        starts[row] = saturating_sum(starts[row], blocks[row / 256u]);
+    }
+    if id.x > 0u {
         return;
     }
-    for (var row = id.x; row < params.rows; row += 256u * MOST_WORKGROUPS) {
-        starts[row] += blocks[row / 256u];
-    }
-    if id.x == 0u {
-        if params.list == 0u {
-            starts[params.rows] = atomicLoad(&control.candidates);
-        } else {
-            starts[params.rows] = atomicLoad(&control.rows);
-        }
+    if params.list == CONTACT_ROWS {
+        starts[rows] = atomicLoad(&control.rows);
+    } else if rows > 0u {
+        starts[rows] = atomicLoad(&control.candidates);
     }
 }

@@ -1,5 +1,5 @@
 // The next search direction p = z + (rz' / rz) p. The motions of the coarse levels are added to z here: each group of a
-// patch moves with all groups above it. One workgroup per patch, which go on with strides.
+// patch moves with all groups above it. One workgroup per four patches, which go on with strides.
 
 struct Params {
     patches: u32,
@@ -25,15 +25,15 @@ struct Params {
 @group(0) @binding(7) var<storage, read_write> progress: Progress;
 
 var<workgroup> is_moving: u32;
-var<workgroup> shifts: array<vec3<f32>, 8>;
-var<workgroup> spins: array<vec3<f32>, 8>;
+var<workgroup> shifts: array<vec3<f32>, 32>;
+var<workgroup> spins: array<vec3<f32>, 32>;
 
 fn first_of(level: u32) -> u32 {
     return params.firsts[level / 4u][level % 4u];
 }
 
-// Motion of group g of patch k with all groups above it.
-fn find_motion(k: u32, g: u32) {
+// Motion of group g of patch k, the q-th of this turn, with all groups above it.
+fn find_motion(k: u32, q: u32, g: u32) {
     var shift = vec3<f32>(0.0);
     var spin = vec3<f32>(0.0);
     for (var level = params.levels; level > 0u; level -= 1u) {
@@ -50,11 +50,11 @@ fn find_motion(k: u32, g: u32) {
     }
     let first = slots[64u * k + 8u * g].link;
     let second = slots[64u * k + 8u * g + 1u].link;
-    shifts[g] = shift + cross(spin, vec3<f32>(first[0], first[1], second[0]));
-    spins[g] = spin * second[1];
+    shifts[8u * q + g] = shift + cross(spin, vec3<f32>(first[0], first[1], second[0]));
+    spins[8u * q + g] = spin * second[1];
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(256)
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
     let t = local.x;
     if t == 0u {
@@ -65,27 +65,37 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) l
     }
     var ratio = 0.0;
     if params.start == 0u {
-        let before = sum_of_parts(t, params.present, params.norms);
-        ratio = sum_of_parts(t, params.next, params.norms) / before;
+        let both = two_sums_of_parts(t, vec2<u32>(params.present, params.next), vec2<u32>(params.norms));
+        ratio = both.y / both.x;
         if group.x == 0u && t == 0u {
             atomicAdd(&progress.iterations, 1u);
         }
     }
-    for (var k = group.x; k < params.patches; k += params.workgroups) {
-        let slot = slots[64u * k + t];
+    // 64 threads per patch, one per slot.
+    let q = t / 64u;
+    for (var first = 4u * group.x; first < params.patches; first += 4u * params.workgroups) {
+        let k = first + q;
+        var slot: PatchSlot;
+        slot.node = NONE;
+        if k < params.patches {
+            slot = slots[64u * k + t % 64u];
+        }
         let i = slot.node;
         var z = vec3<f32>(0.0);
         if i != NONE {
             z = image[i].xyz;
         }
-        if k < params.grouped && params.levels > 0u {
+        if first < params.grouped && params.levels > 0u {
+            let is_grouped = k < params.grouped;
             workgroupBarrier();
-            if t < 8u {
-                find_motion(k, t);
+            if t % 64u < 8u && is_grouped {
+                find_motion(k, q, t % 64u);
             }
             workgroupBarrier();
-            let arm = vec3<f32>(slot.arm[0], slot.arm[1], slot.arm[2]);
-            z += shifts[t / 8u] + cross(spins[t / 8u], arm);
+            if is_grouped {
+                let arm = vec3<f32>(slot.arm[0], slot.arm[1], slot.arm[2]);
+                z += shifts[t / 8u] + cross(spins[t / 8u], arm);
+            }
         }
         if i != NONE {
             if params.start == 0u {

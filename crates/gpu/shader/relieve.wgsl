@@ -18,6 +18,7 @@ struct Params {
 @group(0) @binding(3) var<storage, read> candidates: array<Candidate>;
 @group(0) @binding(4) var<storage, read> separations: array<Separation>;
 @group(0) @binding(5) var<storage, read_write> rows: array<Row>;
+@group(0) @binding(6) var<storage, read_write> control: Control;
 
 // At least 12 u, and what the grid adds to it.
 const ROUNDING: f32 = 9.5367431640625e-7;
@@ -46,10 +47,6 @@ fn lacking_of(
 
 fn relieve(r: u32) {
     let row = rows[r];
-    // The list ends here.
-    if row.candidate == NONE {
-        return;
-    }
     let kind = candidates[row.candidate].kind_and_a >> ELEMENT_BITS;
     if kind == VERTEX_VERTEX || kind == VERTEX_HALF_SPACE {
         return;
@@ -84,7 +81,8 @@ fn relieve(r: u32) {
 
 @compute @workgroup_size(128)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    for (var r = id.x; r < params.capacity; r += 128u * MOST_WORKGROUPS) {
+    let count = min(atomicLoad(&control.rows), params.capacity);
+    for (var r = id.x; r < count; r += 128u * MOST_WORKGROUPS) {
         relieve(r);
     }
 }

@@ -24,7 +24,7 @@ const MAX_REDUCTION: f32 = 1e-10;
 @group(0) @binding(3) var<storage, read_write> progress: Progress;
 @group(0) @binding(4) var<storage, read_write> ended: Progress;
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(256)
 fn main(@builtin(local_invocation_id) local: vec3<u32>) {
     let t = local.x;
     if params.mode == 0u {

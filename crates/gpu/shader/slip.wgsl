@@ -18,6 +18,7 @@ struct Params {
 @group(0) @binding(5) var<storage, read> candidates: array<Candidate>;
 @group(0) @binding(6) var<storage, read> states: array<PairState>;
 @group(0) @binding(7) var<storage, read_write> rows: array<Row>;
+@group(0) @binding(8) var<storage, read_write> control: Control;
 
 fn across(normal: vec3<f32>, v: vec3<f32>) -> vec3<f32> {
     return v - normal * dot(normal, v);
@@ -46,11 +47,9 @@ fn friction_of(one: u32, other: u32) -> f32 {
 
 @compute @workgroup_size(128)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    for (var r = id.x; r < params.capacity; r += 128u * MOST_WORKGROUPS) {
+    let count = min(atomicLoad(&control.rows), params.capacity);
+    for (var r = id.x; r < count; r += 128u * MOST_WORKGROUPS) {
         let c = rows[r].candidate;
-        if c == NONE {
-            continue;
-        }
         let v = rows[r].vertices;
         let candidate = candidates[c];
         let kind = candidate.kind_and_a >> ELEMENT_BITS;

@@ -97,7 +97,7 @@ fn find(q: u32) {
             if shares_vertex(query, other) || !may_collide(own, vertices[other.v0]) {
                 continue;
             }
-            if params.lists != 0u && first + found < params.capacity {
+            if params.lists != 0u && first < params.capacity && found < params.capacity - first {
                 candidates[first + found] = Candidate((params.kind << ELEMENT_BITS) | query.element, other.element);
             }
             found += 1u;

@@ -646,6 +646,8 @@ fn snapped(grid: &Grid, positions: &[Point]) -> Result<Vec<GridPoint>, Collision
 #[cfg(test)]
 mod edge_tests;
 #[cfg(test)]
+mod list_tests;
+#[cfg(test)]
 mod row_tests;
 #[cfg(test)]
 mod tests;

@@ -30,8 +30,12 @@ pub(crate) use stage::{Access, Stage};
 
 const TYPES: &str = include_str!("../shader/shared/types.wgsl");
 const CLOSEST: &str = include_str!("../shader/shared/closest.wgsl");
+const ENTRIES: &str = include_str!("../shader/shared/entries.wgsl");
 const SCAN: &str = include_str!("../shader/shared/scan.wgsl");
-const PAIR: &str = include_str!("../shader/shared/pair.wgsl");
+const MOST: &str = include_str!("../shader/shared/most.wgsl");
+const WEIGHTS: &str = include_str!("../shader/shared/weights.wgsl");
+const PAIR: &str =
+    concat!(include_str!("../shader/shared/weights.wgsl"), include_str!("../shader/shared/pair.wgsl"));
 const CONTACT: &str = include_str!("../shader/shared/contact.wgsl");
 const FIXED: &str = include_str!("../shader/shared/fixed.wgsl");
 
@@ -73,7 +77,7 @@ pub(crate) static RELIEVE: Stage = Stage {
     name: "relieve",
     parts: &[TYPES, include_str!("../shader/relieve.wgsl")],
     workgroup: 128,
-    bindings: &[Read, Read, Read, Read, Write],
+    bindings: &[Read, Read, Read, Read, Write, Write],
     twin: cpu::relieve::bound,
 };
 
@@ -145,7 +149,7 @@ pub(crate) static ENLIST: Stage = Stage {
     name: "enlist",
     parts: &[TYPES, PAIR, CONTACT, include_str!("../shader/enlist.wgsl")],
     workgroup: 128,
-    bindings: &[Read, Read, Read, Read, Read, Read, Write],
+    bindings: &[Read, Read, Read, Read, Read, Read, Write, Write],
     twin: cpu::enlist::bound,
 };
 
@@ -153,7 +157,7 @@ pub(crate) static MERGE: Stage = Stage {
     name: "merge",
     parts: &[TYPES, PAIR, CONTACT, include_str!("../shader/merge.wgsl")],
     workgroup: 128,
-    bindings: &[Read, Read, Read, Read, Read, Write, Write],
+    bindings: &[Read, Read, Read, Read, Read, Write, Write, Write],
     twin: cpu::merge::bound,
 };
 
@@ -177,23 +181,23 @@ pub(crate) static LIST_NEAR: Stage = Stage {
     name: "list_near",
     parts: &[TYPES, include_str!("../shader/list_near.wgsl")],
     workgroup: 256,
-    bindings: &[Read, Read, Write],
+    bindings: &[Read, Read, Write, Write],
     twin: cpu::list_near::bound,
 };
 
 pub(crate) static LIST: Stage = Stage {
     name: "list",
-    parts: &[TYPES, include_str!("../shader/list.wgsl")],
+    parts: &[TYPES, PAIR, include_str!("../shader/list.wgsl")],
     workgroup: 256,
-    bindings: &[Read, Read, Write, Write, Write],
+    bindings: &[Read, Read, Read, Read, Write, Write, Write],
     twin: cpu::list::bound,
 };
 
 pub(crate) static BUILD: Stage = Stage {
     name: "build",
-    parts: &[TYPES, PAIR, FIXED, include_str!("../shader/build.wgsl")],
+    parts: &[TYPES, WEIGHTS, FIXED, include_str!("../shader/build.wgsl")],
     workgroup: 128,
-    bindings: &[Read, Read, Read, Read, Read, Read, Write, Write],
+    bindings: &[Read, Read, Read, Read, Write, Write, Write],
     twin: cpu::build::bound,
 };
 
@@ -201,7 +205,7 @@ pub(crate) static SLIP: Stage = Stage {
     name: "slip",
     parts: &[TYPES, include_str!("../shader/slip.wgsl")],
     workgroup: 128,
-    bindings: &[Read, Read, Read, Read, Read, Read, Write],
+    bindings: &[Read, Read, Read, Read, Read, Read, Write, Write],
     twin: cpu::slip::bound,
 };
 
@@ -311,7 +315,7 @@ pub(crate) static NEAR_PLANES: Stage = Stage {
 
 pub(crate) static COUNT: Stage = Stage {
     name: "count",
-    parts: &[TYPES, SCAN, include_str!("../shader/count.wgsl")],
+    parts: &[TYPES, SCAN, ENTRIES, include_str!("../shader/count.wgsl")],
     workgroup: cpu::count::BLOCK,
     bindings: &[Write, Write, Write],
     twin: cpu::count::bound,
@@ -319,7 +323,7 @@ pub(crate) static COUNT: Stage = Stage {
 
 pub(crate) static TOTAL: Stage = Stage {
     name: "total",
-    parts: &[TYPES, SCAN, include_str!("../shader/total.wgsl")],
+    parts: &[TYPES, SCAN, ENTRIES, include_str!("../shader/total.wgsl")],
     workgroup: 256,
     bindings: &[Write, Write],
     twin: cpu::total::bound,
@@ -327,7 +331,7 @@ pub(crate) static TOTAL: Stage = Stage {
 
 pub(crate) static PLACE: Stage = Stage {
     name: "place",
-    parts: &[TYPES, include_str!("../shader/place.wgsl")],
+    parts: &[TYPES, SCAN, ENTRIES, include_str!("../shader/place.wgsl")],
     workgroup: 256,
     bindings: &[Read, Write, Write],
     twin: cpu::place::bound,
@@ -391,7 +395,7 @@ pub(crate) static LIMIT_GROUPS: Stage = Stage {
 
 pub(crate) static ADVANCE: Stage = Stage {
     name: "advance",
-    parts: &[TYPES, include_str!("../shader/advance.wgsl")],
+    parts: &[TYPES, MOST, include_str!("../shader/advance.wgsl")],
     workgroup: 256,
     bindings: &[Read, Read, Read, Read, Read, Write, Write, Write],
     twin: cpu::advance::bound,
@@ -415,7 +419,7 @@ pub(crate) static BALANCE: Stage = Stage {
 
 pub(crate) static STRETCH: Stage = Stage {
     name: "stretch",
-    parts: &[TYPES, include_str!("../shader/stretch.wgsl")],
+    parts: &[TYPES, MOST, include_str!("../shader/stretch.wgsl")],
     workgroup: 256,
     bindings: &[Read, Read, Write],
     twin: cpu::stretch::bound,

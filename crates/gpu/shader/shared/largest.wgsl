@@ -1,7 +1,7 @@
 // The largest of a number of each thread, and of partial results in `sums`: the same in any order. Numbers are not
 // negative.
 
-var<workgroup> shared_largest: array<f32, 64>;
+var<workgroup> shared_largest: array<f32, THREADS>;
 
 fn largest_of_threads(thread: u32, value: f32) -> f32 {
     workgroupBarrier();

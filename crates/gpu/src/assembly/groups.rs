@@ -3,7 +3,6 @@
 use super::hierarchy::{Hierarchy, Touching};
 use super::layout::Frame;
 use crate::cpu;
-use crate::cpu::sum::THREADS;
 use crate::engine::Engine;
 use crate::error::GpuError;
 use crate::linear::{Buffers, CHILDREN, DOMAIN_WORDS, PATCH_SLOTS};
@@ -151,7 +150,7 @@ impl GroupBuffers {
                     &stages::COARSEN,
                     &[self.sums, self.parts, self.frames, self.couplings],
                     cpu::coarsen::Params { pairs, first, quantum },
-                    THREADS * level.pairs,
+                    stages::COARSEN.workgroup * level.pairs,
                 );
             }
         }
@@ -161,7 +160,7 @@ impl GroupBuffers {
                 &stages::PRESS,
                 &[linear.springs, self.touching, self.places, positions, self.frames, self.pressed],
                 cpu::press::Params { chunks: chunks as u32, first: first as u32, quantum },
-                THREADS * chunks,
+                stages::PRESS.workgroup * chunks,
             );
         }
         for (index, level) in levels.iter().enumerate() {

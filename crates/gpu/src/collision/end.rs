@@ -93,7 +93,7 @@ impl<E: Engine> Collision<E> {
         let b = &self.buffers;
         recording.dispatch(
             &stages::LIST_NEAR,
-            &[b.picks.starts, b.candidates, self.near.buffer],
+            &[b.picks.starts, b.candidates, self.near.buffer, b.control],
             cpu::list_near::Params {
                 capacity: self.buffers.capacity as u32,
                 near_capacity: self.near.capacity as u32,

@@ -72,20 +72,29 @@ impl<E: Engine> Collision<E> {
         self.record_decision(AFTER_ROWS, dispatches, recording);
         recording.dispatch(
             &stages::LIST,
-            &[b.picks.starts, b.candidates, r.rows, r.pairs, b.control],
-            cpu::list::Params { capacity, row_capacity },
-            self.buffers.capacity.max(self.buffers.row_capacity),
+            &[b.edges, b.triangles, b.picks.starts, b.candidates, r.rows, r.pairs, b.control],
+            cpu::list::Params { capacity },
+            self.buffers.capacity,
         );
         recording.dispatch(
             &stages::BUILD,
-            &[b.edges, b.triangles, b.vertices, b.candidates, b.separations, b.states, r.rows, b.proximal],
+            &[b.vertices, b.candidates, b.separations, b.states, r.rows, b.proximal, b.control],
             cpu::build::Params { capacity: row_capacity, strength: self.settings.contact_proximal as f32 },
             self.buffers.row_capacity,
         );
         if self.frictional {
             recording.dispatch(
                 &stages::SLIP,
-                &[b.positions, b.slip_start, b.vertices, b.pair_frictions, b.candidates, b.states, r.rows],
+                &[
+                    b.positions,
+                    b.slip_start,
+                    b.vertices,
+                    b.pair_frictions,
+                    b.candidates,
+                    b.states,
+                    r.rows,
+                    b.control,
+                ],
                 cpu::slip::Params {
                     capacity: row_capacity,
                     pair_frictions: self.sizes.pair_frictions as u32,
@@ -106,13 +115,31 @@ impl<E: Engine> Collision<E> {
         let mask = b.contact_places as u32 - 1;
         recording.dispatch(
             &stages::ENLIST,
-            &[b.edges, b.triangles, b.candidates, b.separations, b.states, b.picks.starts, b.contacts],
+            &[
+                b.edges,
+                b.triangles,
+                b.candidates,
+                b.separations,
+                b.states,
+                b.picks.starts,
+                b.contacts,
+                b.control,
+            ],
             cpu::enlist::Params { capacity, mask },
             self.buffers.capacity,
         );
         recording.dispatch(
             &stages::MERGE,
-            &[b.edges, b.triangles, b.candidates, b.separations, b.contacts, b.states, b.picks.starts],
+            &[
+                b.edges,
+                b.triangles,
+                b.candidates,
+                b.separations,
+                b.contacts,
+                b.states,
+                b.picks.starts,
+                b.control,
+            ],
             cpu::merge::Params { capacity, mask },
             self.buffers.capacity,
         );
@@ -245,7 +272,7 @@ impl<E: Engine> Collision<E> {
             let capacity = self.buffers.row_capacity as u32;
             recording.dispatch(
                 &stages::RELIEVE,
-                &[b.positions, b.displacements, b.candidates, b.separations, r.rows],
+                &[b.positions, b.displacements, b.candidates, b.separations, r.rows, b.control],
                 cpu::relieve::Params { capacity },
                 self.buffers.row_capacity,
             );

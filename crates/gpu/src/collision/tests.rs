@@ -561,3 +561,41 @@ fn a_call_that_starts_from_what_the_last_one_carried_has_nothing_left_to_do() {
     // A call without entries starts without them.
     assert!(call(1, &[]) == (cold, cold_end));
 }
+
+/// Kernels go by the numbers of candidates and rows, not by what there is room for.
+#[test]
+fn what_lies_beyond_candidates_and_rows_is_not_touched() {
+    let (model, x) = sheets();
+    let target: Vec<Point> = x.iter().map(|x| Point::new(x.x, x.y, 3e-3 - x.z)).collect();
+    let mut collision = collision(&model, &x, &x, None);
+    collision.begin(&Call::toward(&target)).unwrap();
+    // Buffers that are too small grow first.
+    collision.step().unwrap();
+    for _ in 0..3 {
+        let b = collision.buffers;
+        let buffers = [b.picks.starts, b.picks.blocks, b.rows.rows, b.rows.pairs, b.rows.order];
+        let mut recording = Recording::default();
+        for buffer in buffers {
+            recording.write(buffer, &vec![NONE; collision.engine.words(buffer)]);
+        }
+        collision.engine.run(&recording, &[]).unwrap();
+        let report = collision.step().unwrap();
+        // The search within the step may have found others than those that were picked from.
+        let all = collision.engine.words_of(b.picks.starts);
+        let picked = all.iter().rposition(|start| *start != NONE).unwrap();
+        assert!(picked + 200 < b.capacity, "{picked} of {}", b.capacity);
+        assert_eq!(all[picked] as usize, report.contact_rows);
+        let used = [
+            picked + 1,
+            picked.div_ceil(256),
+            words::<Row>(report.contact_rows),
+            words::<Candidate>(report.contact_rows),
+            report.contact_rows,
+        ];
+        for (buffer, used) in buffers.into_iter().zip(used) {
+            let words = collision.engine.words_of(buffer);
+            assert!(words[used..].iter().all(|word| *word == NONE) && used < words.len());
+        }
+        assert!(report.contact_rows > 20);
+    }
+}

@@ -1,9 +1,9 @@
 //! Twin of `shader/build.wgsl`.
 
 use super::curve_edges::weight_units;
-use super::pair::{Pair, pair_of, signed_weights};
+use super::pair::{Pair, pair_with, signed_weights};
 use crate::bound::Bound;
-use crate::layout::{Candidate, Kind, NONE, PairState, Row, Separation, Vertex};
+use crate::layout::{Candidate, Control, Kind, PairState, Row, Separation, Vertex};
 use bytemuck::{Pod, Zeroable};
 
 #[repr(C)]
@@ -22,10 +22,9 @@ pub fn bound(buffers: Bound<'_>) {
         &buffers.read(1),
         &buffers.read(2),
         &buffers.read(3),
-        &buffers.read(4),
-        &buffers.read(5),
-        &mut buffers.write(6),
-        &mut buffers.write(7),
+        &mut buffers.write(4),
+        &mut buffers.write(5),
+        &buffers.read::<Control>(6)[0],
     );
 }
 
@@ -51,22 +50,18 @@ fn radius_of(pair: &Pair, weights: &[f32; 4], gap: f32, sine: f32, edge: f32) ->
 
 pub fn build(
     params: Params,
-    edges: &[[u32; 2]],
-    triangles: &[[u32; 4]],
     vertices: &[Vertex],
     candidates: &[Candidate],
     separations: &[Separation],
     states: &[PairState],
     rows: &mut [Row],
     proximal: &mut [u32],
+    control: &Control,
 ) {
-    for row in &mut rows[..params.capacity as usize] {
+    for row in &mut rows[..control.rows.min(params.capacity) as usize] {
         let c = row.candidate;
-        if c == NONE {
-            continue;
-        }
         let (separation, state) = (separations[c as usize], states[c as usize]);
-        let pair = pair_of(candidates[c as usize], edges, triangles);
+        let pair = pair_with(candidates[c as usize].kind(), row.vertices);
         let weights = signed_weights(&pair, &separation);
         if state.multiplier > 0.0 {
             let gap = separation.distance.max(state.desired).max(1.0);

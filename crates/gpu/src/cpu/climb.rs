@@ -17,6 +17,9 @@ pub struct Params {
     pub workgroups: u32,
     pub present: u32,
     pub next: u32,
+    pub parents: u32,
+    /// A uniform buffer has whole vectors.
+    pub padding: [u32; 3],
 }
 
 pub fn bound(buffers: Bound<'_>) {
@@ -31,29 +34,67 @@ pub fn bound(buffers: Bound<'_>) {
     );
 }
 
-/// The share of thread `lane` in the force on a group `rise` levels above the first one.
-fn sum_of_lane(
-    params: &Params,
-    links: &[[f32; 4]],
-    forces: &[f32],
-    group: usize,
-    rise: usize,
-    lane: usize,
-) -> [f32; 6] {
-    let (mut force, mut torque) = ([0.0f32; 3], [0.0f32; 3]);
-    let end = ((group + 1) << (3 * rise)).min(params.groups[0] as usize);
-    for part in ((group << (3 * rise)) + lane..end).step_by(CHILDREN) {
-        let at = 6 * (params.firsts[0] as usize + part);
-        let own = [forces[at], forces[at + 1], forces[at + 2]];
-        let mut turn = [forces[at + 3], forces[at + 4], forces[at + 5]];
-        for level in 0..rise {
-            let [x, y, z, ratio] =
-                links[CHILDREN * params.first_domains[level] as usize + (part >> (3 * level))];
-            turn = added(scaled(turn, ratio), crossed([x, y, z], own));
-        }
-        (force, torque) = (added(force, own), added(torque, turn));
+const LANES: usize = 32;
+
+/// Threads that have parts of a group.
+fn lanes_of(rise: usize) -> usize {
+    if rise == 3 { LANES } else { (1 << (3 * rise)).min(CHILDREN) }
+}
+
+/// A force and a torque.
+type Wrench = [[f32; 3]; 2];
+
+/// The forces on the parts of the first of these levels, and how they add up.
+struct Forces<'a> {
+    params: &'a Params,
+    links: &'a [[f32; 4]],
+    forces: &'a [f32],
+}
+
+impl Forces<'_> {
+    fn on(&self, part: usize) -> Wrench {
+        let at = 6 * (self.params.firsts[0] as usize + part);
+        let f = &self.forces[at..at + 6];
+        [[f[0], f[1], f[2]], [f[3], f[4], f[5]]]
     }
-    [force[0], force[1], force[2], torque[0], torque[1], torque[2]]
+
+    /// The torque on the parent of a group of that level.
+    fn lifted(&self, [force, torque]: Wrench, level: usize, group: usize) -> [f32; 3] {
+        let [x, y, z, ratio] = self.links[CHILDREN * self.params.first_domains[level] as usize + group];
+        added(scaled(torque, ratio), crossed([x, y, z], force))
+    }
+
+    /// The share of thread `lane` in the force on a group `rise` levels above the first one.
+    fn sum_of_lane(&self, group: usize, rise: usize, lane: usize) -> [f32; 6] {
+        let parts = self.params.groups[0] as usize;
+        let mut sum = Wrench::default();
+        if rise < 2 {
+            let part = (group << (3 * rise)) + lane;
+            if lane < lanes_of(rise) && part < parts {
+                sum = self.on(part);
+                if rise == 1 {
+                    sum[1] = self.lifted(sum, 0, part);
+                }
+            }
+        } else {
+            let shift = 3 * (rise - 1);
+            let end = ((group + 1) << shift).min(parts.div_ceil(CHILDREN));
+            for eight in ((group << shift) + lane..end).step_by(LANES) {
+                let mut of_eight = Wrench::default();
+                for part in CHILDREN * eight..(CHILDREN * (eight + 1)).min(parts) {
+                    let own = self.on(part);
+                    let torque = self.lifted(own, 0, part);
+                    of_eight = [added(of_eight[0], own[0]), added(of_eight[1], torque)];
+                }
+                for level in 1..rise {
+                    of_eight[1] = self.lifted(of_eight, level, eight >> (3 * (level - 1)));
+                }
+                sum = [added(sum[0], of_eight[0]), added(sum[1], of_eight[1])];
+            }
+        }
+        let [[a, b, c], [d, e, f]] = sum;
+        [a, b, c, d, e, f]
+    }
 }
 
 pub fn climb(
@@ -75,13 +116,14 @@ pub fn climb(
     for group in 0..workgroups {
         let mut squares = [0.0f32; THREADS];
         for domain in (first + group..first + params.domains as usize).step_by(workgroups) {
-            let rise = params.first_domains[1..3].iter().filter(|&&first| domain >= first as usize).count();
+            let rise = params.first_domains[1..4].iter().filter(|&&first| domain >= first as usize).count();
             let parent = domain - params.first_domains[rise] as usize;
             let lanes: [[f32; 6]; THREADS] = std::array::from_fn(|t| {
-                sum_of_lane(&params, links, forces, CHILDREN * parent + t / CHILDREN, rise, t % CHILDREN)
+                let own = Forces { params: &params, links, forces };
+                own.sum_of_lane(CHILDREN * parent + t / LANES, rise, t % LANES)
             });
             let on_groups: [f32; DOMAIN_UNKNOWNS] = std::array::from_fn(|t| {
-                lanes[CHILDREN * (t / 6)..][..CHILDREN].iter().fold(0.0, |sum, lane| sum + lane[t % 6])
+                lanes[LANES * (t / 6)..][..lanes_of(rise)].iter().fold(0.0, |sum, lane| sum + lane[t % 6])
             });
             let used = 6 * CHILDREN.min(params.groups[rise] as usize - CHILDREN * parent);
             let moved = motions(&coarse[DOMAIN_WORDS * domain..], &on_groups);
@@ -91,7 +133,8 @@ pub fn climb(
                 squares[t] += moved[t] * on_groups[t];
             }
             let of_children = std::array::from_fn(|m| links[CHILDREN * domain + m]);
-            let place = 6 * (params.firsts[rise + 1] as usize + parent);
+            let first = params.firsts.get(rise + 1).unwrap_or(&params.parents);
+            let place = 6 * (*first as usize + parent);
             forces[place..place + 6].copy_from_slice(&force_on_parent(&of_children, &on_groups));
         }
         sums[next + group] = sum_of_threads(squares);

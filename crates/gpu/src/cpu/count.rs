@@ -22,20 +22,22 @@ pub fn bound(buffers: Bound<'_>) {
     count(buffers.params(), &mut buffers.write(0), &mut buffers.write(1), &buffers.read::<Control>(2)[0]);
 }
 
-/// Whether a list stays as it is.
-pub fn is_unchanged(list: u32, control: &Control) -> bool {
-    list == CANDIDATES && control.changed == 0
+/// Rows that have numbers of entries, of at most so many; none if the list stays as it is.
+pub fn rows_of(list: u32, most: u32, control: &Control) -> u32 {
+    match list {
+        CANDIDATES if control.changed == 0 => 0,
+        CANDIDATES => most,
+        _ => control.candidates.min(most),
+    }
 }
 
 pub fn count(params: Params, starts: &mut [u32], blocks: &mut [u32], control: &Control) {
-    if is_unchanged(params.list, control) {
-        return;
-    }
-    for (block, starts) in starts[..params.rows as usize].chunks_mut(BLOCK).enumerate() {
-        let mut sum = 0;
+    let rows = rows_of(params.list, params.rows, control) as usize;
+    for (block, starts) in starts[..rows].chunks_mut(BLOCK).enumerate() {
+        let mut sum = 0u32;
         for start in starts {
             let count = std::mem::replace(start, sum);
-            sum += count;
+            sum = sum.saturating_add(count);
         }
         blocks[block] = sum;
     }

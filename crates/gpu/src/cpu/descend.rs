@@ -22,6 +22,9 @@ pub struct Params {
     pub next: u32,
 }
 
+/// Patches that a workgroup steps at once.
+const STEPPED: usize = THREADS / PATCH_SLOTS;
+
 pub fn bound(buffers: Bound<'_>) {
     descend(
         buffers.params(),
@@ -84,9 +87,12 @@ pub fn descend(
     }
     for group in 0..workgroups {
         let mut squares = [0.0f32; THREADS];
-        for k in (group..params.patches as usize).step_by(workgroups) {
+        let turns = (STEPPED * group..params.patches as usize).step_by(STEPPED * workgroups);
+        for k in turns.flat_map(|first| first..(first + STEPPED).min(params.patches as usize)) {
+            // The threads of the patch.
+            let squares = &mut squares[PATCH_SLOTS * (k % STEPPED)..][..PATCH_SLOTS];
             let patch = &slots[PATCH_SLOTS * k..][..PATCH_SLOTS];
-            let (mut r, mut z) = ([[0.0f32; 3]; THREADS], [[0.0f32; 3]; THREADS]);
+            let (mut r, mut z) = ([[0.0f32; 3]; PATCH_SLOTS], [[0.0f32; 3]; PATCH_SLOTS]);
             for (t, slot) in patch.iter().enumerate() {
                 if slot.node != NONE {
                     let i = slot.node as usize;
@@ -133,7 +139,7 @@ pub fn links_of(patch: &[PatchSlot]) -> [[f32; 4]; CHILDREN] {
 }
 
 /// Forces on the rigid motions of the groups of a patch.
-fn forces_on_groups(patch: &[PatchSlot], r: &[[f32; 3]; THREADS]) -> [f32; DOMAIN_UNKNOWNS] {
+fn forces_on_groups(patch: &[PatchSlot], r: &[[f32; 3]; PATCH_SLOTS]) -> [f32; DOMAIN_UNKNOWNS] {
     std::array::from_fn(|t| {
         let (group, component) = (t / 6, t % 6);
         (CHILDREN * group..CHILDREN * (group + 1)).fold(0.0, |sum, slot| {

@@ -2,7 +2,7 @@
 
 use super::contact::{contact_of, place_of};
 use crate::bound::Bound;
-use crate::layout::{Candidate, PairState, Separation};
+use crate::layout::{Candidate, Control, PairState, Separation};
 use bytemuck::{Pod, Zeroable};
 
 #[repr(C)]
@@ -24,6 +24,7 @@ pub fn bound(buffers: Bound<'_>) {
         &buffers.read(4),
         &buffers.read(5),
         &mut buffers.write(6),
+        &buffers.read::<Control>(7)[0],
     );
 }
 
@@ -36,8 +37,10 @@ pub fn enlist(
     states: &[PairState],
     starts: &[u32],
     table: &mut [u32],
+    control: &Control,
 ) {
-    for c in (0..params.capacity as usize).filter(|c| starts[*c] != 0) {
+    let count = control.candidates.min(params.capacity) as usize;
+    for c in (0..count).filter(|c| starts[*c] != 0) {
         let contact = contact_of(candidates[c], &separations[c], edges, triangles);
         if contact.is_shared {
             let number = if states[c].multiplier > 0.0 { c as u32 } else { c as u32 | NOT_PRESSING };

@@ -2,7 +2,7 @@
 
 use super::contact::{contact_of, place_of};
 use crate::bound::Bound;
-use crate::layout::{Candidate, PairState, Separation};
+use crate::layout::{Candidate, Control, PairState, Separation};
 use bytemuck::{Pod, Zeroable};
 
 #[repr(C)]
@@ -24,6 +24,7 @@ pub fn bound(buffers: Bound<'_>) {
         &buffers.read(4),
         &mut buffers.write(5),
         &mut buffers.write(6),
+        &buffers.read::<Control>(7)[0],
     );
 }
 
@@ -36,9 +37,11 @@ pub fn merge(
     table: &[u32],
     states: &mut [PairState],
     starts: &mut [u32],
+    control: &Control,
 ) {
+    let count = control.candidates.min(params.capacity) as usize;
     let contact = |c: usize| contact_of(candidates[c], &separations[c], edges, triangles);
-    for c in 0..params.capacity as usize {
+    for c in 0..count {
         if starts[c] == 0 {
             continue;
         }
@@ -118,11 +121,12 @@ mod tests {
         fn merged(&mut self, places: usize) -> Vec<u32> {
             let (mut starts, mut table, mask) = (self.picked.clone(), vec![NONE; places], places as u32 - 1);
             let capacity = starts.len() as u32;
+            let control = Control { candidates: capacity, ..Control::default() };
             let Self { edges, triangles, candidates, separations, states, .. } = self;
             let params = enlist::Params { capacity, mask };
-            enlist(params, edges, triangles, candidates, separations, states, &starts, &mut table);
+            enlist(params, edges, triangles, candidates, separations, states, &starts, &mut table, &control);
             let params = Params { capacity, mask };
-            merge(params, edges, triangles, candidates, separations, &table, states, &mut starts);
+            merge(params, edges, triangles, candidates, separations, &table, states, &mut starts, &control);
             starts
         }
     }

@@ -44,7 +44,7 @@ pub fn near(
         let range = vertices[pair.vertices[0] as usize].margin + vertices[other as usize].margin;
         separations[c].width <= LARGER * range
     };
-    for c in 0..params.capacity as usize {
-        starts[c] = u32::from(c < count && is_near(c));
+    for c in 0..count {
+        starts[c] = u32::from(is_near(c));
     }
 }

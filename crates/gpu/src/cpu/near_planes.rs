@@ -56,7 +56,7 @@ pub fn near_planes(
                 let offset = to_f32([0, 1, 2].map(|k| ball.center[k].wrapping_sub(plane.point[k])));
                 let height = dot(plane.normal, offset);
                 if height - plane.rounding * largest(offset) <= reach * 1.001 + POINT_ROUNDING {
-                    if params.lists != 0 && first + found < params.capacity {
+                    if params.lists != 0 && first < params.capacity && found < params.capacity - first {
                         candidates[(first + found) as usize] =
                             Candidate::new(Kind::VertexHalfSpace, query.element, p as u32);
                     }

@@ -1,4 +1,4 @@
-//! Twin of `shader/shared/pair.wgsl`.
+//! Twin of `shader/shared/pair.wgsl` and `weights.wgsl`.
 
 use crate::layout::{Candidate, Kind, Separation};
 
@@ -15,24 +15,37 @@ const VERTEX_EDGE: u32 = Kind::VertexEdge as u32;
 const VERTEX_TRIANGLE: u32 = Kind::VertexTriangle as u32;
 const EDGE_EDGE: u32 = Kind::EdgeEdge as u32;
 
+/// A pair of that kind, of which the vertices are known.
+pub fn pair_with(kind: u32, vertices: [u32; 4]) -> Pair {
+    let (count, side_a) = match kind {
+        VERTEX_VERTEX => (2, 1),
+        VERTEX_EDGE => (3, 1),
+        VERTEX_TRIANGLE => (4, 1),
+        EDGE_EDGE => (4, 2),
+        _ => (1, 1),
+    };
+    Pair { kind, count, side_a, vertices }
+}
+
 pub fn pair_of(candidate: Candidate, edges: &[[u32; 2]], triangles: &[[u32; 4]]) -> Pair {
     let (kind, a, b) = (candidate.kind(), candidate.a(), candidate.b);
-    match kind {
-        VERTEX_VERTEX => Pair { kind, count: 2, side_a: 1, vertices: [a, b, a, a] },
+    let vertices = match kind {
+        VERTEX_VERTEX => [a, b, a, a],
         VERTEX_EDGE => {
-            let edge = edges[b as usize];
-            Pair { kind, count: 3, side_a: 1, vertices: [a, edge[0], edge[1], a] }
+            let [c, d] = edges[b as usize];
+            [a, c, d, a]
         }
         VERTEX_TRIANGLE => {
-            let triangle = triangles[b as usize];
-            Pair { kind, count: 4, side_a: 1, vertices: [a, triangle[0], triangle[1], triangle[2]] }
+            let [c, d, e, _] = triangles[b as usize];
+            [a, c, d, e]
         }
         EDGE_EDGE => {
-            let (first, second) = (edges[a as usize], edges[b as usize]);
-            Pair { kind, count: 4, side_a: 2, vertices: [first[0], first[1], second[0], second[1]] }
+            let ([c, d], [e, f]) = (edges[a as usize], edges[b as usize]);
+            [c, d, e, f]
         }
-        _ => Pair { kind, count: 1, side_a: 1, vertices: [a; 4] },
-    }
+        _ => [a; 4],
+    };
+    pair_with(kind, vertices)
 }
 
 pub fn signed_weights(pair: &Pair, separation: &Separation) -> [f32; 4] {

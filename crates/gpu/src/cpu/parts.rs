@@ -1,7 +1,10 @@
 //! Partial sums of energies: twin of `shader/shared/parts.wgsl`.
 
-use super::sum::THREADS;
 use crate::potential::EnergyParams;
+
+/// Threads of a workgroup, and most workgroups that write parts of one kind.
+pub const THREADS: usize = 64;
+pub const MOST_WORKGROUPS: usize = 1024;
 
 /// The energy at the reference, its change, its size, and the square of that.
 pub type Part = [f32; 4];

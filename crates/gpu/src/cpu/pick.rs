@@ -55,15 +55,12 @@ pub fn pick(
         }
         gap < params.threshold * separation.wanted
     };
-    for c in 0..params.capacity as usize {
-        starts[c] = 0;
-        if c < count {
-            if is_picked(&states[c], candidates[c], &separations[c]) {
-                starts[c] = 1;
-            } else {
-                states[c].multiplier = 0.0;
-                states[c].friction = [0.0; 3];
-            }
+    for c in 0..count {
+        let picked = is_picked(&states[c], candidates[c], &separations[c]);
+        if !picked {
+            states[c].multiplier = 0.0;
+            states[c].friction = [0.0; 3];
         }
+        starts[c] = u32::from(picked);
     }
 }

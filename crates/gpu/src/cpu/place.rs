@@ -1,6 +1,6 @@
 //! Twin of `shader/place.wgsl`.
 
-use super::count::{BLOCK, CANDIDATES, is_unchanged};
+use super::count::{BLOCK, CONTACT_ROWS, rows_of};
 use crate::bound::Bound;
 use crate::layout::Control;
 use bytemuck::{Pod, Zeroable};
@@ -17,11 +17,13 @@ pub fn bound(buffers: Bound<'_>) {
 }
 
 pub fn place(params: Params, blocks: &[u32], starts: &mut [u32], control: &Control) {
-    if is_unchanged(params.list, control) {
-        return;
+    let rows = rows_of(params.list, params.rows, control) as usize;
+    for row in 0..rows {
+        starts[row] = starts[row].saturating_add(blocks[row / BLOCK]);
     }
-    for row in 0..params.rows as usize {
-        starts[row] += blocks[row / BLOCK];
+    if params.list == CONTACT_ROWS {
+        starts[rows] = control.rows;
+    } else if rows > 0 {
+        starts[rows] = control.candidates;
     }
-    starts[params.rows as usize] = if params.list == CANDIDATES { control.candidates } else { control.rows };
 }

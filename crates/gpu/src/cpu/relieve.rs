@@ -2,7 +2,7 @@
 
 use super::{added, difference, dot, largest, negated, scaled, subtracted};
 use crate::bound::Bound;
-use crate::layout::{Candidate, Kind, NONE, Row, Separation};
+use crate::layout::{Candidate, Control, Kind, Row, Separation};
 use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
 
@@ -23,6 +23,7 @@ pub fn bound(buffers: Bound<'_>) {
         &buffers.read(2),
         &buffers.read(3),
         &mut buffers.write(4),
+        &buffers.read::<Control>(5)[0],
     );
 }
 
@@ -56,8 +57,9 @@ pub fn relieve(
     candidates: &[Candidate],
     separations: &[Separation],
     rows: &mut [Row],
+    control: &Control,
 ) {
-    for row in rows[..params.capacity as usize].iter_mut().filter(|row| row.candidate != NONE) {
+    for row in &mut rows[..control.rows.min(params.capacity) as usize] {
         let kind = candidates[row.candidate as usize].kind();
         if kind == Kind::VertexVertex as u32 || kind == Kind::VertexHalfSpace as u32 {
             continue;

@@ -2,7 +2,7 @@
 
 use super::{added, difference, dot, scaled, subtracted};
 use crate::bound::Bound;
-use crate::layout::{Candidate, Kind, NONE, PairFriction, PairState, Row, Vertex};
+use crate::layout::{Candidate, Control, Kind, PairFriction, PairState, Row, Vertex};
 use bytemuck::{Pod, Zeroable};
 
 #[repr(C)]
@@ -23,6 +23,7 @@ pub fn bound(buffers: Bound<'_>) {
         &buffers.read(4),
         &buffers.read(5),
         &mut buffers.write(6),
+        &buffers.read::<Control>(7)[0],
     );
 }
 
@@ -57,8 +58,9 @@ pub fn slip(
     candidates: &[Candidate],
     states: &[PairState],
     rows: &mut [Row],
+    control: &Control,
 ) {
-    for row in rows[..params.capacity as usize].iter_mut().filter(|row| row.candidate != NONE) {
+    for row in &mut rows[..control.rows.min(params.capacity) as usize] {
         let candidate = candidates[row.candidate as usize];
         let kind = candidate.kind();
         let other = if kind == Kind::VertexHalfSpace as u32 {

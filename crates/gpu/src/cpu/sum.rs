@@ -1,10 +1,10 @@
 //! Sums over the threads of a workgroup and over partial sums: twin of `shader/shared/sum.wgsl`.
 
 /// Threads of a workgroup.
-pub const THREADS: usize = 64;
+pub const THREADS: usize = 256;
 
-/// Most workgroups that write partial sums.
-pub const MOST_WORKGROUPS: usize = 1024;
+/// Most workgroups that write partial sums: the workgroups of the next stage each add them all, one per thread.
+pub const MOST_WORKGROUPS: usize = 256;
 
 /// The sum of a number of each thread.
 pub fn sum_of_threads(mut values: [f32; THREADS]) -> f32 {

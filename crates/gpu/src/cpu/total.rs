@@ -1,6 +1,6 @@
 //! Twin of `shader/total.wgsl`.
 
-use super::count::{CANDIDATES, is_unchanged};
+use super::count::{BLOCK, CANDIDATES, rows_of};
 use crate::bound::Bound;
 use crate::layout::Control;
 use bytemuck::{Pod, Zeroable};
@@ -18,14 +18,16 @@ pub fn bound(buffers: Bound<'_>) {
 }
 
 pub fn total(params: Params, blocks: &mut [u32], control: &mut Control) {
-    if is_unchanged(params.list, control) {
+    let most = BLOCK as u32 * params.blocks;
+    let count = rows_of(params.list, most, control).div_ceil(BLOCK as u32);
+    if params.list == CANDIDATES && count == 0 {
         return;
     }
-    let mut total = 0;
-    for block in &mut blocks[..params.blocks as usize] {
+    let mut total = 0u32;
+    for block in &mut blocks[..count as usize] {
         let count = *block;
         *block = total;
-        total += count;
+        total = total.saturating_add(count);
     }
     if params.list == CANDIDATES {
         control.candidates = total;

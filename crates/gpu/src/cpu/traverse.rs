@@ -95,7 +95,7 @@ pub fn traverse(
                 {
                     continue;
                 }
-                if params.lists != 0 && first + found < params.capacity {
+                if params.lists != 0 && first < params.capacity && found < params.capacity - first {
                     let kind_and_a = params.kind << Candidate::ELEMENT_BITS | query.element;
                     candidates[(first + found) as usize] = Candidate { kind_and_a, b: other.element };
                 }

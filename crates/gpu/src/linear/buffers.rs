@@ -11,7 +11,10 @@ use crate::recording::{BufferId, Recording};
 use bytemuck::Pod;
 
 /// Most workgroups of coarse levels, which have few domains.
-pub const MOST_COARSE_WORKGROUPS: usize = 512;
+pub const MOST_COARSE_WORKGROUPS: usize = 256;
+
+/// Patches that a workgroup steps at once, a thread per slot.
+const STEPPED: usize = THREADS / PATCH_SLOTS;
 
 /// Most partial sums of a squared norm.
 pub const MOST_NORMS: usize = MOST_WORKGROUPS + MOST_LEVELS * MOST_COARSE_WORKGROUPS;
@@ -66,7 +69,7 @@ impl Sizes {
     }
 
     pub fn stepping(&self) -> usize {
-        self.patches.min(MOST_WORKGROUPS)
+        self.patches.div_ceil(STEPPED).min(MOST_WORKGROUPS)
     }
 
     /// Place of the first group of each coarse level, then of the group of all.

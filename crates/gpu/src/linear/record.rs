@@ -7,8 +7,8 @@ use crate::cpu::sum::THREADS;
 use crate::recording::{BufferId, Recording};
 use crate::stages;
 
-/// Coarse levels of a dispatch: a group is the sum of at most 64 parts then.
-const CLIMBED: usize = 3;
+/// Coarse levels of a dispatch: a group is the sum of at most 512 parts then, by 32 threads.
+const CLIMBED: usize = 4;
 
 /// The dispatches of a system. With other buffers in place of those of the system they work on other vectors.
 #[derive(Clone, Debug)]
@@ -135,6 +135,8 @@ impl Recorder {
                 workgroups: climbing(levels) as u32,
                 present,
                 next,
+                parents: firsts[first_level + 4],
+                padding: [0; 3],
             };
             params.firsts.copy_from_slice(&firsts[first_level..first_level + 4]);
             for (rise, &groups) in levels.iter().enumerate() {

@@ -3,7 +3,7 @@
 use super::layout::{EnergyParams, GradientParams, NodeParams, Terms};
 use super::lists::{Lists, NODES, rows};
 use crate::assembly::{ElementBuffers, Written};
-use crate::cpu::sum::{MOST_WORKGROUPS, THREADS};
+use crate::cpu::parts::{MOST_WORKGROUPS, THREADS};
 use crate::engine::Engine;
 use crate::error::GpuError;
 use crate::recording::{BufferId, Recording};

@@ -3,6 +3,7 @@
 use super::stage::Access::{Read, Write};
 use super::stage::Stage;
 use crate::cpu;
+use crate::cpu::sum::THREADS;
 
 const LINEAR: &str = include_str!("../../shader/shared/linear.wgsl");
 const SUM: &str = include_str!("../../shader/shared/sum.wgsl");
@@ -14,7 +15,7 @@ const SEGMENTS: &str = include_str!("../../shader/shared/segments.wgsl");
 pub(crate) static NEGATE: Stage = Stage {
     name: "negate",
     parts: &[LINEAR, SUM, LARGEST, NEWTON, FREE, include_str!("../../shader/negate.wgsl")],
-    workgroup: 64,
+    workgroup: THREADS,
     bindings: &[Read, Read, Read, Read, Read, Write, Write],
     twin: cpu::negate::bound,
 };
@@ -22,7 +23,7 @@ pub(crate) static NEGATE: Stage = Stage {
 pub(crate) static SETTLE: Stage = Stage {
     name: "settle",
     parts: &[LINEAR, SUM, LARGEST, NEWTON, include_str!("../../shader/settle.wgsl")],
-    workgroup: 64,
+    workgroup: THREADS,
     bindings: &[Read, Write, Write, Write],
     twin: cpu::settle::bound,
 };
@@ -54,7 +55,7 @@ pub(crate) static GUESS: Stage = Stage {
 pub(crate) static CORRELATE: Stage = Stage {
     name: "correlate",
     parts: &[SUM, include_str!("../../shader/correlate.wgsl")],
-    workgroup: 64,
+    workgroup: THREADS,
     bindings: &[Read, Read, Read, Read, Read, Write],
     twin: cpu::correlate::bound,
 };
@@ -62,7 +63,7 @@ pub(crate) static CORRELATE: Stage = Stage {
 pub(crate) static COMBINE: Stage = Stage {
     name: "combine",
     parts: &[SUM, NEWTON, include_str!("../../shader/combine.wgsl")],
-    workgroup: 64,
+    workgroup: THREADS,
     bindings: &[Read, Read, Read, Read, Read, Read, Write, Write],
     twin: cpu::combine::bound,
 };
@@ -102,7 +103,7 @@ pub(crate) static TRANSLATE: Stage = Stage {
 pub(crate) static ATTEMPT: Stage = Stage {
     name: "attempt",
     parts: &[SUM, LARGEST, NEWTON, FREE, include_str!("../../shader/attempt.wgsl")],
-    workgroup: 64,
+    workgroup: THREADS,
     bindings: &[Read, Read, Read, Read, Read, Read, Write, Write],
     twin: cpu::attempt::bound,
 };
@@ -110,7 +111,7 @@ pub(crate) static ATTEMPT: Stage = Stage {
 pub(crate) static SUMMARIZE: Stage = Stage {
     name: "summarize",
     parts: &[SUM, LARGEST, include_str!("../../shader/summarize.wgsl")],
-    workgroup: 64,
+    workgroup: THREADS,
     bindings: &[Read, Write],
     twin: cpu::summarize::bound,
 };

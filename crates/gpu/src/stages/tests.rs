@@ -77,8 +77,7 @@ fn structs_of_linear_solves_lie_alike_on_both_sides() {
         offsets!(linear::Progress: moving, iterations, goal),
     ];
     assert_structs(&module_of("descend"), &structs);
-    let params =
-        offsets!(cpu::climb::Params: groups, firsts, first_domains, domains, workgroups, present, next);
+    let params = offsets!(cpu::climb::Params: groups, firsts, first_domains, domains, workgroups, present, next, parents);
     assert_structs(&module_of("climb"), &[params]);
     // Parameters with an array, which a uniform buffer aligns to 16 bytes.
     let params = offsets!(cpu::redirect::Params: patches, grouped, start, workgroups, levels, norms, present, next, firsts);
@@ -154,4 +153,81 @@ fn structs_lie_alike_on_both_sides() {
     assert_eq!(candidates.offset as usize, 4 * layout::Control::RESET_WORDS);
     assert_eq!(std::mem::offset_of!(layout::Control, candidates), 4 * layout::Control::RESET_WORDS);
     assert_eq!(members.len(), size_of::<layout::Control>() / 4);
+}
+
+/// A round over more numbers than threads would wait 17 times for all threads.
+#[test]
+fn sums_by_one_workgroup_make_one_round() {
+    fn calls(block: &naga::Block, in_loop: bool) -> usize {
+        block
+            .iter()
+            .map(|statement| match statement {
+                naga::Statement::Loop { body, continuing, .. } => calls(body, true) + calls(continuing, true),
+                naga::Statement::Block(block) => calls(block, in_loop),
+                naga::Statement::If { accept, reject, .. } => calls(accept, in_loop) + calls(reject, in_loop),
+                naga::Statement::ControlBarrier(_) => usize::from(in_loop),
+                naga::Statement::Call { .. } => {
+                    if in_loop {
+                        2
+                    } else {
+                        0
+                    }
+                }
+                _ => 0,
+            })
+            .sum()
+    }
+
+    for stage in ["total", "start_buckets"] {
+        let module = module_of(stage);
+        let main = &module.entry_points[0].function.body;
+        // Of the functions that are called, saturating sums alone may be in a loop.
+        let saturating = 2 * usize::from(stage == "total") * 2;
+        assert_eq!(calls(main, false), saturating, "{stage}");
+    }
+}
+
+/// The stages that may add to `control` once per turn of a loop: a body has one workgroup there.
+const ONCE_PER_TURN: [&str; 1] = ["balance"];
+
+/// Atomic operations on one word wait for each other, so workgroups reduce first what their threads find.
+#[test]
+fn threads_do_not_queue_at_the_words_of_control() {
+    use naga::{Block, Expression, Function, Handle, Statement};
+
+    fn root(function: &Function, mut expression: Handle<Expression>) -> Option<Handle<naga::GlobalVariable>> {
+        loop {
+            expression = match function.expressions[expression] {
+                Expression::Access { base, .. } | Expression::AccessIndex { base, .. } => base,
+                Expression::GlobalVariable(variable) => return Some(variable),
+                _ => return None,
+            }
+        }
+    }
+
+    fn queues(module: &naga::Module, function: &Function, block: &Block, in_loop: bool) -> bool {
+        block.iter().any(|statement| match statement {
+            Statement::Loop { body, continuing, .. } => {
+                queues(module, function, body, true) || queues(module, function, continuing, true)
+            }
+            Statement::Block(block) => queues(module, function, block, in_loop),
+            Statement::If { accept, reject, .. } => {
+                queues(module, function, accept, in_loop) || queues(module, function, reject, in_loop)
+            }
+            Statement::Switch { cases, .. } => {
+                cases.iter().any(|case| queues(module, function, &case.body, in_loop))
+            }
+            Statement::Atomic { pointer, .. } => {
+                let variable = root(function, *pointer).map(|variable| &module.global_variables[variable]);
+                in_loop && variable.is_some_and(|variable| variable.name.as_deref() == Some("control"))
+            }
+            _ => false,
+        })
+    }
+
+    for stage in ALL.iter().filter(|stage| !ONCE_PER_TURN.contains(&stage.name)) {
+        let module = module_of(stage.name);
+        let main = &module.entry_points[0].function;
+        assert!(!queues(&module, main, &main.body, false), "{}", stage.name);
+    }
 }
