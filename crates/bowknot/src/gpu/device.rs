@@ -10,13 +10,12 @@ use bowknot_gpu::{
     Call, Carried, Collision, ContactRow, End, Engine, Grid, Phase, PhaseSeconds, StepReport, Stop,
 };
 use bowknot_twoway::{
-    AcceptedState, CallEnd, CallInput, CollisionScene, Observer, PairMultipliers, Residuals, ResolveInput,
-    Resolver, StallDetector, Statistics, StopTest, max_stretch,
+    AcceptedState, Call as RunningCall, CallEnd, CallInput, CollisionScene, Observer, PairMultipliers,
+    Processor, Progress, Residuals, ResolveInput, Resolver, Statistics, StopTest, max_stretch,
 };
 use rayon::prelude::*;
 use std::fmt::Debug;
 use std::ops::ControlFlow;
-use std::time::Instant;
 
 /// Share of the largest friction from which on a contact slides: single precision.
 const SLIDES: f64 = 1.0 - 1e-5;
@@ -179,12 +178,11 @@ impl<E: Engine + Debug + Send> Device<E> {
         input: &ResolveInput<'_>,
         observer: &mut dyn Observer,
     ) -> Result<Statistics, GpuResolveError> {
-        let timer = Instant::now();
+        let mut running = RunningCall::new(resolver.scene(), input);
         let steps_per_submission = self.steps_per_submission;
         let scene = resolver.scene();
         let call = CallInput::new(scene, positions, target, input)?;
-        let edge = scene.lengths().edge;
-        let mut stop = StopTest::new(&scene.params().solver.stop, edge, input.time_step, input.max_steps);
+        let stop = running.stop();
         let ends =
             farthest_ends(scene, positions, target, stop.max_steps() as f64 * Collision::<E>::LONGEST_TRAVEL);
         self.prepare_call(scene, &call, input, positions, &ends)?;
@@ -193,59 +191,37 @@ impl<E: Engine + Debug + Send> Device<E> {
         // Those of a call that failed.
         collision.take_phase_seconds();
         let start = place(collision, scene, positions, judge)?;
-        let mut stall = StallDetector::new(edge, scene.arrival_distance());
         let mut statistics = Statistics::default();
-        let sees_each_state = observer.sees_each_state();
-        let mut previous = start.clone();
         let flown = fly(collision, scene, &call, [&start, target]).filter(|_| stop.max_steps() > 1);
-        let flight_observed = if let Some(flown) = flown {
-            previous = collision.place(&flown)?;
-            debug_assert_eq!(previous, flown, "translations are multiples of the quantum");
-            statistics.steps = 1;
-            let accepted = AcceptedState { step: 0, previous: &start, positions: &flown, target };
-            if sees_each_state { observer.accepted(&accepted) } else { observer.advanced(1) }
-        } else {
-            ControlFlow::Continue(())
-        };
         let speed = scene.lengths().separation_speed;
         let growth = input.time_step.map_or(f64::INFINITY, |dt| speed * dt);
         let slip_start = if call.slip_start().is_empty() { &start } else { call.slip_start() };
         // As on the CPU, pairs that meet after a flight carry nothing.
-        let starts = if statistics.steps == 0 { call.all_carried() } else { &[] };
+        let starts = if flown.is_none() { call.all_carried() } else { &[] };
         let carried: Vec<Carried> = starts.iter().filter_map(pairs::carried).collect();
-        let (known, stop_rule) = (call.known(), rule(&stop));
+        let (known, stop_rule) = (call.known(), rule(stop));
         let yielding: Vec<([u32; 2], f64)> =
             call.yielding().iter().map(|edge| (edge.vertices, edge.limit)).collect();
         let (carried, yielding) = (&carried[..], &yielding[..]);
+        let previous = match &flown {
+            Some(flown) => collision.place(flown)?,
+            None => start.clone(),
+        };
         collision.begin(&Call { target, growth, slip_start, known, carried, yielding, stop: stop_rule })?;
-
-        while flight_observed.is_continue() && stop.allows_step(statistics.steps) {
-            let most = if sees_each_state { 1 } else { steps_per_submission };
-            // A stall can then end the call after the last of them alone.
-            let most = most.min(stall.steps_left()).min(stop.max_steps() - statistics.steps);
-            let reports = collision.steps(most)?;
-            let observed = if sees_each_state {
-                let (positions, aims) = collision.positions_and_aims()?;
-                let step = statistics.steps;
-                let accepted =
-                    AcceptedState { step, previous: &previous, positions: &positions, target: &aims };
-                let observed = observer.accepted(&accepted);
-                previous = positions;
-                observed
+        let mut steps = Steps { collision, steps_per_submission, previous, reports: Vec::new() };
+        let observed = flown.map_or(ControlFlow::Continue(()), |flown| {
+            debug_assert_eq!(steps.previous, flown, "translations are multiples of the quantum");
+            statistics.steps = 1;
+            if observer.sees_each_state() {
+                observer.accepted(&AcceptedState { step: 0, previous: &start, positions: &flown, target })
             } else {
-                observer.advanced(reports.len())
-            };
-            let mut is_stalled = false;
-            for report in &reports {
-                note(&mut statistics, report);
-                statistics.converged = is_met(&mut stop, report, statistics.steps);
-                is_stalled = stall.update(report.lag, || report.free_remaining, || report.free_move);
+                observer.advanced(1)
             }
-            let is_out_of_time = stop.is_out_of_time(timer.elapsed().as_secs_f64());
-            if statistics.converged || observed.is_break() || is_out_of_time || is_stalled {
-                break;
-            }
+        });
+        if observed.is_continue() {
+            running.run(&mut steps, observer, &mut statistics)?;
         }
+        let collision = steps.collision;
         let End { positions: end, aims, rows, near } = collision.end()?;
         let phases = collision.take_phase_seconds();
         let quantum = collision.grid().quantum();
@@ -282,7 +258,7 @@ impl<E: Engine + Debug + Send> Device<E> {
             statistics.seconds.forward = phases.of(Phase::Forward);
         }
         self.device_seconds = phases.as_ref().map(PhaseSeconds::total);
-        statistics.seconds.total = timer.elapsed().as_secs_f64();
+        statistics.seconds.total = running.seconds();
         Ok(statistics)
     }
 }
@@ -382,25 +358,66 @@ fn rule(stop: &StopTest) -> Stop {
     })
 }
 
-/// Whether a call has converged after so many steps.
-fn is_met(stop: &mut StopTest, report: &StepReport, steps: usize) -> bool {
-    let step = bowknot_stepper::StepReport {
-        remaining: report.remaining,
-        largest_move: report.largest_move,
-        unhindered: report.unhindered,
-        unhindered_lag: report.unhindered_lag,
-        ..bowknot_stepper::StepReport::default()
-    };
-    let residuals = || Residuals {
-        net_residual: report.net_residual,
-        mean_residual: report.mean_residual,
-        stretch_to_limit: report.stretch_to_limit,
-    };
-    stop.is_met(&step, residuals) && !stop.takes_finishing_step(&step, steps, || report.pressing == 0)
+/// Steps of a device, several of them per submission.
+struct Steps<'a, E> {
+    collision: &'a mut Collision<E>,
+    steps_per_submission: usize,
+    /// Positions before the next step [m], for observers that see each state.
+    previous: Vec<Point>,
+    /// Of the last submission.
+    reports: Vec<StepReport>,
+}
+
+impl<E: Engine> Processor for Steps<'_, E> {
+    type Error = GpuResolveError;
+
+    fn steps(
+        &mut self,
+        most: usize,
+        observer: &mut dyn Observer,
+        statistics: &mut Statistics,
+    ) -> Result<(usize, ControlFlow<()>), GpuResolveError> {
+        let sees_each_state = observer.sees_each_state();
+        let most = most.min(if sees_each_state { 1 } else { self.steps_per_submission });
+        self.reports = self.collision.steps(most)?;
+        self.reports.iter().for_each(|report| note(statistics, report));
+        let observed = if sees_each_state {
+            let (positions, aims) = self.collision.positions_and_aims()?;
+            let previous = std::mem::replace(&mut self.previous, positions);
+            let (step, positions) = (statistics.steps, &self.previous);
+            observer.accepted(&AcceptedState { step, previous: &previous, positions, target: &aims })
+        } else {
+            observer.advanced(self.reports.len())
+        };
+        Ok((self.reports.len(), observed))
+    }
+
+    fn report(&self, k: usize) -> bowknot_stepper::StepReport {
+        let StepReport { remaining, largest_move, unhindered, unhindered_lag, .. } = self.reports[k];
+        let others = bowknot_stepper::StepReport::default();
+        bowknot_stepper::StepReport { remaining, largest_move, unhindered, unhindered_lag, ..others }
+    }
+
+    fn residuals(&mut self, k: usize) -> Residuals {
+        let StepReport { net_residual, mean_residual, stretch_to_limit, .. } = self.reports[k];
+        Residuals { net_residual, mean_residual, stretch_to_limit }
+    }
+
+    fn is_free(&self, k: usize) -> bool {
+        self.reports[k].pressing == 0
+    }
+
+    fn progress(&self, k: usize, of: Progress) -> f64 {
+        let report = &self.reports[k];
+        match of {
+            Progress::Lag => report.lag,
+            Progress::Remaining => report.free_remaining,
+            Progress::Move => report.free_move,
+        }
+    }
 }
 
 fn note(statistics: &mut Statistics, report: &StepReport) {
-    statistics.steps += 1;
     statistics.searches += usize::from(report.searched);
     statistics.skipped.searches += usize::from(!report.searched);
     statistics.pairs = report.candidates;
