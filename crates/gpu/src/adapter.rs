@@ -1,5 +1,6 @@
 //! The adapters of this machine, and the choice of one.
 
+use crate::engine::MOST_IMMEDIATES;
 use crate::error::GpuError;
 use std::pin::pin;
 use std::task::{Context, Poll, Waker};
@@ -87,17 +88,24 @@ impl Adapter {
         (!missing.is_empty()).then(|| missing.join(", "))
     }
 
-    /// Opens the device with the largest buffers that it allows, and with time stamps where it has them.
+    /// Opens the device with the largest buffers that it allows, and with time stamps and immediates where it has them.
     pub(crate) fn open(&self) -> Result<(wgpu::Device, wgpu::Queue), String> {
         let has = self.adapter.limits();
+        let mut required_features =
+            self.adapter.features() & (wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::IMMEDIATES);
+        if has.max_immediate_size < MOST_IMMEDIATES {
+            required_features.remove(wgpu::Features::IMMEDIATES);
+        }
+        let has_immediates = required_features.contains(wgpu::Features::IMMEDIATES);
         let required_limits = wgpu::Limits {
+            max_immediate_size: if has_immediates { MOST_IMMEDIATES } else { 0 },
             max_buffer_size: has.max_buffer_size,
             max_storage_buffer_binding_size: has.max_storage_buffer_binding_size,
             ..wgpu::Limits::default()
         };
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("bowknot"),
-            required_features: self.adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
+            required_features,
             required_limits,
             ..wgpu::DeviceDescriptor::default()
         };

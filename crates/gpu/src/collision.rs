@@ -650,4 +650,6 @@ mod list_tests;
 #[cfg(test)]
 mod row_tests;
 #[cfg(test)]
+mod slab_tests;
+#[cfg(test)]
 mod tests;

@@ -268,7 +268,8 @@ type Backends = (Box<dyn CollisionBackend>, Box<dyn LinearBackend>);
 /// The device as both backends, which measures its stages if there are profiles.
 fn device(adapter: &Adapter, profiles: Option<[Profile; 2]>) -> Result<Backends> {
     let name = adapter.to_string();
-    let [mut collisions, mut dynamics] = [DeviceEngine::open(adapter)?, DeviceEngine::open(adapter)?];
+    let mut collisions = DeviceEngine::open(adapter)?;
+    let mut dynamics = collisions.beside();
     if let Some([of_collisions, of_dynamics]) = profiles {
         collisions.measure(of_collisions);
         dynamics.measure(of_dynamics);

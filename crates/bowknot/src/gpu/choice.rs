@@ -50,7 +50,7 @@ impl Choice {
             return on_cpu(format!("{adapter} computes on the CPU"));
         }
         let device = DeviceEngine::open(&adapter).and_then(|engine| {
-            let dynamics = with_dynamics.then(|| DeviceEngine::open(&adapter)).transpose()?;
+            let dynamics = with_dynamics.then(|| engine.beside());
             let name = adapter.to_string();
             let dynamics = dynamics.map(|engine| ConjugateGradients::new(name.clone(), engine));
             let dynamics = dynamics.map(|dynamics| Box::new(dynamics) as Box<dyn LinearBackend>);

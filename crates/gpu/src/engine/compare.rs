@@ -20,6 +20,12 @@ const ABSOLUTE: f32 = 4e-6;
 /// condition number.
 const AMPLIFYING: [(&str, f32); 2] = [("domain", 0.05), ("invert", 0.05)];
 
+/// Stages that write displacements or widths of slabs, in steps of the grid, the smallest of these numbers that are meant, and by
+/// how many steps they may differ: where large terms cancel, what is left is their rounding. GPUs fuse products with sums,
+/// and divide by reciprocals.
+const STEPS_OF_THE_GRID: [(&str, f32, f32); 4] =
+    [("separate", 1e3, 128.0), ("sweep_rows", 0.0, 0.5), ("sweep_edges", 0.0, 0.5), ("rescale", 0.0, 0.5)];
+
 /// Integers above this can be coordinates, which may be rounded differently; the others are equal.
 const SMALLEST_COORDINATE: u32 = 1 << 16;
 
@@ -89,7 +95,13 @@ impl ComparingEngine {
                 let name = dispatch.stage.name;
                 let amplifies = AMPLIFYING.iter().find(|(stage, _)| *stage == name);
                 let relative = amplifies.map_or(RELATIVE, |(_, relative)| *relative);
-                let differences = differing(&twin, device, relative).map(|word| Difference {
+                let steps = STEPS_OF_THE_GRID.iter().find(|(stage, ..)| *stage == name);
+                let is_rounding = |word: usize| {
+                    let [x, y] = [twin[word], device[word]].map(f32::from_bits);
+                    steps.is_some_and(|(_, least, most)| x.abs() >= *least && (x - y).abs() <= *most)
+                };
+                let differing = differing(&twin, device, relative).filter(|&word| !is_rounding(word));
+                let differences = differing.map(|word| Difference {
                     stage: name,
                     dispatch: self.dispatches,
                     binding,

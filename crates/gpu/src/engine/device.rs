@@ -1,42 +1,51 @@
 //! Runs recordings on a device.
 
+use super::opened::Opened;
 use super::phases::{PhaseClock, PhaseSeconds};
-use super::pipelines::{PARAMS_STRIDE, Pipelines};
+use super::pipelines::{Bindings, PARAMS_STRIDE, Place};
 use super::profile::Profile;
 use super::traits::{Engine, SMALLEST_BUFFER};
 use crate::adapter::{Adapter, wait};
 use crate::error::GpuError;
 use crate::recording::{BufferId, Command, Dispatch, Recording};
 use bowknot_dynamics::DeviceWork;
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Instant;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
 
-/// A device with its buffers and pipelines.
+/// Most dispatches of a command buffer. The device begins with the first ones while the host records the others.
+const MOST_DISPATCHES: usize = 32;
+
+/// Seconds that the dispatches of a command buffer are meant to take at most: a driver takes a device for lost that does not
+/// answer for two.
+const MOST_SECONDS: f64 = 0.1;
+
+/// Time without an answer after which a device counts as lost.
+const TIME_LIMIT: Duration = Duration::from_secs(120);
+
+/// Buffers and bind groups on a device. Several engines may share the device.
 #[derive(Debug)]
 pub struct DeviceEngine {
-    name: String,
-    device: wgpu::Device,
-    queue: wgpu::Queue,
+    opened: Arc<Opened>,
     buffers: Vec<Option<wgpu::Buffer>>,
-    pipelines: Pipelines,
-    /// The parameters of the dispatches of a recording.
+    bindings: Bindings,
+    /// The parameters of the dispatches of a recording, where they are not immediates.
     params: wgpu::Buffer,
+    /// Where results are copied to, to be read.
+    staging: wgpu::Buffer,
     /// Size of the largest buffer [bytes].
     largest_buffer: u64,
     /// Where the times of the stages go, if they are measured.
     profile: Option<Profile>,
     /// Measures phases; None if the device has no time stamps.
     clock: Option<PhaseClock>,
-    /// What the driver reported since the last look: it does so from other threads.
-    failure: Arc<Mutex<Option<Failure>>>,
     work: DeviceWork,
+    /// Most dispatches of the next command buffers.
+    most_dispatches: usize,
+    time_limit: Option<Duration>,
 }
 
-#[derive(Debug)]
-enum Failure {
-    Driver(String),
-    Lost(String),
-}
+/// A dispatch, its number in the recording, and what runs it.
+type Placed<'a> = (&'a Dispatch, u64, Place);
 
 impl DeviceEngine {
     /// Opens an adapter.
@@ -44,37 +53,33 @@ impl DeviceEngine {
     /// # Errors
     /// [`GpuError::Driver`] if it refuses.
     pub fn open(adapter: &Adapter) -> Result<Self, GpuError> {
-        let name = adapter.name().to_owned();
-        let driver = |message: String| GpuError::Driver { adapter: name.clone(), message };
-        let (device, queue) = adapter.open().map_err(driver)?;
-        let failure: Arc<Mutex<Option<Failure>>> = Arc::default();
-        let note = |failure: &Arc<Mutex<Option<Failure>>>, found: Failure| {
-            let mut first = failure.lock().unwrap_or_else(PoisonError::into_inner);
-            first.get_or_insert(found);
-        };
-        let shared = Arc::clone(&failure);
-        device.on_uncaptured_error(Arc::new(move |error| note(&shared, Failure::Driver(error.to_string()))));
-        let shared = Arc::clone(&failure);
-        device.set_device_lost_callback(move |reason, message| {
-            let message = if message.is_empty() { format!("{reason:?}") } else { message };
-            note(&shared, Failure::Lost(message));
-        });
-        let params = params_buffer(&device, 64);
-        let limits = device.limits();
-        let clock = PhaseClock::new(&device, &queue);
-        Ok(Self {
-            name,
+        let opened = Arc::new(Opened::new(adapter)?);
+        // A program on the CPU takes as long as it takes.
+        let time_limit = (!adapter.is_software()).then_some(TIME_LIMIT);
+        Ok(Self::of(opened, time_limit))
+    }
+
+    /// Another engine on the same device, with buffers of its own. Both have one queue, and stages are compiled once.
+    pub fn beside(&self) -> Self {
+        Self::of(Arc::clone(&self.opened), self.time_limit)
+    }
+
+    fn of(opened: Arc<Opened>, time_limit: Option<Duration>) -> Self {
+        let limits = opened.device.limits();
+        let params = if opened.has_immediates { 1 } else { 64 };
+        Self {
             largest_buffer: limits.max_buffer_size.min(limits.max_storage_buffer_binding_size),
-            device,
-            queue,
             buffers: Vec::new(),
-            pipelines: Pipelines::default(),
-            params,
+            bindings: Bindings::default(),
+            params: params_buffer(&opened.device, params),
+            staging: staging_buffer(&opened.device, 4096),
             profile: None,
-            clock,
-            failure,
+            clock: PhaseClock::new(&opened.device, &opened.queue),
             work: DeviceWork::default(),
-        })
+            most_dispatches: MOST_DISPATCHES,
+            time_limit,
+            opened,
+        }
     }
 
     /// Measures the stages from now on. Each dispatch then waits for the one before it, and the host for all of them.
@@ -82,14 +87,20 @@ impl DeviceEngine {
         self.profile = Some(profile);
     }
 
+    /// Sets how long the host waits for an answer of the device before it gives it up, with [`GpuError::Lost`]; None: for
+    /// ever, as with a software driver.
+    pub fn set_time_limit(&mut self, limit: Option<Duration>) {
+        self.time_limit = limit;
+    }
+
     /// Whether the device has time stamps.
     pub fn has_time_stamps(&self) -> bool {
-        self.device.features().contains(wgpu::Features::TIMESTAMP_QUERY)
+        self.opened.device.features().contains(wgpu::Features::TIMESTAMP_QUERY)
     }
 
     /// Name of the adapter.
     pub fn name(&self) -> &str {
-        &self.name
+        &self.opened.name
     }
 
     /// Refuses buffers of more than this many bytes, as a device of lower limits does: for tests of what happens then.
@@ -99,17 +110,7 @@ impl DeviceEngine {
 
     /// Ends the device as a reset or a removal would: for tests of what happens then.
     pub fn lose(&self) {
-        self.device.destroy();
-    }
-
-    /// The first failure since the last look, as an error.
-    fn check(&self) -> Result<(), GpuError> {
-        let found = self.failure.lock().unwrap_or_else(PoisonError::into_inner).take();
-        match found {
-            None => Ok(()),
-            Some(Failure::Driver(message)) => Err(GpuError::Driver { adapter: self.name.clone(), message }),
-            Some(Failure::Lost(reason)) => Err(GpuError::Lost { adapter: self.name.clone(), reason }),
-        }
+        self.opened.device.destroy();
     }
 
     fn buffer_of(&self, id: BufferId) -> &wgpu::Buffer {
@@ -120,35 +121,34 @@ impl DeviceEngine {
     fn upload_params(&mut self, dispatches: usize, recording: &Recording) {
         let needed = dispatches as u64 * PARAMS_STRIDE;
         if self.params.size() < needed {
-            self.params = params_buffer(&self.device, dispatches.next_power_of_two());
-            self.pipelines.forget_all();
+            self.params = params_buffer(&self.opened.device, dispatches.next_power_of_two());
+            self.bindings.forget_all();
         }
         let mut bytes = vec![0u8; needed as usize];
-        let mut place = 0;
-        for command in &recording.commands {
-            if let Command::Dispatch(dispatch) = command {
-                let params: &[u8] = bytemuck::cast_slice(&dispatch.params);
-                bytes[place..place + params.len()].copy_from_slice(params);
-                place += PARAMS_STRIDE as usize;
-            }
+        for (dispatch, place) in dispatches_of(recording).zip(bytes.chunks_exact_mut(PARAMS_STRIDE as usize))
+        {
+            let params: &[u8] = bytemuck::cast_slice(&dispatch.params);
+            place[..params.len()].copy_from_slice(params);
         }
-        self.queue.write_buffer(&self.params, 0, &bytes);
+        self.opened.queue.write_buffer(&self.params, 0, &bytes);
     }
 
-    fn prepare(&mut self, dispatch: &Dispatch) {
-        let Self { device, buffers, pipelines, params, .. } = self;
-        pipelines.prepare(device, dispatch, params, |id| find(buffers, id));
+    /// Compiles the stages of a recording and binds its buffers.
+    fn place(&mut self, recording: &Recording) -> Vec<Place> {
+        let Self { opened, buffers, bindings, params, .. } = self;
+        let place = |dispatch| bindings.place(opened, dispatch, params, |id| find(buffers, id));
+        dispatches_of(recording).map(place).collect()
     }
 
     /// Records the dispatches, with one pass per phase if phases are measured.
     fn encode(
         &self,
         encoder: &mut wgpu::CommandEncoder,
-        dispatches: &[(&Dispatch, u64)],
+        dispatches: &[Placed<'_>],
         clock: &mut Option<PhaseClock>,
     ) {
         let is_timed = clock.is_some();
-        for part in dispatches.chunk_by(|(a, _), (b, _)| !is_timed || a.phase == b.phase) {
+        for part in dispatches.chunk_by(|(a, ..), (b, ..)| !is_timed || a.phase == b.phase) {
             let timestamp_writes = clock.as_mut().and_then(|clock| clock.stamps(part[0].0.phase));
             let descriptor = wgpu::ComputePassDescriptor { label: None, timestamp_writes };
             let mut pass = encoder.begin_compute_pass(&descriptor);
@@ -157,17 +157,17 @@ impl DeviceEngine {
     }
 
     /// Runs the dispatches, each in a pass of its own between two time stamps, and waits for them.
-    fn run_measured(&self, dispatches: &[(&Dispatch, u64)], profile: &Profile) -> Result<(), GpuError> {
+    fn run_measured(&self, dispatches: &[Placed<'_>], profile: &Profile) -> Result<(), GpuError> {
         for part in dispatches.chunks(wgpu::QUERY_SET_MAX_QUERIES as usize / 2) {
             let times =
                 if self.has_time_stamps() { self.time_stamps(part)? } else { vec![0; 2 * part.len()] };
             if !self.has_time_stamps() {
                 let mut encoder = self.encoder();
                 self.encode(&mut encoder, part, &mut None);
-                self.queue.submit([encoder.finish()]);
+                self.opened.queue.submit([encoder.finish()]);
             }
-            let unit = 1e-9 * f64::from(self.queue.get_timestamp_period());
-            for ((dispatch, _), times) in part.iter().zip(times.chunks_exact(2)) {
+            let unit = 1e-9 * f64::from(self.opened.queue.get_timestamp_period());
+            for ((dispatch, ..), times) in part.iter().zip(times.chunks_exact(2)) {
                 let bytes = dispatch.buffers.iter().map(|&buffer| self.buffer_of(buffer).size()).sum();
                 let seconds = times[1].saturating_sub(times[0]) as f64 * unit;
                 profile.add(dispatch.stage.name, seconds, bytes);
@@ -177,16 +177,16 @@ impl DeviceEngine {
     }
 
     /// Time stamps before and after each dispatch.
-    fn time_stamps(&self, dispatches: &[(&Dispatch, u64)]) -> Result<Vec<u64>, GpuError> {
+    fn time_stamps(&self, dispatches: &[Placed<'_>]) -> Result<Vec<u64>, GpuError> {
         let count = 2 * dispatches.len() as u32;
-        let queries = self.device.create_query_set(&wgpu::QuerySetDescriptor {
+        let queries = self.opened.device.create_query_set(&wgpu::QuerySetDescriptor {
             label: Some("times"),
             ty: wgpu::QueryType::Timestamp,
             count,
         });
         let buffer = |label, usage| {
             let size = 8 * u64::from(count);
-            self.device.create_buffer(&wgpu::BufferDescriptor {
+            self.opened.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
                 size,
                 usage,
@@ -209,20 +209,25 @@ impl DeviceEngine {
         }
         encoder.resolve_query_set(&queries, 0..count, &resolved, 0);
         encoder.copy_buffer_to_buffer(&resolved, 0, &staging, 0, resolved.size());
-        self.queue.submit([encoder.finish()]);
-        let words = self.map(&staging)?;
+        self.opened.queue.submit([encoder.finish()]);
+        let words = self.map(&staging, staging.size())?;
         Ok(words.chunks_exact(2).map(|pair| u64::from(pair[1]) << 32 | u64::from(pair[0])).collect())
     }
 
     fn encoder(&self) -> wgpu::CommandEncoder {
-        self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
+        self.opened.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
     }
 
-    fn encode_pass(&self, pass: &mut wgpu::ComputePass<'_>, dispatches: &[(&Dispatch, u64)]) {
-        for (dispatch, place) in dispatches {
-            let (pipeline, group) = self.pipelines.of(dispatch);
+    fn encode_pass(&self, pass: &mut wgpu::ComputePass<'_>, dispatches: &[Placed<'_>]) {
+        for (dispatch, number, place) in dispatches {
+            let (pipeline, group) = self.bindings.at(*place);
             pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, group, &[(place * PARAMS_STRIDE) as u32]);
+            if self.opened.has_immediates {
+                pass.set_bind_group(0, group, &[]);
+                pass.set_immediates(0, bytemuck::cast_slice(&dispatch.params));
+            } else {
+                pass.set_bind_group(0, group, &[(number * PARAMS_STRIDE) as u32]);
+            }
             match dispatch.arguments {
                 None => pass.dispatch_workgroups(dispatch.workgroups() as u32, 1, 1),
                 Some((arguments, place)) => {
@@ -232,29 +237,38 @@ impl DeviceEngine {
         }
     }
 
-    /// Copies the buffers that are read into `staging`.
-    fn encode_reads(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        read: &[(BufferId, usize)],
-        staging: &wgpu::Buffer,
-    ) {
+    /// Copies the buffers that are read to where the host reads.
+    fn encode_reads(&self, encoder: &mut wgpu::CommandEncoder, read: &[(BufferId, usize)]) {
         let mut offset = 0;
         for &(buffer, words) in read {
             let bytes = 4 * words as u64;
-            encoder.copy_buffer_to_buffer(self.buffer_of(buffer), 0, staging, offset, bytes);
+            encoder.copy_buffer_to_buffer(self.buffer_of(buffer), 0, &self.staging, offset, bytes);
             offset += bytes;
         }
     }
 
-    fn map(&self, staging: &wgpu::Buffer) -> Result<Vec<u32>, GpuError> {
-        staging.map_async(wgpu::MapMode::Read, .., |_| {});
-        let polled = self.device.poll(wgpu::PollType::wait_indefinitely());
-        self.check()?;
-        let driver = |message: String| GpuError::Driver { adapter: self.name.clone(), message };
-        polled.map_err(|error| driver(error.to_string()))?;
-        let view = staging.get_mapped_range(..).map_err(|error| driver(error.to_string()))?;
-        Ok(bytemuck::pod_collect_to_vec(&view[..]))
+    /// Waits for what was submitted and takes the first bytes of a buffer.
+    fn map(&self, staging: &wgpu::Buffer, bytes: u64) -> Result<Vec<u32>, GpuError> {
+        staging.map_async(wgpu::MapMode::Read, ..bytes, |_| {});
+        let polled = self
+            .opened
+            .device
+            .poll(wgpu::PollType::Wait { submission_index: None, timeout: self.time_limit });
+        self.opened.check()?;
+        match polled {
+            Ok(_) => {}
+            Err(wgpu::PollError::Timeout) => {
+                let seconds = self.time_limit.unwrap_or_default().as_secs_f64();
+                return Err(self.opened.lost(format!("no answer within {seconds} s")));
+            }
+            Err(error) => return Err(self.opened.driver(error.to_string())),
+        }
+        let view =
+            staging.get_mapped_range(..bytes).map_err(|error| self.opened.driver(error.to_string()))?;
+        let words = bytemuck::pod_collect_to_vec(&view[..]);
+        drop(view);
+        staging.unmap();
+        Ok(words)
     }
 }
 
@@ -262,19 +276,23 @@ impl Engine for DeviceEngine {
     fn buffer(&mut self, label: &'static str, words: usize) -> Result<BufferId, GpuError> {
         let size = 4 * words.max(SMALLEST_BUFFER) as u64;
         if size > self.largest_buffer {
-            let (adapter, most) = (self.name.clone(), self.largest_buffer);
+            let (adapter, most) = (self.opened.name.clone(), self.largest_buffer);
             return Err(GpuError::TooLarge { adapter, what: label, bytes: size, most });
         }
-        let scope = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let scope = self.opened.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let usage = wgpu::BufferUsages::STORAGE
             | wgpu::BufferUsages::INDIRECT
             | wgpu::BufferUsages::COPY_DST
             | wgpu::BufferUsages::COPY_SRC;
         let descriptor =
             wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
-        let buffer = self.device.create_buffer(&descriptor);
+        let buffer = self.opened.device.create_buffer(&descriptor);
         if wait(scope.pop()).is_some() {
-            return Err(GpuError::OutOfMemory { adapter: self.name.clone(), what: label, bytes: size });
+            return Err(GpuError::OutOfMemory {
+                adapter: self.opened.name.clone(),
+                what: label,
+                bytes: size,
+            });
         }
         self.work.buffers += 1;
         self.buffers.push(Some(buffer));
@@ -283,12 +301,12 @@ impl Engine for DeviceEngine {
 
     fn free(&mut self, buffer: BufferId) {
         self.buffers[buffer.0 as usize] = None;
-        self.pipelines.forget(buffer);
+        self.bindings.forget(buffer);
     }
 
     fn clear(&mut self) {
         self.buffers.clear();
-        self.pipelines.forget_all();
+        self.bindings.forget_all();
     }
 
     fn words(&self, buffer: BufferId) -> usize {
@@ -299,28 +317,6 @@ impl Engine for DeviceEngine {
         usize::try_from(self.largest_buffer / 4).unwrap_or(usize::MAX)
     }
 
-    fn run(&mut self, recording: &Recording, read: &[(BufferId, usize)]) -> Result<Vec<Vec<u32>>, GpuError> {
-        self.check()?;
-        let timer = Instant::now();
-        let dispatches = recording.dispatch_count();
-        self.work.count(dispatches, read.len());
-        if dispatches > 0 {
-            self.upload_params(dispatches, recording);
-        }
-        for command in &recording.commands {
-            if let Command::Dispatch(dispatch) = command {
-                self.prepare(dispatch);
-            }
-        }
-        let mut clock = self.clock.take();
-        clock.iter_mut().for_each(PhaseClock::begin);
-        let staging = self.submit(recording, read, &mut clock);
-        self.work.encode_s += timer.elapsed().as_secs_f64();
-        let result = staging.and_then(|staging| self.read(staging, read, &mut clock));
-        self.clock = clock;
-        result
-    }
-
     fn work(&self) -> DeviceWork {
         self.work
     }
@@ -328,80 +324,128 @@ impl Engine for DeviceEngine {
     fn take_phase_seconds(&mut self) -> Option<PhaseSeconds> {
         self.clock.as_mut().map(PhaseClock::take)
     }
+
+    fn run(&mut self, recording: &Recording, read: &[(BufferId, usize)]) -> Result<Vec<Vec<u32>>, GpuError> {
+        self.opened.check()?;
+        let timer = Instant::now();
+        let dispatches = recording.dispatch_count();
+        self.work.count(dispatches, read.len());
+        if dispatches > 0 && !self.opened.has_immediates {
+            self.upload_params(dispatches, recording);
+        }
+        let places = self.place(recording);
+        let mut clock = self.clock.take();
+        clock.iter_mut().for_each(PhaseClock::begin);
+        let submitted = self.submit(recording, &places, read, &mut clock);
+        self.work.encode_s += timer.elapsed().as_secs_f64();
+        let result = submitted.and_then(|bytes| self.read(bytes, read, dispatches, &mut clock));
+        self.clock = clock;
+        result
+    }
 }
 
 impl DeviceEngine {
-    /// Submits a recording whose stages are compiled, with copies of what is read, if anything is, to a buffer.
+    /// Submits a recording whose stages are compiled, with copies of what is read. Returns the number of bytes to read.
     fn submit(
-        &self,
+        &mut self,
         recording: &Recording,
+        places: &[Place],
         read: &[(BufferId, usize)],
         clock: &mut Option<PhaseClock>,
-    ) -> Result<Option<wgpu::Buffer>, GpuError> {
+    ) -> Result<u64, GpuError> {
         // Writes take place before the next submit: what was recorded before them is submitted first.
-        let mut encoder = self.encoder();
-        let mut waiting: Vec<(&Dispatch, u64)> = Vec::new();
-        let mut place = 0;
+        let mut waiting: Vec<Placed<'_>> = Vec::new();
+        let mut places = (0..).zip(places);
         for command in &recording.commands {
             match command {
                 Command::Dispatch(dispatch) => {
-                    waiting.push((dispatch, place));
-                    place += 1;
+                    let Some((number, place)) = places.next() else { break };
+                    waiting.push((dispatch, number, *place));
+                    if waiting.len() >= self.most_dispatches {
+                        self.submit_dispatches(&mut waiting, clock)?;
+                    }
                 }
                 Command::Write { buffer, words } => {
-                    if !waiting.is_empty() {
-                        match &self.profile {
-                            Some(profile) => self.run_measured(&waiting, profile)?,
-                            None => self.encode(&mut encoder, &waiting, clock),
-                        }
-                        waiting.clear();
-                        self.queue.submit([encoder.finish()]);
-                        encoder = self.encoder();
-                    }
-                    self.queue.write_buffer(self.buffer_of(*buffer), 0, bytemuck::cast_slice(words));
+                    self.submit_dispatches(&mut waiting, clock)?;
+                    let bytes = bytemuck::cast_slice(words);
+                    self.opened.queue.write_buffer(self.buffer_of(*buffer), 0, bytes);
                 }
             }
         }
-        match &self.profile {
-            Some(profile) => self.run_measured(&waiting, profile)?,
-            None if waiting.is_empty() => {}
-            None => self.encode(&mut encoder, &waiting, clock),
-        }
-        let words: usize = read.iter().map(|(_, words)| words).sum();
+        self.submit_dispatches(&mut waiting, clock)?;
+        let words: u64 = read.iter().map(|(_, words)| *words as u64).sum();
         if words == 0 {
-            self.queue.submit([encoder.finish()]);
-            return self.check().map(|()| None);
+            // Writes alone are on their way as well.
+            self.opened.queue.submit([]);
+            return self.opened.check().map(|()| 0);
         }
-        let stamps = clock.as_ref().map_or(0, PhaseClock::bytes);
-        let staging = self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("read"),
-            size: 4 * words as u64 + stamps,
-            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        self.encode_reads(&mut encoder, read, &staging);
-        clock.iter().for_each(|clock| clock.encode_read(&mut encoder, &staging, 4 * words as u64));
-        self.queue.submit([encoder.finish()]);
-        Ok(Some(staging))
+        let bytes = 4 * words + clock.as_ref().map_or(0, PhaseClock::bytes);
+        if self.staging.size() < bytes {
+            self.work.buffers += 1;
+            self.staging = staging_buffer(&self.opened.device, bytes.next_power_of_two());
+        }
+        let mut encoder = self.encoder();
+        self.encode_reads(&mut encoder, read);
+        clock.iter().for_each(|clock| clock.encode_read(&mut encoder, &self.staging, 4 * words));
+        self.opened.queue.submit([encoder.finish()]);
+        Ok(bytes)
     }
 
-    /// Waits for a submission and takes what it copied to `staging`.
+    /// Submits dispatches, if there are any.
+    fn submit_dispatches(
+        &self,
+        dispatches: &mut Vec<Placed<'_>>,
+        clock: &mut Option<PhaseClock>,
+    ) -> Result<(), GpuError> {
+        if dispatches.is_empty() {
+            return Ok(());
+        }
+        match &self.profile {
+            Some(profile) => self.run_measured(dispatches, profile)?,
+            None => {
+                let mut encoder = self.encoder();
+                self.encode(&mut encoder, dispatches, clock);
+                self.opened.queue.submit([encoder.finish()]);
+            }
+        }
+        dispatches.clear();
+        Ok(())
+    }
+
+    /// Waits for a submission and takes what it copied, so many bytes.
     fn read(
         &mut self,
-        staging: Option<wgpu::Buffer>,
+        bytes: u64,
         read: &[(BufferId, usize)],
+        dispatches: usize,
         clock: &mut Option<PhaseClock>,
     ) -> Result<Vec<Vec<u32>>, GpuError> {
-        let Some(staging) = staging else { return Ok(read.iter().map(|_| Vec::new()).collect()) };
+        if bytes == 0 {
+            return Ok(read.iter().map(|_| Vec::new()).collect());
+        }
         let timer = Instant::now();
-        self.work.buffers += 1;
-        let all = self.map(&staging)?;
-        self.work.wait_s += timer.elapsed().as_secs_f64();
+        let all = self.map(&self.staging, bytes)?;
+        let seconds = timer.elapsed().as_secs_f64();
+        self.work.wait_s += seconds;
+        self.most_dispatches = dispatches_within(MOST_SECONDS, seconds, dispatches);
         let words: usize = read.iter().map(|(_, words)| words).sum();
         clock.iter_mut().for_each(|clock| clock.add(&all[words..]));
         let mut all = all.into_iter();
         Ok(read.iter().map(|&(_, words)| all.by_ref().take(words).collect()).collect())
     }
+}
+
+/// Most dispatches of a command buffer, where so many took `seconds` and a command buffer may take `most` [s].
+fn dispatches_within(most: f64, seconds: f64, dispatches: usize) -> usize {
+    let fit = most * dispatches as f64 / seconds;
+    (fit as usize).clamp(1, MOST_DISPATCHES)
+}
+
+fn dispatches_of(recording: &Recording) -> impl Iterator<Item = &Dispatch> {
+    recording.commands.iter().filter_map(|command| match command {
+        Command::Dispatch(dispatch) => Some(dispatch),
+        Command::Write { .. } => None,
+    })
 }
 
 fn find(buffers: &[Option<wgpu::Buffer>], id: BufferId) -> &wgpu::Buffer {
@@ -415,4 +459,26 @@ fn params_buffer(device: &wgpu::Device, dispatches: usize) -> wgpu::Buffer {
         usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     })
+}
+
+fn staging_buffer(device: &wgpu::Device, bytes: u64) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("read"),
+        size: bytes,
+        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{MOST_DISPATCHES, dispatches_within};
+
+    #[test]
+    fn command_buffers_of_slow_dispatches_have_few() {
+        assert_eq!(dispatches_within(0.1, 1.0, 100), 10);
+        assert_eq!(dispatches_within(0.1, 5.0, 2), 1);
+        assert_eq!(dispatches_within(0.1, 1e-3, 500), MOST_DISPATCHES);
+        assert_eq!(dispatches_within(0.1, 0.0, 0), 1);
+    }
 }

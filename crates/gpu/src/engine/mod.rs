@@ -2,6 +2,7 @@
 
 mod compare;
 mod device;
+mod opened;
 mod phases;
 mod pipelines;
 mod profile;
@@ -11,6 +12,7 @@ mod twin;
 pub use compare::{ComparingEngine, Difference};
 pub use device::DeviceEngine;
 pub use phases::PhaseSeconds;
+pub(crate) use pipelines::MOST_IMMEDIATES;
 pub use profile::{Profile, StageTime};
 pub use traits::Engine;
 pub use twin::TwinEngine;
