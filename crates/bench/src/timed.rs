@@ -45,6 +45,14 @@ impl CollisionBackend for TimedBackend {
         self.backend.prepare(scene, home)
     }
 
+    fn is_ordered(&self) -> bool {
+        self.backend.is_ordered()
+    }
+
+    fn order(&mut self, scene: &CollisionScene, positions: &[Point]) -> Result<(), BackendError> {
+        self.backend.order(scene, positions)
+    }
+
     fn resolution(&self) -> f64 {
         self.backend.resolution()
     }
