@@ -10,7 +10,7 @@
 use bowknot::check::StateOptions;
 use bowknot::gpu::{ConjugateGradients, Device, TwinEngine};
 use bowknot::run::{self, Backends, Progress, RunOptions};
-use bowknot::simulator::{BackendError, CollisionBackend, Cpu};
+use bowknot::simulator::{BackendError, Checkpoint, CollisionBackend, Cpu};
 use bowknot::{Scene, SimulationError, Simulator, StepStatistics};
 use bowknot_geometry::{Point, Vector};
 use bowknot_tests::contact::{Ground, Slider, Slope};
@@ -295,6 +295,41 @@ fn the_grid_follows_bodies_and_a_resumed_run_has_the_same_bits() {
     let center = |simulator: &Simulator| simulator.dynamics_model().center_of_mass(simulator.positions());
     let apart = (center(&whole) - center(&cpu)).norm();
     assert!(apart < 1e-3, "{apart}");
+}
+
+/// Trees are ordered by positions of every 64th time step, which checkpoints hold.
+#[test]
+fn trees_follow_grains_that_mix_and_a_resumed_run_has_the_same_bits() {
+    let scene = Scene::from_toml(SIDE_BY_SIDE, std::path::Path::new(".")).expect("a scene");
+    let [mut whole, mut resumed, mut from_old] =
+        [(); 3].map(|()| Simulator::new(&scene).expect("a simulator"));
+    for simulator in [&mut whole, &mut resumed, &mut from_old] {
+        simulator.set_backend(Box::new(twins())).expect("a backend");
+    }
+    let mut kept = whole.checkpoint();
+    let mut order = Vec::new();
+    for step in 0..70 {
+        if step == 64 {
+            order = whole.positions().to_vec();
+        }
+        whole.step().expect("a step");
+        if step + 1 == 66 {
+            kept = whole.checkpoint();
+            resumed.restore(&kept).expect("the same scene");
+        } else if step + 1 > 66 {
+            resumed.step().expect("a step");
+        }
+    }
+    assert!(whole.positions() == resumed.positions() && whole.velocities() == resumed.velocities());
+    assert!(!order.is_empty() && kept.order == order && whole.checkpoint().order == order);
+    // A state from before the order was made takes it back.
+    let start = from_old.checkpoint();
+    from_old.restore(&kept).expect("the same scene");
+    from_old.step().expect("a step");
+    from_old.restore(&start).expect("the same scene");
+    assert!(from_old.checkpoint() == start && start.order.is_empty());
+    let wrong = Checkpoint { order: vec![Point::origin()], ..start };
+    assert!(from_old.restore(&wrong).expect_err("another scene").contains("order"));
 }
 
 /// Grains and two patches of cloth fall side by side; friction stops all but the second patch.

@@ -156,6 +156,14 @@ impl CollisionBackend for Comparing {
         self.device.prepare(scene, home)
     }
 
+    fn is_ordered(&self) -> bool {
+        self.device.is_ordered()
+    }
+
+    fn order(&mut self, scene: &CollisionScene, positions: &[Point]) -> Result<(), BackendError> {
+        self.device.order(scene, positions)
+    }
+
     fn resolution(&self) -> f64 {
         self.device.resolution()
     }

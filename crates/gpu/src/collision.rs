@@ -376,8 +376,7 @@ impl<E: Engine> Collision<E> {
         ] {
             check_length(what, given, count)?;
         }
-        let order_grid = grid.around_others(order).ok_or(CollisionError::OutsideGrid { vertex: 0 })?;
-        let order = snapped(&order_grid, order)?;
+        let order = snapped_elsewhere(grid, order)?;
         let rest_grid = grid.around_others(rest).ok_or(CollisionError::OutsideGrid { vertex: 0 })?;
         let rest_on_grid = snapped(&rest_grid, rest)?;
         let vertices = model::vertices(model, lengths, constraints, grid);
@@ -469,7 +468,7 @@ impl<E: Engine> Collision<E> {
 
     /// Puts the vertices at other positions [m], where no two elements intersect. Each goes to the nearest point of the
     /// grid; returns these points [m]. They may be far from where the scene was prepared, but steps then take longer: trees keep the order of the
-    /// elements.
+    /// elements ([`Self::reorder`]).
     ///
     /// # Errors
     /// A wrong length; a position outside of the grid; the device failed.
@@ -482,6 +481,20 @@ impl<E: Engine> Collision<E> {
         self.engine.run(&recording, &[])?;
         let grid = self.grid;
         Ok(collected(&on_grid, |&x| grid.position(x)))
+    }
+
+    /// Orders the elements of the `model` in space anew, by any positions that are typical of the scene from now on [m]. To be
+    /// called between two calls: candidates have another order afterwards. Bodies that mix cost time otherwise.
+    ///
+    /// # Errors
+    /// A wrong length; positions that no grid holds; the device failed.
+    pub fn reorder(&mut self, model: &CollisionModel, order: &[Point]) -> Result<(), CollisionError> {
+        check_length("positions", order.len(), self.sizes.vertices)?;
+        let order = snapped_elsewhere(&self.grid, order)?;
+        let mut recording = Recording::default();
+        self.trees.reorder(model.topology(), &order, &mut recording);
+        self.engine.run(&recording, &[])?;
+        Ok(())
     }
 
     /// Frees the buffers and gives the engine back.
@@ -633,6 +646,12 @@ fn extent(positions: &[Point]) -> f64 {
         coordinates().fold(f64::NEG_INFINITY, f64::max) - coordinates().fold(f64::INFINITY, f64::min)
     };
     (0..3).map(side).fold(0.0, f64::max)
+}
+
+/// Positions on a grid with the quantum of this one where they are.
+fn snapped_elsewhere(grid: &Grid, positions: &[Point]) -> Result<Vec<GridPoint>, CollisionError> {
+    let grid = grid.around_others(positions).ok_or(CollisionError::OutsideGrid { vertex: 0 })?;
+    snapped(&grid, positions)
 }
 
 fn snapped(grid: &Grid, positions: &[Point]) -> Result<Vec<GridPoint>, CollisionError> {

@@ -53,9 +53,10 @@ pub struct Device<E> {
     engine: Option<E>,
     prepared: Option<Prepared<E>>,
     judge: SceneJudge,
-    /// Positions that the scene begins with [m]: the grid and the trees are made from them, so that a run that is
-    /// resumed has the same.
+    /// Positions that the scene begins with [m]: the grid is made from them, so that a run that is resumed has the same.
     home: Vec<Point>,
+    /// Positions by which the trees are ordered [m].
+    order: Vec<Point>,
     /// Most steps that are submitted together.
     steps_per_submission: usize,
     /// Seconds of the device in the last call, if it has time stamps.
@@ -114,6 +115,7 @@ impl<E: Engine + Debug + Send> Device<E> {
             prepared: None,
             judge: SceneJudge::default(),
             home: Vec::new(),
+            order: Vec::new(),
             steps_per_submission: STEPS_PER_SUBMISSION,
             device_seconds: None,
         }
@@ -133,6 +135,7 @@ impl<E: Engine + Debug + Send> Device<E> {
     fn set_home(&mut self, scene: &CollisionScene, home: &[Point]) -> Result<(), GpuResolveError> {
         setup::refuse_unsupported(scene)?;
         self.home = home.to_vec();
+        self.order = home.to_vec();
         self.judge = SceneJudge::default();
         self.release();
         Ok(())
@@ -163,7 +166,7 @@ impl<E: Engine + Debug + Send> Device<E> {
             self.release();
             let engine = self.engine.take().ok_or(GpuResolveError::NoEngine)?;
             let (collision, home_grid) =
-                setup::collision(engine, scene, [&self.home, positions, ends], call, input)?;
+                setup::collision(engine, scene, [&self.home, &self.order, positions, ends], call, input)?;
             let constraints = CallConstraints::new(scene, call, input);
             self.prepared = Some(Prepared { collision, constraints, home_grid });
         }
@@ -275,6 +278,25 @@ impl<E: Engine + Debug + Send> CollisionBackend for Device<E> {
     fn work(&self) -> DeviceWork {
         let prepared = || self.prepared.as_ref().map(|prepared| prepared.collision.engine().work());
         self.engine.as_ref().map(Engine::work).or_else(prepared).unwrap_or_default()
+    }
+
+    fn is_ordered(&self) -> bool {
+        true
+    }
+
+    fn order(&mut self, scene: &CollisionScene, positions: &[Point]) -> Result<(), BackendError> {
+        if self.order == positions {
+            return Ok(());
+        }
+        self.order = positions.to_vec();
+        let ordered = match &mut self.prepared {
+            Some(prepared) => prepared.collision.reorder(scene.model(), positions),
+            None => Ok(()),
+        };
+        if ordered.is_err() {
+            self.release();
+        }
+        Ok(ordered.map_err(GpuResolveError::from)?)
     }
 
     fn device_seconds(&self) -> Option<f64> {

@@ -14,11 +14,11 @@ fn sweeps_on_device(sweeps: usize) -> usize {
 }
 
 /// The scene on the engine, on a grid with room from `positions` to `ends` [m], and the grid around the positions `home`
-/// that it begins with.
+/// that it begins with. Trees are ordered by the positions `order`.
 pub fn collision<E: Engine>(
     engine: E,
     scene: &CollisionScene,
-    [home, positions, ends]: [&[Point]; 3],
+    [home, order, positions, ends]: [&[Point]; 4],
     call: &CallInput,
     input: &ResolveInput<'_>,
 ) -> Result<(Collision<E>, Grid), CollisionError> {
@@ -93,7 +93,7 @@ pub fn collision<E: Engine>(
         vertex: ends.iter().position(|x| home_grid.nearest(x).is_none()).unwrap_or(0),
     })?;
     let collision =
-        Collision::on_grid(engine, &grid, model, home, scene.rest(), &lengths, &constraints, &settings)?;
+        Collision::on_grid(engine, &grid, model, order, scene.rest(), &lengths, &constraints, &settings)?;
     Ok((collision, home_grid))
 }
 

@@ -16,6 +16,9 @@ const CHECKSUM: &str = "checksum";
 /// The array of edges that yield to prescribed vertices.
 const YIELDING: &str = "yielding_edges";
 
+/// The array of the positions by which a device orders what it searches in.
+const ORDER: &str = "search_order";
+
 impl Checkpoint {
     /// Writes the state as one NPZ file, atomically: `step[1]`, `positions[n,3]`, `velocities[n,3]`,
     /// `anchor_counts[p]`, `anchors[k,3]`, `present[b+h]` (1 for bodies and half-spaces that are there),
@@ -24,8 +27,8 @@ impl Checkpoint {
     /// rest `contact_means[m,22]` (kind and index of either feature, four vertices, their weights, normal, offset,
     /// reach, floor, stiffness, friction, distance, and how many times found the mean goes back); `yielding_edges[e,3]`, if
     /// there are any (two vertices, limit); where bodies
-    /// may sleep, `sleep_origins[n,3]`, `sleep_calm_steps[b]` and `sleep_islands[b]` (4294967295: awake); and
-    /// `checksum[8]` of all that.
+    /// may sleep, `sleep_origins[n,3]`, `sleep_calm_steps[b]` and `sleep_islands[b]` (4294967295: awake); in runs on a device
+    /// `search_order[v,3]` after 64 time steps; and `checksum[8]` of all that.
     ///
     /// # Errors
     /// The system's refusal, with the path.
@@ -59,6 +62,9 @@ impl Checkpoint {
                         .add_array(name, &numbers.iter().map(|&n| u64::from(n)).collect::<Array1<u64>>())?;
                 }
             }
+            if !self.order.is_empty() {
+                archive.add_array(ORDER, &points(&self.order))?;
+            }
             archive.add_array(CHECKSUM, &Array1::from_iter(checksum(self)))
         })
     }
@@ -85,6 +91,7 @@ impl Checkpoint {
                 yielding: yielding(&mut archive)?,
             },
             sleep: SleepState::default(),
+            order: archive.rows::<3>(ORDER)?.unwrap_or_default().into_iter().map(Point::from).collect(),
         };
         if archive.has("sleep_origins") {
             let narrow = |n: u64| u32::try_from(n).unwrap_or(u32::MAX);
@@ -224,7 +231,7 @@ fn yielding(archive: &mut Archive<'_>) -> Result<Vec<DistanceLimit>, IoError> {
 /// The checksum of a checkpoint's content. CRCs of the archive guard its arrays one by one; this one guards them
 /// together, so that no array is of another checkpoint, or left out.
 fn checksum(checkpoint: &Checkpoint) -> [u8; 8] {
-    let Checkpoint { step, positions, velocities, anchors, present, contacts, sleep } = checkpoint;
+    let Checkpoint { step, positions, velocities, anchors, present, contacts, sleep, order } = checkpoint;
     let mut sum = Checksum(0);
     sum.add(*step as u64);
     sum.points(positions);
@@ -249,6 +256,10 @@ fn checksum(checkpoint: &Checkpoint) -> [u8; 8] {
     for numbers in [&sleep.calm_steps, &sleep.islands] {
         sum.add(numbers.len() as u64);
         numbers.iter().for_each(|&n| sum.add(u64::from(n)));
+    }
+    // Checkpoints of runs without an order have the sums of earlier versions.
+    if !order.is_empty() {
+        sum.points(order);
     }
     sum.0.to_le_bytes()
 }
@@ -352,13 +363,14 @@ mod tests {
                 calm_steps: vec![3, 50],
                 islands: vec![SleepState::AWAKE, 1],
             },
+            order: vec![Point::new(0.5, -0.0, 1.0 / 3.0)],
         };
         checkpoint.write(&path).expect("write");
         let read = Checkpoint::read(&path).expect("read");
         assert_eq!(read, checkpoint);
         assert!(read.positions[0].y.is_sign_negative());
         // Runs in which nothing may sleep write nothing about sleep.
-        let checkpoint = Checkpoint { sleep: SleepState::default(), ..checkpoint };
+        let checkpoint = Checkpoint { sleep: SleepState::default(), order: Vec::new(), ..checkpoint };
         checkpoint.write(&path).expect("write");
         assert_eq!(Checkpoint::read(&path).expect("read"), checkpoint);
     }
@@ -416,6 +428,9 @@ mod tests {
             let present: Array1<bool> = old.by_name("present").expect("an array");
             archive.add_array("present", &present)?;
             let sum: Array1<u8> = old.by_name(CHECKSUM).expect("an array");
+            if !self.order.is_empty() {
+                archive.add_array(ORDER, &points(&self.order))?;
+            }
             archive.add_array(CHECKSUM, &sum)?;
             archive.add_array("step", &Array1::from_elem(1, other.step as u64))
         })

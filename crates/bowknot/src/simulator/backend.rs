@@ -18,6 +18,20 @@ pub trait CollisionBackend: Debug + Send {
     /// Settings of the scene that the backend does not have.
     fn prepare(&mut self, scene: &CollisionScene, home: &[Point]) -> Result<(), BackendError>;
 
+    /// Whether results depend on the positions that were given to [`Self::order`].
+    fn is_ordered(&self) -> bool {
+        false
+    }
+
+    /// Orders what it searches in by these positions [m], until it is told others: before that by those that the scene begins
+    /// with. Time steps decide when, and checkpoints hold the positions, so that a run that is resumed has the same bits.
+    ///
+    /// # Errors
+    /// The backend has failed.
+    fn order(&mut self, _scene: &CollisionScene, _positions: &[Point]) -> Result<(), BackendError> {
+        Ok(())
+    }
+
     /// How far positions may be off because the backend rounds them [m].
     fn resolution(&self) -> f64;
 

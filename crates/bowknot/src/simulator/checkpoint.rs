@@ -24,4 +24,6 @@ pub struct Checkpoint {
     pub contacts: CarriedContacts,
     /// Which bodies sleep, and how long the others have been at rest. Empty if bodies never sleep.
     pub sleep: SleepState,
+    /// Positions by which a collision backend orders what it searches in [m]. Empty: those that the scene begins with.
+    pub order: Vec<Point>,
 }

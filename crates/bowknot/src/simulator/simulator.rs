@@ -44,6 +44,10 @@ const NAMED_PAIRS: usize = 5;
 /// the contacts that were found on the way.
 const MAX_INTERMEDIATE_STEPS: usize = 24;
 
+/// Time steps for which a backend keeps the order of what it searches in. To order anew costs as much as a search or two on the
+/// host; in as many time steps things move past a few neighbors.
+const STEPS_OF_AN_ORDER: usize = 64;
+
 /// Vertices that one thread takes at least, in loops that do little for each.
 pub(crate) const MIN_VERTICES: usize = 4096;
 
@@ -67,6 +71,9 @@ pub struct Simulator {
     /// Places of pins that follow an obstacle, by pin and vertex; made from the anchors when first needed.
     pub(super) attachments: Vec<Vec<Option<Attachment>>>,
     interior: Interior,
+    /// See [`Checkpoint::order`], and whether the backend does not know it yet.
+    order: Vec<Point>,
+    is_order_new: bool,
     pub(super) contacts: Contacts,
     /// Bodies at rest; none if they never sleep.
     pub(super) rest: Option<Rest>,
@@ -166,6 +173,8 @@ impl Simulator {
             attachments: vec![Vec::new(); anchors.len()],
             anchors,
             interior: Interior::new(&world, scene.simulation.interior),
+            order: Vec::new(),
+            is_order_new: false,
             contacts,
             rest,
             external_forces: Vec::new(),
@@ -192,6 +201,27 @@ impl Simulator {
         let prepared = backend.prepare(self.resolver.scene(), home);
         prepared.map_err(|source| backend_error(&self.world, self.step, source))?;
         self.backend = backend;
+        self.is_order_new = !self.order.is_empty();
+        Ok(())
+    }
+
+    /// Every so many time steps, orders what the backend searches in by the present positions: grains mix.
+    fn order_search(&mut self) -> Result<(), SimulationError> {
+        if !self.backend.is_ordered() {
+            return Ok(());
+        }
+        let count = self.world.collision_vertices();
+        if self.step > 0 && self.step.is_multiple_of(STEPS_OF_AN_ORDER) {
+            self.order.clear();
+            self.order.extend_from_slice(&self.positions[..count]);
+            self.is_order_new = true;
+        }
+        if self.is_order_new {
+            let order = if self.order.is_empty() { &self.world.positions[..count] } else { &self.order };
+            let ordered = self.backend.order(self.resolver.scene(), order);
+            ordered.map_err(|source| backend_error(&self.world, self.step, source))?;
+            self.is_order_new = false;
+        }
         Ok(())
     }
 
@@ -261,6 +291,7 @@ impl Simulator {
             ..StepStatistics::default()
         };
 
+        self.order_search()?;
         self.place_absent(time);
         let mut scratch = std::mem::take(&mut self.scratch);
         scratch.start.clone_from(&self.positions);
@@ -555,6 +586,7 @@ impl Simulator {
             present: self.present.clone(),
             contacts: self.carried(),
             sleep: self.sleep_state(),
+            order: self.order.clone(),
         }
     }
 
@@ -594,6 +626,9 @@ impl Simulator {
         if !fits {
             return Err("its bodies asleep are not those of the scene".to_owned());
         }
+        if ![0, self.world.collision_vertices()].contains(&checkpoint.order.len()) {
+            return Err("its order of a search is not one of the scene".to_owned());
+        }
         let before = self.checkpoint();
         self.adopt(checkpoint);
         self.take_out(checkpoint.contacts.clone()).map_err(|error| {
@@ -610,6 +645,8 @@ impl Simulator {
         self.velocities.clone_from(&checkpoint.velocities);
         self.anchors.clone_from(&checkpoint.anchors);
         self.present.clone_from(&checkpoint.present);
+        self.order.clone_from(&checkpoint.order);
+        self.is_order_new = true;
         self.attachments.iter_mut().for_each(Vec::clear);
         self.adopt_sleep_state(&checkpoint.sleep);
     }

@@ -599,3 +599,55 @@ fn what_lies_beyond_candidates_and_rows_is_not_touched() {
         assert!(report.contact_rows > 20);
     }
 }
+
+/// Grains that have mixed: trees by their order at the start have boxes as large as the heap.
+#[test]
+fn trees_are_ordered_anew_where_grains_have_mixed() {
+    const SIDE: u32 = 12;
+    let count = (SIDE * SIDE * SIDE) as usize;
+    let start: Vec<Point> = (0..SIDE * SIDE * SIDE)
+        .map(|k| {
+            Point::from(Vector::from(
+                [k % SIDE, k / SIDE % SIDE, k / (SIDE * SIDE)].map(|k| 1.5 * DELTA * f64::from(k)),
+            ))
+        })
+        .collect();
+    let mut mixed = start.clone();
+    fastrand::Rng::with_seed(3).shuffle(&mut mixed);
+    let topology = Topology::builder(count).particles((0..count as u32).collect::<Vec<_>>()).build().unwrap();
+    let model = CollisionModel::new(
+        topology,
+        (0..count as u32).collect(),
+        vec![BodyFilter::DEFORMABLE; count],
+        vec![],
+    )
+    .unwrap();
+    let mut collision = collision(&model, &start, &start, None);
+    collision.place(&mixed).unwrap();
+    let mut candidates = |reorders: bool| {
+        if reorders {
+            collision.reorder(&model, &mixed).unwrap();
+        }
+        collision.begin(&Call::toward(&mixed)).unwrap();
+        collision.search().unwrap();
+        let mut found: Vec<Candidate> = states(&mut collision).into_keys().collect();
+        found.sort_unstable();
+        let b = &collision.trees.particles;
+        let slots: Vec<u32> = b.tree.slots.iter().map(|slot| slot.element).collect();
+        let words = collision.engine.words_of(b.slots);
+        assert_eq!(words[..4 * slots.len()], *bytemuck::cast_slice::<_, u32>(&b.tree.slots));
+        // Of the groups that a query compares with: how large they are, in all.
+        let extent = |group: &[u32]| {
+            let axis = |k: usize| {
+                let all = || group.iter().map(|v| mixed[*v as usize][k]);
+                all().fold(f64::NEG_INFINITY, f64::max) - all().fold(f64::INFINITY, f64::min)
+            };
+            axis(0).max(axis(1)).max(axis(2))
+        };
+        (found, slots.chunks(8).map(extent).sum::<f64>() / (slots.len() / 8) as f64)
+    };
+    let (before, old) = candidates(false);
+    let (after, new) = candidates(true);
+    assert!(before == after && before.len() > count);
+    assert!(old > 0.5 * 1.5 * DELTA * f64::from(SIDE) && new < 4.0 * DELTA, "{old} {new}");
+}

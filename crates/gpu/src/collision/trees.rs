@@ -35,19 +35,29 @@ impl Trees {
         topology: &Topology,
         positions: &[GridPoint],
     ) -> Result<Self, GpuError> {
-        let points = |list: &[u32]| -> Vec<(u32, [u32; 1])> { list.iter().map(|&v| (v, [v])).collect() };
-        let edge = |e: u32| (e, topology.edges[e as usize]);
-        let edges: Vec<(u32, [u32; 2])> = (0..topology.edges.len() as u32).map(edge).collect();
-        let triangles: Vec<(u32, [u32; 3])> = (0..).zip(topology.triangles.iter().copied()).collect();
-        let strands: Vec<(u32, [u32; 2])> = topology.strand_edges.iter().map(|&e| edge(e)).collect();
-        let mut device = |tree: Tree| DeviceTree::new(engine, tree);
+        let [surface, edges, triangles, particles, strands] =
+            ordered(topology, positions).map(|tree| DeviceTree::new(engine, tree));
         Ok(Self {
-            surface: device(Tree::new(&points(&topology.surface_vertices), positions))?,
-            edges: device(Tree::new(&edges, positions))?,
-            triangles: device(Tree::new(&triangles, positions))?,
-            particles: device(Tree::new(&points(&topology.particles), positions))?,
-            strands: device(Tree::new(&strands, positions))?,
+            surface: surface?,
+            edges: edges?,
+            triangles: triangles?,
+            particles: particles?,
+            strands: strands?,
         })
+    }
+
+    /// Orders the elements anew, by other positions. The buffers stay, for their sizes depend on the numbers of elements alone.
+    pub fn reorder(&mut self, topology: &Topology, positions: &[GridPoint], recording: &mut Recording) {
+        let Self { surface, edges, triangles, particles, strands } = self;
+        let all = [surface, edges, triangles, particles, strands];
+        for (kept, tree) in all.into_iter().zip(ordered(topology, positions)) {
+            debug_assert_eq!(
+                (kept.tree.slots.len(), kept.tree.box_count),
+                (tree.slots.len(), tree.box_count)
+            );
+            kept.tree = tree;
+            kept.upload(recording);
+        }
     }
 
     pub fn all(&self) -> [&DeviceTree; 5] {
@@ -85,6 +95,22 @@ impl Trees {
         let near_planes = if planes > 0 { slots(&self.surface) } else { 0 };
         searched + near_planes
     }
+}
+
+/// The trees of a topology, in the order of [`Trees::all`].
+fn ordered(topology: &Topology, positions: &[GridPoint]) -> [Tree; 5] {
+    let points = |list: &[u32]| -> Vec<(u32, [u32; 1])> { list.iter().map(|&v| (v, [v])).collect() };
+    let edge = |e: u32| (e, topology.edges[e as usize]);
+    let edges: Vec<(u32, [u32; 2])> = (0..topology.edges.len() as u32).map(edge).collect();
+    let triangles: Vec<(u32, [u32; 3])> = (0..).zip(topology.triangles.iter().copied()).collect();
+    let strands: Vec<(u32, [u32; 2])> = topology.strand_edges.iter().map(|&e| edge(e)).collect();
+    [
+        Tree::new(&points(&topology.surface_vertices), positions),
+        Tree::new(&edges, positions),
+        Tree::new(&triangles, positions),
+        Tree::new(&points(&topology.particles), positions),
+        Tree::new(&strands, positions),
+    ]
 }
 
 impl DeviceTree {

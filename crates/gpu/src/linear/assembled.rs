@@ -6,7 +6,7 @@ use super::layout::{PATCH_SLOTS, PatchSlot};
 use super::patches::Patches;
 use super::record::Recorder;
 use super::solver::ConjugateGradients;
-use crate::assembly::{AssemblyBuffers, GroupBuffers, Hierarchy, Plan};
+use crate::assembly::{AssemblyBuffers, Plan};
 use crate::cpu;
 use crate::engine::Engine;
 use crate::error::GpuError;
@@ -45,45 +45,33 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
             newton.free(&mut self.engine);
         }
         if let Some(assembly) = self.assembly.take() {
-            assembly.buffers.free(&mut self.engine);
-            if let Some(groups) = assembly.groups {
-                groups.free(&mut self.engine);
-            }
+            assembly.free(&mut self.engine);
         }
         self.assembly = Some(Assembly {
             buffers: AssemblyBuffers::new(&mut self.engine, Plan::new(model))?,
             model: model.clone(),
-            free: Vec::new(),
-            patches: Patches::default(),
-            groups: None,
+            set: None,
+            previous: None,
             slots: None,
         });
         Ok(())
     }
 
-    /// Divides the free nodes into patches, unless these are the free ones already.
+    /// Divides the free nodes into patches, unless these were free a moment ago.
     pub(crate) fn set_free(&mut self, free: &[bool]) -> Result<(), GpuError> {
-        let Some(assembly) = &mut self.assembly else { return Ok(()) };
-        if assembly.free == free && assembly.groups.is_some() {
-            return Ok(());
+        match &mut self.assembly {
+            Some(assembly) => assembly.set_free(&mut self.engine, free),
+            None => Ok(()),
         }
-        assembly.free = free.to_vec();
-        // Patches of the rest shape: nodes that lie together then, do so later on.
-        assembly.patches = Patches::new(free, &assembly.model.rest, &assembly.model.patches);
-        assembly.slots = None;
-        if let Some(groups) = assembly.groups.take() {
-            groups.free(&mut self.engine);
-        }
-        let hierarchy = Hierarchy::new(&assembly.model, &assembly.patches);
-        assembly.groups = Some(GroupBuffers::new(&mut self.engine, hierarchy)?);
-        Ok(())
     }
 
     /// Makes room for the matrix of the model and its preconditioner.
     pub(crate) fn make_room(&mut self) -> Result<Option<Buffers>, GpuError> {
         let Some(assembly) = &self.assembly else { return Ok(None) };
         let structure = &assembly.buffers.plan.structure;
-        let sizes = Sizes::new(assembly.model.rest.len(), structure, &assembly.patches);
+        let without = Patches::default();
+        let patches = assembly.set.as_ref().map_or(&without, |set| &set.patches);
+        let sizes = Sizes::new(assembly.model.rest.len(), structure, patches);
         let buffers = self.pool.make(&mut self.engine, &sizes, structure, assembly.domains())?;
         let strands = assembly.buffers.strands();
         self.recorder = Some(Recorder { buffers, sizes, strands });
@@ -108,29 +96,26 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
         else {
             return Ok(());
         };
+        let Some(set) = &mut assembly.set else { return Ok(()) };
         let structure = &assembly.buffers.plan.structure;
         recording.write(buffers.springs, &structure.springs);
         recording.write(buffers.spring_words, &structure.spring_words);
         if assembly.slots != Some(buffers.slots) {
             let slot = |node: &Option<u32>| PatchSlot { node: node.unwrap_or(u32::MAX), ..PatchSlot::EMPTY };
-            recording.write(buffers.slots, &assembly.patches.slots.iter().map(slot).collect::<Vec<_>>());
+            recording.write(buffers.slots, &set.patches.slots.iter().map(slot).collect::<Vec<_>>());
             // Nodes that are not free keep this: no patch has them.
             recording.write(buffers.solution, &vec![0u32; 8 * sizes.nodes]);
             assembly.slots = Some(buffers.slots);
         }
         let slots = PATCH_SLOTS * sizes.patches;
-        if let Some(groups) = &mut assembly.groups {
-            groups.write_springs(&mut self.engine, springs.springs, recording)?;
-        }
+        set.groups.write_springs(&mut self.engine, springs.springs, recording)?;
         recording.dispatch(
             &stages::INVERT,
             &[assembly.buffers.diagonal, buffers.springs, buffers.spring_words, buffers.slots],
             cpu::invert::Params { slots: slots as u32, springs: sizes.springs as u32 },
             slots,
         );
-        if let Some(groups) = &assembly.groups {
-            groups.record(buffers, positions, sizes.springs > 0, quantum as f32, recording);
-        }
+        set.groups.record(buffers, positions, sizes.springs > 0, quantum as f32, recording);
         Ok(())
     }
 

@@ -82,7 +82,7 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
         let (iterate, quantum) = (newton.vectors.iterate, newton.grid.quantum);
         let mut recording = Recording::default();
         newton.record_before(&mut recording);
-        let counts = assembly.free.iter().zip(counted).map(|(free, counted)| *free && *counted);
+        let counts = assembly.free_nodes().iter().zip(counted).map(|(free, counted)| *free && *counted);
         recording.write(newton.vectors.counted, &bits_of(counts));
         let forces = if known.iter().all(|force| *force == Vector::zeros()) { 0 } else { known.len() };
         let single = |force: &Vector| [force.x as f32, force.y as f32, force.z as f32, 0.0];

@@ -145,10 +145,13 @@ struct Counting {
     dispatches: usize,
     written: usize,
     read: usize,
+    /// Buffers that were made.
+    made: usize,
 }
 
 impl Engine for Counting {
     fn buffer(&mut self, label: &'static str, words: usize) -> Result<BufferId, GpuError> {
+        self.made += 1;
         self.twins.buffer(label, words)
     }
 
@@ -218,6 +221,40 @@ fn an_iteration_moves_no_vector() {
     );
     assert_eq!((engine.runs, engine.waits), (4 + batches, 1 + batches));
     assert!(engine.written < 400 && engine.read < 2000, "{} and {}", engine.written, engine.read);
+}
+
+/// Solves for what is inside of solids take turns with those of the whole: their patches and groups are kept.
+#[test]
+fn two_sets_of_free_nodes_are_made_once() {
+    let mut fixture = fixtures().swap_remove(1);
+    let all = fixture.free.clone();
+    let sets: Vec<Vec<bool>> =
+        [1, 2, 3].map(|n| all.iter().enumerate().map(|(v, f)| *f && (n == 1 || v % n > 0)).collect()).into();
+    let mut alternate = |keeps: bool| {
+        let mut solver = solver(Counting::default(), &fixture);
+        solver.begin_step(&fixture.terms.as_step()).expect("runs");
+        let (mut steps, mut made) = (Vec::new(), Vec::new());
+        for set in [0, 1, 0, 1, 0, 2, 0, 2, 1] {
+            if !keeps {
+                let assembly = solver.assembly.as_mut().expect("one");
+                (assembly.set, assembly.previous) = (None, None);
+            }
+            let before = solver.engine().made;
+            fixture.free.clone_from(&sets[set]);
+            fixture.begin_target(&mut solver, &fixture.iterate);
+            made.push(solver.engine().made > before);
+            solver.linearize(false).expect("runs");
+            solver.solve(&fixture.springs(), &LIMITS).expect("runs");
+            let step = solver.newton.as_ref().expect("one").vectors.step;
+            steps.push(read(&mut solver, step));
+        }
+        (steps, made)
+    };
+    let (kept, made) = alternate(true);
+    assert_eq!(made, [true, true, false, false, false, true, false, false, true]);
+    let (anew, all_made) = alternate(false);
+    assert!(all_made.iter().all(|made| *made) && kept == anew);
+    assert!(kept[0] != kept[1] && kept[0].iter().any(|step| *step != Vector::zeros()));
 }
 
 /// A target writes its iterate once, and not at all where the time step begins.
