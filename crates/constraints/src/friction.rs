@@ -10,7 +10,7 @@ use bowknot_geometry::{PairKind, Point, Separation, Vector};
 use bowknot_lcp::FrictionRow;
 
 /// The friction row of one pair with coefficient `friction` [1]; its normal's row has index `normal`.
-pub fn friction_row(
+pub(crate) fn friction_row(
     kind: PairKind,
     vertices: [u32; 4],
     start: &[Point],

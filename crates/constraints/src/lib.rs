@@ -29,7 +29,7 @@ pub use contacts::{ContactRows, SelectedPair, contact_row, predicted_gap};
 pub use desired::DesiredDistance;
 pub use edges::{EdgeLimits, Stretch};
 pub use facing::{Facing, Feature};
-pub use friction::{friction_row, tangents};
+pub use friction::tangents;
 pub use params::{ContactForm, ContactParams, EdgeForm, EdgeReference, FrictionModel, STRETCH_LIMIT};
 
 /// The README's example is tested with the documentation.

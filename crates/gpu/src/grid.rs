@@ -141,20 +141,20 @@ impl Grid {
 
     /// The position of the grid that is nearest; outside of the grid each coordinate is moved to its border. The origin
     /// takes the place of coordinates that are no numbers.
-    pub fn nearest_inside(&self, x: &Point) -> GridPoint {
+    pub(crate) fn nearest_inside(&self, x: &Point) -> GridPoint {
         let scaled = (x - self.origin) / self.quantum;
         [0, 1, 2]
             .map(|k| scaled[k].round_ties_even().clamp(1.0 - MAX_COORDINATE, MAX_COORDINATE - 1.0) as i32)
     }
 
     /// The position [m], exactly.
-    pub fn position(&self, x: GridPoint) -> Point {
+    pub(crate) fn position(&self, x: GridPoint) -> Point {
         // Both terms are multiples of the quantum below 2^53 of it: the sum is exact.
         self.origin + Vector::from(x.map(f64::from)) * self.quantum
     }
 
     /// A length [m] in quanta.
-    pub fn length(&self, length: f64) -> f32 {
+    pub(crate) fn length(&self, length: f64) -> f32 {
         (length / self.quantum) as f32
     }
 }

@@ -25,7 +25,7 @@ pub fn files_in(folder: &Path, endings: &[&str]) -> Result<Vec<PathBuf>, IoError
 }
 
 /// Compares two file names so that `2.ply` comes before `10.ply`: runs of digits by value, the rest by bytes.
-pub fn natural_order(a: &str, b: &str) -> Ordering {
+pub(crate) fn natural_order(a: &str, b: &str) -> Ordering {
     let (mut rest_a, mut rest_b) = (a.as_bytes(), b.as_bytes());
     loop {
         let (Some(&first_a), Some(&first_b)) = (rest_a.first(), rest_b.first()) else {

@@ -35,19 +35,19 @@ pub use bowknot_geometry as geometry;
 
 pub use atomic::{create_folder, write_atomic, write_text};
 pub use error::{IoError, Place};
-pub use folder::{files_in, natural_order};
+pub use folder::files_in;
 pub use frame_source::FrameSource;
 pub use import::{Import, Up};
 pub use mesh::{Mesh, MeshView};
-pub use msh::{read_msh, write_msh};
+pub use msh::write_msh;
 #[cfg(feature = "npz")]
 pub use npz::{FrameStack, write_frame_stack};
-pub use obj::{read_obj, read_obj_surface, read_segments, write_obj};
+pub use obj::{read_obj, read_obj_surface, write_obj};
 pub use pc2::{truncate_pc2, write_pc2_frame};
 pub use ply::{read_ply, write_ply};
 pub use read::{MESH_ENDINGS, read_mesh};
 pub use surface::{Corner, EdgeSplit, Labels, Polygon, PolygonFaults, Surface};
-pub use tet_list::{read_tet_list, write_tet_list};
+pub use tet_list::write_tet_list;
 pub use usd::{UsdBody, write_usda};
 pub use vtu::{write_pvd, write_vtu};
 

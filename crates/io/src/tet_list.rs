@@ -19,7 +19,7 @@ use std::path::Path;
 /// # Errors
 /// A missing or malformed file, coordinates that are not finite, vertices that do not exist or are given
 /// twice; with the line.
-pub fn read_tet_list(path: &Path, import: &Import) -> Result<Mesh, IoError> {
+pub(crate) fn read_tet_list(path: &Path, import: &Import) -> Result<Mesh, IoError> {
     import.validate().map_err(|errors| IoError::content(path, Place::File, errors.to_string()))?;
     let bytes = fs::read(path).map_err(|source| IoError::system("read", path, source))?;
     let text = String::from_utf8_lossy(without_mark(&bytes));

@@ -94,16 +94,6 @@ pub trait Search: Send {
         statistics: &mut Statistics,
     );
 
-    /// Makes these the pairs of `state.contacts`, in place of [`Self::visit_swept`].
-    fn update_swept(
-        &mut self,
-        scene: &CollisionScene,
-        state: &mut ResolveState,
-        displacements: &[Vector],
-        deviations: &[f64],
-        statistics: &mut Statistics,
-    );
-
     /// Makes `state.contacts` valid for `state.x` at the end of a call.
     fn finish(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics);
 

@@ -1,8 +1,10 @@
 //! Finds the candidate pairs that may meet while vertices move.
 
 use bowknot_twoway::geometry::Vector;
+use bowknot_twoway::proximity::{PairList, ProximitySearch};
 use bowknot_twoway::stepper::Rounding;
 use bowknot_twoway::{CollisionScene, Coverage, ResolveState, Search, Statistics};
+use std::time::Instant;
 
 /// The times at which vertices are along their paths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,8 +21,10 @@ pub(crate) enum PathTime {
 /// Tubes around the paths are as wide as the contact range, so that pairs within it keep their multipliers.
 #[derive(Debug, Default)]
 pub(crate) struct PathSearch {
+    /// Made by the first search.
+    search: Option<ProximitySearch>,
     displacements: Vec<Vector>,
-    deviations: Vec<f64>,
+    radii: Vec<f64>,
 }
 
 impl PathSearch {
@@ -55,15 +59,30 @@ impl PathSearch {
             // The whole path is within half of its length of its middle.
             PathTime::PerVertex => 0.5,
         };
-        let bodies = scene.model().vertex_body();
+        let (bodies, spacing) = (scene.model().vertex_body(), scene.spacing());
         self.displacements.clear();
         self.displacements.extend(paths.iter().map(|p| share * p));
-        self.deviations.clear();
-        self.deviations.extend(paths.iter().zip(bodies).map(|(p, body)| {
+        self.radii.clear();
+        self.radii.extend(paths.iter().zip(bodies).map(|(p, body)| {
             let deviation =
                 if path_time == PathTime::PerVertex { 0.5 * p.norm() * (1.0 + 1e-12) } else { 0.0 };
-            deviation + scene.spacing().margin(*body) + rounding
+            // Pairs that are no candidates must not come closer than minimum separations.
+            deviation + spacing.margin(*body) + rounding + spacing.min_separation_margin(*body)
         }));
-        search.update_swept(scene, state, &self.displacements, &self.deviations, statistics);
+        let timer = Instant::now();
+        let own = self.search.get_or_insert_with(|| ProximitySearch::new(scene.model()));
+        let (mut pairs, mut separations) = (PairList::default(), Vec::new());
+        own.search_swept(
+            scene.model(),
+            &state.x,
+            &self.displacements,
+            &self.radii,
+            &mut pairs,
+            &mut separations,
+        );
+        state.replace_pairs(scene, pairs, separations, statistics);
+        search.request();
+        statistics.searches += 1;
+        statistics.seconds.search += timer.elapsed().as_secs_f64();
     }
 }

@@ -5,7 +5,7 @@ use crate::bench::{Bench, Size};
 use crate::figure::{Figure, Part, Report};
 use crate::table::{Table, geometric_mean, largest, short};
 use anyhow::{Context, Result, anyhow};
-use bowknot::dynamics::LinearBackend;
+use bowknot::dynamics::NewtonBackend;
 use bowknot::gpu::{Adapter, ConjugateGradients, Device, DeviceEngine, Profile, StageTime};
 use bowknot::simulator::{Checkpoint, CollisionBackend};
 use bowknot::{Scene, Simulator, StepStatistics};
@@ -201,7 +201,7 @@ impl Course {
         let is_device = device.is_some();
         if let Some((collisions, dynamics)) = device {
             simulator.set_backend(collisions)?;
-            simulator.set_dynamics_backend(Some(dynamics));
+            simulator.set_dynamics_backend(Some(dynamics))?;
         }
         let restore =
             |simulator: &mut Simulator| simulator.restore(&self.lead).map_err(|message| anyhow!(message));
@@ -263,7 +263,7 @@ impl Course {
     }
 }
 
-type Backends = (Box<dyn CollisionBackend>, Box<dyn LinearBackend>);
+type Backends = (Box<dyn CollisionBackend>, Box<dyn NewtonBackend>);
 
 /// The device as both backends, which measures its stages if there are profiles.
 fn device(adapter: &Adapter, profiles: Option<[Profile; 2]>) -> Result<Backends> {

@@ -72,10 +72,4 @@ impl Assembly {
             set.groups.free(engine);
         }
     }
-
-    /// Forgets what lies in the buffers of the linear solver: something else was written there.
-    pub fn forget(&mut self) {
-        self.buffers.forget_matrix();
-        self.slots = None;
-    }
 }

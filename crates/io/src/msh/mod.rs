@@ -40,7 +40,7 @@ pub use write::write_msh;
 /// A missing, malformed or truncated file, another version, the other byte order, coordinates that are not
 /// finite, nodes that do not exist or are given twice; with the line of a text file or the byte of a binary
 /// one.
-pub fn read_msh(path: &Path, import: &Import) -> Result<Mesh, IoError> {
+pub(crate) fn read_msh(path: &Path, import: &Import) -> Result<Mesh, IoError> {
     import.validate().map_err(|errors| IoError::content(path, Place::File, errors.to_string()))?;
     let bytes = fs::read(path).map_err(|source| IoError::system("read", path, source))?;
     let (mesh, notes) =

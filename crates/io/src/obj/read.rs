@@ -38,7 +38,7 @@ pub fn read_obj_surface(path: &Path) -> Result<Option<Surface>, IoError> {
 ///
 /// # Errors
 /// As [`read_obj`].
-pub fn read_segments(path: &Path, import: &Import) -> Result<Mesh, IoError> {
+pub(crate) fn read_segments(path: &Path, import: &Import) -> Result<Mesh, IoError> {
     read(path, import, Dialect::Segments)
 }
 

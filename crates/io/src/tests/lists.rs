@@ -1,6 +1,7 @@
 //! Lists of tetrahedra and segments.
 
 use super::*;
+use crate::tet_list::read_tet_list;
 
 #[test]
 fn tet_lists_with_any_numbers() {

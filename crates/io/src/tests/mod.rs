@@ -10,6 +10,7 @@ mod robust;
 mod surface;
 
 use super::*;
+use crate::folder::natural_order;
 use bowknot_geometry::{Point, Vector};
 use std::fs;
 use std::path::{Path, PathBuf};

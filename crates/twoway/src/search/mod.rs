@@ -293,32 +293,6 @@ impl Search for TrustRegionSearch {
         statistics.searches += 1;
     }
 
-    fn update_swept(
-        &mut self,
-        scene: &CollisionScene,
-        state: &mut ResolveState,
-        displacements: &[Vector],
-        deviations: &[f64],
-        statistics: &mut Statistics,
-    ) {
-        let timer = Instant::now();
-        self.set_swept_radii(scene, deviations);
-        let contacts = &mut state.contacts;
-        self.near.keep(contacts);
-        self.search.search_swept(
-            scene.model(),
-            &state.x,
-            displacements,
-            &self.swept_radii,
-            &mut contacts.pairs,
-            &mut contacts.separations,
-        );
-        self.near.replace(scene, state, statistics);
-        self.requested = true;
-        statistics.searches += 1;
-        statistics.seconds.search += timer.elapsed().as_secs_f64();
-    }
-
     fn finish(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
         if state.step == 0 {
             self.search_after_flight(scene, state);

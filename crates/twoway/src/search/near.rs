@@ -118,7 +118,7 @@ impl NearPairs {
         let found = self.found.iter().flatten();
         statistics.skipped.evaluations += found.map(|found| found.reused).sum::<usize>();
         self.gather(&mut state.contacts);
-        self.inherit(scene, state, statistics);
+        inherit(scene, state, &self.old, &self.matches, statistics);
     }
 
     /// The same for a caller who knows the pairs: all that are within contact range at x are among `near`.
@@ -140,19 +140,12 @@ impl NearPairs {
             lists.for_each(|(found, pairs)| found.take(&selection, kind, pairs.iter().copied()));
         }
         self.gather(&mut state.contacts);
-        self.inherit(scene, state, statistics);
+        inherit(scene, state, &self.old, &self.matches, statistics);
     }
 
     /// Keeps the pairs, to carry their data over to those that replace them.
     pub fn keep(&mut self, contacts: &mut ContactSet) {
         std::mem::swap(&mut self.old, contacts);
-    }
-
-    /// Carries the data of the pairs that were [kept](Self::keep) over to those of the state, which were found
-    /// otherwise, with their geometry.
-    pub fn replace(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
-        state.contacts.pairs.match_with(&self.old.pairs, &mut self.matches);
-        self.inherit(scene, state, statistics);
     }
 
     /// Notes how far vertices are from the centers of their balls, and which have moved.
@@ -197,72 +190,97 @@ impl NearPairs {
             rest = others;
         }
     }
+}
 
-    /// Carries the data of pairs over to the new list, and initializes those of new pairs.
-    fn inherit(&mut self, scene: &CollisionScene, state: &mut ResolveState, statistics: &mut Statistics) {
-        let (contacts, old, starts) = (&mut state.contacts, &self.old, state.step == 0);
-        let growth = state.call.time_step().map_or(f64::INFINITY, |dt| scene.lengths().separation_speed * dt);
-        let carried =
-            |kind: PairKind, pair: &Pair| starts.then(|| state.call.carried(kind, pair.elements)).flatten();
-        let count = contacts.pairs.len();
-        contacts.desired.resize(count, 0.0);
-        contacts.min_separations.resize(count, 0.0);
-        contacts.multipliers.resize(count, 0.0);
-        for kind in PairKind::ALL {
-            let range = contacts.pairs.range(kind);
-            let pairs = &contacts.pairs.pairs()[range.clone()];
-            let places = (
-                &mut contacts.desired[range.clone()],
-                &mut contacts.min_separations[range.clone()],
-                &mut contacts.multipliers[range.clone()],
-                &self.matches[range.clone()],
-                pairs,
-                &contacts.separations[range],
-            );
-            let places = places.into_par_iter().with_min_len(CHUNK);
-            let lowered = places.map(|(desired, min_separation, multiplier, &matched, pair, separation)| {
-                if let Some(&old_desired) = old.desired.get(matched as usize) {
-                    *desired = old_desired;
-                    *min_separation = old.min_separations[matched as usize];
-                    *multiplier = old.multipliers[matched as usize];
-                    return 0;
-                }
-                let first = first_values(scene, kind, pair, separation, growth, &state.call);
-                (*desired, *min_separation) = (first.desired, first.min_separation);
-                *multiplier = carried(kind, pair).map_or(0.0, |carried| carried.normal);
-                usize::from(first.lowered)
-            });
-            statistics.lowered_pairs += lowered.sum::<usize>();
-        }
-        if scene.friction_model() == FrictionModel::Coulomb {
-            self.inherit_friction(scene, contacts, carried);
-        }
-    }
-
-    fn inherit_friction<'a>(
-        &self,
+impl ResolveState {
+    /// Makes these the candidate pairs, with their geometry at x. Those that were candidates before keep what belongs to
+    /// them.
+    pub fn replace_pairs(
+        &mut self,
         scene: &CollisionScene,
-        contacts: &mut ContactSet,
-        carried: impl Fn(PairKind, &Pair) -> Option<&'a PairMultipliers> + Sync,
+        pairs: PairList,
+        separations: Vec<Separation>,
+        statistics: &mut Statistics,
     ) {
-        let (count, old) = (contacts.pairs.len(), &self.old.friction_multipliers);
-        contacts.friction_multipliers.resize(count, Vector::zeros());
-        contacts.frictions.resize(count, 0.0);
-        for kind in PairKind::ALL {
-            let range = contacts.pairs.range(kind);
-            let places = (
-                &mut contacts.friction_multipliers[range.clone()],
-                &mut contacts.frictions[range.clone()],
-                &self.matches[range.clone()],
-                &contacts.pairs.pairs()[range],
-            );
-            let places = places.into_par_iter().with_min_len(CHUNK);
-            places.for_each(|(multiplier, friction, &matched, pair)| {
-                let first = || carried(kind, pair).map_or_else(Vector::zeros, |carried| carried.friction);
-                *multiplier = old.get(matched as usize).copied().unwrap_or_else(first);
-                *friction = scene.contact().friction_of_pair(scene.model(), kind, pair);
-            });
-        }
+        let old =
+            std::mem::replace(&mut self.contacts, ContactSet { pairs, separations, ..ContactSet::default() });
+        let mut matches = Vec::new();
+        self.contacts.pairs.match_with(&old.pairs, &mut matches);
+        inherit(scene, self, &old, &matches, statistics);
+    }
+}
+
+/// Carries the data of the `old` pairs over to the new list, in which pairs `matches` old ones, and initializes those of new pairs.
+fn inherit(
+    scene: &CollisionScene,
+    state: &mut ResolveState,
+    old: &ContactSet,
+    matches: &[u32],
+    statistics: &mut Statistics,
+) {
+    let (contacts, starts) = (&mut state.contacts, state.step == 0);
+    let growth = state.call.time_step().map_or(f64::INFINITY, |dt| scene.lengths().separation_speed * dt);
+    let carried =
+        |kind: PairKind, pair: &Pair| starts.then(|| state.call.carried(kind, pair.elements)).flatten();
+    let count = contacts.pairs.len();
+    contacts.desired.resize(count, 0.0);
+    contacts.min_separations.resize(count, 0.0);
+    contacts.multipliers.resize(count, 0.0);
+    for kind in PairKind::ALL {
+        let range = contacts.pairs.range(kind);
+        let pairs = &contacts.pairs.pairs()[range.clone()];
+        let places = (
+            &mut contacts.desired[range.clone()],
+            &mut contacts.min_separations[range.clone()],
+            &mut contacts.multipliers[range.clone()],
+            &matches[range.clone()],
+            pairs,
+            &contacts.separations[range],
+        );
+        let places = places.into_par_iter().with_min_len(CHUNK);
+        let lowered = places.map(|(desired, min_separation, multiplier, &matched, pair, separation)| {
+            if let Some(&old_desired) = old.desired.get(matched as usize) {
+                *desired = old_desired;
+                *min_separation = old.min_separations[matched as usize];
+                *multiplier = old.multipliers[matched as usize];
+                return 0;
+            }
+            let first = first_values(scene, kind, pair, separation, growth, &state.call);
+            (*desired, *min_separation) = (first.desired, first.min_separation);
+            *multiplier = carried(kind, pair).map_or(0.0, |carried| carried.normal);
+            usize::from(first.lowered)
+        });
+        statistics.lowered_pairs += lowered.sum::<usize>();
+    }
+    if scene.friction_model() == FrictionModel::Coulomb {
+        inherit_friction(scene, contacts, old, matches, carried);
+    }
+}
+
+fn inherit_friction<'a>(
+    scene: &CollisionScene,
+    contacts: &mut ContactSet,
+    old: &ContactSet,
+    matches: &[u32],
+    carried: impl Fn(PairKind, &Pair) -> Option<&'a PairMultipliers> + Sync,
+) {
+    let (count, old) = (contacts.pairs.len(), &old.friction_multipliers);
+    contacts.friction_multipliers.resize(count, Vector::zeros());
+    contacts.frictions.resize(count, 0.0);
+    for kind in PairKind::ALL {
+        let range = contacts.pairs.range(kind);
+        let places = (
+            &mut contacts.friction_multipliers[range.clone()],
+            &mut contacts.frictions[range.clone()],
+            &matches[range.clone()],
+            &contacts.pairs.pairs()[range],
+        );
+        let places = places.into_par_iter().with_min_len(CHUNK);
+        places.for_each(|(multiplier, friction, &matched, pair)| {
+            let first = || carried(kind, pair).map_or_else(Vector::zeros, |carried| carried.friction);
+            *multiplier = old.get(matched as usize).copied().unwrap_or_else(first);
+            *friction = scene.contact().friction_of_pair(scene.model(), kind, pair);
+        });
     }
 }
 

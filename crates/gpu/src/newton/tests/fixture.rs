@@ -179,11 +179,19 @@ pub fn fixtures() -> Vec<Fixture> {
 /// A solver over twins that has taken over the model.
 pub fn solver<E: Engine + Debug + Send>(engine: E, fixture: &Fixture) -> ConjugateGradients<E> {
     let mut solver = ConjugateGradients::new("test".to_owned(), engine);
-    assert!(NewtonBackend::set_model(&mut solver, &fixture.model).expect("room"));
+    solver.set_model(&fixture.model).expect("room");
     solver
 }
 
 impl Fixture {
+    /// Pinned cloth of so many cells along a side, in patches.
+    pub fn of_cloth(cells: usize) -> Self {
+        let (rest, triangles) = sheet(cells, Vector::zeros(), 0);
+        let cotton = ClothMaterial { bend_stiffness: 1e-3, bend_damping: 0.05, ..ClothMaterial::cotton() };
+        let body = Body::cloth("sheet", triangles, cotton);
+        of_bodies("cloth", &rest, vec![body], 0.004, &[0, cells], true)
+    }
+
     fn set_springs(&mut self, springs: impl Iterator<Item = LinearSpring>) {
         self.springs = springs.collect();
         let mut lists: Vec<Vec<(u32, f64)>> = vec![Vec::new(); self.free.len()];
