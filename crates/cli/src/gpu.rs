@@ -80,12 +80,17 @@ pub fn of_run(options: &RunOptions, scene: &Scene, folder: &Path) -> Result<Back
             dynamics = Place::Cpu;
         }
     }
-    Ok(Backends {
-        collisions: if collisions == Place::Cpu { Box::new(Cpu) } else { device::collisions(&collisions)? },
-        dynamics: (dynamics != Place::Cpu).then(|| device::dynamics(&dynamics)).transpose()?,
-        why,
-        dynamics_why,
-    })
+    let (collisions, dynamics) = match (&collisions, &dynamics) {
+        (Place::Cpu, Place::Cpu) => (Box::new(Cpu) as Box<dyn CollisionBackend>, None),
+        (Place::Cpu, dynamics) => (Box::new(Cpu) as _, Some(device::dynamics(dynamics)?)),
+        (collisions, Place::Cpu) => (device::collisions(collisions)?, None),
+        (collisions, dynamics) if collisions == dynamics => {
+            let (collisions, dynamics) = device::both(collisions)?;
+            (collisions, Some(dynamics))
+        }
+        (collisions, dynamics) => (device::collisions(collisions)?, Some(device::dynamics(dynamics)?)),
+    };
+    Ok(Backends { collisions, dynamics, why, dynamics_why })
 }
 
 /// Why the dynamics of a scene stay on the CPU where a device resolves its collisions; None if they need not.
@@ -143,6 +148,13 @@ mod device {
         Ok(Box::new(Device::new(name, engine)))
     }
 
+    /// Both on one device.
+    pub fn both(place: &Place) -> Result<(Box<dyn CollisionBackend>, Box<dyn NewtonBackend>), Failure> {
+        let (name, engine) = open(place, "--backend cpu")?;
+        let dynamics = ConjugateGradients::new(name.clone(), engine.beside());
+        Ok((Box::new(Device::new(name, engine)), Box::new(dynamics)))
+    }
+
     pub fn dynamics(place: &Place) -> Result<Box<dyn NewtonBackend>, Failure> {
         let (name, engine) = open(place, "--dynamics-backend cpu")?;
         Ok(Box::new(ConjugateGradients::new(name, engine)))
@@ -175,7 +187,7 @@ mod device {
         same.or_else(alike).ok_or_else(|| not_here(&format!("{GPU}{description}"), folder))
     }
 
-    /// Opens a device for one backend: each has its own queue and buffers.
+    /// Opens a device.
     fn open(place: &Place, without: &str) -> Result<(String, DeviceEngine), Failure> {
         let number = if let Place::Number(number) = place { *number } else { None };
         let adapter = Adapter::choose(number).map_err(Failure::backend)?;
@@ -194,6 +206,10 @@ mod device {
     use bowknot::dynamics::NewtonBackend;
 
     pub fn collisions(_place: &Place) -> Result<Box<dyn CollisionBackend>, Failure> {
+        Err(not_built_in())
+    }
+
+    pub fn both(_place: &Place) -> Result<(Box<dyn CollisionBackend>, Box<dyn NewtonBackend>), Failure> {
         Err(not_built_in())
     }
 
