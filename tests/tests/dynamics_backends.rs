@@ -340,14 +340,14 @@ fn a_matrix_that_is_too_large_for_a_device_ends_a_run_that_goes_on_on_the_cpu() 
     let mut go_on = |_: &Progress<'_>| ControlFlow::Continue(());
     let adapter = Adapter::choose(None).expect("a device, of software if need be");
     let mut engine = DeviceEngine::open(&adapter).expect("it opens");
-    engine.limit_buffers(30_000);
+    engine.limit_buffers(40_000);
     let linear = ConjugateGradients::new("limited".to_owned(), engine);
     let backends = Backends { dynamics: Some(Box::new(linear)), ..Backends::default() };
     let error = run::run_on(&scene, &options(false), backends, &mut go_on).expect_err("it is too large");
     assert!(matches!(error, SimulationError::Backend { step: 1, .. }), "{error:?}");
     let text = error.to_string();
     assert!(
-        ["the matrix takes", "binds 30000 at most", "--dynamics-backend cpu"]
+        ["the matrix takes", "binds 40000 at most", "--dynamics-backend cpu"]
             .iter()
             .all(|part| text.contains(part)),
         "{text}"

@@ -52,8 +52,9 @@ pub use body::{Body, BodyShape};
 pub use bowknot_errors::{Errors, ParamError, Parameters};
 pub use device_work::DeviceWork;
 pub use dynamics::{
-    BodiesPotential, Dynamics, Held, NewtonBackend, NewtonBackendError, NewtonInfo, NewtonSolve, NewtonStep,
-    NewtonTarget, OutOfBalance, Residual, SolveLimits, StepTerms, Touching, Trial, Watched,
+    BodiesPotential, Dynamics, Held, MatrixBlocks, NewtonBackend, NewtonBackendError, NewtonInfo,
+    NewtonSolve, NewtonStep, NewtonTarget, OutOfBalance, Residual, SolveLimits, StepTerms, Touching, Trial,
+    Watched,
 };
 pub use error::{ModelError, StepError};
 pub use linear::accuracy::CgInfo;

@@ -4,8 +4,9 @@ mod bodies;
 
 use bowknot_gpu::dynamics::{
     AssemblySprings, Body, Dynamics, DynamicsModel, DynamicsParams, ElementModel, HessianFilter,
-    LinearSpring, Matrix3, NewtonBackend, NewtonBackendError, NewtonSolve, NewtonStep, NewtonTarget,
-    OutOfBalance, PreconditionerKind, RepulsionSpring, SolveLimits, SpringKind, StepError, Trial, Watched,
+    LinearSpring, Matrix3, MatrixBlocks, NewtonBackend, NewtonBackendError, NewtonSolve, NewtonStep,
+    NewtonTarget, OutOfBalance, PreconditionerKind, RepulsionSpring, SolveLimits, SpringKind, StepError,
+    Trial, Watched,
 };
 use bowknot_gpu::geometry::{Point, Vector};
 use bowknot_gpu::{Adapter, ComparingEngine, ConjugateGradients, DeviceEngine, Engine, TwinEngine};
@@ -22,7 +23,7 @@ const DT: f64 = 0.02;
 type Diagonal = Vec<(u32, Matrix3<f64>)>;
 
 /// Blocks of a matrix over the free nodes, and springs.
-fn dense(free: &[bool], blocks: &[(u32, u32, Matrix3<f64>)], springs: &[LinearSpring]) -> DMatrix<f64> {
+fn dense(free: &[bool], blocks: &MatrixBlocks, springs: &[LinearSpring]) -> DMatrix<f64> {
     let mut matrix = DMatrix::zeros(3 * free.len(), 3 * free.len());
     let mut add = |i: u32, j: u32, block: Matrix3<f64>| {
         if free[i as usize] && free[j as usize] {

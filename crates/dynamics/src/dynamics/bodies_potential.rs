@@ -1,14 +1,11 @@
 //! Potential, gradient and matrix of the bodies in double precision, beside which backends are checked.
 
-use super::Dynamics;
 use super::newton::backend::NewtonStep;
 use super::newton::cpu::CpuBodies;
 use super::newton::momentum::Inertia;
-use super::newton::state::Step;
+use super::newton::state::{Step, Workspace};
 use crate::elements::filter::Filter;
 use crate::elements::set::Motion;
-use crate::error::StepError;
-use crate::linear::assembly::ElementModel;
 use crate::linear::scalar::SplitForm;
 use crate::model::DynamicsModel;
 use crate::nodes::CHUNK;
@@ -18,66 +15,33 @@ use nalgebra::Matrix3;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-impl Dynamics {
-    /// The elements as backends get them, without patches and without quadratic elements.
-    pub fn element_model(&self) -> ElementModel {
-        self.model.describe(Vec::new())
-    }
+/// Blocks of a matrix, each with its row and its column.
+pub type MatrixBlocks = Vec<(u32, u32, Matrix3<f64>)>;
 
-    /// The terms of the potential in the time step that was begun.
-    ///
-    /// # Errors
-    /// No step was begun.
-    pub fn step_terms(&self) -> Result<StepTerms, StepError> {
-        let Some(step) = &self.step else { return Err(StepError::NotBegun) };
-        Ok(StepTerms::new(&self.model, &self.params, step))
+/// The blocks of the matrix of the bodies at `x`, by node. The iterate of the workspace stays.
+pub(super) fn matrix_blocks(
+    model: &DynamicsModel,
+    params: &DynamicsParams,
+    step: &Step,
+    work: &mut Workspace,
+    x: &[Vector],
+    filter: Filter,
+) -> MatrixBlocks {
+    let iterate = std::mem::replace(&mut work.x, x.to_vec());
+    CpuBodies::new(model, params, step, work, &[]).linearize_bodies(filter);
+    work.x = iterate;
+    let mut blocks = Vec::new();
+    for row in 0..x.len() {
+        let i = row as u32;
+        blocks.push((i, i, work.values.diagonal[row]));
+        let range = model.pattern.row(row);
+        let columns = model.pattern.columns[range.clone()].iter();
+        blocks.extend(columns.zip(&work.values.blocks[range]).map(|(j, block)| (i, *j, *block)));
+        let (columns, values) = step.scalar.off_pattern(row);
+        let scalars = columns.iter().zip(values);
+        blocks.extend(scalars.map(|(j, value)| (i, *j, Matrix3::from_diagonal_element(*value))));
     }
-
-    /// The potential of the bodies at positions `x` of nodes [m] in the time step that was begun. One thread computes
-    /// it.
-    ///
-    /// # Errors
-    /// No step was begun, or the length is wrong.
-    pub fn bodies_potential(&self, x: &[Vector]) -> Result<BodiesPotential, StepError> {
-        let terms = self.step_terms()?;
-        let nodes = self.model.node_vertex.len();
-        if x.len() != nodes {
-            return Err(StepError::Length { array: "x", given: x.len(), vertices: nodes });
-        }
-        Ok(BodiesPotential::at(&self.model, &terms, x))
-    }
-
-    /// The matrix of the bodies at positions `x` of nodes [m] in the time step that was begun: the blocks that are not zero,
-    /// with row and column, as if all nodes were free. `absolute` is that of [`super::NewtonBackend::linearize`].
-    ///
-    /// # Errors
-    /// No step was begun, or the length is wrong.
-    pub fn bodies_matrix(
-        &mut self,
-        x: &[Vector],
-        absolute: bool,
-    ) -> Result<Vec<(u32, u32, Matrix3<f64>)>, StepError> {
-        let Self { model, params, step, work, .. } = self;
-        let Some(step) = step else { return Err(StepError::NotBegun) };
-        if x.len() != work.x.len() {
-            return Err(StepError::Length { array: "x", given: x.len(), vertices: work.x.len() });
-        }
-        work.x.copy_from_slice(x);
-        let filter = if absolute { Filter::Absolute } else { Filter::Clamp };
-        CpuBodies::new(model, params, step, work, &[]).linearize_bodies(filter);
-        let mut blocks = Vec::new();
-        for row in 0..x.len() {
-            let i = row as u32;
-            blocks.push((i, i, work.values.diagonal[row]));
-            let range = model.pattern.row(row);
-            let columns = model.pattern.columns[range.clone()].iter();
-            blocks.extend(columns.zip(&work.values.blocks[range]).map(|(j, block)| (i, *j, *block)));
-            let (columns, values) = step.scalar.off_pattern(row);
-            let scalars = columns.iter().zip(values);
-            blocks.extend(scalars.map(|(j, value)| (i, *j, Matrix3::from_diagonal_element(*value))));
-        }
-        Ok(blocks)
-    }
+    blocks
 }
 
 /// The terms of the potential that are fixed in a time step, see [`NewtonStep`].

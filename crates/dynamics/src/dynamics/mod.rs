@@ -22,7 +22,7 @@ mod info;
 mod newton;
 mod two_level;
 
-pub use bodies_potential::{BodiesPotential, StepTerms};
+pub use bodies_potential::{BodiesPotential, MatrixBlocks, StepTerms};
 pub use conservation::{Held, Touching};
 pub use info::{NewtonInfo, Residual};
 pub use newton::backend::{
@@ -32,7 +32,9 @@ pub use newton::backend::{
 
 use crate::body::{Body, BodyShape};
 use crate::drag::DragSurfaces;
+use crate::elements::filter::Filter;
 use crate::error::StepError;
+use crate::linear::assembly::ElementModel;
 use crate::linear::block::BlockValues;
 use crate::linear::solver::LinearSolver;
 use crate::model::DynamicsModel;
@@ -40,6 +42,7 @@ use crate::nodes::{MIN_NODES, NO_NODE};
 use crate::params::{DynamicsParams, Environment, PreconditionerKind};
 use crate::repulsion::spring::RepulsionSpring;
 use crate::repulsion::springs::Repulsion;
+use bodies_potential::matrix_blocks;
 use bowknot_errors::{Errors, ParamError, Parameters};
 use bowknot_geometry::{Point, Vector};
 use conservation::EndOfStep;
@@ -479,6 +482,51 @@ impl Dynamics {
             // Energies of inertia are those of free nodes; gradients and matrices are of all.
             cache.energies_at.clear();
         }
+    }
+
+    /// The elements as backends get them, without patches and without quadratic elements.
+    pub fn element_model(&self) -> ElementModel {
+        self.model.describe(Vec::new())
+    }
+
+    /// The terms of the potential in the time step that was begun.
+    ///
+    /// # Errors
+    /// No step was begun.
+    pub fn step_terms(&self) -> Result<StepTerms, StepError> {
+        let Some(step) = &self.step else { return Err(StepError::NotBegun) };
+        Ok(StepTerms::new(&self.model, &self.params, step))
+    }
+
+    /// The potential of the bodies at positions `x` of nodes [m] in the time step that was begun. One thread computes
+    /// it.
+    ///
+    /// # Errors
+    /// No step was begun, or the length is wrong.
+    pub fn bodies_potential(&self, x: &[Vector]) -> Result<BodiesPotential, StepError> {
+        let terms = self.step_terms()?;
+        self.check_nodes(x)?;
+        Ok(BodiesPotential::at(&self.model, &terms, x))
+    }
+
+    /// The matrix of the bodies at positions `x` of nodes [m] in the time step that was begun, without springs and as if all
+    /// nodes were free. `absolute` is that of [`NewtonBackend::linearize`].
+    ///
+    /// # Errors
+    /// No step was begun, or the length is wrong.
+    pub fn bodies_matrix(&mut self, x: &[Vector], absolute: bool) -> Result<MatrixBlocks, StepError> {
+        self.check_nodes(x)?;
+        let Some(step) = &self.step else { return Err(StepError::NotBegun) };
+        let filter = if absolute { Filter::Absolute } else { Filter::Clamp };
+        Ok(matrix_blocks(&self.model, &self.params, step, &mut self.work, x, filter))
+    }
+
+    fn check_nodes(&self, x: &[Vector]) -> Result<(), StepError> {
+        let nodes = self.model.node_vertex.len();
+        if x.len() == nodes {
+            return Ok(());
+        }
+        Err(StepError::Length { array: "x", given: x.len(), vertices: nodes })
     }
 
     fn gather<T>(

@@ -57,22 +57,26 @@ impl PackedMatrix {
             packed.slices.push([start as u32, block_count as u32, scalar_count as u32, 0]);
             packed.words.resize(start + SLICE * (BLOCK_WORDS * block_count + 2 * scalar_count), 0);
             for (lane, i) in rows.clone().enumerate() {
-                // Padding names the row itself: differences to it are zero.
-                let padding = std::iter::repeat(i as u32);
                 let columns = std::iter::once(i as u32).chain(blocks.row(i).iter().copied());
-                let columns = columns.chain(padding.clone()).take(block_count);
-                let first_word = start + lane;
-                for (k, column) in columns.enumerate() {
-                    packed.words[first_word + BLOCK_WORDS * k * SLICE] = column;
-                }
-                let first_word = first_word + BLOCK_WORDS * block_count * SLICE;
-                let columns = scalars.row(i).iter().copied().chain(padding).take(scalar_count);
-                for (k, column) in columns.enumerate() {
-                    packed.words[first_word + 2 * k * SLICE] = column;
-                }
+                let (at, scalars_at) = (start + lane, start + lane + SLICE * BLOCK_WORDS * block_count);
+                packed.put_columns(i, (at, BLOCK_WORDS, block_count), columns);
+                packed.put_columns(i, (scalars_at, 2, scalar_count), scalars.row(i).iter().copied());
             }
         }
         packed
+    }
+
+    /// Writes the columns of row `i` as the first words of `count` entries of so many words each.
+    fn put_columns(
+        &mut self,
+        i: usize,
+        (at, words, count): (usize, usize, usize),
+        columns: impl Iterator<Item = u32>,
+    ) {
+        // Padding names the row itself: differences to it are zero.
+        for (k, column) in columns.chain(std::iter::repeat(i as u32)).take(count).enumerate() {
+            self.words[at + SLICE * words * k] = column;
+        }
     }
 
     /// Packs springs in place of those before.

@@ -109,12 +109,14 @@ fn squared_norm(solver: &mut ConjugateGradients<TwinEngine>, r: &DVector<f64>) -
     read[0][norms].iter().map(|bits| f64::from(f32::from_bits(*bits))).sum()
 }
 
-/// Norms of smooth and rough vectors on the twins and by definition. Returns the number of coarse levels.
-fn assert_norms(fixture: &Fixture) -> usize {
+/// Norms of smooth and rough vectors on the twins are those of the definition up to a share `most`. Returns the number of
+/// coarse levels.
+fn assert_norms(fixture: &Fixture, most: f64) -> usize {
     let mut solver = solver(TwinEngine::new(), fixture);
     let (x, _) = solve(fixture, &mut solver);
     let h = matrix(&mut solver);
-    let patches = &solver.assembly.as_ref().expect("one").patches;
+    let set = solver.assembly.as_ref().and_then(|assembly| assembly.set.as_ref());
+    let patches = &set.expect("one").patches;
     let (levels, terms) = (patches.levels.len(), corrections(&h, &x, &fixture.free, patches));
     for width in [1, 4, 16, 64, 256] {
         let random = &mut fastrand::Rng::with_seed(width as u64);
@@ -125,14 +127,14 @@ fn assert_norms(fixture: &Fixture) -> usize {
         let expected: f64 = terms.iter().map(|term| term.squared_norm(&r)).sum();
         let found = squared_norm(&mut solver, &r);
         println!("{}, {levels} levels: {:.1e}", fixture.name, found / expected - 1.0);
-        assert!((found / expected - 1.0).abs() < SHIFT, "{}: {found} and {expected}", fixture.name);
+        assert!((found / expected - 1.0).abs() < most, "{}: {found} and {expected}", fixture.name);
     }
     levels
 }
 
 #[test]
 fn norms_are_those_of_the_sum_over_levels() {
-    let levels: Vec<usize> = fixtures().iter().map(assert_norms).collect();
+    let levels: Vec<usize> = fixtures().iter().map(|fixture| assert_norms(fixture, SHIFT)).collect();
     assert!(levels.contains(&0) && levels.contains(&1), "{levels:?}");
 }
 
@@ -143,7 +145,14 @@ fn there_may_be_four_coarse_levels() {
     let nodes = fixture.free.len() as u32;
     // A patch each.
     fixture.model.patches = (0..nodes.div_ceil(2)).map(|k| 2 * k..(2 * k + 2).min(nodes)).collect();
-    assert_eq!(assert_norms(&fixture), 4);
+    assert_eq!(assert_norms(&fixture, SHIFT), 4);
+}
+
+/// The spin of a strand that is nearly straight about itself moves next to nothing: in single precision the force on it is
+/// rounding, which made norms wrong by orders of magnitude. The definition, as it is computed here, leaves soft motions out.
+#[test]
+fn straight_strands_do_not_spin_about_themselves() {
+    assert_norms(&Fixture::of_strand(150), 4.0);
 }
 
 #[test]
