@@ -5,7 +5,7 @@
 //! origin, at the contact distance above the ground, so that it neither falls nor is lifted.
 
 use crate::Random;
-use bowknot::dynamics::LinearBackend;
+use bowknot::dynamics::NewtonBackend;
 use bowknot::geometry::{Point, Vector};
 use bowknot::io::{MeshView, write_obj};
 use bowknot::simulator::{CollisionBackend, Cpu};
@@ -268,14 +268,14 @@ impl Slope {
     pub fn run_on(
         &self,
         collisions: Box<dyn CollisionBackend>,
-        dynamics: Option<Box<dyn LinearBackend>>,
+        dynamics: Option<Box<dyn NewtonBackend>>,
         steps: usize,
     ) -> Track {
         let folder = tempfile::tempdir().expect("a folder");
         let mut simulator =
             Simulator::new(&self.scene(folder.path())).unwrap_or_else(|error| panic!("{error}"));
         simulator.set_backend(collisions).unwrap_or_else(|error| panic!("{error}"));
-        simulator.set_dynamics_backend(dynamics);
+        simulator.set_dynamics_backend(dynamics).unwrap_or_else(|error| panic!("{error}"));
         let heading = self.heading.to_radians();
         let along = Vector::new(heading.cos(), heading.sin(), 0.0);
         let mut track = Track {

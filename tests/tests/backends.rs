@@ -100,7 +100,7 @@ fn course((name, scale, sets, steps): Case<'_>, on: On) -> Course {
     let mut simulator = Simulator::new(&scene).expect("a simulator");
     if on == On::Twins {
         simulator.set_backend(Box::new(twins())).expect("settings that the kernels have");
-        simulator.set_dynamics_backend(Some(dynamics()));
+        simulator.set_dynamics_backend(Some(dynamics())).expect("linear elements");
     }
     let judge = simulator.judge();
     let count = simulator.world().collision_vertices();

@@ -2,9 +2,10 @@
 
 use crate::args::{Backend, DynamicsBackend, Machine, RunOptions};
 use crate::exit::Failure;
-use bowknot::Scene;
 use bowknot::run::{BackendRecord, Backends};
 use bowknot::simulator::{CollisionBackend, Cpu};
+use bowknot::{Scene, World};
+use bowknot_errors::counted;
 use std::path::Path;
 
 /// The devices, one per line, with what those that cannot be used lack.
@@ -63,17 +64,39 @@ pub fn of_run(options: &RunOptions, scene: &Scene, folder: &Path) -> Result<Back
             place
         }
     };
-    let dynamics = match (options.dynamics_backend, machine.backend, &before) {
+    let mut dynamics_why = None;
+    let mut dynamics = match (options.dynamics_backend, machine.backend, &before) {
         (Some(DynamicsBackend::Cpu), ..) => Place::Cpu,
         (Some(DynamicsBackend::Gpu), ..) => Place::Number(machine.device),
-        (None, Some(Backend::Auto) | None, Some(before)) => as_before(&before.dynamics)?,
+        (None, Some(Backend::Auto) | None, Some(before)) => {
+            dynamics_why.clone_from(&before.dynamics_why);
+            as_before(&before.dynamics)?
+        }
         (None, ..) => collisions.clone(),
     };
+    if options.dynamics_backend.is_none() && dynamics != Place::Cpu {
+        dynamics_why = why_on_cpu(&World::new(scene).map_err(Failure::input)?);
+        if dynamics_why.is_some() {
+            dynamics = Place::Cpu;
+        }
+    }
     Ok(Backends {
         collisions: if collisions == Place::Cpu { Box::new(Cpu) } else { device::collisions(&collisions)? },
         dynamics: (dynamics != Place::Cpu).then(|| device::dynamics(&dynamics)).transpose()?,
         why,
+        dynamics_why,
     })
+}
+
+/// Why the dynamics of a scene stay on the CPU where a device resolves its collisions; None if they need not.
+fn why_on_cpu(world: &World) -> Option<String> {
+    let names: Vec<String> = world.quadratic_bodies().map(|name| format!("\"{name}\"")).collect();
+    let first = names.first()?;
+    Some(format!(
+        "{} quadratic elements, which only the CPU computes (the first is {first}); with elements = \"linear\" the device \
+         computes the dynamics",
+        counted(names.len(), "body has", "bodies have")
+    ))
 }
 
 /// Where something is computed.
@@ -112,7 +135,7 @@ fn not_here(name: &str, folder: &Path) -> Failure {
 #[cfg(feature = "gpu")]
 mod device {
     use super::{CollisionBackend, Failure, GPU, Path, Place, Scene, not_here};
-    use bowknot::dynamics::LinearBackend;
+    use bowknot::dynamics::NewtonBackend;
     use bowknot::gpu::{Adapter, Choice, ConjugateGradients, Device, DeviceEngine};
 
     pub fn collisions(place: &Place) -> Result<Box<dyn CollisionBackend>, Failure> {
@@ -120,7 +143,7 @@ mod device {
         Ok(Box::new(Device::new(name, engine)))
     }
 
-    pub fn dynamics(place: &Place) -> Result<Box<dyn LinearBackend>, Failure> {
+    pub fn dynamics(place: &Place) -> Result<Box<dyn NewtonBackend>, Failure> {
         let (name, engine) = open(place, "--dynamics-backend cpu")?;
         Ok(Box::new(ConjugateGradients::new(name, engine)))
     }
@@ -168,13 +191,13 @@ mod device {
 #[cfg(not(feature = "gpu"))]
 mod device {
     use super::{CollisionBackend, Failure, GPU, Path, Place, Scene, not_built_in, not_here};
-    use bowknot::dynamics::LinearBackend;
+    use bowknot::dynamics::NewtonBackend;
 
     pub fn collisions(_place: &Place) -> Result<Box<dyn CollisionBackend>, Failure> {
         Err(not_built_in())
     }
 
-    pub fn dynamics(_place: &Place) -> Result<Box<dyn LinearBackend>, Failure> {
+    pub fn dynamics(_place: &Place) -> Result<Box<dyn NewtonBackend>, Failure> {
         Err(not_built_in())
     }
 

@@ -53,6 +53,8 @@ pub fn simulate(options: &RunOptions) -> Result<Exit, Failure> {
                 print_sizes(progress.world);
                 near_starts::line(progress.near_starts).iter().for_each(|line| eprintln!("note: {line}"));
                 computed_by.why.iter().for_each(|why| eprintln!("--backend auto: {why}"));
+                let dynamics = computed_by.dynamics_why.iter();
+                dynamics.for_each(|why| eprintln!("note: the CPU computes the dynamics: {why}"));
                 places(&computed_by.collisions, &computed_by.dynamics)
                     .iter()
                     .for_each(|line| eprintln!("{line}"));

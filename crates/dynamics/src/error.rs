@@ -191,9 +191,18 @@ pub enum StepError {
         /// The reason.
         problem: &'static str,
     },
-    /// What solves the linear systems has failed, see [`crate::Dynamics::set_backend`].
+    /// A backend cannot compute a body, see [`crate::Dynamics::set_backend`].
+    #[error(
+        "body \"{body}\" has quadratic elements, which the CPU alone computes: give it linear ones \
+         (`elements = \"linear\"` in a scene)"
+    )]
+    QuadraticElements {
+        /// Name of the first such body.
+        body: String,
+    },
+    /// The backend has failed, see [`crate::Dynamics::set_backend`].
     #[error("{message}")]
-    LinearBackend {
+    Backend {
         /// What it says.
         message: String,
     },

@@ -44,23 +44,21 @@ mod test_support;
 
 /// Points and vectors: the types of states.
 pub use bowknot_geometry as geometry;
-/// The blocks of a [`LinearSystem`].
+/// The blocks of matrices.
 pub use nalgebra::Matrix3;
 
 pub use body::{Body, BodyShape};
 pub use bowknot_errors::{Errors, ParamError, Parameters};
 pub use dynamics::{
-    BodiesPotential, Dynamics, Held, NewtonBackend, NewtonInfo, NewtonSolve, NewtonStep, NewtonTarget,
-    OutOfBalance, Residual, SolveLimits, StepTerms, Touching, Trial, Watched,
+    BodiesPotential, Dynamics, Held, MatrixBlocks, NewtonBackend, NewtonBackendError, NewtonInfo,
+    NewtonSolve, NewtonStep, NewtonTarget, OutOfBalance, Residual, SolveLimits, StepTerms, Touching, Trial,
+    Watched,
 };
 pub use error::{ModelError, StepError};
 pub use linear::accuracy::CgInfo;
 pub use linear::assembly::{
-    AssemblySprings, BendElement, ElementModel, MembraneElement, QuadraticElement, SolidKind, StrandElement,
-    TetrahedronElement,
+    AssemblySprings, BendElement, ElementModel, MembraneElement, SolidKind, StrandElement, TetrahedronElement,
 };
-pub use linear::backend::{LinearBackend, LinearSystem, SparseRows};
-pub use linear::failure::LinearBackendError;
 pub use linear::springs::LinearSpring;
 pub use material::{ClothMaterial, ParticleMaterial, RestShape, SolidMaterial, SolidModel, StrandMaterial};
 pub use model::DynamicsModel;

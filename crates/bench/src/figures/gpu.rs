@@ -6,7 +6,7 @@ use crate::figure::{Figure, Part, Report};
 use crate::table::{Entry, Table, geometric_mean, largest, mean, short};
 use crate::timed::{TimedBackend, taken};
 use anyhow::{Context, Result};
-use bowknot::dynamics::LinearBackend;
+use bowknot::dynamics::NewtonBackend;
 use bowknot::gpu::{Adapter, ConjugateGradients, Device, DeviceEngine, Profile, StageTime};
 use bowknot::simulator::{CollisionBackend, Cpu};
 use bowknot::{Scene, Simulator};
@@ -171,7 +171,7 @@ impl Pair {
 fn simulate(
     scene: &Scene,
     backend: Box<dyn CollisionBackend>,
-    dynamics: Option<Box<dyn LinearBackend>>,
+    dynamics: Option<Box<dyn NewtonBackend>>,
     frames: usize,
 ) -> Result<(Measured, Arc<bowknot::World>)> {
     let mut simulator = Simulator::new(scene)?;
@@ -179,7 +179,7 @@ fn simulate(
     // The judge is a part of the collision stage.
     let timed = TimedBackend { backend, resolve: Arc::clone(&seconds), judge: Arc::clone(&seconds) };
     simulator.set_backend(Box::new(timed))?;
-    simulator.set_dynamics_backend(dynamics);
+    simulator.set_dynamics_backend(dynamics)?;
     let mut measured = Measured { seconds: Vec::new(), whole: Vec::new(), steps: Vec::new() };
     for frame in 0..=frames {
         let timer = Instant::now();

@@ -124,7 +124,7 @@ impl Host {
             judge: Arc::clone(&judge),
         }))?;
         let dynamics = ConjugateGradients::new("twins".to_owned(), engine(&engine_of_dynamics));
-        simulator.set_dynamics_backend(Some(Box::new(dynamics)));
+        simulator.set_dynamics_backend(Some(Box::new(dynamics)))?;
         // The first time step prepares the scene.
         simulator.step()?;
         for seconds in [&collisions, &engine_of_dynamics, &resolve, &judge] {

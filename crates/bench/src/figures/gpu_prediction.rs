@@ -258,7 +258,8 @@ impl Counted {
         device.set_steps_per_submission(1);
         simulator.set_backend(Box::new(device))?;
         let (engine, dynamics) = CountingEngine::new();
-        simulator.set_dynamics_backend(Some(Box::new(ConjugateGradients::new("twins".to_owned(), engine))));
+        simulator
+            .set_dynamics_backend(Some(Box::new(ConjugateGradients::new("twins".to_owned(), engine))))?;
         let taken = |counts: &Mutex<Counts>| {
             std::mem::take(&mut *counts.lock().unwrap_or_else(PoisonError::into_inner))
         };

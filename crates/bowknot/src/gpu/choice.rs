@@ -2,7 +2,7 @@
 
 use super::device::Device;
 use crate::simulator::{Checkpoint, CollisionBackend, Cpu, SimulationError, Simulator};
-use bowknot_dynamics::LinearBackend;
+use bowknot_dynamics::NewtonBackend;
 use bowknot_errors::counted;
 use bowknot_gpu::{Adapter, ConjugateGradients, DeviceEngine};
 use bowknot_scene::Scene;
@@ -32,7 +32,7 @@ pub struct Choice {
 
 impl Choice {
     /// The device `number`, or the first that is usable, if it simulates the scene faster than the CPU: its collisions and,
-    /// if `with_dynamics` is true, its dynamics. The first time steps with contacts are made on either, on copies of the
+    /// if `with_dynamics` is true and no body has quadratic elements, its dynamics. The first time steps with contacts are made on either, on copies of the
     /// scene.
     ///
     /// The clock decides, so the answer may differ from machine to machine and, where both are about as fast, from call to
@@ -53,7 +53,7 @@ impl Choice {
             let dynamics = with_dynamics.then(|| DeviceEngine::open(&adapter)).transpose()?;
             let name = adapter.to_string();
             let dynamics = dynamics.map(|engine| ConjugateGradients::new(name.clone(), engine));
-            let dynamics = dynamics.map(|dynamics| Box::new(dynamics) as Box<dyn LinearBackend>);
+            let dynamics = dynamics.map(|dynamics| Box::new(dynamics) as Box<dyn NewtonBackend>);
             Ok((Box::new(Device::new(name, engine)) as Box<dyn CollisionBackend>, dynamics))
         });
         let device = match device {
@@ -76,7 +76,7 @@ struct Verdict {
 fn compare(
     scene: &Scene,
     cpu: Box<dyn CollisionBackend>,
-    (device, dynamics): (Box<dyn CollisionBackend>, Option<Box<dyn LinearBackend>>),
+    (device, dynamics): (Box<dyn CollisionBackend>, Option<Box<dyn NewtonBackend>>),
 ) -> Result<Verdict, SimulationError> {
     let to_cpu = |why: String| Ok(Verdict { device_is_faster: false, why });
     let frames = scene.simulation.frames;
@@ -89,7 +89,9 @@ fn compare(
     if let Err(error) = on_device.set_backend(device) {
         return to_cpu(words(&error));
     }
-    on_device.set_dynamics_backend(dynamics);
+    if on_device.world().quadratic_bodies().next().is_none() {
+        on_device.set_dynamics_backend(dynamics)?;
+    }
     let mut on_cpu = simulator(scene)?;
     on_cpu.set_backend(cpu)?;
     // Where a time step fails, the run will say so, after the frames before it.

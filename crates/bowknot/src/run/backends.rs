@@ -1,7 +1,7 @@
 //! What computes a run, and the file `backends.json` that tells it, so that a resumption computes in the same way.
 
 use crate::simulator::{CollisionBackend, Cpu};
-use bowknot_dynamics::LinearBackend;
+use bowknot_dynamics::NewtonBackend;
 use bowknot_io::{IoError, write_text};
 use serde::{Deserialize, Serialize};
 use std::fs;
@@ -19,14 +19,16 @@ pub struct Backends {
     /// Resolves the collisions.
     pub collisions: Box<dyn CollisionBackend>,
     /// Computes the dynamics; None for the CPU.
-    pub dynamics: Option<Box<dyn LinearBackend>>,
+    pub dynamics: Option<Box<dyn NewtonBackend>>,
     /// Why they were chosen, if the program chose.
     pub why: Option<String>,
+    /// Why the CPU computes the dynamics beside a device, if that was not asked for.
+    pub dynamics_why: Option<String>,
 }
 
 impl Default for Backends {
     fn default() -> Self {
-        Self { collisions: Box::new(Cpu), dynamics: None, why: None }
+        Self { collisions: Box::new(Cpu), dynamics: None, why: None, dynamics_why: None }
     }
 }
 
@@ -37,6 +39,7 @@ impl Backends {
             collisions: self.collisions.name(),
             dynamics: self.dynamics.as_ref().map_or_else(|| CPU.to_owned(), |dynamics| dynamics.name()),
             why: self.why.clone(),
+            dynamics_why: self.dynamics_why.clone(),
         }
     }
 }
@@ -52,6 +55,9 @@ pub struct BackendRecord {
     /// Why they were chosen, if the program chose.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub why: Option<String>,
+    /// Why the CPU computes the dynamics beside a device, if that was not asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dynamics_why: Option<String>,
 }
 
 impl BackendRecord {

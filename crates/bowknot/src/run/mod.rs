@@ -121,7 +121,7 @@ fn run_steps(
     let mut simulator = Simulator::new(scene)?;
     let record = backends.record();
     simulator.set_backend(backends.collisions)?;
-    simulator.set_dynamics_backend(backends.dynamics);
+    simulator.set_dynamics_backend(backends.dynamics)?;
     simulator.check_motions(scene.simulation.frames)?;
     let mut writer = if options.resume {
         RunWriter::resume(&options.out, scene, &mut simulator)?

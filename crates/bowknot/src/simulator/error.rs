@@ -53,7 +53,7 @@ pub enum SimulationError {
         /// Why.
         source: ResolveError,
     },
-    /// What resolves the collisions or solves linear systems has failed; the simulator is as it was before the time step.
+    /// What resolves the collisions or computes the dynamics has failed; the simulator is as it was before the time step.
     #[error("time step {step}: {source}")]
     Backend {
         /// The time step, from 1; 0 before the first.
@@ -112,7 +112,9 @@ impl SimulationError {
     /// The dynamics has no target in a time step.
     pub(super) fn target(step: usize, source: StepError) -> Self {
         match source {
-            StepError::LinearBackend { .. } => Self::Backend { step, source: Box::new(source) },
+            StepError::Backend { .. } | StepError::QuadraticElements { .. } => {
+                Self::Backend { step, source: Box::new(source) }
+            }
             source => Self::Target { step, source },
         }
     }

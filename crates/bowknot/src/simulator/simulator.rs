@@ -26,7 +26,7 @@ use super::tolerance::Tolerance;
 use super::unsolved::Search;
 use super::waits::WaitingElements;
 use bowknot_check::{Judge, StateOptions, StateReport};
-use bowknot_dynamics::{Dynamics, DynamicsModel, LinearBackend, Residual};
+use bowknot_dynamics::{Dynamics, DynamicsModel, NewtonBackend, Residual};
 use bowknot_errors::counted;
 use bowknot_geometry::{Point, Vector};
 use bowknot_scene::world::{Attachment, World};
@@ -201,12 +201,23 @@ impl Simulator {
     }
 
     /// Lets a backend compute the dynamics from the next time step on, in place of the CPU; None for the CPU.
-    pub fn set_dynamics_backend(&mut self, backend: Option<Box<dyn LinearBackend>>) {
-        self.active_dynamics().set_backend(backend);
+    ///
+    /// # Errors
+    /// [`SimulationError::Backend`] if a body has quadratic elements: the CPU then computes the dynamics.
+    pub fn set_dynamics_backend(
+        &mut self,
+        backend: Option<Box<dyn NewtonBackend>>,
+    ) -> Result<(), SimulationError> {
+        // That of all bodies refuses for those that are asleep, too.
+        let set = self.dynamics.set_backend(backend).and_then(|()| {
+            let backend = self.dynamics.take_backend();
+            self.active_dynamics().set_backend(backend)
+        });
+        set.map_err(|source| SimulationError::target(self.step, source))
     }
 
     /// What computes the dynamics; None if it is the CPU.
-    pub fn dynamics_backend(&mut self) -> Option<&dyn LinearBackend> {
+    pub fn dynamics_backend(&mut self) -> Option<&dyn NewtonBackend> {
         self.active_dynamics().backend()
     }
 

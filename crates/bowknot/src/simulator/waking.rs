@@ -6,7 +6,7 @@ use super::error::SimulationError;
 use super::rest::{Awake, Rest};
 use super::simulator::{Scratch, Simulator, time_of};
 use super::sleep::{SleepState, part};
-use bowknot_dynamics::{Energies, Errors, ParamError, StepError};
+use bowknot_dynamics::{Dynamics, Energies, Errors, ParamError, StepError};
 use bowknot_geometry::Vector;
 
 impl Simulator {
@@ -158,14 +158,17 @@ impl Simulator {
             let mut before = rest.awake.take();
             let active = before.as_mut().map_or(&mut *dynamics, |awake| &mut awake.dynamics);
             let backend = active.take_backend();
-            dynamics.set_backend(backend);
+            let set = |dynamics: &mut Dynamics, backend| {
+                dynamics.set_backend(backend).map_err(|source| SimulationError::target(*step, source))
+            };
+            set(dynamics, backend)?;
             if asleep.contains(&true) {
                 let mut awake = Awake::new(world, &asleep, dynamics, positions)?;
                 if !self.external_forces.is_empty() {
                     let forced = awake.dynamics.set_external_forces(&self.external_forces);
                     forced.map_err(|source| SimulationError::Target { step: *step, source })?;
                 }
-                awake.dynamics.set_backend(dynamics.take_backend());
+                set(&mut awake.dynamics, dynamics.take_backend())?;
                 rest.awake = Some(awake);
             }
             rest.asleep = asleep;

@@ -155,6 +155,40 @@ fn the_dynamics_run_on_a_gpu_if_asked_and_say_so() {
     assert!(on_gpu(&summary["backend"]) && summary["dynamics_backend"] == "cpu", "{summary}");
 }
 
+/// The device has no kernels for them; it resolves the collisions all the same.
+#[test]
+fn the_cpu_computes_quadratic_elements_and_a_device_that_is_asked_for_them_is_refused() {
+    let place = Place::new();
+    place.write(
+        "beam.toml",
+        "[[body]]\nname = \"beam\"\nkind = \"solid\"\nelements = \"quadratic\"\n\
+         shape = { type = \"block\", size = [0.2, 0.05, 0.05], edge = 0.05 }\ntranslate = [0, 0, 0.03]\n\
+         [[obstacle]]\nname = \"ground\"\nshape = { type = \"half-space\" }\n",
+    );
+    let run = |options: &str| place.run(&format!("run beam.toml --threads 1 {options}"));
+    let summary = |run: &str| -> serde_json::Value {
+        serde_json::from_str(&place.read(&format!("{run}/summary.json"))).unwrap()
+    };
+    let note = "the CPU computes the dynamics: 1 body has quadratic elements, which only the CPU computes (the \
+                first is \"beam\"); with elements = \"linear\"";
+    for options in ["--backend gpu --frames 2", "--resume --frames 3"] {
+        let ended = run(&format!("{options} --out run")).ok();
+        assert_eq!(ended.stderr.matches(note).count(), 1, "{ended:#?}");
+        let summary = summary("run");
+        assert!(summary["backend"].as_str().unwrap().starts_with("gpu: "), "{summary}");
+        assert_eq!(summary["dynamics_backend"], "cpu", "{summary}");
+        assert!(place.read("run/backends.json").contains("dynamics_why"));
+    }
+    let words = ["body \"beam\" has quadratic elements", "`elements = \"linear\"`"];
+    for backend in ["cpu", "gpu"] {
+        run(&format!("--backend {backend} --dynamics-backend gpu --frames 2 --out refused"))
+            .refused(3, &words);
+    }
+    let ended = run("--backend gpu --set body.0.elements=linear --frames 2 --out linear").ok();
+    assert!(!ended.stderr.contains("the CPU computes"), "{ended:#?}");
+    assert!(summary("linear")["dynamics_backend"].as_str().unwrap().starts_with("gpu: "));
+}
+
 /// Mesa's software driver is the only device where the tests run.
 #[test]
 fn the_backend_is_chosen_once_and_a_resumption_keeps_it() {

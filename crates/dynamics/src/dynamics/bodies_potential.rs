@@ -1,8 +1,10 @@
-//! The potential of the bodies in double precision, beside which backends are checked.
+//! Potential, gradient and matrix of the bodies in double precision, beside which backends are checked.
 
 use super::newton::backend::NewtonStep;
+use super::newton::cpu::CpuBodies;
 use super::newton::momentum::Inertia;
-use super::newton::state::Step;
+use super::newton::state::{Step, Workspace};
+use crate::elements::filter::Filter;
 use crate::elements::set::Motion;
 use crate::linear::scalar::SplitForm;
 use crate::model::DynamicsModel;
@@ -12,6 +14,35 @@ use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 use std::sync::Arc;
+
+/// Blocks of a matrix, each with its row and its column.
+pub type MatrixBlocks = Vec<(u32, u32, Matrix3<f64>)>;
+
+/// The blocks of the matrix of the bodies at `x`, by node. The iterate of the workspace stays.
+pub(super) fn matrix_blocks(
+    model: &DynamicsModel,
+    params: &DynamicsParams,
+    step: &Step,
+    work: &mut Workspace,
+    x: &[Vector],
+    filter: Filter,
+) -> MatrixBlocks {
+    let iterate = std::mem::replace(&mut work.x, x.to_vec());
+    CpuBodies::new(model, params, step, work, &[]).linearize_bodies(filter);
+    work.x = iterate;
+    let mut blocks = Vec::new();
+    for row in 0..x.len() {
+        let i = row as u32;
+        blocks.push((i, i, work.values.diagonal[row]));
+        let range = model.pattern.row(row);
+        let columns = model.pattern.columns[range.clone()].iter();
+        blocks.extend(columns.zip(&work.values.blocks[range]).map(|(j, block)| (i, *j, *block)));
+        let (columns, values) = step.scalar.off_pattern(row);
+        let scalars = columns.iter().zip(values);
+        blocks.extend(scalars.map(|(j, value)| (i, *j, Matrix3::from_diagonal_element(*value))));
+    }
+    blocks
+}
 
 /// The terms of the potential that are fixed in a time step, see [`NewtonStep`].
 #[derive(Clone, Debug)]

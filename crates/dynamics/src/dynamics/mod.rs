@@ -22,17 +22,19 @@ mod info;
 mod newton;
 mod two_level;
 
-pub use bodies_potential::{BodiesPotential, StepTerms};
+pub use bodies_potential::{BodiesPotential, MatrixBlocks, StepTerms};
 pub use conservation::{Held, Touching};
 pub use info::{NewtonInfo, Residual};
 pub use newton::backend::{
-    NewtonBackend, NewtonSolve, NewtonStep, NewtonTarget, OutOfBalance, SolveLimits, Trial, Watched,
+    NewtonBackend, NewtonBackendError, NewtonSolve, NewtonStep, NewtonTarget, OutOfBalance, SolveLimits,
+    Trial, Watched,
 };
 
+use crate::body::{Body, BodyShape};
 use crate::drag::DragSurfaces;
+use crate::elements::filter::Filter;
 use crate::error::StepError;
 use crate::linear::assembly::ElementModel;
-use crate::linear::backend::LinearBackend;
 use crate::linear::block::BlockValues;
 use crate::linear::solver::LinearSolver;
 use crate::model::DynamicsModel;
@@ -40,15 +42,17 @@ use crate::nodes::{MIN_NODES, NO_NODE};
 use crate::params::{DynamicsParams, Environment, PreconditionerKind};
 use crate::repulsion::spring::RepulsionSpring;
 use crate::repulsion::springs::Repulsion;
+use bodies_potential::matrix_blocks;
 use bowknot_errors::{Errors, ParamError, Parameters};
 use bowknot_geometry::{Point, Vector};
 use conservation::EndOfStep;
 use newton::bodies::{Answer, Bodies, BodyEnergies, Lost};
 use newton::cpu::CpuBodies;
-use newton::device::{Beginning, conserve_momentum, on_device};
+use newton::device::{Beginning, Device, conserve_momentum, on_device};
 use newton::momentum::free_groups;
 use newton::state::{Course, EvaluationCache, Newton, Step, Workspace};
 use rayon::prelude::*;
+use std::fmt::Display;
 use std::sync::Arc;
 use two_level::two_level;
 
@@ -70,6 +74,8 @@ pub struct Dynamics {
     step: Option<Step>,
     course: Course,
     work: Workspace,
+    /// What does Newton iterations in place of the CPU.
+    device: Option<Device>,
 }
 
 impl Dynamics {
@@ -111,6 +117,7 @@ impl Dynamics {
             step: None,
             course,
             work,
+            device: None,
         })
     }
 
@@ -124,28 +131,32 @@ impl Dynamics {
         &self.params
     }
 
-    /// Lets a backend do the linear solves of Newton iterations in single precision from the next target on; None for
-    /// the CPU, as at first. The CPU refines them in double precision and solves alone where single precision gains
-    /// nothing. A backend that computes the whole of Newton iterations does so if it can compute the model
-    /// ([`NewtonBackend`]), and the residuals of time steps are measured by its preconditioner.
-    pub fn set_backend(&mut self, backend: Option<Box<dyn LinearBackend>>) {
-        let patches = match self.params.newton.preconditioner {
-            PreconditionerKind::BlockJacobi => Vec::new(),
-            PreconditionerKind::TwoLevel => self.model.leaves.clone(),
-        };
-        let model = &self.model;
-        self.work.solver.set_backend(backend, patches.clone(), || model.describe(patches));
+    /// Lets a backend do Newton iterations from the next target on; None for the CPU, as at first. Where single precision
+    /// gains nothing, the CPU does the rest of a time step. The residuals of time steps are measured by the
+    /// preconditioner of the backend.
+    ///
+    /// # Errors
+    /// [`StepError::QuadraticElements`] if a body has them: the CPU then computes the dynamics.
+    pub fn set_backend(&mut self, backend: Option<Box<dyn NewtonBackend>>) -> Result<(), StepError> {
+        (self.device, self.course.on_device) = (None, None);
         self.work.cache.clear();
+        let Some(backend) = backend else { return Ok(()) };
+        let is_quadratic = |body: &&Body| matches!(body.shape, BodyShape::QuadraticSolid { .. });
+        if let Some(body) = self.model.bodies().iter().find(is_quadratic) {
+            return Err(StepError::QuadraticElements { body: body.name.clone() });
+        }
+        self.device = Some(Device { backend, has_model: false });
+        Ok(())
     }
 
-    /// Takes away what does the linear solves in single precision: the CPU does them from now on.
-    pub fn take_backend(&mut self) -> Option<Box<dyn LinearBackend>> {
-        self.work.solver.take_backend()
+    /// Takes the backend away: the CPU computes from now on.
+    pub fn take_backend(&mut self) -> Option<Box<dyn NewtonBackend>> {
+        self.device.take().map(|device| device.backend)
     }
 
-    /// What does the linear solves in single precision; None if it is the CPU.
-    pub fn backend(&self) -> Option<&dyn LinearBackend> {
-        self.work.solver.backend()
+    /// What does Newton iterations; None if it is the CPU.
+    pub fn backend(&self) -> Option<&dyn NewtonBackend> {
+        self.device.as_ref().map(|device| &*device.backend)
     }
 
     /// Sets the force on each vertex [N], 0 at first. It is kept until it is set again and takes effect at
@@ -267,7 +278,7 @@ impl Dynamics {
         sets_trial: bool,
         run: &impl Fn(&mut Newton<'_>) -> Answer<T>,
     ) -> Result<T, StepError> {
-        let Self { model, params, repulsion, course, work, .. } = self;
+        let Self { model, params, repulsion, course, work, device, .. } = self;
         let (dt, is_first) = (step.dt, step.last_target.is_none());
         let (watched, free) = (repulsion.watched().to_vec(), work.free.clone());
         let mut over = |bodies: &mut dyn Bodies, course: &mut Course| {
@@ -276,11 +287,12 @@ impl Dynamics {
                 Newton { model, params, bodies, repulsion, free: &free, dt, is_first, course, energies };
             run(&mut newton)
         };
+        let failed = |error: &dyn Display| StepError::Backend { message: error.to_string() };
         let Workspace { x, imposed, trial, solver, .. } = &mut *work;
-        if let Some(backend) = solver.newton() {
+        if let Some(device) = device.as_mut().filter(|_| !course.leaves_device) {
             let beginning = Beginning { iterate: x, free: &free, imposed, watched: &watched };
             let target = sets_trial.then_some(trial.as_mut_slice());
-            match on_device(model, params, step, course, backend, beginning, target, &mut over) {
+            match on_device(model, params, step, course, device, beginning, target, &mut over) {
                 Ok(done) => {
                     if sets_trial {
                         let groups = free_groups(model, repulsion, &free);
@@ -288,23 +300,18 @@ impl Dynamics {
                     }
                     return Ok(done);
                 }
-                Err(Lost::Failed(error)) => {
-                    solver.leave_backend_out();
-                    return Err(StepError::LinearBackend { message: error.to_string() });
-                }
-                Err(Lost::Stalled) => {
+                Err(lost) => {
+                    course.leaves_device = true;
+                    solver.leave_single_precision();
+                    if let Lost::Failed(error) = lost {
+                        return Err(failed(&error));
+                    }
                     tracing::debug!("single precision is not enough for the rest of a time step");
-                    solver.leave_backend_out();
                     course.unprepared = true;
                 }
             }
         }
-        let done = over(&mut CpuBodies::new(model, params, step, work, &watched), course);
-        match (done, work.solver.take_failure()) {
-            (Ok(done), None) => Ok(done),
-            (_, Some(message)) => Err(StepError::LinearBackend { message }),
-            (Err(lost), None) => Err(StepError::LinearBackend { message: format!("{lost:?}") }),
-        }
+        over(&mut CpuBodies::new(model, params, step, work, &watched), course).map_err(|lost| failed(&lost))
     }
 
     /// Starts a time step of `dt` [s] from positions `x0` [m] and velocities `v0` [m/s].
@@ -477,7 +484,7 @@ impl Dynamics {
         }
     }
 
-    /// The elements as backends get them, without patches.
+    /// The elements as backends get them, without patches and without quadratic elements.
     pub fn element_model(&self) -> ElementModel {
         self.model.describe(Vec::new())
     }
@@ -498,11 +505,28 @@ impl Dynamics {
     /// No step was begun, or the length is wrong.
     pub fn bodies_potential(&self, x: &[Vector]) -> Result<BodiesPotential, StepError> {
         let terms = self.step_terms()?;
-        let nodes = self.model.node_vertex.len();
-        if x.len() != nodes {
-            return Err(StepError::Length { array: "x", given: x.len(), vertices: nodes });
-        }
+        self.check_nodes(x)?;
         Ok(BodiesPotential::at(&self.model, &terms, x))
+    }
+
+    /// The matrix of the bodies at positions `x` of nodes [m] in the time step that was begun, without springs and as if all
+    /// nodes were free. `absolute` is that of [`NewtonBackend::linearize`].
+    ///
+    /// # Errors
+    /// No step was begun, or the length is wrong.
+    pub fn bodies_matrix(&mut self, x: &[Vector], absolute: bool) -> Result<MatrixBlocks, StepError> {
+        self.check_nodes(x)?;
+        let Some(step) = &self.step else { return Err(StepError::NotBegun) };
+        let filter = if absolute { Filter::Absolute } else { Filter::Clamp };
+        Ok(matrix_blocks(&self.model, &self.params, step, &mut self.work, x, filter))
+    }
+
+    fn check_nodes(&self, x: &[Vector]) -> Result<(), StepError> {
+        let nodes = self.model.node_vertex.len();
+        if x.len() == nodes {
+            return Ok(());
+        }
+        Err(StepError::Length { array: "x", given: x.len(), vertices: nodes })
     }
 
     fn gather<T>(

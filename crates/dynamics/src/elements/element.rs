@@ -42,8 +42,8 @@ pub(crate) trait Element<const N: usize>: Send + Sync {
     /// The gradient of [`Self::energy`] [N], up to rounding that of [`Self::linearize_in`].
     fn gradient(&self, x: &[Vector; N], start: Option<Start<'_, N>>) -> [Vector; N];
 
-    /// Adds the element to a description of the model.
-    fn describe(&self, model: &mut ElementModel);
+    /// Adds the element to a description of the model, unless the CPU alone computes such elements.
+    fn describe(&self, _model: &mut ElementModel) {}
 
     /// [`Self::linearize_in`] with the frame at `x`.
     #[cfg(test)]

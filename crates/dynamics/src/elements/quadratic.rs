@@ -16,7 +16,6 @@ use super::element::{Element, Linearization, Start};
 use super::filter::Filter;
 use super::svd::{Svd, signed_svds};
 use super::tetrahedron::Tetrahedron;
-use crate::linear::assembly::{ElementModel, QuadraticElement};
 use crate::material::solid::SolidMaterial;
 use bowknot_geometry::{TETRAHEDRON_EDGES, Vector};
 use nalgebra::Matrix3;
@@ -166,10 +165,6 @@ impl Element<10> for QuadraticTetrahedron {
             add_gradient(point, &self.quarter.gradient(y, start), &mut gradient);
         });
         gradient
-    }
-
-    fn describe(&self, model: &mut ElementModel) {
-        model.quadratic.push(QuadraticElement { nodes: self.nodes, quarter: self.quarter.description() });
     }
 }
 

@@ -61,19 +61,6 @@ impl Tetrahedron {
         edges(x) * self.gradients
     }
 
-    /// What a backend knows of it.
-    pub fn description(&self) -> TetrahedronElement {
-        let (kind, constants) = self.law.describe();
-        TetrahedronElement {
-            nodes: self.nodes,
-            gradients: std::array::from_fn(|a| std::array::from_fn(|k| self.gradients[(a, k)])),
-            volume: self.volume,
-            kind,
-            constants,
-            viscosity: self.viscosity.1,
-        }
-    }
-
     fn is_damped(&self) -> bool {
         self.viscosity.1 > 0.0
     }
@@ -284,7 +271,15 @@ impl Element<4> for Tetrahedron {
     }
 
     fn describe(&self, model: &mut ElementModel) {
-        model.tetrahedra.push(self.description());
+        let (kind, constants) = self.law.describe();
+        model.tetrahedra.push(TetrahedronElement {
+            nodes: self.nodes,
+            gradients: std::array::from_fn(|a| std::array::from_fn(|k| self.gradients[(a, k)])),
+            volume: self.volume,
+            kind,
+            constants,
+            viscosity: self.viscosity.1,
+        });
     }
 }
 

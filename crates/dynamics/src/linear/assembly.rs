@@ -28,8 +28,6 @@ pub struct ElementModel {
     pub bends: Vec<BendElement>,
     /// Tetrahedra of solids.
     pub tetrahedra: Vec<TetrahedronElement>,
-    /// Tetrahedra of solids with nodes in the middles of their edges.
-    pub quadratic: Vec<QuadraticElement>,
     /// Edges and turns of strands.
     pub strands: Vec<StrandElement>,
 }
@@ -91,16 +89,6 @@ pub struct TetrahedronElement {
     pub constants: [f64; 2],
     /// Damping time times mu [Pa s].
     pub viscosity: f64,
-}
-
-/// A tetrahedron of linear strain: at each of four points L = (a, b, b, b), ..., with a = (5 + 3 sqrt 5) / 20 and b = (5 - sqrt
-/// 5) / 20, one of constant strain whose corners are y_k = sum over nodes of x_a dN_a / dL_k.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct QuadraticElement {
-    /// The corners, then the middles of the edges 01, 02, 03, 12, 13, 23.
-    pub nodes: [u32; 10],
-    /// The tetrahedron of the corners, with a quarter of its volume.
-    pub quarter: TetrahedronElement,
 }
 
 /// An edge of a strand, or a turn between two edges: energy k/2 (|w| - w0)^2 with w = c (x2 - x1) - a (x1 - x0).

@@ -2,20 +2,17 @@
 
 pub(crate) mod accuracy;
 pub(crate) mod assembly;
-pub(crate) mod backend;
 pub(crate) mod block;
 pub(crate) mod cg;
 pub(crate) mod cholesky;
 pub(crate) mod coarse;
 pub(crate) mod direct;
-pub(crate) mod failure;
 mod guesses;
 pub(crate) mod lane;
 pub(crate) mod operator;
 pub(crate) mod ordering;
 pub(crate) mod parts;
 pub(crate) mod preconditioner;
-mod refinement;
 pub(crate) mod scalar;
 pub(crate) mod solver;
 pub(crate) mod springs;

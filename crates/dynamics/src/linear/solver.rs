@@ -7,20 +7,14 @@
 //! Algorithms", chapter 12). Where single precision gains nothing, the rest is done in double precision.
 
 use super::accuracy::{CgInfo, Limits, MARGIN, MIN_GAIN, subtract_product, unit_factor};
-use super::assembly::ElementModel;
-use super::backend::LinearBackend;
 use super::cg::Krylov;
 use super::coarse::Coarse;
 use super::direct::Direct;
-use super::failure::LinearBackendError;
 use super::guesses::Guesses;
 use super::parts::Parts;
 use super::preconditioner::Levels;
-use super::refinement::Refinement;
 use super::system::System;
-use crate::dynamics::NewtonBackend;
 use bowknot_geometry::Vector;
-use std::ops::Range;
 
 /// A linear system H x = b.
 #[derive(Clone, Copy)]
@@ -44,14 +38,6 @@ pub(crate) struct LinearSolver {
     single: Krylov<f32>,
     double: Krylov<f64>,
     guesses: Guesses,
-    /// Solves in place of `single`, with the patches of nodes for its preconditioner.
-    backend: Option<(Refinement, Vec<Range<u32>>)>,
-    /// Whether the backend does the whole of Newton iterations for this model.
-    computes_model: bool,
-    /// Whether the backend is left out for the rest of the time step.
-    on_cpu: bool,
-    /// What the backend failed of.
-    failure: Option<String>,
     /// b - H x [N].
     residual: Vec<Vector>,
     /// Squared norms of b by part.
@@ -67,60 +53,15 @@ impl LinearSolver {
 
     /// Forgets what depends on the time step before.
     pub fn begin_step(&mut self) {
-        self.on_cpu = false;
         self.precise = self.levels.direct.is_some();
     }
 
-    /// Lets a backend solve in single precision; None for the CPU. If it can, it does the whole of Newton iterations.
-    pub fn set_backend(
-        &mut self,
-        backend: Option<Box<dyn LinearBackend>>,
-        patches: Vec<Range<u32>>,
-        model: impl FnOnce() -> ElementModel,
-    ) {
-        self.backend = backend.map(|backend| (Refinement::new(backend), patches));
-        self.failure = None;
-        self.computes_model = false;
-        let newton = self.backend.as_mut().and_then(|(refinement, _)| refinement.backend.newton());
-        match newton.map(|newton| newton.set_model(&model())) {
-            Some(Ok(computes)) => self.computes_model = computes,
-            Some(Err(error)) => self.fail(&error),
-            None => {}
-        }
+    /// Computes in double precision for the rest of the time step.
+    pub fn leave_single_precision(&mut self) {
+        self.precise = true;
     }
 
-    /// What does Newton iterations, unless it is the CPU.
-    pub fn newton(&mut self) -> Option<&mut dyn NewtonBackend> {
-        let backend = self.backend.as_mut().filter(|_| self.computes_model && !self.on_cpu);
-        backend.and_then(|(refinement, _)| refinement.backend.newton())
-    }
-
-    /// Leaves the backend out for the rest of the time step, and computes in double precision.
-    pub fn leave_backend_out(&mut self) {
-        (self.on_cpu, self.precise) = (true, true);
-    }
-
-    fn fail(&mut self, error: &LinearBackendError) {
-        self.failure = Some(error.to_string());
-        self.on_cpu = true;
-    }
-
-    /// Takes the backend away, if there is one.
-    pub fn take_backend(&mut self) -> Option<Box<dyn LinearBackend>> {
-        self.backend.take().map(|(refinement, _)| refinement.backend)
-    }
-
-    /// The backend, if there is one.
-    pub fn backend(&self) -> Option<&dyn LinearBackend> {
-        self.backend.as_ref().map(|(refinement, _)| &*refinement.backend)
-    }
-
-    /// What the backend has failed of since the last call.
-    pub fn take_failure(&mut self) -> Option<String> {
-        self.failure.take()
-    }
-
-    /// Builds the preconditioner of the CPU for `system`, linearized at positions `x`.
+    /// Builds the preconditioner for `system`, linearized at positions `x`.
     fn prepare(&mut self, system: &System<'_>, x: &[Vector]) {
         self.levels.build(system, x);
         if self.precise {
@@ -143,7 +84,7 @@ impl LinearSolver {
         }
     }
 
-    /// Squared norms of b in the last solve by part; all are that of the whole if a backend has solved.
+    /// Squared norms of b in the last solve by part.
     pub fn scales(&self) -> &[f64] {
         &self.scales
     }
@@ -153,48 +94,15 @@ impl LinearSolver {
         &self.residual
     }
 
-    /// Solves H x = b over the free nodes for the `system`, linearized at `positions`; b and x are zero elsewhere. On the CPU
-    /// each of the independent `parts` ends by itself; a backend solves them as one.
+    /// Solves H x = b over the free nodes for the `system`, linearized at `positions`; b and x are zero elsewhere. Each of
+    /// the independent `parts` ends by itself.
     ///
     /// The start is the combination of `guesses` with the least energy, or zero if there are none. The
     /// tolerance is relative to b, not to the first residual: a good guess saves iterations and does not
     /// raise the accuracy.
     ///
-    /// If the backend fails, the CPU solves and [`Self::take_failure`] tells. Where single precision gains nothing,
-    /// the CPU does the rest of the time step in double precision.
+    /// Where single precision gains nothing, the rest of the time step is done in double precision.
     pub fn solve(
-        &mut self,
-        problem: &Problem<'_>,
-        guesses: &[&[Vector]],
-        limits: &Limits,
-        x: &mut [Vector],
-    ) -> CgInfo {
-        let Problem { system, parts, positions, b } = problem;
-        if let Some((refinement, patches)) = self.backend.as_mut().filter(|_| !self.on_cpu) {
-            x.fill(Vector::zeros());
-            let prepared = refinement.backend.prepare(&system.for_backend(positions, patches));
-            let solved =
-                prepared.and_then(|()| refinement.solve(system, b, guesses, limits, x, &mut self.residual));
-            match solved {
-                Ok(refined) if !refined.stalled => {
-                    self.scales = vec![refined.scale; parts.count()];
-                    return refined.info;
-                }
-                Ok(refined) => {
-                    tracing::debug!("single precision is not enough for the linear solves of a time step");
-                    let start = x.to_vec();
-                    self.leave_backend_out();
-                    let mut info = self.solve_on_cpu(problem, &[&start], limits, x);
-                    info.iterations += refined.info.iterations;
-                    return info;
-                }
-                Err(error) => self.fail(&error),
-            }
-        }
-        self.solve_on_cpu(problem, guesses, limits, x)
-    }
-
-    fn solve_on_cpu(
         &mut self,
         &Problem { system, parts, positions, b }: &Problem<'_>,
         guesses: &[&[Vector]],

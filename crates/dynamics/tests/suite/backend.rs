@@ -1,12 +1,16 @@
-//! Linear solves by a backend: the targets are those of the CPU, and failures are errors.
+//! Newton iterations by a backend: where it gains nothing the CPU takes over, failures are errors, and what a backend cannot
+//! compute is refused.
 
 use crate::common::{dynamics, sheet, with_tolerance};
 use bowknot_dynamics::{
-    Body, ClothMaterial, Dynamics, LinearBackend, LinearBackendError, LinearSystem, RepulsionSpring,
-    SpringKind, StepError,
+    AssemblySprings, Body, ClothMaterial, Dynamics, ElementModel, NewtonBackend, NewtonBackendError,
+    NewtonSolve, NewtonStep, NewtonTarget, OutOfBalance, RepulsionSpring, SolidMaterial, SolveLimits,
+    SpringKind, StepError, Trial, Watched,
 };
-use bowknot_geometry::{Point, Vector};
-use nalgebra::{Matrix3, Vector3};
+use bowknot_geometry::{Point, Vector, add_edge_middles};
+use nalgebra::Matrix3;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 const DT: f64 = 0.02;
 
@@ -17,117 +21,107 @@ const NEWTON_ITERATIONS: usize = 10;
 /// so that time steps are not solved to rounding.
 const AGREEMENT: f64 = 2e-5;
 
-/// Conjugate gradients in single precision with block-Jacobi, one loop after the other.
+/// Gets as far as a linear solve, which gains nothing. Or each call is an error.
 #[derive(Debug, Default)]
-struct Plain {
-    rows: Vec<Vec<(usize, Matrix3<f32>)>>,
-    sums: Vec<Matrix3<f32>>,
-    inverses: Vec<Matrix3<f32>>,
-    r: Vec<Vector3<f32>>,
-    fault: Fault,
+struct Idle {
+    is_lost: bool,
+    iterate: Watched,
+    solves: Arc<AtomicUsize>,
+    models: Arc<AtomicUsize>,
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-enum Fault {
-    #[default]
-    None,
-    /// Each call is an error.
-    Lost,
-    /// It makes no progress.
-    Idle,
-}
-
-impl Plain {
-    fn multiply(&self, x: &[Vector3<f32>]) -> Vec<Vector3<f32>> {
-        let row = |i: usize| {
-            let others = self.rows[i].iter().map(|(j, block)| block * (x[*j] - x[i]));
-            others.fold(self.sums[i] * x[i], |sum, product| sum + product)
-        };
-        (0..x.len()).map(row).collect()
+impl Idle {
+    fn answer(&self) -> Result<(), NewtonBackendError> {
+        if self.is_lost { Err("the device was lost".into()) } else { Ok(()) }
     }
 
-    fn precondition(&self, r: &[Vector3<f32>]) -> Vec<Vector3<f32>> {
-        r.iter().zip(&self.inverses).map(|(r, inverse)| inverse * r).collect()
+    /// What comes after a linear solve.
+    fn never<T>() -> Result<T, NewtonBackendError> {
+        Err("it has not solved anything".into())
     }
 }
 
-fn dot(a: &[Vector3<f32>], b: &[Vector3<f32>]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| f64::from(a.dot(b))).sum()
-}
-
-impl LinearBackend for Plain {
+impl NewtonBackend for Idle {
     fn name(&self) -> String {
-        "plain".to_owned()
+        "idle".to_owned()
     }
 
-    fn prepare(&mut self, system: &LinearSystem<'_>) -> Result<(), LinearBackendError> {
-        if self.fault == Fault::Lost {
-            return Err("the device was lost".into());
-        }
-        (self.rows, self.sums, self.inverses) = Default::default();
-        for i in 0..system.free.len() {
-            let (mut row, mut sum) = (Vec::new(), Matrix3::zeros());
-            let mut inverse = Matrix3::zeros();
-            if system.free[i] {
-                row.extend(system.blocks.row(i).map(|(j, block)| (j, *block)));
-                row.extend(system.scalars.row(i).map(|(j, q)| (j, Matrix3::from_diagonal_element(*q))));
-                sum = system.row_sum(i);
-                for &(spring, weight) in system.springs_of(i) {
-                    let spring = &system.springs[spring as usize];
-                    for (&j, other) in spring.nodes.iter().zip(spring.weights) {
-                        if j != u32::MAX {
-                            let block = spring.hessian * (weight * other);
-                            sum += block;
-                            row.push((j as usize, block));
-                        }
-                    }
-                }
-                inverse = system.diagonal_with_springs(i).try_inverse().ok_or("singular")?;
-            }
-            row.retain(|(j, _)| *j != i);
-            self.rows.push(row.into_iter().map(|(j, block)| (j, block.cast())).collect());
-            self.sums.push(sum.cast());
-            self.inverses.push(inverse.cast());
-        }
-        Ok(())
+    fn set_model(&mut self, _model: &ElementModel) -> Result<(), NewtonBackendError> {
+        self.models.fetch_add(1, Ordering::Relaxed);
+        self.answer()
     }
 
-    fn begin(&mut self, r: &[Vector], factor: f64) -> Result<f64, LinearBackendError> {
-        self.r = r.iter().map(|r| (r * factor).cast()).collect();
-        Ok(dot(&self.r, &self.precondition(&self.r)))
+    fn begin_step(&mut self, _step: &NewtonStep<'_>) -> Result<(), NewtonBackendError> {
+        self.answer()
     }
 
-    fn iterate(
+    fn begin_target(&mut self, target: &NewtonTarget<'_>) -> Result<Watched, NewtonBackendError> {
+        self.iterate = target.watched.iter().map(|&node| target.iterate[node as usize]).collect();
+        Ok(self.iterate.clone())
+    }
+
+    fn begin_again(&mut self) -> Result<Watched, NewtonBackendError> {
+        Ok(self.iterate.clone())
+    }
+
+    fn linearize(&mut self, _absolute: bool) -> Result<(), NewtonBackendError> {
+        self.answer()
+    }
+
+    fn diagonal(&mut self, blocks: &mut Vec<Matrix3<f64>>) -> Result<(), NewtonBackendError> {
+        *blocks = vec![Matrix3::identity(); self.iterate.len()];
+        self.answer()
+    }
+
+    fn solve(
         &mut self,
-        goal: f64,
-        max_iterations: usize,
-        factor: f64,
-        x: &mut [Vector],
-    ) -> Result<usize, LinearBackendError> {
-        if self.fault == Fault::Idle {
-            return Ok(0);
-        }
-        let mut solution = vec![Vector3::zeros(); x.len()];
-        let mut p = self.precondition(&self.r);
-        let mut rz = dot(&self.r, &p);
-        let goal = goal.max(1e-10 * rz);
-        let mut iterations = 0;
-        while rz > goal && iterations < max_iterations {
-            let q = self.multiply(&p);
-            let step = (rz / dot(&p, &q)) as f32;
-            for k in 0..x.len() {
-                solution[k] += p[k] * step;
-                self.r[k] -= q[k] * step;
-            }
-            let z = self.precondition(&self.r);
-            let next = dot(&self.r, &z);
-            let ratio = (next / rz) as f32;
-            p.iter_mut().zip(&z).for_each(|(p, z)| *p = z + *p * ratio);
-            rz = next;
-            iterations += 1;
-        }
-        x.iter_mut().zip(&solution).for_each(|(x, s)| *x += s.cast::<f64>() * factor);
-        Ok(iterations)
+        _springs: &AssemblySprings<'_>,
+        _limits: &SolveLimits,
+    ) -> Result<NewtonSolve, NewtonBackendError> {
+        self.solves.fetch_add(1, Ordering::Relaxed);
+        Ok(NewtonSolve { info: Default::default(), scale: 1.0, stalled: true })
+    }
+
+    fn component_residuals(&mut self, _sums: &mut Vec<Vector>) -> Result<(), NewtonBackendError> {
+        Self::never()
+    }
+
+    fn translate(&mut self, _translations: &[Vector]) -> Result<(), NewtonBackendError> {
+        Self::never()
+    }
+
+    fn place(&mut self, _length: f64) -> Result<Trial, NewtonBackendError> {
+        Self::never()
+    }
+
+    fn begin_search(&mut self) -> Result<(Watched, Trial), NewtonBackendError> {
+        Self::never()
+    }
+
+    fn start_from_trial(&mut self) -> Result<(), NewtonBackendError> {
+        Self::never()
+    }
+
+    fn keep_trial(&mut self) -> Result<(), NewtonBackendError> {
+        Self::never()
+    }
+
+    fn start_from_kept_trial(&mut self) -> Result<(), NewtonBackendError> {
+        Self::never()
+    }
+
+    fn target(&mut self, _y: &mut [Vector]) -> Result<(), NewtonBackendError> {
+        Self::never()
+    }
+
+    fn out_of_balance(
+        &mut self,
+        _springs: &AssemblySprings<'_>,
+        _known: &[Vector],
+        _counted: &[bool],
+        _absolute: bool,
+    ) -> Result<OutOfBalance, NewtonBackendError> {
+        Self::never()
     }
 }
 
@@ -170,41 +164,51 @@ fn fall(dynamics: &mut Dynamics, rest: &[Point], held: &[bool], steps: usize) ->
     x
 }
 
-fn apart(a: &[Point], b: &[Point]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
-}
-
 #[test]
-fn targets_are_those_of_the_cpu() {
+fn where_single_precision_gains_nothing_the_cpu_does_the_rest_of_the_time_step() {
     let (mut cpu, rest, held) = hanging_sheet(1e-9);
     let (mut other, ..) = hanging_sheet(1e-9);
-    other.set_backend(Some(Box::new(Plain::default())));
-    assert_eq!(other.backend().map(LinearBackend::name).as_deref(), Some("plain"));
+    let idle = Idle::default();
+    let (solves, models) = (Arc::clone(&idle.solves), Arc::clone(&idle.models));
+    other.set_backend(Some(Box::new(idle))).expect("cloth");
+    assert_eq!(other.backend().map(NewtonBackend::name).as_deref(), Some("idle"));
     let [a, b] = [&mut cpu, &mut other].map(|dynamics| fall(dynamics, &rest, &held, 8));
-    let (apart, fallen) = (apart(&a, &b), apart(&a, &rest));
-    assert!(fallen > 0.1 && apart < AGREEMENT * fallen && apart > 0.0, "{apart:e} m of {fallen} m");
-}
-
-#[test]
-fn where_single_precision_gains_nothing_the_cpu_solves() {
-    let (mut cpu, rest, held) = hanging_sheet(1e-9);
-    let (mut other, ..) = hanging_sheet(1e-9);
-    other.set_backend(Some(Box::new(Plain { fault: Fault::Idle, ..Plain::default() })));
-    let [a, b] = [&mut cpu, &mut other].map(|dynamics| fall(dynamics, &rest, &held, 8));
-    let (apart, fallen) = (apart(&a, &b), apart(&a, &rest));
-    assert!(apart < AGREEMENT * fallen, "{apart:e} m");
+    let largest = |a: &[Point], b: &[Point]| a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    let (apart, fallen) = (largest(&a, &b), largest(&a, &rest));
+    assert!(fallen > 0.1 && apart < AGREEMENT * fallen, "{apart:e} m of {fallen} m");
+    assert_eq!([solves, models].map(|count| count.load(Ordering::Relaxed)), [8, 1]);
 }
 
 #[test]
 fn a_backend_that_fails_is_an_error_and_may_be_replaced() {
     let (mut dynamics, rest, held) = hanging_sheet(1e-6);
-    dynamics.set_backend(Some(Box::new(Plain { fault: Fault::Lost, ..Plain::default() })));
+    dynamics.set_backend(Some(Box::new(Idle { is_lost: true, ..Idle::default() }))).expect("cloth");
     let (mut x, mut v) = (rest.clone(), vec![Vector::zeros(); rest.len()]);
     let error = dynamics.solve_step(&mut x, &mut v, DT, &held, &rest, 1).expect_err("it is lost");
-    assert_eq!(error, StepError::LinearBackend { message: "the device was lost".to_owned() });
+    assert_eq!(error, StepError::Backend { message: "the device was lost".to_owned() });
     assert_eq!(x, rest);
-    dynamics.set_backend(None);
+    dynamics.set_backend(None).expect("the CPU");
     let resumed = fall(&mut dynamics, &rest, &held, 3);
     let (mut fresh, ..) = hanging_sheet(1e-6);
     assert_eq!(resumed, fall(&mut fresh, &rest, &held, 3));
+}
+
+#[test]
+fn quadratic_elements_are_refused_by_name_and_stay_on_the_cpu() {
+    let corners = [[0.0; 3], [0.1, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.1]].map(Point::from);
+    let of = |has_backend: bool| {
+        let mut rest = corners.to_vec();
+        let tets = add_edge_middles(&mut rest, &[[0, 1, 2, 3]]);
+        let body = Body::quadratic_solid("beam", tets, SolidMaterial::rubber());
+        let mut dynamics = dynamics(&rest, vec![body], with_tolerance(1e-6));
+        if has_backend {
+            let error = dynamics.set_backend(Some(Box::new(Idle::default()))).expect_err("quadratic");
+            assert_eq!(error, StepError::QuadraticElements { body: "beam".to_owned() });
+            let text = error.to_string();
+            assert!(text.contains("\"beam\"") && text.contains("elements = \"linear\""), "{text}");
+            assert!(dynamics.backend().is_none());
+        }
+        fall(&mut dynamics, &rest, &[true].repeat(3).into_iter().chain([false; 7]).collect::<Vec<_>>(), 2)
+    };
+    assert_eq!(of(true), of(false));
 }

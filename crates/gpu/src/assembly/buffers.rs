@@ -146,11 +146,6 @@ impl AssemblyBuffers {
         self.row_sums.buffer
     }
 
-    /// Forgets the matrix: something else was written in its place.
-    pub fn forget_matrix(&mut self) {
-        self.written_to = None;
-    }
-
     /// Writes the sums of rows.
     pub fn write_row_sums(&mut self, sums: &[Matrix3<f64>], recording: &mut Recording) {
         let sums = collected(sums, |sum| {

@@ -2,9 +2,8 @@
 
 use super::layout::{Bend, Entry, Membrane, Strand, Tetrahedron};
 use crate::layout::NONE;
-use crate::linear::{PackedMatrix, SLICE};
-use bowknot_dynamics::{ElementModel, LinearSystem, SolidKind, SparseRows};
-use nalgebra::Matrix3;
+use crate::linear::{Columns, PackedMatrix, SLICE};
+use bowknot_dynamics::{ElementModel, SolidKind};
 use std::collections::BTreeMap;
 
 /// The plan of a model.
@@ -41,7 +40,9 @@ impl Plan {
 
     pub fn new(model: &ElementModel) -> Self {
         let nodes = model.rest.len();
-        let mut structure = structure(model);
+        let blocks = Columns { starts: &model.starts, columns: &model.columns };
+        let scalars = Columns { starts: &model.scalar_starts, columns: &model.scalar_columns };
+        let mut structure = PackedMatrix::new(nodes, blocks, scalars);
         let mut plan = Self {
             nodes,
             membranes: model.membranes.iter().map(membrane).collect(),
@@ -145,28 +146,6 @@ impl Plan {
 fn pair(model: &ElementModel, a: u32, b: u32) -> usize {
     let row = model.starts[a as usize] as usize..model.starts[a as usize + 1] as usize;
     row.start + model.columns[row].partition_point(|column| *column < b)
-}
-
-/// The packed matrix without numbers.
-fn structure(model: &ElementModel) -> PackedMatrix {
-    let nodes = model.rest.len();
-    let (diagonal, values) = (vec![Matrix3::zeros(); nodes], vec![Matrix3::zeros(); model.columns.len()]);
-    let scalars = vec![0.0; model.scalar_columns.len()];
-    PackedMatrix::new(&LinearSystem {
-        free: &vec![true; nodes],
-        positions: &model.rest,
-        diagonal: &diagonal,
-        blocks: SparseRows { starts: &model.starts, columns: &model.columns, values: &values },
-        scalars: SparseRows {
-            starts: &model.scalar_starts,
-            columns: &model.scalar_columns,
-            values: &scalars,
-        },
-        springs: &[],
-        spring_starts: &[],
-        spring_entries: &[],
-        patches: &[],
-    })
 }
 
 fn singles<const N: usize, const M: usize>(numbers: &[[f64; N]]) -> [f32; M] {

@@ -1,4 +1,4 @@
-//! Linear solves whose matrices the device assembles from positions.
+//! Matrices and preconditioners that the device makes from positions.
 
 use super::assembly::Assembly;
 use super::buffers::{Buffers, Sizes};

@@ -23,10 +23,4 @@ impl Assembly {
     pub fn domains(&self) -> usize {
         self.groups.as_ref().map_or(0, |groups| groups.hierarchy.domains())
     }
-
-    /// Forgets what lies in the buffers of the linear solver: something else was written there.
-    pub fn forget(&mut self) {
-        self.buffers.forget_matrix();
-        self.slots = None;
-    }
 }

@@ -1,13 +1,12 @@
 //! The buffers of a linear system on an engine.
 
-use super::galerkin::{Domain, Multilevel};
 use super::layout::{CHILDREN, DOMAIN_WORDS, MOST_LEVELS, PATCH_SLOTS, PatchSlot, Progress};
 use super::matrix::PackedMatrix;
 use super::patches::Patches;
 use crate::cpu::sum::{MOST_WORKGROUPS, THREADS};
 use crate::engine::Engine;
 use crate::error::GpuError;
-use crate::recording::{BufferId, Recording};
+use crate::recording::BufferId;
 use bytemuck::Pod;
 
 /// Most workgroups of coarse levels, which have few domains.
@@ -128,33 +127,6 @@ impl Pool {
             progress: room("progress", |b| b.progress, size_of::<Progress>() / 4)?,
         };
         self.buffers = Some(buffers);
-        Ok(buffers)
-    }
-
-    /// Writes a matrix and its preconditioner.
-    pub fn upload<E: Engine>(
-        &mut self,
-        engine: &mut E,
-        sizes: &Sizes,
-        matrix: &PackedMatrix,
-        preconditioner: &Multilevel,
-    ) -> Result<Buffers, GpuError> {
-        let buffers = self.make(engine, sizes, matrix, preconditioner.domains.len())?;
-        let mut recording = Recording::default();
-        recording.write(buffers.slices, &matrix.slices);
-        recording.write(buffers.words, &matrix.words);
-        recording.write(buffers.springs, &matrix.springs);
-        recording.write(buffers.spring_words, &matrix.spring_words);
-        recording.write(buffers.slots, &preconditioner.slots);
-        let (patches, coarse) = preconditioner.domains.split_at(sizes.grouped);
-        let inverses =
-            |domains: &[Domain]| domains.iter().flat_map(|d| d.inverse.clone()).collect::<Vec<f32>>();
-        recording.write(buffers.domains, &inverses(patches));
-        recording.write(buffers.coarse, &inverses(coarse));
-        recording.write(buffers.links, &coarse.iter().map(|domain| domain.links).collect::<Vec<_>>());
-        // Nodes that are not free keep this: no patch has them.
-        recording.write(buffers.solution, &vec![0u32; 8 * sizes.nodes]);
-        engine.run(&recording, &[])?;
         Ok(buffers)
     }
 }

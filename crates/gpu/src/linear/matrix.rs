@@ -10,15 +10,26 @@
 //! that are shorter than the longest of their slice end with zeros.
 
 use super::layout::Spring;
-use bowknot_dynamics::{LinearSpring, LinearSystem};
-use rayon::prelude::*;
-use std::ops::Range;
+use bowknot_dynamics::LinearSpring;
 
 /// Rows of a slice.
 pub const SLICE: usize = 32;
 
 /// Words of a block with its column.
 pub const BLOCK_WORDS: usize = 10;
+
+/// Columns of the entries of a matrix, row by row.
+#[derive(Clone, Copy, Debug)]
+pub struct Columns<'a> {
+    pub starts: &'a [u32],
+    pub columns: &'a [u32],
+}
+
+impl<'a> Columns<'a> {
+    fn row(&self, i: usize) -> &'a [u32] {
+        &self.columns[self.starts[i] as usize..self.starts[i + 1] as usize]
+    }
+}
 
 /// The matrix, packed.
 #[derive(Debug, Default)]
@@ -34,32 +45,38 @@ pub struct PackedMatrix {
 }
 
 impl PackedMatrix {
-    /// Packs a system.
-    pub fn new(system: &LinearSystem<'_>) -> Self {
-        let nodes = system.free.len();
+    /// The structure of a matrix of so many `nodes`, without numbers: row i has blocks in the columns
+    /// `columns[starts[i]..starts[i + 1]]`, and scalar entries likewise.
+    pub fn new(nodes: usize, blocks: Columns<'_>, scalars: Columns<'_>) -> Self {
         let mut packed = Self::default();
-        let row_lengths =
-            |starts: &[u32], rows: Range<usize>| rows.map(|i| starts[i + 1] - starts[i]).max().unwrap_or(0);
-        let mut end = 0;
         for first in (0..nodes).step_by(SLICE) {
             let rows = first..(first + SLICE).min(nodes);
-            let blocks = 1 + row_lengths(system.blocks.starts, rows.clone());
-            let scalars = row_lengths(system.scalars.starts, rows);
-            packed.slices.push([end as u32, blocks, scalars, 0]);
-            end += SLICE * (BLOCK_WORDS * blocks as usize + 2 * scalars as usize);
+            let longest = |of: Columns<'_>| rows.clone().map(|i| of.row(i).len()).max().unwrap_or(0);
+            let (block_count, scalar_count) = (1 + longest(blocks), longest(scalars));
+            let start = packed.words.len();
+            packed.slices.push([start as u32, block_count as u32, scalar_count as u32, 0]);
+            packed.words.resize(start + SLICE * (BLOCK_WORDS * block_count + 2 * scalar_count), 0);
+            for (lane, i) in rows.clone().enumerate() {
+                let columns = std::iter::once(i as u32).chain(blocks.row(i).iter().copied());
+                let (at, scalars_at) = (start + lane, start + lane + SLICE * BLOCK_WORDS * block_count);
+                packed.put_columns(i, (at, BLOCK_WORDS, block_count), columns);
+                packed.put_columns(i, (scalars_at, 2, scalar_count), scalars.row(i).iter().copied());
+            }
         }
-        packed.words.resize(end, 0);
-        let mut slices = Vec::with_capacity(packed.slices.len());
-        let mut rest = packed.words.as_mut_slice();
-        for (k, slice) in packed.slices.iter().enumerate() {
-            let next = packed.slices.get(k + 1).map_or(end, |next| next[0] as usize);
-            let (words, others) = rest.split_at_mut(next - slice[0] as usize);
-            slices.push((SLICE * k..(SLICE * (k + 1)).min(nodes), slice, words));
-            rest = others;
-        }
-        slices.into_par_iter().for_each(|(rows, slice, words)| fill_slice(system, rows, slice, words));
-        packed.set_springs(system.springs, system.spring_starts, system.spring_entries);
         packed
+    }
+
+    /// Writes the columns of row `i` as the first words of `count` entries of so many words each.
+    fn put_columns(
+        &mut self,
+        i: usize,
+        (at, words, count): (usize, usize, usize),
+        columns: impl Iterator<Item = u32>,
+    ) {
+        // Padding names the row itself: differences to it are zero.
+        for (k, column) in columns.chain(std::iter::repeat(i as u32)).take(count).enumerate() {
+            self.words[at + SLICE * words * k] = column;
+        }
     }
 
     /// Packs springs in place of those before.
@@ -80,41 +97,6 @@ impl PackedMatrix {
     /// The word of the column of block `k` of row `i`, which is in that slice.
     pub fn block_at(&self, slice: [u32; 4], i: usize, k: u32) -> u32 {
         slice[0] + BLOCK_WORDS as u32 * k * SLICE as u32 + (i % SLICE) as u32
-    }
-}
-
-/// Packs the rows of a slice.
-fn fill_slice(system: &LinearSystem<'_>, rows: Range<usize>, slice: &[u32; 4], words: &mut [u32]) {
-    let [_, blocks, scalars, _] = *slice;
-    for (lane, i) in rows.enumerate() {
-        let mut at = lane;
-        let mut put = |word: u32| {
-            words[at] = word;
-            at += SLICE;
-        };
-        put(i as u32);
-        system.row_sum(i).iter().for_each(|number| put((*number as f32).to_bits()));
-        let mut count = 1;
-        for (column, block) in system.blocks.row(i) {
-            put(column as u32);
-            block.iter().for_each(|number| put((*number as f32).to_bits()));
-            count += 1;
-        }
-        // Padding names the row itself: differences to it are zero.
-        for _ in count..blocks {
-            put(i as u32);
-            (1..BLOCK_WORDS).for_each(|_| put(0));
-        }
-        let mut count = 0;
-        for (column, value) in system.scalars.row(i) {
-            put(column as u32);
-            put((*value as f32).to_bits());
-            count += 1;
-        }
-        for _ in count..scalars {
-            put(i as u32);
-            put(0);
-        }
     }
 }
 

@@ -50,11 +50,6 @@ impl Patches {
         self.slots.len() / PATCH_SLOTS
     }
 
-    /// Slots of patch `k`.
-    pub fn slots_of(&self, k: usize) -> &[Option<u32>] {
-        &self.slots[PATCH_SLOTS * k..][..PATCH_SLOTS]
-    }
-
     /// Adds a patch with groups.
     fn add(&mut self, nodes: &mut [u32], positions: &[Vector]) {
         let start = self.slots.len();

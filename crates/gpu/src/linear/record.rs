@@ -30,18 +30,6 @@ pub struct StrandHessian {
 }
 
 impl Recorder {
-    /// Starts from x = 0 with the residual `r` [N].
-    pub fn record_start(&self, r: &[[f32; 4]], recording: &mut Recording) {
-        recording.write(self.buffers.direction, r);
-        self.record_goal(0.0, recording);
-        self.record_residual(0, recording);
-    }
-
-    /// Lets the iterations end at that squared norm.
-    pub fn record_goal(&self, goal: f32, recording: &mut Recording) {
-        recording.write(self.buffers.progress, &[Progress { moving: 1, iterations: 0, goal }]);
-    }
-
     /// Starts from x = 0 with the residual that lies where the search direction goes, as step `k` in the order of all
     /// steps: its partial sums are in [`Self::norms`] of `k`.
     pub fn record_residual(&self, k: usize, recording: &mut Recording) {
@@ -51,7 +39,7 @@ impl Recorder {
     /// H x, which goes where the image of the search direction lies.
     pub fn record_product(&self, x: &[[f32; 4]], recording: &mut Recording) {
         recording.write(self.buffers.direction, x);
-        self.record_goal(0.0, recording);
+        recording.write(self.buffers.progress, &[Progress { moving: 1, iterations: 0, goal: 0.0 }]);
         self.record_image(recording);
     }
 

@@ -8,7 +8,7 @@ use crate::linear::ConjugateGradients;
 use crate::potential::{Places, Potential};
 use crate::recording::Recording;
 use bowknot_dynamics::{
-    AssemblySprings, ElementModel, LinearBackendError, Matrix3, NewtonBackend, NewtonSolve, NewtonStep,
+    AssemblySprings, ElementModel, Matrix3, NewtonBackend, NewtonBackendError, NewtonSolve, NewtonStep,
     NewtonTarget, OutOfBalance, SolveLimits, Trial, Watched,
 };
 use bowknot_geometry::Vector;
@@ -20,7 +20,7 @@ use std::fmt::Debug;
 struct NoModel;
 
 impl<E: Engine + Debug + Send> ConjugateGradients<E> {
-    fn newton(&mut self) -> Result<(&mut Newton, &mut E), LinearBackendError> {
+    fn newton(&mut self) -> Result<(&mut Newton, &mut E), NewtonBackendError> {
         match &mut self.newton {
             Some(newton) => Ok((newton, &mut self.engine)),
             None => Err(NoModel.into()),
@@ -92,26 +92,25 @@ impl<E: Engine + Debug + Send> ConjugateGradients<E> {
 }
 
 impl<E: Engine + Debug + Send> NewtonBackend for ConjugateGradients<E> {
-    fn set_model(&mut self, model: &ElementModel) -> Result<bool, LinearBackendError> {
-        // There is no kernel of quadratic tetrahedra: the CPU assembles their matrices, and the device solves.
-        if !model.quadratic.is_empty() {
-            return Ok(false);
-        }
-        self.take_newton_model(model)?;
-        Ok(true)
+    fn name(&self) -> String {
+        self.name.clone()
     }
 
-    fn begin_step(&mut self, step: &NewtonStep<'_>) -> Result<(), LinearBackendError> {
+    fn set_model(&mut self, model: &ElementModel) -> Result<(), NewtonBackendError> {
+        Ok(self.take_newton_model(model)?)
+    }
+
+    fn begin_step(&mut self, step: &NewtonStep<'_>) -> Result<(), NewtonBackendError> {
         self.newton()?;
         Ok(self.begin_newton_step(step)?)
     }
 
-    fn begin_target(&mut self, target: &NewtonTarget<'_>) -> Result<Watched, LinearBackendError> {
+    fn begin_target(&mut self, target: &NewtonTarget<'_>) -> Result<Watched, NewtonBackendError> {
         self.newton()?;
         Ok(self.begin_newton_target(target)?)
     }
 
-    fn begin_again(&mut self) -> Result<Watched, LinearBackendError> {
+    fn begin_again(&mut self) -> Result<Watched, NewtonBackendError> {
         let (newton, engine) = self.newton()?;
         let mut recording = Recording::default();
         let watched = newton.begin_again(&mut recording);
@@ -119,12 +118,12 @@ impl<E: Engine + Debug + Send> NewtonBackend for ConjugateGradients<E> {
         Ok(watched)
     }
 
-    fn linearize(&mut self, absolute: bool) -> Result<(), LinearBackendError> {
+    fn linearize(&mut self, absolute: bool) -> Result<(), NewtonBackendError> {
         self.newton()?;
         Ok(self.linearize_newton(absolute)?)
     }
 
-    fn diagonal(&mut self, blocks: &mut Vec<Matrix3<f64>>) -> Result<(), LinearBackendError> {
+    fn diagonal(&mut self, blocks: &mut Vec<Matrix3<f64>>) -> Result<(), NewtonBackendError> {
         self.newton()?;
         Ok(self.read_watched_diagonal(blocks)?)
     }
@@ -133,19 +132,19 @@ impl<E: Engine + Debug + Send> NewtonBackend for ConjugateGradients<E> {
         &mut self,
         springs: &AssemblySprings<'_>,
         limits: &SolveLimits,
-    ) -> Result<NewtonSolve, LinearBackendError> {
+    ) -> Result<NewtonSolve, NewtonBackendError> {
         self.newton()?;
         Ok(self.solve_newton(springs, limits)?)
     }
 
-    fn component_residuals(&mut self, sums: &mut Vec<Vector>) -> Result<(), LinearBackendError> {
+    fn component_residuals(&mut self, sums: &mut Vec<Vector>) -> Result<(), NewtonBackendError> {
         let row_sums = self.assembly.as_ref().map(|assembly| assembly.buffers.row_sums());
         let (newton, engine) = self.newton()?;
         let row_sums = row_sums.ok_or(NoModel)?;
         Ok(newton.component_residuals(engine, row_sums, sums)?)
     }
 
-    fn translate(&mut self, translations: &[Vector]) -> Result<(), LinearBackendError> {
+    fn translate(&mut self, translations: &[Vector]) -> Result<(), NewtonBackendError> {
         let (newton, engine) = self.newton()?;
         let mut recording = Recording::default();
         newton.record_translations(translations, &mut recording);
@@ -153,17 +152,17 @@ impl<E: Engine + Debug + Send> NewtonBackend for ConjugateGradients<E> {
         Ok(())
     }
 
-    fn place(&mut self, length: f64) -> Result<Trial, LinearBackendError> {
+    fn place(&mut self, length: f64) -> Result<Trial, NewtonBackendError> {
         let (newton, engine) = self.newton()?;
         Ok(newton.make_trial(engine, length)?)
     }
 
-    fn begin_search(&mut self) -> Result<(Watched, Trial), LinearBackendError> {
+    fn begin_search(&mut self) -> Result<(Watched, Trial), NewtonBackendError> {
         let (newton, engine) = self.newton()?;
         Ok(newton.begin_search(engine)?)
     }
 
-    fn start_from_trial(&mut self) -> Result<(), LinearBackendError> {
+    fn start_from_trial(&mut self) -> Result<(), NewtonBackendError> {
         let (newton, engine) = self.newton()?;
         let mut recording = Recording::default();
         newton.start_from_trial(&mut recording);
@@ -171,7 +170,7 @@ impl<E: Engine + Debug + Send> NewtonBackend for ConjugateGradients<E> {
         Ok(())
     }
 
-    fn keep_trial(&mut self) -> Result<(), LinearBackendError> {
+    fn keep_trial(&mut self) -> Result<(), NewtonBackendError> {
         let (newton, engine) = self.newton()?;
         let mut recording = Recording::default();
         newton.record_copy(newton.vectors.trial, newton.vectors.kept, &mut recording);
@@ -179,7 +178,7 @@ impl<E: Engine + Debug + Send> NewtonBackend for ConjugateGradients<E> {
         Ok(())
     }
 
-    fn start_from_kept_trial(&mut self) -> Result<(), LinearBackendError> {
+    fn start_from_kept_trial(&mut self) -> Result<(), NewtonBackendError> {
         let (newton, engine) = self.newton()?;
         let mut recording = Recording::default();
         newton.start_from_kept_trial(&mut recording);
@@ -187,7 +186,7 @@ impl<E: Engine + Debug + Send> NewtonBackend for ConjugateGradients<E> {
         Ok(())
     }
 
-    fn target(&mut self, y: &mut [Vector]) -> Result<(), LinearBackendError> {
+    fn target(&mut self, y: &mut [Vector]) -> Result<(), NewtonBackendError> {
         let (newton, engine) = self.newton()?;
         let mut recording = Recording::default();
         newton.record_copy(newton.vectors.trial, newton.vectors.last, &mut recording);
@@ -203,7 +202,7 @@ impl<E: Engine + Debug + Send> NewtonBackend for ConjugateGradients<E> {
         known: &[Vector],
         counted: &[bool],
         absolute: bool,
-    ) -> Result<OutOfBalance, LinearBackendError> {
+    ) -> Result<OutOfBalance, NewtonBackendError> {
         self.newton()?;
         self.linearize_newton(absolute)?;
         Ok(self.balance(springs, known, counted)?)

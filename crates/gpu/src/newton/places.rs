@@ -112,11 +112,6 @@ impl Newton {
         self.vectors.free(engine);
     }
 
-    /// Forgets the matrix: something else was written in its place.
-    pub fn forget_matrix(&mut self) {
-        self.matrix_of = None;
-    }
-
     /// Says that the iterate has changed.
     pub fn change_iterate(&mut self) {
         self.iterate = self.next;

@@ -1,4 +1,4 @@
-//! When linear solves end: iterative refinement, see `linear/refinement.rs` of the dynamics.
+//! When linear solves end: iterative refinement, as on the CPU (`linear/solver.rs` of the dynamics).
 //!
 //! A round are iterations of conjugate gradients. After it the residual b - H p is computed; while it is above the
 //! tolerance, a further round corrects p from there.

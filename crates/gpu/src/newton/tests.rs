@@ -1,6 +1,7 @@
 //! Each function of the backend beside double precision on the twins, and kernels beside their twins.
 
 mod fixture;
+mod preconditioner;
 mod solves;
 mod sums;
 mod trials;
@@ -103,7 +104,7 @@ fn there_may_be_nothing_to_move() {
     }
     let empty = ElementModel { starts: vec![0], scalar_starts: vec![0], ..ElementModel::default() };
     let mut without = ConjugateGradients::new("empty".to_owned(), device());
-    assert!(NewtonBackend::set_model(&mut without, &empty).expect("room"));
+    without.set_model(&empty).expect("room");
     let step = NewtonStep {
         start: &[],
         inertial: &[],
@@ -279,7 +280,7 @@ fn many_grains<E: Engine + Debug + Send>(engine: E) -> (ConjugateGradients<E>, S
     let imposed = vec![Vector::zeros(); free.len()];
     let target = NewtonTarget { iterate: &model.rest, free: &free, imposed: &imposed, watched: &[7, 66_000] };
     let mut solver = ConjugateGradients::new("grains".to_owned(), engine);
-    assert!(NewtonBackend::set_model(&mut solver, &model).expect("room"));
+    solver.set_model(&model).expect("room");
     solver.begin_step(&step).expect("runs");
     solver.begin_target(&target).expect("runs");
     solver.linearize(false).expect("runs");

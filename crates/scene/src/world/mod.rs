@@ -254,6 +254,12 @@ impl World {
         }
     }
 
+    /// The names of bodies with quadratic elements, whose dynamics the CPU alone computes.
+    pub fn quadratic_bodies(&self) -> impl Iterator<Item = &str> {
+        let bodies = self.bodies.iter().filter(|body| !body.quadratic_tets.is_empty());
+        bodies.map(|body| body.name.as_str())
+    }
+
     /// The size of each body and of each obstacle with a mesh, in their order.
     pub fn sizes(&self) -> Vec<BodySize> {
         let size = |body: &WorldBody| {

@@ -22,53 +22,59 @@
 
 use crate::linear::accuracy::CgInfo;
 use crate::linear::assembly::{AssemblySprings, ElementModel};
-use crate::linear::failure::LinearBackendError;
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
+use std::error::Error;
 use std::fmt::Debug;
+
+/// Why a backend failed.
+pub type NewtonBackendError = Box<dyn Error + Send + Sync>;
 
 /// Newton iterations in single precision.
 ///
 /// Norms of residuals are those of the backend's preconditioner M, an approximation of H^-1: the squared norm of r is r.M r.
 /// All numbers are SI; vectors have one entry per node. After an error the host computes the rest of the time step itself.
 pub trait NewtonBackend: Debug + Send {
-    /// Takes over what is fixed during a run. Returns whether the backend can compute this model; if not, the CPU does.
+    /// What it is called where runs are described.
+    fn name(&self) -> String;
+
+    /// Takes over what is fixed during a run.
     ///
     /// # Errors
     /// What the backend fails of, such as a lack of memory.
-    fn set_model(&mut self, model: &ElementModel) -> Result<bool, LinearBackendError>;
+    fn set_model(&mut self, model: &ElementModel) -> Result<(), NewtonBackendError>;
 
     /// Begins a time step. There is no last target.
     ///
     /// # Errors
     /// What the backend fails of.
-    fn begin_step(&mut self, step: &NewtonStep<'_>) -> Result<(), LinearBackendError>;
+    fn begin_step(&mut self, step: &NewtonStep<'_>) -> Result<(), NewtonBackendError>;
 
     /// Begins a target: sets the iterate, the free nodes, the nodes to [watch](Watched), and how far the others are from
     /// where they must end. Returns where the watched nodes are at the iterate, as the backend rounds positions.
     ///
     /// # Errors
     /// What the backend fails of.
-    fn begin_target(&mut self, target: &NewtonTarget<'_>) -> Result<Watched, LinearBackendError>;
+    fn begin_target(&mut self, target: &NewtonTarget<'_>) -> Result<Watched, NewtonBackendError>;
 
     /// Returns to the iterate that [`Self::begin_target`] has set, and as it does.
     ///
     /// # Errors
     /// What the backend fails of.
-    fn begin_again(&mut self) -> Result<Watched, LinearBackendError>;
+    fn begin_again(&mut self) -> Result<Watched, NewtonBackendError>;
 
     /// Computes gradient and matrix of the bodies at the iterate. `absolute` says whether negative curvatures change their
     /// sign; otherwise they are set to zero.
     ///
     /// # Errors
     /// What the backend fails of.
-    fn linearize(&mut self, absolute: bool) -> Result<(), LinearBackendError>;
+    fn linearize(&mut self, absolute: bool) -> Result<(), NewtonBackendError>;
 
     /// Sets `blocks` to the diagonal blocks of the matrix of the bodies at the watched nodes [N/m].
     ///
     /// # Errors
     /// What the backend fails of.
-    fn diagonal(&mut self, blocks: &mut Vec<Matrix3<f64>>) -> Result<(), LinearBackendError>;
+    fn diagonal(&mut self, blocks: &mut Vec<Matrix3<f64>>) -> Result<(), NewtonBackendError>;
 
     /// Solves H p = b over the free nodes, with springs added to gradient and matrix, and b = -(g + H q) with the gradient g
     /// and the displacements q of the other nodes to their ends. The start is the combination, with the least energy, of
@@ -80,58 +86,58 @@ pub trait NewtonBackend: Debug + Send {
         &mut self,
         springs: &AssemblySprings<'_>,
         limits: &SolveLimits,
-    ) -> Result<NewtonSolve, LinearBackendError>;
+    ) -> Result<NewtonSolve, NewtonBackendError>;
 
     /// Sets `sums` to the sum of b - R p over each of [`ElementModel::components`], without the elements and K, whose share
     /// is zero [N].
     ///
     /// # Errors
     /// What the backend fails of.
-    fn component_residuals(&mut self, sums: &mut Vec<Vector>) -> Result<(), LinearBackendError>;
+    fn component_residuals(&mut self, sums: &mut Vec<Vector>) -> Result<(), NewtonBackendError>;
 
     /// Adds a translation to the step p of the nodes of each component, one entry per component [m].
     ///
     /// # Errors
     /// What the backend fails of.
-    fn translate(&mut self, translations: &[Vector]) -> Result<(), LinearBackendError>;
+    fn translate(&mut self, translations: &[Vector]) -> Result<(), NewtonBackendError>;
 
     /// Sets the trial to the iterate plus `length` times the step p, with nodes that are not free at their ends. With a
     /// length of 0 the trial becomes the reference that the changes of energy count from, until the next such call.
     ///
     /// # Errors
     /// What the backend fails of.
-    fn place(&mut self, length: f64) -> Result<Trial, LinearBackendError>;
+    fn place(&mut self, length: f64) -> Result<Trial, NewtonBackendError>;
 
     /// Begins a search along the step p: the reference as by [`Self::place`] with a length of 0, then the trial at full length.
     /// Returns the watched nodes at the reference, and the trial.
     ///
     /// # Errors
     /// What the backend fails of.
-    fn begin_search(&mut self) -> Result<(Watched, Trial), LinearBackendError>;
+    fn begin_search(&mut self) -> Result<(Watched, Trial), NewtonBackendError>;
 
     /// Makes the trial the iterate. Nodes that are not free are at their ends there.
     ///
     /// # Errors
     /// What the backend fails of.
-    fn start_from_trial(&mut self) -> Result<(), LinearBackendError>;
+    fn start_from_trial(&mut self) -> Result<(), NewtonBackendError>;
 
     /// Keeps a copy of the trial.
     ///
     /// # Errors
     /// What the backend fails of.
-    fn keep_trial(&mut self) -> Result<(), LinearBackendError>;
+    fn keep_trial(&mut self) -> Result<(), NewtonBackendError>;
 
     /// Makes the kept trial the trial and the iterate, as [`Self::start_from_trial`] does.
     ///
     /// # Errors
     /// What the backend fails of.
-    fn start_from_kept_trial(&mut self) -> Result<(), LinearBackendError>;
+    fn start_from_kept_trial(&mut self) -> Result<(), NewtonBackendError>;
 
     /// Sets `y` to the trial [m] and makes it the last target.
     ///
     /// # Errors
     /// What the backend fails of.
-    fn target(&mut self, y: &mut [Vector]) -> Result<(), LinearBackendError>;
+    fn target(&mut self, y: &mut [Vector]) -> Result<(), NewtonBackendError>;
 
     /// Forces out of balance at the iterate: r = -(g - f) over the `counted` free nodes, with the gradient g of the bodies and
     /// known forces f on the watched nodes [N]. The matrix is that of the iterate, with the matrices of springs.
@@ -144,7 +150,7 @@ pub trait NewtonBackend: Debug + Send {
         known: &[Vector],
         counted: &[bool],
         absolute: bool,
-    ) -> Result<OutOfBalance, LinearBackendError>;
+    ) -> Result<OutOfBalance, NewtonBackendError>;
 }
 
 /// What is fixed during a time step.

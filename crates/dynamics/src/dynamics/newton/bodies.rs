@@ -3,26 +3,28 @@
 //! Newton's method is written once, over this trait: it decides, the bodies compute. Vectors over all nodes stay with the
 //! bodies. Springs act on the *watched* nodes, whose positions come back.
 
+use super::backend::NewtonBackendError;
 use crate::elements::filter::Filter;
 use crate::groups::Group;
 use crate::linear::accuracy::{CgInfo, Limits};
-use crate::linear::failure::LinearBackendError;
 use crate::linear::parts::Parts;
 use crate::linear::springs::LinearSprings;
 use crate::repulsion::springs::Repulsion;
 use bowknot_geometry::Vector;
 
 /// Why bodies on a device cannot go on.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum Lost {
     /// The device has failed.
-    Failed(LinearBackendError),
+    #[error(transparent)]
+    Failed(NewtonBackendError),
     /// Single precision gains nothing.
+    #[error("single precision gains nothing")]
     Stalled,
 }
 
-impl From<LinearBackendError> for Lost {
-    fn from(error: LinearBackendError) -> Self {
+impl From<NewtonBackendError> for Lost {
+    fn from(error: NewtonBackendError) -> Self {
         Self::Failed(error)
     }
 }

@@ -14,19 +14,35 @@ use crate::linear::parts::Parts;
 use crate::linear::springs::LinearSprings;
 use crate::model::DynamicsModel;
 use crate::nodes::CHUNK;
-use crate::params::DynamicsParams;
+use crate::params::{DynamicsParams, PreconditionerKind};
 use crate::repulsion::springs::Repulsion;
 use bowknot_geometry::Vector;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 
-/// Begins the time step on the backend.
+/// A backend that does Newton iterations.
+#[derive(Debug)]
+pub struct Device {
+    pub backend: Box<dyn NewtonBackend>,
+    /// Whether it has taken over the model.
+    pub has_model: bool,
+}
+
+/// Begins the time step on the backend, which takes over the model before the first one.
 fn begin_step(
     model: &DynamicsModel,
     params: &DynamicsParams,
     step: &Step,
-    backend: &mut dyn NewtonBackend,
+    Device { backend, has_model }: &mut Device,
 ) -> Answer<DeviceStep> {
+    if !*has_model {
+        let patches = match params.newton.preconditioner {
+            PreconditionerKind::BlockJacobi => Vec::new(),
+            PreconditionerKind::TwoLevel => model.leaves.clone(),
+        };
+        backend.set_model(&model.describe(patches))?;
+        *has_model = true;
+    }
     let terms = StepTerms::new(model, params, step);
     let as_step = terms.as_step();
     let component_sums = model
@@ -273,16 +289,16 @@ pub fn on_device<T>(
     params: &DynamicsParams,
     step: &Step,
     course: &mut Course,
-    backend: &mut dyn NewtonBackend,
+    device: &mut Device,
     beginning: Beginning<'_>,
     trial: Option<&mut [Vector]>,
     run: &mut dyn FnMut(&mut dyn Bodies, &mut Course) -> Answer<T>,
 ) -> Answer<T> {
     let on_device = match course.on_device.take() {
         Some(on_device) => on_device,
-        None => begin_step(model, params, step, backend)?,
+        None => begin_step(model, params, step, device)?,
     };
-    let mut bodies = DeviceBodies::new(model, step, &on_device, backend, beginning)?;
+    let mut bodies = DeviceBodies::new(model, step, &on_device, &mut *device.backend, beginning)?;
     let done = run(&mut bodies, course)?;
     if let Some(trial) = trial {
         bodies.backend.target(trial)?;

@@ -54,6 +54,8 @@ pub struct Course {
     pub scales: Vec<f64>,
     /// See [`crate::Dynamics::set_step_tolerance`] [m].
     pub step_tolerance: f64,
+    /// Whether the CPU does the rest of the time step.
+    pub leaves_device: bool,
     /// The time step on the device, once it has begun there.
     pub on_device: Option<DeviceStep>,
 }

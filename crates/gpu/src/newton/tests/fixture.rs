@@ -6,7 +6,7 @@ use crate::recording::{BufferId, Recording};
 use bowknot_dynamics::{
     AssemblySprings, Body, ClothMaterial, Dynamics, DynamicsModel, DynamicsParams, ElementModel,
     HessianFilter, LinearSpring, NewtonBackend, NewtonTarget, ParticleMaterial, PreconditionerKind,
-    SolidMaterial, SolveLimits, StepTerms, Watched,
+    SolidMaterial, SolveLimits, StepTerms, StrandMaterial, Watched,
 };
 use bowknot_geometry::{Point, Vector};
 use nalgebra::{DMatrix, DVector, Matrix3};
@@ -179,11 +179,27 @@ pub fn fixtures() -> Vec<Fixture> {
 /// A solver over twins that has taken over the model.
 pub fn solver<E: Engine + Debug + Send>(engine: E, fixture: &Fixture) -> ConjugateGradients<E> {
     let mut solver = ConjugateGradients::new("test".to_owned(), engine);
-    assert!(NewtonBackend::set_model(&mut solver, &fixture.model).expect("room"));
+    solver.set_model(&fixture.model).expect("room");
     solver
 }
 
 impl Fixture {
+    /// Pinned cloth of so many cells along a side, in patches.
+    pub fn of_cloth(cells: usize) -> Self {
+        let (rest, triangles) = sheet(cells, Vector::zeros(), 0);
+        let cotton = ClothMaterial { bend_stiffness: 1e-3, bend_damping: 0.05, ..ClothMaterial::cotton() };
+        let body = Body::cloth("sheet", triangles, cotton);
+        of_bodies("cloth", &rest, vec![body], 0.004, &[0, cells], true)
+    }
+
+    /// A strand of so many nodes that is nearly straight.
+    pub fn of_strand(nodes: u32) -> Self {
+        let rest: Vec<Point> = (0..nodes).map(|k| Point::new(0.01 * f64::from(k), 0.0, 0.0)).collect();
+        let edges = (1..nodes).map(|k| [k - 1, k]).collect();
+        let body = Body::strands("strand", edges, StrandMaterial::hair());
+        of_bodies("strand", &rest, vec![body], 1e-7, &[0], true)
+    }
+
     fn set_springs(&mut self, springs: impl Iterator<Item = LinearSpring>) {
         self.springs = springs.collect();
         let mut lists: Vec<Vec<(u32, f64)>> = vec![Vec::new(); self.free.len()];
