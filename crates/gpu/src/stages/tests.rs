@@ -137,7 +137,7 @@ fn structs_lie_alike_on_both_sides() {
         offsets!(layout::CarriedState: friction, multiplier, candidate, padding_0, padding_1),
         offsets!(layout::Row: vertices, weights, normal, value, inverse_diagonal, multiplier, candidate, color, slip, coefficient,
             friction, bucket),
-        offsets!(layout::Bucket: first, end, colors),
+        offsets!(layout::Bucket: first, end, colors, most),
         offsets!(layout::EdgeLimit: a, b, limit, places, multiplier, longest),
         offsets!(layout::EdgeCluster: first_vertex, vertices, first_edge, first_color, colors),
         offsets!(layout::OldRow: first, count),
